@@ -1,0 +1,27 @@
+//! whipple: MPI-parallel smoothed particle hydrodynamics for large 3-D impacts of solids.
+//!
+//! MPI ranks own slabs of space, threads work inside a rank, parallel HDF5 holds results and
+//! checkpoints. The rooms below stand in the order in which data flows through a run; the
+//! developer guide in `docs/` says what each may know. SI units everywhere inside the program.
+
+pub mod app;
+pub mod input;
+pub mod model;
+pub mod populate;
+
+pub mod material;
+pub mod particles;
+
+pub mod comm;
+pub mod domain;
+pub mod neighbours;
+
+pub mod contact;
+pub mod sph;
+pub mod step;
+
+pub mod diagnose;
+pub mod output;
+
+pub mod exact;
+pub mod plot;

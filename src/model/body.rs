@@ -1,0 +1,112 @@
+//! Bodies: a shape filled with particles of one material on one lattice.
+
+use super::Vec3;
+
+/// A coordinate axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Axis {
+    /// First coordinate.
+    X,
+    /// Second coordinate.
+    Y,
+    /// Third coordinate.
+    Z,
+}
+
+impl Axis {
+    /// All three axes in order.
+    pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
+
+    /// 0, 1 or 2.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// `"x"`, `"y"` or `"z"`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        ["x", "y", "z"][self.index()]
+    }
+}
+
+/// A plane of symmetry normal to a coordinate axis. The model keeps the side above it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SymmetryPlane {
+    /// Normal of the plane.
+    pub axis: Axis,
+    /// Where the plane cuts that axis (m).
+    pub position: f64,
+}
+
+/// The geometry of a body, in its final place (m).
+///
+/// In one dimension a box is an interval of x; in two dimensions a box is a rectangle and a
+/// sphere a disc of the x-y plane.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// Axis-aligned box between two corners.
+    Box {
+        /// Smallest coordinates (m).
+        lower: Vec3,
+        /// Largest coordinates (m).
+        upper: Vec3,
+    },
+    /// Ball of a radius about a centre.
+    Sphere {
+        /// Centre (m).
+        centre: Vec3,
+        /// Radius (m).
+        radius: f64,
+    },
+    /// Circular cylinder along a coordinate axis.
+    Cylinder {
+        /// Middle of the cylinder, half way along its axis (m).
+        centre: Vec3,
+        /// Direction of the axis.
+        axis: Axis,
+        /// Radius (m).
+        radius: f64,
+        /// Full length along the axis (m).
+        length: f64,
+    },
+}
+
+/// How particles are stacked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LatticeKind {
+    /// Simple cubic (square in two dimensions).
+    Cubic,
+    /// Hexagonal close-packed (triangular in two dimensions), stacked along z.
+    Hexagonal,
+}
+
+/// A lattice of particles: its kind, spacing and orientation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lattice {
+    /// Kind of stacking.
+    pub kind: LatticeKind,
+    /// Particle spacing Δp (m): the edge of the cube that holds one particle's volume, so that
+    /// a particle's volume is Δp^d for every kind.
+    pub spacing: f64,
+    /// Turn of the lattice about the z axis through the shape's centre (rad).
+    pub angle: f64,
+}
+
+/// One body of a case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// Name, unique in the case.
+    pub name: String,
+    /// Geometry in its final place (after `touch` has been applied).
+    pub shape: Shape,
+    /// Index into [`super::Case::materials`].
+    pub material: usize,
+    /// Lattice of its particles.
+    pub lattice: Lattice,
+    /// Initial velocity (m/s).
+    pub velocity: Vec3,
+    /// Constant smoothing length h₀ (m): the reference of contact, and of the SPH sums unless
+    /// they vary it.
+    pub smoothing_length: f64,
+}

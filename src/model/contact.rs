@@ -1,0 +1,88 @@
+//! Contact between pairs of bodies, as chosen by the user.
+
+/// The contact of one pair of bodies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactPair {
+    /// Two indices into [`super::Case::bodies`].
+    pub bodies: [usize; 2],
+    /// What happens where they meet.
+    pub mode: ContactMode,
+}
+
+/// What two bodies do to each other.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ContactMode {
+    /// The bodies do not see each other.
+    None,
+    /// Particles of the other body enter the SPH sums: both act as one continuum.
+    Kernel,
+    /// Contact potential of Vignjevic, De Vuyst & Campbell (2006), eqs. 20–24.
+    Potential(Potential),
+    /// Overlap energy of the foreign volume fraction above the touching value.
+    Overlap(Overlap),
+}
+
+impl ContactMode {
+    /// The name used in inputs.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Kernel => "kernel",
+            Self::Potential(_) => "potential",
+            Self::Overlap(_) => "overlap",
+        }
+    }
+}
+
+/// Where the contact potential acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PotentialRange {
+    /// Everywhere in the kernel's support, 2h.
+    Support,
+    /// Closer than the mean particle spacing.
+    Spacing,
+}
+
+/// Parameters of [`ContactMode::Potential`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Potential {
+    /// Dimensionless stiffness k: K = k M/Δp^d with the smaller p-wave modulus M of the two
+    /// bodies and their mean spacing.
+    pub stiffness: f64,
+    /// Exponent n ≥ 1 of the kernel ratio.
+    pub exponent: u32,
+    /// Range of the force.
+    pub range: PotentialRange,
+}
+
+impl Default for Potential {
+    fn default() -> Self {
+        Self {
+            stiffness: 1.0,
+            exponent: 4,
+            range: PotentialRange::Support,
+        }
+    }
+}
+
+/// Parameters of [`ContactMode::Overlap`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Overlap {
+    /// Stiffness κ of the overlap energy relative to the p-wave modulus.
+    pub stiffness: f64,
+    /// Stiffness κ_c of the core that keeps lone particles apart.
+    pub core_stiffness: f64,
+    /// Radius of the core in mean particle spacings.
+    pub core_radius: f64,
+}
+
+impl Default for Overlap {
+    fn default() -> Self {
+        Self {
+            stiffness: 4.0,
+            core_stiffness: 2.0,
+            core_radius: 0.6,
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! Options of the method and controls of a run.
+
+use super::Axis;
+
+/// Whether the smoothing length of the SPH sums follows the density. Contact always keeps the
+/// reference h₀.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SmoothingLength {
+    /// h = h₀ for ever.
+    Constant,
+    /// h = h₀ (ρ₀/ρ)^{1/d} between two bounds.
+    Variable {
+        /// Smallest h/h₀.
+        min: f64,
+        /// Largest h/h₀.
+        max: f64,
+    },
+}
+
+/// Options of the SPH sums.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SphOptions {
+    /// Linear coefficient α of the Monaghan–Gingold viscosity.
+    pub alpha: f64,
+    /// Quadratic coefficient β of the Monaghan–Gingold viscosity.
+    pub beta: f64,
+    /// Constant or variable smoothing length.
+    pub smoothing_length: SmoothingLength,
+}
+
+/// Stability factors of the explicit scheme.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TimeStepOptions {
+    /// Factor of the sound and viscosity criterion.
+    pub courant: f64,
+    /// Factor of the acceleration criterion √(h/|a|).
+    pub force: f64,
+    /// Safety factor of the contact criterion.
+    pub contact: f64,
+    /// Upper bound of the step (s); infinite when there is none.
+    pub max: f64,
+}
+
+/// Distribution over ranks; never touches results.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DomainOptions {
+    /// Axis of the slabs; the longest one when absent.
+    pub axis: Option<Axis>,
+    /// Steps between two balances of the work.
+    pub balance_every: u64,
+}
+
+/// When a run ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RunControl {
+    /// The case's own end (s); the last step is clipped to it.
+    pub end_time: f64,
+    /// Stop after this many steps, if given.
+    pub max_steps: Option<u64>,
+}
+
+/// What is written, and when.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutputOptions {
+    /// Time between snapshots (s); none if absent. The first and the last state are always written.
+    pub snapshot_every: Option<f64>,
+    /// Time between checkpoints (s); none if absent. A soft stop always writes one.
+    pub checkpoint_every: Option<f64>,
+    /// How many checkpoints are kept.
+    pub checkpoints_kept: usize,
+    /// Steps between two rows of `history.csv`, `contacts.csv` and `performance.csv`.
+    pub history_every: u64,
+    /// Names of the snapshot fields; the field table's defaults when empty.
+    pub fields: Vec<String>,
+}

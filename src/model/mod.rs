@@ -1,0 +1,83 @@
+//! What is simulated, in SI units, before there are particles: bodies, materials, contact,
+//! symmetry planes, and the controls of a run.
+//!
+//! A [`Case`] is complete and validated: the `input` room builds it from TOML, every later room
+//! only reads it.
+
+mod body;
+mod contact;
+mod control;
+
+pub use body::{Axis, Body, Lattice, LatticeKind, Shape, SymmetryPlane};
+pub use contact::{ContactMode, ContactPair, Overlap, Potential, PotentialRange};
+pub use control::{
+    DomainOptions, OutputOptions, RunControl, SmoothingLength, SphOptions, TimeStepOptions,
+};
+
+use crate::material::Material;
+
+/// A vector of three components (m, m/s, …).
+pub type Vec3 = nalgebra::Vector3<f64>;
+
+/// Everything a run needs to know.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// One line for reports and plots.
+    pub title: String,
+    /// Number of space dimensions: 1 (uniaxial strain), 2 (plane strain) or 3.
+    pub dimension: usize,
+    /// Materials, in the order of the input.
+    pub materials: Vec<Material>,
+    /// Bodies, in the order of the input; a particle's `body` is an index into this.
+    pub bodies: Vec<Body>,
+    /// Contact of each unordered pair of bodies that the input names; all others use
+    /// [`Case::default_contact`].
+    pub contacts: Vec<ContactPair>,
+    /// Contact between bodies that no entry of [`Case::contacts`] names.
+    pub default_contact: ContactMode,
+    /// Planes of symmetry, at most one for each axis.
+    pub symmetry: Vec<SymmetryPlane>,
+    /// Options of the SPH sums.
+    pub sph: SphOptions,
+    /// Stability factors.
+    pub time_step: TimeStepOptions,
+    /// Distribution over ranks.
+    pub domain: DomainOptions,
+    /// When to stop.
+    pub run: RunControl,
+    /// What to write and when.
+    pub output: OutputOptions,
+    /// The input with all overrides applied, as TOML text; reading it gives this case again.
+    pub resolved: String,
+}
+
+impl Case {
+    /// Contact mode between bodies `a` and `b` (order does not matter).
+    #[must_use]
+    pub fn contact_between(&self, a: usize, b: usize) -> &ContactMode {
+        self.contacts
+            .iter()
+            .find(|pair| (pair.bodies == [a, b]) || (pair.bodies == [b, a]))
+            .map_or(&self.default_contact, |pair| &pair.mode)
+    }
+
+    /// Largest difference of initial velocity between two bodies, or the largest speed of a
+    /// single body, in m/s: the "impact speed" of the interpenetration measure.
+    #[must_use]
+    pub fn impact_speed(&self) -> f64 {
+        let mut speed: f64 = 0.0;
+        for (a, body) in self.bodies.iter().enumerate() {
+            for other in &self.bodies[a + 1..] {
+                speed = speed.max((body.velocity - other.velocity).norm());
+            }
+        }
+        if speed > 0.0 {
+            speed
+        } else {
+            self.bodies
+                .iter()
+                .map(|b| b.velocity.norm())
+                .fold(0.0, f64::max)
+        }
+    }
+}
