@@ -1,10 +1,13 @@
 //! Strength: the deviatoric stress.
 
 mod elastic;
+mod jaumann;
 mod von_mises;
 
 pub use elastic::Elastic;
 pub use von_mises::VonMises;
+
+use super::{LANES, PointBatch};
 
 /// The resistance of a material to shear.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,6 +28,15 @@ impl Strength {
             Self::None => 0.0,
             Self::Elastic(law) => law.shear_modulus,
             Self::VonMises(law) => law.shear_modulus,
+        }
+    }
+
+    /// Advances stress and plastic strain of a batch by `dt` (s).
+    pub(super) fn update(&self, batch: &mut PointBatch, dt: f64) {
+        match self {
+            Self::None => batch.deviatoric_stress = [[0.0; LANES]; 6],
+            Self::Elastic(law) => law.update(batch, dt),
+            Self::VonMises(law) => law.update(batch, dt),
         }
     }
 }
