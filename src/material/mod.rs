@@ -94,10 +94,10 @@ impl Material {
             / self.reference_density;
         let shear = self.strength.shear_modulus() * (4.0 / 3.0);
         for k in 0..LANES {
-            let rho = batch.density[k];
-            let work = batch.pressure[k] / (rho * rho);
-            let bulk = response.dp_drho[k] + work * response.dp_de[k];
-            batch.sound_speed[k] = (at_least(bulk, floor) + shear / rho).sqrt();
+            let volume = 1.0 / batch.density[k];
+            let de_drho = batch.pressure[k] * volume * volume;
+            let bulk = response.dp_drho[k] + de_drho * response.dp_de[k];
+            batch.sound_speed[k] = (at_least(bulk, floor) + shear * volume).sqrt();
         }
     }
 }

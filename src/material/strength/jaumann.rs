@@ -18,15 +18,22 @@ use crate::material::{LANES, PointBatch};
 /// Advances the deviatoric stress by `dt` (s) with shear modulus `g` (Pa).
 pub(super) fn advance(batch: &mut PointBatch, g: f64, dt: f64) {
     let l = &batch.velocity_gradient;
-    let s = &mut batch.deviatoric_stress;
+    let s = &batch.deviatoric_stress;
+    let mut new = [[0.0; LANES]; 6];
     for k in 0..LANES {
-        let l_k = l.map(|component| component[k]);
-        let s_k = s.map(|component| component[k]);
-        let new = advance_point(&l_k, &s_k, g * dt, dt);
-        for (component, value) in s.iter_mut().zip(new) {
-            component[k] = value;
-        }
+        let l_k = [
+            l[0][k], l[1][k], l[2][k], l[3][k], l[4][k], l[5][k], l[6][k], l[7][k], l[8][k],
+        ];
+        let s_k = [s[0][k], s[1][k], s[2][k], s[3][k], s[4][k], s[5][k]];
+        let [xx, yy, zz, xy, xz, yz] = advance_point(&l_k, &s_k, g * dt, dt);
+        new[0][k] = xx;
+        new[1][k] = yy;
+        new[2][k] = zz;
+        new[3][k] = xy;
+        new[4][k] = xz;
+        new[5][k] = yz;
     }
+    batch.deviatoric_stress = new;
 }
 
 /// One point of [`advance`]: `l` row-major (1/s), `s` as `xx yy zz xy xz yz` (Pa).
@@ -88,8 +95,8 @@ fn conjugate(q: &[f64; 9], s: &[f64; 6]) -> [f64; 6] {
     let [xx, yy, zz, xy, xz, yz] = *s;
     let columns = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
     let q_row = |i: usize| [q[3 * i], q[3 * i + 1], q[3 * i + 2]];
-    let qs_row = |i: usize| columns.map(|column| dot(q_row(i), column));
-    let (qs_x, qs_y, qs_z) = (qs_row(0), qs_row(1), qs_row(2));
+    let product_row = |i: usize| columns.map(|column| dot(q_row(i), column));
+    let (qs_x, qs_y, qs_z) = (product_row(0), product_row(1), product_row(2));
     [
         dot(qs_x, q_row(0)),
         dot(qs_y, q_row(1)),
