@@ -1,7 +1,17 @@
 //! Physics at one point: equation of state, strength, spall. Knows neither particles nor MPI.
 //!
 //! A [`Material`] advances eight points at a time ([`PointBatch`]); the choice of its parts is
-//! made once for each batch, never for each point.
+//! made once for each batch, never for each point. Stress is positive in tension, pressure in
+//! compression: `σ = −p I + S`.
+
+pub mod eos;
+pub mod library;
+mod spall;
+pub mod strength;
+
+pub use eos::{Eos, Linear, LinearForm, MieGruneisen};
+pub use spall::Spall;
+pub use strength::{Elastic, Strength, VonMises};
 
 /// Points advanced together; a batch lane is one point.
 pub const LANES: usize = 8;
@@ -28,20 +38,26 @@ pub struct PointBatch {
     pub sound_speed: Lanes,
 }
 
-/// A material: equation of state, strength and spall, each with its source.
+/// A material: equation of state, strength and spall.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// Name for reports.
     pub name: String,
     /// Reference density ρ₀ (kg/m³).
     pub reference_density: f64,
+    /// Pressure as a function of density and specific energy.
+    pub eos: Eos,
+    /// Resistance to shear.
+    pub strength: Strength,
+    /// Largest tension, if the material has one.
+    pub spall: Option<Spall>,
 }
 
 impl Material {
     /// Reference p-wave modulus `M = K + 4G/3` (Pa): what contact stiffness scales with.
     #[must_use]
     pub fn p_wave_modulus(&self) -> f64 {
-        todo!()
+        self.eos.bulk_modulus(self.reference_density) + self.strength.shear_modulus() * (4.0 / 3.0)
     }
 
     /// Advances a batch of points by `dt` (s; zero gives the stress of the given state).
