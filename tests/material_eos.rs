@@ -169,7 +169,8 @@ fn linear_forms_are_what_they_say() {
 fn spall_limits_tension_only() {
     let mut material = library::find("aluminium-6061").unwrap();
     material.spall = Some(Spall { pressure: -1.2e9 });
-    assert!(state(&material, 2703.0 * 0.95, 0.0).0 == -1.2e9);
+    let (p, _) = state(&material, 2703.0 * 0.95, 0.0);
+    assert_eq!(p.to_bits(), (-1.2e9_f64).to_bits());
     let (p, _) = state(&material, 2703.0 * 0.999, 0.0);
     assert!((p / (-0.001 * 2703.0 * 5240.0 * 5240.0) - 1.0).abs() < 1e-12);
 }
@@ -205,5 +206,5 @@ fn library_is_sorted_complete_and_sourced() {
     let Strength::VonMises(law) = library::find("aluminium-2024").unwrap().strength else {
         panic!("aluminium 2024 is elastic-plastic");
     };
-    assert!(law.yield_stress == 0.26e9);
+    assert!((law.yield_stress - 0.26e9).abs() < 1.0);
 }

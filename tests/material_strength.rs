@@ -1,5 +1,7 @@
 //! Deviatoric stress: objectivity and order of the Jaumann step, radial return, hardening.
 
+#![allow(clippy::float_cmp)] // where nothing may change, not a bit does
+
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use whipple::material::{
     Elastic, Eos, LANES, Linear, LinearForm, Material, PointBatch, Strength, VonMises,
