@@ -4,13 +4,18 @@
 //! before anybody goes on ([`vote`]), so that callers leave together. Rows stand in the order of
 //! particle ids ([`Rows`]), whatever the ranks. [`h5`] is the only room that names HDF5.
 
+pub mod checkpoint;
+mod digest;
 mod error;
 mod files;
 pub mod h5;
 mod history;
 mod log;
 mod rows;
+mod run_folder;
 mod schedule;
+pub mod series;
+pub mod snapshot;
 mod vote;
 
 pub use error::OutputError;
@@ -18,6 +23,7 @@ pub use files::{write_atomically, write_json};
 pub use history::{Column, Table, Value};
 pub use log::Log;
 pub use rows::{Block, Rows};
+pub use run_folder::{Phase, RunFolder, Status};
 pub use schedule::Schedule;
 pub use vote::{agree, on_root};
 
