@@ -15,7 +15,9 @@ fi
 export OMPI_MCA_hwloc_base_binding_policy=${OMPI_MCA_hwloc_base_binding_policy-none}
 export OMPI_MCA_rmaps_base_oversubscribe=${OMPI_MCA_rmaps_base_oversubscribe-1}
 export OMPI_MCA_mpi_yield_when_idle=${OMPI_MCA_mpi_yield_when_idle-1}
-# Open MPI 5 launches through PRRTE, which has its own names for the first two.
+# No essay of mpirun's own after an exit code that is not zero: `--quiet`, which 5 refuses.
+export OMPI_MCA_orte_execute_quiet=${OMPI_MCA_orte_execute_quiet-1}
+# Open MPI 5 (Debian 13) launches through PRRTE, which has its own names for the first two.
 export PRTE_MCA_hwloc_default_binding_policy=${PRTE_MCA_hwloc_default_binding_policy-none}
 export PRTE_MCA_rmaps_default_mapping_policy=${PRTE_MCA_rmaps_default_mapping_policy-:oversubscribe}
 

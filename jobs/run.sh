@@ -67,25 +67,30 @@ if [ ! -x "$program" ]; then
 fi
 
 # mpirun answers TERM and INT by killing its ranks within two seconds, but passes USR1 on to
-# them, which asks for a soft stop.
-job='' caught='' interrupted=''
-# shellcheck disable=SC2317  # the traps call it
+# them, which asks for a soft stop. While it starts up it may drop the signal, hence the repeats.
+job='' caught='' interrupted='' repeats=''
+# shellcheck disable=SC2317  # the traps call these
+repeat() { while sleep 10 && kill -USR1 "$job"; do :; done; }
+# shellcheck disable=SC2317
 stop() {
     caught=1
     if [ "$1" = interrupt ] && [ -n "$interrupted" ]; then
-        kill -TERM "$job"
-    else
-        echo "stopping after this step, with a checkpoint; a second Ctrl-C kills the run" >&2
-        kill -USR1 "$job"
+        kill -TERM "$job" || true
+        return
     fi
-    if [ "$1" = interrupt ]; then interrupted=1; fi
+    [ "$1" != interrupt ] || interrupted=1
+    [ -z "$repeats" ] || return 0
+    echo "stopping after this step, with a checkpoint; a second Ctrl-C kills the run" >&2
+    kill -USR1 "$job" || true
+    repeat >/dev/null 2>&1 &
+    repeats=$!
 }
 trap 'stop interrupt' INT
 trap 'stop softly' TERM USR1 HUP
 
 # A process group of its own (set -m), so that a terminal's Ctrl-C reaches this script alone.
 set -m
-mpirun --quiet -n "$ranks" "${placement[@]}" \
+mpirun -n "$ranks" "${placement[@]}" \
     "$program" "$command" "$@" --threads "$threads" </dev/null &
 job=$!
 set +m
@@ -97,4 +102,5 @@ while :; do
     wait "$job" || code=$?
     [ -n "$caught" ] || break
 done
+[ -z "$repeats" ] || kill "$repeats" 2>/dev/null || true
 exit "$code"
