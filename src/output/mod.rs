@@ -1,1 +1,3 @@
 //! Room output.
+
+pub mod h5;

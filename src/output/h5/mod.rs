@@ -1,0 +1,3 @@
+//! The only room that names HDF5.
+
+pub mod read;
