@@ -110,6 +110,8 @@ impl Simulation {
             state: fresh_state(pairs.len()),
             timers: Timers::default(),
             poison: false,
+            wishes: 0,
+            agreed_wishes: 0,
             updates: 0,
             slabs: Slabs::new(axis, vec![f64::INFINITY; comm.size() - 1]),
             histogram: Histogram::default(),
@@ -224,7 +226,6 @@ fn fresh_state(pairs: usize) -> RunState {
         capped_reliefs: 0,
         interpenetrated: 0,
         worst: Worst::default(),
-        outputs: [0; 2],
     }
 }
 

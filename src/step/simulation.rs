@@ -44,6 +44,10 @@ pub struct Simulation {
     pub timers: Timers,
     /// Fill everything that is not state with NaN between steps: for tests.
     pub poison: bool,
+    /// What this rank wishes (a set of bits): all ranks' wishes are joined by the next step's vote.
+    pub wishes: u64,
+    /// The joined wishes of all ranks as of the last vote.
+    pub agreed_wishes: u64,
     /// Particle updates that this rank has made.
     pub updates: u64,
     pub(super) contact: ContactTable,
@@ -74,6 +78,9 @@ impl Simulation {
     /// The same on all ranks if any particle's state is no longer a number.
     pub fn advance(&mut self, comm: &Comm) -> Result<(), StepError> {
         let (dt, reason) = self.next_step();
+        if self.poison {
+            self.store.poison();
+        }
         self.timers.skip();
         self.kick_and_drift(dt);
         self.timers.lap(Phase::Integrate);
@@ -93,9 +100,6 @@ impl Simulation {
         self.book_step(comm, dt);
         self.vote(comm)?;
         self.updates += self.store.owned() as u64;
-        if self.poison {
-            self.store.poison();
-        }
         self.timers.lap(Phase::Vote);
         Ok(())
     }

@@ -112,8 +112,6 @@ pub struct RunState {
     pub interpenetrated: i64,
     /// Largest values over the run.
     pub worst: Worst,
-    /// Output counters, owned by the run loop.
-    pub outputs: [u64; 2],
 }
 
 /// Largest deviations over a run.

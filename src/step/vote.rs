@@ -26,9 +26,10 @@ impl Simulation {
     pub(super) fn vote(&mut self, comm: &Comm) -> Result<(), StepError> {
         let mut words = Vec::new();
         let (dt, reason, id) = self.local_vote();
-        comm.all_gather_u64(&[dt, reason, id], &mut words);
+        comm.all_gather_u64(&[dt, reason, id, self.wishes], &mut words);
+        self.agreed_wishes = words.iter().skip(3).step_by(4).fold(0, |all, one| all | one);
         let best = words
-            .chunks_exact(3)
+            .chunks_exact(4)
             .map(|word| (word[0], word[1], word[2]))
             .min()
             .unwrap_or(ABSTAIN);
