@@ -72,8 +72,21 @@ pub struct Reaction {
     pub closest: f64,
     /// Largest approach speed towards a foreign particle (m/s).
     pub approach: f64,
-    /// Force and energy by the other body.
-    pub by_body: Vec<(u32, [f64; 3], f64)>,
+    /// The same by the other body.
+    pub by_body: Vec<BodyReaction>,
+}
+
+/// What one foreign body does to one receiver.
+#[derive(Debug, Clone, Copy)]
+pub struct BodyReaction {
+    /// The other body.
+    pub body: usize,
+    /// Force (N).
+    pub force: [f64; 3],
+    /// Share of the contact energy (J).
+    pub energy: f64,
+    /// Smallest distance to a particle of that body in mean spacings.
+    pub closest: f64,
 }
 
 impl Reaction {
@@ -88,37 +101,32 @@ impl Reaction {
         self.by_body.clear();
     }
 
-    /// Books a force and an energy that `other` causes.
-    fn book(&mut self, other: &Party, force: [f64; 3], energy: f64) {
+    /// Books what the pair with `other` at `gap` does: distance, approach, force and energy.
+    fn book(&mut self, other: &Party, gap: &Gap, spacing: f64, force: [f64; 3], energy: f64) {
+        let distance = gap.distance / spacing;
+        self.closest = self.closest.min(distance);
+        self.approach = self.approach.max(gap.approach);
+        self.energy += energy;
+        let at = self.by_body.iter().position(|e| e.body == other.body);
+        let at = at.unwrap_or_else(|| {
+            self.by_body.push(BodyReaction {
+                body: other.body,
+                force: [0.0; 3],
+                energy: 0.0,
+                closest: f64::INFINITY,
+            });
+            self.by_body.len() - 1
+        });
+        let body = &mut self.by_body[at];
+        body.closest = body.closest.min(distance);
+        body.energy += energy;
         for a in 0..3 {
             self.force[a] += force[a];
+            body.force[a] += force[a];
             if other.mirrored {
                 self.from_mirrors[a] += force[a];
             }
         }
-        self.energy += energy;
-        self.book_body(other.body, force, energy);
-    }
-
-    fn book_body(&mut self, body: usize, force: [f64; 3], energy: f64) {
-        #[allow(clippy::cast_possible_truncation, reason = "few bodies")]
-        let body = body as u32;
-        let at = self.by_body.iter().position(|entry| entry.0 == body);
-        let at = at.unwrap_or_else(|| {
-            self.by_body.push((body, [0.0; 3], 0.0));
-            self.by_body.len() - 1
-        });
-        let entry = &mut self.by_body[at];
-        for a in 0..3 {
-            entry.1[a] += force[a];
-        }
-        entry.2 += energy;
-    }
-
-    /// Keeps the smallest distance and the largest approach speed of a pair.
-    fn note(&mut self, gap: &Gap, spacing: f64) {
-        self.closest = self.closest.min(gap.distance / spacing);
-        self.approach = self.approach.max(gap.approach);
     }
 }
 

@@ -96,7 +96,6 @@ pub fn react(view: &ContactView, place: u32, neighbours: &[u32], reaction: &mut 
             view.table.pair(i.body, j.body),
             view.table.pair(j.body, i.body),
         );
-        reaction.note(&gap, pair.spacing);
         let there = stored(view, j.base);
         let mut force = 0.0;
         let mut energy = 0.0;
@@ -121,9 +120,7 @@ pub fn react(view: &ContactView, place: u32, neighbours: &[u32], reaction: &mut 
             energy += 0.25 * stress * (depth * depth);
             reaction.stiffness += 2.0 * stress / (pair.core_radius * pair.core_radius);
         }
-        if force != 0.0 || energy != 0.0 {
-            reaction.book(&j, gap.along(force), energy);
-        }
+        reaction.book(&j, &gap, pair.spacing, gap.along(force), energy);
     }
 }
 

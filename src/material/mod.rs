@@ -6,7 +6,7 @@
 
 pub mod eos;
 pub mod library;
-mod spall;
+pub mod spall;
 pub mod strength;
 
 pub use eos::{Eos, Linear, LinearForm, MieGruneisen};

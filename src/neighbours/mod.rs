@@ -10,4 +10,4 @@ mod sequence;
 pub use clusters::{CLUSTERS_PER_CHUNK, Chunk, Cluster, ClusterLists};
 pub use columns::ColumnGrid;
 pub use foreign::{ContactClass, ForeignChunk, ForeignLists, ForeignTable, PairList};
-pub use sequence::{Image, Sequence};
+pub use sequence::{Image, ImageFacts, Sequence};

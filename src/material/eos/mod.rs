@@ -1,7 +1,7 @@
 //! Equations of state: pressure from density and specific energy.
 
-mod linear;
-mod mie_gruneisen;
+pub mod linear;
+pub mod mie_gruneisen;
 
 pub use linear::{Linear, LinearForm};
 pub use mie_gruneisen::MieGruneisen;

@@ -3,7 +3,7 @@
 //! No record has a spall cut-off: spall strengths depend on the rate of the load, so a case
 //! states its own.
 
-mod metals;
+pub mod metals;
 
 use super::Material;
 

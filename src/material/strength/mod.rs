@@ -1,8 +1,8 @@
 //! Strength: the deviatoric stress.
 
-mod elastic;
-mod jaumann;
-mod von_mises;
+pub mod elastic;
+pub mod jaumann;
+pub mod von_mises;
 
 pub use elastic::Elastic;
 pub use von_mises::VonMises;
