@@ -5,7 +5,7 @@ use crate::model::{Body, LatticeKind, Shape};
 /// Nearest distance of a hexagonal close-packed lattice with one site in a unit volume, 2^(1/6).
 pub(super) const CLOSE_PACKED: f64 = 1.122_462_048_309_373;
 /// Nearest distance of a triangular lattice with one site in a unit area, √(2/√3).
-pub(super) const TRIANGULAR: f64 = 1.074_569_931_823_541_9;
+pub(super) const TRIANGULAR: f64 = 1.074_569_931_823_542;
 /// √3/2: distance of the rows of a triangular layer, in nearest distances.
 const ROW: f64 = 0.866_025_403_784_438_6;
 /// √(2/3): distance of close-packed layers, in nearest distances.
@@ -118,15 +118,20 @@ impl Stack {
     /// Vector from the centre to a site (m).
     #[allow(clippy::cast_precision_loss)] // indices stay far below 2^52
     pub fn offset(&self, i: u64, j: u64, k: u64) -> [f64; 3] {
-        let along = |index: u64, a: usize| {
-            (index as f64 - 0.5 * (self.counts[a] as f64 - 1.0)) * self.pitch[a]
+        let along = |index: u64, axis: usize| {
+            (index as f64 - 0.5 * (self.counts[axis] as f64 - 1.0)) * self.pitch[axis]
         };
-        let [shift_u, shift_v] =
-            shifts(self.kind, self.dimension, j, k).map(|shift| shift * self.spacing);
-        let u = along(i, 0) + shift_u;
-        let v = along(j, 1) + shift_v;
-        let [c, s] = self.turn;
-        [c * u - s * v, s * u + c * v, along(k, 2)]
+        let shifts = shifts(self.kind, self.dimension, j, k);
+        let [across, up] = [
+            along(i, 0) + shifts[0] * self.spacing,
+            along(j, 1) + shifts[1] * self.spacing,
+        ];
+        let [cos, sin] = self.turn;
+        [
+            cos * across - sin * up,
+            sin * across + cos * up,
+            along(k, 2),
+        ]
     }
 
     /// Position of a site (m).

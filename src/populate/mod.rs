@@ -9,7 +9,7 @@ mod touch;
 
 pub use touch::{touching_distance, touching_value};
 
-use crate::model::{Body, SymmetryPlane};
+use crate::model::{Axis, Body, SymmetryPlane};
 use lattice::Stack;
 use row::Row;
 
@@ -82,6 +82,22 @@ pub fn bounds(body: &Body, dimension: usize) -> Option<([f64; 3], [f64; 3])> {
         }
     }
     found
+}
+
+/// Smallest coordinate on an axis (m) of the [`sites`] above all symmetry planes, or `None` if
+/// there are none.
+#[must_use]
+pub fn first_layer(
+    body: &Body,
+    dimension: usize,
+    symmetry: &[SymmetryPlane],
+    axis: Axis,
+) -> Option<f64> {
+    let stack = Stack::new(body, dimension);
+    row::rows(stack, symmetry, None)
+        .flat_map(|row| [row.first, row.end - 1].map(|i| stack.position(i, row.j, row.k)))
+        .map(|position| position[axis.index()])
+        .min_by(f64::total_cmp)
 }
 
 /// Volume of one particle of the body, Δp^d (m³; m² or m in two or one dimensions), so that its

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::model::{Axis, Lattice, LatticeKind, Shape, Vec3};
+use crate::model::{Lattice, LatticeKind, Shape, Vec3};
 
 fn body(shape: Shape, kind: LatticeKind, spacing: f64, angle: f64) -> Body {
     Body {
@@ -112,6 +112,7 @@ fn the_main_jobs_sphere_and_plate() {
     assert_eq!(4 * count(&sphere, 3, &planes(), None), expected as u64);
 }
 
+#[allow(clippy::cast_precision_loss)] // counts of thousands
 /// Lattice points in a volume differ from the volume by a surface term: within half a spacing
 /// times the surface, and in practice a tenth of it.
 #[test]
@@ -322,7 +323,7 @@ fn touching_values_agree_with_real_bodies() {
             let normal = dimension - 1;
             let top = bounds(&wall, dimension).unwrap().1[normal];
             let middle = sites(&wall, dimension, &[], None)
-                .filter(|s| s.position[normal] == top)
+                .filter(|s| s.position[normal].to_bits() == top.to_bits())
                 .map(|s| Vec3::from(s.position))
                 .min_by(|p, q| {
                     let lateral = |p: &Vec3| p.norm_squared() - p[normal] * p[normal];
