@@ -64,7 +64,7 @@ impl CommonArgs {
     pub fn options(&self, start: Instant) -> Result<Options, String> {
         let until = self.until.as_deref().map(input::time).transpose();
         Ok(Options {
-            until: until.map_err(|error| error.to_string())?,
+            until: until.map_err(|error| format!("error: --until {error}"))?,
             walltime: self.walltime,
             poison: self.poison,
             start,

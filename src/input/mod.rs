@@ -76,6 +76,20 @@ pub fn output_and_run_only(overrides: &[String]) -> Result<(), InputError> {
     })
 }
 
+/// Reads a time such as `0.1us` from a command line (s).
+///
+/// # Errors
+/// A message that says what was expected.
+pub fn time(text: &str) -> Result<f64, String> {
+    use quantity::{Kind, Time};
+    let expected = || format!("expected {}, as in {}", Time::NAME, Time::EXAMPLE);
+    match units::parse(text) {
+        Ok((si, powers)) if powers == Time::POWERS => Ok(si),
+        Ok(_) => Err(format!("`{text}`: {}", expected())),
+        Err(cause) => Err(format!("`{text}`: {cause}; {}", expected())),
+    }
+}
+
 /// Does some reading in an address space of the text and the overrides, whose first addresses it
 /// is given, and renders its complaint.
 fn with_sources<T>(
