@@ -144,9 +144,8 @@ fn von_mises(t: &[f64; 6]) -> f64 {
 
 /// The known name that shares the most pairs of letters with a mistyped one.
 fn nearest(name: &str, known: &[String]) -> Option<String> {
-    let pairs = |word: &str| -> Vec<(char, char)> {
-        word.chars().zip(word.chars().skip(1)).collect()
-    };
+    let pairs =
+        |word: &str| -> Vec<(char, char)> { word.chars().zip(word.chars().skip(1)).collect() };
     let wanted = pairs(name);
     let share = |candidate: &String| {
         let other = pairs(candidate);
