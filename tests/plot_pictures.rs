@@ -198,7 +198,7 @@ fn complaints_say_what_to_do() {
     assert!(unknown.contains("did you mean \"pressure\""), "{unknown}");
     assert!(unknown.contains("density"), "{unknown}");
     assert!(complaint("--field velocity.w").contains("x, y, z, magnitude"));
-    assert!(complaint("--field deviatoric_stress").contains("von_mises"));
+    assert!(complaint("--field deviatoric_stress").contains("needs a component"));
     assert!(complaint("--field pressure.x").contains("scalar"));
     assert!(complaint("--section w=1mm").contains("y=0"));
     assert!(complaint("--section y=0.1").contains("unit of m"));

@@ -276,6 +276,7 @@ mod tests {
     }
 
     #[test]
+    #[expect(clippy::float_cmp, reason = "products of small integers are exact")]
     fn a_range_shares_its_last_unit() {
         assert_eq!(parse_span("-1:2", None, "1").unwrap(), [-1.0, 2.0]);
         assert_eq!(parse_span("0:3 km/s", None, "m/s").unwrap(), [0.0, 3000.0]);

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use hdf5::types::{FixedAscii, VarLenUnicode};
+use hdf5::types::{FixedAscii, FixedUnicode, VarLenUnicode};
 
 /// Particle spacing of the synthetic impact (m).
 pub const SPACING: f64 = 2e-5;
@@ -144,7 +144,13 @@ pub fn write(path: &Path, case: &Case, particles: &Particles, time: f64) {
     array(&field, "TimeValue", &[time], 1);
 
     let about = file.create_group("whipple").unwrap();
-    text(&about, "title", &case.title);
+    // The program's own writer uses UTF-8 of fixed length.
+    let title: FixedUnicode<128> = case.title.parse().unwrap();
+    let attribute = about
+        .new_attr::<FixedUnicode<128>>()
+        .create("title")
+        .unwrap();
+    attribute.write_scalar(&title).unwrap();
     text(
         &about,
         "bodies",
