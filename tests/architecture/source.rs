@@ -4,6 +4,18 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+/// How rayon's iterators begin, and how they end in one value.
+const PARALLEL: &[&str] = &["par_", "into_par_"];
+const REDUCTIONS: &[&str] = &[
+    "sum",
+    "product",
+    "reduce",
+    "reduce_with",
+    "try_reduce",
+    "fold",
+    "fold_with",
+];
+
 /// An identifier, a `::`, or one other character, with its line.
 #[derive(Debug, Clone)]
 pub struct Token {
@@ -172,32 +184,24 @@ impl Source {
             .collect()
     }
 
-    /// Reductions of rayon's iterators, whose order is that of the threads; and `sum::<f64>()`
-    /// with such an iterator.
+    /// Reductions of rayon's iterators, whose order is that of the threads.
     pub fn parallel_reductions(&self) -> Vec<(usize, String)> {
-        const REDUCTIONS: &[&str] = &[
-            "sum",
-            "product",
-            "reduce",
-            "reduce_with",
-            "fold",
-            "fold_with",
-        ];
+        let parallel = |token: &Token| PARALLEL.iter().any(|start| token.text.starts_with(start));
         let mut found = Vec::new();
-        for statement in self.tokens.split(|token| token.text == ";") {
-            let Some(start) = statement.iter().position(|token| is_parallel(&token.text)) else {
-                continue;
-            };
-            // A reduction inside a closure of the chain is sequential: only depth 0 counts.
+        for start in (0..self.tokens.len()).filter(|at| parallel(&self.tokens[*at])) {
+            // What stands inside a closure of the chain is sequential: only depth 0 counts.
             let mut depth = 0_i32;
-            for pair in statement[start..].windows(2) {
+            for pair in self.tokens[start..].windows(2) {
                 match pair[0].text.as_str() {
                     "(" | "{" | "[" => depth += 1,
                     ")" | "}" | "]" => depth -= 1,
-                    "." if depth <= 0 && REDUCTIONS.contains(&pair[1].text.as_str()) => {
+                    "." if depth == 0 && REDUCTIONS.contains(&pair[1].text.as_str()) => {
                         found.push((pair[1].line, format!("parallel {}", pair[1].text)));
                     }
                     _ => {}
+                }
+                if depth < 0 || (depth == 0 && pair[0].text == ";") {
+                    break;
                 }
             }
         }
@@ -220,10 +224,6 @@ impl Source {
     fn text_at(&self, at: usize) -> &str {
         self.tokens.get(at).map_or("", |token| token.text.as_str())
     }
-}
-
-fn is_parallel(name: &str) -> bool {
-    name.starts_with("par_") || name.starts_with("into_par_")
 }
 
 /// Whether a token is an identifier that can stand in a path.
@@ -443,15 +443,15 @@ mod tests {
 
     #[test]
     fn tells_parallel_reductions_from_sums_inside_a_closure() {
-        let text = "let a: f64 = x.par_iter().map(|v| v.iter().sum::<f64>()).collect();\n\
+        let text = "let a: f64 = x.par_iter().map(|v| { let s = v.iter().sum::<f64>(); s }).collect();\n\
                     // the minimum has the same bits in any order\n\
                     let b = x.par_iter().copied().reduce(f64::NAN, min);\n\
-                    let c = x\n    .into_par_iter()\n    .sum::<f64>();";
+                    let c = x\n    .into_par_iter()\n    .fold(zero, |a, b| { let c = a; c + b })\n    .sum::<f64>();";
         let source = Source::new("sph/mod.rs", text.to_owned());
         let found = source.parallel_reductions();
         assert_eq!(
             found.iter().map(|(line, _)| *line).collect::<Vec<_>>(),
-            [3, 6]
+            [3, 6, 7]
         );
         assert!(source.says(3, "same bits in any order"));
         assert!(!source.says(6, "same bits in any order"));
