@@ -1,1 +1,201 @@
-//! Room comm.
+//! Messages between ranks: the only room that names MPI.
+//!
+//! MPI is initialised *funneled*: every call comes from the main thread. A [`Comm`] without a
+//! world ([`Comm::solo`]) is a single rank that never touches MPI, for tests and library use.
+
+mod exchange;
+
+pub use exchange::{Exchange, Traffic};
+
+use mpi::collective::SystemOperation;
+use mpi::ffi;
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::{AsRaw, Communicator, CommunicatorCollectives, Root};
+
+/// The communicator handle that parallel HDF5 takes.
+pub type RawComm = ffi::MPI_Comm;
+
+/// MPI initialised for this process; finalised when dropped. Drop every [`Comm`] user first.
+pub struct Session {
+    _universe: mpi::environment::Universe,
+}
+
+impl Session {
+    /// Initialises MPI; `None` if it was already initialised or lacks funneled threads.
+    #[must_use]
+    pub fn start() -> Option<(Self, Comm)> {
+        let (universe, threading) = mpi::initialize_with_threading(mpi::Threading::Funneled)?;
+        if threading < mpi::Threading::Funneled {
+            return None;
+        }
+        let comm = Comm {
+            world: Some(universe.world()),
+        };
+        Some((
+            Self {
+                _universe: universe,
+            },
+            comm,
+        ))
+    }
+}
+
+/// A group of ranks.
+pub struct Comm {
+    world: Option<SimpleCommunicator>,
+}
+
+impl Comm {
+    /// One rank by itself, without MPI.
+    #[must_use]
+    pub fn solo() -> Self {
+        Self { world: None }
+    }
+
+    /// This process's number.
+    #[must_use]
+    pub fn rank(&self) -> usize {
+        self.world
+            .as_ref()
+            .map_or(0, |world| usize::try_from(world.rank()).unwrap_or(0))
+    }
+
+    /// Number of processes.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.world
+            .as_ref()
+            .map_or(1, |world| usize::try_from(world.size()).unwrap_or(1))
+    }
+
+    /// Whether this is rank 0, which prints.
+    #[must_use]
+    pub fn is_root(&self) -> bool {
+        self.rank() == 0
+    }
+
+    /// The handle for parallel HDF5; `None` without MPI.
+    #[must_use]
+    pub fn raw(&self) -> Option<RawComm> {
+        self.world.as_ref().map(AsRaw::as_raw)
+    }
+
+    /// Waits for all ranks.
+    pub fn barrier(&self) {
+        if let Some(world) = &self.world {
+            world.barrier();
+        }
+    }
+
+    /// Replaces each number by its sum over ranks (wrapping is the caller's concern).
+    pub fn sum_i64(&self, values: &mut [i64]) {
+        self.reduce(values, SystemOperation::sum());
+    }
+
+    /// Replaces each number by its sum over ranks.
+    pub fn sum_u64(&self, values: &mut [u64]) {
+        self.reduce(values, SystemOperation::sum());
+    }
+
+    /// Replaces each number by its largest over ranks.
+    pub fn max_u64(&self, values: &mut [u64]) {
+        self.reduce(values, SystemOperation::max());
+    }
+
+    /// Replaces each number by its smallest over ranks.
+    pub fn min_u64(&self, values: &mut [u64]) {
+        self.reduce(values, SystemOperation::min());
+    }
+
+    /// Largest of a number over ranks.
+    #[must_use]
+    pub fn max_f64(&self, value: f64) -> f64 {
+        let mut values = [value];
+        self.reduce(&mut values, SystemOperation::max());
+        values[0]
+    }
+
+    /// Smallest of a number over ranks.
+    #[must_use]
+    pub fn min_f64(&self, value: f64) -> f64 {
+        let mut values = [value];
+        self.reduce(&mut values, SystemOperation::min());
+        values[0]
+    }
+
+    /// Whether any rank says yes.
+    #[must_use]
+    pub fn any(&self, yes: bool) -> bool {
+        let mut values = [u64::from(yes)];
+        self.max_u64(&mut values);
+        values[0] != 0
+    }
+
+    /// Joins every rank's `values` (the same length everywhere) in rank order into `all`.
+    pub fn all_gather_u64(&self, values: &[u64], all: &mut Vec<u64>) {
+        all.resize(values.len() * self.size(), 0);
+        match &self.world {
+            Some(world) => world.all_gather_into(values, all.as_mut_slice()),
+            None => all.copy_from_slice(values),
+        }
+    }
+
+    /// Sends `sends[r]` to rank r, receives what rank r sent here in `receives[r]`.
+    pub fn all_to_all_u64(&self, sends: &[u64], receives: &mut Vec<u64>) {
+        receives.resize(self.size(), 0);
+        match &self.world {
+            Some(world) => world.all_to_all_into(sends, receives.as_mut_slice()),
+            None => receives.copy_from_slice(sends),
+        }
+    }
+
+    /// Gives every rank the root's bytes.
+    pub fn broadcast(&self, bytes: &mut Vec<u8>) {
+        self.broadcast_from(0, bytes);
+    }
+
+    /// Gives every rank the bytes of rank `from`.
+    pub fn broadcast_from(&self, from: usize, bytes: &mut Vec<u8>) {
+        if let Some(world) = &self.world {
+            let root = world.process_at_rank(i32::try_from(from).expect("a rank fits an int"));
+            let mut length = [bytes.len() as u64];
+            root.broadcast_into(&mut length);
+            bytes.resize(usize::try_from(length[0]).unwrap_or(0), 0);
+            for piece in bytes.chunks_mut(1 << 30) {
+                root.broadcast_into(piece);
+            }
+        }
+    }
+
+    /// Ends every rank at once.
+    pub fn abort(&self, code: i32) -> ! {
+        match &self.world {
+            Some(world) => world.abort(code),
+            None => std::process::exit(code),
+        }
+    }
+
+    fn reduce<T>(&self, values: &mut [T], operation: SystemOperation)
+    where
+        T: Copy + mpi::traits::Equivalence,
+        [T]: mpi::traits::Buffer + mpi::traits::BufferMut,
+    {
+        if let Some(world) = &self.world
+            && self.size() > 1
+        {
+            let mine = values.to_vec();
+            world.all_reduce_into(mine.as_slice(), values, operation);
+        }
+    }
+}
+
+/// Ends all ranks of a running MPI job from wherever the process stands, as a panic must: without
+/// this a panic unwinds into `MPI_Finalize` and the job hangs. Does nothing outside MPI.
+pub fn abort_job(code: i32) {
+    if mpi::is_initialized() {
+        // SAFETY: MPI is initialised; `MPI_Abort` takes any live communicator and does not return.
+        unsafe {
+            ffi::MPI_Abort(ffi::RSMPI_COMM_WORLD, code);
+        }
+    }
+}

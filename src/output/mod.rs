@@ -1,1 +1,37 @@
-//! Room output.
+//! Results and checkpoints: what a run writes, when, and how it is read back.
+//!
+//! All ranks call the writers together and all get the same verdict: every return code is voted
+//! before anybody goes on ([`vote`]), so that callers leave together. Rows stand in the order of
+//! particle ids ([`Rows`]), whatever the ranks. [`h5`] is the only room that names HDF5.
+
+pub mod checkpoint;
+mod digest;
+mod error;
+mod files;
+pub mod h5;
+mod history;
+mod log;
+mod rows;
+mod run_folder;
+mod schedule;
+pub mod series;
+pub mod snapshot;
+mod vote;
+
+pub use error::OutputError;
+pub use files::{write_atomically, write_json};
+pub use history::{Column, Table, Value};
+pub use log::Log;
+pub use rows::{Block, Rows};
+pub use run_folder::{Phase, RunFolder, Status};
+pub use schedule::Schedule;
+pub use vote::{agree, on_root};
+
+/// The program's version.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// The commit that the program was built from, if the build knew it.
+pub const COMMIT: &str = match option_env!("WHIPPLE_COMMIT") {
+    Some(commit) => commit,
+    None => "unknown",
+};

@@ -1,0 +1,225 @@
+//! One packed byte message to and from each peer of a phase.
+
+use std::ffi::{c_int, c_void};
+
+use mpi::ffi;
+
+use super::Comm;
+
+/// Largest piece of a message: counts are `i32`.
+const PIECE: usize = 1 << 30;
+const TAG_SIZE: c_int = 1;
+const TAG_DATA: c_int = 2;
+
+/// Messages and bytes sent, for reports.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Traffic {
+    /// Messages sent.
+    pub messages: u64,
+    /// Bytes sent.
+    pub bytes: u64,
+}
+
+#[derive(Default)]
+struct Peer {
+    rank: c_int,
+    send: Vec<u8>,
+    receive: Vec<u8>,
+}
+
+/// Buffers and requests of one exchange with a set of peers; every peer both sends and receives,
+/// perhaps nothing. Buffers are kept from step to step.
+///
+/// Either [`Exchange::post`] when both sides know the sizes ([`Exchange::expect`]), or
+/// [`Exchange::post_sizes`] first; then [`Exchange::wait`].
+#[derive(Default)]
+pub struct Exchange {
+    peers: Vec<Peer>,
+    count: usize,
+    requests: Vec<ffi::MPI_Request>,
+    /// What this exchange has sent so far.
+    pub traffic: Traffic,
+}
+
+impl Exchange {
+    /// Sets the peers, emptying all messages. Both sides must name each other.
+    pub fn set_peers(&mut self, ranks: impl Iterator<Item = usize>) {
+        assert!(self.requests.is_empty(), "an exchange is still under way");
+        self.count = 0;
+        for rank in ranks {
+            if self.count == self.peers.len() {
+                self.peers.push(Peer::default());
+            }
+            let peer = &mut self.peers[self.count];
+            peer.rank = c_int::try_from(rank).expect("a rank fits an int");
+            peer.send.clear();
+            peer.receive.clear();
+            self.count += 1;
+        }
+    }
+
+    /// Number of peers.
+    #[must_use]
+    pub fn peers(&self) -> usize {
+        self.count
+    }
+
+    /// Rank of the k-th peer.
+    #[must_use]
+    pub fn rank(&self, k: usize) -> usize {
+        usize::try_from(self.peers[k].rank).unwrap_or(0)
+    }
+
+    /// The message to the k-th peer, to be filled.
+    pub fn outgoing(&mut self, k: usize) -> &mut Vec<u8> {
+        &mut self.peers[k].send
+    }
+
+    /// The message of the k-th peer, after [`Self::wait`].
+    #[must_use]
+    pub fn incoming(&self, k: usize) -> &[u8] {
+        &self.peers[k].receive
+    }
+
+    /// Says how many bytes the k-th peer will send.
+    pub fn expect(&mut self, k: usize, bytes: usize) {
+        self.peers[k].receive.resize(bytes, 0);
+    }
+
+    /// Tells all peers the size of their message and learns the size of theirs.
+    pub fn post_sizes(&mut self, comm: &Comm) {
+        let Some(raw) = comm.raw() else { return };
+        let outgoing: Vec<u64> = self.peers[..self.count]
+            .iter()
+            .map(|peer| peer.send.len() as u64)
+            .collect();
+        let mut incoming = vec![0_u64; self.count];
+        for k in 0..self.count {
+            let rank = self.peers[k].rank;
+            // SAFETY: both arrays live until `wait` below and are not touched before it.
+            unsafe {
+                self.receive_piece(raw, (&raw mut incoming[k]).cast(), 8, rank, TAG_SIZE);
+                self.send_piece(raw, (&raw const outgoing[k]).cast(), 8, rank, TAG_SIZE);
+            }
+        }
+        self.wait();
+        for (peer, size) in self.peers[..self.count].iter_mut().zip(incoming) {
+            peer.receive
+                .resize(usize::try_from(size).expect("a size fits memory"), 0);
+        }
+    }
+
+    /// Starts all messages; returns at once. Outgoing messages must not change before
+    /// [`Self::wait`], which the borrow of buffers through `&mut self` methods leaves to the
+    /// caller's order of calls.
+    pub fn post(&mut self, comm: &Comm) {
+        let Some(raw) = comm.raw() else { return };
+        for k in 0..self.count {
+            let rank = self.peers[k].rank;
+            let (pointer, length) = {
+                let receive = &mut self.peers[k].receive;
+                (receive.as_mut_ptr(), receive.len())
+            };
+            for start in (0..length).step_by(PIECE) {
+                // SAFETY: the buffer is owned by `self`, lives until `wait`, and the piece lies in it.
+                unsafe {
+                    let piece = pointer.add(start).cast();
+                    self.receive_piece(raw, piece, PIECE.min(length - start), rank, TAG_DATA);
+                }
+            }
+        }
+        for k in 0..self.count {
+            let rank = self.peers[k].rank;
+            let (pointer, length) = {
+                let send = &self.peers[k].send;
+                (send.as_ptr(), send.len())
+            };
+            for start in (0..length).step_by(PIECE) {
+                // SAFETY: as above; MPI only reads the piece.
+                unsafe {
+                    let piece = pointer.add(start).cast();
+                    self.send_piece(raw, piece, PIECE.min(length - start), rank, TAG_DATA);
+                }
+            }
+        }
+    }
+
+    /// Waits for all messages of [`Self::post`].
+    pub fn wait(&mut self) {
+        if self.requests.is_empty() {
+            return;
+        }
+        let count = c_int::try_from(self.requests.len()).expect("requests fit an int");
+        // SAFETY: the requests are live and their buffers are owned by `self` or the caller.
+        unsafe {
+            ffi::MPI_Waitall(
+                count,
+                self.requests.as_mut_ptr(),
+                ffi::RSMPI_STATUSES_IGNORE,
+            );
+        }
+        self.requests.clear();
+    }
+
+    unsafe fn receive_piece(
+        &mut self,
+        comm: ffi::MPI_Comm,
+        to: *mut c_void,
+        bytes: usize,
+        rank: c_int,
+        tag: c_int,
+    ) {
+        // SAFETY: a constant of the library.
+        let mut request = unsafe { ffi::RSMPI_REQUEST_NULL };
+        let count = c_int::try_from(bytes).expect("a piece fits an int");
+        // SAFETY: the caller keeps `to..to + bytes` alive and untouched until `wait`.
+        unsafe {
+            ffi::MPI_Irecv(
+                to,
+                count,
+                ffi::RSMPI_UINT8_T,
+                rank,
+                tag,
+                comm,
+                &raw mut request,
+            );
+        }
+        self.requests.push(request);
+    }
+
+    unsafe fn send_piece(
+        &mut self,
+        comm: ffi::MPI_Comm,
+        from: *const c_void,
+        bytes: usize,
+        rank: c_int,
+        tag: c_int,
+    ) {
+        // SAFETY: a constant of the library.
+        let mut request = unsafe { ffi::RSMPI_REQUEST_NULL };
+        let count = c_int::try_from(bytes).expect("a piece fits an int");
+        // SAFETY: the caller keeps `from..from + bytes` alive and unchanged until `wait`.
+        unsafe {
+            ffi::MPI_Isend(
+                from,
+                count,
+                ffi::RSMPI_UINT8_T,
+                rank,
+                tag,
+                comm,
+                &raw mut request,
+            );
+        }
+        self.requests.push(request);
+        self.traffic.messages += 1;
+        self.traffic.bytes += bytes as u64;
+    }
+}
+
+impl Drop for Exchange {
+    fn drop(&mut self) {
+        if !std::thread::panicking() {
+            self.wait();
+        }
+    }
+}

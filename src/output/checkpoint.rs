@@ -1,0 +1,370 @@
+//! Checkpoints: the whole state of a run, bit for bit, in a folder that is whole or absent.
+//!
+//! `step-NNNNNNNN/` holds `state.h5` (each state field in id order, the caller's own state and
+//! the resolved input as text) and `manifest.json` (sizes and digests). It is written under
+//! another name and renamed at the end. Any number of ranks may read it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::comm::Comm;
+use crate::particles::{FieldInfo, FieldKind, FieldUse, ParticleStore, with_use};
+
+use super::h5::{Content, Element, RowType, Writer};
+use super::{Block, COMMIT, OutputError, Rows, VERSION, agree, digest, files, on_root, write_json};
+
+/// Number of the format; a reader takes its own only.
+pub const FORMAT: u64 = 1;
+
+const STATE: &str = "state.h5";
+/// The file that makes a folder a checkpoint.
+pub const MANIFEST: &str = "manifest.json";
+/// Group of the fields in the state file.
+pub const FIELDS: &str = "/fields";
+
+/// What a checkpoint says beside the particles.
+#[derive(Debug, Clone, Copy)]
+pub struct Meta<'a> {
+    /// Step number.
+    pub step: u64,
+    /// Time (s).
+    pub time: f64,
+    /// The run's own state, as JSON of the caller's making.
+    pub state: &'a str,
+    /// The resolved input.
+    pub input: &'a str,
+}
+
+/// `manifest.json`.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Manifest {
+    /// [`FORMAT`].
+    pub format: u64,
+    /// Version of the program that wrote it.
+    pub version: String,
+    /// Commit of that program.
+    pub commit: String,
+    /// Step number.
+    pub step: u64,
+    /// Time (s).
+    pub time: f64,
+    /// Number of particles.
+    pub particles: u64,
+    /// How many ranks wrote it.
+    pub ranks: usize,
+    /// Bytes of the state file.
+    pub size: u64,
+    /// Bytes of a digested block.
+    pub block: u64,
+    /// SHA-256 of each block of the state file.
+    pub sha256: Vec<String>,
+}
+
+/// What [`read`] gives beside the particles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Restored {
+    /// Step number.
+    pub step: u64,
+    /// Time (s).
+    pub time: f64,
+    /// The run's own state as it was given.
+    pub state: String,
+    /// The resolved input.
+    pub input: String,
+    /// Particles of all ranks.
+    pub particles: u64,
+}
+
+/// Writes a checkpoint into `folder` and then removes all but the newest `keep` up to it.
+/// Collective. Gives the checkpoint's path.
+///
+/// # Errors
+/// The same on every rank; older checkpoints are then all still there.
+pub fn write(
+    comm: &Comm,
+    folder: &Path,
+    store: &ParticleStore,
+    meta: &Meta,
+    keep: usize,
+    rows: &mut Rows,
+) -> Result<PathBuf, OutputError> {
+    let path = folder.join(folder_name(meta.step));
+    let temporary = files::partial(&path);
+    on_root(comm, || {
+        files::remove(&temporary)?;
+        fs::create_dir_all(&temporary).map_err(OutputError::io("create the folder", &temporary))
+    })?;
+    let written = write_parts(comm, &temporary, store, meta, rows);
+    on_root(comm, || match &written {
+        Ok(()) => replace(&temporary, &path).and_then(|()| prune(folder, meta.step, keep)),
+        Err(_) => {
+            // What went wrong is told below; half a checkpoint only takes room.
+            let _ = files::remove(&temporary);
+            Ok(())
+        }
+    })?;
+    written.map(|()| path)
+}
+
+fn write_parts(
+    comm: &Comm,
+    folder: &Path,
+    store: &ParticleStore,
+    meta: &Meta,
+    rows: &mut Rows,
+) -> Result<(), OutputError> {
+    let state = folder.join(STATE);
+    rows.plan(comm, &store.id[..store.owned()])?;
+    let file = Writer::create(comm, &state)?;
+    file.number("/", "format", FORMAT)?;
+    file.number("/", "step", meta.step)?;
+    file.number("/", "time", meta.time)?;
+    file.text("/state", meta.state)?;
+    file.text("/input", meta.input)?;
+    file.group(FIELDS)?;
+    for field in with_use(FieldUse::STATE) {
+        let row = row_type(field.kind);
+        let path = format!("{FIELDS}/{}", field.name);
+        let block = rows.block();
+        let bytes = rows.collect(comm, store.bytes(field.id), row.bytes());
+        file.rows(&path, row, block, bytes)?;
+        file.note(&path, "unit", field.unit)?;
+        file.note(&path, "description", field.description)?;
+    }
+    file.close()?;
+
+    let size = size_of(&state);
+    let size = agree(comm, size)?;
+    let manifest = Manifest {
+        format: FORMAT,
+        version: VERSION.to_owned(),
+        commit: COMMIT.to_owned(),
+        step: meta.step,
+        time: meta.time,
+        particles: rows.block().total,
+        ranks: comm.size(),
+        size,
+        block: digest::BLOCK,
+        sha256: digest::of_file(comm, &state, size)?,
+    };
+    on_root(comm, || write_json(&folder.join(MANIFEST), &manifest))
+}
+
+/// Reads a checkpoint: each rank gets an even share of the particles in id order into `store`;
+/// the caller moves them to their owners. Collective. Digests are checked before HDF5 sees the
+/// file.
+///
+/// # Errors
+/// The same on every rank: [`OutputError::Damaged`], [`OutputError::Format`],
+/// [`OutputError::Io`], [`OutputError::Hdf5`].
+pub fn read(
+    comm: &Comm,
+    folder: &Path,
+    store: &mut ParticleStore,
+) -> Result<Restored, OutputError> {
+    let path = folder.join(MANIFEST);
+    let mut text = Vec::new();
+    on_root(comm, || {
+        text = fs::read(&path).map_err(OutputError::io("read", &path))?;
+        Ok(())
+    })?;
+    comm.broadcast(&mut text);
+    let manifest = parse_manifest(folder, &text)?;
+    let state = folder.join(STATE);
+    verify(comm, &state, &manifest)?;
+
+    let file = agree(comm, Content::open_shared(comm, &state))?;
+    agree(comm, check_content(&file, &manifest))?;
+    let block = Block::even(manifest.particles, comm.rank(), comm.size());
+    store.resize_owned(block.count);
+    for field in with_use(FieldUse::STATE) {
+        let row = row_type(field.kind);
+        let path = format!("{FIELDS}/{}", field.name);
+        let bytes = &mut store.bytes_mut(field.id)[..block.count * row.bytes()];
+        agree(comm, file.rows(&path, row, block, bytes))?;
+    }
+    Ok(Restored {
+        step: manifest.step,
+        time: manifest.time,
+        state: agree(comm, file.text("/state"))?,
+        input: agree(comm, file.text("/input"))?,
+        particles: manifest.particles,
+    })
+}
+
+/// Reads a checkpoint's manifest, by one process.
+///
+/// # Errors
+/// [`OutputError::Io`], [`OutputError::Damaged`], [`OutputError::Format`].
+pub fn manifest(folder: &Path) -> Result<Manifest, OutputError> {
+    let path = folder.join(MANIFEST);
+    let text = fs::read(&path).map_err(OutputError::io("read", &path))?;
+    parse_manifest(folder, &text)
+}
+
+/// The resolved input of a checkpoint, by one process and without reading all of it.
+///
+/// # Errors
+/// [`OutputError::Io`], [`OutputError::Hdf5`].
+pub fn input(folder: &Path) -> Result<String, OutputError> {
+    Content::open(&state_file(folder))?.text("/input")
+}
+
+/// The state file of a checkpoint.
+#[must_use]
+pub fn state_file(folder: &Path) -> PathBuf {
+    folder.join(STATE)
+}
+
+/// The whole checkpoints in a folder with their steps, oldest first.
+///
+/// # Errors
+/// [`OutputError::Io`].
+pub fn list(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputError> {
+    let mut found = Vec::new();
+    if !folder.exists() {
+        return Ok(found);
+    }
+    let entries = fs::read_dir(folder).map_err(OutputError::io("list", folder))?;
+    for entry in entries {
+        let path = entry.map_err(OutputError::io("list", folder))?.path();
+        if let Some(step) = step_of(&path, "")
+            && path.join(MANIFEST).exists()
+        {
+            found.push((step, path));
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+fn folder_name(step: u64) -> String {
+    format!("step-{step:08}")
+}
+
+/// The step of a file or folder named `step-NNNNNNNN` and an ending.
+pub(super) fn step_of(path: &Path, ending: &str) -> Option<u64> {
+    let name = path.file_name()?.to_str()?;
+    let digits = name.strip_prefix("step-")?.strip_suffix(ending)?;
+    digits.parse().ok()
+}
+
+fn row_type(kind: FieldKind) -> RowType {
+    let element = match kind {
+        FieldKind::Id => Element::U64,
+        FieldKind::Index => Element::U32,
+        _ => Element::F64,
+    };
+    RowType {
+        element,
+        components: kind.components(),
+    }
+}
+
+fn size_of(path: &Path) -> Result<u64, OutputError> {
+    let meta = fs::metadata(path).map_err(OutputError::io("read", path))?;
+    Ok(meta.len())
+}
+
+/// Gives a finished checkpoint its name; an older one of the same step goes once it has.
+fn replace(temporary: &Path, path: &Path) -> Result<(), OutputError> {
+    files::sync_folder(temporary)?;
+    let mut old = path.as_os_str().to_owned();
+    old.push(".old.partial");
+    let old = PathBuf::from(old);
+    if path.exists() {
+        fs::rename(path, &old).map_err(OutputError::io("rename", path))?;
+    }
+    files::publish(temporary, path)?;
+    files::remove(&old)
+}
+
+/// Removes all but the newest `keep` checkpoints up to `step`, and what a crash left half done.
+fn prune(folder: &Path, step: u64, keep: usize) -> Result<(), OutputError> {
+    let mut old = list(folder)?;
+    old.retain(|&(other, _)| other < step);
+    let spare = (old.len() + 1).saturating_sub(keep.max(1));
+    for (_, path) in &old[..spare.min(old.len())] {
+        files::remove(path)?;
+    }
+    let entries = fs::read_dir(folder).map_err(OutputError::io("list", folder))?;
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        if name.starts_with("step-") && name.ends_with(files::PARTIAL) {
+            files::remove(&entry.path())?;
+        }
+    }
+    Ok(())
+}
+
+fn parse_manifest(folder: &Path, text: &[u8]) -> Result<Manifest, OutputError> {
+    #[derive(Deserialize)]
+    struct Head {
+        format: u64,
+    }
+    let broken = |e: serde_json::Error| {
+        OutputError::damaged(folder, format!("{MANIFEST} cannot be read ({e}); {OLDER}"))
+    };
+    let head: Head = serde_json::from_slice(text).map_err(broken)?;
+    if head.format != FORMAT {
+        return Err(OutputError::Format {
+            path: folder.to_owned(),
+            found: head.format,
+            known: FORMAT,
+        });
+    }
+    serde_json::from_slice(text).map_err(broken)
+}
+
+const OLDER: &str = "restart from an older checkpoint";
+
+/// Compares size and digests with the manifest. Collective.
+fn verify(comm: &Comm, state: &Path, manifest: &Manifest) -> Result<(), OutputError> {
+    let size = agree(comm, size_of(state))?;
+    if size != manifest.size {
+        let what = format!("it has {size} bytes instead of {}; {OLDER}", manifest.size);
+        return Err(OutputError::damaged(state, what));
+    }
+    if manifest.block != digest::BLOCK {
+        let what = format!("{MANIFEST} has blocks of {} bytes; {OLDER}", manifest.block);
+        return Err(OutputError::damaged(state, what));
+    }
+    let digests = digest::of_file(comm, state, size)?;
+    if digests == manifest.sha256 {
+        return Ok(());
+    }
+    let pairs = digests.iter().zip(&manifest.sha256);
+    let block = pairs.take_while(|(found, known)| found == known).count() as u64;
+    let (first, last) = (block * digest::BLOCK, ((block + 1) * digest::BLOCK).min(size));
+    let what = format!("bytes {first} to {last} do not match their digest; {OLDER}");
+    Err(OutputError::damaged(state, what))
+}
+
+/// Whether the file holds this program's state, no less and no more.
+fn check_content(file: &Content, manifest: &Manifest) -> Result<(), OutputError> {
+    let damaged = |what: String| Err(OutputError::damaged(file.path(), what));
+    let step: u64 = file.number("/", "step")?;
+    let time: f64 = file.number("/", "time")?;
+    if step != manifest.step || time.to_bits() != manifest.time.to_bits() {
+        return damaged(format!("it is of step {step}, {MANIFEST} of step {}", manifest.step));
+    }
+    let arrays = file.arrays(FIELDS)?;
+    for field in with_use(FieldUse::STATE) {
+        let Some(array) = arrays.iter().find(|array| array.name == field.name) else {
+            return damaged(format!("it lacks the field {}; {OTHER}", field.name));
+        };
+        if array.row != row_type(field.kind) || array.rows != manifest.particles {
+            return damaged(format!("the field {} has another shape; {OTHER}", field.name));
+        }
+    }
+    let known = |name: &str| with_use(FieldUse::STATE).any(|f: &FieldInfo| f.name == name);
+    match arrays.iter().find(|array| !known(&array.name)) {
+        Some(array) => damaged(format!("it has an unknown field {}; {OTHER}", array.name)),
+        None => Ok(()),
+    }
+}
+
+const OTHER: &str = "another program version wrote it";

@@ -1,0 +1,103 @@
+//! Small files that are either old or new, never half.
+
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::OutputError;
+
+/// What unfinished files and folders end with.
+pub(super) const PARTIAL: &str = ".partial";
+
+/// The name under which a file or folder is written before it is renamed.
+pub(super) fn partial(path: &Path) -> PathBuf {
+    let mut name = OsString::from(path);
+    name.push(PARTIAL);
+    name.into()
+}
+
+/// Replaces a file by new content, so that a reader at any time, or after a crash, sees the old
+/// or the new one.
+///
+/// # Errors
+/// [`OutputError::Io`].
+pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), OutputError> {
+    let temporary = partial(path);
+    let mut file = File::create(&temporary).map_err(OutputError::io("create", &temporary))?;
+    file.write_all(content)
+        .and_then(|()| file.sync_all())
+        .map_err(OutputError::io("write", &temporary))?;
+    publish(&temporary, path)
+}
+
+/// [`write_atomically`] of a value as indented JSON.
+///
+/// # Errors
+/// [`OutputError::Io`].
+pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), OutputError> {
+    let mut text = serde_json::to_vec_pretty(value)
+        .map_err(std::io::Error::from)
+        .map_err(OutputError::io("write", path))?;
+    text.push(b'\n');
+    write_atomically(path, &text)
+}
+
+/// Gives a finished file or folder its name, and makes that last.
+pub(super) fn publish(temporary: &Path, path: &Path) -> Result<(), OutputError> {
+    fs::rename(temporary, path).map_err(OutputError::io("rename to", path))?;
+    sync_folder(path.parent().unwrap_or(Path::new(".")))
+}
+
+/// Makes renames and removals in a folder last through a power cut.
+pub(super) fn sync_folder(folder: &Path) -> Result<(), OutputError> {
+    let folder = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    };
+    File::open(folder)
+        .and_then(|file| file.sync_all())
+        .map_err(OutputError::io("sync the folder", folder))
+}
+
+/// Makes a file's content last; also tells of writes that the system had put off and that failed.
+pub(super) fn sync_file(path: &Path) -> Result<(), OutputError> {
+    File::open(path)
+        .and_then(|file| file.sync_all())
+        .map_err(OutputError::io("sync", path))
+}
+
+/// Removes a file or a whole folder if it exists.
+pub(super) fn remove(path: &Path) -> Result<(), OutputError> {
+    let result = match fs::symlink_metadata(path) {
+        Ok(meta) if meta.is_dir() => fs::remove_dir_all(path),
+        Ok(_) => fs::remove_file(path),
+        Err(_) => Ok(()),
+    };
+    result.map_err(OutputError::io("remove", path))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_replaced_and_nothing_is_left_beside_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("status.json");
+        write_atomically(&path, b"old").unwrap();
+        write_json(&path, &[0.1, 1e-30]).unwrap();
+        let text = fs::read_to_string(&path).unwrap();
+        assert_eq!(text, "[\n  0.1,\n  1e-30\n]\n");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn an_error_names_the_file() {
+        let error = write_atomically(Path::new("/nowhere/at/all"), b"").unwrap_err();
+        assert!(error.to_string().starts_with("cannot create /nowhere/at/all.partial: "));
+    }
+}

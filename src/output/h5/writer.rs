@@ -1,0 +1,211 @@
+//! A file that all ranks write together.
+
+use std::path::{Path, PathBuf};
+
+use hdf5::plist::dataset_create::FillTime;
+use hdf5::types::{FixedAscii, TypeDescriptor};
+use hdf5::{Dataset, File, H5Type, Location};
+use hdf5_sys::h5a::H5Awrite;
+use hdf5_sys::h5f::{H5F_scope_t, H5Fflush};
+
+use crate::comm::Comm;
+use crate::output::{Block, OutputError, agree, files, on_root};
+
+use super::transfer::{Transfer, call};
+use super::{Element, RowType, access, explain};
+
+/// A new file. Every method is collective and gives all ranks the same verdict; after an error
+/// the file is of no use and must be dropped.
+pub struct Writer<'a> {
+    comm: &'a Comm,
+    path: PathBuf,
+    file: File,
+    transfer: Transfer,
+}
+
+impl<'a> Writer<'a> {
+    /// Creates a file, replacing any old one. Collective.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`] or [`OutputError::Hdf5`].
+    pub fn create(comm: &'a Comm, path: &Path) -> Result<Self, OutputError> {
+        // The system's message ("permission denied") is clearer than MPI's.
+        on_root(comm, || {
+            let created = std::fs::File::create(path).map(drop);
+            created.map_err(OutputError::io("create", path))
+        })?;
+        let created = access(Some(comm))
+            .create(path)
+            .and_then(|file| Ok((file, Transfer::new(comm.raw().is_some())?)));
+        let (file, transfer) = agree(comm, created.map_err(|e| refusal("create", path, &e)))?;
+        Ok(Self {
+            comm,
+            path: path.to_owned(),
+            file,
+            transfer,
+        })
+    }
+
+    /// Makes a group.
+    ///
+    /// # Errors
+    /// [`OutputError::Hdf5`].
+    pub fn group(&self, name: &str) -> Result<(), OutputError> {
+        self.attempt(name, || self.file.create_group(name).map(drop))
+    }
+
+    /// Attaches a number to a group.
+    ///
+    /// # Errors
+    /// [`OutputError::Hdf5`].
+    pub fn number<T: H5Type>(&self, group: &str, name: &str, value: T) -> Result<(), OutputError> {
+        self.attempt(name, || {
+            let attribute = self.object(group)?.new_attr::<T>().create(name)?;
+            attribute.write_scalar(&value)
+        })
+    }
+
+    /// Attaches text to a group or dataset, as UTF-8 of fixed length, below 64 kB.
+    ///
+    /// # Errors
+    /// [`OutputError::Hdf5`].
+    pub fn note(&self, object: &str, name: &str, text: &str) -> Result<(), OutputError> {
+        self.attempt(name, || {
+            let element = Element::Text(text.len().max(1));
+            let (bytes, datatype) = (padded(text), element.datatype()?);
+            let parent = self.object(object)?;
+            let attribute = parent.new_attr_builder().empty_as(&datatype).create(name)?;
+            // SAFETY: the buffer is as long as the type says.
+            call(|| unsafe { H5Awrite(attribute.id(), datatype.id(), bytes.as_ptr().cast()) })
+        })
+    }
+
+    /// The two attributes by which VTK knows its files.
+    ///
+    /// # Errors
+    /// [`OutputError::Hdf5`].
+    pub fn vtk_header(&self, group: &str, kind: &str, version: [i64; 2]) -> Result<(), OutputError> {
+        self.attempt("the VTK header", || {
+            let parent = self.object(group)?;
+            let attribute = parent.new_attr::<i64>().shape(2).create("Version")?;
+            attribute.write_raw(&version)?;
+            let datatype = TypeDescriptor::FixedAscii(kind.len());
+            let attribute = parent.new_attr_builder().empty_as(&datatype).create("Type")?;
+            let text = FixedAscii::<32>::from_ascii(kind).map_err(|e| e.to_string())?;
+            attribute.as_writer().write_scalar(&text)
+        })
+    }
+
+    /// Writes a dataset: `block.total` rows, of which this rank gives its block.
+    ///
+    /// # Errors
+    /// [`OutputError::Hdf5`].
+    pub fn rows(
+        &self,
+        name: &str,
+        row: RowType,
+        block: Block,
+        bytes: &[u8],
+    ) -> Result<(), OutputError> {
+        let dataset = agree(
+            self.comm,
+            self.new_dataset(name, row, block.total)
+                .map_err(|e| self.refusal(name, &e)),
+        )?;
+        // Every rank holds the dataset, so that every rank joins the transfer.
+        self.attempt(name, || self.transfer.write(&dataset, row, block, bytes))
+    }
+
+    /// Writes a dataset of a few numbers that every rank knows.
+    ///
+    /// # Errors
+    /// [`OutputError::Hdf5`].
+    pub fn numbers<T: bytemuck::Pod>(
+        &self,
+        name: &str,
+        element: Element,
+        values: &[T],
+    ) -> Result<(), OutputError> {
+        let block = Block::on_root(values.len(), self.comm);
+        let bytes = bytemuck::cast_slice(&values[..block.count]);
+        self.rows(name, RowType::single(element), block, bytes)
+    }
+
+    /// Writes a dataset of one text of any length that every rank knows.
+    ///
+    /// # Errors
+    /// [`OutputError::Hdf5`].
+    pub fn text(&self, name: &str, text: &str) -> Result<(), OutputError> {
+        let bytes = padded(text);
+        let row = RowType::single(Element::Text(bytes.len()));
+        let block = Block::on_root(1, self.comm);
+        self.rows(name, row, block, &bytes[..block.count * bytes.len()])
+    }
+
+    /// Brings the file to the disk and closes it.
+    ///
+    /// # Errors
+    /// [`OutputError::Hdf5`] or [`OutputError::Io`].
+    pub fn close(self) -> Result<(), OutputError> {
+        let Self {
+            comm,
+            path,
+            file,
+            transfer,
+        } = self;
+        // SAFETY: the file is open.
+        let flushed = call(|| unsafe { H5Fflush(file.id(), H5F_scope_t::H5F_SCOPE_GLOBAL) });
+        drop(transfer);
+        let closed = file.close();
+        let result = flushed.and(closed).map_err(|e| refusal("write", &path, &e));
+        agree(comm, result)?;
+        on_root(comm, || files::sync_file(&path))
+    }
+
+    fn new_dataset(&self, name: &str, row: RowType, rows: u64) -> hdf5::Result<Dataset> {
+        self.file
+            .new_dataset_builder()
+            .empty_as(&row.element.datatype()?)
+            .shape(row.shape(rows))
+            .fill_time(FillTime::Never)
+            .obj_track_times(false)
+            .create(name)
+    }
+
+    /// A dataset or group as the place of attributes.
+    fn object(&self, name: &str) -> hdf5::Result<Location> {
+        match self.file.group(name) {
+            Ok(group) => group.as_location(),
+            Err(_) => self.file.dataset(name)?.as_location(),
+        }
+    }
+
+    fn attempt(
+        &self,
+        what: &str,
+        task: impl FnOnce() -> hdf5::Result<()>,
+    ) -> Result<(), OutputError> {
+        agree(self.comm, task().map_err(|e| self.refusal(what, &e)))
+    }
+
+    fn refusal(&self, what: &str, error: &hdf5::Error) -> OutputError {
+        refusal(&format!("write {what} to"), &self.path, error)
+    }
+}
+
+fn refusal(action: &str, path: &Path, error: &hdf5::Error) -> OutputError {
+    OutputError::Hdf5 {
+        action: action.to_owned(),
+        path: path.to_owned(),
+        reason: explain(error),
+    }
+}
+
+/// Text for a type of fixed length, which cannot be empty.
+fn padded(text: &str) -> Vec<u8> {
+    let mut bytes = text.as_bytes().to_vec();
+    if bytes.is_empty() {
+        bytes.push(0);
+    }
+    bytes
+}

@@ -1,0 +1,216 @@
+//! Tables of a run: a row now and then, as comma-separated values.
+
+use std::fmt::Write as _;
+use std::fs::{self, File};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use super::{OutputError, write_atomically};
+
+/// One value of a row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Value<'a> {
+    /// A number, written with the fewest digits that give the same bits back.
+    Real(f64),
+    /// A count.
+    Count(u64),
+    /// A word without commas, quotes or line ends.
+    Word(&'a str),
+}
+
+/// A column's name and SI unit (empty for none).
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Column {
+    /// Name, as in the header.
+    pub name: String,
+    /// SI unit; empty for none.
+    pub unit: String,
+}
+
+impl Column {
+    /// A column.
+    #[must_use]
+    pub fn new(name: &str, unit: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+        }
+    }
+}
+
+/// A table being written; rank 0's alone. Each row goes out in one call at once.
+#[derive(Debug)]
+pub struct Table {
+    path: PathBuf,
+    file: File,
+    columns: usize,
+    line: String,
+}
+
+impl Table {
+    /// Starts a table, replacing any old one: a comment with the units, then the names.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`].
+    pub fn create(path: &Path, columns: &[Column]) -> Result<Self, OutputError> {
+        write_atomically(path, header(columns).as_bytes())?;
+        Self::append(path, columns.len())
+    }
+
+    /// Goes on with a table after a restart: keeps the rows whose value in `column` is at most
+    /// `last` and drops later ones, and a half-written last line. A missing table is started.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`]; [`OutputError::Damaged`] if the table has other columns or a row that
+    /// cannot be read.
+    pub fn resume(
+        path: &Path,
+        columns: &[Column],
+        column: &str,
+        last: f64,
+    ) -> Result<Self, OutputError> {
+        if !path.exists() {
+            return Self::create(path, columns);
+        }
+        let text = fs::read(path).map_err(OutputError::io("read", path))?;
+        let text = String::from_utf8_lossy(&text);
+        let header = header(columns);
+        let Some(rows) = text.strip_prefix(&header) else {
+            let what = "its columns are not those that this run writes; move it away";
+            return Err(OutputError::damaged(path, what));
+        };
+        let Some(key) = columns.iter().position(|c| c.name == column) else {
+            let what = format!("it has no column {column}");
+            return Err(OutputError::damaged(path, what));
+        };
+        let mut kept = header;
+        for (number, line) in rows.split_inclusive('\n').enumerate() {
+            if !line.ends_with('\n') {
+                break;
+            }
+            let value = line.trim_end().split(',').nth(key);
+            let Some(value) = value.and_then(|value| value.parse::<f64>().ok()) else {
+                let what = format!("row {} has no number in column {column}", number + 1);
+                return Err(OutputError::damaged(path, what));
+            };
+            if value <= last {
+                kept.push_str(line);
+            }
+        }
+        write_atomically(path, kept.as_bytes())?;
+        Self::append(path, columns.len())
+    }
+
+    fn append(path: &Path, columns: usize) -> Result<Self, OutputError> {
+        let file = File::options().append(true).open(path);
+        Ok(Self {
+            path: path.to_owned(),
+            file: file.map_err(OutputError::io("open", path))?,
+            columns,
+            line: String::new(),
+        })
+    }
+
+    /// Writes a row.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`].
+    ///
+    /// # Panics
+    /// If the row has not one value for each column.
+    pub fn row(&mut self, values: &[Value]) -> Result<(), OutputError> {
+        assert_eq!(values.len(), self.columns, "a row of the wrong length");
+        self.line.clear();
+        for (k, value) in values.iter().enumerate() {
+            let comma = if k == 0 { "" } else { "," };
+            let _ = match value {
+                // `Debug` uses an exponent where it is shorter; both round-trip.
+                Value::Real(number) => write!(self.line, "{comma}{number:?}"),
+                Value::Count(count) => write!(self.line, "{comma}{count}"),
+                Value::Word(word) => write!(self.line, "{comma}{word}"),
+            };
+        }
+        self.line.push('\n');
+        let written = self.file.write_all(self.line.as_bytes());
+        written.map_err(OutputError::io("write", &self.path))
+    }
+}
+
+fn header(columns: &[Column]) -> String {
+    let join = |part: fn(&Column) -> &str| columns.iter().map(part).collect::<Vec<_>>().join(",");
+    let unit = |c: &'_ Column| -> String {
+        if c.unit.is_empty() {
+            "-".to_owned()
+        } else {
+            c.unit.clone()
+        }
+    };
+    let units = columns.iter().map(unit).collect::<Vec<_>>().join(",");
+    format!("# units: {units}\n{}\n", join(|c| &c.name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn columns() -> Vec<Column> {
+        vec![
+            Column::new("step", ""),
+            Column::new("time", "s"),
+            Column::new("dt_reason", ""),
+        ]
+    }
+
+    fn row(step: u64, time: f64) -> [Value<'static>; 3] {
+        [Value::Count(step), Value::Real(time), Value::Word("courant")]
+    }
+
+    #[test]
+    fn numbers_come_back_with_the_same_bits() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        let mut table = Table::create(&path, &columns()).unwrap();
+        let times = [1.0 / 3.0, -0.0, 1e-300, f64::MAX, f64::INFINITY, 2.5e-9];
+        for time in times {
+            table.row(&row(1, time)).unwrap();
+        }
+        let text = fs::read_to_string(&path).unwrap();
+        let mut lines = text.lines();
+        assert_eq!(lines.next(), Some("# units: -,s,-"));
+        assert_eq!(lines.next(), Some("step,time,dt_reason"));
+        for (line, time) in lines.zip(times) {
+            let back: f64 = line.split(',').nth(1).unwrap().parse().unwrap();
+            assert_eq!(back.to_bits(), time.to_bits());
+        }
+    }
+
+    #[test]
+    fn a_restart_drops_later_rows_and_a_half_written_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        let mut table = Table::create(&path, &columns()).unwrap();
+        for step in 0..6_u32 {
+            table.row(&row(step.into(), f64::from(step) * 0.1)).unwrap();
+        }
+        drop(table);
+        let whole = fs::read_to_string(&path).unwrap();
+        fs::write(&path, format!("{whole}6,0.6,cou")).unwrap();
+        let mut table = Table::resume(&path, &columns(), "step", 3.0).unwrap();
+        table.row(&row(4, 4.0 * 0.1)).unwrap();
+        drop(table);
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(whole.starts_with(&text), "{text}");
+        assert_eq!(text.lines().count(), 2 + 5);
+        Table::resume(&path, &columns(), "time", 9.0).unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), text);
+    }
+
+    #[test]
+    fn other_columns_are_refused_and_a_missing_table_is_started() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("contacts.csv");
+        Table::resume(&path, &columns(), "time", 1.0).unwrap();
+        let error = Table::resume(&path, &columns()[..2], "time", 1.0).unwrap_err();
+        assert!(error.to_string().contains("columns"), "{error}");
+    }
+}

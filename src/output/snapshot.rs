@@ -1,0 +1,312 @@
+//! Snapshots: the particles at one time as a VTKHDF file, for `ParaView`, `h5py` and the plots.
+//!
+//! One `UnstructuredGrid` of version 1.0 in one partition, a vertex for each particle, rows in id
+//! order: the content does not depend on ranks. `/whipple` says what was run; `/run` holds what
+//! does depend on ranks and clocks.
+
+use std::path::Path;
+
+use crate::comm::Comm;
+use crate::model::Case;
+use crate::particles::{FIELDS, FieldId, FieldInfo, FieldKind, FieldUse, ParticleStore};
+
+use super::h5::{Element, RowType, Writer};
+use super::{COMMIT, OutputError, Rows, VERSION, files, on_root};
+
+/// Extension of snapshot files.
+pub const EXTENSION: &str = "vtkhdf";
+
+/// Group of the grid, as VTK wants it.
+const GRID: &str = "/VTKHDF";
+/// VTK's number of a cell that is a single point.
+const VERTEX: u8 = 1;
+
+/// Something that a snapshot holds for each particle, beside its position.
+#[derive(Debug, Clone, Copy)]
+pub enum Quantity {
+    /// A field of the table.
+    Field(&'static FieldInfo),
+    /// `√(3/2 s:s)` of the deviatoric stress s.
+    VonMisesStress,
+}
+
+impl Quantity {
+    /// Its name in the file.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Field(field) => field.name,
+            Self::VonMisesStress => "von_mises_stress",
+        }
+    }
+
+    fn unit(self) -> &'static str {
+        match self {
+            Self::Field(field) => field.unit,
+            Self::VonMisesStress => "Pa",
+        }
+    }
+
+    fn description(self) -> String {
+        match self {
+            Self::Field(field) => match field.kind {
+                FieldKind::Symmetric => {
+                    format!("{} Components xx, yy, zz, xy, yz, xz.", field.description)
+                }
+                _ => field.description.to_owned(),
+            },
+            Self::VonMisesStress => "Von Mises equivalent stress.".to_owned(),
+        }
+    }
+}
+
+/// The quantities of these names, and always id and body; the field table's defaults for an
+/// empty list.
+///
+/// # Errors
+/// [`OutputError::UnknownField`] names all choices.
+pub fn quantities(names: &[String]) -> Result<Vec<Quantity>, OutputError> {
+    let allowed = FieldUse::SNAPSHOT;
+    let mut chosen: Vec<Quantity> = Vec::new();
+    let mut choices: Vec<Quantity> = FIELDS
+        .iter()
+        .filter(|f| f.uses.meets(allowed) || f.uses.meets(FieldUse::ON_DEMAND))
+        .map(Quantity::Field)
+        .collect();
+    choices.push(Quantity::VonMisesStress);
+    for name in names {
+        let known = choices.iter().any(|choice| choice.name() == name);
+        if !known && name != "position" {
+            let names: Vec<&str> = choices.iter().map(|choice| choice.name()).collect();
+            return Err(OutputError::UnknownField {
+                name: name.clone(),
+                allowed: names.join(", "),
+            });
+        }
+    }
+    for choice in choices {
+        let by_default = matches!(choice, Quantity::Field(field) if field.uses.meets(allowed));
+        let wanted = if names.is_empty() {
+            by_default
+        } else {
+            ["id", "body"].contains(&choice.name()) || names.iter().any(|n| n == choice.name())
+        };
+        if wanted {
+            chosen.push(choice);
+        }
+    }
+    Ok(chosen)
+}
+
+/// What a snapshot says beside the particles.
+#[derive(Debug, Clone, Copy)]
+pub struct Meta<'a> {
+    /// What is run.
+    pub case: &'a Case,
+    /// Step number.
+    pub step: u64,
+    /// Time (s).
+    pub time: f64,
+    /// Threads of each rank.
+    pub threads: usize,
+    /// Time since the start of the run (s).
+    pub wall_seconds: f64,
+}
+
+/// Writes a snapshot, which appears under its name when it is whole. Collective.
+///
+/// # Errors
+/// The same on every rank; the old file of that name, if any, is then still there.
+pub fn write(
+    comm: &Comm,
+    path: &Path,
+    store: &ParticleStore,
+    meta: &Meta,
+    quantities: &[Quantity],
+    rows: &mut Rows,
+) -> Result<(), OutputError> {
+    let temporary = files::partial(path);
+    let written = write_file(comm, &temporary, store, meta, quantities, rows);
+    on_root(comm, || match &written {
+        Ok(()) => files::publish(&temporary, path),
+        Err(_) => {
+            // What went wrong is told below; half a file only takes room.
+            let _ = files::remove(&temporary);
+            Ok(())
+        }
+    })?;
+    written
+}
+
+fn write_file(
+    comm: &Comm,
+    path: &Path,
+    store: &ParticleStore,
+    meta: &Meta,
+    quantities: &[Quantity],
+    rows: &mut Rows,
+) -> Result<(), OutputError> {
+    rows.plan(comm, &store.id[..store.owned()])?;
+    let file = Writer::create(comm, path)?;
+    write_grid(comm, &file, store, meta.time, rows)?;
+    for &quantity in quantities {
+        write_quantity(comm, &file, store, quantity, rows)?;
+    }
+    write_meta(comm, &file, meta)?;
+    file.close()
+}
+
+/// Points and their cells.
+fn write_grid(
+    comm: &Comm,
+    file: &Writer,
+    store: &ParticleStore,
+    time: f64,
+    rows: &mut Rows,
+) -> Result<(), OutputError> {
+    let block = rows.block();
+    let total = [i64::try_from(block.total).unwrap_or(i64::MAX)];
+    file.group(GRID)?;
+    file.vtk_header(GRID, "UnstructuredGrid", [1, 0])?;
+    for name in ["NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"] {
+        file.numbers(&format!("{GRID}/{name}"), Element::I64, &total)?;
+    }
+    let vector = RowType {
+        element: Element::F64,
+        components: 3,
+    };
+    let points = rows.collect(comm, store.bytes(FieldId::position), vector.bytes());
+    file.rows(&format!("{GRID}/Points"), vector, block, points)?;
+    file.note(&format!("{GRID}/Points"), "unit", "m")?;
+
+    let first = i64::try_from(block.first).unwrap_or(i64::MAX);
+    let mut numbers: Vec<i64> = (first..).take(block.count).collect();
+    let integer = RowType::single(Element::I64);
+    file.rows(
+        &format!("{GRID}/Connectivity"),
+        integer,
+        block,
+        bytemuck::cast_slice(&numbers),
+    )?;
+    let longer = block.with_one_more(comm.rank() + 1 == comm.size());
+    numbers.clear();
+    numbers.extend((first..).take(longer.count));
+    file.rows(
+        &format!("{GRID}/Offsets"),
+        integer,
+        longer,
+        bytemuck::cast_slice(&numbers),
+    )?;
+    let types = vec![VERTEX; block.count];
+    file.rows(&format!("{GRID}/Types"), RowType::single(Element::U8), block, &types)?;
+    file.group(&format!("{GRID}/PointData"))?;
+    file.group(&format!("{GRID}/FieldData"))?;
+    file.numbers(&format!("{GRID}/FieldData/TimeValue"), Element::F64, &[time])
+}
+
+fn write_quantity(
+    comm: &Comm,
+    file: &Writer,
+    store: &ParticleStore,
+    quantity: Quantity,
+    rows: &mut Rows,
+) -> Result<(), OutputError> {
+    let block = rows.block();
+    let path = format!("{GRID}/PointData/{}", quantity.name());
+    match quantity {
+        Quantity::Field(field) => {
+            let row = row_type(field.kind);
+            let bytes = rows.collect(comm, store.bytes(field.id), row.bytes());
+            if field.kind == FieldKind::Symmetric {
+                // The store has xy, xz, yz at the end, VTK xy, yz, xz.
+                for tensor in bytes.chunks_exact_mut(48) {
+                    let (front, back) = tensor.split_at_mut(40);
+                    front[32..].swap_with_slice(back);
+                }
+            }
+            file.rows(&path, row, block, bytes)?;
+        }
+        Quantity::VonMisesStress => {
+            let stress: Vec<f64> = store.deviatoric_stress[..store.owned()]
+                .iter()
+                .map(von_mises)
+                .collect();
+            let bytes = rows.collect(comm, bytemuck::cast_slice(&stress), 8);
+            file.rows(&path, RowType::single(Element::F64), block, bytes)?;
+        }
+    }
+    file.note(&path, "unit", quantity.unit())?;
+    file.note(&path, "description", &quantity.description())
+}
+
+/// `√(3/2 s:s)` (Pa) of a deviatoric stress xx, yy, zz, xy, xz, yz (Pa).
+fn von_mises(s: &[f64; 6]) -> f64 {
+    let normal = s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
+    let shear = s[3] * s[3] + s[4] * s[4] + s[5] * s[5];
+    (1.5 * (normal + 2.0 * shear)).sqrt()
+}
+
+/// VTK has no unsigned ids, so an id keeps its bits as `i64`.
+fn row_type(kind: FieldKind) -> RowType {
+    let element = match kind {
+        FieldKind::Id => Element::I64,
+        FieldKind::Index => Element::U32,
+        _ => Element::F64,
+    };
+    RowType {
+        element,
+        components: kind.components(),
+    }
+}
+
+/// What was run, and by how many.
+fn write_meta(comm: &Comm, file: &Writer, meta: &Meta) -> Result<(), OutputError> {
+    let case = meta.case;
+    let names: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();
+    let spacings: Vec<f64> = case.bodies.iter().map(|b| b.lattice.spacing).collect();
+    let planes = case.symmetry.iter();
+    let planes: Vec<_> = planes.map(|p| (p.axis.name(), p.position)).collect();
+    let group = "/whipple";
+    file.group(group)?;
+    file.note(group, "title", &case.title)?;
+    file.note(group, "bodies", &serde_json::json!(names).to_string())?;
+    file.note(group, "spacings", &serde_json::json!(spacings).to_string())?;
+    file.note(group, "symmetry", &serde_json::json!(planes).to_string())?;
+    file.note(group, "version", VERSION)?;
+    file.note(group, "commit", COMMIT)?;
+    file.number(group, "dimension", case.dimension as u64)?;
+    file.number(group, "step", meta.step)?;
+    file.text(&format!("{group}/input"), &case.resolved)?;
+    let group = "/run";
+    file.group(group)?;
+    file.number(group, "ranks", comm.size() as u64)?;
+    file.number(group, "threads", meta.threads as u64)?;
+    // Every rank writes the same number into metadata.
+    file.number(group, "wall_seconds", comm.max_f64(meta.wall_seconds))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_choose_quantities_and_id_and_body_come_with_them() {
+        let names = |list: &[Quantity]| list.iter().map(|q| q.name()).collect::<Vec<_>>();
+        let default = quantities(&[]).unwrap();
+        assert!(names(&default).starts_with(&["id", "body", "velocity"]));
+        assert!(!names(&default).contains(&"mass"));
+        let chosen = ["von_mises_stress", "mass", "position"].map(String::from);
+        let chosen = quantities(&chosen).unwrap();
+        assert_eq!(names(&chosen), ["id", "body", "mass", "von_mises_stress"]);
+        let error = quantities(&["presure".to_owned()]).unwrap_err();
+        assert!(error.to_string().contains("`presure`; choose from id, body"));
+    }
+
+    #[test]
+    fn von_mises_stress_of_uniaxial_and_shear_stress() {
+        // σ_xx = 3: s = (2, −1, −1); σ_xy = τ: √3 τ.
+        assert_eq!(von_mises(&[2.0, -1.0, -1.0, 0.0, 0.0, 0.0]).to_bits(), 3.0_f64.to_bits());
+        let shear = von_mises(&[0.0, 0.0, 0.0, 0.0, 2.0, 0.0]);
+        assert!((shear - 12.0_f64.sqrt()).abs() < 1e-15);
+    }
+}

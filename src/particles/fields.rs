@@ -1,0 +1,229 @@
+//! The table of particle fields: each is declared once, here, with its type, unit, meaning and
+//! uses. Storage, sort, migration, halo exchange, checkpoints and snapshots walk this table.
+
+/// What one particle holds in a field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FieldKind {
+    /// One `f64`.
+    Scalar,
+    /// Three `f64`: x, y, z.
+    Vector,
+    /// Six `f64`: xx, yy, zz, xy, xz, yz.
+    Symmetric,
+    /// Nine `f64`, row-major.
+    Tensor,
+    /// One `u64`.
+    Id,
+    /// One `u32`.
+    Index,
+}
+
+impl FieldKind {
+    /// Numbers per particle.
+    #[must_use]
+    pub const fn components(self) -> usize {
+        match self {
+            Self::Scalar | Self::Id | Self::Index => 1,
+            Self::Vector => 3,
+            Self::Symmetric => 6,
+            Self::Tensor => 9,
+        }
+    }
+
+    /// Bytes per particle.
+    #[must_use]
+    pub const fn bytes(self) -> usize {
+        match self {
+            Self::Index => 4,
+            _ => 8 * self.components(),
+        }
+    }
+
+    /// Whether the numbers are `f64`.
+    #[must_use]
+    pub const fn is_real(self) -> bool {
+        !matches!(self, Self::Id | Self::Index)
+    }
+}
+
+/// When a field is carried along: a set of the constants below.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FieldUse(u8);
+
+impl FieldUse {
+    /// Read by a step before it is written: in checkpoints, and moved between ranks.
+    pub const STATE: Self = Self(1);
+    /// Alive while particles change ranks within a step, though not state.
+    pub const MIGRATED: Self = Self(2);
+    /// Halo particles need it before the neighbour search and the velocity gradient.
+    pub const HALO_MOTION: Self = Self(4);
+    /// Halo particles need it before the forces.
+    pub const HALO_STRESS: Self = Self(8);
+    /// Halo particles need it before the contact forces.
+    pub const HALO_CONTACT: Self = Self(16);
+    /// In snapshots by default.
+    pub const SNAPSHOT: Self = Self(32);
+    /// In snapshots on demand.
+    pub const ON_DEMAND: Self = Self(64);
+    /// What a rank sends with a particle that leaves it.
+    pub const LEAVING: Self = Self(1 | 2);
+    /// Whatever halo particles need before forces of stress and contact.
+    pub const HALO_FORCES: Self = Self(8 | 16);
+    /// Whatever a halo particle has at any time.
+    pub const ANY_HALO: Self = Self(4 | 8 | 16);
+
+    /// Whether this set and `other` have a use in common.
+    #[must_use]
+    pub const fn meets(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+
+    const fn with(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
+/// One row of the table.
+#[derive(Debug, Clone, Copy)]
+pub struct FieldInfo {
+    /// Which field.
+    pub id: FieldId,
+    /// Its name in the store, in files and on the command line.
+    pub name: &'static str,
+    /// Type.
+    pub kind: FieldKind,
+    /// SI unit; empty for none.
+    pub unit: &'static str,
+    /// One sentence for users.
+    pub description: &'static str,
+    /// When it is carried along.
+    pub uses: FieldUse,
+}
+
+macro_rules! kind_type {
+    (Scalar) => { f64 };
+    (Vector) => { [f64; 3] };
+    (Symmetric) => { [f64; 6] };
+    (Tensor) => { [f64; 9] };
+    (Id) => { u64 };
+    (Index) => { u32 };
+}
+
+macro_rules! particle_fields {
+    ($( $(#[doc = $doc:literal])+ $name:ident: $kind:ident, $unit:literal, $($flag:ident)|*; )+) => {
+        /// Names a field of the table.
+        #[allow(non_camel_case_types, reason = "variants carry the field's own name")]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum FieldId { $( $(#[doc = $doc])+ $name, )+ }
+
+        /// The table.
+        pub const FIELDS: &[FieldInfo] = &[ $( FieldInfo {
+            id: FieldId::$name,
+            name: stringify!($name),
+            kind: FieldKind::$kind,
+            unit: $unit,
+            description: concat!($($doc),+).trim_ascii(),
+            uses: FieldUse(0)$(.with(FieldUse::$flag))*,
+        }, )+ ];
+
+        /// The particles of one rank: owned ones first, then halo copies of other ranks'
+        /// particles (only in fields that halo particles need).
+        #[derive(Debug, Clone, Default)]
+        pub struct ParticleStore {
+            pub(super) owned: usize,
+            pub(super) halo: usize,
+            $( $(#[doc = $doc])+ pub $name: Vec<kind_type!($kind)>, )+
+        }
+
+        impl ParticleStore {
+            /// A field's values as bytes: owned particles, then (where halo particles have it)
+            /// halo particles.
+            #[must_use]
+            pub fn bytes(&self, field: FieldId) -> &[u8] {
+                match field { $( FieldId::$name => bytemuck::cast_slice(&self.$name), )+ }
+            }
+
+            /// Mutable form of [`Self::bytes`].
+            pub fn bytes_mut(&mut self, field: FieldId) -> &mut [u8] {
+                match field { $( FieldId::$name => bytemuck::cast_slice_mut(&mut self.$name), )+ }
+            }
+
+            pub(super) fn resize_field(&mut self, field: FieldId, length: usize) {
+                match field { $( FieldId::$name => {
+                    self.$name.resize(length, bytemuck::Zeroable::zeroed());
+                } )+ }
+            }
+
+            pub(super) fn gather_field(&mut self, field: FieldId, order: &[u32], scratch: &mut Vec<u64>) {
+                match field { $( FieldId::$name => super::store::gather(&mut self.$name, order, scratch), )+ }
+            }
+
+            pub(super) fn capacity_bytes(&self) -> usize {
+                0 $( + self.$name.capacity() * FieldKind::$kind.bytes() )+
+            }
+        }
+    };
+}
+
+particle_fields! {
+    /// Identity: body index and lattice site; the same for any ranks.
+    id: Id, "", STATE | HALO_MOTION | SNAPSHOT;
+    /// Index of the body in the input.
+    body: Index, "", STATE | HALO_MOTION | SNAPSHOT;
+    /// Mass.
+    mass: Scalar, "kg", STATE | HALO_MOTION | ON_DEMAND;
+    /// Position.
+    position: Vector, "m", STATE | HALO_MOTION;
+    /// Velocity.
+    velocity: Vector, "m/s", STATE | SNAPSHOT;
+    /// Density.
+    density: Scalar, "kg/m^3", STATE | HALO_STRESS | SNAPSHOT;
+    /// Specific internal energy.
+    specific_energy: Scalar, "J/kg", STATE | SNAPSHOT;
+    /// Deviatoric stress, tension positive.
+    deviatoric_stress: Symmetric, "Pa", STATE | HALO_STRESS | SNAPSHOT;
+    /// Equivalent plastic strain.
+    plastic_strain: Scalar, "", STATE | SNAPSHOT;
+    /// Velocity gradient, row i column j is the derivative of velocity i along j.
+    velocity_gradient: Tensor, "1/s", STATE | ON_DEMAND;
+    /// Acceleration by stress and viscosity.
+    acceleration: Vector, "m/s^2", STATE | ON_DEMAND;
+    /// Acceleration by contact.
+    contact_acceleration: Vector, "m/s^2", STATE | ON_DEMAND;
+    /// Rate of specific internal energy at the particle's velocity.
+    d_specific_energy_dt: Scalar, "W/kg", STATE | ON_DEMAND;
+    /// Foreign volume fraction above the touching value at the start, which contact forgives.
+    touch_relief: Scalar, "", STATE | ON_DEMAND;
+    /// How long the foreign fraction with current volumes has stayed above one half.
+    enclosed_time: Scalar, "s", STATE | ON_DEMAND;
+    /// Velocity at the end of the step as predicted from the last accelerations.
+    predicted_velocity: Vector, "m/s", MIGRATED | HALO_MOTION;
+    /// Density at the end of the step as predicted from the last velocity gradient.
+    predicted_density: Scalar, "kg/m^3", MIGRATED | HALO_MOTION;
+    /// Specific internal energy at the end of the step as predicted from its last rate.
+    predicted_energy: Scalar, "J/kg", MIGRATED;
+    /// Smoothing length of the SPH sums.
+    smoothing_length: Scalar, "m", MIGRATED | HALO_MOTION | SNAPSHOT;
+    /// Pressure, compression positive.
+    pressure: Scalar, "Pa", HALO_STRESS | SNAPSHOT;
+    /// Longitudinal sound speed.
+    sound_speed: Scalar, "m/s", HALO_STRESS | ON_DEMAND;
+    /// Volume fraction of foreign bodies in the contact support.
+    foreign_fraction: Scalar, "", HALO_CONTACT | SNAPSHOT;
+    /// Foreign fraction above the touching value.
+    contact_excess: Scalar, "", HALO_CONTACT | ON_DEMAND;
+    /// Fraction-weighted contact modulus.
+    contact_modulus: Scalar, "Pa", HALO_CONTACT;
+    /// Fraction-weighted touching value.
+    touching_value: Scalar, "", HALO_CONTACT;
+    /// Sum of kernel gradients over foreign volume where there is excess, for the time step.
+    contact_slope: Scalar, "1/m", HALO_CONTACT;
+    /// Contact energy.
+    contact_energy: Scalar, "J", ON_DEMAND;
+    /// Largest approach speed towards a neighbour, for the time step.
+    approach_speed: Scalar, "m/s", ON_DEMAND;
+    /// Stiffness of contact, for the time step.
+    contact_stiffness: Scalar, "N/m", ON_DEMAND;
+    /// Neighbours counted in the last search, for the balance of work.
+    work: Index, "", MIGRATED;
+}

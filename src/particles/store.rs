@@ -1,0 +1,181 @@
+//! Walks over the table of fields: sizes, order, and packing for messages and files.
+
+use super::fields::{FIELDS, FieldInfo, FieldUse, ParticleStore};
+
+/// Reorders `values[..order.len()]` so that new element k is old element `order[k]`.
+pub(super) fn gather<T: bytemuck::Pod>(values: &mut [T], order: &[u32], scratch: &mut Vec<u64>) {
+    let words = (order.len() * size_of::<T>()).div_ceil(8);
+    if scratch.len() < words {
+        scratch.resize(words, 0);
+    }
+    let bytes: &mut [u8] = bytemuck::cast_slice_mut(scratch.as_mut_slice());
+    let copy: &mut [T] = bytemuck::cast_slice_mut(&mut bytes[..order.len() * size_of::<T>()]);
+    for (slot, &old) in copy.iter_mut().zip(order) {
+        *slot = values[old as usize];
+    }
+    values[..order.len()].copy_from_slice(copy);
+}
+
+impl ParticleStore {
+    /// Number of particles this rank owns.
+    #[must_use]
+    pub fn owned(&self) -> usize {
+        self.owned
+    }
+
+    /// Number of halo particles.
+    #[must_use]
+    pub fn halo(&self) -> usize {
+        self.halo
+    }
+
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.capacity_bytes()
+    }
+
+    /// Sets the number of owned particles, zero-filling new ones; drops the halo.
+    pub fn resize_owned(&mut self, owned: usize) {
+        self.owned = owned;
+        self.halo = 0;
+        for field in FIELDS {
+            self.resize_field(field.id, owned);
+        }
+    }
+
+    /// Sets the number of halo particles.
+    pub fn resize_halo(&mut self, halo: usize) {
+        self.halo = halo;
+        for field in with_use(FieldUse::ANY_HALO) {
+            self.resize_field(field.id, self.owned + halo);
+        }
+    }
+
+    /// Keeps the owned particles `order`, in that order; drops the halo.
+    pub fn keep(&mut self, order: &[u32], scratch: &mut Vec<u64>) {
+        self.resize_halo(0);
+        for field in FIELDS {
+            self.gather_field(field.id, order, scratch);
+        }
+        self.resize_owned(order.len());
+    }
+
+    /// Appends to `buffer` the fields used for `uses` of the particles `indices`, field by field.
+    pub fn pack(&self, uses: FieldUse, indices: &[u32], buffer: &mut Vec<u8>) {
+        for field in with_use(uses) {
+            let size = field.kind.bytes();
+            let bytes = self.bytes(field.id);
+            buffer.reserve(indices.len() * size);
+            for &index in indices {
+                let start = index as usize * size;
+                buffer.extend_from_slice(&bytes[start..start + size]);
+            }
+        }
+    }
+
+    /// Writes what [`Self::pack`] produced for `count` particles into slots `first..`.
+    ///
+    /// # Panics
+    /// If `bytes` is not exactly `count` particles of those fields.
+    pub fn unpack(&mut self, uses: FieldUse, first: usize, count: usize, bytes: &[u8]) {
+        let mut at = 0;
+        for field in with_use(uses) {
+            let size = field.kind.bytes();
+            self.bytes_mut(field.id)[first * size..(first + count) * size]
+                .copy_from_slice(&bytes[at..at + count * size]);
+            at += count * size;
+        }
+        assert_eq!(at, bytes.len(), "a particle message of the wrong length");
+    }
+
+    /// Overwrites every field that is not state with NaN (or the largest integer), so that a
+    /// step which reads it before it writes it shows. For tests and debugging.
+    pub fn poison(&mut self) {
+        for field in FIELDS {
+            if !field.uses.meets(FieldUse::STATE) {
+                self.bytes_mut(field.id).fill(0xff);
+            }
+        }
+    }
+}
+
+/// Rows of the table with any of the given uses.
+pub fn with_use(uses: FieldUse) -> impl Iterator<Item = &'static FieldInfo> {
+    FIELDS.iter().filter(move |field| field.uses.meets(uses))
+}
+
+/// Bytes per particle of the fields with any of the given uses.
+#[must_use]
+pub fn bytes_per_particle(uses: FieldUse) -> usize {
+    with_use(uses).map(|field| field.kind.bytes()).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A store whose every number tells its field, particle and component.
+    fn sentinel(owned: usize) -> ParticleStore {
+        let mut store = ParticleStore::default();
+        store.resize_owned(owned);
+        for (row, field) in FIELDS.iter().enumerate() {
+            for (at, byte) in store.bytes_mut(field.id).iter_mut().enumerate() {
+                *byte = ((row * 31 + at * 7 + at / 8 * 13) % 251) as u8;
+            }
+        }
+        store
+    }
+
+    #[test]
+    fn keep_reorders_every_field() {
+        let before = sentinel(9);
+        let mut after = before.clone();
+        let order = [4, 0, 8, 3];
+        after.keep(&order, &mut Vec::new());
+        assert_eq!(after.owned(), 4);
+        for field in FIELDS {
+            let size = field.kind.bytes();
+            for (new, &old) in order.iter().enumerate() {
+                let old = old as usize;
+                assert_eq!(
+                    after.bytes(field.id)[new * size..(new + 1) * size],
+                    before.bytes(field.id)[old * size..(old + 1) * size],
+                    "{}",
+                    field.name
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn messages_carry_every_field_of_their_use() {
+        let source = sentinel(7);
+        for uses in [
+            FieldUse::LEAVING,
+            FieldUse::HALO_MOTION,
+            FieldUse::HALO_STRESS,
+            FieldUse::HALO_CONTACT,
+        ] {
+            let indices = [6, 2, 5];
+            let mut message = Vec::new();
+            source.pack(uses, &indices, &mut message);
+            assert_eq!(message.len(), 3 * bytes_per_particle(uses));
+            let mut target = ParticleStore::default();
+            target.resize_owned(5);
+            target.unpack(uses, 1, 3, &message);
+            for field in with_use(uses) {
+                let size = field.kind.bytes();
+                for (k, &old) in indices.iter().enumerate() {
+                    let old = old as usize;
+                    assert_eq!(
+                        target.bytes(field.id)[(1 + k) * size..(2 + k) * size],
+                        source.bytes(field.id)[old * size..(old + 1) * size],
+                        "{}",
+                        field.name
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,273 @@
+//! Snapshots and checkpoints written and read by real ranks: content never depends on them.
+
+mod output_support;
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use output_support::{case, id, is_rank, meta, on_ranks, particles, sentinel, sorted_ids};
+use whipple::comm::Comm;
+use whipple::output::h5::{Content, Element, RowType};
+use whipple::output::{Block, OutputError, Rows, checkpoint, snapshot};
+use whipple::particles::{FIELDS, FieldUse, ParticleStore, with_use};
+
+/// None, fewer than ranks, uneven, and enough for many rows to travel.
+const TOTALS: [u64; 4] = [0, 1, 7, 1000];
+
+/// Every quantity there is.
+fn all_quantities() -> Vec<snapshot::Quantity> {
+    let error = snapshot::quantities(&["?".to_owned()]).unwrap_err();
+    let OutputError::UnknownField { allowed, .. } = error else {
+        panic!("{error}");
+    };
+    let names: Vec<String> = allowed.split(", ").map(String::from).collect();
+    snapshot::quantities(&names).unwrap()
+}
+
+fn read_all(file: &Content, path: &str, row: RowType, rows: u64) -> Vec<u8> {
+    let block = Block::even(rows, 0, 1);
+    let mut bytes = vec![0; block.count * row.bytes()];
+    file.rows(path, row, block, &mut bytes).unwrap();
+    bytes
+}
+
+/// What a field's column should hold; `vtk` for VTK's order of tensor components.
+fn expected(field: usize, total: u64, vtk: bool) -> Vec<u8> {
+    let size = FIELDS[field].kind.bytes();
+    let mut all = Vec::new();
+    for id in sorted_ids(total) {
+        let mut bytes = vec![0; size];
+        sentinel(id, field, &mut bytes);
+        if vtk && size == 48 {
+            bytes[32..].rotate_left(8);
+        }
+        all.extend_from_slice(&bytes);
+    }
+    all
+}
+
+fn check_snapshot(path: &Path, total: u64) {
+    let file = Content::open(path).unwrap();
+    for name in ["NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"] {
+        assert_eq!(file.all::<u64>(&format!("/VTKHDF/{name}")).unwrap(), [total]);
+    }
+    let count: Vec<u64> = (0..=total).collect();
+    let all = usize::try_from(total).unwrap();
+    assert_eq!(file.all::<u64>("/VTKHDF/Connectivity").unwrap(), count[..all]);
+    assert_eq!(file.all::<u64>("/VTKHDF/Offsets").unwrap(), count);
+    assert_eq!(file.all::<u8>("/VTKHDF/Types").unwrap(), vec![1; all]);
+    let time = file.all::<f64>("/VTKHDF/FieldData/TimeValue").unwrap();
+    assert_eq!(time[0].to_bits(), 3.5e-8_f64.to_bits());
+    let arrays = file.arrays("/VTKHDF/PointData").unwrap();
+    assert_eq!(arrays.len(), all_quantities().len());
+    for (row, field) in FIELDS.iter().enumerate() {
+        let path = match field.name {
+            "position" => "/VTKHDF/Points".to_owned(),
+            name => format!("/VTKHDF/PointData/{name}"),
+        };
+        if file.has(&path) {
+            let array = file.array(&path).unwrap();
+            assert_eq!(array.unit, field.unit, "{path}");
+            assert!(field.name == "position" || array.description.starts_with(field.description));
+            let bytes = read_all(&file, &path, array.row, total);
+            assert!(bytes == expected(row, total, true), "{path} of {total}");
+        } else {
+            let uses = field.uses;
+            assert!(!uses.meets(FieldUse::SNAPSHOT) && !uses.meets(FieldUse::ON_DEMAND));
+        }
+    }
+    let case = case();
+    assert_eq!(file.note("/whipple", "title").unwrap(), case.title);
+    assert_eq!(file.note("/whipple", "bodies").unwrap(), r#"["sphere","plate"]"#);
+    assert_eq!(file.note("/whipple", "symmetry").unwrap(), r#"[["y",0.0]]"#);
+    assert_eq!(file.text("/whipple/input").unwrap(), case.resolved);
+}
+
+/// A state of any characters and some size.
+fn state() -> String {
+    format!("{{\"ρ\": \"{}\"}}", "x".repeat(100_000))
+}
+
+fn write_checkpoint(comm: &Comm, folder: &Path, total: u64, step: u64) -> Result<(), OutputError> {
+    let (store, case, state) = (particles(comm, total), case(), state());
+    let meta = checkpoint::Meta {
+        step,
+        time: f64::MIN_POSITIVE / 4.0,
+        state: &state,
+        input: &case.resolved,
+    };
+    let mut rows = Rows::default();
+    checkpoint::write(comm, folder, &store, &meta, 2, &mut rows).map(drop)
+}
+
+fn check_restored(comm: &Comm, folder: &Path, total: u64) {
+    let mut store = ParticleStore::default();
+    let restored = checkpoint::read(comm, folder, &mut store).unwrap();
+    assert_eq!(restored.particles, total);
+    assert_eq!(restored.state, state());
+    assert_eq!(restored.input, case().resolved);
+    assert_eq!(restored.time.to_bits(), (f64::MIN_POSITIVE / 4.0).to_bits());
+    let block = Block::even(total, comm.rank(), comm.size());
+    assert_eq!(store.owned(), block.count);
+    for (row, field) in FIELDS.iter().enumerate() {
+        if field.uses.meets(FieldUse::STATE) {
+            let all = expected(row, total, false);
+            let start = usize::try_from(block.first).unwrap() * field.kind.bytes();
+            let here = &all[start..start + block.count * field.kind.bytes()];
+            assert!(store.bytes(field.id) == here, "{} of {total}", field.name);
+        }
+    }
+}
+
+#[test]
+fn snapshots_hold_every_field_in_id_order_on_any_ranks() {
+    for ranks in [1, 2, 3, 5] {
+        let folder = tempfile::tempdir().unwrap();
+        let name = "snapshots_hold_every_field_in_id_order_on_any_ranks";
+        on_ranks(name, ranks, folder.path(), |comm, folder| {
+            let (case, mut rows) = (case(), Rows::default());
+            for total in TOTALS {
+                let path = folder.join(format!("{total}.vtkhdf"));
+                let store = particles(comm, total);
+                let quantities = all_quantities();
+                snapshot::write(comm, &path, &store, &meta(&case), &quantities, &mut rows).unwrap();
+            }
+        });
+        if is_rank() {
+            return;
+        }
+        for total in TOTALS {
+            check_snapshot(&folder.path().join(format!("{total}.vtkhdf")), total);
+        }
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), TOTALS.len());
+    }
+}
+
+#[test]
+fn a_lone_rank_without_mpi_writes_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let (comm, case, mut rows) = (Comm::solo(), case(), Rows::default());
+    for total in TOTALS {
+        let path = folder.path().join("snapshot.vtkhdf");
+        let store = particles(&comm, total);
+        snapshot::write(&comm, &path, &store, &meta(&case), &all_quantities(), &mut rows).unwrap();
+        check_snapshot(&path, total);
+        write_checkpoint(&comm, folder.path(), total, total).unwrap();
+        check_restored(&comm, &folder.path().join(format!("step-{total:08}")), total);
+    }
+}
+
+#[test]
+fn any_ranks_restore_what_any_ranks_wrote() {
+    let name = "any_ranks_restore_what_any_ranks_wrote";
+    let folder = tempfile::tempdir().unwrap();
+    for (writers, readers) in [(3, 2), (1, 5), (5, 1), (2, 3)] {
+        for ranks in [writers, readers] {
+            on_ranks(name, ranks, folder.path(), |comm, folder| {
+                // The first of the two launches finds no checkpoint and writes it.
+                for total in TOTALS {
+                    let folder = folder.join(total.to_string());
+                    let checkpoint = folder.join("step-00000007");
+                    let there = checkpoint.exists();
+                    comm.barrier();
+                    if there {
+                        check_restored(comm, &checkpoint, total);
+                    } else {
+                        write_checkpoint(comm, &folder, total, 7).unwrap();
+                    }
+                }
+            });
+            if is_rank() {
+                return;
+            }
+        }
+        for total in TOTALS {
+            let checkpoint = folder.path().join(format!("{total}/step-00000007"));
+            let manifest = checkpoint::manifest(&checkpoint).unwrap();
+            assert_eq!((manifest.ranks, manifest.particles), (writers, total));
+            fs::remove_dir_all(checkpoint).unwrap();
+        }
+    }
+}
+
+#[test]
+fn equal_ids_are_refused_by_every_rank() {
+    let name = "equal_ids_are_refused_by_every_rank";
+    let folder = tempfile::tempdir().unwrap();
+    on_ranks(name, 3, folder.path(), |comm, _| {
+        let ids: Vec<u64> = (0..4).map(|k| id(k * 3 + comm.rank() as u64)).collect();
+        let mut twice = ids.clone();
+        twice[2] = id(5);
+        assert!(Rows::default().plan(comm, &ids).is_ok());
+        let error = Rows::default().plan(comm, &twice).unwrap_err();
+        assert!(error.to_string().starts_with("two particles have the id"), "{error}");
+    });
+}
+
+/// Runs `task` on a file system of so many bytes, as root only.
+fn on_small_disk(bytes: u64, task: impl FnOnce(&Path)) -> bool {
+    let folder = tempfile::tempdir().unwrap();
+    let options = format!("size={bytes}");
+    let mount = Command::new("mount")
+        .args(["-t", "tmpfs", "-o", &options, "tmpfs"])
+        .arg(folder.path())
+        .output();
+    if !mount.is_ok_and(|mount| mount.status.success()) {
+        return false;
+    }
+    let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| task(folder.path())));
+    let unmounted = Command::new("umount").arg("-l").arg(folder.path()).status();
+    assert!(unmounted.is_ok_and(|status| status.success()));
+    if let Err(panic) = result {
+        std::panic::resume_unwind(panic);
+    }
+    true
+}
+
+/// Ranks that write more than there is room for, and must all say so.
+fn fill_disk(comm: &Comm, folder: &Path) {
+    let (case, total) = (case(), 3000);
+    let store = particles(comm, total);
+    let path = folder.join("snapshot.vtkhdf");
+    let mut rows = Rows::default();
+    let mut errors = Vec::new();
+    let result = snapshot::write(comm, &path, &store, &meta(&case), &all_quantities(), &mut rows);
+    errors.push(result.expect_err("a full disk is an error").to_string());
+    let result = write_checkpoint(comm, &folder.join("checkpoints"), total, 1);
+    errors.push(result.expect_err("a full disk is an error").to_string());
+    for text in errors {
+        let mut first = text.clone().into_bytes();
+        comm.broadcast(&mut first);
+        assert_eq!(text.as_bytes(), first, "the same verdict everywhere");
+    }
+    assert!(!path.exists());
+    assert!(checkpoint::list(&folder.join("checkpoints")).unwrap().is_empty());
+}
+
+#[test]
+fn a_full_disk_is_an_error_on_every_rank() {
+    let name = "a_full_disk_is_an_error_on_every_rank";
+    if is_rank() {
+        on_ranks(name, 0, Path::new(""), fill_disk);
+        return;
+    }
+    // 3000 particles need about 1.2 MB; where the room ends decides which call meets it.
+    for kilobytes in [4, 100, 700] {
+        let ran = on_small_disk(kilobytes << 10, |folder| {
+            for ranks in [1, 3] {
+                on_ranks(name, ranks, folder, fill_disk);
+            }
+        });
+        if !ran {
+            eprintln!("skipped: cannot mount a small file system (not root?)");
+            return;
+        }
+    }
+}
+
+#[test]
+fn the_state_is_what_the_table_says() {
+    assert!(with_use(FieldUse::STATE).count() > 10);
+    assert_eq!(Element::Text(3).bytes(), 3);
+}
