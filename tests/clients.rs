@@ -76,7 +76,10 @@ fn every_client_opens_the_form_that_we_document() {
 
     let seen = opens_everywhere(&python, &snapshot);
 
-    assert!(seen.starts_with("27 points, 5 fields, t = 1.25e-08 s"), "{seen}");
+    assert!(
+        seen.starts_with("27 points, 5 fields, t = 1.25e-08 s"),
+        "{seen}"
+    );
     eprintln!("{seen}");
 }
 
