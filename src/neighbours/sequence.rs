@@ -270,7 +270,7 @@ impl Sequence {
     }
 
     /// Calls `visit` with ranges of places, in canonical order, that hold every image of a group
-    /// whose position lies in the box `lower..=upper` (m): whole columns across, exact along.
+    /// whose position lies in the box `lower..=upper` (m), and few others.
     #[inline(always)]
     pub fn in_box(
         &self,
@@ -304,9 +304,12 @@ impl Sequence {
                 let (start, end) = (self.starts[column] as usize, self.starts[column + 1] as usize);
                 let column = &along[start..end];
                 let first = column.partition_point(|&x| x < from);
-                let count = column[first..].partition_point(|&x| x <= to);
-                if count > 0 {
-                    visit(start + first..start + first + count);
+                let mut last = first;
+                while last < column.len() && column[last] <= to {
+                    last += LANES;
+                }
+                if last > first {
+                    visit(start + first..start + last.min(column.len()));
                 }
             }
         }
