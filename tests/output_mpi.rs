@@ -253,8 +253,8 @@ fn a_full_disk_is_an_error_on_every_rank() {
         return;
     }
     // 3000 particles need about 1.2 MB; where the room ends decides which call meets it.
-    for kilobytes in [4, 100, 700] {
-        let ran = on_small_disk(kilobytes << 10, |folder| {
+    for kilobytes in [0, 100, 300, 800] {
+        let ran = on_small_disk(4096 + (kilobytes << 10), |folder| {
             for ranks in [1, 3] {
                 on_ranks(name, ranks, folder, fill_disk);
             }
