@@ -183,8 +183,19 @@ impl<'a> Writer<'a> {
         agree(self.comm, task().map_err(|e| self.refusal(what, &e)))
     }
 
+    /// HDF5 only says that a write failed; trying one oneself may tell why.
     fn refusal(&self, what: &str, error: &hdf5::Error) -> OutputError {
-        refusal(&format!("write {what} to"), &self.path, error)
+        let mut reason = explain(error);
+        let probe = self.path.with_extension(format!("probe{}", self.comm.rank()));
+        if let Err(cause) = std::fs::write(&probe, vec![0; 64 << 10]) {
+            reason = format!("{cause} ({reason})");
+        }
+        let _ = files::remove(&probe);
+        OutputError::Hdf5 {
+            action: format!("write {what} to"),
+            path: self.path.clone(),
+            reason,
+        }
     }
 }
 
