@@ -1,6 +1,65 @@
-//! Room app.
+//! The commands of the program.
 
-/// Runs the program.
-pub fn main() -> std::process::ExitCode {
-    std::process::ExitCode::SUCCESS
+mod check;
+mod driver;
+mod plot;
+mod report;
+mod restart;
+mod run;
+mod stop;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// The case, an option or a file that the user named is wrong.
+pub const EXIT_INPUT: u8 = 2;
+/// The run was asked to stop and has written a checkpoint.
+pub const EXIT_STOPPED: u8 = 75;
+
+/// MPI-parallel smoothed particle hydrodynamics for impacts of solids
+#[derive(Debug, Parser)]
+#[command(name = "whipple", version, about, after_help = "Examples:
+  mpirun -n 2 whipple run inputs/quarter-impact/case.toml --out runs/quarter
+  whipple plot runs/quarter --panels
+  mpirun -n 4 whipple restart runs/quarter
+
+A run that SIGUSR1 to mpirun, a file `stop` in its folder or --walltime stops writes a checkpoint
+and exits with 75; wrong input exits with 2.")]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Run(run::RunArgs),
+    Restart(restart::RestartArgs),
+    Check(check::CheckArgs),
+    Plot(plot::PlotArgs),
+}
+
+/// Runs the program: its command line, its exit code.
+#[must_use]
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            let _ = error.print();
+            return ExitCode::from(if error.use_stderr() { EXIT_INPUT } else { 0 });
+        }
+    };
+    let code = match cli.command {
+        Command::Run(args) => run::run(&args),
+        Command::Restart(args) => restart::run(&args),
+        Command::Check(args) => check::run(&args),
+        Command::Plot(args) => plot::run(&args).map_or_else(
+            |error| {
+                eprintln!("error: {error}");
+                EXIT_INPUT
+            },
+            |()| 0,
+        ),
+    };
+    ExitCode::from(code)
 }

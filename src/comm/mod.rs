@@ -151,8 +151,13 @@ impl Comm {
 
     /// Gives every rank the root's bytes.
     pub fn broadcast(&self, bytes: &mut Vec<u8>) {
+        self.broadcast_from(0, bytes);
+    }
+
+    /// Gives every rank the bytes of rank `from`.
+    pub fn broadcast_from(&self, from: usize, bytes: &mut Vec<u8>) {
         if let Some(world) = &self.world {
-            let root = world.process_at_rank(0);
+            let root = world.process_at_rank(i32::try_from(from).expect("a rank fits an int"));
             let mut length = [bytes.len() as u64];
             root.broadcast_into(&mut length);
             bytes.resize(usize::try_from(length[0]).unwrap_or(0), 0);

@@ -1,1 +1,166 @@
-//! Room contact.
+//! Contact between bodies: a table of body pairs, and one file for each mode.
+//!
+//! Contact sees reference volumes `V = m/ρ₀`, reference smoothing lengths and reference moduli
+//! only, so that its energy is a function of positions alone and its forces are that function's
+//! exact gradient (physics page, section 5).
+
+pub mod overlap;
+pub mod potential;
+mod table;
+
+pub use table::{ContactTable, Pair};
+
+use crate::neighbours::Image;
+use crate::particles::ParticleStore;
+use crate::sph::gradient::MotionRecord;
+
+/// What the contact sums read.
+#[derive(Clone, Copy)]
+pub struct ContactView<'a> {
+    /// The images in canonical order.
+    pub images: &'a [Image],
+    /// Their positions.
+    pub motion: &'a [MotionRecord],
+    /// The particles behind them.
+    pub store: &'a ParticleStore,
+    /// Parameters of all pairs of bodies.
+    pub table: &'a ContactTable,
+}
+
+/// One end of a contact pair.
+#[derive(Clone, Copy)]
+pub(crate) struct Party {
+    /// Index in the store.
+    base: usize,
+    body: usize,
+    /// Reference volume (m^d).
+    volume: f64,
+    mirrored: bool,
+    position: [f64; 3],
+    velocity: [f64; 3],
+}
+
+impl ContactView<'_> {
+    fn party(&self, place: u32) -> Party {
+        let image = self.images[place as usize];
+        let base = image.base();
+        let body = self.store.body[base] as usize;
+        let record = &self.motion[place as usize];
+        Party {
+            base,
+            body,
+            volume: self.store.mass[base] * self.table.inverse_density(body),
+            mirrored: image.code() != 0,
+            position: record.position,
+            velocity: record.velocity,
+        }
+    }
+}
+
+/// What contact does to one receiver.
+#[derive(Debug, Clone, Default)]
+pub struct Reaction {
+    /// Force (N).
+    pub force: [f64; 3],
+    /// The part of `force` that images behind symmetry planes exert (N).
+    pub from_mirrors: [f64; 3],
+    /// Its share of the contact energy (J).
+    pub energy: f64,
+    /// Stiffness for the time step (N/m).
+    pub stiffness: f64,
+    /// Smallest distance to a foreign particle in mean spacings.
+    pub closest: f64,
+    /// Largest approach speed towards a foreign particle (m/s).
+    pub approach: f64,
+    /// The same by the other body.
+    pub by_body: Vec<BodyReaction>,
+}
+
+/// What one foreign body does to one receiver.
+#[derive(Debug, Clone, Copy)]
+pub struct BodyReaction {
+    /// The other body.
+    pub body: usize,
+    /// Force (N).
+    pub force: [f64; 3],
+    /// Share of the contact energy (J).
+    pub energy: f64,
+    /// Smallest distance to a particle of that body in mean spacings.
+    pub closest: f64,
+}
+
+impl Reaction {
+    /// Forgets everything but the buffer.
+    pub fn clear(&mut self) {
+        let by_body = std::mem::take(&mut self.by_body);
+        *self = Self {
+            by_body,
+            closest: f64::INFINITY,
+            ..Self::default()
+        };
+        self.by_body.clear();
+    }
+
+    /// Books what the pair with `other` at `gap` does: distance, approach, force and energy.
+    fn book(&mut self, other: &Party, gap: &Gap, spacing: f64, force: [f64; 3], energy: f64) {
+        let distance = gap.distance / spacing;
+        self.closest = self.closest.min(distance);
+        self.approach = self.approach.max(gap.approach);
+        self.energy += energy;
+        let at = self.by_body.iter().position(|e| e.body == other.body);
+        let at = at.unwrap_or_else(|| {
+            self.by_body.push(BodyReaction {
+                body: other.body,
+                force: [0.0; 3],
+                energy: 0.0,
+                closest: f64::INFINITY,
+            });
+            self.by_body.len() - 1
+        });
+        let body = &mut self.by_body[at];
+        body.closest = body.closest.min(distance);
+        body.energy += energy;
+        for a in 0..3 {
+            self.force[a] += force[a];
+            body.force[a] += force[a];
+            if other.mirrored {
+                self.from_mirrors[a] += force[a];
+            }
+        }
+    }
+}
+
+/// Geometry of a pair.
+struct Gap {
+    /// `x_i − x_j` (m).
+    r: [f64; 3],
+    /// Its length (m), never zero.
+    distance: f64,
+    /// Speed of approach along the line of centres, zero for receding pairs (m/s).
+    approach: f64,
+}
+
+impl Gap {
+    fn between(i: &Party, j: &Party) -> Self {
+        let r = [
+            i.position[0] - j.position[0],
+            i.position[1] - j.position[1],
+            i.position[2] - j.position[2],
+        ];
+        let distance = (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]).sqrt().max(1e-30);
+        let rate = (i.velocity[0] - j.velocity[0]) * r[0]
+            + (i.velocity[1] - j.velocity[1]) * r[1]
+            + (i.velocity[2] - j.velocity[2]) * r[2];
+        Self {
+            r,
+            distance,
+            approach: (-rate / distance).max(0.0),
+        }
+    }
+
+    /// `magnitude` (N) along `r`: positive pushes i away from j.
+    fn along(&self, magnitude: f64) -> [f64; 3] {
+        let scale = magnitude / self.distance;
+        self.r.map(|x| x * scale)
+    }
+}

@@ -1,1 +1,3 @@
 //! Room diagnose.
+
+pub mod exact_sum;

@@ -1,1 +1,3 @@
-//! Room exact.
+//! Analytic solutions, shared by tests and plots.
+
+pub mod hugoniot;

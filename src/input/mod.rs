@@ -1,1 +1,109 @@
-//! Room input.
+//! TOML → a validated [`Case`]; every complaint with file, line and a caret.
+//!
+//! The text becomes a document (`document`) over which `--set` overrides are laid, the
+//! document becomes typed tables (`schema`), and these become the [`Case`]
+//! (`validate`). The first thing that is wrong ends the reading with one message.
+
+mod document;
+mod forms;
+mod overrides;
+mod quantity;
+mod schema;
+mod source;
+mod units;
+mod validate;
+mod warnings;
+
+use std::path::{Path, PathBuf};
+
+use crate::model::Case;
+use source::{Complaint, Sources};
+
+pub use warnings::warnings;
+
+/// Why a case cannot be read. `Display` is the whole message for the user, several lines long.
+#[derive(Debug, thiserror::Error)]
+pub enum InputError {
+    /// The file itself cannot be read.
+    #[error("error: cannot read the case {}: {cause}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        cause: std::io::Error,
+    },
+    /// Something in the file or in an override is wrong: title, place, caret, help.
+    #[error("{0}")]
+    Invalid(String),
+}
+
+/// Reads a case from a file, with `--set` overrides (`key=value`).
+///
+/// # Errors
+/// [`InputError::Read`] if the file cannot be read, [`InputError::Invalid`] for the first thing in
+/// the file or in an override that is wrong.
+pub fn load(path: &Path, overrides: &[String]) -> Result<Case, InputError> {
+    let text = std::fs::read_to_string(path).map_err(|cause| InputError::Read {
+        path: path.to_owned(),
+        cause,
+    })?;
+    parse(&path.display().to_string(), &text, overrides)
+}
+
+/// Reads a case from a text; `name` stands for the file in messages.
+///
+/// # Errors
+/// [`InputError::Invalid`] for the first thing in the text or in an override that is wrong.
+pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Case, InputError> {
+    with_sources(Some((name, text)), overrides, |places| {
+        let (params, resolved) = document::read(text, overrides, places)?;
+        let mut case = validate::case(params)?;
+        case.resolved = resolved;
+        Ok(case)
+    })
+}
+
+/// Checks that overrides change nothing but `run`, `output` and `domain`, as a restart demands.
+///
+/// # Errors
+/// [`InputError::Invalid`] for the first override that is malformed or changes anything else.
+pub fn output_and_run_only(overrides: &[String]) -> Result<(), InputError> {
+    with_sources(None, overrides, |places| {
+        for (text, &start) in overrides.iter().zip(places) {
+            overrides::Override::parse(text, start)?.restartable()?;
+        }
+        Ok(())
+    })
+}
+
+/// Reads a time such as `0.1us` from a command line (s).
+///
+/// # Errors
+/// A message that says what was expected.
+pub fn time(text: &str) -> Result<f64, String> {
+    use quantity::{Kind, Time};
+    let expected = || format!("expected {}, as in {}", Time::NAME, Time::EXAMPLE);
+    match units::parse(text) {
+        Ok((si, powers)) if powers == Time::POWERS => Ok(si),
+        Ok(_) => Err(format!("`{text}`: {}", expected())),
+        Err(cause) => Err(format!("`{text}`: {cause}; {}", expected())),
+    }
+}
+
+/// Does some reading in an address space of the text and the overrides, whose first addresses it
+/// is given, and renders its complaint.
+fn with_sources<T>(
+    text: Option<(&str, &str)>,
+    overrides: &[String],
+    read: impl FnOnce(&[usize]) -> Result<T, Complaint>,
+) -> Result<T, InputError> {
+    let mut sources = Sources::default();
+    if let Some((name, text)) = text {
+        sources.add(name, text);
+    }
+    let places: Vec<usize> = overrides
+        .iter()
+        .map(|text| sources.add("--set", text))
+        .collect();
+    read(&places).map_err(|complaint| InputError::Invalid(sources.render(&complaint)))
+}

@@ -46,7 +46,7 @@ pub struct TimeStepOptions {
 pub struct DomainOptions {
     /// Axis of the slabs; the longest one when absent.
     pub axis: Option<Axis>,
-    /// Steps between two balances of the work.
+    /// Steps between two balances of the work; 0 keeps the first faces.
     pub balance_every: u64,
 }
 

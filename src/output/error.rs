@@ -46,6 +46,22 @@ pub enum OutputError {
         /// The folder.
         path: PathBuf,
     },
+    /// A run without a checkpoint.
+    #[error("the run {} has no checkpoint to restart from; run its case again", path.display())]
+    NoCheckpoint {
+        /// The run's folder.
+        path: PathBuf,
+    },
+    /// A checkpoint that stands in no run folder.
+    #[error(
+        "{} is neither a run nor a checkpoint in one; name the run, or a checkpoint and a folder \
+         for the results with --out",
+        path.display()
+    )]
+    OutsideRun {
+        /// The checkpoint.
+        path: PathBuf,
+    },
     /// A file does not say what it should.
     #[error("{} is damaged: {what}", path.display())]
     Damaged {
@@ -110,7 +126,11 @@ impl OutputError {
     pub fn is_users(&self) -> bool {
         matches!(
             self,
-            Self::FolderInUse { .. } | Self::NotARun { .. } | Self::UnknownField { .. }
+            Self::FolderInUse { .. }
+                | Self::NotARun { .. }
+                | Self::NoCheckpoint { .. }
+                | Self::OutsideRun { .. }
+                | Self::UnknownField { .. }
         )
     }
 }

@@ -67,6 +67,8 @@ impl FieldUse {
     pub const ON_DEMAND: Self = Self(64);
     /// What a rank sends with a particle that leaves it.
     pub const LEAVING: Self = Self(1 | 2);
+    /// Whatever halo particles need before forces of stress and contact.
+    pub const HALO_FORCES: Self = Self(8 | 16);
     /// Whatever a halo particle has at any time.
     pub const ANY_HALO: Self = Self(4 | 8 | 16);
 
@@ -218,6 +220,10 @@ particle_fields! {
     contact_slope: Scalar, "1/m", HALO_CONTACT;
     /// Contact energy.
     contact_energy: Scalar, "J", ON_DEMAND;
+    /// Largest approach speed towards a neighbour, for the time step.
+    approach_speed: Scalar, "m/s", ON_DEMAND;
+    /// Stiffness of contact, for the time step.
+    contact_stiffness: Scalar, "N/m", ON_DEMAND;
     /// Neighbours counted in the last search, for the balance of work.
     work: Index, "", MIGRATED;
 }

@@ -1,7 +1,9 @@
 //! Particles as a structure of arrays: the table of fields and the store that walks it.
 
 mod fields;
+mod scatter;
 mod store;
 
 pub use fields::{FIELDS, FieldId, FieldInfo, FieldKind, FieldUse, ParticleStore};
+pub use scatter::Scatter;
 pub use store::{bytes_per_particle, with_use};

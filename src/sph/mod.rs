@@ -1,1 +1,11 @@
-//! Room sph.
+//! The pair sums of smoothed particle hydrodynamics: slices in, slices out.
+//!
+//! A *cluster* of eight receivers meets its neighbours one by one in one canonical order; the
+//! eight receivers stand in the lanes of a vector, so no sum ever crosses lanes and a lane
+//! outside the support adds an exact zero.
+
+pub mod dispatch;
+pub mod gradient;
+pub mod kernel;
+pub mod lanes;
+pub mod momentum;

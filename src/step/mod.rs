@@ -1,1 +1,17 @@
-//! Room step.
+//! The loop, the integrator and the time-step votes.
+
+mod contact_phase;
+mod integrate;
+mod search;
+mod setup;
+mod simulation;
+mod state;
+mod sums;
+mod sweeps;
+mod timers;
+mod vote;
+
+pub use setup::SetupError;
+pub use simulation::{Simulation, StepError};
+pub use state::{PairState, Reason, RunState, Totals, Worst};
+pub use timers::{Phase, Timers};

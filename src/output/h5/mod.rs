@@ -1,6 +1,7 @@
 //! HDF5 files: written and read by all ranks together, or read by one process.
 
 mod content;
+pub mod read;
 mod transfer;
 mod writer;
 

@@ -1,0 +1,62 @@
+# The commands of a user (impact) and of a developer (the rest). Each installs what it lacks
+# through jobs/install-deps.sh, which is silent when nothing does.
+
+SHELL := bash
+.SHELLFLAGS := -euo pipefail -c
+.DEFAULT_GOAL := help
+.PHONY: help deps test-deps release impact test run-tests check validation bench docs clean
+
+# The environment of every build and launch: Open MPI's settings, HDF5_DIR.
+ENV := source jobs/env.sh;
+VENV := target/venv
+
+help: ## Say what each target does
+	@sed -nE 's/^([a-z-]+):.*## (.*)/\1\t\2/p' Makefile | expand -t 12
+
+impact: release ## Run the main job on two ranks, draw its pictures, report
+	jobs/run.sh -n 2 inputs/quarter-impact --out runs/quarter-impact --force
+	$(ENV) target/release/whipple plot runs/quarter-impact
+	$(ENV) target/release/whipple info runs/quarter-impact
+
+test: run-tests ## Run the test suite, about eight minutes on two cores
+
+check: ## What must pass before a change lands: format, lints, documentation, tests
+check: test-deps
+	$(ENV) cargo fmt --check
+	$(ENV) cargo clippy --locked --all-targets -- -D warnings
+	$(ENV) RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps
+	$(MAKE) run-tests
+
+validation: test-deps $(VENV)/ready ## Run the slow physics tests, those marked #[ignore]
+	$(ENV) jobs/cargo-test.sh --ignored
+
+bench: deps ## Measure the kernels
+	$(ENV) cargo bench --locked
+
+docs: deps ## Build the book (target/book) and the API documentation (target/doc)
+	$(ENV) cargo doc --locked --no-deps
+	@mdbook=$$(command -v mdbook || command -v target/tools/bin/mdbook) || { \
+	    echo "the book needs mdBook: cargo install --root target/tools --locked mdbook" >&2; exit 2; }; \
+	"$$mdbook" build docs
+
+clean: ## Remove what was built; runs/ stays
+	rm -rf target
+
+deps:
+	@jobs/install-deps.sh
+
+test-deps:
+	@jobs/install-deps.sh --tests
+
+release: deps
+	$(ENV) cargo build --locked --release
+
+run-tests: test-deps $(VENV)/ready
+	$(ENV) jobs/cargo-test.sh
+
+# The Python clients that open our files in the tests, at pinned versions.
+$(VENV)/ready: tests/clients/requirements.txt | test-deps
+	rm -rf $(VENV)
+	python3 -m venv $(VENV)
+	$(VENV)/bin/pip install --quiet --disable-pip-version-check --retries 5 -r $<
+	touch $@

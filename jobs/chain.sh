@@ -1,0 +1,87 @@
+#!/usr/bin/env bash
+#SBATCH --job-name=whipple
+#SBATCH --nodes=1
+#SBATCH --ntasks-per-node=4
+#SBATCH --cpus-per-task=8
+#SBATCH --time=04:00:00
+#SBATCH --signal=B:USR1@120
+#PBS -N whipple
+#PBS -l select=1:ncpus=32:mpiprocs=4:ompthreads=8
+#PBS -l walltime=04:00:00
+# Runs a case to its end in as many legs as it takes: starts RUN if it is not there, else restarts
+# it from its newest checkpoint, until RUN/status.json says finished.
+#
+#   jobs/chain.sh [-n RANKS] [-t THREADS] CASE RUN [options of whipple run, such as --walltime 1h]
+#   sbatch jobs/chain.sh CASE RUN …      each job is one leg and submits the next
+#   qsub -v WHIPPLE_ARGS="CASE RUN …" jobs/chain.sh
+#
+# A leg ends softly when the scheduler's time is nearly up (USR1) or at --walltime; the chain then
+# goes on. Ctrl-C, TERM and scancel end the leg softly and the chain with it (75). A run that
+# failed, or a leg without a new checkpoint, ends the chain too: going on would repeat it.
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+[ -f "$root/jobs/run.sh" ] || root=${SLURM_SUBMIT_DIR:-${PBS_O_WORKDIR:-$PWD}}
+
+# shellcheck disable=SC2086
+[ $# -gt 0 ] || set -- ${WHIPPLE_ARGS:-}
+arguments=("$@")
+launch=()
+while getopts n:t: option; do
+    case $option in
+        n | t) launch+=("-$option" "$OPTARG") ;;
+        *) sed -n '/^#   jobs/s/^#  //p' "$root/jobs/chain.sh" >&2; exit 2 ;;
+    esac
+done
+shift $((OPTIND - 1))
+if [ $# -lt 2 ]; then sed -n '/^#   jobs/s/^#  //p' "$root/jobs/chain.sh" >&2; exit 2; fi
+case=$1 run=$2
+shift 2
+
+# finished, stopped or failed; nothing before the first leg and after a crash of the machine.
+status() { grep -oEsm1 '"(finished|stopped|failed)"' "$run/status.json" | tr -d '"' || true; }
+# shellcheck disable=SC2012  # the names are the program's own
+newest_checkpoint() { ls -td "$run"/checkpoints/*/ 2>/dev/null | head -n 1 || true; }
+
+# Runs a leg and passes signals on to it; `caught` is the last one.
+leg=''
+caught=''
+trap 'caught=USR1; kill -TERM "$leg" 2>/dev/null || true' USR1
+trap 'caught=TERM; kill -TERM "$leg" 2>/dev/null || true' TERM INT
+run_leg() {
+    local before
+    "$root/jobs/run.sh" "${launch[@]}" "$@" &
+    leg=$!
+    while :; do
+        before=$caught
+        code=0
+        wait "$leg" || code=$?
+        [ "$before" != "$caught" ] || break
+    done
+}
+
+while [ "$(status)" != finished ]; do
+    checkpoint=$(newest_checkpoint)
+    if [ -n "$checkpoint" ]; then
+        run_leg restart "$run" "$@"
+    elif [ -e "$run/status.json" ]; then
+        echo "$run has no checkpoint to restart from; remove it to start anew" >&2
+        exit 1
+    else
+        run_leg "$case" --out "$run" "$@"
+    fi
+    [ "$code" = 0 ] || [ "$code" = 75 ] || exit "$code"
+    [ "$(status)" != failed ] || exit 1
+    [ "$(status)" != finished ] || break
+    if [ "$caught" = TERM ]; then exit 75; fi
+    if [ "$(newest_checkpoint)" = "$checkpoint" ]; then
+        echo "no new checkpoint since the last leg: the chain ends" >&2
+        exit 1
+    fi
+    if [ -n "${SLURM_JOB_ID:-}" ]; then
+        exec sbatch "$root/jobs/chain.sh" "${arguments[@]}"
+    elif [ -n "${PBS_JOBID:-}" ]; then
+        exec qsub -v WHIPPLE_ARGS="${arguments[*]}" "$root/jobs/chain.sh"
+    fi
+done
+echo "$run is finished"

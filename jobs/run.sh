@@ -1,0 +1,106 @@
+#!/usr/bin/env bash
+#SBATCH --job-name=whipple
+#SBATCH --nodes=1
+#SBATCH --ntasks-per-node=4
+#SBATCH --cpus-per-task=8
+#SBATCH --time=04:00:00
+#SBATCH --signal=B:USR1@120
+#PBS -N whipple
+#PBS -l select=1:ncpus=32:mpiprocs=4:ompthreads=8
+#PBS -l walltime=04:00:00
+# Runs a case on several ranks, here or as a batch job.
+#
+#   jobs/run.sh [-n RANKS] [-t THREADS] CASE [options of whipple run]
+#   jobs/run.sh [-n RANKS] [-t THREADS] restart RUN [options of whipple restart]
+#   sbatch jobs/run.sh CASE …            ranks and threads are the allocation's
+#   qsub -v WHIPPLE_ARGS="CASE …" jobs/run.sh
+#
+# On a workstation: two ranks, and the cores shared out among them as threads. Ctrl-C, TERM, or
+# the scheduler's USR1 stop the run softly: it writes a checkpoint and exits with 75, and
+# `jobs/run.sh restart RUN` goes on from there. A second Ctrl-C kills it.
+set -euo pipefail
+
+# Schedulers run a copy of this script from their spool folder.
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+[ -f "$root/jobs/env.sh" ] || root=${SLURM_SUBMIT_DIR:-${PBS_O_WORKDIR:-$PWD}}
+source "$root/jobs/env.sh"
+
+usage() { sed -n '/^#   jobs/s/^#  //p' "$root/jobs/run.sh" >&2; exit 2; }
+
+ranks='' threads=''
+# PBS passes no arguments, only variables.
+# shellcheck disable=SC2086
+[ $# -gt 0 ] || set -- ${WHIPPLE_ARGS:-}
+while getopts n:t: option; do
+    case $option in
+        n) ranks=$OPTARG ;;
+        t) threads=$OPTARG ;;
+        *) usage ;;
+    esac
+done
+shift $((OPTIND - 1))
+[ $# -gt 0 ] || usage
+command=run
+if [ "$1" = restart ]; then command=restart; shift; fi
+[ $# -gt 0 ] || usage
+
+# Pinned to its own cores where a scheduler gave them; unbound beside other work elsewhere.
+placement=()
+if [ -n "${SLURM_JOB_ID:-}${PBS_JOBID:-}" ]; then
+    unset OMPI_MCA_hwloc_base_binding_policy OMPI_MCA_rmaps_base_oversubscribe \
+        OMPI_MCA_mpi_yield_when_idle PRTE_MCA_hwloc_default_binding_policy \
+        PRTE_MCA_rmaps_default_mapping_policy
+    [ -n "$ranks" ] || ranks=${SLURM_NTASKS:-$(wc -l <"${PBS_NODEFILE:-/dev/null}")}
+    threads=${threads:-${SLURM_CPUS_PER_TASK:-${OMP_NUM_THREADS:-1}}}
+    placement=(--map-by "slot:PE=$threads" --bind-to core)
+fi
+[ "${ranks:-0}" != 0 ] || ranks=2
+if [ -z "$threads" ]; then
+    threads=$(($(nproc) / ranks))
+    [ "$threads" -ge 1 ] || threads=1
+fi
+
+program=${WHIPPLE_PROGRAM:-$root/target/release/whipple}
+if [ ! -x "$program" ]; then
+    "$root/jobs/install-deps.sh"
+    (cd "$root" && cargo build --release --locked)
+fi
+
+# mpirun answers TERM and INT by killing its ranks within two seconds, but passes USR1 on to
+# them, which asks for a soft stop. While it starts up it may drop the signal, hence the repeats.
+job='' caught='' interrupted='' repeats=''
+# shellcheck disable=SC2317  # the traps call these
+repeat() { while sleep 10 && kill -USR1 "$job"; do :; done; }
+# shellcheck disable=SC2317
+stop() {
+    caught=1
+    if [ "$1" = interrupt ] && [ -n "$interrupted" ]; then
+        kill -TERM "$job" || true
+        return
+    fi
+    [ "$1" != interrupt ] || interrupted=1
+    [ -z "$repeats" ] || return 0
+    echo "stopping after this step, with a checkpoint; a second Ctrl-C kills the run" >&2
+    kill -USR1 "$job" || true
+    repeat >/dev/null 2>&1 &
+    repeats=$!
+}
+trap 'stop interrupt' INT
+trap 'stop softly' TERM USR1 HUP
+
+# A process group of its own (set -m), so that a terminal's Ctrl-C reaches this script alone.
+set -m
+mpirun -n "$ranks" "${placement[@]}" \
+    "$program" "$command" "$@" --threads "$threads" </dev/null &
+job=$!
+set +m
+
+# A signal ends `wait` early, so wait again until it returns mpirun's own code.
+while :; do
+    caught=''
+    code=0
+    wait "$job" || code=$?
+    [ -n "$caught" ] || break
+done
+[ -z "$repeats" ] || kill "$repeats" 2>/dev/null || true
+exit "$code"

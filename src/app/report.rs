@@ -1,0 +1,331 @@
+//! What a run tells its user: tables, summary, progress.
+
+use std::io::{IsTerminal, Write};
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
+
+use crate::comm::Comm;
+use crate::output::{COMMIT, Column, OutputError, RunFolder, Table, VERSION, Value};
+use crate::step::{PairState, RunState, Simulation};
+
+/// The tables of a run, written by rank 0.
+pub struct Tables {
+    history: Table,
+    contacts: Table,
+    performance: Table,
+}
+
+/// How evenly the ranks are loaded, and what they have sent.
+pub struct Load {
+    particles: [u64; 2],
+    work: [u64; 2],
+    messages: u64,
+    bytes: u64,
+    updates: u64,
+}
+
+/// The load of all ranks. Collective.
+pub fn load(comm: &Comm, simulation: &Simulation) -> Load {
+    let particles = simulation.store.owned() as u64;
+    let work: u64 = simulation.store.work[..simulation.store.owned()]
+        .iter()
+        .map(|&work| u64::from(work))
+        .sum();
+    let (messages, bytes) = simulation.traffic();
+    let mut sums = [particles, work, messages, bytes, simulation.updates];
+    comm.sum_u64(&mut sums);
+    let mut most = [particles, work];
+    comm.max_u64(&mut most);
+    Load {
+        particles: [sums[0], most[0]],
+        work: [sums[1], most[1]],
+        messages: sums[2],
+        bytes: sums[3],
+        updates: sums[4],
+    }
+}
+
+fn columns(list: &[(&str, &str)]) -> Vec<Column> {
+    list.iter()
+        .map(|(name, unit)| Column::new(name, unit))
+        .collect()
+}
+
+fn history_columns() -> Vec<Column> {
+    columns(&[
+        ("step", ""),
+        ("time", "s"),
+        ("dt", "s"),
+        ("dt_reason", ""),
+        ("kinetic_energy", "J"),
+        ("internal_energy", "J"),
+        ("contact_energy", "J"),
+        ("total_energy", "J"),
+        ("momentum_x", "kg m/s"),
+        ("momentum_y", "kg m/s"),
+        ("momentum_z", "kg m/s"),
+        ("plane_impulse_x", "N s"),
+        ("plane_impulse_y", "N s"),
+        ("plane_impulse_z", "N s"),
+        ("contact_work", "J"),
+        ("interpenetrated", ""),
+    ])
+}
+
+fn contact_columns() -> Vec<Column> {
+    columns(&[
+        ("time", "s"),
+        ("body_a", ""),
+        ("body_b", ""),
+        ("force_x", "N"),
+        ("force_y", "N"),
+        ("force_z", "N"),
+        ("impulse_x", "N s"),
+        ("impulse_y", "N s"),
+        ("impulse_z", "N s"),
+        ("contact_energy", "J"),
+        ("touching", ""),
+        ("largest_excess", ""),
+        ("closest_pair", "spacings"),
+        ("contact_dt", "s"),
+    ])
+}
+
+fn performance_columns() -> Vec<Column> {
+    columns(&[
+        ("step", ""),
+        ("wall_seconds", "s"),
+        ("million_updates", ""),
+        ("particles", ""),
+        ("largest_share", "ranks"),
+        ("largest_work", "ranks"),
+        ("messages", ""),
+        ("megabytes_sent", "MB"),
+    ])
+}
+
+impl Tables {
+    /// Starts the tables of a run, or goes on with them after the state `resume`.
+    pub fn open(
+        folder: &RunFolder,
+        resume: Option<&RunState>,
+    ) -> Result<Self, OutputError> {
+        let open = |path: &std::path::Path, columns: &[Column], key: &str, last: Option<f64>| {
+            match last {
+                Some(last) => Table::resume(path, columns, key, last),
+                None => Table::create(path, columns),
+            }
+        };
+        #[allow(clippy::cast_precision_loss, reason = "steps fit a double")]
+        let step = resume.map(|state| state.step as f64);
+        let time = resume.map(|state| state.time);
+        Ok(Self {
+            history: open(&folder.history(), &history_columns(), "step", step)?,
+            contacts: open(&folder.contacts(), &contact_columns(), "time", time)?,
+            performance: open(&folder.performance(), &performance_columns(), "step", step)?,
+        })
+    }
+
+    /// Writes a row of each.
+    pub fn write(
+        &mut self,
+        simulation: &Simulation,
+        load: &Load,
+        wall: f64,
+    ) -> Result<(), OutputError> {
+        let state = &simulation.state;
+        let totals = &state.totals;
+        let [px, py, pz] = totals.momentum.map(Value::Real);
+        let [ix, iy, iz] = state.plane_impulse.map(Value::Real);
+        self.history.row(&[
+            Value::Count(state.step),
+            Value::Real(state.time),
+            Value::Real(state.last_dt),
+            Value::Word(state.last_reason.name()),
+            Value::Real(totals.kinetic_energy),
+            Value::Real(totals.internal_energy),
+            Value::Real(state.contact_energy),
+            Value::Real(totals.energy()),
+            px,
+            py,
+            pz,
+            ix,
+            iy,
+            iz,
+            Value::Real(state.contact_work),
+            Value::Count(state.interpenetrated.unsigned_abs()),
+        ])?;
+        let pairs = simulation.contact().active_pairs();
+        for (bodies, pair) in pairs.iter().zip(&state.pairs) {
+            let names = bodies.map(|b| simulation.case.bodies[b].name.as_str());
+            self.write_pair(state.time, names, pair)?;
+        }
+        self.write_performance(state.step, load, wall)
+    }
+
+    fn write_pair(
+        &mut self,
+        time: f64,
+        names: [&str; 2],
+        pair: &PairState,
+    ) -> Result<(), OutputError> {
+        let [fx, fy, fz] = pair.force.map(Value::Real);
+        let [ix, iy, iz] = pair.impulse.map(Value::Real);
+        self.contacts.row(&[
+            Value::Real(time),
+            Value::Word(names[0]),
+            Value::Word(names[1]),
+            fx,
+            fy,
+            fz,
+            ix,
+            iy,
+            iz,
+            Value::Real(pair.energy),
+            Value::Count(pair.touching.unsigned_abs()),
+            Value::Real(pair.largest_excess),
+            Value::Real(pair.closest.unwrap_or(f64::INFINITY)),
+            Value::Real(pair.contact_dt.unwrap_or(f64::INFINITY)),
+        ])
+    }
+
+    #[allow(clippy::cast_precision_loss, reason = "for people")]
+    fn write_performance(&mut self, step: u64, load: &Load, wall: f64) -> Result<(), OutputError> {
+        let share = |[sum, most]: [u64; 2]| most as f64 / (sum as f64).max(1.0);
+        self.performance.row(&[
+            Value::Count(step),
+            Value::Real(wall),
+            Value::Real(load.updates as f64 * 1e-6),
+            Value::Count(load.particles[0]),
+            Value::Real(share(load.particles)),
+            Value::Real(share(load.work)),
+            Value::Count(load.messages),
+            Value::Real(load.bytes as f64 * 1e-6),
+        ])
+    }
+}
+
+/// `summary.json`. Collective.
+#[allow(clippy::cast_precision_loss, reason = "for people")]
+pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::Value {
+    let load = load(comm, simulation);
+    let state = &simulation.state;
+    let worst = &state.worst;
+    let phases: Vec<(&'static str, f64)> = simulation
+        .timers
+        .report()
+        .map(|(name, seconds)| (name, comm.max_f64(seconds)))
+        .collect();
+    let stepping: f64 = phases.iter().map(|(_, seconds)| seconds).sum();
+    let mut memory = [simulation.memory() as u64];
+    comm.sum_u64(&mut memory);
+    let threads = rayon::current_num_threads();
+    let cores = (comm.size() * threads) as f64;
+    let rate = load.updates as f64 * 1e-6 / stepping.max(f64::MIN_POSITIVE) / cores;
+    json!({
+        "title": simulation.case.title,
+        "version": VERSION,
+        "commit": COMMIT,
+        "ranks": comm.size(),
+        "threads": threads,
+        "instructions": crate::sph::dispatch::instructions().name(),
+        "particles": load.particles[0],
+        "steps": state.step,
+        "time": state.time,
+        "wall_seconds": wall,
+        "million_updates_per_second_per_core": rate,
+        "bytes_per_particle": memory[0] as f64 / (load.particles[0] as f64).max(1.0),
+        "seconds_by_phase": object(phases),
+        "energy_error_max": worst.energy_error,
+        "contact_defect": worst.contact_defect,
+        "momentum_error": object(["x", "y", "z"].into_iter().zip(worst.momentum_error)),
+        "interpenetrated_particles": worst.interpenetrated,
+        "closest_foreign_pair": worst.closest,
+        "largest_foreign_fraction": worst.foreign_fraction,
+        "capped_reliefs": state.capped_reliefs,
+        "contact_limited_steps": worst.contact_limited_steps,
+    })
+}
+
+fn object(
+    entries: impl IntoIterator<Item = (&'static str, f64)>,
+) -> serde_json::Map<String, serde_json::Value> {
+    entries
+        .into_iter()
+        .map(|(name, value)| (name.to_owned(), json!(value)))
+        .collect()
+}
+
+/// A time with the unit of impacts, for people.
+pub fn seconds(time: f64) -> String {
+    format!("{:.4} us", time * 1e6)
+}
+
+/// Progress on a terminal, now and then a flushed line elsewhere.
+pub struct Progress {
+    bar: Option<ProgressBar>,
+    lines: bool,
+    end: f64,
+    last: Instant,
+}
+
+const LINE_EVERY: Duration = Duration::from_secs(10);
+const TICKS: u64 = 1000;
+
+impl Progress {
+    /// For rank 0; others stay silent.
+    pub fn new(comm: &Comm, simulation: &Simulation) -> Self {
+        let root = comm.is_root();
+        let terminal = std::io::stderr().is_terminal();
+        let bar = (root && terminal).then(|| {
+            let style = "{bar:30} {percent:>3} %  {msg}  {eta_precise} left";
+            ProgressBar::new(TICKS).with_style(
+                ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()),
+            )
+        });
+        Self {
+            bar,
+            lines: root && !terminal,
+            end: simulation.case.run.end_time,
+            last: Instant::now(),
+        }
+    }
+
+    /// Shows where the run stands.
+    pub fn show(&mut self, simulation: &Simulation) {
+        let state = &simulation.state;
+        let text = || {
+            format!(
+                "step {}  t = {}  dt = {:.3e} s ({})",
+                state.step,
+                seconds(state.time),
+                state.last_dt,
+                state.last_reason.name()
+            )
+        };
+        if let Some(bar) = &self.bar {
+            #[allow(clippy::cast_precision_loss, reason = "for people")]
+            let done = (state.time / self.end).clamp(0.0, 1.0) * TICKS as f64;
+            #[allow(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "clamped"
+            )]
+            bar.set_position(done as u64);
+            bar.set_message(text());
+        } else if self.lines && self.last.elapsed() >= LINE_EVERY {
+            self.last = Instant::now();
+            println!("{}", text());
+            let _ = std::io::stdout().flush();
+        }
+    }
+
+    /// Clears the bar.
+    pub fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Overlap contact: an energy of the foreign volume fraction above its touching value
+//! (physics page, section 5).
+//!
+//! With `S_i = Σ_{j foreign} V_j W_ij` and fraction-weighted means
+//! `M̄_i = Σ V_j W_ij M_ij / S_i`, `C̄_i = Σ V_j W_ij C*_ij / S_i`, the excess is
+//! `E_i = ⟨S_i − C̄_i − s_i⟩₊` and the energy `Φ = Σ_i ½ M̄_i V_i E_i²` (the stiffness κ is part
+//! of `M`). A core `½ κ_c M V̄ ⟨1 − r/r_c⟩₊²` keeps lone particles apart.
+
+use super::{ContactView, Gap, Pair, Party, Reaction};
+
+/// The foreign fraction of one receiver and what follows from it.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Fraction {
+    /// `S_i`.
+    pub fraction: f64,
+    /// `M̄_i` (Pa), stiffness included.
+    pub modulus: f64,
+    /// `C̄_i`.
+    pub touching: f64,
+    /// `E_i`.
+    pub excess: f64,
+    /// `g_i = Σ V_j |∇W_ij|` (1/m).
+    pub slope: f64,
+    /// `Σ V_j W_ij` with current volumes.
+    pub current: f64,
+}
+
+/// Largest touching value plus relief: beyond it a particle counts as inside the other body.
+pub const RELIEF_LIMIT: f64 = 0.45;
+
+/// The relief of a particle laid with foreign fraction `fraction` and touching value `touching`
+/// at the start, and whether it had to be capped.
+#[must_use]
+pub fn relief(fraction: &Fraction) -> (f64, bool) {
+    let wanted = (fraction.fraction - fraction.touching).max(0.0);
+    let limit = (RELIEF_LIMIT - fraction.touching).max(0.0);
+    (wanted.min(limit), wanted > limit)
+}
+
+/// Sums the foreign fraction of the receiver at `place`, whose relief is `relief`.
+#[must_use]
+pub fn fraction(view: &ContactView, place: u32, neighbours: &[u32], relief: f64) -> Fraction {
+    let i = view.party(place);
+    let mut sum = Fraction::default();
+    for &other in neighbours {
+        let j = view.party(other);
+        let pair = view.table.pair(i.body, j.body);
+        let gap = Gap::between(&i, &j);
+        let kernel = view.table.kernel.value(gap.distance, pair.h);
+        let share = j.volume * kernel;
+        sum.fraction += share;
+        sum.modulus += share * pair.modulus;
+        sum.touching += share * pair.touching;
+        sum.slope -= j.volume * view.table.kernel.slope(gap.distance, pair.h);
+        sum.current += view.motion[other as usize].volume * kernel;
+    }
+    if sum.fraction > 0.0 {
+        sum.modulus /= sum.fraction;
+        sum.touching /= sum.fraction;
+        sum.excess = (sum.fraction - sum.touching - relief).max(0.0);
+    }
+    sum
+}
+
+/// The stored fraction of a particle, as its neighbours see it.
+fn stored(view: &ContactView, base: usize) -> Fraction {
+    Fraction {
+        fraction: view.store.foreign_fraction[base],
+        modulus: view.store.contact_modulus[base],
+        touching: view.store.touching_value[base],
+        excess: view.store.contact_excess[base],
+        slope: view.store.contact_slope[base],
+        current: 0.0,
+    }
+}
+
+/// `a_ij = M̄_i E_i [1 − (C*_ij − C̄_i)/S_i] + ½ E_i² (M_ij − M̄_i)/S_i` (Pa): derivative of
+/// particle i's energy by its fraction of j, per volume of i.
+fn slope_of_energy(i: &Fraction, pair: &Pair) -> f64 {
+    if i.excess == 0.0 {
+        return 0.0;
+    }
+    i.modulus * i.excess * (1.0 - (pair.touching - i.touching) / i.fraction)
+        + 0.5 * (i.excess * i.excess) * (pair.modulus - i.modulus) / i.fraction
+}
+
+/// Adds what the foreign neighbours do to the receiver at `place` to `reaction`:
+/// `f_ij = −V_i V_j (a_ij + a_ji) ∇_i W_ij` and the core.
+pub fn react(view: &ContactView, place: u32, neighbours: &[u32], reaction: &mut Reaction) {
+    let i = view.party(place);
+    let here = stored(view, i.base);
+    for &other in neighbours {
+        let j = view.party(other);
+        let gap = Gap::between(&i, &j);
+        let (pair, back) = (
+            view.table.pair(i.body, j.body),
+            view.table.pair(j.body, i.body),
+        );
+        let there = stored(view, j.base);
+        let mut force = 0.0;
+        let mut energy = 0.0;
+        if here.excess > 0.0 || there.excess > 0.0 {
+            let kernel = &view.table.kernel;
+            let slope = -kernel.slope(gap.distance, pair.h);
+            let pressure = slope_of_energy(&here, pair) + slope_of_energy(&there, back);
+            force += i.volume * j.volume * pressure * slope;
+            reaction.stiffness += bulk_stiffness(view, &i, &j, &gap, &here, &there);
+            if here.excess > 0.0 {
+                let share = j.volume * kernel.value(gap.distance, pair.h) * pair.modulus
+                    / (here.fraction * here.modulus);
+                energy +=
+                    0.5 * here.modulus * i.volume * (here.excess * here.excess) * share;
+            }
+        }
+        let depth = 1.0 - gap.distance / pair.core_radius;
+        if depth > 0.0 {
+            let stress = pair.core_modulus * (0.5 * (i.volume + j.volume));
+            force += stress * depth / pair.core_radius;
+            // Half of the pair's energy stands on each side.
+            energy += 0.25 * stress * (depth * depth);
+            reaction.stiffness += 2.0 * stress / (pair.core_radius * pair.core_radius);
+        }
+        reaction.book(&j, &gap, pair.spacing, gap.along(force), energy);
+    }
+}
+
+/// A pair's part of `k_i = 2 M V_i Σ_j V_j [(g_i + g_j)|∇W_ij| + (E_i + E_j)|W″_ij|]` (N/m), with
+/// `g` counted where there is excess.
+fn bulk_stiffness(
+    view: &ContactView,
+    i: &Party,
+    j: &Party,
+    gap: &Gap,
+    here: &Fraction,
+    there: &Fraction,
+) -> f64 {
+    let pair = view.table.pair(i.body, j.body);
+    let kernel = &view.table.kernel;
+    let slope = -kernel.slope(gap.distance, pair.h);
+    let curvature = kernel.curvature(gap.distance, pair.h).abs();
+    let active = |f: &Fraction| if f.excess > 0.0 { f.slope } else { 0.0 };
+    let steep = (active(here) + active(there)) * slope;
+    let bent = (here.excess + there.excess) * curvature;
+    2.0 * pair.modulus * i.volume * j.volume * (steep + bent)
+}

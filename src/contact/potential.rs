@@ -1,0 +1,43 @@
+//! The contact potential of Vignjevic, De Vuyst & Campbell (2006), with the repulsive sign.
+//!
+//! `φ_i = Σ_j V_j K (W_ij/W(Δp̄))^n` (V 21) and
+//! `f_i = −Σ_j V_i V_j K n W_ij^{n−1}/W(Δp̄)^n ∇_i W_ij` (V 24 read as −∇φ); the energy of all
+//! pairs is `½ Σ V_i φ_i`. With the range "spacing" the potential is measured from its value at
+//! the mean spacing, where the force sets in.
+
+use super::{ContactView, Gap, Reaction};
+
+/// Adds what the foreign neighbours do to the receiver at `place` to `reaction`.
+pub fn react(view: &ContactView, place: u32, neighbours: &[u32], reaction: &mut Reaction) {
+    let i = view.party(place);
+    for &other in neighbours {
+        let j = view.party(other);
+        let gap = Gap::between(&i, &j);
+        let pair = view.table.pair(i.body, j.body);
+        if gap.distance >= pair.range {
+            reaction.book(&j, &gap, pair.spacing, [0.0; 3], 0.0);
+            continue;
+        }
+        let kernel = &view.table.kernel;
+        let ratio = kernel.value(gap.distance, pair.h) * pair.inverse_kernel;
+        let slope = -kernel.slope(gap.distance, pair.h) * pair.inverse_kernel;
+        let curvature = kernel.curvature(gap.distance, pair.h).abs() * pair.inverse_kernel;
+        let strength = pair.potential * i.volume * j.volume;
+        let n = f64::from(pair.exponent);
+        let steeper = power(ratio, pair.exponent - 1);
+        let energy = 0.5 * strength * (ratio * steeper - pair.floor);
+        let force = strength * n * steeper * slope;
+        reaction.stiffness +=
+            2.0 * strength * n * ((n - 1.0) * power(ratio, pair.exponent - 2) * (slope * slope)
+                + steeper * curvature);
+        reaction.book(&j, &gap, pair.spacing, gap.along(force), energy);
+    }
+}
+
+/// `x^n` by plain multiplication; 0 for negative n (met only as a factor of zero, n = 1).
+fn power(x: f64, n: i32) -> f64 {
+    if n < 0 {
+        return 0.0;
+    }
+    (0..n).fold(1.0, |product, _| product * x)
+}

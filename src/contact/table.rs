@@ -1,0 +1,196 @@
+//! Parameters of every pair of bodies, computed once at set-up.
+
+use crate::model::{Case, ContactMode, PotentialRange};
+use crate::neighbours::{ContactClass, ForeignTable};
+use crate::populate;
+use crate::sph::kernel::Kernel;
+
+/// Reference constants of an ordered pair of bodies (receiver, other).
+#[derive(Debug, Clone, Copy)]
+pub struct Pair {
+    /// Mean smoothing length h_ij (m).
+    pub h: f64,
+    /// Mean particle spacing (m).
+    pub spacing: f64,
+    /// `overlap`: κ times the smaller p-wave modulus (Pa).
+    pub modulus: f64,
+    /// `overlap`: touching value C* of the receiver's body on the other.
+    pub touching: f64,
+    /// `overlap`: κ_c times the smaller p-wave modulus (Pa).
+    pub core_modulus: f64,
+    /// `overlap`: radius of the core (m).
+    pub core_radius: f64,
+    /// `potential`: K (Pa/m^d).
+    pub potential: f64,
+    /// `potential`: exponent n.
+    pub exponent: i32,
+    /// `potential`: largest distance (m).
+    pub range: f64,
+    /// `potential`: what (W/W(Δp̄))^n is at that distance.
+    pub floor: f64,
+    /// `potential`: 1/W(Δp̄) (m^d).
+    pub inverse_kernel: f64,
+}
+
+/// All pairs of bodies.
+#[derive(Debug, Clone)]
+pub struct ContactTable {
+    /// The kernel that contact weights with.
+    pub kernel: Kernel,
+    /// Group of each body: bodies joined by `kernel` contact form one.
+    pub groups: Vec<usize>,
+    /// Which algorithm handles a pair, and its range.
+    pub foreign: ForeignTable,
+    pairs: Vec<Pair>,
+    inverse_densities: Vec<f64>,
+}
+
+impl ContactTable {
+    /// Table of a case.
+    #[must_use]
+    pub fn new(case: &Case) -> Self {
+        let kernel = Kernel::new(case.dimension);
+        let n = case.bodies.len();
+        let groups = join_groups(case);
+        let group_count = groups.iter().max().map_or(0, |&g| g + 1);
+        let mut foreign = ForeignTable {
+            bodies: n,
+            class: vec![ContactClass::None; n * n],
+            reach2: vec![0.0; n * n],
+            group_range: vec![0.0; group_count * group_count],
+        };
+        let mut pairs = Vec::with_capacity(n * n);
+        for a in 0..n {
+            for b in 0..n {
+                let (class, pair) = make_pair(case, &kernel, a, b);
+                pairs.push(pair);
+                if a == b || class == ContactClass::None {
+                    continue;
+                }
+                let range = 2.0 * pair.h;
+                foreign.class[a * n + b] = class;
+                foreign.reach2[a * n + b] = range * range;
+                let slot = &mut foreign.group_range[groups[a] * group_count + groups[b]];
+                *slot = slot.max(range);
+            }
+        }
+        let inverse_densities = case
+            .bodies
+            .iter()
+            .map(|body| 1.0 / case.materials[body.material].reference_density)
+            .collect();
+        Self {
+            kernel,
+            groups,
+            foreign,
+            pairs,
+            inverse_densities,
+        }
+    }
+
+    /// Parameters of a receiver of body `a` and a neighbour of body `b`.
+    #[inline]
+    #[must_use]
+    pub fn pair(&self, a: usize, b: usize) -> &Pair {
+        &self.pairs[a * self.foreign.bodies + b]
+    }
+
+    /// 1/ρ₀ of a body (m³/kg).
+    #[inline]
+    #[must_use]
+    pub fn inverse_density(&self, body: usize) -> f64 {
+        self.inverse_densities[body]
+    }
+
+    /// Number of groups of bodies.
+    #[must_use]
+    pub fn group_count(&self) -> usize {
+        self.groups.iter().max().map_or(0, |&g| g + 1)
+    }
+
+    /// Whether any pair of bodies has contact beyond the SPH sums.
+    #[must_use]
+    pub fn is_active(&self) -> bool {
+        self.foreign.class.iter().any(|&c| c != ContactClass::None)
+    }
+
+    /// The unordered pairs of bodies with contact beyond the SPH sums.
+    #[must_use]
+    pub fn active_pairs(&self) -> Vec<[usize; 2]> {
+        let n = self.foreign.bodies;
+        (0..n)
+            .flat_map(|a| (a + 1..n).map(move |b| [a, b]))
+            .filter(|&[a, b]| self.foreign.class[a * n + b] != ContactClass::None)
+            .collect()
+    }
+}
+
+/// Numbers the groups of bodies that `kernel` contact joins, in the order of their first body.
+/// Members of one group see each other in the SPH sums and nowhere else.
+fn join_groups(case: &Case) -> Vec<usize> {
+    let n = case.bodies.len();
+    let mut leader: Vec<usize> = (0..n).collect();
+    for a in 0..n {
+        for b in a + 1..n {
+            if matches!(case.contact_between(a, b), ContactMode::Kernel) {
+                let (keep, drop) = (leader[a].min(leader[b]), leader[a].max(leader[b]));
+                for entry in &mut leader {
+                    if *entry == drop {
+                        *entry = keep;
+                    }
+                }
+            }
+        }
+    }
+    let mut leaders: Vec<usize> = leader.clone();
+    leaders.sort_unstable();
+    leaders.dedup();
+    leader
+        .iter()
+        .map(|l| leaders.iter().position(|x| x == l).expect("its own leader"))
+        .collect()
+}
+
+fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass, Pair) {
+    let (body_a, body_b) = (&case.bodies[a], &case.bodies[b]);
+    let modulus = |body: &crate::model::Body| case.materials[body.material].p_wave_modulus();
+    let smaller = modulus(body_a).min(modulus(body_b));
+    let spacing = 0.5 * (body_a.lattice.spacing + body_b.lattice.spacing);
+    let h = 0.5 * (body_a.smoothing_length + body_b.smoothing_length);
+    let mut pair = Pair {
+        h,
+        spacing,
+        modulus: 0.0,
+        touching: 0.0,
+        core_modulus: 0.0,
+        core_radius: 0.0,
+        potential: 0.0,
+        exponent: 1,
+        range: 0.0,
+        floor: 0.0,
+        inverse_kernel: 0.0,
+    };
+    if a == b {
+        return (ContactClass::None, pair);
+    }
+    match case.contact_between(a, b) {
+        ContactMode::None | ContactMode::Kernel => (ContactClass::None, pair),
+        ContactMode::Potential(potential) => {
+            pair.potential = potential.stiffness * smaller / kernel.power(spacing);
+            pair.exponent = i32::try_from(potential.exponent).unwrap_or(i32::MAX);
+            pair.inverse_kernel = 1.0 / kernel.value(spacing, h);
+            (pair.range, pair.floor) = match potential.range {
+                PotentialRange::Support => (2.0 * h, 0.0),
+                PotentialRange::Spacing => (spacing, 1.0),
+            };
+            (ContactClass::Potential, pair)
+        }
+        ContactMode::Overlap(overlap) => {
+            pair.modulus = overlap.stiffness * smaller;
+            pair.touching = populate::touching_value(body_a, body_b, case.dimension);
+            pair.core_modulus = overlap.core_stiffness * smaller;
+            pair.core_radius = overlap.core_radius * spacing;
+            (ContactClass::Overlap, pair)
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Faces of the slabs so that counted work is even.
+
+use super::slabs::Slabs;
+use crate::comm::Comm;
+
+/// Work by fine planes along the slab axis.
+#[derive(Debug, Clone, Default)]
+pub struct Histogram {
+    lower: f64,
+    width: f64,
+    counts: Vec<u64>,
+}
+
+/// Fine planes for each rank.
+const BINS_PER_RANK: usize = 2048;
+
+impl Histogram {
+    /// Empty bins over `lower..=upper` (m), which must be equal on all ranks.
+    pub fn reset(&mut self, lower: f64, upper: f64, ranks: usize) {
+        let bins = (BINS_PER_RANK * ranks).min(1 << 18);
+        self.lower = lower;
+        #[allow(clippy::cast_precision_loss, reason = "few bins")]
+        {
+            self.width = ((upper - lower) / bins as f64).max(f64::MIN_POSITIVE);
+        }
+        self.counts.clear();
+        self.counts.resize(bins, 0);
+    }
+
+    /// Counts `work` at coordinate `x` (m).
+    pub fn add(&mut self, x: f64, work: u64) {
+        let bin = (x - self.lower) / self.width;
+        let last = self.counts.len() - 1;
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            clippy::cast_precision_loss,
+            reason = "clamped"
+        )]
+        let bin = bin.clamp(0.0, last as f64) as usize;
+        self.counts[bin] += work;
+    }
+
+    /// Faces that split the work of all ranks evenly.
+    pub fn split(&mut self, comm: &Comm) -> Vec<f64> {
+        comm.sum_u64(&mut self.counts);
+        let ranks = comm.size() as u64;
+        let total: u64 = self.counts.iter().sum();
+        let mut faces = Vec::with_capacity(comm.size().saturating_sub(1));
+        let mut below = 0;
+        for (bin, &count) in self.counts.iter().enumerate() {
+            // A face goes to whichever side of this bin is nearer to an even split.
+            while (faces.len() as u64) + 1 < ranks {
+                let target = u128::from(total) * (faces.len() as u128 + 1) / u128::from(ranks);
+                if u128::from(below) + u128::from(count) < target {
+                    break;
+                }
+                let over = u128::from(below) + u128::from(count) - target;
+                let under = target.saturating_sub(u128::from(below));
+                let at = if under < over { bin } else { bin + 1 };
+                #[allow(clippy::cast_precision_loss, reason = "few bins")]
+                faces.push(self.lower + self.width * at as f64);
+            }
+            below += count;
+        }
+        while (faces.len() as u64) + 1 < ranks {
+            faces.push(f64::INFINITY);
+        }
+        faces
+    }
+}
+
+/// New slabs along the same axis for owned particles at `positions` with counted `work`.
+/// Particles whose work is unknown count as one.
+pub fn balance(
+    comm: &Comm,
+    slabs: &Slabs,
+    positions: &[[f64; 3]],
+    work: &[u32],
+    histogram: &mut Histogram,
+) -> Slabs {
+    let along = |p: &[f64; 3]| p[slabs.axis];
+    let lower = positions.iter().map(along).fold(f64::INFINITY, f64::min);
+    let upper = positions.iter().map(along).fold(f64::NEG_INFINITY, f64::max);
+    let (lower, upper) = (comm.min_f64(lower), comm.max_f64(upper));
+    if lower > upper {
+        return slabs.clone();
+    }
+    histogram.reset(lower, upper, comm.size());
+    for (position, &work) in positions.iter().zip(work) {
+        histogram.add(along(position), u64::from(work.max(1)));
+    }
+    Slabs::new(slabs.axis, histogram.split(comm))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_rank_has_no_faces_and_all_work_in_one_place_is_legal() {
+        let comm = Comm::solo();
+        let slabs = Slabs::new(1, Vec::new());
+        let mut histogram = Histogram::default();
+        let positions = [[0.0, 2.0, 0.0]; 3];
+        let new = balance(&comm, &slabs, &positions, &[5, 5, 5], &mut histogram);
+        assert_eq!(new, slabs);
+    }
+}

@@ -1,0 +1,161 @@
+//! Symmetry planes: mirror images of particles behind them, and particles that cross them.
+
+use crate::model::SymmetryPlane;
+use crate::particles::ParticleStore;
+
+/// The symmetry planes of a case, at most one for each axis. An image has a code: bit a is set
+/// if it stands behind the plane normal to axis a.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Mirrors {
+    planes: [Option<f64>; 3],
+}
+
+impl Mirrors {
+    /// Planes of a case.
+    #[must_use]
+    pub fn new(planes: &[SymmetryPlane]) -> Self {
+        let mut mirrors = Self::default();
+        for plane in planes {
+            mirrors.planes[plane.axis.index()] = Some(plane.position);
+        }
+        mirrors
+    }
+
+    /// Where the plane normal to an axis cuts it (m), if there is one.
+    #[must_use]
+    pub fn plane(&self, axis: usize) -> Option<f64> {
+        self.planes[axis]
+    }
+
+    /// Whether there are no planes.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.planes.iter().all(Option::is_none)
+    }
+
+    /// Bits of the planes that a particle at `position` (m) stands within `reach` (m) of. Its
+    /// images are those of all nonzero subsets of these bits.
+    #[inline]
+    #[must_use]
+    pub fn near(&self, position: &[f64; 3], reach: f64) -> u8 {
+        let mut bits = 0;
+        for axis in 0..3 {
+            if let Some(plane) = self.planes[axis]
+                && position[axis] - plane <= reach
+            {
+                bits |= 1 << axis;
+            }
+        }
+        bits
+    }
+
+    /// The image of a position under a code.
+    #[inline]
+    #[must_use]
+    pub fn reflect_position(&self, position: &[f64; 3], code: u8) -> [f64; 3] {
+        if code == 0 {
+            return *position;
+        }
+        std::array::from_fn(|axis| match self.planes[axis] {
+            Some(plane) if code >> axis & 1 == 1 => 2.0 * plane - position[axis],
+            _ => position[axis],
+        })
+    }
+
+    /// The image of a vector under a code.
+    #[inline]
+    #[must_use]
+    pub fn reflect_vector(vector: &[f64; 3], code: u8) -> [f64; 3] {
+        if code == 0 {
+            return *vector;
+        }
+        std::array::from_fn(|axis| {
+            if code >> axis & 1 == 1 {
+                -vector[axis]
+            } else {
+                vector[axis]
+            }
+        })
+    }
+
+    /// The image of a symmetric tensor (xx yy zz xy xz yz) under a code.
+    #[inline]
+    #[must_use]
+    pub fn reflect_symmetric(tensor: &[f64; 6], code: u8) -> [f64; 6] {
+        if code == 0 {
+            return *tensor;
+        }
+        let flip = |a: u8, b: u8| if (code >> a ^ code >> b) & 1 == 1 { -1.0 } else { 1.0 };
+        let mut image = *tensor;
+        image[3] *= flip(0, 1);
+        image[4] *= flip(0, 2);
+        image[5] *= flip(1, 2);
+        image
+    }
+
+    /// Exchanges an owned particle that has crossed a plane with its image, which has crossed
+    /// the other way: both are the same material. Returns the code, 0 for a particle that stays.
+    pub fn fold(&self, store: &mut ParticleStore, i: usize) -> u8 {
+        let mut code = 0;
+        for axis in 0..3 {
+            if let Some(plane) = self.planes[axis]
+                && store.position[i][axis] < plane
+            {
+                code |= 1 << axis;
+            }
+        }
+        if code != 0 {
+            store.position[i] = self.reflect_position(&store.position[i], code);
+            store.velocity[i] = Self::reflect_vector(&store.velocity[i], code);
+            store.predicted_velocity[i] =
+                Self::reflect_vector(&store.predicted_velocity[i], code);
+            store.deviatoric_stress[i] =
+                Self::reflect_symmetric(&store.deviatoric_stress[i], code);
+            for a in 0..3 {
+                for b in 0..3 {
+                    if (code >> a ^ code >> b) & 1 == 1 {
+                        store.velocity_gradient[i][3 * a + b] *= -1.0;
+                    }
+                }
+            }
+        }
+        code
+    }
+}
+
+/// All nonzero subsets of the bits of `mask`, and zero first if `own`.
+pub(super) fn codes(mask: u8, own: bool) -> impl Iterator<Item = u8> {
+    (u8::from(!own)..8).filter(move |code| code & !mask == 0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Axis;
+
+    #[test]
+    fn images_of_two_planes_and_their_edge() {
+        let planes = [Axis::X, Axis::Y].map(|axis| SymmetryPlane {
+            axis,
+            position: 0.0,
+        });
+        let mirrors = Mirrors::new(&planes);
+        let near = mirrors.near(&[0.1, 0.2, 0.0], 0.5);
+        assert_eq!(near, 0b11);
+        assert_eq!(codes(near, true).collect::<Vec<_>>(), [0, 1, 2, 3]);
+        assert_eq!(codes(near, false).collect::<Vec<_>>(), [1, 2, 3]);
+        assert_eq!(
+            mirrors.reflect_position(&[0.1, 0.2, 0.3], 3),
+            [-0.1, -0.2, 0.3]
+        );
+        let stress = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+        assert_eq!(
+            Mirrors::reflect_symmetric(&stress, 1),
+            [1.0, 2.0, 3.0, -4.0, -5.0, 6.0]
+        );
+        assert_eq!(
+            Mirrors::reflect_symmetric(&stress, 3),
+            [1.0, 2.0, 3.0, 4.0, -5.0, -6.0]
+        );
+    }
+}

@@ -1,0 +1,172 @@
+//! Plane impact of Mie–Grüneisen materials without strength: shock states, the match of pressure
+//! and velocity at the interface, and release to a free surface.
+//!
+//! With shock speed U, particle velocity u and `η = u/U = 1 − ρ₀/ρ`, the Hugoniot of the material
+//! `U = c₀ + [s₁ + s₂ η + s₃ η²] u` gives `u = c₀ η/K`, `U = c₀/K`, `K = 1 − s₁ η − s₂ η² − s₃ η³`.
+//! Jump conditions (Rankine–Hugoniot) for a material at rest without pressure:
+//! `p = ρ₀ U u`, `e = u²/2`. The pressure agrees with [`MieGruneisen::response`] at `(ρ, e)` as
+//! long as that has not reached its bounds at strong compression.
+
+use crate::material::{Eos, Material, MieGruneisen};
+
+/// Halvings of a bracket: more than a double can resolve.
+const BISECTIONS: usize = 200;
+
+/// Steps of the fourth-order integration along a release isentrope.
+const RELEASE_STEPS: u32 = 1000;
+
+/// A medium at rest at its reference density, without pressure or energy.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Medium {
+    /// Reference density ρ₀ (kg/m³).
+    pub reference_density: f64,
+    /// Equation of state.
+    pub eos: MieGruneisen,
+}
+
+/// The state behind a single shock into a [`Medium`] at rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shock {
+    /// Velocity of the material behind the shock, relative to the medium ahead (m/s).
+    pub particle_velocity: f64,
+    /// Speed of the shock relative to the medium ahead (m/s).
+    pub shock_speed: f64,
+    /// Pressure (Pa).
+    pub pressure: f64,
+    /// Density (kg/m³).
+    pub density: f64,
+    /// Specific internal energy (J/kg).
+    pub specific_energy: f64,
+}
+
+/// The plane impact of a flyer on a target at rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Impact {
+    /// Pressure on both sides of the interface (Pa).
+    pub pressure: f64,
+    /// Velocity of the interface in the frame of the target (m/s).
+    pub interface_velocity: f64,
+    /// State of the flyer; its velocities are relative to the flyer and point away from the
+    /// interface.
+    pub flyer: Shock,
+    /// State of the target.
+    pub target: Shock,
+}
+
+impl Medium {
+    /// The medium of a material, if its equation of state is Mie–Grüneisen. Strength and spall
+    /// are left out.
+    #[must_use]
+    pub fn of(material: &Material) -> Option<Self> {
+        match &material.eos {
+            Eos::MieGruneisen(eos) => Some(Self {
+                reference_density: material.reference_density,
+                eos: *eos,
+            }),
+            Eos::Linear(_) => None,
+        }
+    }
+
+    /// The shock that drives the medium to `particle_velocity` (m/s, ≥ 0). A fit with `s₁ < 1`
+    /// ends at `u = c₀/(1 − s₁)`, where the density becomes infinite.
+    #[must_use]
+    pub fn shock(&self, particle_velocity: f64) -> Shock {
+        let u = particle_velocity;
+        // c₀ η − u K(η) is −u at η = 0 and rises with η as K falls.
+        let eta = bisect(0.0, 1.0, |eta| {
+            self.eos.c0 * eta - u * self.denominator(eta)
+        });
+        let shock_speed = self.eos.c0 / self.denominator(eta);
+        Shock {
+            particle_velocity: u,
+            shock_speed,
+            pressure: self.reference_density * shock_speed * u,
+            density: self.reference_density / (1.0 - eta),
+            specific_energy: 0.5 * u * u,
+        }
+    }
+
+    /// Velocity gained by isentropic release of a shocked state to zero pressure (m/s), so that
+    /// a free surface moves at `particle_velocity + release_velocity`.
+    ///
+    /// Riemann integral `∫ dp/(ρ c)` along `dρ/dp = 1/c²`, `de/dp = p/(ρ c)²` from the shocked
+    /// pressure to zero, by Runge–Kutta of fourth order.
+    #[must_use]
+    pub fn release_velocity(&self, shock: &Shock) -> f64 {
+        let step = -shock.pressure / f64::from(RELEASE_STEPS);
+        let mut state = [shock.density, shock.specific_energy, 0.0];
+        for i in 0..RELEASE_STEPS {
+            let p = shock.pressure + f64::from(i) * step;
+            let k1 = self.along_isentrope(p, state);
+            let k2 = self.along_isentrope(p + 0.5 * step, moved(state, k1, 0.5 * step));
+            let k3 = self.along_isentrope(p + 0.5 * step, moved(state, k2, 0.5 * step));
+            let k4 = self.along_isentrope(p + step, moved(state, k3, step));
+            for (j, value) in state.iter_mut().enumerate() {
+                *value += step / 6.0 * (k1[j] + 2.0 * (k2[j] + k3[j]) + k4[j]);
+            }
+        }
+        -state[2]
+    }
+
+    /// `K = 1 − s₁ η − s₂ η² − s₃ η³`.
+    fn denominator(&self, eta: f64) -> f64 {
+        1.0 - eta * (self.eos.s1 + eta * (self.eos.s2 + eta * self.eos.s3))
+    }
+
+    /// Derivatives of `[ρ, e, ∫ dp/(ρ c)]` by pressure, on the isentrope.
+    fn along_isentrope(&self, p: f64, [rho, e, _]: [f64; 3]) -> [f64; 3] {
+        let at = self.eos.response(self.reference_density, rho, e);
+        let c_squared = at.dp_drho + p / (rho * rho) * at.dp_de;
+        let impedance = rho * c_squared.sqrt();
+        [
+            1.0 / c_squared,
+            p / (impedance * impedance),
+            1.0 / impedance,
+        ]
+    }
+}
+
+/// The impact of a flyer at `speed` (m/s, > 0) on a target at rest.
+#[must_use]
+pub fn impact(flyer: &Medium, target: &Medium, speed: f64) -> Impact {
+    let interface_velocity = bisect(0.0, speed, |u| {
+        target.shock(u).pressure - flyer.shock(speed - u).pressure
+    });
+    let target = target.shock(interface_velocity);
+    Impact {
+        pressure: target.pressure,
+        interface_velocity,
+        flyer: flyer.shock(speed - interface_velocity),
+        target,
+    }
+}
+
+/// Velocity of the free back surface of the target (m/s), before any release from elsewhere.
+#[must_use]
+pub fn free_surface_velocity(target: &Medium, impact: &Impact) -> f64 {
+    impact.interface_velocity + target.release_velocity(&impact.target)
+}
+
+/// The root of a function that is not positive at `low` and not negative at `high`.
+fn bisect(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if f(middle) < 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
+fn moved(state: [f64; 3], slope: [f64; 3], by: f64) -> [f64; 3] {
+    [
+        state[0] + by * slope[0],
+        state[1] + by * slope[1],
+        state[2] + by * slope[2],
+    ]
+}

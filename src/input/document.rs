@@ -1,0 +1,92 @@
+//! Text and overrides → typed tables, and the text that stands for both.
+
+use std::ops::Range;
+
+use serde::Deserialize;
+use toml::Spanned;
+use toml::de::{DeTable, Error};
+
+use super::overrides::Override;
+use super::schema::CaseParams;
+use super::source::Complaint;
+
+/// Reads the document with its overrides, which begin at `places` in the address space. Returns
+/// the tables and the resolved text, from which the same tables can be read without overrides.
+pub fn read(
+    text: &str,
+    overrides: &[String],
+    places: &[usize],
+) -> Result<(CaseParams, String), Complaint> {
+    let mut document = DeTable::parse(text).map_err(|e| translate(&e))?;
+    for (text, &start) in overrides.iter().zip(places) {
+        Override::parse(text, start)?.apply(document.get_mut())?;
+    }
+    let resolved = if overrides.is_empty() {
+        text.to_owned()
+    } else {
+        resolve(document.clone(), overrides)?
+    };
+    let params = CaseParams::deserialize(toml::Deserializer::from(document));
+    Ok((params.map_err(|e| translate(&e))?, resolved))
+}
+
+/// The document as text, headed by the overrides in it.
+fn resolve(document: Spanned<DeTable<'_>>, overrides: &[String]) -> Result<String, Complaint> {
+    let lines = overrides.iter().flat_map(|text| text.lines());
+    let head: Vec<String> = lines.map(|line| format!("#   --set {line}\n")).collect();
+    let table =
+        toml::Table::deserialize(toml::Deserializer::from(document)).map_err(|e| translate(&e))?;
+    let text = toml::to_string(&table).map_err(|e| Complaint::new(0..0, e.to_string()))?;
+    let head = head.concat();
+    Ok(format!(
+        "# the case with its overrides laid over it:\n{head}{text}"
+    ))
+}
+
+/// A complaint of the TOML reader or of a derived `Deserialize`, in our words.
+fn translate(error: &Error) -> Complaint {
+    let span = error.span().unwrap_or(0..0);
+    let message = error.message();
+    let words: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    if let [found, known @ ..] = words.as_slice() {
+        let known = || known.iter().copied();
+        if message.starts_with("unknown field") {
+            return Complaint::unknown(span, "key", found, known());
+        }
+        if message.starts_with("unknown variant") {
+            return Complaint::unknown(span, "choice", found, known());
+        }
+        if message.starts_with("missing field") {
+            return missing(span, found);
+        }
+    }
+    if let Some(types) = message.strip_prefix("invalid type: ") {
+        let (found, expected) = types
+            .split_once(", expected ")
+            .unwrap_or((types, "another"));
+        let [found, expected] = [plain_type(found), plain_type(expected)];
+        return Complaint::new(span, format!("expected {expected}, found {found}"));
+    }
+    Complaint::new(span, message)
+}
+
+fn missing(span: Range<usize>, key: &str) -> Complaint {
+    let complaint = Complaint::new(span.clone(), format!("the key `{key}` is missing"));
+    if span.start == 0 {
+        return complaint.label("in this case");
+    }
+    complaint.label("in this table")
+}
+
+/// Rust's names of types in words.
+fn plain_type(name: &str) -> &str {
+    match name {
+        "f64" => "a number",
+        "i64" => "a whole number",
+        "a sequence" | "sequence" => "an array",
+        "a map" | "map" => "a table",
+        other if other.starts_with("struct ") => "a table",
+        other if other.starts_with("enum ") => "a word in quotes",
+        other => other,
+    }
+}

@@ -1,0 +1,114 @@
+//! Values that may be a word or a table, and tables whose keys are names.
+
+use std::fmt;
+use std::marker::PhantomData;
+
+use serde::Deserialize;
+use serde::de::value::{MapAccessDeserializer, StrDeserializer};
+use serde::de::{Deserializer, Error, MapAccess, Visitor};
+use toml::Spanned;
+
+use super::quantity::Angle;
+use super::schema::{LatticeName, LatticeTable, Placed};
+
+/// `"cubic"`, or a table with more.
+#[derive(Debug)]
+pub struct LatticeParams {
+    /// Kind of stacking.
+    pub kind: LatticeName,
+    /// Turn about z.
+    pub angle: Option<Placed<Angle>>,
+}
+
+impl<'de> Deserialize<'de> for LatticeParams {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct LatticeVisitor;
+        impl<'de> Visitor<'de> for LatticeVisitor {
+            type Value = LatticeParams;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("\"cubic\", \"hexagonal\" or a table with `kind` and `angle`")
+            }
+
+            fn visit_str<E: Error>(self, word: &str) -> Result<LatticeParams, E> {
+                let kind = LatticeName::deserialize(StrDeserializer::new(word))?;
+                Ok(LatticeParams { kind, angle: None })
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<LatticeParams, A::Error> {
+                let table = LatticeTable::deserialize(MapAccessDeserializer::new(map))?;
+                Ok(LatticeParams {
+                    kind: table.kind.into_inner(),
+                    angle: table.angle,
+                })
+            }
+        }
+        deserializer.deserialize_any(LatticeVisitor)
+    }
+}
+
+/// `"none"`, or a table.
+#[derive(Debug)]
+pub enum OrNone<T> {
+    /// The word `none`.
+    None,
+    /// A table.
+    Table(T),
+}
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for OrNone<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct OrNoneVisitor<T>(PhantomData<T>);
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for OrNoneVisitor<T> {
+            type Value = OrNone<T>;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("\"none\" or a table")
+            }
+
+            fn visit_str<E: Error>(self, word: &str) -> Result<OrNone<T>, E> {
+                match word {
+                    "none" => Ok(OrNone::None),
+                    _ => Err(E::unknown_variant(word, &["none"])),
+                }
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<OrNone<T>, A::Error> {
+                T::deserialize(MapAccessDeserializer::new(map)).map(OrNone::Table)
+            }
+        }
+        deserializer.deserialize_any(OrNoneVisitor(PhantomData))
+    }
+}
+
+/// A table of tables, in the order of the text.
+#[derive(Debug)]
+pub struct Named<T>(pub Vec<(Spanned<String>, Spanned<T>)>);
+
+impl<T> Default for Named<T> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Named<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NamedVisitor<T>(PhantomData<T>);
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for NamedVisitor<T> {
+            type Value = Named<T>;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a table of named tables")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Named<T>, A::Error> {
+                let mut entries = Vec::new();
+                while let Some(entry) = map.next_entry()? {
+                    entries.push(entry);
+                }
+                Ok(Named(entries))
+            }
+        }
+        deserializer.deserialize_map(NamedVisitor(PhantomData))
+    }
+}

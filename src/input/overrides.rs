@@ -1,0 +1,196 @@
+//! `--set key=value`: dotted keys laid over the document before it is read.
+//!
+//! Array tables are addressed by the name or the index of their element: `body.sphere.velocity`,
+//! `contact.pair.0.mode`. Keys that the schema does not know are found out later, by the reader
+//! itself, which points at the override like at any other line.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeArray, DeTable, DeValue};
+
+use super::source::Complaint;
+
+/// Sections that do not touch the state of a run, so that a restart may change them.
+const RESTARTABLE: [&str; 3] = ["run", "output", "domain"];
+
+type Key<'t> = Spanned<Cow<'t, str>>;
+type Value<'t> = Spanned<DeValue<'t>>;
+
+/// A parsed override.
+pub struct Override<'t> {
+    path: Vec<Key<'t>>,
+    value: Value<'t>,
+}
+
+impl<'t> Override<'t> {
+    /// Reads `key=value`; `start` is the address of the text.
+    pub fn parse(text: &'t str, start: usize) -> Result<Self, Complaint> {
+        let Some(equals) = text.find('=') else {
+            let complaint = Complaint::new(start..start + text.len(), "an override needs a `=`");
+            return Err(complaint.help("write it as `--set key=value`"));
+        };
+        Ok(Self {
+            path: parse_path(&text[..equals], start)?,
+            value: parse_value(&text[equals + 1..], start + equals + 1)?,
+        })
+    }
+
+    /// Lays the value over the document.
+    pub fn apply(self, document: &mut DeTable<'t>) -> Result<(), Complaint> {
+        let Self { mut path, value } = self;
+        let last = path.pop().expect("a parsed path has a key");
+        let mut path = path.into_iter();
+        let Some(first) = path.next() else {
+            document.insert(last, value);
+            return Ok(());
+        };
+        let mut place = entry(document, first);
+        for key in path {
+            place = child(place, key)?;
+        }
+        let span = last.span();
+        match place.get_mut() {
+            DeValue::Table(table) => {
+                table.insert(last, value);
+            }
+            DeValue::Array(array) => {
+                let index = element(array, &last)?;
+                array.as_mut()[index] = value;
+            }
+            _ => return Err(not_a_table(&span)),
+        }
+        Ok(())
+    }
+
+    /// Complains if the override changes more than a restart may.
+    pub fn restartable(&self) -> Result<(), Complaint> {
+        let section = &self.path[0];
+        if RESTARTABLE.contains(&section.get_ref().as_ref()) {
+            return Ok(());
+        }
+        let title = format!("`{}` cannot change on a restart", section.get_ref());
+        let help = "a restart may change `run`, `output` and `domain`";
+        Err(Complaint::new(section.span(), title).help(help))
+    }
+}
+
+/// The keys of a dotted path, read as TOML so that quotes work.
+fn parse_path<'t>(text: &str, start: usize) -> Result<Vec<Key<'t>>, Complaint> {
+    let bad_key = || {
+        Complaint::new(start..start + text.len(), "this is not a dotted key")
+            .help("keys look like `body.sphere.velocity` or `output.snapshot_every`")
+    };
+    let document = format!("{text}=0");
+    let mut table = DeTable::parse(&document)
+        .map_err(|_| bad_key())?
+        .into_inner();
+    let mut path = Vec::new();
+    while let Some((key, value)) = table.into_iter().next() {
+        let span = moved_range(&key.span(), start);
+        path.push(Spanned::new(
+            span,
+            Cow::Owned(key.into_inner().into_owned()),
+        ));
+        match value.into_inner() {
+            DeValue::Table(inner) => table = inner,
+            _ => return Ok(path),
+        }
+    }
+    Err(bad_key())
+}
+
+/// The TOML value in a text at `start`; what is no TOML value is a string.
+fn parse_value(text: &str, start: usize) -> Result<Value<'_>, Complaint> {
+    let start = start + (text.len() - text.trim_start().len());
+    let text = text.trim();
+    let span = start..start + text.len();
+    if text.is_empty() {
+        return Err(Complaint::new(span, "an override needs a value after `=`"));
+    }
+    match DeValue::parse(text) {
+        Ok(value) => Ok(moved(value, start)),
+        Err(error) if text.starts_with(['[', '{', '"', '\'']) => {
+            let span = error.span().map_or(span, |s| moved_range(&s, start));
+            Err(Complaint::new(span, error.message()))
+        }
+        Err(_) => Ok(Spanned::new(span, DeValue::String(Cow::Borrowed(text)))),
+    }
+}
+
+fn moved_range(span: &Range<usize>, by: usize) -> Range<usize> {
+    span.start + by..span.end + by
+}
+
+/// The value with all its addresses moved by `by`.
+fn moved(value: Value<'_>, by: usize) -> Value<'_> {
+    let span = moved_range(&value.span(), by);
+    let inner = match value.into_inner() {
+        DeValue::Array(array) => {
+            let mut shifted = DeArray::new();
+            for element in array {
+                shifted.push(moved(element, by));
+            }
+            DeValue::Array(shifted)
+        }
+        DeValue::Table(table) => DeValue::Table(
+            table
+                .into_iter()
+                .map(|(key, value)| {
+                    let span = moved_range(&key.span(), by);
+                    (Spanned::new(span, key.into_inner()), moved(value, by))
+                })
+                .collect(),
+        ),
+        plain => plain,
+    };
+    Spanned::new(span, inner)
+}
+
+/// The entry of a table, made as an empty table if it is not there.
+fn entry<'d, 't>(table: &'d mut DeTable<'t>, key: Key<'t>) -> &'d mut Value<'t> {
+    let span = key.span();
+    table
+        .entry(key)
+        .or_insert_with(|| Spanned::new(span, DeValue::Table(DeTable::new())))
+}
+
+fn child<'d, 't>(place: &'d mut Value<'t>, key: Key<'t>) -> Result<&'d mut Value<'t>, Complaint> {
+    match place.get_mut() {
+        DeValue::Table(table) => Ok(entry(table, key)),
+        DeValue::Array(array) => {
+            let index = element(array, &key)?;
+            Ok(&mut array.as_mut()[index])
+        }
+        _ => Err(not_a_table(&key.span())),
+    }
+}
+
+/// The index of the element that a key names by its `name` or by its position.
+fn element(array: &DeArray<'_>, key: &Key<'_>) -> Result<usize, Complaint> {
+    let word = key.get_ref().as_ref();
+    let names: Vec<&str> = array
+        .iter()
+        .filter_map(|v| v.get_ref().get("name")?.get_ref().as_str())
+        .collect();
+    let by_name = array.iter().position(|element| {
+        let name = element.get_ref().get("name");
+        name.and_then(|n| n.get_ref().as_str()) == Some(word)
+    });
+    let by_index = word.parse().ok().filter(|i| *i < array.len());
+    by_name
+        .or(by_index)
+        .ok_or_else(|| match (names.len(), array.len()) {
+            (0, 0) => Complaint::new(key.span(), "there is no element in this list"),
+            (0, n) => {
+                let title = format!("there is no element `{word}` in this list");
+                Complaint::new(key.span(), title).help(format!("the elements are 0 to {}", n - 1))
+            }
+            _ => Complaint::unknown(key.span(), "element", word, names),
+        })
+}
+
+fn not_a_table(span: &Range<usize>) -> Complaint {
+    Complaint::new(span.clone(), "there are no keys below a plain value")
+}

@@ -1,0 +1,245 @@
+//! Typed values of keys that want a unit.
+
+use std::fmt;
+use std::marker::PhantomData;
+
+use serde::de::{Deserialize, Deserializer, Error, Visitor};
+
+use super::units::{Powers, parse};
+
+/// Names of dimensions, to say what was found where something else was expected.
+const NAMES: &[(Powers, &str)] = &[
+    ([0, 0, 0, 0, 0], "a plain number"),
+    (Length::POWERS, Length::NAME),
+    (Time::POWERS, Time::NAME),
+    (Velocity::POWERS, Velocity::NAME),
+    (Density::POWERS, Density::NAME),
+    (Pressure::POWERS, Pressure::NAME),
+    (Angle::POWERS, Angle::NAME),
+    ([0, 1, 0, 0, 0], "a mass"),
+    ([0, 0, 0, 1, 0], "a temperature"),
+    ([1, 0, -2, 0, 0], "an acceleration"),
+    ([1, 1, -2, 0, 0], "a force"),
+    ([2, 1, -2, 0, 0], "an energy"),
+    ([2, 0, -2, 0, 0], "a specific energy"),
+];
+
+/// A kind of quantity that an input key can ask for.
+pub trait Kind {
+    /// Its dimension.
+    const POWERS: Powers;
+    /// With its article, for messages.
+    const NAME: &'static str;
+    /// How to write one.
+    const EXAMPLE: &'static str;
+}
+
+macro_rules! kinds {
+    ($($(#[$doc:meta])+ $kind:ident = $powers:expr, $name:literal, $example:literal;)+) => { $(
+        $(#[$doc])+
+        #[derive(Debug, Clone, Copy)]
+        pub struct $kind;
+        impl Kind for $kind {
+            const POWERS: Powers = $powers;
+            const NAME: &'static str = $name;
+            const EXAMPLE: &'static str = $example;
+        }
+    )+ };
+}
+
+kinds! {
+    /// Metres.
+    Length = [1, 0, 0, 0, 0], "a length", "0.02 mm";
+    /// Seconds.
+    Time = [0, 0, 1, 0, 0], "a time", "0.2 us";
+    /// Metres in a second.
+    Velocity = [1, 0, -1, 0, 0], "a velocity", "7 km/s";
+    /// Kilograms in a cubic metre.
+    Density = [-3, 1, 0, 0, 0], "a density", "2785 kg/m^3";
+    /// Pascals: pressures, stresses and moduli.
+    Pressure = [-1, 1, -2, 0, 0], "a pressure or modulus", "0.26 GPa";
+    /// Radians.
+    Angle = [0, 0, 0, 0, 1], "an angle", "30 deg";
+}
+
+/// A number in SI units that was written with a unit of the kind. Zero needs none.
+#[derive(Debug)]
+pub struct Quantity<K> {
+    /// Value in SI units.
+    pub si: f64,
+    kind: PhantomData<K>,
+}
+
+impl<K> Clone for Quantity<K> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<K> Copy for Quantity<K> {}
+
+/// A length in metres or in particle spacings (`"1.5 spacing"`).
+#[derive(Debug, Clone, Copy)]
+pub enum Extent {
+    /// Metres.
+    Metres(f64),
+    /// Multiples of the body's particle spacing.
+    Spacings(f64),
+}
+
+impl Extent {
+    /// In metres, for a particle spacing in metres.
+    pub fn metres(self, spacing: f64) -> f64 {
+        match self {
+            Self::Metres(length) => length,
+            Self::Spacings(count) => count * spacing,
+        }
+    }
+}
+
+impl<'de, K: Kind> Deserialize<'de> for Quantity<K> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(TextVisitor {
+            expected: || expected::<K>(""),
+            read: quantity::<K>,
+        })
+    }
+}
+
+impl<'de> Deserialize<'de> for Extent {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(TextVisitor {
+            expected: || expected::<Length>(" or \"2 spacing\""),
+            read: |text| {
+                let number = text
+                    .strip_suffix("spacings")
+                    .or(text.strip_suffix("spacing"));
+                match number.map(|n| n.trim().parse::<f64>()) {
+                    Some(Ok(count)) if count.is_finite() => Ok(Self::Spacings(count)),
+                    _ => quantity::<Length>(text).map(|length| Self::Metres(length.si)),
+                }
+            },
+        })
+    }
+}
+
+/// Reads a string with a unit, or the plain number zero.
+struct TextVisitor<T> {
+    expected: fn() -> String,
+    read: fn(&str) -> Result<T, String>,
+}
+
+impl<T> Visitor<'_> for TextVisitor<T> {
+    type Value = T;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&(self.expected)())
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<T, E> {
+        (self.read)(text).map_err(E::custom)
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<T, E> {
+        if value == 0.0 {
+            return self.visit_str("0");
+        }
+        let expected = (self.expected)();
+        Err(E::custom(format!(
+            "expected {expected}, found the plain number {value}"
+        )))
+    }
+
+    #[allow(clippy::cast_precision_loss)] // only shown or zero
+    fn visit_i64<E: Error>(self, value: i64) -> Result<T, E> {
+        self.visit_f64(value as f64)
+    }
+}
+
+fn expected<K: Kind>(or: &str) -> String {
+    format!("{} with a unit, such as \"{}\"{or}", K::NAME, K::EXAMPLE)
+}
+
+fn quantity<K: Kind>(text: &str) -> Result<Quantity<K>, String> {
+    let (si, powers) =
+        parse(text).map_err(|why| format!("{why}; expected {}", expected::<K>("")))?;
+    // Zero is zero in any unit, so it may go without.
+    if powers != K::POWERS && !(si == 0.0 && powers == [0; 5]) {
+        let found = NAMES.iter().find(|(p, _)| *p == powers);
+        let found = found.map_or("a quantity of another dimension", |(_, name)| name);
+        return Err(format!("expected {}, found {found}", expected::<K>("")));
+    }
+    Ok(Quantity {
+        si,
+        kind: PhantomData,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn si<K: Kind>(text: &str) -> f64 {
+        quantity::<K>(text).unwrap().si
+    }
+
+    #[test]
+    #[allow(clippy::float_cmp)] // correctly rounded by construction
+    fn decimal_units_are_exact() {
+        assert_eq!(si::<Length>("0.02 mm"), 2e-5);
+        assert_eq!(si::<Length>("0.3e-1cm"), 3e-4);
+        assert_eq!(si::<Velocity>("7 km/s"), 7e3);
+        assert_eq!(si::<Velocity>(".02 cm/us"), 200.0);
+        assert_eq!(si::<Pressure>("0.2 Mbar"), 2e10);
+        assert_eq!(si::<Pressure>("-1.2 GPa"), -1.2e9);
+        assert_eq!(si::<Pressure>("3 dyn/cm^2"), 0.3);
+        assert_eq!(si::<Pressure>("1 g/(cm us^2)"), 1e11);
+        assert_eq!(si::<Pressure>("1 g cm^-1 us^-2"), 1e11);
+        assert_eq!(si::<Pressure>("1 J/m³"), 1.0);
+        for micro in ["0.2 us", "0.2 µs", "0.2 μs", "200 ns", "2e2ns"] {
+            assert_eq!(si::<Time>(micro), 2e-7);
+        }
+        for density in ["2.785 g/cm^3", "2785 kg/m^3", "2.785 g/cm3", "2785 kg m^-3"] {
+            assert_eq!(si::<Density>(density), 2785.0);
+        }
+        assert_eq!(si::<Angle>("180 deg"), std::f64::consts::PI);
+        assert_eq!(si::<Angle>("0.5 rad"), 0.5);
+        assert_eq!(si::<Length>("0"), 0.0);
+    }
+
+    #[test]
+    fn errors_say_what_was_expected() {
+        for (text, message) in [
+            (
+                "7 km",
+                "expected a velocity with a unit, such as \"7 km/s\", found a length",
+            ),
+            (
+                "7",
+                "expected a velocity with a unit, such as \"7 km/s\", found a plain number",
+            ),
+            (
+                "0 m",
+                "expected a velocity with a unit, such as \"7 km/s\", found a length",
+            ),
+            (
+                "7 kn/s",
+                "unknown unit `kn`; expected a velocity with a unit, such as \"7 km/s\"",
+            ),
+            (
+                "fast",
+                "`fast` does not begin with a number; expected a velocity",
+            ),
+            ("1 m/(s", "a parenthesis is not closed"),
+            ("1 m/", "the unit `m/` ends too early"),
+            ("1 m/s)", "`)` in the unit `m/s)` is not understood"),
+            ("1 m/s^x", "`^x` is not a power of a unit"),
+            ("1e999 m/s", "`1e999 m/s` is too large"),
+            ("nan m/s", "does not begin with a number"),
+            ("1 J^3", "found a quantity of another dimension"),
+        ] {
+            let error = quantity::<Velocity>(text).unwrap_err();
+            assert!(error.contains(message), "{text}: {error}");
+        }
+    }
+}

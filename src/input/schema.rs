@@ -1,0 +1,423 @@
+//! A case as it is typed: what each table may hold, before anything is checked.
+//!
+//! Each choice with parameters is a table of its own (`shape.sphere`, `eos.mie_gruneisen`) rather
+//! than a tagged enum, since places in the text do not survive those.
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::forms::{LatticeParams, Named, OrNone};
+use super::quantity::{Angle, Density, Extent, Length, Pressure, Quantity, Time, Velocity};
+
+/// A quantity with its place in the text.
+pub type Placed<K> = Spanned<Quantity<K>>;
+/// A vector of lengths.
+pub type Point = Spanned<Vec<Spanned<Extent>>>;
+
+/// Declares tables whose keys are all optional unless said, and closed to others.
+macro_rules! tables {
+    ($($(#[$doc:meta])+ $table:ident { $($(#[$key_doc:meta])+ $key:ident: $value:ty,)* })+) => { $(
+        $(#[$doc])+
+        #[derive(Debug, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub struct $table { $($(#[$key_doc])+ pub $key: $value,)* }
+    )+ };
+}
+
+tables! {
+    /// The whole document.
+    CaseParams {
+        /// One line for reports and plots.
+        title: Option<String>,
+        /// 1, 2 or 3.
+        dimension: Spanned<i64>,
+        /// Particle spacing of every body that sets no own.
+        spacing: Option<Placed<Length>>,
+        /// When the run ends.
+        run: Spanned<RunParams>,
+        /// Options of the SPH sums.
+        #[serde(default)]
+        sph: SphParams,
+        /// Stability factors.
+        #[serde(default)]
+        time_step: TimeStepParams,
+        /// Distribution over ranks.
+        #[serde(default)]
+        domain: DomainParams,
+        /// Materials by name.
+        #[serde(default)]
+        material: Named<MaterialParams>,
+        /// Bodies.
+        #[serde(default)]
+        body: Vec<Spanned<BodyParams>>,
+        /// Contact between bodies.
+        #[serde(default)]
+        contact: ContactParams,
+        /// Symmetry planes.
+        #[serde(default)]
+        symmetry: Vec<SymmetryParams>,
+        /// What is written.
+        #[serde(default)]
+        output: OutputParams,
+    }
+
+    /// `[run]`
+    RunParams {
+        /// End of the case.
+        end_time: Placed<Time>,
+        /// Largest number of steps.
+        max_steps: Option<Spanned<i64>>,
+    }
+
+    /// `[[body]]`
+    BodyParams {
+        /// Unique name.
+        name: Spanned<String>,
+        /// Name of a material.
+        material: Spanned<String>,
+        /// Geometry.
+        shape: Spanned<ShapeParams>,
+        /// Stacking of the particles; cubic if absent.
+        lattice: Option<Spanned<LatticeParams>>,
+        /// Own particle spacing.
+        spacing: Option<Placed<Length>>,
+        /// Initial velocity; at rest if absent.
+        velocity: Option<Spanned<Vec<Placed<Velocity>>>>,
+        /// Moves the body until it touches another one.
+        touch: Option<TouchParams>,
+    }
+
+    /// `shape`: exactly one of these.
+    ShapeParams {
+        /// Axis-aligned box.
+        r#box: Option<Spanned<BoxParams>>,
+        /// Ball; a disc in two dimensions.
+        sphere: Option<Spanned<SphereParams>>,
+        /// Circular cylinder along an axis.
+        cylinder: Option<Spanned<CylinderParams>>,
+    }
+
+    /// `shape.box`: two corners, or size and centre.
+    BoxParams {
+        /// Corner of smallest coordinates.
+        lower: Option<Point>,
+        /// Corner of largest coordinates.
+        upper: Option<Point>,
+        /// Centre; the origin if absent.
+        centre: Option<Point>,
+        /// Edges.
+        size: Option<Point>,
+    }
+
+    /// `shape.sphere`
+    SphereParams {
+        /// The origin if absent.
+        centre: Option<Point>,
+        /// Radius.
+        radius: Spanned<Extent>,
+    }
+
+    /// `shape.cylinder`
+    CylinderParams {
+        /// Middle of the axis; the origin if absent.
+        centre: Option<Point>,
+        /// Direction of the axis; z if absent.
+        axis: Option<Spanned<AxisName>>,
+        /// Radius.
+        radius: Spanned<Extent>,
+        /// Length along the axis.
+        length: Spanned<Extent>,
+    }
+
+    /// `lattice` as a table.
+    LatticeTable {
+        /// Kind of stacking.
+        kind: Spanned<LatticeName>,
+        /// Turn about z.
+        angle: Option<Placed<Angle>>,
+    }
+
+    /// `touch`
+    TouchParams {
+        /// The body to touch.
+        body: Spanned<String>,
+        /// Where to move: `"-z"`.
+        direction: Spanned<Direction>,
+    }
+
+    /// `[[symmetry]]`
+    SymmetryParams {
+        /// Normal.
+        axis: Spanned<AxisName>,
+        /// Where the plane cuts the axis; zero if absent.
+        position: Option<Placed<Length>>,
+    }
+
+    /// `[[contact.pair]]`
+    PairParams {
+        /// Names of two bodies.
+        bodies: Spanned<Vec<Spanned<String>>>,
+        /// What happens where they meet; as for all others if absent.
+        mode: Option<ModeName>,
+        /// Parameters of the mode `overlap`.
+        #[serde(default)]
+        overlap: OverlapParams,
+        /// Parameters of the mode `potential`.
+        #[serde(default)]
+        potential: PotentialParams,
+    }
+}
+
+/// Declares tables that may be left out altogether.
+macro_rules! optional_tables {
+    ($($(#[$doc:meta])+ $table:ident { $($(#[$key_doc:meta])+ $key:ident: $value:ty,)* })+) => { $(
+        $(#[$doc])+
+        #[derive(Debug, Default, Deserialize)]
+        #[serde(default, deny_unknown_fields)]
+        pub struct $table { $($(#[$key_doc])+ pub $key: $value,)* }
+    )+ };
+}
+
+optional_tables! {
+    /// `[sph]`
+    SphParams {
+        /// Smoothing length over particle spacing.
+        smoothing: Option<Spanned<f64>>,
+        /// Linear viscosity.
+        alpha: Option<Spanned<f64>>,
+        /// Quadratic viscosity.
+        beta: Option<Spanned<f64>>,
+        /// Constant or variable.
+        smoothing_length: Option<SmoothingName>,
+        /// Smallest h/h₀ of a variable smoothing length.
+        smoothing_length_min: Option<Spanned<f64>>,
+        /// Largest h/h₀ of a variable smoothing length.
+        smoothing_length_max: Option<Spanned<f64>>,
+    }
+
+    /// `[time_step]`
+    TimeStepParams {
+        /// Factor of the sound and viscosity criterion.
+        courant: Option<Spanned<f64>>,
+        /// Factor of the acceleration criterion.
+        force: Option<Spanned<f64>>,
+        /// Safety factor of the contact criterion.
+        contact: Option<Spanned<f64>>,
+        /// Upper bound.
+        max: Option<Placed<Time>>,
+    }
+
+    /// `[domain]`
+    DomainParams {
+        /// Axis of the slabs.
+        axis: Option<Spanned<AxisName>>,
+        /// Steps between two balances.
+        balance_every: Option<Spanned<i64>>,
+    }
+
+    /// `[material.NAME]`: from the library, or inline, or single values changed.
+    MaterialParams {
+        /// Name in the library.
+        library: Option<Spanned<String>>,
+        /// Reference density.
+        density: Option<Placed<Density>>,
+        /// Equation of state.
+        eos: Option<Spanned<EosParams>>,
+        /// Resistance to shear.
+        strength: Option<Spanned<OrNone<StrengthParams>>>,
+        /// Largest tension.
+        spall: Option<Spanned<OrNone<SpallParams>>>,
+    }
+
+    /// `eos`: exactly one of these.
+    EosParams {
+        /// Linear.
+        linear: Option<LinearParams>,
+        /// Mie–Grüneisen.
+        mie_gruneisen: Option<MieGruneisenParams>,
+    }
+
+    /// `eos.linear`
+    LinearParams {
+        /// Bulk modulus.
+        bulk_modulus: Option<Placed<Pressure>>,
+        /// Dependence on the density ratio.
+        form: Option<FormName>,
+    }
+
+    /// `eos.mie_gruneisen`
+    MieGruneisenParams {
+        /// Bulk sound speed.
+        c0: Option<Placed<Velocity>>,
+        /// Hugoniot.
+        s1: Option<Spanned<f64>>,
+        /// Hugoniot.
+        s2: Option<Spanned<f64>>,
+        /// Hugoniot.
+        s3: Option<Spanned<f64>>,
+        /// Grüneisen parameter.
+        gamma0: Option<Spanned<f64>>,
+        /// Its linear coefficient.
+        b: Option<Spanned<f64>>,
+    }
+
+    /// `strength`: exactly one of these.
+    StrengthParams {
+        /// Linear elastic.
+        elastic: Option<ElasticParams>,
+        /// Elastic–plastic.
+        von_mises: Option<VonMisesParams>,
+    }
+
+    /// `strength.elastic`
+    ElasticParams {
+        /// Shear modulus.
+        shear_modulus: Option<Placed<Pressure>>,
+    }
+
+    /// `strength.von_mises`
+    VonMisesParams {
+        /// Shear modulus.
+        shear_modulus: Option<Placed<Pressure>>,
+        /// Yield stress.
+        yield_stress: Option<Placed<Pressure>>,
+        /// Hardening modulus.
+        hardening_modulus: Option<Placed<Pressure>>,
+    }
+
+    /// `spall`
+    SpallParams {
+        /// Lowest pressure.
+        pressure: Option<Placed<Pressure>>,
+    }
+
+    /// `[contact]`
+    ContactParams {
+        /// Mode of all pairs that have no own.
+        mode: Option<ModeName>,
+        /// Parameters of the mode `overlap`.
+        overlap: OverlapParams,
+        /// Parameters of the mode `potential`.
+        potential: PotentialParams,
+        /// Pairs with a mode or parameters of their own.
+        pair: Vec<PairParams>,
+    }
+
+    /// `contact.overlap`
+    OverlapParams {
+        /// Stiffness κ.
+        stiffness: Option<Spanned<f64>>,
+        /// Stiffness `κ_c` of the core.
+        core_stiffness: Option<Spanned<f64>>,
+        /// Radius of the core in mean spacings.
+        core_radius: Option<Spanned<f64>>,
+    }
+
+    /// `contact.potential`
+    PotentialParams {
+        /// Stiffness k.
+        stiffness: Option<Spanned<f64>>,
+        /// Exponent n.
+        exponent: Option<Spanned<i64>>,
+        /// Range of the force.
+        range: Option<RangeName>,
+    }
+
+    /// `[output]`
+    OutputParams {
+        /// Time between snapshots.
+        snapshot_every: Option<Placed<Time>>,
+        /// Time between checkpoints.
+        checkpoint_every: Option<Placed<Time>>,
+        /// How many are kept.
+        checkpoints_kept: Option<Spanned<i64>>,
+        /// Steps between rows of the histories.
+        history_every: Option<Spanned<i64>>,
+        /// Snapshot fields.
+        fields: Vec<Spanned<String>>,
+    }
+}
+
+/// Declares words to choose from.
+macro_rules! choices {
+    ($($(#[$doc:meta])+ $choice:ident { $($(#[$word_doc:meta])+ $word:ident,)+ })+) => { $(
+        $(#[$doc])+
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+        #[serde(rename_all = "snake_case")]
+        pub enum $choice { $($(#[$word_doc])+ $word,)+ }
+    )+ };
+}
+
+choices! {
+    /// A coordinate axis.
+    AxisName {
+        /// First.
+        X,
+        /// Second.
+        Y,
+        /// Third.
+        Z,
+    }
+    /// Kind of lattice.
+    LatticeName {
+        /// Simple cubic.
+        Cubic,
+        /// Hexagonal close-packed.
+        Hexagonal,
+    }
+    /// Smoothing length in the SPH sums.
+    SmoothingName {
+        /// h = h₀.
+        Constant,
+        /// h follows the density.
+        Variable,
+    }
+    /// Contact mode.
+    ModeName {
+        /// Nothing.
+        None,
+        /// One continuum.
+        Kernel,
+        /// Contact potential.
+        Potential,
+        /// Overlap energy.
+        Overlap,
+    }
+    /// Range of the contact potential.
+    RangeName {
+        /// 2h.
+        Support,
+        /// Mean spacing.
+        Spacing,
+    }
+    /// Form of the linear equation of state.
+    FormName {
+        /// ln(ρ/ρ₀).
+        Logarithmic,
+        /// ρ/ρ₀ − 1.
+        DensityRatio,
+    }
+}
+
+/// A signed axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+pub enum Direction {
+    /// Towards larger x.
+    #[serde(rename = "+x")]
+    PlusX,
+    /// Towards smaller x.
+    #[serde(rename = "-x")]
+    MinusX,
+    /// Towards larger y.
+    #[serde(rename = "+y")]
+    PlusY,
+    /// Towards smaller y.
+    #[serde(rename = "-y")]
+    MinusY,
+    /// Towards larger z.
+    #[serde(rename = "+z")]
+    PlusZ,
+    /// Towards smaller z.
+    #[serde(rename = "-z")]
+    MinusZ,
+}

@@ -1,0 +1,164 @@
+//! The texts a case is read from, and complaints that point into them.
+//!
+//! The file and each `--set` lie one after the other in a single address space, so that a byte
+//! range says both which text and where in it.
+
+use std::ops::Range;
+
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+
+/// What is wrong, and where.
+#[derive(Debug)]
+pub struct Complaint {
+    /// Bytes in the address space of [`Sources`].
+    pub span: Range<usize>,
+    /// One line: value, allowed range.
+    pub title: String,
+    /// A few words beside the caret; may be empty.
+    pub label: String,
+    /// What to do, if it is not plain from the title.
+    pub help: Option<String>,
+}
+
+impl Complaint {
+    /// A complaint with a title alone.
+    pub fn new(span: Range<usize>, title: impl Into<String>) -> Self {
+        Self {
+            span,
+            title: title.into(),
+            label: String::new(),
+            help: None,
+        }
+    }
+
+    /// Adds words beside the caret.
+    pub fn label(mut self, label: impl Into<String>) -> Self {
+        self.label = label.into();
+        self
+    }
+
+    /// Adds a line that says what to do.
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// `what` named `found` is none of `known`: names the nearest and lists all.
+    pub fn unknown<'a>(
+        span: Range<usize>,
+        what: &str,
+        found: &str,
+        known: impl IntoIterator<Item = &'a str>,
+    ) -> Self {
+        let known: Vec<&str> = known.into_iter().collect();
+        let complaint = Self::new(span, format!("unknown {what} `{found}`"));
+        let complaint = match nearest(found, &known) {
+            Some(name) => complaint.label(format!("did you mean `{name}`?")),
+            None => complaint,
+        };
+        if known.is_empty() {
+            return complaint.help(format!("there is no {what} here"));
+        }
+        let list: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();
+        complaint.help(format!("the choices are {}", list.join(", ")))
+    }
+}
+
+/// One text and where it begins in the address space.
+#[derive(Debug)]
+struct Source {
+    name: String,
+    text: String,
+    start: usize,
+}
+
+/// All texts of a case.
+#[derive(Debug, Default)]
+pub struct Sources(Vec<Source>);
+
+impl Sources {
+    /// Adds a text and returns its first address.
+    pub fn add(&mut self, name: &str, text: &str) -> usize {
+        let start = self.0.last().map_or(0, |s| s.start + s.text.len() + 1);
+        self.0.push(Source {
+            name: name.to_owned(),
+            text: text.to_owned(),
+            start,
+        });
+        start
+    }
+
+    /// The complaint as the user sees it: title, file, line, column, caret, help.
+    pub fn render(&self, complaint: &Complaint) -> String {
+        let after = self.0.partition_point(|s| s.start <= complaint.span.start);
+        let source = &self.0[after.saturating_sub(1)];
+        let text = &source.text;
+        let begin = (complaint.span.start - source.start).min(text.len());
+        let end = (complaint.span.end - source.start).clamp(begin, text.len());
+        // A caret under one line says as much as a bracket around a whole table.
+        let end = text[begin..end].find('\n').map_or(end, |line| begin + line);
+        let mut annotation = AnnotationKind::Primary.span(begin..end);
+        if !complaint.label.is_empty() {
+            annotation = annotation.label(complaint.label.as_str());
+        }
+        let snippet = Snippet::source(text)
+            .path(&source.name)
+            .annotation(annotation);
+        let group: Group<'_> = Level::ERROR
+            .primary_title(complaint.title.as_str())
+            .element(snippet);
+        let group = match &complaint.help {
+            Some(help) => group.element(Level::HELP.message(help.as_str())),
+            None => group,
+        };
+        Renderer::plain().render(&[group])
+    }
+}
+
+/// The name closest to `word`, if one is near enough to be a slip of the finger.
+fn nearest<'a>(word: &str, names: &[&'a str]) -> Option<&'a str> {
+    names
+        .iter()
+        .map(|name| (distance(word, name), *name))
+        .filter(|(d, name)| *d <= (name.chars().count() / 3).max(1))
+        .min_by_key(|(d, _)| *d)
+        .map(|(_, name)| name)
+}
+
+/// Optimal string alignment distance: insertions, deletions, changes and swaps of neighbours.
+fn distance(a: &str, b: &str) -> usize {
+    let a: Vec<char> = a.to_lowercase().chars().collect();
+    let b: Vec<char> = b.to_lowercase().chars().collect();
+    let mut table = vec![vec![0; b.len() + 1]; a.len() + 1];
+    for i in 0..=a.len() {
+        for j in 0..=b.len() {
+            table[i][j] = if i == 0 || j == 0 {
+                i + j
+            } else {
+                let change = usize::from(a[i - 1] != b[j - 1]);
+                let mut best = (table[i - 1][j] + 1)
+                    .min(table[i][j - 1] + 1)
+                    .min(table[i - 1][j - 1] + change);
+                if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                    best = best.min(table[i - 2][j - 2] + 1);
+                }
+                best
+            };
+        }
+    }
+    table[a.len()][b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_name_is_a_slip_away() {
+        let names = ["smoothing", "alpha", "beta", "axis"];
+        assert_eq!(nearest("smothing", &names), Some("smoothing"));
+        assert_eq!(nearest("Alpah", &names), Some("alpha"));
+        assert_eq!(nearest("axsi", &names), Some("axis"));
+        assert_eq!(nearest("velocity", &names), None);
+    }
+}

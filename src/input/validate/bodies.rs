@@ -1,0 +1,193 @@
+//! Bodies: shapes in metres, lattices, velocities; then touch and whether there are particles.
+
+use toml::Spanned;
+
+use super::check::{Allowed, Value, number};
+use super::shapes::Shapes;
+use super::touch;
+use crate::input::forms::LatticeParams;
+use crate::input::quantity::{Length, Velocity};
+use crate::input::schema::{BodyParams, LatticeName, Placed};
+use crate::input::source::Complaint;
+use crate::model::{Body, Lattice, LatticeKind, SymmetryPlane, Vec3};
+use crate::populate;
+
+/// Bounding lattices beyond this are a slip in a unit rather than a body.
+const MOST_SITES: u64 = 100_000_000_000;
+/// Where the first layer above a symmetry plane may lie, in spacings, so that particles neither
+/// sit on their own mirror images nor leave a gap.
+const FIRST_LAYER: (f64, f64) = (0.25, 0.75);
+
+/// What all bodies share.
+pub struct Reader<'a> {
+    pub dimension: usize,
+    /// Spacing of bodies that set none.
+    pub spacing: Option<&'a Placed<Length>>,
+    pub materials: &'a [String],
+    /// Smoothing length over spacing.
+    pub smoothing: f64,
+}
+
+impl Reader<'_> {
+    /// All bodies in their final places.
+    pub fn bodies(
+        &self,
+        params: &[Spanned<BodyParams>],
+        symmetry: &[SymmetryPlane],
+    ) -> Result<Vec<Body>, Complaint> {
+        if params.is_empty() {
+            return Err(Complaint::new(0..0, "the case has no `[[body]]`"));
+        }
+        let mut bodies: Vec<Body> = Vec::new();
+        for table in params {
+            let body = self.body(table.get_ref())?;
+            if bodies.iter().any(|other| other.name == body.name) {
+                let title = format!("a second body is named `{}`", body.name);
+                return Err(Complaint::new(table.get_ref().name.span(), title));
+            }
+            bodies.push(body);
+        }
+        self.check_size(params, &bodies)?;
+        touch::resolve(params, &mut bodies, self.dimension)?;
+        for (table, body) in params.iter().zip(&bodies) {
+            self.check_particles(table.get_ref(), body, symmetry)?;
+        }
+        Ok(bodies)
+    }
+
+    fn body(&self, params: &BodyParams) -> Result<Body, Complaint> {
+        let name = params.name.get_ref();
+        if name.is_empty() || name.bytes().all(|c| c.is_ascii_digit()) {
+            let title = "a body's name must have a letter";
+            return Err(Complaint::new(params.name.span(), title));
+        }
+        let wanted = params.material.get_ref();
+        let material = self
+            .materials
+            .iter()
+            .position(|m| m == wanted)
+            .ok_or_else(|| {
+                let known = self.materials.iter().map(String::as_str);
+                Complaint::unknown(params.material.span(), "material", wanted, known)
+            })?;
+        let Some(spacing) = params.spacing.as_ref().or(self.spacing) else {
+            let title = format!("the body `{name}` has no `spacing`");
+            return Err(Complaint::new(params.name.span(), title)
+                .help("give it one, or one to all bodies at the top: `spacing = \"0.02 mm\"`"));
+        };
+        let spacing = number(Some(spacing), "spacing", 0.0, Allowed::Positive)?;
+        let shapes = Shapes {
+            dimension: self.dimension,
+            spacing,
+        };
+        Ok(Body {
+            name: name.clone(),
+            shape: shapes.shape(&params.shape)?,
+            material,
+            lattice: self.lattice(params, spacing)?,
+            velocity: self.velocity(params.velocity.as_ref())?,
+            smoothing_length: self.smoothing * spacing,
+        })
+    }
+
+    fn lattice(&self, params: &BodyParams, spacing: f64) -> Result<Lattice, Complaint> {
+        let (kind, angle) = match &params.lattice {
+            None => (LatticeKind::Cubic, 0.0),
+            Some(lattice) => {
+                let LatticeParams { kind, angle } = lattice.get_ref();
+                let kind = match kind {
+                    LatticeName::Cubic => LatticeKind::Cubic,
+                    LatticeName::Hexagonal => LatticeKind::Hexagonal,
+                };
+                (kind, number(angle.as_ref(), "angle", 0.0, Allowed::Any)?)
+            }
+        };
+        if self.dimension == 1
+            && (kind, angle) != (LatticeKind::Cubic, 0.0)
+            && let Some(lattice) = &params.lattice
+        {
+            let title = "in one dimension particles stand in a row: `lattice` must be \"cubic\"";
+            return Err(Complaint::new(lattice.span(), title));
+        }
+        Ok(Lattice {
+            kind,
+            spacing,
+            angle,
+        })
+    }
+
+    fn velocity(&self, params: Option<&Spanned<Vec<Placed<Velocity>>>>) -> Result<Vec3, Complaint> {
+        let mut velocity = Vec3::zeros();
+        let Some(params) = params else {
+            return Ok(velocity);
+        };
+        if params.get_ref().len() != self.dimension {
+            return Err(super::shapes::wrong_length(
+                "velocity",
+                params,
+                self.dimension,
+            ));
+        }
+        for (component, value) in velocity.iter_mut().zip(params.get_ref()) {
+            *component = value.get_ref().si();
+        }
+        Ok(velocity)
+    }
+
+    fn check_size(&self, params: &[Spanned<BodyParams>], bodies: &[Body]) -> Result<(), Complaint> {
+        for (table, body) in params.iter().zip(bodies) {
+            let sites = populate::index_end(body, self.dimension);
+            if sites > MOST_SITES {
+                let spacing = table.get_ref().spacing.as_ref().or(self.spacing);
+                let at = spacing.map_or(table.get_ref().name.span(), Spanned::span);
+                let title = format!(
+                    "the body `{}` would have more than {MOST_SITES:e} particles",
+                    body.name
+                );
+                return Err(Complaint::new(at, title).help("check the units of size and spacing"));
+            }
+        }
+        Ok(())
+    }
+
+    /// There are particles, and symmetry planes cut between their layers.
+    fn check_particles(
+        &self,
+        params: &BodyParams,
+        body: &Body,
+        symmetry: &[SymmetryPlane],
+    ) -> Result<(), Complaint> {
+        let complain = |title| Complaint::new(params.shape.span(), title);
+        if populate::bounds(body, self.dimension).is_none() {
+            let title = format!("the body `{}` is too thin for a single particle", body.name);
+            return Err(complain(title).help("make its spacing finer"));
+        }
+        if populate::count(body, self.dimension, symmetry, None) == 0 {
+            let title = format!(
+                "the body `{}` has no particle above the symmetry planes",
+                body.name
+            );
+            return Err(
+                complain(title).help("a symmetry plane keeps the side of larger coordinates")
+            );
+        }
+        for plane in symmetry {
+            let (axis, spacing) = (plane.axis, body.lattice.spacing);
+            let near = populate::first_layer(body, self.dimension, symmetry, axis);
+            let gap = near.map_or(0.5, |x| (x - plane.position) / spacing);
+            let is_cut = populate::bounds(body, self.dimension)
+                .is_some_and(|(lower, _)| lower[axis.index()] <= plane.position);
+            if gap < FIRST_LAYER.0 || (is_cut && gap > FIRST_LAYER.1) {
+                let title = format!(
+                    "the symmetry plane of {} does not lie between two layers of `{}`",
+                    axis.name(),
+                    body.name
+                );
+                return Err(complain(title).help(
+                    "take an even number of layers about the plane, or a body that begins at it",
+                ));
+            }
+        }
+        Ok(())
+    }
+}

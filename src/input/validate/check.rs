@@ -1,0 +1,118 @@
+//! Ranges of single values.
+
+use std::ops::Range;
+
+use toml::Spanned;
+
+use crate::input::quantity::Quantity;
+use crate::input::source::Complaint;
+
+/// Values that a key accepts.
+#[derive(Debug, Clone, Copy)]
+pub enum Allowed {
+    /// Any finite number.
+    Any,
+    /// Above zero.
+    Positive,
+    /// Zero or more.
+    NotNegative,
+    /// Zero or less.
+    NotPositive,
+    /// Above zero, at most one.
+    UpToOne,
+    /// Between two numbers, both included.
+    Within(f64, f64),
+}
+
+impl Allowed {
+    fn has(self, x: f64) -> bool {
+        x.is_finite()
+            && match self {
+                Self::Any => true,
+                Self::Positive => x > 0.0,
+                Self::NotNegative => x >= 0.0,
+                Self::NotPositive => x <= 0.0,
+                Self::UpToOne => x > 0.0 && x <= 1.0,
+                Self::Within(low, high) => low <= x && x <= high,
+            }
+    }
+
+    fn words(self) -> String {
+        match self {
+            Self::Any => "finite".to_owned(),
+            Self::Positive => "positive".to_owned(),
+            Self::NotNegative => "zero or positive".to_owned(),
+            Self::NotPositive => "zero or negative".to_owned(),
+            Self::UpToOne => "above 0 and at most 1".to_owned(),
+            Self::Within(low, high) => format!("between {low} and {high}"),
+        }
+    }
+}
+
+fn out_of_range(at: Range<usize>, key: &str, allowed: &str) -> Complaint {
+    Complaint::new(at, format!("`{key}` must be {allowed}")).label("out of range")
+}
+
+/// A plain number or a quantity.
+pub trait Value: Copy {
+    /// The number, in SI units.
+    fn si(self) -> f64;
+}
+
+impl Value for f64 {
+    fn si(self) -> f64 {
+        self
+    }
+}
+
+impl<K> Value for Quantity<K> {
+    fn si(self) -> f64 {
+        self.si
+    }
+}
+
+/// A number in SI units, or its default.
+pub fn number<V: Value>(
+    value: Option<&Spanned<V>>,
+    key: &str,
+    default: f64,
+    allowed: Allowed,
+) -> Result<f64, Complaint> {
+    match value {
+        None => Ok(default),
+        Some(x) if allowed.has(x.get_ref().si()) => Ok(x.get_ref().si()),
+        Some(x) => Err(out_of_range(x.span(), key, &allowed.words())),
+    }
+}
+
+/// A number in SI units that has no default but the `base`, if there is one; `table` is where it
+/// should stand.
+pub fn required<V: Value>(
+    value: Option<&Spanned<V>>,
+    key: &str,
+    base: Option<f64>,
+    allowed: Allowed,
+    table: &Range<usize>,
+) -> Result<f64, Complaint> {
+    if value.is_none() && base.is_none() {
+        let title = format!("the key `{key}` is missing");
+        return Err(Complaint::new(table.clone(), title).label("in this table"));
+    }
+    number(value, key, base.unwrap_or_default(), allowed)
+}
+
+/// A whole number of at least `least`, or its default.
+pub fn whole(
+    value: Option<&Spanned<i64>>,
+    key: &str,
+    default: u64,
+    least: u64,
+) -> Result<u64, Complaint> {
+    let Some(value) = value else {
+        return Ok(default);
+    };
+    match u64::try_from(*value.get_ref()) {
+        Ok(n) if n >= least => Ok(n),
+        _ => Err(out_of_range(value.span(), key, &format!("{least} or more"))),
+    }
+}

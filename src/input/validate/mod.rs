@@ -1,0 +1,179 @@
+//! Typed tables → a [`Case`]: defaults, ranges, references between tables.
+
+mod bodies;
+mod check;
+mod contact;
+mod materials;
+mod shapes;
+mod touch;
+
+use super::schema::{
+    AxisName, CaseParams, DomainParams, OutputParams, RunParams, SmoothingName, SphParams,
+    SymmetryParams, TimeStepParams,
+};
+use super::source::Complaint;
+use crate::model::{
+    Axis, Case, DomainOptions, OutputOptions, RunControl, SmoothingLength, SphOptions,
+    SymmetryPlane, TimeStepOptions,
+};
+use crate::particles::{FIELDS, FieldUse};
+use check::{Allowed, number, whole};
+use toml::Spanned;
+
+/// Builds the case; `resolved` is left empty.
+pub fn case(params: CaseParams) -> Result<Case, Complaint> {
+    let dimension = dimension(&params.dimension)?;
+    let symmetry = symmetry(&params.symmetry, dimension)?;
+    let (names, materials) = materials::materials(&params.material)?;
+    let smoothing = number(
+        params.sph.smoothing.as_ref(),
+        "smoothing",
+        1.3,
+        Allowed::Within(0.6, 3.0),
+    )?;
+    let bodies = bodies::Reader {
+        dimension,
+        spacing: params.spacing.as_ref(),
+        materials: &names,
+        smoothing,
+    }
+    .bodies(&params.body, &symmetry)?;
+    let (default_contact, contacts) = contact::contacts(&params.contact, &params.body)?;
+    Ok(Case {
+        title: params.title.unwrap_or_else(|| "untitled".to_owned()),
+        dimension,
+        materials,
+        bodies,
+        contacts,
+        default_contact,
+        symmetry,
+        sph: sph(&params.sph)?,
+        time_step: time_step(&params.time_step)?,
+        domain: domain(&params.domain, dimension)?,
+        run: run(params.run.get_ref())?,
+        output: output(params.output)?,
+        resolved: String::new(),
+    })
+}
+
+fn dimension(params: &Spanned<i64>) -> Result<usize, Complaint> {
+    match params.get_ref() {
+        1 => Ok(1),
+        2 => Ok(2),
+        3 => Ok(3),
+        _ => Err(Complaint::new(
+            params.span(),
+            "`dimension` must be 1 (uniaxial strain), 2 (plane strain) or 3",
+        )),
+    }
+}
+
+/// An axis that exists in the dimension.
+fn axis(name: &Spanned<AxisName>, dimension: usize) -> Result<Axis, Complaint> {
+    let axis = match name.get_ref() {
+        AxisName::X => Axis::X,
+        AxisName::Y => Axis::Y,
+        AxisName::Z => Axis::Z,
+    };
+    if axis.index() < dimension {
+        return Ok(axis);
+    }
+    let title = format!("a {dimension}-dimensional case has no {} axis", axis.name());
+    Err(Complaint::new(name.span(), title))
+}
+
+fn symmetry(params: &[SymmetryParams], dimension: usize) -> Result<Vec<SymmetryPlane>, Complaint> {
+    let mut planes: Vec<SymmetryPlane> = Vec::new();
+    for plane in params {
+        let axis = axis(&plane.axis, dimension)?;
+        if planes.iter().any(|p| p.axis == axis) {
+            let title = format!("a second symmetry plane normal to {}", axis.name());
+            return Err(Complaint::new(plane.axis.span(), title).help("each axis can have one"));
+        }
+        planes.push(SymmetryPlane {
+            axis,
+            position: number(plane.position.as_ref(), "position", 0.0, Allowed::Any)?,
+        });
+    }
+    Ok(planes)
+}
+
+fn sph(params: &SphParams) -> Result<SphOptions, Complaint> {
+    let min = params.smoothing_length_min.as_ref();
+    let max = params.smoothing_length_max.as_ref();
+    let bounds = SmoothingLength::Variable {
+        min: number(min, "smoothing_length_min", 0.6, Allowed::UpToOne)?,
+        max: number(max, "smoothing_length_max", 2.0, Allowed::Within(1.0, 10.0))?,
+    };
+    Ok(SphOptions {
+        alpha: number(params.alpha.as_ref(), "alpha", 1.0, Allowed::NotNegative)?,
+        beta: number(params.beta.as_ref(), "beta", 2.0, Allowed::NotNegative)?,
+        smoothing_length: match params.smoothing_length {
+            None | Some(SmoothingName::Constant) => SmoothingLength::Constant,
+            Some(SmoothingName::Variable) => bounds,
+        },
+    })
+}
+
+fn time_step(params: &TimeStepParams) -> Result<TimeStepOptions, Complaint> {
+    let factor = |value, key, default| number(value, key, default, Allowed::UpToOne);
+    Ok(TimeStepOptions {
+        courant: factor(params.courant.as_ref(), "courant", 0.4)?,
+        force: factor(params.force.as_ref(), "force", 0.25)?,
+        contact: factor(params.contact.as_ref(), "contact", 0.5)?,
+        max: number(params.max.as_ref(), "max", f64::INFINITY, Allowed::Positive)?,
+    })
+}
+
+fn domain(params: &DomainParams, dimension: usize) -> Result<DomainOptions, Complaint> {
+    let axis = params.axis.as_ref().map(|name| axis(name, dimension));
+    Ok(DomainOptions {
+        axis: axis.transpose()?,
+        balance_every: whole(params.balance_every.as_ref(), "balance_every", 50, 0)?,
+    })
+}
+
+fn run(params: &RunParams) -> Result<RunControl, Complaint> {
+    let max_steps = params.max_steps.as_ref();
+    Ok(RunControl {
+        end_time: number(Some(&params.end_time), "end_time", 0.0, Allowed::Positive)?,
+        max_steps: max_steps
+            .map(|steps| whole(Some(steps), "max_steps", 0, 1))
+            .transpose()?,
+    })
+}
+
+fn output(params: OutputParams) -> Result<OutputOptions, Complaint> {
+    let every = |value: Option<_>, key| {
+        let checked = value.map(|v| number(Some(&v), key, 0.0, Allowed::Positive));
+        checked.transpose()
+    };
+    let kept = whole(params.checkpoints_kept.as_ref(), "checkpoints_kept", 2, 1)?;
+    let known = || {
+        let fields = FIELDS.iter().filter(|field| {
+            field.uses.meets(FieldUse::SNAPSHOT) || field.uses.meets(FieldUse::ON_DEMAND)
+        });
+        fields.map(|field| field.name)
+    };
+    for (n, field) in params.fields.iter().enumerate() {
+        if !known().any(|name| name == field.get_ref()) {
+            return Err(Complaint::unknown(
+                field.span(),
+                "field",
+                field.get_ref(),
+                known(),
+            ));
+        }
+        if params.fields[..n].contains(field) {
+            let title = format!("the field `{}` is listed twice", field.get_ref());
+            return Err(Complaint::new(field.span(), title));
+        }
+    }
+    Ok(OutputOptions {
+        snapshot_every: every(params.snapshot_every, "snapshot_every")?,
+        checkpoint_every: every(params.checkpoint_every, "checkpoint_every")?,
+        checkpoints_kept: usize::try_from(kept).unwrap_or(usize::MAX),
+        history_every: whole(params.history_every.as_ref(), "history_every", 10, 1)?,
+        fields: params.fields.into_iter().map(Spanned::into_inner).collect(),
+    })
+}

@@ -1,0 +1,129 @@
+//! Shapes in metres.
+
+use toml::Spanned;
+
+use crate::input::quantity::Extent;
+use crate::input::schema::{BoxParams, CylinderParams, Point, ShapeParams, SphereParams};
+use crate::input::source::Complaint;
+use crate::model::{Axis, Shape, Vec3};
+
+/// What the shape of one body is read with.
+pub struct Shapes {
+    pub dimension: usize,
+    /// The body's particle spacing (m).
+    pub spacing: f64,
+}
+
+/// A vector with the wrong number of components.
+pub fn wrong_length<T>(key: &str, vector: &Spanned<Vec<T>>, dimension: usize) -> Complaint {
+    let found = vector.get_ref().len();
+    let s = if dimension == 1 { "" } else { "s" };
+    let title = format!("`{key}` must have {dimension} component{s}, found {found}");
+    Complaint::new(vector.span(), title)
+}
+
+impl Shapes {
+    /// The shape of a body, before `touch`.
+    pub fn shape(&self, table: &Spanned<ShapeParams>) -> Result<Shape, Complaint> {
+        let ShapeParams {
+            r#box,
+            sphere,
+            cylinder,
+        } = table.get_ref();
+        match (r#box, sphere, cylinder) {
+            (Some(params), None, None) => self.cuboid(params),
+            (None, Some(params), None) if self.dimension > 1 => self.sphere(params.get_ref()),
+            (None, None, Some(params)) if self.dimension > 2 => self.cylinder(params.get_ref()),
+            (None, Some(params), None) => Err(self.unfit(params, "sphere", "a box")),
+            (None, None, Some(params)) => Err(self.unfit(
+                params,
+                "cylinder",
+                if self.dimension == 1 {
+                    "a box"
+                } else {
+                    "a sphere, which is a disc,"
+                },
+            )),
+            _ => Err(Complaint::new(
+                table.span(),
+                "`shape` must have exactly one of `box`, `sphere`, `cylinder`",
+            )),
+        }
+    }
+
+    fn unfit<T>(&self, table: &Spanned<T>, shape: &str, other: &str) -> Complaint {
+        let title = format!("a {}-dimensional case has no {shape}", self.dimension);
+        Complaint::new(table.span(), title).help(format!("take {other} instead"))
+    }
+
+    fn cuboid(&self, table: &Spanned<BoxParams>) -> Result<Shape, Complaint> {
+        let BoxParams {
+            lower,
+            upper,
+            centre,
+            size,
+        } = table.get_ref();
+        let (lower, upper, at) = match (lower, upper, size) {
+            (Some(lower), Some(upper), None) if centre.is_none() => (
+                self.point(Some(lower), "lower")?,
+                self.point(Some(upper), "upper")?,
+                upper.span(),
+            ),
+            (None, None, Some(size)) => {
+                let centre = self.point(centre.as_ref(), "centre")?;
+                let half = self.point(Some(size), "size")? * 0.5;
+                (centre - half, centre + half, size.span())
+            }
+            _ => {
+                let title = "a box must have `lower` and `upper`, or `size` and perhaps `centre`";
+                return Err(Complaint::new(table.span(), title));
+            }
+        };
+        if (0..self.dimension).all(|a| lower[a] < upper[a]) {
+            return Ok(Shape::Box { lower, upper });
+        }
+        Err(Complaint::new(at, "every edge of a box must be positive"))
+    }
+
+    fn sphere(&self, params: &SphereParams) -> Result<Shape, Complaint> {
+        Ok(Shape::Sphere {
+            centre: self.point(params.centre.as_ref(), "centre")?,
+            radius: self.positive(&params.radius, "radius")?,
+        })
+    }
+
+    fn cylinder(&self, params: &CylinderParams) -> Result<Shape, Complaint> {
+        let axis = params.axis.as_ref();
+        Ok(Shape::Cylinder {
+            centre: self.point(params.centre.as_ref(), "centre")?,
+            axis: axis.map_or(Ok(Axis::Z), |name| super::axis(name, self.dimension))?,
+            radius: self.positive(&params.radius, "radius")?,
+            length: self.positive(&params.length, "length")?,
+        })
+    }
+
+    fn positive(&self, value: &Spanned<Extent>, key: &str) -> Result<f64, Complaint> {
+        let metres = value.get_ref().metres(self.spacing);
+        if metres > 0.0 {
+            return Ok(metres);
+        }
+        Err(Complaint::new(
+            value.span(),
+            format!("`{key}` must be positive"),
+        ))
+    }
+
+    /// A point; the origin if absent.
+    fn point(&self, value: Option<&Point>, key: &str) -> Result<Vec3, Complaint> {
+        let mut point = Vec3::zeros();
+        if let Some(value) = value {
+            if value.get_ref().len() != self.dimension {
+                return Err(wrong_length(key, value, self.dimension));
+            }
+            for (component, extent) in point.iter_mut().zip(value.get_ref()) {
+                *component = extent.get_ref().metres(self.spacing);
+            }
+        }
+        Ok(point)
+    }
+}

@@ -1,0 +1,136 @@
+//! Mie–Grüneisen equation of state about a Hugoniot.
+//!
+//! With `μ = ρ/ρ₀ − 1`, in compression (`μ > 0`)
+//!
+//! ```text
+//! p = ρ₀ c₀² N / D² + (γ₀ + b μ) ρ₀ e
+//! N = μ [1 + (1 − γ₀/2) μ − (b/2) μ²]
+//! D = 1 − (s₁ − 1) μ − s₂ μ²/(μ + 1) − s₃ μ³/(μ + 1)²
+//! ```
+//!
+//! and in tension `p = ρ₀ c₀² μ + (γ₀ + b μ) ρ₀ e`, with the specific energy e per mass.
+//! Sources: Steinberg (1991), *Equation of state and strength properties of selected materials*,
+//! UCRL-MA-106439; in this notation LS-DYNA's `*EOS_GRUNEISEN`. The two branches meet in value
+//! and slope at `μ = 0`.
+//!
+//! # Strong compression
+//!
+//! The fit has an end. N, the cold part, turns down beyond a `μ_N` where `dN/dμ = 0`, and D has
+//! a zero (at `μ = 1/(s₁ − 1)` for a straight Hugoniot) beyond which the pressure would fall
+//! again. So N keeps its largest value beyond `μ_N`, and D stays at or above
+//! [`SMALLEST_DENOMINATOR`]: the pressure stays continuous and finite, and never falls with
+//! density while `s₁ ≥ 1` and `s₂, s₃ ≥ 0`. For aluminium 2024, `μ_N = 1.18` is reached by the shock
+//! of a symmetric impact at 21 km/s; the floor of D lies at `μ = 2.66`.
+
+use super::PointResponse;
+use crate::material::{at_least, at_most};
+
+/// Smallest value of the Hugoniot denominator D.
+pub const SMALLEST_DENOMINATOR: f64 = 0.1;
+
+/// Mie–Grüneisen with a cubic Hugoniot and a Grüneisen parameter linear in the compression.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MieGruneisen {
+    /// Bulk sound speed c₀ in the reference state (m/s).
+    pub c0: f64,
+    /// Coefficient s₁ of the Hugoniot `U = c₀ + [s₁ + s₂ u/U + s₃ (u/U)²] u` of shock speed U
+    /// and particle velocity u.
+    pub s1: f64,
+    /// Coefficient s₂ of the Hugoniot (0 for a straight one).
+    pub s2: f64,
+    /// Coefficient s₃ of the Hugoniot (0 for a straight one).
+    pub s3: f64,
+    /// Grüneisen parameter γ₀ in the reference state.
+    pub gamma0: f64,
+    /// Coefficient b in `ρ₀ (γ₀ + b μ)`, the pressure per specific energy, with `μ = ρ/ρ₀ − 1`.
+    pub b: f64,
+}
+
+/// Where the numerator N of a [`MieGruneisen`] stops to grow; the same for all points.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bounds {
+    mu_n: f64,
+}
+
+impl MieGruneisen {
+    /// Pressure and derivatives at density `rho` and specific energy `e` (J/kg), for the
+    /// reference density `rho0` (kg/m³).
+    #[must_use]
+    pub fn response(&self, rho0: f64, rho: f64, e: f64) -> PointResponse {
+        self.bounded_response(self.bounds(), rho0, rho, e)
+    }
+
+    /// The positive root of `dN/dμ = 1 + 2 a μ − (3 b/2) μ²`, `a = 1 − γ₀/2`; infinite if none.
+    pub(super) fn bounds(&self) -> Bounds {
+        let a = 1.0 - 0.5 * self.gamma0;
+        let discriminant = 4.0 * a * a + 6.0 * self.b;
+        let mu_n = if discriminant < 0.0 {
+            f64::INFINITY
+        } else {
+            let denominator = discriminant.sqrt() - 2.0 * a;
+            if denominator > 0.0 {
+                2.0 / denominator
+            } else {
+                f64::INFINITY
+            }
+        };
+        Bounds { mu_n }
+    }
+
+    /// [`Self::response`] with the bounds at hand; selects only, so that lanes vectorise.
+    #[inline(always)]
+    #[allow(clippy::inline_always)] // the lane loop vectorises only with its body inside
+    pub(super) fn bounded_response(
+        &self,
+        bounds: Bounds,
+        rho0: f64,
+        rho: f64,
+        e: f64,
+    ) -> PointResponse {
+        let mu = rho / rho0 - 1.0;
+        let (n, dn) = self.numerator(at_most(mu, bounds.mu_n));
+        let dn = if mu > bounds.mu_n { 0.0 } else { dn };
+        let (d_raw, dd) = self.denominator(mu);
+        let d = at_least(d_raw, SMALLEST_DENOMINATOR);
+        let dd = if d_raw < SMALLEST_DENOMINATOR {
+            0.0
+        } else {
+            dd
+        };
+
+        let inverse = 1.0 / d;
+        let cold = n * inverse * inverse;
+        let dcold = (dn - 2.0 * n * dd * inverse) * inverse * inverse;
+        let compressed = mu > 0.0;
+        let cold = if compressed { cold } else { mu };
+        let dcold = if compressed { dcold } else { 1.0 };
+
+        let c0_squared = self.c0 * self.c0;
+        let dp_de = (self.gamma0 + self.b * mu) * rho0;
+        PointResponse {
+            pressure: rho0 * c0_squared * cold + dp_de * e,
+            dp_drho: c0_squared * dcold + self.b * e,
+            dp_de,
+        }
+    }
+
+    /// N and dN/dμ.
+    #[inline(always)]
+    #[allow(clippy::inline_always)] // part of the lane loop
+    fn numerator(&self, mu: f64) -> (f64, f64) {
+        let a = 1.0 - 0.5 * self.gamma0;
+        let n = mu * (1.0 + mu * (a - 0.5 * self.b * mu));
+        let dn = 1.0 + mu * (2.0 * a - 1.5 * self.b * mu);
+        (n, dn)
+    }
+
+    /// D and dD/dμ, without floor.
+    #[inline(always)]
+    #[allow(clippy::inline_always)] // part of the lane loop
+    fn denominator(&self, mu: f64) -> (f64, f64) {
+        let x = mu / (mu + 1.0);
+        let d = 1.0 - mu * (self.s1 - 1.0 + x * (self.s2 + x * self.s3));
+        let dd = 1.0 - self.s1 - x * (self.s2 * (2.0 - x) + self.s3 * x * (3.0 - 2.0 * x));
+        (d, dd)
+    }
+}

@@ -1,0 +1,20 @@
+//! Linear elasticity in shear.
+
+use super::jaumann;
+use crate::material::PointBatch;
+
+/// Linear elastic in shear.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Elastic {
+    /// Shear modulus G (Pa).
+    pub shear_modulus: f64,
+}
+
+impl Elastic {
+    /// Advances the stress of a batch by `dt` (s).
+    pub(super) fn update(self, batch: &mut PointBatch, dt: f64) {
+        if dt != 0.0 {
+            jaumann::advance(batch, self.shear_modulus, dt);
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! Von Mises plasticity with radial return.
+//!
+//! A trial stress of equivalent `q = √(3/2 S:S)` above the yield stress `Y = Y₀ + H ε_p` returns
+//! along its radius: `Δε_p = (q − Y)/(3G + H)`, `S ← (1 − 3G Δε_p/q) S`, which lands on the
+//! hardened yield surface exactly. Source: Wilkins (1964), *Calculation of elastic-plastic flow*,
+//! UCRL-7322; with hardening Simo & Hughes (1998), *Computational Inelasticity*, box 3.1.
+
+use super::jaumann;
+use crate::material::{LANES, PointBatch};
+
+/// Elastic–plastic: elastic inside the von Mises cylinder, whose radius may grow with plastic
+/// strain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VonMises {
+    /// Shear modulus G (Pa).
+    pub shear_modulus: f64,
+    /// Yield stress in uniaxial tension at zero plastic strain, Y₀ (Pa).
+    pub yield_stress: f64,
+    /// Hardening modulus H (Pa): `Y = Y₀ + H ε_p`; 0 for perfect plasticity.
+    pub hardening_modulus: f64,
+}
+
+impl VonMises {
+    /// Advances stress and plastic strain of a batch by `dt` (s).
+    pub(super) fn update(&self, batch: &mut PointBatch, dt: f64) {
+        if dt != 0.0 {
+            jaumann::advance(batch, self.shear_modulus, dt);
+            self.return_to_yield(batch);
+        }
+    }
+
+    /// Radial return of a batch.
+    fn return_to_yield(&self, batch: &mut PointBatch) {
+        let three_g = 3.0 * self.shear_modulus;
+        let stiffness = three_g + self.hardening_modulus;
+        let s = &mut batch.deviatoric_stress;
+        for k in 0..LANES {
+            let diagonal = s[0][k] * s[0][k] + s[1][k] * s[1][k] + s[2][k] * s[2][k];
+            let shear = s[3][k] * s[3][k] + s[4][k] * s[4][k] + s[5][k] * s[5][k];
+            let q = (1.5 * (diagonal + 2.0 * shear)).sqrt();
+            let excess = q - (self.yield_stress + self.hardening_modulus * batch.plastic_strain[k]);
+            let yields = excess > 0.0;
+            let strain = if yields { excess / stiffness } else { 0.0 };
+            let divisor = if yields { q } else { 1.0 };
+            let scale = 1.0 - three_g * strain / divisor;
+            for component in s.iter_mut() {
+                component[k] *= scale;
+            }
+            batch.plastic_strain[k] += strain;
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! Lists of neighbours that belong to other bodies, for single receivers: contact works on
+//! these, apart from the sums inside a body.
+
+use rayon::prelude::*;
+
+use super::clusters::{ClusterLists, INFLATION, bounding_box, distance2};
+use super::sequence::Sequence;
+use crate::sph::gradient::MotionRecord;
+
+/// Which contact algorithm handles a pair of bodies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ContactClass {
+    /// Nothing beyond the SPH sums, if any.
+    None,
+    /// Contact potential.
+    Potential,
+    /// Overlap energy.
+    Overlap,
+}
+
+/// For each ordered pair of bodies, the algorithm and its range.
+#[derive(Debug, Clone)]
+pub struct ForeignTable {
+    /// Number of bodies.
+    pub bodies: usize,
+    /// `class[a * bodies + b]`.
+    pub class: Vec<ContactClass>,
+    /// Squared range of contact (m²), in the same order.
+    pub reach2: Vec<f64>,
+    /// `range[g * groups + o]`: largest range (m) between bodies of the groups g and o; zero
+    /// where these have no contact.
+    pub group_range: Vec<f64>,
+}
+
+/// Receivers with their foreign neighbours.
+#[derive(Debug, Clone, Default)]
+pub struct PairList {
+    /// Place of each receiver in the sequence and the end of its neighbours.
+    receivers: Vec<(u32, u32)>,
+    sources: Vec<u32>,
+}
+
+impl PairList {
+    /// Receivers that have neighbours, with those, in canonical order.
+    pub fn iter(&self) -> impl Iterator<Item = (u32, &[u32])> {
+        let mut start = 0;
+        self.receivers.iter().map(move |&(receiver, end)| {
+            let neighbours = &self.sources[start..end as usize];
+            start = end as usize;
+            (receiver, neighbours)
+        })
+    }
+
+    /// Whether no receiver has a neighbour.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.receivers.is_empty()
+    }
+
+    fn clear(&mut self) {
+        self.receivers.clear();
+        self.sources.clear();
+    }
+
+    fn close(&mut self, receiver: u32) {
+        let end = self.sources.len();
+        let start = self.receivers.last().map_or(0, |&(_, end)| end as usize);
+        if end > start {
+            #[allow(clippy::cast_possible_truncation, reason = "one task's pairs fit u32")]
+            self.receivers.push((receiver, end as u32));
+        }
+    }
+}
+
+/// The foreign pairs of one task, one list for each algorithm.
+#[derive(Debug, Clone, Default)]
+pub struct ForeignChunk {
+    /// Pairs of [`ContactClass::Overlap`].
+    pub overlap: PairList,
+    /// Pairs of [`ContactClass::Potential`].
+    pub potential: PairList,
+    candidates: Vec<u32>,
+}
+
+/// All foreign pairs of a rank. Buffers are kept from step to step.
+#[derive(Debug, Clone, Default)]
+pub struct ForeignLists {
+    chunks: Vec<ForeignChunk>,
+}
+
+impl ForeignLists {
+    /// Lists the foreign neighbours of all receivers of `clusters`. `body_of` tells the body of
+    /// an image by its place in the sequence.
+    pub fn build(
+        &mut self,
+        clusters: &ClusterLists,
+        sequence: &Sequence,
+        sources: &[MotionRecord],
+        table: &ForeignTable,
+        body_of: impl Fn(u32) -> usize + Sync,
+    ) {
+        self.chunks
+            .resize_with(clusters.chunks().len(), ForeignChunk::default);
+        self.chunks
+            .par_iter_mut()
+            .zip(clusters.chunks())
+            .for_each(|(chunk, own)| {
+                chunk.overlap.clear();
+                chunk.potential.clear();
+                for (cluster, _, _) in own.iter() {
+                    chunk.find_candidates(&cluster.receivers, cluster.group, sequence, sources, table);
+                    if chunk.candidates.is_empty() {
+                        continue;
+                    }
+                    for &receiver in &cluster.receivers[..cluster.lanes] {
+                        chunk.test_candidates(receiver, sources, table, &body_of);
+                    }
+                }
+            });
+    }
+
+    /// The tasks, in the order of the clusters' chunks.
+    #[must_use]
+    pub fn chunks(&self) -> &[ForeignChunk] {
+        &self.chunks
+    }
+
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.chunks
+            .iter()
+            .map(|chunk| {
+                4 * chunk.candidates.capacity()
+                    + [&chunk.overlap, &chunk.potential]
+                        .map(|list| 8 * list.receivers.capacity() + 4 * list.sources.capacity())
+                        .iter()
+                        .sum::<usize>()
+            })
+            .sum()
+    }
+}
+
+impl ForeignChunk {
+    fn find_candidates(
+        &mut self,
+        receivers: &[u32; 8],
+        group: usize,
+        sequence: &Sequence,
+        sources: &[MotionRecord],
+        table: &ForeignTable,
+    ) {
+        self.candidates.clear();
+        let own = receivers.map(|k| sources[k as usize]);
+        let (lower, upper) = bounding_box(&own);
+        let groups = sequence.groups();
+        for other in 0..groups {
+            let range = table.group_range[group * groups + other] * INFLATION;
+            if range == 0.0 {
+                continue;
+            }
+            let candidates = &mut self.candidates;
+            sequence.in_box(
+                other,
+                &lower.map(|x| x - range),
+                &upper.map(|x| x + range),
+                |place| {
+                    let position = &sources[place as usize].position;
+                    if distance2(&lower, &upper, position) < range * range {
+                        candidates.push(place);
+                    }
+                },
+            );
+        }
+    }
+
+    fn test_candidates(
+        &mut self,
+        receiver: u32,
+        sources: &[MotionRecord],
+        table: &ForeignTable,
+        body_of: &(impl Fn(u32) -> usize + Sync),
+    ) {
+        let here = &sources[receiver as usize].position;
+        let row = body_of(receiver) * table.bodies;
+        for &place in &self.candidates {
+            let there = &sources[place as usize].position;
+            let r = [here[0] - there[0], here[1] - there[1], here[2] - there[2]];
+            let pair = row + body_of(place);
+            if r[0] * r[0] + r[1] * r[1] + r[2] * r[2] < table.reach2[pair] {
+                match table.class[pair] {
+                    ContactClass::None => {}
+                    ContactClass::Overlap => self.overlap.sources.push(place),
+                    ContactClass::Potential => self.potential.sources.push(place),
+                }
+            }
+        }
+        self.overlap.close(receiver);
+        self.potential.close(receiver);
+    }
+}

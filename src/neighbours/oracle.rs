@@ -1,0 +1,24 @@
+//! Brute-force neighbours: slow and obvious, beside the fast search.
+
+use super::sequence::Sequence;
+use crate::sph::gradient::MotionRecord;
+
+/// Places of all images of the receiver's group with `r < h_i + h_j`, in canonical order.
+#[must_use]
+pub fn own_neighbours(sequence: &Sequence, sources: &[MotionRecord], receiver: u32) -> Vec<u32> {
+    let here = &sources[receiver as usize];
+    let group = (0..sequence.groups())
+        .find(|&g| sequence.group(g).contains(&(receiver as usize)))
+        .expect("every image has a group");
+    sequence
+        .group(group)
+        .filter(|&place| {
+            let there = &sources[place];
+            let r2: f64 = (0..3)
+                .map(|a| (here.position[a] - there.position[a]).powi(2))
+                .sum();
+            r2 < (here.smoothing_length + there.smoothing_length).powi(2)
+        })
+        .map(|place| u32::try_from(place).expect("images fit u32"))
+        .collect()
+}

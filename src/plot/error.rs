@@ -1,0 +1,116 @@
+//! What can go wrong on the way to a picture.
+
+use std::path::PathBuf;
+
+use crate::output::h5::read::ReadError;
+
+/// Why a picture could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum PlotError {
+    /// A snapshot could not be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// A snapshot can be read, but what it says of itself makes no sense.
+    #[error("{} is damaged: {reason}", path.display())]
+    Snapshot {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+    /// The path is neither a snapshot nor a run with snapshots.
+    #[error("no snapshots in {}: give a snapshot file or the folder of a run", path.display())]
+    NoSnapshots {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// No snapshot has this number.
+    #[error("no snapshot {index}: the run has snapshots 0 to {last}")]
+    Index {
+        /// As asked for.
+        index: usize,
+        /// The largest there is.
+        last: usize,
+    },
+    /// The snapshots do not hold this field.
+    #[error("no field \"{name}\": {}the snapshot has {}", nearest.as_ref().map(|n| format!("did you mean \"{n}\"? ")).unwrap_or_default(), known.join(", "))]
+    Field {
+        /// As asked for.
+        name: String,
+        /// The most similar name, if one is similar.
+        nearest: Option<String>,
+        /// All names.
+        known: Vec<String>,
+    },
+    /// The field has no such component.
+    #[error("{}: {known}", component.as_ref().map_or_else(
+        || format!("field \"{field}\" needs a component, as in {field}.COMPONENT"),
+        |component| format!("field \"{field}\" has no component \"{component}\"; it has"),
+    ))]
+    Component {
+        /// The field.
+        field: String,
+        /// As asked for, if one was.
+        component: Option<String>,
+        /// What there is.
+        known: String,
+    },
+    /// A number, its unit or a range is wrong.
+    #[error("cannot read \"{text}\": give {expected}")]
+    Quantity {
+        /// As typed.
+        text: String,
+        /// What is wanted.
+        expected: String,
+    },
+    /// A plane is not written as `AXIS=POSITION`.
+    #[error(
+        "cannot read the section \"{text}\": give an axis and a position, as in y=0 or x=0.1mm"
+    )]
+    Section {
+        /// As typed.
+        text: String,
+    },
+    /// The plane misses all particles.
+    #[error(
+        "no particle lies in the section {axis} = {position}: the particles reach from {lowest} to \
+         {highest}"
+    )]
+    Empty {
+        /// Normal of the plane.
+        axis: &'static str,
+        /// Where the plane is, with unit.
+        position: String,
+        /// Smallest coordinate, with unit.
+        lowest: String,
+        /// Largest coordinate, with unit.
+        highest: String,
+    },
+    /// The history cannot be drawn.
+    #[error("cannot plot {}: {reason}", path.display())]
+    History {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, and in which line.
+        reason: String,
+    },
+    /// Two options, or an option and the input, exclude each other.
+    #[error("{0}")]
+    Options(&'static str),
+    /// The picture would be too small or too large.
+    #[error("cannot draw a picture of {width} × {height} pixels: choose another --width")]
+    Size {
+        /// Pixels.
+        width: u32,
+        /// Pixels.
+        height: u32,
+    },
+    /// The picture could not be written.
+    #[error("cannot write {}: {reason}", path.display())]
+    Save {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        reason: String,
+    },
+}

@@ -1,0 +1,150 @@
+//! A picture of one or several sections: panels to scale, axes, legend or colour bar.
+
+use super::PlotError;
+use super::axes::{Axes, Header, Style};
+use super::bar::ColourBar;
+use super::canvas::{Align, Canvas, Frame, Rgb};
+use super::colour;
+use super::layout::{Layout, View, pixels};
+use super::section::{Disc, Section};
+
+/// Default width of a picture of one panel (pixels), at which [`Style::unit`] is 1.
+pub const WIDTH: u32 = 1200;
+
+/// Default width of a picture of several panels (pixels).
+pub const PANELS_WIDTH: u32 = 1800;
+
+/// What colours mean.
+#[derive(Debug, Clone)]
+pub enum Colours {
+    /// Bodies, by their names.
+    Bodies(Vec<String>),
+    /// A field.
+    Bar(ColourBar),
+}
+
+/// A picture of sections that share view and colours.
+#[derive(Debug)]
+pub struct Figure<'a> {
+    /// Title of the case.
+    pub title: &'a str,
+    /// What is shown, where and when.
+    pub subtitle: String,
+    /// One for each panel.
+    pub sections: &'a [Section],
+    /// Names above the panels; used if there are several.
+    pub headings: Vec<String>,
+    /// Names of the axes to the right and upwards.
+    pub axes: [&'static str; 2],
+    /// Diameter of the discs of each body (m).
+    pub spacings: &'a [f64],
+    /// What colours mean.
+    pub colours: &'a Colours,
+    /// What part of the plane is drawn.
+    pub view: View,
+    /// Width of the picture (pixels).
+    pub width: u32,
+}
+
+impl Figure<'_> {
+    /// Draws the picture.
+    ///
+    /// # Errors
+    /// [`PlotError::Size`] if no such picture can be held.
+    pub fn draw(&self) -> Result<Canvas, PlotError> {
+        let count = self.sections.len();
+        let style = Style::new(self.width, if count > 1 { PANELS_WIDTH } else { WIDTH });
+        let header = self.header();
+        let top = header.draw(None, style, self.width as f32);
+        let has_bar = matches!(self.colours, Colours::Bar(_));
+        let layout = Layout::new(style, self.width, top, count, self.view, has_bar);
+
+        let mut canvas = Canvas::new(self.width, whole(layout.height))?;
+        header.draw(Some(&mut canvas), style, self.width as f32);
+        for (k, section) in self.sections.iter().enumerate() {
+            self.draw_panel(&mut canvas, &layout, k, section);
+        }
+        if let Colours::Bar(bar) = self.colours {
+            let (last_of_row, last) = (layout.frames[layout.columns - 1], layout.frames[count - 1]);
+            let left = last_of_row.right() + 2.5 * style.gap();
+            bar.draw(&mut canvas, style, left, last_of_row.top, last.bottom());
+        }
+        Ok(canvas)
+    }
+
+    fn header(&self) -> Header<'_> {
+        let legend = match self.colours {
+            Colours::Bodies(names) => {
+                let colours = (0..).map(colour::body);
+                names.iter().map(String::as_str).zip(colours).collect()
+            }
+            Colours::Bar(_) => Vec::new(),
+        };
+        Header {
+            title: self.title,
+            subtitle: &self.subtitle,
+            legend,
+        }
+    }
+
+    fn draw_panel(&self, canvas: &mut Canvas, layout: &Layout, k: usize, section: &Section) {
+        let (style, view, frame) = (layout.style, &layout.view, layout.frames[k]);
+        let metres = Axes {
+            frame,
+            x: view.x,
+            y: view.y,
+        };
+        let scale = f64::from(frame.width) / view.width();
+        for disc in &section.discs {
+            let radius = pixels(0.5 * self.spacings[disc.body] * scale);
+            let at = metres.at(disc.at[0], disc.at[1]);
+            draw_particle(canvas, at, radius, self.colour(disc), &frame);
+        }
+        let [x, y] = view.in_unit(&layout.unit);
+        let axes = Axes { frame, x, y };
+        let [right, up] = self.axes.map(|name| layout.unit.label(name));
+        // Numbers and labels only where no other panel follows.
+        let lowest = k + layout.columns >= self.sections.len();
+        let first = k.is_multiple_of(layout.columns);
+        axes.draw_x(
+            canvas,
+            style,
+            &layout.x_ticks,
+            lowest.then_some(right.as_str()),
+        );
+        axes.draw_y(canvas, style, &layout.y_ticks, first.then_some(up.as_str()));
+        if let Some(heading) = self.headings.get(k) {
+            let middle = frame.left + 0.5 * frame.width;
+            let at = (middle, frame.top - 0.5 * style.text());
+            canvas.text(heading, at, style.text(), Align::Middle);
+        }
+    }
+
+    fn colour(&self, disc: &Disc) -> Rgb {
+        match self.colours {
+            Colours::Bodies(_) => colour::body(disc.body),
+            Colours::Bar(bar) => bar.scale.colour(disc.value),
+        }
+    }
+}
+
+/// A disc; large ones get a darker rim, so that particles stay apart where they overlap.
+fn draw_particle(canvas: &mut Canvas, at: (f32, f32), radius: f32, colour: Rgb, clip: &Frame) {
+    let rim = (0.12 * radius).min(1.5);
+    if rim < 0.35 {
+        canvas.disc(at, radius, colour, clip);
+    } else {
+        canvas.disc(at, radius, colour.map(|c| c / 4 * 3), clip);
+        canvas.disc(at, radius - rim, colour, clip);
+    }
+}
+
+/// A height as a number of pixels.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a float cast saturates; the canvas refuses what it cannot hold"
+)]
+pub fn whole(height: f32) -> u32 {
+    height.ceil() as u32
+}

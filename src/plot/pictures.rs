@@ -1,0 +1,234 @@
+//! From a request to pictures: sections of some snapshots with one plane, view and colours.
+
+use std::path::{Path, PathBuf};
+
+use super::PlotError;
+use super::bar::ColourBar;
+use super::canvas::Canvas;
+use super::colour::Scale;
+use super::field::Shown;
+use super::figure::{Colours, Figure, PANELS_WIDTH, WIDTH};
+use super::layout::View;
+use super::section::{Cut, Plane, Section};
+use super::snapshot::Snapshot;
+use super::units::{self, Readable};
+use crate::model::{Axis, SymmetryPlane};
+
+/// What to draw, as typed.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Request {
+    /// `body`, a field, `FIELD.COMPONENT` or `von_mises`; bodies if absent.
+    pub field: Option<String>,
+    /// `AXIS=POSITION` or `AXIS`; the best plane if absent.
+    pub section: Option<String>,
+    /// Thickness of the slice; one spacing if absent.
+    pub thickness: Option<String>,
+    /// Whether to reflect at planes of symmetry.
+    pub mirror: bool,
+    /// `LOW:HIGH` of the colours; all values if absent.
+    pub range: Option<String>,
+    /// `LEFT:RIGHT,BOTTOM:TOP`; everything if absent.
+    pub view: Option<String>,
+}
+
+/// Sections of some snapshots that share plane, view and colours.
+#[derive(Debug)]
+pub struct Pictures {
+    title: String,
+    spacings: Vec<f64>,
+    cut: Cut,
+    where_text: String,
+    sections: Vec<Section>,
+    colours: Colours,
+    view: View,
+}
+
+impl Pictures {
+    /// Takes the sections of one or more snapshots; the first one decides the plane.
+    ///
+    /// # Errors
+    /// Any [`PlotError`] but those of writing: a snapshot that cannot be read, a request that
+    /// cannot be understood, or a plane that misses all particles.
+    pub fn new(paths: &[PathBuf], request: &Request) -> Result<Self, PlotError> {
+        let path = paths
+            .first()
+            .ok_or(PlotError::Options("no snapshot to draw"))?;
+        let first = Snapshot::open(path)?;
+        let thickness = request.thickness.as_deref().map(thickness).transpose()?;
+        let cut = Cut {
+            plane: match request.section.as_deref() {
+                Some(text) => Plane::parse(text, &first)?,
+                None => Plane::best(&first)?,
+            },
+            thickness,
+            mirror: request.mirror,
+            shown: Shown::find(&first, request.field.as_deref().unwrap_or("body"))?,
+        };
+        let range = match (&request.range, &cut.shown) {
+            (None, _) => None,
+            (Some(text), Shown::Field(field)) => Some(units::parse_span(text, None, &field.unit)?),
+            (Some(_), Shown::Body) => {
+                return Err(PlotError::Options("--range needs a --field to colour by"));
+            }
+        };
+        let view = request.view.as_deref().map(parse_view).transpose()?;
+
+        let mut sections = Vec::with_capacity(paths.len());
+        for path in paths {
+            sections.push(cut.take(&Snapshot::open(path)?)?);
+        }
+        if sections.iter().all(|section| section.discs.is_empty()) {
+            return Err(cut.miss(&first));
+        }
+        Ok(Self {
+            where_text: where_text(&cut, &first),
+            colours: colours(&cut.shown, &first.bodies, &sections, range),
+            view: view.unwrap_or_else(|| View::around(&sections, &first.spacings)),
+            title: first.title,
+            spacings: first.spacings,
+            cut,
+            sections,
+        })
+    }
+
+    /// The picture of one snapshot, by its place among the paths, of a width in pixels.
+    ///
+    /// # Errors
+    /// [`PlotError::Size`] if no such picture can be held.
+    pub fn single(&self, index: usize, width: Option<u32>) -> Result<Canvas, PlotError> {
+        let section = &self.sections[index..=index];
+        let time = &self.times()[index];
+        let subtitle = format!("t = {time},  {}", self.where_text);
+        self.figure(section, subtitle, Vec::new(), width.unwrap_or(WIDTH))
+            .draw()
+    }
+
+    /// One picture with a panel for each snapshot, of a width in pixels.
+    ///
+    /// # Errors
+    /// [`PlotError::Size`] if no such picture can be held.
+    pub fn panels(&self, width: Option<u32>) -> Result<Canvas, PlotError> {
+        if self.sections.len() == 1 {
+            return self.single(0, width);
+        }
+        let times = self.times();
+        let headings = times.iter().map(|time| format!("t = {time}")).collect();
+        let width = width.unwrap_or(PANELS_WIDTH);
+        self.figure(&self.sections, self.where_text.clone(), headings, width)
+            .draw()
+    }
+
+    /// Times with one unit and as many digits for all.
+    fn times(&self) -> Vec<String> {
+        let largest = self.sections.iter().map(|s| s.time).fold(0.0, f64::max);
+        let unit = Readable::new("s", largest);
+        let decimals = match largest {
+            0.0 => 0,
+            largest => units::decimals(largest / unit.size),
+        };
+        let text = |s: &Section| format!("{} {}", unit.number(s.time, decimals), unit.name);
+        self.sections.iter().map(text).collect()
+    }
+
+    fn figure<'a>(
+        &'a self,
+        sections: &'a [Section],
+        subtitle: String,
+        headings: Vec<String>,
+        width: u32,
+    ) -> Figure<'a> {
+        Figure {
+            title: &self.title,
+            subtitle,
+            sections,
+            headings,
+            axes: self.cut.plane.picture_axes().map(Axis::name),
+            spacings: &self.spacings,
+            colours: &self.colours,
+            view: self.view,
+            width,
+        }
+    }
+}
+
+/// Title of the case that wrote a snapshot.
+///
+/// # Errors
+/// [`PlotError::Read`] if the snapshot cannot be read.
+pub fn title(path: &Path) -> Result<String, PlotError> {
+    Ok(Snapshot::open(path)?.title)
+}
+
+fn thickness(text: &str) -> Result<f64, PlotError> {
+    let value = units::parse(text, "m")?;
+    if value > 0.0 {
+        Ok(value)
+    } else {
+        Err(PlotError::Quantity {
+            text: text.to_owned(),
+            expected: "a thickness above zero, as in 0.1mm".to_owned(),
+        })
+    }
+}
+
+/// Reads `LEFT:RIGHT,BOTTOM:TOP`; numbers without a unit take the last one's.
+fn parse_view(text: &str) -> Result<View, PlotError> {
+    let (x, y) = text.split_once(',').ok_or_else(|| PlotError::Quantity {
+        text: text.to_owned(),
+        expected: "a view LEFT:RIGHT,BOTTOM:TOP, as in -1:1,0:2mm".to_owned(),
+    })?;
+    let unit = units::split(y.rsplit(':').next().unwrap_or_default()).1;
+    Ok(View {
+        x: units::parse_span(x, Some(unit), "m")?,
+        y: units::parse_span(y, None, "m")?,
+    })
+}
+
+/// `"section y = 0 mm, mirrored at x = 0 mm"`.
+fn where_text(cut: &Cut, snapshot: &Snapshot) -> String {
+    let at = |axis: &str, position: f64| {
+        let unit = Readable::new("m", position.abs().max(snapshot.finest()));
+        let number = unit.number(position, 3);
+        let number = number.trim_end_matches('0').trim_end_matches('.');
+        if number == "0" {
+            format!("{axis} = 0")
+        } else {
+            format!("{axis} = {number} {}", unit.name)
+        }
+    };
+    let section = at(cut.plane.axis.name(), cut.plane.position);
+    let seen = |p: &&SymmetryPlane| cut.mirror && p.axis != cut.plane.axis;
+    let planes = snapshot.symmetry.iter().filter(seen);
+    let planes: Vec<String> = planes.map(|p| at(p.axis.name(), p.position)).collect();
+    if planes.is_empty() {
+        format!("section {section}")
+    } else {
+        format!("section {section},  mirrored at {}", planes.join(" and "))
+    }
+}
+
+fn colours(
+    shown: &Shown,
+    bodies: &[String],
+    sections: &[Section],
+    range: Option<[f64; 2]>,
+) -> Colours {
+    match shown {
+        Shown::Body => Colours::Bodies(bodies.to_vec()),
+        Shown::Field(field) => {
+            let values = || {
+                sections
+                    .iter()
+                    .flat_map(|s| &s.discs)
+                    .map(|disc| disc.value)
+            };
+            let scale = Scale::new(values(), range);
+            let unit = Readable::new(&field.unit, scale.high.abs().max(scale.low.abs()));
+            let mut label = unit.label(&field.label);
+            if values().any(|value| !value.is_finite()) {
+                label += "; pink: not finite";
+            }
+            Colours::Bar(ColourBar { scale, unit, label })
+        }
+    }
+}

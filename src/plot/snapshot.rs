@@ -1,0 +1,165 @@
+//! A snapshot with what it says of its case.
+
+use std::ops::Range;
+use std::path::Path;
+
+use super::PlotError;
+use crate::model::{Axis, SymmetryPlane};
+use crate::output::h5::read::SnapshotFile;
+
+/// Particles read at a time, so that a large snapshot never stands whole in memory.
+const CHUNK: usize = 1 << 20;
+
+/// An open snapshot and its case.
+#[derive(Debug)]
+pub struct Snapshot {
+    pub file: SnapshotFile,
+    /// Time (s).
+    pub time: f64,
+    /// Title of the case.
+    pub title: String,
+    /// Names of the bodies.
+    pub bodies: Vec<String>,
+    /// Particle spacing Δp of each body (m).
+    pub spacings: Vec<f64>,
+    /// Planes of symmetry.
+    pub symmetry: Vec<SymmetryPlane>,
+}
+
+impl Snapshot {
+    /// Opens a snapshot and reads what it says of its case.
+    pub fn open(path: &Path) -> Result<Self, PlotError> {
+        let file = SnapshotFile::open(path)?;
+        let damaged = |reason: String| PlotError::Snapshot {
+            path: path.to_owned(),
+            reason,
+        };
+        let title = file.attribute("/whipple", "title")?;
+        let bodies: Vec<String> = json(&file, "bodies")?;
+        let spacings: Vec<f64> = json(&file, "spacings")?;
+        let planes: Vec<(String, f64)> = json(&file, "symmetry")?;
+        if bodies.len() != spacings.len() {
+            let (b, s) = (bodies.len(), spacings.len());
+            return Err(damaged(format!("{b} bodies but {s} spacings")));
+        }
+        if let Some(&bad) = spacings.iter().find(|&&s| !(s > 0.0 && s.is_finite())) {
+            return Err(damaged(format!(
+                "a spacing of {bad} m; it must be positive"
+            )));
+        }
+        let plane = |(name, position): (String, f64)| {
+            let axis = Axis::ALL.into_iter().find(|a| a.name() == name);
+            let axis = axis.ok_or_else(|| damaged(format!("a symmetry plane along \"{name}\"")))?;
+            Ok(SymmetryPlane { axis, position })
+        };
+        let symmetry = planes
+            .into_iter()
+            .map(plane)
+            .collect::<Result<_, PlotError>>()?;
+        Ok(Self {
+            time: file.time()?,
+            file,
+            title,
+            bodies,
+            spacings,
+            symmetry,
+        })
+    }
+
+    /// The smallest particle spacing (m).
+    pub fn finest(&self) -> f64 {
+        self.spacings.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// The rows of the snapshot in portions that fit in memory.
+    pub fn chunks(&self) -> impl Iterator<Item = Range<usize>> {
+        let total = self.file.particles();
+        (0..total)
+            .step_by(CHUNK)
+            .map(move |first| first..total.min(first + CHUNK))
+    }
+
+    /// The body of each particle of some rows, as indices into `bodies`.
+    pub fn body_of(&self, rows: Range<usize>) -> Result<Vec<usize>, PlotError> {
+        let values = self.file.scalar("body", 0, rows)?;
+        let index = |value: f64| {
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "an integer field; whatever it holds is checked next"
+            )]
+            let index = value as usize;
+            if index < self.bodies.len() && value >= 0.0 {
+                Ok(index)
+            } else {
+                Err(PlotError::Snapshot {
+                    path: self.file.path().to_owned(),
+                    reason: format!("body {value} of {} bodies", self.bodies.len()),
+                })
+            }
+        };
+        values.into_iter().map(index).collect()
+    }
+
+    /// Smallest, largest and mean finite coordinate along each axis (m).
+    pub fn extent(&self) -> Result<[Extent; 3], PlotError> {
+        let mut extents = [Extent::default(); 3];
+        for rows in self.chunks() {
+            for point in self.file.points(rows)? {
+                for (extent, coordinate) in extents.iter_mut().zip(point) {
+                    extent.add(coordinate);
+                }
+            }
+        }
+        Ok(extents)
+    }
+}
+
+/// Where particles lie along an axis.
+#[derive(Debug, Clone, Copy)]
+pub struct Extent {
+    pub lowest: f64,
+    pub highest: f64,
+    sum: f64,
+    count: f64,
+}
+
+impl Default for Extent {
+    fn default() -> Self {
+        Self {
+            lowest: f64::INFINITY,
+            highest: f64::NEG_INFINITY,
+            sum: 0.0,
+            count: 0.0,
+        }
+    }
+}
+
+impl Extent {
+    fn add(&mut self, coordinate: f64) {
+        if coordinate.is_finite() {
+            self.lowest = self.lowest.min(coordinate);
+            self.highest = self.highest.max(coordinate);
+            self.sum += coordinate;
+            self.count += 1.0;
+        }
+    }
+
+    /// Mean coordinate (m); 0 without particles.
+    pub fn mean(&self) -> f64 {
+        if self.count > 0.0 {
+            self.sum / self.count
+        } else {
+            0.0
+        }
+    }
+}
+
+/// A JSON attribute of the group `/whipple`.
+fn json<T: serde::de::DeserializeOwned>(file: &SnapshotFile, name: &str) -> Result<T, PlotError> {
+    let text = file.attribute("/whipple", name)?;
+    serde_json::from_str(&text).map_err(|e| PlotError::Snapshot {
+        path: file.path().to_owned(),
+        reason: format!("attribute {name} of /whipple: {e}"),
+    })
+}

@@ -1,0 +1,205 @@
+//! The bounding lattice of a body: where the site of a triple of indices lies.
+
+use crate::model::{Body, LatticeKind, Shape};
+
+/// Nearest distance of a hexagonal close-packed lattice with one site in a unit volume, 2^(1/6).
+pub(super) const CLOSE_PACKED: f64 = 1.122_462_048_309_373;
+/// Nearest distance of a triangular lattice with one site in a unit area, √(2/√3).
+pub(super) const TRIANGULAR: f64 = 1.074_569_931_823_542;
+/// √3/2: distance of the rows of a triangular layer, in nearest distances.
+const ROW: f64 = 0.866_025_403_784_438_6;
+/// √(2/3): distance of close-packed layers, in nearest distances.
+const LAYER: f64 = 0.816_496_580_927_726;
+
+/// Sites this close to a face, relative to the body's half width, count as outside: whether a
+/// lattice point on a face belongs to the body must not hang on rounding, or halves would differ.
+const FACE: f64 = 1.0 - 1e-9;
+
+/// Distances of sites in a row, of rows in a layer and of layers, for a spacing of one.
+pub(super) fn pitches(kind: LatticeKind, dimension: usize) -> [f64; 3] {
+    match (kind, dimension) {
+        (LatticeKind::Hexagonal, 3) => [CLOSE_PACKED, ROW * CLOSE_PACKED, LAYER * CLOSE_PACKED],
+        (LatticeKind::Hexagonal, 2) => [TRIANGULAR, ROW * TRIANGULAR, 1.0],
+        _ => [1.0; 3],
+    }
+}
+
+/// Shifts of a row along itself and of a layer along y, for a spacing of one: alternate rows
+/// stand half a pitch apart, alternate layers a third of two rows, both evenly about zero.
+pub(super) fn shifts(kind: LatticeKind, dimension: usize, j: u64, k: u64) -> [f64; 2] {
+    let sign = |odd: u64| if odd % 2 == 1 { 1.0 } else { -1.0 };
+    match (kind, dimension) {
+        (LatticeKind::Hexagonal, 3) => [
+            sign(j + k) * 0.25 * CLOSE_PACKED,
+            sign(k) * (ROW / 6.0) * CLOSE_PACKED,
+        ],
+        (LatticeKind::Hexagonal, 2) => [sign(j) * 0.25 * TRIANGULAR, 0.0],
+        _ => [0.0; 2],
+    }
+}
+
+/// Which sites of the bounding lattice belong to the body.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Inside {
+    /// Half width of the faces that the lattice does not fill exactly; infinite elsewhere (m).
+    pub flat: [f64; 3],
+    /// Axes that count for the radius: 1 or 0 each.
+    pub round: [f64; 3],
+    /// Square of the radius; infinite without one (m²).
+    pub radius_squared: f64,
+}
+
+impl Inside {
+    /// Whether an offset from the centre (m) belongs to the body.
+    pub fn contains(&self, o: [f64; 3]) -> bool {
+        (0..3).all(|a| o[a].abs() < self.flat[a])
+            && (0..3).fold(0.0, |sum, a| sum + self.round[a] * (o[a] * o[a])) < self.radius_squared
+    }
+}
+
+/// The bounding lattice of one body.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stack {
+    kind: LatticeKind,
+    dimension: usize,
+    spacing: f64,
+    centre: [f64; 3],
+    /// Cosine and sine of the turn about z.
+    turn: [f64; 2],
+    /// Sites of a row, rows of a layer, layers.
+    pub counts: [u64; 3],
+    /// Their distances (m).
+    pub pitch: [f64; 3],
+    /// What the shape cuts out of the lattice.
+    pub inside: Inside,
+}
+
+impl Stack {
+    pub fn new(body: &Body, dimension: usize) -> Self {
+        let lattice = &body.lattice;
+        let (centre, half, round, radius) = extent(&body.shape, dimension);
+        let turn = if lattice.angle == 0.0 {
+            [1.0, 0.0]
+        } else {
+            [libm::cos(lattice.angle), libm::sin(lattice.angle)]
+        };
+        let pitch = pitches(lattice.kind, dimension).map(|p| p * lattice.spacing);
+        let mut counts = [1; 3];
+        let mut flat = [f64::INFINITY; 3];
+        for a in 0..dimension {
+            let is_filled = !round[a] && (lattice.angle == 0.0 || a == 2);
+            counts[a] = if is_filled {
+                as_count((2.0 * half[a] / pitch[a]).round())
+            } else {
+                if !round[a] {
+                    flat[a] = half[a] * FACE;
+                }
+                // An even number of layers stands half a pitch off the centre; one more on each
+                // side has room for the shifts.
+                2 * as_count((turned_half(half, turn, a) / pitch[a]).ceil() + 1.0)
+            };
+        }
+        Self {
+            kind: lattice.kind,
+            dimension,
+            spacing: lattice.spacing,
+            centre,
+            turn,
+            counts,
+            pitch,
+            inside: Inside {
+                flat,
+                round: round.map(|r| if r { 1.0 } else { 0.0 }),
+                radius_squared: radius * radius * FACE,
+            },
+        }
+    }
+
+    /// Vector from the centre to a site (m).
+    #[allow(clippy::cast_precision_loss)] // indices stay far below 2^52
+    pub fn offset(&self, i: u64, j: u64, k: u64) -> [f64; 3] {
+        let along = |index: u64, axis: usize| {
+            (index as f64 - 0.5 * (self.counts[axis] as f64 - 1.0)) * self.pitch[axis]
+        };
+        let shifts = shifts(self.kind, self.dimension, j, k);
+        let [across, up] = [
+            along(i, 0) + shifts[0] * self.spacing,
+            along(j, 1) + shifts[1] * self.spacing,
+        ];
+        let [cos, sin] = self.turn;
+        [
+            cos * across - sin * up,
+            sin * across + cos * up,
+            along(k, 2),
+        ]
+    }
+
+    /// Position of a site (m).
+    pub fn position(&self, i: u64, j: u64, k: u64) -> [f64; 3] {
+        let o = self.offset(i, j, k);
+        [0, 1, 2].map(|a| self.centre[a] + o[a])
+    }
+
+    /// Step from a site to the next one of its row (m).
+    pub fn step(&self) -> [f64; 3] {
+        [
+            self.turn[0] * self.pitch[0],
+            self.turn[1] * self.pitch[0],
+            0.0,
+        ]
+    }
+
+    pub fn index(&self, i: u64, j: u64, k: u64) -> u64 {
+        i + self.counts[0] * (j + self.counts[1] * k)
+    }
+
+    pub fn index_end(&self) -> u64 {
+        self.counts.iter().fold(1, |n, &m| n.saturating_mul(m))
+    }
+}
+
+/// Centre, half widths, round axes and radius of a shape (m).
+fn extent(shape: &Shape, dimension: usize) -> ([f64; 3], [f64; 3], [bool; 3], f64) {
+    let (centre, half, round, radius) = match *shape {
+        Shape::Box { lower, upper } => (
+            (lower + upper) * 0.5,
+            (upper - lower) * 0.5,
+            [false; 3],
+            f64::INFINITY,
+        ),
+        Shape::Sphere { centre, radius } => (
+            centre,
+            [radius; 3].into(),
+            [0, 1, 2].map(|a| a < dimension),
+            radius,
+        ),
+        Shape::Cylinder {
+            centre,
+            axis,
+            radius,
+            length,
+        } => {
+            let mut half = [radius; 3];
+            half[axis.index()] = 0.5 * length;
+            let round = [0, 1, 2].map(|a| a < dimension && a != axis.index());
+            (centre, half.into(), round, radius)
+        }
+    };
+    let used = [0, 1, 2].map(|a| if a < dimension { centre[a] } else { 0.0 });
+    (used, half.into(), round, radius)
+}
+
+/// Half width of the bounding box in the turned lattice's own frame (m).
+fn turned_half(half: [f64; 3], [c, s]: [f64; 2], axis: usize) -> f64 {
+    match axis {
+        0 => c.abs() * half[0] + s.abs() * half[1],
+        1 => s.abs() * half[0] + c.abs() * half[1],
+        _ => half[2],
+    }
+}
+
+/// A rounded, non-negative number as a count; absurd ones saturate.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturating is meant
+fn as_count(value: f64) -> u64 {
+    value as u64
+}

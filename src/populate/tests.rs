@@ -1,0 +1,343 @@
+//! Counts, symmetry, mass, slabs, touch.
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::model::{Lattice, LatticeKind, Shape, Vec3};
+
+fn body(shape: Shape, kind: LatticeKind, spacing: f64, angle: f64) -> Body {
+    Body {
+        name: "body".to_owned(),
+        shape,
+        material: 0,
+        lattice: Lattice {
+            kind,
+            spacing,
+            angle,
+        },
+        velocity: Vec3::zeros(),
+        smoothing_length: 1.3 * spacing,
+    }
+}
+
+fn block(lower: [f64; 3], upper: [f64; 3]) -> Shape {
+    Shape::Box {
+        lower: lower.into(),
+        upper: upper.into(),
+    }
+}
+
+fn ball(radius: f64) -> Shape {
+    Shape::Sphere {
+        centre: Vec3::zeros(),
+        radius,
+    }
+}
+
+fn plate(axis: Axis) -> Shape {
+    Shape::Cylinder {
+        centre: Vec3::new(0.3, -0.2, 0.1),
+        axis,
+        radius: 1.5,
+        length: 0.2,
+    }
+}
+
+const KINDS: [LatticeKind; 2] = [LatticeKind::Cubic, LatticeKind::Hexagonal];
+
+fn planes() -> [SymmetryPlane; 2] {
+    [Axis::X, Axis::Y].map(|axis| SymmetryPlane {
+        axis,
+        position: 0.0,
+    })
+}
+
+fn all(body: &Body, dimension: usize) -> Vec<Site> {
+    sites(body, dimension, &[], None).collect()
+}
+
+fn bits(sites: impl Iterator<Item = Site>) -> Vec<(u64, [u64; 3])> {
+    sites
+        .map(|s| (s.index, s.position.map(f64::to_bits)))
+        .collect()
+}
+
+#[test]
+fn a_box_is_filled_with_whole_layers() {
+    let shape = block([0.0; 3], [1.0, 0.52, 0.38]);
+    let sites = all(&body(shape, LatticeKind::Cubic, 0.1, 0.0), 3);
+    assert_eq!(sites.len(), 10 * 5 * 4);
+    // Centred: the same distance to both faces.
+    let (lower, upper) = bounds(
+        &body(
+            block([0.0; 3], [1.0, 0.52, 0.38]),
+            LatticeKind::Cubic,
+            0.1,
+            0.0,
+        ),
+        3,
+    )
+    .unwrap();
+    for (a, length) in [1.0, 0.52, 0.38].into_iter().enumerate() {
+        assert!((lower[a] - (length - upper[a])).abs() < 1e-15);
+    }
+    assert_eq!(sites.last().unwrap().index, 199);
+}
+
+#[test]
+fn lower_dimensions_leave_the_other_components_zero() {
+    let shape = block([0.0, -1.0, 3.0], [1.0, 1.0, 4.0]);
+    for kind in KINDS {
+        let line = all(&body(shape.clone(), kind, 0.01, 0.0), 1);
+        assert_eq!(line.len(), 100);
+        assert!(line.iter().all(|s| s.position[1..] == [0.0, 0.0]));
+    }
+    let sheet = all(&body(shape, LatticeKind::Cubic, 0.1, 0.0), 2);
+    assert_eq!(sheet.len(), 10 * 20);
+    assert!(sheet.iter().all(|s| s.position[2] == 0.0));
+}
+
+#[test]
+fn the_main_jobs_sphere_and_plate() {
+    let sphere = body(ball(0.3e-3), LatticeKind::Cubic, 0.02e-3, 0.0);
+    // Half-integer points of a ball of radius 15.
+    let expected = (-15..15)
+        .flat_map(|i| (-15..15).flat_map(move |j| (-15..15).map(move |k| (i, j, k))))
+        .filter(|(i, j, k)| {
+            let odd = |n: &i32| (2 * n + 1) * (2 * n + 1);
+            odd(i) + odd(j) + odd(k) < 900
+        })
+        .count();
+    assert_eq!(count(&sphere, 3, &[], None), expected as u64);
+    assert_eq!(4 * count(&sphere, 3, &planes(), None), expected as u64);
+}
+
+#[allow(clippy::cast_precision_loss)] // counts of thousands
+/// Lattice points in a volume differ from the volume by a surface term: within half a spacing
+/// times the surface, and in practice a tenth of it.
+#[test]
+fn mass_is_that_of_the_shape() {
+    let volume = |shape: &Shape| match shape {
+        Shape::Sphere { radius, .. } => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
+        Shape::Cylinder { radius, length, .. } => std::f64::consts::PI * radius.powi(2) * length,
+        Shape::Box { lower, upper } => (upper - lower).product(),
+    };
+    for kind in KINDS {
+        for (shape, spacing, bound) in [
+            (ball(1.0), 0.05, 0.01),
+            (plate(Axis::Z), 0.02, 0.02),
+            (plate(Axis::X), 0.02, 0.08),
+            (block([0.0; 3], [2.0, 1.0, 1.0]), 0.05, 0.04),
+        ] {
+            for angle in [0.0, 0.4] {
+                let body = body(shape.clone(), kind, spacing, angle);
+                let filled = count(&body, 3, &[], None) as f64 * particle_volume(&body, 3);
+                let error = filled / volume(&shape) - 1.0;
+                assert!(error.abs() < bound, "{kind:?} {shape:?} {angle}: {error}");
+            }
+        }
+    }
+}
+
+#[test]
+fn count_is_the_number_of_sites() {
+    for kind in KINDS {
+        for shape in [ball(1.0), plate(Axis::Y), block([0.0; 3], [1.0, 2.0, 0.5])] {
+            for angle in [0.0, 0.3] {
+                let body = body(shape.clone(), kind, 0.1, angle);
+                let sites = all(&body, 3);
+                assert_eq!(sites.len() as u64, count(&body, 3, &[], None));
+                assert!(sites.windows(2).all(|w| w[0].index < w[1].index));
+                assert!(sites.last().unwrap().index < index_end(&body, 3));
+            }
+        }
+    }
+}
+
+/// No two sites are closer than the nearest distance of the lattice, and inner sites have all
+/// their nearest neighbours: 6, 12 (4, 6 in two dimensions).
+#[test]
+fn inner_sites_have_all_their_neighbours() {
+    for (kind, dimension, nearest, neighbours) in [
+        (LatticeKind::Cubic, 3, 1.0, 6),
+        (LatticeKind::Hexagonal, 3, lattice::CLOSE_PACKED, 12),
+        (LatticeKind::Cubic, 2, 1.0, 4),
+        (LatticeKind::Hexagonal, 2, lattice::TRIANGULAR, 6),
+    ] {
+        for angle in [0.0, 0.5] {
+            let sites = all(&body(ball(4.5), kind, 1.0, angle), dimension);
+            for s in &sites {
+                let distances = sites
+                    .iter()
+                    .map(|t| (Vec3::from(s.position) - Vec3::from(t.position)).norm());
+                let close = distances
+                    .filter(|&r| {
+                        assert!(r == 0.0 || r > 0.999 * nearest);
+                        r > 0.0 && r < 1.001 * nearest
+                    })
+                    .count();
+                if Vec3::from(s.position).norm() < 3.0 {
+                    assert_eq!(close, neighbours);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn halves_of_a_cubic_body_are_mirror_images_bit_for_bit() {
+    for shape in [
+        ball(0.3e-3),
+        Shape::Cylinder {
+            centre: Vec3::zeros(),
+            axis: Axis::Z,
+            radius: 1.5e-3,
+            length: 0.2e-3,
+        },
+        block([-0.4e-3; 3], [0.4e-3; 3]),
+    ] {
+        let full = body(shape, LatticeKind::Cubic, 0.02e-3, 0.0);
+        let mut mirrored: Vec<_> = all(&full, 3)
+            .iter()
+            .map(|s| [-s.position[0], s.position[1], s.position[2]].map(f64::to_bits))
+            .collect();
+        let mut here: Vec<_> = all(&full, 3)
+            .iter()
+            .map(|s| s.position.map(f64::to_bits))
+            .collect();
+        mirrored.sort_unstable();
+        here.sort_unstable();
+        assert_eq!(mirrored, here);
+    }
+}
+
+#[test]
+fn a_quarter_is_exactly_its_part_of_the_whole() {
+    for kind in KINDS {
+        let body = body(ball(1.0), kind, 0.07, 0.0);
+        let part =
+            sites(&body, 3, &[], None).filter(|s| s.position[0] > 0.0 && s.position[1] > 0.0);
+        assert_eq!(bits(part), bits(sites(&body, 3, &planes(), None)));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+    /// Any cut into slabs gives each site once, with the same bits.
+    #[test]
+    fn slabs_add_up_to_the_whole(
+        hexagonal in any::<bool>(),
+        angle in prop_oneof![Just(0.0), Just(std::f64::consts::FRAC_PI_2), -3.0..3.0f64],
+        shape in prop_oneof![
+            Just(ball(1.0)), Just(plate(Axis::X)), Just(plate(Axis::Z)),
+            Just(block([-1.0; 3], [0.5, 1.0, 0.3]))
+        ],
+        axis in 0usize..3,
+        spacing in 0.07..0.2f64,
+        mut faces in proptest::collection::vec(-2.0..2.0f64, 0..6),
+        on_site in any::<prop::sample::Index>(),
+        quarter in any::<bool>(),
+    ) {
+        let body = body(shape, KINDS[usize::from(hexagonal)], spacing, angle);
+        let all_planes = planes();
+        let planes = if quarter { &all_planes[..] } else { &[] };
+        let whole = bits(sites(&body, 3, planes, None));
+        // A face exactly on a site must not lose or double it.
+        let there: Vec<Site> = sites(&body, 3, planes, None).collect();
+        if !there.is_empty() {
+            faces.push(on_site.get(&there).position[axis]);
+        }
+        faces.extend([f64::NEG_INFINITY, f64::INFINITY]);
+        faces.sort_by(f64::total_cmp);
+        let mut union: Vec<_> = faces.windows(2).flat_map(|w| {
+            let slab = Slab { axis, lower: w[0], upper: w[1] };
+            assert!(sites(&body, 3, planes, Some(slab))
+                .all(|s| w[0] <= s.position[axis] && s.position[axis] < w[1]));
+            bits(sites(&body, 3, planes, Some(slab)))
+        }).collect();
+        union.sort_unstable();
+        prop_assert_eq!(union, whole);
+    }
+}
+
+/// A thin slab of a body of 10^12 sites must not visit them all.
+#[test]
+fn a_slab_of_a_huge_body_is_cheap() {
+    let body = body(block([0.0; 3], [1e4; 3]), LatticeKind::Cubic, 1.0, 0.0);
+    let slab = Slab {
+        axis: 2,
+        lower: 10.0,
+        upper: 11.0,
+    };
+    assert_eq!(count(&body, 3, &[], Some(slab)), 100_000_000);
+    assert_eq!(index_end(&body, 3), 1_000_000_000_000);
+}
+
+#[test]
+fn touch_leaves_one_mean_spacing() {
+    let plate = body(plate(Axis::Z), LatticeKind::Cubic, 0.02, 0.0);
+    for (kind, forward) in KINDS.into_iter().flat_map(|k| [(k, false), (k, true)]) {
+        let mut sphere = body(ball(0.3), kind, 0.03, 0.2);
+        let moved = touching_distance(&sphere, &plate, 3, Axis::Z, forward).unwrap();
+        let Shape::Sphere { centre, .. } = &mut sphere.shape else {
+            unreachable!()
+        };
+        centre.z += moved;
+        let (a, b) = (bounds(&sphere, 3).unwrap(), bounds(&plate, 3).unwrap());
+        let gap = if forward {
+            b.0[2] - a.1[2]
+        } else {
+            a.0[2] - b.1[2]
+        };
+        assert!((gap - 0.025).abs() < 1e-15);
+    }
+}
+
+/// The table of the theory (physics section 5), four digits.
+#[test]
+fn touching_values_of_cubic_lattices() {
+    let table = [
+        (1, [0.1667, 0.2231, 0.2453, 0.2798]),
+        (2, [0.1594, 0.2152, 0.2367, 0.2734]),
+        (3, [0.1497, 0.2088, 0.2294, 0.2668]),
+    ];
+    for (dimension, row) in table {
+        for (ratio, expected) in [1.0, 1.2, 1.3, 1.5].into_iter().zip(row) {
+            let mut b = body(ball(1.0), LatticeKind::Cubic, 0.02e-3, 0.0);
+            b.smoothing_length = ratio * b.lattice.spacing;
+            let value = touching_value(&b, &b, dimension);
+            assert!(
+                (value - expected).abs() < 5.1e-5,
+                "{dimension} {ratio}: {value}"
+            );
+        }
+    }
+}
+
+/// The half-space sum must agree with the sites that a body in touch really has in front of it.
+#[test]
+fn touching_values_agree_with_real_bodies() {
+    for kind in KINDS {
+        for dimension in [2, 3] {
+            let wall = body(block([-6.0; 3], [6.0; 3]), kind, 1.0, 0.0);
+            let normal = dimension - 1;
+            let top = bounds(&wall, dimension).unwrap().1[normal];
+            let middle = sites(&wall, dimension, &[], None)
+                .filter(|s| s.position[normal].to_bits() == top.to_bits())
+                .map(|s| Vec3::from(s.position))
+                .min_by(|p, q| {
+                    let lateral = |p: &Vec3| p.norm_squared() - p[normal] * p[normal];
+                    lateral(p).total_cmp(&lateral(q))
+                })
+                .unwrap();
+            let mut particle = middle;
+            particle[normal] += 1.0;
+            let h = wall.smoothing_length;
+            let sum: f64 = sites(&wall, dimension, &[], None)
+                .map(|s| (Vec3::from(s.position) - particle).norm())
+                .map(|r| touch::kernel(r, h, dimension))
+                .sum();
+            assert!((sum - touching_value(&wall, &wall, dimension)).abs() < 1e-12);
+        }
+    }
+}

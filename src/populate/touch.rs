@@ -1,0 +1,97 @@
+//! Bodies in touch: the distance that `touch` moves a body by, and the touching value of contact.
+
+use super::bounds;
+use super::lattice::{pitches, shifts};
+use crate::model::{Axis, Body, LatticeKind};
+
+/// How far `body` has to move along `axis` (m, signed) to come into touch with `other`, when it
+/// moves towards larger (`forward`) or smaller coordinates: the outermost particle layers of the
+/// two then lie one mean spacing apart. `None` if a body has no particles.
+#[must_use]
+pub fn touching_distance(
+    body: &Body,
+    other: &Body,
+    dimension: usize,
+    axis: Axis,
+    forward: bool,
+) -> Option<f64> {
+    let a = axis.index();
+    let (lower, upper) = bounds(body, dimension)?;
+    let (other_lower, other_upper) = bounds(other, dimension)?;
+    let gap = 0.5 * (body.lattice.spacing + other.lattice.spacing);
+    Some(if forward {
+        other_lower[a] - gap - upper[a]
+    } else {
+        other_upper[a] + gap - lower[a]
+    })
+}
+
+/// Touching value `C*_{A|B}` of overlap contact: the foreign volume fraction `Σ V_j W_ij` of a
+/// particle of `a` one mean spacing in front of the flat face of a half-space of `b`, with the
+/// cubic B-spline at the mean smoothing length.
+///
+/// The particle stands straight before a particle of the first layer, where the sum is largest, so
+/// that no other place along the face starts with a force. The face of a cubic lattice is a cube
+/// face; that of a hexagonal one is its close-packed layer (normal to z), in two dimensions its
+/// close-packed row.
+#[must_use]
+pub fn touching_value(a: &Body, b: &Body, dimension: usize) -> f64 {
+    let h = 0.5 * (a.smoothing_length + b.smoothing_length);
+    let gap = 0.5 * (a.lattice.spacing + b.lattice.spacing);
+    half_space_fraction(b.lattice.kind, b.lattice.spacing, dimension, gap, h)
+}
+
+/// `Σ V_j W_ij` over a half-space of a lattice whose first layer lies `gap` away.
+fn half_space_fraction(kind: LatticeKind, spacing: f64, dimension: usize, gap: f64, h: f64) -> f64 {
+    let pitch = pitches(kind, dimension).map(|p| p * spacing);
+    // The last axis of the dimension is the normal of the face.
+    let normal = dimension - 1;
+    let reach = |a: usize| {
+        #[allow(clippy::cast_possible_truncation)] // a few layers
+        let layers = (2.0 * h / pitch[a]).ceil() as i64 + 2;
+        layers
+    };
+    let range = |a: usize| match a.cmp(&normal) {
+        std::cmp::Ordering::Less => -reach(a)..=reach(a),
+        std::cmp::Ordering::Equal => 0..=reach(a),
+        std::cmp::Ordering::Greater => 0..=0,
+    };
+    let first = shifts(kind, dimension, 0, 0);
+    let mut sum = 0.0;
+    for k in range(2) {
+        for j in range(1) {
+            let shift = shifts(kind, dimension, j.unsigned_abs(), k.unsigned_abs());
+            for i in range(0) {
+                #[allow(clippy::cast_precision_loss)] // a few layers
+                let mut r = [
+                    i as f64 * pitch[0],
+                    j as f64 * pitch[1],
+                    k as f64 * pitch[2],
+                ];
+                r[0] += (shift[0] - first[0]) * spacing;
+                r[1] += (shift[1] - first[1]) * spacing;
+                r[normal] += gap;
+                sum += kernel(
+                    (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]).sqrt(),
+                    h,
+                    dimension,
+                );
+            }
+        }
+    }
+    sum * (0..dimension).fold(1.0, |v, _| v * spacing)
+}
+
+/// Cubic B-spline of support 2h at distance `r` (m), normalised for the dimension (1/m^d).
+pub(super) fn kernel(r: f64, h: f64, dimension: usize) -> f64 {
+    use std::f64::consts::PI;
+    let norm = match dimension {
+        1 => 2.0 / (3.0 * h),
+        2 => 10.0 / (7.0 * PI * h * h),
+        _ => 1.0 / (PI * h * h * h),
+    };
+    let q = r / h;
+    let far = (2.0 - q).max(0.0);
+    let near = (1.0 - q).max(0.0);
+    norm * (0.25 * far * far * far - near * near * near)
+}

@@ -1,0 +1,202 @@
+//! Cubic B-spline kernel with support 2h (Monaghan & Lattanzio 1985; physics page, section 1).
+
+use std::f64::consts::PI;
+
+use super::lanes::F64x8;
+
+/// The kernel of a number of dimensions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Kernel {
+    dimension: usize,
+    normalisation: f64,
+}
+
+impl Kernel {
+    /// Kernel in 1, 2 or 3 dimensions.
+    ///
+    /// # Panics
+    /// For any other dimension.
+    #[must_use]
+    pub fn new(dimension: usize) -> Self {
+        let normalisation = match dimension {
+            1 => 2.0 / 3.0,
+            2 => 10.0 / (7.0 * PI),
+            3 => 1.0 / PI,
+            _ => panic!("a kernel in {dimension} dimensions"),
+        };
+        Self {
+            dimension,
+            normalisation,
+        }
+    }
+
+    /// Number of dimensions.
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// `σ_d`: 2/3, 10/(7π) or 1/π.
+    #[must_use]
+    pub fn normalisation(&self) -> f64 {
+        self.normalisation
+    }
+
+    /// `x^d`.
+    #[must_use]
+    pub fn power(&self, x: f64) -> f64 {
+        match self.dimension {
+            1 => x,
+            2 => x * x,
+            _ => x * x * x,
+        }
+    }
+
+    /// `W(r, h)` (1/m^d).
+    #[must_use]
+    pub fn value(&self, r: f64, h: f64) -> f64 {
+        let q = r / h;
+        let a = (2.0 - q).max(0.0);
+        let b = (1.0 - q).max(0.0);
+        self.normalisation / self.power(h) * (0.25 * (a * a * a) - b * b * b)
+    }
+
+    /// `W'(r, h) = dW/dr` (1/m^(d+1)); never positive.
+    #[must_use]
+    pub fn slope(&self, r: f64, h: f64) -> f64 {
+        let q = r / h;
+        let a = (2.0 - q).max(0.0);
+        let b = (1.0 - q).max(0.0);
+        self.normalisation / (self.power(h) * h) * (3.0 * (b * b) - 0.75 * (a * a))
+    }
+
+    /// `W''(r, h)` (1/m^(d+2)).
+    #[must_use]
+    pub fn curvature(&self, r: f64, h: f64) -> f64 {
+        let q = r / h;
+        let a = (2.0 - q).max(0.0);
+        let b = (1.0 - q).max(0.0);
+        self.normalisation / (self.power(h) * h * h) * (1.5 * a - 6.0 * b)
+    }
+}
+
+/// How the lanes get `h_ij` and what follows from it.
+pub trait PairScale: Copy + Sync {
+    /// `(1/h_ij, h_ij, σ_d/h_ij^(d+1))` for receivers of `h_i` and a neighbour of `h_j`.
+    fn scale(&self, h_i: F64x8, h_j: f64) -> (F64x8, F64x8, F64x8);
+}
+
+/// One constant smoothing length for all pairs.
+#[derive(Debug, Clone, Copy)]
+pub struct ConstantScale {
+    h: f64,
+    inverse: f64,
+    factor: f64,
+}
+
+impl ConstantScale {
+    /// For a smoothing length `h` (m).
+    #[must_use]
+    pub fn new(kernel: &Kernel, h: f64) -> Self {
+        Self {
+            h,
+            inverse: 1.0 / h,
+            factor: kernel.normalisation() / (kernel.power(h) * h),
+        }
+    }
+}
+
+impl PairScale for ConstantScale {
+    #[inline(always)]
+    fn scale(&self, _: F64x8, _: f64) -> (F64x8, F64x8, F64x8) {
+        (
+            F64x8::splat(self.inverse),
+            F64x8::splat(self.h),
+            F64x8::splat(self.factor),
+        )
+    }
+}
+
+/// `h_ij = ½(h_i + h_j)` in `D` dimensions.
+#[derive(Debug, Clone, Copy)]
+pub struct MeanScale<const D: usize> {
+    normalisation: f64,
+}
+
+impl<const D: usize> MeanScale<D> {
+    /// For a kernel of `D` dimensions.
+    #[must_use]
+    pub fn new(kernel: &Kernel) -> Self {
+        debug_assert_eq!(kernel.dimension(), D);
+        Self {
+            normalisation: kernel.normalisation(),
+        }
+    }
+}
+
+impl<const D: usize> PairScale for MeanScale<D> {
+    #[inline(always)]
+    fn scale(&self, h_i: F64x8, h_j: f64) -> (F64x8, F64x8, F64x8) {
+        let h = (h_i + F64x8::splat(h_j)) * F64x8::splat(0.5);
+        let inverse = F64x8::splat(1.0) / h;
+        let square = inverse * inverse;
+        let factor = match D {
+            1 => square,
+            2 => square * inverse,
+            _ => square * square,
+        };
+        (inverse, h, factor * F64x8::splat(self.normalisation))
+    }
+}
+
+/// `W'/r` of eight pairs from `r`, `1/r` and the pair's scale.
+#[inline(always)]
+pub fn slope_over_distance(r: F64x8, inverse_r: F64x8, inverse_h: F64x8, factor: F64x8) -> F64x8 {
+    let q = r * inverse_h;
+    let zero = F64x8::splat(0.0);
+    let a = (F64x8::splat(2.0) - q).max(zero);
+    let b = (F64x8::splat(1.0) - q).max(zero);
+    let shape = (b * b * F64x8::splat(3.0)) - (a * a * F64x8::splat(0.75));
+    shape * factor * inverse_r
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn integrates_to_one() {
+        for d in 1..=3 {
+            let kernel = Kernel::new(d);
+            let n = 20_000;
+            let sum: f64 = (0..n)
+                .map(|k| {
+                    let r = 2.0 * (f64::from(k) + 0.5) / f64::from(n);
+                    let shell = match d {
+                        1 => 2.0,
+                        2 => 2.0 * PI * r,
+                        _ => 4.0 * PI * r * r,
+                    };
+                    kernel.value(r, 1.0) * shell * 2.0 / f64::from(n)
+                })
+                .sum();
+            assert!((sum - 1.0).abs() < 1e-7, "{d}: {sum}");
+        }
+    }
+
+    #[test]
+    fn slope_and_curvature_are_the_derivatives() {
+        for d in 1..=3 {
+            let kernel = Kernel::new(d);
+            for r in [0.1, 0.7, 1.2, 1.9, 2.4] {
+                let (h, step) = (1.1, 1e-6);
+                let slope =
+                    (kernel.value(r + step, h) - kernel.value(r - step, h)) / (2.0 * step);
+                let curvature =
+                    (kernel.slope(r + step, h) - kernel.slope(r - step, h)) / (2.0 * step);
+                assert!((slope - kernel.slope(r, h)).abs() < 1e-8);
+                assert!((curvature - kernel.curvature(r, h)).abs() < 1e-8);
+            }
+        }
+    }
+}

@@ -1,0 +1,211 @@
+//! Contact in the step: foreign fractions before the exchange of stresses, forces after it.
+
+use rayon::prelude::*;
+
+use super::simulation::Simulation;
+use crate::contact::overlap::{self, Fraction};
+use crate::contact::{BodyReaction, ContactView, Reaction, potential};
+use crate::neighbours::ForeignChunk;
+
+/// Results of each task before they go into the store, kept from step to step.
+#[derive(Default)]
+pub struct ContactPhase {
+    tasks: Vec<Task>,
+}
+
+#[derive(Default)]
+struct Task {
+    fractions: Vec<(usize, Fraction)>,
+    reactions: Vec<Booked>,
+    /// Receiving particle and its body, and what another body does to it.
+    by_body: Vec<(usize, usize, BodyReaction)>,
+    reaction: Reaction,
+}
+
+/// What contact does to one particle.
+#[derive(Clone, Copy)]
+struct Booked {
+    base: usize,
+    force: [f64; 3],
+    from_mirrors: [f64; 3],
+    energy: f64,
+    stiffness: f64,
+    closest: f64,
+    approach: f64,
+}
+
+/// A foreign particle closer than this (in mean spacings) counts as interpenetrated.
+const INTERPENETRATION_DISTANCE: f64 = 0.28;
+/// A particle whose foreign fraction with current volumes exceeds this is enclosed.
+const ENCLOSED_FRACTION: f64 = 0.5;
+
+impl Simulation {
+    /// Foreign fraction, excess and their weights of every particle with foreign neighbours.
+    pub(super) fn contact_fractions(&mut self, dt: f64) {
+        if !self.contact.is_active() {
+            return;
+        }
+        self.run_fractions();
+        let store = &mut self.store;
+        for field in [
+            &mut store.foreign_fraction,
+            &mut store.contact_excess,
+            &mut store.contact_modulus,
+            &mut store.touching_value,
+            &mut store.contact_slope,
+        ] {
+            field.fill(0.0);
+        }
+        let tasks = &mut self.contact_phase.tasks;
+        for (i, fraction) in tasks.iter().flat_map(|task| &task.fractions) {
+            store.foreign_fraction[*i] = fraction.fraction;
+            store.contact_excess[*i] = fraction.excess;
+            store.contact_modulus[*i] = fraction.modulus;
+            store.touching_value[*i] = fraction.touching;
+            store.contact_slope[*i] = fraction.slope;
+        }
+        for (i, fraction) in tasks.iter_mut().flat_map(|task| &mut task.fractions) {
+            // From here on `current` holds the time enclosed.
+            fraction.current = if fraction.current > ENCLOSED_FRACTION {
+                store.enclosed_time[*i] + dt
+            } else {
+                0.0
+            };
+        }
+        store.enclosed_time.fill(0.0);
+        for (i, fraction) in tasks.iter().flat_map(|task| &task.fractions) {
+            store.enclosed_time[*i] = fraction.current;
+        }
+    }
+
+    fn run_fractions(&mut self) {
+        let chunks = self.search.foreign.chunks();
+        self.contact_phase
+            .tasks
+            .resize_with(chunks.len(), Task::default);
+        let view = ContactView {
+            images: self.search.sequence.images(),
+            motion: &self.search.motion,
+            store: &self.store,
+            table: &self.contact,
+        };
+        self.contact_phase
+            .tasks
+            .par_iter_mut()
+            .zip(chunks)
+            .for_each(|(task, chunk)| {
+                task.fractions.clear();
+                for (place, neighbours) in chunk.overlap.iter() {
+                    let base = view.images[place as usize].base();
+                    let relief = view.store.touch_relief[base];
+                    let fraction = overlap::fraction(&view, place, neighbours, relief);
+                    task.fractions.push((base, fraction));
+                }
+            });
+    }
+
+    /// Gives every particle the relief that makes it start free of force; returns how many had
+    /// to be capped on this rank. For the start of a case, before the first forces.
+    pub(super) fn set_touch_relief(&mut self) -> i64 {
+        self.run_fractions();
+        let mut capped = 0;
+        for (i, fraction) in self.contact_phase.tasks.iter().flat_map(|t| &t.fractions) {
+            let (relief, was_capped) = overlap::relief(fraction);
+            self.store.touch_relief[*i] = relief;
+            capped += i64::from(was_capped);
+        }
+        capped
+    }
+
+    /// Contact forces, the energy of contact, and what the time step must know of both.
+    pub(super) fn contact_forces(&mut self) {
+        self.sums.clear_rates();
+        if self.contact.is_active() {
+            self.run_reactions();
+            self.store_reactions();
+        }
+        for force in self.sweeps.from_mirrors.iter().flatten() {
+            self.sums.add_plane_force(force);
+        }
+    }
+
+    fn run_reactions(&mut self) {
+        let view = ContactView {
+            images: self.search.sequence.images(),
+            motion: &self.search.motion,
+            store: &self.store,
+            table: &self.contact,
+        };
+        self.contact_phase
+            .tasks
+            .par_iter_mut()
+            .zip(self.search.foreign.chunks())
+            .for_each(|(task, chunk)| task.react(&view, chunk));
+    }
+
+    fn store_reactions(&mut self) {
+        let (store, sums) = (&mut self.store, &mut self.sums);
+        store.contact_acceleration.fill([0.0; 3]);
+        store.contact_energy.fill(0.0);
+        store.contact_stiffness.fill(0.0);
+        for booked in self.contact_phase.tasks.iter().flat_map(|t| &t.reactions) {
+            let i = booked.base;
+            let per_mass = 1.0 / store.mass[i];
+            for a in 0..3 {
+                store.contact_acceleration[i][a] += booked.force[a] * per_mass;
+            }
+            store.contact_energy[i] += booked.energy;
+            store.contact_stiffness[i] += booked.stiffness;
+            store.approach_speed[i] = store.approach_speed[i].max(booked.approach);
+            sums.contact_energy.add(booked.energy);
+            sums.add_plane_force(&booked.from_mirrors);
+            let inside = booked.closest < INTERPENETRATION_DISTANCE
+                || store.enclosed_time[i] > sums.enclosed_limit;
+            sums.note_particle(inside, booked.closest, store.foreign_fraction[i]);
+        }
+        for (i, body, reaction) in self.contact_phase.tasks.iter().flat_map(|t| &t.by_body) {
+            let stiffness = store.contact_stiffness[*i];
+            let dt = if stiffness > 0.0 {
+                2.0 * self.case.time_step.contact * (store.mass[*i] / stiffness).sqrt()
+            } else {
+                f64::INFINITY
+            };
+            sums.note_pair(*body, reaction, store.contact_excess[*i], dt);
+        }
+    }
+}
+
+impl Task {
+    /// Reactions of one chunk's receivers, mode after mode.
+    fn react(&mut self, view: &ContactView, chunk: &ForeignChunk) {
+        self.reactions.clear();
+        self.by_body.clear();
+        for (place, neighbours) in chunk.overlap.iter() {
+            self.reaction.clear();
+            overlap::react(view, place, neighbours, &mut self.reaction);
+            self.keep(view, place);
+        }
+        for (place, neighbours) in chunk.potential.iter() {
+            self.reaction.clear();
+            potential::react(view, place, neighbours, &mut self.reaction);
+            self.keep(view, place);
+        }
+    }
+
+    fn keep(&mut self, view: &ContactView, place: u32) {
+        let base = view.images[place as usize].base();
+        let body = view.store.body[base] as usize;
+        let reaction = &self.reaction;
+        self.reactions.push(Booked {
+            base,
+            force: reaction.force,
+            from_mirrors: reaction.from_mirrors,
+            energy: reaction.energy,
+            stiffness: reaction.stiffness,
+            closest: reaction.closest,
+            approach: reaction.approach,
+        });
+        self.by_body
+            .extend(reaction.by_body.iter().map(|&entry| (base, body, entry)));
+    }
+}

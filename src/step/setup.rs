@@ -1,0 +1,322 @@
+//! From a case to the particles of this rank at time zero, or from saved particles to a run.
+
+use thiserror::Error;
+
+use super::contact_phase::ContactPhase;
+use super::search::Search;
+use super::simulation::{Simulation, StepError};
+use super::state::{PairState, Reason, RunState, Totals, Worst};
+use super::sums::StepSums;
+use super::sweeps::Sweeps;
+use super::timers::Timers;
+use crate::comm::Comm;
+use crate::contact::ContactTable;
+use crate::domain::{Halo, Histogram, Migration, Mirrors, Slabs, balance};
+use crate::model::Case;
+use crate::neighbours::{ColumnGrid, Image};
+use crate::particles::ParticleStore;
+use crate::populate::{self, Slab};
+
+/// Why a case cannot start; the same on all ranks.
+#[derive(Debug, Clone, Error)]
+pub enum SetupError {
+    /// No particles at all.
+    #[error("the case has no particles: check shapes, spacings and symmetry planes")]
+    Empty,
+    /// More than the program can number on one rank.
+    #[error("rank {rank} would hold {count} particles, more than {limit}: use more ranks")]
+    TooMany {
+        /// The rank.
+        rank: usize,
+        /// Its particles.
+        count: usize,
+        /// The limit.
+        limit: usize,
+    },
+    /// The lattices need more identities than there are.
+    #[error("the bodies' lattices have too many sites to number; use larger spacings")]
+    TooManySites,
+    /// The first evaluation failed.
+    #[error(transparent)]
+    Step(#[from] StepError),
+}
+
+/// Box of all sites above the symmetry planes, by body.
+type Boxes = Vec<([f64; 3], [f64; 3])>;
+
+impl Simulation {
+    /// Fills the bodies of a case, each rank its own slab, and evaluates the first forces.
+    /// Collective.
+    ///
+    /// # Errors
+    /// The same on all ranks if the case has no particles or too many, or blows up at once.
+    pub fn start(case: Case, comm: &Comm) -> Result<Self, SetupError> {
+        let mut simulation = Self::empty(case, comm)?;
+        simulation.populate(comm)?;
+        simulation.begin(comm)?;
+        Ok(simulation)
+    }
+
+    /// Takes up a run from its saved scalar state and any share of its saved particles.
+    /// Collective.
+    ///
+    /// # Errors
+    /// As [`Self::start`].
+    pub fn resume(
+        case: Case,
+        comm: &Comm,
+        state: RunState,
+        store: ParticleStore,
+    ) -> Result<Self, SetupError> {
+        let mut simulation = Self::empty(case, comm)?;
+        simulation.store = store;
+        simulation.state = state;
+        simulation.slabs = balance(
+            comm,
+            &simulation.slabs,
+            &simulation.store.position[..simulation.store.owned()],
+            &simulation.store.work,
+            &mut simulation.histogram,
+        );
+        let slabs = simulation.slabs.clone();
+        simulation
+            .migration
+            .migrate(comm, &slabs, &mut simulation.store);
+        simulation.limit_count(comm)?;
+        Ok(simulation)
+    }
+
+    /// Everything but particles.
+    fn empty(case: Case, comm: &Comm) -> Result<Self, SetupError> {
+        let boxes = body_boxes(&case).ok_or(SetupError::Empty)?;
+        let contact = ContactTable::new(&case);
+        let longest = longest_axis(&boxes);
+        let axis = case.domain.axis.map_or(longest, crate::model::Axis::index);
+        let grids = group_grids(&case, &contact, &boxes, longest);
+        let pairs = contact.active_pairs();
+        let speed = case.impact_speed();
+        let spacing = case
+            .bodies
+            .iter()
+            .map(|b| b.lattice.spacing)
+            .fold(0.0, f64::max);
+        let enclosed_limit = if speed > 0.0 {
+            2.0 * spacing / speed
+        } else {
+            f64::INFINITY
+        };
+        Ok(Self {
+            store: ParticleStore::default(),
+            state: fresh_state(pairs.len()),
+            timers: Timers::default(),
+            poison: false,
+            wishes: 0,
+            agreed_wishes: 0,
+            updates: 0,
+            slabs: Slabs::new(axis, vec![f64::INFINITY; comm.size() - 1]),
+            histogram: Histogram::default(),
+            migration: Migration::default(),
+            halo: Halo::new(axis, Mirrors::new(&case.symmetry)),
+            search: Search::new(grids),
+            sweeps: Sweeps::new(&case, &contact.kernel),
+            contact_phase: ContactPhase::default(),
+            sums: StepSums::new(pairs, enclosed_limit),
+            scratch: Vec::new(),
+            order: Vec::new(),
+            reference_h: case.bodies.iter().map(|b| b.smoothing_length).collect(),
+            contact,
+            case,
+        })
+    }
+
+    /// Creates the particles of this rank's slab, and no others.
+    fn populate(&mut self, comm: &Comm) -> Result<(), SetupError> {
+        let boxes = body_boxes(&self.case).ok_or(SetupError::Empty)?;
+        self.slabs = first_slabs(&self.case, comm, &boxes, self.slabs.axis, &mut self.histogram);
+        let (lower, upper) = self.slabs.range(comm.rank());
+        let slab = Slab {
+            axis: self.slabs.axis,
+            lower,
+            upper,
+        };
+        let case = &self.case;
+        let mut first_id = 0_u64;
+        for (b, body) in case.bodies.iter().enumerate() {
+            let material = &case.materials[body.material];
+            let mass = material.reference_density * populate::particle_volume(body, case.dimension);
+            let velocity = body.velocity.into();
+            for site in populate::sites(body, case.dimension, &case.symmetry, Some(slab)) {
+                let store = &mut self.store;
+                let i = store.owned();
+                store.resize_owned(i + 1);
+                store.id[i] = first_id + site.index;
+                store.body[i] = u32::try_from(b).unwrap_or(u32::MAX);
+                store.mass[i] = mass;
+                store.position[i] = site.position;
+                store.velocity[i] = velocity;
+                store.predicted_velocity[i] = velocity;
+                store.density[i] = material.reference_density;
+                store.predicted_density[i] = material.reference_density;
+                store.smoothing_length[i] = body.smoothing_length;
+            }
+            first_id = first_id
+                .checked_add(populate::index_end(body, case.dimension))
+                .filter(|&id| id < 1 << 62)
+                .ok_or(SetupError::TooManySites)?;
+        }
+        self.limit_count(comm)
+    }
+
+    fn limit_count(&self, comm: &Comm) -> Result<(), SetupError> {
+        let count = self.store.owned();
+        let mut words = [count as u64];
+        comm.sum_u64(&mut words);
+        if words[0] == 0 {
+            return Err(SetupError::Empty);
+        }
+        // Halo particles and images need numbers too.
+        let limit = Image::MAX_PARTICLES / 2;
+        let mut most = [count as u64];
+        comm.max_u64(&mut most);
+        if most[0] > limit as u64 {
+            return Err(SetupError::TooMany {
+                rank: comm.rank(),
+                count,
+                limit,
+            });
+        }
+        Ok(())
+    }
+
+    /// First forces, sums and time step.
+    fn begin(&mut self, comm: &Comm) -> Result<(), SetupError> {
+        // The first pass finds the foreign fractions that contact is to forgive, and the work.
+        self.evaluate(comm, 0.0);
+        let mut capped = [self.set_touch_relief()];
+        comm.sum_i64(&mut capped);
+        self.state.capped_reliefs = capped[0];
+        self.restore_order();
+        self.evaluate(comm, 0.0);
+        self.kick(0.0);
+        self.book_step(comm, 0.0);
+        self.state.initial = self.totals(comm);
+        self.state.initial.contact_energy = self.state.contact_energy;
+        self.state.worst = Worst::default();
+        self.diagnose(comm);
+        self.vote(comm)?;
+        Ok(())
+    }
+}
+
+fn fresh_state(pairs: usize) -> RunState {
+    RunState {
+        step: 0,
+        time: 0.0,
+        dt: 0.0,
+        dt_reason: Reason::Sound,
+        last_dt: 0.0,
+        last_reason: Reason::Sound,
+        initial: Totals::default(),
+        totals: Totals::default(),
+        contact_energy: 0.0,
+        contact_work: 0.0,
+        plane_force: [0.0; 3],
+        plane_impulse: [0.0; 3],
+        pairs: vec![PairState::default(); pairs],
+        capped_reliefs: 0,
+        interpenetrated: 0,
+        worst: Worst::default(),
+    }
+}
+
+/// Boxes of the bodies' sites (m), cut at the symmetry planes; `None` if there are no sites.
+fn body_boxes(case: &Case) -> Option<Boxes> {
+    let boxes: Boxes = case
+        .bodies
+        .iter()
+        .filter_map(|body| populate::bounds(body, case.dimension))
+        .map(|(mut lower, upper)| {
+            for plane in &case.symmetry {
+                let a = plane.axis.index();
+                lower[a] = lower[a].max(plane.position);
+            }
+            (lower, upper)
+        })
+        .collect();
+    (boxes.len() == case.bodies.len() && !boxes.is_empty()).then_some(boxes)
+}
+
+fn join(boxes: impl IntoIterator<Item = ([f64; 3], [f64; 3])>) -> ([f64; 3], [f64; 3]) {
+    let mut all = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for (lower, upper) in boxes {
+        for a in 0..3 {
+            all.0[a] = all.0[a].min(lower[a]);
+            all.1[a] = all.1[a].max(upper[a]);
+        }
+    }
+    all
+}
+
+fn longest_axis(boxes: &Boxes) -> usize {
+    let (lower, upper) = join(boxes.iter().copied());
+    (1..3).fold(0, |best, a| {
+        if upper[a] - lower[a] > upper[best] - lower[best] {
+            a
+        } else {
+            best
+        }
+    })
+}
+
+/// The column grid of each group of bodies: a function of the case alone.
+fn group_grids(
+    case: &Case,
+    contact: &ContactTable,
+    boxes: &Boxes,
+    along: usize,
+) -> Vec<ColumnGrid> {
+    (0..contact.group_count())
+        .map(|group| {
+            let members = || (0..case.bodies.len()).filter(|&b| contact.groups[b] == group);
+            let (lower, upper) = join(members().map(|b| boxes[b]));
+            let spacing = members()
+                .map(|b| case.bodies[b].lattice.spacing)
+                .fold(0.0, f64::max);
+            ColumnGrid::new(lower, upper, spacing, along)
+        })
+        .collect()
+}
+
+/// Slabs with an even number of sites. Every rank counts the sites of an even share of space
+/// without creating them.
+fn first_slabs(
+    case: &Case,
+    comm: &Comm,
+    boxes: &Boxes,
+    axis: usize,
+    histogram: &mut Histogram,
+) -> Slabs {
+    if comm.size() == 1 {
+        return Slabs::new(axis, Vec::new());
+    }
+    let (lower, upper) = join(boxes.iter().copied());
+    let (lower, upper) = (lower[axis], upper[axis]);
+    histogram.reset(lower, upper, comm.size());
+    #[allow(clippy::cast_precision_loss, reason = "few ranks")]
+    let cut = |rank: usize| match rank {
+        0 => f64::NEG_INFINITY,
+        r if r == comm.size() => f64::INFINITY,
+        r => lower + (upper - lower) * (r as f64 / comm.size() as f64),
+    };
+    let share = Slab {
+        axis,
+        lower: cut(comm.rank()),
+        upper: cut(comm.rank() + 1),
+    };
+    for body in &case.bodies {
+        for site in populate::sites(body, case.dimension, &case.symmetry, Some(share)) {
+            histogram.add(site.position[axis], 1);
+        }
+    }
+    Slabs::new(axis, histogram.split(comm))
+}

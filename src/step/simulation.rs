@@ -1,0 +1,184 @@
+//! The simulation: everything a rank holds, and one step of it.
+
+use thiserror::Error;
+
+use super::contact_phase::ContactPhase;
+use super::search::Search;
+use super::state::{Reason, RunState};
+use super::sums::StepSums;
+use super::sweeps::Sweeps;
+use super::timers::{Phase, Timers};
+use crate::comm::Comm;
+use crate::contact::ContactTable;
+use crate::domain::{Halo, Histogram, Migration, Slabs, balance};
+use crate::model::Case;
+use crate::particles::{FieldUse, ParticleStore};
+
+/// Why a step failed; the same on all ranks.
+#[derive(Debug, Clone, Error)]
+pub enum StepError {
+    /// A number left the range of numbers.
+    #[error(
+        "step {step}: particle {id} has a non-finite or absurd state ({detail}); \
+         a smaller courant factor or a look at the last snapshot may tell why"
+    )]
+    NotFinite {
+        /// Step in which it was found.
+        step: u64,
+        /// Identity of the particle.
+        id: u64,
+        /// What was found.
+        detail: String,
+    },
+}
+
+/// One rank's part of a running case.
+pub struct Simulation {
+    /// The case.
+    pub case: Case,
+    /// This rank's particles.
+    pub store: ParticleStore,
+    /// The scalar state, equal on all ranks.
+    pub state: RunState,
+    /// Seconds by phase.
+    pub timers: Timers,
+    /// Fill everything that is not state with NaN between steps: for tests.
+    pub poison: bool,
+    /// What this rank wishes (a set of bits): all ranks' wishes are joined by the next step's vote.
+    pub wishes: u64,
+    /// The joined wishes of all ranks as of the last vote.
+    pub agreed_wishes: u64,
+    /// Particle updates that this rank has made.
+    pub updates: u64,
+    pub(super) contact: ContactTable,
+    pub(super) slabs: Slabs,
+    pub(super) histogram: Histogram,
+    pub(super) migration: Migration,
+    pub(super) halo: Halo,
+    pub(super) search: Search,
+    pub(super) sweeps: Sweeps,
+    pub(super) contact_phase: ContactPhase,
+    pub(super) sums: StepSums,
+    pub(super) scratch: Vec<u64>,
+    pub(super) order: Vec<u32>,
+    pub(super) reference_h: Vec<f64>,
+}
+
+impl Simulation {
+    /// Whether the case has reached its end.
+    #[must_use]
+    pub fn is_finished(&self) -> bool {
+        self.state.time >= self.case.run.end_time
+            || self.case.run.max_steps.is_some_and(|n| self.state.step >= n)
+    }
+
+    /// One step of kick–drift–kick. Collective.
+    ///
+    /// # Errors
+    /// The same on all ranks if any particle's state is no longer a number.
+    pub fn advance(&mut self, comm: &Comm) -> Result<(), StepError> {
+        let (dt, reason) = self.next_step();
+        if self.poison {
+            self.store.poison();
+        }
+        self.timers.skip();
+        self.kick_and_drift(dt);
+        self.timers.lap(Phase::Integrate);
+        self.balance_work(comm);
+        self.timers.lap(Phase::Balance);
+        self.migration.migrate(comm, &self.slabs, &mut self.store);
+        self.timers.lap(Phase::Migrate);
+        self.evaluate(comm, dt);
+        self.kick(dt);
+        self.timers.lap(Phase::Integrate);
+        self.state.step += 1;
+        self.state.time = match reason {
+            Reason::End => self.case.run.end_time,
+            _ => self.state.time + dt,
+        };
+        (self.state.last_dt, self.state.last_reason) = (dt, reason);
+        self.book_step(comm, dt);
+        self.vote(comm)?;
+        self.updates += self.store.owned() as u64;
+        self.timers.lap(Phase::Vote);
+        Ok(())
+    }
+
+    /// Stress, accelerations and rates at the current positions, from the predicted velocities,
+    /// densities and energies.
+    pub(super) fn evaluate(&mut self, comm: &Comm, dt: f64) {
+        self.exchange_motion(comm);
+        self.timers.lap(Phase::HaloMotion);
+        self.find_neighbours();
+        self.timers.lap(Phase::Neighbours);
+        self.velocity_gradient_and_material(dt);
+        self.timers.lap(Phase::Material);
+        self.contact_fractions(dt);
+        self.timers.lap(Phase::ContactFractions);
+        self.exchange_stress(comm);
+        self.timers.lap(Phase::HaloStress);
+        self.momentum_and_energy();
+        self.timers.lap(Phase::Momentum);
+        self.contact_forces();
+        self.timers.lap(Phase::ContactForces);
+    }
+
+    fn balance_work(&mut self, comm: &Comm) {
+        let every = self.case.domain.balance_every;
+        if every == 0 || !self.state.step.is_multiple_of(every) {
+            return;
+        }
+        self.restore_order();
+        if comm.size() > 1 {
+            let positions = &self.store.position[..self.store.owned()];
+            let work = &self.store.work;
+            self.slabs = balance(comm, &self.slabs, positions, work, &mut self.histogram);
+        }
+    }
+
+    fn exchange_motion(&mut self, comm: &Comm) {
+        let reference_h = &self.reference_h;
+        self.halo.post_motion(comm, &mut self.store, |store, i| {
+            store.smoothing_length[i].max(reference_h[store.body[i] as usize])
+        });
+        self.halo.finish_motion(&mut self.store);
+    }
+
+    fn exchange_stress(&mut self, comm: &Comm) {
+        let uses = if self.contact.is_active() {
+            FieldUse::HALO_FORCES
+        } else {
+            FieldUse::HALO_STRESS
+        };
+        self.halo.post(comm, &self.store, uses);
+        self.halo.finish(&mut self.store, uses);
+    }
+
+    /// Bytes that this rank holds in particle arrays, lists and buffers.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.store.memory() + self.search.memory() + self.sweeps.memory()
+    }
+
+    /// Messages and bytes that this rank has sent.
+    #[must_use]
+    pub fn traffic(&self) -> (u64, u64) {
+        let (halo, migration) = (self.halo.traffic(), self.migration.traffic());
+        (
+            halo.messages + migration.messages,
+            halo.bytes + migration.bytes,
+        )
+    }
+
+    /// The faces between slabs (m) and their axis.
+    #[must_use]
+    pub fn slabs(&self) -> &Slabs {
+        &self.slabs
+    }
+
+    /// The contact table.
+    #[must_use]
+    pub fn contact(&self) -> &ContactTable {
+        &self.contact
+    }
+}

@@ -1,0 +1,134 @@
+//! The scalar state of a run: what a step reads before it writes it, beside the particles.
+
+use serde::{Deserialize, Serialize};
+
+/// What limited a time step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Reason {
+    /// Sound and viscosity.
+    Sound,
+    /// Acceleration.
+    Force,
+    /// Stiffness of contact.
+    Contact,
+    /// The input's upper bound.
+    Maximum,
+    /// The end of the case.
+    End,
+}
+
+impl Reason {
+    /// All reasons, in the order of ties.
+    pub const ALL: [Self; 5] = [
+        Self::Sound,
+        Self::Force,
+        Self::Contact,
+        Self::Maximum,
+        Self::End,
+    ];
+
+    /// Name in histories.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        ["sound", "force", "contact", "maximum", "end"][self as usize]
+    }
+}
+
+/// Ledger of one pair of bodies.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct PairState {
+    /// Force of the second body on the first now (N).
+    pub force: [f64; 3],
+    /// Its time integral (N s).
+    pub impulse: [f64; 3],
+    /// Contact energy between the two now (J).
+    pub energy: f64,
+    /// Particles with excess now.
+    pub touching: i64,
+    /// Largest excess now.
+    pub largest_excess: f64,
+    /// Smallest distance between the two now, in mean spacings; absent when none is in reach.
+    pub closest: Option<f64>,
+    /// The contact criterion now (s); absent without contact force.
+    pub contact_dt: Option<f64>,
+}
+
+/// Sums over all particles (SI).
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Totals {
+    /// `Σ ½ m v²` (J).
+    pub kinetic_energy: f64,
+    /// `Σ m e` (J).
+    pub internal_energy: f64,
+    /// Φ (J).
+    pub contact_energy: f64,
+    /// `Σ m v` (kg m/s).
+    pub momentum: [f64; 3],
+    /// `Σ |m v|` (kg m/s).
+    pub momentum_scale: f64,
+}
+
+impl Totals {
+    /// Kinetic, internal and contact energy together (J).
+    #[must_use]
+    pub fn energy(&self) -> f64 {
+        self.kinetic_energy + self.internal_energy + self.contact_energy
+    }
+}
+
+/// The scalar state of a run; equal on all ranks, saved with each checkpoint.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunState {
+    /// Steps done.
+    pub step: u64,
+    /// Time (s).
+    pub time: f64,
+    /// The next time step by vote (s); the end of the case may clip it.
+    pub dt: f64,
+    /// What limits it.
+    pub dt_reason: Reason,
+    /// The time step just done (s).
+    pub last_dt: f64,
+    /// What limited that.
+    pub last_reason: Reason,
+    /// Sums at the start.
+    pub initial: Totals,
+    /// Sums at the last diagnosis.
+    pub totals: Totals,
+    /// Contact energy after the last step (J).
+    pub contact_energy: f64,
+    /// Work done by contact forces on all bodies so far (J).
+    pub contact_work: f64,
+    /// Force of the symmetry planes on the model now (N).
+    pub plane_force: [f64; 3],
+    /// Its time integral, particles that crossed a plane included (N s).
+    pub plane_impulse: [f64; 3],
+    /// Ledgers of the pairs of bodies in contact.
+    pub pairs: Vec<PairState>,
+    /// Particles whose relief was capped at the start.
+    pub capped_reliefs: i64,
+    /// Interpenetrated particles now.
+    pub interpenetrated: i64,
+    /// Largest values over the run.
+    pub worst: Worst,
+}
+
+/// Largest deviations over a run.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Worst {
+    /// |total energy − first value| / initial kinetic energy.
+    pub energy_error: f64,
+    /// |contact work + Φ − Φ(0)| / initial kinetic energy.
+    pub contact_defect: f64,
+    /// |momentum − first value − impulse of the planes| / Σ|m v| at the start, by component.
+    pub momentum_error: [f64; 3],
+    /// Interpenetrated particles.
+    pub interpenetrated: i64,
+    /// Smallest foreign distance in mean spacings.
+    pub closest: Option<f64>,
+    /// Largest foreign fraction.
+    pub foreign_fraction: f64,
+    /// Steps that the contact criterion limited.
+    pub contact_limited_steps: u64,
+}

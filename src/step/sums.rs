@@ -1,0 +1,321 @@
+//! What a step adds up over all particles and ranks: exact sums, counts and extremes.
+
+use rayon::prelude::*;
+
+use super::search::GRAIN;
+use super::simulation::Simulation;
+use super::state::{PairState, Totals};
+use crate::comm::Comm;
+use crate::contact::BodyReaction;
+use crate::diagnose::exact_sum::ExactSum;
+use crate::particles::ParticleStore;
+
+/// Sums of one step, first of this rank, then (after [`StepSums::reduce`]) of all.
+pub struct StepSums {
+    /// How long a particle may be enclosed before it counts as interpenetrated (s).
+    pub(super) enclosed_limit: f64,
+    pub(super) contact_work: ExactSum,
+    pub(super) contact_energy: ExactSum,
+    pub(super) crossing_impulse: [ExactSum; 3],
+    plane_force: [ExactSum; 3],
+    pair_bodies: Vec<[usize; 2]>,
+    pairs: Vec<PairSums>,
+    interpenetrated: i64,
+    closest: f64,
+    foreign_fraction: f64,
+    limbs: Vec<i64>,
+    extremes: Vec<u64>,
+}
+
+struct PairSums {
+    force: [ExactSum; 3],
+    energy: ExactSum,
+    touching: i64,
+    largest_excess: f64,
+    closest: f64,
+    contact_dt: f64,
+}
+
+impl Default for PairSums {
+    fn default() -> Self {
+        Self {
+            force: Default::default(),
+            energy: ExactSum::default(),
+            touching: 0,
+            largest_excess: 0.0,
+            closest: f64::INFINITY,
+            contact_dt: f64::INFINITY,
+        }
+    }
+}
+
+impl StepSums {
+    pub(super) fn new(pair_bodies: Vec<[usize; 2]>, enclosed_limit: f64) -> Self {
+        Self {
+            enclosed_limit,
+            contact_work: ExactSum::default(),
+            contact_energy: ExactSum::default(),
+            crossing_impulse: Default::default(),
+            plane_force: Default::default(),
+            pairs: pair_bodies.iter().map(|_| PairSums::default()).collect(),
+            pair_bodies,
+            interpenetrated: 0,
+            closest: f64::INFINITY,
+            foreign_fraction: 0.0,
+            limbs: Vec::new(),
+            extremes: Vec::new(),
+        }
+    }
+
+    /// Forgets what belongs to the last positions; work and impulses of the step stay.
+    pub(super) fn clear_rates(&mut self) {
+        self.contact_energy = ExactSum::default();
+        self.plane_force = Default::default();
+        self.pairs.fill_with(PairSums::default);
+        self.interpenetrated = 0;
+        self.closest = f64::INFINITY;
+        self.foreign_fraction = 0.0;
+    }
+
+    pub(super) fn add_plane_force(&mut self, force: &[f64; 3]) {
+        for a in 0..3 {
+            self.plane_force[a].add(force[a]);
+        }
+    }
+
+    pub(super) fn note_particle(&mut self, inside: bool, closest: f64, fraction: f64) {
+        self.interpenetrated += i64::from(inside);
+        self.closest = self.closest.min(closest);
+        self.foreign_fraction = self.foreign_fraction.max(fraction);
+    }
+
+    /// Books what a body does to a particle of `body` with excess `excess` and contact step `dt`.
+    pub(super) fn note_pair(&mut self, body: usize, reaction: &BodyReaction, excess: f64, dt: f64) {
+        let bodies = [body.min(reaction.body), body.max(reaction.body)];
+        let Some(index) = self.pair_bodies.iter().position(|&pair| pair == bodies) else {
+            return;
+        };
+        let pair = &mut self.pairs[index];
+        if body == bodies[0] {
+            for a in 0..3 {
+                pair.force[a].add(reaction.force[a]);
+            }
+        }
+        pair.energy.add(reaction.energy);
+        pair.touching += i64::from(excess > 0.0);
+        pair.largest_excess = pair.largest_excess.max(excess);
+        pair.closest = pair.closest.min(reaction.closest);
+        pair.contact_dt = pair.contact_dt.min(dt);
+    }
+
+    fn exact(&mut self) -> impl Iterator<Item = &mut ExactSum> {
+        [&mut self.contact_work, &mut self.contact_energy]
+            .into_iter()
+            .chain(&mut self.crossing_impulse)
+            .chain(&mut self.plane_force)
+            .chain(
+                self.pairs
+                    .iter_mut()
+                    .flat_map(|pair| pair.force.iter_mut().chain([&mut pair.energy])),
+            )
+    }
+
+    /// Joins the sums of all ranks.
+    fn reduce(&mut self, comm: &Comm) {
+        if comm.size() == 1 {
+            return;
+        }
+        let mut limbs = std::mem::take(&mut self.limbs);
+        limbs.clear();
+        gather_limbs(self.exact(), &mut limbs);
+        limbs.push(self.interpenetrated);
+        limbs.extend(self.pairs.iter().map(|pair| pair.touching));
+        comm.sum_i64(&mut limbs);
+        let mut rest = scatter_limbs(self.exact(), &limbs).iter();
+        let mut next = || rest.next().copied().unwrap_or(0);
+        self.interpenetrated = next();
+        for pair in &mut self.pairs {
+            pair.touching = next();
+        }
+        self.limbs = limbs;
+        self.reduce_extremes(comm);
+    }
+
+    /// Positive doubles order as their bits do, and a largest value is the smallest complement.
+    fn reduce_extremes(&mut self, comm: &Comm) {
+        let mut bits = std::mem::take(&mut self.extremes);
+        bits.clear();
+        bits.extend([self.closest.to_bits(), !self.foreign_fraction.to_bits()]);
+        for pair in &self.pairs {
+            bits.extend([
+                pair.closest.to_bits(),
+                pair.contact_dt.to_bits(),
+                !pair.largest_excess.to_bits(),
+            ]);
+        }
+        comm.min_u64(&mut bits);
+        self.closest = f64::from_bits(bits[0]);
+        self.foreign_fraction = f64::from_bits(!bits[1]);
+        for (pair, bits) in self.pairs.iter_mut().zip(bits[2..].chunks_exact(3)) {
+            pair.closest = f64::from_bits(bits[0]);
+            pair.contact_dt = f64::from_bits(bits[1]);
+            pair.largest_excess = f64::from_bits(!bits[2]);
+        }
+        self.extremes = bits;
+    }
+}
+
+fn gather_limbs<'a>(sums: impl Iterator<Item = &'a mut ExactSum>, limbs: &mut Vec<i64>) {
+    for sum in sums {
+        sum.normalise();
+        limbs.extend_from_slice(sum.limbs());
+    }
+}
+
+/// Gives the sums their limbs back; returns what is left of `limbs`.
+fn scatter_limbs<'a, 'b>(
+    sums: impl Iterator<Item = &'a mut ExactSum>,
+    mut limbs: &'b [i64],
+) -> &'b [i64] {
+    for sum in sums {
+        let (own, rest) = limbs.split_at(sum.limbs().len());
+        sum.limbs_mut().copy_from_slice(own);
+        limbs = rest;
+    }
+    limbs
+}
+
+impl Simulation {
+    /// Impulse of the symmetry planes in the first half of a step.
+    pub(super) fn book_plane_force(&mut self, dt: f64) {
+        for a in 0..3 {
+            self.state.plane_impulse[a] += 0.5 * dt * self.state.plane_force[a];
+        }
+        for pair in &mut self.state.pairs {
+            for a in 0..3 {
+                pair.impulse[a] += 0.5 * dt * pair.force[a];
+            }
+        }
+    }
+
+    /// Joins the sums of all ranks into the state, after the second half of a step `dt` (s).
+    pub(super) fn book_step(&mut self, comm: &Comm, dt: f64) {
+        let (sums, state) = (&mut self.sums, &mut self.state);
+        if self.contact.is_active() || !self.halo.mirrors().is_empty() {
+            sums.reduce(comm);
+        }
+        state.contact_energy = sums.contact_energy.value();
+        state.contact_work += sums.contact_work.value();
+        sums.contact_work = ExactSum::default();
+        for a in 0..3 {
+            state.plane_force[a] = sums.plane_force[a].value();
+            state.plane_impulse[a] +=
+                0.5 * dt * state.plane_force[a] + sums.crossing_impulse[a].value();
+            sums.crossing_impulse[a] = ExactSum::default();
+        }
+        for (pair, sum) in state.pairs.iter_mut().zip(&sums.pairs) {
+            let finite = |x: f64| x.is_finite().then_some(x);
+            let force: [f64; 3] = std::array::from_fn(|a| sum.force[a].value());
+            *pair = PairState {
+                force,
+                impulse: std::array::from_fn(|a| pair.impulse[a] + 0.5 * dt * force[a]),
+                energy: sum.energy.value(),
+                touching: sum.touching,
+                largest_excess: sum.largest_excess,
+                closest: finite(sum.closest),
+                contact_dt: finite(sum.contact_dt),
+            };
+        }
+        state.interpenetrated = sums.interpenetrated;
+        let worst = &mut state.worst;
+        worst.interpenetrated = worst.interpenetrated.max(sums.interpenetrated);
+        worst.foreign_fraction = worst.foreign_fraction.max(sums.foreign_fraction);
+        if sums.closest.is_finite() {
+            let closest = worst.closest.map_or(sums.closest, |c| c.min(sums.closest));
+            worst.closest = Some(closest);
+        }
+        let scale = state.initial.kinetic_energy;
+        if scale > 0.0 {
+            let defect = state.contact_work + state.contact_energy - state.initial.contact_energy;
+            worst.contact_defect = worst.contact_defect.max(defect.abs() / scale);
+        }
+    }
+
+    /// Sums over all particles, into the state, with the errors that follow from them.
+    /// Collective.
+    pub fn diagnose(&mut self, comm: &Comm) {
+        let totals = self.totals(comm);
+        let state = &mut self.state;
+        state.totals = totals;
+        let worst = &mut state.worst;
+        if state.initial.kinetic_energy > 0.0 {
+            let error = (totals.energy() - state.initial.energy()).abs();
+            worst.energy_error = worst
+                .energy_error
+                .max(error / state.initial.kinetic_energy);
+        }
+        if state.initial.momentum_scale > 0.0 {
+            for a in 0..3 {
+                let error = totals.momentum[a] - state.initial.momentum[a] - state.plane_impulse[a];
+                worst.momentum_error[a] =
+                    worst.momentum_error[a].max(error.abs() / state.initial.momentum_scale);
+            }
+        }
+    }
+
+    pub(super) fn totals(&self, comm: &Comm) -> Totals {
+        let store = &self.store;
+        let owned = store.owned();
+        let mut sums = (0..owned.div_ceil(GRAIN))
+            .into_par_iter()
+            .fold(TotalSums::default, |mut sums, chunk| {
+                for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(owned) {
+                    sums.add(store, i);
+                }
+                sums
+            })
+            .reduce(TotalSums::default, TotalSums::merge)
+            .0;
+        let mut limbs = Vec::new();
+        gather_limbs(sums.iter_mut(), &mut limbs);
+        comm.sum_i64(&mut limbs);
+        scatter_limbs(sums.iter_mut(), &limbs);
+        let [kinetic, internal, x, y, z, scale] = sums.map(|sum| sum.value());
+        Totals {
+            kinetic_energy: kinetic,
+            internal_energy: internal,
+            contact_energy: self.state.contact_energy,
+            momentum: [x, y, z],
+            momentum_scale: scale,
+        }
+    }
+}
+
+/// Kinetic and internal energy, momentum, and the sum of its magnitudes.
+#[derive(Default)]
+struct TotalSums([ExactSum; 6]);
+
+impl TotalSums {
+    fn add(&mut self, store: &ParticleStore, i: usize) {
+        let (m, v) = (store.mass[i], &store.velocity[i]);
+        let v2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+        let terms = [
+            0.5 * m * v2,
+            m * store.specific_energy[i],
+            m * v[0],
+            m * v[1],
+            m * v[2],
+            m * v2.sqrt(),
+        ];
+        for (sum, term) in self.0.iter_mut().zip(terms) {
+            sum.add(term);
+        }
+    }
+
+    fn merge(mut self, other: Self) -> Self {
+        for (sum, other) in self.0.iter_mut().zip(&other.0) {
+            sum.merge(other);
+        }
+        self
+    }
+}

@@ -1,0 +1,80 @@
+//! Wall time by phase of the step.
+
+use std::time::Instant;
+
+macro_rules! phases {
+    ($( $(#[doc = $doc:literal])+ $name:ident = $text:literal, )+) => {
+        /// A phase of the step.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum Phase { $( $(#[doc = $doc])+ $name, )+ }
+
+        impl Phase {
+            /// All phases with their names in reports.
+            pub const ALL: &[(Self, &str)] = &[ $( (Self::$name, $text), )+ ];
+        }
+    };
+}
+
+phases! {
+    /// Kicks and drift.
+    Integrate = "integrate",
+    /// New faces between slabs, and the order of the store.
+    Balance = "balance",
+    /// Particles that change ranks.
+    Migrate = "migrate",
+    /// Copies of positions and velocities.
+    HaloMotion = "halo_motion",
+    /// Sort and lists.
+    Neighbours = "neighbours",
+    /// Velocity gradient and the material's answer to it.
+    Material = "velocity_gradient_and_material",
+    /// Foreign fractions.
+    ContactFractions = "contact_fractions",
+    /// Copies of stresses.
+    HaloStress = "halo_stress",
+    /// Momentum and energy.
+    Momentum = "momentum_and_energy",
+    /// Contact forces.
+    ContactForces = "contact_forces",
+    /// Time-step votes and conserved sums.
+    Vote = "vote_and_sums",
+    /// Histories, snapshots and checkpoints.
+    Output = "output",
+}
+
+/// Seconds by phase since the start of this process's run.
+#[derive(Debug, Clone)]
+pub struct Timers {
+    seconds: [f64; Phase::ALL.len()],
+    last: Instant,
+}
+
+impl Default for Timers {
+    fn default() -> Self {
+        Self {
+            seconds: [0.0; Phase::ALL.len()],
+            last: Instant::now(),
+        }
+    }
+}
+
+impl Timers {
+    /// Starts the next phase without booking the time since the last.
+    pub fn skip(&mut self) {
+        self.last = Instant::now();
+    }
+
+    /// Books the time since the last call to `phase`.
+    pub fn lap(&mut self, phase: Phase) {
+        let now = Instant::now();
+        self.seconds[phase as usize] += (now - self.last).as_secs_f64();
+        self.last = now;
+    }
+
+    /// Name and seconds of each phase.
+    pub fn report(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        Phase::ALL
+            .iter()
+            .map(|&(phase, name)| (name, self.seconds[phase as usize]))
+    }
+}

@@ -1,0 +1,163 @@
+//! The next time step: the smallest vote of all particles on all ranks.
+//!
+//! A vote is (Δt, reason, id), compared in that order, so that ties agree on any ranks.
+
+use rayon::prelude::*;
+
+use super::search::GRAIN;
+use super::simulation::{Simulation, StepError};
+use super::state::Reason;
+use crate::comm::Comm;
+use crate::model::Case;
+use crate::particles::ParticleStore;
+
+/// Largest coordinate that still counts as a position (m).
+const FARTHEST: f64 = 1e12;
+
+/// A vote: bits of Δt (s; positive doubles order as their bits), reason, id.
+type Vote = (u64, u64, u64);
+
+const ABSTAIN: Vote = (u64::MAX, 0, 0);
+/// Reads as an error: no positive Δt has these bits.
+const ERROR: u64 = 0;
+
+impl Simulation {
+    /// Chooses the next Δt. Collective.
+    pub(super) fn vote(&mut self, comm: &Comm) -> Result<(), StepError> {
+        let mut words = Vec::new();
+        let (dt, reason, id) = self.local_vote();
+        comm.all_gather_u64(&[dt, reason, id, self.wishes], &mut words);
+        self.agreed_wishes = words.iter().skip(3).step_by(4).fold(0, |all, one| all | one);
+        let best = words
+            .chunks_exact(4)
+            .map(|word| (word[0], word[1], word[2]))
+            .min()
+            .unwrap_or(ABSTAIN);
+        if best.0 == ERROR {
+            return Err(self.post_mortem(comm, best.2));
+        }
+        self.state.dt = f64::from_bits(best.0);
+        self.state.dt_reason =
+            Reason::ALL[usize::try_from(best.1).unwrap_or(0).min(Reason::ALL.len() - 1)];
+        if best.0 == ABSTAIN.0 {
+            self.state.dt = f64::INFINITY;
+        }
+        if self.case.time_step.max < self.state.dt {
+            self.state.dt = self.case.time_step.max;
+            self.state.dt_reason = Reason::Maximum;
+        }
+        let contact = self.state.dt_reason == Reason::Contact;
+        self.state.worst.contact_limited_steps += u64::from(contact);
+        Ok(())
+    }
+
+    /// The step to do now and what limits it: the vote, unless the case ends before.
+    pub(super) fn next_step(&self) -> (f64, Reason) {
+        let left = self.case.run.end_time - self.state.time;
+        if left <= self.state.dt {
+            (left, Reason::End)
+        } else {
+            (self.state.dt, self.state.dt_reason)
+        }
+    }
+
+    fn local_vote(&self) -> Vote {
+        let owned = self.store.owned();
+        let voter = Voter {
+            store: &self.store,
+            case: &self.case,
+            contact: self.contact.is_active(),
+        };
+        (0..owned.div_ceil(GRAIN))
+            .into_par_iter()
+            .map(|chunk| {
+                (chunk * GRAIN..((chunk + 1) * GRAIN).min(owned))
+                    .map(|i| voter.vote(i))
+                    .min()
+                    .unwrap_or(ABSTAIN)
+            })
+            .min()
+            .unwrap_or(ABSTAIN)
+    }
+
+    /// Describes the particle `id`, wherever it is; the same text on all ranks.
+    fn post_mortem(&self, comm: &Comm, id: u64) -> StepError {
+        let store = &self.store;
+        let found = store.id[..store.owned()].iter().position(|&x| x == id);
+        let mine = found.map_or_else(Vec::new, |i| describe(store, i, comm.rank()).into_bytes());
+        let mut owner = [if mine.is_empty() {
+            u64::MAX
+        } else {
+            comm.rank() as u64
+        }];
+        comm.min_u64(&mut owner);
+        let mut text = mine;
+        comm.broadcast_from(usize::try_from(owner[0]).unwrap_or(0), &mut text);
+        StepError::NotFinite {
+            step: self.state.step,
+            id,
+            detail: String::from_utf8_lossy(&text).into_owned(),
+        }
+    }
+}
+
+/// What a particle's vote depends on.
+struct Voter<'a> {
+    store: &'a ParticleStore,
+    case: &'a Case,
+    contact: bool,
+}
+
+impl Voter<'_> {
+    /// Sound and viscosity (Monaghan 1989) `C h / (c + 0.6 (α c + β |μ|))`, acceleration
+    /// `C_f √(h/|a|)`, contact `2 f √(m/k)`.
+    fn vote(&self, i: usize) -> Vote {
+        let (store, case) = (self.store, self.case);
+        let (h, c) = (store.smoothing_length[i], store.sound_speed[i]);
+        let signal =
+            c + 0.6 * (case.sph.alpha * c + case.sph.beta * store.approach_speed[i]);
+        let sound = case.time_step.courant * h / signal;
+        let (a, b) = (&store.acceleration[i], &store.contact_acceleration[i]);
+        let total = [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+        let square = total[0] * total[0] + total[1] * total[1] + total[2] * total[2];
+        let force = case.time_step.force * (h / square.sqrt()).sqrt();
+        let contact = if self.contact {
+            2.0 * case.time_step.contact * (store.mass[i] / store.contact_stiffness[i]).sqrt()
+        } else {
+            f64::INFINITY
+        };
+        let id = store.id[i];
+        let sane = sound > 0.0
+            && !force.is_nan()
+            && store.specific_energy[i].is_finite()
+            && store.velocity[i].iter().all(|v| v.is_finite())
+            && store.position[i].iter().all(|x| x.abs() < FARTHEST);
+        if !sane {
+            return (ERROR, 0, id);
+        }
+        let (dt, reason) = [
+            (sound, Reason::Sound),
+            (force, Reason::Force),
+            (contact, Reason::Contact),
+        ]
+        .into_iter()
+        .reduce(|best, next| if next.0 < best.0 { next } else { best })
+        .unwrap_or((f64::INFINITY, Reason::Sound));
+        (dt.to_bits(), reason as u64, id)
+    }
+}
+
+fn describe(store: &ParticleStore, i: usize, rank: usize) -> String {
+    format!(
+        "body {}, rank {rank}, position {:?} m, velocity {:?} m/s, density {} kg/m^3, \
+         specific energy {} J/kg, pressure {} Pa, sound speed {} m/s, neighbours near {}",
+        store.body[i],
+        store.position[i],
+        store.velocity[i],
+        store.density[i],
+        store.specific_energy[i],
+        store.pressure[i],
+        store.sound_speed[i],
+        store.work[i],
+    )
+}

@@ -1,0 +1,352 @@
+//! Holds the walls between the rooms of `src/` and the laws that can be read off the source.
+//!
+//! The developer guide (`docs/src/developer/rooms.md`) says what each room may know; the tables
+//! below are the same in code. The source is read as tokens: comments, strings and unit tests are
+//! left out, and `use` trees are unfolded into full paths.
+
+#[path = "architecture/source.rs"]
+mod source;
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::fs;
+
+use source::{Source, sources, src};
+
+/// Every room, in the order in which data flows.
+const ROOMS: &[&str] = &[
+    "app",
+    "input",
+    "model",
+    "populate",
+    "material",
+    "particles",
+    "comm",
+    "domain",
+    "neighbours",
+    "contact",
+    "sph",
+    "step",
+    "diagnose",
+    "output",
+    "exact",
+    "plot",
+];
+
+/// What a part of `src/` may not name: rooms of this crate (`comm`), or a place in one
+/// (`output::h5`). `app` is on top and stands in every row by itself.
+const WALLS: &[(&str, &[&str])] = &[
+    (
+        "input",
+        &[
+            "particles",
+            "comm",
+            "domain",
+            "sph",
+            "contact",
+            "step",
+            "output",
+        ],
+    ),
+    (
+        "model",
+        &[
+            "particles",
+            "comm",
+            "domain",
+            "sph",
+            "contact",
+            "step",
+            "output",
+            "input",
+        ],
+    ),
+    ("populate", &["comm", "output", "input", "step"]),
+    (
+        "material",
+        &[
+            "particles",
+            "comm",
+            "domain",
+            "sph",
+            "contact",
+            "step",
+            "output",
+            "input",
+        ],
+    ),
+    ("particles", &["comm", "output", "input", "step"]),
+    (
+        "comm",
+        &[
+            "input",
+            "model",
+            "populate",
+            "material",
+            "particles",
+            "domain",
+            "neighbours",
+            "contact",
+            "sph",
+            "step",
+            "diagnose",
+            "output",
+            "exact",
+            "plot",
+        ],
+    ),
+    (
+        "domain",
+        &["material", "output", "input", "sph", "contact", "step"],
+    ),
+    (
+        "neighbours",
+        &["material", "comm", "output", "input", "step"],
+    ),
+    ("contact", &["comm", "output", "input", "step"]),
+    ("sph", &["comm", "output", "input", "step"]),
+    ("step", &["output::h5", "input", "plot"]),
+    ("diagnose", &["output::h5", "input", "plot"]),
+    ("output", &["sph", "plot"]),
+    (
+        "exact",
+        &["particles", "comm", "domain", "output", "input", "step"],
+    ),
+    ("plot", &["comm", "step"]),
+];
+
+/// Crates that only one place may name.
+const ENTRUSTED: &[(&str, &str)] = &[
+    ("mpi", "comm/"),
+    ("mpi_sys", "comm/"),
+    ("hdf5", "output/h5/"),
+    ("hdf5_sys", "output/h5/"),
+];
+
+/// The only rooms that call `comm`, from the main thread.
+const CALLERS_OF_COMM: &[&str] = &["app", "domain", "step", "output", "diagnose", "comm"];
+
+/// Rooms whose results must have the same bits on any ranks, threads and hosts.
+const PHYSICS: &[&str] = &[
+    "populate",
+    "material",
+    "particles",
+    "domain",
+    "neighbours",
+    "contact",
+    "sph",
+    "step",
+    "diagnose",
+    "exact",
+];
+
+/// Physics rooms that have no business with clocks at all (`step` times its phases).
+const TIMELESS: &[&str] = &[
+    "populate",
+    "material",
+    "particles",
+    "neighbours",
+    "contact",
+    "sph",
+    "exact",
+];
+
+/// Functions of `f64` whose bits depend on the host's libm; the `libm` crate has them all.
+const HOST_MATHEMATICS: &[&str] = &[
+    "exp", "exp2", "exp_m1", "ln", "ln_1p", "log2", "log10", "powf", "sin", "cos", "tan", "asin",
+    "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "sin_cos", "cbrt",
+    "hypot",
+];
+
+/// What a comment beside a parallel reduction must say, with the reason.
+const ANY_ORDER: &str = "same bits in any order";
+
+/// Longest file, in lines, unless it stands in [`LONG_FILES`].
+const LONGEST: usize = 600;
+
+/// Files that may be longer, each with its reason.
+const LONG_FILES: &[(&str, &str)] = &[];
+
+#[test]
+fn lib_rs_lists_every_room() {
+    let source = &Source::read(&src().join("lib.rs"));
+    let listed: BTreeSet<&str> = source
+        .tokens
+        .windows(4)
+        .filter(|w| w[0].text == "pub" && w[1].text == "mod" && w[3].text == ";")
+        .map(|w| w[2].text.as_str())
+        .collect();
+    let folders: BTreeSet<String> = fs::read_dir(src())
+        .expect("src is read")
+        .map(|entry| entry.expect("an entry of src").path())
+        .filter(|path| path.is_dir())
+        .map(|path| path.file_name().unwrap().to_string_lossy().into_owned())
+        .collect();
+    let rooms: BTreeSet<&str> = ROOMS.iter().copied().collect();
+    assert_eq!(listed, rooms, "lib.rs and ROOMS of this test differ");
+    assert_eq!(
+        folders.iter().map(String::as_str).collect::<BTreeSet<_>>(),
+        rooms
+    );
+}
+
+#[test]
+fn no_room_names_what_it_may_not_know() {
+    let mut complaints = String::new();
+    for source in sources() {
+        let Some((_, forbidden)) = WALLS.iter().find(|(room, _)| *room == source.room) else {
+            continue;
+        };
+        for path in source.paths() {
+            let named = path.named();
+            for wall in forbidden.iter().chain(&["app"]) {
+                if named == *wall || named.starts_with(&format!("{wall}::")) {
+                    complain(
+                        &mut complaints,
+                        &source,
+                        path.line,
+                        &format!("names {named}"),
+                    );
+                }
+            }
+        }
+    }
+    assert_silent(&complaints);
+}
+
+#[test]
+fn only_comm_names_mpi_and_only_output_h5_names_hdf5() {
+    let mut complaints = String::new();
+    for source in sources() {
+        for path in source.paths() {
+            for (name, place) in ENTRUSTED {
+                if path.is_of_crate(name) && !source.name.starts_with(place) {
+                    complain(
+                        &mut complaints,
+                        &source,
+                        path.line,
+                        &format!("names the crate {name}"),
+                    );
+                }
+            }
+        }
+    }
+    assert_silent(&complaints);
+}
+
+#[test]
+fn only_the_rooms_of_the_main_thread_call_comm() {
+    let mut complaints = String::new();
+    for source in sources() {
+        if CALLERS_OF_COMM.contains(&source.room.as_str()) {
+            continue;
+        }
+        for path in source.paths().iter().filter(|path| path.names_room("comm")) {
+            complain(&mut complaints, &source, path.line, "names comm");
+        }
+    }
+    assert_silent(&complaints);
+}
+
+#[test]
+fn threads_never_meet_mpi() {
+    let mut complaints = String::new();
+    for source in sources() {
+        for path in source.paths() {
+            if source.room == "comm" && path.is_of_crate("rayon") {
+                complain(&mut complaints, &source, path.line, "names rayon");
+            }
+        }
+        for (line, name) in source.methods() {
+            if name == "install" {
+                complain(
+                    &mut complaints,
+                    &source,
+                    line,
+                    "moves work off the main thread; build the pool with use_current_thread",
+                );
+            }
+        }
+    }
+    assert_silent(&complaints);
+}
+
+#[test]
+fn physics_has_no_unordered_maps_clocks_or_host_mathematics() {
+    let mut complaints = String::new();
+    for source in sources() {
+        if !PHYSICS.contains(&source.room.as_str()) {
+            continue;
+        }
+        for token in &source.tokens {
+            let unordered = ["HashMap", "HashSet"].contains(&token.text.as_str());
+            let clock = ["Instant", "SystemTime"].contains(&token.text.as_str());
+            if unordered {
+                complain(
+                    &mut complaints,
+                    &source,
+                    token.line,
+                    "HashMap has no order: use BTreeMap",
+                );
+            } else if clock && TIMELESS.contains(&source.room.as_str()) {
+                complain(&mut complaints, &source, token.line, "reads a clock");
+            }
+        }
+        for (line, name) in source
+            .methods()
+            .into_iter()
+            .chain(source.functions_of_f64())
+        {
+            if HOST_MATHEMATICS.contains(&name) {
+                let what = format!("{name} has the host's bits: use the libm crate");
+                complain(&mut complaints, &source, line, &what);
+            }
+        }
+    }
+    assert_silent(&complaints);
+}
+
+#[test]
+fn no_sum_depends_on_threads() {
+    let mut complaints = String::new();
+    for source in sources() {
+        if PHYSICS.contains(&source.room.as_str()) {
+            for (line, what) in source.parallel_reductions() {
+                if !source.says(line, ANY_ORDER) {
+                    let what = format!("{what}; if it has the {ANY_ORDER}, say why in a comment");
+                    complain(&mut complaints, &source, line, &what);
+                }
+            }
+        }
+    }
+    assert_silent(&complaints);
+}
+
+#[test]
+fn files_are_short_or_have_a_reason() {
+    let mut complaints = String::new();
+    for source in sources() {
+        let lines = source.text.lines().count();
+        let excused = LONG_FILES.iter().any(|(name, _)| *name == source.name);
+        if lines > LONGEST && !excused {
+            complain(
+                &mut complaints,
+                &source,
+                lines,
+                "is too long: split it, or give the reason",
+            );
+        }
+    }
+    assert_silent(&complaints);
+}
+
+fn complain(complaints: &mut String, source: &Source, line: usize, what: &str) {
+    writeln!(complaints, "  src/{}:{line} {what}", source.name).expect("a string takes text");
+}
+
+fn assert_silent(complaints: &str) {
+    assert!(
+        complaints.is_empty(),
+        "the architecture is broken:\n{complaints}"
+    );
+}

@@ -1,0 +1,96 @@
+//! Snapshots opened by the programs that our users have: h5py, VTK's own reader, `PyVista`, and
+//! Debian's older VTK where it is installed.
+//!
+//! `make test` makes the Python environment. `WHIPPLE_SKIP_CLIENTS=1` leaves these tests out.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// The environment's Python, or nothing if the tests are to be skipped.
+fn python() -> Option<PathBuf> {
+    if std::env::var("WHIPPLE_SKIP_CLIENTS").is_ok_and(|value| value == "1") {
+        eprintln!("skipped: WHIPPLE_SKIP_CLIENTS=1");
+        return None;
+    }
+    let python = root().join("target/venv/bin/python");
+    assert!(
+        python.exists(),
+        "{} is missing: `make test` makes it (or set WHIPPLE_SKIP_CLIENTS=1)",
+        python.display()
+    );
+    Some(python)
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Runs a script of `tests/clients/` and returns what it printed.
+fn script(python: &Path, name: &str, arguments: &[&Path]) -> Result<String, String> {
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = Command::new(python)
+        .arg(root().join("tests/clients").join(name))
+        .args(arguments)
+        .output()
+        .expect("python starts");
+    if status.success() {
+        Ok(String::from_utf8_lossy(&stdout).into_owned())
+    } else {
+        Err(String::from_utf8_lossy(&stderr).into_owned())
+    }
+}
+
+/// The system's Python if its VTK can open snapshots by itself (Debian's python3-vtk9).
+fn python_with_older_vtk() -> Option<&'static Path> {
+    let python = Path::new("/usr/bin/python3");
+    let works = Command::new(python)
+        .args(["-c", "import numpy, vtkmodules.vtkIOHDF"])
+        .output()
+        .is_ok_and(|output| output.status.success());
+    works.then_some(python)
+}
+
+/// Fails unless every client sees the same points, ids, fields, cells and time in `snapshot`;
+/// returns the line that says who did.
+fn opens_everywhere(python: &Path, snapshot: &Path) -> String {
+    let dump = snapshot.with_extension("npz");
+    let mut arguments = vec![snapshot];
+    if let Some(older) = python_with_older_vtk() {
+        script(older, "dump.py", &[snapshot, &dump])
+            .unwrap_or_else(|error| panic!("{} in the older VTK:\n{error}", snapshot.display()));
+        arguments.push(&dump);
+    }
+    script(python, "check.py", &arguments)
+        .unwrap_or_else(|error| panic!("{}:\n{error}", snapshot.display()))
+}
+
+#[test]
+fn every_client_opens_the_form_that_we_document() {
+    let Some(python) = python() else { return };
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let snapshot = folder.path().join("sample.vtkhdf");
+    script(&python, "sample.py", &[&snapshot]).expect("the sample is written");
+
+    let seen = opens_everywhere(&python, &snapshot);
+
+    assert!(
+        seen.starts_with("27 points, 5 fields, t = 1.25e-08 s"),
+        "{seen}"
+    );
+    eprintln!("{seen}");
+}
+
+#[test]
+fn the_check_notices_a_snapshot_that_is_cut_off() {
+    let Some(python) = python() else { return };
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let snapshot = folder.path().join("sample.vtkhdf");
+    script(&python, "sample.py", &[&snapshot]).expect("the sample is written");
+    let whole = std::fs::read(&snapshot).expect("the sample is read");
+    std::fs::write(&snapshot, &whole[..whole.len() / 2]).expect("half of it is written");
+
+    assert!(script(&python, "check.py", &[&snapshot]).is_err());
+}

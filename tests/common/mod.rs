@@ -1,0 +1,96 @@
+//! Cases built in code, for tests of the engine.
+#![allow(dead_code, reason = "each test file uses some of these")]
+
+use whipple::material::{Strength, VonMises, library};
+use whipple::model::{
+    Axis, Body, Case, ContactMode, DomainOptions, Lattice, LatticeKind, OutputOptions, RunControl,
+    Shape, SmoothingLength, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
+};
+
+/// A body on a cubic lattice with h = 1.3 Δp.
+pub fn body(name: &str, shape: Shape, spacing: f64, velocity: Vec3) -> Body {
+    Body {
+        name: name.into(),
+        shape,
+        material: 0,
+        lattice: Lattice {
+            kind: LatticeKind::Cubic,
+            spacing,
+            angle: 0.0,
+        },
+        velocity,
+        smoothing_length: 1.3 * spacing,
+    }
+}
+
+/// A case of aluminium bodies with default options.
+pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
+    Case {
+        title: "test".into(),
+        dimension,
+        materials: vec![library::find("aluminium-2024").expect("in the library")],
+        bodies,
+        contacts: Vec::new(),
+        default_contact: ContactMode::Overlap(Default::default()),
+        symmetry: Vec::new(),
+        sph: SphOptions {
+            alpha: 1.0,
+            beta: 2.0,
+            smoothing_length: SmoothingLength::Constant,
+        },
+        time_step: TimeStepOptions {
+            courant: 0.4,
+            force: 0.25,
+            contact: 0.5,
+            max: f64::INFINITY,
+        },
+        domain: DomainOptions {
+            axis: None,
+            balance_every: 20,
+        },
+        run: RunControl {
+            end_time,
+            max_steps: None,
+        },
+        output: OutputOptions {
+            snapshot_every: None,
+            checkpoint_every: None,
+            checkpoints_kept: 2,
+            history_every: 10,
+            fields: Vec::new(),
+        },
+        resolved: String::new(),
+    }
+}
+
+/// Sphere of radius 0.3 mm at `speed` (m/s) along −z on a plate of 0.2 mm × radius 1.5 mm;
+/// `quarter` keeps x, y > 0.
+pub fn sphere_on_plate(spacing: f64, speed: f64, quarter: bool, end_time: f64) -> Case {
+    let sphere = Shape::Sphere {
+        centre: Vec3::new(0.0, 0.0, 0.3e-3),
+        radius: 0.3e-3,
+    };
+    let plate = Shape::Cylinder {
+        centre: Vec3::new(0.0, 0.0, -0.1e-3),
+        axis: Axis::Z,
+        radius: 1.5e-3,
+        length: 0.2e-3,
+    };
+    let bodies = vec![
+        body("sphere", sphere, spacing, Vec3::new(0.0, 0.0, -speed)),
+        body("plate", plate, spacing, Vec3::zeros()),
+    ];
+    let mut case = case(3, bodies, end_time);
+    if let Strength::VonMises(VonMises { yield_stress, .. }) = &mut case.materials[0].strength {
+        *yield_stress = 0.26e9;
+    }
+    if quarter {
+        case.symmetry = [Axis::X, Axis::Y]
+            .map(|axis| SymmetryPlane {
+                axis,
+                position: 0.0,
+            })
+            .to_vec();
+    }
+    case
+}

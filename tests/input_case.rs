@@ -1,0 +1,270 @@
+//! The ready cases, overrides, and the resolved text.
+
+use std::path::Path;
+
+use whipple::input::{load, output_and_run_only, parse, warnings};
+use whipple::material::{Strength, library};
+use whipple::model::{Axis, Case, ContactMode, PotentialRange, Shape, SmoothingLength};
+use whipple::populate;
+
+fn ready(name: &str, overrides: &[&str]) -> Case {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("inputs/{name}/case.toml"));
+    load(&path, &strings(overrides)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn strings(words: &[&str]) -> Vec<String> {
+    words.iter().map(ToString::to_string).collect()
+}
+
+fn particles(case: &Case) -> Vec<u64> {
+    let count = |body| populate::count(body, case.dimension, &case.symmetry, None);
+    case.bodies.iter().map(count).collect()
+}
+
+/// Everything but the resolved text.
+fn meaning(case: &Case) -> String {
+    let mut case = case.clone();
+    case.resolved.clear();
+    format!("{case:?}")
+}
+
+#[test]
+fn the_main_job() {
+    let case = ready("quarter-impact", &[]);
+    assert_eq!(particles(&case), [44_230, 3_582]);
+    assert!(warnings(&case).is_empty());
+    let [plate, sphere] = case.bodies.as_slice() else {
+        panic!("two bodies")
+    };
+    assert_eq!(sphere.velocity.as_slice(), [0.0, 0.0, -7e3]);
+    assert!((case.impact_speed() - 7e3).abs() < 1e-9);
+    assert!((sphere.smoothing_length - 2.6e-5).abs() < 1e-18);
+    // The outermost layers are one spacing apart.
+    let below = populate::bounds(plate, 3).unwrap().1[2];
+    let above = populate::bounds(sphere, 3).unwrap().0[2];
+    assert!((above - below - 2e-5).abs() < 1e-18);
+    let material = &case.materials[0];
+    assert_eq!(
+        material.spall.unwrap().pressure.to_bits(),
+        (-1.2e9f64).to_bits()
+    );
+    let Strength::VonMises(strength) = &material.strength else {
+        panic!("von Mises")
+    };
+    assert_eq!(strength.yield_stress.to_bits(), 0.26e9f64.to_bits());
+    assert_eq!(
+        Some(&material.eos),
+        library::find("aluminium-2024").map(|m| m.eos).as_ref()
+    );
+    assert_eq!(case.run.end_time.to_bits(), 0.2e-6f64.to_bits());
+    assert!(matches!(case.default_contact, ContactMode::Overlap(_)));
+}
+
+#[test]
+fn the_whole_model_is_four_quarters() {
+    let quarter = ready("quarter-impact", &["spacing=0.03mm"]);
+    let whole = ready("quarter-impact", &["spacing=0.03mm", "symmetry=[]"]);
+    for (q, w) in quarter.bodies.iter().zip(&whole.bodies) {
+        let part: Vec<_> = populate::sites(w, 3, &[], None)
+            .filter(|s| s.position[0] > 0.0 && s.position[1] > 0.0)
+            .collect();
+        let sites: Vec<_> = populate::sites(q, 3, &quarter.symmetry, None).collect();
+        assert_eq!(sites, part);
+        assert_eq!(populate::count(w, 3, &[], None), 4 * sites.len() as u64);
+    }
+}
+
+#[test]
+fn the_small_cases() {
+    let flyer = ready("flyer-plate", &[]);
+    assert_eq!((flyer.dimension, particles(&flyer)), (1, vec![200, 200]));
+    assert_eq!(flyer.materials[0].strength, Strength::None);
+    assert_eq!(flyer.materials[0].spall, None);
+    let elastic = ready("elastic-impact", &[]);
+    assert_eq!(particles(&elastic), [2400, 552]);
+    for case in [flyer, elastic] {
+        assert!(warnings(&case).is_empty());
+    }
+}
+
+#[test]
+fn overrides_reach_every_place() {
+    let case = ready(
+        "quarter-impact",
+        &[
+            "spacing=0.015mm",
+            "run.end_time=\"0.1 us\"",
+            "run.max_steps = 7",
+            "body.sphere.velocity=[0, \"1 cm/us\", 0]",
+            "body.0.spacing=0.02 mm",
+            "body.sphere.lattice={kind=\"hexagonal\", angle=\"90 deg\"}",
+            "contact.mode=potential",
+            "contact.potential.exponent=1",
+            "contact.pair=[{bodies=[\"sphere\",\"plate\"], potential.range=\"spacing\"}]",
+            "sph.smoothing_length=variable",
+            "sph.smoothing_length_max=1.5",
+            "symmetry=[]",
+            "material.aluminium.strength=none",
+            "material.aluminium.spall=none",
+            "material.aluminium.density=2.8 g/cm^3",
+            "domain.axis=y",
+            "time_step.max=1 ns",
+            "output.fields=[\"pressure\"]",
+        ],
+    );
+    assert!((case.bodies[0].lattice.spacing - 2e-5).abs() < 1e-18);
+    assert!((case.bodies[1].lattice.spacing - 1.5e-5).abs() < 1e-18);
+    assert!((case.bodies[1].lattice.angle - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
+    assert_eq!(case.bodies[1].velocity.as_slice(), [0.0, 1e4, 0.0]);
+    assert_eq!(case.run.max_steps, Some(7));
+    let ContactMode::Potential(potential) = case.contact_between(0, 1) else {
+        panic!("potential")
+    };
+    assert_eq!(
+        (potential.exponent, potential.range),
+        (1, PotentialRange::Spacing)
+    );
+    let SmoothingLength::Variable { min, max } = case.sph.smoothing_length else {
+        panic!("variable")
+    };
+    assert_eq!(
+        [min.to_bits(), max.to_bits()],
+        [0.6f64.to_bits(), 1.5f64.to_bits()]
+    );
+    assert!(case.symmetry.is_empty());
+    assert_eq!(case.materials[0].strength, Strength::None);
+    assert_eq!(case.materials[0].spall, None);
+    assert_eq!(
+        case.materials[0].reference_density.to_bits(),
+        2800f64.to_bits()
+    );
+    assert_eq!(case.domain.axis, Some(Axis::Y));
+    assert_eq!(case.time_step.max.to_bits(), 1e-9f64.to_bits());
+    assert_eq!(case.output.fields, ["pressure"]);
+}
+
+#[test]
+fn the_resolved_text_gives_the_same_case() {
+    let sets: [&[&str]; 3] = [
+        &[],
+        &["spacing=0.025 mm", "symmetry=[]", "contact.mode=kernel"],
+        &[
+            "body.sphere.shape={box={size=[\"2 spacing\",\"4 spacing\",\"3 spacing\"]}}",
+            "title=\"a\\nb\"",
+        ],
+    ];
+    for set in sets {
+        let case = ready("quarter-impact", set);
+        let again = parse("resolved", &case.resolved, &[]).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(meaning(&again), meaning(&case));
+        assert_eq!(again.resolved, case.resolved);
+        // Overrides on top of resolved text work like on the file.
+        let more = parse("resolved", &case.resolved, &strings(&["run.end_time=1us"])).unwrap();
+        assert!((more.run.end_time - 1e-6).abs() < 1e-20);
+    }
+}
+
+#[test]
+fn an_inline_material() {
+    let text = "
+        dimension = 2
+        spacing = \"1 mm\"
+        run.end_time = \"1 us\"
+        [material.steel]
+        density = \"7.83 g/cm^3\"
+        eos.linear = { bulk_modulus = \"1.59 Mbar\", form = \"density_ratio\" }
+        strength.von_mises = { shear_modulus = \"0.82 Mbar\", yield_stress = \"0.003 Mbar\" }
+        [[body]]
+        name = \"disc\"
+        material = \"steel\"
+        shape.sphere = { radius = \"10 spacing\", centre = [\"1 cm\", 0] }
+    ";
+    let case = parse("inline", text, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let Shape::Sphere { centre, radius } = case.bodies[0].shape else {
+        panic!("a disc")
+    };
+    assert!((radius - 1e-2).abs() < 1e-17 && (centre.x - 1e-2).abs() < 1e-17);
+    let modulus = case.materials[0].p_wave_modulus();
+    assert!((modulus / (1.59e11 + 0.82e11 * 4.0 / 3.0) - 1.0).abs() < 1e-15);
+    assert_eq!(case.title, "untitled");
+}
+
+#[test]
+fn bodies_touch_in_any_order() {
+    let chain = "
+        dimension = 1
+        spacing = \"1 mm\"
+        run.end_time = \"1 us\"
+        material.a.library = \"copper\"
+        [[body]]
+        name = \"last\"
+        material = \"a\"
+        spacing = \"3 mm\"
+        shape.box.size = [\"9 mm\"]
+        touch = { body = \"middle\", direction = \"-x\" }
+        [[body]]
+        name = \"middle\"
+        material = \"a\"
+        shape.box.size = [\"4 mm\"]
+        touch = { body = \"first\", direction = \"-x\" }
+        [[body]]
+        name = \"first\"
+        material = \"a\"
+        shape.box = { lower = [0], upper = [\"5 mm\"] }
+    ";
+    let case = parse("chain", chain, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let places: Vec<f64> = case
+        .bodies
+        .iter()
+        .flat_map(|body| populate::sites(body, 1, &[], None))
+        .map(|site| (site.position[0] * 1e5).round())
+        .collect();
+    // mm/100: three at 3 mm from 2 mm beyond the middle's last, four, five.
+    let expected = [
+        1050., 1350., 1650., 550., 650., 750., 850., 50., 150., 250., 350., 450.,
+    ];
+    assert_eq!(places, expected);
+}
+
+#[test]
+fn overlapping_bodies_and_crooked_lattices_are_doubted() {
+    let deep = ready(
+        "elastic-impact",
+        &["body.sphere.touch={body=\"block\",direction=\"-x\"}"],
+    );
+    assert!(warnings(&deep).is_empty(), "beside the block");
+    let text = ready("elastic-impact", &[]).resolved;
+    let text = text.replace("touch = { body = \"block\", direction = \"-z\" }", "");
+    let text = text.replace("\"1 mm\"]", "\"0.5 mm\"]");
+    let case = parse("overlap", &text, &[]).unwrap();
+    assert!(warnings(&case)[0].contains("`block` and `sphere` may overlap"));
+    let silent = parse("overlap", &text, &strings(&["contact.mode=none"])).unwrap();
+    assert!(warnings(&silent).is_empty());
+    let crooked = ready("quarter-impact", &["body.plate.lattice=hexagonal"]);
+    assert!(warnings(&crooked)[0].contains("is not its own mirror image"));
+}
+
+#[test]
+fn a_restart_changes_only_run_output_and_domain() {
+    let fine = [
+        "run.end_time=1us",
+        "output.fields=[]",
+        "domain.balance_every=3",
+    ];
+    output_and_run_only(&strings(&fine)).unwrap();
+    for (set, message) in [
+        ("spacing=1mm", "`spacing` cannot change on a restart"),
+        (
+            "body.sphere.velocity=[0]",
+            "`body` cannot change on a restart",
+        ),
+        ("run", "an override needs a `=`"),
+    ] {
+        let error = output_and_run_only(&strings(&["run.max_steps=1", set])).unwrap_err();
+        let text = error.to_string();
+        assert!(
+            text.contains(message) && text.contains("--> --set:1:1"),
+            "{text}"
+        );
+    }
+}

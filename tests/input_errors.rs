@@ -1,0 +1,431 @@
+//! Each kind of mistake gives one clear message with file, line, column and a caret.
+
+use std::path::Path;
+
+use whipple::input::{InputError, load, parse};
+
+/// A valid case; mistakes are made by replacing parts of it.
+const GOOD: &str = r#"title = "a test"
+dimension = 3
+spacing = "1 mm"
+
+[run]
+end_time = "1 us"
+
+[material.metal]
+library = "copper"
+
+[[body]]
+name = "ball"
+material = "metal"
+shape.sphere = { radius = "5 mm" }
+velocity = [0, 0, "1 km/s"]
+
+[[body]]
+name = "brick"
+material = "metal"
+shape.box = { lower = [0, 0, "1 cm"], upper = ["1 cm", "1 cm", "2 cm"] }
+
+[[contact.pair]]
+bodies = ["ball", "brick"]
+
+[[symmetry]]
+axis = "x"
+"#;
+
+fn message(text: &str, overrides: &[&str]) -> String {
+    let overrides: Vec<String> = overrides.iter().map(ToString::to_string).collect();
+    parse("case.toml", text, &overrides)
+        .unwrap_err()
+        .to_string()
+}
+
+#[test]
+fn the_whole_message() {
+    let text = GOOD.replace("\"1 km/s\"", "\"1 km\"");
+    let expected = r#"error: expected a velocity with a unit, such as "7 km/s", found a length
+  --> case.toml:15:19
+   |
+15 | velocity = [0, 0, "1 km"]
+   |                   ^^^^^^"#;
+    assert_eq!(message(&text, &[]), expected);
+}
+
+#[test]
+fn a_misspelled_key_names_the_nearest() {
+    let expected = "error: unknown key `materiel`
+  --> case.toml:13:1
+   |
+13 | materiel = \"metal\"
+   | ^^^^^^^^ did you mean `material`?
+   |
+   = help: the choices are `name`, `material`, `shape`, `lattice`, `spacing`, `velocity`, `touch`";
+    assert_eq!(
+        message(&GOOD.replacen("material = ", "materiel = ", 1), &[]),
+        expected
+    );
+}
+
+#[test]
+fn an_override_is_shown_itself() {
+    let expected = "error: unknown key `velocty`
+ --> --set:1:11
+  |
+1 | body.ball.velocty=[0, 0, 0]
+  |           ^^^^^^^ did you mean `velocity`?
+  |
+  = help: the choices are `name`, `material`, `shape`, `lattice`, `spacing`, `velocity`, `touch`";
+    let set = [
+        "run.max_steps=1",
+        "body.ball.velocty=[0, 0, 0]",
+        "spacing=2mm",
+    ];
+    assert_eq!(message(GOOD, &set), expected);
+}
+
+/// What is replaced by what, the title and the place.
+const IN_FILE: &[(&str, &str, &str, &str)] = &[
+    (
+        "title = \"a test\"",
+        "title = ",
+        "string values must be quoted",
+        ":1:9",
+    ),
+    (
+        "dimension = 3\n",
+        "",
+        "the key `dimension` is missing",
+        ":1:1",
+    ),
+    (
+        "dimension = 3",
+        "dimension = 4",
+        "`dimension` must be 1 (uniaxial strain)",
+        ":2:13",
+    ),
+    (
+        "dimension = 3",
+        "dimension = 2",
+        "`velocity` must have 2 components, found 3",
+        ":15:12",
+    ),
+    (
+        "spacing = \"1 mm\"\n",
+        "",
+        "the body `ball` has no `spacing`",
+        ":11:8",
+    ),
+    ("\"1 mm\"", "1", "expected a length with a unit", ":3:11"),
+    (
+        "\"1 mm\"",
+        "\"-1 mm\"",
+        "`spacing` must be positive",
+        ":3:11",
+    ),
+    (
+        "\"1 mm\"",
+        "\"1 nm\"",
+        "the body `ball` would have more than",
+        ":3:11",
+    ),
+    ("end_time", "endtime", "unknown key `endtime`", ":6:1"),
+    (
+        "\"1 us\"",
+        "\"1 um\"",
+        "such as \"0.2 us\", found a length",
+        ":6:12",
+    ),
+    ("\"1 us\"", "0", "`end_time` must be positive", ":6:12"),
+    (
+        "library = \"copper\"",
+        "library = \"coper\"",
+        "unknown material `coper`",
+        ":9:11",
+    ),
+    (
+        "library = \"copper\"",
+        "",
+        "the material `metal` has no `density`",
+        ":8:11",
+    ),
+    (
+        "library = \"copper\"",
+        "density = \"1 g/cm^3\"",
+        "has no `eos`",
+        ":8:11",
+    ),
+    (
+        "library = \"copper\"",
+        "library = 3",
+        "expected a string, found integer `3`",
+        ":9:11",
+    ),
+    (
+        "name = \"ball\"\n",
+        "",
+        "the key `name` is missing",
+        ":11:1",
+    ),
+    (
+        "name = \"ball\"",
+        "name = \"brick\"",
+        "a second body is named `brick`",
+        ":18:8",
+    ),
+    (
+        "name = \"ball\"",
+        "name = \"7\"",
+        "a body's name must have a letter",
+        ":12:8",
+    ),
+    (
+        "material = \"metal\"",
+        "material = \"mettle\"",
+        "unknown material `mettle`",
+        ":13:12",
+    ),
+    (
+        "shape.sphere = {",
+        "shape.ball = {",
+        "unknown key `ball`",
+        ":14:7",
+    ),
+    (
+        "{ radius = \"5 mm\" }",
+        "{}",
+        "the key `radius` is missing",
+        ":14:16",
+    ),
+    (
+        "\"5 mm\"",
+        "\"0 mm\"",
+        "`radius` must be positive",
+        ":14:27",
+    ),
+    (
+        "\"5 mm\"",
+        "\"0.4 mm\"",
+        "the body `ball` is too thin",
+        ":14:1",
+    ),
+    (
+        "[0, 0, \"1 km/s\"]",
+        "[0, \"1 km/s\"]",
+        "must have 3 components, found 2",
+        ":15:12",
+    ),
+    (
+        "[0, 0, \"1 km/s\"]",
+        "\"1 km/s\"",
+        "expected an array, found string",
+        ":15:12",
+    ),
+    (
+        "upper = [\"1 cm\"",
+        "upper = [0",
+        "every edge of a box must be positive",
+        ":20:47",
+    ),
+    (
+        "upper =",
+        "size =",
+        "a box must have `lower` and `upper`",
+        ":20:13",
+    ),
+    (
+        "lower = [0, 0, \"1 cm\"], upper = [\"1 cm\"",
+        "lower = [\"-0.5 mm\", 0, \"1 cm\"], upper = [\"10.5 mm\"",
+        "does not lie between two layers",
+        "",
+    ),
+    (
+        "[\"ball\", \"brick\"]",
+        "[\"ball\"]",
+        "`bodies` must name two different",
+        ":23:10",
+    ),
+    (
+        "[\"ball\", \"brick\"]",
+        "[\"ball\", \"bric\"]",
+        "unknown body `bric`",
+        ":23:19",
+    ),
+    (
+        "[[symmetry]]",
+        "[[symetry]]",
+        "unknown key `symetry`",
+        ":25:3",
+    ),
+    (
+        "axis = \"x\"",
+        "axis = \"w\"",
+        "unknown choice `w`",
+        ":26:8",
+    ),
+    (
+        "axis = \"x\"",
+        "axis = \"x\"\nposition = \"1 m\"",
+        "has no particle above",
+        "",
+    ),
+    (
+        "axis = \"x\"",
+        "axis = \"x\"\naxis = \"y\"",
+        "duplicate key",
+        ":27:1",
+    ),
+    (
+        "axis = \"x\"",
+        "axis = \"x\"\n[[symmetry]]\naxis = \"x\"",
+        "a second symmetry plane normal to x",
+        ":28:8",
+    ),
+];
+
+#[test]
+fn mistakes_in_the_file() {
+    assert!(parse("case.toml", GOOD, &[]).is_ok());
+    for (from, to, title, place) in IN_FILE {
+        let text = GOOD.replacen(from, to, 1);
+        assert_ne!(text, GOOD, "{from}");
+        let message = message(&text, &[]);
+        assert!(message.contains(title), "{to}: {message}");
+        assert!(
+            message.contains(&format!("--> case.toml{place}")),
+            "{to}: {message}"
+        );
+        assert!(
+            message.starts_with("error: ") && message.contains('^'),
+            "{message}"
+        );
+    }
+}
+
+/// An override, the title and the column.
+const IN_OVERRIDES: &[(&str, &str, usize)] = &[
+    ("spacing", "an override needs a `=`", 1),
+    ("spacing=", "an override needs a value", 9),
+    ("=1", "this is not a dotted key", 1),
+    ("spacing=1 kn", "unknown unit `kn`", 9),
+    ("spacng=1 mm", "unknown key `spacng`", 1),
+    ("spacing.x=1", "there are no keys below a plain value", 9),
+    ("body.bal.velocity=[0, 0, 0]", "unknown element `bal`", 6),
+    (
+        "symmetry.1.axis=x",
+        "there is no element `1` in this list",
+        10,
+    ),
+    ("body.ball.velocity=[0, 0", "unclosed array", 25),
+    ("contact.mode=overlp", "unknown choice `overlp`", 14),
+    (
+        "contact.overlap.core_radius=2",
+        "`core_radius` must be between 0 and 1",
+        29,
+    ),
+    (
+        "contact.potential.exponent=0",
+        "`exponent` must be 1 or more",
+        28,
+    ),
+    ("run.max_steps=-1", "`max_steps` must be 1 or more", 15),
+    (
+        "time_step.courant=1.5",
+        "`courant` must be above 0 and at most 1",
+        19,
+    ),
+    ("sph.alpha=nan", "`alpha` must be zero or positive", 11),
+    (
+        "sph.alpha=much",
+        "expected a number, found string \"much\"",
+        11,
+    ),
+    ("output.fields=[\"presure\"]", "unknown field `presure`", 16),
+    ("output.fields=[\"body\", \"body\"]", "is listed twice", 24),
+    (
+        "output.checkpoints_kept=0",
+        "`checkpoints_kept` must be 1 or more",
+        25,
+    ),
+    (
+        "material.metal.spall={}",
+        "the key `pressure` is missing",
+        22,
+    ),
+    (
+        "material.metal.spall.pressure=1 GPa",
+        "`pressure` must be zero or negative",
+        31,
+    ),
+    (
+        "material.metal.eos={linear={}}",
+        "the key `bulk_modulus` is missing",
+        20,
+    ),
+    (
+        "material.metal.strength={}",
+        "`strength` must have exactly one of",
+        25,
+    ),
+    (
+        "body.ball.touch={body=\"ball\",direction=\"+x\"}",
+        "unknown body `ball`",
+        23,
+    ),
+    (
+        "body.ball.lattice={kind=\"cubic\",angle=\"1 m\"}",
+        "expected an angle",
+        39,
+    ),
+];
+
+#[test]
+fn mistakes_in_overrides() {
+    for (set, title, column) in IN_OVERRIDES {
+        let message = message(GOOD, &[set]);
+        assert!(message.contains(title), "{set}: {message}");
+        assert!(
+            message.contains(&format!("--> --set:1:{column}\n")),
+            "{set}: {message}"
+        );
+    }
+}
+
+#[test]
+fn bodies_may_not_touch_in_a_circle() {
+    let set = [
+        "body.ball.touch={body=\"brick\",direction=\"+x\"}",
+        "body.brick.touch={body=\"ball\",direction=\"+x\"}",
+    ];
+    assert!(message(GOOD, &set).contains("bodies touch each other in a circle"));
+}
+
+#[test]
+fn shapes_fit_the_dimension() {
+    let flat = r#"
+        dimension = 1
+        spacing = "1 mm"
+        run.end_time = "1 us"
+        material.a.library = "copper"
+        [[body]]
+        name = "a"
+        material = "a"
+        shape.sphere.radius = "1 cm"
+    "#;
+    assert!(message(flat, &[]).contains("a 1-dimensional case has no sphere"));
+    let row = flat.replace("sphere.radius = \"1 cm\"", "box.size = [\"1 cm\"]");
+    assert!(parse("row", &row, &[]).is_ok());
+    let hexagonal = message(&row, &["body.a.lattice=hexagonal"]);
+    assert!(hexagonal.contains("`lattice` must be \"cubic\""));
+    assert!(message(&row, &["domain.axis=y"]).contains("a 1-dimensional case has no y axis"));
+}
+
+#[test]
+fn a_missing_file_is_named() {
+    let error = load(Path::new("no/such/case.toml"), &[]).unwrap_err();
+    assert!(matches!(error, InputError::Read { .. }));
+    assert!(
+        error
+            .to_string()
+            .contains("cannot read the case no/such/case.toml")
+    );
+}
