@@ -11,7 +11,9 @@ fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=WHIPPLE_COMMIT");
     // Set already, it reaches the compiler by itself.
-    if std::env::var_os("WHIPPLE_COMMIT").is_some() || std::env::var("PROFILE").as_deref() != Ok("release") {
+    if std::env::var_os("WHIPPLE_COMMIT").is_some()
+        || std::env::var("PROFILE").as_deref() != Ok("release")
+    {
         return;
     }
     // A prefix means that the repository is another one, which only contains this folder.
@@ -25,7 +27,10 @@ fn main() {
     // The log of HEAD grows with each commit and checkout; where there is none, HEAD and its
     // branch change. A path that does not exist would run this script on every build.
     let branch = git(&["symbolic-ref", "-q", "HEAD"]);
-    for name in ["logs/HEAD", "HEAD", "packed-refs"].into_iter().chain(branch.as_deref()) {
+    for name in ["logs/HEAD", "HEAD", "packed-refs"]
+        .into_iter()
+        .chain(branch.as_deref())
+    {
         if let Some(path) = git(&["rev-parse", "--git-path", name])
             && Path::new(&path).exists()
         {

@@ -108,16 +108,12 @@ fn performance_columns() -> Vec<Column> {
 
 impl Tables {
     /// Starts the tables of a run, or goes on with them after the state `resume`.
-    pub fn open(
-        folder: &RunFolder,
-        resume: Option<&RunState>,
-    ) -> Result<Self, OutputError> {
-        let open = |path: &std::path::Path, columns: &[Column], key: &str, last: Option<f64>| {
-            match last {
+    pub fn open(folder: &RunFolder, resume: Option<&RunState>) -> Result<Self, OutputError> {
+        let open =
+            |path: &std::path::Path, columns: &[Column], key: &str, last: Option<f64>| match last {
                 Some(last) => Table::resume(path, columns, key, last),
                 None => Table::create(path, columns),
-            }
-        };
+            };
         #[allow(clippy::cast_precision_loss, reason = "steps fit a double")]
         let step = resume.map(|state| state.step as f64);
         let time = resume.map(|state| state.time);
@@ -258,11 +254,15 @@ fn mean_seconds(
     comm: &Comm,
     seconds: impl Iterator<Item = (&'static str, f64)>,
 ) -> Vec<(&'static str, f64)> {
-    let (names, mut nanoseconds): (Vec<_>, Vec<u64>) =
-        seconds.map(|(name, seconds)| (name, (seconds * 1e9) as u64)).unzip();
+    let (names, mut nanoseconds): (Vec<_>, Vec<u64>) = seconds
+        .map(|(name, seconds)| (name, (seconds * 1e9) as u64))
+        .unzip();
     comm.sum_u64(&mut nanoseconds);
     let mean = |&sum: &u64| sum as f64 * 1e-9 / comm.size() as f64;
-    names.into_iter().zip(nanoseconds.iter().map(mean)).collect()
+    names
+        .into_iter()
+        .zip(nanoseconds.iter().map(mean))
+        .collect()
 }
 
 fn object(
