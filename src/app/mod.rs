@@ -12,6 +12,7 @@ mod report;
 mod restart;
 pub mod results;
 mod run;
+mod say;
 mod stop;
 
 use std::process::ExitCode;
@@ -69,6 +70,9 @@ pub fn main() -> ExitCode {
             return ExitCode::from(if error.use_stderr() { EXIT_INPUT } else { 0 });
         }
     };
+    if !matches!(cli.command, Command::Run(_) | Command::Restart(_)) {
+        end_with_the_pipe();
+    }
     let code = match cli.command {
         Command::Run(args) => run::run(&args),
         Command::Restart(args) => restart::run(&args),
@@ -84,4 +88,10 @@ pub fn main() -> ExitCode {
         Command::Compare(args) => compare::run(&args),
     };
     ExitCode::from(code)
+}
+
+/// Lets a closed pipe (`whipple info … | head`) end the process quietly, as it ends other tools.
+fn end_with_the_pipe() {
+    // SAFETY: there is no other thread yet, and the handler is the system's own.
+    unsafe { libc::signal(libc::SIGPIPE, libc::SIG_DFL) };
 }

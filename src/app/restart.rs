@@ -6,6 +6,7 @@ use super::driver::{Driver, fail};
 use super::launch::{Launch, complain, with_ranks};
 use super::report::seconds;
 use super::run::CommonArgs;
+use super::say::say;
 use crate::comm::Comm;
 use crate::input;
 use crate::model::Case;
@@ -33,7 +34,7 @@ pub struct RestartArgs {
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
 
-    /// Change a value of `run`, `output` or `domain`, as in run.end_time=0.3us; may be given many
+    /// Change a value of `run`, `output` or `domain`, as in `run.end_time=0.3us`; may be given many
     /// times
     #[arg(short, long, value_name = "KEY=VALUE")]
     set: Vec<String>,
@@ -107,7 +108,10 @@ fn resume(launch: &Launch, args: &RestartArgs, checkpoint: &Path) -> u8 {
     let closed = comm.any(comm.is_root() && is_closed(checkpoint));
     if closed && let Some(reason) = nothing_to_do(&case, &state, args.common.until) {
         if comm.is_root() {
-            println!("nothing to do: {} is at {reason}", checkpoint.display());
+            say(&format!(
+                "nothing to do: {} is at {reason}",
+                checkpoint.display()
+            ));
         }
         comm.barrier();
         return 0;
