@@ -4,10 +4,12 @@
 mod cli_support;
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
 
 use cli_support::{
-    LAST_STEP, Running, assert_same, coarse_run, command, end, project, quarter_impact, ranks,
-    signal, start, status,
+    COARSE, Ended, LAST_STEP, Running, WHIPPLE, assert_same, coarse_run, command, end, project,
+    quarter_impact, ranks, signal, start, status,
 };
 
 /// The step before which rank 0 pauses, so that there is time to stop it.
@@ -18,11 +20,7 @@ fn folder() -> tempfile::TempDir {
 }
 
 /// Starts a command that pauses on its way, and asks it to stop while it does.
-fn stopped(
-    command: &mut std::process::Command,
-    run: &Path,
-    ask: impl FnOnce(&Running),
-) -> cli_support::Ended {
+fn stopped(command: &mut Command, run: &Path, ask: impl FnOnce(&Running)) -> Ended {
     command.env("WHIPPLE_TEST_FAULT", format!("pause:0:{PAUSE}"));
     let running = start(command);
     running.until_step(run, PAUSE - 1);
@@ -33,7 +31,7 @@ fn stopped(
 /// Fails unless the run in `run` was stopped for `reason`, with a checkpoint of its last step and
 /// nothing said but what is to be said.
 #[track_caller]
-fn assert_stopped(ended: &cli_support::Ended, run: &Path, reason: &str) {
+fn assert_stopped(ended: &Ended, run: &Path, reason: &str) {
     assert_eq!(ended.code, Some(75), "{ended:#?}");
     let (state, step, why) = status(run);
     assert_eq!((state.as_str(), why.as_str()), ("stopped", reason));
@@ -74,7 +72,7 @@ fn signals_stop_softly() {
 
     let run = place.path().join("mpirun");
     let ended = stopped(&mut coarse_run(2, &run), &run, |mpirun| {
-        signal("USR1", mpirun.id())
+        signal("USR1", mpirun.id());
     });
     assert_stopped(&ended, &run, reason);
     assert_eq!(ended.stderr, "");
@@ -89,6 +87,29 @@ fn signals_stop_softly() {
     assert_stopped(&ended, &run, reason);
     assert_eq!(ended.stderr, "");
     assert_goes_on(&run, &reference, 1);
+}
+
+#[test]
+fn ctrl_c_stops_a_lone_rank_softly_and_a_second_one_at_once() {
+    let place = folder();
+    let alone = |run: &Path| {
+        let mut alone = command(WHIPPLE);
+        alone.args(["run", &quarter_impact()]).args(COARSE);
+        alone.arg("--out").arg(run);
+        alone
+    };
+    let run = place.path().join("once");
+    let ended = stopped(&mut alone(&run), &run, |rank| signal("INT", rank.id()));
+    assert_stopped(&ended, &run, "a signal asked to stop");
+
+    let run = place.path().join("twice");
+    let ended = stopped(&mut alone(&run), &run, |rank| {
+        signal("INT", rank.id());
+        std::thread::sleep(Duration::from_millis(100));
+        signal("INT", rank.id());
+    });
+    assert_eq!(ended.code, Some(130), "{ended:#?}");
+    assert_eq!(status(&run).0, "running");
 }
 
 #[test]
@@ -127,7 +148,7 @@ fn the_launch_script_turns_signals_into_soft_stops() {
         let mut script = command("env");
         script.args(["--default-signal=INT", &project("jobs/run.sh")]);
         script.args(["-n", "2", "-t", "1", &quarter_impact()]);
-        script.args(cli_support::COARSE).arg("--out").arg(&run);
+        script.args(COARSE).arg("--out").arg(&run);
         let ended = stopped(&mut script, &run, |script| signal(name, script.id()));
         assert_stopped(&ended, &run, "a signal asked to stop");
         assert!(

@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test file uses some of these")]
 
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::LazyLock;
 use std::thread::JoinHandle;
@@ -215,14 +215,14 @@ fn last_step(folder: &Path) -> Option<u64> {
 }
 
 /// A JSON file of a run.
-pub fn json(path: PathBuf) -> serde_json::Value {
-    let text = std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+pub fn json(path: &Path) -> serde_json::Value {
+    let text = std::fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     serde_json::from_slice(&text).unwrap()
 }
 
 /// `status.json`: state, step and reason.
 pub fn status(folder: &Path) -> (String, u64, String) {
-    let status = json(folder.join("status.json"));
+    let status = json(&folder.join("status.json"));
     let text = |key: &str| status[key].as_str().unwrap_or_default().to_owned();
     (
         text("state"),
