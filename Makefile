@@ -15,7 +15,8 @@ help: ## Say what each target does
 
 impact: release ## Run the main job on two ranks, draw its pictures, report
 	jobs/run.sh -n 2 inputs/quarter-impact --out runs/quarter-impact --force
-	$(ENV) target/release/whipple plot runs/quarter-impact
+	$(ENV) target/release/whipple plot runs/quarter-impact --panels
+	$(ENV) target/release/whipple plot runs/quarter-impact --history
 	$(ENV) target/release/whipple info runs/quarter-impact
 
 test: run-tests ## Run the test suite, about eight minutes on two cores
