@@ -3,8 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::plot::{
-    Canvas, History, PANELS_WIDTH, Pictures, PlotError, Request, WIDTH, Wanted, choose,
-    parse_quantity, snapshots, title,
+    Canvas, History, Pictures, PlotError, Request, Wanted, choose, parse_quantity, snapshots, title,
 };
 
 /// Draw sections of snapshots, or the energies of a run, as PNG pictures
@@ -19,13 +18,19 @@ use crate::plot::{
   whipple plot runs/impact --all --field velocity.z --range -7:1km/s
   whipple plot state.vtkhdf --section z=0.1mm --view -1:1,-1:1mm
   whipple plot runs/impact --history")]
+#[expect(
+    clippy::struct_excessive_bools,
+    clippy::doc_markdown,
+    reason = "each is a switch of the command line; the comments are its help"
+)]
 pub struct PlotArgs {
     /// Snapshot file (.vtkhdf) or run folder
     #[arg(value_name = "FILE_OR_RUN")]
     pub source: PathBuf,
 
-    /// Picture to write, or the folder for several [default: beside the snapshot, or RUN/pictures]
-    #[arg(short, long, value_name = "PNG")]
+    /// Picture to write if the name ends in .png, else the folder to write into [default: beside
+    /// the snapshot, or RUN/pictures]
+    #[arg(short, long, value_name = "PNG_OR_FOLDER")]
     pub out: Option<PathBuf>,
 
     /// What colours show: "body", a field, FIELD.COMPONENT (x, y, z, magnitude; xx … xz,
@@ -53,7 +58,7 @@ pub struct PlotArgs {
 
     /// Values at the ends of the colour bar, as in 0:100GPa [default: all values but a few
     /// outliers]
-    #[arg(short, long, value_name = "LOW:HIGH", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LOW:HIGH", allow_hyphen_values = true)]
     pub range: Option<String>,
 
     /// Part of the plane to draw, as in -1:1,0:2mm [default: all particles]
@@ -61,27 +66,29 @@ pub struct PlotArgs {
     pub view: Option<String>,
 
     /// Width of the picture in pixels [default: 1200, panels 1800]
-    #[arg(short, long, value_name = "PX", value_parser = clap::value_parser!(u32).range(200..=20_000))]
+    #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(400..=20_000))]
     pub width: Option<u32>,
 
     /// Snapshots of the run nearest to these times, as in 0.1us
-    #[arg(short, long, value_name = "TIME", value_delimiter = ',', group = "which")]
+    #[arg(long, value_name = "TIME", value_delimiter = ',', group = "which")]
     pub time: Vec<String>,
 
     /// Snapshots of the run by number, from 0
-    #[arg(short, long, value_name = "K", value_delimiter = ',', group = "which")]
+    #[arg(long, value_name = "K", value_delimiter = ',', group = "which")]
     pub index: Vec<usize>,
 
     /// All snapshots of the run, with one view and one range of colours
-    #[arg(short, long, group = "which")]
+    #[arg(long, group = "which")]
     pub all: bool,
 
     /// Draw the snapshots side by side in one picture [default: the first, middle and last]
-    #[arg(short, long)]
+    #[arg(long)]
     pub panels: bool,
 
     /// Draw the run's energies against time instead
-    #[arg(long, conflicts_with_all = ["which", "field", "section", "panels", "range", "view"])]
+    #[arg(long, conflicts_with_all = [
+        "which", "field", "section", "thickness", "no_mirror", "panels", "range", "view",
+    ])]
     pub history: bool,
 }
 
@@ -112,21 +119,20 @@ pub fn run(args: &PlotArgs) -> Result<(), PlotError> {
     };
     let pictures = Pictures::new(&paths, &request)?;
     let field = args.field.as_deref().unwrap_or("body");
-    if args.panels && paths.len() > 1 {
-        let canvas = pictures.panels(args.width.unwrap_or(PANELS_WIDTH))?;
-        let default = folder(args).join(format!("panels-{field}.png"));
-        return write(&canvas, args.out.as_deref().unwrap_or(&default));
+    if args.panels {
+        let canvas = pictures.panels(args.width)?;
+        return write(&canvas, &target(args, &format!("panels-{field}.png")));
+    }
+    let named = args.out.as_deref().is_some_and(is_png);
+    if named && paths.len() > 1 {
+        return Err(PlotError::Options(
+            "several pictures cannot have one name: give --out a folder, or add --panels",
+        ));
     }
     for (k, path) in paths.iter().enumerate() {
-        let canvas = pictures.single(k, args.width.unwrap_or(WIDTH))?;
+        let canvas = pictures.single(k, args.width)?;
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        let name = format!("{stem}-{field}.png");
-        let target = match &args.out {
-            Some(out) if paths.len() == 1 && !out.is_dir() => out.clone(),
-            Some(out) => out.join(name),
-            None => folder(args).join(name),
-        };
-        write(&canvas, &target)?;
+        write(&canvas, &target(args, &format!("{stem}-{field}.png")))?;
     }
     Ok(())
 }
@@ -143,9 +149,8 @@ fn draw_history(args: &PlotArgs) -> Result<(), PlotError> {
     let known = snapshots(&args.source).and_then(|found| title(&found[0].1));
     let place = if run { &args.source } else { &file };
     let title = known.unwrap_or_else(|_| place.display().to_string());
-    let canvas = history.draw(&title, args.width.unwrap_or(WIDTH))?;
-    let default = folder(args).join("history.png");
-    write(&canvas, args.out.as_deref().unwrap_or(&default))
+    let canvas = history.draw(&title, args.width)?;
+    write(&canvas, &target(args, "history.png"))
 }
 
 fn wanted(args: &PlotArgs) -> Result<Wanted, PlotError> {
@@ -163,17 +168,26 @@ fn wanted(args: &PlotArgs) -> Result<Wanted, PlotError> {
     }
 }
 
-/// Where pictures go without `--out`.
-fn folder(args: &PlotArgs) -> PathBuf {
-    if args.source.is_dir() {
-        args.source.join("pictures")
-    } else {
-        args.source.parent().unwrap_or(Path::new("")).to_owned()
+/// The path of a picture that is called `name` unless `--out` calls it otherwise.
+fn target(args: &PlotArgs, name: &str) -> PathBuf {
+    match &args.out {
+        Some(out) if is_png(out) => out.clone(),
+        Some(out) => out.join(name),
+        None if args.source.is_dir() => args.source.join("pictures").join(name),
+        None => args.source.with_file_name(name),
     }
 }
 
+fn is_png(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("png"))
+}
+
 fn write(canvas: &Canvas, path: &Path) -> Result<(), PlotError> {
-    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+    if let Some(folder) = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+    {
         std::fs::create_dir_all(folder).map_err(|e| PlotError::Save {
             path: path.to_owned(),
             reason: e.to_string(),

@@ -15,50 +15,63 @@ pub struct Style {
 }
 
 impl Style {
-    pub fn title(&self) -> f32 {
+    /// Lengths for a picture of a width that looks as designed at the nominal one; text in small
+    /// pictures stays large enough to be read.
+    pub fn new(width: u32, nominal: u32) -> Self {
+        Self {
+            unit: (width as f32 / nominal as f32).max(0.6),
+        }
+    }
+
+    pub fn title(self) -> f32 {
         26.0 * self.unit
     }
 
-    pub fn text(&self) -> f32 {
+    pub fn text(self) -> f32 {
         20.0 * self.unit
     }
 
-    pub fn small(&self) -> f32 {
+    pub fn small(self) -> f32 {
         18.0 * self.unit
     }
 
     /// Length of a mark.
-    pub fn tick(&self) -> f32 {
+    pub fn tick(self) -> f32 {
         7.0 * self.unit
     }
 
     /// Space between things that belong together.
-    pub fn gap(&self) -> f32 {
+    pub fn gap(self) -> f32 {
         8.0 * self.unit
     }
 
+    /// Space between panels: half a number on either side, and some.
+    pub fn between(self) -> f32 {
+        40.0 * self.unit
+    }
+
     /// Blank border of the picture.
-    pub fn margin(&self) -> f32 {
+    pub fn margin(self) -> f32 {
         22.0 * self.unit
     }
 
     /// Width of axis lines.
-    pub fn line(&self) -> f32 {
+    pub fn line(self) -> f32 {
         (1.5 * self.unit).max(1.0)
     }
 
     /// Height of what hangs below a frame: marks, numbers, label.
-    pub fn below(&self) -> f32 {
+    pub fn below(self) -> f32 {
         self.tick() + self.small() + self.text() + 3.0 * self.gap()
     }
 
     /// Width of what stands left of a frame with these numbers: label, numbers, marks.
-    pub fn beside(&self, ticks: &Ticks) -> f32 {
+    pub fn beside(self, ticks: &Ticks) -> f32 {
         self.tick() + self.widest(ticks) + self.text() + 3.0 * self.gap()
     }
 
     /// Width of the widest number of an axis.
-    pub fn widest(&self, ticks: &Ticks) -> f32 {
+    pub fn widest(self, ticks: &Ticks) -> f32 {
         let widths = ticks.labels.iter().map(|l| font::width(l, self.small()));
         widths.fold(0.0, f32::max)
     }
@@ -90,7 +103,11 @@ impl Axes {
         let baseline = bottom + style.tick() + style.gap() + 0.75 * style.small();
         for (&value, number) in ticks.values.iter().zip(&ticks.labels) {
             let (x, _) = self.at(value, self.y[0]);
-            canvas.line(&[(x, bottom), (x, bottom + style.tick())], style.line(), INK);
+            canvas.line(
+                &[(x, bottom), (x, bottom + style.tick())],
+                style.line(),
+                INK,
+            );
             if label.is_some() {
                 canvas.text(number, (x, baseline), style.small(), Align::Middle);
             }
@@ -207,7 +224,7 @@ impl Pen<'_> {
         if text.is_empty() {
             return;
         }
-        let size = size * (room / font::width(text, size)).clamp(0.7, 1.0);
+        let size = size * (room / font::width(text, size)).clamp(0.8, 1.0);
         let text = shorten(text, size, room);
         self.y += size;
         if let Some(canvas) = self.canvas.as_deref_mut() {

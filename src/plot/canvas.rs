@@ -49,23 +49,19 @@ pub struct Canvas {
 
 impl Canvas {
     /// White paper of a size in pixels.
+    ///
+    /// # Errors
+    /// [`PlotError::Size`] if it cannot be held.
     pub fn new(width: u32, height: u32) -> Result<Self, PlotError> {
         let mut pixmap = Pixmap::new(width, height).ok_or(PlotError::Size { width, height })?;
         pixmap.fill(Color::WHITE);
         Ok(Self { pixmap })
     }
 
-    /// The colour at a pixel.
-    #[cfg(test)]
-    pub fn pixel(&self, x: u32, y: u32) -> Rgb {
-        let pixel = self.pixmap.pixel(x, y).expect("inside the picture");
-        [pixel.red(), pixel.green(), pixel.blue()]
-    }
-
     /// A filled disc with smooth edges, cut at the borders of `clip`.
     ///
-    /// A pixel's cover is taken from its centre's distance to the edge: exact enough for the eye,
-    /// and some twenty times faster than a general path.
+    /// A pixel's cover is taken from its centre's distance to the edge, or for small discs from
+    /// a grid of samples: exact enough for the eye, and far faster than a general path.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -86,8 +82,11 @@ impl Canvas {
             let dy = y as f32 + 0.5 - centre.1;
             for x in xs.clone() {
                 let dx = x as f32 + 0.5 - centre.0;
-                // A disc below the size of a pixel keeps its area as a paler pixel.
-                let cover = (reach - (dx * dx + dy * dy).sqrt()).clamp(0.0, (2.0 * radius).min(1.0));
+                let cover = if radius < 3.0 {
+                    sampled_cover(dx, dy, radius)
+                } else {
+                    (reach - (dx * dx + dy * dy).sqrt()).clamp(0.0, 1.0)
+                };
                 if cover > 0.0 {
                     blend(&mut pixels[y * columns + x], colour, cover);
                 }
@@ -153,7 +152,11 @@ impl Canvas {
         let (top, bottom) = (frame.top, frame.bottom());
         let half = 0.5 * width;
         self.line(&[(left - half, top), (right + half, top)], width, colour);
-        self.line(&[(left - half, bottom), (right + half, bottom)], width, colour);
+        self.line(
+            &[(left - half, bottom), (right + half, bottom)],
+            width,
+            colour,
+        );
         self.line(&[(left, top), (left, bottom)], width, colour);
         self.line(&[(right, top), (right, bottom)], width, colour);
     }
@@ -179,6 +182,9 @@ impl Canvas {
     }
 
     /// Writes the picture as a PNG file.
+    ///
+    /// # Errors
+    /// [`PlotError::Save`] if the system refuses.
     pub fn save(&self, path: &Path) -> Result<(), PlotError> {
         let failed = |reason: String| PlotError::Save {
             path: path.to_owned(),
@@ -188,6 +194,17 @@ impl Canvas {
         let bytes = bytes.map_err(|e| failed(e.to_string()))?;
         std::fs::write(path, bytes).map_err(|e| failed(e.to_string()))
     }
+}
+
+/// The share of a pixel within a disc, from 4 × 4 samples; the pixel's centre lies at (dx, dy)
+/// from the disc's.
+fn sampled_cover(dx: f32, dy: f32, radius: f32) -> f32 {
+    let offsets = [-0.375, -0.125, 0.125, 0.375];
+    let inside = |x: f32, y: f32| x * x + y * y <= radius * radius;
+    let samples = offsets
+        .iter()
+        .flat_map(|v| offsets.map(|u| inside(dx + u, dy + v)));
+    samples.filter(|&hit| hit).count() as f32 / 16.0
 }
 
 /// How far left of its position a line of text begins.
@@ -212,7 +229,8 @@ fn paint(colour: Rgb) -> Paint<'static> {
     reason = "a mean of two bytes is a byte"
 )]
 fn blend(pixel: &mut PremultipliedColorU8, colour: Rgb, cover: f32) {
-    let mix = |old: u8, new: u8| (f32::from(old) * (1.0 - cover) + f32::from(new) * cover).round() as u8;
+    let mix =
+        |old: u8, new: u8| (f32::from(old) * (1.0 - cover) + f32::from(new) * cover).round() as u8;
     let mixed = PremultipliedColorU8::from_rgba(
         mix(pixel.red(), colour[0]),
         mix(pixel.green(), colour[1]),
@@ -245,8 +263,9 @@ mod tests {
                 .map(|p| 1.0 - f32::from(p.red()) / 255.0)
                 .sum();
             let area = std::f32::consts::PI * radius * radius;
-            // The cover by distance is a model of the true cover: a few per cent on small discs.
-            let bound = if radius < 1.0 { 0.4 } else { 0.05 };
+            // 8 of 16 samples fall into the smallest; larger discs are better, and the cover by
+            // distance adds π/12 pixels.
+            let bound = 0.3 / area;
             assert!((ink / area - 1.0).abs() < bound, "{radius}: {ink} {area}");
         }
     }
@@ -261,7 +280,8 @@ mod tests {
         };
         canvas.disc((10.0, 20.0), 5.0, [0, 0, 0], &clip);
         canvas.disc((-50.0, 20.0), 5.0, [0, 0, 0], &clip);
-        assert_eq!(canvas.pixel(9, 20), [255, 255, 255]);
-        assert_eq!(canvas.pixel(10, 20), [0, 0, 0]);
+        let red = |x, y| canvas.pixmap.pixel(x, y).unwrap().red();
+        assert_eq!(red(9, 20), 255);
+        assert_eq!(red(10, 20), 0);
     }
 }

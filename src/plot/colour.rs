@@ -192,9 +192,16 @@ mod tests {
         assert!(scale.diverging);
         assert_eq!(scale.colour(0.0), [221, 221, 221]);
         let (low, high) = (scale.colour(-1.0), scale.colour(4.0));
-        assert!(low[2] > low[0] && high[0] > high[2], "negative blue, positive red");
+        assert!(
+            low[2] > low[0] && high[0] > high[2],
+            "negative blue, positive red"
+        );
         assert_eq!(high, [180, 4, 38]);
-        assert_eq!(low, [184, 208, 249], "a quarter of the reach is a pale blue");
+        assert_eq!(
+            low,
+            [184, 208, 249],
+            "a quarter of the reach is a pale blue"
+        );
     }
 
     #[test]

@@ -43,12 +43,15 @@ pub enum PlotError {
         known: Vec<String>,
     },
     /// The field has no such component.
-    #[error("field \"{field}\" has no component \"{component}\"; it has {known}")]
+    #[error("{}: {known}", component.as_ref().map_or_else(
+        || format!("field \"{field}\" needs a component, as in {field}.COMPONENT"),
+        |component| format!("field \"{field}\" has no component \"{component}\"; it has"),
+    ))]
     Component {
         /// The field.
         field: String,
-        /// As asked for.
-        component: String,
+        /// As asked for, if one was.
+        component: Option<String>,
         /// What there is.
         known: String,
     },

@@ -9,7 +9,10 @@ use super::snapshot::Snapshot;
 const VECTOR: [&str; 3] = ["x", "y", "z"];
 
 /// Components of a symmetric tensor, in the order of the file, which is VTK's.
-const TENSOR: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
+const SYMMETRIC: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
+
+/// Components of a tensor, row by row.
+const TENSOR: [&str; 9] = ["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"];
 
 /// What the particles of a picture are coloured by.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,6 +46,10 @@ impl Shown {
     pub fn find(snapshot: &Snapshot, name: &str) -> Result<Self, PlotError> {
         match name {
             "body" => Ok(Self::Body),
+            // A run may write the stress, or only what follows from it.
+            "von_mises" if !has(snapshot, "deviatoric_stress")? => {
+                find(snapshot, "von_mises_stress", None).map(Self::Field)
+            }
             "von_mises" => find(snapshot, "deviatoric_stress", Some("von_mises")).map(Self::Field),
             _ => {
                 let (dataset, component) = match name.split_once('.') {
@@ -79,6 +86,11 @@ impl Field {
     }
 }
 
+fn has(snapshot: &Snapshot, dataset: &str) -> Result<bool, PlotError> {
+    let names = snapshot.file.names()?;
+    Ok(names.iter().any(|name| name == dataset))
+}
+
 fn find(snapshot: &Snapshot, dataset: &str, part: Option<&str>) -> Result<Field, PlotError> {
     let names = snapshot.file.names()?;
     if !names.iter().any(|name| name == dataset) {
@@ -99,17 +111,21 @@ fn find(snapshot: &Snapshot, dataset: &str, part: Option<&str>) -> Result<Field,
         }
         (6, Some("von_mises")) => Some((Pick::VonMises, von_mises_label(dataset, &words))),
         (6, Some(part)) => {
+            among(&SYMMETRIC, part).map(|k| (Pick::Component(k), format!("{words} {part}")))
+        }
+        (9, Some(part)) => {
             among(&TENSOR, part).map(|k| (Pick::Component(k), format!("{words} {part}")))
         }
         _ => None,
     };
     let (pick, label) = found.ok_or_else(|| PlotError::Component {
         field: dataset.to_owned(),
-        component: part.unwrap_or_default().to_owned(),
+        component: part.map(str::to_owned),
         known: match width {
             1 => "none: it is a scalar".to_owned(),
             3 => format!("{}, magnitude", VECTOR.join(", ")),
-            6 => format!("{}, von_mises", TENSOR.join(", ")),
+            6 => format!("{}, von_mises", SYMMETRIC.join(", ")),
+            9 => TENSOR.join(", "),
             _ => format!("{width} components, which plot does not know"),
         },
     })?;
@@ -144,9 +160,8 @@ fn von_mises(t: &[f64; 6]) -> f64 {
 
 /// The known name that shares the most pairs of letters with a mistyped one.
 fn nearest(name: &str, known: &[String]) -> Option<String> {
-    let pairs = |word: &str| -> Vec<(char, char)> {
-        word.chars().zip(word.chars().skip(1)).collect()
-    };
+    let pairs =
+        |word: &str| -> Vec<(char, char)> { word.chars().zip(word.chars().skip(1)).collect() };
     let wanted = pairs(name);
     let share = |candidate: &String| {
         let other = pairs(candidate);

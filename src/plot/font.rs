@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use tiny_skia::{Path, PathBuilder};
 use ttf_parser::{Face, OutlineBuilder};
 
-/// DejaVu Sans, cut down; see `font/README.md` and its licence there.
+/// The cut-down font that `font/README.md` describes.
 static FONT: LazyLock<Face<'static>> = LazyLock::new(|| {
     Face::parse(include_bytes!("font/DejaVuSans-subset.ttf"), 0)
         .expect("the font inside the program is whole")

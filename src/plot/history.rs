@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
+use super::PlotError;
 use super::axes::{Axes, Header, Style};
 use super::canvas::{Canvas, Frame, Rgb};
-use super::figure::WIDTH;
+use super::figure::{WIDTH, whole};
 use super::ticks::{Ticks, nice_step};
 use super::units::Readable;
-use super::PlotError;
 
 /// Columns that are drawn, their names in the legend and their colours.
 const CURVES: [(&str, &str, Rgb); 4] = [
@@ -63,7 +63,9 @@ impl History {
         for (line, number) in lines {
             let cells: Vec<&str> = line.split(',').map(str::trim).collect();
             let value = |column: usize| {
-                let cell = cells.get(column).ok_or_else(|| format!("line {number} is cut off"))?;
+                let cell = cells
+                    .get(column)
+                    .ok_or_else(|| format!("line {number} is cut off"))?;
                 let value = cell.parse::<f64>();
                 value.map_err(|_| format!("line {number}: \"{cell}\" is no number"))
             };
@@ -78,14 +80,13 @@ impl History {
         Ok(history)
     }
 
-    /// Draws the energies against time.
+    /// Draws the energies against time, in a width in pixels.
     ///
     /// # Errors
     /// [`PlotError::Size`] if no such picture can be held.
-    pub fn draw(&self, title: &str, width: u32) -> Result<Canvas, PlotError> {
-        let style = Style {
-            unit: width as f32 / WIDTH as f32,
-        };
+    pub fn draw(&self, title: &str, width: Option<u32>) -> Result<Canvas, PlotError> {
+        let width = width.unwrap_or(WIDTH);
+        let style = Style::new(width, WIDTH);
         let header = Header {
             title,
             subtitle: "energies",
@@ -109,19 +110,18 @@ impl History {
             height: height.round(),
         };
         let x_ticks = Ticks::new(x, nice_step((x[1] - x[0]) / 8.0));
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "in proportion to the width"
-        )]
-        let total = (frame.bottom() + style.below() + 0.5 * style.margin()).ceil() as u32;
+        let total = whole(frame.bottom() + style.below() + 0.5 * style.margin());
         let mut canvas = Canvas::new(width, total)?;
         header.draw(Some(&mut canvas), style, width as f32);
 
         let axes = Axes { frame, x, y };
         axes.draw_grid(&mut canvas, style, &x_ticks, &y_ticks);
         for (energies, (_, _, colour)) in self.energies.iter().zip(CURVES) {
-            let points = self.time.iter().zip(energies).filter(|(t, e)| (**t + **e).is_finite());
+            let points = self
+                .time
+                .iter()
+                .zip(energies)
+                .filter(|(t, e)| (**t + **e).is_finite());
             let points = points.map(|(t, e)| axes.at(t / time_unit.size, e / unit.size));
             canvas.line(&thinned(points), 3.0 * style.unit, colour);
         }
@@ -134,7 +134,9 @@ impl History {
 /// The span of values and zero in the unit that suits them, and this unit.
 fn readable(values: &[f64], unit: &str) -> ([f64; 2], Readable) {
     let finite = values.iter().copied().filter(|v| v.is_finite());
-    let [low, high] = finite.fold([0.0_f64, 0.0_f64], |[low, high], v| [low.min(v), high.max(v)]);
+    let [low, high] = finite.fold([0.0_f64, 0.0_f64], |[low, high], v| {
+        [low.min(v), high.max(v)]
+    });
     let unit = Readable::new(unit, high.max(-low));
     let span = [low / unit.size, high / unit.size];
     if span[0] < span[1] {

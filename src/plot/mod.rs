@@ -5,7 +5,13 @@
 //! with a font of its own: no Python, no system fonts. Sizes of a picture are in proportion to its
 //! width, so that a wider picture is the same picture, finer.
 
+#![expect(
+    clippy::cast_precision_loss,
+    reason = "positions in a picture need no more digits than a float has"
+)]
+
 mod axes;
+mod bar;
 mod canvas;
 mod colour;
 mod error;
@@ -13,6 +19,7 @@ mod field;
 mod figure;
 mod font;
 mod history;
+mod layout;
 mod pictures;
 mod section;
 mod snapshot;
@@ -22,7 +29,6 @@ mod units;
 
 pub use canvas::Canvas;
 pub use error::PlotError;
-pub use figure::{PANELS_WIDTH, WIDTH};
 pub use history::History;
 pub use pictures::{Pictures, Request, title};
 pub use source::{Wanted, choose, snapshots};

@@ -2,14 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
+use super::PlotError;
+use super::bar::ColourBar;
 use super::canvas::Canvas;
 use super::colour::Scale;
 use super::field::Shown;
-use super::figure::{Colours, Figure, View};
+use super::figure::{Colours, Figure, PANELS_WIDTH, WIDTH};
+use super::layout::View;
 use super::section::{Cut, Plane, Section};
 use super::snapshot::Snapshot;
 use super::units::{self, Readable};
-use super::PlotError;
+use crate::model::{Axis, SymmetryPlane};
 
 /// What to draw, as typed.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -47,7 +50,9 @@ impl Pictures {
     /// Any [`PlotError`] but those of writing: a snapshot that cannot be read, a request that
     /// cannot be understood, or a plane that misses all particles.
     pub fn new(paths: &[PathBuf], request: &Request) -> Result<Self, PlotError> {
-        let path = paths.first().ok_or(PlotError::Options("no snapshot to draw"))?;
+        let path = paths
+            .first()
+            .ok_or(PlotError::Options("no snapshot to draw"))?;
         let first = Snapshot::open(path)?;
         let thickness = request.thickness.as_deref().map(thickness).transpose()?;
         let cut = Cut {
@@ -86,41 +91,43 @@ impl Pictures {
         })
     }
 
-    /// The picture of one snapshot, by its place among the paths.
+    /// The picture of one snapshot, by its place among the paths, of a width in pixels.
     ///
     /// # Errors
     /// [`PlotError::Size`] if no such picture can be held.
-    pub fn single(&self, index: usize, width: u32) -> Result<Canvas, PlotError> {
+    pub fn single(&self, index: usize, width: Option<u32>) -> Result<Canvas, PlotError> {
         let section = &self.sections[index..=index];
-        let time = &self.times(&self.sections)[index];
-        self.figure(section, format!("t = {time},  {}", self.where_text), Vec::new(), width)
+        let time = &self.times()[index];
+        let subtitle = format!("t = {time},  {}", self.where_text);
+        self.figure(section, subtitle, Vec::new(), width.unwrap_or(WIDTH))
             .draw()
     }
 
-    /// One picture with a panel for each snapshot.
+    /// One picture with a panel for each snapshot, of a width in pixels.
     ///
     /// # Errors
     /// [`PlotError::Size`] if no such picture can be held.
-    pub fn panels(&self, width: u32) -> Result<Canvas, PlotError> {
+    pub fn panels(&self, width: Option<u32>) -> Result<Canvas, PlotError> {
         if self.sections.len() == 1 {
             return self.single(0, width);
         }
-        let times = self.times(&self.sections);
+        let times = self.times();
         let headings = times.iter().map(|time| format!("t = {time}")).collect();
+        let width = width.unwrap_or(PANELS_WIDTH);
         self.figure(&self.sections, self.where_text.clone(), headings, width)
             .draw()
     }
 
     /// Times with one unit and as many digits for all.
-    fn times(&self, sections: &[Section]) -> Vec<String> {
-        let largest = sections.iter().map(|s| s.time).fold(0.0, f64::max);
+    fn times(&self) -> Vec<String> {
+        let largest = self.sections.iter().map(|s| s.time).fold(0.0, f64::max);
         let unit = Readable::new("s", largest);
         let decimals = match largest {
             0.0 => 0,
             largest => units::decimals(largest / unit.size),
         };
         let text = |s: &Section| format!("{} {}", unit.number(s.time, decimals), unit.name);
-        sections.iter().map(text).collect()
+        self.sections.iter().map(text).collect()
     }
 
     fn figure<'a>(
@@ -131,11 +138,11 @@ impl Pictures {
         width: u32,
     ) -> Figure<'a> {
         Figure {
-            title: self.title.clone(),
+            title: &self.title,
             subtitle,
             sections,
             headings,
-            axes: self.cut.plane.picture_axes().map(|axis| axis.name()),
+            axes: self.cut.plane.picture_axes().map(Axis::name),
             spacings: &self.spacings,
             colours: &self.colours,
             view: self.view,
@@ -179,28 +186,25 @@ fn parse_view(text: &str) -> Result<View, PlotError> {
 
 /// `"section y = 0 mm, mirrored at x = 0 mm"`.
 fn where_text(cut: &Cut, snapshot: &Snapshot) -> String {
-    let spacing = snapshot.spacings.iter().copied().fold(f64::INFINITY, f64::min);
     let at = |axis: &str, position: f64| {
-        let unit = Readable::new("m", position.abs().max(spacing));
+        let unit = Readable::new("m", position.abs().max(snapshot.finest()));
         let number = unit.number(position, 3);
-        let number = match number.contains('.') {
-            true => number.trim_end_matches('0').trim_end_matches('.').to_owned(),
-            false => number,
-        };
+        let number = number.trim_end_matches('0').trim_end_matches('.');
         if number == "0" {
             format!("{axis} = 0")
         } else {
             format!("{axis} = {number} {}", unit.name)
         }
     };
-    let mut text = format!("section {}", at(cut.plane.axis.name(), cut.plane.position));
-    let seen = |axis| axis != cut.plane.axis;
-    let planes = snapshot.symmetry.iter().filter(|p| cut.mirror && seen(p.axis));
+    let section = at(cut.plane.axis.name(), cut.plane.position);
+    let seen = |p: &&SymmetryPlane| cut.mirror && p.axis != cut.plane.axis;
+    let planes = snapshot.symmetry.iter().filter(seen);
     let planes: Vec<String> = planes.map(|p| at(p.axis.name(), p.position)).collect();
-    if !planes.is_empty() {
-        text += &format!(",  mirrored at {}", planes.join(" and "));
+    if planes.is_empty() {
+        format!("section {section}")
+    } else {
+        format!("section {section},  mirrored at {}", planes.join(" and "))
     }
-    text
 }
 
 fn colours(
@@ -212,14 +216,19 @@ fn colours(
     match shown {
         Shown::Body => Colours::Bodies(bodies.to_vec()),
         Shown::Field(field) => {
-            let values = || sections.iter().flat_map(|s| &s.discs).map(|disc| disc.value);
+            let values = || {
+                sections
+                    .iter()
+                    .flat_map(|s| &s.discs)
+                    .map(|disc| disc.value)
+            };
             let scale = Scale::new(values(), range);
             let unit = Readable::new(&field.unit, scale.high.abs().max(scale.low.abs()));
             let mut label = unit.label(&field.label);
             if values().any(|value| !value.is_finite()) {
                 label += "; pink: not finite";
             }
-            Colours::Bar { scale, unit, label }
+            Colours::Bar(ColourBar { scale, unit, label })
         }
     }
 }

@@ -44,7 +44,7 @@ impl Plane {
                 axis,
                 position: units::parse(position, "m")?,
             }),
-            None => Self::through(axis, snapshot, &snapshot.extent()?),
+            None => Ok(Self::through(axis, snapshot, &snapshot.extent()?)),
         }
     }
 
@@ -52,9 +52,8 @@ impl Plane {
     /// the middle of y.
     pub fn best(snapshot: &Snapshot) -> Result<Self, PlotError> {
         let extent = snapshot.extent()?;
-        let spacing = snapshot.spacings.iter().copied().fold(f64::INFINITY, f64::min);
         let depth = extent[Axis::Z.index()];
-        let flat = depth.highest - depth.lowest <= NUDGE * spacing;
+        let flat = depth.highest - depth.lowest <= NUDGE * snapshot.finest();
         let symmetric = |axis: &Axis| snapshot.symmetry.iter().any(|plane| plane.axis == *axis);
         let axis = if flat {
             Axis::Z
@@ -62,21 +61,18 @@ impl Plane {
             let preferred = [Axis::Y, Axis::Z, Axis::X];
             preferred.into_iter().find(symmetric).unwrap_or(Axis::Y)
         };
-        Self::through(axis, snapshot, &extent)
+        Ok(Self::through(axis, snapshot, &extent))
     }
 
-    fn through(axis: Axis, snapshot: &Snapshot, extent: &[Extent; 3]) -> Result<Self, PlotError> {
+    fn through(axis: Axis, snapshot: &Snapshot, extent: &[Extent; 3]) -> Self {
         let plane = snapshot.symmetry.iter().find(|plane| plane.axis == axis);
-        let spacing = snapshot.spacings.iter().copied().fold(f64::INFINITY, f64::min);
-        let position = match plane {
-            Some(plane) => plane.position,
-            None => {
-                // Without the round-off of a mean.
-                let step = 1e-3 * spacing;
-                (extent[axis.index()].mean() / step).round() * step
-            }
-        };
-        Ok(Self { axis, position })
+        // Without the round-off of a mean.
+        let step = 1e-3 * snapshot.finest();
+        let middle = (extent[axis.index()].mean() / step).round() * step;
+        Self {
+            axis,
+            position: plane.map_or(middle, |plane| plane.position),
+        }
     }
 }
 
@@ -123,15 +119,18 @@ impl Cut {
     /// plane, half-way between a layer and its image, the layer on the side that the model keeps.
     pub fn take(&self, snapshot: &Snapshot) -> Result<Section, PlotError> {
         let mut discs = Vec::new();
+        let mut images = Vec::new();
         for rows in snapshot.chunks() {
             let points = snapshot.file.points(rows.clone())?;
             let bodies = snapshot.body_of(rows.clone())?;
             let values = self.shown.values(snapshot, rows)?;
             for ((point, body), value) in points.into_iter().zip(bodies).zip(values) {
                 let spacing = snapshot.spacings[body];
-                for image in self.images(&point, &snapshot.symmetry) {
-                    discs.extend(self.disc(&image, spacing, body, value));
-                }
+                self.reflect(&point, &snapshot.symmetry, &mut images);
+                let found = images
+                    .iter()
+                    .filter_map(|p| self.disc(p, spacing, body, value));
+                discs.extend(found);
             }
         }
         // Stable: equally deep particles stay in the order of their ids.
@@ -142,20 +141,18 @@ impl Cut {
         })
     }
 
-    /// A particle and its reflections at all planes of symmetry.
-    fn images(&self, point: &[f64; 3], symmetry: &[SymmetryPlane]) -> Vec<[f64; 3]> {
-        let mut images = vec![*point];
-        if self.mirror {
-            for plane in symmetry {
-                let k = plane.axis.index();
-                for n in 0..images.len() {
-                    let mut image = images[n];
-                    image[k] = 2.0 * plane.position - image[k];
-                    images.push(image);
-                }
+    /// Fills `images` with a particle and its reflections at all planes of symmetry.
+    fn reflect(&self, point: &[f64; 3], symmetry: &[SymmetryPlane], images: &mut Vec<[f64; 3]>) {
+        images.clear();
+        images.push(*point);
+        for plane in symmetry.iter().filter(|_| self.mirror) {
+            let k = plane.axis.index();
+            for n in 0..images.len() {
+                let mut image = images[n];
+                image[k] = 2.0 * plane.position - image[k];
+                images.push(image);
             }
         }
-        images
     }
 
     /// The particle at `point` if the slice holds it.
@@ -177,7 +174,11 @@ impl Cut {
     /// The error that no particle lies in the section.
     pub fn miss(&self, snapshot: &Snapshot) -> PlotError {
         let mut extent = snapshot.extent().unwrap_or_default()[self.plane.axis.index()];
-        for plane in snapshot.symmetry.iter().filter(|p| self.mirror && p.axis == self.plane.axis) {
+        for plane in snapshot
+            .symmetry
+            .iter()
+            .filter(|p| self.mirror && p.axis == self.plane.axis)
+        {
             extent.lowest = extent.lowest.min(2.0 * plane.position - extent.highest);
             extent.highest = extent.highest.max(2.0 * plane.position - extent.lowest);
         }
@@ -231,7 +232,8 @@ mod tests {
             position: 1.0,
         };
         let symmetry = [plane(Axis::X), plane(Axis::Y)];
-        let images = cut(1.0, true).images(&[1.5, 1.25, 3.0], &symmetry);
+        let mut images = Vec::new();
+        cut(1.0, true).reflect(&[1.5, 1.25, 3.0], &symmetry, &mut images);
         let expected = [
             [1.5, 1.25, 3.0],
             [0.5, 1.25, 3.0],
@@ -239,7 +241,8 @@ mod tests {
             [0.5, 0.75, 3.0],
         ];
         assert_eq!(images, expected);
-        assert_eq!(cut(1.0, false).images(&[1.5, 1.25, 3.0], &symmetry).len(), 1);
+        cut(1.0, false).reflect(&[1.5, 1.25, 3.0], &symmetry, &mut images);
+        assert_eq!(images, [[1.5, 1.25, 3.0]]);
     }
 
     #[test]

@@ -43,14 +43,19 @@ impl Snapshot {
             return Err(damaged(format!("{b} bodies but {s} spacings")));
         }
         if let Some(&bad) = spacings.iter().find(|&&s| !(s > 0.0 && s.is_finite())) {
-            return Err(damaged(format!("a spacing of {bad} m; it must be positive")));
+            return Err(damaged(format!(
+                "a spacing of {bad} m; it must be positive"
+            )));
         }
         let plane = |(name, position): (String, f64)| {
             let axis = Axis::ALL.into_iter().find(|a| a.name() == name);
             let axis = axis.ok_or_else(|| damaged(format!("a symmetry plane along \"{name}\"")))?;
             Ok(SymmetryPlane { axis, position })
         };
-        let symmetry = planes.into_iter().map(plane).collect::<Result<_, PlotError>>()?;
+        let symmetry = planes
+            .into_iter()
+            .map(plane)
+            .collect::<Result<_, PlotError>>()?;
         Ok(Self {
             time: file.time()?,
             file,
@@ -59,6 +64,11 @@ impl Snapshot {
             spacings,
             symmetry,
         })
+    }
+
+    /// The smallest particle spacing (m).
+    pub fn finest(&self) -> f64 {
+        self.spacings.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
     /// The rows of the snapshot in portions that fit in memory.
@@ -137,7 +147,11 @@ impl Extent {
 
     /// Mean coordinate (m); 0 without particles.
     pub fn mean(&self) -> f64 {
-        if self.count > 0.0 { self.sum / self.count } else { 0.0 }
+        if self.count > 0.0 {
+            self.sum / self.count
+        } else {
+            0.0
+        }
     }
 }
 

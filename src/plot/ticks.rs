@@ -56,7 +56,13 @@ mod tests {
 
     #[test]
     fn steps_are_one_two_or_five() {
-        for (least, step) in [(0.9, 1.0), (1.0, 1.0), (1.1, 2.0), (0.021, 0.05), (60.0, 100.0)] {
+        for (least, step) in [
+            (0.9, 1.0),
+            (1.0, 1.0),
+            (1.1, 2.0),
+            (0.021, 0.05),
+            (60.0, 100.0),
+        ] {
             assert!((nice_step(least) / step - 1.0).abs() < 1e-12, "{least}");
         }
     }
@@ -66,6 +72,9 @@ mod tests {
         let ticks = Ticks::new([-0.5, 0.5], 0.25_f64.max(nice_step(0.3)));
         assert_eq!(ticks.labels, ["−0.5", "0.0", "0.5"]);
         assert_eq!(Ticks::new([0.0, 200.0], 100.0).labels, ["0", "100", "200"]);
-        assert_eq!(Ticks::new([0.0, 0.1], 0.05).labels, ["0.00", "0.05", "0.10"]);
+        assert_eq!(
+            Ticks::new([0.0, 0.1], 0.05).labels,
+            ["0.00", "0.05", "0.10"]
+        );
     }
 }

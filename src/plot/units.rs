@@ -1,4 +1,4 @@
-//! Units as people read and type them: GPa, km/s, µs, mm.
+//! Units as people read and type them, with the prefix that keeps numbers short.
 
 use super::PlotError;
 
@@ -33,7 +33,7 @@ impl Readable {
         let unit = tidy(unit);
         let head = unit.split(['/', '·', ' ']).next().unwrap_or_default();
         if PREFIXABLE.contains(&head) {
-            return Self::prefixed(unit, largest);
+            return Self::prefixed(&unit, largest);
         }
         let power = power_of_thousand(largest);
         let factor = match power {
@@ -53,8 +53,8 @@ impl Readable {
 
     /// The largest prefix that leaves at least one unit, or a tenth for lengths and times, which
     /// read well so: 0.2 µs, 0.6 mm.
-    fn prefixed(unit: String, largest: f64) -> Self {
-        let (least, top) = match unit.as_str() {
+    fn prefixed(unit: &str, largest: f64) -> Self {
+        let (least, top) = match unit {
             "s" => (0.1, 1.0),
             "m" => (0.1, 1e3),
             _ => (1.0, f64::INFINITY),
@@ -103,6 +103,9 @@ pub fn decimals(largest: f64) -> usize {
 }
 
 /// Reads `"0.1 mm"` for a quantity whose SI unit is `unit`; zero and pure numbers need no unit.
+///
+/// # Errors
+/// [`PlotError::Quantity`] if the text is no number or its unit is another or missing.
 pub fn parse(text: &str, unit: &str) -> Result<f64, PlotError> {
     let (number, suffix) = split(text);
     quantity(text, number, suffix, unit)
@@ -122,12 +125,20 @@ pub fn parse_span(text: &str, last_unit: Option<&str>, unit: &str) -> Result<[f6
         high_suffix
     };
     let (low_number, low_suffix) = split(low);
-    let low_suffix = if low_suffix.is_empty() { common } else { low_suffix };
+    let low_suffix = if low_suffix.is_empty() {
+        common
+    } else {
+        low_suffix
+    };
     let span = [
         quantity(text, low_number, low_suffix, unit)?,
         quantity(text, high_number, common, unit)?,
     ];
-    if span[0] < span[1] { Ok(span) } else { Err(wrong()) }
+    if span[0] < span[1] {
+        Ok(span)
+    } else {
+        Err(wrong())
+    }
 }
 
 /// Splits `"0.1 mm"` into its number and its unit.
@@ -138,7 +149,10 @@ pub fn split(text: &str) -> (&str, &str) {
             && text[i + 1..].starts_with(|d: char| d.is_ascii_digit() || d == '-' || d == '+');
         !(c.is_ascii_digit() || matches!(c, '.' | '-' | '+') || exponent)
     };
-    let end = text.char_indices().find(numeric).map_or(text.len(), |(i, _)| i);
+    let end = text
+        .char_indices()
+        .find(numeric)
+        .map_or(text.len(), |(i, _)| i);
     (text[..end].trim(), text[end..].trim())
 }
 
@@ -148,7 +162,15 @@ fn quantity(text: &str, number: &str, suffix: &str, unit: &str) -> Result<f64, P
         expected: format!("a number{}", in_unit(unit)),
     };
     let value: f64 = number.parse().map_err(|_| wrong())?;
-    let plain = |unit: &str| tidy(unit).replace('²', "2").replace('³', "3").replace('u', "µ");
+    if !value.is_finite() {
+        return Err(wrong());
+    }
+    let plain = |unit: &str| {
+        tidy(unit)
+            .replace('²', "2")
+            .replace('³', "3")
+            .replace('u', "µ")
+    };
     let (unit, suffix) = (plain(unit), plain(suffix));
     if suffix == unit || (suffix.is_empty() && value == 0.0) {
         return Ok(value);
@@ -254,10 +276,14 @@ mod tests {
     }
 
     #[test]
+    #[expect(clippy::float_cmp, reason = "products of small integers are exact")]
     fn a_range_shares_its_last_unit() {
         assert_eq!(parse_span("-1:2", None, "1").unwrap(), [-1.0, 2.0]);
         assert_eq!(parse_span("0:3 km/s", None, "m/s").unwrap(), [0.0, 3000.0]);
-        assert_eq!(parse_span("1 m/s:3 km/s", None, "m/s").unwrap(), [1.0, 3000.0]);
+        assert_eq!(
+            parse_span("1 m/s:3 km/s", None, "m/s").unwrap(),
+            [1.0, 3000.0]
+        );
         assert!(parse_span("3:1 km/s", None, "m/s").is_err());
         assert!(parse_span("3 km/s", None, "m/s").is_err());
     }

@@ -1,8 +1,9 @@
 //! Synthetic snapshots in the layout of the developer guide, for the tests of `whipple plot`.
 
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use hdf5::types::{FixedAscii, VarLenUnicode};
+use hdf5::types::{FixedAscii, FixedUnicode, VarLenUnicode};
 
 /// Particle spacing of the synthetic impact (m).
 pub const SPACING: f64 = 2e-5;
@@ -64,7 +65,11 @@ fn deform([x, y, z]: [f64; 3], sphere: bool, stage: f64) -> [f64; 3] {
     let near = (-(r / 3.5e-4).powi(4)).exp();
     let spread = 1.0 + stage * near * if sphere { 0.8 } else { 1.6 };
     let lip = stage * 2.5e-4 * (-((r - 6e-4) / 1.2e-4).powi(2)).exp();
-    let push = if sphere { 1.0e-3 } else { 1.1e-3 + 2.0 * (z + 1e-4) };
+    let push = if sphere {
+        1.0e-3
+    } else {
+        1.1e-3 + 2.0 * (z + 1e-4)
+    };
     let jitter = |a: f64| 0.4 * SPACING * stage * near * (a * 7.3e5).sin();
     [
         (x + jitter(y + 2.0 * z)).abs() * spread,
@@ -74,7 +79,12 @@ fn deform([x, y, z]: [f64; 3], sphere: bool, stage: f64) -> [f64; 3] {
 }
 
 /// Fields that look like those of an impact: name, unit, components, value of a particle.
-type Made = (&'static str, &'static str, usize, fn(&[f64; 3], usize) -> f64);
+type Made = (
+    &'static str,
+    &'static str,
+    usize,
+    fn(&[f64; 3], usize) -> f64,
+);
 
 const FIELDS: [Made; 4] = [
     ("pressure", "Pa", 1, |p, _| {
@@ -86,7 +96,11 @@ const FIELDS: [Made; 4] = [
     }),
     ("velocity", "m/s", 3, |p, c| {
         let near = (-(p[0].hypot(p[1]) / 4e-4).powi(2)).exp();
-        [1500.0 * near * p[0] / 4e-4, 1500.0 * near * p[1] / 4e-4, 900.0 - 6500.0 * near][c]
+        [
+            1500.0 * near * p[0] / 4e-4,
+            1500.0 * near * p[1] / 4e-4,
+            900.0 - 6500.0 * near,
+        ][c]
     }),
     ("deviatoric_stress", "Pa", 6, |p, c| {
         let s = 1.7e8 * (-(p[0].hypot(p[1]) / 9e-4).powi(2)).exp();
@@ -118,7 +132,11 @@ pub fn write(path: &Path, case: &Case, particles: &Particles, time: f64) {
     // A string of fixed length, as other writers make them.
     let one = FixedAscii::<4>::from_ascii("1").unwrap();
     let unit = data.dataset("id").unwrap();
-    unit.new_attr::<FixedAscii<4>>().create("unit").unwrap().write_scalar(&one).unwrap();
+    unit.new_attr::<FixedAscii<4>>()
+        .create("unit")
+        .unwrap()
+        .write_scalar(&one)
+        .unwrap();
     let builder = data.new_dataset_builder();
     builder.with_data(&particles.body).create("body").unwrap();
     text(&data.dataset("body").unwrap(), "unit", "1");
@@ -126,16 +144,42 @@ pub fn write(path: &Path, case: &Case, particles: &Particles, time: f64) {
     array(&field, "TimeValue", &[time], 1);
 
     let about = file.create_group("whipple").unwrap();
-    text(&about, "title", &case.title);
-    text(&about, "bodies", &serde_json::to_string(&case.bodies).unwrap());
-    text(&about, "spacings", &serde_json::to_string(&case.spacings).unwrap());
-    text(&about, "symmetry", &serde_json::to_string(&case.symmetry).unwrap());
+    // The program's own writer uses UTF-8 of fixed length.
+    let title: FixedUnicode<128> = case.title.parse().unwrap();
+    let attribute = about
+        .new_attr::<FixedUnicode<128>>()
+        .create("title")
+        .unwrap();
+    attribute.write_scalar(&title).unwrap();
+    text(
+        &about,
+        "bodies",
+        &serde_json::to_string(&case.bodies).unwrap(),
+    );
+    text(
+        &about,
+        "spacings",
+        &serde_json::to_string(&case.spacings).unwrap(),
+    );
+    text(
+        &about,
+        "symmetry",
+        &serde_json::to_string(&case.symmetry).unwrap(),
+    );
 }
 
 fn array(group: &hdf5::Group, name: &str, data: &[f64], width: usize) {
     let rows = data.len() / width;
-    let shape = if width == 1 { vec![rows] } else { vec![rows, width] };
-    let dataset = group.new_dataset::<f64>().shape(shape).create(name).unwrap();
+    let shape = if width == 1 {
+        vec![rows]
+    } else {
+        vec![rows, width]
+    };
+    let dataset = group
+        .new_dataset::<f64>()
+        .shape(shape)
+        .create(name)
+        .unwrap();
     dataset.as_writer().write_raw(data).unwrap();
 }
 
@@ -152,7 +196,12 @@ pub fn run(folder: &Path) -> PathBuf {
     for k in 0..3_u32 {
         let stage = f64::from(k) / 2.0;
         let name = format!("snapshots/{k:06}.vtkhdf");
-        write(&run.join(name), &Case::quarter(), &impact(stage), 2e-7 * stage);
+        write(
+            &run.join(name),
+            &Case::quarter(),
+            &impact(stage),
+            2e-7 * stage,
+        );
     }
     let mut rows = String::from(
         "# energies in J, time in s\n\
@@ -164,7 +213,11 @@ pub fn run(folder: &Path) -> PathBuf {
         let contact = 2e-4 * (20.0 * s * (1.0 - 20.0 * s).exp());
         let kinetic = 7.71e-3 - lost - contact;
         let (t, sum) = (2e-7 * s, kinetic + lost + contact);
-        rows += &format!("{k},{t:e},5e-10,{kinetic:e},{lost:e},{contact:e},{sum:e}\n");
+        writeln!(
+            rows,
+            "{k},{t:e},5e-10,{kinetic:e},{lost:e},{contact:e},{sum:e}"
+        )
+        .unwrap();
     }
     std::fs::write(run.join("history.csv"), rows).unwrap();
     run

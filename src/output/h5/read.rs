@@ -63,13 +63,11 @@ impl SnapshotFile {
             particles: 0,
         };
         let shape = snapshot.dataset("/VTKHDF/Points")?.shape();
-        match shape[..] {
-            [rows, 3] => snapshot.particles = rows,
-            _ => {
-                let reason = format!("its shape is {shape:?}, not [particles, 3]");
-                return Err(snapshot.layout("/VTKHDF/Points", reason));
-            }
-        }
+        let [rows, 3] = shape[..] else {
+            let reason = format!("its shape is {shape:?}, not [particles, 3]");
+            return Err(snapshot.layout("/VTKHDF/Points", &reason));
+        };
+        snapshot.particles = rows;
         Ok(snapshot)
     }
 
@@ -92,9 +90,9 @@ impl SnapshotFile {
     pub fn time(&self) -> Result<f64, ReadError> {
         let name = "/VTKHDF/FieldData/TimeValue";
         let values = self.dataset(name)?.read_raw::<f64>();
-        let values = values.map_err(|e| self.layout(name, e))?;
+        let values = values.map_err(|e| self.layout(name, &e))?;
         let first = values.first().copied();
-        first.ok_or_else(|| self.layout(name, "it is empty"))
+        first.ok_or_else(|| self.layout(name, &"it is empty"))
     }
 
     /// Positions of a range of particles, `[rows][3]` (m).
@@ -113,8 +111,8 @@ impl SnapshotFile {
     /// [`ReadError::Layout`] if the file has no particle data.
     pub fn names(&self) -> Result<Vec<String>, ReadError> {
         let name = "/VTKHDF/PointData";
-        let group = self.file.group(name).map_err(|e| self.layout(name, e))?;
-        let mut names = group.member_names().map_err(|e| self.layout(name, e))?;
+        let group = self.file.group(name).map_err(|e| self.layout(name, &e))?;
+        let mut names = group.member_names().map_err(|e| self.layout(name, &e))?;
         names.sort();
         Ok(names)
     }
@@ -131,7 +129,8 @@ impl SnapshotFile {
             [rows, width] if rows == self.particles => Ok(width),
             _ => {
                 let n = self.particles;
-                Err(self.layout(&name, format!("its shape {shape:?} fits no {n} particles")))
+                let reason = format!("its shape {shape:?} does not fit {n} particles");
+                Err(self.layout(&name, &reason))
             }
         }
     }
@@ -158,7 +157,7 @@ impl SnapshotFile {
         let width = self.components(field)?;
         if component >= width {
             let reason = format!("it has {width} components, {component} was asked for");
-            return Err(self.layout(&field_path(field), reason));
+            return Err(self.layout(&field_path(field), &reason));
         }
         let mut values = self.values(field, rows)?;
         if width > 1 {
@@ -197,25 +196,21 @@ impl SnapshotFile {
             let values = dataset.read_slice_2d(block);
             values.map(|array| array.into_raw_vec_and_offset().0)
         };
-        flat.map_err(|e| self.layout(name, e))
+        flat.map_err(|e| self.layout(name, &e))
     }
 
     fn dataset(&self, name: &str) -> Result<Dataset, ReadError> {
-        self.file.dataset(name).map_err(|e| self.layout(name, e))
+        self.file.dataset(name).map_err(|e| self.layout(name, &e))
     }
 
     /// The text of an attribute, whichever of HDF5's string types it was written with.
-    fn text(
-        &self,
-        what: &str,
-        attribute: hdf5::Result<Attribute>,
-    ) -> Result<String, ReadError> {
+    fn text(&self, what: &str, attribute: hdf5::Result<Attribute>) -> Result<String, ReadError> {
         attribute
             .and_then(|a| read_text(&a))
-            .map_err(|e| self.layout(what, e))
+            .map_err(|e| self.layout(what, &e))
     }
 
-    fn layout(&self, what: &str, reason: impl ToString) -> ReadError {
+    fn layout(&self, what: &str, reason: &dyn ToString) -> ReadError {
         ReadError::Layout {
             path: self.path.clone(),
             what: what.to_owned(),
