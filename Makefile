@@ -49,8 +49,10 @@ deps:
 test-deps:
 	@jobs/install-deps.sh --tests
 
+# The commit goes into summaries and snapshots.
 release: deps
-	$(ENV) cargo build --locked --release
+	$(ENV) WHIPPLE_COMMIT=$$(git describe --always --dirty 2>/dev/null || echo unknown) \
+	    cargo build --locked --release
 
 run-tests: test-deps $(VENV)/ready
 	$(ENV) jobs/cargo-test.sh

@@ -41,7 +41,9 @@ shift 2
 # finished, stopped or failed; nothing before the first leg, and after the machine went down.
 status() { grep -oEsm1 '"(finished|stopped|failed)"' "$run/status.json" | tr -d '"' || true; }
 # By name, which is the step; one that is being written is called *.partial.
-newest_checkpoint() { compgen -G "$run/checkpoints/step-*[0-9]" | sort | tail -n 1; }
+newest_checkpoint() {
+    { compgen -G "$run/checkpoints/step-*[0-9]" || true; } | sort | tail -n 1
+}
 
 # Runs a leg and passes signals on to it; `caught` is the last one.
 leg=''
