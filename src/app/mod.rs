@@ -1,10 +1,13 @@
 //! The commands of the program.
 
 mod check;
+pub mod compare;
 mod driver;
+pub mod info;
 mod plot;
 mod report;
 mod restart;
+pub mod results;
 mod run;
 mod stop;
 
@@ -37,6 +40,8 @@ enum Command {
     Restart(restart::RestartArgs),
     Check(check::CheckArgs),
     Plot(plot::PlotArgs),
+    Info(info::InfoArgs),
+    Compare(compare::CompareArgs),
 }
 
 /// Runs the program: its command line, its exit code.
@@ -60,6 +65,8 @@ pub fn main() -> ExitCode {
             },
             |()| 0,
         ),
+        Command::Info(args) => info::run(&args),
+        Command::Compare(args) => compare::run(&args),
     };
     ExitCode::from(code)
 }

@@ -19,8 +19,6 @@ pub struct Block {
     pub first: u64,
     /// Rows here.
     pub count: usize,
-    /// Most rows on any rank.
-    pub largest: usize,
 }
 
 impl Block {
@@ -33,7 +31,6 @@ impl Block {
             total,
             first,
             count: usize::try_from(end - first).expect("a block fits memory"),
-            largest: usize::try_from(total.div_ceil(ranks as u64)).expect("a block fits memory"),
         }
     }
 
@@ -44,7 +41,6 @@ impl Block {
             total: total as u64,
             first: 0,
             count: if comm.is_root() { total } else { 0 },
-            largest: total,
         }
     }
 
@@ -55,7 +51,6 @@ impl Block {
             total: self.total + 1,
             first: self.first,
             count: self.count + usize::from(last_rank),
-            largest: self.largest + 1,
         }
     }
 }

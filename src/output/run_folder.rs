@@ -324,7 +324,7 @@ const SNAPSHOT_ENDING: &str = ".vtkhdf";
 /// Whether a run wrote this into its folder of snapshots or checkpoints.
 fn is_ours(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let name = name.strip_suffix(files::PARTIAL).unwrap_or(&name);
+    let name = name.trim_end_matches(files::PARTIAL);
     let name = Path::new(name.strip_suffix(".old").unwrap_or(name));
     step_of(name, SNAPSHOT_ENDING).is_some()
         || step_of(name, "").is_some()

@@ -13,8 +13,9 @@ use whipple::particles::{FIELDS, ParticleStore};
 
 const FOLDER: &str = "WHIPPLE_TEST_FOLDER";
 
-/// Runs `task(comm, folder)` of the test called `test` on so many ranks, all in one folder.
-pub fn on_ranks(test: &str, ranks: usize, folder: &Path, task: impl Fn(&Comm, &Path)) {
+/// Runs `task(comm, folder)` of the test called `test` on so many ranks, all in one folder, and
+/// gives what they print.
+pub fn on_ranks(test: &str, ranks: usize, folder: &Path, task: impl Fn(&Comm, &Path)) -> String {
     if let Some(folder) = std::env::var_os(FOLDER) {
         let before = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |info| {
@@ -24,7 +25,7 @@ pub fn on_ranks(test: &str, ranks: usize, folder: &Path, task: impl Fn(&Comm, &P
         let (_session, comm) = Session::start().expect("MPI starts");
         task(&comm, Path::new(&folder));
         drop(comm);
-        return;
+        return String::new();
     }
     let output = Command::new("timeout")
         .args(["120", "mpirun", "--quiet", "-n", &ranks.to_string()])
@@ -45,6 +46,7 @@ pub fn on_ranks(test: &str, ranks: usize, folder: &Path, task: impl Fn(&Comm, &P
         String::from_utf8_lossy(&output.stdout),
         String::from_utf8_lossy(&output.stderr)
     );
+    String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
 /// Whether this process is a rank that [`on_ranks`] started.
