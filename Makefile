@@ -37,7 +37,7 @@ bench: deps ## Measure the kernels
 docs: deps ## Build the book (target/book) and the API documentation (target/doc)
 	$(ENV) cargo doc --locked --no-deps
 	@mdbook=$$(command -v mdbook || command -v target/tools/bin/mdbook) || { \
-	    echo "the book needs mdBook: cargo install --root target/tools --locked mdbook" >&2; exit 2; }; \
+	    echo "the book needs mdBook: cargo install --root target/tools --locked mdbook, or Debian 13's mdbook" >&2; exit 2; }; \
 	"$$mdbook" build docs
 
 clean: ## Remove what was built; runs/ stays
