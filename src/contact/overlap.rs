@@ -120,7 +120,7 @@ pub fn react(view: &ContactView, place: u32, neighbours: &[u32], reaction: &mut 
             energy += 0.25 * stress * (depth * depth);
             reaction.stiffness += 2.0 * stress / (pair.core_radius * pair.core_radius);
         }
-        reaction.book(&j, &gap, pair.spacing, gap.along(force), energy);
+        reaction.book(&j, &gap, pair, gap.along(force), energy);
     }
 }
 

@@ -120,7 +120,7 @@ fn time_step(params: &TimeStepParams) -> Result<TimeStepOptions, Complaint> {
     Ok(TimeStepOptions {
         courant: factor(params.courant.as_ref(), "courant", 0.4)?,
         force: factor(params.force.as_ref(), "force", 0.25)?,
-        contact: factor(params.contact.as_ref(), "contact", 0.5)?,
+        contact: factor(params.contact.as_ref(), "contact", 0.6)?,
         max: number(params.max.as_ref(), "max", f64::INFINITY, Allowed::Positive)?,
     })
 }
