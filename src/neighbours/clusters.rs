@@ -5,8 +5,8 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::sequence::Sequence;
-use crate::sph::gradient::MotionRecord;
-use crate::sph::lanes::LANES;
+use crate::sph::dispatch::{Instructions, Vectorised, instructions};
+use crate::sph::lanes::{LANES, Lanes};
 
 /// Clusters that one task handles.
 pub const CLUSTERS_PER_CHUNK: usize = 64;
@@ -46,35 +46,78 @@ impl Chunk {
         })
     }
 
-    fn build(&mut self, sequence: &Sequence, sources: &[MotionRecord], reach: &[f64]) {
+    fn build(&mut self, set: Instructions, sequence: &Sequence, reach: &[f64]) {
         self.neighbours.clear();
         self.ends.clear();
-        for cluster in &self.clusters {
-            let own = cluster.receivers.map(|k| sources[k as usize]);
-            let (lower, upper) = bounding_box(&own);
-            let h = own
-                .iter()
-                .map(|r| r.smoothing_length)
-                .fold(0.0, f64::max);
-            let far = (h + reach[cluster.group]) * INFLATION;
-            let mut mirrored = false;
-            let neighbours = &mut self.neighbours;
-            sequence.in_box(
-                cluster.group,
-                &lower.map(|x| x - far),
-                &upper.map(|x| x + far),
-                |place| {
-                    let source = &sources[place as usize];
-                    let range = h + source.smoothing_length;
-                    if distance2(&lower, &upper, &source.position) < range * range * INFLATION {
-                        neighbours.push(place);
-                        mirrored |= sequence.images()[place as usize].code() != 0;
-                    }
-                },
-            );
+        let Self {
+            clusters,
+            ends,
+            neighbours,
+        } = self;
+        for cluster in clusters {
+            let mirrored = set.run(ListNeighbours {
+                sequence,
+                cluster,
+                reach: reach[cluster.group],
+                neighbours,
+            });
             #[allow(clippy::cast_possible_truncation, reason = "64 clusters' lists fit u32")]
-            self.ends.push((neighbours.len() as u32, mirrored));
+            ends.push((neighbours.len() as u32, mirrored));
         }
+    }
+}
+
+/// Appends the neighbours of a cluster to a list; tells whether mirror images are among them.
+struct ListNeighbours<'a> {
+    sequence: &'a Sequence,
+    cluster: &'a Cluster,
+    reach: f64,
+    neighbours: &'a mut Vec<u32>,
+}
+
+impl Vectorised for ListNeighbours<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) -> bool {
+        let sequence = self.sequence;
+        let (lower, upper, h) = bounds(sequence, &self.cluster.receivers);
+        let far = (h + self.reach) * INFLATION;
+        let low = lower.map(V::splat);
+        let high = upper.map(V::splat);
+        let own = V::splat(h);
+        let mut mirrored = false;
+        sequence.in_box(
+            self.cluster.group,
+            &lower.map(|x| x - far),
+            &upper.map(|x| x + far),
+            |places| {
+                for first in places.clone().step_by(LANES) {
+                    let gap = |a: usize| {
+                        let x = V::read(sequence.coordinates(a, first));
+                        let gap = low[a].sub(x).max(x.sub(high[a])).max(V::splat(0.0));
+                        gap.mul(gap)
+                    };
+                    let range = V::read(sequence.lengths(first)).add(own);
+                    let range2 = range.mul(range).mul(V::splat(INFLATION));
+                    let near = gap(0).add(gap(1)).add(gap(2)).less_than(range2);
+                    let left = places.end - first;
+                    let mut bits = if left < LANES {
+                        near & ((1 << left) - 1)
+                    } else {
+                        near
+                    };
+                    while bits != 0 {
+                        let place = first + bits.trailing_zeros() as usize;
+                        bits &= bits - 1;
+                        #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
+                        self.neighbours.push(place as u32);
+                        mirrored |= sequence.images()[place].code() != 0;
+                    }
+                }
+            },
+        );
+        mirrored
     }
 }
 
@@ -91,19 +134,14 @@ pub struct ClusterLists {
 
 impl ClusterLists {
     /// Groups the owned particles (store indices below `owned`) into clusters and lists the
-    /// neighbours of each. `sources` are the images in the order of `sequence`; `reach[g]` is
-    /// the largest smoothing length (m) among the images of group g.
-    pub fn build(
-        &mut self,
-        sequence: &Sequence,
-        owned: usize,
-        sources: &[MotionRecord],
-        reach: &[f64],
-    ) {
+    /// neighbours of each. `reach[g]` is the largest smoothing length (m) among the images of
+    /// group g.
+    pub fn build(&mut self, sequence: &Sequence, owned: usize, reach: &[f64]) {
+        let set = instructions();
         self.gather_clusters(sequence, owned);
         self.chunks[..self.used]
             .par_iter_mut()
-            .for_each(|chunk| chunk.build(sequence, sources, reach));
+            .for_each(|chunk| chunk.build(set, sequence, reach));
     }
 
     /// The tasks, for parallel iteration.
@@ -169,17 +207,24 @@ impl ClusterLists {
     }
 }
 
-/// Box around eight records (m).
-pub(super) fn bounding_box(records: &[MotionRecord; LANES]) -> ([f64; 3], [f64; 3]) {
-    let mut lower = records[0].position;
-    let mut upper = lower;
-    for record in &records[1..] {
+/// Box around eight receivers (m) and their largest smoothing length (m).
+#[inline(always)]
+pub(super) fn bounds(
+    sequence: &Sequence,
+    receivers: &[u32; LANES],
+) -> ([f64; 3], [f64; 3], f64) {
+    let at = |axis: usize, place: u32| sequence.coordinates(axis, place as usize)[0];
+    let mut lower = std::array::from_fn(|a| at(a, receivers[0]));
+    let mut upper: [f64; 3] = lower;
+    let mut h: f64 = 0.0;
+    for &place in receivers {
         for a in 0..3 {
-            lower[a] = lower[a].min(record.position[a]);
-            upper[a] = upper[a].max(record.position[a]);
+            lower[a] = f64::min(lower[a], at(a, place));
+            upper[a] = f64::max(upper[a], at(a, place));
         }
+        h = h.max(sequence.lengths(place as usize)[0]);
     }
-    (lower, upper)
+    (lower, upper, h)
 }
 
 /// Square of the distance between a box and a point (m²).

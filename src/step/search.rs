@@ -51,6 +51,7 @@ impl Simulation {
                 position: mirrors.reflect_position(&store.position[base], image.code()),
                 id: store.id[base],
                 group: groups[store.body[base] as usize],
+                smoothing_length: store.smoothing_length[base],
             }
         });
         let blank = MotionRecord {
@@ -81,7 +82,7 @@ impl Simulation {
         }
         search
             .clusters
-            .build(&search.sequence, store.owned(), &search.motion, &search.reach);
+            .build(&search.sequence, store.owned(), &search.reach);
         if self.contact.is_active() {
             let images = search.sequence.images();
             search.foreign.build(
