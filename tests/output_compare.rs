@@ -169,10 +169,10 @@ fn info_tells_what_is_there() {
     }
     let told = describe(&folder.snapshot(12)).unwrap();
     for part in [
-        "body 1                     15         plate",
+        "body 1                             15         plate",
         "velocity y                   m/s         -7.00000e3    -7.00000e3",
         "30 of its values are not finite",
-        "ranks x threads              1 x 2",
+        "ranks x threads                      1 x 2",
     ] {
         assert!(told.contains(part), "{part} in\n{told}");
     }

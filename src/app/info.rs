@@ -63,7 +63,7 @@ struct Text(String);
 
 impl Text {
     fn entry(&mut self, name: &str, value: impl std::fmt::Display) {
-        let _ = writeln!(self.0, "{:<28} {value}", name.replace('_', " "));
+        let _ = writeln!(self.0, "{:<36} {value}", name.replace('_', " "));
     }
 }
 
