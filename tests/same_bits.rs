@@ -17,7 +17,7 @@ const QUARTER: &[&str] = &[
 
 fn whipple(ranks: usize, arguments: &[&str]) -> Output {
     let root = env!("CARGO_MANIFEST_DIR");
-    let script = "source jobs/env.sh; exec mpirun --quiet -n \"$0\" \"$@\"";
+    let script = "source jobs/env.sh; exec mpirun -n \"$0\" \"$@\"";
     Command::new("bash")
         .current_dir(root)
         .args(["-c", script, &ranks.to_string()])
@@ -116,7 +116,10 @@ fn every_contact_mode_and_variable_h() {
         ["sph.smoothing_length=constant", "run.end_time=0.1us"],
     ] {
         let more = ["--set", options[0], "--set", options[1]];
-        let (one, three) = (at(&format!("{}1", options[0])), at(&format!("{}3", options[0])));
+        let (one, three) = (
+            at(&format!("{}1", options[0])),
+            at(&format!("{}3", options[0])),
+        );
         run(1, 2, QUARTER, &more, &one);
         run(3, 1, QUARTER, &more, &three);
         assert_same(&one, &three, options[0]);

@@ -4,7 +4,7 @@ mod check;
 pub mod compare;
 mod driver;
 pub mod info;
-mod plot;
+pub mod plot;
 mod report;
 mod restart;
 pub mod results;

@@ -27,9 +27,10 @@ pub fn react(view: &ContactView, place: u32, neighbours: &[u32], reaction: &mut 
         let steeper = power(ratio, pair.exponent - 1);
         let energy = 0.5 * strength * (ratio * steeper - pair.floor);
         let force = strength * n * steeper * slope;
-        reaction.stiffness +=
-            2.0 * strength * n * ((n - 1.0) * power(ratio, pair.exponent - 2) * (slope * slope)
-                + steeper * curvature);
+        reaction.stiffness += 2.0
+            * strength
+            * n
+            * ((n - 1.0) * power(ratio, pair.exponent - 2) * (slope * slope) + steeper * curvature);
         reaction.book(&j, &gap, pair, gap.along(force), energy);
     }
 }

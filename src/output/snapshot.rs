@@ -8,7 +8,9 @@ use std::path::Path;
 
 use crate::comm::Comm;
 use crate::model::Case;
-use crate::particles::{FIELDS, FieldId, FieldInfo, FieldKind, FieldUse, ParticleStore};
+use crate::particles::{
+    FIELDS, FieldId, FieldInfo, FieldKind, FieldUse, ParticleStore, VON_MISES_STRESS,
+};
 
 use super::h5::{Element, RowType, Writer};
 use super::{COMMIT, OutputError, Rows, VERSION, files, on_root};
@@ -36,7 +38,7 @@ impl Quantity {
     pub fn name(self) -> &'static str {
         match self {
             Self::Field(field) => field.name,
-            Self::VonMisesStress => "von_mises_stress",
+            Self::VonMisesStress => VON_MISES_STRESS,
         }
     }
 

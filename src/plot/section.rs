@@ -239,7 +239,10 @@ mod tests {
             for shift in [-1e-21, 0.0, 1e-21] {
                 let layers = (-10..10)
                     .map(|n| (f64::from(n) + 0.5) * spacing + shift)
-                    .filter(|&y| cut.disc(&[0.0, y, 0.0], 0.5 * spacing, spacing, 0, 0.0).is_some());
+                    .filter(|&y| {
+                        cut.disc(&[0.0, y, 0.0], 0.5 * spacing, spacing, 0, 0.0)
+                            .is_some()
+                    });
                 assert_eq!(layers.count(), 1, "plane at {k}/8 spacings");
             }
         }

@@ -132,7 +132,13 @@ impl Simulation {
     /// Creates the particles of this rank's slab, and no others.
     fn populate(&mut self, comm: &Comm) -> Result<(), SetupError> {
         let boxes = body_boxes(&self.case).ok_or(SetupError::Empty)?;
-        self.slabs = first_slabs(&self.case, comm, &boxes, self.slabs.axis, &mut self.histogram);
+        self.slabs = first_slabs(
+            &self.case,
+            comm,
+            &boxes,
+            self.slabs.axis,
+            &mut self.histogram,
+        );
         let (lower, upper) = self.slabs.range(comm.rank());
         let slab = Slab {
             axis: self.slabs.axis,
