@@ -24,7 +24,7 @@ const ERROR: u64 = 0;
 impl Simulation {
     /// Chooses the next Δt. Collective.
     pub(super) fn vote(&mut self, comm: &Comm) -> Result<(), StepError> {
-        let mut words = Vec::new();
+        let mut words = std::mem::take(&mut self.scratch);
         let (dt, reason, id) = self.local_vote();
         comm.all_gather_u64(&[dt, reason, id, self.wishes], &mut words);
         self.agreed_wishes = words
@@ -37,6 +37,7 @@ impl Simulation {
             .map(|word| (word[0], word[1], word[2]))
             .min()
             .unwrap_or(ABSTAIN);
+        self.scratch = words;
         if best.0 == ERROR {
             return Err(self.post_mortem(comm, best.2));
         }
