@@ -4,6 +4,7 @@
 pub mod cloud;
 pub mod random;
 pub mod ranks;
+pub mod sentinel;
 
 use whipple::material::{Strength, VonMises, library};
 use whipple::model::{
