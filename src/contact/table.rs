@@ -64,7 +64,7 @@ impl ContactTable {
             for b in 0..n {
                 let (class, pair) = make_pair(case, &kernel, a, b);
                 pairs.push(pair);
-                if a == b || class == ContactClass::None {
+                if groups[a] == groups[b] || class == ContactClass::None {
                     continue;
                 }
                 let range = 2.0 * pair.h;

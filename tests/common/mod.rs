@@ -1,6 +1,11 @@
 //! Cases built in code, for tests of the engine.
 #![allow(dead_code, reason = "each test file uses some of these")]
 
+pub mod cloud;
+pub mod random;
+pub mod ranks;
+pub mod sentinel;
+
 use whipple::material::{Strength, VonMises, library};
 use whipple::model::{
     Axis, Body, Case, ContactMode, DomainOptions, Lattice, LatticeKind, OutputOptions, RunControl,
