@@ -7,9 +7,8 @@
 
 mod physics_support;
 
-use physics_support::{median, ready, run_to, run_with, slope, sorted_by, start};
+use physics_support::{lattice_factor, median, ready, run_to, run_with, slope, sorted_by, start};
 use whipple::exact::hugoniot::{Impact, Medium, free_surface_velocity, impact};
-use whipple::sph::kernel::Kernel;
 use whipple::step::Simulation;
 
 /// Thickness of each plate (m).
@@ -178,23 +177,14 @@ fn free_surface_velocity_follows_the_isentrope() {
 /// The shock that the sums carry on a one-dimensional lattice, without any other error.
 ///
 /// The density follows `d ln ρ = A d ln(1/Δp)` instead of the spacing, and the lattice carries
-/// the pressure `p A (ρ_true/ρ)²`, with `A = Σ V_j r_ij |W'_ij|`.
+/// the pressure `p A (ρ_true/ρ)²`, with the `A` of [`lattice_factor`].
 struct Lattice<'a> {
     medium: &'a Medium,
-    kernel: Kernel,
     /// h/Δp at the start.
     ratio: f64,
 }
 
 impl Lattice<'_> {
-    /// `A` for a smoothing length of `ratio` spacings.
-    fn factor(&self, ratio: f64) -> f64 {
-        (1..=8_i32)
-            .map(f64::from)
-            .map(|r| -2.0 * r * self.kernel.slope(r, ratio))
-            .sum()
-    }
-
     /// Shock speed (m/s) at a particle velocity (m/s).
     fn shock_speed(&self, velocity: f64) -> f64 {
         let steps = 400_i32;
@@ -206,15 +196,16 @@ impl Lattice<'_> {
             let width = (1.0 - s) / f64::from(steps);
             let logarithm: f64 = (0..steps)
                 .map(|k| s + (f64::from(k) + 0.5) * width)
-                .map(|t| self.factor(self.ratio / t) * width / t)
+                .map(|t| lattice_factor(self.ratio / t) * width / t)
                 .sum();
             let density = rho_0 * logarithm.exp();
             let response = self
                 .medium
                 .eos
                 .response(rho_0, density, 0.5 * velocity * velocity);
-            let carried =
-                response.pressure * self.factor(self.ratio / s) * (rho_0 / (s * density)).powi(2);
+            let carried = response.pressure
+                * lattice_factor(self.ratio / s)
+                * (rho_0 / (s * density)).powi(2);
             if carried > rho_0 * velocity * velocity / (1.0 - s) {
                 low = s;
             } else {
@@ -234,7 +225,6 @@ fn leftover_is_the_lattice_sum() {
         let measured = flyer.measure().shock_speed;
         let lattice = Lattice {
             medium: &flyer.medium,
-            kernel: Kernel::new(1),
             ratio: 1.3,
         };
         let expected = lattice.shock_speed(500.0 * speed);

@@ -1,11 +1,14 @@
 //! Runs of the ready cases in one process, and what is measured on them.
 #![allow(dead_code, reason = "each test file uses some of these")]
 
+pub mod bars;
+
 use std::path::Path;
 
 use whipple::comm::Comm;
 use whipple::input;
 use whipple::model::Case;
+use whipple::sph::kernel::Kernel;
 use whipple::step::Simulation;
 
 /// The case `inputs/<name>/case.toml` with overrides.
@@ -61,6 +64,16 @@ pub fn slope(points: &[(f64, f64)]) -> f64 {
         (a + (p.0 - t) * (p.1 - x), b + (p.0 - t) * (p.0 - t))
     });
     above / below
+}
+
+/// `A = Σ V_j r_ij |W'_ij|`: the factor with which the sums of a one-dimensional lattice
+/// differentiate a linear field, for a smoothing length of `ratio` spacings.
+pub fn lattice_factor(ratio: f64) -> f64 {
+    let kernel = Kernel::new(1);
+    (1..=8_i32)
+        .map(f64::from)
+        .map(|r| -2.0 * r * kernel.slope(r, ratio))
+        .sum()
 }
 
 /// Owned particles of a body, in the order of `key`.
