@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test file uses some of these")]
 
 pub mod bars;
+pub mod impact;
 
 use std::path::Path;
 
