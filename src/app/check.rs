@@ -64,9 +64,15 @@ fn print_report(case: &Case) {
         );
     }
     let memory = total as f64 * BYTES_PER_PARTICLE / 1e6;
-    println!("  {:<16} {total:>10} particles, about {memory:.0} MB over all ranks", "all");
+    println!(
+        "  {:<16} {total:>10} particles, about {memory:.0} MB over all ranks",
+        "all"
+    );
     if let Some(steps) = expected_steps(case) {
-        println!("  about {steps:.0} steps to {:.4} us", case.run.end_time * 1e6);
+        println!(
+            "  about {steps:.0} steps to {:.4} us",
+            case.run.end_time * 1e6
+        );
     }
 }
 
@@ -84,6 +90,5 @@ fn expected_steps(case: &Case) -> Option<f64> {
             case.time_step.courant * body.smoothing_length / signal
         })
         .fold(case.time_step.max, f64::min);
-    (dt.is_finite() && dt > 0.0 && case.run.end_time.is_finite())
-        .then(|| case.run.end_time / dt)
+    (dt.is_finite() && dt > 0.0 && case.run.end_time.is_finite()).then(|| case.run.end_time / dt)
 }

@@ -118,7 +118,10 @@ impl<'a> Driver<'a> {
             if self.simulation.is_finished() {
                 return Ok(End::Finished);
             }
-            if self.until.is_some_and(|until| self.simulation.state.time >= until) {
+            if self
+                .until
+                .is_some_and(|until| self.simulation.state.time >= until)
+            {
                 return Ok(End::Until);
             }
             STEP.store(self.simulation.state.step + 1, Ordering::Relaxed);

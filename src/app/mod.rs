@@ -4,7 +4,7 @@ mod check;
 pub mod compare;
 mod driver;
 pub mod info;
-mod plot;
+pub mod plot;
 mod report;
 mod restart;
 pub mod results;
@@ -22,13 +22,18 @@ pub const EXIT_STOPPED: u8 = 75;
 
 /// MPI-parallel smoothed particle hydrodynamics for impacts of solids
 #[derive(Debug, Parser)]
-#[command(name = "whipple", version, about, after_help = "Examples:
+#[command(
+    name = "whipple",
+    version,
+    about,
+    after_help = "Examples:
   mpirun -n 2 whipple run inputs/quarter-impact/case.toml --out runs/quarter
   whipple plot runs/quarter --panels
   mpirun -n 4 whipple restart runs/quarter
 
 A run that SIGUSR1 to mpirun, a file `stop` in its folder or --walltime stops writes a checkpoint
-and exits with 75; wrong input exits with 2.")]
+and exits with 75; wrong input exits with 2."
+)]
 struct Cli {
     #[command(subcommand)]
     command: Command,

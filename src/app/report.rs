@@ -108,16 +108,12 @@ fn performance_columns() -> Vec<Column> {
 
 impl Tables {
     /// Starts the tables of a run, or goes on with them after the state `resume`.
-    pub fn open(
-        folder: &RunFolder,
-        resume: Option<&RunState>,
-    ) -> Result<Self, OutputError> {
-        let open = |path: &std::path::Path, columns: &[Column], key: &str, last: Option<f64>| {
-            match last {
+    pub fn open(folder: &RunFolder, resume: Option<&RunState>) -> Result<Self, OutputError> {
+        let open =
+            |path: &std::path::Path, columns: &[Column], key: &str, last: Option<f64>| match last {
                 Some(last) => Table::resume(path, columns, key, last),
                 None => Table::create(path, columns),
-            }
-        };
+            };
         #[allow(clippy::cast_precision_loss, reason = "steps fit a double")]
         let step = resume.map(|state| state.step as f64);
         let time = resume.map(|state| state.time);
@@ -282,7 +278,8 @@ impl Progress {
         let bar = (root && terminal).then(|| {
             let style = "{bar:30} {percent:>3} %  {msg}  {eta_precise} left";
             ProgressBar::new(TICKS).with_style(
-                ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()),
+                ProgressStyle::with_template(style)
+                    .unwrap_or_else(|_| ProgressStyle::default_bar()),
             )
         });
         Self {

@@ -65,7 +65,10 @@ impl Watch {
         if self.seen {
             wishes |= FILE;
         }
-        if self.limit.is_some_and(|limit| self.start.elapsed() >= limit) {
+        if self
+            .limit
+            .is_some_and(|limit| self.start.elapsed() >= limit)
+        {
             wishes |= CLOCK;
         }
         wishes

@@ -61,7 +61,10 @@ impl Chunk {
                 reach: reach[cluster.group],
                 neighbours,
             });
-            #[allow(clippy::cast_possible_truncation, reason = "64 clusters' lists fit u32")]
+            #[allow(
+                clippy::cast_possible_truncation,
+                reason = "64 clusters' lists fit u32"
+            )]
             ends.push((neighbours.len() as u32, mirrored));
         }
     }
@@ -195,8 +198,8 @@ impl ClusterLists {
     }
 
     fn push(&mut self, cluster: Cluster) {
-        let full = self.used == 0
-            || self.chunks[self.used - 1].clusters.len() == CLUSTERS_PER_CHUNK;
+        let full =
+            self.used == 0 || self.chunks[self.used - 1].clusters.len() == CLUSTERS_PER_CHUNK;
         if full {
             if self.used == self.chunks.len() {
                 self.chunks.push(Chunk::default());
@@ -209,10 +212,7 @@ impl ClusterLists {
 
 /// Box around eight receivers (m) and their largest smoothing length (m).
 #[inline(always)]
-pub(super) fn bounds(
-    sequence: &Sequence,
-    receivers: &[u32; LANES],
-) -> ([f64; 3], [f64; 3], f64) {
+pub(super) fn bounds(sequence: &Sequence, receivers: &[u32; LANES]) -> ([f64; 3], [f64; 3], f64) {
     let at = |axis: usize, place: u32| sequence.coordinates(axis, place as usize)[0];
     let mut lower = std::array::from_fn(|a| at(a, receivers[0]));
     let mut upper: [f64; 3] = lower;

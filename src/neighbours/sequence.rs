@@ -25,7 +25,10 @@ impl Image {
     #[must_use]
     pub fn new(base: usize, code: u8) -> Self {
         debug_assert!(base < Self::MAX_PARTICLES && code < 8);
-        #[allow(clippy::cast_possible_truncation, reason = "checked when particles are counted")]
+        #[allow(
+            clippy::cast_possible_truncation,
+            reason = "checked when particles are counted"
+        )]
         Self(base as u32 | u32::from(code) << 29)
     }
 
@@ -301,7 +304,10 @@ impl Sequence {
         for first in range(0) {
             for other in second.clone() {
                 let column = group.columns + first * group.size[1] + other;
-                let (start, end) = (self.starts[column] as usize, self.starts[column + 1] as usize);
+                let (start, end) = (
+                    self.starts[column] as usize,
+                    self.starts[column + 1] as usize,
+                );
                 let column = &along[start..end];
                 let first = column.partition_point(|&x| x < from);
                 let mut last = first;

@@ -69,7 +69,11 @@ impl Simulation {
     #[must_use]
     pub fn is_finished(&self) -> bool {
         self.state.time >= self.case.run.end_time
-            || self.case.run.max_steps.is_some_and(|n| self.state.step >= n)
+            || self
+                .case
+                .run
+                .max_steps
+                .is_some_and(|n| self.state.step >= n)
     }
 
     /// One step of kick–drift–kick. Collective.

@@ -120,12 +120,12 @@ impl Simulation {
             viscosity: *viscosity,
         };
         with_scale!(*scale, scale => chunks
-            .par_iter()
-            .zip(from_mirrors)
-            .for_each(|(chunk, images)| {
-                images.clear();
-                momentum_chunk(set, chunk, &sources, scale, &target, images);
-            }));
+        .par_iter()
+        .zip(from_mirrors)
+        .for_each(|(chunk, images)| {
+            images.clear();
+            momentum_chunk(set, chunk, &sources, scale, &target, images);
+        }));
     }
 
     fn fill_force_records(&mut self) {
@@ -227,8 +227,9 @@ impl<'a> MaterialTarget<'a> {
         gradient: &[crate::sph::lanes::F64x8; 9],
         neighbours: usize,
     ) {
-        let base: [usize; LANES] =
-            cluster.receivers.map(|place| self.images[place as usize].base());
+        let base: [usize; LANES] = cluster
+            .receivers
+            .map(|place| self.images[place as usize].base());
         let mut batch = PointBatch {
             density: [0.0; LANES],
             specific_energy: [0.0; LANES],

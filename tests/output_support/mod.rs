@@ -94,7 +94,9 @@ pub fn particles(comm: &Comm, total: u64) -> ParticleStore {
         1 => size - 1 - u64::from(size == 2),
         rank => rank,
     };
-    let mine: Vec<u64> = (0..total).filter(|&k| owner(k) == comm.rank() as u64).collect();
+    let mine: Vec<u64> = (0..total)
+        .filter(|&k| owner(k) == comm.rank() as u64)
+        .collect();
     let mut store = ParticleStore::default();
     store.resize_owned(mine.len());
     store.resize_halo(3);
