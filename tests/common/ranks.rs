@@ -44,6 +44,15 @@ pub fn on_ranks(test: &str, ranks: usize, folder: &Path, task: impl Fn(&Comm, &P
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
+/// Runs `task` of the test called `test` on each of these numbers of ranks in turn.
+pub fn on_each(test: &str, ranks: &[usize], task: impl Fn(&Comm)) {
+    // A rank does the task once.
+    let ranks = if is_rank() { &[0] } else { ranks };
+    for &ranks in ranks {
+        on_ranks(test, ranks, Path::new(""), |comm, _| task(comm));
+    }
+}
+
 /// Whether this process is a rank that [`on_ranks`] started.
 pub fn is_rank() -> bool {
     std::env::var_os(FOLDER).is_some()
