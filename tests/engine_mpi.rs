@@ -199,7 +199,7 @@ fn needed(
 
 /// Reach of a particle: one for most, some reach much farther.
 fn reach_of(k: u64, scale: f64) -> f64 {
-    scale * if mix(k) % 50 == 0 { 3.0 } else { 1.0 }
+    scale * if mix(k).is_multiple_of(50) { 3.0 } else { 1.0 }
 }
 
 fn check_halo(
@@ -298,6 +298,7 @@ fn halos_carry_every_field_of_every_image_in_reach() {
 }
 
 /// The byte at a place of the message of `round` from one rank to another.
+#[allow(clippy::cast_possible_truncation, reason = "any byte will do")]
 fn byte(round: usize, from: usize, to: usize, at: usize) -> u8 {
     (mix((round * 1000 + from * 100 + to * 10) as u64 + at as u64 / 64) >> 9) as u8
 }
@@ -372,7 +373,7 @@ fn balance_work(comm: &Comm) {
         // Work unevenly spread; in the last rounds all particles stand in few places.
         let place = |k: u64| match round {
             10 => [1.0; 3],
-            11 => [if k % 2 == 0 { 1.0 } else { 2.0 }; 3],
+            11 => [if k.is_multiple_of(2) { 1.0 } else { 2.0 }; 3],
             _ => position(k, round).map(|x| x.min(LENGTH)),
         };
         let work = |k: u64| u32::try_from(mix(k ^ round) % 1000).unwrap();

@@ -46,7 +46,12 @@ fn square_of_distance(found: &Found, a: u32, b: u32) -> f64 {
 fn check_clusters(cloud: &Cloud, found: &Found) {
     let mut seen = vec![0; cloud.owned];
     let images = found.sequence.images();
-    for (cluster, _, _) in found.clusters.chunks().iter().flat_map(|c| c.iter()) {
+    for (cluster, _, _) in found
+        .clusters
+        .chunks()
+        .iter()
+        .flat_map(whipple::neighbours::Chunk::iter)
+    {
         let (valid, padding) = cluster.receivers.split_at(cluster.lanes);
         assert!(valid.is_sorted());
         assert!(padding.iter().all(|place| place == valid.last().unwrap()));
@@ -61,7 +66,12 @@ fn check_clusters(cloud: &Cloud, found: &Found) {
 }
 
 fn check_own_lists(found: &Found) {
-    for (cluster, list, among) in found.clusters.chunks().iter().flat_map(|c| c.iter()) {
+    for (cluster, list, among) in found
+        .clusters
+        .chunks()
+        .iter()
+        .flat_map(whipple::neighbours::Chunk::iter)
+    {
         assert!(list.is_sorted_by(|a, b| a < b), "once each, in order");
         let is_image = |&place: &u32| found.sequence.images()[place as usize].code() != 0;
         assert_eq!(among.mirrors, list.iter().any(is_image));

@@ -177,7 +177,12 @@ fn check_sweeps<S: PairScale>(cloud: &Cloud, scale: S) {
     let records = force_records(cloud, &found, 77);
     let mirrored = mirrored(&found);
     let sets = available();
-    for (cluster, list, among) in found.clusters.chunks().iter().flat_map(|c| c.iter()) {
+    for (cluster, list, among) in found
+        .clusters
+        .chunks()
+        .iter()
+        .flat_map(whipple::neighbours::Chunk::iter)
+    {
         let receivers = cluster.receivers;
         let slow: Vec<Plain> = receivers[..cluster.lanes]
             .iter()
@@ -273,7 +278,12 @@ fn momentum_and_energy_balance() {
         let found = cloud.find();
         let records = force_records(&cloud, &found, 78);
         let (mut force, mut power, mut size, mut power_size) = ([0.0; 3], 0.0, 0.0, 0.0);
-        for (cluster, list, _) in found.clusters.chunks().iter().flat_map(|c| c.iter()) {
+        for (cluster, list, _) in found
+            .clusters
+            .chunks()
+            .iter()
+            .flat_map(whipple::neighbours::Chunk::iter)
+        {
             let scale = MeanScale::<3>::new(&Kernel::new(3));
             let sums = momentum::<_, false>(
                 available()[0],

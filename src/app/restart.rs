@@ -28,7 +28,7 @@ pub struct RestartArgs {
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
 
-    /// Change a value of run, output or domain, as in run.end_time=0.3us
+    /// Change a value of run, output or domain, as in `run.end_time=0.3us`
     #[arg(short, long, value_name = "KEY=VALUE")]
     set: Vec<String>,
 

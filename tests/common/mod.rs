@@ -36,7 +36,7 @@ pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
         materials: vec![library::find("aluminium-2024").expect("in the library")],
         bodies,
         contacts: Vec::new(),
-        default_contact: ContactMode::Overlap(Default::default()),
+        default_contact: ContactMode::Overlap(whipple::model::Overlap::default()),
         symmetry: Vec::new(),
         sph: SphOptions {
             alpha: 1.0,
