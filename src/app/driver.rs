@@ -158,6 +158,9 @@ impl<'a> Driver<'a> {
         if checkpoint_due && !finished {
             self.write_checkpoint(comm)?;
         }
+        if snapshot_due || checkpoint_due {
+            on_root(comm, || self.write_status(Phase::Running, None))?;
+        }
         if let Some(line) = self.progress.show(&self.simulation.state) {
             self.log(comm, &line);
         }
@@ -187,8 +190,7 @@ impl<'a> Driver<'a> {
         snapshot::write(comm, &path, store, &meta, &self.quantities, &mut self.rows)?;
         on_root(comm, || {
             let name = RunFolder::snapshot_name(state.step);
-            series::add(&self.folder.series(), &name, state.time)?;
-            self.write_status(Phase::Running, None)
+            series::add(&self.folder.series(), &name, state.time)
         })?;
         let text = format!("snapshot {}", path.display());
         self.log(comm, &text);

@@ -74,9 +74,9 @@ fn start_threads(comm: &Comm, wanted: Option<usize>) {
     let threads = wanted.unwrap_or_else(|| default_threads(comm, cores));
     if comm.is_root() && threads > cores {
         eprintln!(
-            "warning: {threads} threads share {cores} core{}; mpirun binds each rank to a core \
-             unless told otherwise, as by --bind-to none or --map-by slot:PE={threads}",
-            if cores == 1 { "" } else { "s" }
+            "warning: each rank has {threads} threads and may use {cores} of the cores; if the \
+             machine has more, mpirun has bound the ranks: --bind-to none or --map-by \
+             slot:PE={threads} frees them"
         );
     }
     // Without a pool of its own rayon uses all cores, which is right, if not what was asked.
@@ -108,9 +108,12 @@ fn abort_on_panic(rank: usize) {
             .location()
             .map(|l| format!(" ({}:{})", l.file(), l.line()))
             .unwrap_or_default();
-        let what = info.payload_as_str().unwrap_or("unknown cause");
+        let what = info
+            .payload_as_str()
+            .unwrap_or("unknown cause")
+            .replace('\n', " ");
         eprintln!("error: rank {rank}, step {step}: {what}{place}; this is a bug of the program");
-        if std::env::var_os("RUST_BACKTRACE").is_some() {
+        if std::env::var_os("RUST_BACKTRACE").is_some_and(|wanted| wanted != "0") {
             usual(info);
         }
         abort_job(EXIT_PANIC);

@@ -27,19 +27,20 @@ pub const EXIT_STOPPED: u8 = 75;
 /// A second Ctrl-C ended the process, as shells tell it.
 const EXIT_INTERRUPTED: i32 = 130;
 
-/// MPI-parallel smoothed particle hydrodynamics for impacts of solids
+/// MPI-parallel smoothed particle hydrodynamics for large 3-D impacts of solids
 #[derive(Debug, Parser)]
 #[command(
     name = "whipple",
     version,
-    about,
     after_help = "Examples:
-  mpirun -n 2 whipple run inputs/quarter-impact/case.toml --out runs/quarter
+  whipple check inputs/quarter-impact
+  mpirun -n 2 whipple run inputs/quarter-impact --out runs/quarter
+  whipple info runs/quarter
   whipple plot runs/quarter --panels
-  mpirun -n 4 whipple restart runs/quarter
+  mpirun -n 4 whipple restart runs/quarter --set run.end_time=0.3us
 
-A run that SIGUSR1 to mpirun, a file `stop` in its folder or --walltime stops writes a checkpoint
-and exits with 75; wrong input exits with 2."
+`whipple COMMAND --help` says more. Only `run` and `restart` use MPI. Exit codes: 0 done, 1 failed
+(or `compare` found differences), 2 wrong input, 75 stopped softly with a checkpoint."
 )]
 struct Cli {
     #[command(subcommand)]

@@ -31,7 +31,8 @@ impl Progress {
     /// For rank 0 where `tells`; others stay silent.
     pub fn new(tells: bool, control: &RunControl) -> Self {
         let bar = tells.then(terminal).flatten().map(|target| {
-            let style = "{bar:30} {percent:>3} %  {msg}  {eta_precise} left";
+            // Within 80 columns: a longer line would wrap and be drawn over and over.
+            let style = "{bar:30} {percent:>3} %  {msg}  {eta} left";
             let style = ProgressStyle::with_template(style);
             ProgressBar::with_draw_target(Some(TICKS), target)
                 .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
@@ -48,7 +49,7 @@ impl Progress {
     pub fn show(&mut self, state: &RunState) -> Option<String> {
         if let Some(bar) = &self.bar {
             bar.set_position(self.ticks(state));
-            bar.set_message(line(state));
+            bar.set_message(format!("step {}, {}", state.step, seconds(state.time)));
         }
         if !self.tells || self.last.elapsed() < LINE_EVERY {
             return None;
