@@ -1,5 +1,11 @@
 //! Contact forces against the numerical gradient of an energy that is written down again here,
 //! and what contact promises about them.
+#![allow(clippy::float_cmp, reason = "what is exact is held exactly")]
+#![allow(
+    clippy::needless_range_loop,
+    reason = "components of vectors and tensors"
+)]
+#![allow(clippy::many_single_char_names, reason = "formulas as on paper")]
 
 mod common;
 
@@ -10,8 +16,8 @@ use whipple::contact::overlap::{self, RELIEF_LIMIT, relief};
 use whipple::contact::{ContactTable, ContactView, Reaction, potential};
 use whipple::material::library;
 use whipple::model::{
-    Axis, Body, Case, ContactMode, ContactPair, LatticeKind, Overlap, Potential, PotentialRange, Shape,
-    Vec3,
+    Axis, Body, Case, ContactMode, ContactPair, LatticeKind, Overlap, Potential, PotentialRange,
+    Shape, Vec3,
 };
 use whipple::neighbours::{ContactClass, Image};
 use whipple::particles::ParticleStore;
@@ -210,8 +216,7 @@ impl World {
                         let depth = (1.0 - r / (overlap.core_radius * spacing)).max(0.0);
                         let mean = 0.5 * (self.volume(i) + self.volume(j));
                         // Each pair is met twice.
-                        energy +=
-                            0.25 * overlap.core_stiffness * modulus * mean * depth * depth;
+                        energy += 0.25 * overlap.core_stiffness * modulus * mean * depth * depth;
                     }
                     ContactMode::Potential(potential) => {
                         let dimension = i32::try_from(self.case.dimension).unwrap();
@@ -265,8 +270,15 @@ fn check_gradient(world: &mut World) {
     let energy = world.energy();
     let ledger: f64 = reactions.iter().map(|r| r.energy).sum();
     assert!(energy > 0.0);
-    assert!((ledger - energy).abs() < 1e-13 * energy, "{ledger} is not {energy}");
-    let by_body: f64 = reactions.iter().flat_map(|r| &r.by_body).map(|b| b.energy).sum();
+    assert!(
+        (ledger - energy).abs() < 1e-13 * energy,
+        "{ledger} is not {energy}"
+    );
+    let by_body: f64 = reactions
+        .iter()
+        .flat_map(|r| &r.by_body)
+        .map(|b| b.energy)
+        .sum();
     assert!((by_body - energy).abs() < 1e-13 * energy);
 
     let largest = reactions
@@ -285,7 +297,11 @@ fn check_gradient(world: &mut World) {
             // Rounding of the energy by 1e-15 over the step, and the step squared.
             let bound = 1e-9 * energy / SPACING + 1e-7 * largest;
             let error = (slope + reaction.force[axis]).abs();
-            assert!(error < bound, "{slope} against {}: {error:e}", reaction.force[axis]);
+            assert!(
+                error < bound,
+                "{slope} against {}: {error:e}",
+                reaction.force[axis]
+            );
         }
         for axis in world.case.dimension..3 {
             assert_eq!(reaction.force[axis], 0.0);
@@ -337,10 +353,7 @@ fn overlap_forces_are_the_gradient_of_the_energy() {
             // Like bodies; unlike ones with other spacings and materials; three at a seam.
             for bodies in [
                 vec![some_body(0, SPACING, 1.3); 2],
-                vec![
-                    some_body(0, SPACING, 1.3),
-                    some_body(1, 0.7 * SPACING, 1.1),
-                ],
+                vec![some_body(0, SPACING, 1.3), some_body(1, 0.7 * SPACING, 1.1)],
                 vec![
                     some_body(0, SPACING, 1.3),
                     some_body(1, 0.8 * SPACING, 1.4),
@@ -368,10 +381,7 @@ fn potential_forces_are_the_gradient_of_the_energy() {
             (4, PotentialRange::Support),
             (4, PotentialRange::Spacing),
         ] {
-            let bodies = vec![
-                some_body(0, SPACING, 1.3),
-                some_body(1, 0.8 * SPACING, 1.1),
-            ];
+            let bodies = vec![some_body(0, SPACING, 1.3), some_body(1, 0.8 * SPACING, 1.1)];
             let mut case = case_of(dimension, bodies);
             case.default_contact = ContactMode::Potential(Potential {
                 stiffness: 0.7,
@@ -481,10 +491,10 @@ fn flat_interface(side: usize, gap: f64, h: f64) -> World {
             for x in 0..side {
                 for y in 0..side {
                     #[allow(clippy::cast_precision_loss, reason = "few particles")]
-                    let site = [x as f64, y as f64, f64::from(layer)];
-                    let z = site[2] + 0.5 * gap;
+                    let [x, y] = [x as f64, y as f64];
+                    let z = f64::from(layer) + 0.5 * gap;
                     let z = if b == 0 { z } else { -z };
-                    particles.push((b, [site[0], site[1], z].map(|s| s * SPACING)));
+                    particles.push((b, [x, y, z].map(|x| x * SPACING)));
                 }
             }
         }
@@ -502,14 +512,23 @@ fn largest_square_frequency(world: &mut World, lists: &Lists) -> f64 {
     let step = 1e-5 * SPACING;
     let mut value = 0.0;
     for _ in 0..40 {
-        let length = direction.as_flattened().iter().map(|x| x * x).sum::<f64>().sqrt();
+        let length = direction
+            .as_flattened()
+            .iter()
+            .map(|x| x * x)
+            .sum::<f64>()
+            .sqrt();
         direction.iter_mut().flatten().for_each(|x| *x /= length);
         let mut force = [1.0, -1.0].map(|sign| {
             for (i, record) in world.motion.iter_mut().enumerate() {
                 record.position =
                     std::array::from_fn(|a| home[i][a] + sign * step * direction[i][a]);
             }
-            world.reactions(lists).iter().map(|r| r.force).collect::<Vec<_>>()
+            world
+                .reactions(lists)
+                .iter()
+                .map(|r| r.force)
+                .collect::<Vec<_>>()
         });
         let [up, down] = &mut force;
         value = 0.0;
@@ -561,7 +580,10 @@ fn the_stiffness_bounds_the_largest_eigenvalue() {
             let material = &world.case.materials[0];
             let c = (material.p_wave_modulus() / material.reference_density).sqrt();
             let limit = 2.0 / truth.sqrt() * c / (h * SPACING);
-            println!("h {h} gap {gap}: bound/true {:.3}, limit {limit:.3} h/c", bound / truth);
+            println!(
+                "h {h} gap {gap}: bound/true {:.3}, limit {limit:.3} h/c",
+                bound / truth
+            );
             assert!(truth <= bound && bound < 4.6 * truth, "h {h}, gap {gap}");
             assert!(limits.contains(&limit), "h {h}, gap {gap}: {limit} h/c");
         }
@@ -576,7 +598,10 @@ fn check_at_rest(name: &str, simulation: &Simulation) {
     assert_eq!(simulation.state.capped_reliefs, 0, "{name}");
     let store = &simulation.store;
     assert!(store.foreign_fraction.iter().any(|&f| f > 0.1), "{name}");
-    assert!(store.contact_acceleration.iter().all(|a| *a == [0.0; 3]), "{name}");
+    assert!(
+        store.contact_acceleration.iter().all(|a| *a == [0.0; 3]),
+        "{name}"
+    );
     assert_eq!(simulation.state.contact_energy, 0.0, "{name}");
     assert_eq!(simulation.state.interpenetrated, 0, "{name}");
 }
@@ -601,7 +626,12 @@ fn bodies_laid_in_touch_start_free_of_force() {
     for (name, top, bound) in [("face", face, 1e-13), ("shifted face", shifted, 0.0018)] {
         let simulation = start(case(3, vec![slab.clone(), top], 1.0));
         check_at_rest(name, &simulation);
-        let most = simulation.store.touch_relief.iter().copied().fold(0.0, f64::max);
+        let most = simulation
+            .store
+            .touch_relief
+            .iter()
+            .copied()
+            .fold(0.0, f64::max);
         assert!(most < bound, "{name}: relief {most}");
     }
     let finer = block([1.0, 1.0, 0.0], [6.0, 6.0, 4.0], 0.5);
@@ -625,7 +655,10 @@ fn bodies_laid_in_touch_start_free_of_force() {
     ];
     check_at_rest("edges", &start(case(3, notch, 1.0)));
 
-    check_at_rest("sphere on plate", &start(sphere_on_plate(2e-5, 0.0, true, 1.0)));
+    check_at_rest(
+        "sphere on plate",
+        &start(sphere_on_plate(2e-5, 0.0, true, 1.0)),
+    );
     let mut hexagonal = sphere_on_plate(3e-5, 0.0, false, 1.0);
     for body in &mut hexagonal.bodies {
         body.lattice.kind = LatticeKind::Hexagonal;

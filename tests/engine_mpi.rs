@@ -42,7 +42,13 @@ fn value<'a>(store: &'a ParticleStore, field: &FieldInfo, slot: usize) -> &'a [u
     &store.bytes(field.id)[slot * size..(slot + 1) * size]
 }
 
-fn set(store: &mut ParticleStore, slot: usize, k: u64, round: u64, only: impl Fn(&FieldInfo) -> bool) {
+fn set(
+    store: &mut ParticleStore,
+    slot: usize,
+    k: u64,
+    round: u64,
+    only: impl Fn(&FieldInfo) -> bool,
+) {
     for (row, field) in FIELDS.iter().enumerate().filter(|(_, field)| only(field)) {
         let size = field.kind.bytes();
         let bytes = expected(k, row, round);
@@ -153,7 +159,11 @@ fn migrate_any_distance(comm: &Comm) {
 
 #[test]
 fn migration_carries_every_field_by_any_distance() {
-    on_each("migration_carries_every_field_by_any_distance", &[1, 3, 5], migrate_any_distance);
+    on_each(
+        "migration_carries_every_field_by_any_distance",
+        &[1, 3, 5],
+        migrate_any_distance,
+    );
 }
 
 /// The images (particle, code) that stand within reach of any particle of this rank, from the
@@ -189,10 +199,16 @@ fn needed(
 
 /// Reach of a particle: one for most, some reach much farther.
 fn reach_of(k: u64, scale: f64) -> f64 {
-    scale * if mix(k) % 50 == 0 { 3.0 } else { 1.0 }
+    scale * if mix(k).is_multiple_of(50) { 3.0 } else { 1.0 }
 }
 
-fn check_halo(comm: &Comm, store: &ParticleStore, halo: &Halo, needed: &BTreeSet<(u64, u8)>, round: u64) {
+fn check_halo(
+    comm: &Comm,
+    store: &ParticleStore,
+    halo: &Halo,
+    needed: &BTreeSet<(u64, u8)>,
+    round: u64,
+) {
     let numbers = numbers();
     let mut held = BTreeSet::new();
     let mut copies = BTreeSet::new();
@@ -261,23 +277,29 @@ fn exchange_halos(comm: &Comm) {
                     let k = numbers[&store.id[slot]];
                     assert_holds(&store, slot, k, round, FieldUse::LEAVING);
                 }
-                farther |= (store.owned()..store.owned() + store.halo()).any(|slot| {
-                    slabs.owner(&store.position[slot]).abs_diff(comm.rank()) > 1
-                });
+                farther |= (store.owned()..store.owned() + store.halo())
+                    .any(|slot| slabs.owner(&store.position[slot]).abs_diff(comm.rank()) > 1);
             }
         }
     }
-    assert!(comm.size() < 3 || comm.any(farther), "no halo beyond the next rank");
+    assert!(
+        comm.size() < 3 || comm.any(farther),
+        "no halo beyond the next rank"
+    );
 }
 
 #[test]
 fn halos_carry_every_field_of_every_image_in_reach() {
-    on_each("halos_carry_every_field_of_every_image_in_reach", &[1, 3, 5], exchange_halos);
+    on_each(
+        "halos_carry_every_field_of_every_image_in_reach",
+        &[1, 3, 5],
+        exchange_halos,
+    );
 }
 
 /// The byte at a place of the message of `round` from one rank to another.
 fn byte(round: usize, from: usize, to: usize, at: usize) -> u8 {
-    (mix((round * 1000 + from * 100 + to * 10) as u64 + at as u64 / 64) >> 9) as u8
+    mix((round * 1000 + from * 100 + to * 10) as u64 + at as u64 / 64).to_ne_bytes()[2]
 }
 
 fn exchange_messages(comm: &Comm) {
@@ -323,7 +345,10 @@ fn exchange_messages(comm: &Comm) {
         for (k, &peer) in peers.iter().enumerate() {
             let bytes = length[peer * size + me].unwrap();
             let wanted: Vec<u8> = (0..bytes).map(|at| byte(round, peer, me, at)).collect();
-            assert!(exchange.incoming(k) == wanted, "round {round}, {peer} to {me}");
+            assert!(
+                exchange.incoming(k) == wanted,
+                "round {round}, {peer} to {me}"
+            );
         }
     }
     assert!(exchange.traffic.bytes >= sent);
@@ -331,7 +356,11 @@ fn exchange_messages(comm: &Comm) {
 
 #[test]
 fn messages_of_any_size_between_any_ranks() {
-    on_each("messages_of_any_size_between_any_ranks", &[2, 5], exchange_messages);
+    on_each(
+        "messages_of_any_size_between_any_ranks",
+        &[2, 5],
+        exchange_messages,
+    );
 }
 
 fn balance_work(comm: &Comm) {
@@ -343,7 +372,7 @@ fn balance_work(comm: &Comm) {
         // Work unevenly spread; in the last rounds all particles stand in few places.
         let place = |k: u64| match round {
             10 => [1.0; 3],
-            11 => [if k % 2 == 0 { 1.0 } else { 2.0 }; 3],
+            11 => [if k.is_multiple_of(2) { 1.0 } else { 2.0 }; 3],
             _ => position(k, round).map(|x| x.min(LENGTH)),
         };
         let work = |k: u64| u32::try_from(mix(k ^ round) % 1000).unwrap();

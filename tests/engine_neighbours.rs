@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use common::cloud::{Cloud, Found, Recipe};
 use common::random::Random;
 use proptest::prelude::*;
-use whipple::neighbours::{ContactClass, ForeignLists, ForeignTable, PairList, oracle};
+use whipple::neighbours::{Chunk, ContactClass, ForeignLists, ForeignTable, PairList, oracle};
 
 fn recipe() -> impl Strategy<Value = Recipe> {
     (1_usize..=3)
@@ -46,7 +46,7 @@ fn square_of_distance(found: &Found, a: u32, b: u32) -> f64 {
 fn check_clusters(cloud: &Cloud, found: &Found) {
     let mut seen = vec![0; cloud.owned];
     let images = found.sequence.images();
-    for (cluster, _, _) in found.clusters.chunks().iter().flat_map(|c| c.iter()) {
+    for (cluster, _, _) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
         let (valid, padding) = cluster.receivers.split_at(cluster.lanes);
         assert!(valid.is_sorted());
         assert!(padding.iter().all(|place| place == valid.last().unwrap()));
@@ -61,7 +61,7 @@ fn check_clusters(cloud: &Cloud, found: &Found) {
 }
 
 fn check_own_lists(found: &Found) {
-    for (cluster, list, mirrored) in found.clusters.chunks().iter().flat_map(|c| c.iter()) {
+    for (cluster, list, mirrored) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
         assert!(list.is_sorted_by(|a, b| a < b), "once each, in order");
         let is_image = |&place: &u32| found.sequence.images()[place as usize].code() != 0;
         assert_eq!(mirrored, list.iter().any(is_image));
@@ -72,11 +72,12 @@ fn check_own_lists(found: &Found) {
             let inside: Vec<u32> = list
                 .iter()
                 .copied()
-                .filter(|&j| {
-                    square_of_distance(found, receiver, j) < (h(receiver) + h(j)).powi(2)
-                })
+                .filter(|&j| square_of_distance(found, receiver, j) < (h(receiver) + h(j)).powi(2))
                 .collect();
-            assert_eq!(inside, oracle::own_neighbours(&found.sequence, &found.motion, receiver));
+            assert_eq!(
+                inside,
+                oracle::own_neighbours(&found.sequence, &found.motion, receiver)
+            );
         }
     }
 }

@@ -1,9 +1,16 @@
 //! The pair sweeps against plain scalar sums, and the identities that the sums obey.
+#![allow(clippy::float_cmp, reason = "what is exact is held exactly")]
+#![allow(
+    clippy::needless_range_loop,
+    reason = "components of vectors and tensors"
+)]
+#![allow(clippy::many_single_char_names, reason = "formulas as on paper")]
 
 mod common;
 
 use common::cloud::{Cloud, Found, Recipe};
 use common::random::Random;
+use whipple::neighbours::Chunk;
 use whipple::sph::dispatch::{Instructions, available};
 use whipple::sph::gradient::{MotionRecord, VelocityGradient};
 use whipple::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
@@ -163,7 +170,10 @@ fn momentum<S: PairScale, const MIRRORED: bool>(
 /// digits to cancellation near the centre.
 fn assert_close(value: f64, reference: f64, size: f64) {
     let error = (value - reference).abs();
-    assert!(error <= 3e-14 * size, "{value} is not {reference}: {error:e} of {size:e}");
+    assert!(
+        error <= 3e-14 * size,
+        "{value} is not {reference}: {error:e} of {size:e}"
+    );
 }
 
 /// Both sweeps over all clusters of a cloud: equal to the plain sums, equal bits for all
@@ -174,15 +184,14 @@ fn check_sweeps<S: PairScale>(cloud: &Cloud, scale: S) {
     let records = force_records(cloud, &found, 77);
     let mirrored = mirrored(&found);
     let sets = available();
-    for (cluster, list, has_mirrors) in found.clusters.chunks().iter().flat_map(|c| c.iter()) {
+    for (cluster, list, has_mirrors) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
         let receivers = cluster.receivers;
         let slow: Vec<Plain> = receivers[..cluster.lanes]
             .iter()
             .map(|&i| plain(cloud, &found, &records, &kernel, i))
             .collect();
         let first = gradient(sets[0], &found.motion, receivers, list, scale);
-        let forces =
-            momentum::<S, true>(sets[0], &records, &mirrored, receivers, list, scale);
+        let forces = momentum::<S, true>(sets[0], &records, &mirrored, receivers, list, scale);
         for (k, slow) in slow.iter().enumerate() {
             for c in 0..9 {
                 assert_close(first[c].0[k], slow.gradient[c], slow.gradient_size);
@@ -203,7 +212,10 @@ fn check_sweeps<S: PairScale>(cloud: &Cloud, scale: S) {
         for &set in &sets {
             for list in [list, &everyone] {
                 let other = gradient(set, &found.motion, receivers, list, scale);
-                assert_eq!(other.map(|l| l.0.map(f64::to_bits)), first.map(|l| l.0.map(f64::to_bits)));
+                assert_eq!(
+                    other.map(|l| l.0.map(f64::to_bits)),
+                    first.map(|l| l.0.map(f64::to_bits))
+                );
                 let other = momentum::<S, true>(set, &records, &mirrored, receivers, list, scale);
                 assert_eq!(bits(&other), bits(&forces), "{}", set.name());
                 if !has_mirrors {
@@ -243,9 +255,18 @@ fn sweeps_with_constant_h_agree_with_plain_sums() {
 #[test]
 fn sweeps_with_variable_h_agree_with_plain_sums() {
     for planes in [0, 1] {
-        check_sweeps(&cloud(1, 1.8, planes, 42), MeanScale::<1>::new(&Kernel::new(1)));
-        check_sweeps(&cloud(2, 1.8, planes, 43), MeanScale::<2>::new(&Kernel::new(2)));
-        check_sweeps(&cloud(3, 1.8, planes, 44), MeanScale::<3>::new(&Kernel::new(3)));
+        check_sweeps(
+            &cloud(1, 1.8, planes, 42),
+            MeanScale::<1>::new(&Kernel::new(1)),
+        );
+        check_sweeps(
+            &cloud(2, 1.8, planes, 43),
+            MeanScale::<2>::new(&Kernel::new(2)),
+        );
+        check_sweeps(
+            &cloud(3, 1.8, planes, 44),
+            MeanScale::<3>::new(&Kernel::new(3)),
+        );
     }
 }
 
@@ -259,10 +280,16 @@ fn momentum_and_energy_balance() {
         let found = cloud.find();
         let records = force_records(&cloud, &found, 78);
         let (mut force, mut power, mut size, mut power_size) = ([0.0; 3], 0.0, 0.0, 0.0);
-        for (cluster, list, _) in found.clusters.chunks().iter().flat_map(|c| c.iter()) {
+        for (cluster, list, _) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
             let scale = MeanScale::<3>::new(&Kernel::new(3));
-            let sums =
-                momentum::<_, false>(available()[0], &records, &[], cluster.receivers, list, scale);
+            let sums = momentum::<_, false>(
+                available()[0],
+                &records,
+                &[],
+                cluster.receivers,
+                list,
+                scale,
+            );
             for k in 0..cluster.lanes {
                 let record = &records[cluster.receivers[k] as usize];
                 power += record.mass * sums.power.0[k];
@@ -276,8 +303,14 @@ fn momentum_and_energy_balance() {
             }
         }
         // 260 particles with some 50 neighbours: errors add like a random walk.
-        assert!(force.iter().all(|f| f.abs() < 1e-14 * size), "{force:?} of {size}");
-        assert!(power.abs() < 1e-14 * power_size, "{power:e} of {power_size}");
+        assert!(
+            force.iter().all(|f| f.abs() < 1e-14 * size),
+            "{force:?} of {size}"
+        );
+        assert!(
+            power.abs() < 1e-14 * power_size,
+            "{power:e} of {power_size}"
+        );
     }
 }
 
@@ -288,7 +321,11 @@ fn a_linear_velocity_field_gives_its_gradient() {
     let field = [0.3, -1.0, 0.2, 0.7, 0.1, -0.4, 0.5, -0.6, -0.2];
     // What the sum is on cubic lattices of spacing 1 at h = 1.3, in 1, 2 and 3 dimensions, from
     // the kernel's definition by another program.
-    let factors = [1.022_373_166_205_665, 1.010_542_957_253_393, 0.993_483_699_944_107];
+    let factors = [
+        1.022_373_166_205_665,
+        1.010_542_957_253_393,
+        0.993_483_699_944_107,
+    ];
     for (dimension, factor) in (1..).zip(factors) {
         let kernel = Kernel::new(dimension);
         let mut sources = Vec::new();
@@ -314,7 +351,11 @@ fn a_linear_velocity_field_gives_its_gradient() {
         let centre = [count / 2; LANES];
         let found = gradient(available()[0], &sources, centre, &neighbours, scale);
         for c in 0..9 {
-            let wanted = if c % 3 < dimension { field[c] * factor } else { 0.0 };
+            let wanted = if c % 3 < dimension {
+                field[c] * factor
+            } else {
+                0.0
+            };
             assert!((found[c].0[0] - wanted).abs() < 2e-15, "{dimension}-D, {c}");
         }
     }
@@ -358,8 +399,13 @@ fn lone_and_coincident_particles_are_harmless() {
                 let scale = MeanScale::<3>::new(&kernel);
                 let receivers = [0, 1, 1, 1, 1, 1, 1, 1];
                 let gradient = gradient(set, &motion, receivers, neighbours, scale);
-                assert!(gradient.iter().all(|lanes| lanes.0.iter().all(|&x| x == 0.0)));
-                let sums = momentum::<_, true>(set, &force, &[0.0; 2], receivers, neighbours, scale);
+                assert!(
+                    gradient
+                        .iter()
+                        .all(|lanes| lanes.0.iter().all(|&x| x == 0.0))
+                );
+                let sums =
+                    momentum::<_, true>(set, &force, &[0.0; 2], receivers, neighbours, scale);
                 let all = sums.acceleration.iter().chain(&sums.from_mirrors);
                 let all = all.chain([&sums.power, &sums.approach]);
                 assert!(all.flat_map(|lanes| &lanes.0).all(|&x| x == 0.0));
@@ -376,7 +422,14 @@ fn lone_and_coincident_particles_are_harmless() {
     let scale = MeanScale::<3>::new(&Kernel::new(3));
     let gradient = gradient(available()[0], &motion, [0; LANES], &[0, 1], scale);
     assert!(gradient.iter().all(|lanes| lanes.0[0].is_finite()));
-    let sums = momentum::<_, true>(available()[0], &force, &[0.0; 2], [0; LANES], &[0, 1], scale);
+    let sums = momentum::<_, true>(
+        available()[0],
+        &force,
+        &[0.0; 2],
+        [0; LANES],
+        &[0, 1],
+        scale,
+    );
     assert!(sums.acceleration.iter().all(|lanes| lanes.0[0].is_finite()));
     assert!(sums.power.0[0].is_finite() && sums.approach.0[0].is_finite());
 }
