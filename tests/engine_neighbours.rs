@@ -60,11 +60,15 @@ fn check_clusters(cloud: &Cloud, found: &Found) {
     assert!(seen.iter().all(|&count| count == 1));
 }
 
-fn check_own_lists(found: &Found) {
-    for (cluster, list, mirrored) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
+fn check_own_lists(cloud: &Cloud, found: &Found) {
+    for (cluster, list, among) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
         assert!(list.is_sorted_by(|a, b| a < b), "once each, in order");
-        let is_image = |&place: &u32| found.sequence.images()[place as usize].code() != 0;
-        assert_eq!(mirrored, list.iter().any(is_image));
+        let images = || list.iter().map(|&j| found.sequence.images()[j as usize]);
+        assert_eq!(among.mirrors, images().any(|image| image.code() != 0));
+        assert_eq!(
+            among.halo,
+            images().any(|image| image.base() >= cloud.owned)
+        );
         let group = found.sequence.group(cluster.group);
         assert!(list.iter().all(|&place| group.contains(&(place as usize))));
         for &receiver in &cluster.receivers[..cluster.lanes] {
@@ -180,7 +184,7 @@ proptest! {
         let cloud = Cloud::new(&recipe);
         let found = cloud.find();
         check_clusters(&cloud, &found);
-        check_own_lists(&found);
+        check_own_lists(&cloud, &found);
         check_order(&cloud, &found);
         let mut random = Random::new(recipe.seed ^ 1);
         check_foreign_lists(&cloud, &found, &foreign_table(recipe.bodies, &mut random));
@@ -205,7 +209,7 @@ fn large_clouds_agree_with_brute_force() {
         });
         let found = cloud.find();
         check_clusters(&cloud, &found);
-        check_own_lists(&found);
+        check_own_lists(&cloud, &found);
         check_order(&cloud, &found);
         let table = foreign_table(3, &mut Random::new(5));
         check_foreign_lists(&cloud, &found, &table);
@@ -233,7 +237,7 @@ fn ties_are_ordered_by_id_and_code() {
         }
         let found = cloud.find();
         check_clusters(&cloud, &found);
-        check_own_lists(&found);
+        check_own_lists(&cloud, &found);
         check_order(&cloud, &found);
         let permuted = cloud.permuted(&mut random);
         assert_eq!(permuted.find().names(&permuted), found.names(&cloud));

@@ -184,7 +184,7 @@ fn check_sweeps<S: PairScale>(cloud: &Cloud, scale: S) {
     let records = force_records(cloud, &found, 77);
     let mirrored = mirrored(&found);
     let sets = available();
-    for (cluster, list, has_mirrors) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
+    for (cluster, list, among) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
         let receivers = cluster.receivers;
         let slow: Vec<Plain> = receivers[..cluster.lanes]
             .iter()
@@ -218,7 +218,7 @@ fn check_sweeps<S: PairScale>(cloud: &Cloud, scale: S) {
                 );
                 let other = momentum::<S, true>(set, &records, &mirrored, receivers, list, scale);
                 assert_eq!(bits(&other), bits(&forces), "{}", set.name());
-                if !has_mirrors {
+                if !among.mirrors {
                     let plain =
                         momentum::<S, false>(set, &records, &mirrored, receivers, list, scale);
                     assert_eq!(bits(&plain), bits(&forces), "{}", set.name());

@@ -3,8 +3,11 @@
 mod check;
 pub mod compare;
 mod driver;
+mod fault;
 pub mod info;
+mod launch;
 pub mod plot;
+mod progress;
 mod report;
 mod restart;
 pub mod results;
@@ -15,10 +18,14 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+/// The run failed.
+pub const EXIT_FAILED: u8 = 1;
 /// The case, an option or a file that the user named is wrong.
 pub const EXIT_INPUT: u8 = 2;
 /// The run was asked to stop and has written a checkpoint.
 pub const EXIT_STOPPED: u8 = 75;
+/// A second Ctrl-C ended the process, as shells tell it.
+const EXIT_INTERRUPTED: i32 = 130;
 
 /// MPI-parallel smoothed particle hydrodynamics for impacts of solids
 #[derive(Debug, Parser)]
@@ -55,7 +62,9 @@ pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
-            let _ = error.print();
+            launch::once(|| {
+                let _ = error.print();
+            });
             return ExitCode::from(if error.use_stderr() { EXIT_INPUT } else { 0 });
         }
     };

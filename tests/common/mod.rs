@@ -46,7 +46,7 @@ pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
         time_step: TimeStepOptions {
             courant: 0.4,
             force: 0.25,
-            contact: 0.5,
+            contact: 0.6,
             max: f64::INFINITY,
         },
         domain: DomainOptions {
