@@ -1,5 +1,11 @@
 //! Contact forces against the numerical gradient of an energy that is written down again here,
 //! and what contact promises about them.
+#![allow(clippy::float_cmp, reason = "what is exact is held exactly")]
+#![allow(
+    clippy::needless_range_loop,
+    reason = "components of vectors and tensors"
+)]
+#![allow(clippy::many_single_char_names, reason = "formulas as on paper")]
 
 mod common;
 
@@ -485,10 +491,10 @@ fn flat_interface(side: usize, gap: f64, h: f64) -> World {
             for x in 0..side {
                 for y in 0..side {
                     #[allow(clippy::cast_precision_loss, reason = "few particles")]
-                    let site = [x as f64, y as f64, f64::from(layer)];
-                    let z = site[2] + 0.5 * gap;
+                    let [x, y] = [x as f64, y as f64];
+                    let z = f64::from(layer) + 0.5 * gap;
                     let z = if b == 0 { z } else { -z };
-                    particles.push((b, [site[0], site[1], z].map(|s| s * SPACING)));
+                    particles.push((b, [x, y, z].map(|x| x * SPACING)));
                 }
             }
         }

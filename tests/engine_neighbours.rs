@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use common::cloud::{Cloud, Found, Recipe};
 use common::random::Random;
 use proptest::prelude::*;
-use whipple::neighbours::{ContactClass, ForeignLists, ForeignTable, PairList, oracle};
+use whipple::neighbours::{Chunk, ContactClass, ForeignLists, ForeignTable, PairList, oracle};
 
 fn recipe() -> impl Strategy<Value = Recipe> {
     (1_usize..=3)
@@ -46,12 +46,7 @@ fn square_of_distance(found: &Found, a: u32, b: u32) -> f64 {
 fn check_clusters(cloud: &Cloud, found: &Found) {
     let mut seen = vec![0; cloud.owned];
     let images = found.sequence.images();
-    for (cluster, _, _) in found
-        .clusters
-        .chunks()
-        .iter()
-        .flat_map(whipple::neighbours::Chunk::iter)
-    {
+    for (cluster, _, _) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
         let (valid, padding) = cluster.receivers.split_at(cluster.lanes);
         assert!(valid.is_sorted());
         assert!(padding.iter().all(|place| place == valid.last().unwrap()));
@@ -65,16 +60,15 @@ fn check_clusters(cloud: &Cloud, found: &Found) {
     assert!(seen.iter().all(|&count| count == 1));
 }
 
-fn check_own_lists(found: &Found) {
-    for (cluster, list, among) in found
-        .clusters
-        .chunks()
-        .iter()
-        .flat_map(whipple::neighbours::Chunk::iter)
-    {
+fn check_own_lists(cloud: &Cloud, found: &Found) {
+    for (cluster, list, among) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
         assert!(list.is_sorted_by(|a, b| a < b), "once each, in order");
-        let is_image = |&place: &u32| found.sequence.images()[place as usize].code() != 0;
-        assert_eq!(among.mirrors, list.iter().any(is_image));
+        let images = || list.iter().map(|&j| found.sequence.images()[j as usize]);
+        assert_eq!(among.mirrors, images().any(|image| image.code() != 0));
+        assert_eq!(
+            among.halo,
+            images().any(|image| image.base() >= cloud.owned)
+        );
         let group = found.sequence.group(cluster.group);
         assert!(list.iter().all(|&place| group.contains(&(place as usize))));
         for &receiver in &cluster.receivers[..cluster.lanes] {
@@ -190,7 +184,7 @@ proptest! {
         let cloud = Cloud::new(&recipe);
         let found = cloud.find();
         check_clusters(&cloud, &found);
-        check_own_lists(&found);
+        check_own_lists(&cloud, &found);
         check_order(&cloud, &found);
         let mut random = Random::new(recipe.seed ^ 1);
         check_foreign_lists(&cloud, &found, &foreign_table(recipe.bodies, &mut random));
@@ -215,7 +209,7 @@ fn large_clouds_agree_with_brute_force() {
         });
         let found = cloud.find();
         check_clusters(&cloud, &found);
-        check_own_lists(&found);
+        check_own_lists(&cloud, &found);
         check_order(&cloud, &found);
         let table = foreign_table(3, &mut Random::new(5));
         check_foreign_lists(&cloud, &found, &table);
@@ -243,7 +237,7 @@ fn ties_are_ordered_by_id_and_code() {
         }
         let found = cloud.find();
         check_clusters(&cloud, &found);
-        check_own_lists(&found);
+        check_own_lists(&cloud, &found);
         check_order(&cloud, &found);
         let permuted = cloud.permuted(&mut random);
         assert_eq!(permuted.find().names(&permuted), found.names(&cloud));

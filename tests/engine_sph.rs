@@ -1,9 +1,16 @@
 //! The pair sweeps against plain scalar sums, and the identities that the sums obey.
+#![allow(clippy::float_cmp, reason = "what is exact is held exactly")]
+#![allow(
+    clippy::needless_range_loop,
+    reason = "components of vectors and tensors"
+)]
+#![allow(clippy::many_single_char_names, reason = "formulas as on paper")]
 
 mod common;
 
 use common::cloud::{Cloud, Found, Recipe};
 use common::random::Random;
+use whipple::neighbours::Chunk;
 use whipple::sph::dispatch::{Instructions, available};
 use whipple::sph::gradient::{MotionRecord, VelocityGradient};
 use whipple::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
@@ -177,12 +184,7 @@ fn check_sweeps<S: PairScale>(cloud: &Cloud, scale: S) {
     let records = force_records(cloud, &found, 77);
     let mirrored = mirrored(&found);
     let sets = available();
-    for (cluster, list, among) in found
-        .clusters
-        .chunks()
-        .iter()
-        .flat_map(whipple::neighbours::Chunk::iter)
-    {
+    for (cluster, list, among) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
         let receivers = cluster.receivers;
         let slow: Vec<Plain> = receivers[..cluster.lanes]
             .iter()
@@ -278,12 +280,7 @@ fn momentum_and_energy_balance() {
         let found = cloud.find();
         let records = force_records(&cloud, &found, 78);
         let (mut force, mut power, mut size, mut power_size) = ([0.0; 3], 0.0, 0.0, 0.0);
-        for (cluster, list, _) in found
-            .clusters
-            .chunks()
-            .iter()
-            .flat_map(whipple::neighbours::Chunk::iter)
-        {
+        for (cluster, list, _) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
             let scale = MeanScale::<3>::new(&Kernel::new(3));
             let sums = momentum::<_, false>(
                 available()[0],

@@ -53,32 +53,24 @@ impl Cloud {
         let mut random = Random::new(recipe.seed);
         let dimension = recipe.dimension;
         #[allow(clippy::cast_precision_loss, reason = "few particles")]
-        let side = (recipe.particles as f64)
+        let edge = (recipe.particles as f64)
             .powf(1.0 / dimension as f64)
             .ceil();
         let mut position = Vec::new();
         for k in 0..recipe.particles {
-            let mut rest = k;
+            #[allow(clippy::cast_precision_loss, reason = "few particles")]
+            let mut rest = k as f64;
             position.push(std::array::from_fn(|a| {
                 if a >= dimension {
                     return 0.0;
                 }
-                #[allow(
-                    clippy::cast_possible_truncation,
-                    clippy::cast_sign_loss,
-                    clippy::cast_precision_loss,
-                    reason = "few particles"
-                )]
-                let site = {
-                    let site = rest % side as usize;
-                    rest /= side as usize;
-                    site as f64
-                };
+                let site = rest % edge;
+                rest = (rest / edge).floor();
                 site + random.within(0.1, 0.9)
             }));
         }
         for _ in 0..recipe.runaways {
-            let far = 10.0_f64.powf(random.within(0.0, 6.0)) * side;
+            let far = 10.0_f64.powf(random.within(0.0, 6.0)) * edge;
             let who = random.below(recipe.particles);
             position[who] = random.vector(dimension, far);
             for x in &mut position[who][..recipe.planes] {
@@ -93,7 +85,7 @@ impl Cloud {
                 position: 0.0,
             })
             .collect();
-        let upper = std::array::from_fn(|a| if a < dimension { side } else { 0.0 });
+        let upper = std::array::from_fn(|a| if a < dimension { edge } else { 0.0 });
         let groups = recipe.bodies.div_ceil(2);
         let mut id: Vec<u64> = (0..recipe.particles as u64).map(|k| 3 * k + 1).collect();
         random.shuffle(&mut id);
