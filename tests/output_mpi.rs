@@ -50,11 +50,17 @@ fn expected(field: usize, total: u64, vtk: bool) -> Vec<u8> {
 fn check_snapshot(path: &Path, total: u64) {
     let file = Content::open(path).unwrap();
     for name in ["NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"] {
-        assert_eq!(file.all::<u64>(&format!("/VTKHDF/{name}")).unwrap(), [total]);
+        assert_eq!(
+            file.all::<u64>(&format!("/VTKHDF/{name}")).unwrap(),
+            [total]
+        );
     }
     let count: Vec<u64> = (0..=total).collect();
     let all = usize::try_from(total).unwrap();
-    assert_eq!(file.all::<u64>("/VTKHDF/Connectivity").unwrap(), count[..all]);
+    assert_eq!(
+        file.all::<u64>("/VTKHDF/Connectivity").unwrap(),
+        count[..all]
+    );
     assert_eq!(file.all::<u64>("/VTKHDF/Offsets").unwrap(), count);
     assert_eq!(file.all::<u8>("/VTKHDF/Types").unwrap(), vec![1; all]);
     let time = file.all::<f64>("/VTKHDF/FieldData/TimeValue").unwrap();
@@ -79,7 +85,10 @@ fn check_snapshot(path: &Path, total: u64) {
     }
     let case = case();
     assert_eq!(file.note("/whipple", "title").unwrap(), case.title);
-    assert_eq!(file.note("/whipple", "bodies").unwrap(), r#"["sphere","plate"]"#);
+    assert_eq!(
+        file.note("/whipple", "bodies").unwrap(),
+        r#"["sphere","plate"]"#
+    );
     assert_eq!(file.note("/whipple", "symmetry").unwrap(), r#"[["y",0.0]]"#);
     assert_eq!(file.text("/whipple/input").unwrap(), case.resolved);
 }
@@ -151,10 +160,22 @@ fn a_lone_rank_without_mpi_writes_the_same() {
     for total in TOTALS {
         let path = folder.path().join("snapshot.vtkhdf");
         let store = particles(&comm, total);
-        snapshot::write(&comm, &path, &store, &meta(&case), &all_quantities(), &mut rows).unwrap();
+        snapshot::write(
+            &comm,
+            &path,
+            &store,
+            &meta(&case),
+            &all_quantities(),
+            &mut rows,
+        )
+        .unwrap();
         check_snapshot(&path, total);
         write_checkpoint(&comm, folder.path(), total, total).unwrap();
-        check_restored(&comm, &folder.path().join(format!("step-{total:08}")), total);
+        check_restored(
+            &comm,
+            &folder.path().join(format!("step-{total:08}")),
+            total,
+        );
     }
 }
 
@@ -201,7 +222,10 @@ fn equal_ids_are_refused_by_every_rank() {
         twice[2] = id(5);
         assert!(Rows::default().plan(comm, &ids).is_ok());
         let error = Rows::default().plan(comm, &twice).unwrap_err();
-        assert!(error.to_string().starts_with("two particles have the id"), "{error}");
+        assert!(
+            error.to_string().starts_with("two particles have the id"),
+            "{error}"
+        );
     });
 }
 

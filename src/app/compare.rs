@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 
 use super::EXIT_INPUT;
 use super::results::{Results, ResultsError};
+use crate::output::RunFolder;
 use crate::output::checkpoint;
 use crate::output::h5::Content;
-use crate::output::RunFolder;
 
 /// Tell whether two results agree to the last bit
 ///
@@ -83,7 +83,7 @@ impl Report {
 
     /// Books a thing that both have: it agrees (and `agreement` says how much there is) unless
     /// there are differences.
-    fn book(&mut self, what: &str, agreement: &str, differences: Vec<String>) {
+    fn book(&mut self, what: &str, agreement: &str, differences: &[String]) {
         self.compared += 1;
         if differences.is_empty() {
             self.lines.push(format!("{what}: {agreement}"));
@@ -131,7 +131,11 @@ pub fn compare(a: &Path, b: &Path) -> Result<Report, ResultsError> {
 
 fn case(a: &str, b: &str, report: &mut Report) {
     let differences = text::cases(a, b);
-    report.book("case", "agrees, but for output, run and domain", differences);
+    report.book(
+        "case",
+        "agrees, but for output, run and domain",
+        &differences,
+    );
 }
 
 fn runs(a: &RunFolder, b: &RunFolder, report: &mut Report) -> Result<(), ResultsError> {

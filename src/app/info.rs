@@ -63,7 +63,7 @@ struct Text(String);
 
 impl Text {
     fn entry(&mut self, name: &str, value: impl std::fmt::Display) {
-        let _ = writeln!(self.0, "{:<28} {value}", name.replace('_', " "));
+        let _ = writeln!(self.0, "{:<36} {value}", name.replace('_', " "));
     }
 }
 
@@ -80,10 +80,13 @@ fn snapshot(file: &Content, text: &mut Text) -> Result<(), ResultsError> {
     text.entry("step", file.number::<u64>(group, "step")?);
     text.entry("time", seconds(time.first().copied().unwrap_or(f64::NAN)));
     let commit = file.note(group, "commit")?;
-    text.entry("version", format!("{} ({commit})", file.note(group, "version")?));
+    text.entry(
+        "version",
+        format!("{} ({commit})", file.note(group, "version")?),
+    );
     let ranks: u64 = file.number("/run", "ranks")?;
     let threads: u64 = file.number("/run", "threads")?;
-    text.entry("written by", format!("{ranks} ranks with {threads} threads"));
+    text.entry("ranks x threads", format!("{ranks} x {threads}"));
     bodies(file, POINT_DATA, &names, text)?;
     heading(text);
     field(file, "/VTKHDF/Points", true, text)?;
@@ -111,8 +114,11 @@ fn checkpoint_state(file: &Content, text: &mut Text) -> Result<(), ResultsError>
     match checkpoint::manifest(folder) {
         Ok(manifest) => {
             let (version, commit) = (&manifest.version, &manifest.commit);
-            text.entry("version", format!("{version} ({commit}), format {}", manifest.format));
-            text.entry("written by", format!("{} ranks", manifest.ranks));
+            text.entry(
+                "version",
+                format!("{version} ({commit}), format {}", manifest.format),
+            );
+            text.entry("ranks", manifest.ranks);
             text.entry("size", format!("{} bytes", manifest.size));
         }
         Err(error) => text.entry("not restartable", error),
@@ -153,7 +159,10 @@ fn bodies(
 }
 
 fn heading(text: &mut Text) {
-    let line = format!("\n{:<28} {:<8} {:>13} {:>13}", "field", "unit", "min", "max");
+    let line = format!(
+        "\n{:<28} {:<8} {:>13} {:>13}",
+        "field", "unit", "min", "max"
+    );
     let _ = writeln!(text.0, "{line}");
 }
 
@@ -176,16 +185,20 @@ fn field(file: &Content, path: &str, vtk: bool, text: &mut Text) -> Result<(), R
     let names = component_names(components, vtk);
     for ([low, high], component) in ranges.into_iter().zip(names) {
         let name = format!("{} {component}", array.name);
-        let unit = if array.unit.is_empty() { "-" } else { &array.unit };
+        let unit = if array.unit.is_empty() {
+            "-"
+        } else {
+            &array.unit
+        };
         let range = match array.row.element {
-            _ if low > high => "none".to_owned(),
+            _ if low > high => format!("{0:>13} {0:>13}", "-"),
             Element::F64 => format!("{low:>13.5e} {high:>13.5e}"),
             _ => format!("{low:>13} {high:>13}"),
         };
         let _ = writeln!(text.0, "{name:<28} {unit:<8} {range}");
     }
     if odd > 0 {
-        let _ = writeln!(text.0, "{:<28} {odd} values are not finite", "");
+        let _ = writeln!(text.0, "  {odd} of its values are not finite");
     }
     Ok(())
 }
@@ -238,7 +251,9 @@ fn run_folder(folder: &RunFolder, text: &mut Text) -> Result<(), ResultsError> {
     if let Some(title) = input.get("title").and_then(toml::Value::as_str) {
         text.entry("title", title);
     }
-    let reason = status.reason.map_or_else(String::new, |r| format!(" ({r})"));
+    let reason = status
+        .reason
+        .map_or_else(String::new, |r| format!(" ({r})"));
     text.entry("state", format!("{}{reason}", status.state.name()));
     text.entry("step", status.step);
     text.entry("time", seconds(status.time));

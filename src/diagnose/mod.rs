@@ -1,3 +1,4 @@
-//! Room diagnose.
+//! Conserved sums and measures of what an impact leaves behind.
 
 pub mod exact_sum;
+pub mod hole;

@@ -22,31 +22,39 @@ pub struct Cluster {
     pub group: usize,
 }
 
+/// What is among the neighbours of a cluster.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Among {
+    /// Images behind symmetry planes.
+    pub mirrors: bool,
+    /// Particles of other ranks.
+    pub halo: bool,
+}
+
 /// Clusters and neighbour lists of one task.
 #[derive(Debug, Clone, Default)]
 pub struct Chunk {
     clusters: Vec<Cluster>,
-    /// End of each cluster's neighbours in `neighbours`, and whether mirror images are among them.
-    ends: Vec<(u32, bool)>,
+    /// End of each cluster's neighbours in `neighbours`, and what is among them.
+    ends: Vec<(u32, Among)>,
     neighbours: Vec<u32>,
 }
 
 impl Chunk {
-    /// The clusters, each with its neighbours in canonical order and whether mirror images are
-    /// among them.
-    pub fn iter(&self) -> impl Iterator<Item = (&Cluster, &[u32], bool)> {
+    /// The clusters, each with its neighbours in canonical order and what is among those.
+    pub fn iter(&self) -> impl Iterator<Item = (&Cluster, &[u32], Among)> {
         self.clusters.iter().enumerate().map(|(k, cluster)| {
             let start = if k == 0 { 0 } else { self.ends[k - 1].0 };
-            let (end, mirrored) = self.ends[k];
+            let (end, among) = self.ends[k];
             (
                 cluster,
                 &self.neighbours[start as usize..end as usize],
-                mirrored,
+                among,
             )
         })
     }
 
-    fn build(&mut self, set: Instructions, sequence: &Sequence, reach: &[f64]) {
+    fn build(&mut self, set: Instructions, sequence: &Sequence, owned: usize, reach: &[f64]) {
         self.neighbours.clear();
         self.ends.clear();
         let Self {
@@ -55,38 +63,43 @@ impl Chunk {
             neighbours,
         } = self;
         for cluster in clusters {
-            let mirrored = set.run(ListNeighbours {
+            let among = set.run(ListNeighbours {
                 sequence,
+                owned,
                 cluster,
                 reach: reach[cluster.group],
                 neighbours,
             });
-            #[allow(clippy::cast_possible_truncation, reason = "64 clusters' lists fit u32")]
-            ends.push((neighbours.len() as u32, mirrored));
+            #[allow(
+                clippy::cast_possible_truncation,
+                reason = "64 clusters' lists fit u32"
+            )]
+            ends.push((neighbours.len() as u32, among));
         }
     }
 }
 
-/// Appends the neighbours of a cluster to a list; tells whether mirror images are among them.
+/// Appends the neighbours of a cluster to a list; tells what is among them.
 struct ListNeighbours<'a> {
     sequence: &'a Sequence,
+    owned: usize,
     cluster: &'a Cluster,
     reach: f64,
     neighbours: &'a mut Vec<u32>,
 }
 
 impl Vectorised for ListNeighbours<'_> {
-    type Output = bool;
+    type Output = Among;
 
     #[inline(always)]
-    fn run<V: Lanes>(self) -> bool {
+    fn run<V: Lanes>(self) -> Among {
         let sequence = self.sequence;
         let (lower, upper, h) = bounds(sequence, &self.cluster.receivers);
         let far = (h + self.reach) * INFLATION;
         let low = lower.map(V::splat);
         let high = upper.map(V::splat);
         let own = V::splat(h);
-        let mut mirrored = false;
+        let mut among = Among::default();
         sequence.in_box(
             self.cluster.group,
             &lower.map(|x| x - far),
@@ -112,12 +125,14 @@ impl Vectorised for ListNeighbours<'_> {
                         bits &= bits - 1;
                         #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
                         self.neighbours.push(place as u32);
-                        mirrored |= sequence.images()[place].code() != 0;
+                        let image = sequence.images()[place];
+                        among.mirrors |= image.code() != 0;
+                        among.halo |= image.base() >= self.owned;
                     }
                 }
             },
         );
-        mirrored
+        among
     }
 }
 
@@ -141,7 +156,7 @@ impl ClusterLists {
         self.gather_clusters(sequence, owned);
         self.chunks[..self.used]
             .par_iter_mut()
-            .for_each(|chunk| chunk.build(set, sequence, reach));
+            .for_each(|chunk| chunk.build(set, sequence, owned, reach));
     }
 
     /// The tasks, for parallel iteration.
@@ -195,8 +210,8 @@ impl ClusterLists {
     }
 
     fn push(&mut self, cluster: Cluster) {
-        let full = self.used == 0
-            || self.chunks[self.used - 1].clusters.len() == CLUSTERS_PER_CHUNK;
+        let full =
+            self.used == 0 || self.chunks[self.used - 1].clusters.len() == CLUSTERS_PER_CHUNK;
         if full {
             if self.used == self.chunks.len() {
                 self.chunks.push(Chunk::default());
@@ -209,10 +224,7 @@ impl ClusterLists {
 
 /// Box around eight receivers (m) and their largest smoothing length (m).
 #[inline(always)]
-pub(super) fn bounds(
-    sequence: &Sequence,
-    receivers: &[u32; LANES],
-) -> ([f64; 3], [f64; 3], f64) {
+pub(super) fn bounds(sequence: &Sequence, receivers: &[u32; LANES]) -> ([f64; 3], [f64; 3], f64) {
     let at = |axis: usize, place: u32| sequence.coordinates(axis, place as usize)[0];
     let mut lower = std::array::from_fn(|a| at(a, receivers[0]));
     let mut upper: [f64; 3] = lower;

@@ -108,7 +108,13 @@ impl ForeignLists {
                 chunk.overlap.clear();
                 chunk.potential.clear();
                 for (cluster, _, _) in own.iter() {
-                    chunk.find_candidates(&cluster.receivers, cluster.group, sequence, sources, table);
+                    chunk.find_candidates(
+                        &cluster.receivers,
+                        cluster.group,
+                        sequence,
+                        sources,
+                        table,
+                    );
                     if chunk.candidates.is_empty() {
                         continue;
                     }

@@ -25,7 +25,10 @@ impl Image {
     #[must_use]
     pub fn new(base: usize, code: u8) -> Self {
         debug_assert!(base < Self::MAX_PARTICLES && code < 8);
-        #[allow(clippy::cast_possible_truncation, reason = "checked when particles are counted")]
+        #[allow(
+            clippy::cast_possible_truncation,
+            reason = "checked when particles are counted"
+        )]
         Self(base as u32 | u32::from(code) << 29)
     }
 
@@ -33,7 +36,7 @@ impl Image {
     #[inline]
     #[must_use]
     pub fn base(self) -> usize {
-        (self.0 & (Self::MAX_PARTICLES as u32 - 1)) as usize
+        self.0 as usize & (Self::MAX_PARTICLES - 1)
     }
 
     /// Bit a set: behind the symmetry plane normal to axis a.
@@ -145,6 +148,9 @@ impl Sequence {
 
     /// Eight coordinates on an axis (m) from a place on; what lies beyond the last image is
     /// whatever.
+    ///
+    /// # Panics
+    /// If `place` is beyond the last image.
     #[inline(always)]
     #[must_use]
     pub fn coordinates(&self, axis: usize, place: usize) -> &[f64; LANES] {
@@ -154,6 +160,9 @@ impl Sequence {
     }
 
     /// Eight smoothing lengths (m) from a place on.
+    ///
+    /// # Panics
+    /// If `place` is beyond the last image.
     #[inline(always)]
     #[must_use]
     pub fn lengths(&self, place: usize) -> &[f64; LANES] {
@@ -301,7 +310,10 @@ impl Sequence {
         for first in range(0) {
             for other in second.clone() {
                 let column = group.columns + first * group.size[1] + other;
-                let (start, end) = (self.starts[column] as usize, self.starts[column + 1] as usize);
+                let (start, end) = (
+                    self.starts[column] as usize,
+                    self.starts[column + 1] as usize,
+                );
                 let column = &along[start..end];
                 let first = column.partition_point(|&x| x < from);
                 let mut last = first;

@@ -395,15 +395,28 @@ mod tests {
             write(run.snapshot(step));
             let time = f64::from(u32::try_from(step).unwrap());
             series::add(&run.series(), &RunFolder::snapshot_name(step), time).unwrap();
-            write(run.checkpoints().join(format!("step-{step:08}/manifest.json")));
+            write(
+                run.checkpoints()
+                    .join(format!("step-{step:08}/manifest.json")),
+            );
         }
         write(run.stop());
         let run = RunFolder::resume(&comm, place.path(), "", 4, 4.0).unwrap();
-        assert_eq!(run.snapshot_files().unwrap(), [run.snapshot(2), run.snapshot(4)]);
+        assert_eq!(
+            run.snapshot_files().unwrap(),
+            [run.snapshot(2), run.snapshot(4)]
+        );
         assert_eq!(series::read(&run.series()).unwrap().len(), 2);
         let newest = run.newest_checkpoint().unwrap().unwrap();
         assert!(newest.ends_with("step-00000004"));
         assert!(!run.stop().exists());
-        assert_eq!(RunFolder::of_checkpoint(&newest).unwrap().status().unwrap().step, 4);
+        assert_eq!(
+            RunFolder::of_checkpoint(&newest)
+                .unwrap()
+                .status()
+                .unwrap()
+                .step,
+            4
+        );
     }
 }

@@ -156,7 +156,10 @@ pub fn slope_over_distance<V: Lanes>(r: V, inverse_r: V, inverse_h: V, factor: V
     let zero = V::splat(0.0);
     let a = V::splat(2.0).sub(q).max(zero);
     let b = V::splat(1.0).sub(q).max(zero);
-    let shape = b.mul(b).mul(V::splat(3.0)).sub(a.mul(a).mul(V::splat(0.75)));
+    let shape = b
+        .mul(b)
+        .mul(V::splat(3.0))
+        .sub(a.mul(a).mul(V::splat(0.75)));
     shape.mul(factor).mul(inverse_r)
 }
 
@@ -190,8 +193,7 @@ mod tests {
             let kernel = Kernel::new(d);
             for r in [0.1, 0.7, 1.2, 1.9, 2.4] {
                 let (h, step) = (1.1, 1e-6);
-                let slope =
-                    (kernel.value(r + step, h) - kernel.value(r - step, h)) / (2.0 * step);
+                let slope = (kernel.value(r + step, h) - kernel.value(r - step, h)) / (2.0 * step);
                 let curvature =
                     (kernel.slope(r + step, h) - kernel.slope(r - step, h)) / (2.0 * step);
                 assert!((slope - kernel.slope(r, h)).abs() < 1e-8);

@@ -107,7 +107,9 @@ impl<S: PairScale, const MIRRORED: bool> Vectorised for Momentum<'_, S, MIRRORED
             let over_distance = inverse.mul(distance);
             let slope = slope_over_distance(distance, inverse_r, inverse_h, factor);
             // μ = h v·r/(r² + 0.01 h²) for approaching pairs.
-            let approach = r[2].mul_add(v[2], r[1].mul_add(v[1], r[0].mul(v[0]))).min(zero);
+            let approach = r[2]
+                .mul_add(v[2], r[1].mul_add(v[1], r[0].mul(v[0])))
+                .min(zero);
             let mu = h.mul(approach).mul(over_distance.mul(rho_sum));
             // Π = μ (β μ − α c̄)/ρ̄ with c̄ = ½ c_sum and ρ̄ = ½ rho_sum.
             let linear = c_i.add(V::splat(source.sound_speed)).mul(alpha);
@@ -122,9 +124,12 @@ impl<S: PairScale, const MIRRORED: bool> Vectorised for Momentum<'_, S, MIRRORED
             let (xx, yy, zz) = (s[0].sub(pi), s[1].sub(pi), s[2].sub(pi));
             let weight = slope.mul(V::splat(source.mass));
             let force = [
-                xx.mul_add(r[0], s[3].mul_add(r[1], s[4].mul(r[2]))).mul(weight),
-                s[3].mul_add(r[0], yy.mul_add(r[1], s[5].mul(r[2]))).mul(weight),
-                s[4].mul_add(r[0], s[5].mul_add(r[1], zz.mul(r[2]))).mul(weight),
+                xx.mul_add(r[0], s[3].mul_add(r[1], s[4].mul(r[2])))
+                    .mul(weight),
+                s[3].mul_add(r[0], yy.mul_add(r[1], s[5].mul(r[2])))
+                    .mul(weight),
+                s[4].mul_add(r[0], s[5].mul_add(r[1], zz.mul(r[2])))
+                    .mul(weight),
             ];
             let work = force[2].mul_add(v[2], force[1].mul_add(v[1], force[0].mul(v[0])));
             power = work.mul_add(V::splat(-0.5), power);

@@ -4,9 +4,7 @@ use rayon::prelude::*;
 
 use super::simulation::Simulation;
 use crate::domain::Mirrors;
-use crate::neighbours::{
-    ClusterLists, ColumnGrid, ForeignLists, ImageFacts, Sequence,
-};
+use crate::neighbours::{ClusterLists, ColumnGrid, ForeignLists, ImageFacts, Sequence};
 use crate::sph::gradient::MotionRecord;
 
 /// The sequence of images, their motion records and the lists, kept from step to step.

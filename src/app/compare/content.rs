@@ -1,5 +1,7 @@
 //! Differences of the particles of two files, matched by id.
 
+use std::cmp::Ordering;
+
 use super::super::results::{POINT_DATA, ResultsError, component_names};
 use super::{Report, text};
 use crate::output::Block;
@@ -19,7 +21,9 @@ pub fn snapshots(
     let time = |file: &Content| file.all::<f64>("/VTKHDF/FieldData/TimeValue");
     let (times, mut found) = ([time(a)?, time(b)?], Found::default());
     if bytemuck::cast_slice::<f64, u64>(&times[0]) != bytemuck::cast_slice::<f64, u64>(&times[1]) {
-        found.lines.push(format!("time: {:?} against {:?}", times[0], times[1]));
+        found
+            .lines
+            .push(format!("time: {:?} against {:?}", times[0], times[1]));
     }
     let ids = format!("{POINT_DATA}/id");
     let matching = Matching::new(a, b, &ids, &mut found)?;
@@ -27,7 +31,10 @@ pub fn snapshots(
     let (mine, theirs) = (a.arrays(POINT_DATA)?, b.arrays(POINT_DATA)?);
     for (one, other, letter) in [(&mine, &theirs, "A"), (&theirs, &mine, "B")] {
         for array in one.iter().filter(|array| !has(other, array)) {
-            report.note(format!("{what}: only {letter} has the field {}", array.name));
+            report.note(format!(
+                "{what}: only {letter} has the field {}",
+                array.name
+            ));
         }
     }
     for array in mine.iter().filter(|array| has(&theirs, array)) {
@@ -48,11 +55,15 @@ pub fn checkpoints(
     let mut found = Found::default();
     let steps = [a.number::<u64>("/", "step")?, b.number("/", "step")?];
     if steps[0] != steps[1] {
-        found.lines.push(format!("step: {} against {}", steps[0], steps[1]));
+        found
+            .lines
+            .push(format!("step: {} against {}", steps[0], steps[1]));
     }
     let times = [a.number::<f64>("/", "time")?, b.number("/", "time")?];
     if times[0].to_bits() != times[1].to_bits() {
-        found.lines.push(format!("time: {:?} against {:?}", times[0], times[1]));
+        found
+            .lines
+            .push(format!("time: {:?} against {:?}", times[0], times[1]));
     }
     for line in text::states(&a.text("/state")?, &b.text("/state")?) {
         found.lines.push(format!("state {line}"));
@@ -61,7 +72,9 @@ pub fn checkpoints(
     let (mine, theirs) = (a.arrays(FIELDS)?, b.arrays(FIELDS)?);
     for (one, other, letter) in [(&mine, &theirs, "A"), (&theirs, &mine, "B")] {
         for array in one.iter().filter(|array| !has(other, array)) {
-            found.lines.push(format!("{}: only {letter} has it", array.name));
+            found
+                .lines
+                .push(format!("{}: only {letter} has it", array.name));
         }
     }
     for array in mine.iter().filter(|array| has(&theirs, array)) {
@@ -91,7 +104,7 @@ impl Found {
             self.lines.insert(0, format!("first difference: {text}"));
         }
         let agreement = format!("{particles} particles agree in {} fields", self.fields);
-        report.book(what, &agreement, self.lines);
+        report.book(what, &agreement, &self.lines);
     }
 }
 
@@ -100,6 +113,21 @@ struct Stretch {
     a: u64,
     b: u64,
     count: usize,
+}
+
+impl Stretch {
+    /// Adds a pair of rows behind all others.
+    fn lengthen(stretches: &mut Vec<Self>, a: usize, b: usize) {
+        let (a, b) = (a as u64, b as u64);
+        if let Some(last) = stretches.last_mut() {
+            let count = last.count as u64;
+            if (last.a + count, last.b + count) == (a, b) {
+                last.count += 1;
+                return;
+            }
+        }
+        stretches.push(Self { a, b, count: 1 });
+    }
 }
 
 /// Which rows belong together.
@@ -113,37 +141,28 @@ impl Matching {
     fn new(a: &Content, b: &Content, path: &str, found: &mut Found) -> Result<Self, ResultsError> {
         let (mine, theirs) = (a.all::<u64>(path)?, b.all::<u64>(path)?);
         let mut stretches: Vec<Stretch> = Vec::new();
-        let (mut i, mut j) = (0, 0);
         let mut lone: [Vec<u64>; 2] = [Vec::new(), Vec::new()];
-        while i < mine.len() || j < theirs.len() {
-            match (mine.get(i), theirs.get(j)) {
-                (Some(one), Some(other)) if one == other => {
-                    let (a, b) = (i as u64, j as u64);
-                    match stretches.last_mut() {
-                        Some(s) if s.a + s.count as u64 == a && s.b + s.count as u64 == b => {
-                            s.count += 1;
-                        }
-                        _ => stretches.push(Stretch { a, b, count: 1 }),
-                    }
-                    i += 1;
-                    j += 1;
-                }
-                (Some(one), other) if other.is_none_or(|other| one < other) => {
-                    lone[0].push(*one);
-                    i += 1;
-                }
-                (_, Some(other)) => {
-                    lone[1].push(*other);
-                    j += 1;
-                }
-                (_, None) => unreachable!("the arm before takes it"),
+        let (mut row, mut other_row) = (0, 0);
+        loop {
+            let order = match (mine.get(row), theirs.get(other_row)) {
+                (Some(id), Some(other)) => id.cmp(other),
+                (Some(_), None) => Ordering::Less,
+                (None, Some(_)) => Ordering::Greater,
+                (None, None) => break,
+            };
+            match order {
+                Ordering::Less => lone[0].push(mine[row]),
+                Ordering::Greater => lone[1].push(theirs[other_row]),
+                Ordering::Equal => Stretch::lengthen(&mut stretches, row, other_row),
             }
+            row += usize::from(order.is_le());
+            other_row += usize::from(order.is_ge());
         }
         for (letter, ids) in ["A", "B"].into_iter().zip(lone) {
             if let Some(first) = ids.first() {
                 let count = ids.len();
-                let line = format!("only {letter} has {count} particles; the first has id {first}");
-                found.lines.push(line);
+                let text = format!("only {letter} has {count} particles; the first has id {first}");
+                found.lines.push(text);
             }
         }
         Ok(Self {
@@ -168,7 +187,9 @@ impl Matching {
         let (array, other) = (a.array(path)?, b.array(path)?);
         found.fields += 1;
         if array.row != other.row {
-            found.lines.push(format!("{}: the types differ", array.name));
+            found
+                .lines
+                .push(format!("{}: the types differ", array.name));
             return Ok(());
         }
         let mut tally = Tally::new(&array, vtk);

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use super::Report;
 use super::super::results::ResultsError;
+use super::Report;
 
 /// The tables of a run, but for what depends on clocks.
 pub fn names(folder: &Path) -> Result<BTreeSet<String>, ResultsError> {
@@ -12,7 +12,9 @@ pub fn names(folder: &Path) -> Result<BTreeSet<String>, ResultsError> {
         path: folder.to_owned(),
         reason: error.to_string(),
     })?;
-    let names = entries.flatten().map(|e| e.file_name().to_string_lossy().into_owned());
+    let names = entries
+        .flatten()
+        .map(|e| e.file_name().to_string_lossy().into_owned());
     let is_table = |name: &String| {
         let extension = Path::new(name).extension();
         extension.is_some_and(|e| e == "csv") && name != "performance.csv"
@@ -30,13 +32,19 @@ struct Table<'a> {
 pub fn compare(name: &str, a: &str, b: &str, report: &mut Report) {
     let (a, b) = (parse(a), parse(b));
     if a.columns != b.columns {
-        report.book(name, "", vec!["the columns differ".to_owned()]);
+        report.book(name, "", &["the columns differ".to_owned()]);
         return;
     }
-    let common: Vec<&String> = a.rows.keys().filter(|key| b.rows.contains_key(*key)).collect();
+    let common: Vec<&String> = a
+        .rows
+        .keys()
+        .filter(|key| b.rows.contains_key(*key))
+        .collect();
     let mut differences = Vec::new();
     for (k, column) in a.columns.iter().enumerate() {
-        let pairs = common.iter().map(|&key| (key, a.rows[key].get(k), b.rows[key].get(k)));
+        let pairs = common
+            .iter()
+            .map(|&key| (key, a.rows[key].get(k), b.rows[key].get(k)));
         let different: Vec<_> = pairs.filter(|(_, a, b)| a != b).collect();
         if let Some(&(key, a, b)) = different.first() {
             let show = |value: Option<&&str>| value.map_or("nothing", |value| *value).to_owned();
@@ -55,7 +63,7 @@ pub fn compare(name: &str, a: &str, b: &str, report: &mut Report) {
     if common.is_empty() && lone[0] > 0 && lone[1] > 0 {
         differences.push("they have no row in common".to_owned());
     }
-    report.book(name, &format!("{} rows agree", common.len()), differences);
+    report.book(name, &format!("{} rows agree", common.len()), &differences);
     for (letter, count) in ["A", "B"].into_iter().zip(lone) {
         if count > 0 {
             report.note(format!("{name}: only {letter} has {count} more rows"));
@@ -74,12 +82,19 @@ fn distance(a: Option<&&str>, b: Option<&&str>) -> f64 {
 fn parse(text: &str) -> Table<'_> {
     let mut lines = text.lines().filter(|line| !line.starts_with('#'));
     let columns: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
-    let main = if columns.contains(&"step") { "step" } else { "time" };
+    let main = if columns.contains(&"step") {
+        "step"
+    } else {
+        "time"
+    };
     let is_key = |column: &str| column == main || column.starts_with("body");
     let mut rows = BTreeMap::new();
     for line in lines {
         let values: Vec<&str> = line.split(',').collect();
-        let keys = columns.iter().zip(&values).filter(|(column, _)| is_key(column));
+        let keys = columns
+            .iter()
+            .zip(&values)
+            .filter(|(column, _)| is_key(column));
         // Whole numbers in their own order, so that the first difference is the earliest.
         let key: Vec<String> = keys
             .map(|(column, value)| match value.parse::<u64>() {
@@ -109,7 +124,13 @@ mod tests {
         let longer = format!("{A}11,3e-9,9.0\n");
         let found = report(A, &longer);
         assert!(found.agrees());
-        assert_eq!(found.lines, ["history.csv: 3 rows agree", "history.csv: only B has 1 more rows"]);
+        assert_eq!(
+            found.lines,
+            [
+                "history.csv: 3 rows agree",
+                "history.csv: only B has 1 more rows"
+            ]
+        );
     }
 
     #[test]
@@ -123,7 +144,10 @@ mod tests {
 
     #[test]
     fn tables_without_common_rows_or_columns_differ() {
-        let shifted = A.replace("\n0,", "\n1,").replace("\n9,", "\n8,").replace("\n10,", "\n12,");
+        let shifted = A
+            .replace("\n0,", "\n1,")
+            .replace("\n9,", "\n8,")
+            .replace("\n10,", "\n12,");
         assert_eq!(report(A, &shifted).different, 1);
         assert_eq!(report(A, &A.replace("energy", "work")).different, 1);
     }

@@ -8,8 +8,8 @@ mod writer;
 pub use content::{Array, Content};
 pub use writer::Writer;
 
-use hdf5::file::FileBuilder;
 use hdf5::Datatype;
+use hdf5::file::FileBuilder;
 use hdf5::types::{FloatSize, IntSize, TypeDescriptor};
 
 use crate::comm::Comm;

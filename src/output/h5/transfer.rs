@@ -2,8 +2,8 @@
 //!
 //! Each rank moves its own contiguous block by an independent call. Collective ones are not to
 //! be trusted with results: in Open MPI 4.1 a full disk makes `MPI_File_write_at_all` return
-//! success on every rank (`fcoll` dynamic and dynamic_gen2), or only one rank leaves it and the
-//! job hangs (vulcan, two_phase, `ROMIO`). An independent call tells the rank that made it.
+//! success on every rank (its parts `dynamic` and `dynamic_gen2`), or only one rank leaves it and
+//! the job hangs (`vulcan`, `two_phase`, ROMIO). An independent call tells the rank that made it.
 
 use hdf5::{Dataset, Dataspace};
 use hdf5_sys::h5::herr_t;
@@ -31,7 +31,11 @@ pub(super) fn write_rows(
     block: Block,
     bytes: &[u8],
 ) -> hdf5::Result<()> {
-    assert_eq!(bytes.len(), block.count * row.bytes(), "rows of the wrong length");
+    assert_eq!(
+        bytes.len(),
+        block.count * row.bytes(),
+        "rows of the wrong length"
+    );
     let datatype = row.element.datatype()?;
     in_pieces(dataset, row, block, |memory, file, start| {
         // SAFETY: the memory space has as many rows as lie in `bytes[start..]` or fewer.
@@ -49,7 +53,11 @@ pub(super) fn read_rows(
     block: Block,
     bytes: &mut [u8],
 ) -> hdf5::Result<()> {
-    assert_eq!(bytes.len(), block.count * row.bytes(), "rows of the wrong length");
+    assert_eq!(
+        bytes.len(),
+        block.count * row.bytes(),
+        "rows of the wrong length"
+    );
     let datatype = row.element.datatype()?;
     in_pieces(dataset, row, block, |memory, file, start| {
         // SAFETY: the memory space has as many rows as lie in `bytes[start..]` or fewer.

@@ -31,7 +31,9 @@ impl<'a> Writer<'a> {
     /// [`OutputError::Io`] or [`OutputError::Hdf5`].
     pub fn create(comm: &'a Comm, path: &Path) -> Result<Self, OutputError> {
         // The system's messages ("permission denied", "no space left") are also clearer.
-        on_root(comm, || keep_room(path).map_err(OutputError::io("create", path)))?;
+        on_root(comm, || {
+            keep_room(path).map_err(OutputError::io("create", path))
+        })?;
         let created = access(Some(comm)).create(path);
         let file = agree(comm, created.map_err(|e| refusal("create", path, &e)))?;
         Ok(Self {
@@ -53,10 +55,10 @@ impl<'a> Writer<'a> {
     ///
     /// # Errors
     /// [`OutputError::Hdf5`].
-    pub fn number<T: H5Type>(&self, group: &str, name: &str, value: T) -> Result<(), OutputError> {
+    pub fn number<T: H5Type>(&self, group: &str, name: &str, value: &T) -> Result<(), OutputError> {
         self.attempt(name, || {
             let attribute = self.object(group)?.new_attr::<T>().create(name)?;
-            attribute.write_scalar(&value)
+            attribute.write_scalar(value)
         })
     }
 
@@ -79,13 +81,21 @@ impl<'a> Writer<'a> {
     ///
     /// # Errors
     /// [`OutputError::Hdf5`].
-    pub fn vtk_header(&self, group: &str, kind: &str, version: [i64; 2]) -> Result<(), OutputError> {
+    pub fn vtk_header(
+        &self,
+        group: &str,
+        kind: &str,
+        version: [i64; 2],
+    ) -> Result<(), OutputError> {
         self.attempt("the VTK header", || {
             let parent = self.object(group)?;
             let attribute = parent.new_attr::<i64>().shape(2).create("Version")?;
             attribute.write_raw(&version)?;
             let datatype = TypeDescriptor::FixedAscii(kind.len());
-            let attribute = parent.new_attr_builder().empty_as(&datatype).create("Type")?;
+            let attribute = parent
+                .new_attr_builder()
+                .empty_as(&datatype)
+                .create("Type")?;
             let text = FixedAscii::<32>::from_ascii(kind).map_err(|e| e.to_string())?;
             attribute.as_writer().write_scalar(&text)
         })
@@ -148,12 +158,17 @@ impl<'a> Writer<'a> {
             call(|| unsafe { H5Fflush(file.id(), H5F_scope_t::H5F_SCOPE_GLOBAL) })
         })?;
         let closed = self.file.take().map_or(Ok(()), File::close);
-        agree(self.comm, closed.map_err(|e| refusal("close", &self.path, &e)))?;
+        agree(
+            self.comm,
+            closed.map_err(|e| refusal("close", &self.path, &e)),
+        )?;
         on_root(self.comm, || files::sync_file(&self.path))
     }
 
     fn file(&self) -> hdf5::Result<&File> {
-        self.file.as_ref().ok_or_else(|| "the file is closed".into())
+        self.file
+            .as_ref()
+            .ok_or_else(|| "the file is closed".into())
     }
 
     fn new_dataset(&self, name: &str, row: RowType, rows: u64) -> hdf5::Result<Dataset> {
@@ -186,7 +201,9 @@ impl<'a> Writer<'a> {
     /// HDF5 only says that a write failed; trying one oneself may tell why.
     fn refusal(&self, what: &str, error: &hdf5::Error) -> OutputError {
         let mut reason = explain(error);
-        let probe = self.path.with_extension(format!("probe{}", self.comm.rank()));
+        let probe = self
+            .path
+            .with_extension(format!("probe{}", self.comm.rank()));
         if let Err(cause) = std::fs::write(&probe, vec![0; 64 << 10]) {
             reason = format!("{cause} ({reason})");
         }
