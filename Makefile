@@ -15,7 +15,8 @@ help: ## Say what each target does
 
 impact: release ## Run the main job on two ranks, draw its pictures, report
 	jobs/run.sh -n 2 inputs/quarter-impact --out runs/quarter-impact --force
-	$(ENV) target/release/whipple plot runs/quarter-impact
+	$(ENV) target/release/whipple plot runs/quarter-impact --panels
+	$(ENV) target/release/whipple plot runs/quarter-impact --history
 	$(ENV) target/release/whipple info runs/quarter-impact
 
 test: run-tests ## Run the test suite, about eight minutes on two cores
@@ -36,7 +37,7 @@ bench: deps ## Measure the kernels
 docs: deps ## Build the book (target/book) and the API documentation (target/doc)
 	$(ENV) cargo doc --locked --no-deps
 	@mdbook=$$(command -v mdbook || command -v target/tools/bin/mdbook) || { \
-	    echo "the book needs mdBook: cargo install --root target/tools --locked mdbook" >&2; exit 2; }; \
+	    echo "the book needs mdBook: cargo install --root target/tools --locked mdbook, or Debian 13's mdbook" >&2; exit 2; }; \
 	"$$mdbook" build docs
 
 clean: ## Remove what was built; runs/ stays
@@ -48,8 +49,10 @@ deps:
 test-deps:
 	@jobs/install-deps.sh --tests
 
+# The commit goes into summaries and snapshots.
 release: deps
-	$(ENV) cargo build --locked --release
+	$(ENV) WHIPPLE_COMMIT=$$(git describe --always --dirty 2>/dev/null || echo unknown) \
+	    cargo build --locked --release
 
 run-tests: test-deps $(VENV)/ready
 	$(ENV) jobs/cargo-test.sh

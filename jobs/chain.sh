@@ -16,8 +16,8 @@
 #   qsub -v WHIPPLE_ARGS="CASE RUN …" jobs/chain.sh
 #
 # A leg ends softly when the scheduler's time is nearly up (USR1) or at --walltime; the chain then
-# goes on. Ctrl-C, TERM and scancel end the leg softly and the chain with it (75). A run that
-# failed, or a leg without a new checkpoint, ends the chain too: going on would repeat it.
+# goes on. Ctrl-C, TERM, scancel and a file RUN/stop end the leg softly and the chain with it (75).
+# A run that failed, or a leg without a new checkpoint, ends it too: going on would repeat it.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -38,10 +38,12 @@ if [ $# -lt 2 ]; then sed -n '/^#   jobs/s/^#  //p' "$root/jobs/chain.sh" >&2; e
 case=$1 run=$2
 shift 2
 
-# finished, stopped or failed; nothing before the first leg and after a crash of the machine.
+# finished, stopped or failed; nothing before the first leg, and after the machine went down.
 status() { grep -oEsm1 '"(finished|stopped|failed)"' "$run/status.json" | tr -d '"' || true; }
-# shellcheck disable=SC2012  # the names are the program's own
-newest_checkpoint() { ls -td "$run"/checkpoints/*/ 2>/dev/null | head -n 1 || true; }
+# By name, which is the step; one that is being written is called *.partial.
+newest_checkpoint() {
+    { compgen -G "$run/checkpoints/step-*[0-9]" || true; } | sort | tail -n 1
+}
 
 # Runs a leg and passes signals on to it; `caught` is the last one.
 leg=''
@@ -73,7 +75,7 @@ while [ "$(status)" != finished ]; do
     [ "$code" = 0 ] || [ "$code" = 75 ] || exit "$code"
     [ "$(status)" != failed ] || exit 1
     [ "$(status)" != finished ] || break
-    if [ "$caught" = TERM ]; then exit 75; fi
+    if [ "$caught" = TERM ] || [ -e "$run/stop" ]; then exit 75; fi
     if [ "$(newest_checkpoint)" = "$checkpoint" ]; then
         echo "no new checkpoint since the last leg: the chain ends" >&2
         exit 1

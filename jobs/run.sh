@@ -62,8 +62,7 @@ fi
 
 program=${WHIPPLE_PROGRAM:-$root/target/release/whipple}
 if [ ! -x "$program" ]; then
-    "$root/jobs/install-deps.sh"
-    (cd "$root" && cargo build --release --locked)
+    make -C "$root" release
 fi
 
 # mpirun answers TERM and INT by killing its ranks within two seconds, but passes USR1 on to

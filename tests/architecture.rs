@@ -37,9 +37,10 @@ const ROOMS: &[&str] = &[
 /// (`output::h5`). `app` is on top and stands in every row by itself.
 const WALLS: &[(&str, &[&str])] = &[
     (
+        // But for the names of snapshot fields, which it checks.
         "input",
         &[
-            "particles",
+            "particles::ParticleStore",
             "comm",
             "domain",
             "sph",

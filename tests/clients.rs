@@ -84,6 +84,51 @@ fn every_client_opens_the_form_that_we_document() {
 }
 
 #[test]
+fn every_client_opens_the_snapshots_of_a_run_on_two_ranks() {
+    let Some(python) = python() else { return };
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let run = folder.path().join("run");
+    let output = Command::new("timeout")
+        .args([
+            "120",
+            "mpirun",
+            "-n",
+            "2",
+            env!("CARGO_BIN_EXE_whipple"),
+            "run",
+        ])
+        .arg(root().join("inputs/elastic-impact"))
+        .args(["--until", "0.06us", "--threads", "1", "--out"])
+        .arg(&run)
+        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
+        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
+        .env("OMPI_MCA_hwloc_base_binding_policy", "none")
+        .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
+        .env("PRTE_MCA_hwloc_default_binding_policy", "none")
+        .env("PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe")
+        .env("OMPI_MCA_mpi_yield_when_idle", "1")
+        .output()
+        .expect("mpirun starts");
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{}\n{errors}", output.status);
+
+    let mut snapshots: Vec<PathBuf> = std::fs::read_dir(run.join("snapshots"))
+        .expect("the run has snapshots")
+        .map(|entry| entry.expect("an entry of snapshots/").path())
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|extension| extension == "vtkhdf")
+        })
+        .collect();
+    snapshots.sort();
+
+    assert!(snapshots.len() >= 2, "{snapshots:?}");
+    for snapshot in snapshots {
+        eprintln!("{}", opens_everywhere(&python, &snapshot));
+    }
+}
+
+#[test]
 fn the_check_notices_a_snapshot_that_is_cut_off() {
     let Some(python) = python() else { return };
     let folder = tempfile::tempdir().expect("a temporary folder");

@@ -9,13 +9,19 @@ use crate::output::snapshot;
 use crate::populate;
 
 /// Check a case without running it: particles by body, memory, expected steps
+///
+/// Exits with 0 if the case can run and with 2 if anything is wrong; things that are allowed but
+/// look like mistakes are warnings.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  whipple check inputs/quarter-impact
+  whipple check inputs/quarter-impact/case.toml --set spacing=0.01mm")]
 pub struct CheckArgs {
     /// Case file (TOML), or a folder with a case.toml
     #[arg(value_name = "CASE")]
     case: PathBuf,
 
-    /// Change a value of the case, as for `run`
+    /// Change a value of the case, as in spacing=0.015mm; may be given many times
     #[arg(short, long, value_name = "KEY=VALUE")]
     set: Vec<String>,
 }
@@ -64,9 +70,15 @@ fn print_report(case: &Case) {
         );
     }
     let memory = total as f64 * BYTES_PER_PARTICLE / 1e6;
-    println!("  {:<16} {total:>10} particles, about {memory:.0} MB over all ranks", "all");
+    println!(
+        "  {:<16} {total:>10} particles, about {memory:.0} MB over all ranks",
+        "all"
+    );
     if let Some(steps) = expected_steps(case) {
-        println!("  about {steps:.0} steps to {:.4} us", case.run.end_time * 1e6);
+        println!(
+            "  about {steps:.0} steps to {:.4} us",
+            case.run.end_time * 1e6
+        );
     }
 }
 
@@ -84,6 +96,5 @@ fn expected_steps(case: &Case) -> Option<f64> {
             case.time_step.courant * body.smoothing_length / signal
         })
         .fold(case.time_step.max, f64::min);
-    (dt.is_finite() && dt > 0.0 && case.run.end_time.is_finite())
-        .then(|| case.run.end_time / dt)
+    (dt.is_finite() && dt > 0.0 && case.run.end_time.is_finite()).then(|| case.run.end_time / dt)
 }

@@ -2,33 +2,26 @@
 
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use super::report::{Progress, Tables, summary};
+use super::fault::Fault;
+use super::launch::Launch;
+use super::progress::Progress;
+use super::report::{self, Tables, seconds, summary};
+use super::run::CommonArgs;
 use super::stop::{self, Watch};
-use super::{EXIT_STOPPED, report};
+use super::{EXIT_FAILED, EXIT_STOPPED};
 use crate::comm::Comm;
 use crate::output::checkpoint;
 use crate::output::snapshot::{self, Quantity};
 use crate::output::{
-    Log, OutputError, Phase, Rows, RunFolder, Schedule, Status, on_root, series, write_json,
+    COMMIT, Log, OutputError, Phase, Rows, RunFolder, Schedule, Status, VERSION, on_root, series,
+    write_json,
 };
-use crate::step::{self, Simulation};
+use crate::step::{self, Simulation, Timers};
 
 /// The step that this process is in, for the message of a panic.
 pub static STEP: AtomicU64 = AtomicU64::new(0);
-
-/// Options of the loop.
-pub struct Options {
-    /// Stop with a checkpoint at the first step at or after this time (s).
-    pub until: Option<f64>,
-    /// Stop with a checkpoint when this much time has passed.
-    pub walltime: Option<Duration>,
-    /// Fill all that is not state with NaN between steps.
-    pub poison: bool,
-    /// When the program started.
-    pub start: Instant,
-}
 
 /// One rank's part of a run in its folder.
 pub struct Driver<'a> {
@@ -37,6 +30,7 @@ pub struct Driver<'a> {
     until: Option<f64>,
     start: Instant,
     watch: Watch,
+    fault: Option<Fault>,
     quantities: Vec<Quantity>,
     rows: Rows,
     tables: Option<Tables>,
@@ -52,19 +46,23 @@ enum End {
 }
 
 impl<'a> Driver<'a> {
-    /// Opens the tables, and writes the first snapshot of a run that does not go on from a
-    /// checkpoint. Collective.
+    /// Opens the tables, says what begins (with `warnings` about the case), and writes the first
+    /// snapshot of a run that does not go on from a checkpoint. Collective.
     ///
     /// # Errors
     /// The same on all ranks.
     pub fn begin(
-        comm: &Comm,
+        launch: &Launch,
+        args: &CommonArgs,
         mut simulation: Simulation,
         folder: &'a RunFolder,
-        options: &Options,
         restarted: Option<&Path>,
+        warnings: &[String],
     ) -> Result<Self, OutputError> {
-        simulation.poison = options.poison;
+        let comm = launch.comm;
+        simulation.poison = args.poison;
+        // What set-up took is no part of a step.
+        simulation.timers = Timers::default();
         let quantities = snapshot::quantities(&simulation.case.output.fields)?;
         let mut tables = None;
         on_root(comm, || {
@@ -72,20 +70,21 @@ impl<'a> Driver<'a> {
             tables = Some(Tables::open(folder, resume)?);
             Ok(())
         })?;
-        let watched = comm.is_root().then(|| folder.path());
+        let stop = comm.is_root().then(|| folder.stop());
         let mut driver = Self {
-            until: options.until,
-            start: options.start,
-            watch: Watch::new(watched, options.walltime).since(options.start),
+            until: args.until,
+            start: launch.start,
+            watch: Watch::new(launch.signals.clone(), stop, launch.start, args.walltime),
+            fault: Fault::of_rank(comm.rank()),
             quantities,
             rows: Rows::default(),
             tables,
             log: Log::new(&folder.log(), comm.rank()),
-            progress: Progress::new(comm, &simulation),
+            progress: Progress::new(comm.is_root(), &simulation.case.run),
             simulation,
             folder,
         };
-        driver.announce(comm, restarted);
+        driver.announce(comm, restarted, warnings);
         if restarted.is_none() {
             driver.write_row(comm)?;
             driver.write_snapshot(comm)?;
@@ -108,7 +107,8 @@ impl<'a> Driver<'a> {
             Err(message) => {
                 self.progress.finish();
                 self.log(comm, &format!("failed: {message}"));
-                fail(comm, folder, &message)
+                let state = &self.simulation.state;
+                fail(comm, folder, &message, state.step, state.time)
             }
         }
     }
@@ -118,11 +118,17 @@ impl<'a> Driver<'a> {
             if self.simulation.is_finished() {
                 return Ok(End::Finished);
             }
-            if self.until.is_some_and(|until| self.simulation.state.time >= until) {
+            if self
+                .until
+                .is_some_and(|until| self.simulation.state.time >= until)
+            {
                 return Ok(End::Until);
             }
             STEP.store(self.simulation.state.step + 1, Ordering::Relaxed);
             self.simulation.wishes = self.watch.wishes();
+            if let Some(fault) = self.fault {
+                fault.strike(&mut self.simulation);
+            }
             let before = self.simulation.state.time;
             self.simulation.advance(comm).map_err(|e| e.to_string())?;
             self.write(comm, before).map_err(|e| e.to_string())?;
@@ -152,7 +158,12 @@ impl<'a> Driver<'a> {
         if checkpoint_due && !finished {
             self.write_checkpoint(comm)?;
         }
-        self.progress.show(&self.simulation);
+        if snapshot_due || checkpoint_due {
+            on_root(comm, || self.write_status(Phase::Running, None))?;
+        }
+        if let Some(line) = self.progress.show(&self.simulation.state) {
+            self.log(comm, &line);
+        }
         Ok(())
     }
 
@@ -211,27 +222,21 @@ impl<'a> Driver<'a> {
         let closed = self.write_checkpoint(comm).and_then(|()| {
             let wall = self.start.elapsed().as_secs_f64();
             let summary = summary(comm, &self.simulation, wall);
-            let state = &self.simulation.state;
             on_root(comm, || {
                 write_json(&folder.summary(), &summary)?;
-                folder.write_status(&Status {
-                    state: phase,
-                    step: state.step,
-                    time: state.time,
-                    reason: reason.map(str::to_owned),
-                })
+                self.write_status(phase, reason)
             })
         });
-        if let Err(error) = closed {
-            return fail(comm, folder, &error.to_string());
-        }
         let state = &self.simulation.state;
-        let why = reason.map_or(String::new(), |reason| format!(": {reason}"));
+        if let Err(error) = closed {
+            return fail(comm, folder, &error.to_string(), state.step, state.time);
+        }
+        let why = reason.map_or(String::new(), |reason| format!(" ({reason})"));
         let text = format!(
-            "{}{why}, step {}, time {}, {:.1} s",
+            "{}{why} at step {}, time {}, after {:.1} s",
             phase.name(),
             state.step,
-            report::seconds(state.time),
+            seconds(state.time),
             self.start.elapsed().as_secs_f64()
         );
         if comm.is_root() {
@@ -241,22 +246,41 @@ impl<'a> Driver<'a> {
         code
     }
 
-    fn announce(&mut self, comm: &Comm, restarted: Option<&Path>) {
+    fn write_status(&self, phase: Phase, reason: Option<&str>) -> Result<(), OutputError> {
+        self.folder.write_status(&Status {
+            state: phase,
+            step: self.simulation.state.step,
+            time: self.simulation.state.time,
+            reason: reason.map(str::to_owned),
+        })
+    }
+
+    fn announce(&mut self, comm: &Comm, restarted: Option<&Path>, warnings: &[String]) {
         let mut counts = [self.simulation.store.owned() as u64];
         comm.sum_u64(&mut counts);
-        let from = restarted.map_or(String::new(), |path| format!(", from {}", path.display()));
+        if !comm.is_root() {
+            return;
+        }
+        let state = &self.simulation.state;
+        let from = restarted.map_or(String::new(), |path| {
+            let time = seconds(state.time);
+            format!(", from {} at {time}", path.display())
+        });
         let text = format!(
-            "{}: {} particles on {} ranks × {} threads ({}){from}",
+            "{}: {} particles, {} with {} each ({}){from}",
             self.simulation.case.title,
             counts[0],
-            comm.size(),
-            rayon::current_num_threads(),
+            counted(comm.size(), "rank"),
+            counted(rayon::current_num_threads(), "thread"),
             crate::sph::dispatch::instructions().name(),
         );
-        if comm.is_root() {
-            println!("{text}");
+        self.log.line(&format!("whipple {VERSION} ({COMMIT})"));
+        self.log.line(&text);
+        println!("{text}");
+        for warning in warnings {
+            self.log.line(&format!("warning: {warning}"));
+            eprintln!("warning: {warning}");
         }
-        self.log(comm, &text);
     }
 
     fn log(&mut self, comm: &Comm, text: &str) {
@@ -266,22 +290,24 @@ impl<'a> Driver<'a> {
     }
 }
 
-/// Says once for all ranks why a run failed, and writes it into its folder.
-pub fn fail(comm: &Comm, folder: &RunFolder, message: &str) -> u8 {
+/// Says once for all ranks why a run failed at a step and a time (s), and writes it into its
+/// folder; gives the exit code.
+pub fn fail(comm: &Comm, folder: &RunFolder, message: &str, step: u64, time: f64) -> u8 {
     if comm.is_root() {
         eprintln!("error: {message}");
-        let last = folder.status().ok();
         // The message above is what counts; the folder may be what failed.
         let _ = folder.write_status(&Status {
             state: Phase::Failed,
-            step: last
-                .as_ref()
-                .map_or(0, |s| s.step)
-                .max(STEP.load(Ordering::Relaxed).saturating_sub(1)),
-            time: last.map_or(0.0, |s| s.time),
+            step,
+            time,
             reason: Some(message.to_owned()),
         });
     }
     comm.barrier();
-    1
+    EXIT_FAILED
+}
+
+fn counted(number: usize, thing: &str) -> String {
+    let plural = if number == 1 { "" } else { "s" };
+    format!("{number} {thing}{plural}")
 }

@@ -1,10 +1,16 @@
 //! The commands of the program.
 
 mod check;
+pub mod compare;
 mod driver;
-mod plot;
+mod fault;
+pub mod info;
+mod launch;
+pub mod plot;
+mod progress;
 mod report;
 mod restart;
+pub mod results;
 mod run;
 mod stop;
 
@@ -12,20 +18,30 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+/// The run failed.
+pub const EXIT_FAILED: u8 = 1;
 /// The case, an option or a file that the user named is wrong.
 pub const EXIT_INPUT: u8 = 2;
 /// The run was asked to stop and has written a checkpoint.
 pub const EXIT_STOPPED: u8 = 75;
+/// A second Ctrl-C ended the process, as shells tell it.
+const EXIT_INTERRUPTED: i32 = 130;
 
-/// MPI-parallel smoothed particle hydrodynamics for impacts of solids
+/// MPI-parallel smoothed particle hydrodynamics for large 3-D impacts of solids
 #[derive(Debug, Parser)]
-#[command(name = "whipple", version, about, after_help = "Examples:
-  mpirun -n 2 whipple run inputs/quarter-impact/case.toml --out runs/quarter
+#[command(
+    name = "whipple",
+    version,
+    after_help = "Examples:
+  whipple check inputs/quarter-impact
+  mpirun -n 2 whipple run inputs/quarter-impact --out runs/quarter
+  whipple info runs/quarter
   whipple plot runs/quarter --panels
-  mpirun -n 4 whipple restart runs/quarter
+  mpirun -n 4 whipple restart runs/quarter --set run.end_time=0.3us
 
-A run that SIGUSR1 to mpirun, a file `stop` in its folder or --walltime stops writes a checkpoint
-and exits with 75; wrong input exits with 2.")]
+`whipple COMMAND --help` says more. Only `run` and `restart` use MPI. Exit codes: 0 done, 1 failed
+(or `compare` found differences), 2 wrong input, 75 stopped softly with a checkpoint."
+)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -37,6 +53,8 @@ enum Command {
     Restart(restart::RestartArgs),
     Check(check::CheckArgs),
     Plot(plot::PlotArgs),
+    Info(info::InfoArgs),
+    Compare(compare::CompareArgs),
 }
 
 /// Runs the program: its command line, its exit code.
@@ -45,7 +63,9 @@ pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
-            let _ = error.print();
+            launch::once(|| {
+                let _ = error.print();
+            });
             return ExitCode::from(if error.use_stderr() { EXIT_INPUT } else { 0 });
         }
     };
@@ -60,6 +80,8 @@ pub fn main() -> ExitCode {
             },
             |()| 0,
         ),
+        Command::Info(args) => info::run(&args),
+        Command::Compare(args) => compare::run(&args),
     };
     ExitCode::from(code)
 }

@@ -43,8 +43,8 @@ pub struct PlotArgs {
     #[arg(short, long, value_name = "AXIS=POSITION")]
     pub section: Option<String>,
 
-    /// Thickness of the slice about the plane, as in 0.1mm [default: one particle spacing, which
-    /// shows one layer of a cubic lattice]
+    /// Thickness of the slice about the plane, as in 0.1mm [default: one particle spacing, two on a
+    /// plane of symmetry: one layer of a cubic lattice]
     #[arg(long, value_name = "LENGTH")]
     pub thickness: Option<String>,
 

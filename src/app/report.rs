@@ -1,9 +1,5 @@
-//! What a run tells its user: tables, summary, progress.
+//! The tables of a run and its summary.
 
-use std::io::{IsTerminal, Write};
-use std::time::{Duration, Instant};
-
-use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
 use crate::comm::Comm;
@@ -21,6 +17,7 @@ pub struct Tables {
 pub struct Load {
     particles: [u64; 2],
     work: [u64; 2],
+    empty_ranks: u64,
     messages: u64,
     bytes: u64,
     updates: u64,
@@ -34,7 +31,8 @@ pub fn load(comm: &Comm, simulation: &Simulation) -> Load {
         .map(|&work| u64::from(work))
         .sum();
     let (messages, bytes) = simulation.traffic();
-    let mut sums = [particles, work, messages, bytes, simulation.updates];
+    let empty = u64::from(particles == 0);
+    let mut sums = [particles, work, messages, bytes, simulation.updates, empty];
     comm.sum_u64(&mut sums);
     let mut most = [particles, work];
     comm.max_u64(&mut most);
@@ -44,6 +42,7 @@ pub fn load(comm: &Comm, simulation: &Simulation) -> Load {
         messages: sums[2],
         bytes: sums[3],
         updates: sums[4],
+        empty_ranks: sums[5],
     }
 }
 
@@ -101,6 +100,7 @@ fn performance_columns() -> Vec<Column> {
         ("particles", ""),
         ("largest_share", "ranks"),
         ("largest_work", "ranks"),
+        ("empty_ranks", ""),
         ("messages", ""),
         ("megabytes_sent", "MB"),
     ])
@@ -108,16 +108,12 @@ fn performance_columns() -> Vec<Column> {
 
 impl Tables {
     /// Starts the tables of a run, or goes on with them after the state `resume`.
-    pub fn open(
-        folder: &RunFolder,
-        resume: Option<&RunState>,
-    ) -> Result<Self, OutputError> {
-        let open = |path: &std::path::Path, columns: &[Column], key: &str, last: Option<f64>| {
-            match last {
+    pub fn open(folder: &RunFolder, resume: Option<&RunState>) -> Result<Self, OutputError> {
+        let open =
+            |path: &std::path::Path, columns: &[Column], key: &str, last: Option<f64>| match last {
                 Some(last) => Table::resume(path, columns, key, last),
                 None => Table::create(path, columns),
-            }
-        };
+            };
         #[allow(clippy::cast_precision_loss, reason = "steps fit a double")]
         let step = resume.map(|state| state.step as f64);
         let time = resume.map(|state| state.time);
@@ -201,23 +197,21 @@ impl Tables {
             Value::Count(load.particles[0]),
             Value::Real(share(load.particles)),
             Value::Real(share(load.work)),
+            Value::Count(load.empty_ranks),
             Value::Count(load.messages),
             Value::Real(load.bytes as f64 * 1e-6),
         ])
     }
 }
 
-/// `summary.json`. Collective.
+/// `summary.json`: what the run has come to, and how fast this process has stepped (with the
+/// mean seconds of all ranks by phase). Collective.
 #[allow(clippy::cast_precision_loss, reason = "for people")]
 pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::Value {
     let load = load(comm, simulation);
     let state = &simulation.state;
     let worst = &state.worst;
-    let phases: Vec<(&'static str, f64)> = simulation
-        .timers
-        .report()
-        .map(|(name, seconds)| (name, comm.max_f64(seconds)))
-        .collect();
+    let phases = mean_seconds(comm, simulation.timers.report());
     let stepping: f64 = phases.iter().map(|(_, seconds)| seconds).sum();
     let mut memory = [simulation.memory() as u64];
     comm.sum_u64(&mut memory);
@@ -249,6 +243,28 @@ pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::V
     })
 }
 
+/// Means over ranks of seconds with names.
+#[allow(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "nanoseconds of a run, which are positive, fit well"
+)]
+fn mean_seconds(
+    comm: &Comm,
+    seconds: impl Iterator<Item = (&'static str, f64)>,
+) -> Vec<(&'static str, f64)> {
+    let (names, mut nanoseconds): (Vec<_>, Vec<u64>) = seconds
+        .map(|(name, seconds)| (name, (seconds * 1e9) as u64))
+        .unzip();
+    comm.sum_u64(&mut nanoseconds);
+    let mean = |&sum: &u64| sum as f64 * 1e-9 / comm.size() as f64;
+    names
+        .into_iter()
+        .zip(nanoseconds.iter().map(mean))
+        .collect()
+}
+
 fn object(
     entries: impl IntoIterator<Item = (&'static str, f64)>,
 ) -> serde_json::Map<String, serde_json::Value> {
@@ -261,71 +277,4 @@ fn object(
 /// A time with the unit of impacts, for people.
 pub fn seconds(time: f64) -> String {
     format!("{:.4} us", time * 1e6)
-}
-
-/// Progress on a terminal, now and then a flushed line elsewhere.
-pub struct Progress {
-    bar: Option<ProgressBar>,
-    lines: bool,
-    end: f64,
-    last: Instant,
-}
-
-const LINE_EVERY: Duration = Duration::from_secs(10);
-const TICKS: u64 = 1000;
-
-impl Progress {
-    /// For rank 0; others stay silent.
-    pub fn new(comm: &Comm, simulation: &Simulation) -> Self {
-        let root = comm.is_root();
-        let terminal = std::io::stderr().is_terminal();
-        let bar = (root && terminal).then(|| {
-            let style = "{bar:30} {percent:>3} %  {msg}  {eta_precise} left";
-            ProgressBar::new(TICKS).with_style(
-                ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()),
-            )
-        });
-        Self {
-            bar,
-            lines: root && !terminal,
-            end: simulation.case.run.end_time,
-            last: Instant::now(),
-        }
-    }
-
-    /// Shows where the run stands.
-    pub fn show(&mut self, simulation: &Simulation) {
-        let state = &simulation.state;
-        let text = || {
-            format!(
-                "step {}  t = {}  dt = {:.3e} s ({})",
-                state.step,
-                seconds(state.time),
-                state.last_dt,
-                state.last_reason.name()
-            )
-        };
-        if let Some(bar) = &self.bar {
-            #[allow(clippy::cast_precision_loss, reason = "for people")]
-            let done = (state.time / self.end).clamp(0.0, 1.0) * TICKS as f64;
-            #[allow(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "clamped"
-            )]
-            bar.set_position(done as u64);
-            bar.set_message(text());
-        } else if self.lines && self.last.elapsed() >= LINE_EVERY {
-            self.last = Instant::now();
-            println!("{}", text());
-            let _ = std::io::stdout().flush();
-        }
-    }
-
-    /// Clears the bar.
-    pub fn finish(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
-    }
 }

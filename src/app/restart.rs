@@ -2,19 +2,28 @@
 
 use std::path::{Path, PathBuf};
 
-use super::driver::{self, Driver, Options};
-use super::run::{CommonArgs, complain, with_ranks};
+use super::driver::{Driver, fail};
+use super::launch::{Launch, complain, with_ranks};
+use super::report::seconds;
+use super::run::CommonArgs;
 use crate::comm::Comm;
 use crate::input;
-use crate::output::checkpoint::{self, Restored};
-use crate::output::{OutputError, RunFolder, on_root};
+use crate::model::Case;
+use crate::output::checkpoint::{self, MANIFEST, Restored};
+use crate::output::{OutputError, Phase, RunFolder, on_root, snapshot};
 use crate::particles::ParticleStore;
-use crate::step::{RunState, Simulation};
+use crate::step::{Reason, RunState, Simulation};
 
 /// Go on from a checkpoint, on any number of ranks
 ///
-/// Results go on as if there had been no stop, to the last bit.
+/// Results go on as if there had been no stop, to the last bit. What the run had written after the
+/// checkpoint is dropped and written anew. Exit codes are those of `run`; with nothing left to do,
+/// it says so and exits with 0.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  mpirun -n 4 whipple restart runs/quarter-impact
+  mpirun -n 4 whipple restart runs/quarter-impact --set run.end_time=0.3us
+  mpirun -n 4 whipple restart runs/fine/checkpoints/step-00000100 --out runs/branch")]
 pub struct RestartArgs {
     /// Run folder (its newest checkpoint is taken), or one checkpoint's folder
     #[arg(value_name = "RUN_OR_CHECKPOINT")]
@@ -24,7 +33,8 @@ pub struct RestartArgs {
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
 
-    /// Change a value of run, output or domain, as in run.end_time=0.3us
+    /// Change a value of `run`, `output` or `domain`, as in run.end_time=0.3us; may be given many
+    /// times
     #[arg(short, long, value_name = "KEY=VALUE")]
     set: Vec<String>,
 
@@ -38,12 +48,13 @@ pub struct RestartArgs {
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &RestartArgs) -> u8 {
-    with_ranks(&args.common, |comm, options| {
+    with_ranks(&args.common, |launch| {
+        let comm = launch.comm;
         if let Err(error) = input::output_and_run_only(&args.set) {
             return complain(comm, &error.to_string());
         }
         match find(comm, &args.from) {
-            Ok(checkpoint) => resume(comm, args, &checkpoint, options),
+            Ok(checkpoint) => resume(launch, args, &checkpoint),
             Err(error) => complain(comm, &format!("error: {error}")),
         }
     })
@@ -59,8 +70,13 @@ fn find(comm: &Comm, from: &Path) -> Result<PathBuf, OutputError> {
                 .ok_or_else(|| OutputError::NoCheckpoint {
                     path: from.to_owned(),
                 })?
-        } else {
+        } else if from.join(MANIFEST).is_file() {
             from.to_owned()
+        } else {
+            std::fs::metadata(from).map_err(OutputError::io("restart", from))?;
+            return Err(OutputError::OutsideRun {
+                path: from.to_owned(),
+            });
         };
         found = path.to_string_lossy().into_owned().into_bytes();
         Ok(())
@@ -69,7 +85,8 @@ fn find(comm: &Comm, from: &Path) -> Result<PathBuf, OutputError> {
     Ok(PathBuf::from(String::from_utf8_lossy(&found).into_owned()))
 }
 
-fn resume(comm: &Comm, args: &RestartArgs, checkpoint: &Path, options: &Options) -> u8 {
+fn resume(launch: &Launch, args: &RestartArgs, checkpoint: &Path) -> u8 {
+    let comm = launch.comm;
     let mut store = ParticleStore::default();
     let restored = match checkpoint::read(comm, checkpoint, &mut store) {
         Ok(restored) => restored,
@@ -80,24 +97,91 @@ fn resume(comm: &Comm, args: &RestartArgs, checkpoint: &Path, options: &Options)
         Ok(case) => case,
         Err(error) => return complain(comm, &error.to_string()),
     };
+    if let Err(error) = snapshot::quantities(&case.output.fields) {
+        return complain(comm, &format!("error: {error}"));
+    }
     let Ok(state) = serde_json::from_str::<RunState>(&restored.state) else {
         let message = "the saved state is not one that this version of the program can read";
         return complain(comm, &format!("error: {}: {message}", checkpoint.display()));
     };
+    let closed = comm.any(comm.is_root() && is_closed(checkpoint));
+    if closed && let Some(reason) = nothing_to_do(&case, &state, args.common.until) {
+        if comm.is_root() {
+            println!("nothing to do: {} is at {reason}", checkpoint.display());
+        }
+        comm.barrier();
+        return 0;
+    }
     let folder = match make_folder(comm, args, checkpoint, &case.resolved, &restored) {
         Ok(folder) => folder,
         Err(error) => return complain(comm, &format!("error: {error}")),
     };
+    go_on(launch, args, case, state, store, &folder, checkpoint)
+}
+
+fn go_on(
+    launch: &Launch,
+    args: &RestartArgs,
+    case: Case,
+    state: RunState,
+    store: ParticleStore,
+    folder: &RunFolder,
+    checkpoint: &Path,
+) -> u8 {
+    let comm = launch.comm;
+    let (step, time) = (state.step, state.time);
+    let mut warnings = Vec::new();
+    if state.last_reason == Reason::End {
+        warnings.push(format!(
+            "step {step} was shortened to end at {}, so that a run with the later end from its \
+             start would differ in the last digits",
+            seconds(time)
+        ));
+    }
     let simulation = match Simulation::resume(case, comm, state, store) {
         Ok(simulation) => simulation,
-        Err(error) => return driver::fail(comm, &folder, &error.to_string()),
+        Err(error) => return fail(comm, folder, &error.to_string(), step, time),
     };
-    match Driver::begin(comm, simulation, &folder, options, Some(checkpoint)) {
+    match Driver::begin(
+        launch,
+        &args.common,
+        simulation,
+        folder,
+        Some(checkpoint),
+        &warnings,
+    ) {
         Ok(driver) => driver.run(comm),
-        Err(error) => driver::fail(comm, &folder, &error.to_string()),
+        Err(error) => fail(comm, folder, &error.to_string(), step, time),
     }
 }
 
+/// Whether the run of a checkpoint was left in good order, with its summary and status.
+fn is_closed(checkpoint: &Path) -> bool {
+    let status = RunFolder::of_checkpoint(checkpoint).and_then(|run| run.status().ok());
+    status.is_some_and(|status| matches!(status.state, Phase::Finished | Phase::Stopped))
+}
+
+/// Where a run stands that has no step left to do.
+fn nothing_to_do(case: &Case, state: &RunState, until: Option<f64>) -> Option<String> {
+    let (step, time) = (state.step, state.time);
+    let (control, now) = (&case.run, seconds(time));
+    if time >= control.end_time {
+        let end = seconds(control.end_time);
+        Some(format!(
+            "{now} and the case ends at {end}; --set run.end_time=TIME moves the end"
+        ))
+    } else if control.max_steps.is_some_and(|most| step >= most) {
+        Some(format!(
+            "step {step}, the last of run.max_steps; --set run.max_steps=N allows more"
+        ))
+    } else if until.is_some_and(|until| time >= until) {
+        Some(format!("{now}, not before the time of --until"))
+    } else {
+        None
+    }
+}
+
+/// The folder that the run goes on in: its own, or a new one.
 fn make_folder(
     comm: &Comm,
     args: &RestartArgs,
@@ -105,7 +189,10 @@ fn make_folder(
     resolved: &str,
     restored: &Restored,
 ) -> Result<RunFolder, OutputError> {
-    match (&args.out, RunFolder::of_checkpoint(checkpoint)) {
+    let own = RunFolder::of_checkpoint(checkpoint);
+    let place = own.as_ref().and_then(|run| run.path().canonicalize().ok());
+    let other = |out: &&PathBuf| place.is_none() || out.canonicalize().ok() != place;
+    match (args.out.as_ref().filter(other), own) {
         (Some(out), _) => RunFolder::create(comm, out, resolved, args.force),
         (None, Some(run)) => {
             RunFolder::resume(comm, run.path(), resolved, restored.step, restored.time)

@@ -1,11 +1,15 @@
 //! Why a run may stop early: signals, a file, the clock, a time the user named.
 
-use std::path::Path;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use signal_hook::consts::{SIGTERM, SIGUSR1, SIGUSR2};
+use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1, SIGUSR2};
+use signal_hook::flag::{register, register_conditional_shutdown};
+
+use super::EXIT_INTERRUPTED;
+use crate::input;
 
 /// Wishes of a rank, as bits of a vote.
 const SIGNAL: u64 = 1;
@@ -15,10 +19,28 @@ const CLOCK: u64 = 4;
 /// Seconds between two looks at the file system.
 const LOOK_EVERY: Duration = Duration::from_secs(1);
 
+/// Whether a signal has asked this process to stop.
+#[derive(Debug, Clone)]
+pub struct Signals(Arc<AtomicBool>);
+
+impl Signals {
+    /// Watches SIGTERM, SIGUSR1, SIGUSR2 and SIGINT from now on; a second SIGINT ends the process.
+    pub fn watch() -> Self {
+        let [asked, interrupted] = [(); 2].map(|()| Arc::new(AtomicBool::new(false)));
+        // Without a handler a signal ends the process, as it would have anyway.
+        let _ = register_conditional_shutdown(SIGINT, EXIT_INTERRUPTED, Arc::clone(&interrupted));
+        let _ = register(SIGINT, interrupted);
+        for signal in [SIGTERM, SIGUSR1, SIGUSR2, SIGINT] {
+            let _ = register(signal, Arc::clone(&asked));
+        }
+        Self(asked)
+    }
+}
+
 /// Watches for reasons to stop.
 pub struct Watch {
-    signalled: Arc<AtomicBool>,
-    file: Option<std::path::PathBuf>,
+    signals: Signals,
+    file: Option<PathBuf>,
     start: Instant,
     limit: Option<Duration>,
     looked: Instant,
@@ -26,28 +48,22 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Watches SIGTERM, SIGUSR1 and SIGUSR2 on every rank, and the file `stop` in the run folder
-    /// where `folder` is given (rank 0), and the clock.
-    pub fn new(folder: Option<&Path>, limit: Option<Duration>) -> Self {
-        let signalled = Arc::new(AtomicBool::new(false));
-        for signal in [SIGTERM, SIGUSR1, SIGUSR2] {
-            // Without the handler a signal ends the process as it would have anyway.
-            let _ = signal_hook::flag::register(signal, Arc::clone(&signalled));
-        }
+    /// Watches for signals, for the file `stop` where one is named (rank 0), and the clock since
+    /// `start`.
+    pub fn new(
+        signals: Signals,
+        file: Option<PathBuf>,
+        start: Instant,
+        limit: Option<Duration>,
+    ) -> Self {
         Self {
-            signalled,
-            file: folder.map(|folder| folder.join("stop")),
-            start: Instant::now(),
+            signals,
+            file,
+            start,
             limit,
             looked: Instant::now(),
             seen: false,
         }
-    }
-
-    /// Starts the clock of `--walltime` earlier, at the program's start.
-    pub fn since(mut self, start: Instant) -> Self {
-        self.start = start;
-        self
     }
 
     /// This rank's wishes now.
@@ -59,13 +75,16 @@ impl Watch {
             self.seen = file.exists();
         }
         let mut wishes = 0;
-        if self.signalled.load(Ordering::Relaxed) {
+        if self.signals.0.load(Ordering::Relaxed) {
             wishes |= SIGNAL;
         }
         if self.seen {
             wishes |= FILE;
         }
-        if self.limit.is_some_and(|limit| self.start.elapsed() >= limit) {
+        if self
+            .limit
+            .is_some_and(|limit| self.start.elapsed() >= limit)
+        {
             wishes |= CLOCK;
         }
         wishes
@@ -82,6 +101,14 @@ pub fn reason(wishes: u64) -> Option<&'static str> {
         Some("the wall time is used up")
     } else {
         None
+    }
+}
+
+/// Parses a time of the simulation such as `0.1us` (s).
+pub fn parse_until(text: &str) -> Result<f64, String> {
+    match input::time(text)? {
+        time if time >= 0.0 => Ok(time),
+        _ => Err("a run begins at time 0; give a later time, as in 0.1us".to_owned()),
     }
 }
 

@@ -37,12 +37,17 @@ pub struct Exchange {
     peers: Vec<Peer>,
     count: usize,
     requests: Vec<ffi::MPI_Request>,
+    /// Size of the message to and from each peer.
+    sizes: Vec<[u64; 2]>,
     /// What this exchange has sent so far.
     pub traffic: Traffic,
 }
 
 impl Exchange {
     /// Sets the peers, emptying all messages. Both sides must name each other.
+    ///
+    /// # Panics
+    /// If messages are still under way.
     pub fn set_peers(&mut self, ranks: impl Iterator<Item = usize>) {
         assert!(self.requests.is_empty(), "an exchange is still under way");
         self.count = 0;
@@ -87,25 +92,28 @@ impl Exchange {
     }
 
     /// Tells all peers the size of their message and learns the size of theirs.
+    ///
+    /// # Panics
+    /// If a message is larger than memory can be.
     pub fn post_sizes(&mut self, comm: &Comm) {
         let Some(raw) = comm.raw() else { return };
-        let outgoing: Vec<u64> = self.peers[..self.count]
-            .iter()
-            .map(|peer| peer.send.len() as u64)
-            .collect();
-        let mut incoming = vec![0_u64; self.count];
+        self.sizes.clear();
+        let sends = self.peers[..self.count].iter().map(|peer| &peer.send);
+        self.sizes.extend(sends.map(|send| [send.len() as u64, 0]));
         for k in 0..self.count {
             let rank = self.peers[k].rank;
-            // SAFETY: both arrays live until `wait` below and are not touched before it.
+            let size = self.sizes[k].as_mut_ptr();
+            // SAFETY: `sizes` is owned by `self` and not touched before `wait` below; the two
+            // halves of an entry are distinct.
             unsafe {
-                self.receive_piece(raw, (&raw mut incoming[k]).cast(), 8, rank, TAG_SIZE);
-                self.send_piece(raw, (&raw const outgoing[k]).cast(), 8, rank, TAG_SIZE);
+                self.receive_piece(raw, size.add(1).cast(), 8, rank, TAG_SIZE);
+                self.send_piece(raw, size.cast(), 8, rank, TAG_SIZE);
             }
         }
         self.wait();
-        for (peer, size) in self.peers[..self.count].iter_mut().zip(incoming) {
-            peer.receive
-                .resize(usize::try_from(size).expect("a size fits memory"), 0);
+        for (peer, size) in self.peers[..self.count].iter_mut().zip(&self.sizes) {
+            let bytes = usize::try_from(size[1]).expect("a size fits memory");
+            peer.receive.resize(bytes, 0);
         }
     }
 
@@ -145,6 +153,9 @@ impl Exchange {
     }
 
     /// Waits for all messages of [`Self::post`].
+    ///
+    /// # Panics
+    /// If there are more messages than MPI can count.
     pub fn wait(&mut self) {
         if self.requests.is_empty() {
             return;

@@ -7,6 +7,8 @@ mod exchange;
 
 pub use exchange::{Exchange, Traffic};
 
+use std::cell::RefCell;
+
 use mpi::collective::SystemOperation;
 use mpi::ffi;
 use mpi::topology::SimpleCommunicator;
@@ -28,9 +30,7 @@ impl Session {
         if threading < mpi::Threading::Funneled {
             return None;
         }
-        let comm = Comm {
-            world: Some(universe.world()),
-        };
+        let comm = Comm::of(Some(universe.world()));
         Some((
             Self {
                 _universe: universe,
@@ -43,13 +43,21 @@ impl Session {
 /// A group of ranks.
 pub struct Comm {
     world: Option<SimpleCommunicator>,
+    scratch: RefCell<Vec<u64>>,
 }
 
 impl Comm {
+    fn of(world: Option<SimpleCommunicator>) -> Self {
+        Self {
+            world,
+            scratch: RefCell::default(),
+        }
+    }
+
     /// One rank by itself, without MPI.
     #[must_use]
     pub fn solo() -> Self {
-        Self { world: None }
+        Self::of(None)
     }
 
     /// This process's number.
@@ -155,6 +163,9 @@ impl Comm {
     }
 
     /// Gives every rank the bytes of rank `from`.
+    ///
+    /// # Panics
+    /// If there is no such rank.
     pub fn broadcast_from(&self, from: usize, bytes: &mut Vec<u8>) {
         if let Some(world) = &self.world {
             let root = world.process_at_rank(i32::try_from(from).expect("a rank fits an int"));
@@ -177,14 +188,20 @@ impl Comm {
 
     fn reduce<T>(&self, values: &mut [T], operation: SystemOperation)
     where
-        T: Copy + mpi::traits::Equivalence,
+        T: bytemuck::Pod + mpi::traits::Equivalence,
         [T]: mpi::traits::Buffer + mpi::traits::BufferMut,
     {
         if let Some(world) = &self.world
             && self.size() > 1
         {
-            let mine = values.to_vec();
-            world.all_reduce_into(mine.as_slice(), values, operation);
+            let mut scratch = self.scratch.borrow_mut();
+            let words = size_of_val(values).div_ceil(8);
+            if scratch.len() < words {
+                scratch.resize(words, 0);
+            }
+            let mine: &mut [T] = bytemuck::cast_slice_mut(&mut scratch[..words]);
+            mine.copy_from_slice(values);
+            world.all_reduce_into(&*mine, values, operation);
         }
     }
 }

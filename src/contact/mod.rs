@@ -70,7 +70,7 @@ pub struct Reaction {
     pub stiffness: f64,
     /// Smallest distance to a foreign particle in mean spacings.
     pub closest: f64,
-    /// Largest approach speed towards a foreign particle (m/s).
+    /// Largest approach speed `|μ|` towards a foreign particle (m/s).
     pub approach: f64,
     /// The same by the other body.
     pub by_body: Vec<BodyReaction>,
@@ -102,10 +102,10 @@ impl Reaction {
     }
 
     /// Books what the pair with `other` at `gap` does: distance, approach, force and energy.
-    fn book(&mut self, other: &Party, gap: &Gap, spacing: f64, force: [f64; 3], energy: f64) {
-        let distance = gap.distance / spacing;
+    fn book(&mut self, other: &Party, gap: &Gap, pair: &Pair, force: [f64; 3], energy: f64) {
+        let distance = gap.distance / pair.spacing;
         self.closest = self.closest.min(distance);
-        self.approach = self.approach.max(gap.approach);
+        self.approach = self.approach.max(gap.approach(pair.h));
         self.energy += energy;
         let at = self.by_body.iter().position(|e| e.body == other.body);
         let at = at.unwrap_or_else(|| {
@@ -136,8 +136,8 @@ struct Gap {
     r: [f64; 3],
     /// Its length (m), never zero.
     distance: f64,
-    /// Speed of approach along the line of centres, zero for receding pairs (m/s).
-    approach: f64,
+    /// `(v_i − v_j)·(x_i − x_j)` (m²/s).
+    rate: f64,
 }
 
 impl Gap {
@@ -151,11 +151,14 @@ impl Gap {
         let rate = (i.velocity[0] - j.velocity[0]) * r[0]
             + (i.velocity[1] - j.velocity[1]) * r[1]
             + (i.velocity[2] - j.velocity[2]) * r[2];
-        Self {
-            r,
-            distance,
-            approach: (-rate / distance).max(0.0),
-        }
+        Self { r, distance, rate }
+    }
+
+    /// The approach speed `|μ_ij|` of the viscosity, zero for receding pairs (m/s): foreign
+    /// pairs limit the time step as those inside a body do.
+    fn approach(&self, h: f64) -> f64 {
+        let soft = self.distance * self.distance + 0.01 * (h * h);
+        (-h * self.rate / soft).max(0.0)
     }
 
     /// `magnitude` (N) along `r`: positive pushes i away from j.

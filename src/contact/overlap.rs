@@ -108,8 +108,7 @@ pub fn react(view: &ContactView, place: u32, neighbours: &[u32], reaction: &mut 
             if here.excess > 0.0 {
                 let share = j.volume * kernel.value(gap.distance, pair.h) * pair.modulus
                     / (here.fraction * here.modulus);
-                energy +=
-                    0.5 * here.modulus * i.volume * (here.excess * here.excess) * share;
+                energy += 0.5 * here.modulus * i.volume * (here.excess * here.excess) * share;
             }
         }
         let depth = 1.0 - gap.distance / pair.core_radius;
@@ -120,7 +119,7 @@ pub fn react(view: &ContactView, place: u32, neighbours: &[u32], reaction: &mut 
             energy += 0.25 * stress * (depth * depth);
             reaction.stiffness += 2.0 * stress / (pair.core_radius * pair.core_radius);
         }
-        reaction.book(&j, &gap, pair.spacing, gap.along(force), energy);
+        reaction.book(&j, &gap, pair, gap.along(force), energy);
     }
 }
 

@@ -15,7 +15,7 @@ pub fn react(view: &ContactView, place: u32, neighbours: &[u32], reaction: &mut 
         let gap = Gap::between(&i, &j);
         let pair = view.table.pair(i.body, j.body);
         if gap.distance >= pair.range {
-            reaction.book(&j, &gap, pair.spacing, [0.0; 3], 0.0);
+            reaction.book(&j, &gap, pair, [0.0; 3], 0.0);
             continue;
         }
         let kernel = &view.table.kernel;
@@ -27,10 +27,11 @@ pub fn react(view: &ContactView, place: u32, neighbours: &[u32], reaction: &mut 
         let steeper = power(ratio, pair.exponent - 1);
         let energy = 0.5 * strength * (ratio * steeper - pair.floor);
         let force = strength * n * steeper * slope;
-        reaction.stiffness +=
-            2.0 * strength * n * ((n - 1.0) * power(ratio, pair.exponent - 2) * (slope * slope)
-                + steeper * curvature);
-        reaction.book(&j, &gap, pair.spacing, gap.along(force), energy);
+        reaction.stiffness += 2.0
+            * strength
+            * n
+            * ((n - 1.0) * power(ratio, pair.exponent - 2) * (slope * slope) + steeper * curvature);
+        reaction.book(&j, &gap, pair, gap.along(force), energy);
     }
 }
 

@@ -81,7 +81,10 @@ pub fn balance(
 ) -> Slabs {
     let along = |p: &[f64; 3]| p[slabs.axis];
     let lower = positions.iter().map(along).fold(f64::INFINITY, f64::min);
-    let upper = positions.iter().map(along).fold(f64::NEG_INFINITY, f64::max);
+    let upper = positions
+        .iter()
+        .map(along)
+        .fold(f64::NEG_INFINITY, f64::max);
     let (lower, upper) = (comm.min_f64(lower), comm.max_f64(upper));
     if lower > upper {
         return slabs.clone();

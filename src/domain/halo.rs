@@ -70,7 +70,7 @@ impl Halo {
         store.resize_halo(0);
         self.gather_extents(comm, store, &reach);
         self.find_peers(comm);
-        self.choose(comm, store, &reach);
+        self.choose(store, &reach);
         for k in 0..self.exchange.peers() {
             let (particles, codes) = &self.sends[k];
             let message = self.exchange.outgoing(k);
@@ -79,6 +79,7 @@ impl Halo {
         }
         self.exchange.post_sizes(comm);
         self.exchange.post(comm);
+        self.list_own_images(comm, store, &reach);
     }
 
     /// Receives what [`Self::post_motion`] of the others sent, and lists all images: owned
@@ -191,13 +192,8 @@ impl Halo {
         }));
     }
 
-    /// Fills the lists of particles and images to send, and the list of own images.
-    fn choose(
-        &mut self,
-        comm: &Comm,
-        store: &ParticleStore,
-        reach: &impl Fn(&ParticleStore, usize) -> f64,
-    ) {
+    /// Fills the lists of particles and images to send.
+    fn choose(&mut self, store: &ParticleStore, reach: &impl Fn(&ParticleStore, usize) -> f64) {
         let peers = self.exchange.peers();
         if self.sends.len() < peers {
             self.sends.resize(peers, <(Vec<u32>, Vec<u8>)>::default());
@@ -206,18 +202,13 @@ impl Halo {
             particles.clear();
             needs.clear();
         }
-        self.images.clear();
-        let farthest = self.extents.iter().map(|e| e.reach).fold(0.0, f64::max);
-        let mine = self.extents[comm.rank()];
+        if peers == 0 {
+            return;
+        }
+        let farthest = self.farthest();
         for (i, position) in store.position.iter().enumerate() {
             let range = reach(store, i) + farthest;
             let near = self.mirrors.near(position, range);
-            self.images.push(Image::new(i, 0));
-            for code in codes(near, false) {
-                if mine.distance(self.image_along(position, code)) <= range {
-                    self.images.push(Image::new(i, code));
-                }
-            }
             for k in 0..peers {
                 let theirs = self.extents[self.exchange.rank(k)];
                 let mut need = 0_u8;
@@ -233,6 +224,32 @@ impl Halo {
                 }
             }
         }
+    }
+
+    /// Lists the owned particles and their images near this rank's own particles.
+    fn list_own_images(
+        &mut self,
+        comm: &Comm,
+        store: &ParticleStore,
+        reach: &impl Fn(&ParticleStore, usize) -> f64,
+    ) {
+        self.images.clear();
+        let farthest = self.farthest();
+        let mine = self.extents[comm.rank()];
+        for (i, position) in store.position.iter().enumerate() {
+            let range = reach(store, i) + farthest;
+            self.images.push(Image::new(i, 0));
+            for code in codes(self.mirrors.near(position, range), false) {
+                if mine.distance(self.image_along(position, code)) <= range {
+                    self.images.push(Image::new(i, code));
+                }
+            }
+        }
+    }
+
+    /// The largest reach of any particle (m).
+    fn farthest(&self) -> f64 {
+        self.extents.iter().map(|e| e.reach).fold(0.0, f64::max)
     }
 
     fn image_along(&self, position: &[f64; 3], code: u8) -> f64 {

@@ -85,7 +85,13 @@ impl Mirrors {
         if code == 0 {
             return *tensor;
         }
-        let flip = |a: u8, b: u8| if (code >> a ^ code >> b) & 1 == 1 { -1.0 } else { 1.0 };
+        let flip = |a: u8, b: u8| {
+            if (code >> a ^ code >> b) & 1 == 1 {
+                -1.0
+            } else {
+                1.0
+            }
+        };
         let mut image = *tensor;
         image[3] *= flip(0, 1);
         image[4] *= flip(0, 2);
@@ -107,10 +113,8 @@ impl Mirrors {
         if code != 0 {
             store.position[i] = self.reflect_position(&store.position[i], code);
             store.velocity[i] = Self::reflect_vector(&store.velocity[i], code);
-            store.predicted_velocity[i] =
-                Self::reflect_vector(&store.predicted_velocity[i], code);
-            store.deviatoric_stress[i] =
-                Self::reflect_symmetric(&store.deviatoric_stress[i], code);
+            store.predicted_velocity[i] = Self::reflect_vector(&store.predicted_velocity[i], code);
+            store.deviatoric_stress[i] = Self::reflect_symmetric(&store.deviatoric_stress[i], code);
             for a in 0..3 {
                 for b in 0..3 {
                     if (code >> a ^ code >> b) & 1 == 1 {

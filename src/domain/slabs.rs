@@ -56,10 +56,7 @@ mod tests {
     fn a_face_belongs_to_the_slab_above_and_slabs_may_be_empty() {
         let slabs = Slabs::new(0, vec![1.0, 2.0, 2.0]);
         let owner = |x: f64| slabs.owner(&[x, 0.0, 0.0]);
-        assert_eq!(
-            [-9.0, 1.0, 1.5, 2.0, 7.0].map(owner),
-            [0, 1, 1, 3, 3]
-        );
+        assert_eq!([-9.0, 1.0, 1.5, 2.0, 7.0].map(owner), [0, 1, 1, 3, 3]);
         assert_eq!(slabs.range(2), (2.0, 2.0));
         assert_eq!(slabs.range(0).0, f64::NEG_INFINITY);
     }

@@ -5,8 +5,8 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::sequence::Sequence;
-use crate::sph::gradient::MotionRecord;
-use crate::sph::lanes::LANES;
+use crate::sph::dispatch::{Instructions, Vectorised, instructions};
+use crate::sph::lanes::{LANES, Lanes};
 
 /// Clusters that one task handles.
 pub const CLUSTERS_PER_CHUNK: usize = 64;
@@ -22,59 +22,117 @@ pub struct Cluster {
     pub group: usize,
 }
 
+/// What is among the neighbours of a cluster.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Among {
+    /// Images behind symmetry planes.
+    pub mirrors: bool,
+    /// Particles of other ranks.
+    pub halo: bool,
+}
+
 /// Clusters and neighbour lists of one task.
 #[derive(Debug, Clone, Default)]
 pub struct Chunk {
     clusters: Vec<Cluster>,
-    /// End of each cluster's neighbours in `neighbours`, and whether mirror images are among them.
-    ends: Vec<(u32, bool)>,
+    /// End of each cluster's neighbours in `neighbours`, and what is among them.
+    ends: Vec<(u32, Among)>,
     neighbours: Vec<u32>,
 }
 
 impl Chunk {
-    /// The clusters, each with its neighbours in canonical order and whether mirror images are
-    /// among them.
-    pub fn iter(&self) -> impl Iterator<Item = (&Cluster, &[u32], bool)> {
+    /// The clusters, each with its neighbours in canonical order and what is among those.
+    pub fn iter(&self) -> impl Iterator<Item = (&Cluster, &[u32], Among)> {
         self.clusters.iter().enumerate().map(|(k, cluster)| {
             let start = if k == 0 { 0 } else { self.ends[k - 1].0 };
-            let (end, mirrored) = self.ends[k];
+            let (end, among) = self.ends[k];
             (
                 cluster,
                 &self.neighbours[start as usize..end as usize],
-                mirrored,
+                among,
             )
         })
     }
 
-    fn build(&mut self, sequence: &Sequence, sources: &[MotionRecord], reach: &[f64]) {
+    fn build(&mut self, set: Instructions, sequence: &Sequence, owned: usize, reach: &[f64]) {
         self.neighbours.clear();
         self.ends.clear();
-        for cluster in &self.clusters {
-            let own = cluster.receivers.map(|k| sources[k as usize]);
-            let (lower, upper) = bounding_box(&own);
-            let h = own
-                .iter()
-                .map(|r| r.smoothing_length)
-                .fold(0.0, f64::max);
-            let far = (h + reach[cluster.group]) * INFLATION;
-            let mut mirrored = false;
-            let neighbours = &mut self.neighbours;
-            sequence.in_box(
-                cluster.group,
-                &lower.map(|x| x - far),
-                &upper.map(|x| x + far),
-                |place| {
-                    let source = &sources[place as usize];
-                    let range = h + source.smoothing_length;
-                    if distance2(&lower, &upper, &source.position) < range * range * INFLATION {
-                        neighbours.push(place);
-                        mirrored |= sequence.images()[place as usize].code() != 0;
-                    }
-                },
-            );
-            #[allow(clippy::cast_possible_truncation, reason = "64 clusters' lists fit u32")]
-            self.ends.push((neighbours.len() as u32, mirrored));
+        let Self {
+            clusters,
+            ends,
+            neighbours,
+        } = self;
+        for cluster in clusters {
+            let among = set.run(ListNeighbours {
+                sequence,
+                owned,
+                cluster,
+                reach: reach[cluster.group],
+                neighbours,
+            });
+            #[allow(
+                clippy::cast_possible_truncation,
+                reason = "64 clusters' lists fit u32"
+            )]
+            ends.push((neighbours.len() as u32, among));
         }
+    }
+}
+
+/// Appends the neighbours of a cluster to a list; tells what is among them.
+struct ListNeighbours<'a> {
+    sequence: &'a Sequence,
+    owned: usize,
+    cluster: &'a Cluster,
+    reach: f64,
+    neighbours: &'a mut Vec<u32>,
+}
+
+impl Vectorised for ListNeighbours<'_> {
+    type Output = Among;
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) -> Among {
+        let sequence = self.sequence;
+        let (lower, upper, h) = bounds(sequence, &self.cluster.receivers);
+        let far = (h + self.reach) * INFLATION;
+        let low = lower.map(V::splat);
+        let high = upper.map(V::splat);
+        let own = V::splat(h);
+        let mut among = Among::default();
+        sequence.in_box(
+            self.cluster.group,
+            &lower.map(|x| x - far),
+            &upper.map(|x| x + far),
+            |places| {
+                for first in places.clone().step_by(LANES) {
+                    let gap = |a: usize| {
+                        let x = V::read(sequence.coordinates(a, first));
+                        let gap = low[a].sub(x).max(x.sub(high[a])).max(V::splat(0.0));
+                        gap.mul(gap)
+                    };
+                    let range = V::read(sequence.lengths(first)).add(own);
+                    let range2 = range.mul(range).mul(V::splat(INFLATION));
+                    let near = gap(0).add(gap(1)).add(gap(2)).less_than(range2);
+                    let left = places.end - first;
+                    let mut bits = if left < LANES {
+                        near & ((1 << left) - 1)
+                    } else {
+                        near
+                    };
+                    while bits != 0 {
+                        let place = first + bits.trailing_zeros() as usize;
+                        bits &= bits - 1;
+                        #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
+                        self.neighbours.push(place as u32);
+                        let image = sequence.images()[place];
+                        among.mirrors |= image.code() != 0;
+                        among.halo |= image.base() >= self.owned;
+                    }
+                }
+            },
+        );
+        among
     }
 }
 
@@ -91,19 +149,14 @@ pub struct ClusterLists {
 
 impl ClusterLists {
     /// Groups the owned particles (store indices below `owned`) into clusters and lists the
-    /// neighbours of each. `sources` are the images in the order of `sequence`; `reach[g]` is
-    /// the largest smoothing length (m) among the images of group g.
-    pub fn build(
-        &mut self,
-        sequence: &Sequence,
-        owned: usize,
-        sources: &[MotionRecord],
-        reach: &[f64],
-    ) {
+    /// neighbours of each. `reach[g]` is the largest smoothing length (m) among the images of
+    /// group g.
+    pub fn build(&mut self, sequence: &Sequence, owned: usize, reach: &[f64]) {
+        let set = instructions();
         self.gather_clusters(sequence, owned);
         self.chunks[..self.used]
             .par_iter_mut()
-            .for_each(|chunk| chunk.build(sequence, sources, reach));
+            .for_each(|chunk| chunk.build(set, sequence, owned, reach));
     }
 
     /// The tasks, for parallel iteration.
@@ -157,8 +210,8 @@ impl ClusterLists {
     }
 
     fn push(&mut self, cluster: Cluster) {
-        let full = self.used == 0
-            || self.chunks[self.used - 1].clusters.len() == CLUSTERS_PER_CHUNK;
+        let full =
+            self.used == 0 || self.chunks[self.used - 1].clusters.len() == CLUSTERS_PER_CHUNK;
         if full {
             if self.used == self.chunks.len() {
                 self.chunks.push(Chunk::default());
@@ -169,17 +222,21 @@ impl ClusterLists {
     }
 }
 
-/// Box around eight records (m).
-pub(super) fn bounding_box(records: &[MotionRecord; LANES]) -> ([f64; 3], [f64; 3]) {
-    let mut lower = records[0].position;
-    let mut upper = lower;
-    for record in &records[1..] {
+/// Box around eight receivers (m) and their largest smoothing length (m).
+#[inline(always)]
+pub(super) fn bounds(sequence: &Sequence, receivers: &[u32; LANES]) -> ([f64; 3], [f64; 3], f64) {
+    let at = |axis: usize, place: u32| sequence.coordinates(axis, place as usize)[0];
+    let mut lower = std::array::from_fn(|a| at(a, receivers[0]));
+    let mut upper: [f64; 3] = lower;
+    let mut h: f64 = 0.0;
+    for &place in receivers {
         for a in 0..3 {
-            lower[a] = lower[a].min(record.position[a]);
-            upper[a] = upper[a].max(record.position[a]);
+            lower[a] = f64::min(lower[a], at(a, place));
+            upper[a] = f64::max(upper[a], at(a, place));
         }
+        h = h.max(sequence.lengths(place as usize)[0]);
     }
-    (lower, upper)
+    (lower, upper, h)
 }
 
 /// Square of the distance between a box and a point (m²).

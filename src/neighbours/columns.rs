@@ -42,7 +42,11 @@ impl ColumnGrid {
             let wanted = ((high - low + 2.0 * MARGIN * size) / width).ceil();
             let count = wanted.clamp(1.0, MAX_COUNT);
             origin[k] = 0.5 * (low + high) - 0.5 * count * width;
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
+            #[allow(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "clamped"
+            )]
             {
                 counts[k] = count as u32;
             }
@@ -62,7 +66,11 @@ impl ColumnGrid {
     pub fn index(&self, k: usize, x: f64) -> u32 {
         let cell = ((x - self.origin[k]) * self.inverse_width).floor();
         let last = f64::from(self.counts[k] - 1);
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "clamped"
+        )]
         {
             cell.clamp(0.0, last) as u32
         }

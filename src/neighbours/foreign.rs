@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use super::clusters::{ClusterLists, INFLATION, bounding_box, distance2};
+use super::clusters::{ClusterLists, INFLATION, bounds, distance2};
 use super::sequence::Sequence;
 use crate::sph::gradient::MotionRecord;
 
@@ -108,7 +108,13 @@ impl ForeignLists {
                 chunk.overlap.clear();
                 chunk.potential.clear();
                 for (cluster, _, _) in own.iter() {
-                    chunk.find_candidates(&cluster.receivers, cluster.group, sequence, sources, table);
+                    chunk.find_candidates(
+                        &cluster.receivers,
+                        cluster.group,
+                        sequence,
+                        sources,
+                        table,
+                    );
                     if chunk.candidates.is_empty() {
                         continue;
                     }
@@ -151,8 +157,7 @@ impl ForeignChunk {
         table: &ForeignTable,
     ) {
         self.candidates.clear();
-        let own = receivers.map(|k| sources[k as usize]);
-        let (lower, upper) = bounding_box(&own);
+        let (lower, upper, _) = bounds(sequence, receivers);
         let groups = sequence.groups();
         for other in 0..groups {
             let range = table.group_range[group * groups + other] * INFLATION;
@@ -164,10 +169,13 @@ impl ForeignChunk {
                 other,
                 &lower.map(|x| x - range),
                 &upper.map(|x| x + range),
-                |place| {
-                    let position = &sources[place as usize].position;
-                    if distance2(&lower, &upper, position) < range * range {
-                        candidates.push(place);
+                |places| {
+                    for place in places {
+                        let position = &sources[place].position;
+                        if distance2(&lower, &upper, position) < range * range {
+                            #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
+                            candidates.push(place as u32);
+                        }
                     }
                 },
             );

@@ -7,7 +7,7 @@ mod foreign;
 pub mod oracle;
 mod sequence;
 
-pub use clusters::{CLUSTERS_PER_CHUNK, Chunk, Cluster, ClusterLists};
+pub use clusters::{Among, CLUSTERS_PER_CHUNK, Chunk, Cluster, ClusterLists};
 pub use columns::ColumnGrid;
 pub use foreign::{ContactClass, ForeignChunk, ForeignLists, ForeignTable, PairList};
 pub use sequence::{Image, ImageFacts, Sequence};

@@ -10,6 +10,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::columns::ColumnGrid;
+use crate::sph::lanes::LANES;
 
 /// A particle or one of its mirror images: index in the store and the planes it is behind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,7 +25,10 @@ impl Image {
     #[must_use]
     pub fn new(base: usize, code: u8) -> Self {
         debug_assert!(base < Self::MAX_PARTICLES && code < 8);
-        #[allow(clippy::cast_possible_truncation, reason = "checked when particles are counted")]
+        #[allow(
+            clippy::cast_possible_truncation,
+            reason = "checked when particles are counted"
+        )]
         Self(base as u32 | u32::from(code) << 29)
     }
 
@@ -32,7 +36,7 @@ impl Image {
     #[inline]
     #[must_use]
     pub fn base(self) -> usize {
-        (self.0 & (Self::MAX_PARTICLES as u32 - 1)) as usize
+        self.0 as usize & (Self::MAX_PARTICLES - 1)
     }
 
     /// Bit a set: behind the symmetry plane normal to axis a.
@@ -80,6 +84,8 @@ pub struct ImageFacts {
     pub id: u64,
     /// Group of bodies.
     pub group: usize,
+    /// Smoothing length (m).
+    pub smoothing_length: f64,
 }
 
 /// The sorted images. Buffers are kept from step to step.
@@ -91,6 +97,9 @@ pub struct Sequence {
     columns: Vec<(u32, [u32; 2])>,
     entries: Vec<Entry>,
     images: Vec<Image>,
+    /// Coordinates and smoothing lengths (m) in order, for vectors that read past the end.
+    coordinates: [Vec<f64>; 3],
+    lengths: Vec<f64>,
 }
 
 impl Sequence {
@@ -120,11 +129,46 @@ impl Sequence {
         self.fill(images, &facts);
         sort_columns(&mut self.entries, &self.starts, 0);
         self.images.resize(images.len(), Image::new(0, 0));
-        self.images
-            .par_iter_mut()
-            .zip(&self.entries)
+        let padded = images.len() + LANES;
+        let [x, y, z] = &mut self.coordinates;
+        for values in [x, y, z, &mut self.lengths] {
+            values.resize(padded, 0.0);
+        }
+        let [x, y, z] = &mut self.coordinates;
+        (&mut self.images, &self.entries, x, y, z, &mut self.lengths)
+            .into_par_iter()
             .with_min_len(1024)
-            .for_each(|(image, entry)| *image = entry.image);
+            .for_each(|(image, entry, x, y, z, length)| {
+                let facts = facts(entry.image);
+                *image = entry.image;
+                [*x, *y, *z] = facts.position;
+                *length = facts.smoothing_length;
+            });
+    }
+
+    /// Eight coordinates on an axis (m) from a place on; what lies beyond the last image is
+    /// whatever.
+    ///
+    /// # Panics
+    /// If `place` is beyond the last image.
+    #[inline(always)]
+    #[must_use]
+    pub fn coordinates(&self, axis: usize, place: usize) -> &[f64; LANES] {
+        self.coordinates[axis][place..]
+            .first_chunk()
+            .expect("the arrays are padded")
+    }
+
+    /// Eight smoothing lengths (m) from a place on.
+    ///
+    /// # Panics
+    /// If `place` is beyond the last image.
+    #[inline(always)]
+    #[must_use]
+    pub fn lengths(&self, place: usize) -> &[f64; LANES] {
+        self.lengths[place..]
+            .first_chunk()
+            .expect("the arrays are padded")
     }
 
     fn find_columns(&mut self, images: &[Image], facts: &(impl Fn(Image) -> ImageFacts + Sync)) {
@@ -231,17 +275,18 @@ impl Sequence {
         4 * (self.starts.capacity() + self.cursors.capacity() + self.images.capacity())
             + 12 * self.columns.capacity()
             + size_of::<Entry>() * self.entries.capacity()
+            + 32 * self.lengths.capacity()
     }
 
-    /// Calls `visit` with every place of a group's images, in canonical order, whose position
-    /// may lie in the box `lower..=upper` (m): whole columns across, exact along.
-    #[inline]
+    /// Calls `visit` with ranges of places, in canonical order, that hold every image of a group
+    /// whose position lies in the box `lower..=upper` (m), and few others.
+    #[inline(always)]
     pub fn in_box(
         &self,
         group: usize,
         lower: &[f64; 3],
         upper: &[f64; 3],
-        mut visit: impl FnMut(u32),
+        mut visit: impl FnMut(Range<usize>),
     ) {
         let group = &self.groups[group];
         if group.images.is_empty() {
@@ -259,20 +304,24 @@ impl Sequence {
             };
             low as usize..end
         };
+        let along = &self.coordinates[grid.along];
         let (from, to) = (lower[grid.along], upper[grid.along]);
         let second = range(1);
         for first in range(0) {
             for other in second.clone() {
                 let column = group.columns + first * group.size[1] + other;
-                let (start, end) = (self.starts[column] as usize, self.starts[column + 1] as usize);
-                let entries = &self.entries[start..end];
-                let skip = entries.partition_point(|entry| entry.along < from);
-                for (k, entry) in entries[skip..].iter().enumerate() {
-                    if entry.along > to {
-                        break;
-                    }
-                    #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
-                    visit((start + skip + k) as u32);
+                let (start, end) = (
+                    self.starts[column] as usize,
+                    self.starts[column + 1] as usize,
+                );
+                let column = &along[start..end];
+                let first = column.partition_point(|&x| x < from);
+                let mut last = first;
+                while last < column.len() && column[last] <= to {
+                    last += LANES;
+                }
+                if last > first {
+                    visit(start + first..start + last.min(column.len()));
                 }
             }
         }

@@ -97,13 +97,13 @@ pub fn write(
         fs::create_dir_all(&temporary).map_err(OutputError::io("create the folder", &temporary))
     })?;
     let written = write_parts(comm, &temporary, store, meta, rows);
-    on_root(comm, || match &written {
-        Ok(()) => replace(&temporary, &path).and_then(|()| prune(folder, meta.step, keep)),
-        Err(_) => {
-            // What went wrong is told below; half a checkpoint only takes room.
-            let _ = files::remove(&temporary);
-            Ok(())
+    on_root(comm, || {
+        if written.is_ok() {
+            return replace(&temporary, &path).and_then(|()| prune(folder, meta.step, keep));
         }
+        // What went wrong is told below; half a checkpoint only takes room.
+        let _ = files::remove(&temporary);
+        Ok(())
     })?;
     written.map(|()| path)
 }
@@ -118,9 +118,9 @@ fn write_parts(
     let state = folder.join(STATE);
     rows.plan(comm, &store.id[..store.owned()])?;
     let file = Writer::create(comm, &state)?;
-    file.number("/", "format", FORMAT)?;
-    file.number("/", "step", meta.step)?;
-    file.number("/", "time", meta.time)?;
+    file.number("/", "format", &FORMAT)?;
+    file.number("/", "step", &meta.step)?;
+    file.number("/", "time", &meta.time)?;
     file.text("/state", meta.state)?;
     file.text("/input", meta.input)?;
     file.group(FIELDS)?;
@@ -338,7 +338,10 @@ fn verify(comm: &Comm, state: &Path, manifest: &Manifest) -> Result<(), OutputEr
     }
     let pairs = digests.iter().zip(&manifest.sha256);
     let block = pairs.take_while(|(found, known)| found == known).count() as u64;
-    let (first, last) = (block * digest::BLOCK, ((block + 1) * digest::BLOCK).min(size));
+    let (first, last) = (
+        block * digest::BLOCK,
+        ((block + 1) * digest::BLOCK).min(size),
+    );
     let what = format!("bytes {first} to {last} do not match their digest; {OLDER}");
     Err(OutputError::damaged(state, what))
 }
@@ -349,7 +352,10 @@ fn check_content(file: &Content, manifest: &Manifest) -> Result<(), OutputError>
     let step: u64 = file.number("/", "step")?;
     let time: f64 = file.number("/", "time")?;
     if step != manifest.step || time.to_bits() != manifest.time.to_bits() {
-        return damaged(format!("it is of step {step}, {MANIFEST} of step {}", manifest.step));
+        return damaged(format!(
+            "it is of step {step}, {MANIFEST} of step {}",
+            manifest.step
+        ));
     }
     let arrays = file.arrays(FIELDS)?;
     for field in with_use(FieldUse::STATE) {
@@ -357,7 +363,10 @@ fn check_content(file: &Content, manifest: &Manifest) -> Result<(), OutputError>
             return damaged(format!("it lacks the field {}; {OTHER}", field.name));
         };
         if array.row != row_type(field.kind) || array.rows != manifest.particles {
-            return damaged(format!("the field {} has another shape; {OTHER}", field.name));
+            return damaged(format!(
+                "the field {} has another shape; {OTHER}",
+                field.name
+            ));
         }
     }
     let known = |name: &str| with_use(FieldUse::STATE).any(|f: &FieldInfo| f.name == name);

@@ -44,7 +44,9 @@ fn share(
         let mut left = BLOCK.min(size - start);
         let mut digest = Sha256::new();
         while left > 0 {
-            let piece = usize::try_from(left).unwrap_or(usize::MAX).min(buffer.len());
+            let piece = usize::try_from(left)
+                .unwrap_or(usize::MAX)
+                .min(buffer.len());
             file.read_exact(&mut buffer[..piece])?;
             digest.update(&buffer[..piece]);
             left -= piece as u64;

@@ -114,6 +114,7 @@ impl OutputError {
         }
     }
 
+    /// A file that does not say what it should.
     pub(crate) fn damaged(path: &Path, what: impl Into<String>) -> Self {
         Self::Damaged {
             path: path.to_owned(),

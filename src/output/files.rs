@@ -98,6 +98,10 @@ mod tests {
     #[test]
     fn an_error_names_the_file() {
         let error = write_atomically(Path::new("/nowhere/at/all"), b"").unwrap_err();
-        assert!(error.to_string().starts_with("cannot create /nowhere/at/all.partial: "));
+        assert!(
+            error
+                .to_string()
+                .starts_with("cannot create /nowhere/at/all.partial: ")
+        );
     }
 }

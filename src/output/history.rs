@@ -162,7 +162,11 @@ mod tests {
     }
 
     fn row(step: u64, time: f64) -> [Value<'static>; 3] {
-        [Value::Count(step), Value::Real(time), Value::Word("courant")]
+        [
+            Value::Count(step),
+            Value::Real(time),
+            Value::Word("courant"),
+        ]
     }
 
     #[test]

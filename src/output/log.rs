@@ -54,7 +54,11 @@ mod tests {
         b.line("two");
         a.line("three");
         let text = std::fs::read_to_string(&path).unwrap();
-        let tails: Vec<&str> = text.lines().filter_map(|l| l.split_once("] ")).map(|l| l.1).collect();
+        let tails: Vec<&str> = text
+            .lines()
+            .filter_map(|l| l.split_once("] "))
+            .map(|l| l.1)
+            .collect();
         assert_eq!(tails, ["rank 0: one", "rank 3: two", "rank 0: three"]);
     }
 }

@@ -19,12 +19,13 @@ pub struct Block {
     pub first: u64,
     /// Rows here.
     pub count: usize,
-    /// Most rows on any rank.
-    pub largest: usize,
 }
 
 impl Block {
     /// The even share of `rank` among `ranks`.
+    ///
+    /// # Panics
+    /// If a share is longer than an address.
     #[must_use]
     pub fn even(total: u64, rank: usize, ranks: usize) -> Self {
         let first = start(total, rank, ranks);
@@ -33,7 +34,6 @@ impl Block {
             total,
             first,
             count: usize::try_from(end - first).expect("a block fits memory"),
-            largest: usize::try_from(total.div_ceil(ranks as u64)).expect("a block fits memory"),
         }
     }
 
@@ -44,7 +44,6 @@ impl Block {
             total: total as u64,
             first: 0,
             count: if comm.is_root() { total } else { 0 },
-            largest: total,
         }
     }
 
@@ -55,7 +54,6 @@ impl Block {
             total: self.total + 1,
             first: self.first,
             count: self.count + usize::from(last_rank),
-            largest: self.largest + 1,
         }
     }
 }
@@ -102,6 +100,9 @@ impl Rows {
     ///
     /// # Errors
     /// [`OutputError::DuplicateId`], the same on every rank.
+    ///
+    /// # Panics
+    /// If this rank owns 2³² particles or more, which no store can hold.
     pub fn plan(&mut self, comm: &Comm, ids: &[u64]) -> Result<(), OutputError> {
         let mut total = [ids.len() as u64];
         comm.sum_u64(&mut total);
@@ -142,7 +143,8 @@ impl Rows {
     fn place(&mut self, comm: &Comm, ids: &[u64]) -> Result<(), OutputError> {
         let arriving = self.own.len() + self.peers.iter().map(|p| p.receive).sum::<usize>();
         self.places.clear();
-        self.places.extend(0..u32::try_from(arriving).expect("a block fits u32"));
+        self.places
+            .extend(0..u32::try_from(arriving).expect("a block fits u32"));
         self.move_rows(comm, bytemuck::cast_slice(ids), 8);
         let arrived: Vec<u64> = bytemuck::pod_collect_to_vec(&self.bytes);
         let mut by_id = self.places.clone();
@@ -269,7 +271,10 @@ mod tests {
         let values: Vec<[u32; 3]> = (0..4).map(|i| [i, 10 * i, 100 * i]).collect();
         let bytes = rows.collect(&comm, bytemuck::cast_slice(&values), 12);
         let sorted: Vec<[u32; 3]> = bytemuck::pod_collect_to_vec(bytes);
-        assert_eq!(sorted, [[2, 20, 200], [3, 30, 300], [0, 0, 0], [1, 10, 100]]);
+        assert_eq!(
+            sorted,
+            [[2, 20, 200], [3, 30, 300], [0, 0, 0], [1, 10, 100]]
+        );
     }
 
     #[test]

@@ -324,7 +324,7 @@ const SNAPSHOT_ENDING: &str = ".vtkhdf";
 /// Whether a run wrote this into its folder of snapshots or checkpoints.
 fn is_ours(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let name = name.strip_suffix(files::PARTIAL).unwrap_or(&name);
+    let name = name.trim_end_matches(files::PARTIAL);
     let name = Path::new(name.strip_suffix(".old").unwrap_or(name));
     step_of(name, SNAPSHOT_ENDING).is_some()
         || step_of(name, "").is_some()
@@ -395,15 +395,28 @@ mod tests {
             write(run.snapshot(step));
             let time = f64::from(u32::try_from(step).unwrap());
             series::add(&run.series(), &RunFolder::snapshot_name(step), time).unwrap();
-            write(run.checkpoints().join(format!("step-{step:08}/manifest.json")));
+            write(
+                run.checkpoints()
+                    .join(format!("step-{step:08}/manifest.json")),
+            );
         }
         write(run.stop());
         let run = RunFolder::resume(&comm, place.path(), "", 4, 4.0).unwrap();
-        assert_eq!(run.snapshot_files().unwrap(), [run.snapshot(2), run.snapshot(4)]);
+        assert_eq!(
+            run.snapshot_files().unwrap(),
+            [run.snapshot(2), run.snapshot(4)]
+        );
         assert_eq!(series::read(&run.series()).unwrap().len(), 2);
         let newest = run.newest_checkpoint().unwrap().unwrap();
         assert!(newest.ends_with("step-00000004"));
         assert!(!run.stop().exists());
-        assert_eq!(RunFolder::of_checkpoint(&newest).unwrap().status().unwrap().step, 4);
+        assert_eq!(
+            RunFolder::of_checkpoint(&newest)
+                .unwrap()
+                .status()
+                .unwrap()
+                .step,
+            4
+        );
     }
 }

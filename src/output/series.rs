@@ -83,7 +83,11 @@ mod tests {
             add(&path, name, time).unwrap();
         }
         keep_until(&path, 1.5e-9).unwrap();
-        let names: Vec<_> = read(&path).unwrap().into_iter().map(|e| (e.name, e.time)).collect();
+        let names: Vec<_> = read(&path)
+            .unwrap()
+            .into_iter()
+            .map(|e| (e.name, e.time))
+            .collect();
         assert_eq!(names, [("a".to_owned(), 0.0), ("b".to_owned(), 1.5e-9)]);
         let text = fs::read_to_string(&path).unwrap();
         assert!(text.contains("\"file-series-version\": \"1.0\""), "{text}");

@@ -8,7 +8,9 @@ use std::path::Path;
 
 use crate::comm::Comm;
 use crate::model::Case;
-use crate::particles::{FIELDS, FieldId, FieldInfo, FieldKind, FieldUse, ParticleStore};
+use crate::particles::{
+    FIELDS, FieldId, FieldInfo, FieldKind, FieldUse, ParticleStore, VON_MISES_STRESS,
+};
 
 use super::h5::{Element, RowType, Writer};
 use super::{COMMIT, OutputError, Rows, VERSION, files, on_root};
@@ -36,7 +38,7 @@ impl Quantity {
     pub fn name(self) -> &'static str {
         match self {
             Self::Field(field) => field.name,
-            Self::VonMisesStress => "von_mises_stress",
+            Self::VonMisesStress => VON_MISES_STRESS,
         }
     }
 
@@ -127,13 +129,13 @@ pub fn write(
 ) -> Result<(), OutputError> {
     let temporary = files::partial(path);
     let written = write_file(comm, &temporary, store, meta, quantities, rows);
-    on_root(comm, || match &written {
-        Ok(()) => files::publish(&temporary, path),
-        Err(_) => {
-            // What went wrong is told below; half a file only takes room.
-            let _ = files::remove(&temporary);
-            Ok(())
+    on_root(comm, || {
+        if written.is_ok() {
+            return files::publish(&temporary, path);
         }
+        // What went wrong is told below; half a file only takes room.
+        let _ = files::remove(&temporary);
+        Ok(())
     })?;
     written
 }
@@ -198,10 +200,19 @@ fn write_grid(
         bytemuck::cast_slice(&numbers),
     )?;
     let types = vec![VERTEX; block.count];
-    file.rows(&format!("{GRID}/Types"), RowType::single(Element::U8), block, &types)?;
+    file.rows(
+        &format!("{GRID}/Types"),
+        RowType::single(Element::U8),
+        block,
+        &types,
+    )?;
     file.group(&format!("{GRID}/PointData"))?;
     file.group(&format!("{GRID}/FieldData"))?;
-    file.numbers(&format!("{GRID}/FieldData/TimeValue"), Element::F64, &[time])
+    file.numbers(
+        &format!("{GRID}/FieldData/TimeValue"),
+        Element::F64,
+        &[time],
+    )
 }
 
 fn write_quantity(
@@ -274,15 +285,15 @@ fn write_meta(comm: &Comm, file: &Writer, meta: &Meta) -> Result<(), OutputError
     file.note(group, "symmetry", &serde_json::json!(planes).to_string())?;
     file.note(group, "version", VERSION)?;
     file.note(group, "commit", COMMIT)?;
-    file.number(group, "dimension", case.dimension as u64)?;
-    file.number(group, "step", meta.step)?;
+    file.number(group, "dimension", &(case.dimension as u64))?;
+    file.number(group, "step", &meta.step)?;
     file.text(&format!("{group}/input"), &case.resolved)?;
     let group = "/run";
     file.group(group)?;
-    file.number(group, "ranks", comm.size() as u64)?;
-    file.number(group, "threads", meta.threads as u64)?;
+    file.number(group, "ranks", &(comm.size() as u64))?;
+    file.number(group, "threads", &(meta.threads as u64))?;
     // Every rank writes the same number into metadata.
-    file.number(group, "wall_seconds", comm.max_f64(meta.wall_seconds))
+    file.number(group, "wall_seconds", &comm.max_f64(meta.wall_seconds))
 }
 
 #[cfg(test)]
@@ -299,13 +310,20 @@ mod tests {
         let chosen = quantities(&chosen).unwrap();
         assert_eq!(names(&chosen), ["id", "body", "mass", "von_mises_stress"]);
         let error = quantities(&["presure".to_owned()]).unwrap_err();
-        assert!(error.to_string().contains("`presure`; choose from id, body"));
+        assert!(
+            error
+                .to_string()
+                .contains("`presure`; choose from id, body")
+        );
     }
 
     #[test]
     fn von_mises_stress_of_uniaxial_and_shear_stress() {
         // σ_xx = 3: s = (2, −1, −1); σ_xy = τ: √3 τ.
-        assert_eq!(von_mises(&[2.0, -1.0, -1.0, 0.0, 0.0, 0.0]).to_bits(), 3.0_f64.to_bits());
+        assert_eq!(
+            von_mises(&[2.0, -1.0, -1.0, 0.0, 0.0, 0.0]).to_bits(),
+            3.0_f64.to_bits()
+        );
         let shear = von_mises(&[0.0, 0.0, 0.0, 0.0, 2.0, 0.0]);
         assert!((shear - 12.0_f64.sqrt()).abs() < 1e-15);
     }

@@ -65,6 +65,8 @@ impl FieldUse {
     pub const SNAPSHOT: Self = Self(32);
     /// In snapshots on demand.
     pub const ON_DEMAND: Self = Self(64);
+    /// In snapshots at all.
+    pub const SNAPSHOT_OR_ON_DEMAND: Self = Self(32 | 64);
     /// What a rank sends with a particle that leaves it.
     pub const LEAVING: Self = Self(1 | 2);
     /// Whatever halo particles need before forces of stress and contact.
@@ -101,12 +103,24 @@ pub struct FieldInfo {
 }
 
 macro_rules! kind_type {
-    (Scalar) => { f64 };
-    (Vector) => { [f64; 3] };
-    (Symmetric) => { [f64; 6] };
-    (Tensor) => { [f64; 9] };
-    (Id) => { u64 };
-    (Index) => { u32 };
+    (Scalar) => {
+        f64
+    };
+    (Vector) => {
+        [f64; 3]
+    };
+    (Symmetric) => {
+        [f64; 6]
+    };
+    (Tensor) => {
+        [f64; 9]
+    };
+    (Id) => {
+        u64
+    };
+    (Index) => {
+        u32
+    };
 }
 
 macro_rules! particle_fields {

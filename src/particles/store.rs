@@ -105,6 +105,16 @@ pub fn with_use(uses: FieldUse) -> impl Iterator<Item = &'static FieldInfo> {
     FIELDS.iter().filter(move |field| field.uses.meets(uses))
 }
 
+/// Names that a snapshot can be asked for: fields of the table and what is derived from them.
+pub fn snapshot_names() -> impl Iterator<Item = &'static str> {
+    with_use(FieldUse::SNAPSHOT_OR_ON_DEMAND)
+        .map(|field| field.name)
+        .chain([VON_MISES_STRESS])
+}
+
+/// The one derived quantity of snapshots.
+pub const VON_MISES_STRESS: &str = "von_mises_stress";
+
 /// Bytes per particle of the fields with any of the given uses.
 #[must_use]
 pub fn bytes_per_particle(uses: FieldUse) -> usize {
@@ -115,6 +125,7 @@ pub fn bytes_per_particle(uses: FieldUse) -> usize {
 mod tests {
     use super::*;
 
+    #[allow(clippy::cast_possible_truncation, reason = "below 251")]
     /// A store whose every number tells its field, particle and component.
     fn sentinel(owned: usize) -> ParticleStore {
         let mut store = ParticleStore::default();

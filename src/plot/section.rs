@@ -103,7 +103,8 @@ pub struct Section {
 pub struct Cut {
     /// The plane.
     pub plane: Plane,
-    /// Thickness of the slice (m); the spacing of each body if absent.
+    /// Thickness of the slice (m); if absent the spacing of each body, or twice that on a symmetry
+    /// plane, where the layer next to it and its image are the same.
     pub thickness: Option<f64>,
     /// Whether to reflect the model at its planes of symmetry.
     pub mirror: bool,
@@ -115,8 +116,9 @@ impl Cut {
     /// Collects the particles of a slice about the plane.
     ///
     /// A particle belongs to it if its distance d along the axis has −t/2 < d ≤ t/2. With t one
-    /// spacing, a cubic lattice shows exactly one layer wherever the plane lies: on a symmetry
-    /// plane, half-way between a layer and its image, the layer on the side that the model keeps.
+    /// spacing, a cubic lattice shows exactly one layer wherever the plane lies; with two on a
+    /// symmetry plane, which is half-way between a layer and its image, too, and goes on to show it
+    /// when the material expands.
     pub fn take(&self, snapshot: &Snapshot) -> Result<Section, PlotError> {
         let mut discs = Vec::new();
         let mut images = Vec::new();
@@ -127,9 +129,10 @@ impl Cut {
             for ((point, body), value) in points.into_iter().zip(bodies).zip(values) {
                 let spacing = snapshot.spacings[body];
                 self.reflect(&point, &snapshot.symmetry, &mut images);
+                let half = self.half_thickness(spacing, &snapshot.symmetry);
                 let found = images
                     .iter()
-                    .filter_map(|p| self.disc(p, spacing, body, value));
+                    .filter_map(|p| self.disc(p, half, spacing, body, value));
                 discs.extend(found);
             }
         }
@@ -155,10 +158,27 @@ impl Cut {
         }
     }
 
-    /// The particle at `point` if the slice holds it.
-    fn disc(&self, point: &[f64; 3], spacing: f64, body: usize, value: f64) -> Option<Disc> {
+    /// Half the thickness of the slice for a body of a spacing (m).
+    fn half_thickness(&self, spacing: f64, symmetry: &[SymmetryPlane]) -> f64 {
+        let on_mirror = self.mirror
+            && symmetry.iter().any(|mirror| {
+                mirror.axis == self.plane.axis
+                    && (mirror.position - self.plane.position).abs() < NUDGE * spacing
+            });
+        let default = if on_mirror { 2.0 * spacing } else { spacing };
+        0.5 * self.thickness.unwrap_or(default)
+    }
+
+    /// The particle at `point` if the slice of that half thickness holds it.
+    fn disc(
+        &self,
+        point: &[f64; 3],
+        half: f64,
+        spacing: f64,
+        body: usize,
+        value: f64,
+    ) -> Option<Disc> {
         let distance = point[self.plane.axis.index()] - self.plane.position;
-        let half = 0.5 * self.thickness.unwrap_or(spacing);
         let nudge = NUDGE * spacing;
         let [right, up] = self.plane.picture_axes();
         let at = [point[right.index()], point[up.index()]];
@@ -219,7 +239,10 @@ mod tests {
             for shift in [-1e-21, 0.0, 1e-21] {
                 let layers = (-10..10)
                     .map(|n| (f64::from(n) + 0.5) * spacing + shift)
-                    .filter(|&y| cut.disc(&[0.0, y, 0.0], spacing, 0, 0.0).is_some());
+                    .filter(|&y| {
+                        cut.disc(&[0.0, y, 0.0], 0.5 * spacing, spacing, 0, 0.0)
+                            .is_some()
+                    });
                 assert_eq!(layers.count(), 1, "plane at {k}/8 spacings");
             }
         }
@@ -248,6 +271,6 @@ mod tests {
     #[test]
     fn lost_positions_are_left_out() {
         let point = [f64::NAN, 0.0, 0.0];
-        assert_eq!(cut(0.0, false).disc(&point, 1.0, 0, 0.0), None);
+        assert_eq!(cut(0.0, false).disc(&point, 0.5, 1.0, 0, 0.0), None);
     }
 }

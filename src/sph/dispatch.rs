@@ -2,6 +2,10 @@
 
 use std::sync::OnceLock;
 
+use super::lanes::{F64x8, Lanes};
+#[cfg(target_arch = "x86_64")]
+use super::lanes::{avx2, avx512};
+
 /// An instruction set that the pair sweeps are compiled for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Instructions {
@@ -71,7 +75,7 @@ impl Instructions {
             Self::Avx2 => return unsafe { run_avx2(work) },
             Self::Portable => {}
         }
-        work.run()
+        work.run::<F64x8>()
     }
 }
 
@@ -79,18 +83,18 @@ impl Instructions {
 pub trait Vectorised {
     /// What it returns.
     type Output;
-    /// The work; mark the implementation `#[inline(always)]`.
-    fn run(self) -> Self::Output;
+    /// The work on vectors `V`; mark the implementation `#[inline(always)]`.
+    fn run<V: Lanes>(self) -> Self::Output;
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2,fma")]
 fn run_avx512<W: Vectorised>(work: W) -> W::Output {
-    work.run()
+    work.run::<avx512::Vector>()
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 fn run_avx2<W: Vectorised>(work: W) -> W::Output {
-    work.run()
+    work.run::<avx2::Vector>()
 }

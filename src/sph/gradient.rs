@@ -2,7 +2,7 @@
 
 use super::dispatch::Vectorised;
 use super::kernel::{PairScale, slope_over_distance};
-use super::lanes::{F64x8, LANES};
+use super::lanes::{F64x8, LANES, Lanes};
 
 /// What a particle shows to its neighbours before the forces: one cache line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,32 +39,29 @@ impl<S: PairScale> Vectorised for VelocityGradient<'_, S> {
     type Output = [F64x8; 9];
 
     #[inline(always)]
-    fn run(self) -> [F64x8; 9] {
+    fn run<V: Lanes>(self) -> [F64x8; 9] {
         let receiver = |k: usize| &self.sources[self.receivers[k] as usize];
-        let position: [F64x8; 3] =
-            std::array::from_fn(|a| F64x8(std::array::from_fn(|k| receiver(k).position[a])));
-        let velocity: [F64x8; 3] =
-            std::array::from_fn(|a| F64x8(std::array::from_fn(|k| receiver(k).velocity[a])));
-        let h_i = F64x8(std::array::from_fn(|k| receiver(k).smoothing_length));
-        let mut gradient = [F64x8::splat(0.0); 9];
+        let position: [V; 3] = std::array::from_fn(|a| V::gather(|k| receiver(k).position[a]));
+        let velocity: [V; 3] = std::array::from_fn(|a| V::gather(|k| receiver(k).velocity[a]));
+        let h_i = V::gather(|k| receiver(k).smoothing_length);
+        let mut gradient = [V::splat(0.0); 9];
         for &j in self.neighbours {
             let source = &self.sources[j as usize];
-            let r: [F64x8; 3] =
-                std::array::from_fn(|a| position[a] - F64x8::splat(source.position[a]));
-            let square = r[2].mul_add(r[2], r[1].mul_add(r[1], r[0] * r[0]));
-            let square = square.max(F64x8::splat(SMALLEST_SQUARE));
+            let r: [V; 3] = std::array::from_fn(|a| position[a].sub(V::splat(source.position[a])));
+            let square = r[2].mul_add(r[2], r[1].mul_add(r[1], r[0].mul(r[0])));
+            let square = square.max(V::splat(SMALLEST_SQUARE));
             let distance = square.sqrt();
-            let inverse_r = F64x8::splat(1.0) / distance;
+            let inverse_r = V::splat(1.0).div(distance);
             let (inverse_h, _, factor) = self.scale.scale(h_i, source.smoothing_length);
             let slope = slope_over_distance(distance, inverse_r, inverse_h, factor);
-            let weight = slope * F64x8::splat(-source.volume);
+            let weight = slope.mul(V::splat(-source.volume));
             for a in 0..3 {
-                let v_a = (velocity[a] - F64x8::splat(source.velocity[a])) * weight;
+                let v_a = velocity[a].sub(V::splat(source.velocity[a])).mul(weight);
                 for b in 0..3 {
                     gradient[3 * a + b] = v_a.mul_add(r[b], gradient[3 * a + b]);
                 }
             }
         }
-        gradient
+        gradient.map(V::store)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::lanes::F64x8;
+use super::lanes::Lanes;
 
 /// The kernel of a number of dimensions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,7 +83,7 @@ impl Kernel {
 /// How the lanes get `h_ij` and what follows from it.
 pub trait PairScale: Copy + Sync {
     /// `(1/h_ij, h_ij, σ_d/h_ij^(d+1))` for receivers of `h_i` and a neighbour of `h_j`.
-    fn scale(&self, h_i: F64x8, h_j: f64) -> (F64x8, F64x8, F64x8);
+    fn scale<V: Lanes>(&self, h_i: V, h_j: f64) -> (V, V, V);
 }
 
 /// One constant smoothing length for all pairs.
@@ -108,11 +108,11 @@ impl ConstantScale {
 
 impl PairScale for ConstantScale {
     #[inline(always)]
-    fn scale(&self, _: F64x8, _: f64) -> (F64x8, F64x8, F64x8) {
+    fn scale<V: Lanes>(&self, _: V, _: f64) -> (V, V, V) {
         (
-            F64x8::splat(self.inverse),
-            F64x8::splat(self.h),
-            F64x8::splat(self.factor),
+            V::splat(self.inverse),
+            V::splat(self.h),
+            V::splat(self.factor),
         )
     }
 }
@@ -136,28 +136,31 @@ impl<const D: usize> MeanScale<D> {
 
 impl<const D: usize> PairScale for MeanScale<D> {
     #[inline(always)]
-    fn scale(&self, h_i: F64x8, h_j: f64) -> (F64x8, F64x8, F64x8) {
-        let h = (h_i + F64x8::splat(h_j)) * F64x8::splat(0.5);
-        let inverse = F64x8::splat(1.0) / h;
-        let square = inverse * inverse;
+    fn scale<V: Lanes>(&self, h_i: V, h_j: f64) -> (V, V, V) {
+        let h = h_i.add(V::splat(h_j)).mul(V::splat(0.5));
+        let inverse = V::splat(1.0).div(h);
+        let square = inverse.mul(inverse);
         let factor = match D {
             1 => square,
-            2 => square * inverse,
-            _ => square * square,
+            2 => square.mul(inverse),
+            _ => square.mul(square),
         };
-        (inverse, h, factor * F64x8::splat(self.normalisation))
+        (inverse, h, factor.mul(V::splat(self.normalisation)))
     }
 }
 
 /// `W'/r` of eight pairs from `r`, `1/r` and the pair's scale.
 #[inline(always)]
-pub fn slope_over_distance(r: F64x8, inverse_r: F64x8, inverse_h: F64x8, factor: F64x8) -> F64x8 {
-    let q = r * inverse_h;
-    let zero = F64x8::splat(0.0);
-    let a = (F64x8::splat(2.0) - q).max(zero);
-    let b = (F64x8::splat(1.0) - q).max(zero);
-    let shape = (b * b * F64x8::splat(3.0)) - (a * a * F64x8::splat(0.75));
-    shape * factor * inverse_r
+pub fn slope_over_distance<V: Lanes>(r: V, inverse_r: V, inverse_h: V, factor: V) -> V {
+    let q = r.mul(inverse_h);
+    let zero = V::splat(0.0);
+    let a = V::splat(2.0).sub(q).max(zero);
+    let b = V::splat(1.0).sub(q).max(zero);
+    let shape = b
+        .mul(b)
+        .mul(V::splat(3.0))
+        .sub(a.mul(a).mul(V::splat(0.75)));
+    shape.mul(factor).mul(inverse_r)
 }
 
 #[cfg(test)]
@@ -190,8 +193,7 @@ mod tests {
             let kernel = Kernel::new(d);
             for r in [0.1, 0.7, 1.2, 1.9, 2.4] {
                 let (h, step) = (1.1, 1e-6);
-                let slope =
-                    (kernel.value(r + step, h) - kernel.value(r - step, h)) / (2.0 * step);
+                let slope = (kernel.value(r + step, h) - kernel.value(r - step, h)) / (2.0 * step);
                 let curvature =
                     (kernel.slope(r + step, h) - kernel.slope(r - step, h)) / (2.0 * step);
                 assert!((slope - kernel.slope(r, h)).abs() < 1e-8);

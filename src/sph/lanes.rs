@@ -1,92 +1,362 @@
 //! Eight doubles side by side: one for each receiver of a cluster.
 //!
-//! Plain arrays and loops that the compiler turns into the vector instructions of the function
-//! they are inlined into ([`super::dispatch`]); every operation is IEEE-exact, so all
-//! instruction sets give the same bits.
-
-use std::ops::{Add, Div, Mul, Sub};
+//! Every operation is IEEE-exact and means the same on all instruction sets, so all of them give
+//! the same bits. [`F64x8`] is the plain form that everybody may use; the pair sweeps are generic
+//! over [`Lanes`] and run on whatever vectors [`super::dispatch`] finds.
 
 /// Receivers of a cluster.
 pub const LANES: usize = 8;
 
-/// One double for each receiver of a cluster.
+/// One double for each receiver of a cluster, as plain memory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
 pub struct F64x8(pub [f64; LANES]);
 
-impl F64x8 {
+/// Vectors of eight doubles.
+pub trait Lanes: Copy {
     /// The same value in every lane.
-    #[inline(always)]
+    fn splat(value: f64) -> Self;
+    /// From aligned memory.
+    fn load(values: &F64x8) -> Self;
+    /// From memory anywhere.
+    fn read(values: &[f64; LANES]) -> Self;
+    /// To memory.
+    fn store(self) -> F64x8;
+    /// Sum of each lane.
     #[must_use]
-    pub fn splat(value: f64) -> Self {
-        Self([value; LANES])
-    }
-
-    /// Square root of each lane.
-    #[inline(always)]
+    fn add(self, other: Self) -> Self;
+    /// Difference of each lane.
     #[must_use]
-    pub fn sqrt(self) -> Self {
-        Self(std::array::from_fn(|k| self.0[k].sqrt()))
-    }
-
-    /// The larger of each lane and `other`'s; `other`'s where this one is NaN.
-    #[inline(always)]
+    fn sub(self, other: Self) -> Self;
+    /// Product of each lane.
     #[must_use]
-    pub fn max(self, other: Self) -> Self {
-        Self(std::array::from_fn(|k| {
-            if self.0[k] > other.0[k] {
-                self.0[k]
-            } else {
-                other.0[k]
-            }
-        }))
-    }
-
-    /// The smaller of each lane and `other`'s; `other`'s where this one is NaN.
-    #[inline(always)]
+    fn mul(self, other: Self) -> Self;
+    /// Quotient of each lane.
     #[must_use]
-    pub fn min(self, other: Self) -> Self {
-        Self(std::array::from_fn(|k| {
-            if self.0[k] < other.0[k] {
-                self.0[k]
-            } else {
-                other.0[k]
-            }
-        }))
-    }
-
-    /// Each lane where `mask` is positive, zero elsewhere.
-    #[inline(always)]
-    #[must_use]
-    pub fn where_positive(self, mask: Self) -> Self {
-        Self(std::array::from_fn(|k| {
-            if mask.0[k] > 0.0 { self.0[k] } else { 0.0 }
-        }))
-    }
-
+    fn div(self, other: Self) -> Self;
     /// `self · factor + term` with one rounding.
-    #[inline(always)]
     #[must_use]
-    pub fn mul_add(self, factor: Self, term: Self) -> Self {
-        Self(std::array::from_fn(|k| {
-            self.0[k].mul_add(factor.0[k], term.0[k])
-        }))
+    fn mul_add(self, factor: Self, term: Self) -> Self;
+    /// Square root of each lane.
+    #[must_use]
+    fn sqrt(self) -> Self;
+    /// This lane if it is larger than `other`'s, else `other`'s (also where one is NaN).
+    #[must_use]
+    fn max(self, other: Self) -> Self;
+    /// This lane if it is smaller than `other`'s, else `other`'s (also where one is NaN).
+    #[must_use]
+    fn min(self, other: Self) -> Self;
+    /// This lane where `mask`'s is positive, else zero.
+    #[must_use]
+    fn where_positive(self, mask: Self) -> Self;
+    /// Bit k: lane k is smaller than `other`'s.
+    fn less_than(self, other: Self) -> u8;
+
+    /// Gathers a number of each receiver.
+    #[inline(always)]
+    fn gather(value: impl Fn(usize) -> f64) -> Self {
+        Self::load(&F64x8(std::array::from_fn(value)))
     }
 }
 
-macro_rules! lane_operator {
-    ($trait:ident, $method:ident, $operator:tt) => {
-        impl $trait for F64x8 {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self(std::array::from_fn(|k| self.0[k] $operator other.0[k]))
-            }
-        }
+macro_rules! each_lane {
+    ($k:ident => $value:expr) => {
+        Self(std::array::from_fn(|$k| $value))
     };
 }
 
-lane_operator!(Add, add, +);
-lane_operator!(Sub, sub, -);
-lane_operator!(Mul, mul, *);
-lane_operator!(Div, div, /);
+impl Lanes for F64x8 {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self([value; LANES])
+    }
+
+    #[inline(always)]
+    fn load(values: &F64x8) -> Self {
+        *values
+    }
+
+    #[inline(always)]
+    fn read(values: &[f64; LANES]) -> Self {
+        Self(*values)
+    }
+
+    #[inline(always)]
+    fn store(self) -> F64x8 {
+        self
+    }
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        each_lane!(k => self.0[k] + other.0[k])
+    }
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        each_lane!(k => self.0[k] - other.0[k])
+    }
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        each_lane!(k => self.0[k] * other.0[k])
+    }
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        each_lane!(k => self.0[k] / other.0[k])
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        each_lane!(k => self.0[k].mul_add(factor.0[k], term.0[k]))
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        each_lane!(k => self.0[k].sqrt())
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        each_lane!(k => if self.0[k] > other.0[k] { self.0[k] } else { other.0[k] })
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        each_lane!(k => if self.0[k] < other.0[k] { self.0[k] } else { other.0[k] })
+    }
+
+    #[inline(always)]
+    fn where_positive(self, mask: Self) -> Self {
+        each_lane!(k => if mask.0[k] > 0.0 { self.0[k] } else { 0.0 })
+    }
+
+    #[inline(always)]
+    fn less_than(self, other: Self) -> u8 {
+        (0..LANES).fold(0, |bits, k| bits | u8::from(self.0[k] < other.0[k]) << k)
+    }
+}
+
+/// 512-bit vectors. Only [`super::dispatch`] makes work run on them, after it has found them.
+#[cfg(target_arch = "x86_64")]
+pub mod avx512 {
+    use std::arch::x86_64::{
+        __m512d, _CMP_GT_OQ, _CMP_LT_OQ, _mm512_add_pd, _mm512_cmp_pd_mask, _mm512_div_pd,
+        _mm512_fmadd_pd, _mm512_load_pd, _mm512_loadu_pd, _mm512_maskz_mov_pd, _mm512_max_pd,
+        _mm512_min_pd, _mm512_mul_pd, _mm512_set1_pd, _mm512_setzero_pd, _mm512_sqrt_pd,
+        _mm512_store_pd, _mm512_sub_pd,
+    };
+
+    use super::{F64x8, Lanes};
+
+    /// Eight doubles in one register.
+    #[derive(Clone, Copy)]
+    pub struct Vector(__m512d);
+
+    // SAFETY (all of this block): this type is only used inside functions that `dispatch` calls
+    // after it has found AVX-512F on this processor.
+    impl Lanes for Vector {
+        #[inline(always)]
+        fn splat(value: f64) -> Self {
+            Self(unsafe { _mm512_set1_pd(value) })
+        }
+
+        #[inline(always)]
+        fn load(values: &F64x8) -> Self {
+            Self(unsafe { _mm512_load_pd(values.0.as_ptr()) })
+        }
+
+        #[inline(always)]
+        fn read(values: &[f64; 8]) -> Self {
+            Self(unsafe { _mm512_loadu_pd(values.as_ptr()) })
+        }
+
+        #[inline(always)]
+        fn store(self) -> F64x8 {
+            let mut values = F64x8([0.0; 8]);
+            unsafe { _mm512_store_pd(values.0.as_mut_ptr(), self.0) };
+            values
+        }
+
+        #[inline(always)]
+        fn add(self, other: Self) -> Self {
+            Self(unsafe { _mm512_add_pd(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn sub(self, other: Self) -> Self {
+            Self(unsafe { _mm512_sub_pd(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn mul(self, other: Self) -> Self {
+            Self(unsafe { _mm512_mul_pd(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn div(self, other: Self) -> Self {
+            Self(unsafe { _mm512_div_pd(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn mul_add(self, factor: Self, term: Self) -> Self {
+            Self(unsafe { _mm512_fmadd_pd(self.0, factor.0, term.0) })
+        }
+
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            Self(unsafe { _mm512_sqrt_pd(self.0) })
+        }
+
+        #[inline(always)]
+        fn max(self, other: Self) -> Self {
+            Self(unsafe { _mm512_max_pd(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn min(self, other: Self) -> Self {
+            Self(unsafe { _mm512_min_pd(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn where_positive(self, mask: Self) -> Self {
+            unsafe {
+                let positive = _mm512_cmp_pd_mask::<_CMP_GT_OQ>(mask.0, _mm512_setzero_pd());
+                Self(_mm512_maskz_mov_pd(positive, self.0))
+            }
+        }
+
+        #[inline(always)]
+        fn less_than(self, other: Self) -> u8 {
+            unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, other.0) }
+        }
+    }
+}
+
+/// Pairs of 256-bit vectors. Only [`super::dispatch`] makes work run on them, after it has found
+/// them.
+#[cfg(target_arch = "x86_64")]
+pub mod avx2 {
+    use std::arch::x86_64::{
+        __m256d, _CMP_GT_OQ, _CMP_LT_OQ, _mm256_add_pd, _mm256_and_pd, _mm256_cmp_pd,
+        _mm256_div_pd, _mm256_fmadd_pd, _mm256_load_pd, _mm256_loadu_pd, _mm256_max_pd,
+        _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_set1_pd, _mm256_setzero_pd,
+        _mm256_sqrt_pd, _mm256_store_pd, _mm256_sub_pd,
+    };
+
+    use super::{F64x8, Lanes};
+
+    /// Eight doubles in two registers.
+    #[derive(Clone, Copy)]
+    pub struct Vector(__m256d, __m256d);
+
+    macro_rules! both {
+        ($function:ident($a:expr, $b:expr)) => {
+            unsafe { Self($function($a.0, $b.0), $function($a.1, $b.1)) }
+        };
+    }
+
+    // SAFETY (all of this block): this type is only used inside functions that `dispatch` calls
+    // after it has found AVX2 and FMA on this processor.
+    impl Lanes for Vector {
+        #[inline(always)]
+        fn splat(value: f64) -> Self {
+            unsafe { Self(_mm256_set1_pd(value), _mm256_set1_pd(value)) }
+        }
+
+        #[inline(always)]
+        fn load(values: &F64x8) -> Self {
+            let pointer = values.0.as_ptr();
+            unsafe { Self(_mm256_load_pd(pointer), _mm256_load_pd(pointer.add(4))) }
+        }
+
+        #[inline(always)]
+        fn read(values: &[f64; 8]) -> Self {
+            let pointer = values.as_ptr();
+            unsafe { Self(_mm256_loadu_pd(pointer), _mm256_loadu_pd(pointer.add(4))) }
+        }
+
+        #[inline(always)]
+        fn store(self) -> F64x8 {
+            let mut values = F64x8([0.0; 8]);
+            let pointer = values.0.as_mut_ptr();
+            unsafe {
+                _mm256_store_pd(pointer, self.0);
+                _mm256_store_pd(pointer.add(4), self.1);
+            }
+            values
+        }
+
+        #[inline(always)]
+        fn add(self, other: Self) -> Self {
+            both!(_mm256_add_pd(self, other))
+        }
+
+        #[inline(always)]
+        fn sub(self, other: Self) -> Self {
+            both!(_mm256_sub_pd(self, other))
+        }
+
+        #[inline(always)]
+        fn mul(self, other: Self) -> Self {
+            both!(_mm256_mul_pd(self, other))
+        }
+
+        #[inline(always)]
+        fn div(self, other: Self) -> Self {
+            both!(_mm256_div_pd(self, other))
+        }
+
+        #[inline(always)]
+        fn mul_add(self, factor: Self, term: Self) -> Self {
+            unsafe {
+                Self(
+                    _mm256_fmadd_pd(self.0, factor.0, term.0),
+                    _mm256_fmadd_pd(self.1, factor.1, term.1),
+                )
+            }
+        }
+
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            unsafe { Self(_mm256_sqrt_pd(self.0), _mm256_sqrt_pd(self.1)) }
+        }
+
+        #[inline(always)]
+        fn max(self, other: Self) -> Self {
+            both!(_mm256_max_pd(self, other))
+        }
+
+        #[inline(always)]
+        fn min(self, other: Self) -> Self {
+            both!(_mm256_min_pd(self, other))
+        }
+
+        #[inline(always)]
+        fn where_positive(self, mask: Self) -> Self {
+            unsafe {
+                let zero = _mm256_setzero_pd();
+                Self(
+                    _mm256_and_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(mask.0, zero), self.0),
+                    _mm256_and_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(mask.1, zero), self.1),
+                )
+            }
+        }
+
+        #[inline(always)]
+        fn less_than(self, other: Self) -> u8 {
+            unsafe {
+                let low = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, other.0));
+                let high = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.1, other.1));
+                #[allow(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "four bits each"
+                )]
+                {
+                    (low | high << 4) as u8
+                }
+            }
+        }
+    }
+}

@@ -4,7 +4,7 @@
 use super::dispatch::Vectorised;
 use super::gradient::SMALLEST_SQUARE;
 use super::kernel::{PairScale, slope_over_distance};
-use super::lanes::{F64x8, LANES};
+use super::lanes::{F64x8, LANES, Lanes};
 
 /// What a particle shows to its neighbours for the forces: two cache lines.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,78 +72,82 @@ impl<S: PairScale, const MIRRORED: bool> Vectorised for Momentum<'_, S, MIRRORED
     type Output = Forces;
 
     #[inline(always)]
-    fn run(self) -> Forces {
+    fn run<V: Lanes>(self) -> Forces {
         let receiver = |k: usize| &self.sources[self.receivers[k] as usize];
-        let position: [F64x8; 3] =
-            std::array::from_fn(|a| F64x8(std::array::from_fn(|k| receiver(k).position[a])));
-        let velocity: [F64x8; 3] =
-            std::array::from_fn(|a| F64x8(std::array::from_fn(|k| receiver(k).velocity[a])));
-        let stress: [F64x8; 6] = std::array::from_fn(|c| {
-            F64x8(std::array::from_fn(|k| receiver(k).stress_over_density2[c]))
-        });
-        let h_i = F64x8(std::array::from_fn(|k| receiver(k).smoothing_length));
-        let rho_i = F64x8(std::array::from_fn(|k| receiver(k).density));
-        let c_i = F64x8(std::array::from_fn(|k| receiver(k).sound_speed));
-        let zero = F64x8::splat(0.0);
-        let half = F64x8::splat(0.5);
-        let mut forces = Forces {
-            acceleration: [zero; 3],
-            power: zero,
-            approach: zero,
-            from_mirrors: [zero; 3],
-        };
+        let position: [V; 3] = std::array::from_fn(|a| V::gather(|k| receiver(k).position[a]));
+        let velocity: [V; 3] = std::array::from_fn(|a| V::gather(|k| receiver(k).velocity[a]));
+        let stress: [V; 6] =
+            std::array::from_fn(|c| V::gather(|k| receiver(k).stress_over_density2[c]));
+        let h_i = V::gather(|k| receiver(k).smoothing_length);
+        let rho_i = V::gather(|k| receiver(k).density);
+        let c_i = V::gather(|k| receiver(k).sound_speed);
+        let zero = V::splat(0.0);
+        let (alpha, beta) = (
+            V::splat(0.5 * self.viscosity.alpha),
+            V::splat(self.viscosity.beta),
+        );
+        let mut acceleration = [zero; 3];
+        let mut from_mirrors = [zero; 3];
+        let mut power = zero;
+        let mut fastest = zero;
         for &j in self.neighbours {
             let source = &self.sources[j as usize];
-            let r: [F64x8; 3] =
-                std::array::from_fn(|a| position[a] - F64x8::splat(source.position[a]));
-            let v: [F64x8; 3] =
-                std::array::from_fn(|a| velocity[a] - F64x8::splat(source.velocity[a]));
-            let square = r[2].mul_add(r[2], r[1].mul_add(r[1], r[0] * r[0]));
-            let square = square.max(F64x8::splat(SMALLEST_SQUARE));
+            let r: [V; 3] = std::array::from_fn(|a| position[a].sub(V::splat(source.position[a])));
+            let v: [V; 3] = std::array::from_fn(|a| velocity[a].sub(V::splat(source.velocity[a])));
+            let square = r[2].mul_add(r[2], r[1].mul_add(r[1], r[0].mul(r[0])));
+            let square = square.max(V::splat(SMALLEST_SQUARE));
             let distance = square.sqrt();
             let (inverse_h, h, factor) = self.scale.scale(h_i, source.smoothing_length);
-            let soft = (h * h).mul_add(F64x8::splat(0.01), square);
-            let rho_sum = rho_i + F64x8::splat(source.density);
+            let soft = h.mul(h).mul_add(V::splat(0.01), square);
+            let rho_sum = rho_i.add(V::splat(source.density));
             // One division serves 1/r, 1/(r² + 0.01 h²) and 1/(ρ_i + ρ_j).
-            let soft_rho = soft * rho_sum;
-            let inverse = F64x8::splat(1.0) / (distance * soft_rho);
-            let inverse_r = inverse * soft_rho;
-            let over_distance = inverse * distance;
+            let soft_rho = soft.mul(rho_sum);
+            let inverse = V::splat(1.0).div(distance.mul(soft_rho));
+            let inverse_r = inverse.mul(soft_rho);
+            let over_distance = inverse.mul(distance);
             let slope = slope_over_distance(distance, inverse_r, inverse_h, factor);
-            let approach = r[2].mul_add(v[2], r[1].mul_add(v[1], r[0] * v[0])).min(zero);
             // μ = h v·r/(r² + 0.01 h²) for approaching pairs.
-            let mu = h * approach * (over_distance * rho_sum);
-            let c_sum = c_i + F64x8::splat(source.sound_speed);
+            let approach = r[2]
+                .mul_add(v[2], r[1].mul_add(v[1], r[0].mul(v[0])))
+                .min(zero);
+            let mu = h.mul(approach).mul(over_distance.mul(rho_sum));
             // Π = μ (β μ − α c̄)/ρ̄ with c̄ = ½ c_sum and ρ̄ = ½ rho_sum.
-            let linear = c_sum * F64x8::splat(0.5 * self.viscosity.alpha);
-            let inverse_rho_sum = over_distance * soft;
+            let linear = c_i.add(V::splat(source.sound_speed)).mul(alpha);
+            let inverse_rho_sum = over_distance.mul(soft);
             let pi = mu
-                * (mu * F64x8::splat(self.viscosity.beta) - linear)
-                * (inverse_rho_sum + inverse_rho_sum);
-            let inside = F64x8::splat(2.0) - distance * inverse_h;
-            forces.approach = forces.approach.max((zero - mu).where_positive(inside));
-            let s: [F64x8; 6] = std::array::from_fn(|c| {
-                stress[c] + F64x8::splat(source.stress_over_density2[c])
-            });
-            let (xx, yy, zz) = (s[0] - pi, s[1] - pi, s[2] - pi);
-            let weight = slope * F64x8::splat(source.mass);
+                .mul(mu.mul(beta).sub(linear))
+                .mul(inverse_rho_sum.add(inverse_rho_sum));
+            let inside = V::splat(2.0).sub(distance.mul(inverse_h));
+            fastest = fastest.max(zero.sub(mu).where_positive(inside));
+            let s: [V; 6] =
+                std::array::from_fn(|c| stress[c].add(V::splat(source.stress_over_density2[c])));
+            let (xx, yy, zz) = (s[0].sub(pi), s[1].sub(pi), s[2].sub(pi));
+            let weight = slope.mul(V::splat(source.mass));
             let force = [
-                xx.mul_add(r[0], s[3].mul_add(r[1], s[4] * r[2])) * weight,
-                s[3].mul_add(r[0], yy.mul_add(r[1], s[5] * r[2])) * weight,
-                s[4].mul_add(r[0], s[5].mul_add(r[1], zz * r[2])) * weight,
+                xx.mul_add(r[0], s[3].mul_add(r[1], s[4].mul(r[2])))
+                    .mul(weight),
+                s[3].mul_add(r[0], yy.mul_add(r[1], s[5].mul(r[2])))
+                    .mul(weight),
+                s[4].mul_add(r[0], s[5].mul_add(r[1], zz.mul(r[2])))
+                    .mul(weight),
             ];
-            let power = force[2].mul_add(v[2], force[1].mul_add(v[1], force[0] * v[0]));
-            forces.power = forces.power - power * half;
+            let work = force[2].mul_add(v[2], force[1].mul_add(v[1], force[0].mul(v[0])));
+            power = work.mul_add(V::splat(-0.5), power);
             for a in 0..3 {
-                forces.acceleration[a] = forces.acceleration[a] + force[a];
+                acceleration[a] = acceleration[a].add(force[a]);
             }
             if MIRRORED {
-                let mirrored = F64x8::splat(self.mirrored[j as usize]);
+                let mirrored = V::splat(self.mirrored[j as usize]);
                 for a in 0..3 {
-                    forces.from_mirrors[a] = force[a].mul_add(mirrored, forces.from_mirrors[a]);
+                    from_mirrors[a] = force[a].mul_add(mirrored, from_mirrors[a]);
                 }
             }
         }
-        forces
+        Forces {
+            acceleration: acceleration.map(V::store),
+            power: power.store(),
+            approach: fastest.store(),
+            from_mirrors: from_mirrors.map(V::store),
+        }
     }
 }

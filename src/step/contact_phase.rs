@@ -42,9 +42,6 @@ const ENCLOSED_FRACTION: f64 = 0.5;
 impl Simulation {
     /// Foreign fraction, excess and their weights of every particle with foreign neighbours.
     pub(super) fn contact_fractions(&mut self, dt: f64) {
-        if !self.contact.is_active() {
-            return;
-        }
         self.run_fractions();
         let store = &mut self.store;
         for field in [
@@ -79,6 +76,9 @@ impl Simulation {
     }
 
     fn run_fractions(&mut self) {
+        if !self.contact.is_active() {
+            return;
+        }
         let chunks = self.search.foreign.chunks();
         self.contact_phase
             .tasks
@@ -122,8 +122,8 @@ impl Simulation {
         self.sums.clear_rates();
         if self.contact.is_active() {
             self.run_reactions();
-            self.store_reactions();
         }
+        self.store_reactions();
         for force in self.sweeps.from_mirrors.iter().flatten() {
             self.sums.add_plane_force(force);
         }

@@ -4,9 +4,7 @@ use rayon::prelude::*;
 
 use super::simulation::Simulation;
 use crate::domain::Mirrors;
-use crate::neighbours::{
-    ClusterLists, ColumnGrid, ForeignLists, ImageFacts, Sequence,
-};
+use crate::neighbours::{ClusterLists, ColumnGrid, ForeignLists, ImageFacts, Sequence};
 use crate::sph::gradient::MotionRecord;
 
 /// The sequence of images, their motion records and the lists, kept from step to step.
@@ -51,6 +49,7 @@ impl Simulation {
                 position: mirrors.reflect_position(&store.position[base], image.code()),
                 id: store.id[base],
                 group: groups[store.body[base] as usize],
+                smoothing_length: store.smoothing_length[base],
             }
         });
         let blank = MotionRecord {
@@ -81,7 +80,7 @@ impl Simulation {
         }
         search
             .clusters
-            .build(&search.sequence, store.owned(), &search.motion, &search.reach);
+            .build(&search.sequence, store.owned(), &search.reach);
         if self.contact.is_active() {
             let images = search.sequence.images();
             search.foreign.build(

@@ -24,14 +24,12 @@ pub enum SetupError {
     #[error("the case has no particles: check shapes, spacings and symmetry planes")]
     Empty,
     /// More than the program can number on one rank.
-    #[error("rank {rank} would hold {count} particles, more than {limit}: use more ranks")]
+    #[error("a rank would hold {count} particles, more than {limit}: use more ranks")]
     TooMany {
-        /// The rank.
-        rank: usize,
-        /// Its particles.
-        count: usize,
+        /// Particles of the fullest rank.
+        count: u64,
         /// The limit.
-        limit: usize,
+        limit: u64,
     },
     /// The lattices need more identities than there are.
     #[error("the bodies' lattices have too many sites to number; use larger spacings")]
@@ -82,7 +80,7 @@ impl Simulation {
         simulation
             .migration
             .migrate(comm, &slabs, &mut simulation.store);
-        simulation.limit_count(comm)?;
+        limit_count(comm, simulation.store.owned() as u64)?;
         Ok(simulation)
     }
 
@@ -132,7 +130,13 @@ impl Simulation {
     /// Creates the particles of this rank's slab, and no others.
     fn populate(&mut self, comm: &Comm) -> Result<(), SetupError> {
         let boxes = body_boxes(&self.case).ok_or(SetupError::Empty)?;
-        self.slabs = first_slabs(&self.case, comm, &boxes, self.slabs.axis, &mut self.histogram);
+        self.slabs = first_slabs(
+            &self.case,
+            comm,
+            &boxes,
+            self.slabs.axis,
+            &mut self.histogram,
+        );
         let (lower, upper) = self.slabs.range(comm.rank());
         let slab = Slab {
             axis: self.slabs.axis,
@@ -140,6 +144,12 @@ impl Simulation {
             upper,
         };
         let case = &self.case;
+        let count = |body| populate::count(body, case.dimension, &case.symmetry, Some(slab));
+        let total: u64 = case.bodies.iter().map(count).sum();
+        limit_count(comm, total)?;
+        self.store
+            .resize_owned(usize::try_from(total).unwrap_or(usize::MAX));
+        let mut i = 0;
         let mut first_id = 0_u64;
         for (b, body) in case.bodies.iter().enumerate() {
             let material = &case.materials[body.material];
@@ -147,8 +157,6 @@ impl Simulation {
             let velocity = body.velocity.into();
             for site in populate::sites(body, case.dimension, &case.symmetry, Some(slab)) {
                 let store = &mut self.store;
-                let i = store.owned();
-                store.resize_owned(i + 1);
                 store.id[i] = first_id + site.index;
                 store.body[i] = u32::try_from(b).unwrap_or(u32::MAX);
                 store.mass[i] = mass;
@@ -158,33 +166,14 @@ impl Simulation {
                 store.density[i] = material.reference_density;
                 store.predicted_density[i] = material.reference_density;
                 store.smoothing_length[i] = body.smoothing_length;
+                i += 1;
             }
             first_id = first_id
                 .checked_add(populate::index_end(body, case.dimension))
                 .filter(|&id| id < 1 << 62)
                 .ok_or(SetupError::TooManySites)?;
         }
-        self.limit_count(comm)
-    }
-
-    fn limit_count(&self, comm: &Comm) -> Result<(), SetupError> {
-        let count = self.store.owned();
-        let mut words = [count as u64];
-        comm.sum_u64(&mut words);
-        if words[0] == 0 {
-            return Err(SetupError::Empty);
-        }
-        // Halo particles and images need numbers too.
-        let limit = Image::MAX_PARTICLES / 2;
-        let mut most = [count as u64];
-        comm.max_u64(&mut most);
-        if most[0] > limit as u64 {
-            return Err(SetupError::TooMany {
-                rank: comm.rank(),
-                count,
-                limit,
-            });
-        }
+        debug_assert_eq!(i, self.store.owned());
         Ok(())
     }
 
@@ -205,6 +194,19 @@ impl Simulation {
         self.diagnose(comm);
         self.vote(comm)?;
         Ok(())
+    }
+}
+
+/// Refuses a case without particles, or a rank with more than it can number. Collective.
+fn limit_count(comm: &Comm, owned: u64) -> Result<(), SetupError> {
+    // Halo particles and images need numbers too.
+    let limit = Image::MAX_PARTICLES as u64 / 2;
+    let mut most = [owned];
+    comm.max_u64(&mut most);
+    match most[0] {
+        0 => Err(SetupError::Empty),
+        count if count > limit => Err(SetupError::TooMany { count, limit }),
+        _ => Ok(()),
     }
 }
 

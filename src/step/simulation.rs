@@ -69,7 +69,11 @@ impl Simulation {
     #[must_use]
     pub fn is_finished(&self) -> bool {
         self.state.time >= self.case.run.end_time
-            || self.case.run.max_steps.is_some_and(|n| self.state.step >= n)
+            || self
+                .case
+                .run
+                .max_steps
+                .is_some_and(|n| self.state.step >= n)
     }
 
     /// One step of kick–drift–kick. Collective.
@@ -115,9 +119,13 @@ impl Simulation {
         self.timers.lap(Phase::Material);
         self.contact_fractions(dt);
         self.timers.lap(Phase::ContactFractions);
-        self.exchange_stress(comm);
+        self.post_stress(comm);
         self.timers.lap(Phase::HaloStress);
-        self.momentum_and_energy();
+        self.momentum_and_energy(false);
+        self.timers.lap(Phase::Momentum);
+        self.finish_stress();
+        self.timers.lap(Phase::HaloStress);
+        self.momentum_and_energy(true);
         self.timers.lap(Phase::Momentum);
         self.contact_forces();
         self.timers.lap(Phase::ContactForces);
@@ -144,13 +152,20 @@ impl Simulation {
         self.halo.finish_motion(&mut self.store);
     }
 
-    fn exchange_stress(&mut self, comm: &Comm) {
-        let uses = if self.contact.is_active() {
+    fn stress_uses(&self) -> FieldUse {
+        if self.contact.is_active() {
             FieldUse::HALO_FORCES
         } else {
             FieldUse::HALO_STRESS
-        };
-        self.halo.post(comm, &self.store, uses);
+        }
+    }
+
+    fn post_stress(&mut self, comm: &Comm) {
+        self.halo.post(comm, &self.store, self.stress_uses());
+    }
+
+    fn finish_stress(&mut self) {
+        let uses = self.stress_uses();
         self.halo.finish(&mut self.store, uses);
     }
 

@@ -250,9 +250,7 @@ impl Simulation {
         let worst = &mut state.worst;
         if state.initial.kinetic_energy > 0.0 {
             let error = (totals.energy() - state.initial.energy()).abs();
-            worst.energy_error = worst
-                .energy_error
-                .max(error / state.initial.kinetic_energy);
+            worst.energy_error = worst.energy_error.max(error / state.initial.kinetic_energy);
         }
         if state.initial.momentum_scale > 0.0 {
             for a in 0..3 {
@@ -268,12 +266,14 @@ impl Simulation {
         let owned = store.owned();
         let mut sums = (0..owned.div_ceil(GRAIN))
             .into_par_iter()
+            // same bits in any order: exact sums are integers
             .fold(TotalSums::default, |mut sums, chunk| {
                 for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(owned) {
                     sums.add(store, i);
                 }
                 sums
             })
+            // same bits in any order, as above
             .reduce(TotalSums::default, TotalSums::merge)
             .0;
         let mut limbs = Vec::new();
@@ -312,6 +312,7 @@ impl TotalSums {
         }
     }
 
+    #[allow(clippy::needless_pass_by_value, reason = "the form of a reduction")]
     fn merge(mut self, other: Self) -> Self {
         for (sum, other) in self.0.iter_mut().zip(&other.0) {
             sum.merge(other);

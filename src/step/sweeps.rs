@@ -98,9 +98,11 @@ impl Simulation {
             .for_each(|chunk| gradient_chunk(set, chunk, motion, scale, &target)));
     }
 
-    /// Second sweep: accelerations by stress and viscosity, and the power they put into heat.
-    pub(super) fn momentum_and_energy(&mut self) {
-        self.fill_force_records();
+    /// Second sweep: accelerations by stress and viscosity, and the power they put into heat, of
+    /// the clusters that have halo particles among their neighbours or of those that have none,
+    /// which need not wait for messages.
+    pub(super) fn momentum_and_energy(&mut self, halo: bool) {
+        self.fill_force_records(halo);
         let set = instructions();
         let chunks = self.search.clusters.chunks();
         let images = self.search.sequence.images();
@@ -120,16 +122,20 @@ impl Simulation {
             viscosity: *viscosity,
         };
         with_scale!(*scale, scale => chunks
-            .par_iter()
-            .zip(from_mirrors)
-            .for_each(|(chunk, images)| {
+        .par_iter()
+        .zip(from_mirrors)
+        .for_each(|(chunk, images)| {
+            if !halo {
                 images.clear();
-                momentum_chunk(set, chunk, &sources, scale, &target, images);
-            }));
+            }
+            momentum_chunk(set, chunk, halo, &sources, scale, &target, images);
+        }));
     }
 
-    fn fill_force_records(&mut self) {
+    /// Records of halo particles and their images, or of this rank's.
+    fn fill_force_records(&mut self, halo: bool) {
         let store = &self.store;
+        let owned = store.owned();
         let images = self.search.sequence.images();
         let blank = ForceRecord {
             position: [0.0; 3],
@@ -152,6 +158,9 @@ impl Simulation {
             .with_min_len(GRAIN)
             .for_each(|(record, mirrored, image, motion)| {
                 let (base, code) = (image.base(), image.code());
+                if (base >= owned) != halo {
+                    return;
+                }
                 let density = store.density[base];
                 let scale = 1.0 / (density * density);
                 let pressure = store.pressure[base];
@@ -227,8 +236,9 @@ impl<'a> MaterialTarget<'a> {
         gradient: &[crate::sph::lanes::F64x8; 9],
         neighbours: usize,
     ) {
-        let base: [usize; LANES] =
-            cluster.receivers.map(|place| self.images[place as usize].base());
+        let base: [usize; LANES] = cluster
+            .receivers
+            .map(|place| self.images[place as usize].base());
         let mut batch = PointBatch {
             density: [0.0; LANES],
             specific_energy: [0.0; LANES],
@@ -360,13 +370,14 @@ impl<'a> ForceTarget<'a> {
 fn momentum_chunk<S: PairScale>(
     set: Instructions,
     chunk: &Chunk,
+    halo: bool,
     sources: &ForceSources,
     scale: S,
     target: &ForceTarget,
     from_mirrors: &mut Vec<[f64; 3]>,
 ) {
-    for (cluster, neighbours, mirrored) in chunk.iter() {
-        if mirrored {
+    for (cluster, neighbours, among) in chunk.iter().filter(|(_, _, among)| among.halo == halo) {
+        if among.mirrors {
             let forces = run_momentum::<S, true>(set, cluster, neighbours, sources, scale);
             target.store(cluster, &forces);
             for k in 0..cluster.lanes {

@@ -24,21 +24,27 @@ const ERROR: u64 = 0;
 impl Simulation {
     /// Chooses the next Δt. Collective.
     pub(super) fn vote(&mut self, comm: &Comm) -> Result<(), StepError> {
-        let mut words = Vec::new();
+        let mut words = std::mem::take(&mut self.scratch);
         let (dt, reason, id) = self.local_vote();
         comm.all_gather_u64(&[dt, reason, id, self.wishes], &mut words);
-        self.agreed_wishes = words.iter().skip(3).step_by(4).fold(0, |all, one| all | one);
+        self.agreed_wishes = words
+            .iter()
+            .skip(3)
+            .step_by(4)
+            .fold(0, |all, one| all | one);
         let best = words
             .chunks_exact(4)
             .map(|word| (word[0], word[1], word[2]))
             .min()
             .unwrap_or(ABSTAIN);
+        self.scratch = words;
         if best.0 == ERROR {
             return Err(self.post_mortem(comm, best.2));
         }
         self.state.dt = f64::from_bits(best.0);
-        self.state.dt_reason =
-            Reason::ALL[usize::try_from(best.1).unwrap_or(0).min(Reason::ALL.len() - 1)];
+        self.state.dt_reason = Reason::ALL[usize::try_from(best.1)
+            .unwrap_or(0)
+            .min(Reason::ALL.len() - 1)];
         if best.0 == ABSTAIN.0 {
             self.state.dt = f64::INFINITY;
         }
@@ -114,8 +120,7 @@ impl Voter<'_> {
     fn vote(&self, i: usize) -> Vote {
         let (store, case) = (self.store, self.case);
         let (h, c) = (store.smoothing_length[i], store.sound_speed[i]);
-        let signal =
-            c + 0.6 * (case.sph.alpha * c + case.sph.beta * store.approach_speed[i]);
+        let signal = c + 0.6 * (case.sph.alpha * c + case.sph.beta * store.approach_speed[i]);
         let sound = case.time_step.courant * h / signal;
         let (a, b) = (&store.acceleration[i], &store.contact_acceleration[i]);
         let total = [a[0] + b[0], a[1] + b[1], a[2] + b[2]];

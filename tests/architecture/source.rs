@@ -68,7 +68,7 @@ impl Source {
 
     fn new(name: &str, text: String) -> Self {
         let room = name.split_once('/').map_or("", |(room, _)| room).to_owned();
-        let tokens = without_unit_tests(tokens(&text));
+        let tokens = without_unit_tests(&tokens(&text));
         Self {
             name: name.to_owned(),
             room,
@@ -337,7 +337,7 @@ fn character(rest: &[char]) -> usize {
 }
 
 /// Drops each item behind `#[cfg(test)]`, up to its closing brace or semicolon.
-fn without_unit_tests(tokens: Vec<Token>) -> Vec<Token> {
+fn without_unit_tests(tokens: &[Token]) -> Vec<Token> {
     let mark = ["#", "[", "cfg", "(", "test", ")", "]"];
     let mut kept = Vec::new();
     let mut at = 0;
@@ -376,11 +376,10 @@ pub fn sources() -> Vec<Source> {
     while let Some(folder) = folders.pop() {
         for entry in fs::read_dir(&folder).expect("a folder of src is read") {
             let path = entry.expect("an entry of src").path();
-            if path.file_stem().is_some_and(|stem| stem == "tests") {
-                continue;
-            } else if path.is_dir() {
+            let unit_tests = path.file_stem().is_some_and(|stem| stem == "tests");
+            if path.is_dir() && !unit_tests {
                 folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "rs") {
+            } else if !unit_tests && path.extension().is_some_and(|extension| extension == "rs") {
                 files.push(path);
             }
         }

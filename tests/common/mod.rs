@@ -1,10 +1,15 @@
 //! Cases built in code, for tests of the engine.
 #![allow(dead_code, reason = "each test file uses some of these")]
 
+pub mod cloud;
+pub mod random;
+pub mod ranks;
+pub mod sentinel;
+
 use whipple::material::{Strength, VonMises, library};
 use whipple::model::{
-    Axis, Body, Case, ContactMode, DomainOptions, Lattice, LatticeKind, OutputOptions, RunControl,
-    Shape, SmoothingLength, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
+    Axis, Body, Case, ContactMode, DomainOptions, Lattice, LatticeKind, OutputOptions, Overlap,
+    RunControl, Shape, SmoothingLength, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
 };
 
 /// A body on a cubic lattice with h = 1.3 Δp.
@@ -31,7 +36,7 @@ pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
         materials: vec![library::find("aluminium-2024").expect("in the library")],
         bodies,
         contacts: Vec::new(),
-        default_contact: ContactMode::Overlap(Default::default()),
+        default_contact: ContactMode::Overlap(Overlap::default()),
         symmetry: Vec::new(),
         sph: SphOptions {
             alpha: 1.0,

@@ -1,57 +1,22 @@
 //! Ranks under a real `mpirun`, a case, and particles whose every number tells where it belongs.
 
-use std::path::Path;
-use std::process::Command;
+#[path = "../common/ranks.rs"]
+mod ranks;
+#[path = "../common/sentinel.rs"]
+mod sentinel;
 
-use whipple::comm::{Comm, Session, abort_job};
+#[allow(unused_imports, reason = "not every test file needs both")]
+pub use ranks::{is_rank, on_ranks};
+#[allow(unused_imports, reason = "not every test file needs all")]
+pub use sentinel::{id, mix, sentinel};
+
+use whipple::comm::Comm;
 use whipple::model::{
     Body, Case, ContactMode, DomainOptions, Lattice, LatticeKind, OutputOptions, RunControl, Shape,
     SmoothingLength, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
 };
 use whipple::output::snapshot;
 use whipple::particles::{FIELDS, ParticleStore};
-
-const FOLDER: &str = "WHIPPLE_TEST_FOLDER";
-
-/// Runs `task(comm, folder)` of the test called `test` on so many ranks, all in one folder.
-pub fn on_ranks(test: &str, ranks: usize, folder: &Path, task: impl Fn(&Comm, &Path)) {
-    if let Some(folder) = std::env::var_os(FOLDER) {
-        let before = std::panic::take_hook();
-        std::panic::set_hook(Box::new(move |info| {
-            before(info);
-            abort_job(101);
-        }));
-        let (_session, comm) = Session::start().expect("MPI starts");
-        task(&comm, Path::new(&folder));
-        drop(comm);
-        return;
-    }
-    let output = Command::new("timeout")
-        .args(["120", "mpirun", "--quiet", "-n", &ranks.to_string()])
-        .arg(std::env::current_exe().unwrap())
-        .args(["--exact", test, "--nocapture", "--test-threads=1"])
-        .env(FOLDER, folder)
-        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
-        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
-        .env("OMPI_MCA_hwloc_base_binding_policy", "none")
-        .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
-        .env("OMPI_MCA_mpi_yield_when_idle", "1")
-        .output()
-        .expect("mpirun starts");
-    assert!(
-        output.status.success(),
-        "{test} on {ranks} ranks: {}\n{}{}",
-        output.status,
-        String::from_utf8_lossy(&output.stdout),
-        String::from_utf8_lossy(&output.stderr)
-    );
-}
-
-/// Whether this process is a rank that [`on_ranks`] started.
-#[allow(dead_code, reason = "not every test file needs it")]
-pub fn is_rank() -> bool {
-    std::env::var_os(FOLDER).is_some()
-}
 
 /// A case with two bodies and a symmetry plane.
 pub fn case() -> Case {
@@ -121,38 +86,6 @@ pub fn meta(case: &Case) -> snapshot::Meta<'_> {
     }
 }
 
-/// The id of particle k: no order in it, 40 bits.
-pub fn id(k: u64) -> u64 {
-    mix(k) >> 24 << 16 | k
-}
-
-/// The bytes of a field's row. Random bits, so NaN payloads, infinities and −0.0 are among them.
-pub fn sentinel(id: u64, field: usize, bytes: &mut [u8]) {
-    if FIELDS[field].name == "id" {
-        bytes.copy_from_slice(&id.to_ne_bytes());
-        return;
-    }
-    for (component, number) in bytes.chunks_mut(8).enumerate() {
-        let seed = mix(id ^ (field as u64 * 16 + component as u64) << 56);
-        let bits = match seed % 11 {
-            0 => 0x7ff0_0000_dead_beef,
-            1 => 0xfff8_0000_0000_0001,
-            2 => 0x8000_0000_0000_0000,
-            3 => 1,
-            _ => mix(seed),
-        };
-        number.copy_from_slice(&bits.to_ne_bytes()[..number.len()]);
-    }
-}
-
-fn mix(seed: u64) -> u64 {
-    // SplitMix64.
-    let z = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
-}
-
 /// This rank's part of `total` particles, scattered over all ranks but rank 1, in no order of
 /// ids, with halo particles behind the owned ones that must not be written.
 pub fn particles(comm: &Comm, total: u64) -> ParticleStore {
@@ -161,7 +94,9 @@ pub fn particles(comm: &Comm, total: u64) -> ParticleStore {
         1 => size - 1 - u64::from(size == 2),
         rank => rank,
     };
-    let mine: Vec<u64> = (0..total).filter(|&k| owner(k) == comm.rank() as u64).collect();
+    let mine: Vec<u64> = (0..total)
+        .filter(|&k| owner(k) == comm.rank() as u64)
+        .collect();
     let mut store = ParticleStore::default();
     store.resize_owned(mine.len());
     store.resize_halo(3);

@@ -16,7 +16,7 @@ use crate::model::{
     Axis, Case, DomainOptions, OutputOptions, RunControl, SmoothingLength, SphOptions,
     SymmetryPlane, TimeStepOptions,
 };
-use crate::particles::{FIELDS, FieldUse};
+use crate::particles::snapshot_names;
 use check::{Allowed, number, whole};
 use toml::Spanned;
 
@@ -151,19 +151,13 @@ fn output(params: OutputParams) -> Result<OutputOptions, Complaint> {
         checked.transpose()
     };
     let kept = whole(params.checkpoints_kept.as_ref(), "checkpoints_kept", 2, 1)?;
-    let known = || {
-        let fields = FIELDS.iter().filter(|field| {
-            field.uses.meets(FieldUse::SNAPSHOT) || field.uses.meets(FieldUse::ON_DEMAND)
-        });
-        fields.map(|field| field.name)
-    };
     for (n, field) in params.fields.iter().enumerate() {
-        if !known().any(|name| name == field.get_ref()) {
+        if !snapshot_names().any(|name| name == field.get_ref()) {
             return Err(Complaint::unknown(
                 field.span(),
                 "field",
                 field.get_ref(),
-                known(),
+                snapshot_names(),
             ));
         }
         if params.fields[..n].contains(field) {

@@ -8,7 +8,7 @@ use hdf5::{Dataset, File, Group, H5Type, Location};
 use crate::comm::Comm;
 use crate::output::{Block, OutputError};
 
-use super::transfer::{Transfer, call};
+use super::transfer::{call, read_rows};
 use super::{Element, RowType, access, explain};
 
 /// A dataset of a file.
@@ -31,7 +31,6 @@ pub struct Array {
 pub struct Content {
     path: PathBuf,
     file: File,
-    transfer: Transfer,
 }
 
 impl Content {
@@ -43,8 +42,8 @@ impl Content {
         Self::open_with(None, path)
     }
 
-    /// Opens a file on all ranks; every later call is then collective too. Errors are each
-    /// rank's own.
+    /// Opens a file on all ranks together, which share the reading of its records: all make the
+    /// same calls in the same order. Errors are each rank's own.
     ///
     /// # Errors
     /// [`OutputError::Io`] or [`OutputError::Hdf5`].
@@ -55,11 +54,8 @@ impl Content {
     fn open_with(comm: Option<&Comm>, path: &Path) -> Result<Self, OutputError> {
         // The system's message ("no such file") is clearer than HDF5's.
         std::fs::File::open(path).map_err(OutputError::io("open", path))?;
-        let collective = comm.is_some_and(|comm| comm.raw().is_some());
-        let opened = access(comm)
-            .open(path)
-            .and_then(|file| Ok((file, Transfer::new(collective)?)));
-        let (file, transfer) = opened.map_err(|error| OutputError::Hdf5 {
+        let opened = access(comm).open(path);
+        let file = opened.map_err(|error| OutputError::Hdf5 {
             action: "open as HDF5".to_owned(),
             path: path.to_owned(),
             reason: explain(&error),
@@ -67,7 +63,6 @@ impl Content {
         Ok(Self {
             path: path.to_owned(),
             file,
-            transfer,
         })
     }
 
@@ -134,7 +129,7 @@ impl Content {
         bytes: &mut [u8],
     ) -> Result<(), OutputError> {
         let dataset = self.dataset(path)?;
-        let read = self.transfer.read(&dataset, row, block, bytes);
+        let read = read_rows(&dataset, row, block, bytes);
         read.map_err(|e| self.refusal(path, &e))
     }
 

@@ -8,8 +8,8 @@ mod writer;
 pub use content::{Array, Content};
 pub use writer::Writer;
 
-use hdf5::file::FileBuilder;
 use hdf5::Datatype;
+use hdf5::file::FileBuilder;
 use hdf5::types::{FloatSize, IntSize, TypeDescriptor};
 
 use crate::comm::Comm;
@@ -111,6 +111,8 @@ impl RowType {
 /// its final name only when it is whole.
 fn access(comm: Option<&Comm>) -> FileBuilder {
     let mut builder = FileBuilder::new();
+    // Records in few large blocks, not scattered between the arrays.
+    builder.with_fapl(|list| list.meta_block_size(64 << 10));
     match comm.and_then(Comm::raw) {
         Some(raw) => builder.with_fapl(|list| {
             list.mpio(raw, None)

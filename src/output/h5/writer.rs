@@ -1,5 +1,6 @@
 //! A file that all ranks write together.
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use hdf5::plist::dataset_create::FillTime;
@@ -11,7 +12,7 @@ use hdf5_sys::h5f::{H5F_scope_t, H5Fflush};
 use crate::comm::Comm;
 use crate::output::{Block, OutputError, agree, files, on_root};
 
-use super::transfer::{Transfer, call};
+use super::transfer::{call, write_rows};
 use super::{Element, RowType, access, explain};
 
 /// A new file. Every method is collective and gives all ranks the same verdict; after an error
@@ -19,8 +20,8 @@ use super::{Element, RowType, access, explain};
 pub struct Writer<'a> {
     comm: &'a Comm,
     path: PathBuf,
-    file: File,
-    transfer: Transfer,
+    /// Present until it is closed.
+    file: Option<File>,
 }
 
 impl<'a> Writer<'a> {
@@ -29,20 +30,16 @@ impl<'a> Writer<'a> {
     /// # Errors
     /// [`OutputError::Io`] or [`OutputError::Hdf5`].
     pub fn create(comm: &'a Comm, path: &Path) -> Result<Self, OutputError> {
-        // The system's message ("permission denied") is clearer than MPI's.
+        // The system's messages ("permission denied", "no space left") are also clearer.
         on_root(comm, || {
-            let created = std::fs::File::create(path).map(drop);
-            created.map_err(OutputError::io("create", path))
+            keep_room(path).map_err(OutputError::io("create", path))
         })?;
-        let created = access(Some(comm))
-            .create(path)
-            .and_then(|file| Ok((file, Transfer::new(comm.raw().is_some())?)));
-        let (file, transfer) = agree(comm, created.map_err(|e| refusal("create", path, &e)))?;
+        let created = access(Some(comm)).create(path);
+        let file = agree(comm, created.map_err(|e| refusal("create", path, &e)))?;
         Ok(Self {
             comm,
             path: path.to_owned(),
-            file,
-            transfer,
+            file: Some(file),
         })
     }
 
@@ -51,17 +48,17 @@ impl<'a> Writer<'a> {
     /// # Errors
     /// [`OutputError::Hdf5`].
     pub fn group(&self, name: &str) -> Result<(), OutputError> {
-        self.attempt(name, || self.file.create_group(name).map(drop))
+        self.attempt(name, || self.file()?.create_group(name).map(drop))
     }
 
     /// Attaches a number to a group.
     ///
     /// # Errors
     /// [`OutputError::Hdf5`].
-    pub fn number<T: H5Type>(&self, group: &str, name: &str, value: T) -> Result<(), OutputError> {
+    pub fn number<T: H5Type>(&self, group: &str, name: &str, value: &T) -> Result<(), OutputError> {
         self.attempt(name, || {
             let attribute = self.object(group)?.new_attr::<T>().create(name)?;
-            attribute.write_scalar(&value)
+            attribute.write_scalar(value)
         })
     }
 
@@ -84,13 +81,21 @@ impl<'a> Writer<'a> {
     ///
     /// # Errors
     /// [`OutputError::Hdf5`].
-    pub fn vtk_header(&self, group: &str, kind: &str, version: [i64; 2]) -> Result<(), OutputError> {
+    pub fn vtk_header(
+        &self,
+        group: &str,
+        kind: &str,
+        version: [i64; 2],
+    ) -> Result<(), OutputError> {
         self.attempt("the VTK header", || {
             let parent = self.object(group)?;
             let attribute = parent.new_attr::<i64>().shape(2).create("Version")?;
             attribute.write_raw(&version)?;
             let datatype = TypeDescriptor::FixedAscii(kind.len());
-            let attribute = parent.new_attr_builder().empty_as(&datatype).create("Type")?;
+            let attribute = parent
+                .new_attr_builder()
+                .empty_as(&datatype)
+                .create("Type")?;
             let text = FixedAscii::<32>::from_ascii(kind).map_err(|e| e.to_string())?;
             attribute.as_writer().write_scalar(&text)
         })
@@ -112,8 +117,7 @@ impl<'a> Writer<'a> {
             self.new_dataset(name, row, block.total)
                 .map_err(|e| self.refusal(name, &e)),
         )?;
-        // Every rank holds the dataset, so that every rank joins the transfer.
-        self.attempt(name, || self.transfer.write(&dataset, row, block, bytes))
+        self.attempt(name, || write_rows(&dataset, row, block, bytes))
     }
 
     /// Writes a dataset of a few numbers that every rank knows.
@@ -146,24 +150,29 @@ impl<'a> Writer<'a> {
     ///
     /// # Errors
     /// [`OutputError::Hdf5`] or [`OutputError::Io`].
-    pub fn close(self) -> Result<(), OutputError> {
-        let Self {
-            comm,
-            path,
-            file,
-            transfer,
-        } = self;
-        // SAFETY: the file is open.
-        let flushed = call(|| unsafe { H5Fflush(file.id(), H5F_scope_t::H5F_SCOPE_GLOBAL) });
-        drop(transfer);
-        let closed = file.close();
-        let result = flushed.and(closed).map_err(|e| refusal("write", &path, &e));
-        agree(comm, result)?;
-        on_root(comm, || files::sync_file(&path))
+    pub fn close(mut self) -> Result<(), OutputError> {
+        on_root(self.comm, || files::remove(&room(&self.path)))?;
+        self.attempt("the records of", || {
+            let file = self.file()?;
+            // SAFETY: the file is open.
+            call(|| unsafe { H5Fflush(file.id(), H5F_scope_t::H5F_SCOPE_GLOBAL) })
+        })?;
+        let closed = self.file.take().map_or(Ok(()), File::close);
+        agree(
+            self.comm,
+            closed.map_err(|e| refusal("close", &self.path, &e)),
+        )?;
+        on_root(self.comm, || files::sync_file(&self.path))
+    }
+
+    fn file(&self) -> hdf5::Result<&File> {
+        self.file
+            .as_ref()
+            .ok_or_else(|| "the file is closed".into())
     }
 
     fn new_dataset(&self, name: &str, row: RowType, rows: u64) -> hdf5::Result<Dataset> {
-        self.file
+        self.file()?
             .new_dataset_builder()
             .empty_as(&row.element.datatype()?)
             .shape(row.shape(rows))
@@ -174,9 +183,10 @@ impl<'a> Writer<'a> {
 
     /// A dataset or group as the place of attributes.
     fn object(&self, name: &str) -> hdf5::Result<Location> {
-        match self.file.group(name) {
+        let file = self.file()?;
+        match file.group(name) {
             Ok(group) => group.as_location(),
-            Err(_) => self.file.dataset(name)?.as_location(),
+            Err(_) => file.dataset(name)?.as_location(),
         }
     }
 
@@ -188,9 +198,57 @@ impl<'a> Writer<'a> {
         agree(self.comm, task().map_err(|e| self.refusal(what, &e)))
     }
 
+    /// HDF5 only says that a write failed; trying one oneself may tell why.
     fn refusal(&self, what: &str, error: &hdf5::Error) -> OutputError {
-        refusal(&format!("write {what} to"), &self.path, error)
+        let mut reason = explain(error);
+        let probe = self
+            .path
+            .with_extension(format!("probe{}", self.comm.rank()));
+        if let Err(cause) = std::fs::write(&probe, vec![0; 64 << 10]) {
+            reason = format!("{cause} ({reason})");
+        }
+        let _ = files::remove(&probe);
+        OutputError::Hdf5 {
+            action: format!("write {what} to"),
+            path: self.path.clone(),
+            reason,
+        }
     }
+}
+
+impl Drop for Writer<'_> {
+    /// Closes a file that met an error, on all ranks. HDF5 must still be able to write its
+    /// records: else it keeps a dangling handle and crashes when MPI ends. So the room of the
+    /// data is given back first, and that which was kept.
+    fn drop(&mut self) {
+        let Some(file) = self.file.take() else { return };
+        if self.comm.is_root() {
+            let _ = files::remove(&room(&self.path));
+            if let Ok(raw) = std::fs::File::options().write(true).open(&self.path) {
+                let _ = raw.set_len(0);
+            }
+        }
+        self.comm.barrier();
+        let _ = file.close();
+    }
+}
+
+/// Bytes that HDF5's own records of one of our files need at most.
+const RECORDS: usize = 256 << 10;
+
+/// Where those bytes are kept.
+fn room(path: &Path) -> PathBuf {
+    files::partial(path)
+}
+
+/// Makes an empty file, and beside it one that keeps room for HDF5's records until all data are
+/// written. A full disk then shows with the data, whose errors each rank sees and which can be
+/// voted; an error in the records would leave ranks in a collective call for ever.
+fn keep_room(path: &Path) -> std::io::Result<()> {
+    std::fs::File::create(path)?;
+    let mut file = std::fs::File::create(room(path))?;
+    file.write_all(&vec![0; RECORDS])?;
+    file.sync_all()
 }
 
 fn refusal(action: &str, path: &Path, error: &hdf5::Error) -> OutputError {

@@ -1,0 +1,323 @@
+//! Differences of the particles of two files, matched by id.
+
+use std::cmp::Ordering;
+
+use super::super::results::{POINT_DATA, ResultsError, component_names};
+use super::{Report, text};
+use crate::output::Block;
+use crate::output::checkpoint::FIELDS;
+use crate::output::h5::{Array, Content, Element};
+
+/// Rows compared at a time.
+const CHUNK: usize = 1 << 18;
+
+/// Compares two snapshots. Fields that only one has are told: what is written is free.
+pub fn snapshots(
+    a: &Content,
+    b: &Content,
+    what: &str,
+    report: &mut Report,
+) -> Result<(), ResultsError> {
+    let time = |file: &Content| file.all::<f64>("/VTKHDF/FieldData/TimeValue");
+    let (times, mut found) = ([time(a)?, time(b)?], Found::default());
+    if bytemuck::cast_slice::<f64, u64>(&times[0]) != bytemuck::cast_slice::<f64, u64>(&times[1]) {
+        found
+            .lines
+            .push(format!("time: {:?} against {:?}", times[0], times[1]));
+    }
+    let ids = format!("{POINT_DATA}/id");
+    let matching = Matching::new(a, b, &ids, &mut found)?;
+    matching.compare(a, b, "/VTKHDF/Points", true, &mut found)?;
+    let (mine, theirs) = (a.arrays(POINT_DATA)?, b.arrays(POINT_DATA)?);
+    for (one, other, letter) in [(&mine, &theirs, "A"), (&theirs, &mine, "B")] {
+        for array in one.iter().filter(|array| !has(other, array)) {
+            report.note(format!(
+                "{what}: only {letter} has the field {}",
+                array.name
+            ));
+        }
+    }
+    for array in mine.iter().filter(|array| has(&theirs, array)) {
+        let path = format!("{POINT_DATA}/{}", array.name);
+        matching.compare(a, b, &path, true, &mut found)?;
+    }
+    found.book(what, matching.common(), report);
+    Ok(())
+}
+
+/// Compares two checkpoints: all fields, and the run's own state.
+pub fn checkpoints(
+    a: &Content,
+    b: &Content,
+    what: &str,
+    report: &mut Report,
+) -> Result<(), ResultsError> {
+    let mut found = Found::default();
+    let steps = [a.number::<u64>("/", "step")?, b.number("/", "step")?];
+    if steps[0] != steps[1] {
+        found
+            .lines
+            .push(format!("step: {} against {}", steps[0], steps[1]));
+    }
+    let times = [a.number::<f64>("/", "time")?, b.number("/", "time")?];
+    if times[0].to_bits() != times[1].to_bits() {
+        found
+            .lines
+            .push(format!("time: {:?} against {:?}", times[0], times[1]));
+    }
+    for line in text::states(&a.text("/state")?, &b.text("/state")?) {
+        found.lines.push(format!("state {line}"));
+    }
+    let matching = Matching::new(a, b, &format!("{FIELDS}/id"), &mut found)?;
+    let (mine, theirs) = (a.arrays(FIELDS)?, b.arrays(FIELDS)?);
+    for (one, other, letter) in [(&mine, &theirs, "A"), (&theirs, &mine, "B")] {
+        for array in one.iter().filter(|array| !has(other, array)) {
+            found
+                .lines
+                .push(format!("{}: only {letter} has it", array.name));
+        }
+    }
+    for array in mine.iter().filter(|array| has(&theirs, array)) {
+        let path = format!("{FIELDS}/{}", array.name);
+        matching.compare(a, b, &path, false, &mut found)?;
+    }
+    found.book(what, matching.common(), report);
+    Ok(())
+}
+
+fn has(arrays: &[Array], array: &Array) -> bool {
+    arrays.iter().any(|other| other.name == array.name)
+}
+
+/// Differences of one pair of files.
+#[derive(Default)]
+struct Found {
+    lines: Vec<String>,
+    fields: usize,
+    /// Particle id and text of the difference of the lowest id.
+    first: Option<(u64, String)>,
+}
+
+impl Found {
+    fn book(mut self, what: &str, particles: usize, report: &mut Report) {
+        if let Some((_, text)) = &self.first {
+            self.lines.insert(0, format!("first difference: {text}"));
+        }
+        let agreement = format!("{particles} particles agree in {} fields", self.fields);
+        report.book(what, &agreement, &self.lines);
+    }
+}
+
+/// Rows in a row that stand in both files.
+struct Stretch {
+    a: u64,
+    b: u64,
+    count: usize,
+}
+
+impl Stretch {
+    /// Adds a pair of rows behind all others.
+    fn lengthen(stretches: &mut Vec<Self>, a: usize, b: usize) {
+        let (a, b) = (a as u64, b as u64);
+        if let Some(last) = stretches.last_mut() {
+            let count = last.count as u64;
+            if (last.a + count, last.b + count) == (a, b) {
+                last.count += 1;
+                return;
+            }
+        }
+        stretches.push(Self { a, b, count: 1 });
+    }
+}
+
+/// Which rows belong together.
+struct Matching {
+    ids: Vec<u64>,
+    stretches: Vec<Stretch>,
+}
+
+impl Matching {
+    /// Matches the ids of two files, each in ascending order.
+    fn new(a: &Content, b: &Content, path: &str, found: &mut Found) -> Result<Self, ResultsError> {
+        let (mine, theirs) = (a.all::<u64>(path)?, b.all::<u64>(path)?);
+        let mut stretches: Vec<Stretch> = Vec::new();
+        let mut lone: [Vec<u64>; 2] = [Vec::new(), Vec::new()];
+        let (mut row, mut other_row) = (0, 0);
+        loop {
+            let order = match (mine.get(row), theirs.get(other_row)) {
+                (Some(id), Some(other)) => id.cmp(other),
+                (Some(_), None) => Ordering::Less,
+                (None, Some(_)) => Ordering::Greater,
+                (None, None) => break,
+            };
+            match order {
+                Ordering::Less => lone[0].push(mine[row]),
+                Ordering::Greater => lone[1].push(theirs[other_row]),
+                Ordering::Equal => Stretch::lengthen(&mut stretches, row, other_row),
+            }
+            row += usize::from(order.is_le());
+            other_row += usize::from(order.is_ge());
+        }
+        for (letter, ids) in ["A", "B"].into_iter().zip(lone) {
+            if let Some(first) = ids.first() {
+                let count = ids.len();
+                let text = format!("only {letter} has {count} particles; the first has id {first}");
+                found.lines.push(text);
+            }
+        }
+        Ok(Self {
+            ids: mine,
+            stretches,
+        })
+    }
+
+    fn common(&self) -> usize {
+        self.stretches.iter().map(|stretch| stretch.count).sum()
+    }
+
+    /// Compares a field of the particles that both have.
+    fn compare(
+        &self,
+        a: &Content,
+        b: &Content,
+        path: &str,
+        vtk: bool,
+        found: &mut Found,
+    ) -> Result<(), ResultsError> {
+        let (array, other) = (a.array(path)?, b.array(path)?);
+        found.fields += 1;
+        if array.row != other.row {
+            found
+                .lines
+                .push(format!("{}: the types differ", array.name));
+            return Ok(());
+        }
+        let mut tally = Tally::new(&array, vtk);
+        let (mut mine, mut theirs) = (Vec::new(), Vec::new());
+        for stretch in &self.stretches {
+            for start in (0..stretch.count).step_by(CHUNK) {
+                let count = CHUNK.min(stretch.count - start);
+                let block = |first: u64, total: u64| Block {
+                    total,
+                    first: first + start as u64,
+                    count,
+                };
+                mine.resize(count * array.row.bytes(), 0);
+                theirs.resize(count * array.row.bytes(), 0);
+                a.rows(path, array.row, block(stretch.a, array.rows), &mut mine)?;
+                b.rows(path, array.row, block(stretch.b, other.rows), &mut theirs)?;
+                if mine != theirs {
+                    let first = usize::try_from(stretch.a).unwrap_or(usize::MAX) + start;
+                    tally.add(&self.ids[first..first + count], &mine, &theirs);
+                }
+            }
+        }
+        tally.tell(found);
+        Ok(())
+    }
+}
+
+/// Differences of one field.
+struct Tally<'a> {
+    array: &'a Array,
+    names: &'static [&'static str],
+    particles: usize,
+    first: Option<(u64, String)>,
+    largest: f64,
+    at: String,
+}
+
+impl<'a> Tally<'a> {
+    fn new(array: &'a Array, vtk: bool) -> Self {
+        Self {
+            array,
+            names: component_names(array.row.components, vtk),
+            particles: 0,
+            first: None,
+            largest: -1.0,
+            at: String::new(),
+        }
+    }
+
+    fn add(&mut self, ids: &[u64], mine: &[u8], theirs: &[u8]) {
+        let (row, size) = (self.array.row.bytes(), self.array.row.element.bytes());
+        let rows = mine.chunks_exact(row).zip(theirs.chunks_exact(row));
+        for (&id, (mine, theirs)) in ids.iter().zip(rows) {
+            if mine == theirs {
+                continue;
+            }
+            self.particles += 1;
+            let values = mine.chunks_exact(size).zip(theirs.chunks_exact(size));
+            for (k, (mine, theirs)) in values.enumerate() {
+                if mine == theirs {
+                    continue;
+                }
+                let (one, other) = (self.number(mine), self.number(theirs));
+                let place = format!("id {id} {}", self.component(k));
+                let distance = distance(one.0, other.0);
+                if distance > self.largest {
+                    self.largest = distance;
+                    self.at.clone_from(&place);
+                }
+                if self.first.is_none() {
+                    let text = format!("{place}: {} against {}", one.1, other.1);
+                    self.first = Some((id, text));
+                }
+            }
+        }
+    }
+
+    fn component(&self, k: usize) -> String {
+        let name = self.names.get(k).copied().unwrap_or_default();
+        if name.is_empty() {
+            self.array.name.clone()
+        } else {
+            format!("{} {name}", self.array.name)
+        }
+    }
+
+    /// A value as a number and as text that tells all bits.
+    fn number(&self, bytes: &[u8]) -> (f64, String) {
+        let mut wide = [0; 8];
+        wide[..bytes.len()].copy_from_slice(bytes);
+        let bits = u64::from_le_bytes(wide);
+        match self.array.row.element {
+            Element::F64 => {
+                let value = f64::from_bits(bits);
+                if value.is_nan() {
+                    (value, format!("NaN ({bits:#x})"))
+                } else {
+                    (value, format!("{value:?}"))
+                }
+            }
+            #[allow(clippy::cast_precision_loss, reason = "only the size of a difference")]
+            _ => (bits as f64, bits.to_string()),
+        }
+    }
+
+    fn tell(self, found: &mut Found) {
+        let Some(first) = self.first else { return };
+        let unit = if self.array.unit.is_empty() {
+            String::new()
+        } else {
+            format!(" {}", self.array.unit)
+        };
+        found.lines.push(format!(
+            "{}: {} particles differ; first {}; largest difference {:e}{unit} at {}",
+            self.array.name, self.particles, first.1, self.largest, self.at
+        ));
+        if found.first.as_ref().is_none_or(|(id, _)| first.0 < *id) {
+            found.first = Some(first);
+        }
+    }
+}
+
+/// |a − b|, infinite where one of them is not finite.
+fn distance(a: f64, b: f64) -> f64 {
+    let distance = (a - b).abs();
+    if distance.is_finite() {
+        distance
+    } else {
+        f64::INFINITY
+    }
+}

@@ -1,0 +1,154 @@
+//! Differences of the tables of two runs, row by row.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use super::super::results::ResultsError;
+use super::Report;
+
+/// The tables of a run, but for what depends on clocks.
+pub fn names(folder: &Path) -> Result<BTreeSet<String>, ResultsError> {
+    let entries = std::fs::read_dir(folder).map_err(|error| ResultsError::Text {
+        path: folder.to_owned(),
+        reason: error.to_string(),
+    })?;
+    let names = entries
+        .flatten()
+        .map(|e| e.file_name().to_string_lossy().into_owned());
+    let is_table = |name: &String| {
+        let extension = Path::new(name).extension();
+        extension.is_some_and(|e| e == "csv") && name != "performance.csv"
+    };
+    Ok(names.filter(is_table).collect())
+}
+
+struct Table<'a> {
+    columns: Vec<&'a str>,
+    rows: BTreeMap<String, Vec<&'a str>>,
+}
+
+/// Compares the rows that both have: rows of the same step (of the same time where there is no
+/// step) and the same bodies.
+pub fn compare(name: &str, a: &str, b: &str, report: &mut Report) {
+    let (a, b) = (parse(a), parse(b));
+    if a.columns != b.columns {
+        report.book(name, "", &["the columns differ".to_owned()]);
+        return;
+    }
+    let common: Vec<&String> = a
+        .rows
+        .keys()
+        .filter(|key| b.rows.contains_key(*key))
+        .collect();
+    let mut differences = Vec::new();
+    for (k, column) in a.columns.iter().enumerate() {
+        let pairs = common
+            .iter()
+            .map(|&key| (key, a.rows[key].get(k), b.rows[key].get(k)));
+        let different: Vec<_> = pairs.filter(|(_, a, b)| a != b).collect();
+        if let Some(&(key, a, b)) = different.first() {
+            let show = |value: Option<&&str>| value.map_or("nothing", |value| *value).to_owned();
+            let sizes = different.iter().map(|(_, a, b)| distance(*a, *b));
+            let largest = sizes.fold(0.0, f64::max);
+            differences.push(format!(
+                "{column}: {} rows differ; first at {}: {} against {}; largest difference {largest:e}",
+                different.len(),
+                key.trim(),
+                show(a),
+                show(b),
+            ));
+        }
+    }
+    let lone = [a.rows.len() - common.len(), b.rows.len() - common.len()];
+    if common.is_empty() && lone[0] > 0 && lone[1] > 0 {
+        differences.push("they have no row in common".to_owned());
+    }
+    report.book(name, &format!("{} rows agree", common.len()), &differences);
+    for (letter, count) in ["A", "B"].into_iter().zip(lone) {
+        if count > 0 {
+            report.note(format!("{name}: only {letter} has {count} more rows"));
+        }
+    }
+}
+
+fn distance(a: Option<&&str>, b: Option<&&str>) -> f64 {
+    let number = |value: Option<&&str>| value.and_then(|value| value.parse::<f64>().ok());
+    match (number(a), number(b)) {
+        (Some(a), Some(b)) if (a - b).is_finite() => (a - b).abs(),
+        _ => f64::INFINITY,
+    }
+}
+
+fn parse(text: &str) -> Table<'_> {
+    let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+    let columns: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
+    let main = if columns.contains(&"step") {
+        "step"
+    } else {
+        "time"
+    };
+    let is_key = |column: &str| column == main || column.starts_with("body");
+    let mut rows = BTreeMap::new();
+    for line in lines {
+        let values: Vec<&str> = line.split(',').collect();
+        let keys = columns
+            .iter()
+            .zip(&values)
+            .filter(|(column, _)| is_key(column));
+        // Whole numbers in their own order, so that the first difference is the earliest.
+        let key: Vec<String> = keys
+            .map(|(column, value)| match value.parse::<u64>() {
+                Ok(number) => format!("{column} {number:>12}"),
+                Err(_) => format!("{column} {value}"),
+            })
+            .collect();
+        rows.insert(key.join(" "), values);
+    }
+    Table { columns, rows }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn report(a: &str, b: &str) -> Report {
+        let mut report = Report::default();
+        compare("history.csv", a, b, &mut report);
+        report
+    }
+
+    const A: &str = "# units: -,s,J\nstep,time,energy\n0,0.0,1.0\n9,1e-9,1.5\n10,2e-9,2.0\n";
+
+    #[test]
+    fn rows_of_the_same_step_are_compared() {
+        let longer = format!("{A}11,3e-9,9.0\n");
+        let found = report(A, &longer);
+        assert!(found.agrees());
+        assert_eq!(
+            found.lines,
+            [
+                "history.csv: 3 rows agree",
+                "history.csv: only B has 1 more rows"
+            ]
+        );
+    }
+
+    #[test]
+    fn the_first_and_the_largest_difference_are_told() {
+        let found = report(A, &A.replace("1.5", "1.75").replace("2.0", "2.125"));
+        assert_eq!(found.different, 1);
+        let expected = "  energy: 2 rows differ; first at step            9: 1.5 against 1.75; \
+                        largest difference 2.5e-1";
+        assert_eq!(found.lines[1], expected);
+    }
+
+    #[test]
+    fn tables_without_common_rows_or_columns_differ() {
+        let shifted = A
+            .replace("\n0,", "\n1,")
+            .replace("\n9,", "\n8,")
+            .replace("\n10,", "\n12,");
+        assert_eq!(report(A, &shifted).different, 1);
+        assert_eq!(report(A, &A.replace("energy", "work")).different, 1);
+    }
+}

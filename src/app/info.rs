@@ -1,0 +1,323 @@
+//! `whipple info`: what is in a run, a snapshot or a checkpoint.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use super::EXIT_INPUT;
+use super::results::{POINT_DATA, Results, ResultsError, component_names};
+use crate::output::checkpoint::{self, FIELDS};
+use crate::output::h5::{Array, Content, Element};
+use crate::output::{Block, OutputError, RunFolder, series};
+
+/// Tell what is in a run folder, a snapshot or a checkpoint
+///
+/// Of a file: the case, the time, the particles of each body, and each field with its unit and
+/// range. Of a run: where it stands, what it has written, and its figures.
+#[derive(Debug, Clone, clap::Args)]
+#[command(after_help = "Examples:
+  whipple info runs/impact
+  whipple info runs/impact/snapshots/step-00000100.vtkhdf
+  whipple info runs/impact/checkpoints/step-00000100")]
+pub struct InfoArgs {
+    /// Run folder, snapshot (.vtkhdf) or checkpoint
+    #[arg(value_name = "FILE_OR_RUN")]
+    pub path: PathBuf,
+}
+
+/// Rows read at a time.
+const CHUNK: usize = 1 << 18;
+
+/// Runs the command; returns the exit code.
+#[must_use]
+pub fn run(args: &InfoArgs) -> u8 {
+    match describe(&args.path) {
+        Ok(text) => {
+            print!("{text}");
+            0
+        }
+        Err(error) => {
+            eprintln!("error: {error}");
+            EXIT_INPUT
+        }
+    }
+}
+
+/// What the command prints.
+///
+/// # Errors
+/// [`ResultsError`] if the path cannot be read.
+pub fn describe(path: &Path) -> Result<String, ResultsError> {
+    let mut text = Text::default();
+    match Results::open(path)? {
+        Results::Run(folder) => run_folder(&folder, &mut text)?,
+        Results::Snapshot(file) => snapshot(&file, &mut text)?,
+        Results::Checkpoint(file) => checkpoint_state(&file, &mut text)?,
+    }
+    Ok(text.0)
+}
+
+#[derive(Default)]
+struct Text(String);
+
+impl Text {
+    fn entry(&mut self, name: &str, value: impl std::fmt::Display) {
+        let _ = writeln!(self.0, "{:<36} {value}", name.replace('_', " "));
+    }
+}
+
+fn snapshot(file: &Content, text: &mut Text) -> Result<(), ResultsError> {
+    let group = "/whipple";
+    let time = file.all::<f64>("/VTKHDF/FieldData/TimeValue")?;
+    let names: Vec<String> =
+        serde_json::from_str(&file.note(group, "bodies")?).map_err(|error| {
+            let what = format!("the names of its bodies cannot be read ({error})");
+            OutputError::damaged(file.path(), what)
+        })?;
+    text.entry("snapshot", file.path().display());
+    text.entry("title", file.note(group, "title")?);
+    text.entry("step", file.number::<u64>(group, "step")?);
+    text.entry("time", seconds(time.first().copied().unwrap_or(f64::NAN)));
+    let commit = file.note(group, "commit")?;
+    text.entry(
+        "version",
+        format!("{} ({commit})", file.note(group, "version")?),
+    );
+    let ranks: u64 = file.number("/run", "ranks")?;
+    let threads: u64 = file.number("/run", "threads")?;
+    text.entry("ranks x threads", format!("{ranks} x {threads}"));
+    bodies(file, POINT_DATA, &names, text)?;
+    heading(text);
+    field(file, "/VTKHDF/Points", true, text)?;
+    for array in file.arrays(POINT_DATA)? {
+        field(file, &format!("{POINT_DATA}/{}", array.name), true, text)?;
+    }
+    Ok(())
+}
+
+fn checkpoint_state(file: &Content, text: &mut Text) -> Result<(), ResultsError> {
+    let input: toml::Table = file.text("/input")?.parse().unwrap_or_default();
+    let list = input.get("body").and_then(toml::Value::as_array);
+    let names: Vec<String> = list
+        .into_iter()
+        .flatten()
+        .filter_map(|body| body.get("name")?.as_str().map(String::from))
+        .collect();
+    text.entry("checkpoint", file.path().display());
+    if let Some(title) = input.get("title").and_then(toml::Value::as_str) {
+        text.entry("title", title);
+    }
+    text.entry("step", file.number::<u64>("/", "step")?);
+    text.entry("time", seconds(file.number("/", "time")?));
+    let folder = file.path().parent().unwrap_or(Path::new("."));
+    match checkpoint::manifest(folder) {
+        Ok(manifest) => {
+            let (version, commit) = (&manifest.version, &manifest.commit);
+            text.entry(
+                "version",
+                format!("{version} ({commit}), format {}", manifest.format),
+            );
+            text.entry("ranks", manifest.ranks);
+            text.entry("size", format!("{} bytes", manifest.size));
+        }
+        Err(error) => text.entry("not restartable", error),
+    }
+    bodies(file, FIELDS, &names, text)?;
+    heading(text);
+    for array in file.arrays(FIELDS)? {
+        field(file, &format!("{FIELDS}/{}", array.name), false, text)?;
+    }
+    Ok(())
+}
+
+/// Particles, in all and by body.
+fn bodies(
+    file: &Content,
+    group: &str,
+    names: &[String],
+    text: &mut Text,
+) -> Result<(), ResultsError> {
+    let path = format!("{group}/body");
+    let array = file.array(&path)?;
+    let mut counts: Vec<u64> = vec![0; names.len()];
+    for_chunks(file, &path, &array, |bytes| {
+        for body in bytemuck::pod_collect_to_vec::<u8, u32>(bytes) {
+            let body = body as usize;
+            if counts.len() <= body {
+                counts.resize(body + 1, 0);
+            }
+            counts[body] += 1;
+        }
+    })?;
+    text.entry("particles", array.rows);
+    for (body, count) in counts.into_iter().enumerate() {
+        let name = names.get(body).map_or("?", String::as_str);
+        text.entry(&format!("  body {body}"), format!("{count:<10} {name}"));
+    }
+    Ok(())
+}
+
+fn heading(text: &mut Text) {
+    let line = format!(
+        "\n{:<28} {:<8} {:>13} {:>13}",
+        "field", "unit", "min", "max"
+    );
+    let _ = writeln!(text.0, "{line}");
+}
+
+/// A field's unit, and the range of each component.
+fn field(file: &Content, path: &str, vtk: bool, text: &mut Text) -> Result<(), ResultsError> {
+    let array = file.array(path)?;
+    let components = array.row.components;
+    let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; components];
+    let mut odd = 0_u64;
+    for_chunks(file, path, &array, |bytes| {
+        for (k, value) in numbers(array.row.element, bytes).into_iter().enumerate() {
+            let [low, high] = &mut ranges[k % components];
+            if value.is_finite() {
+                (*low, *high) = (low.min(value), high.max(value));
+            } else {
+                odd += 1;
+            }
+        }
+    })?;
+    let names = component_names(components, vtk);
+    for ([low, high], component) in ranges.into_iter().zip(names) {
+        let name = format!("{} {component}", array.name);
+        let unit = if array.unit.is_empty() {
+            "-"
+        } else {
+            &array.unit
+        };
+        let range = match array.row.element {
+            _ if low > high => format!("{0:>13} {0:>13}", "-"),
+            Element::F64 => format!("{low:>13.5e} {high:>13.5e}"),
+            _ => format!("{low:>13} {high:>13}"),
+        };
+        let _ = writeln!(text.0, "{name:<28} {unit:<8} {range}");
+    }
+    if odd > 0 {
+        let _ = writeln!(text.0, "  {odd} of its values are not finite");
+    }
+    Ok(())
+}
+
+#[allow(clippy::cast_precision_loss, reason = "for people")]
+fn numbers(element: Element, bytes: &[u8]) -> Vec<f64> {
+    match element {
+        Element::F64 => bytemuck::pod_collect_to_vec(bytes),
+        Element::U32 => {
+            let values = bytemuck::pod_collect_to_vec::<u8, u32>(bytes);
+            values.into_iter().map(f64::from).collect()
+        }
+        Element::U8 | Element::Text(_) => bytes.iter().map(|&byte| byte.into()).collect(),
+        Element::I64 | Element::U64 => {
+            let values = bytemuck::pod_collect_to_vec::<u8, u64>(bytes);
+            values.into_iter().map(|value| value as f64).collect()
+        }
+    }
+}
+
+fn for_chunks(
+    file: &Content,
+    path: &str,
+    array: &Array,
+    mut see: impl FnMut(&[u8]),
+) -> Result<(), OutputError> {
+    let mut bytes = Vec::new();
+    let mut first = 0;
+    while first < array.rows {
+        let left = usize::try_from(array.rows - first).unwrap_or(CHUNK);
+        let count = CHUNK.min(left);
+        bytes.resize(count * array.row.bytes(), 0);
+        let block = Block {
+            total: array.rows,
+            first,
+            count,
+        };
+        file.rows(path, array.row, block, &mut bytes)?;
+        see(&bytes);
+        first += count as u64;
+    }
+    Ok(())
+}
+
+fn run_folder(folder: &RunFolder, text: &mut Text) -> Result<(), ResultsError> {
+    let status = folder.status()?;
+    text.entry("run", folder.path().display());
+    let input = std::fs::read_to_string(folder.case()).unwrap_or_default();
+    let input: toml::Table = input.parse().unwrap_or_default();
+    if let Some(title) = input.get("title").and_then(toml::Value::as_str) {
+        text.entry("title", title);
+    }
+    let reason = status
+        .reason
+        .map_or_else(String::new, |r| format!(" ({r})"));
+    text.entry("state", format!("{}{reason}", status.state.name()));
+    text.entry("step", status.step);
+    text.entry("time", seconds(status.time));
+    let snapshots = series::read(&folder.series())?;
+    let span = match (snapshots.first(), snapshots.last()) {
+        (Some(first), Some(last)) => {
+            format!(", {} to {}", seconds(first.time), seconds(last.time))
+        }
+        _ => String::new(),
+    };
+    text.entry("snapshots", format!("{}{span}", snapshots.len()));
+    let checkpoints = checkpoint::list(&folder.checkpoints())?;
+    let newest = checkpoints.last().map_or_else(String::new, |(step, _)| {
+        format!(", the newest of step {step}")
+    });
+    text.entry("checkpoints", format!("{}{newest}", checkpoints.len()));
+    summary(&folder.summary(), text)
+}
+
+/// The figures of a finished run.
+fn summary(path: &Path, text: &mut Text) -> Result<(), ResultsError> {
+    let Ok(content) = std::fs::read(path) else {
+        text.entry("summary", "none yet");
+        return Ok(());
+    };
+    let figures: Value = serde_json::from_slice(&content).map_err(|error| ResultsError::Text {
+        path: path.to_owned(),
+        reason: error.to_string(),
+    })?;
+    let _ = writeln!(text.0);
+    for (name, figure) in figures.as_object().into_iter().flatten() {
+        if ["title", "steps", "time"].contains(&name.as_str()) {
+            continue;
+        }
+        match figure {
+            Value::Object(parts) => {
+                text.entry(name, "");
+                for (part, value) in parts {
+                    text.entry(&format!("  {part}"), short(value));
+                }
+            }
+            value => text.entry(name, short(value)),
+        }
+    }
+    Ok(())
+}
+
+/// A figure to five digits.
+fn short(value: &Value) -> String {
+    match value {
+        Value::String(word) => word.clone(),
+        Value::Number(number) if number.is_f64() => {
+            let number = number.as_f64().unwrap_or(f64::NAN);
+            if number != 0.0 && !(1e-3..1e6).contains(&number.abs()) {
+                format!("{number:.4e}")
+            } else {
+                format!("{number:.4}")
+            }
+        }
+        Value::Null => "-".to_owned(),
+        other => other.to_string(),
+    }
+}
+
+fn seconds(time: f64) -> String {
+    super::report::seconds(time)
+}

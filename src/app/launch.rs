@@ -1,0 +1,121 @@
+//! The ranks of a command: started together, and ended together with one message.
+
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use super::driver::STEP;
+use super::run::CommonArgs;
+use super::stop::Signals;
+use super::{EXIT_FAILED, EXIT_INPUT};
+use crate::comm::{Comm, Session, abort_job};
+
+/// Exit code of a program that panicked.
+const EXIT_PANIC: i32 = 101;
+
+/// What a command needs to know of its start.
+pub struct Launch<'a> {
+    /// The ranks.
+    pub comm: &'a Comm,
+    /// When the program started.
+    pub start: Instant,
+    /// Signals that came since.
+    pub signals: Signals,
+}
+
+/// Starts MPI and the threads, and makes a panic on one rank end all ranks. Returns `work`'s exit
+/// code once MPI is finalised.
+pub fn with_ranks(args: &CommonArgs, work: impl FnOnce(&Launch) -> u8) -> u8 {
+    let start = Instant::now();
+    let signals = Signals::watch();
+    let Some((session, comm)) = Session::start() else {
+        eprintln!("error: MPI does not start; is this program linked to the MPI of this mpirun?");
+        return EXIT_FAILED;
+    };
+    abort_on_panic(comm.rank());
+    start_threads(&comm, args.threads.map(usize::from));
+    let code = work(&Launch {
+        comm: &comm,
+        start,
+        signals,
+    });
+    drop(comm);
+    drop(session);
+    code
+}
+
+/// Does something once for all processes of a job that need no MPI for their work.
+pub fn once(speak: impl FnOnce()) {
+    // mpirun may kill the job at the first exit, so nobody leaves before rank 0 has spoken.
+    let launched = ["OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_SIZE"];
+    if launched.iter().any(|name| std::env::var_os(name).is_some())
+        && let Some((_session, comm)) = Session::start()
+    {
+        if comm.is_root() {
+            speak();
+        }
+        comm.barrier();
+    } else {
+        speak();
+    }
+}
+
+/// Says what is wrong with the input, once for all ranks; gives the exit code.
+pub fn complain(comm: &Comm, message: &str) -> u8 {
+    if comm.is_root() {
+        eprintln!("{}", message.trim_end());
+    }
+    // Nobody leaves before rank 0 has spoken: mpirun may kill the job at the first exit.
+    comm.barrier();
+    EXIT_INPUT
+}
+
+fn start_threads(comm: &Comm, wanted: Option<usize>) {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = wanted.unwrap_or_else(|| default_threads(comm, cores));
+    if comm.is_root() && threads > cores {
+        eprintln!(
+            "warning: each rank has {threads} threads and may use {cores} of the cores; if the \
+             machine has more, mpirun has bound the ranks: --bind-to none or --map-by \
+             slot:PE={threads} frees them"
+        );
+    }
+    // Without a pool of its own rayon uses all cores, which is right, if not what was asked.
+    let _ = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .use_current_thread()
+        .build_global();
+}
+
+/// Cores that this process may use over ranks of this machine, unless `RAYON_NUM_THREADS` says
+/// otherwise.
+fn default_threads(comm: &Comm, cores: usize) -> usize {
+    let number = |name| std::env::var(name).ok()?.parse::<usize>().ok();
+    number("RAYON_NUM_THREADS")
+        .unwrap_or_else(|| {
+            let local = number("OMPI_COMM_WORLD_LOCAL_SIZE").unwrap_or_else(|| comm.size());
+            cores / local.max(1)
+        })
+        .max(1)
+}
+
+/// A panic anywhere prints one line and ends all ranks: else it would unwind into `MPI_Finalize`,
+/// which waits for the other ranks, and they for this one.
+fn abort_on_panic(rank: usize) {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        let step = STEP.load(Ordering::Relaxed);
+        let place = info
+            .location()
+            .map(|l| format!(" ({}:{})", l.file(), l.line()))
+            .unwrap_or_default();
+        let what = info
+            .payload_as_str()
+            .unwrap_or("unknown cause")
+            .replace('\n', " ");
+        eprintln!("error: rank {rank}, step {step}: {what}{place}; this is a bug of the program");
+        if std::env::var_os("RUST_BACKTRACE").is_some_and(|wanted| wanted != "0") {
+            usual(info);
+        }
+        abort_job(EXIT_PANIC);
+    }));
+}

@@ -1,0 +1,98 @@
+//! What a path of the command line is: a run, a snapshot or a checkpoint.
+
+use std::path::{Path, PathBuf};
+
+use crate::output::checkpoint;
+use crate::output::h5::Content;
+use crate::output::{OutputError, RunFolder};
+
+/// Group of a snapshot's particle fields.
+pub const POINT_DATA: &str = "/VTKHDF/PointData";
+
+/// Something that a run has written.
+#[derive(Debug)]
+pub enum Results {
+    /// A run's folder.
+    Run(RunFolder),
+    /// A snapshot.
+    Snapshot(Content),
+    /// The state file of a checkpoint.
+    Checkpoint(Content),
+}
+
+/// Why a path cannot be looked at.
+#[derive(Debug, thiserror::Error)]
+pub enum ResultsError {
+    /// It cannot be read.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// It is none of ours.
+    #[error("{} is neither a run folder, a snapshot nor a checkpoint", .0.display())]
+    Unknown(PathBuf),
+    /// Two paths of different kinds.
+    #[error("{a} is a {a_kind} and {b} is a {b_kind}; give two of one kind")]
+    Kinds {
+        /// The first path.
+        a: String,
+        /// What it is.
+        a_kind: &'static str,
+        /// The second path.
+        b: String,
+        /// What that is.
+        b_kind: &'static str,
+    },
+    /// A text of a run cannot be understood.
+    #[error("{} cannot be read: {reason}", path.display())]
+    Text {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+}
+
+impl Results {
+    /// Opens a run folder, a checkpoint's folder or state file, or a snapshot.
+    ///
+    /// # Errors
+    /// [`ResultsError::Output`], [`ResultsError::Unknown`].
+    pub fn open(path: &Path) -> Result<Self, ResultsError> {
+        if RunFolder::is_run(path) {
+            return Ok(Self::Run(RunFolder::at(path)));
+        }
+        let state = checkpoint::state_file(path);
+        if path.is_dir() && !state.is_file() {
+            return Err(ResultsError::Unknown(path.to_owned()));
+        }
+        let file = Content::open(if path.is_dir() { &state } else { path })?;
+        if file.has("VTKHDF") {
+            Ok(Self::Snapshot(file))
+        } else if file.has("fields") {
+            Ok(Self::Checkpoint(file))
+        } else {
+            Err(ResultsError::Unknown(path.to_owned()))
+        }
+    }
+
+    /// What it is, for people.
+    #[must_use]
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Run(_) => "run",
+            Self::Snapshot(_) => "snapshot",
+            Self::Checkpoint(_) => "checkpoint",
+        }
+    }
+}
+
+/// Names of the components of a field of so many; `vtk` for the order that VTK wants.
+#[must_use]
+pub fn component_names(components: usize, vtk: bool) -> &'static [&'static str] {
+    match components {
+        3 => &["x", "y", "z"],
+        6 if vtk => &["xx", "yy", "zz", "xy", "yz", "xz"],
+        6 => &["xx", "yy", "zz", "xy", "xz", "yz"],
+        9 => &["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"],
+        _ => &[""],
+    }
+}

@@ -1,0 +1,420 @@
+//! Messages, migration, halo and balance between real ranks, against what every rank can work out
+//! alone from the list of all particles.
+
+mod common;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use common::random::Random;
+use common::ranks::on_each;
+use common::sentinel::{id, mix, sentinel};
+use whipple::comm::{Comm, Exchange};
+use whipple::domain::{Decomposition, Halo, Histogram, Migration, Mirrors, Slabs, balance};
+use whipple::model::{Axis, SymmetryPlane};
+use whipple::particles::{FIELDS, FieldInfo, FieldUse, ParticleStore};
+
+/// Particles of the tests, spread over a box of this many units.
+const TOTAL: u64 = 400;
+const LENGTH: f64 = 10.0;
+
+/// Where particle k stands in a round: in the box but for some that have flown off.
+fn position(k: u64, round: u64) -> [f64; 3] {
+    let mut random = Random::new(mix(k) ^ round);
+    let far = if random.below(40) == 0 { 1e5 } else { 1.0 };
+    std::array::from_fn(|_| far * random.within(0.0, LENGTH))
+}
+
+/// What a field's value of particle k should be: its position in this round, or its sentinel.
+fn expected(k: u64, row: usize, round: u64) -> Vec<u8> {
+    let field = &FIELDS[row];
+    let mut bytes = vec![0; field.kind.bytes()];
+    if field.name == "position" {
+        let x = position(k, round);
+        bytes.copy_from_slice(x.map(f64::to_ne_bytes).as_flattened());
+    } else {
+        sentinel(id(k), row, &mut bytes);
+    }
+    bytes
+}
+
+fn value<'a>(store: &'a ParticleStore, field: &FieldInfo, slot: usize) -> &'a [u8] {
+    let size = field.kind.bytes();
+    &store.bytes(field.id)[slot * size..(slot + 1) * size]
+}
+
+fn set(
+    store: &mut ParticleStore,
+    slot: usize,
+    k: u64,
+    round: u64,
+    only: impl Fn(&FieldInfo) -> bool,
+) {
+    for (row, field) in FIELDS.iter().enumerate().filter(|(_, field)| only(field)) {
+        let size = field.kind.bytes();
+        let bytes = expected(k, row, round);
+        store.bytes_mut(field.id)[slot * size..(slot + 1) * size].copy_from_slice(&bytes);
+    }
+}
+
+/// Asserts that slot `slot` holds particle k in all fields with any of `uses`.
+fn assert_holds(store: &ParticleStore, slot: usize, k: u64, round: u64, uses: FieldUse) {
+    for (row, field) in FIELDS.iter().enumerate() {
+        if field.uses.meets(uses) {
+            assert!(
+                value(store, field, slot) == expected(k, row, round),
+                "{} of particle {k} in slot {slot}",
+                field.name
+            );
+        }
+    }
+}
+
+/// Particle numbers by id.
+fn numbers() -> BTreeMap<u64, u64> {
+    (0..TOTAL).map(|k| (id(k), k)).collect()
+}
+
+/// This rank's particles of a random share of all, with sentinels in every field.
+fn scattered(comm: &Comm, seed: u64) -> ParticleStore {
+    let mut random = Random::new(seed);
+    let mine: Vec<u64> = (0..TOTAL)
+        .filter(|_| random.below(comm.size()) == comm.rank())
+        .collect();
+    let mut store = ParticleStore::default();
+    store.resize_owned(mine.len());
+    for (slot, &k) in mine.iter().enumerate() {
+        set(&mut store, slot, k, 0, |_| true);
+    }
+    store
+}
+
+/// Slabs at random places, some empty; every third round, all ranks but one are.
+fn random_slabs(comm: &Comm, axis: usize, random: &mut Random) -> Slabs {
+    let mut faces: Vec<f64> = (1..comm.size())
+        .map(|_| random.within(-0.2 * LENGTH, 1.2 * LENGTH))
+        .collect();
+    match random.below(3) {
+        0 => {
+            let lone = random.below(comm.size());
+            for (rank, face) in faces.iter_mut().enumerate() {
+                *face = if rank < lone { -1e9 } else { 1e9 };
+            }
+        }
+        1 if faces.len() > 1 => faces[1] = faces[0],
+        _ => {}
+    }
+    faces.sort_by(f64::total_cmp);
+    Slabs::new(axis, faces)
+}
+
+/// Every particle is on the rank that owns its place, whole; together they are all there.
+fn check_owners(comm: &Comm, slabs: &Slabs, store: &ParticleStore, round: u64) {
+    let numbers = numbers();
+    for slot in 0..store.owned() {
+        let k = numbers[&store.id[slot]];
+        assert_eq!(slabs.owner(&position(k, round)), comm.rank());
+        assert_holds(store, slot, k, round, FieldUse::LEAVING);
+    }
+    let mine: BTreeSet<u64> = store.id[..store.owned()].iter().copied().collect();
+    assert_eq!(mine.len(), store.owned());
+    let mut count = [mine.len() as u64];
+    comm.sum_u64(&mut count);
+    assert_eq!(count, [TOTAL]);
+}
+
+/// Moves everybody somewhere else, reorders the store, and gives it the values of `round`.
+fn next_round(store: &mut ParticleStore, round: u64, random: &mut Random) {
+    let mut order: Vec<u32> = (0..u32::try_from(store.owned()).unwrap()).collect();
+    random.shuffle(&mut order);
+    store.keep(&order, &mut Vec::new());
+    let numbers = numbers();
+    for slot in 0..store.owned() {
+        let k = numbers[&store.id[slot]];
+        // Fields that need not travel get their values again; all others had better be right.
+        assert_holds(store, slot, k, round - 1, FieldUse::LEAVING);
+        set(store, slot, k, round, |field| {
+            field.name == "position" || !field.uses.meets(FieldUse::LEAVING)
+        });
+    }
+}
+
+fn migrate_any_distance(comm: &Comm) {
+    let mut store = scattered(comm, 5);
+    let mut migration = Migration::default();
+    let mut random = Random::new(6);
+    let mut own = Random::new(7 + comm.rank() as u64);
+    let mut was_empty = false;
+    let mut filled_again = false;
+    for round in 1..30 {
+        next_round(&mut store, round, &mut own);
+        let slabs = random_slabs(comm, random.below(3), &mut random);
+        migration.migrate(comm, &slabs, &mut store);
+        check_owners(comm, &slabs, &store, round);
+        filled_again |= was_empty && store.owned() > 0;
+        was_empty |= store.owned() == 0;
+    }
+    assert!(comm.size() == 1 || filled_again);
+    assert_eq!(migration.traffic().messages > 0, comm.size() > 1);
+}
+
+#[test]
+fn migration_carries_every_field_by_any_distance() {
+    on_each(
+        "migration_carries_every_field_by_any_distance",
+        &[1, 3, 5],
+        migrate_any_distance,
+    );
+}
+
+/// The images (particle, code) that stand within reach of any particle of this rank, from the
+/// list of all particles.
+fn needed(
+    comm: &Comm,
+    slabs: &Slabs,
+    mirrors: &Mirrors,
+    round: u64,
+    reach: impl Fn(u64) -> f64,
+) -> BTreeSet<(u64, u8)> {
+    let all: Vec<_> = (0..TOTAL).map(|k| (k, position(k, round))).collect();
+    let mut needed = BTreeSet::new();
+    for &(i, x) in &all {
+        if slabs.owner(&x) != comm.rank() {
+            continue;
+        }
+        for &(j, y) in &all {
+            for code in 0..8_u8 {
+                if (0..3).any(|a| code >> a & 1 == 1 && mirrors.plane(a).is_none()) {
+                    continue;
+                }
+                let y = mirrors.reflect_position(&y, code);
+                let r2: f64 = (0..3).map(|a| (x[a] - y[a]).powi(2)).sum();
+                if r2 < (reach(i) + reach(j)).powi(2) {
+                    needed.insert((j, code));
+                }
+            }
+        }
+    }
+    needed
+}
+
+/// Reach of a particle: one for most, some reach much farther.
+fn reach_of(k: u64, scale: f64) -> f64 {
+    scale * if mix(k).is_multiple_of(50) { 3.0 } else { 1.0 }
+}
+
+fn check_halo(
+    comm: &Comm,
+    store: &ParticleStore,
+    halo: &Halo,
+    needed: &BTreeSet<(u64, u8)>,
+    round: u64,
+) {
+    let numbers = numbers();
+    let mut held = BTreeSet::new();
+    let mut copies = BTreeSet::new();
+    for image in halo.images() {
+        let slot = image.base();
+        assert!(slot < store.owned() + store.halo());
+        let k = numbers[&store.id[slot]];
+        assert!(held.insert((k, image.code())), "an image twice");
+        if slot >= store.owned() {
+            copies.insert(slot);
+        }
+    }
+    assert!(needed.is_subset(&held));
+    // Whoever came has at least one image, and only ranks with particles have a halo at all.
+    assert_eq!(copies.len(), store.halo());
+    assert!(store.owned() > 0 || store.halo() == 0);
+    assert!(comm.size() > 1 || store.halo() == 0);
+    for slot in 0..store.owned() + store.halo() {
+        let k = numbers[&store.id[slot]];
+        assert_holds(store, slot, k, round, FieldUse::HALO_MOTION);
+    }
+}
+
+fn exchange_halos(comm: &Comm) {
+    let mut random = Random::new(16);
+    let mut own = Random::new(17 + comm.rank() as u64);
+    let mut store = scattered(comm, 15);
+    let mut migration = Migration::default();
+    let mut round = 0;
+    let numbers = numbers();
+    let mut farther = false;
+    for axis in 0..3 {
+        for planes in 0..=3 {
+            let planes: Vec<SymmetryPlane> = Axis::ALL[..planes]
+                .iter()
+                .map(|&axis| SymmetryPlane {
+                    axis,
+                    position: -0.25,
+                })
+                .collect();
+            let mirrors = Mirrors::new(&planes);
+            let mut halo = Halo::new(axis, mirrors);
+            // The same halo is used again with more particles and with fewer.
+            for scale in [0.4, 2.0, 0.1] {
+                round += 1;
+                next_round(&mut store, round, &mut own);
+                let slabs = random_slabs(comm, axis, &mut random);
+                migration.migrate(comm, &slabs, &mut store);
+                for slot in 0..store.owned() {
+                    let k = numbers[&store.id[slot]];
+                    set(&mut store, slot, k, round, |_| true);
+                }
+                let reach = |k: u64| reach_of(k, scale);
+                halo.post_motion(comm, &mut store, |store, i| reach(numbers[&store.id[i]]));
+                halo.finish_motion(&mut store);
+                let needed = needed(comm, &slabs, &mirrors, round, reach);
+                check_halo(comm, &store, &halo, &needed, round);
+                for uses in [FieldUse::HALO_STRESS, FieldUse::HALO_FORCES] {
+                    halo.post(comm, &store, uses);
+                    halo.finish(&mut store, uses);
+                    for slot in 0..store.owned() + store.halo() {
+                        assert_holds(&store, slot, numbers[&store.id[slot]], round, uses);
+                    }
+                }
+                for slot in 0..store.owned() {
+                    let k = numbers[&store.id[slot]];
+                    assert_holds(&store, slot, k, round, FieldUse::LEAVING);
+                }
+                farther |= (store.owned()..store.owned() + store.halo())
+                    .any(|slot| slabs.owner(&store.position[slot]).abs_diff(comm.rank()) > 1);
+            }
+        }
+    }
+    assert!(
+        comm.size() < 3 || comm.any(farther),
+        "no halo beyond the next rank"
+    );
+}
+
+#[test]
+fn halos_carry_every_field_of_every_image_in_reach() {
+    on_each(
+        "halos_carry_every_field_of_every_image_in_reach",
+        &[1, 3, 5],
+        exchange_halos,
+    );
+}
+
+/// The byte at a place of the message of `round` from one rank to another.
+#[allow(clippy::cast_possible_truncation, reason = "any byte will do")]
+fn byte(round: usize, from: usize, to: usize, at: usize) -> u8 {
+    mix((round * 1000 + from * 100 + to * 10) as u64 + at as u64 / 64).to_ne_bytes()[2]
+}
+
+fn exchange_messages(comm: &Comm) {
+    let mut random = Random::new(23);
+    let mut exchange = Exchange::default();
+    let size = comm.size();
+    let mut sent = 0;
+    for round in 0..60 {
+        // Who talks to whom, and how much each way: the same on all ranks.
+        let mut length = vec![None; size * size];
+        for a in 0..size {
+            for b in 0..=a {
+                if random.below(3) > 0 {
+                    for (from, to) in [(a, b), (b, a)] {
+                        let most = [1, 50, 70_000, 3_000_000][random.below(4)];
+                        length[from * size + to] = Some(random.below(most));
+                    }
+                }
+            }
+        }
+        let me = comm.rank();
+        let mut peers: Vec<usize> = (0..size)
+            .filter(|&r| length[me * size + r].is_some())
+            .collect();
+        Random::new(me as u64).shuffle(&mut peers);
+        exchange.set_peers(peers.iter().copied());
+        assert_eq!(exchange.peers(), peers.len());
+        for (k, &peer) in peers.iter().enumerate() {
+            let bytes = length[me * size + peer].unwrap();
+            assert_eq!(exchange.rank(k), peer);
+            let message = (0..bytes).map(|at| byte(round, me, peer, at));
+            exchange.outgoing(k).extend(message);
+            sent += bytes as u64;
+            if round % 2 == 0 {
+                exchange.expect(k, length[peer * size + me].unwrap());
+            }
+        }
+        if round % 2 == 1 {
+            exchange.post_sizes(comm);
+        }
+        exchange.post(comm);
+        exchange.wait();
+        for (k, &peer) in peers.iter().enumerate() {
+            let bytes = length[peer * size + me].unwrap();
+            let wanted: Vec<u8> = (0..bytes).map(|at| byte(round, peer, me, at)).collect();
+            assert!(
+                exchange.incoming(k) == wanted,
+                "round {round}, {peer} to {me}"
+            );
+        }
+    }
+    assert!(exchange.traffic.bytes >= sent);
+}
+
+#[test]
+fn messages_of_any_size_between_any_ranks() {
+    on_each(
+        "messages_of_any_size_between_any_ranks",
+        &[2, 5],
+        exchange_messages,
+    );
+}
+
+fn balance_work(comm: &Comm) {
+    let mut store = scattered(comm, 31);
+    let mut migration = Migration::default();
+    let mut histogram = Histogram::default();
+    let numbers = numbers();
+    for round in 1..12_u64 {
+        // Work unevenly spread; in the last rounds all particles stand in few places.
+        let place = |k: u64| match round {
+            10 => [1.0; 3],
+            11 => [if k.is_multiple_of(2) { 1.0 } else { 2.0 }; 3],
+            _ => position(k, round).map(|x| x.min(LENGTH)),
+        };
+        let work = |k: u64| u32::try_from(mix(k ^ round) % 1000).unwrap();
+        for slot in 0..store.owned() {
+            let k = numbers[&store.id[slot]];
+            store.position[slot] = place(k);
+            store.work[slot] = work(k);
+        }
+        let axis = usize::try_from(round % 3).unwrap();
+        let before = Slabs::new(axis, vec![f64::INFINITY; comm.size() - 1]);
+        let positions = &store.position[..store.owned()];
+        let slabs = balance(comm, &before, positions, &store.work, &mut histogram);
+        // The same faces everywhere.
+        let mut faces = Vec::new();
+        let mine: Vec<u64> = slabs.faces().iter().map(|face| face.to_bits()).collect();
+        comm.all_gather_u64(&mine, &mut faces);
+        assert!(faces.chunks(mine.len().max(1)).all(|theirs| theirs == mine));
+        assert!(slabs.faces().is_sorted());
+
+        migration.migrate(comm, &slabs, &mut store);
+        let share = |k: u64| u64::from(work(k).max(1));
+        let mine: u64 = store.id[..store.owned()]
+            .iter()
+            .map(|id| share(numbers[id]))
+            .sum();
+        let total: u64 = (0..TOTAL).map(share).sum();
+        let even = total / comm.size() as u64;
+        match round {
+            10 => assert!(mine == 0 || mine == total),
+            11 => assert!(comm.size() == 1 || mine <= total / 2 + total / 10),
+            // A face is off by half of what stands in its plane, which is a particle or two (and
+            // those beyond the end of the box, who share the last).
+            _ => assert!(mine < even + 2500, "round {round}: {mine} of {total}"),
+        }
+    }
+    // Nobody anywhere: the faces stay.
+    let slabs = Slabs::new(0, vec![1.0; comm.size() - 1]);
+    assert_eq!(balance(comm, &slabs, &[], &[], &mut histogram), slabs);
+}
+
+#[test]
+fn balance_evens_out_the_work() {
+    on_each("balance_evens_out_the_work", &[1, 4], balance_work);
+}

@@ -1,0 +1,84 @@
+//! Law 4: a step allocates nothing once it is warmed up.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use whipple::comm::Comm;
+use whipple::input;
+use whipple::step::Simulation;
+
+/// Counts allocations of all threads.
+struct Counting;
+
+static COUNT: AtomicU64 = AtomicU64::new(0);
+
+// SAFETY: hands every call to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: the caller keeps the contract of `alloc`.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller keeps the contract of `dealloc`.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        COUNT.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: the caller keeps the contract of `realloc`.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Two blocks in touch, at rest: contact, mirrors and lists are busy, and their sizes stay.
+const CASE: &str = r#"
+title = "Two blocks in touch"
+dimension = 3
+spacing = "0.1 mm"
+
+[run]
+end_time = "1 ms"
+
+[material.aluminium]
+library = "aluminium-2024"
+
+[[body]]
+name = "below"
+material = "aluminium"
+shape.box = { lower = ["0 mm", "0 mm", "-0.8 mm"], upper = ["2 mm", "2 mm", "0 mm"] }
+
+[[body]]
+name = "above"
+material = "aluminium"
+shape.box = { lower = ["0 mm", "0 mm", "0 mm"], upper = ["1 mm", "1 mm", "0.8 mm"] }
+
+[[symmetry]]
+axis = "x"
+position = 0
+
+[[symmetry]]
+axis = "y"
+position = 0
+"#;
+
+#[test]
+fn a_warm_step_allocates_nothing() {
+    let comm = Comm::solo();
+    let case = input::parse("case", CASE, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let mut simulation = Simulation::start(case, &comm).expect("it starts");
+    for _ in 0..20 {
+        simulation.advance(&comm).expect("a step");
+    }
+    let before = COUNT.load(Ordering::Relaxed);
+    for _ in 0..20 {
+        simulation.advance(&comm).expect("a step");
+    }
+    let allocations = COUNT.load(Ordering::Relaxed) - before;
+    // The thread pool now and then adds a block of 63 jobs to a queue; nothing else may.
+    assert!(allocations <= 20, "{allocations} allocations in 20 steps");
+}

@@ -1,0 +1,240 @@
+//! Law 1: the same bits for any ranks and threads, and through a restart, by the real program
+//! under the real `mpirun`, compared by `whipple compare` field by field. Every run fills what is
+//! not state with NaN between steps.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// Coarse quarter impact: some 3,000 particles, in contact across slab faces, two symmetry
+/// planes, to the end of the case with checkpoints on the way.
+const QUARTER: &[&str] = &[
+    "inputs/quarter-impact",
+    "--set",
+    "spacing=0.05mm",
+    "--set",
+    "output.checkpoint_every=0.04us",
+];
+
+fn whipple(ranks: usize, arguments: &[&str]) -> Output {
+    let root = env!("CARGO_MANIFEST_DIR");
+    let script = "source jobs/env.sh; exec mpirun -n \"$0\" \"$@\"";
+    Command::new("bash")
+        .current_dir(root)
+        .args(["-c", script, &ranks.to_string()])
+        .arg(env!("CARGO_BIN_EXE_whipple"))
+        .args(arguments)
+        .output()
+        .expect("bash runs")
+}
+
+fn must(output: &Output, code: i32) {
+    assert_eq!(
+        output.status.code(),
+        Some(code),
+        "{}{}",
+        String::from_utf8_lossy(&output.stdout),
+        String::from_utf8_lossy(&output.stderr)
+    );
+}
+
+/// Runs a case to its end.
+fn run(ranks: usize, threads: usize, case: &[&str], more: &[&str], out: &Path) {
+    let threads = threads.to_string();
+    let mut arguments = vec!["run"];
+    arguments.extend(case);
+    arguments.extend(more);
+    arguments.extend(["--threads", &threads, "--poison", "--force", "--out"]);
+    arguments.push(out.to_str().expect("a plain path"));
+    must(&whipple(ranks, &arguments), 0);
+}
+
+fn assert_same(a: &Path, b: &Path, what: &str) {
+    let output = Command::new(env!("CARGO_BIN_EXE_whipple"))
+        .arg("compare")
+        .args([a, b])
+        .output()
+        .expect("the program runs");
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{what}:\n{text}");
+    assert!(text.contains("agree to the last bit"), "{what}:\n{text}");
+}
+
+fn folder() -> (tempfile::TempDir, impl Fn(&str) -> PathBuf) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().to_owned();
+    (folder, move |name: &str| path.join(name))
+}
+
+#[test]
+fn any_ranks_and_threads() {
+    let (_keep, at) = folder();
+    let reference = at("1x1");
+    run(1, 1, QUARTER, &[], &reference);
+    for (ranks, threads) in [
+        (1, 2),
+        (2, 1),
+        (2, 2),
+        (3, 1),
+        (3, 2),
+        (4, 1),
+        (4, 2),
+        (7, 1),
+        (7, 2),
+    ] {
+        let what = format!("{ranks} ranks × {threads} threads");
+        let other = at(&what);
+        run(ranks, threads, QUARTER, &[], &other);
+        assert_same(&reference, &other, &what);
+    }
+}
+
+#[test]
+fn slabs_along_and_across_the_impact_balanced_or_not() {
+    let (_keep, at) = folder();
+    let reference = at("reference");
+    run(1, 1, QUARTER, &[], &reference);
+    for axis in ["x", "y", "z"] {
+        for balance in [0, 7] {
+            let what = format!("axis {axis}, balance every {balance}");
+            let other = at(&what);
+            let axis = format!("domain.axis={axis}");
+            let balance = format!("domain.balance_every={balance}");
+            run(3, 1, QUARTER, &["--set", &axis, "--set", &balance], &other);
+            assert_same(&reference, &other, &what);
+        }
+    }
+}
+
+#[test]
+fn every_contact_mode_and_variable_h() {
+    let (_keep, at) = folder();
+    for options in [
+        ["contact.mode=potential", "run.end_time=0.05us"],
+        ["contact.mode=kernel", "run.end_time=0.05us"],
+        ["contact.mode=none", "run.end_time=0.05us"],
+        ["sph.smoothing_length=variable", "run.end_time=0.1us"],
+        ["sph.smoothing_length=constant", "run.end_time=0.1us"],
+    ] {
+        let more = ["--set", options[0], "--set", options[1]];
+        let (one, three) = (
+            at(&format!("{}1", options[0])),
+            at(&format!("{}3", options[0])),
+        );
+        run(1, 2, QUARTER, &more, &one);
+        run(3, 1, QUARTER, &more, &three);
+        assert_same(&one, &three, options[0]);
+    }
+}
+
+#[test]
+fn stop_and_restart_on_other_ranks() {
+    let (_keep, at) = folder();
+    let (reference, stopped) = (at("reference"), at("stopped"));
+    run(1, 2, QUARTER, &[], &reference);
+    run(3, 1, QUARTER, &["--until", "0.03us"], &stopped);
+    let path = stopped.to_str().expect("a plain path");
+    let stop_again = ["restart", path, "--until", "0.09us", "--poison", "-t", "2"];
+    must(&whipple(1, &stop_again), 0);
+    must(&whipple(4, &["restart", path, "--poison", "-t", "1"]), 0);
+    assert_same(&reference, &stopped, "restart on 1 and 4 ranks");
+
+    // From a checkpoint on the way into a folder of its own.
+    let mut checkpoints: Vec<PathBuf> = std::fs::read_dir(reference.join("checkpoints"))
+        .expect("checkpoints")
+        .map(|entry| entry.expect("an entry").path())
+        .collect();
+    checkpoints.sort();
+    let from = checkpoints[0].to_str().expect("a plain path");
+    let elsewhere = at("elsewhere");
+    let out = elsewhere.to_str().expect("a plain path");
+    must(&whipple(2, &["restart", from, "--poison", "--out", out]), 0);
+    let last = |run: &Path| {
+        let mut files: Vec<PathBuf> = std::fs::read_dir(run.join("snapshots"))
+            .expect("snapshots")
+            .map(|entry| entry.expect("an entry").path())
+            .filter(|path| path.extension().is_some_and(|e| e == "vtkhdf"))
+            .collect();
+        files.sort();
+        files.pop().expect("a snapshot")
+    };
+    assert_same(&last(&reference), &last(&elsewhere), "restart elsewhere");
+}
+
+/// Five cubes of as many particles each, one to a slab of faces that never move. Two of them fly
+/// along the row, graze what they pass and hit the last: slabs lose all particles and get others.
+const FLYBY: &str = r#"
+title = "Two cubes fly along a row of three"
+dimension = 3
+spacing = "0.1 mm"
+
+[run]
+end_time = "4 us"
+
+[domain]
+axis = "x"
+balance_every = 0
+
+[output]
+snapshot_every = "0.5 us"
+checkpoint_every = "2 us"
+history_every = 5
+
+[material.aluminium]
+library = "aluminium-2024"
+
+[[body]]
+name = "second"
+material = "aluminium"
+shape.box = { size = ["0.5 mm", "0.5 mm", "0.5 mm"], centre = ["-3 mm", "0 mm", "0.56 mm"] }
+velocity = ["4 km/s", "0 km/s", "-0.1 km/s"]
+
+[[body]]
+name = "post"
+material = "aluminium"
+shape.box = { size = ["0.5 mm", "0.5 mm", "0.5 mm"], centre = ["0 mm", "0 mm", "0 mm"] }
+
+[[body]]
+name = "first"
+material = "aluminium"
+shape.box = { size = ["0.5 mm", "0.5 mm", "0.5 mm"], centre = ["2 mm", "0 mm", "0.5 mm"] }
+velocity = ["3 km/s", "0 km/s", "0 km/s"]
+
+[[body]]
+name = "block"
+material = "aluminium"
+shape.box = { size = ["0.5 mm", "0.5 mm", "0.5 mm"], centre = ["5 mm", "0 mm", "0 mm"] }
+
+[[body]]
+name = "wall"
+material = "aluminium"
+shape.box = { size = ["0.5 mm", "0.5 mm", "0.5 mm"], centre = ["12 mm", "0 mm", "0.3 mm"] }
+"#;
+
+#[test]
+fn fragments_that_cross_slabs_and_ranks_that_run_empty() {
+    let (_keep, at) = folder();
+    let case = at("flyby.toml");
+    std::fs::write(&case, FLYBY).expect("the case is written");
+    let case = [case.to_str().expect("a plain path")];
+    let (one, five) = (at("one"), at("five"));
+    run(1, 2, &case, &[], &one);
+    run(5, 1, &case, &[], &five);
+    assert_same(&one, &five, "five ranks with fixed faces");
+
+    let table = std::fs::read_to_string(five.join("performance.csv")).expect("the table");
+    let mut lines = table.lines().filter(|line| !line.starts_with('#'));
+    let header: Vec<&str> = lines.next().expect("a header").split(',').collect();
+    let column = header.iter().position(|name| *name == "empty_ranks");
+    let column = column.expect("the column empty_ranks");
+    let empty: Vec<u32> = lines
+        .map(|line| line.split(',').nth(column).expect("a value"))
+        .map(|value| value.parse().expect("a count"))
+        .collect();
+    let fills = empty.windows(2).any(|pair| pair[1] < pair[0]);
+    let empties = empty.windows(2).any(|pair| pair[1] > pair[0]);
+    assert!(empties && fills, "empty ranks by row: {empty:?}");
+
+    let balanced = at("balanced");
+    run(4, 1, &case, &["--set", "domain.balance_every=3"], &balanced);
+    assert_same(&one, &balanced, "four ranks with moving faces");
+}
