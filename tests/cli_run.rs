@@ -103,6 +103,10 @@ fn a_summary_has_the_figures_of_the_run() {
     );
     let performance = table(&run.join("performance.csv"));
     assert_eq!(performance["empty_ranks"].last(), Some(&0.0));
+    for name in ["particle_imbalance", "work_imbalance"] {
+        let last = performance[name].last().unwrap();
+        assert!((1.0..1.5).contains(last), "{name}: {last}");
+    }
     assert!((performance["million_updates"].last().unwrap() - updates).abs() < 1e-9);
 }
 
