@@ -23,6 +23,16 @@ fn output(arguments: &[&str]) -> String {
     ended.stdout
 }
 
+/// What `info` says, line by line, with single spaces.
+#[track_caller]
+fn info(path: &Path) -> Vec<String> {
+    let said = output(&["info", text(path)]);
+    let words = said
+        .lines()
+        .map(|line| line.split_whitespace().collect::<Vec<_>>());
+    words.map(|words| words.join(" ")).collect()
+}
+
 fn text(path: &Path) -> &str {
     path.to_str().unwrap()
 }
@@ -79,29 +89,22 @@ fn results_are_looked_at_without_mpi() {
         "{ended:#?}"
     );
 
-    let said = output(&["info", text(&a)]);
-    for line in [
-        "state                        finished",
-        "step                         12",
-    ] {
-        assert!(said.contains(line), "{said}");
+    let said = info(&a);
+    for line in ["state finished", "step 12", "particles 3056"] {
+        assert!(said.iter().any(|said| said == line), "{said:#?}");
+    }
+    let said = info(&a.join("snapshots/step-00000012.vtkhdf"));
+    for begin in ["step 12", "particles 3056", "density kg/m^3 "] {
+        assert!(said.iter().any(|line| line.starts_with(begin)), "{said:#?}");
+    }
+    let said = info(&a.join("checkpoints/step-00000012"));
+    for begin in ["step 12", "ranks 2", "density kg/m^3 "] {
+        assert!(said.iter().any(|line| line.starts_with(begin)), "{said:#?}");
     }
     // A closed pipe ends it without a word.
     let line = format!("{{ sleep 0.3; {WHIPPLE} info {}; }} | true", a.display());
     let ended = end(command("sh").args(["-c", &line])).with_code(0);
     assert_eq!(ended.stderr, "");
-    let snapshot = a.join("snapshots/step-00000012.vtkhdf");
-    let said = output(&["info", text(&snapshot)]);
-    assert!(said.contains("particles                    3056"), "{said}");
-    assert!(
-        said.contains("density") && said.contains("kg/m^3"),
-        "{said}"
-    );
-    let said = output(&["info", text(&a.join("checkpoints/step-00000012"))]);
-    assert!(
-        said.contains("checkpoint") && said.contains("written by"),
-        "{said}"
-    );
 
     let said = output(&["compare", text(&a), text(&b)]);
     assert!(said.lines().last().unwrap().starts_with("same: "), "{said}");

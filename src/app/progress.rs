@@ -49,8 +49,8 @@ impl Progress {
     /// Shows where the run stands; gives a line for the log now and then.
     pub fn show(&mut self, state: &RunState) -> Option<String> {
         if let Some(bar) = &self.bar {
-            bar.set_position(self.ticks(state));
             bar.set_message(format!("step {}, {}", state.step, seconds(state.time)));
+            bar.set_position(self.ticks(state));
         }
         if !self.tells || self.last.elapsed() < LINE_EVERY {
             return None;

@@ -15,6 +15,7 @@ pub struct Tables {
 
 /// How evenly the ranks are loaded, and what they have sent.
 pub struct Load {
+    ranks: usize,
     particles: [u64; 2],
     work: [u64; 2],
     empty_ranks: u64,
@@ -37,6 +38,7 @@ pub fn load(comm: &Comm, simulation: &Simulation) -> Load {
     let mut most = [particles, work];
     comm.max_u64(&mut most);
     Load {
+        ranks: comm.size(),
         particles: [sums[0], most[0]],
         work: [sums[1], most[1]],
         messages: sums[2],
@@ -98,8 +100,8 @@ fn performance_columns() -> Vec<Column> {
         ("wall_seconds", "s"),
         ("million_updates", ""),
         ("particles", ""),
-        ("largest_share", "ranks"),
-        ("largest_work", "ranks"),
+        ("particle_imbalance", ""),
+        ("work_imbalance", ""),
         ("empty_ranks", ""),
         ("messages", ""),
         ("megabytes_sent", "MB"),
@@ -189,14 +191,15 @@ impl Tables {
 
     #[allow(clippy::cast_precision_loss, reason = "for people")]
     fn write_performance(&mut self, step: u64, load: &Load, wall: f64) -> Result<(), OutputError> {
-        let share = |[sum, most]: [u64; 2]| most as f64 / (sum as f64).max(1.0);
+        let imbalance =
+            |[sum, most]: [u64; 2]| most as f64 * load.ranks as f64 / (sum as f64).max(1.0);
         self.performance.row(&[
             Value::Count(step),
             Value::Real(wall),
             Value::Real(load.updates as f64 * 1e-6),
             Value::Count(load.particles[0]),
-            Value::Real(share(load.particles)),
-            Value::Real(share(load.work)),
+            Value::Real(imbalance(load.particles)),
+            Value::Real(imbalance(load.work)),
             Value::Count(load.empty_ranks),
             Value::Count(load.messages),
             Value::Real(load.bytes as f64 * 1e-6),
