@@ -12,7 +12,8 @@ const SPACING: f64 = 1e-3;
 const SPEED: f64 = 10.0;
 
 /// An elastic aluminium block of 10 × 10 × 5 spacings on a plate of 40 × 20 × 5 whose bottom
-/// rests on a frictionless plane.
+/// rests on a frictionless plane. The potential acts below one spacing: with the range of the
+/// support it throws the block off at once.
 fn sliding(mode: &str, angle: f64) -> Simulation {
     start(inline(&format!(
         r#"
@@ -22,6 +23,7 @@ spacing = "1 mm"
 end_time = "10 ms"
 [contact]
 mode = "{mode}"
+potential.range = "spacing"
 [material.aluminium]
 library = "aluminium-2024"
 strength.elastic = {{}}
@@ -97,9 +99,9 @@ fn slide(s: &mut Simulation, distance: f64) -> Friction {
 #[ignore = "slow: make validation"]
 fn sliding_is_free_of_friction() {
     for (mode, angle, way) in [
+        ("potential", 0.0, 3.0),
         ("overlap", 0.0, 10.0),
         ("overlap", 30.0, 10.0),
-        ("potential", 0.0, 2.0),
     ] {
         let mut s = sliding(mode, angle);
         let friction = slide(&mut s, way * SPACING);
