@@ -12,8 +12,7 @@ const SPACING: f64 = 1e-3;
 const SPEED: f64 = 10.0;
 
 /// An elastic aluminium block of 10 × 10 × 5 spacings on a plate of 40 × 20 × 5 whose bottom
-/// rests on a frictionless plane. The potential acts below one spacing: with the range of the
-/// support it throws the block off at once.
+/// rests on a frictionless plane.
 fn sliding(mode: &str, angle: f64) -> Simulation {
     start(inline(&format!(
         r#"
@@ -94,12 +93,14 @@ fn slide(s: &mut Simulation, distance: f64) -> Friction {
     }
 }
 
-/// At most .01 for `overlap`, whatever the lattices; `potential` is reported over a shorter way.
+/// At most .01 for `overlap`, whatever the lattices. `potential` is reported over a shorter way,
+/// with the range of one spacing: it throws the block off and carries nothing (NaN), as it does at
+/// once with the range of the support.
 #[test]
 #[ignore = "slow: make validation"]
 fn sliding_is_free_of_friction() {
     for (mode, angle, way) in [
-        ("potential", 0.0, 3.0),
+        ("potential", 0.0, 1.0),
         ("overlap", 0.0, 10.0),
         ("overlap", 30.0, 10.0),
     ] {
