@@ -126,3 +126,21 @@ fn pairing_of_the_outermost_layers_is_reported() {
         }
     }
 }
+
+/// Hole and kinetic energy on the way to finer spacings, with constant and with variable h.
+#[test]
+#[ignore = "slow: make validation"]
+fn finer_spacings_are_reported() {
+    for smoothing in ["constant", "variable"] {
+        let smoothing = format!("sph.smoothing_length={smoothing}");
+        let mut last = 0.0;
+        for spacing in [0.04, 0.03, 0.02, 0.015] {
+            let run = run(&[&format!("spacing=\"{spacing} mm\""), &smoothing]);
+            let totals = &run.simulation.state.totals;
+            // What viscosity turns into heat falls with the spacing.
+            assert!(totals.kinetic_energy / run.simulation.state.initial.kinetic_energy > last);
+            last = totals.kinetic_energy / run.simulation.state.initial.kinetic_energy;
+            assert_eq!(run.simulation.state.worst.interpenetrated, 0);
+        }
+    }
+}

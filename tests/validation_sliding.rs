@@ -22,6 +22,7 @@ spacing = "1 mm"
 end_time = "10 ms"
 [contact]
 mode = "{mode}"
+potential.range = "spacing"
 [material.aluminium]
 library = "aluminium-2024"
 strength.elastic = {{}}
@@ -92,14 +93,16 @@ fn slide(s: &mut Simulation, distance: f64) -> Friction {
     }
 }
 
-/// At most .01 for `overlap`, whatever the lattices; `potential` is reported over a shorter way.
+/// At most .01 for `overlap`, whatever the lattices. `potential` is reported over a shorter way,
+/// with the range of one spacing: it throws the block off and carries nothing (NaN), as it does at
+/// once with the range of the support.
 #[test]
 #[ignore = "slow: make validation"]
 fn sliding_is_free_of_friction() {
     for (mode, angle, way) in [
+        ("potential", 0.0, 1.0),
         ("overlap", 0.0, 10.0),
         ("overlap", 30.0, 10.0),
-        ("potential", 0.0, 2.0),
     ] {
         let mut s = sliding(mode, angle);
         let friction = slide(&mut s, way * SPACING);
