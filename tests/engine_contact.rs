@@ -357,7 +357,7 @@ fn overlap_forces_are_the_gradient_of_the_energy() {
                 vec![
                     some_body(0, SPACING, 1.3),
                     some_body(1, 0.8 * SPACING, 1.4),
-                    some_body(0, 1.2 * SPACING, 1.2),
+                    some_body(1, 1.2 * SPACING, 1.2),
                 ],
             ] {
                 let mut case = case_of(dimension, bodies);

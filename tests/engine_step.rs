@@ -11,14 +11,14 @@ mod common;
 use std::collections::BTreeMap;
 use std::process::Command;
 
+use common::outcome::{Outcome, assert_same, everything};
 use common::random::Random;
-use common::{body, case, sphere_on_plate};
+use common::{body, case};
 use whipple::comm::Comm;
 use whipple::material::{Elastic, Eos, Linear, LinearForm, Strength};
 use whipple::model::{
     Axis, Body, Case, ContactMode, Overlap, Potential, Shape, SmoothingLength, SymmetryPlane, Vec3,
 };
-use whipple::particles::{FieldUse, with_use};
 use whipple::sph::dispatch::available;
 use whipple::step::{Reason, Simulation};
 
@@ -33,46 +33,6 @@ fn advance(simulation: &mut Simulation, steps: usize) {
         simulation.advance(&Comm::solo()).unwrap();
         simulation.diagnose(&Comm::solo());
     }
-}
-
-/// All bytes of the particles that a user or the next step can see, by id.
-fn rows(simulation: &Simulation) -> BTreeMap<u64, Vec<u8>> {
-    let store = &simulation.store;
-    let mut rows = BTreeMap::new();
-    for slot in 0..store.owned() {
-        let row: &mut Vec<u8> = rows.entry(store.id[slot]).or_default();
-        assert!(row.is_empty(), "an id twice");
-        for uses in [FieldUse::STATE, FieldUse::SNAPSHOT, FieldUse::ON_DEMAND] {
-            for field in with_use(uses) {
-                let size = field.kind.bytes();
-                let bytes = store.bytes(field.id);
-                row.extend_from_slice(&bytes[slot * size..(slot + 1) * size]);
-            }
-        }
-    }
-    rows
-}
-
-/// What two runs must have in common to the last bit.
-#[derive(PartialEq)]
-struct Outcome {
-    rows: BTreeMap<u64, Vec<u8>>,
-    /// As debug output, which is exact.
-    state: String,
-}
-
-impl Outcome {
-    fn of(simulation: &Simulation) -> Self {
-        Self {
-            rows: rows(simulation),
-            state: format!("{:?}", simulation.state),
-        }
-    }
-}
-
-fn assert_same(a: &Outcome, b: &Outcome) {
-    assert_eq!(a.state, b.state);
-    assert!(a.rows == b.rows, "the particles differ");
 }
 
 fn ball(name: &str, z: f64, radius: f64, speed: f64) -> Body {
@@ -493,14 +453,6 @@ fn a_particle_that_is_no_number_is_reported() {
             assert!(error.contains(&format!("particle {id} ")), "{error}");
         }
     }
-}
-
-/// A case with all there is: contact, two planes, variable h, plasticity.
-fn everything() -> Case {
-    let mut case = sphere_on_plate(6e-5, 7000.0, true, 1.0);
-    case.sph.smoothing_length = SmoothingLength::Variable { min: 0.6, max: 2.0 };
-    case.domain.balance_every = 7;
-    case
 }
 
 const STEPS: usize = 40;
