@@ -300,6 +300,7 @@ fn halos_carry_every_field_of_every_image_in_reach() {
 }
 
 /// The byte at a place of the message of `round` from one rank to another.
+#[allow(clippy::cast_possible_truncation, reason = "any byte will do")]
 fn byte(round: usize, from: usize, to: usize, at: usize) -> u8 {
     mix((round * 1000 + from * 100 + to * 10) as u64 + at as u64 / 64).to_ne_bytes()[2]
 }

@@ -7,7 +7,9 @@
 
 mod physics_support;
 
-use physics_support::{lattice_factor, median, ready, run_to, run_with, slope, sorted_by, start};
+use physics_support::{
+    crossing, lattice_factor, median, ready, run_to, run_with, slope, sorted_by, start,
+};
 use whipple::exact::hugoniot::{Impact, Medium, free_surface_velocity, impact};
 use whipple::step::Simulation;
 
@@ -60,7 +62,7 @@ impl Flyer {
             next += 0.03 * arrival;
             let x = |i: usize| s.store.position[i][0];
             let order = sorted_by(s, 0, x);
-            let front = crossing(s, &order, half);
+            let front = crossing(s, &order, 0, half);
             fronts.push((s.state.time, front));
             let interface = x(order[0]);
             let plateau: Vec<f64> = order
@@ -77,19 +79,6 @@ impl Flyer {
             shock_speed: slope(&fronts),
         }
     }
-}
-
-/// Where the pressure falls through `level` at the front (m), between two particles.
-fn crossing(s: &Simulation, order: &[usize], level: f64) -> f64 {
-    let (x, p) = (
-        |k: usize| s.store.position[order[k]][0],
-        |k: usize| s.store.pressure[order[k]],
-    );
-    let k = (0..order.len() - 1)
-        .rev()
-        .find(|&k| p(k) > level && p(k + 1) <= level)
-        .expect("a front");
-    x(k) + (p(k) - level) / (p(k) - p(k + 1)) * (x(k + 1) - x(k))
 }
 
 fn relative(value: f64, exact: f64) -> f64 {

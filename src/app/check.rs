@@ -9,13 +9,19 @@ use crate::output::snapshot;
 use crate::populate;
 
 /// Check a case without running it: particles by body, memory, expected steps
+///
+/// Exits with 0 if the case can run and with 2 if anything is wrong; things that are allowed but
+/// look like mistakes are warnings.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  whipple check inputs/quarter-impact
+  whipple check inputs/quarter-impact/case.toml --set spacing=0.01mm")]
 pub struct CheckArgs {
     /// Case file (TOML), or a folder with a case.toml
     #[arg(value_name = "CASE")]
     case: PathBuf,
 
-    /// Change a value of the case, as for `run`
+    /// Change a value of the case, as in spacing=0.015mm; may be given many times
     #[arg(short, long, value_name = "KEY=VALUE")]
     set: Vec<String>,
 }

@@ -9,6 +9,7 @@ use super::launch::Launch;
 use super::progress::Progress;
 use super::report::{self, Tables, seconds, summary};
 use super::run::CommonArgs;
+use super::say::{complain, say};
 use super::stop::{self, Watch};
 use super::{EXIT_FAILED, EXIT_STOPPED};
 use crate::comm::Comm;
@@ -158,6 +159,9 @@ impl<'a> Driver<'a> {
         if checkpoint_due && !finished {
             self.write_checkpoint(comm)?;
         }
+        if snapshot_due || checkpoint_due {
+            on_root(comm, || self.write_status(Phase::Running, None))?;
+        }
         if let Some(line) = self.progress.show(&self.simulation.state) {
             self.log(comm, &line);
         }
@@ -187,8 +191,7 @@ impl<'a> Driver<'a> {
         snapshot::write(comm, &path, store, &meta, &self.quantities, &mut self.rows)?;
         on_root(comm, || {
             let name = RunFolder::snapshot_name(state.step);
-            series::add(&self.folder.series(), &name, state.time)?;
-            self.write_status(Phase::Running, None)
+            series::add(&self.folder.series(), &name, state.time)
         })?;
         let text = format!("snapshot {}", path.display());
         self.log(comm, &text);
@@ -238,7 +241,7 @@ impl<'a> Driver<'a> {
             self.start.elapsed().as_secs_f64()
         );
         if comm.is_root() {
-            println!("{text}; results in {}", folder.path().display());
+            say(&format!("{text}; results in {}", folder.path().display()));
         }
         self.log(comm, &text);
         code
@@ -274,10 +277,11 @@ impl<'a> Driver<'a> {
         );
         self.log.line(&format!("whipple {VERSION} ({COMMIT})"));
         self.log.line(&text);
-        println!("{text}");
+        say(&text);
         for warning in warnings {
-            self.log.line(&format!("warning: {warning}"));
-            eprintln!("warning: {warning}");
+            let text = format!("warning: {warning}");
+            self.log.line(&text);
+            complain(&text);
         }
     }
 
@@ -292,7 +296,7 @@ impl<'a> Driver<'a> {
 /// folder; gives the exit code.
 pub fn fail(comm: &Comm, folder: &RunFolder, message: &str, step: u64, time: f64) -> u8 {
     if comm.is_root() {
-        eprintln!("error: {message}");
+        complain(&format!("error: {message}"));
         // The message above is what counts; the folder may be what failed.
         let _ = folder.write_status(&Status {
             state: Phase::Failed,

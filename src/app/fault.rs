@@ -1,8 +1,10 @@
 //! Faults on purpose, to test that one rank's trouble ends all ranks.
 //!
 //! `WHIPPLE_TEST_FAULT=KIND:RANK:STEP` lets that rank meet the trouble before that step. KIND is
-//! `panic` (on the main thread), `task` (a panic on another thread, where there is one) or `nan`
-//! (a particle's velocity is no number).
+//! `panic` (on the main thread), `task` (a panic on another thread, where there is one), `nan`
+//! (a particle's velocity is no number) or `pause` (all wait for this rank, to be stopped).
+
+use std::time::Duration;
 
 use crate::step::Simulation;
 
@@ -11,7 +13,11 @@ enum Kind {
     Panic,
     Task,
     Nan,
+    Pause,
 }
+
+/// How long a pause takes: the file `stop` is looked for once a second.
+const PAUSE: Duration = Duration::from_millis(1500);
 
 /// The fault of this rank, if it is to have one.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +33,7 @@ impl Fault {
     }
 
     /// Makes the trouble if it is time for it.
+    #[expect(clippy::manual_assert, reason = "nothing is asserted")]
     pub fn strike(self, simulation: &mut Simulation) {
         if simulation.state.step + 1 != self.step {
             return;
@@ -35,11 +42,9 @@ impl Fault {
             Kind::Panic => panic!("a panic on purpose"),
             Kind::Task => {
                 rayon::broadcast(|thread| {
-                    assert_ne!(
-                        thread.index() + 1,
-                        thread.num_threads(),
-                        "a panic on purpose"
-                    );
+                    if thread.index() + 1 == thread.num_threads() {
+                        panic!("a panic on purpose");
+                    }
                 });
             }
             Kind::Nan => {
@@ -47,6 +52,7 @@ impl Fault {
                     velocity[0] = f64::NAN;
                 }
             }
+            Kind::Pause => std::thread::sleep(PAUSE),
         }
     }
 }
@@ -57,6 +63,7 @@ fn parse(text: &str, rank: usize) -> Option<Fault> {
         "panic" => Kind::Panic,
         "task" => Kind::Task,
         "nan" => Kind::Nan,
+        "pause" => Kind::Pause,
         _ => return None,
     };
     let here = parts.next()?.parse() == Ok(rank);

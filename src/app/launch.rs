@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::driver::STEP;
 use super::run::CommonArgs;
+use super::say;
 use super::stop::Signals;
 use super::{EXIT_FAILED, EXIT_INPUT};
 use crate::comm::{Comm, Session, abort_job};
@@ -28,7 +29,9 @@ pub fn with_ranks(args: &CommonArgs, work: impl FnOnce(&Launch) -> u8) -> u8 {
     let start = Instant::now();
     let signals = Signals::watch();
     let Some((session, comm)) = Session::start() else {
-        eprintln!("error: MPI does not start; is this program linked to the MPI of this mpirun?");
+        say::complain(
+            "error: MPI does not start; is this program linked to the MPI of this mpirun?",
+        );
         return EXIT_FAILED;
     };
     abort_on_panic(comm.rank());
@@ -62,7 +65,7 @@ pub fn once(speak: impl FnOnce()) {
 /// Says what is wrong with the input, once for all ranks; gives the exit code.
 pub fn complain(comm: &Comm, message: &str) -> u8 {
     if comm.is_root() {
-        eprintln!("{}", message.trim_end());
+        say::complain(message);
     }
     // Nobody leaves before rank 0 has spoken: mpirun may kill the job at the first exit.
     comm.barrier();
@@ -73,11 +76,11 @@ fn start_threads(comm: &Comm, wanted: Option<usize>) {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = wanted.unwrap_or_else(|| default_threads(comm, cores));
     if comm.is_root() && threads > cores {
-        eprintln!(
-            "warning: {threads} threads share {cores} core{}; mpirun binds each rank to a core \
-             unless told otherwise, as by --bind-to none or --map-by slot:PE={threads}",
-            if cores == 1 { "" } else { "s" }
-        );
+        say::complain(&format!(
+            "warning: each rank has {threads} threads and may use {cores} of the cores; if the \
+             machine has more, mpirun has bound the ranks: --bind-to none or --map-by \
+             slot:PE={threads} frees them"
+        ));
     }
     // Without a pool of its own rayon uses all cores, which is right, if not what was asked.
     let _ = rayon::ThreadPoolBuilder::new()
@@ -108,9 +111,14 @@ fn abort_on_panic(rank: usize) {
             .location()
             .map(|l| format!(" ({}:{})", l.file(), l.line()))
             .unwrap_or_default();
-        let what = info.payload_as_str().unwrap_or("unknown cause");
-        eprintln!("error: rank {rank}, step {step}: {what}{place}; this is a bug of the program");
-        if std::env::var_os("RUST_BACKTRACE").is_some() {
+        let what = info
+            .payload_as_str()
+            .unwrap_or("unknown cause")
+            .replace('\n', " ");
+        say::complain(&format!(
+            "error: rank {rank}, step {step}: {what}{place}; this is a bug of the program"
+        ));
+        if std::env::var_os("RUST_BACKTRACE").is_some_and(|wanted| wanted != "0") {
             usual(info);
         }
         abort_job(EXIT_PANIC);

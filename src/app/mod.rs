@@ -12,6 +12,7 @@ mod report;
 mod restart;
 pub mod results;
 mod run;
+mod say;
 mod stop;
 
 use std::process::ExitCode;
@@ -27,19 +28,20 @@ pub const EXIT_STOPPED: u8 = 75;
 /// A second Ctrl-C ended the process, as shells tell it.
 const EXIT_INTERRUPTED: i32 = 130;
 
-/// MPI-parallel smoothed particle hydrodynamics for impacts of solids
+/// MPI-parallel smoothed particle hydrodynamics for large 3-D impacts of solids
 #[derive(Debug, Parser)]
 #[command(
     name = "whipple",
     version,
-    about,
     after_help = "Examples:
-  mpirun -n 2 whipple run inputs/quarter-impact/case.toml --out runs/quarter
+  whipple check inputs/quarter-impact
+  mpirun -n 2 whipple run inputs/quarter-impact --out runs/quarter
+  whipple info runs/quarter
   whipple plot runs/quarter --panels
-  mpirun -n 4 whipple restart runs/quarter
+  mpirun -n 4 whipple restart runs/quarter --set run.end_time=0.3us
 
-A run that SIGUSR1 to mpirun, a file `stop` in its folder or --walltime stops writes a checkpoint
-and exits with 75; wrong input exits with 2."
+`whipple COMMAND --help` says more. Only `run` and `restart` use MPI. Exit codes: 0 done, 1 failed
+(or `compare` found differences), 2 wrong input, 75 stopped softly with a checkpoint."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -68,6 +70,9 @@ pub fn main() -> ExitCode {
             return ExitCode::from(if error.use_stderr() { EXIT_INPUT } else { 0 });
         }
     };
+    if !matches!(cli.command, Command::Run(_) | Command::Restart(_)) {
+        end_with_the_pipe();
+    }
     let code = match cli.command {
         Command::Run(args) => run::run(&args),
         Command::Restart(args) => restart::run(&args),
@@ -83,4 +88,10 @@ pub fn main() -> ExitCode {
         Command::Compare(args) => compare::run(&args),
     };
     ExitCode::from(code)
+}
+
+/// Lets a closed pipe (`whipple info … | head`) end the process quietly, as it ends other tools.
+fn end_with_the_pipe() {
+    // SAFETY: there is no other thread yet, and the handler is the system's own.
+    unsafe { libc::signal(libc::SIGPIPE, libc::SIG_DFL) };
 }

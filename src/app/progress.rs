@@ -1,7 +1,7 @@
 //! How far a run is: a bar on a terminal, now and then a line elsewhere.
 
 use std::fs::File;
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 use std::os::unix::process::parent_id;
 use std::time::{Duration, Instant};
 
@@ -9,6 +9,7 @@ use console::Term;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::report::seconds;
+use super::say::say;
 use crate::model::RunControl;
 use crate::step::RunState;
 
@@ -31,7 +32,8 @@ impl Progress {
     /// For rank 0 where `tells`; others stay silent.
     pub fn new(tells: bool, control: &RunControl) -> Self {
         let bar = tells.then(terminal).flatten().map(|target| {
-            let style = "{bar:30} {percent:>3} %  {msg}  {eta_precise} left";
+            // Within 80 columns: a longer line would wrap and be drawn over and over.
+            let style = "{bar:30} {percent:>3} %  {msg}  {eta} left";
             let style = ProgressStyle::with_template(style);
             ProgressBar::with_draw_target(Some(TICKS), target)
                 .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
@@ -48,7 +50,7 @@ impl Progress {
     pub fn show(&mut self, state: &RunState) -> Option<String> {
         if let Some(bar) = &self.bar {
             bar.set_position(self.ticks(state));
-            bar.set_message(line(state));
+            bar.set_message(format!("step {}, {}", state.step, seconds(state.time)));
         }
         if !self.tells || self.last.elapsed() < LINE_EVERY {
             return None;
@@ -56,8 +58,7 @@ impl Progress {
         self.last = Instant::now();
         let line = line(state);
         if self.bar.is_none() {
-            println!("{line}");
-            let _ = std::io::stdout().flush();
+            say(&line);
         }
         Some(line)
     }
@@ -105,4 +106,60 @@ fn terminal() -> Option<ProgressDrawTarget> {
     output
         .is_terminal()
         .then(|| ProgressDrawTarget::term(Term::read_write_pair(input, output), DRAWS))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::step::{Reason, Totals, Worst};
+
+    fn state(step: u64, time: f64) -> RunState {
+        RunState {
+            step,
+            time,
+            dt: 0.0,
+            dt_reason: Reason::Sound,
+            last_dt: 1.5e-9,
+            last_reason: Reason::Force,
+            initial: Totals::default(),
+            totals: Totals::default(),
+            contact_energy: 0.0,
+            contact_work: 0.0,
+            plane_force: [0.0; 3],
+            plane_impulse: [0.0; 3],
+            pairs: Vec::new(),
+            capped_reliefs: 0,
+            interpenetrated: 0,
+            worst: Worst::default(),
+        }
+    }
+
+    fn progress(tells: bool) -> Progress {
+        let control = RunControl {
+            end_time: 2e-7,
+            max_steps: Some(100),
+        };
+        Progress::new(tells, &control)
+    }
+
+    #[test]
+    fn a_line_comes_every_ten_seconds_from_rank_0() {
+        for tells in [true, false] {
+            let mut progress = progress(tells);
+            assert_eq!(progress.show(&state(1, 0.0)), None);
+            progress.last = Instant::now().checked_sub(LINE_EVERY).unwrap();
+            let line = progress.show(&state(7, 1e-8));
+            let expected = "step 7  t = 0.0100 us  dt = 1.500e-9 s (force)";
+            assert_eq!(line.as_deref(), tells.then_some(expected));
+            assert_eq!(progress.show(&state(8, 2e-8)), None);
+        }
+    }
+
+    #[test]
+    fn a_run_ends_by_time_or_by_steps() {
+        let progress = progress(false);
+        assert_eq!(progress.ticks(&state(10, 1e-7)), TICKS / 2);
+        assert_eq!(progress.ticks(&state(90, 1e-7)), TICKS * 9 / 10);
+        assert_eq!(progress.ticks(&state(100, 3e-7)), TICKS);
+    }
 }

@@ -1,12 +1,12 @@
 //! `whipple restart`: go on from a checkpoint, on any number of ranks.
 
-use std::io;
 use std::path::{Path, PathBuf};
 
 use super::driver::{Driver, fail};
 use super::launch::{Launch, complain, with_ranks};
 use super::report::seconds;
 use super::run::CommonArgs;
+use super::say::say;
 use crate::comm::Comm;
 use crate::input;
 use crate::model::Case;
@@ -17,8 +17,14 @@ use crate::step::{Reason, RunState, Simulation};
 
 /// Go on from a checkpoint, on any number of ranks
 ///
-/// Results go on as if there had been no stop, to the last bit.
+/// Results go on as if there had been no stop, to the last bit. What the run had written after the
+/// checkpoint is dropped and written anew. Exit codes are those of `run`; with nothing left to do,
+/// it says so and exits with 0.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  mpirun -n 4 whipple restart runs/quarter-impact
+  mpirun -n 4 whipple restart runs/quarter-impact --set run.end_time=0.3us
+  mpirun -n 4 whipple restart runs/fine/checkpoints/step-00000100 --out runs/branch")]
 pub struct RestartArgs {
     /// Run folder (its newest checkpoint is taken), or one checkpoint's folder
     #[arg(value_name = "RUN_OR_CHECKPOINT")]
@@ -28,7 +34,8 @@ pub struct RestartArgs {
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
 
-    /// Change a value of run, output or domain, as in run.end_time=0.3us
+    /// Change a value of `run`, `output` or `domain`, as in `run.end_time=0.3us`; may be given many
+    /// times
     #[arg(short, long, value_name = "KEY=VALUE")]
     set: Vec<String>,
 
@@ -66,13 +73,11 @@ fn find(comm: &Comm, from: &Path) -> Result<PathBuf, OutputError> {
                 })?
         } else if from.join(MANIFEST).is_file() {
             from.to_owned()
-        } else if from.exists() {
+        } else {
+            std::fs::metadata(from).map_err(OutputError::io("restart", from))?;
             return Err(OutputError::OutsideRun {
                 path: from.to_owned(),
             });
-        } else {
-            let missing = io::Error::from(io::ErrorKind::NotFound);
-            return Err(OutputError::io("restart", from)(missing));
         };
         found = path.to_string_lossy().into_owned().into_bytes();
         Ok(())
@@ -103,7 +108,10 @@ fn resume(launch: &Launch, args: &RestartArgs, checkpoint: &Path) -> u8 {
     let closed = comm.any(comm.is_root() && is_closed(checkpoint));
     if closed && let Some(reason) = nothing_to_do(&case, &state, args.common.until) {
         if comm.is_root() {
-            println!("nothing to do: {} is at {reason}", checkpoint.display());
+            say(&format!(
+                "nothing to do: {} is at {reason}",
+                checkpoint.display()
+            ));
         }
         comm.barrier();
         return 0;

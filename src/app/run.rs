@@ -13,24 +13,36 @@ use crate::output::{RunFolder, snapshot};
 use crate::step::Simulation;
 
 /// Run a case from its start
+///
+/// Under mpirun each rank has a slab of the model, and the results are the same bits on any number
+/// of ranks and threads. The folder of the results holds tables (history.csv, contacts.csv),
+/// snapshots for ParaView, checkpoints, summary.json and status.json.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  mpirun -n 2 whipple run inputs/quarter-impact
+  mpirun -n 2 whipple run inputs/quarter-impact --set spacing=0.015mm --out runs/fine
+  mpirun -n 2 whipple run inputs/quarter-impact --walltime 1h --force
+
+To stop a run softly, send SIGUSR1 to mpirun or SIGTERM to a rank, make a file `stop` in its
+folder, or give --walltime: it writes a checkpoint and exits with 75, and `whipple restart` goes
+on. Other exit codes: 0 finished, or --until is reached; 1 failed; 2 wrong input.")]
 pub struct RunArgs {
     /// Case file (TOML), or a folder with a case.toml
     #[arg(value_name = "CASE")]
     case: PathBuf,
 
-    /// Folder of the results [default: runs/NAME]
+    /// Folder of the results [default: runs/NAME, after the case's folder or file]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
 
-    /// Change a value of the case, as in spacing=0.015mm or body.sphere.velocity=[...]
+    /// Change a value of the case, as in spacing=0.015mm; may be given many times
     #[arg(short, long, value_name = "KEY=VALUE")]
     set: Vec<String>,
 
     #[command(flatten)]
     common: CommonArgs,
 
-    /// Replace an earlier run in the same folder
+    /// Replace an earlier run in the folder of the results
     #[arg(short, long)]
     force: bool,
 }
@@ -38,15 +50,15 @@ pub struct RunArgs {
 /// Options that `run` and `restart` share.
 #[derive(Debug, Clone, clap::Args)]
 pub struct CommonArgs {
-    /// Stop with a checkpoint at the first step at or after this time, as in 0.1us
+    /// Stop with a checkpoint at the first step at or after this time of the case, as in 0.1us
     #[arg(short, long, value_name = "TIME", value_parser = parse_until)]
     pub until: Option<f64>,
 
-    /// Stop with a checkpoint when this much time has passed, as in 90s, 2h or 1:30:00
+    /// Stop with a checkpoint after this much time of the clock, as in 90s, 2h or 1:30:00
     #[arg(short, long, value_name = "TIME", value_parser = parse_walltime)]
     pub walltime: Option<Duration>,
 
-    /// Threads of each rank [default: cores of the machine / ranks on it]
+    /// Threads of each rank [default: the cores shared out among the machine's ranks]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
 

@@ -45,6 +45,9 @@ pub struct Exchange {
 
 impl Exchange {
     /// Sets the peers, emptying all messages. Both sides must name each other.
+    ///
+    /// # Panics
+    /// If messages are still under way.
     pub fn set_peers(&mut self, ranks: impl Iterator<Item = usize>) {
         assert!(self.requests.is_empty(), "an exchange is still under way");
         self.count = 0;
@@ -89,6 +92,9 @@ impl Exchange {
     }
 
     /// Tells all peers the size of their message and learns the size of theirs.
+    ///
+    /// # Panics
+    /// If a message is larger than memory can be.
     pub fn post_sizes(&mut self, comm: &Comm) {
         let Some(raw) = comm.raw() else { return };
         self.sizes.clear();
@@ -147,6 +153,9 @@ impl Exchange {
     }
 
     /// Waits for all messages of [`Self::post`].
+    ///
+    /// # Panics
+    /// If there are more messages than MPI can count.
     pub fn wait(&mut self) {
         if self.requests.is_empty() {
             return;

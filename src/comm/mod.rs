@@ -163,6 +163,9 @@ impl Comm {
     }
 
     /// Gives every rank the bytes of rank `from`.
+    ///
+    /// # Panics
+    /// If there is no such rank.
     pub fn broadcast_from(&self, from: usize, bytes: &mut Vec<u8>) {
         if let Some(world) = &self.world {
             let root = world.process_at_rank(i32::try_from(from).expect("a rank fits an int"));

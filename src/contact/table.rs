@@ -8,7 +8,7 @@ use crate::sph::kernel::Kernel;
 /// Reference constants of an ordered pair of bodies (receiver, other).
 #[derive(Debug, Clone, Copy)]
 pub struct Pair {
-    /// Mean smoothing length h_ij (m).
+    /// Mean smoothing length `h_ij` (m).
     pub h: f64,
     /// Mean particle spacing (m).
     pub spacing: f64,
@@ -16,7 +16,7 @@ pub struct Pair {
     pub modulus: f64,
     /// `overlap`: touching value C* of the receiver's body on the other.
     pub touching: f64,
-    /// `overlap`: κ_c times the smaller p-wave modulus (Pa).
+    /// `overlap`: `κ_c` times the smaller p-wave modulus (Pa).
     pub core_modulus: f64,
     /// `overlap`: radius of the core (m).
     pub core_radius: f64,

@@ -97,6 +97,7 @@ mod tests {
     use super::*;
 
     /// A plate on a lattice from z = 0 to z = 0.2 without what lies inside `hole`.
+    #[allow(clippy::cast_possible_truncation, reason = "a few layers")]
     fn plate_with_hole(hole: f64, spacing: f64, quarter: bool) -> (Plate, Vec<[f64; 3]>) {
         let plate = Plate {
             centre: [0.0, 0.0, 0.1],

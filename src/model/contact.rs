@@ -71,7 +71,7 @@ impl Default for Potential {
 pub struct Overlap {
     /// Stiffness κ of the overlap energy relative to the p-wave modulus.
     pub stiffness: f64,
-    /// Stiffness κ_c of the core that keeps lone particles apart.
+    /// Stiffness `κ_c` of the core that keeps lone particles apart.
     pub core_stiffness: f64,
     /// Radius of the core in mean particle spacings.
     pub core_radius: f64,

@@ -4,6 +4,9 @@ use super::sequence::Sequence;
 use crate::sph::gradient::MotionRecord;
 
 /// Places of all images of the receiver's group with `r < h_i + h_j`, in canonical order.
+///
+/// # Panics
+/// If `receiver` is no place of the sequence.
 #[must_use]
 pub fn own_neighbours(sequence: &Sequence, sources: &[MotionRecord], receiver: u32) -> Vec<u32> {
     let here = &sources[receiver as usize];

@@ -36,7 +36,7 @@ impl Image {
     #[inline]
     #[must_use]
     pub fn base(self) -> usize {
-        (self.0 & (Self::MAX_PARTICLES as u32 - 1)) as usize
+        self.0 as usize & (Self::MAX_PARTICLES - 1)
     }
 
     /// Bit a set: behind the symmetry plane normal to axis a.
@@ -148,6 +148,9 @@ impl Sequence {
 
     /// Eight coordinates on an axis (m) from a place on; what lies beyond the last image is
     /// whatever.
+    ///
+    /// # Panics
+    /// If `place` is beyond the last image.
     #[inline(always)]
     #[must_use]
     pub fn coordinates(&self, axis: usize, place: usize) -> &[f64; LANES] {
@@ -157,6 +160,9 @@ impl Sequence {
     }
 
     /// Eight smoothing lengths (m) from a place on.
+    ///
+    /// # Panics
+    /// If `place` is beyond the last image.
     #[inline(always)]
     #[must_use]
     pub fn lengths(&self, place: usize) -> &[f64; LANES] {

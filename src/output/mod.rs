@@ -1,7 +1,7 @@
 //! Results and checkpoints: what a run writes, when, and how it is read back.
 //!
 //! All ranks call the writers together and all get the same verdict: every return code is voted
-//! before anybody goes on ([`vote`]), so that callers leave together. Rows stand in the order of
+//! before anybody goes on ([`agree`]), so that callers leave together. Rows stand in the order of
 //! particle ids ([`Rows`]), whatever the ranks. [`h5`] is the only room that names HDF5.
 
 pub mod checkpoint;

@@ -31,6 +31,7 @@ impl<'a, T> Scatter<'a, T> {
     /// If `index` is out of range.
     #[inline(always)]
     #[allow(clippy::mut_from_ref, reason = "the contract of this type")]
+    #[must_use]
     pub unsafe fn slot(&self, index: usize) -> &mut T {
         assert!(index < self.length, "element {index} of {}", self.length);
         // SAFETY: in range, and unique by this function's contract.

@@ -125,6 +125,7 @@ pub fn bytes_per_particle(uses: FieldUse) -> usize {
 mod tests {
     use super::*;
 
+    #[allow(clippy::cast_possible_truncation, reason = "below 251")]
     /// A store whose every number tells its field, particle and component.
     fn sentinel(owned: usize) -> ParticleStore {
         let mut store = ParticleStore::default();

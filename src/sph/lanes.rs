@@ -23,22 +23,31 @@ pub trait Lanes: Copy {
     /// To memory.
     fn store(self) -> F64x8;
     /// Sum of each lane.
+    #[must_use]
     fn add(self, other: Self) -> Self;
     /// Difference of each lane.
+    #[must_use]
     fn sub(self, other: Self) -> Self;
     /// Product of each lane.
+    #[must_use]
     fn mul(self, other: Self) -> Self;
     /// Quotient of each lane.
+    #[must_use]
     fn div(self, other: Self) -> Self;
     /// `self · factor + term` with one rounding.
+    #[must_use]
     fn mul_add(self, factor: Self, term: Self) -> Self;
     /// Square root of each lane.
+    #[must_use]
     fn sqrt(self) -> Self;
     /// This lane if it is larger than `other`'s, else `other`'s (also where one is NaN).
+    #[must_use]
     fn max(self, other: Self) -> Self;
     /// This lane if it is smaller than `other`'s, else `other`'s (also where one is NaN).
+    #[must_use]
     fn min(self, other: Self) -> Self;
     /// This lane where `mask`'s is positive, else zero.
+    #[must_use]
     fn where_positive(self, mask: Self) -> Self;
     /// Bit k: lane k is smaller than `other`'s.
     fn less_than(self, other: Self) -> u8;
@@ -131,7 +140,12 @@ impl Lanes for F64x8 {
 /// 512-bit vectors. Only [`super::dispatch`] makes work run on them, after it has found them.
 #[cfg(target_arch = "x86_64")]
 pub mod avx512 {
-    use std::arch::x86_64::*;
+    use std::arch::x86_64::{
+        __m512d, _CMP_GT_OQ, _CMP_LT_OQ, _mm512_add_pd, _mm512_cmp_pd_mask, _mm512_div_pd,
+        _mm512_fmadd_pd, _mm512_load_pd, _mm512_loadu_pd, _mm512_maskz_mov_pd, _mm512_max_pd,
+        _mm512_min_pd, _mm512_mul_pd, _mm512_set1_pd, _mm512_setzero_pd, _mm512_sqrt_pd,
+        _mm512_store_pd, _mm512_sub_pd,
+    };
 
     use super::{F64x8, Lanes};
 
@@ -223,7 +237,12 @@ pub mod avx512 {
 /// them.
 #[cfg(target_arch = "x86_64")]
 pub mod avx2 {
-    use std::arch::x86_64::*;
+    use std::arch::x86_64::{
+        __m256d, _CMP_GT_OQ, _CMP_LT_OQ, _mm256_add_pd, _mm256_and_pd, _mm256_cmp_pd,
+        _mm256_div_pd, _mm256_fmadd_pd, _mm256_load_pd, _mm256_loadu_pd, _mm256_max_pd,
+        _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_set1_pd, _mm256_setzero_pd,
+        _mm256_sqrt_pd, _mm256_store_pd, _mm256_sub_pd,
+    };
 
     use super::{F64x8, Lanes};
 

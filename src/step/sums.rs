@@ -312,6 +312,7 @@ impl TotalSums {
         }
     }
 
+    #[allow(clippy::needless_pass_by_value, reason = "the form of a reduction")]
     fn merge(mut self, other: Self) -> Self {
         for (sum, other) in self.0.iter_mut().zip(&other.0) {
             sum.merge(other);

@@ -77,6 +77,20 @@ pub fn lattice_factor(ratio: f64) -> f64 {
         .sum()
 }
 
+/// Where the pressure falls through `level` (Pa) at the front, between two of the particles
+/// `order`, sorted along `axis` (m).
+pub fn crossing(s: &Simulation, order: &[usize], axis: usize, level: f64) -> f64 {
+    let (x, p) = (
+        |k: usize| s.store.position[order[k]][axis],
+        |k: usize| s.store.pressure[order[k]],
+    );
+    let k = (0..order.len() - 1)
+        .rev()
+        .find(|&k| p(k) > level && p(k + 1) <= level)
+        .expect("a front");
+    x(k) + (p(k) - level) / (p(k) - p(k + 1)) * (x(k + 1) - x(k))
+}
+
 /// Owned particles of a body, in the order of `key`.
 pub fn sorted_by(simulation: &Simulation, body: u32, key: impl Fn(usize) -> f64) -> Vec<usize> {
     let store = &simulation.store;

@@ -1,0 +1,229 @@
+//! A user's mistake gives one message for all ranks, in words that help, and exit code 2.
+
+mod cli_support;
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use cli_support::{
+    COARSE, WHIPPLE, coarse_run, command, end, project, quarter_impact, ranks, status,
+};
+
+/// Runs `whipple …` on two ranks; gives what it complains about, of which there must be one.
+#[track_caller]
+fn complaint(arguments: &[&str]) -> String {
+    complaint_of(ranks(2), arguments)
+}
+
+/// The same without mpirun, which takes a moment to start.
+#[track_caller]
+fn complaint_alone(arguments: &[&str]) -> String {
+    complaint_of(command(WHIPPLE), arguments)
+}
+
+#[track_caller]
+fn complaint_of(mut command: Command, arguments: &[&str]) -> String {
+    let ended = end(command.args(arguments)).with_code(2);
+    assert_eq!(ended.complaints("error:").len(), 1, "{ended:#?}");
+    assert_eq!(ended.stdout, "", "{ended:#?}");
+    ended.stderr.trim_end().to_owned()
+}
+
+#[test]
+fn a_wrong_case_is_shown_with_file_line_and_caret() {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join("case.toml");
+    let text = fs::read_to_string(project("inputs/quarter-impact/case.toml")).unwrap();
+    fs::write(&path, text.replace("alpha = 1.0", "alfa = 1.0")).unwrap();
+    let line = 1 + text[..text.find("alpha = 1.0").unwrap()].lines().count();
+    let (path, out) = (path.to_str().unwrap(), place.path().join("out"));
+    let said = complaint(&["run", path, "--out", out.to_str().unwrap()]);
+    assert!(said.starts_with("error: unknown key `alfa`\n"), "{said}");
+    assert!(said.contains(&format!("--> {path}:{line}:1\n")), "{said}");
+    assert!(said.contains("^^^^"), "{said}");
+    assert!(!out.exists());
+
+    // An override is shown in the same way, and so by `check`.
+    let set = ["--set", "spacing=2"];
+    let wrong = "error: expected a length with a unit";
+    let case = quarter_impact();
+    for said in [
+        complaint(&[&["run", &case][..], &set].concat()),
+        end(command(WHIPPLE).args(["check", &case]).args(set))
+            .with_code(2)
+            .stderr,
+    ] {
+        assert!(
+            said.starts_with(wrong) && said.contains("--set:1:9"),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn a_wrong_command_line_is_told_once() {
+    let case = quarter_impact();
+    for (arguments, begin) in [
+        (&["frob"][..], "error: unrecognized subcommand 'frob'"),
+        (
+            &["run"],
+            "error: the following required arguments were not provided",
+        ),
+        (
+            &["run", &case, "--fast"],
+            "error: unexpected argument '--fast'",
+        ),
+        (
+            &["run", &case, "--threads", "0"],
+            "error: invalid value '0' for '--threads <N>'",
+        ),
+        (
+            &["run", &case, "--walltime", "soon"],
+            "error: invalid value 'soon' for '--walltime",
+        ),
+        (
+            &["run", &case, "--until", "soon"],
+            "error: invalid value 'soon' for '--until <TIME>'",
+        ),
+        (
+            &["run", &case, "--until", "3 mm"],
+            "error: invalid value '3 mm' for '--until <TIME>'",
+        ),
+        (
+            &["run", &case, "--until=-1us"],
+            "error: invalid value '-1us' for '--until <TIME>'",
+        ),
+        (
+            &["run", "nowhere.toml"],
+            "error: cannot read the case nowhere.toml: No such file",
+        ),
+        (
+            &["run", "/dev/null/case"],
+            "error: cannot read the case /dev/null/case: Not a dir",
+        ),
+        (
+            &["restart", "nowhere"],
+            "error: cannot restart nowhere: No such file",
+        ),
+        (
+            &["restart", &case],
+            &format!("error: {case} is neither a run nor a checkpoint"),
+        ),
+    ] {
+        let said = complaint_alone(arguments);
+        assert!(said.starts_with(begin), "{said}");
+    }
+    // So it is under mpirun, and what is no mistake is told once, too.
+    for arguments in [
+        &["run", &case, "--until", "soon"][..],
+        &["restart", "nowhere"],
+    ] {
+        assert_eq!(complaint(arguments), complaint_alone(arguments));
+    }
+    let ended = end(ranks(2).arg("--version")).with_code(0);
+    assert_eq!(ended.stdout.lines().count(), 1, "{ended:#?}");
+}
+
+#[test]
+fn folders_are_not_overwritten_by_mistake() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("run");
+    let out = run.to_str().unwrap();
+    let case = quarter_impact();
+    fs::create_dir(&run).unwrap();
+    fs::write(run.join("notes.txt"), "mine").unwrap();
+    let said = complaint_alone(&["run", &case, "--out", out]);
+    assert!(
+        said.contains("is not empty") && said.contains("--force"),
+        "{said}"
+    );
+    let said = complaint_alone(&["run", &case, "--out", out, "--force"]);
+    assert!(said.contains("holds no run"), "{said}");
+    assert_eq!(fs::read_dir(&run).unwrap().count(), 1);
+    fs::remove_dir_all(&run).unwrap();
+
+    let short = ["--set", "run.max_steps=5"];
+    end(coarse_run(2, &run).args(short)).with_code(0);
+    let said = complaint_alone(&[&["run", &case, "--out", out][..], &COARSE].concat());
+    assert!(said.contains("--force"), "{said}");
+    end(coarse_run(1, &run).args(short).arg("--force")).with_code(0);
+
+    // A file where the folder should be, and a place where none can be made.
+    let file = run.join("case.toml");
+    let said = complaint_alone(&["run", &case, "--out", file.to_str().unwrap()]);
+    assert!(said.contains("cannot create the folder"), "{said}");
+    let said = complaint(&["run", &case, "--out", "/proc/run"]);
+    assert!(
+        said.contains("cannot create the folder /proc/run"),
+        "{said}"
+    );
+}
+
+/// Changes a byte in the middle of a file.
+fn damage(path: &Path) {
+    let mut bytes = fs::read(path).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    fs::write(path, bytes).unwrap();
+}
+
+#[test]
+fn what_cannot_be_restarted_is_left_alone() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("run");
+    let out = run.to_str().unwrap();
+    end(coarse_run(2, &run).args(["--until", "0.12us"])).with_code(0);
+    let before = status(&run);
+
+    for key in ["sph.alpha", "spacing", "body.sphere.velocity"] {
+        let said = complaint_alone(&["restart", out, "--set", &format!("{key}=2")]);
+        let section = key.split('.').next().unwrap();
+        let begin = format!("error: `{section}` cannot change on a restart\n --> --set:1:1\n");
+        assert!(said.starts_with(&begin), "{said}");
+    }
+    let said = complaint_alone(&["restart", out, "--set", "run.end_tme=1us"]);
+    assert!(said.contains("did you mean `end_time`?"), "{said}");
+    let said = complaint_alone(&["restart", out, "--set", "output.fields=[\"presure\"]"]);
+    assert!(said.contains("presure"), "{said}");
+
+    let mut checkpoints: Vec<_> = fs::read_dir(run.join("checkpoints"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    checkpoints.sort();
+    let [.., older, newest] = &checkpoints[..] else {
+        panic!("{checkpoints:?}");
+    };
+    let manifest = fs::read_to_string(newest.join("manifest.json")).unwrap();
+    fs::write(
+        newest.join("manifest.json"),
+        manifest.replace("\"format\": 1", "\"format\": 99"),
+    )
+    .unwrap();
+    let said = complaint_alone(&["restart", out]);
+    assert!(
+        said.contains("has format 99, this program reads format 1"),
+        "{said}"
+    );
+    fs::write(newest.join("manifest.json"), manifest).unwrap();
+    damage(&newest.join("state.h5"));
+    let said = complaint_alone(&["restart", out]);
+    assert!(
+        said.contains("is damaged") && said.contains("older checkpoint"),
+        "{said}"
+    );
+    fs::remove_file(newest.join("state.h5")).unwrap();
+    let said = complaint_alone(&["restart", out]);
+    assert!(
+        said.contains("cannot read") && said.contains("state.h5"),
+        "{said}"
+    );
+    assert_eq!(status(&run), before);
+
+    end(ranks(2).arg("restart").arg(older)).with_code(0);
+    assert_eq!(status(&run).0, "finished");
+    fs::remove_dir_all(run.join("checkpoints")).unwrap();
+    let said = complaint_alone(&["restart", out]);
+    assert!(said.contains("has no checkpoint to restart from"), "{said}");
+}

@@ -1,0 +1,234 @@
+//! What a run tells: its tables, its summary, its log, and how far it is.
+
+mod cli_support;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use cli_support::{
+    LAST_STEP, WHIPPLE, assert_same, coarse_run, command, end, json, quarter_impact, ranks, start,
+    status,
+};
+
+/// The columns of a table by name, of numbers.
+fn table(path: &Path) -> BTreeMap<String, Vec<f64>> {
+    let text = fs::read_to_string(path).unwrap();
+    let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let mut columns: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    for line in lines {
+        for (name, value) in names.iter().zip(line.split(',')) {
+            let column = columns.entry((*name).to_owned()).or_default();
+            column.extend(value.parse::<f64>());
+        }
+    }
+    columns
+}
+
+#[test]
+fn a_summary_has_the_figures_of_the_run() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("run");
+    end(coarse_run(2, &run).args(["--threads", "2"])).with_code(0);
+    let summary = json(&run.join("summary.json"));
+    let number = |key: &str| {
+        summary[key]
+            .as_f64()
+            .unwrap_or_else(|| panic!("{key}: {summary:#}"))
+    };
+    assert_eq!(summary["version"], env!("CARGO_PKG_VERSION"));
+    assert!(summary["commit"].is_string());
+    for (key, value) in [
+        ("ranks", 2),
+        ("threads", 2),
+        ("particles", 3056),
+        ("steps", LAST_STEP),
+    ] {
+        assert_eq!(summary[key], value, "{key}");
+    }
+
+    // The phases are the steps without set-up, and the rate is that of the phases.
+    let phases = summary["seconds_by_phase"].as_object().unwrap();
+    let stepping: f64 = phases
+        .values()
+        .map(|seconds| seconds.as_f64().unwrap())
+        .sum();
+    assert_eq!(phases.len(), 12);
+    assert!(
+        0.0 < stepping && stepping < number("wall_seconds"),
+        "{summary:#}"
+    );
+    #[allow(clippy::cast_precision_loss, reason = "small")]
+    let updates = 3056e-6 * LAST_STEP as f64;
+    let rate = updates / stepping / 4.0;
+    assert!((number("million_updates_per_second_per_core") / rate - 1.0).abs() < 1e-6);
+
+    // At 6 particles across the sphere's radius: the bars of the fine model, times four or so.
+    let bound = |key: &str, most: f64| {
+        let value = number(key);
+        assert!((0.0..=most).contains(&value), "{key}: {value}");
+    };
+    bound("energy_error_max", 5e-3);
+    bound("contact_defect", 4e-3);
+    bound("interpenetrated_particles", 0.0);
+    bound("closest_foreign_pair", 1.0);
+    bound("largest_foreign_fraction", 1.0);
+    assert!(number("closest_foreign_pair") > 0.28);
+    for axis in ["x", "y", "z"] {
+        let error = summary["momentum_error"][axis].as_f64().unwrap();
+        assert!(
+            (0.0..1e-12).contains(&error),
+            "momentum_error.{axis}: {error}"
+        );
+    }
+
+    // What the summary says is what the tables say.
+    let history = table(&run.join("history.csv"));
+    let (energy, momentum) = (&history["total_energy"], &history["momentum_z"]);
+    let worst = energy
+        .iter()
+        .map(|e| (e - energy[0]).abs())
+        .fold(0.0, f64::max);
+    let error = worst / history["kinetic_energy"][0];
+    assert!(
+        (error / number("energy_error_max") - 1.0).abs() < 1e-9,
+        "{error}"
+    );
+    // A quarter of a sphere of radius 0.3 mm and 2785 kg/m³ at −7 km/s, as far as lattices go.
+    assert!(
+        (momentum[0] / -5.51e-4 - 1.0).abs() < 0.02,
+        "{} kg m/s",
+        momentum[0]
+    );
+    let performance = table(&run.join("performance.csv"));
+    assert_eq!(performance["empty_ranks"].last(), Some(&0.0));
+    assert!((performance["million_updates"].last().unwrap() - updates).abs() < 1e-9);
+}
+
+#[test]
+fn ranks_without_particles_are_counted() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("run");
+    // 45 particles in six layers: more ranks than layers to share out.
+    let mut command = ranks(7);
+    command.args([
+        "run",
+        &quarter_impact(),
+        "--set",
+        "spacing=0.2mm",
+        "--set",
+        "domain.axis=z",
+    ]);
+    end(command.arg("--out").arg(&run)).with_code(0);
+    let performance = table(&run.join("performance.csv"));
+    let empty = &performance["empty_ranks"];
+    assert!(empty.iter().all(|&n| (1.0..=6.0).contains(&n)), "{empty:?}");
+}
+
+#[test]
+fn a_log_tells_the_story_of_a_run() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("run");
+    let ended = end(coarse_run(2, &run).args(["--threads", "1"])).with_code(0);
+    let lines: Vec<&str> = ended.stdout.lines().collect();
+    let [first, last] = lines[..] else {
+        panic!("{ended:#?}");
+    };
+    let title = "Aluminium sphere at 7 km/s on an aluminium plate";
+    let begin = format!("{title}: 3056 particles, 2 ranks with 1 thread each (");
+    assert!(first.starts_with(&begin), "{first}");
+    assert!(
+        last.starts_with("finished at step 121, time 0.2000 us, after "),
+        "{last}"
+    );
+    assert!(
+        last.ends_with(&format!("results in {}", run.display())),
+        "{last}"
+    );
+    assert_eq!(ended.stderr, "");
+
+    let log = fs::read_to_string(run.join("log.txt")).unwrap();
+    let told: Vec<&str> = log
+        .lines()
+        .map(|line| line.split_once("] rank 0: ").unwrap().1)
+        .collect();
+    assert!(told[0].starts_with("whipple 0."), "{log}");
+    assert!(told[1].starts_with(&begin), "{log}");
+    assert!(told[2].ends_with("snapshots/step-00000000.vtkhdf"), "{log}");
+    assert!(
+        told.iter().any(|line| line.starts_with("checkpoint ")),
+        "{log}"
+    );
+    assert!(last.starts_with(told.last().unwrap()), "{log}");
+
+    // A restart goes on with it.
+    let before = told.len();
+    let end_time = ["--set", "run.end_time=0.21us"];
+    let ended = end(ranks(3).arg("restart").arg(&run).args(end_time)).with_code(0);
+    assert_eq!(
+        ended.complaints("warning: step 121 was shortened").len(),
+        1,
+        "{ended:#?}"
+    );
+    assert_eq!(ended.stderr.lines().count(), 1, "{ended:#?}");
+    let log = fs::read_to_string(run.join("log.txt")).unwrap();
+    assert!(log.lines().count() > before + 2, "{log}");
+    assert!(
+        log.contains("checkpoints/step-00000121 at 0.2000 us"),
+        "{log}"
+    );
+    assert_eq!(status(&run).0, "finished");
+}
+
+#[test]
+fn a_finished_run_is_left_alone() {
+    let place = tempfile::tempdir().unwrap();
+    let [run, copy] = ["run", "copy"].map(|name| place.path().join(name));
+    end(&mut coarse_run(1, &run)).with_code(0);
+    let summary = json(&run.join("summary.json"));
+    let ended = end(ranks(2).arg("restart").arg(&run)).with_code(0);
+    assert!(ended.stdout.starts_with("nothing to do: "), "{ended:#?}");
+    assert_eq!(json(&run.join("summary.json")), summary);
+
+    // From an earlier checkpoint into a folder of its own, and into its own by name.
+    let checkpoint = fs::read_dir(run.join("checkpoints")).unwrap();
+    let mut checkpoints: Vec<_> = checkpoint.map(|entry| entry.unwrap().path()).collect();
+    checkpoints.sort();
+    let first = &checkpoints[0];
+    end(ranks(2).arg("restart").arg(first).arg("--out").arg(&copy)).with_code(0);
+    assert_same(&copy, &run);
+    assert_eq!(json(&run.join("summary.json")), summary);
+    end(ranks(2).arg("restart").arg(first).arg("--out").arg(&run)).with_code(0);
+    assert_same(&copy, &run);
+}
+
+#[test]
+fn a_terminal_gets_a_bar_and_a_pipe_gets_lines() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("terminal");
+    let line = format!(
+        "mpirun -n 2 {WHIPPLE} run {} --set spacing=0.05mm --threads 1 --out {}",
+        quarter_impact(),
+        run.display()
+    );
+    let mut script = command("script");
+    script.args(["-qec", &line, "/dev/null"]);
+    if start(command("which").arg("script")).end().code == Some(0) {
+        let ended = end(&mut script).with_code(0);
+        assert!(
+            ended.stdout.contains('█') && ended.stdout.contains(" %  step "),
+            "{ended:#?}"
+        );
+        let last = ended.stdout.lines().last().unwrap();
+        assert!(last.contains("finished at step 121"), "{ended:#?}");
+    } else {
+        eprintln!("skipped: no terminal without script(1)");
+    }
+
+    // A line every ten seconds would be too long a wait here; none comes early.
+    let run = place.path().join("pipe");
+    let ended = end(&mut coarse_run(2, &run)).with_code(0);
+    assert_eq!(ended.complaints("").len(), 0, "{ended:#?}");
+    assert!(!ended.stdout.contains('█'), "{ended:#?}");
+}
