@@ -3,11 +3,25 @@
 
 use std::collections::BTreeMap;
 
+use whipple::comm::Comm;
 use whipple::model::{Case, SmoothingLength};
 use whipple::particles::{FieldUse, with_use};
 use whipple::step::Simulation;
 
 use super::sphere_on_plate;
+
+/// A case on one rank, without MPI.
+pub fn start(case: Case) -> Simulation {
+    Simulation::start(case, &Comm::solo()).unwrap()
+}
+
+/// So many steps, each with its sums.
+pub fn advance(simulation: &mut Simulation, steps: usize) {
+    for _ in 0..steps {
+        simulation.advance(&Comm::solo()).unwrap();
+        simulation.diagnose(&Comm::solo());
+    }
+}
 
 /// All bytes of the particles that a user or the next step can see, by id.
 pub fn rows(simulation: &Simulation) -> BTreeMap<u64, Vec<u8>> {
