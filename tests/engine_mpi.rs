@@ -5,6 +5,7 @@ mod common;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use common::outcome::{Outcome, everything};
 use common::random::Random;
 use common::ranks::on_each;
 use common::sentinel::{id, mix, sentinel};
@@ -12,6 +13,7 @@ use whipple::comm::{Comm, Exchange};
 use whipple::domain::{Decomposition, Halo, Histogram, Migration, Mirrors, Slabs, balance};
 use whipple::model::{Axis, SymmetryPlane};
 use whipple::particles::{FIELDS, FieldInfo, FieldUse, ParticleStore};
+use whipple::step::Simulation;
 
 /// Particles of the tests, spread over a box of this many units.
 const TOTAL: u64 = 400;
@@ -417,4 +419,46 @@ fn balance_work(comm: &Comm) {
 #[test]
 fn balance_evens_out_the_work() {
     on_each("balance_evens_out_the_work", &[1, 4], balance_work);
+}
+
+/// Steps of a case with contact, planes and variable h: every rank holds what one rank alone
+/// computes, to the last bit.
+fn step_together(comm: &Comm) {
+    for axis in [Axis::X, Axis::Z] {
+        let case = || {
+            let mut case = everything();
+            case.domain.axis = Some(axis);
+            case.domain.balance_every = 4;
+            case
+        };
+        let run = |comm: &Comm| {
+            let mut simulation = Simulation::start(case(), comm).unwrap();
+            simulation.poison = true;
+            for _ in 0..20 {
+                simulation.advance(comm).unwrap();
+            }
+            simulation.diagnose(comm);
+            simulation
+        };
+        let alone = Outcome::of(&run(&Comm::solo()));
+        let together = run(comm);
+        let share = Outcome::of(&together);
+        assert_eq!(share.state, alone.state);
+        for (id, row) in &share.rows {
+            assert!(alone.rows[id] == *row, "particle {id} along {axis:?}");
+        }
+        let mut count = [share.rows.len() as u64];
+        comm.sum_u64(&mut count);
+        assert_eq!(count, [alone.rows.len() as u64]);
+        assert!(together.traffic().0 > 0);
+    }
+}
+
+#[test]
+fn ranks_together_compute_what_one_does_alone() {
+    on_each(
+        "ranks_together_compute_what_one_does_alone",
+        &[2, 4],
+        step_together,
+    );
 }

@@ -1,4 +1,5 @@
-//! Whole steps of the engine: what must not change at all, and what must hold to rounding.
+//! Whole steps of the engine: what nothing changes, and what holds to rounding or to the order of
+//! the scheme.
 #![allow(clippy::float_cmp, reason = "what is exact is held exactly")]
 #![allow(
     clippy::needless_range_loop,
@@ -9,87 +10,12 @@
 mod common;
 
 use std::collections::BTreeMap;
-use std::process::Command;
 
-use common::random::Random;
-use common::{body, case, sphere_on_plate};
+use common::outcome::{advance, everything, start};
+use common::{SPACING, ball, body, case, make_elastic, planes};
 use whipple::comm::Comm;
-use whipple::material::{Elastic, Eos, Linear, LinearForm, Strength};
-use whipple::model::{
-    Axis, Body, Case, ContactMode, Overlap, Potential, Shape, SmoothingLength, SymmetryPlane, Vec3,
-};
-use whipple::particles::{FieldUse, with_use};
-use whipple::sph::dispatch::available;
+use whipple::model::{Axis, Case, ContactMode, Overlap, Potential, Shape, SmoothingLength, Vec3};
 use whipple::step::{Reason, Simulation};
-
-const SPACING: f64 = 1e-4;
-
-fn start(case: Case) -> Simulation {
-    Simulation::start(case, &Comm::solo()).unwrap()
-}
-
-fn advance(simulation: &mut Simulation, steps: usize) {
-    for _ in 0..steps {
-        simulation.advance(&Comm::solo()).unwrap();
-        simulation.diagnose(&Comm::solo());
-    }
-}
-
-/// All bytes of the particles that a user or the next step can see, by id.
-fn rows(simulation: &Simulation) -> BTreeMap<u64, Vec<u8>> {
-    let store = &simulation.store;
-    let mut rows = BTreeMap::new();
-    for slot in 0..store.owned() {
-        let row: &mut Vec<u8> = rows.entry(store.id[slot]).or_default();
-        assert!(row.is_empty(), "an id twice");
-        for uses in [FieldUse::STATE, FieldUse::SNAPSHOT, FieldUse::ON_DEMAND] {
-            for field in with_use(uses) {
-                let size = field.kind.bytes();
-                let bytes = store.bytes(field.id);
-                row.extend_from_slice(&bytes[slot * size..(slot + 1) * size]);
-            }
-        }
-    }
-    rows
-}
-
-/// What two runs must have in common to the last bit.
-#[derive(PartialEq)]
-struct Outcome {
-    rows: BTreeMap<u64, Vec<u8>>,
-    /// As debug output, which is exact.
-    state: String,
-}
-
-impl Outcome {
-    fn of(simulation: &Simulation) -> Self {
-        Self {
-            rows: rows(simulation),
-            state: format!("{:?}", simulation.state),
-        }
-    }
-}
-
-fn assert_same(a: &Outcome, b: &Outcome) {
-    assert_eq!(a.state, b.state);
-    assert!(a.rows == b.rows, "the particles differ");
-}
-
-fn ball(name: &str, z: f64, radius: f64, speed: f64) -> Body {
-    let shape = Shape::Sphere {
-        centre: Vec3::new(0.0, 0.0, z) * SPACING,
-        radius: radius * SPACING,
-    };
-    body(name, shape, SPACING, Vec3::new(0.0, 0.0, speed))
-}
-
-fn planes(axes: &[Axis]) -> Vec<SymmetryPlane> {
-    let plane = |&axis| SymmetryPlane {
-        axis,
-        position: 0.0,
-    };
-    axes.iter().map(plane).collect()
-}
 
 /// A body alone, however fast, is at rest in its own frame: no force, no stress, the same velocity
 /// to the last bit.
@@ -124,18 +50,6 @@ fn free_flight_changes_nothing() {
     }
     assert_eq!(state.worst.energy_error, 0.0);
     assert_eq!(state.worst.momentum_error, [0.0; 3]);
-}
-
-/// Linear elastic aluminium.
-fn make_elastic(case: &mut Case) {
-    case.materials[0].eos = Eos::Linear(Linear {
-        bulk_modulus: 79e9,
-        form: LinearForm::Logarithmic,
-    });
-    case.materials[0].strength = Strength::Elastic(Elastic {
-        shear_modulus: 28.6e9,
-    });
-    case.materials[0].spall = None;
 }
 
 fn angular_momentum(simulation: &Simulation) -> Vec3 {
@@ -267,138 +181,6 @@ fn energy_of_a_body_is_constant_to_rounding() {
     }
 }
 
-/// Largest differences of position (in spacings) and velocity (relative to `speed`) between the
-/// particles of a reduced model and the same ones of the whole.
-fn largest_difference(reduced: &Simulation, whole: &Simulation, speed: f64) -> (f64, f64) {
-    let whole_slot: BTreeMap<u64, usize> = (0..whole.store.owned())
-        .map(|i| (whole.store.id[i], i))
-        .collect();
-    let (mut position, mut velocity) = (0.0_f64, 0.0_f64);
-    for i in 0..reduced.store.owned() {
-        let j = whole_slot[&reduced.store.id[i]];
-        for a in 0..3 {
-            let dx = reduced.store.position[i][a] - whole.store.position[j][a];
-            let dv = reduced.store.velocity[i][a] - whole.store.velocity[j][a];
-            position = position.max(dx.abs() / SPACING);
-            velocity = velocity.max(dv.abs() / speed);
-        }
-    }
-    (position, velocity)
-}
-
-/// A mirrored half, quarter or eighth of a symmetric case moves as the whole does, with contact
-/// across the planes and without.
-#[test]
-fn mirrored_models_equal_the_whole() {
-    let overlap = ContactMode::Overlap(Overlap::default());
-    let potential = ContactMode::Potential(Potential::default());
-    for (contact, axes) in [
-        (ContactMode::Kernel, &[Axis::X][..]),
-        (ContactMode::Kernel, &[Axis::X, Axis::Y]),
-        (ContactMode::Kernel, &[Axis::X, Axis::Y, Axis::Z]),
-        (overlap, &[Axis::X, Axis::Y]),
-        (potential, &[Axis::X, Axis::Y]),
-    ] {
-        let model = |symmetry: &[Axis]| {
-            let bodies = vec![
-                ball("lower", -4.0, 4.0, 800.0),
-                ball("upper", 4.0, 4.0, -800.0),
-            ];
-            let mut case = case(3, bodies, 1.0);
-            case.default_contact = contact.clone();
-            case.sph.smoothing_length = SmoothingLength::Variable { min: 0.6, max: 2.0 };
-            case.symmetry = planes(symmetry);
-            start(case)
-        };
-        let (mut reduced, mut whole) = (model(axes), model(&[]));
-        let share = 1_u32 << axes.len();
-        assert_eq!(
-            whole.store.owned(),
-            (share as usize) * reduced.store.owned()
-        );
-        advance(&mut reduced, 60);
-        advance(&mut whole, 60);
-        let (position, velocity) = largest_difference(&reduced, &whole, 800.0);
-        let name = contact.name();
-        // Sums in other orders: rounding, which sixty steps amplify little.
-        assert!(
-            position < 1e-12 && velocity < 1e-12,
-            "{name} {axes:?}: {position:e} {velocity:e}"
-        );
-        let energies = [&reduced, &whole].map(|model| model.state.totals.energy());
-        let error = f64::from(share) * energies[0] - energies[1];
-        assert!(error.abs() < 1e-12 * energies[1]);
-        let momentum = reduced.state.worst.momentum_error;
-        assert!(momentum.iter().all(|&e| e < 1e-12), "{momentum:?}");
-    }
-}
-
-/// Particles that cross a plane change places with their images and go on as in the whole model;
-/// the impulse of that is booked.
-#[test]
-fn particles_that_cross_a_plane_go_on_as_their_images() {
-    let model = |symmetry: &[Axis]| {
-        let mut case = case(3, vec![ball("ball", 0.0, 4.0, 0.0)], 1.0);
-        make_elastic(&mut case);
-        (case.sph.alpha, case.sph.beta) = (0.0, 0.0);
-        case.symmetry = planes(symmetry);
-        let mut simulation = start(case);
-        let store = &mut simulation.store;
-        for i in 0..store.owned() {
-            let [x, y, z] = store.position[i].map(|x| x / SPACING);
-            // The layers nearest to the plane x = 0 fly through it and each other, in shear.
-            if x.abs() < 1.0 {
-                store.velocity[i] = [-30e3 * x.signum(), 900.0 * z, 700.0 * y];
-            }
-        }
-        simulation
-    };
-    let (mut reduced, mut whole) = (model(&[Axis::X]), model(&[]));
-    reduced.diagnose(&Comm::solo());
-    let before = reduced.state.totals;
-    let whole_slot = |whole: &Simulation| -> BTreeMap<u64, usize> {
-        (0..whole.store.owned())
-            .map(|i| (whole.store.id[i], i))
-            .collect()
-    };
-    let mut crossed = 0;
-    for _ in 0..40 {
-        advance(&mut reduced, 1);
-        advance(&mut whole, 1);
-        let slots = whole_slot(&whole);
-        let (half, full) = (&reduced.store, &whole.store);
-        for i in 0..half.owned() {
-            let j = slots[&half.id[i]];
-            let side = if full.position[j][0] < 0.0 { -1.0 } else { 1.0 };
-            crossed += usize::from(side < 0.0);
-            let odd = [side, 1.0, 1.0];
-            for a in 0..3 {
-                let dx = half.position[i][a] - odd[a] * full.position[j][a];
-                let dv = half.velocity[i][a] - odd[a] * full.velocity[j][a];
-                assert!(
-                    dx.abs() < 1e-10 * SPACING && dv.abs() < 1e-10 * 30e3,
-                    "{dx:e} {dv:e}"
-                );
-                for b in 0..3 {
-                    let (l, m) = (half.velocity_gradient[i], full.velocity_gradient[j]);
-                    let error = l[3 * a + b] - odd[a] * odd[b] * m[3 * a + b];
-                    assert!(error.abs() < 1e-9 * 30e3 / SPACING);
-                }
-            }
-            let (s, t) = (half.deviatoric_stress[i], full.deviatoric_stress[j]);
-            for (c, flip) in [1.0, 1.0, 1.0, side, side, 1.0].into_iter().enumerate() {
-                assert!((s[c] - flip * t[c]).abs() < 1e-9 * 28.6e9, "component {c}");
-            }
-        }
-    }
-    assert!(crossed > 100, "{crossed}");
-    let after = reduced.state.totals;
-    for a in 0..3 {
-        let error = after.momentum[a] - before.momentum[a] - reduced.state.plane_impulse[a];
-        assert!(error.abs() < 1e-14 * before.momentum_scale, "{error:e}");
-    }
-}
-
 /// Two balls meet at `speed` (m/s) each, in steps of at most `dt` (s), for .1 µs: what contact
 /// has lost or made, relative to the initial kinetic energy.
 fn contact_defect(contact: &ContactMode, speed: f64, dt: f64) -> f64 {
@@ -492,104 +274,5 @@ fn a_particle_that_is_no_number_is_reported() {
         if what == 2 {
             assert!(error.contains(&format!("particle {id} ")), "{error}");
         }
-    }
-}
-
-/// A case with all there is: contact, two planes, variable h, plasticity.
-fn everything() -> Case {
-    let mut case = sphere_on_plate(6e-5, 7000.0, true, 1.0);
-    case.sph.smoothing_length = SmoothingLength::Variable { min: 0.6, max: 2.0 };
-    case.domain.balance_every = 7;
-    case
-}
-
-const STEPS: usize = 40;
-
-fn reference() -> Outcome {
-    let mut simulation = start(everything());
-    advance(&mut simulation, STEPS);
-    Outcome::of(&simulation)
-}
-
-/// NaN in everything that is not state, between any two steps, changes no bit.
-#[test]
-fn only_state_carries_over_a_step() {
-    let mut poisoned = start(everything());
-    poisoned.poison = true;
-    advance(&mut poisoned, STEPS);
-    assert_same(&Outcome::of(&poisoned), &reference());
-}
-
-#[test]
-fn threads_change_no_bit() {
-    let reference = reference();
-    for threads in [1, 2, 5] {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        assert_same(&pool.unwrap().install(self::reference), &reference);
-    }
-}
-
-/// The order of particles in memory is nobody's business.
-#[test]
-fn order_in_memory_changes_no_bit() {
-    let mut simulation = start(everything());
-    let mut random = Random::new(2);
-    for _ in 0..STEPS {
-        let mut order: Vec<u32> = (0..u32::try_from(simulation.store.owned()).unwrap()).collect();
-        random.shuffle(&mut order);
-        simulation.store.keep(&order, &mut Vec::new());
-        advance(&mut simulation, 1);
-    }
-    assert_same(&Outcome::of(&simulation), &reference());
-}
-
-/// A run taken up again from its state alone goes on as if nothing had happened.
-#[test]
-fn resuming_changes_no_bit() {
-    let mut first = start(everything());
-    advance(&mut first, STEPS / 2);
-    let mut saved = first.store.clone();
-    saved.resize_halo(0);
-    saved.poison();
-    let state = first.state.clone();
-    let mut second = Simulation::resume(everything(), &Comm::solo(), state, saved).unwrap();
-    advance(&mut second, STEPS - STEPS / 2);
-    assert_same(&Outcome::of(&second), &reference());
-}
-
-const DIGEST: &str = "WHIPPLE_TEST_DIGEST";
-
-/// Every instruction set of this processor gives the same bits.
-#[test]
-fn instruction_sets_change_no_bit() {
-    if std::env::var_os(DIGEST).is_some() {
-        let Outcome { rows, state } = reference();
-        // FNV-1a.
-        let digest = rows
-            .into_values()
-            .flatten()
-            .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
-                (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-            });
-        println!("digest {digest:x} {state}");
-        return;
-    }
-    let outputs: Vec<String> = available()
-        .into_iter()
-        .map(|set| {
-            let output = Command::new(std::env::current_exe().unwrap())
-                .args(["--exact", "instruction_sets_change_no_bit", "--nocapture"])
-                .env(DIGEST, "1")
-                .env("WHIPPLE_SIMD", set.name())
-                .output()
-                .unwrap();
-            assert!(output.status.success());
-            let text = String::from_utf8(output.stdout).unwrap();
-            let line = text.lines().find_map(|line| line.split_once("digest "));
-            line.expect("a digest").1.to_owned()
-        })
-        .collect();
-    for (output, set) in outputs.iter().zip(available()) {
-        assert_eq!(*output, outputs[0], "{}", set.name());
     }
 }

@@ -2,11 +2,12 @@
 #![allow(dead_code, reason = "each test file uses some of these")]
 
 pub mod cloud;
+pub mod outcome;
 pub mod random;
 pub mod ranks;
 pub mod sentinel;
 
-use whipple::material::{Strength, VonMises, library};
+use whipple::material::{Elastic, Eos, Linear, LinearForm, Strength, VonMises, library};
 use whipple::model::{
     Axis, Body, Case, ContactMode, DomainOptions, Lattice, LatticeKind, OutputOptions, Overlap,
     RunControl, Shape, SmoothingLength, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
@@ -98,4 +99,37 @@ pub fn sphere_on_plate(spacing: f64, speed: f64, quarter: bool, end_time: f64) -
             .to_vec();
     }
     case
+}
+
+/// Particle spacing of [`ball`] (m).
+pub const SPACING: f64 = 1e-4;
+
+/// A ball on the z axis at `speed` (m/s) along it; `z` and `radius` in spacings.
+pub fn ball(name: &str, z: f64, radius: f64, speed: f64) -> Body {
+    let shape = Shape::Sphere {
+        centre: Vec3::new(0.0, 0.0, z) * SPACING,
+        radius: radius * SPACING,
+    };
+    body(name, shape, SPACING, Vec3::new(0.0, 0.0, speed))
+}
+
+/// Planes of symmetry through the origin.
+pub fn planes(axes: &[Axis]) -> Vec<SymmetryPlane> {
+    let plane = |&axis| SymmetryPlane {
+        axis,
+        position: 0.0,
+    };
+    axes.iter().map(plane).collect()
+}
+
+/// Linear elastic aluminium.
+pub fn make_elastic(case: &mut Case) {
+    case.materials[0].eos = Eos::Linear(Linear {
+        bulk_modulus: 79e9,
+        form: LinearForm::Logarithmic,
+    });
+    case.materials[0].strength = Strength::Elastic(Elastic {
+        shear_modulus: 28.6e9,
+    });
+    case.materials[0].spall = None;
 }

@@ -1,0 +1,72 @@
+//! What runs must have in common to the last bit, and a case with all there is.
+#![allow(dead_code, reason = "each test file uses some of these")]
+
+use std::collections::BTreeMap;
+
+use whipple::comm::Comm;
+use whipple::model::{Case, SmoothingLength};
+use whipple::particles::{FieldUse, with_use};
+use whipple::step::Simulation;
+
+use super::sphere_on_plate;
+
+/// A case on one rank, without MPI.
+pub fn start(case: Case) -> Simulation {
+    Simulation::start(case, &Comm::solo()).unwrap()
+}
+
+/// So many steps, each with its sums.
+pub fn advance(simulation: &mut Simulation, steps: usize) {
+    for _ in 0..steps {
+        simulation.advance(&Comm::solo()).unwrap();
+        simulation.diagnose(&Comm::solo());
+    }
+}
+
+/// All bytes of the particles that a user or the next step can see, by id.
+pub fn rows(simulation: &Simulation) -> BTreeMap<u64, Vec<u8>> {
+    let store = &simulation.store;
+    let mut rows = BTreeMap::new();
+    for slot in 0..store.owned() {
+        let row: &mut Vec<u8> = rows.entry(store.id[slot]).or_default();
+        assert!(row.is_empty(), "an id twice");
+        for uses in [FieldUse::STATE, FieldUse::SNAPSHOT, FieldUse::ON_DEMAND] {
+            for field in with_use(uses) {
+                let size = field.kind.bytes();
+                let bytes = store.bytes(field.id);
+                row.extend_from_slice(&bytes[slot * size..(slot + 1) * size]);
+            }
+        }
+    }
+    rows
+}
+
+/// What two runs must have in common to the last bit.
+#[derive(PartialEq)]
+pub struct Outcome {
+    pub rows: BTreeMap<u64, Vec<u8>>,
+    /// As debug output, which is exact.
+    pub state: String,
+}
+
+impl Outcome {
+    pub fn of(simulation: &Simulation) -> Self {
+        Self {
+            rows: rows(simulation),
+            state: format!("{:?}", simulation.state),
+        }
+    }
+}
+
+pub fn assert_same(a: &Outcome, b: &Outcome) {
+    assert_eq!(a.state, b.state);
+    assert!(a.rows == b.rows, "the particles differ");
+}
+
+/// A case with all there is: contact, two planes, variable h, plasticity.
+pub fn everything() -> Case {
+    let mut case = sphere_on_plate(6e-5, 7000.0, true, 1.0);
+    case.sph.smoothing_length = SmoothingLength::Variable { min: 0.6, max: 2.0 };
+    case.domain.balance_every = 7;
+    case
+}

@@ -1,0 +1,103 @@
+//! What must change no bit: threads, the order in memory, a stop, the instruction set, and what is
+//! not state. Ranks are in `engine_mpi.rs` and, by the whole program, in `same_bits.rs`.
+
+mod common;
+
+use std::process::Command;
+
+use common::outcome::{Outcome, advance, assert_same, everything, start};
+use common::random::Random;
+use whipple::comm::Comm;
+use whipple::sph::dispatch::available;
+use whipple::step::Simulation;
+
+const STEPS: usize = 40;
+
+fn reference() -> Outcome {
+    let mut simulation = start(everything());
+    advance(&mut simulation, STEPS);
+    Outcome::of(&simulation)
+}
+
+/// NaN in everything that is not state, between any two steps, changes no bit.
+#[test]
+fn only_state_carries_over_a_step() {
+    let mut poisoned = start(everything());
+    poisoned.poison = true;
+    advance(&mut poisoned, STEPS);
+    assert_same(&Outcome::of(&poisoned), &reference());
+}
+
+#[test]
+fn threads_change_no_bit() {
+    let reference = reference();
+    for threads in [1, 2, 5] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        assert_same(&pool.unwrap().install(self::reference), &reference);
+    }
+}
+
+/// The order of particles in memory is nobody's business.
+#[test]
+fn order_in_memory_changes_no_bit() {
+    let mut simulation = start(everything());
+    let mut random = Random::new(2);
+    for _ in 0..STEPS {
+        let mut order: Vec<u32> = (0..u32::try_from(simulation.store.owned()).unwrap()).collect();
+        random.shuffle(&mut order);
+        simulation.store.keep(&order, &mut Vec::new());
+        advance(&mut simulation, 1);
+    }
+    assert_same(&Outcome::of(&simulation), &reference());
+}
+
+/// A run taken up again from its state alone goes on as if nothing had happened.
+#[test]
+fn resuming_changes_no_bit() {
+    let mut first = start(everything());
+    advance(&mut first, STEPS / 2);
+    let mut saved = first.store.clone();
+    saved.resize_halo(0);
+    saved.poison();
+    let state = first.state.clone();
+    let mut second = Simulation::resume(everything(), &Comm::solo(), state, saved).unwrap();
+    advance(&mut second, STEPS - STEPS / 2);
+    assert_same(&Outcome::of(&second), &reference());
+}
+
+const DIGEST: &str = "WHIPPLE_TEST_DIGEST";
+
+/// Every instruction set of this processor gives the same bits.
+#[test]
+fn instruction_sets_change_no_bit() {
+    if std::env::var_os(DIGEST).is_some() {
+        let Outcome { rows, state } = reference();
+        // FNV-1a.
+        let digest = rows
+            .into_values()
+            .flatten()
+            .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+                (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+            });
+        println!("digest {digest:x} {state}");
+        return;
+    }
+    let outputs: Vec<String> = available()
+        .into_iter()
+        .map(|set| {
+            let output = Command::new(std::env::current_exe().unwrap())
+                .args(["--exact", "instruction_sets_change_no_bit", "--nocapture"])
+                .env(DIGEST, "1")
+                .env("WHIPPLE_SIMD", set.name())
+                .output()
+                .unwrap();
+            assert!(output.status.success());
+            let text = String::from_utf8(output.stdout).unwrap();
+            let line = text.lines().find_map(|line| line.split_once("digest "));
+            line.expect("a digest").1.to_owned()
+        })
+        .collect();
+    for (output, set) in outputs.iter().zip(available()) {
+        assert_eq!(*output, outputs[0], "{}", set.name());
+    }
+}

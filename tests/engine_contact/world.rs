@@ -1,0 +1,266 @@
+//! Particles of two or more bodies anywhere in space, what contact does to them, and the energy of
+//! contact written down again.
+
+use whipple::contact::{ContactTable, ContactView, Reaction, overlap, potential};
+use whipple::material::library;
+use whipple::model::{Body, Case, ContactMode, Overlap, Potential, PotentialRange, Shape, Vec3};
+use whipple::neighbours::{ContactClass, Image};
+use whipple::particles::ParticleStore;
+use whipple::populate;
+use whipple::sph::gradient::MotionRecord;
+use whipple::sph::kernel::Kernel;
+
+use crate::common::{body, case};
+
+pub const SPACING: f64 = 1e-5;
+
+/// Particles of the bodies of a case anywhere in space.
+pub struct World {
+    pub case: Case,
+    pub table: ContactTable,
+    /// Touching value of each ordered pair of bodies.
+    touching: Vec<f64>,
+    pub store: ParticleStore,
+    images: Vec<Image>,
+    pub motion: Vec<MotionRecord>,
+}
+
+/// The foreign neighbours of each particle, for `overlap` and for `potential`.
+pub type Lists = [Vec<Vec<u32>>; 2];
+
+/// A body whose shape does not matter.
+pub fn some_body(material: usize, spacing: f64, h: f64) -> Body {
+    let shape = Shape::Box {
+        lower: Vec3::zeros(),
+        upper: Vec3::repeat(10.0 * spacing),
+    };
+    Body {
+        material,
+        smoothing_length: h * spacing,
+        ..body("body", shape, spacing, Vec3::zeros())
+    }
+}
+
+/// Aluminium and copper.
+pub fn case_of(dimension: usize, bodies: Vec<Body>) -> Case {
+    let mut case = case(dimension, bodies, 1.0);
+    case.materials.push(library::find("copper").unwrap());
+    case
+}
+
+/// A pair of particles of two bodies.
+struct Pair {
+    /// The smaller p-wave modulus (Pa).
+    modulus: f64,
+    h: f64,
+    spacing: f64,
+    r: f64,
+    /// `W(r, h)`.
+    kernel: f64,
+}
+
+impl World {
+    pub fn new(case: Case, particles: &[(usize, [f64; 3])]) -> Self {
+        let mut store = ParticleStore::default();
+        store.resize_owned(particles.len());
+        let mut motion = Vec::new();
+        for (i, &(b, position)) in particles.iter().enumerate() {
+            let body = &case.bodies[b];
+            let volume = populate::particle_volume(body, case.dimension);
+            store.id[i] = i as u64;
+            store.body[i] = u32::try_from(b).unwrap();
+            store.mass[i] = volume * case.materials[body.material].reference_density;
+            store.position[i] = position;
+            motion.push(MotionRecord {
+                position,
+                velocity: [0.0; 3],
+                volume,
+                smoothing_length: body.smoothing_length,
+            });
+        }
+        let touching = case
+            .bodies
+            .iter()
+            .flat_map(|a| case.bodies.iter().map(move |b| (a, b)))
+            .map(|(a, b)| populate::touching_value(a, b, case.dimension))
+            .collect();
+        Self {
+            table: ContactTable::new(&case),
+            touching,
+            images: (0..particles.len()).map(|i| Image::new(i, 0)).collect(),
+            case,
+            store,
+            motion,
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.motion.len()
+    }
+
+    fn view(&self) -> ContactView<'_> {
+        ContactView {
+            images: &self.images,
+            motion: &self.motion,
+            store: &self.store,
+            table: &self.table,
+        }
+    }
+
+    fn bodies(&self, i: usize, j: usize) -> (usize, usize) {
+        (self.store.body[i] as usize, self.store.body[j] as usize)
+    }
+
+    fn distance(&self, i: usize, j: usize) -> f64 {
+        let (a, b) = (self.motion[i].position, self.motion[j].position);
+        (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// Foreign neighbours of a receiver in one algorithm, by brute force.
+    pub fn neighbours(&self, i: usize, class: ContactClass) -> Vec<u32> {
+        (0..self.len())
+            .filter(|&j| {
+                let (a, b) = self.bodies(i, j);
+                let pair = a * self.case.bodies.len() + b;
+                self.table.foreign.class[pair] == class
+                    && self.distance(i, j).powi(2) < self.table.foreign.reach2[pair]
+            })
+            .map(|j| u32::try_from(j).unwrap())
+            .collect()
+    }
+
+    pub fn lists(&self) -> Lists {
+        [ContactClass::Overlap, ContactClass::Potential]
+            .map(|class| (0..self.len()).map(|i| self.neighbours(i, class)).collect())
+    }
+
+    /// Fractions of all particles into the store, as the step does.
+    pub fn fractions(&mut self, [overlap, _]: &Lists) -> Vec<overlap::Fraction> {
+        let all: Vec<_> = (0_u32..)
+            .zip(overlap)
+            .map(|(place, list)| {
+                let relief = self.store.touch_relief[place as usize];
+                overlap::fraction(&self.view(), place, list, relief)
+            })
+            .collect();
+        for (i, fraction) in all.iter().enumerate() {
+            self.store.foreign_fraction[i] = fraction.fraction;
+            self.store.contact_excess[i] = fraction.excess;
+            self.store.contact_modulus[i] = fraction.modulus;
+            self.store.touching_value[i] = fraction.touching;
+            self.store.contact_slope[i] = fraction.slope;
+        }
+        all
+    }
+
+    fn react(&self, i: usize, overlap: &[u32], potential: &[u32]) -> Reaction {
+        let mut reaction = Reaction::default();
+        reaction.clear();
+        let place = u32::try_from(i).unwrap();
+        overlap::react(&self.view(), place, overlap, &mut reaction);
+        potential::react(&self.view(), place, potential, &mut reaction);
+        reaction
+    }
+
+    /// Reactions of all particles at their positions.
+    pub fn reactions(&mut self, lists: &Lists) -> Vec<Reaction> {
+        self.fractions(lists);
+        (0..self.len())
+            .map(|i| self.react(i, &lists[0][i], &lists[1][i]))
+            .collect()
+    }
+
+    /// What particle j alone does to particle i, after [`Self::fractions`].
+    pub fn pair_force(&self, i: usize, j: usize, class: ContactClass) -> [f64; 3] {
+        let j = [u32::try_from(j).unwrap()];
+        match class {
+            ContactClass::Overlap => self.react(i, &j, &[]).force,
+            _ => self.react(i, &[], &j).force,
+        }
+    }
+
+    fn volume(&self, i: usize) -> f64 {
+        populate::particle_volume(
+            &self.case.bodies[self.store.body[i] as usize],
+            self.case.dimension,
+        )
+    }
+
+    /// The contact energy by the formulas of the physics page, section 5, from the case alone.
+    pub fn energy(&self) -> f64 {
+        let mut energy = 0.0;
+        for i in 0..self.len() {
+            let (mut fraction, mut modulus, mut touching) = (0.0, 0.0, 0.0);
+            for j in 0..self.len() {
+                let (a, b) = self.bodies(i, j);
+                if a == b {
+                    continue;
+                }
+                let pair = self.pair(i, j);
+                match self.case.contact_between(a, b) {
+                    ContactMode::Overlap(overlap) => {
+                        let weight = self.volume(j) * pair.kernel;
+                        fraction += weight;
+                        modulus += weight * overlap.stiffness * pair.modulus;
+                        touching += weight * self.touching[a * self.case.bodies.len() + b];
+                        // Each pair is met twice.
+                        energy += 0.5 * self.core_energy(i, j, &pair, overlap);
+                    }
+                    ContactMode::Potential(potential) => {
+                        energy += 0.5 * self.potential_energy(i, j, &pair, potential);
+                    }
+                    ContactMode::None | ContactMode::Kernel => {}
+                }
+            }
+            if fraction > 0.0 {
+                let relief = self.store.touch_relief[i];
+                let excess = (fraction - touching / fraction - relief).max(0.0);
+                energy += 0.5 * (modulus / fraction) * self.volume(i) * excess * excess;
+            }
+        }
+        energy
+    }
+
+    fn pair(&self, i: usize, j: usize) -> Pair {
+        let (a, b) = self.bodies(i, j);
+        let (a, b) = (&self.case.bodies[a], &self.case.bodies[b]);
+        let modulus = |body: &Body| self.case.materials[body.material].p_wave_modulus();
+        let h = 0.5 * (a.smoothing_length + b.smoothing_length);
+        let r = self.distance(i, j);
+        Pair {
+            modulus: modulus(a).min(modulus(b)),
+            h,
+            spacing: 0.5 * (a.lattice.spacing + b.lattice.spacing),
+            r,
+            kernel: Kernel::new(self.case.dimension).value(r, h),
+        }
+    }
+
+    /// `½ κ_c M V̄ ⟨1 − r/r_c⟩₊²`.
+    fn core_energy(&self, i: usize, j: usize, pair: &Pair, overlap: &Overlap) -> f64 {
+        let depth = (1.0 - pair.r / (overlap.core_radius * pair.spacing)).max(0.0);
+        let volume = 0.5 * (self.volume(i) + self.volume(j));
+        0.5 * overlap.core_stiffness * pair.modulus * volume * depth * depth
+    }
+
+    /// `V_i V_j K [(W/W(Δp))^n − floor]` within the range.
+    fn potential_energy(&self, i: usize, j: usize, pair: &Pair, potential: &Potential) -> f64 {
+        let (range, floor) = match potential.range {
+            PotentialRange::Support => (2.0 * pair.h, 0.0),
+            PotentialRange::Spacing => (pair.spacing, 1.0),
+        };
+        if pair.r >= range {
+            return 0.0;
+        }
+        let kernel = Kernel::new(self.case.dimension);
+        let ratio = pair.kernel / kernel.value(pair.spacing, pair.h);
+        let steep = ratio.powi(i32::try_from(potential.exponent).unwrap());
+        let k = potential.stiffness * pair.modulus / kernel.power(pair.spacing);
+        self.volume(i) * self.volume(j) * k * (steep - floor)
+    }
+
+    pub fn shift(&mut self, i: usize, axis: usize, by: f64) {
+        self.store.position[i][axis] += by;
+        self.motion[i].position[axis] += by;
+    }
+}

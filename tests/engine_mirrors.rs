@@ -1,0 +1,149 @@
+//! Models cut at symmetry planes against the whole.
+#![allow(clippy::float_cmp, reason = "what is exact is held exactly")]
+#![allow(
+    clippy::needless_range_loop,
+    reason = "components of vectors and tensors"
+)]
+#![allow(clippy::many_single_char_names, reason = "formulas as on paper")]
+
+mod common;
+
+use std::collections::BTreeMap;
+
+use common::outcome::{advance, start};
+use common::{SPACING, ball, case, make_elastic, planes};
+use whipple::comm::Comm;
+use whipple::model::{Axis, ContactMode, Overlap, Potential, SmoothingLength};
+use whipple::step::Simulation;
+
+/// Largest differences of position (in spacings) and velocity (relative to `speed`) between the
+/// particles of a reduced model and the same ones of the whole.
+fn largest_difference(reduced: &Simulation, whole: &Simulation, speed: f64) -> (f64, f64) {
+    let whole_slot: BTreeMap<u64, usize> = (0..whole.store.owned())
+        .map(|i| (whole.store.id[i], i))
+        .collect();
+    let (mut position, mut velocity) = (0.0_f64, 0.0_f64);
+    for i in 0..reduced.store.owned() {
+        let j = whole_slot[&reduced.store.id[i]];
+        for a in 0..3 {
+            let dx = reduced.store.position[i][a] - whole.store.position[j][a];
+            let dv = reduced.store.velocity[i][a] - whole.store.velocity[j][a];
+            position = position.max(dx.abs() / SPACING);
+            velocity = velocity.max(dv.abs() / speed);
+        }
+    }
+    (position, velocity)
+}
+
+/// A mirrored half, quarter or eighth of a symmetric case moves as the whole does, with contact
+/// across the planes and without.
+#[test]
+fn mirrored_models_equal_the_whole() {
+    let overlap = ContactMode::Overlap(Overlap::default());
+    let potential = ContactMode::Potential(Potential::default());
+    for (contact, axes) in [
+        (ContactMode::Kernel, &[Axis::X][..]),
+        (ContactMode::Kernel, &[Axis::X, Axis::Y]),
+        (ContactMode::Kernel, &[Axis::X, Axis::Y, Axis::Z]),
+        (overlap, &[Axis::X, Axis::Y]),
+        (potential, &[Axis::X, Axis::Y]),
+    ] {
+        let model = |symmetry: &[Axis]| {
+            let bodies = vec![
+                ball("lower", -4.0, 4.0, 800.0),
+                ball("upper", 4.0, 4.0, -800.0),
+            ];
+            let mut case = case(3, bodies, 1.0);
+            case.default_contact = contact.clone();
+            case.sph.smoothing_length = SmoothingLength::Variable { min: 0.6, max: 2.0 };
+            case.symmetry = planes(symmetry);
+            start(case)
+        };
+        let (mut reduced, mut whole) = (model(axes), model(&[]));
+        let share = 1_u32 << axes.len();
+        assert_eq!(
+            whole.store.owned(),
+            (share as usize) * reduced.store.owned()
+        );
+        advance(&mut reduced, 60);
+        advance(&mut whole, 60);
+        let (position, velocity) = largest_difference(&reduced, &whole, 800.0);
+        let name = contact.name();
+        // Sums in other orders: rounding, which sixty steps amplify little.
+        assert!(
+            position < 1e-12 && velocity < 1e-12,
+            "{name} {axes:?}: {position:e} {velocity:e}"
+        );
+        let energies = [&reduced, &whole].map(|model| model.state.totals.energy());
+        let error = f64::from(share) * energies[0] - energies[1];
+        assert!(error.abs() < 1e-12 * energies[1]);
+        let momentum = reduced.state.worst.momentum_error;
+        assert!(momentum.iter().all(|&e| e < 1e-12), "{momentum:?}");
+    }
+}
+
+/// Particles that cross a plane change places with their images and go on as in the whole model;
+/// the impulse of that is booked.
+#[test]
+fn particles_that_cross_a_plane_go_on_as_their_images() {
+    let model = |symmetry: &[Axis]| {
+        let mut case = case(3, vec![ball("ball", 0.0, 4.0, 0.0)], 1.0);
+        make_elastic(&mut case);
+        (case.sph.alpha, case.sph.beta) = (0.0, 0.0);
+        case.symmetry = planes(symmetry);
+        let mut simulation = start(case);
+        let store = &mut simulation.store;
+        for i in 0..store.owned() {
+            let [x, y, z] = store.position[i].map(|x| x / SPACING);
+            // The layers nearest to the plane x = 0 fly through it and each other, in shear.
+            if x.abs() < 1.0 {
+                store.velocity[i] = [-30e3 * x.signum(), 900.0 * z, 700.0 * y];
+            }
+        }
+        simulation
+    };
+    let (mut reduced, mut whole) = (model(&[Axis::X]), model(&[]));
+    reduced.diagnose(&Comm::solo());
+    let before = reduced.state.totals;
+    let whole_slot = |whole: &Simulation| -> BTreeMap<u64, usize> {
+        (0..whole.store.owned())
+            .map(|i| (whole.store.id[i], i))
+            .collect()
+    };
+    let mut crossed = 0;
+    for _ in 0..40 {
+        advance(&mut reduced, 1);
+        advance(&mut whole, 1);
+        let slots = whole_slot(&whole);
+        let (half, full) = (&reduced.store, &whole.store);
+        for i in 0..half.owned() {
+            let j = slots[&half.id[i]];
+            let side = if full.position[j][0] < 0.0 { -1.0 } else { 1.0 };
+            crossed += usize::from(side < 0.0);
+            let odd = [side, 1.0, 1.0];
+            for a in 0..3 {
+                let dx = half.position[i][a] - odd[a] * full.position[j][a];
+                let dv = half.velocity[i][a] - odd[a] * full.velocity[j][a];
+                assert!(
+                    dx.abs() < 1e-10 * SPACING && dv.abs() < 1e-10 * 30e3,
+                    "{dx:e} {dv:e}"
+                );
+                for b in 0..3 {
+                    let (l, m) = (half.velocity_gradient[i], full.velocity_gradient[j]);
+                    let error = l[3 * a + b] - odd[a] * odd[b] * m[3 * a + b];
+                    assert!(error.abs() < 1e-9 * 30e3 / SPACING);
+                }
+            }
+            let (s, t) = (half.deviatoric_stress[i], full.deviatoric_stress[j]);
+            for (c, flip) in [1.0, 1.0, 1.0, side, side, 1.0].into_iter().enumerate() {
+                assert!((s[c] - flip * t[c]).abs() < 1e-9 * 28.6e9, "component {c}");
+            }
+        }
+    }
+    assert!(crossed > 100, "{crossed}");
+    let after = reduced.state.totals;
+    for a in 0..3 {
+        let error = after.momentum[a] - before.momentum[a] - reduced.state.plane_impulse[a];
+        assert!(error.abs() < 1e-14 * before.momentum_scale, "{error:e}");
+    }
+}
