@@ -172,10 +172,9 @@ impl Halo {
             }));
     }
 
-    /// Peers are the ranks whose particles or images may stand within reach of this rank's, by a
-    /// test that both sides answer alike.
+    /// Peers are the ranks whose particles may stand within reach of this rank's, by a test that
+    /// both sides answer alike. Images behind planes are never nearer than their particles.
     fn find_peers(&mut self, comm: &Comm) {
-        let plane = self.mirrors.plane(self.axis);
         let me = comm.rank();
         let mine = self.extents[me];
         let extents = &self.extents;
@@ -186,9 +185,7 @@ impl Halo {
             }
             let range = mine.reach + theirs.reach;
             let gap = (theirs.lower - mine.upper).max(mine.lower - theirs.upper);
-            // An image stands as far behind the plane as its particle before it.
-            let mirrored = plane.map_or(f64::INFINITY, |c| mine.lower + theirs.lower - 2.0 * c);
-            gap <= range || mirrored <= range
+            gap <= range
         }));
     }
 

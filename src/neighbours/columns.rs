@@ -21,7 +21,9 @@ pub struct ColumnGrid {
 const WIDTH_IN_SPACINGS: f64 = 2.0;
 /// How far beyond its initial box a group has columns of its own, in sizes of that box.
 const MARGIN: f64 = 4.0;
-const MAX_COUNT: f64 = 30_000.0;
+/// Columns along an axis across, at most: runaways in opposite corners make a rank lay out all of
+/// them.
+const MAX_COUNT: f64 = 4096.0;
 
 impl ColumnGrid {
     /// Grid for a group that starts in the box `lower..upper` (m) with particle spacing
