@@ -31,8 +31,8 @@ check: test-deps
 validation: test-deps $(VENV)/ready ## Run the slow physics tests, those marked #[ignore]
 	$(ENV) jobs/cargo-test.sh --ignored
 
-bench: deps ## Measure the kernels
-	$(ENV) cargo bench --locked
+bench: deps ## Time the step by phase
+	$(ENV) cargo bench --locked --bench step
 
 docs: deps ## Build the book (target/book) and the API documentation (target/doc)
 	$(ENV) cargo doc --locked --no-deps
