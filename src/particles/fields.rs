@@ -164,7 +164,7 @@ macro_rules! particle_fields {
 
             pub(super) fn resize_field(&mut self, field: FieldId, length: usize) {
                 match field { $( FieldId::$name => {
-                    self.$name.resize(length, bytemuck::Zeroable::zeroed());
+                    super::store::resize(&mut self.$name, length);
                 } )+ }
             }
 

@@ -16,6 +16,15 @@ pub(super) fn gather<T: bytemuck::Pod>(values: &mut [T], order: &[u32], scratch:
     values[..order.len()].copy_from_slice(copy);
 }
 
+/// Sets the length, zero-filling; grows by a sixteenth more than asked, not by doubling, since
+/// most of a rank's memory is here.
+pub(super) fn resize<T: bytemuck::Zeroable + Copy>(values: &mut Vec<T>, length: usize) {
+    if length > values.capacity() {
+        values.reserve_exact(length + length / 16 - values.len());
+    }
+    values.resize(length, T::zeroed());
+}
+
 impl ParticleStore {
     /// Number of particles this rank owns.
     #[must_use]
