@@ -221,6 +221,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::V
     let threads = rayon::current_num_threads();
     let cores = (comm.size() * threads) as f64;
     let rate = load.updates as f64 * 1e-6 / stepping.max(f64::MIN_POSITIVE) / cores;
+    let contact = simulation.contact();
     json!({
         "title": simulation.case.title,
         "version": VERSION,
@@ -238,9 +239,9 @@ pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::V
         "energy_error_max": worst.energy_error,
         "contact_defect": worst.contact_defect,
         "momentum_error": object(["x", "y", "z"].into_iter().zip(worst.momentum_error)),
-        "interpenetrated_particles": worst.interpenetrated,
+        "interpenetrated_particles": contact.is_active().then_some(worst.interpenetrated),
         "closest_foreign_pair": worst.closest,
-        "largest_foreign_fraction": worst.foreign_fraction,
+        "largest_foreign_fraction": contact.has_overlap().then_some(worst.foreign_fraction),
         "capped_reliefs": state.capped_reliefs,
         "contact_limited_steps": worst.contact_limited_steps,
     })

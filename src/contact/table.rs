@@ -114,6 +114,12 @@ impl ContactTable {
         self.foreign.class.iter().any(|&c| c != ContactClass::None)
     }
 
+    /// Whether any pair of bodies has overlap contact, which alone measures foreign fractions.
+    #[must_use]
+    pub fn has_overlap(&self) -> bool {
+        self.foreign.class.contains(&ContactClass::Overlap)
+    }
+
     /// The unordered pairs of bodies with contact beyond the SPH sums.
     #[must_use]
     pub fn active_pairs(&self) -> Vec<[usize; 2]> {
