@@ -155,7 +155,7 @@ impl Voter<'_> {
 fn describe(store: &ParticleStore, i: usize, rank: usize) -> String {
     format!(
         "body {}, rank {rank}, position {:?} m, velocity {:?} m/s, density {} kg/m^3, \
-         specific energy {} J/kg, pressure {} Pa, sound speed {} m/s, neighbours near {}",
+         specific energy {} J/kg, pressure {} Pa, sound speed {} m/s; nearest particles {}",
         store.body[i],
         store.position[i],
         store.velocity[i],
@@ -163,6 +163,36 @@ fn describe(store: &ParticleStore, i: usize, rank: usize) -> String {
         store.specific_energy[i],
         store.pressure[i],
         store.sound_speed[i],
-        store.work[i],
+        nearest(store, i),
     )
+}
+
+/// The particles nearest to particle `i` of those that this rank holds: id, body, distance.
+fn nearest(store: &ParticleStore, i: usize) -> String {
+    let here = store.position[i];
+    let distance = |there: &[f64; 3]| {
+        let square: f64 = (0..3)
+            .map(|a| (here[a] - there[a]) * (here[a] - there[a]))
+            .sum();
+        square.sqrt()
+    };
+    let mut others: Vec<(f64, usize)> = store
+        .position
+        .iter()
+        .enumerate()
+        .filter(|&(k, _)| k != i)
+        .map(|(k, there)| (distance(there), k))
+        .filter(|(r, _)| r.is_finite())
+        .collect();
+    others.sort_by(|a, b| a.0.total_cmp(&b.0).then(store.id[a.1].cmp(&store.id[b.1])));
+    let described: Vec<String> = others
+        .iter()
+        .take(3)
+        .map(|&(r, k)| format!("{} of body {} at {r:.4e} m", store.id[k], store.body[k]))
+        .collect();
+    if described.is_empty() {
+        "unknown".to_owned()
+    } else {
+        described.join(", ")
+    }
 }
