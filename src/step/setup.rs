@@ -49,8 +49,9 @@ impl Simulation {
     /// # Errors
     /// The same on all ranks if the case has no particles or too many, or blows up at once.
     pub fn start(case: Case, comm: &Comm) -> Result<Self, SetupError> {
-        let mut simulation = Self::empty(case, comm)?;
-        simulation.populate(comm)?;
+        let boxes = body_boxes(&case).ok_or(SetupError::Empty)?;
+        let mut simulation = Self::empty(case, comm, &boxes);
+        simulation.populate(comm, &boxes)?;
         simulation.begin(comm)?;
         Ok(simulation)
     }
@@ -66,7 +67,8 @@ impl Simulation {
         state: RunState,
         store: ParticleStore,
     ) -> Result<Self, SetupError> {
-        let mut simulation = Self::empty(case, comm)?;
+        let boxes = body_boxes(&case).ok_or(SetupError::Empty)?;
+        let mut simulation = Self::empty(case, comm, &boxes);
         simulation.store = store;
         simulation.state = state;
         simulation.slabs = balance(
@@ -85,12 +87,11 @@ impl Simulation {
     }
 
     /// Everything but particles.
-    fn empty(case: Case, comm: &Comm) -> Result<Self, SetupError> {
-        let boxes = body_boxes(&case).ok_or(SetupError::Empty)?;
+    fn empty(case: Case, comm: &Comm, boxes: &Boxes) -> Self {
         let contact = ContactTable::new(&case);
-        let longest = longest_axis(&boxes);
+        let longest = longest_axis(boxes);
         let axis = case.domain.axis.map_or(longest, crate::model::Axis::index);
-        let grids = group_grids(&case, &contact, &boxes, longest);
+        let grids = group_grids(&case, &contact, boxes, longest);
         let pairs = contact.active_pairs();
         let speed = case.impact_speed();
         let spacing = case
@@ -103,7 +104,7 @@ impl Simulation {
         } else {
             f64::INFINITY
         };
-        Ok(Self {
+        Self {
             store: ParticleStore::default(),
             state: fresh_state(pairs.len()),
             timers: Timers::default(),
@@ -124,16 +125,15 @@ impl Simulation {
             reference_h: case.bodies.iter().map(|b| b.smoothing_length).collect(),
             contact,
             case,
-        })
+        }
     }
 
     /// Creates the particles of this rank's slab, and no others.
-    fn populate(&mut self, comm: &Comm) -> Result<(), SetupError> {
-        let boxes = body_boxes(&self.case).ok_or(SetupError::Empty)?;
+    fn populate(&mut self, comm: &Comm, boxes: &Boxes) -> Result<(), SetupError> {
         self.slabs = first_slabs(
             &self.case,
             comm,
-            &boxes,
+            boxes,
             self.slabs.axis,
             &mut self.histogram,
         );
