@@ -12,6 +12,7 @@ use common::sentinel::{id, mix, sentinel};
 use whipple::comm::{Comm, Exchange};
 use whipple::domain::{Decomposition, Halo, Histogram, Migration, Mirrors, Slabs, balance};
 use whipple::model::{Axis, SymmetryPlane};
+use whipple::neighbours::Image;
 use whipple::particles::{FIELDS, FieldInfo, FieldUse, ParticleStore};
 use whipple::step::Simulation;
 
@@ -214,7 +215,8 @@ fn check_halo(
     let numbers = numbers();
     let mut held = BTreeSet::new();
     let mut copies = BTreeSet::new();
-    for image in halo.images() {
+    let owned = (0..store.owned()).map(|i| Image::new(i, 0));
+    for image in owned.chain(halo.others().iter().copied()) {
         let slot = image.base();
         assert!(slot < store.owned() + store.halo());
         let k = numbers[&store.id[slot]];

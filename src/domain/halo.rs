@@ -40,7 +40,8 @@ pub struct Halo {
     sends: Vec<(Vec<u32>, Vec<u8>)>,
     /// For each peer, how many particles it sent.
     received: Vec<usize>,
-    images: Vec<Image>,
+    /// Images of owned particles, and halo particles with theirs.
+    others: Vec<Image>,
 }
 
 impl Halo {
@@ -55,7 +56,7 @@ impl Halo {
             extents: Vec::new(),
             sends: Vec::new(),
             received: Vec::new(),
-            images: Vec::new(),
+            others: Vec::new(),
         }
     }
 
@@ -82,8 +83,8 @@ impl Halo {
         self.list_own_images(comm, store, &reach);
     }
 
-    /// Receives what [`Self::post_motion`] of the others sent, and lists all images: owned
-    /// particles first, then halo particles, each with its images behind planes.
+    /// Receives what [`Self::post_motion`] of the others sent, and lists the halo particles and
+    /// their images behind planes.
     pub fn finish_motion(&mut self, store: &mut ParticleStore) {
         self.exchange.wait();
         let size = 1 + bytes_per_particle(FieldUse::HALO_MOTION);
@@ -98,7 +99,7 @@ impl Halo {
             store.unpack(FieldUse::HALO_MOTION, first, count, fields);
             for (i, &need) in needs.iter().enumerate() {
                 for code in (0..8).filter(|code| need >> code & 1 == 1) {
-                    self.images.push(Image::new(first + i, code));
+                    self.others.push(Image::new(first + i, code));
                 }
             }
             first += count;
@@ -127,10 +128,11 @@ impl Halo {
         }
     }
 
-    /// All images after [`Self::finish_motion`].
+    /// After [`Self::finish_motion`]: the images of owned particles behind planes, and the halo
+    /// particles with theirs.
     #[must_use]
-    pub fn images(&self) -> &[Image] {
-        &self.images
+    pub fn others(&self) -> &[Image] {
+        &self.others
     }
 
     /// The symmetry planes.
@@ -223,22 +225,24 @@ impl Halo {
         }
     }
 
-    /// Lists the owned particles and their images near this rank's own particles.
+    /// Lists the images of owned particles near this rank's own particles.
     fn list_own_images(
         &mut self,
         comm: &Comm,
         store: &ParticleStore,
         reach: &impl Fn(&ParticleStore, usize) -> f64,
     ) {
-        self.images.clear();
+        self.others.clear();
+        if self.mirrors.is_empty() {
+            return;
+        }
         let farthest = self.farthest();
         let mine = self.extents[comm.rank()];
         for (i, position) in store.position.iter().enumerate() {
             let range = reach(store, i) + farthest;
-            self.images.push(Image::new(i, 0));
             for code in codes(self.mirrors.near(position, range), false) {
                 if mine.distance(self.image_along(position, code)) <= range {
-                    self.images.push(Image::new(i, code));
+                    self.others.push(Image::new(i, code));
                 }
             }
         }

@@ -4,22 +4,24 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::sequence::Sequence;
-use crate::sph::dispatch::{Instructions, Vectorised, instructions};
+use super::gather::Gatherer;
+use super::sequence::{HALO, MIRROR, Sequence};
+use crate::sph::dispatch::{Vectorised, instructions};
 use crate::sph::lanes::{LANES, Lanes};
 
-/// Clusters that one task handles.
-pub const CLUSTERS_PER_CHUNK: usize = 64;
-
-/// Up to eight owned particles of one group that stand side by side in canonical order.
+/// Up to eight owned particles of one group that stand side by side.
 #[derive(Debug, Clone, Copy)]
 pub struct Cluster {
-    /// Places in the sequence; unused lanes repeat the last valid one.
+    /// Places in the sequence, ascending; unused lanes repeat the last valid one.
     pub receivers: [u32; LANES],
     /// Valid lanes.
     pub lanes: usize,
     /// Group of bodies.
     pub group: usize,
+    /// Box around the receivers (m).
+    pub lower: [f64; 3],
+    /// Upper end of the box (m).
+    pub upper: [f64; 3],
 }
 
 /// What is among the neighbours of a cluster.
@@ -34,9 +36,14 @@ pub struct Among {
 /// Clusters and neighbour lists of one task.
 #[derive(Debug, Clone, Default)]
 pub struct Chunk {
+    group: usize,
+    /// The part of the sequence whose particles are receivers here.
+    places: Range<usize>,
+    gatherer: Gatherer,
     clusters: Vec<Cluster>,
     /// End of each cluster's neighbours in `neighbours`, and what is among them.
     ends: Vec<(u32, Among)>,
+    /// The lists one after the other, and unused space.
     neighbours: Vec<u32>,
 }
 
@@ -53,88 +60,194 @@ impl Chunk {
             )
         })
     }
+}
 
-    fn build(&mut self, set: Instructions, sequence: &Sequence, owned: usize, reach: &[f64]) {
-        self.neighbours.clear();
-        self.ends.clear();
-        let Self {
+/// Smoothing lengths of a group.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Lengths {
+    /// Largest smoothing length among its images (m).
+    pub longest: f64,
+    /// Whether all its images have that length.
+    pub uniform: bool,
+}
+
+/// Gathers the clusters of a chunk and lists their neighbours.
+struct Build<'a> {
+    chunk: &'a mut Chunk,
+    sequence: &'a Sequence,
+    lengths: Lengths,
+}
+
+impl Vectorised for Build<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) {
+        let Chunk {
+            group,
+            places,
+            gatherer,
             clusters,
             ends,
             neighbours,
-        } = self;
-        for cluster in clusters {
-            let among = set.run(ListNeighbours {
-                sequence,
-                owned,
-                cluster,
-                reach: reach[cluster.group],
-                neighbours,
-            });
-            #[allow(
-                clippy::cast_possible_truncation,
-                reason = "64 clusters' lists fit u32"
-            )]
-            ends.push((neighbours.len() as u32, among));
+        } = self.chunk;
+        let (sequence, Lengths { longest, uniform }) = (self.sequence, self.lengths);
+        gatherer.gather(sequence, *group, places.clone(), 2.0 * longest, clusters);
+        ends.clear();
+        let mut lister = Lister {
+            sequence,
+            longest,
+            list: neighbours,
+            used: 0,
+            hints: [0; 64],
+        };
+        for cluster in clusters.iter() {
+            let among = if uniform {
+                lister.list::<V, true>(cluster)
+            } else {
+                lister.list::<V, false>(cluster)
+            };
+            #[allow(clippy::cast_possible_truncation, reason = "a chunk's lists fit u32")]
+            ends.push((lister.used as u32, among));
         }
     }
 }
 
-/// Appends the neighbours of a cluster to a list; tells what is among them.
-struct ListNeighbours<'a> {
+/// Writes the lists of a chunk one after the other.
+struct Lister<'a> {
     sequence: &'a Sequence,
-    owned: usize,
-    cluster: &'a Cluster,
-    reach: f64,
-    neighbours: &'a mut Vec<u32>,
+    longest: f64,
+    list: &'a mut Vec<u32>,
+    used: usize,
+    /// Where the last cluster began to read a column, by the last bits of the column's indices:
+    /// the next one begins near it.
+    hints: [usize; 64],
 }
 
-impl Vectorised for ListNeighbours<'_> {
-    type Output = Among;
-
+impl Lister<'_> {
     #[inline(always)]
-    fn run<V: Lanes>(self) -> Among {
+    fn list<V: Lanes, const UNIFORM: bool>(&mut self, cluster: &Cluster) -> Among {
         let sequence = self.sequence;
-        let (lower, upper, h) = bounds(sequence, &self.cluster.receivers);
-        let far = (h + self.reach) * INFLATION;
-        let low = lower.map(V::splat);
-        let high = upper.map(V::splat);
-        let own = V::splat(h);
-        let mut among = Among::default();
-        sequence.in_box(
-            self.cluster.group,
-            &lower.map(|x| x - far),
-            &upper.map(|x| x + far),
-            |places| {
-                for first in places.clone().step_by(LANES) {
-                    let gap = |a: usize| {
-                        let x = V::read(sequence.coordinates(a, first));
-                        let gap = low[a].sub(x).max(x.sub(high[a])).max(V::splat(0.0));
-                        gap.mul(gap)
-                    };
-                    let range = V::read(sequence.lengths(first)).add(own);
-                    let range2 = range.mul(range).mul(V::splat(INFLATION));
-                    let near = gap(0).add(gap(1)).add(gap(2)).less_than(range2);
-                    let left = places.end - first;
-                    let mut bits = if left < LANES {
-                        near & ((1 << left) - 1)
-                    } else {
-                        near
-                    };
-                    while bits != 0 {
-                        let place = first + bits.trailing_zeros() as usize;
-                        bits &= bits - 1;
-                        #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
-                        self.neighbours.push(place as u32);
-                        let image = sequence.images()[place];
-                        among.mirrors |= image.code() != 0;
-                        among.halo |= image.base() >= self.owned;
+        let own = if UNIFORM {
+            self.longest
+        } else {
+            cluster
+                .receivers
+                .iter()
+                .fold(0.0, |h, &i| f64::max(h, sequence.lengths(i as usize)[0]))
+        };
+        let far = (own + self.longest) * INFLATION;
+        let (low, high) = (cluster.lower.map(V::splat), cluster.upper.map(V::splat));
+        let along = sequence.along(cluster.group);
+        let (from, to) = (cluster.lower[along] - far, cluster.upper[along] + far);
+        let mut special = 0;
+        let near = |first: usize| {
+            let gap = |a: usize| {
+                let x = V::read(sequence.coordinates(a, first));
+                low[a].sub(x).max(x.sub(high[a])).max(V::splat(0.0))
+            };
+            let [x, y, z] = [gap(0), gap(1), gap(2)];
+            let square = z.mul_add(z, y.mul_add(y, x.mul(x)));
+            let range = if UNIFORM {
+                V::splat(far)
+            } else {
+                let other = V::read(sequence.lengths(first));
+                other.add(V::splat(own)).mul(V::splat(INFLATION))
+            };
+            square.less_than(range.mul(range))
+        };
+        sequence.columns_near(
+            cluster.group,
+            &cluster.lower,
+            &cluster.upper,
+            far,
+            |[a, b], column| {
+                let hint = &mut self.hints[(a & 7) << 3 | b & 7];
+                *hint = sequence.seek::<V>(cluster.group, &column, from, *hint);
+                let mut first = *hint;
+                while first < column.end && sequence.coordinates(along, first)[0] <= to {
+                    let mut bits = near(first);
+                    let left = column.end - first;
+                    if left < LANES {
+                        bits &= (1 << left) - 1;
                     }
+                    special |= sequence.special(first) & SPREAD[bits as usize];
+                    self.used = push_places(self.list, self.used, first, bits);
+                    first += LANES;
                 }
             },
         );
-        among
+        // Both flags of eight lanes into one byte.
+        let special = special | special >> 32;
+        let special = special | special >> 16;
+        let special = special | special >> 8;
+        Among {
+            mirrors: special & u64::from(MIRROR) != 0,
+            halo: special & u64::from(HALO) != 0,
+        }
     }
 }
+
+/// Writes `first + k` for each set bit k at `list[used..]`; returns the new end.
+#[inline(always)]
+fn push_places(list: &mut Vec<u32>, used: usize, first: usize, bits: u8) -> usize {
+    if list.len() < used + LANES {
+        grow(list, used + LANES);
+    }
+    let offsets = &OFFSETS[bits as usize];
+    let slots: &mut [u32; LANES] = list[used..]
+        .first_chunk_mut()
+        .expect("the list has just grown");
+    #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
+    let first = first as u32;
+    for k in 0..LANES {
+        slots[k] = first + u32::from(offsets[k]);
+    }
+    used + bits.count_ones() as usize
+}
+
+/// Lists fill most of a rank's memory beside the particles: they grow by a quarter only.
+#[cold]
+fn grow(list: &mut Vec<u32>, length: usize) {
+    let wanted = (length + length / 4).max(1 << 12);
+    list.reserve_exact(wanted - list.len());
+    list.resize(wanted, 0);
+}
+
+/// For each set of bits, its members in ascending order, and whatever.
+static OFFSETS: [[u8; LANES]; 256] = {
+    let mut table = [[0; LANES]; 256];
+    let mut bits = 0;
+    while bits < 256 {
+        let (mut k, mut next) = (0, 0);
+        while k < 8 {
+            if bits >> k & 1 == 1 {
+                table[bits][next] = k;
+                next += 1;
+            }
+            k += 1;
+        }
+        bits += 1;
+    }
+    table
+};
+
+/// For each set of bits, a full byte for each member.
+static SPREAD: [u64; 256] = {
+    let mut table = [0; 256];
+    let mut bits = 0;
+    while bits < 256 {
+        let mut k = 0;
+        while k < 8 {
+            if bits >> k & 1 == 1 {
+                table[bits] |= 0xff << (8 * k);
+            }
+            k += 1;
+        }
+        bits += 1;
+    }
+    table
+};
 
 /// Box tests reach this much farther than the kernel, so that rounding
 /// never drops a pair with a contribution.
@@ -147,16 +260,23 @@ pub struct ClusterLists {
     used: usize,
 }
 
+/// Images whose clusters one task handles: many enough that the tasks cost nothing, few enough
+/// that they are even.
+const PLACES_PER_CHUNK: usize = 512;
+
 impl ClusterLists {
-    /// Groups the owned particles (store indices below `owned`) into clusters and lists the
-    /// neighbours of each. `reach[g]` is the largest smoothing length (m) among the images of
-    /// group g.
-    pub fn build(&mut self, sequence: &Sequence, owned: usize, reach: &[f64]) {
+    /// Groups this rank's own particles into clusters and lists the neighbours of each.
+    /// `lengths` are the smoothing lengths of each group.
+    pub fn build(&mut self, sequence: &Sequence, lengths: &[Lengths]) {
         let set = instructions();
-        self.gather_clusters(sequence, owned);
-        self.chunks[..self.used]
-            .par_iter_mut()
-            .for_each(|chunk| chunk.build(set, sequence, owned, reach));
+        self.lay_out(sequence);
+        self.chunks[..self.used].par_iter_mut().for_each(|chunk| {
+            set.run(Build {
+                lengths: lengths[chunk.group],
+                chunk,
+                sequence,
+            });
+        });
     }
 
     /// The tasks, for parallel iteration.
@@ -171,72 +291,30 @@ impl ClusterLists {
         self.chunks
             .iter()
             .map(|chunk| {
-                4 * chunk.neighbours.capacity()
+                size_of::<Chunk>()
+                    + 4 * chunk.neighbours.capacity()
                     + 8 * chunk.ends.capacity()
                     + size_of::<Cluster>() * chunk.clusters.capacity()
+                    + chunk.gatherer.memory()
             })
             .sum()
     }
 
-    fn gather_clusters(&mut self, sequence: &Sequence, owned: usize) {
-        for chunk in &mut self.chunks {
-            chunk.clusters.clear();
-        }
+    fn lay_out(&mut self, sequence: &Sequence) {
         self.used = 0;
         for group in 0..sequence.groups() {
-            let mut cluster = Cluster {
-                receivers: [0; LANES],
-                lanes: 0,
-                group,
-            };
             let Range { start, end } = sequence.group(group);
-            for place in start..end {
-                let image = sequence.images()[place];
-                if image.code() != 0 || image.base() >= owned {
-                    continue;
+            for first in (start..end).step_by(PLACES_PER_CHUNK) {
+                if self.used == self.chunks.len() {
+                    self.chunks.push(Chunk::default());
                 }
-                #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
-                cluster.receivers[cluster.lanes..].fill(place as u32);
-                cluster.lanes += 1;
-                if cluster.lanes == LANES {
-                    self.push(cluster);
-                    cluster.lanes = 0;
-                }
-            }
-            if cluster.lanes > 0 {
-                self.push(cluster);
+                let chunk = &mut self.chunks[self.used];
+                chunk.group = group;
+                chunk.places = first..end.min(first + PLACES_PER_CHUNK);
+                self.used += 1;
             }
         }
     }
-
-    fn push(&mut self, cluster: Cluster) {
-        let full =
-            self.used == 0 || self.chunks[self.used - 1].clusters.len() == CLUSTERS_PER_CHUNK;
-        if full {
-            if self.used == self.chunks.len() {
-                self.chunks.push(Chunk::default());
-            }
-            self.used += 1;
-        }
-        self.chunks[self.used - 1].clusters.push(cluster);
-    }
-}
-
-/// Box around eight receivers (m) and their largest smoothing length (m).
-#[inline(always)]
-pub(super) fn bounds(sequence: &Sequence, receivers: &[u32; LANES]) -> ([f64; 3], [f64; 3], f64) {
-    let at = |axis: usize, place: u32| sequence.coordinates(axis, place as usize)[0];
-    let mut lower = std::array::from_fn(|a| at(a, receivers[0]));
-    let mut upper: [f64; 3] = lower;
-    let mut h: f64 = 0.0;
-    for &place in receivers {
-        for a in 0..3 {
-            lower[a] = f64::min(lower[a], at(a, place));
-            upper[a] = f64::max(upper[a], at(a, place));
-        }
-        h = h.max(sequence.lengths(place as usize)[0]);
-    }
-    (lower, upper, h)
 }
 
 /// Square of the distance between a box and a point (m²).

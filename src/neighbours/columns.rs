@@ -19,6 +19,8 @@ pub struct ColumnGrid {
 
 /// Particle spacings across a column.
 const WIDTH_IN_SPACINGS: f64 = 2.0;
+/// Where a column begins, in particle spacings before the first site.
+const PHASE: f64 = 0.25;
 /// How far beyond its initial box a group has columns of its own, in sizes of that box.
 const MARGIN: f64 = 4.0;
 /// Columns along an axis across, at most: runaways in opposite corners make a rank lay out all of
@@ -41,9 +43,12 @@ impl ColumnGrid {
         let mut counts = [1; 2];
         for k in 0..2 {
             let (low, high) = (lower[across[k]], upper[across[k]]);
-            let wanted = ((high - low + 2.0 * MARGIN * size) / width).ceil();
-            let count = wanted.clamp(1.0, MAX_COUNT);
-            origin[k] = 0.5 * (low + high) - 0.5 * count * width;
+            let inside = ((high - low) / width + 1.0).ceil();
+            let margin = (MARGIN * size / width).ceil();
+            let margin = margin.min((0.5 * (MAX_COUNT - inside)).floor()).max(0.0);
+            let count = (inside + 2.0 * margin).clamp(1.0, MAX_COUNT);
+            // Sites stand at `low` and whole or half spacings from it: no column begins there.
+            origin[k] = low - PHASE * spacing - margin * width;
             #[allow(
                 clippy::cast_possible_truncation,
                 clippy::cast_sign_loss,

@@ -3,9 +3,10 @@
 
 use rayon::prelude::*;
 
-use super::clusters::{ClusterLists, INFLATION, bounds, distance2};
+use super::clusters::{Cluster, ClusterLists, INFLATION, distance2};
 use super::sequence::Sequence;
 use crate::sph::gradient::MotionRecord;
+use crate::sph::lanes::F64x8;
 
 /// Which contact algorithm handles a pair of bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -108,13 +109,7 @@ impl ForeignLists {
                 chunk.overlap.clear();
                 chunk.potential.clear();
                 for (cluster, _, _) in own.iter() {
-                    chunk.find_candidates(
-                        &cluster.receivers,
-                        cluster.group,
-                        sequence,
-                        sources,
-                        table,
-                    );
+                    chunk.find_candidates(cluster, sequence, table);
                     if chunk.candidates.is_empty() {
                         continue;
                     }
@@ -148,37 +143,30 @@ impl ForeignLists {
 }
 
 impl ForeignChunk {
-    fn find_candidates(
-        &mut self,
-        receivers: &[u32; 8],
-        group: usize,
-        sequence: &Sequence,
-        sources: &[MotionRecord],
-        table: &ForeignTable,
-    ) {
+    fn find_candidates(&mut self, cluster: &Cluster, sequence: &Sequence, table: &ForeignTable) {
         self.candidates.clear();
-        let (lower, upper, _) = bounds(sequence, receivers);
+        let (lower, upper) = (&cluster.lower, &cluster.upper);
         let groups = sequence.groups();
         for other in 0..groups {
-            let range = table.group_range[group * groups + other] * INFLATION;
+            let range = table.group_range[cluster.group * groups + other] * INFLATION;
             if range == 0.0 {
                 continue;
             }
-            let candidates = &mut self.candidates;
-            sequence.in_box(
-                other,
-                &lower.map(|x| x - range),
-                &upper.map(|x| x + range),
-                |places| {
-                    for place in places {
-                        let position = &sources[place].position;
-                        if distance2(&lower, &upper, position) < range * range {
-                            #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
-                            candidates.push(place as u32);
-                        }
+            let along = sequence.along(other);
+            let (from, to) = (lower[along] - range, upper[along] + range);
+            sequence.columns_near(other, lower, upper, range, |_, column| {
+                let first = sequence.seek::<F64x8>(other, &column, from, usize::MAX);
+                for place in first..column.end {
+                    let point = std::array::from_fn(|a| sequence.coordinates(a, place)[0]);
+                    if point[along] > to {
+                        break;
                     }
-                },
-            );
+                    if distance2(lower, upper, &point) < range * range {
+                        #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
+                        self.candidates.push(place as u32);
+                    }
+                }
+            });
         }
     }
 

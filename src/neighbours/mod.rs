@@ -4,10 +4,12 @@
 mod clusters;
 mod columns;
 mod foreign;
+mod gather;
 pub mod oracle;
 mod sequence;
+mod sort;
 
-pub use clusters::{Among, CLUSTERS_PER_CHUNK, Chunk, Cluster, ClusterLists};
+pub use clusters::{Among, Chunk, Cluster, ClusterLists, Lengths};
 pub use columns::ColumnGrid;
 pub use foreign::{ContactClass, ForeignChunk, ForeignLists, ForeignTable, PairList};
 pub use sequence::{Image, ImageFacts, Sequence};

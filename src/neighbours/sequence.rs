@@ -4,13 +4,12 @@
 //! The order is that of (column, position along the column, id, image code): a pure function of
 //! the images themselves, so each receiver meets its neighbours in the same order on any ranks.
 
-use std::cmp::Ordering;
 use std::ops::Range;
 
-use rayon::prelude::*;
-
 use super::columns::ColumnGrid;
-use crate::sph::lanes::LANES;
+use super::sort::{Sorter, Targets, Walls};
+use crate::particles::Scatter;
+use crate::sph::lanes::{LANES, Lanes};
 
 /// A particle or one of its mirror images: index in the store and the planes it is behind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,6 +18,9 @@ pub struct Image(u32);
 impl Image {
     /// Largest number of particles of a rank.
     pub const MAX_PARTICLES: usize = 1 << 29;
+
+    /// The first particle of the store.
+    pub(super) const FIRST: Self = Self(0);
 
     /// Image of particle `base` behind the planes whose axis bits are set in `code`.
     #[inline]
@@ -47,32 +49,19 @@ impl Image {
     }
 }
 
-#[derive(Debug, Clone, Copy)]
-struct Entry {
-    along: f64,
-    id: u64,
-    image: Image,
-}
-
-impl Entry {
-    fn order(&self, other: &Self) -> Ordering {
-        self.along
-            .total_cmp(&other.along)
-            .then(self.id.cmp(&other.id))
-            .then(self.image.code().cmp(&other.image.code()))
-    }
-}
-
 /// One group's part of the sequence: its columns among those that this rank meets.
 #[derive(Debug, Clone)]
-struct Group {
-    grid: ColumnGrid,
+pub(super) struct Group {
+    pub(super) grid: ColumnGrid,
+    /// Box around all images (m); empty if there are none.
+    pub(super) lower: [f64; 3],
+    pub(super) upper: [f64; 3],
     /// First column across and number of columns across of the window in use.
-    first: [u32; 2],
-    size: [usize; 2],
-    /// Where the window's columns begin in `Sequence::starts`.
-    columns: usize,
-    images: Range<usize>,
+    pub(super) first: [u32; 2],
+    pub(super) size: [usize; 2],
+    /// The window's columns in `Sequence::starts`.
+    pub(super) columns: Range<usize>,
+    pub(super) images: Range<usize>,
 }
 
 /// What the sequence needs to know of one image.
@@ -92,15 +81,22 @@ pub struct ImageFacts {
 #[derive(Debug, Clone, Default)]
 pub struct Sequence {
     groups: Vec<Group>,
+    /// Beginning of each column and end of the last.
     starts: Vec<u32>,
-    cursors: Vec<u32>,
-    columns: Vec<(u32, [u32; 2])>,
-    entries: Vec<Entry>,
+    walls: Vec<Walls>,
     images: Vec<Image>,
+    /// 0 for owned particles; [`MIRROR`] and [`HALO`] set for others.
+    special: Vec<u8>,
     /// Coordinates and smoothing lengths (m) in order, for vectors that read past the end.
     coordinates: [Vec<f64>; 3],
     lengths: Vec<f64>,
+    sorter: Sorter,
 }
+
+/// Behind a symmetry plane.
+pub(super) const MIRROR: u8 = 1;
+/// Of another rank.
+pub(super) const HALO: u8 = 2;
 
 impl Sequence {
     /// Empty sequence with one grid for each group.
@@ -110,9 +106,11 @@ impl Sequence {
             .into_iter()
             .map(|grid| Group {
                 grid,
+                lower: [0.0; 3],
+                upper: [0.0; 3],
                 first: [0; 2],
                 size: [0; 2],
-                columns: 0,
+                columns: 0..0,
                 images: 0..0,
             })
             .collect();
@@ -122,28 +120,44 @@ impl Sequence {
         }
     }
 
-    /// Sorts `images`, of which `facts` tells position, id and group.
-    pub fn build(&mut self, images: &[Image], facts: impl Fn(Image) -> ImageFacts + Sync) {
-        self.find_columns(images, &facts);
-        self.lay_out_columns();
-        self.fill(images, &facts);
-        sort_columns(&mut self.entries, &self.starts, 0);
-        self.images.resize(images.len(), Image::new(0, 0));
-        let padded = images.len() + LANES;
+    /// Sorts particles `0..owned` of the store and the images `others` (mirror images of these,
+    /// and halo particles with theirs). `facts` tells position, id and group of an image; `emit`
+    /// is called once with each place of the sequence and the image that stands there.
+    pub fn build(
+        &mut self,
+        owned: usize,
+        others: &[Image],
+        facts: impl Fn(Image) -> ImageFacts + Sync,
+        emit: impl Fn(usize, Image) + Sync,
+    ) {
+        let count = owned + others.len();
+        let image = |k: usize| match k.checked_sub(owned) {
+            None => Image::new(k, 0),
+            Some(other) => others[other],
+        };
+        self.sorter
+            .scatter(&mut self.groups, &mut self.starts, count, image, &facts);
+        self.images.resize(count, Image::FIRST);
+        self.special.resize(count + LANES, 0);
         let [x, y, z] = &mut self.coordinates;
         for values in [x, y, z, &mut self.lengths] {
-            values.resize(padded, 0.0);
+            values.resize(count + LANES, 0.0);
         }
-        let [x, y, z] = &mut self.coordinates;
-        (&mut self.images, &self.entries, x, y, z, &mut self.lengths)
-            .into_par_iter()
-            .with_min_len(1024)
-            .for_each(|(image, entry, x, y, z, length)| {
-                let facts = facts(entry.image);
-                *image = entry.image;
-                [*x, *y, *z] = facts.position;
-                *length = facts.smoothing_length;
-            });
+        self.walls.resize(self.starts.len() - 1, Walls::EMPTY);
+        let targets = Targets {
+            owned,
+            images: Scatter::new(&mut self.images),
+            special: Scatter::new(&mut self.special),
+            coordinates: self.coordinates.each_mut().map(|x| Scatter::new(x)),
+            lengths: Scatter::new(&mut self.lengths),
+        };
+        for group in &mut self.groups {
+            let place = |column: usize| self.starts[column] as usize;
+            group.images = place(group.columns.start)..place(group.columns.end);
+            let (starts, walls) = (&self.starts, &mut self.walls);
+            self.sorter
+                .finish(group, starts, walls, &targets, &facts, &emit);
+        }
     }
 
     /// Eight coordinates on an axis (m) from a place on; what lies beyond the last image is
@@ -171,84 +185,18 @@ impl Sequence {
             .expect("the arrays are padded")
     }
 
-    fn find_columns(&mut self, images: &[Image], facts: &(impl Fn(Image) -> ImageFacts + Sync)) {
-        let groups = &self.groups;
-        self.columns.resize(images.len(), (0, [0; 2]));
-        self.columns
-            .par_iter_mut()
-            .zip(images)
-            .with_min_len(1024)
-            .for_each(|(slot, &image)| {
-                let facts = facts(image);
-                #[allow(clippy::cast_possible_truncation, reason = "few groups")]
-                {
-                    *slot = (
-                        facts.group as u32,
-                        groups[facts.group].grid.column(&facts.position),
-                    );
-                }
-            });
+    /// For eight images from a place on, one byte each: 0 for particles of this rank, else which
+    /// of [`MIRROR`] and [`HALO`] they are.
+    #[inline(always)]
+    pub(super) fn special(&self, place: usize) -> u64 {
+        let bytes = self.special[place..].first_chunk();
+        u64::from_le_bytes(*bytes.expect("the array is padded"))
     }
 
-    /// Windows of columns by group, and where each column begins.
-    fn lay_out_columns(&mut self) {
-        for group in &mut self.groups {
-            group.first = [u32::MAX; 2];
-            group.size = [0; 2];
-        }
-        for &(group, column) in &self.columns {
-            let group = &mut self.groups[group as usize];
-            for k in 0..2 {
-                group.first[k] = group.first[k].min(column[k]);
-                group.size[k] = group.size[k].max(column[k] as usize + 1);
-            }
-        }
-        let mut columns = 0;
-        for group in &mut self.groups {
-            for k in 0..2 {
-                group.size[k] = group.size[k].saturating_sub(group.first[k] as usize);
-            }
-            group.columns = columns;
-            columns += group.size[0] * group.size[1];
-        }
-        self.starts.clear();
-        self.starts.resize(columns + 1, 0);
-        for &(group, column) in &self.columns {
-            let at = self.groups[group as usize].place(column);
-            self.starts[at + 1] += 1;
-        }
-        for at in 0..columns {
-            self.starts[at + 1] += self.starts[at];
-        }
-        for group in &mut self.groups {
-            let end = group.columns + group.size[0] * group.size[1];
-            group.images = self.starts[group.columns] as usize..self.starts[end] as usize;
-        }
-    }
-
-    fn fill(&mut self, images: &[Image], facts: &(impl Fn(Image) -> ImageFacts + Sync)) {
-        let nothing = Entry {
-            along: 0.0,
-            id: 0,
-            image: Image::new(0, 0),
-        };
-        self.entries.resize(images.len(), nothing);
-        self.cursors.clone_from(&self.starts);
-        for (&image, &(group, column)) in images.iter().zip(&self.columns) {
-            let group = &self.groups[group as usize];
-            let cursor = &mut self.cursors[group.place(column)];
-            self.entries[*cursor as usize].image = image;
-            *cursor += 1;
-        }
-        let groups = &self.groups;
-        self.entries
-            .par_iter_mut()
-            .with_min_len(1024)
-            .for_each(|entry| {
-                let facts = facts(entry.image);
-                entry.along = facts.position[groups[facts.group].grid.along];
-                entry.id = facts.id;
-            });
+    /// Whether the image at a place is a particle of this rank itself.
+    #[inline(always)]
+    pub(super) fn is_owned(&self, place: usize) -> bool {
+        self.special[place] == 0
     }
 
     /// The images in canonical order, group after group.
@@ -272,89 +220,116 @@ impl Sequence {
     /// Bytes allocated.
     #[must_use]
     pub fn memory(&self) -> usize {
-        4 * (self.starts.capacity() + self.cursors.capacity() + self.images.capacity())
-            + 12 * self.columns.capacity()
-            + size_of::<Entry>() * self.entries.capacity()
-            + 32 * self.lengths.capacity()
+        4 * (self.starts.capacity() + self.images.capacity())
+            + self.special.capacity()
+            + 32 * (self.lengths.capacity() + self.walls.capacity())
+            + self.sorter.memory()
     }
 
-    /// Calls `visit` with ranges of places, in canonical order, that hold every image of a group
-    /// whose position lies in the box `lower..=upper` (m), and few others.
+    /// Calls `visit` with those parts of `places` that stand in one column each.
+    pub(super) fn for_each_segment(
+        &self,
+        places: Range<usize>,
+        mut visit: impl FnMut(Range<usize>),
+    ) {
+        let mut at = places.start;
+        let mut column = self.starts.partition_point(|&start| start as usize <= at);
+        while at < places.end {
+            let end = (self.starts[column] as usize).min(places.end);
+            if end > at {
+                visit(at..end);
+            }
+            at = end;
+            column += 1;
+        }
+    }
+
+    /// Calls `visit`, in canonical order, with the columns of a group that have images within
+    /// `range` (m) of the box `lower..=upper` (m) as far as the directions across tell: two
+    /// indices across and the places of the column.
     #[inline(always)]
-    pub fn in_box(
+    pub(super) fn columns_near(
         &self,
         group: usize,
         lower: &[f64; 3],
         upper: &[f64; 3],
-        mut visit: impl FnMut(Range<usize>),
+        range: f64,
+        mut visit: impl FnMut([usize; 2], Range<usize>),
     ) {
         let group = &self.groups[group];
-        if group.images.is_empty() {
+        let apart =
+            |a: usize| lower[a] - range > group.upper[a] || group.lower[a] > upper[a] + range;
+        if group.images.is_empty() || (0..3).any(apart) {
             return;
         }
         let grid = &group.grid;
-        let range = |k: usize| {
+        let indices = |k: usize| {
             let axis = grid.across[k];
-            let low = grid.index(k, lower[axis]).max(group.first[k]) - group.first[k];
-            let high = grid.index(k, upper[axis]);
-            let end = if high < group.first[k] {
-                0
-            } else {
-                ((high - group.first[k]) as usize + 1).min(group.size[k])
-            };
+            let low = grid.index(k, lower[axis] - range).max(group.first[k]) - group.first[k];
+            let high = grid.index(k, upper[axis] + range) + 1;
+            let end = (high.saturating_sub(group.first[k]) as usize).min(group.size[k]);
             low as usize..end
         };
-        let along = &self.coordinates[grid.along];
-        let (from, to) = (lower[grid.along], upper[grid.along]);
-        let second = range(1);
-        for first in range(0) {
+        let [a, b] = grid.across;
+        let second = indices(1);
+        for first in indices(0) {
             for other in second.clone() {
-                let column = group.columns + first * group.size[1] + other;
+                let column = group.columns.start + first * group.size[1] + other;
                 let (start, end) = (
                     self.starts[column] as usize,
                     self.starts[column + 1] as usize,
                 );
-                let column = &along[start..end];
-                let first = column.partition_point(|&x| x < from);
-                let mut last = first;
-                while last < column.len() && column[last] <= to {
-                    last += LANES;
-                }
-                if last > first {
-                    visit(start + first..start + last.min(column.len()));
+                let gap = self.walls[column].gap([lower[a], lower[b]], [upper[a], upper[b]]);
+                if start < end && gap < range * range {
+                    visit([first, other], start..end);
                 }
             }
         }
     }
+
+    /// First place of a column whose position along it is not below `from` (m). `hint` is a place
+    /// of that column or anything.
+    #[inline(always)]
+    pub(super) fn seek<V: Lanes>(
+        &self,
+        group: usize,
+        column: &Range<usize>,
+        from: f64,
+        hint: usize,
+    ) -> usize {
+        let along = &self.coordinates[self.groups[group].grid.along];
+        let good = column.contains(&hint) && (hint == column.start || along[hint - 1] < from);
+        let mut at = if good {
+            hint
+        } else {
+            column.start + along[column.clone()].partition_point(|&x| x < from)
+        };
+        while at < column.end {
+            let eight = along[at..].first_chunk().expect("the array is padded");
+            let below = V::read(eight).less_than(V::splat(from)).trailing_ones() as usize;
+            at += below;
+            if below < LANES {
+                break;
+            }
+        }
+        at.min(column.end)
+    }
+
+    /// Axis along the columns of a group.
+    #[inline(always)]
+    pub(super) fn along(&self, group: usize) -> usize {
+        self.groups[group].grid.along
+    }
 }
 
 impl Group {
-    fn place(&self, column: [u32; 2]) -> usize {
-        self.columns
-            + (column[0] - self.first[0]) as usize * self.size[1]
-            + (column[1] - self.first[1]) as usize
+    /// Place of a column of the grid among all columns of the sequence.
+    #[inline(always)]
+    pub(super) fn place(&self, column: [u32; 2]) -> usize {
+        let index = |k: usize| {
+            let last = self.size[k].saturating_sub(1);
+            (column[k].saturating_sub(self.first[k]) as usize).min(last)
+        };
+        self.columns.start + index(0) * self.size[1] + index(1)
     }
-}
-
-/// Sorts each column, halving the work among threads. `starts` are the beginnings of the columns
-/// of `entries`, counted from `offset`, and the end of the last.
-fn sort_columns(entries: &mut [Entry], starts: &[u32], offset: usize) {
-    let columns = starts.len() - 1;
-    if columns == 0 {
-        return;
-    }
-    if columns == 1 || entries.len() < 4096 {
-        for pair in starts.windows(2) {
-            entries[pair[0] as usize - offset..pair[1] as usize - offset]
-                .sort_unstable_by(Entry::order);
-        }
-        return;
-    }
-    let middle = columns / 2;
-    let split = starts[middle] as usize;
-    let (left, right) = entries.split_at_mut(split - offset);
-    rayon::join(
-        || sort_columns(left, &starts[..=middle], offset),
-        || sort_columns(right, &starts[middle..], split),
-    );
 }

@@ -1,10 +1,13 @@
 //! From owned and halo particles to sorted images, their records and neighbour lists.
 
-use rayon::prelude::*;
-
 use super::simulation::Simulation;
+use crate::contact::ContactTable;
 use crate::domain::Mirrors;
-use crate::neighbours::{ClusterLists, ColumnGrid, ForeignLists, ImageFacts, Sequence};
+use crate::model::{Case, SmoothingLength};
+use crate::neighbours::{
+    ClusterLists, ColumnGrid, ForeignLists, Image, ImageFacts, Lengths, Sequence,
+};
+use crate::particles::Scatter;
 use crate::sph::gradient::MotionRecord;
 
 /// The sequence of images, their motion records and the lists, kept from step to step.
@@ -13,13 +16,14 @@ pub struct Search {
     pub(super) motion: Vec<MotionRecord>,
     pub(super) clusters: ClusterLists,
     pub(super) foreign: ForeignLists,
-    reach: Vec<f64>,
+    /// Smoothing lengths of each group.
+    lengths: Vec<Lengths>,
 }
 
 impl Search {
-    pub(super) fn new(grids: Vec<ColumnGrid>) -> Self {
+    pub(super) fn new(case: &Case, contact: &ContactTable, grids: Vec<ColumnGrid>) -> Self {
         Self {
-            reach: vec![0.0; grids.len()],
+            lengths: group_lengths(case, contact),
             sequence: Sequence::new(grids),
             motion: Vec::new(),
             clusters: ClusterLists::default(),
@@ -35,6 +39,30 @@ impl Search {
     }
 }
 
+const BLANK: MotionRecord = MotionRecord {
+    position: [0.0; 3],
+    velocity: [0.0; 3],
+    volume: 0.0,
+    smoothing_length: 0.0,
+};
+
+/// The groups' smoothing lengths where these are constant.
+fn group_lengths(case: &Case, contact: &ContactTable) -> Vec<Lengths> {
+    let constant = case.sph.smoothing_length == SmoothingLength::Constant;
+    (0..contact.group_count())
+        .map(|group| {
+            let members = case.bodies.iter().zip(&contact.groups);
+            let h = members.filter(|&(_, &g)| g == group);
+            let h = || h.clone().map(|(body, _)| body.smoothing_length);
+            let longest = h().fold(0.0, f64::max);
+            Lengths {
+                longest,
+                uniform: constant && h().all(|h| h.to_bits() == longest.to_bits()),
+            }
+        })
+        .collect()
+}
+
 /// Elements that a task handles at least.
 pub(super) const GRAIN: usize = 1024;
 
@@ -43,7 +71,10 @@ impl Simulation {
         let (store, mirrors) = (&self.store, self.halo.mirrors());
         let groups = &self.contact.groups;
         let search = &mut self.search;
-        search.sequence.build(self.halo.images(), |image| {
+        let (owned, others) = (store.owned(), self.halo.others());
+        search.motion.resize(owned + others.len(), BLANK);
+        let motion = Scatter::new(&mut search.motion);
+        let facts = |image: Image| {
             let base = image.base();
             ImageFacts {
                 position: mirrors.reflect_position(&store.position[base], image.code()),
@@ -51,36 +82,26 @@ impl Simulation {
                 group: groups[store.body[base] as usize],
                 smoothing_length: store.smoothing_length[base],
             }
-        });
-        let blank = MotionRecord {
-            position: [0.0; 3],
-            velocity: [0.0; 3],
-            volume: 0.0,
-            smoothing_length: 0.0,
         };
-        search.motion.resize(search.sequence.images().len(), blank);
-        search
-            .motion
-            .par_iter_mut()
-            .zip(search.sequence.images())
-            .with_min_len(GRAIN)
-            .for_each(|(record, image)| {
-                let (base, code) = (image.base(), image.code());
-                *record = MotionRecord {
-                    position: mirrors.reflect_position(&store.position[base], code),
-                    velocity: Mirrors::reflect_vector(&store.predicted_velocity[base], code),
-                    volume: store.mass[base] / store.predicted_density[base],
-                    smoothing_length: store.smoothing_length[base],
-                };
-            });
-        for group in 0..search.sequence.groups() {
-            search.reach[group] = search.motion[search.sequence.group(group)]
-                .iter()
-                .fold(0.0, |most, record| f64::max(most, record.smoothing_length));
+        search.sequence.build(owned, others, facts, |place, image| {
+            let (base, code) = (image.base(), image.code());
+            let record = MotionRecord {
+                position: mirrors.reflect_position(&store.position[base], code),
+                velocity: Mirrors::reflect_vector(&store.predicted_velocity[base], code),
+                volume: store.mass[base] / store.predicted_density[base],
+                smoothing_length: store.smoothing_length[base],
+            };
+            // SAFETY: each place is emitted once.
+            unsafe { *motion.slot(place) = record };
+        });
+        if self.case.sph.smoothing_length != SmoothingLength::Constant {
+            for (group, lengths) in search.lengths.iter_mut().enumerate() {
+                lengths.longest = search.motion[search.sequence.group(group)]
+                    .iter()
+                    .fold(0.0, |most, record| f64::max(most, record.smoothing_length));
+            }
         }
-        search
-            .clusters
-            .build(&search.sequence, store.owned(), &search.reach);
+        search.clusters.build(&search.sequence, &search.lengths);
         if self.contact.is_active() {
             let images = search.sequence.images();
             search.foreign.build(

@@ -116,7 +116,7 @@ impl Simulation {
             histogram: Histogram::default(),
             migration: Migration::default(),
             halo: Halo::new(axis, Mirrors::new(&case.symmetry)),
-            search: Search::new(grids),
+            search: Search::new(&case, &contact, grids),
             sweeps: Sweeps::new(&case, &contact.kernel),
             contact_phase: ContactPhase::default(),
             sums: StepSums::new(pairs, enclosed_limit),

@@ -1,9 +1,11 @@
 //! Random clouds of particles with their mirror images, sorted and listed by the engine.
 #![allow(dead_code, reason = "each test file uses some of these")]
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use whipple::domain::Mirrors;
 use whipple::model::{Axis, SymmetryPlane};
-use whipple::neighbours::{ClusterLists, ColumnGrid, Image, ImageFacts, Sequence};
+use whipple::neighbours::{ClusterLists, ColumnGrid, Image, ImageFacts, Lengths, Sequence};
 use whipple::sph::gradient::MotionRecord;
 
 use super::random::Random;
@@ -133,12 +135,20 @@ impl Cloud {
 
     pub fn find(&self) -> Found {
         let mut sequence = Sequence::new(self.grids.clone());
-        sequence.build(&self.images(), |image| ImageFacts {
+        let facts = |image: Image| ImageFacts {
             position: self.place(image),
             id: self.id[image.base()],
             group: self.group(image.base()),
             smoothing_length: self.smoothing_length[image.base()],
+        };
+        let others: Vec<Image> = self.images().split_off(self.owned);
+        let emitted: Vec<AtomicU32> = std::iter::repeat_with(AtomicU32::default)
+            .take(self.owned + others.len())
+            .collect();
+        sequence.build(self.owned, &others, facts, |place, _| {
+            emitted[place].fetch_add(1, Ordering::Relaxed);
         });
+        assert!(emitted.iter().all(|n| n.load(Ordering::Relaxed) == 1));
         let motion: Vec<MotionRecord> = sequence
             .images()
             .iter()
@@ -149,14 +159,22 @@ impl Cloud {
                 smoothing_length: self.smoothing_length[image.base()],
             })
             .collect();
-        let reach: Vec<f64> = (0..sequence.groups())
+        let lengths: Vec<Lengths> = (0..sequence.groups())
             .map(|group| {
-                let lengths = motion[sequence.group(group)].iter();
-                lengths.map(|r| r.smoothing_length).fold(0.0, f64::max)
+                let all = || {
+                    motion[sequence.group(group)]
+                        .iter()
+                        .map(|r| r.smoothing_length)
+                };
+                let longest = all().fold(0.0, f64::max);
+                Lengths {
+                    longest,
+                    uniform: all().all(|h| h == longest),
+                }
             })
             .collect();
         let mut clusters = ClusterLists::default();
-        clusters.build(&sequence, self.owned, &reach);
+        clusters.build(&sequence, &lengths);
         Found {
             sequence,
             motion,
