@@ -1,7 +1,7 @@
 //! Velocity gradient `L_i = −Σ_j V_j v_ij ⊗ ∇W_ij` (physics page, section 2).
 
 use super::dispatch::Vectorised;
-use super::kernel::{PairScale, slope_over_distance};
+use super::kernel::PairScale;
 use super::lanes::{F64x8, LANES, Lanes};
 
 /// What a particle shows to its neighbours before the forces: one cache line.
@@ -20,7 +20,7 @@ pub struct MotionRecord {
 
 /// Squares of distances are never smaller than this (m²), so that a particle meeting itself
 /// divides by something: it then adds an exact zero since its `r_ij` is zero.
-pub const SMALLEST_SQUARE: f64 = 1e-60;
+pub const SMALLEST_SQUARE: f64 = 1e-36;
 
 /// The receivers of one cluster with their neighbours; sums in the order of `neighbours`.
 pub struct VelocityGradient<'a, S> {
@@ -40,28 +40,70 @@ impl<S: PairScale> Vectorised for VelocityGradient<'_, S> {
 
     #[inline(always)]
     fn run<V: Lanes>(self) -> [F64x8; 9] {
-        let receiver = |k: usize| &self.sources[self.receivers[k] as usize];
-        let position: [V; 3] = std::array::from_fn(|a| V::gather(|k| receiver(k).position[a]));
-        let velocity: [V; 3] = std::array::from_fn(|a| V::gather(|k| receiver(k).velocity[a]));
-        let h_i = V::gather(|k| receiver(k).smoothing_length);
+        let receivers = self.receivers.map(|place| &self.sources[place as usize]);
+        let position = gather3::<V>(|a| receivers.map(|record| record.position[a]));
+        let velocity = gather3::<V>(|a| receivers.map(|record| record.velocity[a]));
+        let h_i = V::read(&receivers.map(|record| record.smoothing_length));
         let mut gradient = [V::splat(0.0); 9];
-        for &j in self.neighbours {
-            let source = &self.sources[j as usize];
-            let r: [V; 3] = std::array::from_fn(|a| position[a].sub(V::splat(source.position[a])));
-            let square = r[2].mul_add(r[2], r[1].mul_add(r[1], r[0].mul(r[0])));
-            let square = square.max(V::splat(SMALLEST_SQUARE));
-            let distance = square.sqrt();
-            let inverse_r = V::splat(1.0).div(distance);
-            let (inverse_h, _, factor) = self.scale.scale(h_i, source.smoothing_length);
-            let slope = slope_over_distance(distance, inverse_r, inverse_h, factor);
-            let weight = slope.mul(V::splat(-source.volume));
+        // A particle whose position is no number has no neighbours, not even itself.
+        let count = self.neighbours.len();
+        if count == 0 {
+            return [F64x8([0.0; LANES]); 9];
+        }
+        let begin = |k: usize| &self.sources[self.neighbours[k.min(count - 1)] as usize];
+        let mut source = begin(0);
+        let mut next = Separation::begin(&position, &source.position);
+        for k in 0..count {
+            let (here, now) = (source, next);
+            source = begin(k + 1);
+            next = Separation::begin(&position, &source.position);
+            let kernel = self.scale.kernel(now.distance, h_i, here.smoothing_length);
+            let weight = now.inverse.mul(V::splat(here.volume)).mul(kernel.slope);
             for a in 0..3 {
-                let v_a = velocity[a].sub(V::splat(source.velocity[a])).mul(weight);
+                let v_a = V::splat(here.velocity[a]).sub(velocity[a]).mul(weight);
                 for b in 0..3 {
-                    gradient[3 * a + b] = v_a.mul_add(r[b], gradient[3 * a + b]);
+                    gradient[3 * a + b] = v_a.mul_add(now.r[b], gradient[3 * a + b]);
                 }
             }
         }
         gradient.map(V::store)
+    }
+}
+
+/// Three vectors from eight numbers each.
+#[inline(always)]
+pub(super) fn gather3<V: Lanes>(component: impl Fn(usize) -> [f64; LANES]) -> [V; 3] {
+    let [x, y, z] = [component(0), component(1), component(2)];
+    [V::read(&x), V::read(&y), V::read(&z)]
+}
+
+/// Where eight receivers stand seen from one neighbour, with the distances. The sweeps
+/// begin the next neighbour before they finish the last: its root takes long.
+#[derive(Clone, Copy)]
+pub(super) struct Separation<V> {
+    /// `x_i − x_j` (m).
+    pub(super) r: [V; 3],
+    /// Its square (m²), not below [`SMALLEST_SQUARE`].
+    pub(super) square: V,
+    /// `r` (m).
+    pub(super) distance: V,
+    /// `1/r` (1/m).
+    pub(super) inverse: V,
+}
+
+impl<V: Lanes> Separation<V> {
+    #[inline(always)]
+    pub(super) fn begin(position: &[V; 3], source: &[f64; 3]) -> Self {
+        let along = |a: usize| position[a].sub(V::splat(source[a]));
+        let r = [along(0), along(1), along(2)];
+        let square = r[2].mul_add(r[2], r[1].mul_add(r[1], r[0].mul(r[0])));
+        let square = square.max(V::splat(SMALLEST_SQUARE));
+        let distance = square.sqrt();
+        Self {
+            r,
+            square,
+            distance,
+            inverse: V::splat(1.0).div(distance),
+        }
     }
 }

@@ -80,40 +80,79 @@ impl Kernel {
     }
 }
 
+/// What the kernel gives for eight pairs.
+#[derive(Debug, Clone, Copy)]
+pub struct PairKernel<V> {
+    /// `W'` (1/m^(d+1)); an exact zero outside the support.
+    pub slope: V,
+    /// Positive inside the support.
+    pub inside: V,
+    /// `h_ij` (m).
+    pub h: V,
+}
+
 /// How the lanes get `h_ij` and what follows from it.
 pub trait PairScale: Copy + Sync {
-    /// `(1/h_ij, h_ij, σ_d/h_ij^(d+1))` for receivers of `h_i` and a neighbour of `h_j`.
-    fn scale<V: Lanes>(&self, h_i: V, h_j: f64) -> (V, V, V);
+    /// For pairs at `distance` (m) of receivers of `h_i` and a neighbour of `h_j` (m).
+    fn kernel<V: Lanes>(&self, distance: V, h_i: V, h_j: f64) -> PairKernel<V>;
 }
 
 /// One constant smoothing length for all pairs.
+///
+/// `W' = 3 f ⟨1 − q⟩₊² − ¾ f ⟨2 − q⟩₊²` with `f = σ_d/h^(d+1)`: both terms are squares of clamped
+/// linear functions of the distance.
 #[derive(Debug, Clone, Copy)]
 pub struct ConstantScale {
     h: f64,
-    inverse: f64,
-    factor: f64,
+    inner: Ramp,
+    outer: Ramp,
+}
+
+/// `⟨height − steepness r⟩₊`.
+#[derive(Debug, Clone, Copy)]
+struct Ramp {
+    height: f64,
+    steepness: f64,
+}
+
+impl Ramp {
+    #[inline(always)]
+    fn at<V: Lanes>(self, distance: V) -> V {
+        distance
+            .neg_mul_add(V::splat(self.steepness), V::splat(self.height))
+            .max(V::splat(0.0))
+    }
 }
 
 impl ConstantScale {
     /// For a smoothing length `h` (m).
     #[must_use]
     pub fn new(kernel: &Kernel, h: f64) -> Self {
+        let factor = kernel.normalisation() / (kernel.power(h) * h);
+        let ramp = |weight: f64, end: f64| {
+            let root = (weight * factor).sqrt();
+            Ramp {
+                height: end * root,
+                steepness: root / h,
+            }
+        };
         Self {
             h,
-            inverse: 1.0 / h,
-            factor: kernel.normalisation() / (kernel.power(h) * h),
+            inner: ramp(3.0, 1.0),
+            outer: ramp(0.75, 2.0),
         }
     }
 }
 
 impl PairScale for ConstantScale {
     #[inline(always)]
-    fn scale<V: Lanes>(&self, _: V, _: f64) -> (V, V, V) {
-        (
-            V::splat(self.inverse),
-            V::splat(self.h),
-            V::splat(self.factor),
-        )
+    fn kernel<V: Lanes>(&self, distance: V, _: V, _: f64) -> PairKernel<V> {
+        let (inner, outer) = (self.inner.at(distance), self.outer.at(distance));
+        PairKernel {
+            slope: outer.neg_mul_add(outer, inner.mul(inner)),
+            inside: outer,
+            h: V::splat(self.h),
+        }
     }
 }
 
@@ -136,7 +175,7 @@ impl<const D: usize> MeanScale<D> {
 
 impl<const D: usize> PairScale for MeanScale<D> {
     #[inline(always)]
-    fn scale<V: Lanes>(&self, h_i: V, h_j: f64) -> (V, V, V) {
+    fn kernel<V: Lanes>(&self, distance: V, h_i: V, h_j: f64) -> PairKernel<V> {
         let h = h_i.add(V::splat(h_j)).mul(V::splat(0.5));
         let inverse = V::splat(1.0).div(h);
         let square = inverse.mul(inverse);
@@ -145,22 +184,21 @@ impl<const D: usize> PairScale for MeanScale<D> {
             2 => square.mul(inverse),
             _ => square.mul(square),
         };
-        (inverse, h, factor.mul(V::splat(self.normalisation)))
+        let ramp = |end: f64| {
+            distance
+                .neg_mul_add(inverse, V::splat(end))
+                .max(V::splat(0.0))
+        };
+        let (inner, outer) = (ramp(1.0), ramp(2.0));
+        let shape = outer
+            .mul(V::splat(-0.75))
+            .mul_add(outer, inner.mul(inner).mul(V::splat(3.0)));
+        PairKernel {
+            slope: shape.mul(factor.mul(V::splat(self.normalisation))),
+            inside: outer,
+            h,
+        }
     }
-}
-
-/// `W'/r` of eight pairs from `r`, `1/r` and the pair's scale.
-#[inline(always)]
-pub fn slope_over_distance<V: Lanes>(r: V, inverse_r: V, inverse_h: V, factor: V) -> V {
-    let q = r.mul(inverse_h);
-    let zero = V::splat(0.0);
-    let a = V::splat(2.0).sub(q).max(zero);
-    let b = V::splat(1.0).sub(q).max(zero);
-    let shape = b
-        .mul(b)
-        .mul(V::splat(3.0))
-        .sub(a.mul(a).mul(V::splat(0.75)));
-    shape.mul(factor).mul(inverse_r)
 }
 
 #[cfg(test)]

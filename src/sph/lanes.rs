@@ -37,6 +37,9 @@ pub trait Lanes: Copy {
     /// `self · factor + term` with one rounding.
     #[must_use]
     fn mul_add(self, factor: Self, term: Self) -> Self;
+    /// `term − self · factor` with one rounding.
+    #[must_use]
+    fn neg_mul_add(self, factor: Self, term: Self) -> Self;
     /// Square root of each lane.
     #[must_use]
     fn sqrt(self) -> Self;
@@ -46,17 +49,11 @@ pub trait Lanes: Copy {
     /// This lane if it is smaller than `other`'s, else `other`'s (also where one is NaN).
     #[must_use]
     fn min(self, other: Self) -> Self;
-    /// This lane where `mask`'s is positive, else zero.
+    /// Where `mask` is positive the smaller of this lane and `other`'s, elsewhere this lane.
     #[must_use]
-    fn where_positive(self, mask: Self) -> Self;
+    fn min_where_positive(self, other: Self, mask: Self) -> Self;
     /// Bit k: lane k is smaller than `other`'s.
     fn less_than(self, other: Self) -> u8;
-
-    /// Gathers a number of each receiver.
-    #[inline(always)]
-    fn gather(value: impl Fn(usize) -> f64) -> Self {
-        Self::load(&F64x8(std::array::from_fn(value)))
-    }
 }
 
 macro_rules! each_lane {
@@ -112,6 +109,11 @@ impl Lanes for F64x8 {
     }
 
     #[inline(always)]
+    fn neg_mul_add(self, factor: Self, term: Self) -> Self {
+        each_lane!(k => (-self.0[k]).mul_add(factor.0[k], term.0[k]))
+    }
+
+    #[inline(always)]
     fn sqrt(self) -> Self {
         each_lane!(k => self.0[k].sqrt())
     }
@@ -127,8 +129,12 @@ impl Lanes for F64x8 {
     }
 
     #[inline(always)]
-    fn where_positive(self, mask: Self) -> Self {
-        each_lane!(k => if mask.0[k] > 0.0 { self.0[k] } else { 0.0 })
+    fn min_where_positive(self, other: Self, mask: Self) -> Self {
+        each_lane!(k => if mask.0[k] > 0.0 && other.0[k] < self.0[k] {
+            other.0[k]
+        } else {
+            self.0[k]
+        })
     }
 
     #[inline(always)]
@@ -142,9 +148,9 @@ impl Lanes for F64x8 {
 pub mod avx512 {
     use std::arch::x86_64::{
         __m512d, _CMP_GT_OQ, _CMP_LT_OQ, _mm512_add_pd, _mm512_cmp_pd_mask, _mm512_div_pd,
-        _mm512_fmadd_pd, _mm512_load_pd, _mm512_loadu_pd, _mm512_maskz_mov_pd, _mm512_max_pd,
-        _mm512_min_pd, _mm512_mul_pd, _mm512_set1_pd, _mm512_setzero_pd, _mm512_sqrt_pd,
-        _mm512_store_pd, _mm512_sub_pd,
+        _mm512_fmadd_pd, _mm512_fnmadd_pd, _mm512_load_pd, _mm512_loadu_pd, _mm512_mask_min_pd,
+        _mm512_max_pd, _mm512_min_pd, _mm512_mul_pd, _mm512_set1_pd, _mm512_setzero_pd,
+        _mm512_sqrt_pd, _mm512_store_pd, _mm512_sub_pd,
     };
 
     use super::{F64x8, Lanes};
@@ -204,6 +210,11 @@ pub mod avx512 {
         }
 
         #[inline(always)]
+        fn neg_mul_add(self, factor: Self, term: Self) -> Self {
+            Self(unsafe { _mm512_fnmadd_pd(self.0, factor.0, term.0) })
+        }
+
+        #[inline(always)]
         fn sqrt(self) -> Self {
             Self(unsafe { _mm512_sqrt_pd(self.0) })
         }
@@ -219,10 +230,10 @@ pub mod avx512 {
         }
 
         #[inline(always)]
-        fn where_positive(self, mask: Self) -> Self {
+        fn min_where_positive(self, other: Self, mask: Self) -> Self {
             unsafe {
                 let positive = _mm512_cmp_pd_mask::<_CMP_GT_OQ>(mask.0, _mm512_setzero_pd());
-                Self(_mm512_maskz_mov_pd(positive, self.0))
+                Self(_mm512_mask_min_pd(self.0, positive, other.0, self.0))
             }
         }
 
@@ -238,10 +249,10 @@ pub mod avx512 {
 #[cfg(target_arch = "x86_64")]
 pub mod avx2 {
     use std::arch::x86_64::{
-        __m256d, _CMP_GT_OQ, _CMP_LT_OQ, _mm256_add_pd, _mm256_and_pd, _mm256_cmp_pd,
-        _mm256_div_pd, _mm256_fmadd_pd, _mm256_load_pd, _mm256_loadu_pd, _mm256_max_pd,
-        _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_set1_pd, _mm256_setzero_pd,
-        _mm256_sqrt_pd, _mm256_store_pd, _mm256_sub_pd,
+        __m256d, _CMP_GT_OQ, _CMP_LT_OQ, _mm256_add_pd, _mm256_blendv_pd, _mm256_cmp_pd,
+        _mm256_div_pd, _mm256_fmadd_pd, _mm256_fnmadd_pd, _mm256_load_pd, _mm256_loadu_pd,
+        _mm256_max_pd, _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_set1_pd,
+        _mm256_setzero_pd, _mm256_sqrt_pd, _mm256_store_pd, _mm256_sub_pd,
     };
 
     use super::{F64x8, Lanes};
@@ -318,6 +329,16 @@ pub mod avx2 {
         }
 
         #[inline(always)]
+        fn neg_mul_add(self, factor: Self, term: Self) -> Self {
+            unsafe {
+                Self(
+                    _mm256_fnmadd_pd(self.0, factor.0, term.0),
+                    _mm256_fnmadd_pd(self.1, factor.1, term.1),
+                )
+            }
+        }
+
+        #[inline(always)]
         fn sqrt(self) -> Self {
             unsafe { Self(_mm256_sqrt_pd(self.0), _mm256_sqrt_pd(self.1)) }
         }
@@ -333,12 +354,16 @@ pub mod avx2 {
         }
 
         #[inline(always)]
-        fn where_positive(self, mask: Self) -> Self {
+        fn min_where_positive(self, other: Self, mask: Self) -> Self {
             unsafe {
                 let zero = _mm256_setzero_pd();
+                let smaller = |own, other, mask| {
+                    let positive = _mm256_cmp_pd::<_CMP_GT_OQ>(mask, zero);
+                    _mm256_blendv_pd(own, _mm256_min_pd(other, own), positive)
+                };
                 Self(
-                    _mm256_and_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(mask.0, zero), self.0),
-                    _mm256_and_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(mask.1, zero), self.1),
+                    smaller(self.0, other.0, mask.0),
+                    smaller(self.1, other.1, mask.1),
                 )
             }
         }

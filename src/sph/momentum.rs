@@ -2,8 +2,8 @@
 //! viscosity (physics page, section 2).
 
 use super::dispatch::Vectorised;
-use super::gradient::SMALLEST_SQUARE;
-use super::kernel::{PairScale, slope_over_distance};
+use super::gradient::{Separation, gather3};
+use super::kernel::PairScale;
 use super::lanes::{F64x8, LANES, Lanes};
 
 /// What a particle shows to its neighbours for the forces: two cache lines.
@@ -68,85 +68,97 @@ pub struct Forces {
     pub from_mirrors: [F64x8; 3],
 }
 
+impl Forces {
+    const NONE: Self = Self {
+        acceleration: [F64x8([0.0; LANES]); 3],
+        power: F64x8([0.0; LANES]),
+        approach: F64x8([0.0; LANES]),
+        from_mirrors: [F64x8([0.0; LANES]); 3],
+    };
+}
+
 impl<S: PairScale, const MIRRORED: bool> Vectorised for Momentum<'_, S, MIRRORED> {
     type Output = Forces;
 
     #[inline(always)]
     fn run<V: Lanes>(self) -> Forces {
-        let receiver = |k: usize| &self.sources[self.receivers[k] as usize];
-        let position: [V; 3] = std::array::from_fn(|a| V::gather(|k| receiver(k).position[a]));
-        let velocity: [V; 3] = std::array::from_fn(|a| V::gather(|k| receiver(k).velocity[a]));
-        let stress: [V; 6] =
-            std::array::from_fn(|c| V::gather(|k| receiver(k).stress_over_density2[c]));
-        let h_i = V::gather(|k| receiver(k).smoothing_length);
-        let rho_i = V::gather(|k| receiver(k).density);
-        let c_i = V::gather(|k| receiver(k).sound_speed);
+        let receivers = self.receivers.map(|place| &self.sources[place as usize]);
+        let position = gather3::<V>(|a| receivers.map(|record| record.position[a]));
+        let velocity = gather3::<V>(|a| receivers.map(|record| record.velocity[a]));
+        let normal = gather3::<V>(|a| receivers.map(|record| record.stress_over_density2[a]));
+        let shear = gather3::<V>(|a| receivers.map(|record| record.stress_over_density2[3 + a]));
+        let h_i = V::read(&receivers.map(|record| record.smoothing_length));
+        let rho_i = V::read(&receivers.map(|record| record.density));
+        let c_i = V::read(&receivers.map(|record| record.sound_speed));
         let zero = V::splat(0.0);
         let (alpha, beta) = (
-            V::splat(0.5 * self.viscosity.alpha),
-            V::splat(self.viscosity.beta),
+            V::splat(self.viscosity.alpha),
+            V::splat(2.0 * self.viscosity.beta),
         );
+        let c_i = c_i.mul(alpha);
         let mut acceleration = [zero; 3];
         let mut from_mirrors = [zero; 3];
         let mut power = zero;
         let mut fastest = zero;
-        for &j in self.neighbours {
-            let source = &self.sources[j as usize];
-            let r: [V; 3] = std::array::from_fn(|a| position[a].sub(V::splat(source.position[a])));
-            let v: [V; 3] = std::array::from_fn(|a| velocity[a].sub(V::splat(source.velocity[a])));
-            let square = r[2].mul_add(r[2], r[1].mul_add(r[1], r[0].mul(r[0])));
-            let square = square.max(V::splat(SMALLEST_SQUARE));
-            let distance = square.sqrt();
-            let (inverse_h, h, factor) = self.scale.scale(h_i, source.smoothing_length);
-            let soft = h.mul(h).mul_add(V::splat(0.01), square);
+        // A particle whose position is no number has no neighbours, not even itself.
+        let count = self.neighbours.len();
+        if count == 0 {
+            return Forces::NONE;
+        }
+        let begin = |k: usize| &self.sources[self.neighbours[k.min(count - 1)] as usize];
+        let mut following = begin(0);
+        let mut next = Separation::begin(&position, &following.position);
+        for k in 0..count {
+            let (source, now) = (following, next);
+            following = begin(k + 1);
+            next = Separation::begin(&position, &following.position);
+            let (r, square) = (now.r, now.square);
+            let along = |a: usize| velocity[a].sub(V::splat(source.velocity[a]));
+            let v = [along(0), along(1), along(2)];
+            let kernel = self
+                .scale
+                .kernel(now.distance, h_i, source.smoothing_length);
+            let h = kernel.h;
+            let soft = h.mul(h).mul(V::splat(0.01)).add(square);
             let rho_sum = rho_i.add(V::splat(source.density));
-            // One division serves 1/r, 1/(r² + 0.01 h²) and 1/(ρ_i + ρ_j).
-            let soft_rho = soft.mul(rho_sum);
-            let inverse = V::splat(1.0).div(distance.mul(soft_rho));
-            let inverse_r = inverse.mul(soft_rho);
-            let over_distance = inverse.mul(distance);
-            let slope = slope_over_distance(distance, inverse_r, inverse_h, factor);
+            // One division serves 1/(r² + 0.01 h²) and 1/(ρ_i + ρ_j).
+            let inverse = V::splat(1.0).div(soft.mul(rho_sum));
             // μ = h v·r/(r² + 0.01 h²) for approaching pairs.
             let approach = r[2]
                 .mul_add(v[2], r[1].mul_add(v[1], r[0].mul(v[0])))
                 .min(zero);
-            let mu = h.mul(approach).mul(over_distance.mul(rho_sum));
+            let mu = h.mul(approach).mul(inverse.mul(rho_sum));
             // Π = μ (β μ − α c̄)/ρ̄ with c̄ = ½ c_sum and ρ̄ = ½ rho_sum.
-            let linear = c_i.add(V::splat(source.sound_speed)).mul(alpha);
-            let inverse_rho_sum = over_distance.mul(soft);
-            let pi = mu
-                .mul(mu.mul(beta).sub(linear))
-                .mul(inverse_rho_sum.add(inverse_rho_sum));
-            let inside = V::splat(2.0).sub(distance.mul(inverse_h));
-            fastest = fastest.max(zero.sub(mu).where_positive(inside));
-            let s: [V; 6] =
-                std::array::from_fn(|c| stress[c].add(V::splat(source.stress_over_density2[c])));
-            let (xx, yy, zz) = (s[0].sub(pi), s[1].sub(pi), s[2].sub(pi));
-            let weight = slope.mul(V::splat(source.mass));
-            let force = [
-                xx.mul_add(r[0], s[3].mul_add(r[1], s[4].mul(r[2])))
-                    .mul(weight),
-                s[3].mul_add(r[0], yy.mul_add(r[1], s[5].mul(r[2])))
-                    .mul(weight),
-                s[4].mul_add(r[0], s[5].mul_add(r[1], zz.mul(r[2])))
-                    .mul(weight),
+            let linear = V::splat(source.sound_speed).mul_add(alpha, c_i);
+            let pi = mu.mul(inverse.mul(soft)).mul(mu.mul(beta).sub(linear));
+            fastest = fastest.min_where_positive(mu, kernel.inside);
+            let s = |c: usize| V::splat(source.stress_over_density2[c]);
+            let pull = |a: usize| normal[a].add(s(a)).sub(pi);
+            let [xx, yy, zz] = [pull(0), pull(1), pull(2)];
+            let slide = |a: usize| shear[a].add(s(3 + a));
+            let [xy, xz, yz] = [slide(0), slide(1), slide(2)];
+            let weight = now.inverse.mul(V::splat(source.mass)).mul(kernel.slope);
+            let traction = [
+                xx.mul_add(r[0], xy.mul_add(r[1], xz.mul(r[2]))),
+                xy.mul_add(r[0], yy.mul_add(r[1], yz.mul(r[2]))),
+                xz.mul_add(r[0], yz.mul_add(r[1], zz.mul(r[2]))),
             ];
-            let work = force[2].mul_add(v[2], force[1].mul_add(v[1], force[0].mul(v[0])));
-            power = work.mul_add(V::splat(-0.5), power);
+            let work = traction[2].mul_add(v[2], traction[1].mul_add(v[1], traction[0].mul(v[0])));
+            power = work.mul_add(weight, power);
             for a in 0..3 {
-                acceleration[a] = acceleration[a].add(force[a]);
+                acceleration[a] = traction[a].mul_add(weight, acceleration[a]);
             }
             if MIRRORED {
-                let mirrored = V::splat(self.mirrored[j as usize]);
+                let mirrored = weight.mul(V::splat(self.mirrored[self.neighbours[k] as usize]));
                 for a in 0..3 {
-                    from_mirrors[a] = force[a].mul_add(mirrored, from_mirrors[a]);
+                    from_mirrors[a] = traction[a].mul_add(mirrored, from_mirrors[a]);
                 }
             }
         }
         Forces {
             acceleration: acceleration.map(V::store),
-            power: power.store(),
-            approach: fastest.store(),
+            power: power.mul(V::splat(-0.5)).store(),
+            approach: zero.sub(fastest).store(),
             from_mirrors: from_mirrors.map(V::store),
         }
     }
