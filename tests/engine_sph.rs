@@ -15,7 +15,7 @@ use whipple::sph::dispatch::{Instructions, available};
 use whipple::sph::gradient::{MotionRecord, VelocityGradient};
 use whipple::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use whipple::sph::lanes::{F64x8, LANES};
-use whipple::sph::momentum::{ForceRecord, Forces, Momentum, Viscosity};
+use whipple::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
 
 const VISCOSITY: Viscosity = Viscosity {
     alpha: 1.3,
@@ -36,13 +36,15 @@ struct Plain {
 }
 
 /// The formulas of the physics page, term by term, over every image of the receiver's group.
-fn plain(cloud: &Cloud, found: &Found, records: &[ForceRecord], kernel: &Kernel, i: u32) -> Plain {
+fn plain(cloud: &Cloud, found: &Found, records: &Records, kernel: &Kernel, i: u32) -> Plain {
     let mut sum = Plain::default();
-    let here = &records[i as usize];
+    let here = &records.motion[i as usize];
+    let state = &records.stress[i as usize];
     let images = found.sequence.images();
     let group = cloud.group(images[i as usize].base());
     for j in found.sequence.group(group) {
-        let there = &records[j];
+        let there = &records.motion[j];
+        let other = &records.stress[j];
         let r: [f64; 3] = std::array::from_fn(|a| here.position[a] - there.position[a]);
         let v: [f64; 3] = std::array::from_fn(|a| here.velocity[a] - there.velocity[a]);
         let dot = |a: &[f64; 3], b: &[f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -52,7 +54,7 @@ fn plain(cloud: &Cloud, found: &Found, records: &[ForceRecord], kernel: &Kernel,
             continue;
         }
         let grad_w = r.map(|x| x / distance * kernel.slope(distance, h));
-        let volume = found.motion[j].volume;
+        let volume = found.motion[j].weight;
         for a in 0..3 {
             for b in 0..3 {
                 sum.gradient[3 * a + b] -= volume * v[a] * grad_w[b];
@@ -62,19 +64,19 @@ fn plain(cloud: &Cloud, found: &Found, records: &[ForceRecord], kernel: &Kernel,
         let mut pi = 0.0;
         if dot(&v, &r) < 0.0 {
             let mu = h * dot(&v, &r) / (distance * distance + 0.01 * h * h);
-            let c = 0.5 * (here.sound_speed + there.sound_speed);
-            let rho = 0.5 * (here.density + there.density);
+            let c = 0.5 * (state.sound_speed + other.sound_speed);
+            let rho = 0.5 * (state.density + other.density);
             pi = (-VISCOSITY.alpha * c * mu + VISCOSITY.beta * mu * mu) / rho;
             sum.approach = sum.approach.max(-mu);
         }
         let s: [f64; 6] = std::array::from_fn(|c| {
-            let both = here.stress_over_density2[c] + there.stress_over_density2[c];
+            let both = state.stress_over_density2[c] + other.stress_over_density2[c];
             if c < 3 { both - pi } else { both }
         });
         let rows = [[s[0], s[3], s[4]], [s[3], s[1], s[5]], [s[4], s[5], s[2]]];
-        let force = rows.map(|row| there.mass * dot(&row, &grad_w));
+        let force = rows.map(|row| there.weight * dot(&row, &grad_w));
         let size = rows.as_flattened().iter().map(|x| x.abs()).sum::<f64>()
-            * there.mass
+            * there.weight
             * kernel.slope(distance, h).abs();
         for a in 0..3 {
             sum.acceleration[a] += force[a];
@@ -89,8 +91,14 @@ fn plain(cloud: &Cloud, found: &Found, records: &[ForceRecord], kernel: &Kernel,
     sum
 }
 
-/// Force records with random numbers of order one at the places of the images.
-fn force_records(cloud: &Cloud, found: &Found, seed: u64) -> Vec<ForceRecord> {
+/// What the second sweep reads: the weights are masses.
+struct Records {
+    motion: Vec<MotionRecord>,
+    stress: Vec<StressRecord>,
+}
+
+/// Records with random numbers of order one at the places of the images.
+fn force_records(cloud: &Cloud, found: &Found, seed: u64) -> Records {
     let mut random = Random::new(seed);
     let own: Vec<([f64; 6], [f64; 3])> = (0..cloud.id.len())
         .map(|_| {
@@ -98,30 +106,30 @@ fn force_records(cloud: &Cloud, found: &Found, seed: u64) -> Vec<ForceRecord> {
             (stress, std::array::from_fn(|_| random.within(0.5, 2.0)))
         })
         .collect();
-    (found.sequence.images().iter().zip(&found.motion))
+    let (motion, stress) = (found.sequence.images().iter().zip(&found.motion))
         .map(|(image, motion)| {
             let (stress, [mass, density, sound_speed]) = own[image.base()];
-            ForceRecord {
-                position: motion.position,
-                velocity: motion.velocity,
-                mass,
-                smoothing_length: motion.smoothing_length,
+            let motion = MotionRecord {
+                weight: mass,
+                ..*motion
+            };
+            let stress = StressRecord {
                 density,
                 sound_speed,
                 stress_over_density2: whipple::domain::Mirrors::reflect_symmetric(
                     &stress,
                     image.code(),
                 ),
-            }
+            };
+            (motion, stress)
         })
-        .collect()
+        .unzip();
+    Records { motion, stress }
 }
 
-fn mirrored(found: &Found) -> Vec<f64> {
+fn mirrored(found: &Found) -> Vec<u8> {
     let images = found.sequence.images().iter();
-    images
-        .map(|image| f64::from(u8::from(image.code() != 0)))
-        .collect()
+    images.map(|image| u8::from(image.code() != 0)).collect()
 }
 
 fn bits(forces: &Forces) -> Vec<u64> {
@@ -149,14 +157,15 @@ fn gradient<S: PairScale>(
 
 fn momentum<S: PairScale, const MIRRORED: bool>(
     set: Instructions,
-    sources: &[ForceRecord],
-    mirrored: &[f64],
+    records: &Records,
+    mirrored: &[u8],
     receivers: [u32; LANES],
     neighbours: &[u32],
     scale: S,
 ) -> Forces {
     set.run(Momentum::<S, MIRRORED> {
-        sources,
+        sources: &records.motion,
+        stresses: &records.stress,
         mirrored,
         receivers,
         neighbours,
@@ -291,10 +300,10 @@ fn momentum_and_energy_balance() {
                 scale,
             );
             for k in 0..cluster.lanes {
-                let record = &records[cluster.receivers[k] as usize];
-                power += record.mass * sums.power.0[k];
+                let record = &records.motion[cluster.receivers[k] as usize];
+                power += record.weight * sums.power.0[k];
                 for a in 0..3 {
-                    let f = record.mass * sums.acceleration[a].0[k];
+                    let f = record.weight * sums.acceleration[a].0[k];
                     force[a] += f;
                     power += record.velocity[a] * f;
                     size += f.abs();
@@ -339,7 +348,7 @@ fn a_linear_velocity_field_gives_its_gradient() {
                         velocity: std::array::from_fn(|a| {
                             (0..3).map(|b| field[3 * a + b] * x[b]).sum()
                         }),
-                        volume: 1.0,
+                        weight: 1.0,
                         smoothing_length: 1.3,
                     });
                 }
@@ -361,23 +370,29 @@ fn a_linear_velocity_field_gives_its_gradient() {
     }
 }
 
-fn record(position: [f64; 3], velocity: [f64; 3]) -> (MotionRecord, ForceRecord) {
-    let motion = MotionRecord {
-        position,
-        velocity,
-        volume: 1e-15,
-        smoothing_length: 1.3e-5,
+/// Two particles with stress: records for the first sweep, and for the second.
+fn pair(here: [f64; 3], there: [f64; 3]) -> (Vec<MotionRecord>, Records) {
+    let velocities = [[1.0, 2.0, 3.0], [-7e3, 5.0, 0.0]];
+    let motion = |weight: f64| {
+        let both = [here, there].into_iter().zip(velocities);
+        both.map(|(position, velocity)| MotionRecord {
+            position,
+            velocity,
+            weight,
+            smoothing_length: 1.3e-5,
+        })
+        .collect()
     };
-    let force = ForceRecord {
-        position,
-        velocity,
-        mass: 2.7e-12,
-        smoothing_length: 1.3e-5,
+    let stress = StressRecord {
         density: 2700.0,
         sound_speed: 6000.0,
         stress_over_density2: [1e3, -2e3, 1e3, 5e2, 4e2, 3e2],
     };
-    (motion, force)
+    let records = Records {
+        motion: motion(2.7e-12),
+        stress: vec![stress; 2],
+    };
+    (motion(1e-15), records)
 }
 
 /// Particles that meet only themselves, or another at the same point, feel nothing, and nothing
@@ -387,12 +402,7 @@ fn lone_and_coincident_particles_are_harmless() {
     let here = [1e-3, 2e-3, -3e-3];
     for gap in [0.0, 5e-324, 1e-200, 1e-40, 1e-20] {
         let there = [here[0] + gap, here[1], here[2]];
-        let (motion, force): (Vec<_>, Vec<_>) = [
-            record(here, [1.0, 2.0, 3.0]),
-            record(there, [-7e3, 5.0, 0.0]),
-        ]
-        .into_iter()
-        .unzip();
+        let (motion, force) = pair(here, there);
         for set in available() {
             for neighbours in [&[0_u32][..], &[0, 1]] {
                 let kernel = Kernel::new(3);
@@ -404,8 +414,7 @@ fn lone_and_coincident_particles_are_harmless() {
                         .iter()
                         .all(|lanes| lanes.0.iter().all(|&x| x == 0.0))
                 );
-                let sums =
-                    momentum::<_, true>(set, &force, &[0.0; 2], receivers, neighbours, scale);
+                let sums = momentum::<_, true>(set, &force, &[0; 2], receivers, neighbours, scale);
                 let all = sums.acceleration.iter().chain(&sums.from_mirrors);
                 let all = all.chain([&sums.power, &sums.approach]);
                 assert!(all.flat_map(|lanes| &lanes.0).all(|&x| x == 0.0));
@@ -413,23 +422,11 @@ fn lone_and_coincident_particles_are_harmless() {
         }
     }
     // A tenth of a billionth of a spacing apart, at closing speed 7 km/s.
-    let (motion, force): (Vec<_>, Vec<_>) = [
-        record([0.0; 3], [1.0, 2.0, 3.0]),
-        record([1e-15, 0.0, 0.0], [-7e3, 5.0, 0.0]),
-    ]
-    .into_iter()
-    .unzip();
+    let (motion, force) = pair([0.0; 3], [1e-15, 0.0, 0.0]);
     let scale = MeanScale::<3>::new(&Kernel::new(3));
     let gradient = gradient(available()[0], &motion, [0; LANES], &[0, 1], scale);
     assert!(gradient.iter().all(|lanes| lanes.0[0].is_finite()));
-    let sums = momentum::<_, true>(
-        available()[0],
-        &force,
-        &[0.0; 2],
-        [0; LANES],
-        &[0, 1],
-        scale,
-    );
+    let sums = momentum::<_, true>(available()[0], &force, &[0; 2], [0; LANES], &[0, 1], scale);
     assert!(sums.acceleration.iter().all(|lanes| lanes.0[0].is_finite()));
     assert!(sums.power.0[0].is_finite() && sums.approach.0[0].is_finite());
 }

@@ -26,6 +26,7 @@ pub const SOUND_SPEED_SQUARED_FLOOR: f64 = 0.01;
 
 /// The state of [`LANES`] points before and after an update. Unused lanes repeat a valid point.
 #[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
 pub struct PointBatch {
     /// Density at the end of the step (kg/m³), in.
     pub density: Lanes,
@@ -69,6 +70,7 @@ impl Material {
     ///
     /// With `dt = 0` the stress and plastic strain stay as they are, to the last bit, and the
     /// pressure and sound speed become those of the given density and energy.
+    #[inline(always)]
     pub fn update(&self, batch: &mut PointBatch, dt: f64) {
         self.strength.update(batch, dt);
         let response = self.eos.response(
@@ -89,6 +91,7 @@ impl Material {
     /// `p` is the pressure after the cut-off, since that does the work. At the cut-off the
     /// pressure no longer answers to density; its derivatives are kept, so that the speed is
     /// that of the recompression to come.
+    #[inline(always)]
     fn set_sound_speed(&self, batch: &mut PointBatch, response: &eos::Response) {
         let floor = SOUND_SPEED_SQUARED_FLOOR * self.eos.bulk_modulus(self.reference_density)
             / self.reference_density;
@@ -103,13 +106,13 @@ impl Material {
 }
 
 /// The larger of a value and a bound; NaN stays NaN (which `f64::max` would hide).
-#[inline]
+#[inline(always)]
 fn at_least(value: f64, bound: f64) -> f64 {
     if value < bound { bound } else { value }
 }
 
 /// The smaller of a value and a bound; NaN stays NaN.
-#[inline]
+#[inline(always)]
 fn at_most(value: f64, bound: f64) -> f64 {
     if value > bound { bound } else { value }
 }

@@ -11,6 +11,7 @@ pub struct Spall {
 
 impl Spall {
     /// The pressures (Pa), none below the cut-off.
+    #[inline(always)]
     pub(super) fn limit(self, pressure: &Lanes) -> Lanes {
         let mut limited = *pressure;
         for k in 0..LANES {

@@ -141,21 +141,6 @@ impl Lister<'_> {
         let along = sequence.along(cluster.group);
         let (from, to) = (cluster.lower[along] - far, cluster.upper[along] + far);
         let mut special = 0;
-        let near = |first: usize| {
-            let gap = |a: usize| {
-                let x = V::read(sequence.coordinates(a, first));
-                low[a].sub(x).max(x.sub(high[a])).max(V::splat(0.0))
-            };
-            let [x, y, z] = [gap(0), gap(1), gap(2)];
-            let square = z.mul_add(z, y.mul_add(y, x.mul(x)));
-            let range = if UNIFORM {
-                V::splat(far)
-            } else {
-                let other = V::read(sequence.lengths(first));
-                other.add(V::splat(own)).mul(V::splat(INFLATION))
-            };
-            square.less_than(range.mul(range))
-        };
         sequence.columns_near(
             cluster.group,
             &cluster.lower,
@@ -165,13 +150,28 @@ impl Lister<'_> {
                 let hint = &mut self.hints[(a & 7) << 3 | b & 7];
                 *hint = sequence.seek::<V>(cluster.group, &column, from, *hint);
                 let mut first = *hint;
-                while first < column.end && sequence.coordinates(along, first)[0] <= to {
-                    let mut bits = near(first);
+                for eight in sequence.eights(first..column.end) {
+                    if eight.coordinates[along][0] > to {
+                        break;
+                    }
+                    let gap = |a: usize| {
+                        let x = V::read(eight.coordinates[a]);
+                        low[a].sub(x).max(x.sub(high[a])).max(V::splat(0.0))
+                    };
+                    let [x, y, z] = [gap(0), gap(1), gap(2)];
+                    let square = z.mul_add(z, y.mul_add(y, x.mul(x)));
+                    let range = if UNIFORM {
+                        V::splat(far)
+                    } else {
+                        let other = V::read(eight.lengths);
+                        other.add(V::splat(own)).mul(V::splat(INFLATION))
+                    };
+                    let mut bits = square.less_than(range.mul(range));
                     let left = column.end - first;
                     if left < LANES {
                         bits &= (1 << left) - 1;
                     }
-                    special |= sequence.special(first) & SPREAD[bits as usize];
+                    special |= u64::from_le_bytes(*eight.special) & SPREAD[bits as usize];
                     self.used = push_places(self.list, self.used, first, bits);
                     first += LANES;
                 }
@@ -194,15 +194,14 @@ fn push_places(list: &mut Vec<u32>, used: usize, first: usize, bits: u8) -> usiz
     if list.len() < used + LANES {
         grow(list, used + LANES);
     }
-    let offsets = &OFFSETS[bits as usize];
-    let slots: &mut [u32; LANES] = list[used..]
-        .first_chunk_mut()
-        .expect("the list has just grown");
+    let offsets = OFFSETS[bits as usize];
     #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
     let first = first as u32;
+    let mut places = [first; LANES];
     for k in 0..LANES {
-        slots[k] = first + u32::from(offsets[k]);
+        places[k] += u32::from(offsets[k]);
     }
+    list[used..used + LANES].copy_from_slice(&places);
     used + bits.count_ones() as usize
 }
 

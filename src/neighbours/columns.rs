@@ -71,7 +71,7 @@ impl ColumnGrid {
     #[inline]
     #[must_use]
     pub fn index(&self, k: usize, x: f64) -> u32 {
-        let cell = ((x - self.origin[k]) * self.inverse_width).floor();
+        let cell = (x - self.origin[k]) * self.inverse_width;
         let last = f64::from(self.counts[k] - 1);
         #[allow(
             clippy::cast_possible_truncation,

@@ -15,7 +15,7 @@ pub(super) struct Gatherer {
 }
 
 /// A cluster takes a particle if its reach then grows by no more than this many spheres of reach.
-const GROWTH: f64 = 1.0;
+const GROWTH: f64 = 1.25;
 
 impl Gatherer {
     /// Fills `clusters` with the owned particles of a group among `places`; `range` is the reach
@@ -33,28 +33,37 @@ impl Gatherer {
         self.leftover.clear();
         let mut growing = Growing::new(sequence, group, range);
         sequence.for_each_segment(places, |segment| {
-            for place in segment {
-                if !sequence.is_owned(place) {
-                    continue;
+            let end = segment.end;
+            let mut place = segment.start;
+            while place < end {
+                if growing.cluster.lanes == 0 && place + LANES <= end {
+                    if let Some(cluster) = growing.row(place) {
+                        clusters.push(cluster);
+                        place += LANES;
+                        continue;
+                    }
                 }
-                if !growing.welcomes(place) {
-                    growing.drain(|receivers, _| self.leftover.extend(receivers));
+                if sequence.is_owned(place) {
+                    if !growing.try_add(place) {
+                        growing.drain(|cluster| self.leftover.extend(cluster.valid()));
+                        growing.try_add(place);
+                    }
+                    if growing.cluster.lanes == LANES {
+                        growing.drain(|cluster| clusters.push(*cluster));
+                    }
                 }
-                growing.add(place);
-                if growing.cluster.lanes == LANES {
-                    growing.drain(|_, cluster| clusters.push(*cluster));
-                }
+                place += 1;
             }
-            growing.drain(|receivers, _| self.leftover.extend(receivers));
+            growing.drain(|cluster| self.leftover.extend(cluster.valid()));
         });
         for &place in &self.leftover {
             let place = place as usize;
-            if growing.cluster.lanes == LANES || !growing.welcomes(place) {
-                growing.drain(|_, cluster| clusters.push(*cluster));
+            if growing.cluster.lanes == LANES || !growing.try_add(place) {
+                growing.drain(|cluster| clusters.push(*cluster));
+                growing.try_add(place);
             }
-            growing.add(place);
         }
-        growing.drain(|_, cluster| clusters.push(*cluster));
+        growing.drain(|cluster| clusters.push(*cluster));
     }
 
     pub(super) fn memory(&self) -> usize {
@@ -66,6 +75,9 @@ impl Gatherer {
 struct Growing<'a> {
     sequence: &'a Sequence,
     range: f64,
+    /// Volume within reach of one particle and of the cluster (m³).
+    sphere: f64,
+    reach: f64,
     cluster: Cluster,
 }
 
@@ -75,6 +87,8 @@ impl<'a> Growing<'a> {
         Self {
             sequence,
             range,
+            sphere: reach(&[0.0; 3], &[0.0; 3], range),
+            reach: 0.0,
             cluster: Cluster {
                 receivers: [0; LANES],
                 lanes: 0,
@@ -85,47 +99,71 @@ impl<'a> Growing<'a> {
         }
     }
 
+    /// The eight images from a place on as a cluster, if all are owned and near each other.
     #[inline(always)]
-    fn box_with(&self, place: usize) -> ([f64; 3], [f64; 3]) {
-        let x: [f64; 3] = std::array::from_fn(|a| self.sequence.coordinates(a, place)[0]);
-        if self.cluster.lanes == 0 {
-            return (x, x);
-        }
-        let (lower, upper) = (&self.cluster.lower, &self.cluster.upper);
-        (
-            std::array::from_fn(|a| x[a].min(lower[a])),
-            std::array::from_fn(|a| x[a].max(upper[a])),
-        )
-    }
-
-    /// Whether a particle is near enough to the others.
-    #[inline(always)]
-    fn welcomes(&self, place: usize) -> bool {
-        if self.cluster.lanes == 0 {
-            return true;
-        }
-        let (lower, upper) = self.box_with(place);
-        let growth = reach(&lower, &upper, self.range)
-            - reach(&self.cluster.lower, &self.cluster.upper, self.range);
-        growth <= GROWTH * reach(&lower, &lower, self.range)
-    }
-
-    #[inline(always)]
-    fn add(&mut self, place: usize) {
-        let (lower, upper) = self.box_with(place);
-        (self.cluster.lower, self.cluster.upper) = (lower, upper);
+    fn row(&self, place: usize) -> Option<Cluster> {
+        let eight = self.sequence.eights(place..place + LANES).next()?;
+        let edge = |pick: fn(f64, f64) -> f64| {
+            eight.coordinates.map(|x| {
+                let four: [f64; 4] = std::array::from_fn(|k| pick(x[k], x[k + 4]));
+                pick(pick(four[0], four[2]), pick(four[1], four[3]))
+            })
+        };
+        let lower = edge(|a, b| if a < b { a } else { b });
+        let upper = edge(|a, b| if a > b { a } else { b });
+        let near = reach(&lower, &upper, self.range) <= (1.0 + GROWTH) * self.sphere;
         #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
-        self.cluster.receivers[self.cluster.lanes..].fill(place as u32);
-        self.cluster.lanes += 1;
+        (near && *eight.special == [0; LANES]).then(|| Cluster {
+            receivers: std::array::from_fn(|k| (place + k) as u32),
+            lanes: LANES,
+            group: self.cluster.group,
+            lower,
+            upper,
+        })
+    }
+
+    /// Adds a particle if it is near the others.
+    #[inline(always)]
+    fn try_add(&mut self, place: usize) -> bool {
+        let Cluster {
+            receivers,
+            lanes,
+            lower,
+            upper,
+            ..
+        } = &mut self.cluster;
+        let x: [f64; 3] = std::array::from_fn(|a| self.sequence.coordinates(a, place)[0]);
+        if *lanes == 0 {
+            (*lower, *upper, self.reach) = (x, x, self.sphere);
+        } else {
+            let low = std::array::from_fn(|a| x[a].min(lower[a]));
+            let high = std::array::from_fn(|a| x[a].max(upper[a]));
+            let volume = reach(&low, &high, self.range);
+            let near = volume - self.reach <= GROWTH * self.sphere;
+            if !near {
+                return false;
+            }
+            (*lower, *upper, self.reach) = (low, high, volume);
+        }
+        #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
+        receivers[*lanes..].fill(place as u32);
+        *lanes += 1;
+        true
     }
 
     /// Hands over what is there, if anything, and begins anew.
     #[inline(always)]
-    fn drain(&mut self, take: impl FnOnce(&[u32], &Cluster)) {
+    fn drain(&mut self, take: impl FnOnce(&Cluster)) {
         if self.cluster.lanes > 0 {
-            take(&self.cluster.receivers[..self.cluster.lanes], &self.cluster);
+            take(&self.cluster);
             self.cluster.lanes = 0;
         }
+    }
+}
+
+impl Cluster {
+    fn valid(&self) -> &[u32] {
+        &self.receivers[..self.lanes]
     }
 }
 

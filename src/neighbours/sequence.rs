@@ -93,6 +93,16 @@ pub struct Sequence {
     sorter: Sorter,
 }
 
+/// Eight images in a row.
+pub(super) struct Eight<'a> {
+    /// Coordinates (m).
+    pub(super) coordinates: [&'a [f64; LANES]; 3],
+    /// Smoothing lengths (m).
+    pub(super) lengths: &'a [f64; LANES],
+    /// 0 for particles of this rank, else which of [`MIRROR`] and [`HALO`] they are.
+    pub(super) special: &'a [u8; LANES],
+}
+
 /// Behind a symmetry plane.
 pub(super) const MIRROR: u8 = 1;
 /// Of another rank.
@@ -185,12 +195,20 @@ impl Sequence {
             .expect("the arrays are padded")
     }
 
-    /// For eight images from a place on, one byte each: 0 for particles of this rank, else which
-    /// of [`MIRROR`] and [`HALO`] they are.
+    /// The images of a range of places by eights; the last eight may go beyond the range.
     #[inline(always)]
-    pub(super) fn special(&self, place: usize) -> u64 {
-        let bytes = self.special[place..].first_chunk();
-        u64::from_le_bytes(*bytes.expect("the array is padded"))
+    pub(super) fn eights<'a>(&'a self, places: Range<usize>) -> impl Iterator<Item = Eight<'a>> {
+        let padded = places.start..places.start + places.len().next_multiple_of(LANES);
+        let eights = |all: &'a [f64]| all[padded.clone()].as_chunks().0;
+        let [x, y, z] = &self.coordinates;
+        let (x, y, z, h) = (eights(x), eights(y), eights(z), eights(&self.lengths));
+        let special = self.special[padded.clone()].as_chunks().0;
+        let all = x.iter().zip(y).zip(z).zip(h).zip(special);
+        all.map(|((((x, y), z), lengths), special)| Eight {
+            coordinates: [x, y, z],
+            lengths,
+            special,
+        })
     }
 
     /// Whether the image at a place is a particle of this rank itself.
@@ -203,6 +221,12 @@ impl Sequence {
     #[must_use]
     pub fn images(&self) -> &[Image] {
         &self.images
+    }
+
+    /// For each place a byte that is odd for images behind symmetry planes.
+    #[must_use]
+    pub fn mirrored(&self) -> &[u8] {
+        &self.special
     }
 
     /// Number of groups.

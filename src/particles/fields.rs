@@ -214,8 +214,6 @@ particle_fields! {
     predicted_velocity: Vector, "m/s", MIGRATED | HALO_MOTION;
     /// Density at the end of the step as predicted from the last velocity gradient.
     predicted_density: Scalar, "kg/m^3", MIGRATED | HALO_MOTION;
-    /// Specific internal energy at the end of the step as predicted from its last rate.
-    predicted_energy: Scalar, "J/kg", MIGRATED;
     /// Smoothing length of the SPH sums.
     smoothing_length: Scalar, "m", MIGRATED | HALO_MOTION | SNAPSHOT;
     /// Pressure, compression positive.

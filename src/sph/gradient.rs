@@ -4,7 +4,7 @@ use super::dispatch::Vectorised;
 use super::kernel::PairScale;
 use super::lanes::{F64x8, LANES, Lanes};
 
-/// What a particle shows to its neighbours before the forces: one cache line.
+/// What a particle shows to its neighbours of its motion: one cache line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
 pub struct MotionRecord {
@@ -12,15 +12,16 @@ pub struct MotionRecord {
     pub position: [f64; 3],
     /// Velocity (m/s).
     pub velocity: [f64; 3],
-    /// Volume m/ρ (m^d).
-    pub volume: f64,
+    /// What it weighs in the sum: its volume m/ρ (m^d) for the velocity gradient and foreign
+    /// fractions, its mass (kg) for the forces.
+    pub weight: f64,
     /// Smoothing length (m).
     pub smoothing_length: f64,
 }
 
 /// Squares of distances are never smaller than this (m²), so that a particle meeting itself
 /// divides by something: it then adds an exact zero since its `r_ij` is zero.
-pub const SMALLEST_SQUARE: f64 = 1e-36;
+pub const SMALLEST_SQUARE: f64 = 1e-60;
 
 /// The receivers of one cluster with their neighbours; sums in the order of `neighbours`.
 pub struct VelocityGradient<'a, S> {
@@ -40,10 +41,10 @@ impl<S: PairScale> Vectorised for VelocityGradient<'_, S> {
 
     #[inline(always)]
     fn run<V: Lanes>(self) -> [F64x8; 9] {
-        let receivers = self.receivers.map(|place| &self.sources[place as usize]);
-        let position = gather3::<V>(|a| receivers.map(|record| record.position[a]));
-        let velocity = gather3::<V>(|a| receivers.map(|record| record.velocity[a]));
-        let h_i = V::read(&receivers.map(|record| record.smoothing_length));
+        let receivers = records(self.sources, &self.receivers);
+        let position = gather3::<V, _>(&receivers, |record, a| record.position[a]);
+        let velocity = gather3::<V, _>(&receivers, |record, a| record.velocity[a]);
+        let h_i = gather::<V, _>(&receivers, |record| record.smoothing_length);
         let mut gradient = [V::splat(0.0); 9];
         // A particle whose position is no number has no neighbours, not even itself.
         let count = self.neighbours.len();
@@ -58,9 +59,9 @@ impl<S: PairScale> Vectorised for VelocityGradient<'_, S> {
             source = begin(k + 1);
             next = Separation::begin(&position, &source.position);
             let kernel = self.scale.kernel(now.distance, h_i, here.smoothing_length);
-            let weight = now.inverse.mul(V::splat(here.volume)).mul(kernel.slope);
+            let factor = now.inverse.mul(V::splat(here.weight)).mul(kernel.slope);
             for a in 0..3 {
-                let v_a = V::splat(here.velocity[a]).sub(velocity[a]).mul(weight);
+                let v_a = V::splat(here.velocity[a]).sub(velocity[a]).mul(factor);
                 for b in 0..3 {
                     gradient[3 * a + b] = v_a.mul_add(now.r[b], gradient[3 * a + b]);
                 }
@@ -70,11 +71,32 @@ impl<S: PairScale> Vectorised for VelocityGradient<'_, S> {
     }
 }
 
-/// Three vectors from eight numbers each.
+/// The records of eight receivers. (Written out, since what array methods call may be compiled
+/// apart from the vector code.)
 #[inline(always)]
-pub(super) fn gather3<V: Lanes>(component: impl Fn(usize) -> [f64; LANES]) -> [V; 3] {
-    let [x, y, z] = [component(0), component(1), component(2)];
-    [V::read(&x), V::read(&y), V::read(&z)]
+pub(super) fn records<'a, R>(sources: &'a [R], places: &[u32; LANES]) -> [&'a R; LANES] {
+    let at = |k: usize| &sources[places[k] as usize];
+    [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)]
+}
+
+/// One number of each of eight records.
+#[inline(always)]
+pub(super) fn gather<V: Lanes, R>(records: &[&R; LANES], number: impl Fn(&R) -> f64) -> V {
+    let at = |k: usize| number(records[k]);
+    V::read(&[at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)])
+}
+
+/// Three numbers of each of eight records.
+#[inline(always)]
+pub(super) fn gather3<V: Lanes, R>(
+    records: &[&R; LANES],
+    number: impl Fn(&R, usize) -> f64,
+) -> [V; 3] {
+    [
+        gather(records, |record| number(record, 0)),
+        gather(records, |record| number(record, 1)),
+        gather(records, |record| number(record, 2)),
+    ]
 }
 
 /// Where eight receivers stand seen from one neighbour, with the distances. The sweeps

@@ -2,28 +2,20 @@
 //! viscosity (physics page, section 2).
 
 use super::dispatch::Vectorised;
-use super::gradient::{Separation, gather3};
+use super::gradient::{MotionRecord, Separation, gather, gather3, records};
 use super::kernel::PairScale;
 use super::lanes::{F64x8, LANES, Lanes};
 
-/// What a particle shows to its neighbours for the forces: two cache lines.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[repr(C, align(128))]
-pub struct ForceRecord {
-    /// Position (m).
-    pub position: [f64; 3],
-    /// Velocity (m/s).
-    pub velocity: [f64; 3],
-    /// Mass (kg).
-    pub mass: f64,
-    /// Smoothing length (m).
-    pub smoothing_length: f64,
+/// What a particle shows to its neighbours of its stress: one cache line.
+#[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C, align(64))]
+pub struct StressRecord {
+    /// `σ/ρ²`, components xx, yy, zz, xy, xz, yz (Pa m⁶/kg²).
+    pub stress_over_density2: [f64; 6],
     /// Density (kg/m³).
     pub density: f64,
     /// Sound speed (m/s).
     pub sound_speed: f64,
-    /// `σ/ρ²`, components xx, yy, zz, xy, xz, yz (Pa m⁶/kg²).
-    pub stress_over_density2: [f64; 6],
 }
 
 /// Coefficients of the Monaghan–Gingold viscosity.
@@ -40,10 +32,12 @@ pub struct Viscosity {
 /// `MIRRORED` clusters have images behind symmetry planes among their neighbours and also sum
 /// what those alone exert.
 pub struct Momentum<'a, S, const MIRRORED: bool> {
-    /// All particles and images.
-    pub sources: &'a [ForceRecord],
-    /// 1 for images behind symmetry planes, 0 for particles.
-    pub mirrored: &'a [f64],
+    /// All particles and images; they weigh by their mass.
+    pub sources: &'a [MotionRecord],
+    /// Their stresses.
+    pub stresses: &'a [StressRecord],
+    /// Odd for images behind symmetry planes, even for particles.
+    pub mirrored: &'a [u8],
     /// Receivers; unused lanes repeat a valid one.
     pub receivers: [u32; LANES],
     /// Neighbours, in canonical order, those of all receivers together.
@@ -82,14 +76,15 @@ impl<S: PairScale, const MIRRORED: bool> Vectorised for Momentum<'_, S, MIRRORED
 
     #[inline(always)]
     fn run<V: Lanes>(self) -> Forces {
-        let receivers = self.receivers.map(|place| &self.sources[place as usize]);
-        let position = gather3::<V>(|a| receivers.map(|record| record.position[a]));
-        let velocity = gather3::<V>(|a| receivers.map(|record| record.velocity[a]));
-        let normal = gather3::<V>(|a| receivers.map(|record| record.stress_over_density2[a]));
-        let shear = gather3::<V>(|a| receivers.map(|record| record.stress_over_density2[3 + a]));
-        let h_i = V::read(&receivers.map(|record| record.smoothing_length));
-        let rho_i = V::read(&receivers.map(|record| record.density));
-        let c_i = V::read(&receivers.map(|record| record.sound_speed));
+        let receivers = records(self.sources, &self.receivers);
+        let position = gather3::<V, _>(&receivers, |record, a| record.position[a]);
+        let velocity = gather3::<V, _>(&receivers, |record, a| record.velocity[a]);
+        let stresses = records(self.stresses, &self.receivers);
+        let normal = gather3::<V, _>(&stresses, |record, a| record.stress_over_density2[a]);
+        let shear = gather3::<V, _>(&stresses, |record, a| record.stress_over_density2[3 + a]);
+        let h_i = gather::<V, _>(&receivers, |record| record.smoothing_length);
+        let rho_i = gather::<V, _>(&stresses, |record| record.density);
+        let c_i = gather::<V, _>(&stresses, |record| record.sound_speed);
         let zero = V::splat(0.0);
         let (alpha, beta) = (
             V::splat(self.viscosity.alpha),
@@ -105,13 +100,17 @@ impl<S: PairScale, const MIRRORED: bool> Vectorised for Momentum<'_, S, MIRRORED
         if count == 0 {
             return Forces::NONE;
         }
-        let begin = |k: usize| &self.sources[self.neighbours[k.min(count - 1)] as usize];
+        let begin = |k: usize| {
+            let place = self.neighbours[k.min(count - 1)] as usize;
+            (place, &self.sources[place])
+        };
         let mut following = begin(0);
-        let mut next = Separation::begin(&position, &following.position);
+        let mut next = Separation::begin(&position, &following.1.position);
         for k in 0..count {
-            let (source, now) = (following, next);
+            let ((place, source), now) = (following, next);
+            let state = &self.stresses[place];
             following = begin(k + 1);
-            next = Separation::begin(&position, &following.position);
+            next = Separation::begin(&position, &following.1.position);
             let (r, square) = (now.r, now.square);
             let along = |a: usize| velocity[a].sub(V::splat(source.velocity[a]));
             let v = [along(0), along(1), along(2)];
@@ -120,7 +119,7 @@ impl<S: PairScale, const MIRRORED: bool> Vectorised for Momentum<'_, S, MIRRORED
                 .kernel(now.distance, h_i, source.smoothing_length);
             let h = kernel.h;
             let soft = h.mul(h).mul(V::splat(0.01)).add(square);
-            let rho_sum = rho_i.add(V::splat(source.density));
+            let rho_sum = rho_i.add(V::splat(state.density));
             // One division serves 1/(r² + 0.01 h²) and 1/(ρ_i + ρ_j).
             let inverse = V::splat(1.0).div(soft.mul(rho_sum));
             // μ = h v·r/(r² + 0.01 h²) for approaching pairs.
@@ -129,15 +128,15 @@ impl<S: PairScale, const MIRRORED: bool> Vectorised for Momentum<'_, S, MIRRORED
                 .min(zero);
             let mu = h.mul(approach).mul(inverse.mul(rho_sum));
             // Π = μ (β μ − α c̄)/ρ̄ with c̄ = ½ c_sum and ρ̄ = ½ rho_sum.
-            let linear = V::splat(source.sound_speed).mul_add(alpha, c_i);
+            let linear = V::splat(state.sound_speed).mul_add(alpha, c_i);
             let pi = mu.mul(inverse.mul(soft)).mul(mu.mul(beta).sub(linear));
             fastest = fastest.min_where_positive(mu, kernel.inside);
-            let s = |c: usize| V::splat(source.stress_over_density2[c]);
+            let s = |c: usize| V::splat(state.stress_over_density2[c]);
             let pull = |a: usize| normal[a].add(s(a)).sub(pi);
             let [xx, yy, zz] = [pull(0), pull(1), pull(2)];
             let slide = |a: usize| shear[a].add(s(3 + a));
             let [xy, xz, yz] = [slide(0), slide(1), slide(2)];
-            let weight = now.inverse.mul(V::splat(source.mass)).mul(kernel.slope);
+            let weight = now.inverse.mul(V::splat(source.weight)).mul(kernel.slope);
             let traction = [
                 xx.mul_add(r[0], xy.mul_add(r[1], xz.mul(r[2]))),
                 xy.mul_add(r[0], yy.mul_add(r[1], yz.mul(r[2]))),
@@ -149,7 +148,7 @@ impl<S: PairScale, const MIRRORED: bool> Vectorised for Momentum<'_, S, MIRRORED
                 acceleration[a] = traction[a].mul_add(weight, acceleration[a]);
             }
             if MIRRORED {
-                let mirrored = weight.mul(V::splat(self.mirrored[self.neighbours[k] as usize]));
+                let mirrored = weight.mul(V::splat(f64::from(self.mirrored[place] & 1)));
                 for a in 0..3 {
                     from_mirrors[a] = traction[a].mul_add(mirrored, from_mirrors[a]);
                 }

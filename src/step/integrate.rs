@@ -69,7 +69,6 @@ impl Simulation {
             &mut store.position,
             &mut store.predicted_velocity,
             &mut store.predicted_density,
-            &mut store.predicted_energy,
             &mut store.smoothing_length,
             (
                 &store.acceleration,
@@ -82,22 +81,19 @@ impl Simulation {
         )
             .into_par_iter()
             .with_min_len(GRAIN)
-            .for_each(
-                |(v, e, x, v_p, rho_p, e_p, h, (a, c, de, l, &rho, &body))| {
-                    let total = [a[0] + c[0], a[1] + c[1], a[2] + c[2]];
-                    *e += half * (de - 0.25 * dt * dot(a, &total));
-                    *v = add_scaled(v, half, a, c);
-                    for k in 0..3 {
-                        x[k] += dt * v[k];
-                    }
-                    *v_p = add_scaled(v, half, a, c);
-                    *e_p = *e + half * de;
-                    let strain = half * (l[0] + l[4] + l[8]);
-                    *rho_p = rho * ((1.0 - strain) / (1.0 + strain));
-                    let reference = 1.0 / contact.inverse_density(body as usize);
-                    *h = rule.length(reference_h[body as usize], reference / *rho_p);
-                },
-            );
+            .for_each(|(v, e, x, v_p, rho_p, h, (a, c, de, l, &rho, &body))| {
+                let total = [a[0] + c[0], a[1] + c[1], a[2] + c[2]];
+                *e += half * (de - 0.25 * dt * dot(a, &total));
+                *v = add_scaled(v, half, a, c);
+                for k in 0..3 {
+                    x[k] += dt * v[k];
+                }
+                *v_p = add_scaled(v, half, a, c);
+                let strain = half * (l[0] + l[4] + l[8]);
+                *rho_p = rho * ((1.0 - strain) / (1.0 + strain));
+                let reference = 1.0 / contact.inverse_density(body as usize);
+                *h = rule.length(reference_h[body as usize], reference / *rho_p);
+            });
         self.fold_at_planes();
     }
 

@@ -2,6 +2,7 @@
 
 mod contact_phase;
 mod integrate;
+mod material_update;
 mod search;
 mod setup;
 mod simulation;

@@ -42,7 +42,7 @@ impl Search {
 const BLANK: MotionRecord = MotionRecord {
     position: [0.0; 3],
     velocity: [0.0; 3],
-    volume: 0.0,
+    weight: 0.0,
     smoothing_length: 0.0,
 };
 
@@ -88,7 +88,7 @@ impl Simulation {
             let record = MotionRecord {
                 position: mirrors.reflect_position(&store.position[base], code),
                 velocity: Mirrors::reflect_vector(&store.predicted_velocity[base], code),
-                volume: store.mass[base] / store.predicted_density[base],
+                weight: store.mass[base] / store.predicted_density[base],
                 smoothing_length: store.smoothing_length[base],
             };
             // SAFETY: each place is emitted once.

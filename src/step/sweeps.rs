@@ -1,27 +1,27 @@
 //! The two pair sweeps over all clusters, with the material between them.
 
+use bytemuck::Zeroable;
 use rayon::prelude::*;
 
+use super::material_update::MaterialUpdate;
 use super::search::GRAIN;
 use super::simulation::Simulation;
 use crate::domain::Mirrors;
-use crate::material::{Material, PointBatch};
 use crate::model::{Case, SmoothingLength};
 use crate::neighbours::{Chunk, Cluster, Image};
 use crate::particles::{ParticleStore, Scatter};
-use crate::sph::dispatch::{Instructions, instructions};
+use crate::sph::dispatch::{Vectorised, instructions};
 use crate::sph::gradient::{MotionRecord, VelocityGradient};
 use crate::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
-use crate::sph::lanes::LANES;
-use crate::sph::momentum::{ForceRecord, Forces, Momentum, Viscosity};
+use crate::sph::lanes::Lanes;
+use crate::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
 
 /// Records of the second sweep and what mirrors exert, kept from step to step.
 pub struct Sweeps {
     scale: Scale,
     viscosity: Viscosity,
     material_of_body: Vec<usize>,
-    forces: Vec<ForceRecord>,
-    mirrored: Vec<f64>,
+    stresses: Vec<StressRecord>,
     /// Forces of mirror images on single particles (N), by chunk.
     pub(super) from_mirrors: Vec<Vec<[f64; 3]>>,
 }
@@ -68,14 +68,13 @@ impl Sweeps {
                 beta: case.sph.beta,
             },
             material_of_body: case.bodies.iter().map(|b| b.material).collect(),
-            forces: Vec::new(),
-            mirrored: Vec::new(),
+            stresses: Vec::new(),
             from_mirrors: Vec::new(),
         }
     }
 
     pub(super) fn memory(&self) -> usize {
-        self.forces.capacity() * size_of::<ForceRecord>() + self.mirrored.capacity() * 8
+        self.stresses.capacity() * size_of::<StressRecord>()
     }
 }
 
@@ -85,78 +84,64 @@ impl Simulation {
     pub(super) fn velocity_gradient_and_material(&mut self, dt: f64) {
         let set = instructions();
         let chunks = self.search.clusters.chunks();
-        let target = MaterialTarget::new(
+        let update = MaterialUpdate::new(
             &mut self.store,
             self.search.sequence.images(),
             &self.case.materials,
             &self.sweeps.material_of_body,
             dt,
         );
-        let motion = &self.search.motion;
+        let (sources, update) = (&self.search.motion[..], &update);
         with_scale!(self.sweeps.scale, scale => chunks
             .par_iter()
-            .for_each(|chunk| gradient_chunk(set, chunk, motion, scale, &target)));
+            .for_each(|chunk| set.run(GradientChunk { chunk, sources, scale, update })));
     }
 
     /// Second sweep: accelerations by stress and viscosity, and the power they put into heat, of
     /// the clusters that have halo particles among their neighbours or of those that have none,
     /// which need not wait for messages.
     pub(super) fn momentum_and_energy(&mut self, halo: bool) {
-        self.fill_force_records(halo);
+        self.fill_records(halo);
         let set = instructions();
         let chunks = self.search.clusters.chunks();
         let images = self.search.sequence.images();
         let Sweeps {
             scale,
             viscosity,
-            forces,
-            mirrored,
+            stresses,
             from_mirrors,
             ..
         } = &mut self.sweeps;
         from_mirrors.resize(chunks.len(), Vec::new());
-        let target = ForceTarget::new(&mut self.store, images);
+        let target = &ForceTarget::new(&mut self.store, images);
         let sources = ForceSources {
-            records: forces,
-            mirrored,
+            motion: &self.search.motion,
+            stresses,
+            mirrored: self.search.sequence.mirrored(),
             viscosity: *viscosity,
         };
         with_scale!(*scale, scale => chunks
         .par_iter()
         .zip(from_mirrors)
-        .for_each(|(chunk, images)| {
+        .for_each(|(chunk, from_mirrors)| {
             if !halo {
-                images.clear();
+                from_mirrors.clear();
             }
-            momentum_chunk(set, chunk, halo, &sources, scale, &target, images);
+            set.run(MomentumChunk { chunk, halo, sources, scale, target, from_mirrors });
         }));
     }
 
     /// Records of halo particles and their images, or of this rank's.
-    fn fill_force_records(&mut self, halo: bool) {
+    fn fill_records(&mut self, halo: bool) {
         let store = &self.store;
         let owned = store.owned();
         let images = self.search.sequence.images();
-        let blank = ForceRecord {
-            position: [0.0; 3],
-            velocity: [0.0; 3],
-            mass: 0.0,
-            smoothing_length: 0.0,
-            density: 0.0,
-            sound_speed: 0.0,
-            stress_over_density2: [0.0; 6],
-        };
-        self.sweeps.forces.resize(images.len(), blank);
-        self.sweeps.mirrored.resize(images.len(), 0.0);
-        (
-            &mut self.sweeps.forces,
-            &mut self.sweeps.mirrored,
-            images,
-            &self.search.motion,
-        )
+        let stresses = &mut self.sweeps.stresses;
+        stresses.resize(images.len(), StressRecord::zeroed());
+        (stresses, &mut self.search.motion, images)
             .into_par_iter()
             .with_min_len(GRAIN)
-            .for_each(|(record, mirrored, image, motion)| {
+            .for_each(|(record, motion, image)| {
                 let (base, code) = (image.base(), image.code());
                 if (base >= owned) != halo {
                     return;
@@ -165,13 +150,8 @@ impl Simulation {
                 let scale = 1.0 / (density * density);
                 let pressure = store.pressure[base];
                 let s = Mirrors::reflect_symmetric(&store.deviatoric_stress[base], code);
-                *record = ForceRecord {
-                    position: motion.position,
-                    velocity: motion.velocity,
-                    mass: store.mass[base],
-                    smoothing_length: motion.smoothing_length,
-                    density,
-                    sound_speed: store.sound_speed[base],
+                motion.weight = store.mass[base];
+                *record = StressRecord {
                     stress_over_density2: [
                         (s[0] - pressure) * scale,
                         (s[1] - pressure) * scale,
@@ -180,157 +160,45 @@ impl Simulation {
                         s[4] * scale,
                         s[5] * scale,
                     ],
+                    density,
+                    sound_speed: store.sound_speed[base],
                 };
-                *mirrored = if code == 0 { 0.0 } else { 1.0 };
             });
     }
 }
 
-/// Where the first sweep writes: each owned particle stands in exactly one lane of one cluster.
-struct MaterialTarget<'a> {
-    images: &'a [Image],
-    materials: &'a [Material],
-    material_of_body: &'a [usize],
-    dt: f64,
-    body: &'a [u32],
-    predicted_energy: &'a [f64],
-    density: Scatter<'a, f64>,
-    velocity_gradient: Scatter<'a, [f64; 9]>,
-    deviatoric_stress: Scatter<'a, [f64; 6]>,
-    plastic_strain: Scatter<'a, f64>,
-    pressure: Scatter<'a, f64>,
-    sound_speed: Scatter<'a, f64>,
-    work: Scatter<'a, u32>,
-}
-
-impl<'a> MaterialTarget<'a> {
-    fn new(
-        store: &'a mut ParticleStore,
-        images: &'a [Image],
-        materials: &'a [Material],
-        material_of_body: &'a [usize],
-        dt: f64,
-    ) -> Self {
-        Self {
-            images,
-            materials,
-            material_of_body,
-            dt,
-            body: &store.body,
-            predicted_energy: &store.predicted_energy,
-            density: Scatter::new(&mut store.density),
-            velocity_gradient: Scatter::new(&mut store.velocity_gradient),
-            deviatoric_stress: Scatter::new(&mut store.deviatoric_stress),
-            plastic_strain: Scatter::new(&mut store.plastic_strain),
-            pressure: Scatter::new(&mut store.pressure),
-            sound_speed: Scatter::new(&mut store.sound_speed),
-            work: Scatter::new(&mut store.work),
-        }
-    }
-
-    /// Advances density, stress and strain of a cluster whose velocity gradient at the end of
-    /// the step is `gradient`.
-    fn update(
-        &self,
-        cluster: &Cluster,
-        gradient: &[crate::sph::lanes::F64x8; 9],
-        neighbours: usize,
-    ) {
-        let base: [usize; LANES] = cluster
-            .receivers
-            .map(|place| self.images[place as usize].base());
-        let mut batch = PointBatch {
-            density: [0.0; LANES],
-            specific_energy: [0.0; LANES],
-            velocity_gradient: [[0.0; LANES]; 9],
-            deviatoric_stress: [[0.0; LANES]; 6],
-            plastic_strain: [0.0; LANES],
-            pressure: [0.0; LANES],
-            sound_speed: [0.0; LANES],
-        };
-        for (k, &i) in base.iter().enumerate() {
-            // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
-            let (rho, l, s, plastic) = unsafe {
-                (
-                    *self.density.slot(i),
-                    *self.velocity_gradient.slot(i),
-                    *self.deviatoric_stress.slot(i),
-                    *self.plastic_strain.slot(i),
-                )
-            };
-            for c in 0..9 {
-                batch.velocity_gradient[c][k] = 0.5 * (l[c] + gradient[c].0[k]);
-            }
-            let mean = &batch.velocity_gradient;
-            let strain = 0.5 * self.dt * (mean[0][k] + mean[4][k] + mean[8][k]);
-            batch.density[k] = rho * ((1.0 - strain) / (1.0 + strain));
-            batch.specific_energy[k] = self.predicted_energy[i];
-            for c in 0..6 {
-                batch.deviatoric_stress[c][k] = s[c];
-            }
-            batch.plastic_strain[k] = plastic;
-        }
-        let before = batch;
-        let material = |k: usize| self.material_of_body[self.body[base[k]] as usize];
-        for k in 0..cluster.lanes {
-            let own = material(k);
-            if (0..k).any(|earlier| material(earlier) == own) {
-                continue;
-            }
-            let mut result = before;
-            self.materials[own].update(&mut result, self.dt);
-            for lane in k..cluster.lanes {
-                if material(lane) == own {
-                    self.store_lane(base[lane], lane, &result, gradient, neighbours);
-                }
-            }
-        }
-    }
-
-    fn store_lane(
-        &self,
-        i: usize,
-        k: usize,
-        batch: &PointBatch,
-        gradient: &[crate::sph::lanes::F64x8; 9],
-        neighbours: usize,
-    ) {
-        // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
-        unsafe {
-            *self.density.slot(i) = batch.density[k];
-            *self.velocity_gradient.slot(i) = std::array::from_fn(|c| gradient[c].0[k]);
-            *self.deviatoric_stress.slot(i) =
-                std::array::from_fn(|c| batch.deviatoric_stress[c][k]);
-            *self.plastic_strain.slot(i) = batch.plastic_strain[k];
-            *self.pressure.slot(i) = batch.pressure[k];
-            *self.sound_speed.slot(i) = batch.sound_speed[k];
-            *self.work.slot(i) = u32::try_from(neighbours).unwrap_or(u32::MAX);
-        }
-    }
-}
-
-fn gradient_chunk<S: PairScale>(
-    set: Instructions,
-    chunk: &Chunk,
-    sources: &[MotionRecord],
+/// The first sweep over one task's clusters.
+struct GradientChunk<'a, S> {
+    chunk: &'a Chunk,
+    sources: &'a [MotionRecord],
     scale: S,
-    target: &MaterialTarget,
-) {
-    for (cluster, neighbours, _) in chunk.iter() {
-        let gradient = set.run(VelocityGradient {
-            sources,
-            receivers: cluster.receivers,
-            neighbours,
-            scale,
-        });
-        target.update(cluster, &gradient, neighbours.len());
+    update: &'a MaterialUpdate<'a>,
+}
+
+impl<S: PairScale> Vectorised for GradientChunk<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) {
+        for (cluster, neighbours, _) in self.chunk.iter() {
+            let gradient = VelocityGradient {
+                sources: self.sources,
+                receivers: cluster.receivers,
+                neighbours,
+                scale: self.scale,
+            };
+            self.update
+                .apply(cluster, &gradient.run::<V>(), neighbours.len());
+        }
     }
 }
 
 /// What the second sweep reads.
+#[derive(Clone, Copy)]
 struct ForceSources<'a> {
-    records: &'a [ForceRecord],
-    mirrored: &'a [f64],
+    motion: &'a [MotionRecord],
+    stresses: &'a [StressRecord],
+    mirrored: &'a [u8],
     viscosity: Viscosity,
 }
 
@@ -354,6 +222,7 @@ impl<'a> ForceTarget<'a> {
         }
     }
 
+    #[inline(always)]
     fn store(&self, cluster: &Cluster, forces: &Forces) {
         for k in 0..cluster.lanes {
             let i = self.images[cluster.receivers[k] as usize].base();
@@ -367,43 +236,55 @@ impl<'a> ForceTarget<'a> {
     }
 }
 
-fn momentum_chunk<S: PairScale>(
-    set: Instructions,
-    chunk: &Chunk,
+/// The second sweep over one task's clusters.
+struct MomentumChunk<'a, S> {
+    chunk: &'a Chunk,
+    /// Only clusters with halo particles among their neighbours, or only those without.
     halo: bool,
-    sources: &ForceSources,
+    sources: ForceSources<'a>,
     scale: S,
-    target: &ForceTarget,
-    from_mirrors: &mut Vec<[f64; 3]>,
-) {
-    for (cluster, neighbours, among) in chunk.iter().filter(|(_, _, among)| among.halo == halo) {
-        if among.mirrors {
-            let forces = run_momentum::<S, true>(set, cluster, neighbours, sources, scale);
+    target: &'a ForceTarget<'a>,
+    /// Forces of mirror images on single particles (N).
+    from_mirrors: &'a mut Vec<[f64; 3]>,
+}
+
+impl<S: PairScale> Vectorised for MomentumChunk<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) {
+        let target = self.target;
+        let halo = self.halo;
+        let all = self.chunk.iter();
+        for (cluster, neighbours, among) in all.filter(|(_, _, among)| among.halo == halo) {
+            if !among.mirrors {
+                let forces = self.sum::<V, false>(cluster, neighbours);
+                target.store(cluster, &forces);
+                continue;
+            }
+            let forces = self.sum::<V, true>(cluster, neighbours);
             target.store(cluster, &forces);
             for k in 0..cluster.lanes {
                 let mass = target.mass[target.images[cluster.receivers[k] as usize].base()];
-                from_mirrors.push(forces.from_mirrors.map(|lanes| mass * lanes.0[k]));
+                let part = |a: usize| mass * forces.from_mirrors[a].0[k];
+                self.from_mirrors.push([part(0), part(1), part(2)]);
             }
-        } else {
-            let forces = run_momentum::<S, false>(set, cluster, neighbours, sources, scale);
-            target.store(cluster, &forces);
         }
     }
 }
 
-fn run_momentum<S: PairScale, const MIRRORED: bool>(
-    set: Instructions,
-    cluster: &Cluster,
-    neighbours: &[u32],
-    sources: &ForceSources,
-    scale: S,
-) -> Forces {
-    set.run(Momentum::<S, MIRRORED> {
-        sources: sources.records,
-        mirrored: sources.mirrored,
-        receivers: cluster.receivers,
-        neighbours,
-        scale,
-        viscosity: sources.viscosity,
-    })
+impl<S: PairScale> MomentumChunk<'_, S> {
+    #[inline(always)]
+    fn sum<V: Lanes, const MIRRORED: bool>(&self, cluster: &Cluster, neighbours: &[u32]) -> Forces {
+        let sums = Momentum::<S, MIRRORED> {
+            sources: self.sources.motion,
+            stresses: self.sources.stresses,
+            mirrored: self.sources.mirrored,
+            receivers: cluster.receivers,
+            neighbours,
+            scale: self.scale,
+            viscosity: self.sources.viscosity,
+        };
+        sums.run::<V>()
+    }
 }

@@ -155,7 +155,7 @@ impl Cloud {
             .map(|&image| MotionRecord {
                 position: self.place(image),
                 velocity: Mirrors::reflect_vector(&self.velocity[image.base()], image.code()),
-                volume: 1.0,
+                weight: 1.0,
                 smoothing_length: self.smoothing_length[image.base()],
             })
             .collect();

@@ -74,7 +74,7 @@ impl World {
             motion.push(MotionRecord {
                 position,
                 velocity: [0.0; 3],
-                volume,
+                weight: volume,
                 smoothing_length: body.smoothing_length,
             });
         }

@@ -79,7 +79,6 @@ impl MieGruneisen {
 
     /// [`Self::response`] with the bounds at hand; selects only, so that lanes vectorise.
     #[inline(always)]
-    #[allow(clippy::inline_always)] // the lane loop vectorises only with its body inside
     pub(super) fn bounded_response(
         &self,
         bounds: Bounds,
@@ -116,7 +115,6 @@ impl MieGruneisen {
 
     /// N and dN/dμ.
     #[inline(always)]
-    #[allow(clippy::inline_always)] // part of the lane loop
     fn numerator(&self, mu: f64) -> (f64, f64) {
         let a = 1.0 - 0.5 * self.gamma0;
         let n = mu * (1.0 + mu * (a - 0.5 * self.b * mu));
@@ -126,7 +124,6 @@ impl MieGruneisen {
 
     /// D and dD/dμ, without floor.
     #[inline(always)]
-    #[allow(clippy::inline_always)] // part of the lane loop
     fn denominator(&self, mu: f64) -> (f64, f64) {
         let x = mu / (mu + 1.0);
         let d = 1.0 - mu * (self.s1 - 1.0 + x * (self.s2 + x * self.s3));

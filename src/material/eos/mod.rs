@@ -48,6 +48,7 @@ impl Eos {
 
     /// Pressure and derivatives of a batch, from reference density and densities (kg/m³) and
     /// specific energies (J/kg).
+    #[inline(always)]
     pub(super) fn response(&self, rho0: f64, rho: &Lanes, e: &Lanes) -> Response {
         match self {
             Self::Linear(eos) => map(rho, e, |rho, _| eos.response(rho0, rho)),
@@ -61,7 +62,6 @@ impl Eos {
 
 /// Applies the response of one point to all lanes.
 #[inline(always)]
-#[allow(clippy::inline_always)] // the lane loop vectorises only with its body inside
 fn map(rho: &Lanes, e: &Lanes, point: impl Fn(f64, f64) -> PointResponse) -> Response {
     let mut response = Response {
         pressure: [0.0; LANES],

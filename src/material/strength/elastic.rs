@@ -12,6 +12,7 @@ pub struct Elastic {
 
 impl Elastic {
     /// Advances the stress of a batch by `dt` (s).
+    #[inline(always)]
     pub(super) fn update(self, batch: &mut PointBatch, dt: f64) {
         if dt != 0.0 {
             jaumann::advance(batch, self.shear_modulus, dt);

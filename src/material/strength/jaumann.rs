@@ -16,6 +16,7 @@
 use crate::material::{LANES, PointBatch};
 
 /// Advances the deviatoric stress by `dt` (s) with shear modulus `g` (Pa).
+#[inline(always)]
 pub(super) fn advance(batch: &mut PointBatch, g: f64, dt: f64) {
     let l = &batch.velocity_gradient;
     let s = &batch.deviatoric_stress;
@@ -38,7 +39,6 @@ pub(super) fn advance(batch: &mut PointBatch, g: f64, dt: f64) {
 
 /// One point of [`advance`]: `l` row-major (1/s), `s` as `xx yy zz xy xz yz` (Pa).
 #[inline(always)]
-#[allow(clippy::inline_always)] // the lane loop vectorises only with its body inside
 fn advance_point(l: &[f64; 9], s: &[f64; 6], g_dt: f64, dt: f64) -> [f64; 6] {
     let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = *l;
     let third = (xx + yy + zz) * (1.0 / 3.0);
@@ -71,7 +71,6 @@ fn advance_point(l: &[f64; 9], s: &[f64; 6], g_dt: f64, dt: f64) -> [f64; 6] {
 /// `(I − A)⁻¹ (I + A) = I + 2 (A + A²)/(1 + |a|²)` for the skew matrix A of upper components
 /// `xy xz yz` and their square sum `|a|²`, row-major.
 #[inline(always)]
-#[allow(clippy::inline_always)] // part of the lane loop
 fn rotation(xy: f64, xz: f64, yz: f64) -> [f64; 9] {
     let (xy2, xz2, yz2) = (xy * xy, xz * xz, yz * yz);
     let f = 2.0 / (1.0 + (xy2 + xz2 + yz2));
@@ -90,7 +89,6 @@ fn rotation(xy: f64, xz: f64, yz: f64) -> [f64; 9] {
 
 /// `Q S Qᵀ` for symmetric S as `xx yy zz xy xz yz`.
 #[inline(always)]
-#[allow(clippy::inline_always)] // part of the lane loop
 fn conjugate(q: &[f64; 9], s: &[f64; 6]) -> [f64; 6] {
     let [xx, yy, zz, xy, xz, yz] = *s;
     let columns = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
@@ -108,7 +106,6 @@ fn conjugate(q: &[f64; 9], s: &[f64; 6]) -> [f64; 6] {
 }
 
 #[inline(always)]
-#[allow(clippy::inline_always)] // part of the lane loop
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

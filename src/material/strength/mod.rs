@@ -32,6 +32,7 @@ impl Strength {
     }
 
     /// Advances stress and plastic strain of a batch by `dt` (s).
+    #[inline(always)]
     pub(super) fn update(&self, batch: &mut PointBatch, dt: f64) {
         match self {
             Self::None => batch.deviatoric_stress = [[0.0; LANES]; 6],

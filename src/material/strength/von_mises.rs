@@ -22,6 +22,7 @@ pub struct VonMises {
 
 impl VonMises {
     /// Advances stress and plastic strain of a batch by `dt` (s).
+    #[inline(always)]
     pub(super) fn update(&self, batch: &mut PointBatch, dt: f64) {
         if dt != 0.0 {
             jaumann::advance(batch, self.shear_modulus, dt);
@@ -30,6 +31,7 @@ impl VonMises {
     }
 
     /// Radial return of a batch.
+    #[inline(always)]
     fn return_to_yield(&self, batch: &mut PointBatch) {
         let three_g = 3.0 * self.shear_modulus;
         let stiffness = three_g + self.hardening_modulus;

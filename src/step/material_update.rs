@@ -1,0 +1,154 @@
+//! The material's answer to the velocity gradient, cluster by cluster inside the first sweep.
+
+use crate::material::{LANES, Material, PointBatch};
+use crate::neighbours::{Cluster, Image};
+use crate::particles::{ParticleStore, Scatter};
+use crate::sph::lanes::F64x8;
+
+/// What the update reads and writes: each owned particle stands in exactly one lane of one
+/// cluster.
+pub(super) struct MaterialUpdate<'a> {
+    images: &'a [Image],
+    materials: &'a [Material],
+    material_of_body: &'a [usize],
+    dt: f64,
+    body: &'a [u32],
+    /// Specific energy after the first half kick, and its last rate.
+    specific_energy: &'a [f64],
+    heating: &'a [f64],
+    density: Scatter<'a, f64>,
+    velocity_gradient: Scatter<'a, [f64; 9]>,
+    deviatoric_stress: Scatter<'a, [f64; 6]>,
+    plastic_strain: Scatter<'a, f64>,
+    pressure: Scatter<'a, f64>,
+    sound_speed: Scatter<'a, f64>,
+    work: Scatter<'a, u32>,
+}
+
+impl<'a> MaterialUpdate<'a> {
+    pub(super) fn new(
+        store: &'a mut ParticleStore,
+        images: &'a [Image],
+        materials: &'a [Material],
+        material_of_body: &'a [usize],
+        dt: f64,
+    ) -> Self {
+        Self {
+            images,
+            materials,
+            material_of_body,
+            dt,
+            body: &store.body,
+            specific_energy: &store.specific_energy,
+            heating: &store.d_specific_energy_dt,
+            density: Scatter::new(&mut store.density),
+            velocity_gradient: Scatter::new(&mut store.velocity_gradient),
+            deviatoric_stress: Scatter::new(&mut store.deviatoric_stress),
+            plastic_strain: Scatter::new(&mut store.plastic_strain),
+            pressure: Scatter::new(&mut store.pressure),
+            sound_speed: Scatter::new(&mut store.sound_speed),
+            work: Scatter::new(&mut store.work),
+        }
+    }
+
+    /// Advances density, stress and strain of a cluster whose velocity gradient at the end of
+    /// the step is `gradient`; `neighbours` is the length of its list.
+    #[inline(always)]
+    pub(super) fn apply(&self, cluster: &Cluster, gradient: &[F64x8; 9], neighbours: usize) {
+        let places = &cluster.receivers;
+        let at = |k: usize| self.images[places[k] as usize].base();
+        let base = [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)];
+        let before = self.gather(&base, gradient);
+        let material = |k: usize| self.material_of_body[self.body[base[k]] as usize];
+        let mut done = 0_u32;
+        for k in 0..cluster.lanes {
+            if done >> k & 1 == 1 {
+                continue;
+            }
+            let own = material(k);
+            let mut after = before;
+            self.materials[own].update(&mut after, self.dt);
+            for lane in k..cluster.lanes {
+                if material(lane) == own {
+                    done |= 1 << lane;
+                    self.store(base[lane], lane, &after, gradient, neighbours);
+                }
+            }
+        }
+    }
+
+    /// The state of a cluster's particles, with the density at the end of the step and the
+    /// velocity gradient in its middle.
+    #[inline(always)]
+    fn gather(&self, base: &[usize; LANES], gradient: &[F64x8; 9]) -> PointBatch {
+        let mut batch = PointBatch {
+            density: [0.0; LANES],
+            specific_energy: [0.0; LANES],
+            velocity_gradient: [[0.0; LANES]; 9],
+            deviatoric_stress: [[0.0; LANES]; 6],
+            plastic_strain: [0.0; LANES],
+            pressure: [0.0; LANES],
+            sound_speed: [0.0; LANES],
+        };
+        let half = 0.5 * self.dt;
+        for (k, &i) in base.iter().enumerate() {
+            // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
+            let (rho, l, s, plastic) = unsafe {
+                (
+                    &*self.density.slot(i),
+                    &*self.velocity_gradient.slot(i),
+                    &*self.deviatoric_stress.slot(i),
+                    &*self.plastic_strain.slot(i),
+                )
+            };
+            batch.density[k] = *rho;
+            for c in 0..9 {
+                batch.velocity_gradient[c][k] = l[c];
+            }
+            for c in 0..6 {
+                batch.deviatoric_stress[c][k] = s[c];
+            }
+            batch.plastic_strain[k] = *plastic;
+            batch.specific_energy[k] = self.specific_energy[i] + half * self.heating[i];
+        }
+        for c in 0..9 {
+            for k in 0..LANES {
+                let mean = 0.5 * (batch.velocity_gradient[c][k] + gradient[c].0[k]);
+                batch.velocity_gradient[c][k] = mean;
+            }
+        }
+        let [xx, _, _, _, yy, _, _, _, zz] = &batch.velocity_gradient;
+        for k in 0..LANES {
+            let strain = half * (xx[k] + yy[k] + zz[k]);
+            batch.density[k] *= (1.0 - strain) / (1.0 + strain);
+        }
+        batch
+    }
+
+    #[inline(always)]
+    fn store(
+        &self,
+        i: usize,
+        k: usize,
+        batch: &PointBatch,
+        gradient: &[F64x8; 9],
+        neighbours: usize,
+    ) {
+        // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
+        unsafe {
+            *self.density.slot(i) = batch.density[k];
+            let l = self.velocity_gradient.slot(i);
+            for c in 0..9 {
+                l[c] = gradient[c].0[k];
+            }
+            let s = self.deviatoric_stress.slot(i);
+            for c in 0..6 {
+                s[c] = batch.deviatoric_stress[c][k];
+            }
+            *self.plastic_strain.slot(i) = batch.plastic_strain[k];
+            *self.pressure.slot(i) = batch.pressure[k];
+            *self.sound_speed.slot(i) = batch.sound_speed[k];
+            *self.work.slot(i) = u32::try_from(neighbours).unwrap_or(u32::MAX);
+        }
+    }
+}
