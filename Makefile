@@ -31,8 +31,9 @@ check: test-deps
 validation: test-deps $(VENV)/ready ## Run the slow physics tests, those marked #[ignore]
 	$(ENV) jobs/cargo-test.sh --ignored
 
-bench: deps ## Time the step by phase
-	$(ENV) cargo bench --locked --bench step
+bench: release ## Time fixed cases on threads and ranks, beside other programs where installed
+	$(ENV) target/release/whipple bench --json target/bench.json
+	if [ -x benches/peers/run.sh ]; then $(ENV) benches/peers/run.sh; fi
 
 docs: deps ## Build the book (target/book) and the API documentation (target/doc)
 	$(ENV) cargo doc --locked --no-deps
