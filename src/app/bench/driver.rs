@@ -65,7 +65,9 @@ fn measure_all(args: &BenchArgs) -> Result<(), String> {
         report.print_case(case);
     }
     report.print_phases();
-    report.write(args.json.as_deref())?;
+    report
+        .write(args.json.as_deref())
+        .map_err(|error| error.to_string())?;
     if let Some(path) = &args.json {
         say(&format!("\nall figures are in {}", path.display()));
     }

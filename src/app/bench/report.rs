@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::cases::BenchCase;
 use super::machine::Machine;
 use crate::app::say::say;
-use crate::output::{COMMIT, VERSION, write_json};
+use crate::output::{COMMIT, OutputError, VERSION, write_json};
 use crate::step::Phase;
 
 /// What one case does on one configuration of ranks and threads.
@@ -187,12 +187,9 @@ impl Report {
     /// Writes all figures to a file, if there is one.
     ///
     /// # Errors
-    /// A message if it cannot be written.
-    pub fn write(&self, path: Option<&Path>) -> Result<(), String> {
-        let Some(path) = path else {
-            return Ok(());
-        };
-        write_json(path, self).map_err(|error| error.to_string())
+    /// [`OutputError::Io`].
+    pub fn write(&self, path: Option<&Path>) -> Result<(), OutputError> {
+        path.map_or(Ok(()), |path| write_json(path, self))
     }
 }
 
