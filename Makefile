@@ -4,14 +4,14 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help deps test-deps release impact test run-tests check validation bench docs clean
+.PHONY: help deps test-deps release impact test run-tests check validation bench bench-kernels docs clean
 
 # The environment of every build and launch: Open MPI's settings, HDF5_DIR.
 ENV := source jobs/env.sh;
 VENV := target/venv
 
 help: ## Say what each target does
-	@sed -nE 's/^([a-z-]+):.*## (.*)/\1\t\2/p' Makefile | expand -t 12
+	@sed -nE 's/^([a-z-]+):.*## (.*)/\1\t\2/p' Makefile | expand -t 16
 
 impact: release ## Run the main job on two ranks, draw its pictures, report
 	jobs/run.sh -n 2 inputs/quarter-impact --out runs/quarter-impact --force
@@ -31,8 +31,12 @@ check: test-deps
 validation: test-deps $(VENV)/ready ## Run the slow physics tests, those marked #[ignore]
 	$(ENV) jobs/cargo-test.sh --ignored
 
-bench: deps ## Time the step by phase
-	$(ENV) cargo bench --locked --bench step
+bench: release ## Time fixed cases on threads and ranks, beside other programs where installed
+	$(ENV) target/release/whipple bench --json target/bench.json
+	if [ -x benches/peers/run.sh ]; then $(ENV) benches/peers/run.sh; fi
+
+bench-kernels: deps ## Time the inner loops alone, for each instruction set
+	$(ENV) cargo bench --locked --bench kernels
 
 docs: deps ## Build the book (target/book) and the API documentation (target/doc)
 	$(ENV) cargo doc --locked --no-deps

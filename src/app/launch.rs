@@ -46,11 +46,16 @@ pub fn with_ranks(args: &CommonArgs, work: impl FnOnce(&Launch) -> u8) -> u8 {
     code
 }
 
+/// Whether this process was started by an MPI launcher.
+pub fn by_mpi() -> bool {
+    let launched = ["OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_SIZE"];
+    launched.iter().any(|name| std::env::var_os(name).is_some())
+}
+
 /// Does something once for all processes of a job that need no MPI for their work.
 pub fn once(speak: impl FnOnce()) {
     // mpirun may kill the job at the first exit, so nobody leaves before rank 0 has spoken.
-    let launched = ["OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_SIZE"];
-    if launched.iter().any(|name| std::env::var_os(name).is_some())
+    if by_mpi()
         && let Some((_session, comm)) = Session::start()
     {
         if comm.is_root() {
@@ -103,7 +108,7 @@ fn default_threads(comm: &Comm, cores: usize) -> usize {
 
 /// A panic anywhere prints one line and ends all ranks: else it would unwind into `MPI_Finalize`,
 /// which waits for the other ranks, and they for this one.
-fn abort_on_panic(rank: usize) {
+pub fn abort_on_panic(rank: usize) {
     let usual = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
         let step = STEP.load(Ordering::Relaxed);

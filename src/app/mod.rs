@@ -1,5 +1,6 @@
 //! The commands of the program.
 
+mod bench;
 mod check;
 pub mod compare;
 mod driver;
@@ -40,7 +41,7 @@ const EXIT_INTERRUPTED: i32 = 130;
   whipple plot runs/quarter --panels
   mpirun -n 4 whipple restart runs/quarter --set run.end_time=0.3us
 
-`whipple COMMAND --help` says more. Only `run` and `restart` use MPI. Exit codes: 0 done, 1 failed
+`whipple COMMAND --help` says more. Only `run`, `restart` and `bench` use MPI. Exit codes: 0 done, 1 failed
 (or `compare` found differences), 2 wrong input, 75 stopped softly with a checkpoint."
 )]
 struct Cli {
@@ -56,6 +57,7 @@ enum Command {
     Plot(plot::PlotArgs),
     Info(info::InfoArgs),
     Compare(compare::CompareArgs),
+    Bench(bench::BenchArgs),
 }
 
 /// Runs the program: its command line, its exit code.
@@ -86,6 +88,7 @@ pub fn main() -> ExitCode {
         ),
         Command::Info(args) => info::run(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::Bench(args) => bench::run(&args),
     };
     ExitCode::from(code)
 }

@@ -1,0 +1,241 @@
+//! Takes turns between one thread, two threads and two ranks, each in a process of its own.
+
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use signal_hook::consts::SIGINT;
+
+use super::BenchArgs;
+use super::cases::BenchCase;
+use super::machine::cores;
+use super::report::{Report, Row};
+use crate::app::say::{complain, say};
+use crate::app::{EXIT_FAILED, EXIT_INTERRUPTED};
+
+/// Ranks and the threads of each; the first is what the others are compared with.
+type Configuration = (usize, usize);
+const CONFIGURATIONS: [Configuration; 3] = [(1, 1), (1, 2), (2, 1)];
+
+/// What `mpirun` needs to know, as names and values of its environment: ranks are not to be bound,
+/// since they bind their own threads. Names of Open MPI 4 and 5; what the caller has set stays.
+const LAUNCH: [(&str, &str); 2] = [
+    ("OMPI_MCA_hwloc_base_binding_policy", "none"),
+    ("PRTE_MCA_hwloc_default_binding_policy", "none"),
+];
+
+/// Runs all measurements; returns the exit code.
+pub fn run(args: &BenchArgs) -> u8 {
+    let interrupted = Arc::new(AtomicBool::new(false));
+    // Ctrl-C ends the processes that measure; this one then cleans up.
+    let _ = signal_hook::flag::register(SIGINT, Arc::clone(&interrupted));
+    match measure_all(args) {
+        Ok(()) => 0,
+        Err(_) if interrupted.load(Ordering::Relaxed) => {
+            u8::try_from(EXIT_INTERRUPTED).unwrap_or(EXIT_FAILED)
+        }
+        Err(message) => {
+            complain(&format!("error: {}", message.trim_start_matches("error: ")));
+            EXIT_FAILED
+        }
+    }
+}
+
+fn measure_all(args: &BenchArgs) -> Result<(), String> {
+    let mut report = Report::new(args.repeat);
+    let possible: Vec<Configuration> = CONFIGURATIONS
+        .into_iter()
+        .filter(|&configuration| match obstacle(configuration) {
+            None => true,
+            Some(reason) => {
+                let (ranks, threads) = configuration;
+                let text = format!("{ranks} x {threads} is skipped: {reason}");
+                complain(&text);
+                report.skipped.push(text);
+                false
+            }
+        })
+        .collect();
+    let scratch = Scratch::create()?;
+    for case in args.cases() {
+        let rows = measure_case(args, case, &possible, &scratch.0)?;
+        report.rows.extend(rows);
+        report.print_case(case);
+    }
+    report.print_phases();
+    report
+        .write(args.json.as_deref())
+        .map_err(|error| error.to_string())?;
+    if let Some(path) = &args.json {
+        say(&format!("\nall figures are in {}", path.display()));
+    }
+    Ok(())
+}
+
+/// The rows of a case, whose configurations take turns.
+fn measure_case(
+    args: &BenchArgs,
+    case: &BenchCase,
+    configurations: &[Configuration],
+    scratch: &Path,
+) -> Result<Vec<Row>, String> {
+    let state = (case.begin > 0.0).then(|| scratch.join(case.name));
+    if let Some(folder) = &state {
+        tell(case, "stepping to where it begins");
+        let mut command = program((1, cores()), case)?;
+        launch(command.arg("--save").arg(folder))?;
+    }
+    let mut repetitions = vec![Vec::new(); configurations.len()];
+    for repetition in 1..=args.repeat {
+        for (&configuration, rows) in configurations.iter().zip(&mut repetitions) {
+            let (ranks, threads) = configuration;
+            tell(
+                case,
+                &format!(
+                    "{ranks} x {threads}, repetition {repetition} of {}",
+                    args.repeat
+                ),
+            );
+            let figures = scratch.join("figures.json");
+            let mut command = program(configuration, case)?;
+            command.arg("--repeat=1").arg("--json").arg(&figures);
+            if let Some(steps) = args.steps {
+                command.arg(format!("--steps={steps}"));
+            }
+            if let Some(folder) = &state {
+                command.arg("--from").arg(folder);
+            }
+            launch(&mut command)?;
+            rows.extend(read(&figures)?);
+        }
+    }
+    if let Some(folder) = &state {
+        let _ = std::fs::remove_dir_all(folder);
+    }
+    tell(case, "");
+    let mut rows: Vec<Row> = repetitions.iter().map(|rows| Row::median(rows)).collect();
+    let one = rows[0].clone();
+    for row in &mut rows {
+        row.compare(&one);
+    }
+    Ok(rows)
+}
+
+/// Why a configuration cannot be measured here.
+fn obstacle((ranks, threads): Configuration) -> Option<String> {
+    let (needed, cores) = (ranks * threads, cores());
+    if needed > cores {
+        return Some(format!(
+            "it needs {needed} cores and this process may use {cores}"
+        ));
+    }
+    if ranks == 1 {
+        return None;
+    }
+    match launch(mpirun(ranks).arg("true")) {
+        Ok(()) => None,
+        Err(message) => {
+            let said = message
+                .lines()
+                .map(str::trim)
+                .find(|line| line.len() > 1 && !is_rule(line));
+            Some(format!(
+                "mpirun does not work here ({})",
+                said.unwrap_or("it says nothing")
+            ))
+        }
+    }
+}
+
+/// Whether a line is the dashes that Open MPI sets around its messages.
+fn is_rule(line: &str) -> bool {
+    line.bytes().all(|byte| byte == b'-')
+}
+
+/// This program measuring one case on one configuration.
+fn program((ranks, threads): Configuration, case: &BenchCase) -> Result<Command, String> {
+    let own = std::env::current_exe().map_err(|e| format!("this program is not found: {e}"))?;
+    let mut command = if ranks == 1 {
+        Command::new(own)
+    } else {
+        let mut command = mpirun(ranks);
+        command.arg(own);
+        command
+    };
+    command
+        .args(["bench", "--case", case.name])
+        .arg(format!("--threads={threads}"));
+    Ok(command)
+}
+
+fn mpirun(ranks: usize) -> Command {
+    let mut command = Command::new("mpirun");
+    command.arg("-n").arg(ranks.to_string());
+    for (name, value) in LAUNCH {
+        if std::env::var_os(name).is_none() {
+            command.env(name, value);
+        }
+    }
+    command
+}
+
+/// Runs a command to its end.
+///
+/// # Errors
+/// What it complains of, if it does not start or fails.
+fn launch(command: &mut Command) -> Result<(), String> {
+    let program = command.get_program().to_string_lossy().into_owned();
+    let output = command
+        .stdin(Stdio::null())
+        .output()
+        .map_err(|error| format!("{program} does not start: {error}"))?;
+    if output.status.success() {
+        return Ok(());
+    }
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    Err(if said.trim().is_empty() {
+        format!("{program} ended with {}", output.status)
+    } else {
+        said
+    })
+}
+
+/// The rows that a measuring process has left.
+fn read(path: &Path) -> Result<Vec<Row>, String> {
+    let wrong = |error: &dyn std::fmt::Display| format!("cannot read {}: {error}", path.display());
+    let text = std::fs::read(path).map_err(|e| wrong(&e))?;
+    let report: Report = serde_json::from_slice(&text).map_err(|e| wrong(&e))?;
+    Ok(report.rows)
+}
+
+/// Says on a terminal what is going on, over what it said last.
+fn tell(case: &BenchCase, what: &str) {
+    if std::io::stderr().is_terminal() {
+        let text = if what.is_empty() {
+            String::new()
+        } else {
+            format!("{}: {what}", case.name)
+        };
+        eprint!("\r\x1b[2K{text}");
+    }
+}
+
+/// A folder for states and figures that goes with its owner.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn create() -> Result<Self, String> {
+        let path = std::env::temp_dir().join(format!("whipple-bench-{}", std::process::id()));
+        std::fs::create_dir_all(&path)
+            .map_err(|error| format!("cannot make the folder {}: {error}", path.display()))?;
+        Ok(Self(path))
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}

@@ -1,0 +1,194 @@
+//! One configuration of ranks and threads, one case, one repetition.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::Instant;
+
+use super::cases::BenchCase;
+use super::memory::Resident;
+use super::neighbours;
+use super::report::Row;
+use crate::comm::Comm;
+use crate::output::{Rows, checkpoint};
+use crate::particles::ParticleStore;
+use crate::step::{Phase, Simulation};
+
+/// Steps before the timed ones, in which buffers grow and caches fill.
+const WARM_UP: u64 = 5;
+/// How many steps before the store is put in order a prepared state is taken: the warm-up passes
+/// the order, and the timed steps find memory as a long run does.
+const BEFORE_ORDER: u64 = 2;
+
+/// Steps to the state that a case begins from and writes it into a folder. Collective.
+pub fn prepare(comm: &Comm, bench: &BenchCase, folder: &Path) -> Result<(), String> {
+    let simulation = stepped(comm, bench)?;
+    let state = &simulation.state;
+    let meta = checkpoint::Meta {
+        step: state.step,
+        time: state.time,
+        state: &serde_json::to_string(state).map_err(|e| e.to_string())?,
+        input: &simulation.case.resolved,
+    };
+    let mut rows = Rows::default();
+    checkpoint::write(comm, folder, &simulation.store, &meta, 1, &mut rows)
+        .map(drop)
+        .map_err(|e| e.to_string())
+}
+
+/// Times a case from the state in folder `from`, or from its start. Collective; the row is the same
+/// on all ranks.
+pub fn measure(
+    comm: &Comm,
+    bench: &BenchCase,
+    steps: Option<u64>,
+    from: Option<&Path>,
+) -> Result<Row, String> {
+    let steps = steps.unwrap_or(bench.steps);
+    let resident = Resident::start();
+    let mut simulation = match from {
+        Some(folder) => resumed(comm, bench, folder)?,
+        None => stepped(comm, bench)?,
+    };
+    for _ in 0..WARM_UP {
+        step(comm, &mut simulation)?;
+    }
+    let before = Counts::of(comm, &simulation);
+    comm.barrier();
+    let clock = Instant::now();
+    for _ in 0..steps {
+        step(comm, &mut simulation)?;
+    }
+    comm.barrier();
+    let wall = clock.elapsed().as_secs_f64();
+    let peak = resident.peak();
+    let after = Counts::of(comm, &simulation);
+    Ok(row(
+        comm,
+        bench,
+        &simulation,
+        steps,
+        wall,
+        peak,
+        [before, after],
+    ))
+}
+
+/// A step and what `whipple run` does after it with all files off.
+fn step(comm: &Comm, simulation: &mut Simulation) -> Result<(), String> {
+    simulation.advance(comm).map_err(|e| e.to_string())?;
+    let every = simulation.case.output.history_every.max(1);
+    if simulation.state.step.is_multiple_of(every) {
+        simulation.diagnose(comm);
+    }
+    simulation.timers.lap(Phase::Output);
+    Ok(())
+}
+
+fn stepped(comm: &Comm, bench: &BenchCase) -> Result<Simulation, String> {
+    let case = bench.read().map_err(|e| e.to_string())?;
+    let order_every = case.domain.balance_every;
+    let mut simulation = Simulation::start(case, comm).map_err(|e| e.to_string())?;
+    let in_order =
+        |step: u64| order_every == 0 || (step + BEFORE_ORDER).is_multiple_of(order_every);
+    while bench.begin > 0.0
+        && (simulation.state.time < bench.begin || !in_order(simulation.state.step))
+    {
+        step(comm, &mut simulation)?;
+    }
+    Ok(simulation)
+}
+
+fn resumed(comm: &Comm, bench: &BenchCase, folder: &Path) -> Result<Simulation, String> {
+    let case = bench.read().map_err(|e| e.to_string())?;
+    let list = checkpoint::list(folder).map_err(|e| e.to_string())?;
+    let (_, newest) = list
+        .last()
+        .ok_or_else(|| format!("{} has no state", folder.display()))?;
+    let mut store = ParticleStore::default();
+    let saved = checkpoint::read(comm, newest, &mut store).map_err(|e| e.to_string())?;
+    let state = serde_json::from_str(&saved.state).map_err(|e| e.to_string())?;
+    Simulation::resume(case, comm, state, store).map_err(|e| e.to_string())
+}
+
+/// What all ranks have done so far.
+struct Counts {
+    updates: u64,
+    messages: u64,
+    bytes: u64,
+    nanoseconds: Vec<u64>,
+}
+
+impl Counts {
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "short times"
+    )]
+    fn of(comm: &Comm, simulation: &Simulation) -> Self {
+        let (messages, bytes) = simulation.traffic();
+        let seconds = simulation.timers.report();
+        let mut sums = vec![simulation.updates, messages, bytes];
+        sums.extend(seconds.map(|(_, seconds)| (seconds * 1e9) as u64));
+        comm.sum_u64(&mut sums);
+        Self {
+            updates: sums[0],
+            messages: sums[1],
+            bytes: sums[2],
+            nanoseconds: sums.split_off(3),
+        }
+    }
+}
+
+#[allow(clippy::cast_precision_loss, reason = "figures for people")]
+fn row(
+    comm: &Comm,
+    bench: &BenchCase,
+    simulation: &Simulation,
+    steps: u64,
+    wall: f64,
+    peak: Option<u64>,
+    [before, after]: [Counts; 2],
+) -> Row {
+    let threads = rayon::current_num_threads();
+    let cores = (comm.size() * threads) as f64;
+    let known = !comm.any(peak.is_none());
+    let mut sums = [
+        simulation.store.owned() as u64,
+        simulation.memory() as u64,
+        peak.unwrap_or(0),
+    ];
+    comm.sum_u64(&mut sums);
+    let particles = sums[0] as f64;
+    let updates = (after.updates - before.updates) as f64;
+    let each_step = |count: u64| count as f64 / steps as f64;
+    let phases = Phase::ALL
+        .iter()
+        .zip(after.nanoseconds.iter().zip(&before.nanoseconds));
+    let nanoseconds_by_phase: BTreeMap<String, f64> = phases
+        .map(|(&(_, name), (after, before))| {
+            // Sums over ranks, each of which keeps its threads from other work.
+            (
+                name.to_owned(),
+                (after - before) as f64 * threads as f64 / updates,
+            )
+        })
+        .collect();
+    let rate = updates * 1e-6 / wall / cores;
+    Row {
+        case: bench.name.to_owned(),
+        particles: sums[0],
+        neighbours: neighbours::true_mean(comm, simulation),
+        list_length: neighbours::list_mean(comm, simulation),
+        ranks: comm.size(),
+        threads,
+        steps,
+        million_updates_per_second_per_core: rate,
+        repetitions: vec![rate],
+        efficiency: None,
+        bytes_per_particle: sums[1] as f64 / particles,
+        peak_bytes_per_particle: known.then_some(sums[2] as f64 / particles),
+        messages_per_step: each_step(after.messages - before.messages),
+        bytes_sent_per_step: each_step(after.bytes - before.bytes),
+        nanoseconds_by_phase,
+    }
+}

@@ -1,0 +1,90 @@
+//! How many neighbours particles have: those of the sums, and those of the lists.
+
+use crate::comm::Comm;
+use crate::step::Simulation;
+
+/// Particles whose neighbours are counted, more or less.
+const SAMPLE: u64 = 500;
+
+/// Numbers that tell of one sampled particle: position (m), smoothing length (m), group, id.
+const WORDS: usize = 6;
+
+/// Mean number of particles and mirror images of the own group within 2h of a particle, itself not
+/// counted: by brute force over all particles, for a sample of them that depends on their ids alone.
+/// Collective.
+#[allow(clippy::cast_precision_loss, reason = "a mean")]
+pub fn true_mean(comm: &Comm, simulation: &Simulation) -> f64 {
+    let mut sample = Vec::new();
+    comm.all_gather_u64(&sampled(comm, simulation), &mut sample);
+    let receivers = || sample.chunks_exact(WORDS).filter(|words| words[3] != 0);
+    let mut count = [receivers().map(|words| count(simulation, words)).sum()];
+    comm.sum_u64(&mut count);
+    count[0] as f64 / (receivers().count() as f64).max(1.0)
+}
+
+/// Mean length of the list that a particle's cluster walks. Collective.
+#[allow(clippy::cast_precision_loss, reason = "a mean")]
+pub fn list_mean(comm: &Comm, simulation: &Simulation) -> f64 {
+    let owned = simulation.store.owned();
+    let work = &simulation.store.work[..owned];
+    let mut sums = [work.iter().map(|&n| u64::from(n)).sum(), owned as u64];
+    comm.sum_u64(&mut sums);
+    sums[0] as f64 / (sums[1] as f64).max(1.0)
+}
+
+/// This rank's part of the sample, filled up with zeros to the same length on all ranks: a particle
+/// is known by its smoothing length.
+fn sampled(comm: &Comm, simulation: &Simulation) -> Vec<u64> {
+    let store = &simulation.store;
+    let mut all = [store.owned() as u64];
+    comm.sum_u64(&mut all);
+    // Ids follow the lattice, so every n-th would be a choice of layers: multiplying by 2^64 over
+    // the golden ratio scatters them evenly over all numbers.
+    let limit = (u64::MAX / all[0].max(1)).saturating_mul(SAMPLE);
+    let mut words = Vec::new();
+    for i in 0..store.owned() {
+        if store.id[i].wrapping_mul(0x9e37_79b9_7f4a_7c15) <= limit {
+            words.extend(store.position[i].map(f64::to_bits));
+            words.push(store.smoothing_length[i].to_bits());
+            words.push(simulation.contact().groups[store.body[i] as usize] as u64);
+            words.push(store.id[i]);
+        }
+    }
+    let mut longest = [words.len() as u64];
+    comm.max_u64(&mut longest);
+    words.resize(usize::try_from(longest[0]).unwrap_or(0), 0);
+    words
+}
+
+/// Neighbours of a sampled particle among this rank's particles and their images. That an image of
+/// a particle is near the receiver is the same as that the particle is near the receiver's image.
+fn count(simulation: &Simulation, words: &[u64]) -> u64 {
+    let store = &simulation.store;
+    let receiver = [0, 1, 2].map(|a| f64::from_bits(words[a]));
+    let h = f64::from_bits(words[3]);
+    let (group, id) = (words[4], words[5]);
+    let mut images = vec![receiver];
+    for plane in &simulation.case.symmetry {
+        let axis = plane.axis.index();
+        for k in 0..images.len() {
+            let mut image = images[k];
+            image[axis] = 2.0 * plane.position - image[axis];
+            images.push(image);
+        }
+    }
+    let mut count = 0;
+    for i in 0..store.owned() {
+        if simulation.contact().groups[store.body[i] as usize] as u64 != group {
+            continue;
+        }
+        let reach = h + store.smoothing_length[i];
+        for (k, image) in images.iter().enumerate() {
+            let square: f64 = (0..3)
+                .map(|a| (store.position[i][a] - image[a]).powi(2))
+                .sum();
+            let itself = k == 0 && store.id[i] == id;
+            count += u64::from(square < reach * reach && !itself);
+        }
+    }
+    count
+}

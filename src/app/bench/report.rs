@@ -1,0 +1,220 @@
+//! The figures: kept, joined, printed and written.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::cases::BenchCase;
+use super::machine::Machine;
+use crate::app::say::say;
+use crate::output::{COMMIT, OutputError, VERSION, write_json};
+use crate::step::Phase;
+
+/// What one case does on one configuration of ranks and threads.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Row {
+    /// Name of the case.
+    pub case: String,
+    /// Particles of all ranks.
+    pub particles: u64,
+    /// Mean number of particles and images of the own group within 2h.
+    pub neighbours: f64,
+    /// Mean length of the list that a particle's cluster walks.
+    pub list_length: f64,
+    /// Ranks.
+    pub ranks: usize,
+    /// Threads of each rank.
+    pub threads: usize,
+    /// Timed steps of each repetition.
+    pub steps: u64,
+    /// Median of the repetitions.
+    pub million_updates_per_second_per_core: f64,
+    /// Each repetition's million updates a second for each core.
+    pub repetitions: Vec<f64>,
+    /// Speed of a core over that of a core by itself: the median of the ratios within repetitions.
+    pub efficiency: Option<f64>,
+    /// Bytes in particle arrays, lists and buffers, as the program counts them.
+    pub bytes_per_particle: f64,
+    /// Bytes at the peak of the processes beyond what they had before there were particles.
+    pub peak_bytes_per_particle: Option<f64>,
+    /// Messages that all ranks send in a step.
+    pub messages_per_step: f64,
+    /// Bytes that all ranks send in a step.
+    pub bytes_sent_per_step: f64,
+    /// Core time by phase over particle updates (ns).
+    pub nanoseconds_by_phase: BTreeMap<String, f64>,
+}
+
+impl Row {
+    /// One row of several repetitions of the same.
+    ///
+    /// # Panics
+    /// If there are none.
+    pub fn median(repetitions: &[Self]) -> Self {
+        let all = |figure: &dyn Fn(&Self) -> f64| repetitions.iter().map(figure).collect();
+        let rates: Vec<f64> = all(&|row| row.million_updates_per_second_per_core);
+        let peaks = repetitions
+            .iter()
+            .filter_map(|row| row.peak_bytes_per_particle);
+        let mut row = Self {
+            million_updates_per_second_per_core: median(&rates),
+            repetitions: rates,
+            peak_bytes_per_particle: peaks.max_by(f64::total_cmp),
+            ..repetitions[0].clone()
+        };
+        for (phase, figure) in &mut row.nanoseconds_by_phase {
+            *figure = median(&all(&|row| row.nanoseconds_by_phase[phase]));
+        }
+        row
+    }
+
+    /// Sets the efficiency against the row of one core, whose repetitions took turns with these.
+    pub fn compare(&mut self, one: &Self) {
+        let pairs = self.repetitions.iter().zip(&one.repetitions);
+        self.efficiency = Some(median(
+            &pairs.map(|(many, one)| many / one).collect::<Vec<_>>(),
+        ));
+    }
+
+    fn configuration(&self) -> String {
+        format!("{} x {}", self.ranks, self.threads)
+    }
+}
+
+/// The middle of some figures, or the mean of the two in the middle.
+fn median(figures: &[f64]) -> f64 {
+    let mut sorted = figures.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let n = sorted.len();
+    0.5 * (sorted[(n - 1) / 2] + sorted[n / 2])
+}
+
+/// All figures with what they belong to.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Report {
+    /// Version of the program.
+    pub version: String,
+    /// Commit of the program.
+    pub commit: String,
+    /// The machine.
+    pub machine: Machine,
+    /// Repetitions of each measurement.
+    pub repeat: u32,
+    /// What could not be measured, and why.
+    pub skipped: Vec<String>,
+    /// The figures.
+    pub rows: Vec<Row>,
+}
+
+impl Report {
+    /// A report without figures yet.
+    pub fn new(repeat: u32) -> Self {
+        Self {
+            version: VERSION.to_owned(),
+            commit: COMMIT.to_owned(),
+            machine: Machine::here(),
+            repeat,
+            skipped: Vec::new(),
+            rows: Vec::new(),
+        }
+    }
+
+    /// Prints the rows of a case, after the heading if they are the first.
+    pub fn print_case(&self, case: &BenchCase) {
+        if self.rows.first().is_some_and(|row| row.case == case.name) {
+            self.print_heading();
+        }
+        for row in self.rows.iter().filter(|row| row.case == case.name) {
+            let or_dash = |figure: Option<f64>, digits: usize| {
+                figure.map_or("-".to_owned(), |figure| format!("{figure:.digits$}"))
+            };
+            say(&format!(
+                "{:<12} {:>9} {:>10.1} {:>6.1} {:>9} {:>9.3} {:>10} {:>10.0} {:>6} {:>8.1} {:>9.1}",
+                row.case,
+                row.particles,
+                row.neighbours,
+                row.list_length,
+                row.configuration(),
+                row.million_updates_per_second_per_core,
+                or_dash(row.efficiency, 3),
+                row.bytes_per_particle,
+                or_dash(row.peak_bytes_per_particle, 0),
+                row.messages_per_step,
+                row.bytes_sent_per_step * 1e-3,
+            ));
+        }
+    }
+
+    fn print_heading(&self) {
+        let machine = &self.machine;
+        say(&format!(
+            "whipple {} ({}) on {}, {}; medians of {}",
+            self.version, self.commit, machine.processor, machine.instructions, self.repeat
+        ));
+        say(&format!(
+            "{:<12} {:>9} {:>10} {:>6} {:>9} {:>9} {:>10} {:>10} {:>6} {:>8} {:>9}",
+            "", "", "", "", "ranks x", "M updates", "", "bytes/", "at", "messages", "kB"
+        ));
+        say(&format!(
+            "{:<12} {:>9} {:>10} {:>6} {:>9} {:>9} {:>10} {:>10} {:>6} {:>8} {:>9}",
+            "case",
+            "particles",
+            "neighbours",
+            "list",
+            "threads",
+            "/s/core",
+            "efficiency",
+            "particle",
+            "peak",
+            "/step",
+            "/step"
+        ));
+    }
+
+    /// Prints the core time of each phase: a line for each, a column for each configuration.
+    pub fn print_phases(&self) {
+        let mut case = "";
+        for row in &self.rows {
+            if row.case != case {
+                case = &row.case;
+                let rows: Vec<&Row> = self.rows.iter().filter(|row| row.case == case).collect();
+                print_phases(case, &rows);
+            }
+        }
+    }
+
+    /// Writes all figures to a file, if there is one.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`].
+    pub fn write(&self, path: Option<&Path>) -> Result<(), OutputError> {
+        path.map_or(Ok(()), |path| write_json(path, self))
+    }
+}
+
+fn print_phases(case: &str, rows: &[&Row]) {
+    let line = |name: &str, figures: &mut dyn Iterator<Item = String>| {
+        let name = format!("  {:<30}", name.replace('_', " "));
+        say(&figures.fold(name, |line, figure| format!("{line}{figure:>9}")));
+    };
+    say(&format!("\n{case}: core time, ns a particle and step"));
+    line(
+        "ranks x threads",
+        &mut rows.iter().map(|row| row.configuration()),
+    );
+    for (_, name) in Phase::ALL {
+        let figure = |row: &&Row| row.nanoseconds_by_phase.get(*name).copied().unwrap_or(0.0);
+        if rows.iter().any(|row| figure(row) >= 0.05) {
+            line(
+                name,
+                &mut rows.iter().map(|row| format!("{:.1}", figure(row))),
+            );
+        }
+    }
+    let sum = |row: &&Row| row.nanoseconds_by_phase.values().sum::<f64>();
+    line(
+        "all",
+        &mut rows.iter().map(|row| format!("{:.1}", sum(row))),
+    );
+}
