@@ -1,10 +1,12 @@
 //! Halo exchange: copies of other ranks' particles within reach of this rank's, and the images
 //! of all of them behind symmetry planes.
 
+use rayon::prelude::*;
+
 use super::mirrors::{Mirrors, codes};
 use crate::comm::{Comm, Exchange, Traffic};
 use crate::neighbours::Image;
-use crate::particles::{FieldUse, ParticleStore, bytes_per_particle};
+use crate::particles::{FieldUse, ParticleStore};
 
 /// What a rank tells all others before the exchange.
 #[derive(Debug, Clone, Copy)]
@@ -18,6 +20,19 @@ struct Extent {
 
 impl Extent {
     const WORDS: usize = 3;
+    const EMPTY: Self = Self {
+        lower: f64::INFINITY,
+        upper: f64::NEG_INFINITY,
+        reach: 0.0,
+    };
+
+    fn join(self, other: Self) -> Self {
+        Self {
+            lower: self.lower.min(other.lower),
+            upper: self.upper.max(other.upper),
+            reach: self.reach.max(other.reach),
+        }
+    }
 
     fn is_empty(&self) -> bool {
         self.lower > self.upper
@@ -35,6 +50,8 @@ pub struct Halo {
     exchange: Exchange,
     words: Vec<u64>,
     extents: Vec<Extent>,
+    /// Those of the peers.
+    theirs: Vec<Extent>,
     /// For each peer, the particles it needs and the codes of the images that it needs of each
     /// (a set of eight bits).
     sends: Vec<(Vec<u32>, Vec<u8>)>,
@@ -42,7 +59,23 @@ pub struct Halo {
     received: Vec<usize>,
     /// Images of owned particles, and halo particles with theirs.
     others: Vec<Image>,
+    /// What the tasks found, one after the other: see [`Found`].
+    found: Vec<Vec<Found>>,
 }
+
+/// A particle that a rank needs (this rank itself, or the peer of an index), and the codes of the
+/// images that it needs of it.
+#[derive(Debug, Clone, Copy)]
+struct Found {
+    particle: u32,
+    needs: u8,
+    peer: u16,
+}
+
+/// `Found::peer` of this rank itself.
+const MYSELF: u16 = u16::MAX;
+/// Particles that a task looks at.
+const SHARE: usize = 4096;
 
 impl Halo {
     /// Halo of slabs along `axis`.
@@ -54,9 +87,11 @@ impl Halo {
             exchange: Exchange::default(),
             words: Vec::new(),
             extents: Vec::new(),
+            theirs: Vec::new(),
             sends: Vec::new(),
             received: Vec::new(),
             others: Vec::new(),
+            found: Vec::new(),
         }
     }
 
@@ -66,12 +101,12 @@ impl Halo {
         &mut self,
         comm: &Comm,
         store: &mut ParticleStore,
-        reach: impl Fn(&ParticleStore, usize) -> f64,
+        reach: impl Fn(&ParticleStore, usize) -> f64 + Sync,
     ) {
         store.resize_halo(0);
         self.gather_extents(comm, store, &reach);
         self.find_peers(comm);
-        self.choose(store, &reach);
+        self.choose(comm, store, &reach);
         for k in 0..self.exchange.peers() {
             let (particles, codes) = &self.sends[k];
             let message = self.exchange.outgoing(k);
@@ -80,14 +115,13 @@ impl Halo {
         }
         self.exchange.post_sizes(comm);
         self.exchange.post(comm);
-        self.list_own_images(comm, store, &reach);
     }
 
     /// Receives what [`Self::post_motion`] of the others sent, and lists the halo particles and
     /// their images behind planes.
     pub fn finish_motion(&mut self, store: &mut ParticleStore) {
         self.exchange.wait();
-        let size = 1 + bytes_per_particle(FieldUse::HALO_MOTION);
+        let size = 1 + store.bytes_per_particle(FieldUse::HALO_MOTION);
         self.received.clear();
         for k in 0..self.exchange.peers() {
             self.received.push(self.exchange.incoming(k).len() / size);
@@ -108,7 +142,7 @@ impl Halo {
 
     /// Starts to send the fields of `uses` of the same particles.
     pub fn post(&mut self, comm: &Comm, store: &ParticleStore, uses: FieldUse) {
-        let size = bytes_per_particle(uses);
+        let size = store.bytes_per_particle(uses);
         for k in 0..self.exchange.peers() {
             let message = self.exchange.outgoing(k);
             message.clear();
@@ -151,18 +185,21 @@ impl Halo {
         &mut self,
         comm: &Comm,
         store: &ParticleStore,
-        reach: &impl Fn(&ParticleStore, usize) -> f64,
+        reach: &(impl Fn(&ParticleStore, usize) -> f64 + Sync),
     ) {
-        let mut mine = Extent {
-            lower: f64::INFINITY,
-            upper: f64::NEG_INFINITY,
-            reach: 0.0,
-        };
-        for (i, position) in store.position.iter().enumerate() {
-            mine.lower = mine.lower.min(position[self.axis]);
-            mine.upper = mine.upper.max(position[self.axis]);
-            mine.reach = mine.reach.max(reach(store, i));
-        }
+        let axis = self.axis;
+        let mine = (store.position.par_chunks(SHARE).enumerate())
+            .map(|(task, positions)| {
+                let mut part = Extent::EMPTY;
+                for (k, position) in positions.iter().enumerate() {
+                    part.lower = part.lower.min(position[axis]);
+                    part.upper = part.upper.max(position[axis]);
+                    part.reach = part.reach.max(reach(store, task * SHARE + k));
+                }
+                part
+            })
+            // same bits in any order: smallest and largest numbers
+            .reduce(|| Extent::EMPTY, Extent::join);
         let words = [mine.lower, mine.upper, mine.reach].map(f64::to_bits);
         comm.all_gather_u64(&words, &mut self.words);
         self.extents.clear();
@@ -191,8 +228,14 @@ impl Halo {
         }));
     }
 
-    /// Fills the lists of particles and images to send.
-    fn choose(&mut self, store: &ParticleStore, reach: &impl Fn(&ParticleStore, usize) -> f64) {
+    /// Fills the lists of particles and images to send, and those of this rank's own images that
+    /// stand near its own particles.
+    fn choose(
+        &mut self,
+        comm: &Comm,
+        store: &ParticleStore,
+        reach: &(impl Fn(&ParticleStore, usize) -> f64 + Sync),
+    ) {
         let peers = self.exchange.peers();
         if self.sends.len() < peers {
             self.sends.resize(peers, <(Vec<u32>, Vec<u8>)>::default());
@@ -201,49 +244,42 @@ impl Halo {
             particles.clear();
             needs.clear();
         }
-        if peers == 0 {
-            return;
-        }
-        let farthest = self.farthest();
-        for (i, position) in store.position.iter().enumerate() {
-            let range = reach(store, i) + farthest;
-            let near = self.mirrors.near(position, range);
-            for k in 0..peers {
-                let theirs = self.extents[self.exchange.rank(k)];
-                let mut need = 0_u8;
-                for code in codes(near, true) {
-                    if theirs.distance(self.image_along(position, code)) <= range {
-                        need |= 1 << code;
-                    }
-                }
-                if need != 0 {
-                    #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
-                    self.sends[k].0.push(i as u32);
-                    self.sends[k].1.push(need);
-                }
-            }
-        }
-    }
-
-    /// Lists the images of owned particles near this rank's own particles.
-    fn list_own_images(
-        &mut self,
-        comm: &Comm,
-        store: &ParticleStore,
-        reach: &impl Fn(&ParticleStore, usize) -> f64,
-    ) {
         self.others.clear();
-        if self.mirrors.is_empty() {
+        if peers == 0 && self.mirrors.is_empty() {
             return;
         }
+        self.theirs.clear();
+        let ranks = (0..peers).map(|k| self.exchange.rank(k));
+        self.theirs.extend(ranks.map(|rank| self.extents[rank]));
         let farthest = self.farthest();
-        let mine = self.extents[comm.rank()];
-        for (i, position) in store.position.iter().enumerate() {
-            let range = reach(store, i) + farthest;
-            for code in codes(self.mirrors.near(position, range), false) {
-                if mine.distance(self.image_along(position, code)) <= range {
-                    self.others.push(Image::new(i, code));
+        let finder = Finder {
+            axis: self.axis,
+            mirrors: &self.mirrors,
+            mine: self.extents[comm.rank()],
+            theirs: &self.theirs,
+        };
+        let tasks = store.position.len().div_ceil(SHARE);
+        self.found.resize(tasks, Vec::new());
+        (&mut self.found, store.position.par_chunks(SHARE))
+            .into_par_iter()
+            .enumerate()
+            .for_each(|(task, (found, positions))| {
+                found.clear();
+                for (k, position) in positions.iter().enumerate() {
+                    let i = task * SHARE + k;
+                    finder.find(i, position, reach(store, i) + farthest, found);
                 }
+            });
+        for entry in self.found.iter().flatten() {
+            if entry.peer == MYSELF {
+                let images = (1..8).filter(|code| entry.needs >> code & 1 == 1);
+                let base = entry.particle as usize;
+                self.others
+                    .extend(images.map(|code| Image::new(base, code)));
+            } else {
+                let (particles, needs) = &mut self.sends[usize::from(entry.peer)];
+                particles.push(entry.particle);
+                needs.push(entry.needs);
             }
         }
     }
@@ -252,8 +288,45 @@ impl Halo {
     fn farthest(&self) -> f64 {
         self.extents.iter().map(|e| e.reach).fold(0.0, f64::max)
     }
+}
 
-    fn image_along(&self, position: &[f64; 3], code: u8) -> f64 {
-        self.mirrors.reflect_position(position, code)[self.axis]
+/// Tells who needs a particle.
+struct Finder<'a> {
+    axis: usize,
+    mirrors: &'a Mirrors,
+    mine: Extent,
+    theirs: &'a [Extent],
+}
+
+impl Finder<'_> {
+    /// Notes who needs particle `i` at `position` or its images, within `range` (m).
+    #[inline]
+    fn find(&self, i: usize, position: &[f64; 3], range: f64, found: &mut Vec<Found>) {
+        let near = self.mirrors.near(position, range);
+        let mut note = |peer: u16, there: &Extent, own: bool| {
+            let mut needs = 0;
+            for code in codes(near, own) {
+                let image = self.mirrors.reflect_position(position, code);
+                if there.distance(image[self.axis]) <= range {
+                    needs |= 1 << code;
+                }
+            }
+            if needs != 0 {
+                #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
+                let particle = i as u32;
+                found.push(Found {
+                    particle,
+                    needs,
+                    peer,
+                });
+            }
+        };
+        if near != 0 {
+            note(MYSELF, &self.mine, false);
+        }
+        for (k, there) in self.theirs.iter().enumerate() {
+            #[allow(clippy::cast_possible_truncation, reason = "few ranks are neighbours")]
+            note(k as u16, there, true);
+        }
     }
 }

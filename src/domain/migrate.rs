@@ -2,7 +2,7 @@
 
 use super::slabs::Decomposition;
 use crate::comm::{Comm, Exchange, Traffic};
-use crate::particles::{FieldUse, ParticleStore, bytes_per_particle};
+use crate::particles::{FieldUse, ParticleStore};
 
 /// Buffers of migration, kept from step to step.
 #[derive(Default)]
@@ -45,7 +45,7 @@ impl Migration {
     fn swap(&mut self, comm: &Comm, store: &mut ParticleStore) {
         let peers = (0..comm.size()).filter(|&r| self.counts[r] > 0 || self.arrivals[r] > 0);
         self.exchange.set_peers(peers);
-        let size = bytes_per_particle(FieldUse::LEAVING);
+        let size = store.bytes_per_particle(FieldUse::LEAVING);
         let mut arriving = 0;
         for k in 0..self.exchange.peers() {
             let peer = self.exchange.rank(k);

@@ -7,12 +7,13 @@
 use std::ops::Range;
 
 use super::columns::ColumnGrid;
-use super::sort::{Sorter, Targets, Walls};
+use super::sort::{SCRATCH_WORDS, Sorter, Targets, Walls};
 use crate::particles::Scatter;
 use crate::sph::lanes::{LANES, Lanes};
 
 /// A particle or one of its mirror images: index in the store and the planes it is behind.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(transparent)]
 pub struct Image(u32);
 
 impl Image {
@@ -90,6 +91,7 @@ pub struct Sequence {
     /// Coordinates and smoothing lengths (m) in order, for vectors that read past the end.
     coordinates: [Vec<f64>; 3],
     lengths: Vec<f64>,
+    uniform: bool,
     sorter: Sorter,
 }
 
@@ -97,7 +99,7 @@ pub struct Sequence {
 pub(super) struct Eight<'a> {
     /// Coordinates (m).
     pub(super) coordinates: [&'a [f64; LANES]; 3],
-    /// Smoothing lengths (m).
+    /// Smoothing lengths (m), whatever if they are uniform.
     pub(super) lengths: &'a [f64; LANES],
     /// 0 for particles of this rank, else which of [`MIRROR`] and [`HALO`] they are.
     pub(super) special: &'a [u8; LANES],
@@ -109,9 +111,10 @@ pub(super) const MIRROR: u8 = 1;
 pub(super) const HALO: u8 = 2;
 
 impl Sequence {
-    /// Empty sequence with one grid for each group.
+    /// Empty sequence with one grid for each group. If the smoothing lengths inside each group
+    /// are `uniform`, the sequence does not keep them.
     #[must_use]
-    pub fn new(grids: impl IntoIterator<Item = ColumnGrid>) -> Self {
+    pub fn new(grids: impl IntoIterator<Item = ColumnGrid>, uniform: bool) -> Self {
         let groups = grids
             .into_iter()
             .map(|grid| Group {
@@ -126,15 +129,21 @@ impl Sequence {
             .collect();
         Self {
             groups,
+            uniform,
             ..Self::default()
         }
     }
 
+    /// Words of scratch memory that [`Self::build`] needs for each image.
+    pub const SCRATCH_WORDS: usize = SCRATCH_WORDS;
+
     /// Sorts particles `0..owned` of the store and the images `others` (mirror images of these,
     /// and halo particles with theirs). `facts` tells position, id and group of an image; `emit`
-    /// is called once with each place of the sequence and the image that stands there.
+    /// is called once with each place of the sequence and the image that stands there. `scratch`
+    /// is memory to work in: at least [`Self::SCRATCH_WORDS`] for each image.
     pub fn build(
         &mut self,
+        scratch: &mut [u64],
         owned: usize,
         others: &[Image],
         facts: impl Fn(Image) -> ImageFacts + Sync,
@@ -145,28 +154,43 @@ impl Sequence {
             None => Image::new(k, 0),
             Some(other) => others[other],
         };
-        self.sorter
-            .scatter(&mut self.groups, &mut self.starts, count, image, &facts);
+        self.sorter.scatter(
+            scratch,
+            &mut self.groups,
+            &mut self.starts,
+            count,
+            image,
+            &facts,
+        );
         self.images.resize(count, Image::FIRST);
         self.special.resize(count + LANES, 0);
         let [x, y, z] = &mut self.coordinates;
-        for values in [x, y, z, &mut self.lengths] {
+        for values in [x, y, z] {
             values.resize(count + LANES, 0.0);
         }
+        let kept = if self.uniform { 0 } else { count + LANES };
+        self.lengths.resize(kept, 0.0);
         self.walls.resize(self.starts.len() - 1, Walls::EMPTY);
         let targets = Targets {
             owned,
             images: Scatter::new(&mut self.images),
             special: Scatter::new(&mut self.special),
             coordinates: self.coordinates.each_mut().map(|x| Scatter::new(x)),
-            lengths: Scatter::new(&mut self.lengths),
+            lengths: (!self.uniform).then(|| Scatter::new(&mut self.lengths)),
         };
         for group in &mut self.groups {
             let place = |column: usize| self.starts[column] as usize;
             group.images = place(group.columns.start)..place(group.columns.end);
             let (starts, walls) = (&self.starts, &mut self.walls);
-            self.sorter
-                .finish(group, starts, walls, &targets, &facts, &emit);
+            Sorter::finish(
+                (scratch, count),
+                group,
+                starts,
+                walls,
+                &targets,
+                &facts,
+                &emit,
+            );
         }
     }
 
@@ -186,7 +210,7 @@ impl Sequence {
     /// Eight smoothing lengths (m) from a place on.
     ///
     /// # Panics
-    /// If `place` is beyond the last image.
+    /// If `place` is beyond the last image, or if the lengths are uniform.
     #[inline(always)]
     #[must_use]
     pub fn lengths(&self, place: usize) -> &[f64; LANES] {
@@ -201,7 +225,8 @@ impl Sequence {
         let padded = places.start..places.start + places.len().next_multiple_of(LANES);
         let eights = |all: &'a [f64]| all[padded.clone()].as_chunks().0;
         let [x, y, z] = &self.coordinates;
-        let (x, y, z, h) = (eights(x), eights(y), eights(z), eights(&self.lengths));
+        let lengths = if self.uniform { x } else { &self.lengths };
+        let (x, y, z, h) = (eights(x), eights(y), eights(z), eights(lengths));
         let special = self.special[padded.clone()].as_chunks().0;
         let all = x.iter().zip(y).zip(z).zip(h).zip(special);
         all.map(|((((x, y), z), lengths), special)| Eight {
@@ -246,7 +271,9 @@ impl Sequence {
     pub fn memory(&self) -> usize {
         4 * (self.starts.capacity() + self.images.capacity())
             + self.special.capacity()
-            + 32 * (self.lengths.capacity() + self.walls.capacity())
+            + 24 * self.coordinates[0].capacity()
+            + 8 * self.lengths.capacity()
+            + 32 * self.walls.capacity()
             + self.sorter.memory()
     }
 

@@ -11,26 +11,38 @@ use super::sequence::{Group, HALO, Image, ImageFacts, MIRROR};
 use crate::particles::Scatter;
 
 /// What an image is sorted by inside its column.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
 struct Entry {
     /// Orders as the position along the column does.
     along: i64,
     id: u64,
     image: Image,
+    padding: u32,
 }
 
-impl Entry {
-    const NOTHING: Self = Self {
-        along: 0,
-        id: 0,
-        image: Image::FIRST,
-    };
+/// Group and column of an image.
+#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct Column {
+    group: u32,
+    across: [u16; 2],
+}
 
+/// Words of scratch memory that the sort takes for each image.
+pub(super) const SCRATCH_WORDS: usize = (size_of::<Entry>() + size_of::<Column>()) / 8;
+
+impl Entry {
     fn new(image: Image, along: f64, id: u64) -> Self {
         // The total order of doubles, as integers.
         let bits = along.to_bits().cast_signed();
         let along = bits ^ (((bits >> 63).cast_unsigned()) >> 1).cast_signed();
-        Self { along, id, image }
+        Self {
+            along,
+            id,
+            image,
+            padding: 0,
+        }
     }
 
     #[inline(always)]
@@ -107,11 +119,8 @@ impl Extent {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sorter {
     extents: Vec<Extent>,
-    /// Group and column of each image.
-    columns: Vec<(u32, [u16; 2])>,
     /// For each task, where its next entry of each column goes.
     cursors: Vec<u32>,
-    entries: Vec<Entry>,
 }
 
 /// Places that a task finishes at least.
@@ -119,47 +128,44 @@ const GRAIN: usize = 2048;
 
 impl Sorter {
     pub(super) fn memory(&self) -> usize {
-        size_of::<Extent>() * self.extents.capacity()
-            + size_of::<(u32, [u16; 2])>() * self.columns.capacity()
-            + 4 * self.cursors.capacity()
-            + size_of::<Entry>() * self.entries.capacity()
+        size_of::<Extent>() * self.extents.capacity() + 4 * self.cursors.capacity()
     }
 
-    /// Scatters `count` images into columns; sets the groups' windows and the beginnings of all
-    /// columns.
+    /// Scatters `count` images into columns, in the first three of four parts of `scratch`; sets
+    /// the groups' windows and the beginnings of all columns.
     pub(super) fn scatter(
         &mut self,
+        scratch: &mut [u64],
         groups: &mut [Group],
         starts: &mut Vec<u32>,
         count: usize,
         image: impl Fn(usize) -> Image + Sync,
         facts: &(impl Fn(Image) -> ImageFacts + Sync),
     ) {
-        self.find_columns(groups, count, &image, facts);
-        let columns = Self::lay_out(groups);
+        let (entries, columns_of) = split(scratch, count);
+        self.find_columns(columns_of, groups, &image, facts);
+        let columns = lay_out(groups);
         // Counters must not outweigh what they count.
-        let tasks = (4 * count / columns.max(1)).clamp(1, rayon::current_num_threads());
+        let tasks = (4 * count / columns).clamp(1, rayon::current_num_threads());
         let share = count.div_ceil(tasks).max(1);
         self.cursors.clear();
         self.cursors.resize(columns * tasks, 0);
         let groups: &[Group] = groups;
-        let place = |&(group, column): &(u32, [u16; 2])| {
-            groups[group as usize].place(column.map(u32::from))
-        };
+        let place =
+            |column: &Column| groups[column.group as usize].place(column.across.map(u32::from));
         self.cursors
             .par_chunks_mut(columns)
-            .zip(self.columns.par_chunks(share))
+            .zip(columns_of.par_chunks(share))
             .for_each(|(counts, mine)| {
                 for column in mine {
                     counts[place(column)] += 1;
                 }
             });
         lay_out_cursors(&mut self.cursors, columns, starts);
-        self.entries.resize(count, Entry::NOTHING);
-        let entries = Scatter::new(&mut self.entries);
+        let entries = Scatter::new(entries);
         self.cursors
             .par_chunks_mut(columns)
-            .zip(self.columns.par_chunks(share))
+            .zip(columns_of.par_chunks(share))
             .enumerate()
             .for_each(|(task, (cursors, mine))| {
                 for (k, column) in mine.iter().enumerate() {
@@ -179,32 +185,41 @@ impl Sorter {
     /// Column of every image, and the box of every group.
     fn find_columns(
         &mut self,
+        columns: &mut [Column],
         groups: &mut [Group],
-        count: usize,
         image: &(impl Fn(usize) -> Image + Sync),
         facts: &(impl Fn(Image) -> ImageFacts + Sync),
     ) {
         let tasks = rayon::current_num_threads();
-        let share = count.div_ceil(tasks).max(1);
-        self.columns.resize(count, (0, [0; 2]));
+        let share = columns.len().div_ceil(tasks).max(1);
         self.extents.clear();
         self.extents.resize(tasks * groups.len(), Extent::EMPTY);
         let grids: &[Group] = groups;
         let known = grids.len().max(1);
-        self.columns
+        columns
             .par_chunks_mut(share)
             .zip(self.extents.par_chunks_mut(known))
             .enumerate()
             .for_each(|(task, (columns, extents))| {
+                // Extents go to memory, where other tasks' stand next to them, as rarely as can be.
+                let (mut group, mut extent) = (0, Extent::EMPTY);
                 for (k, slot) in columns.iter_mut().enumerate() {
                     let facts = facts(image(task * share + k));
-                    extents[facts.group].include(&facts.position, &facts.position);
+                    if facts.group != group {
+                        extents[group].include(&extent.lower, &extent.upper);
+                        (group, extent) = (facts.group, Extent::EMPTY);
+                    }
+                    extent.include(&facts.position, &facts.position);
                     let column = grids[facts.group].grid.column(&facts.position);
                     #[allow(clippy::cast_possible_truncation, reason = "few groups and columns")]
                     {
-                        *slot = (facts.group as u32, column.map(|index| index as u16));
+                        *slot = Column {
+                            group: facts.group as u32,
+                            across: column.map(|index| index as u16),
+                        };
                     }
                 }
+                extents[group].include(&extent.lower, &extent.upper);
             });
         for (g, group) in groups.iter_mut().enumerate() {
             let mut all = Extent::EMPTY;
@@ -215,29 +230,10 @@ impl Sorter {
         }
     }
 
-    /// Windows of columns by group; returns the number of columns of all.
-    fn lay_out(groups: &mut [Group]) -> usize {
-        let mut columns = 0;
-        for group in groups {
-            (group.first, group.size) = ([0; 2], [1; 2]);
-            if group.lower[0] <= group.upper[0] {
-                for k in 0..2 {
-                    let axis = group.grid.across[k];
-                    let last = group.grid.index(k, group.upper[axis]);
-                    group.first[k] = group.grid.index(k, group.lower[axis]);
-                    group.size[k] = (last - group.first[k]) as usize + 1;
-                }
-            }
-            group.columns = columns..columns + group.size[0] * group.size[1];
-            columns = group.columns.end;
-        }
-        columns
-    }
-
     /// Sorts the columns of one group, writes what stands where into `targets`, and calls `emit`
     /// for each place and its image.
     pub(super) fn finish(
-        &mut self,
+        (scratch, count): (&mut [u64], usize),
         group: &Group,
         starts: &[u32],
         walls: &mut [Walls],
@@ -260,11 +256,40 @@ impl Sorter {
         let columns = group.columns.clone();
         halve(
             &starts[columns.start..=columns.end],
-            &mut self.entries[places],
+            &mut split(scratch, count).0[places],
             &mut walls[columns],
             &finish,
         );
     }
+}
+
+/// Scratch memory as an entry for each image, then a column for each image.
+fn split(scratch: &mut [u64], count: usize) -> (&mut [Entry], &mut [Column]) {
+    let (entries, columns) = scratch.split_at_mut(size_of::<Entry>() / 8 * count);
+    let columns = &mut columns[..size_of::<Column>() / 8 * count];
+    (
+        bytemuck::cast_slice_mut(entries),
+        bytemuck::cast_slice_mut(columns),
+    )
+}
+
+/// Windows of columns by group; returns the number of columns of all.
+fn lay_out(groups: &mut [Group]) -> usize {
+    let mut columns = 0;
+    for group in groups {
+        (group.first, group.size) = ([0; 2], [1; 2]);
+        if group.lower[0] <= group.upper[0] {
+            for k in 0..2 {
+                let axis = group.grid.across[k];
+                let last = group.grid.index(k, group.upper[axis]);
+                group.first[k] = group.grid.index(k, group.lower[axis]);
+                group.size[k] = (last - group.first[k]) as usize + 1;
+            }
+        }
+        group.columns = columns..columns + group.size[0] * group.size[1];
+        columns = group.columns.end;
+    }
+    columns
 }
 
 /// Arrays in the order of the sequence; each place is written once.
@@ -273,7 +298,7 @@ pub(super) struct Targets<'a> {
     pub(super) images: Scatter<'a, Image>,
     pub(super) special: Scatter<'a, u8>,
     pub(super) coordinates: [Scatter<'a, f64>; 3],
-    pub(super) lengths: Scatter<'a, f64>,
+    pub(super) lengths: Option<Scatter<'a, f64>>,
 }
 
 impl Targets<'_> {
@@ -288,7 +313,9 @@ impl Targets<'_> {
             for axis in 0..3 {
                 *self.coordinates[axis].slot(place) = facts.position[axis];
             }
-            *self.lengths.slot(place) = facts.smoothing_length;
+            if let Some(lengths) = &self.lengths {
+                *lengths.slot(place) = facts.smoothing_length;
+            }
         }
     }
 }

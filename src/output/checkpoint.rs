@@ -128,7 +128,7 @@ fn write_parts(
         let row = row_type(field.kind);
         let path = format!("{FIELDS}/{}", field.name);
         let block = rows.block();
-        let bytes = rows.collect(comm, store.bytes(field.id), row.bytes());
+        let bytes = rows.collect(comm, &store.bytes_or_zeros(field), row.bytes());
         file.rows(&path, row, block, bytes)?;
         file.note(&path, "unit", field.unit)?;
         file.note(&path, "description", field.description)?;
@@ -179,7 +179,7 @@ pub fn read(
     agree(comm, check_content(&file, &manifest))?;
     let block = Block::even(manifest.particles, comm.rank(), comm.size());
     store.resize_owned(block.count);
-    for field in with_use(FieldUse::STATE) {
+    for field in store.held(FieldUse::STATE) {
         let row = row_type(field.kind);
         let path = format!("{FIELDS}/{}", field.name);
         let bytes = &mut store.bytes_mut(field.id)[..block.count * row.bytes()];

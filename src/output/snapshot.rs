@@ -227,7 +227,7 @@ fn write_quantity(
     match quantity {
         Quantity::Field(field) => {
             let row = row_type(field.kind);
-            let bytes = rows.collect(comm, store.bytes(field.id), row.bytes());
+            let bytes = rows.collect(comm, &store.bytes_or_zeros(field), row.bytes());
             if field.kind == FieldKind::Symmetric {
                 // The store has xy, xz, yz at the end, VTK xy, yz, xz.
                 for tensor in bytes.chunks_exact_mut(48) {

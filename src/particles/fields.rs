@@ -65,6 +65,10 @@ impl FieldUse {
     pub const SNAPSHOT: Self = Self(32);
     /// In snapshots on demand.
     pub const ON_DEMAND: Self = Self(64);
+    /// Every field.
+    pub const ALL: Self = Self(255);
+    /// Of contact: held only where bodies have contact beyond the SPH sums.
+    pub const CONTACT: Self = Self(128);
     /// In snapshots at all.
     pub const SNAPSHOT_OR_ON_DEMAND: Self = Self(32 | 64);
     /// What a rank sends with a particle that leaves it.
@@ -146,12 +150,13 @@ macro_rules! particle_fields {
         pub struct ParticleStore {
             pub(super) owned: usize,
             pub(super) halo: usize,
+            pub(super) contactless: bool,
             $( $(#[doc = $doc])+ pub $name: Vec<kind_type!($kind)>, )+
         }
 
         impl ParticleStore {
             /// A field's values as bytes: owned particles, then (where halo particles have it)
-            /// halo particles.
+            /// halo particles. Empty for a field that is not held.
             #[must_use]
             pub fn bytes(&self, field: FieldId) -> &[u8] {
                 match field { $( FieldId::$name => bytemuck::cast_slice(&self.$name), )+ }
@@ -203,13 +208,13 @@ particle_fields! {
     /// Acceleration by stress and viscosity.
     acceleration: Vector, "m/s^2", STATE | ON_DEMAND;
     /// Acceleration by contact.
-    contact_acceleration: Vector, "m/s^2", STATE | ON_DEMAND;
+    contact_acceleration: Vector, "m/s^2", STATE | ON_DEMAND | CONTACT;
     /// Rate of specific internal energy at the particle's velocity.
     d_specific_energy_dt: Scalar, "W/kg", STATE | ON_DEMAND;
     /// Foreign volume fraction above the touching value at the start, which contact forgives.
-    touch_relief: Scalar, "", STATE | ON_DEMAND;
+    touch_relief: Scalar, "", STATE | ON_DEMAND | CONTACT;
     /// How long the foreign fraction with current volumes has stayed above one half.
-    enclosed_time: Scalar, "s", STATE | ON_DEMAND;
+    enclosed_time: Scalar, "s", STATE | ON_DEMAND | CONTACT;
     /// Velocity at the end of the step as predicted from the last accelerations.
     predicted_velocity: Vector, "m/s", MIGRATED | HALO_MOTION;
     /// Density at the end of the step as predicted from the last velocity gradient.
@@ -221,21 +226,21 @@ particle_fields! {
     /// Longitudinal sound speed.
     sound_speed: Scalar, "m/s", HALO_STRESS | ON_DEMAND;
     /// Volume fraction of foreign bodies in the contact support.
-    foreign_fraction: Scalar, "", HALO_CONTACT | SNAPSHOT;
+    foreign_fraction: Scalar, "", HALO_CONTACT | SNAPSHOT | CONTACT;
     /// Foreign fraction above the touching value.
-    contact_excess: Scalar, "", HALO_CONTACT | ON_DEMAND;
+    contact_excess: Scalar, "", HALO_CONTACT | ON_DEMAND | CONTACT;
     /// Fraction-weighted contact modulus.
-    contact_modulus: Scalar, "Pa", HALO_CONTACT;
+    contact_modulus: Scalar, "Pa", HALO_CONTACT | CONTACT;
     /// Fraction-weighted touching value.
-    touching_value: Scalar, "", HALO_CONTACT;
+    touching_value: Scalar, "", HALO_CONTACT | CONTACT;
     /// Sum of kernel gradients over foreign volume where there is excess, for the time step.
-    contact_slope: Scalar, "1/m", HALO_CONTACT;
+    contact_slope: Scalar, "1/m", HALO_CONTACT | CONTACT;
     /// Contact energy.
-    contact_energy: Scalar, "J", ON_DEMAND;
+    contact_energy: Scalar, "J", ON_DEMAND | CONTACT;
     /// Largest approach speed towards a neighbour, for the time step.
     approach_speed: Scalar, "m/s", ON_DEMAND;
     /// Stiffness of contact, for the time step.
-    contact_stiffness: Scalar, "N/m", ON_DEMAND;
+    contact_stiffness: Scalar, "N/m", ON_DEMAND | CONTACT;
     /// Neighbours counted in the last search, for the balance of work.
     work: Index, "", MIGRATED;
 }

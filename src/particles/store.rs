@@ -1,26 +1,61 @@
 //! Walks over the table of fields: sizes, order, and packing for messages and files.
 
+use std::borrow::Cow;
+
+use rayon::prelude::*;
+
 use super::fields::{FIELDS, FieldInfo, FieldUse, ParticleStore};
+
+/// Words of an element that move at once when values are reordered.
+const PIECE: usize = 3;
 
 /// Reorders `values[..order.len()]` so that new element k is old element `order[k]`.
 pub(super) fn gather<T: bytemuck::Pod>(values: &mut [T], order: &[u32], scratch: &mut Vec<u64>) {
-    let words = (order.len() * size_of::<T>()).div_ceil(8);
-    if scratch.len() < words {
-        scratch.resize(words, 0);
+    if size_of::<T>() % 8 != 0 {
+        let values: &mut [u32] = bytemuck::cast_slice_mut(values);
+        return gather_words(values, 1, order, scratch);
     }
-    let bytes: &mut [u8] = bytemuck::cast_slice_mut(scratch.as_mut_slice());
-    let copy: &mut [T] = bytemuck::cast_slice_mut(&mut bytes[..order.len() * size_of::<T>()]);
-    for (slot, &old) in copy.iter_mut().zip(order) {
-        *slot = values[old as usize];
-    }
-    values[..order.len()].copy_from_slice(copy);
+    let values: &mut [u64] = bytemuck::cast_slice_mut(values);
+    gather_words(values, size_of::<T>() / 8, order, scratch);
 }
 
+/// Reorders elements of `size` words, a few words of each at a time: scratch stays small.
+fn gather_words<W: bytemuck::Pod + Send + Sync>(
+    values: &mut [W],
+    size: usize,
+    order: &[u32],
+    scratch: &mut Vec<u64>,
+) {
+    scratch.resize(scratch.len().max(PIECE * order.len()), 0);
+    let copy: &mut [W] = bytemuck::cast_slice_mut(scratch.as_mut_slice());
+    for first in (0..size).step_by(PIECE) {
+        let piece = first..size.min(first + PIECE);
+        let width = piece.len();
+        copy.par_chunks_exact_mut(width)
+            .zip(order)
+            .with_min_len(GRAIN)
+            .for_each(|(slot, &old)| {
+                let old = old as usize * size;
+                slot.copy_from_slice(&values[old + piece.start..old + piece.end]);
+            });
+        values
+            .par_chunks_exact_mut(size)
+            .zip(copy.par_chunks_exact(width))
+            .take(order.len())
+            .with_min_len(GRAIN)
+            .for_each(|(value, new)| value[piece.clone()].copy_from_slice(new));
+    }
+}
+
+/// Elements that a task moves at least.
+const GRAIN: usize = 4096;
+
 /// Sets the length, zero-filling; grows by a sixteenth more than asked, not by doubling, since
-/// most of a rank's memory is here.
+/// most of a rank's memory is here (and at first by just what is asked).
 pub(super) fn resize<T: bytemuck::Zeroable + Copy>(values: &mut Vec<T>, length: usize) {
     if length > values.capacity() {
-        values.reserve_exact(length + length / 16 - values.len());
+        let spare = if values.is_empty() { 0 } else { length / 16 };
+        values.reserve_exact(length + spare - values.len());
     }
     values.resize(length, T::zeroed());
 }
@@ -44,11 +79,43 @@ impl ParticleStore {
         self.capacity_bytes()
     }
 
+    /// Gives up the fields of contact, for a case without contact.
+    pub fn drop_contact(&mut self) {
+        for field in with_use(FieldUse::CONTACT) {
+            self.resize_field(field.id, 0);
+        }
+        self.contactless = true;
+    }
+
+    /// Rows of the table that this store holds, with any of the given uses.
+    pub fn held(&self, uses: FieldUse) -> impl Iterator<Item = &'static FieldInfo> + use<> {
+        let contactless = self.contactless;
+        with_use(uses).filter(move |field| !(contactless && field.uses.meets(FieldUse::CONTACT)))
+    }
+
+    /// Bytes that a particle's fields of `uses` take in a message.
+    #[must_use]
+    pub fn bytes_per_particle(&self, uses: FieldUse) -> usize {
+        self.held(uses).map(|field| field.kind.bytes()).sum()
+    }
+
+    /// A field's values as bytes, zeros for a field that is not held.
+    #[must_use]
+    pub fn bytes_or_zeros(&self, field: &FieldInfo) -> Cow<'_, [u8]> {
+        let bytes = self.bytes(field.id);
+        let size = self.owned * field.kind.bytes();
+        if bytes.len() < size {
+            Cow::Owned(vec![0; size])
+        } else {
+            Cow::Borrowed(bytes)
+        }
+    }
+
     /// Sets the number of owned particles, zero-filling new ones; drops the halo.
     pub fn resize_owned(&mut self, owned: usize) {
         self.owned = owned;
         self.halo = 0;
-        for field in FIELDS {
+        for field in self.held(FieldUse::ALL) {
             self.resize_field(field.id, owned);
         }
     }
@@ -56,7 +123,7 @@ impl ParticleStore {
     /// Sets the number of halo particles.
     pub fn resize_halo(&mut self, halo: usize) {
         self.halo = halo;
-        for field in with_use(FieldUse::ANY_HALO) {
+        for field in self.held(FieldUse::ANY_HALO) {
             self.resize_field(field.id, self.owned + halo);
         }
     }
@@ -64,7 +131,7 @@ impl ParticleStore {
     /// Keeps the owned particles `order`, in that order; drops the halo.
     pub fn keep(&mut self, order: &[u32], scratch: &mut Vec<u64>) {
         self.resize_halo(0);
-        for field in FIELDS {
+        for field in self.held(FieldUse::ALL) {
             self.gather_field(field.id, order, scratch);
         }
         self.resize_owned(order.len());
@@ -72,7 +139,7 @@ impl ParticleStore {
 
     /// Appends to `buffer` the fields used for `uses` of the particles `indices`, field by field.
     pub fn pack(&self, uses: FieldUse, indices: &[u32], buffer: &mut Vec<u8>) {
-        for field in with_use(uses) {
+        for field in self.held(uses) {
             let size = field.kind.bytes();
             let bytes = self.bytes(field.id);
             buffer.reserve(indices.len() * size);
@@ -89,7 +156,7 @@ impl ParticleStore {
     /// If `bytes` is not exactly `count` particles of those fields.
     pub fn unpack(&mut self, uses: FieldUse, first: usize, count: usize, bytes: &[u8]) {
         let mut at = 0;
-        for field in with_use(uses) {
+        for field in self.held(uses) {
             let size = field.kind.bytes();
             self.bytes_mut(field.id)[first * size..(first + count) * size]
                 .copy_from_slice(&bytes[at..at + count * size]);
@@ -123,12 +190,6 @@ pub fn snapshot_names() -> impl Iterator<Item = &'static str> {
 
 /// The one derived quantity of snapshots.
 pub const VON_MISES_STRESS: &str = "von_mises_stress";
-
-/// Bytes per particle of the fields with any of the given uses.
-#[must_use]
-pub fn bytes_per_particle(uses: FieldUse) -> usize {
-    with_use(uses).map(|field| field.kind.bytes()).sum()
-}
 
 #[cfg(test)]
 mod tests {
@@ -169,6 +230,22 @@ mod tests {
     }
 
     #[test]
+    fn a_store_without_contact_has_no_trace_of_it() {
+        let mut store = sentinel(4);
+        let message = store.bytes_per_particle(FieldUse::LEAVING);
+        store.drop_contact();
+        store.resize_owned(6);
+        store.resize_halo(3);
+        store.keep(&[2, 0], &mut Vec::new());
+        assert!(store.bytes_per_particle(FieldUse::LEAVING) < message);
+        for field in with_use(FieldUse::CONTACT) {
+            assert!(store.bytes(field.id).is_empty(), "{}", field.name);
+            let zeros = store.bytes_or_zeros(field);
+            assert_eq!(*zeros, vec![0; 2 * field.kind.bytes()]);
+        }
+    }
+
+    #[test]
     fn messages_carry_every_field_of_their_use() {
         let source = sentinel(7);
         for uses in [
@@ -180,7 +257,7 @@ mod tests {
             let indices = [6, 2, 5];
             let mut message = Vec::new();
             source.pack(uses, &indices, &mut message);
-            assert_eq!(message.len(), 3 * bytes_per_particle(uses));
+            assert_eq!(message.len(), 3 * source.bytes_per_particle(uses));
             let mut target = ParticleStore::default();
             target.resize_owned(5);
             target.unpack(uses, 1, 3, &message);

@@ -42,6 +42,9 @@ const ENCLOSED_FRACTION: f64 = 0.5;
 impl Simulation {
     /// Foreign fraction, excess and their weights of every particle with foreign neighbours.
     pub(super) fn contact_fractions(&mut self, dt: f64) {
+        if !self.contact.is_active() {
+            return;
+        }
         self.run_fractions();
         let store = &mut self.store;
         for field in [
@@ -76,9 +79,6 @@ impl Simulation {
     }
 
     fn run_fractions(&mut self) {
-        if !self.contact.is_active() {
-            return;
-        }
         let chunks = self.search.foreign.chunks();
         self.contact_phase
             .tasks
@@ -107,6 +107,9 @@ impl Simulation {
     /// Gives every particle the relief that makes it start free of force; returns how many had
     /// to be capped on this rank. For the start of a case, before the first forces.
     pub(super) fn set_touch_relief(&mut self) -> i64 {
+        if !self.contact.is_active() {
+            return 0;
+        }
         self.run_fractions();
         let mut capped = 0;
         for (i, fraction) in self.contact_phase.tasks.iter().flat_map(|t| &t.fractions) {
@@ -122,8 +125,8 @@ impl Simulation {
         self.sums.clear_rates();
         if self.contact.is_active() {
             self.run_reactions();
+            self.store_reactions();
         }
-        self.store_reactions();
         for force in self.sweeps.from_mirrors.iter().flatten() {
             self.sums.add_plane_force(force);
         }

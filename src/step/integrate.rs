@@ -10,6 +10,7 @@
 //! energy rate is `E − a^sph · (v̄ − v^p)`: kinetic plus internal energy at whole steps is then
 //! constant to round-off for the SPH forces, without stored pair forces and without another sweep.
 
+use rayon::iter::repeat_n;
 use rayon::prelude::*;
 
 use super::search::GRAIN;
@@ -49,8 +50,12 @@ fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-fn add_scaled(v: &[f64; 3], factor: f64, a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|k| v[k] + factor * (a[k] + b[k]))
+fn add(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|k| a[k] + b[k])
+}
+
+fn add_scaled(v: &[f64; 3], factor: f64, a: &[f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|k| v[k] + factor * a[k])
 }
 
 impl Simulation {
@@ -58,10 +63,26 @@ impl Simulation {
     pub(super) fn kick_and_drift(&mut self, dt: f64) {
         self.book_contact_work(dt, 0.25 * dt);
         self.book_plane_force(dt);
-        let rule = SmoothingRule::new(self.case.sph.smoothing_length, self.case.dimension);
-        let (contact, reference_h) = (&self.contact, &self.reference_h);
-        let half = 0.5 * dt;
         self.store.resize_halo(0);
+        let contact = std::mem::take(&mut self.store.contact_acceleration);
+        if self.contact.is_active() {
+            self.kick_and_drift_by(dt, contact.par_iter().copied());
+        } else {
+            self.kick_and_drift_by(dt, repeat_n([0.0; 3], self.store.owned()));
+        }
+        self.store.contact_acceleration = contact;
+        self.fold_at_planes();
+    }
+
+    /// [`Self::kick_and_drift`] of the particles, with the accelerations by contact (m/s²).
+    fn kick_and_drift_by(
+        &mut self,
+        dt: f64,
+        contact: impl IndexedParallelIterator<Item = [f64; 3]>,
+    ) {
+        let rule = SmoothingRule::new(self.case.sph.smoothing_length, self.case.dimension);
+        let (table, reference_h) = (&self.contact, &self.reference_h);
+        let half = 0.5 * dt;
         let store = &mut self.store;
         (
             &mut store.velocity,
@@ -70,9 +91,9 @@ impl Simulation {
             &mut store.predicted_velocity,
             &mut store.predicted_density,
             &mut store.smoothing_length,
+            contact,
             (
                 &store.acceleration,
-                &store.contact_acceleration,
                 &store.d_specific_energy_dt,
                 &store.velocity_gradient,
                 &store.density,
@@ -81,20 +102,19 @@ impl Simulation {
         )
             .into_par_iter()
             .with_min_len(GRAIN)
-            .for_each(|(v, e, x, v_p, rho_p, h, (a, c, de, l, &rho, &body))| {
-                let total = [a[0] + c[0], a[1] + c[1], a[2] + c[2]];
+            .for_each(|(v, e, x, v_p, rho_p, h, c, (a, de, l, &rho, &body))| {
+                let total = add(a, &c);
                 *e += half * (de - 0.25 * dt * dot(a, &total));
-                *v = add_scaled(v, half, a, c);
+                *v = add_scaled(v, half, &total);
                 for k in 0..3 {
                     x[k] += dt * v[k];
                 }
-                *v_p = add_scaled(v, half, a, c);
+                *v_p = add_scaled(v, half, &total);
                 let strain = half * (l[0] + l[4] + l[8]);
                 *rho_p = rho * ((1.0 - strain) / (1.0 + strain));
-                let reference = 1.0 / contact.inverse_density(body as usize);
+                let reference = 1.0 / table.inverse_density(body as usize);
                 *h = rule.length(reference_h[body as usize], reference / *rho_p);
             });
-        self.fold_at_planes();
     }
 
     /// Particles that crossed a symmetry plane change places with their images.
@@ -117,6 +137,18 @@ impl Simulation {
 
     /// Second half kick of a step `dt` (s); zero at the start of a case.
     pub(super) fn kick(&mut self, dt: f64) {
+        let contact = std::mem::take(&mut self.store.contact_acceleration);
+        if self.contact.is_active() {
+            self.kick_by(dt, contact.par_iter().copied());
+        } else {
+            self.kick_by(dt, repeat_n([0.0; 3], self.store.owned()));
+        }
+        self.store.contact_acceleration = contact;
+        self.book_contact_work(dt, -0.25 * dt);
+    }
+
+    /// [`Self::kick`] of the particles, with the accelerations by contact (m/s²).
+    fn kick_by(&mut self, dt: f64, contact: impl IndexedParallelIterator<Item = [f64; 3]>) {
         let half = 0.5 * dt;
         let owned = self.store.owned();
         let store = &mut self.store;
@@ -125,19 +157,18 @@ impl Simulation {
             &mut store.specific_energy,
             &mut store.d_specific_energy_dt,
             &store.acceleration,
-            &store.contact_acceleration,
+            contact,
             &store.predicted_velocity[..owned],
         )
             .into_par_iter()
             .with_min_len(GRAIN)
             .for_each(|(v, e, de, a, c, v_p)| {
-                let total = [a[0] + c[0], a[1] + c[1], a[2] + c[2]];
-                *v = add_scaled(v, half, a, c);
+                let total = add(a, &c);
+                *v = add_scaled(v, half, &total);
                 let late = [v[0] - v_p[0], v[1] - v_p[1], v[2] - v_p[2]];
                 *de -= dot(a, &late);
                 *e += half * (*de + 0.25 * dt * dot(a, &total));
             });
-        self.book_contact_work(dt, -0.25 * dt);
     }
 
     /// Books the work of contact in a half kick of a step `dt`, in which the mean velocity is
@@ -150,7 +181,8 @@ impl Simulation {
         for i in 0..store.owned() {
             let c = &store.contact_acceleration[i];
             if *c != [0.0; 3] {
-                let mean = add_scaled(&store.velocity[i], shift, &store.acceleration[i], c);
+                let total = add(&store.acceleration[i], c);
+                let mean = add_scaled(&store.velocity[i], shift, &total);
                 self.sums
                     .contact_work
                     .add(0.5 * dt * store.mass[i] * dot(c, &mean));

@@ -1,5 +1,7 @@
 //! From owned and halo particles to sorted images, their records and neighbour lists.
 
+use bytemuck::Zeroable;
+
 use super::simulation::Simulation;
 use crate::contact::ContactTable;
 use crate::domain::Mirrors;
@@ -9,6 +11,7 @@ use crate::neighbours::{
 };
 use crate::particles::Scatter;
 use crate::sph::gradient::MotionRecord;
+use crate::sph::momentum::StressRecord;
 
 /// The sequence of images, their motion records and the lists, kept from step to step.
 pub struct Search {
@@ -22,9 +25,11 @@ pub struct Search {
 
 impl Search {
     pub(super) fn new(case: &Case, contact: &ContactTable, grids: Vec<ColumnGrid>) -> Self {
+        let lengths = group_lengths(case, contact);
+        let uniform = lengths.iter().all(|group| group.uniform);
         Self {
-            lengths: group_lengths(case, contact),
-            sequence: Sequence::new(grids),
+            lengths,
+            sequence: Sequence::new(grids, uniform),
             motion: Vec::new(),
             clusters: ClusterLists::default(),
             foreign: ForeignLists::default(),
@@ -83,7 +88,12 @@ impl Simulation {
                 smoothing_length: store.smoothing_length[base],
             }
         };
-        search.sequence.build(owned, others, facts, |place, image| {
+        let stresses = &mut self.sweeps.stresses;
+        stresses.resize(owned + others.len(), StressRecord::zeroed());
+        // Stresses come later: until then the sort works in their memory.
+        let scratch = bytemuck::cast_slice_mut(stresses);
+        let sequence = &mut search.sequence;
+        sequence.build(scratch, owned, others, facts, |place, image| {
             let (base, code) = (image.base(), image.code());
             let record = MotionRecord {
                 position: mirrors.reflect_position(&store.position[base], code),

@@ -70,6 +70,9 @@ impl Simulation {
         let boxes = body_boxes(&case).ok_or(SetupError::Empty)?;
         let mut simulation = Self::empty(case, comm, &boxes);
         simulation.store = store;
+        if !simulation.contact.is_active() {
+            simulation.store.drop_contact();
+        }
         simulation.state = state;
         simulation.slabs = balance(
             comm,
@@ -104,8 +107,12 @@ impl Simulation {
         } else {
             f64::INFINITY
         };
+        let mut store = ParticleStore::default();
+        if !contact.is_active() {
+            store.drop_contact();
+        }
         Self {
-            store: ParticleStore::default(),
+            store,
             state: fresh_state(pairs.len()),
             timers: Timers::default(),
             poison: false,

@@ -1,6 +1,5 @@
 //! The two pair sweeps over all clusters, with the material between them.
 
-use bytemuck::Zeroable;
 use rayon::prelude::*;
 
 use super::material_update::MaterialUpdate;
@@ -21,7 +20,7 @@ pub struct Sweeps {
     scale: Scale,
     viscosity: Viscosity,
     material_of_body: Vec<usize>,
-    stresses: Vec<StressRecord>,
+    pub(super) stresses: Vec<StressRecord>,
     /// Forces of mirror images on single particles (N), by chunk.
     pub(super) from_mirrors: Vec<Vec<[f64; 3]>>,
 }
@@ -136,9 +135,7 @@ impl Simulation {
         let store = &self.store;
         let owned = store.owned();
         let images = self.search.sequence.images();
-        let stresses = &mut self.sweeps.stresses;
-        stresses.resize(images.len(), StressRecord::zeroed());
-        (stresses, &mut self.search.motion, images)
+        (&mut self.sweeps.stresses, &mut self.search.motion, images)
             .into_par_iter()
             .with_min_len(GRAIN)
             .for_each(|(record, motion, image)| {

@@ -122,8 +122,12 @@ impl Voter<'_> {
         let (h, c) = (store.smoothing_length[i], store.sound_speed[i]);
         let signal = c + 0.6 * (case.sph.alpha * c + case.sph.beta * store.approach_speed[i]);
         let sound = case.time_step.courant * h / signal;
-        let (a, b) = (&store.acceleration[i], &store.contact_acceleration[i]);
-        let total = [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+        let mut total = store.acceleration[i];
+        if self.contact {
+            for a in 0..3 {
+                total[a] += store.contact_acceleration[i][a];
+            }
+        }
         let square = total[0] * total[0] + total[1] * total[1] + total[2] * total[2];
         let force = case.time_step.force * (h / square.sqrt()).sqrt();
         let contact = if self.contact {

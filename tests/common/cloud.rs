@@ -134,7 +134,7 @@ impl Cloud {
     }
 
     pub fn find(&self) -> Found {
-        let mut sequence = Sequence::new(self.grids.clone());
+        let mut sequence = Sequence::new(self.grids.clone(), false);
         let facts = |image: Image| ImageFacts {
             position: self.place(image),
             id: self.id[image.base()],
@@ -145,7 +145,8 @@ impl Cloud {
         let emitted: Vec<AtomicU32> = std::iter::repeat_with(AtomicU32::default)
             .take(self.owned + others.len())
             .collect();
-        sequence.build(self.owned, &others, facts, |place, _| {
+        let mut scratch = vec![0; Sequence::SCRATCH_WORDS * emitted.len()];
+        sequence.build(&mut scratch, self.owned, &others, facts, |place, _| {
             emitted[place].fetch_add(1, Ordering::Relaxed);
         });
         assert!(emitted.iter().all(|n| n.load(Ordering::Relaxed) == 1));

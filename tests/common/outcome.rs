@@ -33,7 +33,7 @@ pub fn rows(simulation: &Simulation) -> BTreeMap<u64, Vec<u8>> {
         for uses in [FieldUse::STATE, FieldUse::SNAPSHOT, FieldUse::ON_DEMAND] {
             for field in with_use(uses) {
                 let size = field.kind.bytes();
-                let bytes = store.bytes(field.id);
+                let bytes = store.bytes_or_zeros(field);
                 row.extend_from_slice(&bytes[slot * size..(slot + 1) * size]);
             }
         }
