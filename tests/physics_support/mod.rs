@@ -3,6 +3,7 @@
 
 pub mod bars;
 pub mod impact;
+pub mod steps;
 
 use std::path::Path;
 
