@@ -99,17 +99,25 @@ impl Mirrors {
         image
     }
 
-    /// Exchanges an owned particle that has crossed a plane with its image, which has crossed
-    /// the other way: both are the same material. Returns the code, 0 for a particle that stays.
-    pub fn fold(&self, store: &mut ParticleStore, i: usize) -> u8 {
+    /// Code of the planes that a position is beyond.
+    #[inline]
+    #[must_use]
+    pub fn beyond(&self, position: &[f64; 3]) -> u8 {
         let mut code = 0;
         for axis in 0..3 {
             if let Some(plane) = self.planes[axis]
-                && store.position[i][axis] < plane
+                && position[axis] < plane
             {
                 code |= 1 << axis;
             }
         }
+        code
+    }
+
+    /// Exchanges an owned particle that has crossed a plane with its image, which has crossed
+    /// the other way: both are the same material. Returns the code, 0 for a particle that stays.
+    pub fn fold(&self, store: &mut ParticleStore, i: usize) -> u8 {
+        let code = self.beyond(&store.position[i]);
         if code != 0 {
             store.position[i] = self.reflect_position(&store.position[i], code);
             store.velocity[i] = Self::reflect_vector(&store.velocity[i], code);

@@ -262,6 +262,8 @@ pub struct ClusterLists {
 /// Images whose clusters one task handles: many enough that the tasks cost nothing, few enough
 /// that they are even.
 const PLACES_PER_CHUNK: usize = 512;
+/// Chunks that a thread takes at once, at most: their work differs.
+pub const CHUNKS_AT_ONCE: usize = 4;
 
 impl ClusterLists {
     /// Groups this rank's own particles into clusters and lists the neighbours of each.
@@ -269,7 +271,8 @@ impl ClusterLists {
     pub fn build(&mut self, sequence: &Sequence, lengths: &[Lengths]) {
         let set = instructions();
         self.lay_out(sequence);
-        self.chunks[..self.used].par_iter_mut().for_each(|chunk| {
+        let chunks = self.chunks[..self.used].par_iter_mut();
+        chunks.with_max_len(CHUNKS_AT_ONCE).for_each(|chunk| {
             set.run(Build {
                 lengths: lengths[chunk.group],
                 chunk,

@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use super::clusters::{Cluster, ClusterLists, INFLATION, distance2};
+use super::clusters::{CHUNKS_AT_ONCE, Cluster, ClusterLists, INFLATION, distance2};
 use super::sequence::Sequence;
 use crate::sph::gradient::MotionRecord;
 use crate::sph::lanes::F64x8;
@@ -105,6 +105,7 @@ impl ForeignLists {
         self.chunks
             .par_iter_mut()
             .zip(clusters.chunks())
+            .with_max_len(CHUNKS_AT_ONCE)
             .for_each(|(chunk, own)| {
                 chunk.overlap.clear();
                 chunk.potential.clear();

@@ -9,7 +9,7 @@ pub mod oracle;
 mod sequence;
 mod sort;
 
-pub use clusters::{Among, Chunk, Cluster, ClusterLists, Lengths};
+pub use clusters::{Among, CHUNKS_AT_ONCE, Chunk, Cluster, ClusterLists, Lengths};
 pub use columns::ColumnGrid;
 pub use foreign::{ContactClass, ForeignChunk, ForeignLists, ForeignTable, PairList};
 pub use sequence::{Image, ImageFacts, Sequence};

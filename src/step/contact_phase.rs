@@ -2,10 +2,11 @@
 
 use rayon::prelude::*;
 
+use super::search::GRAIN;
 use super::simulation::Simulation;
 use crate::contact::overlap::{self, Fraction};
 use crate::contact::{BodyReaction, ContactView, Reaction, potential};
-use crate::neighbours::ForeignChunk;
+use crate::neighbours::{CHUNKS_AT_ONCE, ForeignChunk};
 
 /// Results of each task before they go into the store, kept from step to step.
 #[derive(Default)]
@@ -54,7 +55,7 @@ impl Simulation {
             &mut store.touching_value,
             &mut store.contact_slope,
         ] {
-            field.fill(0.0);
+            fill(field, 0.0);
         }
         let tasks = &mut self.contact_phase.tasks;
         for (i, fraction) in tasks.iter().flat_map(|task| &task.fractions) {
@@ -72,7 +73,7 @@ impl Simulation {
                 0.0
             };
         }
-        store.enclosed_time.fill(0.0);
+        fill(&mut store.enclosed_time, 0.0);
         for (i, fraction) in tasks.iter().flat_map(|task| &task.fractions) {
             store.enclosed_time[*i] = fraction.current;
         }
@@ -93,6 +94,7 @@ impl Simulation {
             .tasks
             .par_iter_mut()
             .zip(chunks)
+            .with_max_len(CHUNKS_AT_ONCE)
             .for_each(|(task, chunk)| {
                 task.fractions.clear();
                 for (place, neighbours) in chunk.overlap.iter() {
@@ -143,14 +145,15 @@ impl Simulation {
             .tasks
             .par_iter_mut()
             .zip(self.search.foreign.chunks())
+            .with_max_len(CHUNKS_AT_ONCE)
             .for_each(|(task, chunk)| task.react(&view, chunk));
     }
 
     fn store_reactions(&mut self) {
         let (store, sums) = (&mut self.store, &mut self.sums);
-        store.contact_acceleration.fill([0.0; 3]);
-        store.contact_energy.fill(0.0);
-        store.contact_stiffness.fill(0.0);
+        fill(&mut store.contact_acceleration, [0.0; 3]);
+        fill(&mut store.contact_energy, 0.0);
+        fill(&mut store.contact_stiffness, 0.0);
         for booked in self.contact_phase.tasks.iter().flat_map(|t| &t.reactions) {
             let i = booked.base;
             let per_mass = 1.0 / store.mass[i];
@@ -176,6 +179,13 @@ impl Simulation {
             sums.note_pair(*body, reaction, store.contact_excess[*i], dt);
         }
     }
+}
+
+/// Sets all elements, on all threads.
+fn fill<T: Copy + Send + Sync>(values: &mut [T], value: T) {
+    values
+        .par_chunks_mut(16 * GRAIN)
+        .for_each(|chunk| chunk.fill(value));
 }
 
 impl Task {

@@ -15,6 +15,7 @@ use rayon::prelude::*;
 
 use super::search::GRAIN;
 use super::simulation::Simulation;
+use crate::diagnose::exact_sum::ExactSum;
 use crate::model::SmoothingLength;
 
 /// Smoothing length of a particle from its predicted density (physics page, section 1).
@@ -123,14 +124,24 @@ impl Simulation {
         if mirrors.is_empty() {
             return;
         }
-        for i in 0..self.store.owned() {
+        let positions = self.store.position.par_chunks(GRAIN);
+        self.crossed.resize(positions.len(), Vec::new());
+        (&mut self.crossed, positions)
+            .into_par_iter()
+            .enumerate()
+            .for_each(|(chunk, (crossed, positions))| {
+                let beyond = |(_, x): &(usize, &[f64; 3])| mirrors.beyond(x) != 0;
+                let indices = positions.iter().enumerate().filter(beyond);
+                crossed.clear();
+                crossed.extend(indices.map(|(k, _)| chunk * GRAIN + k));
+            });
+        for &i in self.crossed.iter().flatten() {
             let before = self.store.velocity[i];
-            if mirrors.fold(&mut self.store, i) != 0 {
-                let after = self.store.velocity[i];
-                let mass = self.store.mass[i];
-                for a in 0..3 {
-                    self.sums.crossing_impulse[a].add(mass * (after[a] - before[a]));
-                }
+            mirrors.fold(&mut self.store, i);
+            let after = self.store.velocity[i];
+            let mass = self.store.mass[i];
+            for a in 0..3 {
+                self.sums.crossing_impulse[a].add(mass * (after[a] - before[a]));
             }
         }
     }
@@ -178,15 +189,25 @@ impl Simulation {
             return;
         }
         let store = &self.store;
-        for i in 0..store.owned() {
-            let c = &store.contact_acceleration[i];
-            if *c != [0.0; 3] {
-                let total = add(&store.acceleration[i], c);
-                let mean = add_scaled(&store.velocity[i], shift, &total);
-                self.sums
-                    .contact_work
-                    .add(0.5 * dt * store.mass[i] * dot(c, &mean));
-            }
-        }
+        let work = (store.contact_acceleration.par_chunks(GRAIN).enumerate())
+            // same bits in any order: exact sums are integers
+            .fold(ExactSum::default, |mut work, (chunk, accelerations)| {
+                for (k, c) in accelerations.iter().enumerate() {
+                    if *c == [0.0; 3] {
+                        continue;
+                    }
+                    let i = chunk * GRAIN + k;
+                    let total = add(&store.acceleration[i], c);
+                    let mean = add_scaled(&store.velocity[i], shift, &total);
+                    work.add(0.5 * dt * store.mass[i] * dot(c, &mean));
+                }
+                work
+            })
+            // same bits in any order, as above
+            .reduce(ExactSum::default, |mut all, part| {
+                all.merge(&part);
+                all
+            });
+        self.sums.contact_work.merge(&work);
     }
 }

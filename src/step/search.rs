@@ -125,8 +125,8 @@ impl Simulation {
     }
 
     /// Puts the store into the canonical order of the last search, so that memory follows space.
-    /// Results do not depend on it.
-    pub(super) fn restore_order(&mut self) {
+    /// Results do not depend on it. Returns whether there was such a search.
+    pub(super) fn restore_order(&mut self) -> bool {
         let owned = self.store.owned();
         self.order.clear();
         for image in self.search.sequence.images() {
@@ -135,8 +135,10 @@ impl Simulation {
                 self.order.push(image.base() as u32);
             }
         }
-        if self.order.len() == owned {
+        let known = self.order.len() == owned;
+        if known {
             self.store.keep(&self.order, &mut self.scratch);
         }
+        known
     }
 }

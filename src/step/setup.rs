@@ -129,6 +129,8 @@ impl Simulation {
             sums: StepSums::new(pairs, enclosed_limit),
             scratch: Vec::new(),
             order: Vec::new(),
+            unordered: true,
+            crossed: Vec::new(),
             reference_h: case.bodies.iter().map(|b| b.smoothing_length).collect(),
             contact,
             case,

@@ -61,6 +61,10 @@ pub struct Simulation {
     pub(super) sums: StepSums,
     pub(super) scratch: Vec<u64>,
     pub(super) order: Vec<u32>,
+    /// The store has not been in canonical order yet.
+    pub(super) unordered: bool,
+    /// Particles that have crossed a symmetry plane, by task.
+    pub(super) crossed: Vec<Vec<usize>>,
     pub(super) reference_h: Vec<f64>,
 }
 
@@ -133,10 +137,13 @@ impl Simulation {
 
     fn balance_work(&mut self, comm: &Comm) {
         let every = self.case.domain.balance_every;
-        if every == 0 || !self.state.step.is_multiple_of(every) {
+        let due = every != 0 && self.state.step.is_multiple_of(every);
+        if due || self.unordered {
+            self.unordered = !self.restore_order();
+        }
+        if !due {
             return;
         }
-        self.restore_order();
         if comm.size() > 1 {
             let positions = &self.store.position[..self.store.owned()];
             let work = &self.store.work;

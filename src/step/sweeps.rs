@@ -7,7 +7,7 @@ use super::search::GRAIN;
 use super::simulation::Simulation;
 use crate::domain::Mirrors;
 use crate::model::{Case, SmoothingLength};
-use crate::neighbours::{Chunk, Cluster, Image};
+use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Cluster, Image};
 use crate::particles::{ParticleStore, Scatter};
 use crate::sph::dispatch::{Vectorised, instructions};
 use crate::sph::gradient::{MotionRecord, VelocityGradient};
@@ -93,6 +93,7 @@ impl Simulation {
         let (sources, update) = (&self.search.motion[..], &update);
         with_scale!(self.sweeps.scale, scale => chunks
             .par_iter()
+            .with_max_len(CHUNKS_AT_ONCE)
             .for_each(|chunk| set.run(GradientChunk { chunk, sources, scale, update })));
     }
 
@@ -122,6 +123,7 @@ impl Simulation {
         with_scale!(*scale, scale => chunks
         .par_iter()
         .zip(from_mirrors)
+        .with_max_len(CHUNKS_AT_ONCE)
         .for_each(|(chunk, from_mirrors)| {
             if !halo {
                 from_mirrors.clear();
