@@ -41,6 +41,7 @@ fn plain(cloud: &Cloud, found: &Found, records: &Records, kernel: &Kernel, i: u3
     let here = &records.motion[i as usize];
     let state = &records.stress[i as usize];
     let images = found.sequence.images();
+    let lengths = found.sequence.smoothing_lengths();
     let group = cloud.group(images[i as usize].base());
     for j in found.sequence.group(group) {
         let there = &records.motion[j];
@@ -49,12 +50,12 @@ fn plain(cloud: &Cloud, found: &Found, records: &Records, kernel: &Kernel, i: u3
         let v: [f64; 3] = std::array::from_fn(|a| here.velocity[a] - there.velocity[a]);
         let dot = |a: &[f64; 3], b: &[f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let distance = dot(&r, &r).sqrt();
-        let h = 0.5 * (here.smoothing_length + there.smoothing_length);
+        let h = 0.5 * (lengths[i as usize] + lengths[j]);
         if distance == 0.0 || distance >= 2.0 * h {
             continue;
         }
         let grad_w = r.map(|x| x / distance * kernel.slope(distance, h));
-        let volume = found.motion[j].weight;
+        let volume = there.volume;
         for a in 0..3 {
             for b in 0..3 {
                 sum.gradient[3 * a + b] -= volume * v[a] * grad_w[b];
@@ -74,9 +75,9 @@ fn plain(cloud: &Cloud, found: &Found, records: &Records, kernel: &Kernel, i: u3
             if c < 3 { both - pi } else { both }
         });
         let rows = [[s[0], s[3], s[4]], [s[3], s[1], s[5]], [s[4], s[5], s[2]]];
-        let force = rows.map(|row| there.weight * dot(&row, &grad_w));
+        let force = rows.map(|row| there.mass * dot(&row, &grad_w));
         let size = rows.as_flattened().iter().map(|x| x.abs()).sum::<f64>()
-            * there.weight
+            * there.mass
             * kernel.slope(distance, h).abs();
         for a in 0..3 {
             sum.acceleration[a] += force[a];
@@ -94,6 +95,7 @@ fn plain(cloud: &Cloud, found: &Found, records: &Records, kernel: &Kernel, i: u3
 /// What the second sweep reads: the weights are masses.
 struct Records {
     motion: Vec<MotionRecord>,
+    lengths: Vec<f64>,
     stress: Vec<StressRecord>,
 }
 
@@ -109,10 +111,7 @@ fn force_records(cloud: &Cloud, found: &Found, seed: u64) -> Records {
     let (motion, stress) = (found.sequence.images().iter().zip(&found.motion))
         .map(|(image, motion)| {
             let (stress, [mass, density, sound_speed]) = own[image.base()];
-            let motion = MotionRecord {
-                weight: mass,
-                ..*motion
-            };
+            let motion = MotionRecord { mass, ..*motion };
             let stress = StressRecord {
                 density,
                 sound_speed,
@@ -124,7 +123,12 @@ fn force_records(cloud: &Cloud, found: &Found, seed: u64) -> Records {
             (motion, stress)
         })
         .unzip();
-    Records { motion, stress }
+    let lengths = found.sequence.smoothing_lengths().to_vec();
+    Records {
+        motion,
+        lengths,
+        stress,
+    }
 }
 
 fn mirrored(found: &Found) -> Vec<u8> {
@@ -142,13 +146,14 @@ fn bits(forces: &Forces) -> Vec<u64> {
 
 fn gradient<S: PairScale>(
     set: Instructions,
-    sources: &[MotionRecord],
+    (sources, lengths): (&[MotionRecord], &[f64]),
     receivers: [u32; LANES],
     neighbours: &[u32],
     scale: S,
 ) -> [F64x8; 9] {
     set.run(VelocityGradient {
         sources,
+        lengths,
         receivers,
         neighbours,
         scale,
@@ -165,6 +170,7 @@ fn momentum<S: PairScale, const MIRRORED: bool>(
 ) -> Forces {
     set.run(Momentum::<S, MIRRORED> {
         sources: &records.motion,
+        lengths: &records.lengths,
         stresses: &records.stress,
         mirrored,
         receivers,
@@ -192,6 +198,7 @@ fn check_sweeps<S: PairScale>(cloud: &Cloud, scale: S) {
     let found = cloud.find();
     let records = force_records(cloud, &found, 77);
     let mirrored = mirrored(&found);
+    let motion = (&found.motion[..], found.sequence.smoothing_lengths());
     let sets = available();
     for (cluster, list, among) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
         let receivers = cluster.receivers;
@@ -199,7 +206,7 @@ fn check_sweeps<S: PairScale>(cloud: &Cloud, scale: S) {
             .iter()
             .map(|&i| plain(cloud, &found, &records, &kernel, i))
             .collect();
-        let first = gradient(sets[0], &found.motion, receivers, list, scale);
+        let first = gradient(sets[0], motion, receivers, list, scale);
         let forces = momentum::<S, true>(sets[0], &records, &mirrored, receivers, list, scale);
         for (k, slow) in slow.iter().enumerate() {
             for c in 0..9 {
@@ -220,7 +227,7 @@ fn check_sweeps<S: PairScale>(cloud: &Cloud, scale: S) {
             .collect();
         for &set in &sets {
             for list in [list, &everyone] {
-                let other = gradient(set, &found.motion, receivers, list, scale);
+                let other = gradient(set, motion, receivers, list, scale);
                 assert_eq!(
                     other.map(|l| l.0.map(f64::to_bits)),
                     first.map(|l| l.0.map(f64::to_bits))
@@ -301,9 +308,9 @@ fn momentum_and_energy_balance() {
             );
             for k in 0..cluster.lanes {
                 let record = &records.motion[cluster.receivers[k] as usize];
-                power += record.weight * sums.power.0[k];
+                power += record.mass * sums.power.0[k];
                 for a in 0..3 {
-                    let f = record.weight * sums.acceleration[a].0[k];
+                    let f = record.mass * sums.acceleration[a].0[k];
                     force[a] += f;
                     power += record.velocity[a] * f;
                     size += f.abs();
@@ -348,8 +355,8 @@ fn a_linear_velocity_field_gives_its_gradient() {
                         velocity: std::array::from_fn(|a| {
                             (0..3).map(|b| field[3 * a + b] * x[b]).sum()
                         }),
-                        weight: 1.0,
-                        smoothing_length: 1.3,
+                        volume: 1.0,
+                        mass: 1.0,
                     });
                 }
             }
@@ -358,7 +365,7 @@ fn a_linear_velocity_field_gives_its_gradient() {
         let neighbours: Vec<u32> = (0..count).collect();
         let scale = ConstantScale::new(&kernel, 1.3);
         let centre = [count / 2; LANES];
-        let found = gradient(available()[0], &sources, centre, &neighbours, scale);
+        let found = gradient(available()[0], (&sources, &[]), centre, &neighbours, scale);
         for c in 0..9 {
             let wanted = if c % 3 < dimension {
                 field[c] * factor
@@ -370,29 +377,27 @@ fn a_linear_velocity_field_gives_its_gradient() {
     }
 }
 
-/// Two particles with stress: records for the first sweep, and for the second.
-fn pair(here: [f64; 3], there: [f64; 3]) -> (Vec<MotionRecord>, Records) {
+/// Two particles with stress.
+fn pair(here: [f64; 3], there: [f64; 3]) -> Records {
     let velocities = [[1.0, 2.0, 3.0], [-7e3, 5.0, 0.0]];
-    let motion = |weight: f64| {
-        let both = [here, there].into_iter().zip(velocities);
-        both.map(|(position, velocity)| MotionRecord {
-            position,
-            velocity,
-            weight,
-            smoothing_length: 1.3e-5,
-        })
-        .collect()
-    };
+    let motion = [here, there].into_iter().zip(velocities);
     let stress = StressRecord {
         density: 2700.0,
         sound_speed: 6000.0,
         stress_over_density2: [1e3, -2e3, 1e3, 5e2, 4e2, 3e2],
     };
-    let records = Records {
-        motion: motion(2.7e-12),
+    Records {
+        motion: motion
+            .map(|(position, velocity)| MotionRecord {
+                position,
+                velocity,
+                volume: 1e-15,
+                mass: 2.7e-12,
+            })
+            .collect(),
+        lengths: vec![1.3e-5; 2],
         stress: vec![stress; 2],
-    };
-    (motion(1e-15), records)
+    }
 }
 
 /// Particles that meet only themselves, or another at the same point, feel nothing, and nothing
@@ -402,13 +407,19 @@ fn lone_and_coincident_particles_are_harmless() {
     let here = [1e-3, 2e-3, -3e-3];
     for gap in [0.0, 5e-324, 1e-200, 1e-40, 1e-20] {
         let there = [here[0] + gap, here[1], here[2]];
-        let (motion, force) = pair(here, there);
+        let force = pair(here, there);
         for set in available() {
             for neighbours in [&[0_u32][..], &[0, 1]] {
                 let kernel = Kernel::new(3);
                 let scale = MeanScale::<3>::new(&kernel);
                 let receivers = [0, 1, 1, 1, 1, 1, 1, 1];
-                let gradient = gradient(set, &motion, receivers, neighbours, scale);
+                let gradient = gradient(
+                    set,
+                    (&force.motion, &force.lengths),
+                    receivers,
+                    neighbours,
+                    scale,
+                );
                 assert!(
                     gradient
                         .iter()
@@ -422,9 +433,15 @@ fn lone_and_coincident_particles_are_harmless() {
         }
     }
     // A tenth of a billionth of a spacing apart, at closing speed 7 km/s.
-    let (motion, force) = pair([0.0; 3], [1e-15, 0.0, 0.0]);
+    let force = pair([0.0; 3], [1e-15, 0.0, 0.0]);
     let scale = MeanScale::<3>::new(&Kernel::new(3));
-    let gradient = gradient(available()[0], &motion, [0; LANES], &[0, 1], scale);
+    let gradient = gradient(
+        available()[0],
+        (&force.motion, &force.lengths),
+        [0; LANES],
+        &[0, 1],
+        scale,
+    );
     assert!(gradient.iter().all(|lanes| lanes.0[0].is_finite()));
     let sums = momentum::<_, true>(available()[0], &force, &[0; 2], [0; LANES], &[0, 1], scale);
     assert!(sums.acceleration.iter().all(|lanes| lanes.0[0].is_finite()));

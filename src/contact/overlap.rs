@@ -52,7 +52,7 @@ pub fn fraction(view: &ContactView, place: u32, neighbours: &[u32], relief: f64)
         sum.modulus += share * pair.modulus;
         sum.touching += share * pair.touching;
         sum.slope -= j.volume * view.table.kernel.slope(gap.distance, pair.h);
-        sum.current += view.motion[other as usize].weight * kernel;
+        sum.current += view.motion[other as usize].volume * kernel;
     }
     if sum.fraction > 0.0 {
         sum.modulus /= sum.fraction;

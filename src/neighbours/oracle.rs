@@ -10,6 +10,7 @@ use crate::sph::gradient::MotionRecord;
 #[must_use]
 pub fn own_neighbours(sequence: &Sequence, sources: &[MotionRecord], receiver: u32) -> Vec<u32> {
     let here = &sources[receiver as usize];
+    let length = |place: usize| sequence.lengths(place)[0];
     let group = (0..sequence.groups())
         .find(|&g| sequence.group(g).contains(&(receiver as usize)))
         .expect("every image has a group");
@@ -20,7 +21,7 @@ pub fn own_neighbours(sequence: &Sequence, sources: &[MotionRecord], receiver: u
             let r2: f64 = (0..3)
                 .map(|a| (here.position[a] - there.position[a]).powi(2))
                 .sum();
-            r2 < (here.smoothing_length + there.smoothing_length).powi(2)
+            r2 < (length(receiver as usize) + length(place)).powi(2)
         })
         .map(|place| u32::try_from(place).expect("images fit u32"))
         .collect()

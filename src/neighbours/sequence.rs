@@ -248,6 +248,12 @@ impl Sequence {
         &self.images
     }
 
+    /// Smoothing lengths (m) in order; empty if they are uniform.
+    #[must_use]
+    pub fn smoothing_lengths(&self) -> &[f64] {
+        &self.lengths
+    }
+
     /// For each place a byte that is odd for images behind symmetry planes.
     #[must_use]
     pub fn mirrored(&self) -> &[u8] {

@@ -12,11 +12,10 @@ pub struct MotionRecord {
     pub position: [f64; 3],
     /// Velocity (m/s).
     pub velocity: [f64; 3],
-    /// What it weighs in the sum: its volume m/ρ (m^d) for the velocity gradient and foreign
-    /// fractions, its mass (kg) for the forces.
-    pub weight: f64,
-    /// Smoothing length (m).
-    pub smoothing_length: f64,
+    /// Volume m/ρ (m^d).
+    pub volume: f64,
+    /// Mass (kg).
+    pub mass: f64,
 }
 
 /// Squares of distances are never smaller than this (m²), so that a particle meeting itself
@@ -27,6 +26,8 @@ pub const SMALLEST_SQUARE: f64 = 1e-60;
 pub struct VelocityGradient<'a, S> {
     /// All particles and images.
     pub sources: &'a [MotionRecord],
+    /// Smoothing lengths (m) of these; empty where the scale is constant.
+    pub lengths: &'a [f64],
     /// Receivers; unused lanes repeat a valid one.
     pub receivers: [u32; LANES],
     /// Neighbours, in canonical order, those of all receivers together.
@@ -44,22 +45,27 @@ impl<S: PairScale> Vectorised for VelocityGradient<'_, S> {
         let receivers = records(self.sources, &self.receivers);
         let position = gather3::<V, _>(&receivers, |record, a| record.position[a]);
         let velocity = gather3::<V, _>(&receivers, |record, a| record.velocity[a]);
-        let h_i = gather::<V, _>(&receivers, |record| record.smoothing_length);
+        let h_i = lengths::<V, S>(self.lengths, &self.receivers);
         let mut gradient = [V::splat(0.0); 9];
         // A particle whose position is no number has no neighbours, not even itself.
         let count = self.neighbours.len();
         if count == 0 {
             return [F64x8([0.0; LANES]); 9];
         }
-        let begin = |k: usize| &self.sources[self.neighbours[k.min(count - 1)] as usize];
-        let mut source = begin(0);
-        let mut next = Separation::begin(&position, &source.position);
+        let begin = |k: usize| {
+            let place = self.neighbours[k.min(count - 1)] as usize;
+            (place, &self.sources[place])
+        };
+        let mut following = begin(0);
+        let mut next = Separation::begin(&position, &following.1.position);
         for k in 0..count {
-            let (here, now) = (source, next);
-            source = begin(k + 1);
-            next = Separation::begin(&position, &source.position);
-            let kernel = self.scale.kernel(now.distance, h_i, here.smoothing_length);
-            let factor = now.inverse.mul(V::splat(here.weight)).mul(kernel.slope);
+            let ((place, here), now) = (following, next);
+            following = begin(k + 1);
+            next = Separation::begin(&position, &following.1.position);
+            let kernel = self
+                .scale
+                .kernel(now.distance, h_i, length::<S>(self.lengths, place));
+            let factor = now.inverse.mul(V::splat(here.volume)).mul(kernel.slope);
             for a in 0..3 {
                 let v_a = V::splat(here.velocity[a]).sub(velocity[a]).mul(factor);
                 for b in 0..3 {
@@ -97,6 +103,19 @@ pub(super) fn gather3<V: Lanes, R>(
         gather(records, |record| number(record, 1)),
         gather(records, |record| number(record, 2)),
     ]
+}
+
+/// Smoothing length of a neighbour (m), whatever if the scale is constant.
+#[inline(always)]
+pub(super) fn length<S: PairScale>(lengths: &[f64], place: usize) -> f64 {
+    if S::VARIABLE { lengths[place] } else { 0.0 }
+}
+
+/// Smoothing lengths of eight receivers (m), whatever if the scale is constant.
+#[inline(always)]
+pub(super) fn lengths<V: Lanes, S: PairScale>(lengths: &[f64], places: &[u32; LANES]) -> V {
+    let at = |k: usize| length::<S>(lengths, places[k] as usize);
+    V::read(&[at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)])
 }
 
 /// Where eight receivers stand seen from one neighbour, with the distances. The sweeps

@@ -93,6 +93,9 @@ pub struct PairKernel<V> {
 
 /// How the lanes get `h_ij` and what follows from it.
 pub trait PairScale: Copy + Sync {
+    /// Whether [`Self::kernel`] looks at the smoothing lengths.
+    const VARIABLE: bool;
+
     /// For pairs at `distance` (m) of receivers of `h_i` and a neighbour of `h_j` (m).
     fn kernel<V: Lanes>(&self, distance: V, h_i: V, h_j: f64) -> PairKernel<V>;
 }
@@ -145,6 +148,8 @@ impl ConstantScale {
 }
 
 impl PairScale for ConstantScale {
+    const VARIABLE: bool = false;
+
     #[inline(always)]
     fn kernel<V: Lanes>(&self, distance: V, _: V, _: f64) -> PairKernel<V> {
         let (inner, outer) = (self.inner.at(distance), self.outer.at(distance));
@@ -174,6 +179,8 @@ impl<const D: usize> MeanScale<D> {
 }
 
 impl<const D: usize> PairScale for MeanScale<D> {
+    const VARIABLE: bool = true;
+
     #[inline(always)]
     fn kernel<V: Lanes>(&self, distance: V, h_i: V, h_j: f64) -> PairKernel<V> {
         let h = h_i.add(V::splat(h_j)).mul(V::splat(0.5));

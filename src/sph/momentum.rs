@@ -2,7 +2,7 @@
 //! viscosity (physics page, section 2).
 
 use super::dispatch::Vectorised;
-use super::gradient::{MotionRecord, Separation, gather, gather3, records};
+use super::gradient::{MotionRecord, Separation, gather, gather3, length, lengths, records};
 use super::kernel::PairScale;
 use super::lanes::{F64x8, LANES, Lanes};
 
@@ -16,6 +16,28 @@ pub struct StressRecord {
     pub density: f64,
     /// Sound speed (m/s).
     pub sound_speed: f64,
+}
+
+impl StressRecord {
+    /// From pressure (Pa), deviatoric stress (Pa), density (kg/m³) and sound speed (m/s).
+    #[inline(always)]
+    #[must_use]
+    pub fn new(pressure: f64, deviatoric: &[f64; 6], density: f64, sound_speed: f64) -> Self {
+        let scale = 1.0 / (density * density);
+        let [xx, yy, zz, xy, xz, yz] = *deviatoric;
+        Self {
+            stress_over_density2: [
+                (xx - pressure) * scale,
+                (yy - pressure) * scale,
+                (zz - pressure) * scale,
+                xy * scale,
+                xz * scale,
+                yz * scale,
+            ],
+            density,
+            sound_speed,
+        }
+    }
 }
 
 /// Coefficients of the Monaghan–Gingold viscosity.
@@ -32,8 +54,10 @@ pub struct Viscosity {
 /// `MIRRORED` clusters have images behind symmetry planes among their neighbours and also sum
 /// what those alone exert.
 pub struct Momentum<'a, S, const MIRRORED: bool> {
-    /// All particles and images; they weigh by their mass.
+    /// All particles and images.
     pub sources: &'a [MotionRecord],
+    /// Their smoothing lengths (m); empty where the scale is constant.
+    pub lengths: &'a [f64],
     /// Their stresses.
     pub stresses: &'a [StressRecord],
     /// Odd for images behind symmetry planes, even for particles.
@@ -82,7 +106,7 @@ impl<S: PairScale, const MIRRORED: bool> Vectorised for Momentum<'_, S, MIRRORED
         let stresses = records(self.stresses, &self.receivers);
         let normal = gather3::<V, _>(&stresses, |record, a| record.stress_over_density2[a]);
         let shear = gather3::<V, _>(&stresses, |record, a| record.stress_over_density2[3 + a]);
-        let h_i = gather::<V, _>(&receivers, |record| record.smoothing_length);
+        let h_i = lengths::<V, S>(self.lengths, &self.receivers);
         let rho_i = gather::<V, _>(&stresses, |record| record.density);
         let c_i = gather::<V, _>(&stresses, |record| record.sound_speed);
         let zero = V::splat(0.0);
@@ -116,7 +140,7 @@ impl<S: PairScale, const MIRRORED: bool> Vectorised for Momentum<'_, S, MIRRORED
             let v = [along(0), along(1), along(2)];
             let kernel = self
                 .scale
-                .kernel(now.distance, h_i, source.smoothing_length);
+                .kernel(now.distance, h_i, length::<S>(self.lengths, place));
             let h = kernel.h;
             let soft = h.mul(h).mul(V::splat(0.01)).add(square);
             let rho_sum = rho_i.add(V::splat(state.density));
@@ -136,7 +160,7 @@ impl<S: PairScale, const MIRRORED: bool> Vectorised for Momentum<'_, S, MIRRORED
             let [xx, yy, zz] = [pull(0), pull(1), pull(2)];
             let slide = |a: usize| shear[a].add(s(3 + a));
             let [xy, xz, yz] = [slide(0), slide(1), slide(2)];
-            let weight = now.inverse.mul(V::splat(source.weight)).mul(kernel.slope);
+            let weight = now.inverse.mul(V::splat(source.mass)).mul(kernel.slope);
             let traction = [
                 xx.mul_add(r[0], xy.mul_add(r[1], xz.mul(r[2]))),
                 xy.mul_add(r[0], yy.mul_add(r[1], yz.mul(r[2]))),

@@ -4,6 +4,7 @@ use crate::material::{LANES, Material, PointBatch};
 use crate::neighbours::{Cluster, Image};
 use crate::particles::{ParticleStore, Scatter};
 use crate::sph::lanes::F64x8;
+use crate::sph::momentum::StressRecord;
 
 /// What the update reads and writes: each owned particle stands in exactly one lane of one
 /// cluster.
@@ -16,6 +17,7 @@ pub(super) struct MaterialUpdate<'a> {
     /// Specific energy after the first half kick, and its last rate.
     specific_energy: &'a [f64],
     heating: &'a [f64],
+    stresses: Scatter<'a, StressRecord>,
     density: Scatter<'a, f64>,
     velocity_gradient: Scatter<'a, [f64; 9]>,
     deviatoric_stress: Scatter<'a, [f64; 6]>,
@@ -28,6 +30,7 @@ pub(super) struct MaterialUpdate<'a> {
 impl<'a> MaterialUpdate<'a> {
     pub(super) fn new(
         store: &'a mut ParticleStore,
+        stresses: &'a mut [StressRecord],
         images: &'a [Image],
         materials: &'a [Material],
         material_of_body: &'a [usize],
@@ -41,6 +44,7 @@ impl<'a> MaterialUpdate<'a> {
             body: &store.body,
             specific_energy: &store.specific_energy,
             heating: &store.d_specific_energy_dt,
+            stresses: Scatter::new(stresses),
             density: Scatter::new(&mut store.density),
             velocity_gradient: Scatter::new(&mut store.velocity_gradient),
             deviatoric_stress: Scatter::new(&mut store.deviatoric_stress),
@@ -72,6 +76,15 @@ impl<'a> MaterialUpdate<'a> {
                 if material(lane) == own {
                     done |= 1 << lane;
                     self.store(base[lane], lane, &after, gradient, neighbours);
+                    let s = |c: usize| after.deviatoric_stress[c][lane];
+                    let record = StressRecord::new(
+                        after.pressure[lane],
+                        &[s(0), s(1), s(2), s(3), s(4), s(5)],
+                        after.density[lane],
+                        after.sound_speed[lane],
+                    );
+                    // SAFETY: the place belongs to this cluster alone, as its particle does.
+                    unsafe { *self.stresses.slot(places[lane] as usize) = record };
                 }
             }
         }

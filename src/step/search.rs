@@ -1,6 +1,7 @@
 //! From owned and halo particles to sorted images, their records and neighbour lists.
 
 use bytemuck::Zeroable;
+use rayon::prelude::*;
 
 use super::simulation::Simulation;
 use crate::contact::ContactTable;
@@ -26,7 +27,10 @@ pub struct Search {
 impl Search {
     pub(super) fn new(case: &Case, contact: &ContactTable, grids: Vec<ColumnGrid>) -> Self {
         let lengths = group_lengths(case, contact);
-        let uniform = lengths.iter().all(|group| group.uniform);
+        let (first, rest) = lengths.split_first().expect("a case has bodies");
+        let same =
+            |group: &Lengths| group.uniform && group.longest.to_bits() == first.longest.to_bits();
+        let uniform = first.uniform && rest.iter().all(same);
         Self {
             lengths,
             sequence: Sequence::new(grids, uniform),
@@ -47,8 +51,8 @@ impl Search {
 const BLANK: MotionRecord = MotionRecord {
     position: [0.0; 3],
     velocity: [0.0; 3],
-    weight: 0.0,
-    smoothing_length: 0.0,
+    volume: 0.0,
+    mass: 0.0,
 };
 
 /// The groups' smoothing lengths where these are constant.
@@ -98,17 +102,19 @@ impl Simulation {
             let record = MotionRecord {
                 position: mirrors.reflect_position(&store.position[base], code),
                 velocity: Mirrors::reflect_vector(&store.predicted_velocity[base], code),
-                weight: store.mass[base] / store.predicted_density[base],
-                smoothing_length: store.smoothing_length[base],
+                volume: store.mass[base] / store.predicted_density[base],
+                mass: store.mass[base],
             };
             // SAFETY: each place is emitted once.
             unsafe { *motion.slot(place) = record };
         });
         if self.case.sph.smoothing_length != SmoothingLength::Constant {
             for (group, lengths) in search.lengths.iter_mut().enumerate() {
-                lengths.longest = search.motion[search.sequence.group(group)]
-                    .iter()
-                    .fold(0.0, |most, record| f64::max(most, record.smoothing_length));
+                lengths.longest = search.sequence.smoothing_lengths()[search.sequence.group(group)]
+                    .par_iter()
+                    .copied()
+                    // same bits in any order: a largest number
+                    .reduce(|| 0.0, f64::max);
             }
         }
         search.clusters.build(&search.sequence, &search.lengths);

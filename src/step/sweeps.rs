@@ -83,24 +83,29 @@ impl Simulation {
     pub(super) fn velocity_gradient_and_material(&mut self, dt: f64) {
         let set = instructions();
         let chunks = self.search.clusters.chunks();
-        let update = MaterialUpdate::new(
+        let update = &MaterialUpdate::new(
             &mut self.store,
+            &mut self.sweeps.stresses,
             self.search.sequence.images(),
             &self.case.materials,
             &self.sweeps.material_of_body,
             dt,
         );
-        let (sources, update) = (&self.search.motion[..], &update);
+        let sources = &self.search.motion[..];
+        let lengths = self.search.sequence.smoothing_lengths();
         with_scale!(self.sweeps.scale, scale => chunks
             .par_iter()
             .with_max_len(CHUNKS_AT_ONCE)
-            .for_each(|chunk| set.run(GradientChunk { chunk, sources, scale, update })));
+            .for_each(|chunk| set.run(GradientChunk { chunk, sources, lengths, scale, update })));
     }
 
     /// Second sweep: accelerations by stress and viscosity, and the power they put into heat, of
     /// the clusters that have halo particles among their neighbours or of those that have none,
     /// which need not wait for messages.
     pub(super) fn momentum_and_energy(&mut self, halo: bool) {
+        if halo && self.store.halo() == 0 {
+            return;
+        }
         self.fill_records(halo);
         let set = instructions();
         let chunks = self.search.clusters.chunks();
@@ -116,6 +121,7 @@ impl Simulation {
         let target = &ForceTarget::new(&mut self.store, images);
         let sources = ForceSources {
             motion: &self.search.motion,
+            lengths: self.search.sequence.smoothing_lengths(),
             stresses,
             mirrored: self.search.sequence.mirrored(),
             viscosity: *viscosity,
@@ -132,36 +138,30 @@ impl Simulation {
         }));
     }
 
-    /// Records of halo particles and their images, or of this rank's.
+    /// Stresses of halo particles and their images, or of the images of this rank's particles,
+    /// whose own stresses the first sweep has written.
     fn fill_records(&mut self, halo: bool) {
         let store = &self.store;
         let owned = store.owned();
-        let images = self.search.sequence.images();
-        (&mut self.sweeps.stresses, &mut self.search.motion, images)
+        if self.halo.others().is_empty() {
+            return;
+        }
+        (&mut self.sweeps.stresses, self.search.sequence.images())
             .into_par_iter()
             .with_min_len(GRAIN)
-            .for_each(|(record, motion, image)| {
+            .for_each(|(record, image)| {
                 let (base, code) = (image.base(), image.code());
-                if (base >= owned) != halo {
+                let of_halo = base >= owned;
+                if of_halo != halo || (!of_halo && code == 0) {
                     return;
                 }
-                let density = store.density[base];
-                let scale = 1.0 / (density * density);
-                let pressure = store.pressure[base];
-                let s = Mirrors::reflect_symmetric(&store.deviatoric_stress[base], code);
-                motion.weight = store.mass[base];
-                *record = StressRecord {
-                    stress_over_density2: [
-                        (s[0] - pressure) * scale,
-                        (s[1] - pressure) * scale,
-                        (s[2] - pressure) * scale,
-                        s[3] * scale,
-                        s[4] * scale,
-                        s[5] * scale,
-                    ],
-                    density,
-                    sound_speed: store.sound_speed[base],
-                };
+                let stress = Mirrors::reflect_symmetric(&store.deviatoric_stress[base], code);
+                *record = StressRecord::new(
+                    store.pressure[base],
+                    &stress,
+                    store.density[base],
+                    store.sound_speed[base],
+                );
             });
     }
 }
@@ -170,6 +170,7 @@ impl Simulation {
 struct GradientChunk<'a, S> {
     chunk: &'a Chunk,
     sources: &'a [MotionRecord],
+    lengths: &'a [f64],
     scale: S,
     update: &'a MaterialUpdate<'a>,
 }
@@ -182,6 +183,7 @@ impl<S: PairScale> Vectorised for GradientChunk<'_, S> {
         for (cluster, neighbours, _) in self.chunk.iter() {
             let gradient = VelocityGradient {
                 sources: self.sources,
+                lengths: self.lengths,
                 receivers: cluster.receivers,
                 neighbours,
                 scale: self.scale,
@@ -196,6 +198,7 @@ impl<S: PairScale> Vectorised for GradientChunk<'_, S> {
 #[derive(Clone, Copy)]
 struct ForceSources<'a> {
     motion: &'a [MotionRecord],
+    lengths: &'a [f64],
     stresses: &'a [StressRecord],
     mirrored: &'a [u8],
     viscosity: Viscosity,
@@ -277,6 +280,7 @@ impl<S: PairScale> MomentumChunk<'_, S> {
     fn sum<V: Lanes, const MIRRORED: bool>(&self, cluster: &Cluster, neighbours: &[u32]) -> Forces {
         let sums = Momentum::<S, MIRRORED> {
             sources: self.sources.motion,
+            lengths: self.sources.lengths,
             stresses: self.sources.stresses,
             mirrored: self.sources.mirrored,
             receivers: cluster.receivers,

@@ -156,16 +156,16 @@ impl Cloud {
             .map(|&image| MotionRecord {
                 position: self.place(image),
                 velocity: Mirrors::reflect_vector(&self.velocity[image.base()], image.code()),
-                weight: 1.0,
-                smoothing_length: self.smoothing_length[image.base()],
+                volume: 1.0,
+                mass: 1.0,
             })
             .collect();
         let lengths: Vec<Lengths> = (0..sequence.groups())
             .map(|group| {
                 let all = || {
-                    motion[sequence.group(group)]
+                    sequence.smoothing_lengths()[sequence.group(group)]
                         .iter()
-                        .map(|r| r.smoothing_length)
+                        .copied()
                 };
                 let longest = all().fold(0.0, f64::max);
                 Lengths {

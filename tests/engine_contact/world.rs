@@ -74,8 +74,8 @@ impl World {
             motion.push(MotionRecord {
                 position,
                 velocity: [0.0; 3],
-                weight: volume,
-                smoothing_length: body.smoothing_length,
+                volume,
+                mass: store.mass[i],
             });
         }
         let touching = case
