@@ -9,8 +9,8 @@ use crate::particles::{FieldUse, ParticleStore};
 pub struct Migration {
     exchange: Exchange,
     leaving: Vec<Vec<u32>>,
-    staying: Vec<u32>,
-    scratch: Vec<u64>,
+    gone: Vec<u32>,
+    moves: Vec<(u32, u32)>,
     counts: Vec<u64>,
     arrivals: Vec<u64>,
 }
@@ -59,7 +59,9 @@ impl Migration {
             arriving += count;
         }
         self.exchange.post(comm);
-        self.remove_leaving(store);
+        self.gone.clear();
+        self.gone.extend(self.leaving.iter().flatten());
+        store.remove(&mut self.gone, &mut self.moves);
         let mut first = store.owned();
         store.resize_owned(first + arriving);
         self.exchange.wait();
@@ -68,23 +70,6 @@ impl Migration {
             let count = bytes.len() / size;
             store.unpack(FieldUse::LEAVING, first, count, bytes);
             first += count;
-        }
-    }
-
-    /// Closes the gaps of those who left.
-    fn remove_leaving(&mut self, store: &mut ParticleStore) {
-        let owned = store.owned();
-        self.staying.clear();
-        #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
-        self.staying.extend(0..owned as u32);
-        for &i in self.leaving.iter().flatten() {
-            self.staying[i as usize] = u32::MAX;
-        }
-        self.staying.retain(|&i| i != u32::MAX);
-        if self.staying.len() == owned {
-            store.resize_halo(0);
-        } else {
-            store.keep(&self.staying, &mut self.scratch);
         }
     }
 

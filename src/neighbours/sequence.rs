@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use super::columns::ColumnGrid;
 use super::sort::{SCRATCH_WORDS, Sorter, Targets, Walls};
-use crate::particles::Scatter;
+use crate::particles::{Scatter, resize};
 use crate::sph::lanes::{LANES, Lanes};
 
 /// A particle or one of its mirror images: index in the store and the planes it is behind.
@@ -19,9 +19,6 @@ pub struct Image(u32);
 impl Image {
     /// Largest number of particles of a rank.
     pub const MAX_PARTICLES: usize = 1 << 29;
-
-    /// The first particle of the store.
-    pub(super) const FIRST: Self = Self(0);
 
     /// Image of particle `base` behind the planes whose axis bits are set in `code`.
     #[inline]
@@ -162,14 +159,14 @@ impl Sequence {
             image,
             &facts,
         );
-        self.images.resize(count, Image::FIRST);
-        self.special.resize(count + LANES, 0);
+        resize(&mut self.images, count);
+        resize(&mut self.special, count + LANES);
         let [x, y, z] = &mut self.coordinates;
         for values in [x, y, z] {
-            values.resize(count + LANES, 0.0);
+            resize(values, count + LANES);
         }
         let kept = if self.uniform { 0 } else { count + LANES };
-        self.lengths.resize(kept, 0.0);
+        resize(&mut self.lengths, kept);
         self.walls.resize(self.starts.len() - 1, Walls::EMPTY);
         let targets = Targets {
             owned,

@@ -241,6 +241,6 @@ particle_fields! {
     approach_speed: Scalar, "m/s", ON_DEMAND;
     /// Stiffness of contact, for the time step.
     contact_stiffness: Scalar, "N/m", ON_DEMAND | CONTACT;
-    /// Neighbours counted in the last search, for the balance of work.
+    /// Work of the last step, in neighbours of the pair sums, for the balance between ranks.
     work: Index, "", MIGRATED;
 }

@@ -52,7 +52,7 @@ const GRAIN: usize = 4096;
 
 /// Sets the length, zero-filling; grows by a sixteenth more than asked, not by doubling, since
 /// most of a rank's memory is here (and at first by just what is asked).
-pub(super) fn resize<T: bytemuck::Zeroable + Copy>(values: &mut Vec<T>, length: usize) {
+pub fn resize<T: bytemuck::Zeroable + Copy>(values: &mut Vec<T>, length: usize) {
     if length > values.capacity() {
         let spare = if values.is_empty() { 0 } else { length / 16 };
         values.reserve_exact(length + spare - values.len());
@@ -135,6 +135,29 @@ impl ParticleStore {
             self.gather_field(field.id, order, scratch);
         }
         self.resize_owned(order.len());
+    }
+
+    /// Removes owned particles and the halo; the last ones take the places of those `leaving`
+    /// (indices in any order, which this sorts). `moves` is scratch.
+    pub fn remove(&mut self, leaving: &mut [u32], moves: &mut Vec<(u32, u32)>) {
+        self.resize_halo(0);
+        leaving.sort_unstable();
+        let left = self.owned - leaving.len();
+        #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
+        let (left_u32, owned) = (left as u32, self.owned as u32);
+        let (holes, gone) = leaving.split_at(leaving.partition_point(|&i| i < left_u32));
+        let staying = (left_u32..owned).filter(|i| gone.binary_search(i).is_err());
+        moves.clear();
+        moves.extend(holes.iter().copied().zip(staying));
+        for field in self.held(FieldUse::ALL) {
+            let size = field.kind.bytes();
+            let bytes = self.bytes_mut(field.id);
+            for &(to, from) in moves.iter() {
+                let from = from as usize * size;
+                bytes.copy_within(from..from + size, to as usize * size);
+            }
+        }
+        self.resize_owned(left);
     }
 
     /// Appends to `buffer` the fields used for `uses` of the particles `indices`, field by field.
@@ -226,6 +249,35 @@ mod tests {
                     field.name
                 );
             }
+        }
+    }
+
+    #[test]
+    fn who_leaves_is_gone_and_who_stays_is_whole() {
+        let before = sentinel(9);
+        for leaving in [
+            &[][..],
+            &[8],
+            &[0],
+            &[7, 2, 8],
+            &[0, 1, 2, 3, 4, 5, 6, 7, 8],
+        ] {
+            let mut after = before.clone();
+            after.remove(&mut leaving.to_vec(), &mut Vec::new());
+            assert_eq!(after.owned(), 9 - leaving.len());
+            let row = |store: &ParticleStore, i: usize| -> Vec<u8> {
+                let part = |f: &FieldInfo| {
+                    let size = f.kind.bytes();
+                    store.bytes(f.id)[i * size..(i + 1) * size].to_vec()
+                };
+                FIELDS.iter().flat_map(part).collect()
+            };
+            let mut left: Vec<_> = (0..after.owned()).map(|i| row(&after, i)).collect();
+            let stays = |i: &usize| leaving.iter().all(|&k| k as usize != *i);
+            let mut wanted: Vec<_> = (0..9).filter(stays).map(|i| row(&before, i)).collect();
+            left.sort();
+            wanted.sort();
+            assert!(left == wanted);
         }
     }
 

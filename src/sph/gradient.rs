@@ -5,7 +5,7 @@ use super::kernel::PairScale;
 use super::lanes::{F64x8, LANES, Lanes};
 
 /// What a particle shows to its neighbours of its motion: one cache line.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(64))]
 pub struct MotionRecord {
     /// Position (m).

@@ -1,6 +1,5 @@
 //! From owned and halo particles to sorted images, their records and neighbour lists.
 
-use bytemuck::Zeroable;
 use rayon::prelude::*;
 
 use super::simulation::Simulation;
@@ -10,9 +9,8 @@ use crate::model::{Case, SmoothingLength};
 use crate::neighbours::{
     ClusterLists, ColumnGrid, ForeignLists, Image, ImageFacts, Lengths, Sequence,
 };
-use crate::particles::Scatter;
+use crate::particles::{Scatter, resize};
 use crate::sph::gradient::MotionRecord;
-use crate::sph::momentum::StressRecord;
 
 /// The sequence of images, their motion records and the lists, kept from step to step.
 pub struct Search {
@@ -48,13 +46,6 @@ impl Search {
     }
 }
 
-const BLANK: MotionRecord = MotionRecord {
-    position: [0.0; 3],
-    velocity: [0.0; 3],
-    volume: 0.0,
-    mass: 0.0,
-};
-
 /// The groups' smoothing lengths where these are constant.
 fn group_lengths(case: &Case, contact: &ContactTable) -> Vec<Lengths> {
     let constant = case.sph.smoothing_length == SmoothingLength::Constant;
@@ -81,7 +72,7 @@ impl Simulation {
         let groups = &self.contact.groups;
         let search = &mut self.search;
         let (owned, others) = (store.owned(), self.halo.others());
-        search.motion.resize(owned + others.len(), BLANK);
+        resize(&mut search.motion, owned + others.len());
         let motion = Scatter::new(&mut search.motion);
         let facts = |image: Image| {
             let base = image.base();
@@ -93,7 +84,7 @@ impl Simulation {
             }
         };
         let stresses = &mut self.sweeps.stresses;
-        stresses.resize(owned + others.len(), StressRecord::zeroed());
+        resize(stresses, owned + others.len());
         // Stresses come later: until then the sort works in their memory.
         let scratch = bytemuck::cast_slice_mut(stresses);
         let sequence = &mut search.sequence;

@@ -12,6 +12,7 @@ use crate::comm::Comm;
 use crate::contact::ContactTable;
 use crate::domain::{Halo, Histogram, Migration, Slabs, balance};
 use crate::model::Case;
+use crate::neighbours::Chunk;
 use crate::particles::{FieldUse, ParticleStore};
 
 /// Why a step failed; the same on all ranks.
@@ -180,6 +181,15 @@ impl Simulation {
     #[must_use]
     pub fn memory(&self) -> usize {
         self.store.memory() + self.search.memory() + self.sweeps.memory()
+    }
+
+    /// Neighbours in the lists of the last search, summed over this rank's particles.
+    #[must_use]
+    pub fn list_entries(&self) -> u64 {
+        let clusters = self.search.clusters.chunks().iter().flat_map(Chunk::iter);
+        clusters
+            .map(|(cluster, list, _)| (cluster.lanes * list.len()) as u64)
+            .sum()
     }
 
     /// Messages and bytes that this rank has sent.

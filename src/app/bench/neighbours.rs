@@ -25,9 +25,7 @@ pub fn true_mean(comm: &Comm, simulation: &Simulation) -> f64 {
 /// Mean length of the list that a particle's cluster walks. Collective.
 #[allow(clippy::cast_precision_loss, reason = "a mean")]
 pub fn list_mean(comm: &Comm, simulation: &Simulation) -> f64 {
-    let owned = simulation.store.owned();
-    let work = &simulation.store.work[..owned];
-    let mut sums = [work.iter().map(|&n| u64::from(n)).sum(), owned as u64];
+    let mut sums = [simulation.list_entries(), simulation.store.owned() as u64];
     comm.sum_u64(&mut sums);
     sums[0] as f64 / (sums[1] as f64).max(1.0)
 }

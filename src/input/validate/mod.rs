@@ -118,11 +118,11 @@ fn sph(params: &SphParams) -> Result<SphOptions, Complaint> {
 fn time_step(params: &TimeStepParams) -> Result<TimeStepOptions, Complaint> {
     let factor = |value, key, default| number(value, key, default, Allowed::UpToOne);
     Ok(TimeStepOptions {
-        courant: factor(params.courant.as_ref(), "courant", 0.4)?,
+        courant: factor(params.courant.as_ref(), "courant", 0.5)?,
         force: factor(params.force.as_ref(), "force", 0.25)?,
         // Of a bound that is safe by itself; .55 of it is what the first moments of an impact at
         // h = 1.3 Δp take by their sound criterion, so that contact does not slow them down.
-        contact: factor(params.contact.as_ref(), "contact", 0.6)?,
+        contact: factor(params.contact.as_ref(), "contact", 0.8)?,
         max: number(params.max.as_ref(), "max", f64::INFINITY, Allowed::Positive)?,
     })
 }
