@@ -65,6 +65,7 @@ fn measure_all(args: &BenchArgs) -> Result<(), String> {
         report.print_case(case);
     }
     report.print_phases();
+    report.print_efficiencies();
     report
         .write(args.json.as_deref())
         .map_err(|error| error.to_string())?;
