@@ -72,7 +72,7 @@ fn small_cases_are_measured_on_threads_and_ranks() {
         ] {
             assert!(phases[phase].as_f64().unwrap() > 0.0, "{phase} of {row:#}");
         }
-        let sent = row["messages_per_step"].as_f64().unwrap() > 0.0;
+        let sent = row["messages_per_rank_and_step"].as_f64().unwrap() > 0.0;
         assert_eq!(sent, row["ranks"] != 1, "{row:#}");
         // One row of the table, and one column of the phases.
         let name = row["case"].as_str().unwrap();

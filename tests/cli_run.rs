@@ -64,6 +64,10 @@ fn a_summary_has_the_figures_of_the_run() {
     let rate = updates / stepping / 4.0;
     assert!((number("million_updates_per_second_per_core") / rate - 1.0).abs() < 1e-6);
 
+    for sent in ["messages", "bytes_sent"] {
+        assert!(number(&format!("{sent}_per_rank_and_step")) > 0.0, "{sent}");
+    }
+
     // At 6 particles across the sphere's radius: the bars of the fine model, times four or so.
     let bound = |key: &str, most: f64| {
         let value = number(key);

@@ -1,7 +1,7 @@
-//! Law 4: a step allocates nothing once it is warmed up.
+//! Law 4: a step allocates nothing once it is warmed up; and what is allocated is counted.
 
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 use whipple::comm::Comm;
 use whipple::input;
@@ -11,22 +11,28 @@ use whipple::step::Simulation;
 struct Counting;
 
 static COUNT: AtomicU64 = AtomicU64::new(0);
+/// Bytes in use.
+static HELD: AtomicUsize = AtomicUsize::new(0);
 
 // SAFETY: hands every call to the system's allocator unchanged.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         COUNT.fetch_add(1, Ordering::Relaxed);
+        HELD.fetch_add(layout.size(), Ordering::Relaxed);
         // SAFETY: the caller keeps the contract of `alloc`.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        HELD.fetch_sub(layout.size(), Ordering::Relaxed);
         // SAFETY: the caller keeps the contract of `dealloc`.
         unsafe { System.dealloc(pointer, layout) }
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         COUNT.fetch_add(1, Ordering::Relaxed);
+        HELD.fetch_add(size, Ordering::Relaxed);
+        HELD.fetch_sub(layout.size(), Ordering::Relaxed);
         // SAFETY: the caller keeps the contract of `realloc`.
         unsafe { System.realloc(pointer, layout, size) }
     }
@@ -66,9 +72,13 @@ axis = "y"
 position = 0
 "#;
 
+/// One test, since the counters are those of the whole process.
 #[test]
-fn a_warm_step_allocates_nothing() {
+fn a_warm_step_allocates_nothing_and_all_that_is_held_is_told() {
     let comm = Comm::solo();
+    // The pool of threads is there before anything is counted.
+    rayon::join(|| (), || ());
+    let held_before = HELD.load(Ordering::Relaxed);
     let case = input::parse("case", CASE, &[]).unwrap_or_else(|e| panic!("{e}"));
     let mut simulation = Simulation::start(case, &comm).expect("it starts");
     for _ in 0..20 {
@@ -81,4 +91,9 @@ fn a_warm_step_allocates_nothing() {
     let allocations = COUNT.load(Ordering::Relaxed) - before;
     // The thread pool now and then adds a block of 63 jobs to a queue; nothing else may.
     assert!(allocations <= 20, "{allocations} allocations in 20 steps");
+
+    #[allow(clippy::cast_precision_loss, reason = "small")]
+    let told = simulation.memory() as f64 / (HELD.load(Ordering::Relaxed) - held_before) as f64;
+    // The rest is the case, its tables, and the heads of lists.
+    assert!((0.98..=1.0).contains(&told), "{told} of what is held");
 }

@@ -222,6 +222,9 @@ pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::V
     let cores = (comm.size() * threads) as f64;
     let rate = load.updates as f64 * 1e-6 / stepping.max(f64::MIN_POSITIVE) / cores;
     let contact = simulation.contact();
+    // No particle is ever lost, so this is what the ranks have stepped since they started.
+    let steps = load.updates as f64 / (load.particles[0] as f64).max(1.0);
+    let each = |sent: u64| sent as f64 / (steps.max(1.0) * comm.size() as f64);
     json!({
         "title": simulation.case.title,
         "version": VERSION,
@@ -235,6 +238,8 @@ pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::V
         "wall_seconds": wall,
         "million_updates_per_second_per_core": rate,
         "bytes_per_particle": memory[0] as f64 / (load.particles[0] as f64).max(1.0),
+        "messages_per_rank_and_step": each(load.messages),
+        "bytes_sent_per_rank_and_step": each(load.bytes),
         "seconds_by_phase": object(phases),
         "energy_error_max": worst.energy_error,
         "contact_defect": worst.contact_defect,

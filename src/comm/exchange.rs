@@ -172,6 +172,16 @@ impl Exchange {
         self.requests.clear();
     }
 
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        let message = |peer: &Peer| peer.send.capacity() + peer.receive.capacity();
+        self.peers.iter().map(message).sum::<usize>()
+            + size_of::<Peer>() * self.peers.capacity()
+            + size_of::<ffi::MPI_Request>() * self.requests.capacity()
+            + size_of::<[u64; 2]>() * self.sizes.capacity()
+    }
+
     unsafe fn receive_piece(
         &mut self,
         comm: ffi::MPI_Comm,

@@ -41,6 +41,12 @@ impl Histogram {
         self.counts[bin] += work;
     }
 
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        8 * self.counts.capacity()
+    }
+
     /// Faces that split the work of all ranks evenly.
     pub fn split(&mut self, comm: &Comm) -> Vec<f64> {
         comm.sum_u64(&mut self.counts);

@@ -181,6 +181,20 @@ impl Halo {
         self.exchange.traffic
     }
 
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        let send =
+            |(particles, codes): &(Vec<u32>, Vec<u8>)| 4 * particles.capacity() + codes.capacity();
+        let found = |found: &Vec<Found>| size_of::<Found>() * found.capacity();
+        self.exchange.memory()
+            + 8 * (self.words.capacity() + self.received.capacity())
+            + size_of::<Extent>() * (self.extents.capacity() + self.theirs.capacity())
+            + size_of::<Image>() * self.others.capacity()
+            + self.sends.iter().map(send).sum::<usize>()
+            + self.found.iter().map(found).sum::<usize>()
+    }
+
     fn gather_extents(
         &mut self,
         comm: &Comm,

@@ -78,4 +78,13 @@ impl Migration {
     pub fn traffic(&self) -> Traffic {
         self.exchange.traffic
     }
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        let leaving: usize = self.leaving.iter().map(Vec::capacity).sum();
+        let words = [&self.scratch, &self.counts, &self.arrivals].map(Vec::capacity);
+        self.exchange.memory()
+            + 4 * (leaving + self.staying.capacity())
+            + 8 * words.iter().sum::<usize>()
+    }
 }

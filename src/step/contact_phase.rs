@@ -45,6 +45,18 @@ const INTERPENETRATION_DISTANCE: f64 = 0.28;
 /// A particle whose foreign fraction with current volumes exceeds this is enclosed.
 const ENCLOSED_FRACTION: f64 = 0.5;
 
+impl ContactPhase {
+    pub(super) fn memory(&self) -> usize {
+        let task = |task: &Task| {
+            size_of::<(usize, Fraction)>() * task.fractions.capacity()
+                + size_of::<Booked>() * task.reactions.capacity()
+                + size_of::<(usize, usize, BodyReaction)>() * task.by_body.capacity()
+                + size_of::<BodyReaction>() * task.reaction.by_body.capacity()
+        };
+        size_of::<Task>() * self.tasks.capacity() + self.tasks.iter().map(task).sum::<usize>()
+    }
+}
+
 impl Simulation {
     /// Foreign fraction, excess and their weights of every particle with foreign neighbours.
     pub(super) fn contact_fractions(&mut self, dt: f64) {

@@ -180,7 +180,17 @@ impl Simulation {
     /// Bytes that this rank holds in particle arrays, lists and buffers.
     #[must_use]
     pub fn memory(&self) -> usize {
-        self.store.memory() + self.search.memory() + self.sweeps.memory()
+        let crossed: usize = self.crossed.iter().map(Vec::capacity).sum();
+        let words = 8 * (self.scratch.capacity() + crossed) + 4 * self.order.capacity();
+        self.store.memory()
+            + self.search.memory()
+            + self.sweeps.memory()
+            + self.contact_phase.memory()
+            + self.sums.memory()
+            + self.halo.memory()
+            + self.migration.memory()
+            + self.histogram.memory()
+            + words
     }
 
     /// Neighbours in the lists of the last search, summed over this rank's particles.

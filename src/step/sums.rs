@@ -67,6 +67,11 @@ impl StepSums {
         }
     }
 
+    pub(super) fn memory(&self) -> usize {
+        size_of::<PairSums>() * self.pairs.capacity()
+            + 8 * (self.limbs.capacity() + self.extremes.capacity())
+    }
+
     /// Forgets what belongs to the last positions; work and impulses of the step stay.
     pub(super) fn clear_rates(&mut self) {
         self.contact_energy = ExactSum::default();

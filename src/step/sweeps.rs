@@ -73,7 +73,8 @@ impl Sweeps {
     }
 
     pub(super) fn memory(&self) -> usize {
-        self.stresses.capacity() * size_of::<StressRecord>()
+        let forces: usize = self.from_mirrors.iter().map(Vec::capacity).sum();
+        self.stresses.capacity() * size_of::<StressRecord>() + forces * size_of::<[f64; 3]>()
     }
 }
 

@@ -65,6 +65,7 @@ fn measure_all(args: &BenchArgs) -> Result<(), String> {
         report.print_case(case);
     }
     report.print_phases();
+    report.print_efficiencies();
     report
         .write(args.json.as_deref())
         .map_err(|error| error.to_string())?;
@@ -136,17 +137,24 @@ fn obstacle((ranks, threads): Configuration) -> Option<String> {
     }
     match launch(mpirun(ranks).arg("true")) {
         Ok(()) => None,
-        Err(message) => {
-            let said = message
-                .lines()
-                .map(str::trim)
-                .find(|line| line.len() > 1 && !is_rule(line));
-            Some(format!(
-                "mpirun does not work here ({})",
-                said.unwrap_or("it says nothing")
-            ))
-        }
+        Err(message) => Some(refusal(&message)),
     }
+}
+
+/// Why `mpirun` does not start ranks, from what it says, and what to do.
+fn refusal(message: &str) -> String {
+    // Both the option and the variables that Open MPI's essay of many lines names.
+    if message.contains("allow-run-as-root") {
+        return "mpirun refuses to run as root; `source jobs/env.sh` first, or set \
+                OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1"
+            .to_owned();
+    }
+    let mut lines = message.lines().map(str::trim);
+    let said = lines.find(|line| line.len() > 1 && !is_rule(line));
+    format!(
+        "mpirun does not work here ({})",
+        said.unwrap_or("it says nothing")
+    )
 }
 
 /// Whether a line is the dashes that Open MPI sets around its messages.
@@ -237,5 +245,22 @@ impl Scratch {
 impl Drop for Scratch {
     fn drop(&mut self) {
         let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::refusal;
+
+    #[test]
+    fn who_is_root_is_told_what_to_do() {
+        let rule = "-".repeat(74);
+        let essay = format!(
+            "{rule}\nmpirun has detected an attempt to run as root.\n\nYou can override this \
+             protection by adding the --allow-run-as-root option\n{rule}\n"
+        );
+        assert!(refusal(&essay).contains("source jobs/env.sh"));
+        let other = format!("{rule}\nThere are not enough slots.\n{rule}\n");
+        assert!(refusal(&other).ends_with("(There are not enough slots.)"));
     }
 }

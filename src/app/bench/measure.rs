@@ -160,7 +160,7 @@ fn row(
     comm.sum_u64(&mut sums);
     let particles = sums[0] as f64;
     let updates = (after.updates - before.updates) as f64;
-    let each_step = |count: u64| count as f64 / steps as f64;
+    let each_step = |count: u64| count as f64 / (steps as f64 * comm.size() as f64);
     let phases = Phase::ALL
         .iter()
         .zip(after.nanoseconds.iter().zip(&before.nanoseconds));
@@ -187,8 +187,8 @@ fn row(
         efficiency: None,
         bytes_per_particle: sums[1] as f64 / particles,
         peak_bytes_per_particle: known.then_some(sums[2] as f64 / particles),
-        messages_per_step: each_step(after.messages - before.messages),
-        bytes_sent_per_step: each_step(after.bytes - before.bytes),
+        messages_per_rank_and_step: each_step(after.messages - before.messages),
+        bytes_sent_per_rank_and_step: each_step(after.bytes - before.bytes),
         nanoseconds_by_phase,
     }
 }

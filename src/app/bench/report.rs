@@ -38,10 +38,10 @@ pub struct Row {
     pub bytes_per_particle: f64,
     /// Bytes at the peak of the processes beyond what they had before there were particles.
     pub peak_bytes_per_particle: Option<f64>,
-    /// Messages that all ranks send in a step.
-    pub messages_per_step: f64,
-    /// Bytes that all ranks send in a step.
-    pub bytes_sent_per_step: f64,
+    /// Messages that a rank sends in a step, the mean of all.
+    pub messages_per_rank_and_step: f64,
+    /// Bytes that a rank sends in a step, the mean of all.
+    pub bytes_sent_per_rank_and_step: f64,
     /// Core time by phase over particle updates (ns).
     pub nanoseconds_by_phase: BTreeMap<String, f64>,
 }
@@ -75,6 +75,10 @@ impl Row {
         self.efficiency = Some(median(
             &pairs.map(|(many, one)| many / one).collect::<Vec<_>>(),
         ));
+    }
+
+    fn is(&self, ranks: usize, threads: usize) -> bool {
+        (self.ranks, self.threads) == (ranks, threads)
     }
 
     fn configuration(&self) -> String {
@@ -130,7 +134,7 @@ impl Report {
                 figure.map_or("-".to_owned(), |figure| format!("{figure:.digits$}"))
             };
             say(&format!(
-                "{:<12} {:>9} {:>10.1} {:>6.1} {:>9} {:>9.3} {:>10} {:>10.0} {:>6} {:>8.1} {:>9.1}",
+                "{:<12} {:>9} {:>10.1} {:>6.1} {:>9} {:>9.3} {:>10} {:>10.0} {:>6} {:>10.1} {:>10.1}",
                 row.case,
                 row.particles,
                 row.neighbours,
@@ -140,8 +144,8 @@ impl Report {
                 or_dash(row.efficiency, 3),
                 row.bytes_per_particle,
                 or_dash(row.peak_bytes_per_particle, 0),
-                row.messages_per_step,
-                row.bytes_sent_per_step * 1e-3,
+                row.messages_per_rank_and_step,
+                row.bytes_sent_per_rank_and_step * 1e-3,
             ));
         }
     }
@@ -153,11 +157,11 @@ impl Report {
             self.version, self.commit, machine.processor, machine.instructions, self.repeat
         ));
         say(&format!(
-            "{:<12} {:>9} {:>10} {:>6} {:>9} {:>9} {:>10} {:>10} {:>6} {:>8} {:>9}",
+            "{:<12} {:>9} {:>10} {:>6} {:>9} {:>9} {:>10} {:>10} {:>6} {:>10} {:>10}",
             "", "", "", "", "ranks x", "M updates", "", "bytes/", "at", "messages", "kB"
         ));
         say(&format!(
-            "{:<12} {:>9} {:>10} {:>6} {:>9} {:>9} {:>10} {:>10} {:>6} {:>8} {:>9}",
+            "{:<12} {:>9} {:>10} {:>6} {:>9} {:>9} {:>10} {:>10} {:>6} {:>10} {:>10}",
             "case",
             "particles",
             "neighbours",
@@ -167,8 +171,8 @@ impl Report {
             "efficiency",
             "particle",
             "peak",
-            "/step",
-            "/step"
+            "/rank/step",
+            "/rank/step"
         ));
     }
 
@@ -181,6 +185,33 @@ impl Report {
                 let rows: Vec<&Row> = self.rows.iter().filter(|row| row.case == case).collect();
                 print_phases(case, &rows);
             }
+        }
+    }
+
+    /// Prints how much of a core's speed is left beside another thread or rank: a line for each
+    /// case.
+    pub fn print_efficiencies(&self) {
+        say("\nefficiency: speed of a core over that of a core by itself");
+        say(&format!(
+            "  {:<14}{:>14}{:>14}",
+            "", "two threads", "two ranks"
+        ));
+        let alone = self.rows.iter().filter(|row| row.is(1, 1));
+        for case in alone.map(|row| &row.case) {
+            let figure = |ranks: usize, threads: usize| {
+                let mut rows = self.rows.iter().filter(|row| row.case == *case);
+                let row = rows.find(|row| row.is(ranks, threads));
+                let efficiency = row.and_then(|row| row.efficiency);
+                efficiency.map_or("-".to_owned(), |figure| format!("{figure:.3}"))
+            };
+            say(&format!(
+                "  {case:<14}{:>14}{:>14}",
+                figure(1, 2),
+                figure(2, 1)
+            ));
+        }
+        for reason in &self.skipped {
+            say(&format!("  {reason}"));
         }
     }
 

@@ -1,0 +1,211 @@
+//! `make bench-kernels`: the inner loops alone, on a block of slightly disordered particles with
+//! some 75 neighbours each. Throughput counts particles; all on one thread.
+
+mod scene;
+
+use std::hint::black_box;
+use std::time::Duration;
+
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
+use scene::{COUNT, DENSITY, LENGTH, Scene, case, noise};
+use whipple::contact::{ContactTable, Reaction, overlap};
+use whipple::diagnose::exact_sum::ExactSum;
+use whipple::material::{Material, PointBatch};
+use whipple::neighbours::ForeignLists;
+use whipple::sph::dispatch::{Vectorised, available};
+use whipple::sph::gradient::VelocityGradient;
+use whipple::sph::kernel::{ConstantScale, Kernel};
+use whipple::sph::lanes::{LANES, Lanes};
+use whipple::sph::momentum::{Momentum, StressRecord, Viscosity};
+
+/// A group whose throughput counts so many elements.
+fn group<'a>(
+    criterion: &'a mut Criterion,
+    name: &str,
+    count: usize,
+) -> BenchmarkGroup<'a, WallTime> {
+    let mut group = criterion.benchmark_group(name);
+    group.throughput(Throughput::Elements(count as u64));
+    group.sample_size(10);
+    group.warm_up_time(Duration::from_millis(500));
+    group.measurement_time(Duration::from_secs(2));
+    group
+}
+
+fn velocity_gradient(criterion: &mut Criterion) {
+    let scene = Scene::new(1);
+    let scale = ConstantScale::new(&Kernel::new(3), LENGTH);
+    let mut group = group(criterion, "velocity_gradient", COUNT);
+    for set in available() {
+        group.bench_function(set.name(), |bencher| {
+            bencher.iter(|| {
+                scene.sweep(|receivers, neighbours| {
+                    black_box(set.run(VelocityGradient {
+                        sources: &scene.motion,
+                        lengths: scene.sequence.smoothing_lengths(),
+                        receivers,
+                        neighbours,
+                        scale,
+                    }));
+                });
+            });
+        });
+    }
+}
+
+fn momentum(criterion: &mut Criterion) {
+    let scene = Scene::new(1);
+    let scale = ConstantScale::new(&Kernel::new(3), LENGTH);
+    let deviatoric = [1e8, 0.0, -1e8, 1e8, 2e8, 3e8];
+    let stresses = vec![StressRecord::new(1e9, &deviatoric, DENSITY, 5328.0); COUNT];
+    let viscosity = Viscosity {
+        alpha: 1.0,
+        beta: 2.0,
+    };
+    let mut group = group(criterion, "momentum_and_energy", COUNT);
+    for set in available() {
+        group.bench_function(set.name(), |bencher| {
+            bencher.iter(|| {
+                scene.sweep(|receivers, neighbours| {
+                    black_box(set.run(Momentum::<_, false> {
+                        sources: &scene.motion,
+                        lengths: scene.sequence.smoothing_lengths(),
+                        stresses: &stresses,
+                        mirrored: scene.sequence.mirrored(),
+                        receivers,
+                        neighbours,
+                        scale,
+                        viscosity,
+                    }));
+                });
+            });
+        });
+    }
+}
+
+fn search(criterion: &mut Criterion) {
+    let mut scene = Scene::new(1);
+    let mut group = group(criterion, "search", COUNT);
+    group.bench_function("sort", |bencher| bencher.iter(|| scene.sort()));
+    group.bench_function("lists", |bencher| bencher.iter(|| scene.list()));
+    let scene = Scene::new(2);
+    let (table, mut foreign) = (ContactTable::new(&case()), ForeignLists::default());
+    group.bench_function("foreign", |bencher| {
+        bencher.iter(|| scene.list_foreign(&table, &mut foreign));
+    });
+}
+
+/// Throughput counts the particles within reach of the other half.
+fn contact(criterion: &mut Criterion) {
+    let mut scene = Scene::new(2);
+    let (table, mut foreign) = (ContactTable::new(&case()), ForeignLists::default());
+    scene.list_foreign(&table, &mut foreign);
+    let pairs = || {
+        foreign
+            .chunks()
+            .iter()
+            .flat_map(|chunk| chunk.overlap.iter())
+    };
+    let mut group = group(criterion, "contact", pairs().count());
+    group.bench_function("fractions", |bencher| {
+        let view = scene.contact(&table);
+        bencher.iter(|| {
+            for (place, neighbours) in pairs() {
+                black_box(overlap::fraction(&view, place, neighbours, 0.0));
+            }
+        });
+    });
+    for (place, neighbours) in pairs() {
+        let fraction = overlap::fraction(&scene.contact(&table), place, neighbours, 0.0);
+        let i = scene.sequence.images()[place as usize].base();
+        scene.store.foreign_fraction[i] = fraction.fraction;
+        scene.store.contact_excess[i] = fraction.excess;
+        scene.store.contact_modulus[i] = fraction.modulus;
+        scene.store.touching_value[i] = fraction.touching;
+        scene.store.contact_slope[i] = fraction.slope;
+    }
+    group.bench_function("forces", |bencher| {
+        let (view, mut reaction) = (scene.contact(&table), Reaction::default());
+        bencher.iter(|| {
+            for (place, neighbours) in pairs() {
+                reaction.clear();
+                overlap::react(&view, place, neighbours, &mut reaction);
+                black_box(&reaction);
+            }
+        });
+    });
+}
+
+/// The material's update, as it stands inside the first sweep.
+struct Update<'a>(&'a Material, &'a mut PointBatch);
+
+impl Vectorised for Update<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) {
+        self.0.update(black_box(self.1), 1e-10);
+    }
+}
+
+fn material(criterion: &mut Criterion) {
+    let material = &case().materials[0];
+    let mut k = 0;
+    let mut lanes = |size: f64| {
+        k += 1;
+        [size * noise(k); LANES]
+    };
+    let batch = PointBatch {
+        density: [1.02 * DENSITY; LANES],
+        specific_energy: [1e4; LANES],
+        velocity_gradient: [(); 9].map(|()| lanes(1e5)),
+        deviatoric_stress: [(); 6].map(|()| lanes(1e8)),
+        plastic_strain: [0.1; LANES],
+        pressure: [0.0; LANES],
+        sound_speed: [0.0; LANES],
+    };
+    // As many as stay in the cache: what is measured is arithmetic.
+    let mut batches = vec![batch; 64];
+    let mut group = group(criterion, "material", LANES * batches.len());
+    for set in available() {
+        group.bench_function(set.name(), |bencher| {
+            bencher.iter(|| {
+                for batch in &mut batches {
+                    set.run(Update(material, batch));
+                }
+            });
+        });
+    }
+}
+
+fn exact_sum(criterion: &mut Criterion) {
+    let terms: Vec<f64> = (0..10_000).map(noise).collect();
+    let mut group = group(criterion, "exact_sum", terms.len());
+    group.bench_function("add", |bencher| {
+        bencher.iter(|| {
+            let mut sum = ExactSum::default();
+            for &term in &terms {
+                sum.add(term);
+            }
+            sum.value()
+        });
+    });
+}
+
+/// All on one thread, so that figures are those of a core.
+fn one_thread() -> Criterion {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .use_current_thread()
+        .build_global()
+        .unwrap_or_else(|error| panic!("{error}"));
+    Criterion::default()
+}
+
+criterion_group! {
+    name = kernels;
+    config = one_thread();
+    targets = velocity_gradient, momentum, search, contact, material, exact_sum
+}
+criterion_main!(kernels);

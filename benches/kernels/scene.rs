@@ -1,0 +1,163 @@
+//! The block: particles as the engine sorts and lists them.
+
+use whipple::contact::{ContactTable, ContactView};
+use whipple::input;
+use whipple::model::Case;
+use whipple::neighbours::{
+    Chunk, ClusterLists, ColumnGrid, ForeignLists, Image, ImageFacts, Lengths, Sequence,
+};
+use whipple::particles::ParticleStore;
+use whipple::sph::gradient::MotionRecord;
+use whipple::sph::lanes::LANES;
+
+/// Particles along an edge.
+const EDGE: u32 = 48;
+pub const COUNT: usize = (EDGE * EDGE * EDGE) as usize;
+/// Particle spacing (m).
+const SPACING: f64 = 2e-5;
+/// Smoothing length (m).
+pub const LENGTH: f64 = 1.3 * SPACING;
+/// Density of aluminium 2024 (kg/m³).
+pub const DENSITY: f64 = 2785.0;
+
+/// Two halves of the block, which touch.
+const CASE: &str = r#"
+dimension = 3
+spacing = "0.02 mm"
+
+[run]
+end_time = "1 s"
+
+[sph]
+smoothing = 1.3
+
+[material.aluminium]
+library = "aluminium-2024"
+
+[[body]]
+name = "left"
+material = "aluminium"
+shape.box = { lower = [0, 0, 0], upper = ["0.48 mm", "0.96 mm", "0.96 mm"] }
+
+[[body]]
+name = "right"
+material = "aluminium"
+shape.box = { lower = ["0.48 mm", 0, 0], upper = ["0.96 mm", "0.96 mm", "0.96 mm"] }
+
+[contact]
+mode = "overlap"
+"#;
+
+pub fn case() -> Case {
+    input::parse("bench", CASE, &[]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Particles, sorted and listed.
+pub struct Scene {
+    pub store: ParticleStore,
+    pub sequence: Sequence,
+    scratch: Vec<u64>,
+    clusters: ClusterLists,
+    pub motion: Vec<MotionRecord>,
+}
+
+impl Scene {
+    /// The block as one body or as two halves, each a group of its own.
+    pub fn new(bodies: u32) -> Self {
+        let mut store = ParticleStore::default();
+        store.resize_owned(COUNT);
+        for (i, site) in (0..EDGE * EDGE * EDGE).enumerate() {
+            store.id[i] = u64::from(site);
+            store.body[i] = site % EDGE * bodies / EDGE;
+            store.mass[i] = DENSITY * SPACING.powi(3);
+            store.position[i] = place(site);
+        }
+        let side = f64::from(EDGE) * SPACING;
+        let grid = ColumnGrid::new([0.0; 3], [side; 3], SPACING, 0);
+        let mut scene = Self {
+            store,
+            sequence: Sequence::new((0..bodies).map(|_| grid.clone()), true),
+            scratch: vec![0; Sequence::SCRATCH_WORDS * COUNT],
+            clusters: ClusterLists::default(),
+            motion: Vec::new(),
+        };
+        scene.sort();
+        scene.list();
+        let sorted = scene.sequence.images().iter();
+        let motions = sorted.map(|image| motion(&scene.store.position[image.base()]));
+        scene.motion = motions.collect();
+        scene
+    }
+
+    pub fn sort(&mut self) {
+        let store = &self.store;
+        let facts = |image: Image| ImageFacts {
+            position: store.position[image.base()],
+            id: store.id[image.base()],
+            group: store.body[image.base()] as usize,
+            smoothing_length: LENGTH,
+        };
+        let scratch = &mut self.scratch;
+        self.sequence.build(scratch, COUNT, &[], facts, |_, _| ());
+    }
+
+    pub fn list(&mut self) {
+        let lengths = Lengths {
+            longest: LENGTH,
+            uniform: true,
+        };
+        self.clusters.build(&self.sequence, &[lengths; 2]);
+    }
+
+    pub fn list_foreign(&self, table: &ContactTable, foreign: &mut ForeignLists) {
+        let (images, body) = (self.sequence.images(), &self.store.body);
+        let body_of = |place: u32| body[images[place as usize].base()] as usize;
+        foreign.build(
+            &self.clusters,
+            &self.sequence,
+            &self.motion,
+            &table.foreign,
+            body_of,
+        );
+    }
+
+    /// Calls `work` with the receivers and the neighbours of each cluster.
+    pub fn sweep(&self, mut work: impl FnMut([u32; LANES], &[u32])) {
+        for (cluster, neighbours, _) in self.clusters.chunks().iter().flat_map(Chunk::iter) {
+            work(cluster.receivers, neighbours);
+        }
+    }
+
+    pub fn contact<'a>(&'a self, table: &'a ContactTable) -> ContactView<'a> {
+        ContactView {
+            images: self.sequence.images(),
+            motion: &self.motion,
+            store: &self.store,
+            table,
+        }
+    }
+}
+
+/// A site of the lattice, off by up to a tenth of the spacing along each axis (m).
+fn place(site: u32) -> [f64; 3] {
+    let sites = [site % EDGE, site / EDGE % EDGE, site / EDGE / EDGE];
+    let mut axis = 0;
+    sites.map(|along| {
+        axis += 1;
+        (f64::from(along) + 0.5 + 0.1 * noise(3 * site + axis)) * SPACING
+    })
+}
+
+/// A number of −1..1 that looks random.
+pub fn noise(k: u32) -> f64 {
+    f64::from(k.wrapping_mul(0x9e37_79b9) >> 8) / f64::from(1 << 23) - 1.0
+}
+
+fn motion(position: &[f64; 3]) -> MotionRecord {
+    MotionRecord {
+        position: *position,
+        velocity: position.map(|x| -1e6 * x),
+        volume: SPACING.powi(3),
+        mass: DENSITY * SPACING.powi(3),
+    }
+}
