@@ -82,9 +82,10 @@ impl Migration {
     #[must_use]
     pub fn memory(&self) -> usize {
         let leaving: usize = self.leaving.iter().map(Vec::capacity).sum();
-        let words = [&self.scratch, &self.counts, &self.arrivals].map(Vec::capacity);
+        let words = [&self.counts, &self.arrivals].map(Vec::capacity);
         self.exchange.memory()
-            + 4 * (leaving + self.staying.capacity())
+            + 4 * (leaving + self.gone.capacity())
+            + 8 * self.moves.capacity()
             + 8 * words.iter().sum::<usize>()
     }
 }

@@ -36,12 +36,11 @@ impl Gatherer {
             let end = segment.end;
             let mut place = segment.start;
             while place < end {
-                if growing.cluster.lanes == 0 && place + LANES <= end {
-                    if let Some(cluster) = growing.row(place) {
-                        clusters.push(cluster);
-                        place += LANES;
-                        continue;
-                    }
+                let whole = growing.cluster.lanes == 0 && place + LANES <= end;
+                if whole && let Some(cluster) = growing.row(place) {
+                    clusters.push(cluster);
+                    place += LANES;
+                    continue;
                 }
                 if sequence.is_owned(place) {
                     if !growing.try_add(place) {

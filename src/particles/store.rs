@@ -11,7 +11,7 @@ const PIECE: usize = 3;
 
 /// Reorders `values[..order.len()]` so that new element k is old element `order[k]`.
 pub(super) fn gather<T: bytemuck::Pod>(values: &mut [T], order: &[u32], scratch: &mut Vec<u64>) {
-    if size_of::<T>() % 8 != 0 {
+    if !size_of::<T>().is_multiple_of(8) {
         let values: &mut [u32] = bytemuck::cast_slice_mut(values);
         return gather_words(values, 1, order, scratch);
     }

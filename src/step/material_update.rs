@@ -69,7 +69,8 @@ impl<'a> MaterialUpdate<'a> {
         let before = self.gather(&base, gradient);
         let material = |k: usize| self.material_of_body[self.body[base[k]] as usize];
         // Empty lanes cost as much as others.
-        let work = OWN_WORK + (neighbours * LANES / cluster.lanes) as u32;
+        let work = neighbours * LANES / cluster.lanes;
+        let work = OWN_WORK + u32::try_from(work).unwrap_or(u32::MAX / 2);
         let mut done = 0_u32;
         for k in 0..cluster.lanes {
             if done >> k & 1 == 1 {
