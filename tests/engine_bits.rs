@@ -8,6 +8,7 @@ use std::process::Command;
 use common::outcome::{Outcome, advance, assert_same, everything, start};
 use common::random::Random;
 use whipple::comm::Comm;
+use whipple::particles::SCRATCH_WORDS;
 use whipple::sph::dispatch::available;
 use whipple::step::Simulation;
 
@@ -45,7 +46,9 @@ fn order_in_memory_changes_no_bit() {
     for _ in 0..STEPS {
         let mut order: Vec<u32> = (0..u32::try_from(simulation.store.owned()).unwrap()).collect();
         random.shuffle(&mut order);
-        simulation.store.keep(&order, &mut Vec::new());
+        simulation
+            .store
+            .keep(&order, &mut vec![0; SCRATCH_WORDS * order.len()]);
         advance(&mut simulation, 1);
     }
     assert_same(&Outcome::of(&simulation), &reference());

@@ -13,7 +13,7 @@ use whipple::comm::{Comm, Exchange};
 use whipple::domain::{Decomposition, Halo, Histogram, Migration, Mirrors, Slabs, balance};
 use whipple::model::{Axis, SymmetryPlane};
 use whipple::neighbours::Image;
-use whipple::particles::{FIELDS, FieldInfo, FieldUse, ParticleStore};
+use whipple::particles::{FIELDS, FieldInfo, FieldUse, ParticleStore, SCRATCH_WORDS};
 use whipple::step::Simulation;
 
 /// Particles of the tests, spread over a box of this many units.
@@ -129,7 +129,7 @@ fn check_owners(comm: &Comm, slabs: &Slabs, store: &ParticleStore, round: u64) {
 fn next_round(store: &mut ParticleStore, round: u64, random: &mut Random) {
     let mut order: Vec<u32> = (0..u32::try_from(store.owned()).unwrap()).collect();
     random.shuffle(&mut order);
-    store.keep(&order, &mut Vec::new());
+    store.keep(&order, &mut vec![0; SCRATCH_WORDS * order.len()]);
     let numbers = numbers();
     for slot in 0..store.owned() {
         let k = numbers[&store.id[slot]];

@@ -13,7 +13,7 @@ use whipple::comm::Comm;
 use whipple::output::{
     Column, Rows, RunFolder, Table, Value, checkpoint, series, snapshot, write_json,
 };
-use whipple::particles::ParticleStore;
+use whipple::particles::{ParticleStore, SCRATCH_WORDS};
 
 /// A run folder of 30 particles with all that a run writes, after `change` of the particles.
 fn run(place: &Path, name: &str, change: impl Fn(&mut ParticleStore)) -> PathBuf {
@@ -132,7 +132,7 @@ fn other_particles_are_told_and_the_common_ones_compared() {
     let a = run(place.path(), "a", |_| ());
     let b = run(place.path(), "b", |store| {
         let order: Vec<u32> = (0..30).filter(|k| k % 7 != 3).collect();
-        store.keep(&order, &mut Vec::new());
+        store.keep(&order, &mut vec![0; SCRATCH_WORDS * order.len()]);
         store.pressure[2] = f64::from_bits(0x7ff8_0000_0000_0001);
     });
     let told = text(&compare(&a, &b).unwrap());

@@ -173,7 +173,7 @@ macro_rules! particle_fields {
                 } )+ }
             }
 
-            pub(super) fn gather_field(&mut self, field: FieldId, order: &[u32], scratch: &mut Vec<u64>) {
+            pub(super) fn gather_field(&mut self, field: FieldId, order: &[u32], scratch: &mut [u64]) {
                 match field { $( FieldId::$name => super::store::gather(&mut self.$name, order, scratch), )+ }
             }
 

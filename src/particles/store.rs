@@ -6,11 +6,12 @@ use rayon::prelude::*;
 
 use super::fields::{FIELDS, FieldInfo, FieldUse, ParticleStore};
 
-/// Words of an element that move at once when values are reordered.
-const PIECE: usize = 3;
+/// Words of scratch memory for each particle when a store is reordered: so much of a particle's
+/// element moves at once.
+pub const SCRATCH_WORDS: usize = 3;
 
 /// Reorders `values[..order.len()]` so that new element k is old element `order[k]`.
-pub(super) fn gather<T: bytemuck::Pod>(values: &mut [T], order: &[u32], scratch: &mut Vec<u64>) {
+pub(super) fn gather<T: bytemuck::Pod>(values: &mut [T], order: &[u32], scratch: &mut [u64]) {
     if !size_of::<T>().is_multiple_of(8) {
         let values: &mut [u32] = bytemuck::cast_slice_mut(values);
         return gather_words(values, 1, order, scratch);
@@ -24,12 +25,11 @@ fn gather_words<W: bytemuck::Pod + Send + Sync>(
     values: &mut [W],
     size: usize,
     order: &[u32],
-    scratch: &mut Vec<u64>,
+    scratch: &mut [u64],
 ) {
-    scratch.resize(scratch.len().max(PIECE * order.len()), 0);
-    let copy: &mut [W] = bytemuck::cast_slice_mut(scratch.as_mut_slice());
-    for first in (0..size).step_by(PIECE) {
-        let piece = first..size.min(first + PIECE);
+    let copy: &mut [W] = bytemuck::cast_slice_mut(scratch);
+    for first in (0..size).step_by(SCRATCH_WORDS) {
+        let piece = first..size.min(first + SCRATCH_WORDS);
         let width = piece.len();
         copy.par_chunks_exact_mut(width)
             .zip(order)
@@ -128,8 +128,16 @@ impl ParticleStore {
         }
     }
 
-    /// Keeps the owned particles `order`, in that order; drops the halo.
-    pub fn keep(&mut self, order: &[u32], scratch: &mut Vec<u64>) {
+    /// Keeps the owned particles `order`, in that order; drops the halo. `scratch` is memory to
+    /// work in, at least [`SCRATCH_WORDS`] for each.
+    ///
+    /// # Panics
+    /// If `scratch` is too short.
+    pub fn keep(&mut self, order: &[u32], scratch: &mut [u64]) {
+        assert!(
+            scratch.len() >= SCRATCH_WORDS * order.len(),
+            "too little scratch"
+        );
         self.resize_halo(0);
         for field in self.held(FieldUse::ALL) {
             self.gather_field(field.id, order, scratch);
@@ -236,7 +244,7 @@ mod tests {
         let before = sentinel(9);
         let mut after = before.clone();
         let order = [4, 0, 8, 3];
-        after.keep(&order, &mut Vec::new());
+        after.keep(&order, &mut [0; 4 * SCRATCH_WORDS]);
         assert_eq!(after.owned(), 4);
         for field in FIELDS {
             let size = field.kind.bytes();
@@ -288,7 +296,7 @@ mod tests {
         store.drop_contact();
         store.resize_owned(6);
         store.resize_halo(3);
-        store.keep(&[2, 0], &mut Vec::new());
+        store.keep(&[2, 0], &mut [0; 2 * SCRATCH_WORDS]);
         assert!(store.bytes_per_particle(FieldUse::LEAVING) < message);
         for field in with_use(FieldUse::CONTACT) {
             assert!(store.bytes(field.id).is_empty(), "{}", field.name);

@@ -134,7 +134,9 @@ impl Simulation {
         }
         let known = self.order.len() == owned;
         if known {
-            self.store.keep(&self.order, &mut self.scratch);
+            // Stresses are of the last step: their memory is free.
+            let scratch = bytemuck::cast_slice_mut(&mut self.sweeps.stresses);
+            self.store.keep(&self.order, scratch);
         }
         known
     }
