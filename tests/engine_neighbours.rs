@@ -7,7 +7,9 @@ use std::collections::BTreeMap;
 use common::cloud::{Cloud, Found, Recipe};
 use common::random::Random;
 use proptest::prelude::*;
-use whipple::neighbours::{Chunk, ContactClass, ForeignLists, ForeignTable, PairList, oracle};
+use whipple::neighbours::{
+    Chunk, ContactClass, ForeignLists, ForeignTable, Image, PairList, oracle,
+};
 
 fn recipe() -> impl Strategy<Value = Recipe> {
     (1_usize..=3)
@@ -65,6 +67,8 @@ fn check_own_lists(cloud: &Cloud, found: &Found) {
         assert!(list.is_sorted_by(|a, b| a < b), "once each, in order");
         let images = || list.iter().map(|&j| found.sequence.images()[j as usize]);
         assert_eq!(among.mirrors, images().any(|image| image.code() != 0));
+        let moves = |image: Image| cloud.velocity[image.base()] != cloud.velocity[0];
+        assert_eq!(among.moving, images().any(moves));
         assert_eq!(
             among.halo,
             images().any(|image| image.base() >= cloud.owned)

@@ -96,6 +96,7 @@ impl Scene {
             id: store.id[image.base()],
             group: store.body[image.base()] as usize,
             smoothing_length: LENGTH,
+            moving: true,
         };
         let scratch = &mut self.scratch;
         self.sequence.build(scratch, COUNT, &[], facts, |_, _| ());

@@ -5,7 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::gather::Gatherer;
-use super::sequence::{HALO, MIRROR, Sequence};
+use super::sequence::{HALO, MIRROR, MOVING, Sequence};
 use crate::sph::dispatch::{Vectorised, instructions};
 use crate::sph::lanes::{LANES, Lanes};
 
@@ -31,6 +31,8 @@ pub struct Among {
     pub mirrors: bool,
     /// Particles of other ranks.
     pub halo: bool,
+    /// Anything that is not at the group's common velocity.
+    pub moving: bool,
 }
 
 /// Clusters and neighbour lists of one task.
@@ -177,13 +179,14 @@ impl Lister<'_> {
                 }
             },
         );
-        // Both flags of eight lanes into one byte.
+        // The flags of eight lanes into one byte.
         let special = special | special >> 32;
         let special = special | special >> 16;
         let special = special | special >> 8;
         Among {
             mirrors: special & u64::from(MIRROR) != 0,
             halo: special & u64::from(HALO) != 0,
+            moving: special & u64::from(MOVING) != 0,
         }
     }
 }

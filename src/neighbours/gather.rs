@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use std::ops::Range;
 
 use super::clusters::Cluster;
-use super::sequence::Sequence;
+use super::sequence::{IMAGE, Sequence};
 use crate::sph::lanes::LANES;
 
 /// Gathers the clusters of one task; the buffer is kept from step to step.
@@ -112,7 +112,9 @@ impl<'a> Growing<'a> {
         let upper = edge(|a, b| if a > b { a } else { b });
         let near = reach(&lower, &upper, self.range) <= (1.0 + GROWTH) * self.sphere;
         #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
-        (near && *eight.special == [0; LANES]).then(|| Cluster {
+        let owned = u64::from_le_bytes(*eight.special) & u64::from_le_bytes([IMAGE; LANES]) == 0;
+        #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
+        (near && owned).then(|| Cluster {
             receivers: std::array::from_fn(|k| (place + k) as u32),
             lanes: LANES,
             group: self.cluster.group,

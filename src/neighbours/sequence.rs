@@ -73,6 +73,8 @@ pub struct ImageFacts {
     pub group: usize,
     /// Smoothing length (m).
     pub smoothing_length: f64,
+    /// Whether its velocity is another than the one common to its group at rest in itself.
+    pub moving: bool,
 }
 
 /// The sorted images. Buffers are kept from step to step.
@@ -83,7 +85,7 @@ pub struct Sequence {
     starts: Vec<u32>,
     walls: Vec<Walls>,
     images: Vec<Image>,
-    /// 0 for owned particles; [`MIRROR`] and [`HALO`] set for others.
+    /// Sets of [`MIRROR`], [`HALO`] and [`MOVING`].
     special: Vec<u8>,
     /// Coordinates and smoothing lengths (m) in order, for vectors that read past the end.
     coordinates: [Vec<f64>; 3],
@@ -98,7 +100,7 @@ pub(super) struct Eight<'a> {
     pub(super) coordinates: [&'a [f64; LANES]; 3],
     /// Smoothing lengths (m), whatever if they are uniform.
     pub(super) lengths: &'a [f64; LANES],
-    /// 0 for particles of this rank, else which of [`MIRROR`] and [`HALO`] they are.
+    /// Sets of [`MIRROR`], [`HALO`] and [`MOVING`].
     pub(super) special: &'a [u8; LANES],
 }
 
@@ -106,6 +108,10 @@ pub(super) struct Eight<'a> {
 pub(super) const MIRROR: u8 = 1;
 /// Of another rank.
 pub(super) const HALO: u8 = 2;
+/// Not at the group's common velocity.
+pub(super) const MOVING: u8 = 4;
+/// Everything but particles of this rank themselves.
+pub(super) const IMAGE: u8 = MIRROR | HALO;
 
 impl Sequence {
     /// Empty sequence with one grid for each group. If the smoothing lengths inside each group
@@ -236,7 +242,7 @@ impl Sequence {
     /// Whether the image at a place is a particle of this rank itself.
     #[inline(always)]
     pub(super) fn is_owned(&self, place: usize) -> bool {
-        self.special[place] == 0
+        self.special[place] & IMAGE == 0
     }
 
     /// The images in canonical order, group after group.

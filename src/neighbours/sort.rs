@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 
 use rayon::prelude::*;
 
-use super::sequence::{Group, HALO, Image, ImageFacts, MIRROR};
+use super::sequence::{Group, HALO, Image, ImageFacts, MIRROR, MOVING};
 use crate::particles::Scatter;
 
 /// What an image is sorted by inside its column.
@@ -306,10 +306,11 @@ impl Targets<'_> {
     fn write(&self, place: usize, image: Image, facts: &ImageFacts) {
         let mirror = if image.code() == 0 { 0 } else { MIRROR };
         let halo = if image.base() < self.owned { 0 } else { HALO };
+        let moving = if facts.moving { MOVING } else { 0 };
         // SAFETY: each place belongs to one column, and one thread has that column.
         unsafe {
             *self.images.slot(place) = image;
-            *self.special.slot(place) = mirror | halo;
+            *self.special.slot(place) = mirror | halo | moving;
             for axis in 0..3 {
                 *self.coordinates[axis].slot(place) = facts.position[axis];
             }

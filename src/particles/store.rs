@@ -52,10 +52,18 @@ const GRAIN: usize = 4096;
 
 /// Sets the length, zero-filling; grows by a sixteenth more than asked, not by doubling, since
 /// most of a rank's memory is here (and at first by just what is asked).
-pub fn resize<T: bytemuck::Zeroable + Copy>(values: &mut Vec<T>, length: usize) {
+///
+/// All threads touch the memory of a first allocation, so that a machine that keeps a page near
+/// whoever touches it first spreads them.
+pub fn resize<T: bytemuck::Zeroable + Copy + Send + Sync>(values: &mut Vec<T>, length: usize) {
+    if values.capacity() == 0 {
+        *values = bytemuck::zeroed_vec(length);
+        let touch = |chunk: &mut [T]| chunk.fill(T::zeroed());
+        values.par_chunks_mut(GRAIN).for_each(touch);
+        return;
+    }
     if length > values.capacity() {
-        let spare = if values.is_empty() { 0 } else { length / 16 };
-        values.reserve_exact(length + spare - values.len());
+        values.reserve_exact(length + length / 16 - values.len());
     }
     values.resize(length, T::zeroed());
 }

@@ -19,6 +19,13 @@ pub struct StressRecord {
 }
 
 impl StressRecord {
+    /// Whether there is no stress at all.
+    #[inline(always)]
+    #[must_use]
+    pub fn is_free(&self) -> bool {
+        self.stress_over_density2 == [0.0; 6]
+    }
+
     /// From pressure (Pa), deviatoric stress (Pa), density (kg/m³) and sound speed (m/s).
     #[inline(always)]
     #[must_use]
@@ -87,7 +94,8 @@ pub struct Forces {
 }
 
 impl Forces {
-    const NONE: Self = Self {
+    /// What particles without relative velocity and without stress do to each other, to the bit.
+    pub const NONE: Self = Self {
         acceleration: [F64x8([0.0; LANES]); 3],
         power: F64x8([0.0; LANES]),
         approach: F64x8([0.0; LANES]),
@@ -180,7 +188,7 @@ impl<S: PairScale, const MIRRORED: bool> Vectorised for Momentum<'_, S, MIRRORED
         }
         Forces {
             acceleration: acceleration.map(V::store),
-            power: power.mul(V::splat(-0.5)).store(),
+            power: zero.sub(power.mul(V::splat(0.5))).store(),
             approach: zero.sub(fastest).store(),
             from_mirrors: from_mirrors.map(V::store),
         }

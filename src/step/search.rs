@@ -20,6 +20,9 @@ pub struct Search {
     pub(super) foreign: ForeignLists,
     /// Smoothing lengths of each group.
     lengths: Vec<Lengths>,
+    /// Velocity of each group's first body at the start (m/s): where all move so and there is no
+    /// stress, sums are zero to the bit and need not be made.
+    common_velocity: Vec<[f64; 3]>,
 }
 
 impl Search {
@@ -31,6 +34,12 @@ impl Search {
         let uniform = first.uniform && rest.iter().all(same);
         Self {
             lengths,
+            common_velocity: (0..contact.group_count())
+                .map(|group| {
+                    let first = contact.groups.iter().position(|&g| g == group);
+                    first.map_or([0.0; 3], |body| case.bodies[body].velocity.into())
+                })
+                .collect(),
             sequence: Sequence::new(grids, uniform),
             motion: Vec::new(),
             clusters: ClusterLists::default(),
@@ -72,6 +81,7 @@ impl Simulation {
         let groups = &self.contact.groups;
         let search = &mut self.search;
         let (owned, others) = (store.owned(), self.halo.others());
+        let (spare, common) = (self.spare_calm, &search.common_velocity);
         resize(&mut search.motion, owned + others.len());
         let motion = Scatter::new(&mut search.motion);
         let facts = |image: Image| {
@@ -81,6 +91,11 @@ impl Simulation {
                 id: store.id[base],
                 group: groups[store.body[base] as usize],
                 smoothing_length: store.smoothing_length[base],
+                moving: {
+                    let group = groups[store.body[base] as usize];
+                    let velocity = &store.predicted_velocity[base];
+                    !spare || Mirrors::reflect_vector(velocity, image.code()) != common[group]
+                },
             }
         };
         let stresses = &mut self.sweeps.stresses;

@@ -116,6 +116,7 @@ impl Simulation {
             state: fresh_state(pairs.len()),
             timers: Timers::default(),
             poison: false,
+            spare_calm: true,
             wishes: 0,
             agreed_wishes: 0,
             updates: 0,

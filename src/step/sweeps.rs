@@ -12,7 +12,7 @@ use crate::particles::{ParticleStore, Scatter};
 use crate::sph::dispatch::{Vectorised, instructions};
 use crate::sph::gradient::{MotionRecord, VelocityGradient};
 use crate::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
-use crate::sph::lanes::Lanes;
+use crate::sph::lanes::{F64x8, LANES, Lanes};
 use crate::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
 
 /// Records of the second sweep and what mirrors exert, kept from step to step.
@@ -181,7 +181,13 @@ impl<S: PairScale> Vectorised for GradientChunk<'_, S> {
 
     #[inline(always)]
     fn run<V: Lanes>(self) {
-        for (cluster, neighbours, _) in self.chunk.iter() {
+        for (cluster, neighbours, among) in self.chunk.iter() {
+            if !among.moving {
+                // No relative velocity: the sum would be this, to the bit.
+                let none = [F64x8([0.0; LANES]); 9];
+                self.update.apply(cluster, &none, neighbours.len());
+                continue;
+            }
             let gradient = VelocityGradient {
                 sources: self.sources,
                 lengths: self.lengths,
@@ -260,6 +266,11 @@ impl<S: PairScale> Vectorised for MomentumChunk<'_, S> {
         let halo = self.halo;
         let all = self.chunk.iter();
         for (cluster, neighbours, among) in all.filter(|(_, _, among)| among.halo == halo) {
+            let free = |&j: &u32| self.sources.stresses[j as usize].is_free();
+            if !among.moving && neighbours.iter().all(free) {
+                target.store(cluster, &Forces::NONE);
+                continue;
+            }
             if !among.mirrors {
                 let forces = self.sum::<V, false>(cluster, neighbours);
                 target.store(cluster, &forces);

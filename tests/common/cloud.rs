@@ -140,6 +140,7 @@ impl Cloud {
             id: self.id[image.base()],
             group: self.group(image.base()),
             smoothing_length: self.smoothing_length[image.base()],
+            moving: self.velocity[image.base()] != self.velocity[0],
         };
         let others: Vec<Image> = self.images().split_off(self.owned);
         let emitted: Vec<AtomicU32> = std::iter::repeat_with(AtomicU32::default)
