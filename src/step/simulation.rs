@@ -45,7 +45,8 @@ pub struct Simulation {
     pub timers: Timers,
     /// Fill everything that is not state with NaN between steps: for tests.
     pub poison: bool,
-    /// Spare the sums of what moves alike without stress; off only to test that no bit changes.
+    /// Spare the sums of what moves alike without stress; off to test that no bit changes, and to
+    /// time the sums.
     pub spare_calm: bool,
     /// What this rank wishes (a set of bits): all ranks' wishes are joined by the next step's vote.
     pub wishes: u64,

@@ -49,6 +49,8 @@ pub fn measure(
         Some(folder) => resumed(comm, bench, folder)?,
         None => stepped(comm, bench)?,
     };
+    // Every sum is made, also those of a block at rest, which are zero.
+    simulation.spare_calm = false;
     for _ in 0..WARM_UP {
         step(comm, &mut simulation)?;
     }
