@@ -99,7 +99,8 @@ impl Scene {
             moving: true,
         };
         let scratch = &mut self.scratch;
-        self.sequence.build(scratch, COUNT, &[], facts, |_, _| ());
+        self.sequence
+            .build(scratch, COUNT, (&[], 0), facts, |_, _| ());
     }
 
     pub fn list(&mut self) {

@@ -65,7 +65,7 @@ run_lammps() {
 # The same of whipple; updates between two rows of performance.csv.
 run_whipple() {
     taskset -c "$core" "$whipple" run "$root/inputs/quarter-impact" --threads 1 \
-        --out "$peers/whipple" --force --set "spacing=$spacing mm" --set symmetry=[] \
+        --out "$peers/whipple" --force --set "spacing=$spacing mm" --set symmetry=[] --set time_step.courant=0.4 \
         --set output.snapshot_every=1s --set output.checkpoint_every=1s \
         --set run.end_time=0.12us "$@" >"$peers/whipple.log" 2>&1 ||
         { tail -n 3 "$peers/whipple.log" >&2; exit 1; }

@@ -46,6 +46,7 @@ impl Extent {
 /// Halo lists and buffers, kept from step to step.
 pub struct Halo {
     axis: usize,
+    rank: usize,
     mirrors: Mirrors,
     exchange: Exchange,
     words: Vec<u64>,
@@ -59,6 +60,8 @@ pub struct Halo {
     received: Vec<usize>,
     /// Images of owned particles, and halo particles with theirs.
     others: Vec<Image>,
+    /// How many of them stand below this rank's slab or a plane.
+    below: usize,
     /// What the tasks found, one after the other: see [`Found`].
     found: Vec<Vec<Found>>,
 }
@@ -83,6 +86,7 @@ impl Halo {
     pub fn new(axis: usize, mirrors: Mirrors) -> Self {
         Self {
             axis,
+            rank: 0,
             mirrors,
             exchange: Exchange::default(),
             words: Vec::new(),
@@ -91,6 +95,7 @@ impl Halo {
             sends: Vec::new(),
             received: Vec::new(),
             others: Vec::new(),
+            below: 0,
             found: Vec::new(),
         }
     }
@@ -104,6 +109,7 @@ impl Halo {
         reach: impl Fn(&ParticleStore, usize) -> f64 + Sync,
     ) {
         store.resize_halo(0);
+        self.rank = comm.rank();
         self.gather_extents(comm, store, &reach);
         self.find_peers(comm);
         self.choose(comm, store, &reach);
@@ -127,6 +133,7 @@ impl Halo {
             self.received.push(self.exchange.incoming(k).len() / size);
         }
         store.resize_halo(self.received.iter().sum());
+        self.below = self.others.len();
         let mut first = store.owned();
         for (k, &count) in self.received.iter().enumerate() {
             let (needs, fields) = self.exchange.incoming(k).split_at(count);
@@ -137,6 +144,9 @@ impl Halo {
                 }
             }
             first += count;
+            if self.exchange.rank(k) < self.rank {
+                self.below = self.others.len();
+            }
         }
     }
 
@@ -167,6 +177,13 @@ impl Halo {
     #[must_use]
     pub fn others(&self) -> &[Image] {
         &self.others
+    }
+
+    /// How many of [`Self::others`], the first ones, stand below this rank's own particles: a
+    /// hint for their sort.
+    #[must_use]
+    pub fn below(&self) -> usize {
+        self.below
     }
 
     /// The symmetry planes.

@@ -141,21 +141,23 @@ impl Sequence {
     pub const SCRATCH_WORDS: usize = SCRATCH_WORDS;
 
     /// Sorts particles `0..owned` of the store and the images `others` (mirror images of these,
-    /// and halo particles with theirs). `facts` tells position, id and group of an image; `emit`
+    /// and halo particles with theirs; the first `below` of them stand below the particles as far
+    /// as one can tell, the rest above, which saves work). `facts` tells position, id and group of an image; `emit`
     /// is called once with each place of the sequence and the image that stands there. `scratch`
     /// is memory to work in: at least [`Self::SCRATCH_WORDS`] for each image.
     pub fn build(
         &mut self,
         scratch: &mut [u64],
         owned: usize,
-        others: &[Image],
+        (others, below): (&[Image], usize),
         facts: impl Fn(Image) -> ImageFacts + Sync,
         emit: impl Fn(usize, Image) + Sync,
     ) {
         let count = owned + others.len();
-        let image = |k: usize| match k.checked_sub(owned) {
-            None => Image::new(k, 0),
-            Some(other) => others[other],
+        let image = |k: usize| match k.checked_sub(below) {
+            None => others[k],
+            Some(own) if own < owned => Image::new(own, 0),
+            Some(_) => others[k - owned],
         };
         self.sorter.scatter(
             scratch,
@@ -237,6 +239,17 @@ impl Sequence {
             lengths,
             special,
         })
+    }
+
+    /// Whether any of eight places from one on holds an image or a halo particle; those beyond
+    /// the last image may say so too.
+    #[inline(always)]
+    #[must_use]
+    pub fn any_images(&self, place: usize) -> bool {
+        let eight = *self.special[place..]
+            .first_chunk()
+            .expect("the array is padded");
+        u64::from_le_bytes(eight) & u64::from_le_bytes([IMAGE; LANES]) != 0
     }
 
     /// Whether the image at a place is a particle of this rank itself.

@@ -81,6 +81,7 @@ impl Simulation {
         let groups = &self.contact.groups;
         let search = &mut self.search;
         let (owned, others) = (store.owned(), self.halo.others());
+        let below = self.halo.below();
         let (spare, common) = (self.spare_calm, &search.common_velocity);
         resize(&mut search.motion, owned + others.len());
         let motion = Scatter::new(&mut search.motion);
@@ -103,7 +104,7 @@ impl Simulation {
         // Stresses come later: until then the sort works in their memory.
         let scratch = bytemuck::cast_slice_mut(stresses);
         let sequence = &mut search.sequence;
-        sequence.build(scratch, owned, others, facts, |place, image| {
+        sequence.build(scratch, owned, (others, below), facts, |place, image| {
             let (base, code) = (image.base(), image.code());
             let record = MotionRecord {
                 position: mirrors.reflect_position(&store.position[base], code),

@@ -85,6 +85,8 @@ impl Simulation {
         simulation
             .migration
             .migrate(comm, &slabs, &mut simulation.store);
+        // Its buffers have carried whole shares of the model; never again so much.
+        simulation.migration = Migration::default();
         limit_count(comm, simulation.store.owned() as u64)?;
         Ok(simulation)
     }

@@ -147,9 +147,13 @@ impl Simulation {
         if self.halo.others().is_empty() {
             return;
         }
-        (&mut self.sweeps.stresses, self.search.sequence.images())
-            .into_par_iter()
-            .with_min_len(GRAIN)
+        let sequence = &self.search.sequence;
+        let stresses = self.sweeps.stresses.par_chunks_mut(LANES);
+        let images = sequence.images().par_chunks(LANES).enumerate();
+        let others = stresses.zip(images).with_min_len(GRAIN);
+        others
+            .filter(|(_, (eight, _))| sequence.any_images(LANES * eight))
+            .flat_map_iter(|(records, (_, images))| records.iter_mut().zip(images))
             .for_each(|(record, image)| {
                 let (base, code) = (image.base(), image.code());
                 let of_halo = base >= owned;

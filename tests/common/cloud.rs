@@ -147,7 +147,8 @@ impl Cloud {
             .take(self.owned + others.len())
             .collect();
         let mut scratch = vec![0; Sequence::SCRATCH_WORDS * emitted.len()];
-        sequence.build(&mut scratch, self.owned, &others, facts, |place, _| {
+        let others = (&others[..], others.len() / 3);
+        sequence.build(&mut scratch, self.owned, others, facts, |place, _| {
             emitted[place].fetch_add(1, Ordering::Relaxed);
         });
         assert!(emitted.iter().all(|n| n.load(Ordering::Relaxed) == 1));
