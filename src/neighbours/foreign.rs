@@ -3,10 +3,11 @@
 
 use rayon::prelude::*;
 
-use super::clusters::{CHUNKS_AT_ONCE, Cluster, ClusterLists, INFLATION, distance2};
+use super::clusters::{CHUNKS_AT_ONCE, Chunk, Cluster, ClusterLists, INFLATION, distance2};
 use super::sequence::Sequence;
+use crate::sph::dispatch::{Vectorised, instructions};
 use crate::sph::gradient::MotionRecord;
-use crate::sph::lanes::F64x8;
+use crate::sph::lanes::Lanes;
 
 /// Which contact algorithm handles a pair of bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -102,22 +103,20 @@ impl ForeignLists {
     ) {
         self.chunks
             .resize_with(clusters.chunks().len(), ForeignChunk::default);
+        let set = instructions();
         self.chunks
             .par_iter_mut()
             .zip(clusters.chunks())
             .with_max_len(CHUNKS_AT_ONCE)
             .for_each(|(chunk, own)| {
-                chunk.overlap.clear();
-                chunk.potential.clear();
-                for (cluster, _, _) in own.iter() {
-                    chunk.find_candidates(cluster, sequence, table);
-                    if chunk.candidates.is_empty() {
-                        continue;
-                    }
-                    for &receiver in &cluster.receivers[..cluster.lanes] {
-                        chunk.test_candidates(receiver, sources, table, &body_of);
-                    }
-                }
+                set.run(Find {
+                    chunk,
+                    own,
+                    sequence,
+                    sources,
+                    table,
+                    body_of: &body_of,
+                });
             });
     }
 
@@ -143,8 +142,48 @@ impl ForeignLists {
     }
 }
 
+/// Lists the foreign neighbours of one task's receivers.
+struct Find<'a, B> {
+    chunk: &'a mut ForeignChunk,
+    own: &'a Chunk,
+    sequence: &'a Sequence,
+    sources: &'a [MotionRecord],
+    table: &'a ForeignTable,
+    body_of: &'a B,
+}
+
+impl<B: Fn(u32) -> usize> Vectorised for Find<'_, B> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) {
+        let chunk = self.chunk;
+        chunk.overlap.clear();
+        chunk.potential.clear();
+        let mut hints = [0; 64];
+        for (cluster, _, _) in self.own.iter() {
+            chunk.find_candidates::<V>(cluster, self.sequence, self.table, &mut hints);
+            if chunk.candidates.is_empty() {
+                continue;
+            }
+            for &receiver in &cluster.receivers[..cluster.lanes] {
+                chunk.test_candidates(receiver, self.sources, self.table, self.body_of);
+            }
+        }
+    }
+}
+
 impl ForeignChunk {
-    fn find_candidates(&mut self, cluster: &Cluster, sequence: &Sequence, table: &ForeignTable) {
+    /// Lists what may be in range of any receiver of a cluster. `hints` are as in the lists of
+    /// the own group.
+    #[inline(always)]
+    fn find_candidates<V: Lanes>(
+        &mut self,
+        cluster: &Cluster,
+        sequence: &Sequence,
+        table: &ForeignTable,
+        hints: &mut [usize; 64],
+    ) {
         self.candidates.clear();
         let (lower, upper) = (&cluster.lower, &cluster.upper);
         let groups = sequence.groups();
@@ -155,9 +194,14 @@ impl ForeignChunk {
             }
             let along = sequence.along(other);
             let (from, to) = (lower[along] - range, upper[along] + range);
-            sequence.columns_near(other, lower, upper, range, |_, column| {
-                let first = sequence.seek::<F64x8>(other, &column, from, usize::MAX);
-                for place in first..column.end {
+            let position = |place: usize| sequence.coordinates(along, place)[0];
+            sequence.columns_near(other, lower, upper, range, |[a, b], column| {
+                if position(column.start) > to || position(column.end - 1) < from {
+                    return;
+                }
+                let hint = &mut hints[(a & 7) << 3 | b & 7];
+                *hint = sequence.seek::<V>(other, &column, from, *hint);
+                for place in *hint..column.end {
                     let point = std::array::from_fn(|a| sequence.coordinates(a, place)[0]);
                     if point[along] > to {
                         break;
@@ -176,7 +220,7 @@ impl ForeignChunk {
         receiver: u32,
         sources: &[MotionRecord],
         table: &ForeignTable,
-        body_of: &(impl Fn(u32) -> usize + Sync),
+        body_of: &impl Fn(u32) -> usize,
     ) {
         let here = &sources[receiver as usize].position;
         let row = body_of(receiver) * table.bodies;
