@@ -243,6 +243,9 @@ impl Sequence {
 
     /// Whether any of eight places from one on holds an image or a halo particle; those beyond
     /// the last image may say so too.
+    ///
+    /// # Panics
+    /// If `place` is beyond the last image.
     #[inline(always)]
     #[must_use]
     pub fn any_images(&self, place: usize) -> bool {
