@@ -45,7 +45,7 @@ Aluminium sphere at 7 km/s on an aluminium plate (3-D): sound
   plate                  2828 particles of aluminium, spacing 0.0500 mm, h 0.0650 mm
   sphere                  228 particles of aluminium, spacing 0.0500 mm, h 0.0650 mm
   all                    3056 particles, about 2 MB over all ranks
-  about 48 steps to 0.2000 us
+  about 55 steps to 0.2000 us
 ";
     assert_eq!(said, expected);
 
