@@ -76,7 +76,7 @@ fn check_own_lists(cloud: &Cloud, found: &Found) {
         let group = found.sequence.group(cluster.group);
         assert!(list.iter().all(|&place| group.contains(&(place as usize))));
         for &receiver in &cluster.receivers[..cluster.lanes] {
-            let h = |place: u32| found.sequence.lengths(place as usize)[0];
+            let h = |place: u32| found.sequence.smoothing_lengths()[place as usize];
             let inside: Vec<u32> = list
                 .iter()
                 .copied()

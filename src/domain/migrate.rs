@@ -78,6 +78,7 @@ impl Migration {
     pub fn traffic(&self) -> Traffic {
         self.exchange.traffic
     }
+
     /// Bytes allocated.
     #[must_use]
     pub fn memory(&self) -> usize {

@@ -133,10 +133,9 @@ impl Lister<'_> {
         let own = if UNIFORM {
             self.longest
         } else {
-            cluster
-                .receivers
-                .iter()
-                .fold(0.0, |h, &i| f64::max(h, sequence.lengths(i as usize)[0]))
+            cluster.receivers.iter().fold(0.0, |h, &i| {
+                f64::max(h, sequence.smoothing_lengths()[i as usize])
+            })
         };
         let far = (own + self.longest) * INFLATION;
         let (low, high) = (cluster.lower.map(V::splat), cluster.upper.map(V::splat));

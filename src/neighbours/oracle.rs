@@ -10,7 +10,7 @@ use crate::sph::gradient::MotionRecord;
 #[must_use]
 pub fn own_neighbours(sequence: &Sequence, sources: &[MotionRecord], receiver: u32) -> Vec<u32> {
     let here = &sources[receiver as usize];
-    let length = |place: usize| sequence.lengths(place)[0];
+    let length = |place: usize| sequence.smoothing_lengths()[place];
     let group = (0..sequence.groups())
         .find(|&g| sequence.group(g).contains(&(receiver as usize)))
         .expect("every image has a group");

@@ -212,18 +212,6 @@ impl Sequence {
             .expect("the arrays are padded")
     }
 
-    /// Eight smoothing lengths (m) from a place on.
-    ///
-    /// # Panics
-    /// If `place` is beyond the last image, or if the lengths are uniform.
-    #[inline(always)]
-    #[must_use]
-    pub fn lengths(&self, place: usize) -> &[f64; LANES] {
-        self.lengths[place..]
-            .first_chunk()
-            .expect("the arrays are padded")
-    }
-
     /// The images of a range of places by eights; the last eight may go beyond the range.
     #[inline(always)]
     pub(super) fn eights<'a>(&'a self, places: Range<usize>) -> impl Iterator<Item = Eight<'a>> {

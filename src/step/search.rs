@@ -86,17 +86,15 @@ impl Simulation {
         resize(&mut search.motion, owned + others.len());
         let motion = Scatter::new(&mut search.motion);
         let facts = |image: Image| {
-            let base = image.base();
+            let (base, code) = (image.base(), image.code());
+            let group = groups[store.body[base] as usize];
+            let velocity = || Mirrors::reflect_vector(&store.predicted_velocity[base], code);
             ImageFacts {
-                position: mirrors.reflect_position(&store.position[base], image.code()),
+                position: mirrors.reflect_position(&store.position[base], code),
                 id: store.id[base],
-                group: groups[store.body[base] as usize],
+                group,
                 smoothing_length: store.smoothing_length[base],
-                moving: {
-                    let group = groups[store.body[base] as usize];
-                    let velocity = &store.predicted_velocity[base];
-                    !spare || Mirrors::reflect_vector(velocity, image.code()) != common[group]
-                },
+                moving: !spare || velocity() != common[group],
             }
         };
         let stresses = &mut self.sweeps.stresses;
