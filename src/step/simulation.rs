@@ -141,13 +141,14 @@ impl Simulation {
 
     fn balance_work(&mut self, comm: &Comm) {
         let every = self.case.domain.balance_every;
-        let due = every != 0 && self.state.step.is_multiple_of(every);
-        if due || self.unordered {
+        if self.unordered {
             self.unordered = !self.restore_order();
         }
-        if !due {
+        if every == 0 || !self.state.step.is_multiple_of(every) {
             return;
         }
+        // After the next search, when those that change ranks now have found their place.
+        self.unordered = true;
         if comm.size() > 1 {
             let positions = &self.store.position[..self.store.owned()];
             let work = &self.store.work;

@@ -131,7 +131,7 @@ fn domain(params: &DomainParams, dimension: usize) -> Result<DomainOptions, Comp
     let axis = params.axis.as_ref().map(|name| axis(name, dimension));
     Ok(DomainOptions {
         axis: axis.transpose()?,
-        balance_every: whole(params.balance_every.as_ref(), "balance_every", 50, 0)?,
+        balance_every: whole(params.balance_every.as_ref(), "balance_every", 25, 0)?,
     })
 }
 
