@@ -46,11 +46,7 @@ pub fn case() -> Case {
             axis: whipple::model::Axis::Y,
             position: 0.0,
         }],
-        sph: SphOptions {
-            alpha: 1.0,
-            beta: 2.0,
-            smoothing_length: SmoothingLength::Constant,
-        },
+        sph: SphOptions::default(),
         time_step: TimeStepOptions {
             courant: 0.3,
             force: 0.3,
