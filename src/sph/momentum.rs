@@ -133,9 +133,9 @@ impl<S: PairScale, const OPTIONS: u8, const MIRRORED: bool> Vectorised
             V::splat(2.0 * self.viscosity.beta),
         );
         let c_i = c_i.mul(alpha);
-        let options =
-            Receivers::<V>::gather::<OPTIONS>(self.options.records, &stresses, &self.receivers);
+        let options = Receivers::<V>::gather::<OPTIONS>(self.options.records, &self.receivers);
         let mut correction = [zero; 3];
+        let conduction = V::splat(2.0 * self.options.conduction);
         // Of Σ m_j v_ij W/(ρ_i + ρ_j).
         let xsph = V::splat(-2.0 * self.options.xsph);
         let mut acceleration = [zero; 3];
@@ -181,10 +181,11 @@ impl<S: PairScale, const OPTIONS: u8, const MIRRORED: bool> Vectorised
             let mu = h.mul(approach).mul(inverse.mul(rho_sum));
             // Π = μ (β μ − α c̄)/ρ̄ with c̄ = ½ c_sum and ρ̄ = ½ rho_sum.
             let linear = V::splat(state.sound_speed).mul_add(alpha, c_i);
-            let mut pi = mu.mul(inverse.mul(soft)).mul(mu.mul(beta).sub(linear));
+            let mut signal = mu.mul(beta).sub(linear);
             if OPTIONS & BALSARA != 0 {
-                pi = pi.mul(options.half_limiter.add(V::splat(option.half_limiter)));
+                signal = signal.mul(options.half_limiter.add(V::splat(option.half_limiter)));
             }
+            let pi = mu.mul(inverse.mul(soft)).mul(signal);
             fastest = fastest.min_where_positive(mu, kernel.inside);
             let s = |c: usize| V::splat(state.stress_over_density2[c]);
             let pull = |a: usize| normal[a].add(s(a)).sub(pi);
@@ -214,10 +215,9 @@ impl<S: PairScale, const OPTIONS: u8, const MIRRORED: bool> Vectorised
             let mut work =
                 traction[2].mul_add(v[2], traction[1].mul_add(v[1], traction[0].mul(v[0])));
             if OPTIONS & CONDUCTION != 0 {
-                let half = inverse.mul(soft);
-                let fast = options.signal(state, half).mul(now.distance);
-                let flux = options.flux(option, self.options.conduction);
-                work = fast.mul(half).neg_mul_add(flux, work);
+                let signal = zero.min_where_positive(signal, zero.sub(mu));
+                let speed = signal.mul(now.distance).mul(inverse.mul(soft));
+                work = options.flux(option, conduction).mul_add(speed, work);
             }
             power = work.mul_add(weight, power);
             for a in 0..3 {

@@ -5,14 +5,13 @@
 
 use super::gradient::{gather, gather3, records};
 use super::lanes::{LANES, Lanes};
-use super::momentum::StressRecord;
 use super::principal::tensile_part;
 
 /// Artificial stress (Monaghan 2000; Gray, Monaghan & Swift 2001).
 pub const ARTIFICIAL_STRESS: u8 = 1;
 /// The Balsara switch on artificial viscosity (Balsara 1995).
 pub const BALSARA: u8 = 2;
-/// Artificial conduction.
+/// Artificial conduction between approaching particles (Noh 1987; Monaghan 1997).
 pub const CONDUCTION: u8 = 4;
 /// XSPH (Monaghan 1989).
 pub const XSPH: u8 = 8;
@@ -92,14 +91,12 @@ pub(super) struct Receivers<V> {
     shear: [V; 3],
     pub(super) half_limiter: V,
     energy: V,
-    pressure: V,
 }
 
 impl<V: Lanes> Receivers<V> {
     #[inline(always)]
     pub(super) fn gather<const OPTIONS: u8>(
         sources: &[OptionRecord],
-        stresses: &[&StressRecord; LANES],
         places: &[u32; LANES],
     ) -> Self {
         let none = [&OptionRecord::NEUTRAL; LANES];
@@ -113,7 +110,6 @@ impl<V: Lanes> Receivers<V> {
             shear: gather3(&all, |record, a| record.repulsion[3 + a]),
             half_limiter: gather(&all, |record| record.half_limiter),
             energy: gather(&all, |record| record.specific_energy),
-            pressure: gather(stresses, pressure),
         }
     }
 
@@ -130,25 +126,9 @@ impl<V: Lanes> Receivers<V> {
         }
     }
 
-    /// Signal speed of conduction `√(|p_i − p_j|/ρ̄)` (m/s; Price 2008), from `1/(ρ_i + ρ_j)`.
+    /// `(e_i − e_j)` times `factor` (J/kg).
     #[inline(always)]
-    pub(super) fn signal(&self, other: &StressRecord, inverse: V) -> V {
-        let step = self.pressure.sub(V::splat(pressure(other)));
-        let size = step.max(V::splat(0.0).sub(step));
-        size.add(size).mul(inverse).sqrt()
+    pub(super) fn flux(&self, other: &OptionRecord, factor: V) -> V {
+        self.energy.sub(V::splat(other.specific_energy)).mul(factor)
     }
-
-    /// `4 α_u (e_i − e_j)` (J/kg).
-    #[inline(always)]
-    pub(super) fn flux(&self, other: &OptionRecord, conduction: f64) -> V {
-        let step = self.energy.sub(V::splat(other.specific_energy));
-        step.mul(V::splat(4.0 * conduction))
-    }
-}
-
-/// Pressure (Pa).
-#[inline(always)]
-fn pressure(record: &StressRecord) -> f64 {
-    let [xx, yy, zz, ..] = record.stress_over_density2;
-    (xx + yy + zz) * (record.density * record.density) * (-1.0 / 3.0)
 }
