@@ -130,15 +130,23 @@ impl Simulation {
 
     /// XSPH: the rest of the drift of a step `dt` (s). The mean velocity of the neighbours is that
     /// of the last sums, taken with the velocities predicted for the beginning of this step.
+    ///
+    /// Particles that feel contact move with their own velocity: the energy of contact is a
+    /// function of their positions, and its balance holds only where force times velocity is work.
     pub(super) fn drift_with_neighbours(&mut self, dt: f64) {
         if self.options.set & XSPH == 0 {
             return;
         }
         let store = &mut self.store;
+        let contact = &store.contact_acceleration;
         (&mut store.position, &store.velocity_correction)
             .into_par_iter()
             .with_min_len(GRAIN)
-            .for_each(|(x, correction)| {
+            .enumerate()
+            .for_each(|(i, (x, correction))| {
+                if contact.get(i).is_some_and(|force| *force != [0.0; 3]) {
+                    return;
+                }
                 for a in 0..3 {
                     x[a] += dt * correction[a];
                 }
