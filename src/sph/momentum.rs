@@ -5,9 +5,7 @@ use super::dispatch::Vectorised;
 use super::gradient::{MotionRecord, Separation, gather, gather3, length, lengths, records};
 use super::kernel::PairScale;
 use super::lanes::{F64x8, LANES, Lanes};
-use super::options::{
-    ARTIFICIAL_STRESS, BALSARA, CONDUCTION, OptionRecord, Options, RECORDED, Receivers, XSPH,
-};
+use super::options::{BALSARA, CONDUCTION, OptionSums, Options, SHAPED};
 
 /// What a particle shows to its neighbours of its stress: one cache line.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -133,11 +131,7 @@ impl<S: PairScale, const OPTIONS: u8, const MIRRORED: bool> Vectorised
             V::splat(2.0 * self.viscosity.beta),
         );
         let c_i = c_i.mul(alpha);
-        let options = Receivers::<V>::gather::<OPTIONS>(self.options.records, &self.receivers);
-        let mut correction = [zero; 3];
-        let conduction = V::splat(2.0 * self.options.conduction);
-        // Of Σ m_j v_ij W/(ρ_i + ρ_j).
-        let xsph = V::splat(-2.0 * self.options.xsph);
+        let mut options = OptionSums::<V, OPTIONS>::begin(&self.options, &self.receivers);
         let mut acceleration = [zero; 3];
         let mut from_mirrors = [zero; 3];
         let mut power = zero;
@@ -156,11 +150,7 @@ impl<S: PairScale, const OPTIONS: u8, const MIRRORED: bool> Vectorised
         for k in 0..count {
             let ((place, source), now) = (following, next);
             let state = &self.stresses[place];
-            let option = if OPTIONS & RECORDED == 0 {
-                &OptionRecord::NEUTRAL
-            } else {
-                &self.options.records[place]
-            };
+            let option = self.options.record::<OPTIONS>(place);
             following = begin(k + 1);
             next = Separation::begin(&position, &following.1.position);
             let (r, square) = (now.r, now.square);
@@ -183,7 +173,7 @@ impl<S: PairScale, const OPTIONS: u8, const MIRRORED: bool> Vectorised
             let linear = V::splat(state.sound_speed).mul_add(alpha, c_i);
             let mut signal = mu.mul(beta).sub(linear);
             if OPTIONS & BALSARA != 0 {
-                signal = signal.mul(options.half_limiter.add(V::splat(option.half_limiter)));
+                signal = options.limit(signal, option);
             }
             let pi = mu.mul(inverse.mul(soft)).mul(signal);
             fastest = fastest.min_where_positive(mu, kernel.inside);
@@ -191,19 +181,11 @@ impl<S: PairScale, const OPTIONS: u8, const MIRRORED: bool> Vectorised
             let pull = |a: usize| normal[a].add(s(a)).sub(pi);
             let slide = |a: usize| shear[a].add(s(3 + a));
             let mut stress = [pull(0), pull(1), pull(2), slide(0), slide(1), slide(2)];
-            if OPTIONS & (ARTIFICIAL_STRESS | XSPH) != 0 {
+            if OPTIONS & SHAPED != 0 {
                 let shape = self.scale.shape(&kernel);
-                if OPTIONS & ARTIFICIAL_STRESS != 0 {
-                    let f = shape.mul(V::splat(self.options.inverse_shape));
-                    options.repel(&mut stress, option, f);
-                }
-                if OPTIONS & XSPH != 0 {
-                    let w = self.scale.value(&kernel, shape).mul(V::splat(source.mass));
-                    let share = w.mul(inverse.mul(soft));
-                    for a in 0..3 {
-                        correction[a] = v[a].mul_add(share, correction[a]);
-                    }
-                }
+                options.repel(&mut stress, option, shape);
+                let w = self.scale.value(&kernel, shape).mul(V::splat(source.mass));
+                options.follow(&v, w.mul(inverse.mul(soft)));
             }
             let [xx, yy, zz, xy, xz, yz] = stress;
             let weight = now.inverse.mul(V::splat(source.mass)).mul(kernel.slope);
@@ -217,7 +199,7 @@ impl<S: PairScale, const OPTIONS: u8, const MIRRORED: bool> Vectorised
             if OPTIONS & CONDUCTION != 0 {
                 let signal = zero.min_where_positive(signal, zero.sub(mu));
                 let speed = signal.mul(now.distance).mul(inverse.mul(soft));
-                work = options.flux(option, conduction).mul_add(speed, work);
+                work = options.flow(option).mul_add(speed, work);
             }
             power = work.mul_add(weight, power);
             for a in 0..3 {
@@ -235,11 +217,7 @@ impl<S: PairScale, const OPTIONS: u8, const MIRRORED: bool> Vectorised
             power: zero.sub(power.mul(V::splat(0.5))).store(),
             approach: zero.sub(fastest).store(),
             from_mirrors: from_mirrors.map(V::store),
-            correction: [
-                correction[0].mul(xsph).store(),
-                correction[1].mul(xsph).store(),
-                correction[2].mul(xsph).store(),
-            ],
+            correction: options.correction().map(V::store),
         }
     }
 }

@@ -16,6 +16,8 @@ pub const CONDUCTION: u8 = 4;
 /// XSPH (Monaghan 1989).
 pub const XSPH: u8 = 8;
 
+/// The options that need the kernel's value.
+pub(super) const SHAPED: u8 = ARTIFICIAL_STRESS | XSPH;
 /// The options for which particles show an [`OptionRecord`].
 pub const RECORDED: u8 = ARTIFICIAL_STRESS | BALSARA | CONDUCTION;
 
@@ -61,11 +63,22 @@ impl Options<'_> {
         conduction: 0.0,
         xsph: 0.0,
     };
+
+    /// What the particle or image at a place shows for a set of options.
+    #[inline(always)]
+    pub(super) fn record<const OPTIONS: u8>(&self, place: usize) -> &OptionRecord {
+        if OPTIONS & RECORDED == 0 {
+            &OptionRecord::NEUTRAL
+        } else {
+            &self.records[place]
+        }
+    }
 }
 
 /// Artificial stress over density squared (Pa m⁶/kg²), `R = −ε Σ_a ⟨σ_a⟩₊ n_a ⊗ n_a/ρ²` over the
-/// principal stresses σ_a (Gray, Monaghan & Swift 2001): a pressure along each direction in tension. From the
-/// factor ε, pressure and deviatoric stress (Pa) and density (kg/m³).
+/// principal stresses `σ_a` and directions `n_a` (Gray, Monaghan & Swift 2001): a pressure along
+/// each direction in tension. From the factor ε, pressure and deviatoric stress (Pa) and density
+/// (kg/m³).
 #[must_use]
 pub fn repulsion(epsilon: f64, pressure: f64, deviatoric: &[f64; 6], density: f64) -> [f64; 6] {
     let [xx, yy, zz, xy, xz, yz] = *deviatoric;
@@ -85,37 +98,52 @@ pub fn limiter(l: &[f64; 9], sound_speed: f64, h: f64) -> f64 {
     divergence / (divergence + curl + 1e-4 * sound_speed / h)
 }
 
-/// What eight receivers show for the options.
-pub(super) struct Receivers<V> {
+/// What eight receivers show for a set of options, and what they sum for it.
+pub(super) struct OptionSums<V, const OPTIONS: u8> {
     normal: [V; 3],
     shear: [V; 3],
-    pub(super) half_limiter: V,
+    half_limiter: V,
     energy: V,
+    inverse_shape: V,
+    conduction: V,
+    xsph: V,
+    correction: [V; 3],
 }
 
-impl<V: Lanes> Receivers<V> {
+impl<V: Lanes, const OPTIONS: u8> OptionSums<V, OPTIONS> {
     #[inline(always)]
-    pub(super) fn gather<const OPTIONS: u8>(
-        sources: &[OptionRecord],
-        places: &[u32; LANES],
-    ) -> Self {
+    pub(super) fn begin(options: &Options, places: &[u32; LANES]) -> Self {
         let none = [&OptionRecord::NEUTRAL; LANES];
         let all = if OPTIONS & RECORDED == 0 {
             none
         } else {
-            records(sources, places)
+            records(options.records, places)
         };
         Self {
             normal: gather3(&all, |record, a| record.repulsion[a]),
             shear: gather3(&all, |record, a| record.repulsion[3 + a]),
             half_limiter: gather(&all, |record| record.half_limiter),
             energy: gather(&all, |record| record.specific_energy),
+            inverse_shape: V::splat(options.inverse_shape),
+            conduction: V::splat(2.0 * options.conduction),
+            xsph: V::splat(-2.0 * options.xsph),
+            correction: [V::splat(0.0); 3],
         }
     }
 
-    /// Adds `(R_i + R_j) f⁴` to the stress (xx, yy, zz, xy, xz, yz) of pairs.
+    /// The viscosity's signal speed with the Balsara switch.
     #[inline(always)]
-    pub(super) fn repel(&self, stress: &mut [V; 6], other: &OptionRecord, f: V) {
+    pub(super) fn limit(&self, signal: V, other: &OptionRecord) -> V {
+        signal.mul(self.half_limiter.add(V::splat(other.half_limiter)))
+    }
+
+    /// Adds `(R_i + R_j) f⁴` to the stress (xx, yy, zz, xy, xz, yz) of pairs of a `shape`.
+    #[inline(always)]
+    pub(super) fn repel(&self, stress: &mut [V; 6], other: &OptionRecord, shape: V) {
+        if OPTIONS & ARTIFICIAL_STRESS == 0 {
+            return;
+        }
+        let f = shape.mul(self.inverse_shape);
         let square = f.mul(f);
         let weight = square.mul(square);
         for a in 0..3 {
@@ -126,9 +154,28 @@ impl<V: Lanes> Receivers<V> {
         }
     }
 
-    /// `(e_i − e_j)` times `factor` (J/kg).
+    /// Sums `v_ij` times the `share` `m_j W/(ρ_i + ρ_j)`.
     #[inline(always)]
-    pub(super) fn flux(&self, other: &OptionRecord, factor: V) -> V {
-        self.energy.sub(V::splat(other.specific_energy)).mul(factor)
+    pub(super) fn follow(&mut self, v: &[V; 3], share: V) {
+        if OPTIONS & XSPH == 0 {
+            return;
+        }
+        for a in 0..3 {
+            self.correction[a] = v[a].mul_add(share, self.correction[a]);
+        }
+    }
+
+    /// `2 α_u (e_i − e_j)` (J/kg).
+    #[inline(always)]
+    pub(super) fn flow(&self, other: &OptionRecord) -> V {
+        let step = self.energy.sub(V::splat(other.specific_energy));
+        step.mul(self.conduction)
+    }
+
+    /// `ε Σ (m_j/ρ̄) (v_j − v_i) W_ij` (m/s).
+    #[inline(always)]
+    pub(super) fn correction(&self) -> [V; 3] {
+        let [x, y, z] = self.correction;
+        [x.mul(self.xsph), y.mul(self.xsph), z.mul(self.xsph)]
     }
 }

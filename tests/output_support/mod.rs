@@ -13,7 +13,7 @@ pub use sentinel::{id, mix, sentinel};
 use whipple::comm::Comm;
 use whipple::model::{
     Body, Case, ContactMode, DomainOptions, Lattice, LatticeKind, OutputOptions, RunControl, Shape,
-    SmoothingLength, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
+    SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
 };
 use whipple::output::snapshot;
 use whipple::particles::{FIELDS, ParticleStore};
