@@ -112,6 +112,20 @@ fn sph(params: &SphParams) -> Result<SphOptions, Complaint> {
             None | Some(SmoothingName::Constant) => SmoothingLength::Constant,
             Some(SmoothingName::Variable) => bounds,
         },
+        artificial_stress: number(
+            params.artificial_stress.as_ref(),
+            "artificial_stress",
+            0.0,
+            Allowed::Within(0.0, 1.0),
+        )?,
+        balsara: params.balsara.unwrap_or(false),
+        conduction: number(
+            params.conduction.as_ref(),
+            "conduction",
+            0.0,
+            Allowed::Within(0.0, 2.0),
+        )?,
+        xsph: number(params.xsph.as_ref(), "xsph", 0.0, Allowed::Within(0.0, 1.0))?,
     })
 }
 
