@@ -7,6 +7,7 @@ pub mod elastic;
 pub mod finite_strain;
 pub mod hugoniot;
 pub mod noh;
+pub mod plates;
 pub mod riemann;
 mod steps;
 
