@@ -19,6 +19,17 @@ const KNOWN: &str = "an exact answer is known for one-dimensional runs of linear
     that meet, and of two plates of Mie-Grüneisen materials with strength = \"none\" until a shock \
     reaches a free face";
 
+/// Fields that an answer has, as they are usually called.
+pub const FIELDS: [&str; 7] = [
+    "velocity.x",
+    "density",
+    "pressure",
+    "specific_energy",
+    "stress.xx",
+    "deviatoric_stress.xx",
+    "von_mises",
+];
+
 /// A case with an exact answer.
 #[derive(Debug, Clone)]
 pub enum Exact {

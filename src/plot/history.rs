@@ -37,6 +37,10 @@ fn chart(table: &Table, title: &str) -> Result<Chart, String> {
             points: time.iter().zip(energy).map(|(&t, e)| [t, e]).collect(),
         });
     }
+    let unit = match table.unit("total_energy")? {
+        "" | "-" => "J",
+        unit => unit,
+    };
     let axis = |label: &str, unit: &str, room| Quantity {
         label: label.to_owned(),
         unit: unit.to_owned(),
@@ -48,7 +52,7 @@ fn chart(table: &Table, title: &str) -> Result<Chart, String> {
         title: title.to_owned(),
         subtitle: "energies".to_owned(),
         x: axis("time", "s", false),
-        y: axis("energy", "J", true),
+        y: axis("energy", unit, true),
         curves,
     })
 }

@@ -86,7 +86,7 @@ impl Pictures {
             return Err(cut.miss(&first));
         }
         Ok(Self {
-            where_text: where_text(&cut, &first),
+            where_text: where_text(&cut, &first)?,
             colours: colours(&cut.shown, &first.bodies, &sections, range),
             view: view.unwrap_or_else(|| View::around(&sections, &first.spacings)),
             names: (sources.len() > 1).then(|| {
@@ -109,7 +109,10 @@ impl Pictures {
     pub fn single(&self, index: usize, width: Option<u32>) -> Result<Canvas, PlotError> {
         let section = &self.sections[index..=index];
         let time = &self.times()[index];
-        let subtitle = format!("t = {time},  {}", self.where_text);
+        let subtitle = match self.where_text.as_str() {
+            "" => format!("t = {time}"),
+            place => format!("t = {time},  {place}"),
+        };
         self.figure(section, subtitle, Vec::new(), width.unwrap_or(WIDTH))
             .draw()
     }
@@ -204,18 +207,18 @@ pub fn place(axis: &str, position: f64, spacing: f64) -> String {
     }
 }
 
-/// `"section y = 0 mm, mirrored at x = 0 mm"`.
-fn where_text(cut: &Cut, snapshot: &Snapshot) -> String {
+/// `"section y = 0 mm, mirrored at x = 0 mm"`; a flat model has no section.
+fn where_text(cut: &Cut, snapshot: &Snapshot) -> Result<String, PlotError> {
     let at = |axis: &str, position: f64| place(axis, position, snapshot.finest());
     let section = at(cut.plane.axis.name(), cut.plane.position);
     let seen = |p: &&SymmetryPlane| cut.mirror && p.axis != cut.plane.axis;
     let planes = snapshot.symmetry.iter().filter(seen);
     let planes: Vec<String> = planes.map(|p| at(p.axis.name(), p.position)).collect();
-    if planes.is_empty() {
-        format!("section {section}")
-    } else {
-        format!("section {section},  mirrored at {}", planes.join(" and "))
-    }
+    let depth = snapshot.extent()?[cut.plane.axis.index()];
+    let section = Some(format!("section {section}")).filter(|_| depth.highest > depth.lowest);
+    let mirrored = (!planes.is_empty()).then(|| format!("mirrored at {}", planes.join(" and ")));
+    let texts: Vec<String> = section.into_iter().chain(mirrored).collect();
+    Ok(texts.join(",  "))
 }
 
 fn colours(

@@ -1,5 +1,7 @@
 //! Values of particles along a line, or over the distance from a point.
 
+use std::path::Path;
+
 use super::axes::Mark;
 use super::canvas::INK;
 use super::chart::{Chart, Curve, Quantity};
@@ -10,6 +12,9 @@ use super::snapshot::Snapshot;
 use super::source::Source;
 use super::{PlotError, colour, pictures, units};
 use crate::model::Axis;
+
+/// About how many of many curves have a name in the legend.
+const NAMED: usize = 10;
 
 /// What a profile runs along.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -128,14 +133,10 @@ impl Profiles {
             curves: curves(&taken, sources.len()),
         };
         if request.exact {
-            let answer = Exact::of_run(path)?;
-            let times = taken.iter().take(sources[0].snapshots.len());
-            chart.curves.push(Curve {
-                name: answer.name().to_owned(),
-                colour: INK,
-                mark: Mark::Thin,
-                points: exact_points(&answer, request, times.map(|t| t.time))?,
-            });
+            let count = sources[0].snapshots.len();
+            chart
+                .curves
+                .extend(exact_curves(path, request, &taken[..count])?);
         }
         Ok(Self { chart })
     }
@@ -213,7 +214,11 @@ impl Line {
                 .any(|plane| plane.axis == *axis && plane.position == self.through[axis.index()]);
             // One row, or the two on either side of the line; on a symmetry plane the row next
             // to it. Rows may drift by a quarter of a spacing, or half a one, before they go.
-            let usual = if on_mirror { 2.0 * spacing } else { 1.5 * spacing };
+            let usual = if on_mirror {
+                2.0 * spacing
+            } else {
+                1.5 * spacing
+            };
             let half = 0.5 * self.thickness.unwrap_or(usual);
             slice(from(*axis), half, spacing)
         };
@@ -293,8 +298,11 @@ fn curves(taken: &[Taken], sources: usize) -> Vec<Curve> {
     }
     let times = units::times(&taken.iter().map(|t| t.time).collect::<Vec<_>>());
     let same_time = times.windows(2).all(|pair| pair[0] == pair[1]);
+    // Of many times some are named.
+    let every = taken.len().div_ceil(NAMED);
     let curve = |(k, profile): (usize, &Taken)| {
         let name = match (sources > 1, same_time) {
+            _ if k % every != 0 && k + 1 != taken.len() => String::new(),
             (true, true) => profile.name.clone(),
             (true, false) => format!("{}, {}", profile.name, times[k]),
             (false, _) => times[k].clone(),
@@ -305,30 +313,55 @@ fn curves(taken: &[Taken], sources: usize) -> Vec<Curve> {
     taken.iter().enumerate().map(curve).collect()
 }
 
-/// The answer at some times, with a break between any two connected stretches.
+/// The exact answer at the times of some profiles: of several, each in a darker shade of its
+/// profile.
+fn exact_curves(
+    path: &Path,
+    request: &ProfileRequest,
+    taken: &[Taken],
+) -> Result<Vec<Curve>, PlotError> {
+    let answer = Exact::of_run(path)?;
+    let mut curves = Vec::new();
+    for (k, profile) in taken.iter().enumerate() {
+        let shade = colour::series(k, taken.len()).map(|c| c / 2);
+        curves.push(Curve {
+            name: if k == 0 {
+                answer.name().to_owned()
+            } else {
+                String::new()
+            },
+            colour: if taken.len() == 1 { INK } else { shade },
+            mark: Mark::Thin,
+            points: exact_points(&answer, request, profile.time)?,
+        });
+    }
+    Ok(curves)
+}
+
+/// The answer at a time, with a break between any two connected stretches.
 fn exact_points(
     answer: &Exact,
     request: &ProfileRequest,
-    times: impl Iterator<Item = f64>,
+    time: f64,
 ) -> Result<Vec<[f64; 2]>, PlotError> {
+    let unknown = || PlotError::Exact {
+        reason: format!(
+            "the answer is known along x for {}, not for {} along {}",
+            exact::FIELDS.join(", "),
+            request.field,
+            request.along.name()
+        ),
+    };
+    if request.along != Along::Line(Axis::X) {
+        return Err(unknown());
+    }
     let mut points = Vec::new();
-    for time in times {
-        for line in answer.profile(time)? {
-            for sample in &line {
-                let value = exact::value(&request.field, sample)
-                    .filter(|_| request.along == Along::Line(Axis::X));
-                let value = value.ok_or_else(|| PlotError::Exact {
-                    reason: format!(
-                        "the answer is known along x for velocity.x, density, pressure, stress.xx, \
-                         deviatoric_stress.xx, von_mises and specific_energy, not for {} along {}",
-                        request.field,
-                        request.along.name()
-                    ),
-                })?;
-                points.push([sample.position, value]);
-            }
-            points.push([f64::NAN; 2]);
+    for line in answer.profile(time)? {
+        for sample in &line {
+            let value = exact::value(&request.field, sample).ok_or_else(unknown)?;
+            points.push([sample.position, value]);
         }
+        points.push([f64::NAN; 2]);
     }
     Ok(points)
 }

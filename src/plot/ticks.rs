@@ -40,13 +40,14 @@ impl Ticks {
             values: Vec::new(),
             labels: Vec::new(),
         };
+        let in_full = decades < 4.0 && span[0] > -5.0 && span[1] < 5.0;
         let mut power = (span[0] / step - 1.0).floor() * step;
         while power <= span[1] {
             for factor in factors {
                 let value = power + factor.log10();
                 if value >= span[0] - 1e-6 && value <= span[1] + 1e-6 {
                     ticks.values.push(value);
-                    ticks.labels.push(number(*factor, power));
+                    ticks.labels.push(number(*factor, power, in_full));
                 }
             }
             power += step;
@@ -55,21 +56,19 @@ impl Ticks {
     }
 }
 
-/// A factor times a power of ten, in full if that is short.
-fn number(factor: f64, power: f64) -> String {
-    let value = factor * 10_f64.powf(power);
-    if (-3.0..=4.0).contains(&power) {
-        fixed(value, decimals(10_f64.powf(power)))
-    } else {
-        #[expect(
-            clippy::cast_possible_truncation,
-            reason = "a power of ten of a double"
-        )]
-        let power = superscript(power as i32);
-        match factor {
-            1.0 => format!("10{power}"),
-            factor => format!("{}·10{power}", fixed(factor, 0)),
-        }
+/// A factor times a power of ten, in full if all numbers of the axis are short.
+fn number(factor: f64, power: f64, in_full: bool) -> String {
+    if in_full {
+        return fixed(factor * 10_f64.powf(power), decimals(10_f64.powf(power)));
+    }
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "a power of ten of a double"
+    )]
+    let power = superscript(power as i32);
+    match factor {
+        1.0 => format!("10{power}"),
+        factor => format!("{}·10{power}", fixed(factor, 0)),
     }
 }
 
@@ -117,7 +116,7 @@ mod tests {
     fn powers_have_short_labels() {
         let labels = |low: f64, high: f64| Ticks::powers([low, high]).labels;
         assert_eq!(labels(-1.0, 0.31), ["0.1", "0.2", "0.5", "1", "2"]);
-        assert_eq!(labels(-6.2, -2.9), ["10⁻⁶", "10⁻⁵", "10⁻⁴", "0.001"]);
+        assert_eq!(labels(-6.2, -2.9), ["10⁻⁶", "10⁻⁵", "10⁻⁴", "10⁻³"]);
         assert_eq!(labels(4.9, 6.1), ["10⁵", "2·10⁵", "5·10⁵", "10⁶"]);
     }
 
