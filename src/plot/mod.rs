@@ -42,4 +42,4 @@ pub use pictures::{Pictures, Request, title};
 pub use profile::{Along, ProfileRequest, Profiles};
 pub use source::{Source, Wanted, choose, snapshots};
 pub use tables::{Columns, Points, Tables};
-pub use units::{parse as parse_quantity, parse_span};
+pub use units::parse as parse_quantity;

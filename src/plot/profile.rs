@@ -325,16 +325,19 @@ fn exact_curves(
     for (k, profile) in taken.iter().enumerate() {
         let shade = colour::series(k, taken.len()).map(|c| c / 2);
         curves.push(Curve {
-            name: if k == 0 {
-                answer.name().to_owned()
-            } else {
-                String::new()
-            },
+            name: String::new(),
             colour: if taken.len() == 1 { INK } else { shade },
             mark: Mark::Thin,
             points: exact_points(&answer, request, profile.time)?,
         });
     }
+    // For the legend alone.
+    curves.push(Curve {
+        name: answer.name().to_owned(),
+        colour: INK,
+        mark: Mark::Thin,
+        points: Vec::new(),
+    });
     Ok(curves)
 }
 
