@@ -18,7 +18,7 @@ const NAMES: &[(Powers, &str)] = &[
     (Angle::POWERS, Angle::NAME),
     ([0, 1, 0, 0, 0], "a mass"),
     ([0, 0, 0, 1, 0], "a temperature"),
-    ([1, 0, -2, 0, 0], "an acceleration"),
+    (Acceleration::POWERS, Acceleration::NAME),
     ([1, 1, -2, 0, 0], "a force"),
     ([2, 1, -2, 0, 0], "an energy"),
     ([2, 0, -2, 0, 0], "a specific energy"),
@@ -54,6 +54,8 @@ kinds! {
     Time = [0, 0, 1, 0, 0], "a time", "0.2 us";
     /// Metres in a second.
     Velocity = [1, 0, -1, 0, 0], "a velocity", "7 km/s";
+    /// Metres in a second squared.
+    Acceleration = [1, 0, -2, 0, 0], "an acceleration", "9.81 m/s^2";
     /// Kilograms in a cubic metre.
     Density = [-3, 1, 0, 0, 0], "a density", "2785 kg/m^3";
     /// Pascals: pressures, stresses and moduli.

@@ -6,8 +6,10 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::forms::{LatticeParams, Named, OrNone};
-use super::quantity::{Angle, Density, Extent, Length, Pressure, Quantity, Time, Velocity};
+use super::forms::{LatticeParams, Named, NormalParams, OneOrMany, OrNone};
+use super::quantity::{
+    Acceleration, Angle, Density, Extent, Length, Pressure, Quantity, Time, Velocity,
+};
 
 /// A quantity with its place in the text.
 pub type Placed<K> = Spanned<Quantity<K>>;
@@ -56,6 +58,14 @@ tables! {
         /// Symmetry planes.
         #[serde(default)]
         symmetry: Vec<SymmetryParams>,
+        /// Acceleration of gravity.
+        gravity: Option<Spanned<Vec<Placed<Acceleration>>>>,
+        /// Prescribed velocities.
+        #[serde(default)]
+        load: Vec<Spanned<LoadParams>>,
+        /// Rigid planes.
+        #[serde(default)]
+        plane: Vec<Spanned<PlaneParams>>,
         /// What is written.
         #[serde(default)]
         output: OutputParams,
@@ -73,8 +83,8 @@ tables! {
     BodyParams {
         /// Unique name.
         name: Spanned<String>,
-        /// Name of a material.
-        material: Spanned<String>,
+        /// Name of a material; only a rigid body needs none.
+        material: Option<Spanned<String>>,
         /// Geometry.
         shape: Spanned<ShapeParams>,
         /// Stacking of the particles; cubic if absent.
@@ -85,6 +95,64 @@ tables! {
         velocity: Option<Spanned<Vec<Placed<Velocity>>>>,
         /// Moves the body until it touches another one.
         touch: Option<TouchParams>,
+        /// Whether the body is rigid: it keeps its velocity, whatever acts on it.
+        rigid: Option<bool>,
+        /// Motion of a rigid body.
+        motion: Option<Spanned<MotionParams>>,
+    }
+
+    /// `[[load]]`
+    LoadParams {
+        /// Name in reports.
+        name: Option<Spanned<String>>,
+        /// Name of a body.
+        body: Spanned<String>,
+        /// Smallest coordinates of the region.
+        above: Option<Spanned<SidesParams>>,
+        /// Largest coordinates of the region.
+        below: Option<Spanned<SidesParams>>,
+        /// The velocity.
+        velocity: Spanned<MotionParams>,
+        /// When the particles are free again.
+        until: Option<Placed<Time>>,
+    }
+
+    /// `above`, `below`: sides of a region, open where absent.
+    SidesParams {
+        /// On the first axis.
+        x: Option<Spanned<Extent>>,
+        /// On the second axis.
+        y: Option<Spanned<Extent>>,
+        /// On the third axis.
+        z: Option<Spanned<Extent>>,
+    }
+
+    /// A velocity as a function of time; free on axes that are absent.
+    MotionParams {
+        /// Times of the table.
+        times: Option<Spanned<Vec<Placed<Time>>>>,
+        /// Along the first axis.
+        x: Option<Spanned<OneOrMany<Velocity>>>,
+        /// Along the second axis.
+        y: Option<Spanned<OneOrMany<Velocity>>>,
+        /// Along the third axis.
+        z: Option<Spanned<OneOrMany<Velocity>>>,
+    }
+
+    /// `[[plane]]`
+    PlaneParams {
+        /// Name in reports.
+        name: Option<Spanned<String>>,
+        /// To the side that the plane keeps.
+        normal: Spanned<NormalParams>,
+        /// A point of the plane; the origin if absent.
+        point: Option<Spanned<Vec<Placed<Length>>>>,
+        /// Names of the bodies that feel it; all if absent.
+        bodies: Option<Vec<Spanned<String>>>,
+        /// Stiffness κ.
+        stiffness: Option<Spanned<f64>>,
+        /// Motion of the plane; fixed if absent.
+        motion: Option<Spanned<MotionParams>>,
     }
 
     /// `shape`: exactly one of these.

@@ -1,6 +1,6 @@
 //! Bodies: a shape filled with particles of one material on one lattice.
 
-use super::Vec3;
+use super::{Motion, Vec3};
 
 /// A coordinate axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -106,6 +106,8 @@ pub struct Body {
     pub lattice: Lattice,
     /// Initial velocity (m/s).
     pub velocity: Vec3,
+    /// The motion of a rigid body; its particles feel nothing. Absent for bodies that deform.
+    pub rigid: Option<Motion>,
     /// Constant smoothing length h₀ (m): the reference of contact, and of the SPH sums unless
     /// they vary it.
     pub smoothing_length: f64,

@@ -47,8 +47,8 @@ impl FieldKind {
 }
 
 /// When a field is carried along: a set of the constants below.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct FieldUse(u8);
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct FieldUse(u16);
 
 impl FieldUse {
     /// Read by a step before it is written: in checkpoints, and moved between ranks.
@@ -66,9 +66,11 @@ impl FieldUse {
     /// In snapshots on demand.
     pub const ON_DEMAND: Self = Self(64);
     /// Every field.
-    pub const ALL: Self = Self(255);
+    pub const ALL: Self = Self(u16::MAX);
     /// Of contact: held only where bodies have contact beyond the SPH sums.
     pub const CONTACT: Self = Self(128);
+    /// Held only where loads or rigid bodies prescribe velocities.
+    pub const LOADS: Self = Self(2048);
     /// In snapshots at all.
     pub const SNAPSHOT_OR_ON_DEMAND: Self = Self(32 | 64);
     /// What a rank sends with a particle that leaves it.
@@ -84,7 +86,9 @@ impl FieldUse {
         self.0 & other.0 != 0
     }
 
-    const fn with(self, other: Self) -> Self {
+    /// This set and `other` together.
+    #[must_use]
+    pub const fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 }
@@ -150,7 +154,7 @@ macro_rules! particle_fields {
         pub struct ParticleStore {
             pub(super) owned: usize,
             pub(super) halo: usize,
-            pub(super) contactless: bool,
+            pub(super) dropped: FieldUse,
             $( $(#[doc = $doc])+ pub $name: Vec<kind_type!($kind)>, )+
         }
 
@@ -215,6 +219,8 @@ particle_fields! {
     touch_relief: Scalar, "", STATE | ON_DEMAND | CONTACT;
     /// How long the foreign fraction with current volumes has stayed above one half.
     enclosed_time: Scalar, "s", STATE | ON_DEMAND | CONTACT;
+    /// Which loads and rigid bodies prescribe its velocity: a set of bits, in the input's order.
+    load: Index, "", STATE | ON_DEMAND | LOADS;
     /// Velocity at the end of the step as predicted from the last accelerations.
     predicted_velocity: Vector, "m/s", MIGRATED | HALO_MOTION;
     /// Density at the end of the step as predicted from the last velocity gradient.

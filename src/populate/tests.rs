@@ -16,6 +16,7 @@ fn body(shape: Shape, kind: LatticeKind, spacing: f64, angle: f64) -> Body {
             angle,
         },
         velocity: Vec3::zeros(),
+        rigid: None,
         smoothing_length: 1.3 * spacing,
     }
 }

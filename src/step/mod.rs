@@ -2,7 +2,9 @@
 
 mod contact_phase;
 mod integrate;
+mod loads;
 mod material_update;
+mod plane_forces;
 mod search;
 mod setup;
 mod simulation;
@@ -14,5 +16,5 @@ mod vote;
 
 pub use setup::SetupError;
 pub use simulation::{Simulation, StepError};
-pub use state::{PairState, Reason, RunState, Totals, Worst};
+pub use state::{LoadState, PairState, Reason, RunState, Totals, Worst};
 pub use timers::{Phase, Timers};

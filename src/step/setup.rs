@@ -3,9 +3,11 @@
 use thiserror::Error;
 
 use super::contact_phase::ContactPhase;
+use super::loads::{Drive, Goal, LoadStep};
+use super::plane_forces::PlaneForces;
 use super::search::Search;
 use super::simulation::{Simulation, StepError};
-use super::state::{PairState, Reason, RunState, Totals, Worst};
+use super::state::{LoadState, PairState, Reason, RunState, Totals, Worst};
 use super::sums::StepSums;
 use super::sweeps::Sweeps;
 use super::timers::Timers;
@@ -14,7 +16,7 @@ use crate::contact::ContactTable;
 use crate::domain::{Halo, Histogram, Migration, Mirrors, Slabs, balance};
 use crate::model::Case;
 use crate::neighbours::{ColumnGrid, Image};
-use crate::particles::ParticleStore;
+use crate::particles::{FieldUse, ParticleStore};
 use crate::populate::{self, Slab};
 
 /// Why a case cannot start; the same on all ranks.
@@ -70,9 +72,8 @@ impl Simulation {
         let boxes = body_boxes(&case).ok_or(SetupError::Empty)?;
         let mut simulation = Self::empty(case, comm, &boxes);
         simulation.store = store;
-        if !simulation.contact.is_active() {
-            simulation.store.drop_contact();
-        }
+        let unused = unused_fields(&simulation.case, &simulation.contact);
+        simulation.store.drop_fields(unused);
         simulation.state = state;
         simulation.slabs = balance(
             comm,
@@ -110,12 +111,11 @@ impl Simulation {
             f64::INFINITY
         };
         let mut store = ParticleStore::default();
-        if !contact.is_active() {
-            store.drop_contact();
-        }
+        store.drop_fields(unused_fields(&case, &contact));
+        let loads = LoadStep::new(&case);
         Self {
             store,
-            state: fresh_state(pairs.len()),
+            state: fresh_state(pairs.len(), case.load_names().count()),
             timers: Timers::default(),
             poison: false,
             spare_calm: true,
@@ -129,7 +129,9 @@ impl Simulation {
             search: Search::new(&case, &contact, grids),
             sweeps: Sweeps::new(&case, &contact.kernel),
             contact_phase: ContactPhase::default(),
-            sums: StepSums::new(pairs, enclosed_limit),
+            plane_forces: PlaneForces::new(&case),
+            sums: StepSums::new(pairs, enclosed_limit, loads.driven(), loads.planes.len()),
+            loads,
             scratch: Vec::new(),
             order: Vec::new(),
             unordered: true,
@@ -178,6 +180,13 @@ impl Simulation {
                 store.density[i] = material.reference_density;
                 store.predicted_density[i] = material.reference_density;
                 store.smoothing_length[i] = body.smoothing_length;
+                if self.loads.drives() {
+                    let bits = self.loads.bits(case, b, &site.position);
+                    let prescribed = self.loads.of(bits);
+                    prescribed.set(Goal::End, &mut store.velocity[i]);
+                    prescribed.set(Goal::End, &mut store.predicted_velocity[i]);
+                    store.load[i] = bits;
+                }
                 i += 1;
             }
             first_id = first_id
@@ -209,6 +218,18 @@ impl Simulation {
     }
 }
 
+/// Fields that a case has no use for.
+fn unused_fields(case: &Case, contact: &ContactTable) -> FieldUse {
+    let driven = !case.loads.velocities.is_empty() || case.bodies.iter().any(|b| b.rigid.is_some());
+    [
+        (FieldUse::CONTACT, contact.is_active()),
+        (FieldUse::LOADS, driven),
+    ]
+    .into_iter()
+    .filter(|&(_, used)| !used)
+    .fold(FieldUse::default(), |all, (fields, _)| all.with(fields))
+}
+
 /// Refuses a case without particles, or a rank with more than it can number. Collective.
 fn limit_count(comm: &Comm, owned: u64) -> Result<(), SetupError> {
     // Halo particles and images need numbers too.
@@ -222,7 +243,7 @@ fn limit_count(comm: &Comm, owned: u64) -> Result<(), SetupError> {
     }
 }
 
-fn fresh_state(pairs: usize) -> RunState {
+fn fresh_state(pairs: usize, loads: usize) -> RunState {
     RunState {
         step: 0,
         time: 0.0,
@@ -237,6 +258,9 @@ fn fresh_state(pairs: usize) -> RunState {
         plane_force: [0.0; 3],
         plane_impulse: [0.0; 3],
         pairs: vec![PairState::default(); pairs],
+        loads: vec![LoadState::default(); loads],
+        work_put_in: 0.0,
+        momentum_put_in: 0.0,
         capped_reliefs: 0,
         interpenetrated: 0,
         worst: Worst::default(),

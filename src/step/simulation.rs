@@ -3,6 +3,8 @@
 use thiserror::Error;
 
 use super::contact_phase::ContactPhase;
+use super::loads::LoadStep;
+use super::plane_forces::PlaneForces;
 use super::search::Search;
 use super::state::{Reason, RunState};
 use super::sums::StepSums;
@@ -62,6 +64,8 @@ pub struct Simulation {
     pub(super) search: Search,
     pub(super) sweeps: Sweeps,
     pub(super) contact_phase: ContactPhase,
+    pub(super) loads: LoadStep,
+    pub(super) plane_forces: PlaneForces,
     pub(super) sums: StepSums,
     pub(super) scratch: Vec<u64>,
     pub(super) order: Vec<u32>,
@@ -94,7 +98,11 @@ impl Simulation {
             self.store.poison();
         }
         self.timers.skip();
-        self.kick_and_drift(dt);
+        let end = match reason {
+            Reason::End => self.case.run.end_time,
+            _ => self.state.time + dt,
+        };
+        self.kick_and_drift(dt, end);
         self.timers.lap(Phase::Integrate);
         self.balance_work(comm);
         self.timers.lap(Phase::Balance);
@@ -104,10 +112,7 @@ impl Simulation {
         self.kick(dt);
         self.timers.lap(Phase::Integrate);
         self.state.step += 1;
-        self.state.time = match reason {
-            Reason::End => self.case.run.end_time,
-            _ => self.state.time + dt,
-        };
+        self.state.time = end;
         (self.state.last_dt, self.state.last_reason) = (dt, reason);
         self.book_step(comm, dt);
         self.vote(comm)?;
@@ -164,7 +169,7 @@ impl Simulation {
     }
 
     fn stress_uses(&self) -> FieldUse {
-        if self.contact.is_active() {
+        if self.contact.has_pairs() {
             FieldUse::HALO_FORCES
         } else {
             FieldUse::HALO_STRESS
@@ -189,6 +194,8 @@ impl Simulation {
             + self.search.memory()
             + self.sweeps.memory()
             + self.contact_phase.memory()
+            + self.loads.memory()
+            + self.plane_forces.memory()
             + self.sums.memory()
             + self.halo.memory()
             + self.migration.memory()

@@ -12,8 +12,8 @@ pub use sentinel::{id, mix, sentinel};
 
 use whipple::comm::Comm;
 use whipple::model::{
-    Body, Case, ContactMode, DomainOptions, Lattice, LatticeKind, OutputOptions, RunControl, Shape,
-    SmoothingLength, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
+    Body, Case, ContactMode, DomainOptions, Lattice, LatticeKind, Loads, OutputOptions, RunControl,
+    Shape, SmoothingLength, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
 };
 use whipple::output::snapshot;
 use whipple::particles::{FIELDS, ParticleStore};
@@ -33,6 +33,7 @@ pub fn case() -> Case {
             angle: 0.0,
         },
         velocity: Vec3::zeros(),
+        rigid: None,
         smoothing_length: 1.3 * spacing,
     };
     Case {
@@ -46,6 +47,7 @@ pub fn case() -> Case {
             axis: whipple::model::Axis::Y,
             position: 0.0,
         }],
+        loads: Loads::default(),
         sph: SphOptions {
             alpha: 1.0,
             beta: 2.0,

@@ -3,7 +3,9 @@
 mod bodies;
 mod check;
 mod contact;
+mod loads;
 mod materials;
+mod motion;
 mod shapes;
 mod touch;
 
@@ -24,7 +26,7 @@ use toml::Spanned;
 pub fn case(params: CaseParams) -> Result<Case, Complaint> {
     let dimension = dimension(&params.dimension)?;
     let symmetry = symmetry(&params.symmetry, dimension)?;
-    let (names, materials) = materials::materials(&params.material)?;
+    let (names, mut materials) = materials::materials(&params.material)?;
     let smoothing = number(
         params.sph.smoothing.as_ref(),
         "smoothing",
@@ -38,7 +40,16 @@ pub fn case(params: CaseParams) -> Result<Case, Complaint> {
         smoothing,
     }
     .bodies(&params.body, &symmetry)?;
+    if bodies.iter().any(|body| body.material == materials.len()) {
+        materials.push(bodies::no_material());
+    }
     let (default_contact, contacts) = contact::contacts(&params.contact, &params.body)?;
+    let loads = loads::Reader {
+        dimension,
+        bodies: &bodies,
+        symmetry: &symmetry,
+    }
+    .loads(&params)?;
     Ok(Case {
         title: params.title.unwrap_or_else(|| "untitled".to_owned()),
         dimension,
@@ -47,6 +58,7 @@ pub fn case(params: CaseParams) -> Result<Case, Complaint> {
         contacts,
         default_contact,
         symmetry,
+        loads,
         sph: sph(&params.sph)?,
         time_step: time_step(&params.time_step)?,
         domain: domain(&params.domain, dimension)?,
