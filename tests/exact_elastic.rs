@@ -48,7 +48,10 @@ fn wave(joints: Vec<Joint>, steps: &[(f64, f64)]) -> Row {
     Row {
         bars: bars.collect(),
         joints,
-        ends: [End::Moved(steps.to_vec()), End::Free],
+        ends: [
+            End::Moved(steps.iter().map(|s| (s.0, Some(s.1))).collect()),
+            End::Free,
+        ],
     }
 }
 
@@ -111,6 +114,23 @@ fn a_pulse_spans_what_it_was_given() {
         assert_eq!(found.len(), 1);
         assert_printed(found[0][0], 54.9, 0.1, "tail");
         assert_printed(found[0][1], 75.4, 0.1, "front");
+    }
+}
+
+#[test]
+fn an_end_that_is_let_go_is_free() {
+    // A push for a time, then no stress: what is left behind the pulse is at rest without stress,
+    // as when the end is stopped; but the pulse from the far end comes back as from a free end.
+    let mut row = wave(vec![], &[(0.0, 0.001)]);
+    row.ends[0] = End::Moved(vec![(0.0, Some(0.001)), (35.0, None)]);
+    let waves = Waves::new(&row, 600.0);
+    let found = stressed(&waves, 128.8, 0.004_584_9);
+    assert_eq!(found.len(), 1);
+    assert_printed(found[0][1] - found[0][0], 35.0 * 0.58555, 1e-3, "length");
+    let momentum = 0.001 * 35.0 * (2.6847_f64 * 7.83).sqrt();
+    let mass = 7.83 * 100.0;
+    for t in [100.0, 300.0, 600.0] {
+        assert!((waves.mean_velocity(0, t) * mass / momentum - 1.0).abs() < 1e-4);
     }
 }
 
@@ -188,7 +208,7 @@ fn a_gap_closes_and_closes_again() {
     // The middle of three equal bars bounces between the other two, whose far ends are held: on
     // its way for 0.1/0.02 = 5, then 10 and 10, in contact for four transits T each time: the
     // wave runs to both far ends and back, is doubled by the held one, and comes back once more.
-    let held = || End::Moved(vec![(0.0, 0.0)]);
+    let held = || End::Moved(vec![(0.0, Some(0.0))]);
     let row = Row {
         bars: vec![
             bar(STEEL, 0.0, 1.0, 0.0),

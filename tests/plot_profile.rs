@@ -147,6 +147,45 @@ fn dots_are_the_particles_and_the_line_the_exact_answer() {
 }
 
 #[test]
+fn moved_ends_and_symmetry_planes_are_known() {
+    let folder = tempfile::tempdir().unwrap();
+    let moved = |velocity: &str| {
+        let rest = BARS.replace("200 m/s", "0 m/s");
+        let case =
+            format!("{rest}\n[[load]]\nbody = \"left\"\nbelow.x = \"1 spacing\"\n{velocity}");
+        bars(folder.path(), "moved", &case, &[0.5])
+    };
+    let pulse = moved(
+        "velocity = { times = [0, \"0.3 us\", \"0.3 us\"], x = [\"10 m/s\", \"10 m/s\", 0] }",
+    );
+    let profiles = Profiles::new(&[source(&pulse, 1)], &request("velocity.x")).unwrap();
+    // From the first particle, half a spacing from the end; what the pulse has passed is 3 um on.
+    let found = jumps(&profiles.chart().curves[2].points);
+    let expected = [[1.253e-3, 0.0, 10.0], [3.05e-3, 10.0, 0.0]];
+    assert_eq!(found.len(), 2, "{found:?}");
+    for (found, expected) in found.iter().zip(expected) {
+        assert!(
+            (0..3).all(|k| (found[k] - expected[k]).abs() < 1e-9),
+            "{found:?}"
+        );
+    }
+    let complaint = |run: &Path| plot(run, "--profile velocity.x --exact").unwrap_err();
+    let ramp = moved("velocity = { times = [0, \"1 us\"], x = [0, \"10 m/s\"] }");
+    assert!(complaint(&ramp).contains("has a ramp"));
+    let inside = moved("above.x = \"2 mm\"\nvelocity.x = \"1 m/s\"").join("case.toml");
+    let text = std::fs::read_to_string(&inside).unwrap();
+    std::fs::write(&inside, text.replace("1 spacing", "3 mm")).unwrap();
+    assert!(complaint(inside.parent().unwrap()).contains("more than an outer end"));
+
+    // The left half of the model behind a symmetry plane: a wall.
+    let case = format!("{BARS}\n[[symmetry]]\naxis = \"x\"\nposition = \"2 mm\"");
+    let wall = bars(folder.path(), "wall", &case, &[0.1]);
+    let profiles = Profiles::new(&[source(&wall, 1)], &request("velocity.x")).unwrap();
+    let points = &profiles.chart().curves[2].points;
+    assert_eq!((points[0][0], points[0][1]), (2e-3, 0.0));
+}
+
+#[test]
 fn several_times_and_runs_are_told_apart() {
     let folder = tempfile::tempdir().unwrap();
     let first = bars(folder.path(), "first", BARS, &[0.25, 0.5]);

@@ -68,8 +68,9 @@ impl Bar {
 pub enum End {
     /// No stress.
     Free,
-    /// A velocity (m/s) from each time (s) on, first time first; free before.
-    Moved(Vec<(f64, f64)>),
+    /// A velocity (m/s), or none where it is free, from each time (s) on, first time first; free
+    /// before.
+    Moved(Vec<(f64, Option<f64>)>),
 }
 
 /// How neighbouring bars meet.

@@ -1,7 +1,7 @@
 //! Which cases have an exact answer, found from the resolved input of a run.
 //!
 //! To teach plots another case: a variant of [`Exact`], a way to recognise it in [`Exact::of`],
-//! and its [`Profile`].
+//! its [`Profile`], and a word in [`KNOWN`] and in the guide.
 
 use std::path::Path;
 
@@ -12,12 +12,12 @@ use crate::exact::plates::{self, Plate};
 use crate::exact::{Profile, Sample, finite_strain};
 use crate::input;
 use crate::material::{Material, Strength};
-use crate::model::{Body, Case, ContactMode, Shape};
+use crate::model::{Body, Case, ContactMode, Motion, Shape, VelocityLoad};
 
 /// What has an answer.
 const KNOWN: &str = "an exact answer is known for one-dimensional runs of linear elastic bars \
-    that meet, and of two plates of Mie-Grüneisen materials with strength = \"none\" until a shock \
-    reaches a free face";
+    that meet, whose outer ends may be moved at steps of velocity, and of two plates of \
+    Mie-Grüneisen materials with strength = \"none\" until a shock reaches a free face";
 
 /// Fields that an answer has, as they are usually called.
 pub const FIELDS: [&str; 7] = [
@@ -39,6 +39,17 @@ pub enum Exact {
     Plates([Plate; 2]),
 }
 
+/// A body as a stretch of the x axis.
+#[derive(Clone, Copy)]
+struct Part<'a> {
+    body: &'a Body,
+    /// Index of the body.
+    index: usize,
+    material: &'a Material,
+    /// Smallest and largest coordinate (m).
+    ends: [f64; 2],
+}
+
 impl Exact {
     /// The answer for the run that wrote a snapshot, from the `case.toml` of its folder.
     pub fn of_run(snapshot: &Path) -> Result<Self, PlotError> {
@@ -49,42 +60,24 @@ impl Exact {
         Self::of(&case).map_err(|reason| unknown(format!("{reason}; {KNOWN}")))
     }
 
-    /// The answer for a case.
-    ///
-    /// # Errors
-    /// What the case has that no answer covers.
-    pub fn of(case: &Case) -> Result<Self, String> {
-        if case.dimension != 1 {
-            return Err(format!("the case has {} dimensions", case.dimension));
+    /// The answer for a case, or what it has that no answer covers.
+    fn of(case: &Case) -> Result<Self, String> {
+        let parts = parts(case)?;
+        if case.loads.has_gravity() || !case.loads.planes.is_empty() {
+            return Err("there is gravity or a rigid plane".to_owned());
         }
-        let mut bodies: Vec<(&Body, [f64; 2])> = Vec::new();
-        for body in &case.bodies {
-            let Shape::Box { lower, upper } = &body.shape else {
-                return Err(format!("body \"{}\" is no box", body.name));
-            };
-            bodies.push((body, [lower.x, upper.x]));
+        let elastic = |part: &Part| finite_strain::Medium::of(part.material).is_some();
+        if parts.iter().all(elastic) {
+            return bars(case, parts);
         }
-        for a in 0..case.bodies.len() {
-            for b in 0..a {
-                if matches!(case.contact_between(a, b), ContactMode::None) {
-                    return Err("bodies do not see each other".to_owned());
-                }
-            }
+        if !case.symmetry.is_empty() || !case.loads.velocities.is_empty() {
+            return Err("plates are held or moved".to_owned());
         }
-        bodies.sort_by(|a, b| a.1[0].total_cmp(&b.1[0]));
-        let plane = case.symmetry.first().map(|plane| plane.position);
-        if let (Some(plane), Some(first)) = (plane, bodies.first_mut()) {
-            first.1[0] = first.1[0].max(plane);
+        let plates = parts.iter().map(plate).collect::<Result<Vec<_>, _>>()?;
+        match plates[..] {
+            [left, right] => Ok(Self::Plates([left, right])),
+            _ => Err(format!("there are {} plates", plates.len())),
         }
-        let held = plane.is_some_and(|plane| bodies.first().is_some_and(|b| b.1[0] == plane));
-        let material = |body: &Body| &case.materials[body.material];
-        if bodies
-            .iter()
-            .all(|(body, _)| finite_strain::Medium::of(material(body)).is_some())
-        {
-            return Ok(bars(&bodies, material, held));
-        }
-        two_plates(&bodies, material, held)
     }
 
     /// What the answer assumes, for the picture.
@@ -108,61 +101,138 @@ impl Exact {
     }
 }
 
-fn bars<'a>(
-    bodies: &[(&Body, [f64; 2])],
-    material: impl Fn(&Body) -> &'a Material,
-    held: bool,
-) -> Exact {
-    let bar = |(body, ends): &(&Body, [f64; 2])| Bar {
-        modulus: material(body).p_wave_modulus(),
-        density: material(body).reference_density,
-        left: ends[0],
-        length: ends[1] - ends[0],
-        velocity: body.velocity.x,
-    };
-    let share = |(body, _): &(&Body, [f64; 2])| {
-        let material = material(body);
-        material.eos.bulk_modulus(material.reference_density) / material.p_wave_modulus()
-    };
-    let left = if held {
-        End::Moved(vec![(0.0, 0.0)])
-    } else {
-        End::Free
-    };
-    let row = Row {
-        bars: bodies.iter().map(bar).collect(),
-        joints: vec![Joint::Contact; bodies.len() - 1],
-        ends: [left, End::Free],
-    };
-    Exact::Bars(row, bodies.iter().map(share).collect())
+/// The bodies of a one-dimensional case from left to right, if each sees all others.
+fn parts(case: &Case) -> Result<Vec<Part<'_>>, String> {
+    if case.dimension != 1 {
+        return Err(format!("the case has {} dimensions", case.dimension));
+    }
+    let mut parts = Vec::new();
+    for (index, body) in case.bodies.iter().enumerate() {
+        let Shape::Box { lower, upper } = &body.shape else {
+            return Err(format!("body \"{}\" is no box", body.name));
+        };
+        if body.rigid.is_some() {
+            return Err(format!("body \"{}\" is rigid", body.name));
+        }
+        let unseen = |other: usize| *case.contact_between(index, other) == ContactMode::None;
+        if (0..index).any(unseen) {
+            return Err("bodies do not see each other".to_owned());
+        }
+        parts.push(Part {
+            body,
+            index,
+            material: &case.materials[body.material],
+            ends: [lower.x, upper.x],
+        });
+    }
+    parts.sort_by(|a, b| a.ends[0].total_cmp(&b.ends[0]));
+    Ok(parts)
 }
 
-fn two_plates<'a>(
-    bodies: &[(&Body, [f64; 2])],
-    material: impl Fn(&Body) -> &'a Material,
-    held: bool,
-) -> Result<Exact, String> {
-    let plate = |(body, ends): &(&Body, [f64; 2])| {
-        let material = material(body);
-        let fluid = matches!(material.strength, Strength::None) && material.spall.is_none();
-        let medium = Medium::of(material)
-            .filter(|_| fluid)
-            .ok_or_else(|| format!("the material of body \"{}\" has more than that", body.name))?;
-        Ok(Plate {
-            medium,
-            left: ends[0],
-            length: ends[1] - ends[0],
-            velocity: body.velocity.x,
-        })
-    };
-    let plates = bodies
-        .iter()
-        .map(plate)
-        .collect::<Result<Vec<_>, String>>()?;
-    match plates[..] {
-        [left, right] if !held => Ok(Exact::Plates([left, right])),
-        _ => Err("there are not two free plates".to_owned()),
+/// Bars in a row; the first may stand on a symmetry plane, the outer ends may be moved.
+fn bars(case: &Case, mut parts: Vec<Part>) -> Result<Exact, String> {
+    let mut ends = [End::Free, End::Free];
+    let last = parts.len() - 1;
+    if let Some(plane) = case.symmetry.first().map(|plane| plane.position)
+        && plane >= parts[0].ends[0]
+    {
+        parts[0].ends[0] = plane;
+        ends[0] = End::Moved(vec![(0.0, Some(0.0))]);
     }
+    for load in case.loads.velocities.iter().filter(|l| l.motion.has(0)) {
+        let steps = End::Moved(steps(load)?);
+        let [first, second] = [&parts[0], &parts[last]].map(|part| moved(part, load));
+        match (first, second) {
+            (Some([None, Some(edge)]), _) => (parts[0].ends[0], ends[0]) = (edge, steps),
+            (_, Some([Some(edge), None])) => (parts[last].ends[1], ends[1]) = (edge, steps),
+            _ => {
+                return Err(format!(
+                    "load \"{}\" moves more than an outer end",
+                    load.name
+                ));
+            }
+        }
+    }
+    let bar = |part: &Part| Bar {
+        modulus: part.material.p_wave_modulus(),
+        density: part.material.reference_density,
+        left: part.ends[0],
+        length: part.ends[1] - part.ends[0],
+        velocity: part.body.velocity.x,
+    };
+    let share = |part: &Part| {
+        let bulk = part
+            .material
+            .eos
+            .bulk_modulus(part.material.reference_density);
+        bulk / part.material.p_wave_modulus()
+    };
+    let row = Row {
+        bars: parts.iter().map(bar).collect(),
+        joints: vec![Joint::Contact; last],
+        ends,
+    };
+    Ok(Exact::Bars(row, parts.iter().map(share).collect()))
+}
+
+/// The outermost particles (m) that a load moves in a part, left and right; absent on a side
+/// where these are the part's own outermost. Nothing if the load moves none. A bar with a moved
+/// end begins at the last particle that is moved.
+fn moved(part: &Part, load: &VelocityLoad) -> Option<[Option<f64>; 2]> {
+    if load.body != part.index {
+        return None;
+    }
+    let spacing = part.body.lattice.spacing;
+    let first = part.ends[0] + 0.5 * spacing;
+    let count = ((part.ends[1] - part.ends[0]) / spacing).round();
+    let place = |k: f64| first + k * spacing;
+    let low = ((load.above[0] - first) / spacing - 1e-6).ceil().max(0.0);
+    let high = ((load.below[0] - first) / spacing + 1e-6)
+        .floor()
+        .min(count - 1.0);
+    let low_end = (low > 0.0).then(|| place(low));
+    let high_end = (high < count - 1.0).then(|| place(high));
+    (low <= high).then_some([low_end, high_end])
+}
+
+/// The velocity of a load as steps of time.
+fn steps(load: &VelocityLoad) -> Result<Vec<(f64, Option<f64>)>, String> {
+    let motion: &Motion = &load.motion;
+    let values = motion.velocities[0].as_deref().unwrap_or_default();
+    let mut steps = vec![(0.0, Some(motion.velocity(0, 0.0)))];
+    for (times, pair) in motion.times.windows(2).zip(values.windows(2)) {
+        if pair[0] == pair[1] {
+            continue;
+        }
+        if times[0] < times[1] {
+            return Err(format!("the velocity of load \"{}\" has a ramp", load.name));
+        }
+        if times[0] > 0.0 {
+            steps.push((times[0], Some(pair[1])));
+        }
+    }
+    steps.retain(|step| step.0 < load.until);
+    if load.until.is_finite() {
+        steps.push((load.until, None));
+    }
+    Ok(steps)
+}
+
+fn plate(part: &Part) -> Result<Plate, String> {
+    let fluid = matches!(part.material.strength, Strength::None) && part.material.spall.is_none();
+    let medium = Medium::of(part.material).filter(|_| fluid);
+    let unknown = || {
+        format!(
+            "the material of body \"{}\" has more than that",
+            part.body.name
+        )
+    };
+    Ok(Plate {
+        medium: medium.ok_or_else(unknown)?,
+        left: part.ends[0],
+        length: part.ends[1] - part.ends[0],
+        velocity: part.body.velocity.x,
+    })
 }
 
 /// Elastic waves as states; lengths and densities to first order in the strain, as the waves.

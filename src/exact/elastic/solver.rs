@@ -29,7 +29,7 @@ impl<'a> Solver<'a> {
         let velocities = bars
             .iter()
             .map(|b| b.velocity)
-            .chain(given.map(|&(_, v)| v));
+            .chain(given.filter_map(|&(_, v)| v));
         let gap = |pair: &[Bar]| pair[1].left - (pair[0].left + pair[0].length);
         let mut gaps: Vec<f64> = bars.windows(2).map(gap).collect();
         for (gap, joint) in gaps.iter_mut().zip(&row.joints) {
@@ -120,7 +120,9 @@ impl<'a> Solver<'a> {
             End::Free => arrived,
             End::Moved(steps) => {
                 let given = steps.iter().rev().find(|s| s.0 <= now + self.instant);
-                given.map_or(arrived, |&(_, v)| 2.0 * v - arrived)
+                given
+                    .and_then(|s| s.1)
+                    .map_or(arrived, |v| 2.0 * v - arrived)
             }
         }
     }
