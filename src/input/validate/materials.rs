@@ -64,6 +64,7 @@ fn material(
             Some(table) => spall(table)?,
             None => base.and_then(|b| b.spall),
         },
+        thermal: None,
     })
 }
 
