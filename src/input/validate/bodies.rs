@@ -2,7 +2,7 @@
 
 use toml::Spanned;
 
-use super::check::{Allowed, Value, number};
+use super::check::{Allowed, Value, number, optional};
 use super::shapes::Shapes;
 use super::touch;
 use crate::input::forms::LatticeParams;
@@ -85,6 +85,12 @@ impl Reader<'_> {
             shape: shapes.shape(&params.shape)?,
             material,
             lattice: self.lattice(params, spacing)?,
+            density: optional(params.density.as_ref(), "density", Allowed::Positive)?,
+            specific_energy: optional(
+                params.specific_energy.as_ref(),
+                "specific_energy",
+                Allowed::Any,
+            )?,
             velocity: self.velocity(params.velocity.as_ref())?,
             smoothing_length: self.smoothing * spacing,
         })

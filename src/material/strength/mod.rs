@@ -54,4 +54,10 @@ impl Strength {
     pub fn needs_temperature(&self) -> bool {
         matches!(self, Self::JohnsonCook(_) | Self::SteinbergGuinan(_))
     }
+
+    /// Whether the law needs the melting temperature of the thermal constants.
+    #[must_use]
+    pub fn needs_melting(&self) -> bool {
+        matches!(self, Self::JohnsonCook(_))
+    }
 }
