@@ -84,7 +84,7 @@ impl ContactTable {
         let inverse_densities = case
             .bodies
             .iter()
-            .map(|body| 1.0 / case.materials[body.material].reference_density)
+            .map(|body| 1.0 / case.initial_density(body))
             .collect();
         Self {
             kernel,
@@ -104,7 +104,7 @@ impl ContactTable {
         &self.pairs[a * self.foreign.bodies + b]
     }
 
-    /// 1/ρ₀ of a body (m³/kg).
+    /// 1/ρ of a body at the start (m³/kg).
     #[inline]
     #[must_use]
     pub fn inverse_density(&self, body: usize) -> f64 {

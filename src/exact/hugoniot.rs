@@ -61,7 +61,7 @@ impl Medium {
                 reference_density: material.reference_density,
                 eos: *eos,
             }),
-            Eos::Linear(_) => None,
+            _ => None,
         }
     }
 

@@ -6,9 +6,9 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::forms::{LatticeParams, Named, NormalParams, OneOrMany, OrNone};
+use super::forms::{LatticeParams, Named, NormalParams, OneOrMany};
 use super::quantity::{
-    Acceleration, Angle, Density, Extent, Length, Pressure, Quantity, Time, Velocity,
+    Acceleration, Angle, Density, Extent, Length, Quantity, SpecificEnergy, Time, Velocity,
 };
 
 /// A quantity with its place in the text.
@@ -93,6 +93,10 @@ tables! {
         spacing: Option<Placed<Length>>,
         /// Initial velocity; at rest if absent.
         velocity: Option<Spanned<Vec<Placed<Velocity>>>>,
+        /// Initial density; the material's reference density if absent.
+        density: Option<Placed<Density>>,
+        /// Initial specific energy; that of the material's reference state if absent.
+        specific_energy: Option<Placed<SpecificEnergy>>,
         /// Moves the body until it touches another one.
         touch: Option<TouchParams>,
         /// Whether the body is rigid: it keeps its velocity, whatever acts on it.
@@ -246,6 +250,9 @@ macro_rules! optional_tables {
     )+ };
 }
 
+mod materials;
+pub use materials::*;
+
 optional_tables! {
     /// `[sph]`
     SphParams {
@@ -281,82 +288,6 @@ optional_tables! {
         axis: Option<Spanned<AxisName>>,
         /// Steps between two balances.
         balance_every: Option<Spanned<i64>>,
-    }
-
-    /// `[material.NAME]`: from the library, or inline, or single values changed.
-    MaterialParams {
-        /// Name in the library.
-        library: Option<Spanned<String>>,
-        /// Reference density.
-        density: Option<Placed<Density>>,
-        /// Equation of state.
-        eos: Option<Spanned<EosParams>>,
-        /// Resistance to shear.
-        strength: Option<Spanned<OrNone<StrengthParams>>>,
-        /// Largest tension.
-        spall: Option<Spanned<OrNone<SpallParams>>>,
-    }
-
-    /// `eos`: exactly one of these.
-    EosParams {
-        /// Linear.
-        linear: Option<LinearParams>,
-        /// Mie–Grüneisen.
-        mie_gruneisen: Option<MieGruneisenParams>,
-    }
-
-    /// `eos.linear`
-    LinearParams {
-        /// Bulk modulus.
-        bulk_modulus: Option<Placed<Pressure>>,
-        /// Dependence on the density ratio.
-        form: Option<FormName>,
-    }
-
-    /// `eos.mie_gruneisen`
-    MieGruneisenParams {
-        /// Bulk sound speed.
-        c0: Option<Placed<Velocity>>,
-        /// Hugoniot.
-        s1: Option<Spanned<f64>>,
-        /// Hugoniot.
-        s2: Option<Spanned<f64>>,
-        /// Hugoniot.
-        s3: Option<Spanned<f64>>,
-        /// Grüneisen parameter.
-        gamma0: Option<Spanned<f64>>,
-        /// Its linear coefficient.
-        b: Option<Spanned<f64>>,
-    }
-
-    /// `strength`: exactly one of these.
-    StrengthParams {
-        /// Linear elastic.
-        elastic: Option<ElasticParams>,
-        /// Elastic–plastic.
-        von_mises: Option<VonMisesParams>,
-    }
-
-    /// `strength.elastic`
-    ElasticParams {
-        /// Shear modulus.
-        shear_modulus: Option<Placed<Pressure>>,
-    }
-
-    /// `strength.von_mises`
-    VonMisesParams {
-        /// Shear modulus.
-        shear_modulus: Option<Placed<Pressure>>,
-        /// Yield stress.
-        yield_stress: Option<Placed<Pressure>>,
-        /// Hardening modulus.
-        hardening_modulus: Option<Placed<Pressure>>,
-    }
-
-    /// `spall`
-    SpallParams {
-        /// Lowest pressure.
-        pressure: Option<Placed<Pressure>>,
     }
 
     /// `[contact]`

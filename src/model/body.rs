@@ -104,6 +104,10 @@ pub struct Body {
     pub material: usize,
     /// Lattice of its particles.
     pub lattice: Lattice,
+    /// Initial density (kg/m³), if not the material's reference density.
+    pub density: Option<f64>,
+    /// Initial specific internal energy (J/kg), if not that of the material's reference state.
+    pub specific_energy: Option<f64>,
     /// Initial velocity (m/s).
     pub velocity: Vec3,
     /// The motion of a rigid body; its particles feel nothing. Absent for bodies that deform.

@@ -78,6 +78,22 @@ impl Case {
             .map(String::as_str)
     }
 
+    /// Initial density of a body (kg/m³).
+    #[must_use]
+    pub fn initial_density(&self, body: &Body) -> f64 {
+        let reference = self.materials[body.material].reference_density;
+        body.density.unwrap_or(reference)
+    }
+
+    /// Initial specific energy of a body (J/kg).
+    #[must_use]
+    pub fn initial_energy(&self, body: &Body) -> f64 {
+        let eos = &self.materials[body.material].eos;
+        let density = self.initial_density(body);
+        body.specific_energy
+            .unwrap_or_else(|| eos.reference_energy(density))
+    }
+
     /// Largest difference of initial velocity between two bodies, or the largest speed of a
     /// single body, in m/s: the "impact speed" of the interpenetration measure.
     #[must_use]

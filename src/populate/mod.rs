@@ -117,7 +117,7 @@ pub fn least(
 }
 
 /// Volume of one particle of the body, Δp^d (m³; m² or m in two or one dimensions), so that its
-/// mass is `ρ₀ Δp^d`.
+/// mass is `ρ Δp^d` with its initial density.
 #[must_use]
 pub fn particle_volume(body: &Body, dimension: usize) -> f64 {
     (1..dimension).fold(body.lattice.spacing, |v, _| v * body.lattice.spacing)

@@ -166,8 +166,8 @@ impl Simulation {
         let mut i = 0;
         let mut first_id = 0_u64;
         for (b, body) in case.bodies.iter().enumerate() {
-            let material = &case.materials[body.material];
-            let mass = material.reference_density * populate::particle_volume(body, case.dimension);
+            let (density, energy) = (case.initial_density(body), case.initial_energy(body));
+            let mass = density * populate::particle_volume(body, case.dimension);
             let velocity = body.velocity.into();
             for site in populate::sites(body, case.dimension, &case.symmetry, Some(slab)) {
                 let store = &mut self.store;
@@ -177,8 +177,9 @@ impl Simulation {
                 store.position[i] = site.position;
                 store.velocity[i] = velocity;
                 store.predicted_velocity[i] = velocity;
-                store.density[i] = material.reference_density;
-                store.predicted_density[i] = material.reference_density;
+                store.density[i] = density;
+                store.predicted_density[i] = density;
+                store.specific_energy[i] = energy;
                 store.smoothing_length[i] = body.smoothing_length;
                 if self.loads.drives() {
                     let bits = self.loads.bits(case, b, &site.position);

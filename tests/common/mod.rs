@@ -24,6 +24,8 @@ pub fn body(name: &str, shape: Shape, spacing: f64, velocity: Vec3) -> Body {
             spacing,
             angle: 0.0,
         },
+        density: None,
+        specific_energy: None,
         velocity,
         rigid: None,
         smoothing_length: 1.3 * spacing,

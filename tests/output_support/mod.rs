@@ -32,6 +32,8 @@ pub fn case() -> Case {
             spacing,
             angle: 0.0,
         },
+        density: None,
+        specific_energy: None,
         velocity: Vec3::zeros(),
         rigid: None,
         smoothing_length: 1.3 * spacing,

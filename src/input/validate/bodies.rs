@@ -2,7 +2,7 @@
 
 use toml::Spanned;
 
-use super::check::{Allowed, Value, number};
+use super::check::{Allowed, Value, number, optional};
 use super::motion::motion;
 use super::shapes::Shapes;
 use super::touch;
@@ -32,6 +32,7 @@ pub fn no_material() -> Material {
         }),
         strength: Strength::None,
         spall: None,
+        thermal: None,
     }
 }
 
@@ -101,6 +102,12 @@ impl Reader<'_> {
             lattice: self.lattice(params, spacing)?,
             velocity,
             rigid,
+            density: optional(params.density.as_ref(), "density", Allowed::Positive)?,
+            specific_energy: optional(
+                params.specific_energy.as_ref(),
+                "specific_energy",
+                Allowed::Any,
+            )?,
             smoothing_length: self.smoothing * spacing,
         })
     }
