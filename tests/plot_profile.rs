@@ -234,6 +234,49 @@ fn plates_are_known_until_a_shock_is_released() {
 }
 
 #[test]
+fn two_gases_in_touch_are_known_until_their_waves_meet_the_ends() {
+    let folder = tempfile::tempdir().unwrap();
+    // Sod's problem in SI units: the left side at 1 kg/m³ and 1 Pa.
+    let case = r#"
+dimension = 1
+spacing = "0.1 mm"
+run = { end_time = "3 ms" }
+[material.gas]
+density = "1 kg/m^3"
+eos.ideal_gas = { gamma = 1.4, reference_pressure = "1 Pa" }
+strength = "none"
+[[body]]
+name = "left"
+material = "gas"
+shape.box = { lower = ["0 mm"], upper = ["4 mm"] }
+[[body]]
+name = "right"
+material = "gas"
+density = "0.125 kg/m^3"
+specific_energy = "2 J/kg"
+shape.box = { lower = ["4 mm"], upper = ["8 mm"] }
+[contact]
+mode = "kernel"
+"#;
+    let run = bars(folder.path(), "sod", case, &[1e3, 3e3]);
+    let profiles = Profiles::new(&[source(&run, 1)], &request("density")).unwrap();
+    let found = jumps(&profiles.chart().curves[2].points);
+    // The contact at u* = 0.92745 m/s, the shock at 1.75216 m/s.
+    let expected = [[4.92745e-3, 0.42632, 0.26557], [5.75216e-3, 0.26557, 0.125]];
+    let steep: Vec<_> = found
+        .iter()
+        .filter(|j| (j[1] - j[2]).abs() > 1e-6)
+        .collect();
+    assert_eq!(steep.len(), 2, "{found:?}");
+    for (found, expected) in steep.iter().zip(expected) {
+        assert!((found[0] - expected[0]).abs() < 1e-8, "{found:?}");
+        assert!((found[1] - expected[1]).abs() < 1e-5 && (found[2] - expected[2]).abs() < 1e-5);
+    }
+    let late = plot(&run, "--profile density --exact").unwrap_err();
+    assert!(late.contains("free end"), "{late}");
+}
+
+#[test]
 fn unknown_cases_say_which_are_known() {
     let folder = tempfile::tempdir().unwrap();
     let complaint = |case: &str, options: &str| {

@@ -9,15 +9,17 @@ use super::PlotError;
 use crate::exact::elastic::{Bar, End, Joint, Row, Waves};
 use crate::exact::hugoniot::Medium;
 use crate::exact::plates::{self, Plate};
+use crate::exact::riemann::{Gas, Riemann};
 use crate::exact::{Profile, Sample, finite_strain};
 use crate::input;
-use crate::material::{Material, Strength};
+use crate::material::{Eos, Material, Strength};
 use crate::model::{Body, Case, ContactMode, Motion, Shape, VelocityLoad};
 
 /// What has an answer.
 const KNOWN: &str = "an exact answer is known for one-dimensional runs of linear elastic bars \
     that meet, whose outer ends may be moved at steps of velocity, and of two plates of \
-    Mie-Grüneisen materials with strength = \"none\" until a shock reaches a free face";
+    Mie-Grüneisen materials with strength = \"none\" until a shock reaches a free face, and of two \
+    bodies of one ideal gas in touch until a wave reaches an end";
 
 /// Fields that an answer has, as they are usually called.
 pub const FIELDS: [&str; 7] = [
@@ -37,6 +39,8 @@ pub enum Exact {
     Bars(Row, Vec<f64>),
     /// Two plates, left and right.
     Plates([Plate; 2]),
+    /// Two bodies of gas: where they touch (m), and their far ends.
+    Gas(Riemann, f64, [f64; 2]),
 }
 
 /// A body as a stretch of the x axis.
@@ -45,6 +49,10 @@ struct Part<'a> {
     body: &'a Body,
     /// Index of the body.
     index: usize,
+    /// Initial density (kg/m³).
+    density: f64,
+    /// Initial specific energy (J/kg).
+    energy: f64,
     material: &'a Material,
     /// Smallest and largest coordinate (m).
     ends: [f64; 2],
@@ -71,7 +79,10 @@ impl Exact {
             return bars(case, parts);
         }
         if !case.symmetry.is_empty() || !case.loads.velocities.is_empty() {
-            return Err("plates are held or moved".to_owned());
+            return Err("something is held or moved".to_owned());
+        }
+        if let Some(gases) = parts.iter().map(gas).collect::<Option<Vec<_>>>() {
+            return two_gases(&parts, &gases);
         }
         let plates = parts.iter().map(plate).collect::<Result<Vec<_>, _>>()?;
         match plates[..] {
@@ -84,7 +95,7 @@ impl Exact {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Bars(..) => "exact, linear elastic",
-            Self::Plates(_) => "exact",
+            Self::Plates(_) | Self::Gas(..) => "exact",
         }
     }
 
@@ -97,8 +108,58 @@ impl Exact {
                 let reason = format!("a shock has reached a free face at {since:.3} us; {KNOWN}");
                 PlotError::Exact { reason }
             }),
+            Self::Gas(riemann, origin, ends) => gas_profile(riemann, *origin, *ends, time)
+                .ok_or_else(|| PlotError::Exact {
+                    reason: format!("a wave has met that of a free end; {KNOWN}"),
+                }),
         }
     }
+}
+
+/// Two bodies of one gas in touch.
+fn two_gases(parts: &[Part], gases: &[(f64, Gas)]) -> Result<Exact, String> {
+    let (&[left, right], &[(gamma, a), (other, b)]) = (parts, gases) else {
+        return Err(format!("there are {} bodies of gas", parts.len()));
+    };
+    let gap = right.ends[0] - left.ends[1];
+    if gap.abs() > 1e-6 * left.body.lattice.spacing || gamma != other {
+        return Err("the bodies are of two gases or not in touch".to_owned());
+    }
+    let riemann = Riemann::new(gamma, a, b).ok_or("a vacuum opens between the gases")?;
+    Ok(Exact::Gas(
+        riemann,
+        left.ends[1],
+        [left.ends[0], right.ends[1]],
+    ))
+}
+
+/// The ratio of specific heats and the initial state of an ideal gas.
+fn gas(part: &Part) -> Option<(f64, Gas)> {
+    let Eos::IdealGas(eos) = &part.material.eos else {
+        return None;
+    };
+    let inviscid = matches!(part.material.strength, Strength::None);
+    let ideal = eos.stiffening_pressure == 0.0 && part.material.spall.is_none();
+    let gas = Gas {
+        density: part.density,
+        velocity: part.body.velocity.x,
+        pressure: eos.response(part.density, part.energy).pressure,
+    };
+    (inviscid && ideal).then_some((eos.gamma, gas))
+}
+
+/// The states of two gases while their outer ends stay as they were, but for their velocity.
+fn gas_profile(riemann: &Riemann, origin: f64, ends: [f64; 2], time: f64) -> Option<Profile> {
+    let at = |k: usize| ends[k] + riemann.sides[k].velocity * time;
+    // A free end with pressure sends in a wave of its own; it is not shown.
+    let sound = |k: usize| {
+        let gas = &riemann.sides[k];
+        (riemann.gamma * gas.pressure / gas.density).sqrt() * time
+    };
+    let span = [at(0) + sound(0), at(1) - sound(1)];
+    let waves = riemann.waves().map(|wave| origin + wave[0] * time);
+    let apart = span[0] <= waves[0] && waves[1] <= span[1];
+    apart.then(|| vec![riemann.profile(origin, time, span)])
 }
 
 /// The bodies of a one-dimensional case from left to right, if each sees all others.
@@ -121,6 +182,8 @@ fn parts(case: &Case) -> Result<Vec<Part<'_>>, String> {
         parts.push(Part {
             body,
             index,
+            density: case.initial_density(body),
+            energy: case.initial_energy(body),
             material: &case.materials[body.material],
             ends: [lower.x, upper.x],
         });
