@@ -273,7 +273,23 @@ mode = "kernel"
         assert!((found[1] - expected[1]).abs() < 1e-5 && (found[2] - expected[2]).abs() < 1e-5);
     }
     let late = plot(&run, "--profile density --exact").unwrap_err();
-    assert!(late.contains("free end"), "{late}");
+    assert!(late.contains("has met an end"), "{late}");
+    // Held ends send no waves: at 2 ms those of free ends would have met the shock.
+    let held = format!(
+        "{case}\n[[symmetry]]\naxis = \"x\"\n[[load]]\nbody = \"right\"\nabove.x = \"7.9 mm\"\nvelocity.x = 0"
+    );
+    let tube = bars(folder.path(), "held", &held, &[2.0e3]);
+    let profiles = Profiles::new(&[source(&tube, 1)], &request("density")).unwrap();
+    let points = &profiles.chart().curves[2].points;
+    let ends = [points[0][0], points[points.len() - 2][0]];
+    assert!(
+        ends[0].abs() < 1e-12 && (ends[1] - 7.95e-3).abs() < 1e-9,
+        "{ends:?}"
+    );
+    let moved = held.replace("velocity.x = 0", "velocity.x = \"1 m/s\"");
+    let moved = bars(folder.path(), "moved", &moved, &[1e3]);
+    let complaint = plot(&moved, "--profile density --exact").unwrap_err();
+    assert!(complaint.contains("unlike the gas"), "{complaint}");
 }
 
 #[test]

@@ -19,7 +19,7 @@ use crate::model::{Body, Case, ContactMode, Motion, Shape, VelocityLoad};
 const KNOWN: &str = "an exact answer is known for one-dimensional runs of linear elastic bars \
     that meet, whose outer ends may be moved at steps of velocity, and of two plates of \
     Mie-Grüneisen materials with strength = \"none\" until a shock reaches a free face, and of two \
-    bodies of one ideal gas in touch until a wave reaches an end";
+    bodies of one ideal gas in touch until their waves meet those of the ends";
 
 /// Fields that an answer has, as they are usually called.
 pub const FIELDS: [&str; 7] = [
@@ -39,8 +39,8 @@ pub enum Exact {
     Bars(Row, Vec<f64>),
     /// Two plates, left and right.
     Plates([Plate; 2]),
-    /// Two bodies of gas: where they touch (m), and their far ends.
-    Gas(Riemann, f64, [f64; 2]),
+    /// Two bodies of gas: where they touch (m), and their far ends and whether these are held.
+    Gas(Riemann, f64, [(f64, bool); 2]),
 }
 
 /// A body as a stretch of the x axis.
@@ -70,19 +70,20 @@ impl Exact {
 
     /// The answer for a case, or what it has that no answer covers.
     fn of(case: &Case) -> Result<Self, String> {
-        let parts = parts(case)?;
+        let mut parts = parts(case)?;
         if case.loads.has_gravity() || !case.loads.planes.is_empty() {
             return Err("there is gravity or a rigid plane".to_owned());
         }
+        let ends = outer_ends(case, &mut parts)?;
         let elastic = |part: &Part| finite_strain::Medium::of(part.material).is_some();
         if parts.iter().all(elastic) {
-            return bars(case, parts);
-        }
-        if !case.symmetry.is_empty() || !case.loads.velocities.is_empty() {
-            return Err("something is held or moved".to_owned());
+            return Ok(bars(&parts, ends));
         }
         if let Some(gases) = parts.iter().map(gas).collect::<Option<Vec<_>>>() {
-            return two_gases(&parts, &gases);
+            return two_gases(&parts, &gases, &ends);
+        }
+        if ends.iter().any(|end| *end != End::Free) {
+            return Err("plates are held or moved".to_owned());
         }
         let plates = parts.iter().map(plate).collect::<Result<Vec<_>, _>>()?;
         match plates[..] {
@@ -110,14 +111,14 @@ impl Exact {
             }),
             Self::Gas(riemann, origin, ends) => gas_profile(riemann, *origin, *ends, time)
                 .ok_or_else(|| PlotError::Exact {
-                    reason: format!("a wave has met that of a free end; {KNOWN}"),
+                    reason: format!("a wave has met an end or what comes from there; {KNOWN}"),
                 }),
         }
     }
 }
 
-/// Two bodies of one gas in touch.
-fn two_gases(parts: &[Part], gases: &[(f64, Gas)]) -> Result<Exact, String> {
+/// Two bodies of one gas in touch, their far ends free or moved as the gas there moves.
+fn two_gases(parts: &[Part], gases: &[(f64, Gas)], ends: &[End; 2]) -> Result<Exact, String> {
     let (&[left, right], &[(gamma, a), (other, b)]) = (parts, gases) else {
         return Err(format!("there are {} bodies of gas", parts.len()));
     };
@@ -126,11 +127,13 @@ fn two_gases(parts: &[Part], gases: &[(f64, Gas)]) -> Result<Exact, String> {
         return Err("the bodies are of two gases or not in touch".to_owned());
     }
     let riemann = Riemann::new(gamma, a, b).ok_or("a vacuum opens between the gases")?;
-    Ok(Exact::Gas(
-        riemann,
-        left.ends[1],
-        [left.ends[0], right.ends[1]],
-    ))
+    let held = |k: usize| match &ends[k] {
+        End::Free => Ok(false),
+        End::Moved(steps) if steps[..] == [(0.0, Some(riemann.sides[k].velocity))] => Ok(true),
+        End::Moved(_) => Err("an end of the gas moves unlike the gas"),
+    };
+    let far = [(left.ends[0], held(0)?), (right.ends[1], held(1)?)];
+    Ok(Exact::Gas(riemann, left.ends[1], far))
 }
 
 /// The ratio of specific heats and the initial state of an ideal gas.
@@ -148,15 +151,20 @@ fn gas(part: &Part) -> Option<(f64, Gas)> {
     (inviscid && ideal).then_some((eos.gamma, gas))
 }
 
-/// The states of two gases while their outer ends stay as they were, but for their velocity.
-fn gas_profile(riemann: &Riemann, origin: f64, ends: [f64; 2], time: f64) -> Option<Profile> {
-    let at = |k: usize| ends[k] + riemann.sides[k].velocity * time;
-    // A free end with pressure sends in a wave of its own; it is not shown.
-    let sound = |k: usize| {
-        let gas = &riemann.sides[k];
-        (riemann.gamma * gas.pressure / gas.density).sqrt() * time
+/// The states of two gases until their waves meet the far ends, or what comes from free ones: a
+/// wave of their own at the speed of sound, behind which nothing is shown.
+fn gas_profile(
+    riemann: &Riemann,
+    origin: f64,
+    ends: [(f64, bool); 2],
+    time: f64,
+) -> Option<Profile> {
+    let undisturbed = |k: usize, sign: f64| {
+        let (gas, (end, held)) = (&riemann.sides[k], ends[k]);
+        let sound = (riemann.gamma * gas.pressure / gas.density).sqrt();
+        end + (gas.velocity + if held { 0.0 } else { sign * sound }) * time
     };
-    let span = [at(0) + sound(0), at(1) - sound(1)];
+    let span = [undisturbed(0, 1.0), undisturbed(1, -1.0)];
     let waves = riemann.waves().map(|wave| origin + wave[0] * time);
     let apart = span[0] <= waves[0] && waves[1] <= span[1];
     apart.then(|| vec![riemann.profile(origin, time, span)])
@@ -192,8 +200,8 @@ fn parts(case: &Case) -> Result<Vec<Part<'_>>, String> {
     Ok(parts)
 }
 
-/// Bars in a row; the first may stand on a symmetry plane, the outer ends may be moved.
-fn bars(case: &Case, mut parts: Vec<Part>) -> Result<Exact, String> {
+/// What holds the outer ends; cuts the parts at a symmetry plane and at moved particles.
+fn outer_ends(case: &Case, parts: &mut [Part]) -> Result<[End; 2], String> {
     let mut ends = [End::Free, End::Free];
     let last = parts.len() - 1;
     if let Some(plane) = case.symmetry.first().map(|plane| plane.position)
@@ -216,6 +224,11 @@ fn bars(case: &Case, mut parts: Vec<Part>) -> Result<Exact, String> {
             }
         }
     }
+    Ok(ends)
+}
+
+/// Bars in a row.
+fn bars(parts: &[Part], ends: [End; 2]) -> Exact {
     let bar = |part: &Part| Bar {
         modulus: part.material.p_wave_modulus(),
         density: part.material.reference_density,
@@ -232,10 +245,10 @@ fn bars(case: &Case, mut parts: Vec<Part>) -> Result<Exact, String> {
     };
     let row = Row {
         bars: parts.iter().map(bar).collect(),
-        joints: vec![Joint::Contact; last],
+        joints: vec![Joint::Contact; parts.len() - 1],
         ends,
     };
-    Ok(Exact::Bars(row, parts.iter().map(share).collect()))
+    Exact::Bars(row, parts.iter().map(share).collect())
 }
 
 /// The outermost particles (m) that a load moves in a part, left and right; absent on a side
