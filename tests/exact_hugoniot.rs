@@ -1,6 +1,7 @@
 //! Plane impact of Mie–Grüneisen materials against tabulated figures and the jump conditions.
 
 use whipple::exact::hugoniot::{Medium, free_surface_velocity, impact};
+use whipple::exact::plates::{Plate, profile};
 use whipple::material::library;
 
 fn medium(name: &str) -> Medium {
@@ -109,4 +110,45 @@ fn weak_impact_is_acoustic() {
     let acoustic = metal.reference_density * metal.eos.c0 * 0.01;
     assert!((result.pressure / acoustic - 1.0).abs() < 1e-5);
     assert!((free_surface_velocity(&metal, &result) / 0.02 - 1.0).abs() < 1e-5);
+}
+
+#[test]
+fn plates_carry_their_shocks_from_a_gap_on() {
+    let (copper, aluminium) = (medium("copper"), medium("aluminium-2024"));
+    let plate = |medium, left, velocity| Plate {
+        medium,
+        left,
+        length: 4e-3,
+        velocity,
+    };
+    let (left, right) = (plate(copper, 0.0, 3e3), plate(aluminium, 5e-3, -1e3));
+    let result = impact(&copper, &aluminium, 4e3);
+    // They meet after 1 mm at 4 km/s.
+    let before = profile([&left, &right], 2e-7).unwrap();
+    assert!(before.iter().flatten().all(|s| s.pressure == 0.0));
+    let after = profile([&left, &right], 5e-7).unwrap();
+    let (a, b) = (&after[0], &after[1]);
+    assert_eq!(a[3].position, b[0].position);
+    assert!((a[3].position - (4.75e-3 + (result.interface_velocity - 1e3) * 2.5e-7)).abs() < 1e-12);
+    assert!((a[3].pressure / b[0].pressure - 1.0).abs() < 1e-12);
+    assert_eq!(a[3].velocity, b[0].velocity);
+    // Mass, momentum and energy (at equal areas) are those of the start.
+    let sum = |f: &dyn Fn(&whipple::exact::Sample) -> f64| -> f64 {
+        let pieces = after.iter().flat_map(|line| line.windows(2));
+        pieces
+            .map(|p| 0.5 * (f(&p[0]) + f(&p[1])) * (p[1].position - p[0].position))
+            .sum()
+    };
+    let start = |f: &dyn Fn(f64) -> f64| 4e-3 * (8930.0 * f(3e3) + 2785.0 * f(-1e3));
+    let ratios = [
+        sum(&|s| s.density) / start(&|_| 1.0),
+        sum(&|s| s.density * s.velocity) / start(&|v| v),
+        sum(&|s| s.density * (0.5 * s.velocity * s.velocity + s.specific_energy))
+            / start(&|v| 0.5 * v * v),
+    ];
+    for ratio in ratios {
+        assert!((ratio - 1.0).abs() < 1e-12, "{ratios:?}");
+    }
+    let released = profile([&left, &right], 2e-6).unwrap_err();
+    assert!(released.since > 5e-7 && released.since < 2e-6);
 }

@@ -212,6 +212,71 @@ fn an_inline_material() {
 }
 
 #[test]
+fn a_gas_a_liquid_a_rubber_and_a_hot_metal() {
+    let text = r#"
+        dimension = 1
+        spacing = "1 mm"
+        run.end_time = "1 us"
+        contact.mode = "none"
+        output.fields = ["temperature"]
+        sph.smoothing_length = "variable"
+        [material.gas]
+        density = "1 kg/m^3"
+        eos.ideal_gas = { gamma = 1.4, reference_pressure = "1 bar" }
+        strength = "none"
+        [material.water]
+        density = "1 g/cm^3"
+        eos.tait = { sound_speed = "24 m/s" }
+        strength.viscous = { viscosity = "1 MPa s" }
+        [material.rubber]
+        density = "1.01 g/cm^3"
+        eos.linear = { bulk_modulus = "0.73 GPa" }
+        strength.neo_hookean = { shear_modulus = "0.16 GPa" }
+        [material.copper]
+        library = "copper"
+        strength.johnson_cook = { a = "90 MPa", b = "292 MPa", n = 0.31, c = 0.025, m = 1.09 }
+        thermal = { specific_heat = "383 J/(kg K)", melting_temperature = "1356 K" }
+        spall.pressure = "-1 GPa"
+        [[body]]
+        name = "left"
+        material = "gas"
+        shape.box.size = ["10 mm"]
+        [[body]]
+        name = "right"
+        material = "gas"
+        density = "0.125 kg/m^3"
+        specific_energy = "2 MJ/kg"
+        shape.box = { lower = ["5 mm"], upper = ["15 mm"] }
+        [[body]]
+        name = "pool"
+        material = "water"
+        shape.box = { lower = ["15 mm"], upper = ["25 mm"] }
+    "#;
+    let case = parse("inline", text, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let [left, right, pool] = &case.bodies[..] else {
+        panic!("three bodies")
+    };
+    let states = [left, right, pool].map(|b| (case.initial_density(b), case.initial_energy(b)));
+    // p = 0.4 ρ e = 1 bar.
+    assert!((states[0].1 / 2.5e5 - 1.0).abs() < 1e-14 && (states[0].0 - 1.0).abs() < 1e-15);
+    assert!((states[1].0 - 0.125).abs() < 1e-16 && (states[1].1 - 2e6).abs() < 1e-8);
+    assert!((states[2].0 - 1000.0).abs() < 1e-12 && states[2].1 == 0.0);
+    // Viscous diffusion bounds the step, at the smallest smoothing length: h²ρ/(8η).
+    let h = 0.6 * 1.3e-3;
+    assert!((case.time_step.max / (0.125 * h * h * 1e3 / 1e6) - 1.0).abs() < 1e-13);
+    let Strength::JohnsonCook(law) = case.materials[3].strength else {
+        panic!("Johnson and Cook's")
+    };
+    // The library's shear modulus, room temperature and 1/s by default.
+    assert!((law.shear_modulus - 47.7e9).abs() < 1.0 && (law.reference_rate - 1.0).abs() < 1e-15);
+    let thermal = case.materials[3].thermal.as_ref().unwrap().constants();
+    assert!((thermal.reference_temperature - 300.0).abs() < 1e-12);
+    assert!((case.materials[3].temperature(8930.0, 38300.0).unwrap() - 400.0).abs() < 1e-9);
+    let again = parse("resolved", &case.resolved, &[]).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(meaning(&again), meaning(&case));
+}
+
+#[test]
 fn bodies_touch_in_any_order() {
     let chain = "
         dimension = 1

@@ -59,7 +59,7 @@ fn a_misspelled_key_names_the_nearest() {
 13 | materiel = \"metal\"
    | ^^^^^^^^ did you mean `material`?
    |
-   = help: the choices are `name`, `material`, `shape`, `lattice`, `spacing`, `velocity`, `touch`";
+   = help: the choices are `name`, `material`, `shape`, `lattice`, `spacing`, `velocity`, `density`, `specific_energy`, `touch`";
     assert_eq!(
         message(&GOOD.replacen("material = ", "materiel = ", 1), &[]),
         expected
@@ -74,7 +74,7 @@ fn an_override_is_shown_itself() {
 1 | body.ball.velocty=[0, 0, 0]
   |           ^^^^^^^ did you mean `velocity`?
   |
-  = help: the choices are `name`, `material`, `shape`, `lattice`, `spacing`, `velocity`, `touch`";
+  = help: the choices are `name`, `material`, `shape`, `lattice`, `spacing`, `velocity`, `density`, `specific_energy`, `touch`";
     let set = [
         "run.max_steps=1",
         "body.ball.velocty=[0, 0, 0]",
@@ -379,6 +379,71 @@ const IN_OVERRIDES: &[(&str, &str, usize)] = &[
         25,
     ),
     (
+        "material.metal.eos={tait={gamma=7}, linear={}}",
+        "`eos` must have exactly one of",
+        20,
+    ),
+    (
+        "material.metal.eos={tait={gamma=7}}",
+        "`eos.tait` needs `sound_speed` or `b`",
+        20,
+    ),
+    (
+        "material.metal.eos={tait={b=\"3 kbar\", sound_speed=\"20 m/s\"}}",
+        "`b` and `sound_speed` say the same twice",
+        51,
+    ),
+    (
+        "material.metal.eos={ideal_gas={gamma=1}}",
+        "`gamma` must be above 1",
+        38,
+    ),
+    (
+        "material.metal.eos={tillotson={a=0.5}}",
+        "the key `b` is missing",
+        20,
+    ),
+    (
+        "material.metal.strength={viscous={viscosity=\"1 mPa\"}}",
+        "expected a dynamic viscosity with a unit, such as \"1 mPa s\", found a pressure",
+        45,
+    ),
+    (
+        "material.metal.strength={johnson_cook={a=\"90 MPa\",b=\"292 MPa\",n=0.31,c=0.025,m=1.09}}",
+        "this strength follows the temperature and needs `thermal.specific_heat`",
+        25,
+    ),
+    (
+        "material.metal.thermal={specific_heat=\"383 J/kg\"}",
+        "expected a specific heat with a unit, such as \"896 J/(kg K)\", found a specific energy",
+        39,
+    ),
+    (
+        "material.metal.thermal={}",
+        "the key `specific_heat` is missing",
+        24,
+    ),
+    (
+        "material.metal.thermal={specific_heat=\"383 J/(kg K)\", melting_temperature=\"200 K\"}",
+        "`melting_temperature` must be above `reference_temperature`",
+        75,
+    ),
+    (
+        "output.fields=[\"temperature\"]",
+        "no material has `thermal` constants",
+        16,
+    ),
+    (
+        "body.ball.density=-1 g/cm^3",
+        "`density` must be positive",
+        19,
+    ),
+    (
+        "body.ball.specific_energy=1 J",
+        "expected a specific energy with a unit",
+        27,
+    ),
+    (
         "body.ball.touch={body=\"ball\",direction=\"+x\"}",
         "unknown body `ball`",
         23,
@@ -395,11 +460,31 @@ fn mistakes_in_overrides() {
     for (set, title, column) in IN_OVERRIDES {
         let message = message(GOOD, &[set]);
         assert!(message.contains(title), "{set}: {message}");
-        assert!(
-            message.contains(&format!("--> --set:1:{column}\n")),
-            "{set}: {message}"
-        );
+        let place = match column {
+            0 => "--> case.toml:".to_owned(),
+            _ => format!("--> --set:1:{column}\n"),
+        };
+        assert!(message.contains(&place), "{set}: {message}");
     }
+}
+
+#[test]
+fn contact_needs_a_modulus() {
+    let gas = "material.metal={density=\"1 g/cm^3\",eos={ideal_gas={gamma=1.4}},strength=\"none\"}";
+    let message = message(GOOD, &[gas]);
+    assert!(
+        message.contains("the gas `metal` has no modulus"),
+        "{message}"
+    );
+    assert!(message.contains("--> case.toml:13:12\n"), "{message}");
+    assert!(
+        parse(
+            "none",
+            GOOD,
+            &[gas, "contact.pair=[]", "contact.mode=kernel"].map(String::from)
+        )
+        .is_ok()
+    );
 }
 
 #[test]

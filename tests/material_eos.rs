@@ -24,6 +24,7 @@ fn fluid(reference_density: f64, eos: Eos) -> Material {
         eos,
         strength: Strength::None,
         spall: None,
+        thermal: None,
     }
 }
 

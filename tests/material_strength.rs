@@ -19,6 +19,7 @@ fn material(strength: Strength) -> Material {
         }),
         strength,
         spall: None,
+        thermal: None,
     }
 }
 

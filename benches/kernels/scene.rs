@@ -107,6 +107,7 @@ impl Scene {
         let lengths = Lengths {
             longest: LENGTH,
             uniform: true,
+            rigid: false,
         };
         self.clusters.build(&self.sequence, &[lengths; 2]);
     }

@@ -99,6 +99,7 @@ fn expected_steps(case: &Case) -> Option<f64> {
     let dt = case
         .bodies
         .iter()
+        .filter(|body| body.rigid.is_none())
         .map(|body| {
             let material = &case.materials[body.material];
             let c = (material.p_wave_modulus() / material.reference_density).sqrt();

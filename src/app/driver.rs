@@ -68,7 +68,8 @@ impl<'a> Driver<'a> {
         let mut tables = None;
         on_root(comm, || {
             let resume = restarted.is_some().then_some(&simulation.state);
-            tables = Some(Tables::open(folder, resume)?);
+            let any_load = simulation.case.load_names().next().is_some();
+            tables = Some(Tables::open(folder, any_load, resume)?);
             Ok(())
         })?;
         let stop = comm.is_root().then(|| folder.stop());

@@ -54,7 +54,7 @@ enum Command {
     Run(run::RunArgs),
     Restart(restart::RestartArgs),
     Check(check::CheckArgs),
-    Plot(plot::PlotArgs),
+    Plot(Box<plot::PlotArgs>),
     Info(info::InfoArgs),
     Compare(compare::CompareArgs),
     Bench(bench::BenchArgs),

@@ -3,13 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use crate::plot::{
-    Canvas, History, Pictures, PlotError, Request, Wanted, choose, parse_quantity, snapshots, title,
+    Along, Canvas, Columns, Pictures, PlotError, Points, ProfileRequest, Profiles, Request, Source,
+    Tables, Wanted, choose, energies, parse_quantity, snapshots, title,
 };
 
-/// Draw sections of snapshots, or the energies of a run, as PNG pictures
+/// Draw sections of snapshots, profiles along a line, energies or tables as PNG pictures
 ///
 /// Particles of one layer about a plane are drawn to scale as discs of the particle spacing,
 /// coloured by body or by a field. A run's last snapshot is drawn unless others are asked for.
+/// With --profile the particles of one row along a line are drawn as dots over their coordinate.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = "Examples:
   whipple plot runs/impact                                   last snapshot, by body
@@ -17,14 +19,18 @@ use crate::plot::{
   whipple plot runs/impact --panels --time 0us,0.1us,0.2us   side by side
   whipple plot runs/impact --all --field velocity.z --range -7:1km/s
   whipple plot state.vtkhdf --section z=0.1mm --view -1:1,-1:1mm
-  whipple plot runs/impact --history")]
+  whipple plot runs/impact --history
+  whipple plot runs/bars --profile stress.xx --at 0.48us --exact
+  whipple plot runs/bars --profile velocity.x --with runs/bars-kernel
+  whipple plot runs/dam --xy time:front --points martin-moyce.csv
+  whipple plot errors.csv --xy spacing:error --log xy")]
 #[expect(
     clippy::struct_excessive_bools,
     clippy::doc_markdown,
     reason = "each is a switch of the command line; the comments are its help"
 )]
 pub struct PlotArgs {
-    /// Snapshot file (.vtkhdf) or run folder
+    /// Snapshot file (.vtkhdf), run folder, or table (.csv) for --history and --xy
     #[arg(value_name = "FILE_OR_RUN")]
     pub source: PathBuf,
 
@@ -43,8 +49,9 @@ pub struct PlotArgs {
     #[arg(short, long, value_name = "AXIS=POSITION")]
     pub section: Option<String>,
 
-    /// Thickness of the slice about the plane, as in 0.1mm [default: one particle spacing, two on a
-    /// plane of symmetry: one layer of a cubic lattice]
+    /// Thickness of the slice about the plane, or of a profile's line, as in 0.1mm [default: one
+    /// particle spacing, two on a plane of symmetry: one layer of a cubic lattice; of a line one
+    /// and a half, for the rows beside it]
     #[arg(long, value_name = "LENGTH")]
     pub thickness: Option<String>,
 
@@ -56,13 +63,18 @@ pub struct PlotArgs {
     #[arg(long)]
     pub no_mirror: bool,
 
-    /// Values at the ends of the colour bar, as in 0:100GPa [default: all values but a few
-    /// outliers]
+    /// Values at the ends of the colour bar, or of a profile's axis, as in 0:100GPa [default: all
+    /// values; of colours all but a few outliers]
     #[arg(long, value_name = "LOW:HIGH", allow_hyphen_values = true)]
     pub range: Option<String>,
 
-    /// Part of the plane to draw, as in -1:1,0:2mm [default: all particles]
-    #[arg(long, value_name = "LEFT:RIGHT,BOTTOM:TOP", allow_hyphen_values = true)]
+    /// Part of the plane to draw, as in -1:1,0:2mm, or of a profile's line, as in -1:1mm [default:
+    /// all particles]
+    #[arg(
+        long,
+        value_name = "LEFT:RIGHT[,BOTTOM:TOP]",
+        allow_hyphen_values = true
+    )]
     pub view: Option<String>,
 
     /// Width of the picture in pixels [default: 1200, panels 1800]
@@ -70,7 +82,13 @@ pub struct PlotArgs {
     pub width: Option<u32>,
 
     /// Snapshots of the run nearest to these times, as in 0.1us
-    #[arg(long, value_name = "TIME", value_delimiter = ',', group = "which")]
+    #[arg(
+        long,
+        visible_alias = "at",
+        value_name = "TIME",
+        value_delimiter = ',',
+        group = "which"
+    )]
     pub time: Vec<String>,
 
     /// Snapshots of the run by number, from 0
@@ -85,11 +103,61 @@ pub struct PlotArgs {
     #[arg(long)]
     pub panels: bool,
 
+    /// Further runs, snapshots or tables in the same picture: beside the first with --panels, over
+    /// it with --profile and --xy
+    #[arg(long, value_name = "FILE_OR_RUN", value_delimiter = ',')]
+    pub with: Vec<PathBuf>,
+
     /// Draw the run's energies against time instead
     #[arg(long, conflicts_with_all = [
-        "which", "field", "section", "thickness", "no_mirror", "panels", "range", "view",
+        "which", "field", "section", "thickness", "no_mirror", "panels", "range", "view", "with",
     ])]
     pub history: bool,
+
+    /// Draw a field along a line instead: FIELD or FIELD.COMPONENT, as for --field; stress.xx … are
+    /// made from pressure and deviatoric stress
+    #[arg(long, value_name = "FIELD", conflicts_with_all = [
+        "field", "section", "no_mirror", "panels", "history",
+    ])]
+    pub profile: Option<String>,
+
+    /// Axis of the profile's line, or r for the distance from a point
+    #[arg(
+        long,
+        value_name = "x|y|z|r",
+        requires = "profile",
+        default_value = "x"
+    )]
+    pub along: String,
+
+    /// Where the profile's line crosses the other axes, or the point, as in y=0,z=0.1mm [default:
+    /// planes of symmetry, else the middle of the model]
+    #[arg(
+        long,
+        value_name = "AXIS=POSITION",
+        requires = "profile",
+        allow_hyphen_values = true
+    )]
+    pub through: Option<String>,
+
+    /// Draw the exact answer over the profile, where one is known
+    #[arg(long, requires = "profile")]
+    pub exact: bool,
+
+    /// Draw columns of a table (of a run: history.csv) against another: X:Y or X:Y,Y2
+    #[arg(long, value_name = "X:Y", conflicts_with_all = [
+        "which", "field", "section", "thickness", "no_mirror", "panels", "range", "view", "history",
+        "profile",
+    ])]
+    pub xy: Option<String>,
+
+    /// Points of another table, drawn as rings over --xy; its columns if they have other names
+    #[arg(long, value_name = "FILE[:X:Y]", requires = "xy")]
+    pub points: Vec<String>,
+
+    /// Logarithmic axes of --xy
+    #[arg(long, value_name = "x|y|xy", requires = "xy", value_parser = ["x", "y", "xy"])]
+    pub log: Option<String>,
 }
 
 /// Makes the pictures and prints their paths.
@@ -98,17 +166,23 @@ pub struct PlotArgs {
 /// [`PlotError`] if an input cannot be read, a request cannot be met or a picture not written.
 pub fn run(args: &PlotArgs) -> Result<(), PlotError> {
     if args.history {
-        return draw_history(args);
-    }
-    let paths = if args.source.is_dir() {
-        choose(&snapshots(&args.source)?, &wanted(args)?)?
-    } else if args.all || !args.time.is_empty() || !args.index.is_empty() {
-        return Err(PlotError::Options(
-            "--time, --index and --all choose among the snapshots of a run: give its folder",
-        ));
+        draw_history(args)
+    } else if let Some(columns) = &args.xy {
+        draw_tables(args, columns)
+    } else if let Some(field) = &args.profile {
+        draw_profile(args, field)
     } else {
-        vec![args.source.clone()]
-    };
+        draw_sections(args)
+    }
+}
+
+fn draw_sections(args: &PlotArgs) -> Result<(), PlotError> {
+    if !args.panels && !args.with.is_empty() {
+        return Err(PlotError::Options(
+            "--with puts runs side by side: add --panels, or draw a --profile",
+        ));
+    }
+    let sources = sources(args)?;
     let request = Request {
         field: args.field.clone(),
         section: args.section.clone(),
@@ -117,12 +191,13 @@ pub fn run(args: &PlotArgs) -> Result<(), PlotError> {
         range: args.range.clone(),
         view: args.view.clone(),
     };
-    let pictures = Pictures::new(&paths, &request)?;
+    let pictures = Pictures::new(&sources, &request)?;
     let field = args.field.as_deref().unwrap_or("body");
     if args.panels {
         let canvas = pictures.panels(args.width)?;
         return write(&canvas, &target(args, &format!("panels-{field}.png")));
     }
+    let paths = &sources[0].snapshots;
     let named = args.out.as_deref().is_some_and(is_png);
     if named && paths.len() > 1 {
         return Err(PlotError::Options(
@@ -137,20 +212,96 @@ pub fn run(args: &PlotArgs) -> Result<(), PlotError> {
     Ok(())
 }
 
-fn draw_history(args: &PlotArgs) -> Result<(), PlotError> {
-    let run = args.source.is_dir();
-    let file = if run {
-        args.source.join("history.csv")
-    } else {
-        args.source.clone()
+fn draw_profile(args: &PlotArgs, field: &str) -> Result<(), PlotError> {
+    let request = ProfileRequest {
+        field: field.to_owned(),
+        along: Along::parse(&args.along)?,
+        through: args.through.clone(),
+        thickness: args.thickness.clone(),
+        range: args.range.clone(),
+        view: args.view.clone(),
+        exact: args.exact,
     };
-    let history = History::read(&file)?;
-    // The snapshots know the title; a run without any is called by its folder.
-    let known = snapshots(&args.source).and_then(|found| title(&found[0].1));
-    let place = if run { &args.source } else { &file };
-    let title = known.unwrap_or_else(|_| place.display().to_string());
-    let canvas = history.draw(&title, args.width)?;
-    write(&canvas, &target(args, "history.png"))
+    let profiles = Profiles::new(&sources(args)?, &request)?;
+    let canvas = profiles.chart().draw(args.width)?;
+    write(&canvas, &target(args, &format!("profile-{field}.png")))
+}
+
+fn draw_history(args: &PlotArgs) -> Result<(), PlotError> {
+    let chart = energies(&table(&args.source), &title_of(&args.source))?;
+    write(&chart.draw(args.width)?, &target(args, "history.png"))
+}
+
+fn draw_tables(args: &PlotArgs, columns: &str) -> Result<(), PlotError> {
+    let log = args.log.as_deref().unwrap_or_default();
+    let points = args.points.iter().map(|text| Points::parse(text));
+    let tables = Tables {
+        title: title_of(&args.source),
+        tables: places(args)
+            .map(|place| (name(place), table(place)))
+            .collect(),
+        columns: Columns::parse(columns)?,
+        points: points.collect::<Result<_, _>>()?,
+        logarithmic: ['x', 'y'].map(|axis| log.contains(axis)),
+    };
+    let canvas = tables.chart()?.draw(args.width)?;
+    let stem = columns.replace([':', ','], "-");
+    write(&canvas, &target(args, &format!("xy-{stem}.png")))
+}
+
+/// What is drawn: the source, and what goes with it.
+fn places(args: &PlotArgs) -> impl Iterator<Item = &PathBuf> {
+    [&args.source].into_iter().chain(&args.with)
+}
+
+/// The chosen snapshots of each place.
+fn sources(args: &PlotArgs) -> Result<Vec<Source>, PlotError> {
+    let wanted = wanted(args)?;
+    let chosen = args.all || !args.time.is_empty() || !args.index.is_empty();
+    let source = |place: &PathBuf| {
+        let snapshots = if place.is_dir() {
+            choose(&snapshots(place)?, &wanted)?
+        } else if chosen {
+            return Err(PlotError::Options(
+                "--time, --index and --all choose among the snapshots of a run: give its folder",
+            ));
+        } else {
+            vec![place.clone()]
+        };
+        Ok(Source {
+            name: name(place),
+            snapshots,
+        })
+    };
+    places(args).map(source).collect()
+}
+
+/// The table of a run, or a table itself.
+fn table(place: &Path) -> PathBuf {
+    if place.is_dir() {
+        place.join("history.csv")
+    } else {
+        place.to_owned()
+    }
+}
+
+/// What a run or file is called in a legend.
+fn name(place: &Path) -> String {
+    let name = if place.is_dir() {
+        place.file_name()
+    } else {
+        place.file_stem()
+    };
+    name.map_or_else(
+        || place.display().to_string(),
+        |name| name.to_string_lossy().into_owned(),
+    )
+}
+
+/// The title of a run as its snapshots know it; a table, or a run without any, goes by its path.
+fn title_of(place: &Path) -> String {
+    let known = snapshots(place).and_then(|found| title(&found[0].1));
+    known.unwrap_or_else(|_| place.display().to_string())
 }
 
 fn wanted(args: &PlotArgs) -> Result<Wanted, PlotError> {
@@ -161,7 +312,7 @@ fn wanted(args: &PlotArgs) -> Result<Wanted, PlotError> {
         Ok(Wanted::Times(times.collect::<Result<_, _>>()?))
     } else if !args.index.is_empty() {
         Ok(Wanted::Indices(args.index.clone()))
-    } else if args.panels {
+    } else if args.panels && args.with.is_empty() {
         Ok(Wanted::Three)
     } else {
         Ok(Wanted::Last)

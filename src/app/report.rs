@@ -10,6 +10,7 @@ use crate::step::{PairState, RunState, Simulation};
 pub struct Tables {
     history: Table,
     contacts: Table,
+    loads: Option<Table>,
     performance: Table,
 }
 
@@ -63,6 +64,7 @@ fn history_columns() -> Vec<Column> {
         ("kinetic_energy", "J"),
         ("internal_energy", "J"),
         ("contact_energy", "J"),
+        ("gravity_energy", "J"),
         ("total_energy", "J"),
         ("momentum_x", "kg m/s"),
         ("momentum_y", "kg m/s"),
@@ -70,6 +72,10 @@ fn history_columns() -> Vec<Column> {
         ("plane_impulse_x", "N s"),
         ("plane_impulse_y", "N s"),
         ("plane_impulse_z", "N s"),
+        ("load_work", "J"),
+        ("load_impulse_x", "N s"),
+        ("load_impulse_y", "N s"),
+        ("load_impulse_z", "N s"),
         ("contact_work", "J"),
         ("interpenetrated", ""),
     ])
@@ -94,6 +100,20 @@ fn contact_columns() -> Vec<Column> {
     ])
 }
 
+fn load_columns() -> Vec<Column> {
+    columns(&[
+        ("time", "s"),
+        ("load", ""),
+        ("force_x", "N"),
+        ("force_y", "N"),
+        ("force_z", "N"),
+        ("impulse_x", "N s"),
+        ("impulse_y", "N s"),
+        ("impulse_z", "N s"),
+        ("work", "J"),
+    ])
+}
+
 fn performance_columns() -> Vec<Column> {
     columns(&[
         ("step", ""),
@@ -109,8 +129,13 @@ fn performance_columns() -> Vec<Column> {
 }
 
 impl Tables {
-    /// Starts the tables of a run, or goes on with them after the state `resume`.
-    pub fn open(folder: &RunFolder, resume: Option<&RunState>) -> Result<Self, OutputError> {
+    /// Starts the tables of a run (that of loads if it has `any_load`), or goes on with them after
+    /// the state `resume`.
+    pub fn open(
+        folder: &RunFolder,
+        any_load: bool,
+        resume: Option<&RunState>,
+    ) -> Result<Self, OutputError> {
         let open =
             |path: &std::path::Path, columns: &[Column], key: &str, last: Option<f64>| match last {
                 Some(last) => Table::resume(path, columns, key, last),
@@ -122,6 +147,9 @@ impl Tables {
         Ok(Self {
             history: open(&folder.history(), &history_columns(), "step", step)?,
             contacts: open(&folder.contacts(), &contact_columns(), "time", time)?,
+            loads: any_load
+                .then(|| open(&folder.loads(), &load_columns(), "time", time))
+                .transpose()?,
             performance: open(&folder.performance(), &performance_columns(), "step", step)?,
         })
     }
@@ -137,6 +165,7 @@ impl Tables {
         let totals = &state.totals;
         let [px, py, pz] = totals.momentum.map(Value::Real);
         let [ix, iy, iz] = state.plane_impulse.map(Value::Real);
+        let [lx, ly, lz] = state.load_impulse().map(Value::Real);
         self.history.row(&[
             Value::Count(state.step),
             Value::Real(state.time),
@@ -145,6 +174,7 @@ impl Tables {
             Value::Real(totals.kinetic_energy),
             Value::Real(totals.internal_energy),
             Value::Real(state.contact_energy),
+            Value::Real(totals.gravity_energy),
             Value::Real(totals.energy()),
             px,
             py,
@@ -152,6 +182,10 @@ impl Tables {
             ix,
             iy,
             iz,
+            Value::Real(state.load_work()),
+            lx,
+            ly,
+            lz,
             Value::Real(state.contact_work),
             Value::Count(state.interpenetrated.unsigned_abs()),
         ])?;
@@ -159,6 +193,14 @@ impl Tables {
         for (bodies, pair) in pairs.iter().zip(&state.pairs) {
             let names = bodies.map(|b| simulation.case.bodies[b].name.as_str());
             self.write_pair(state.time, names, pair)?;
+        }
+        if let Some(table) = &mut self.loads {
+            for (name, load) in simulation.case.load_names().zip(&state.loads) {
+                let [fx, fy, fz] = load.force.map(Value::Real);
+                let [ix, iy, iz] = load.impulse.map(Value::Real);
+                let (time, work) = (Value::Real(state.time), Value::Real(load.work));
+                table.row(&[time, Value::Word(name), fx, fy, fz, ix, iy, iz, work])?;
+            }
         }
         self.write_performance(state.step, load, wall)
     }
@@ -244,7 +286,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::V
         "energy_error_max": worst.energy_error,
         "contact_defect": worst.contact_defect,
         "momentum_error": object(["x", "y", "z"].into_iter().zip(worst.momentum_error)),
-        "interpenetrated_particles": contact.is_active().then_some(worst.interpenetrated),
+        "interpenetrated_particles": contact.has_pairs().then_some(worst.interpenetrated),
         "closest_foreign_pair": worst.closest,
         "largest_foreign_fraction": contact.has_overlap().then_some(worst.foreign_fraction),
         "capped_reliefs": state.capped_reliefs,

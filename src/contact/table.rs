@@ -39,10 +39,13 @@ pub struct ContactTable {
     pub kernel: Kernel,
     /// Group of each body: bodies joined by `kernel` contact form one.
     pub groups: Vec<usize>,
+    /// Whether a group is a rigid body.
+    pub rigid: Vec<bool>,
     /// Which algorithm handles a pair, and its range.
     pub foreign: ForeignTable,
     pairs: Vec<Pair>,
     inverse_densities: Vec<f64>,
+    has_planes: bool,
 }
 
 impl ContactTable {
@@ -74,17 +77,23 @@ impl ContactTable {
                 *slot = slot.max(range);
             }
         }
+        let mut rigid = vec![false; group_count];
+        for (body, &group) in case.bodies.iter().zip(&groups) {
+            rigid[group] |= body.rigid.is_some();
+        }
         let inverse_densities = case
             .bodies
             .iter()
-            .map(|body| 1.0 / case.materials[body.material].reference_density)
+            .map(|body| 1.0 / case.initial_density(body))
             .collect();
         Self {
             kernel,
             groups,
+            rigid,
             foreign,
             pairs,
             inverse_densities,
+            has_planes: !case.loads.planes.is_empty(),
         }
     }
 
@@ -95,7 +104,7 @@ impl ContactTable {
         &self.pairs[a * self.foreign.bodies + b]
     }
 
-    /// 1/ρ₀ of a body (m³/kg).
+    /// 1/ρ of a body at the start (m³/kg).
     #[inline]
     #[must_use]
     pub fn inverse_density(&self, body: usize) -> f64 {
@@ -108,9 +117,15 @@ impl ContactTable {
         self.groups.iter().max().map_or(0, |&g| g + 1)
     }
 
-    /// Whether any pair of bodies has contact beyond the SPH sums.
+    /// Whether there is contact beyond the SPH sums: of pairs of bodies, or with rigid planes.
     #[must_use]
     pub fn is_active(&self) -> bool {
+        self.has_planes || self.has_pairs()
+    }
+
+    /// Whether any pair of bodies has contact beyond the SPH sums.
+    #[must_use]
+    pub fn has_pairs(&self) -> bool {
         self.foreign.class.iter().any(|&c| c != ContactClass::None)
     }
 
@@ -176,7 +191,7 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
         floor: 0.0,
         inverse_kernel: 0.0,
     };
-    if a == b {
+    if a == b || (body_a.rigid.is_some() && body_b.rigid.is_some()) {
         return (ContactClass::None, pair);
     }
     match case.contact_between(a, b) {

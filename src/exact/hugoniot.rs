@@ -7,10 +7,8 @@
 //! `p = ρ₀ U u`, `e = u²/2`. The pressure agrees with [`MieGruneisen::response`] at `(ρ, e)` as
 //! long as that has not reached its bounds at strong compression.
 
+use super::bisect;
 use crate::material::{Eos, Material, MieGruneisen};
-
-/// Halvings of a bracket: more than a double can resolve.
-const BISECTIONS: usize = 200;
 
 /// Steps of the fourth-order integration along a release isentrope.
 const RELEASE_STEPS: u32 = 1000;
@@ -63,7 +61,7 @@ impl Medium {
                 reference_density: material.reference_density,
                 eos: *eos,
             }),
-            Eos::Linear(_) => None,
+            _ => None,
         }
     }
 
@@ -145,22 +143,6 @@ pub fn impact(flyer: &Medium, target: &Medium, speed: f64) -> Impact {
 #[must_use]
 pub fn free_surface_velocity(target: &Medium, impact: &Impact) -> f64 {
     impact.interface_velocity + target.release_velocity(&impact.target)
-}
-
-/// The root of a function that is not positive at `low` and not negative at `high`.
-fn bisect(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
-    for _ in 0..BISECTIONS {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        if f(middle) < 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    0.5 * (low + high)
 }
 
 fn moved(state: [f64; 3], slope: [f64; 3], by: f64) -> [f64; 3] {

@@ -4,12 +4,13 @@ use std::fmt;
 use std::marker::PhantomData;
 
 use serde::Deserialize;
-use serde::de::value::{MapAccessDeserializer, StrDeserializer};
-use serde::de::{Deserializer, Error, MapAccess, Visitor};
+use serde::de::IntoDeserializer;
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer, StrDeserializer};
+use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use toml::Spanned;
 
-use super::quantity::Angle;
-use super::schema::{LatticeName, LatticeTable, Placed};
+use super::quantity::{Angle, Kind, Quantity};
+use super::schema::{Direction, LatticeName, LatticeTable, Placed};
 
 /// `"cubic"`, or a table with more.
 #[derive(Debug)]
@@ -78,6 +79,81 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for OrNone<T> {
             }
         }
         deserializer.deserialize_any(OrNoneVisitor(PhantomData))
+    }
+}
+
+/// A quantity, or an array of quantities.
+#[derive(Debug)]
+pub enum OneOrMany<K> {
+    /// One for all times.
+    One(Quantity<K>),
+    /// One for each time.
+    Many(Vec<Placed<K>>),
+}
+
+impl<'de, K: Kind> Deserialize<'de> for OneOrMany<K> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct OneOrManyVisitor<K>(PhantomData<K>);
+        impl<'de, K: Kind> Visitor<'de> for OneOrManyVisitor<K> {
+            type Value = OneOrMany<K>;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(
+                    f,
+                    "{} with a unit, such as \"{}\", or an array of such",
+                    K::NAME,
+                    K::EXAMPLE
+                )
+            }
+
+            fn visit_str<E: Error>(self, word: &str) -> Result<OneOrMany<K>, E> {
+                Quantity::deserialize(StrDeserializer::new(word)).map(OneOrMany::One)
+            }
+
+            fn visit_f64<E: Error>(self, value: f64) -> Result<OneOrMany<K>, E> {
+                Quantity::deserialize(value.into_deserializer()).map(OneOrMany::One)
+            }
+
+            fn visit_i64<E: Error>(self, value: i64) -> Result<OneOrMany<K>, E> {
+                Quantity::deserialize(value.into_deserializer()).map(OneOrMany::One)
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<OneOrMany<K>, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(seq)).map(OneOrMany::Many)
+            }
+        }
+        deserializer.deserialize_any(OneOrManyVisitor(PhantomData))
+    }
+}
+
+/// `"+x"`, or the components of a vector of any length.
+#[derive(Debug)]
+pub enum NormalParams {
+    /// Along an axis.
+    Axis(Direction),
+    /// Any other.
+    Vector(Vec<f64>),
+}
+
+impl<'de> Deserialize<'de> for NormalParams {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NormalVisitor;
+        impl<'de> Visitor<'de> for NormalVisitor {
+            type Value = NormalParams;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("\"+z\" and the like, or an array of numbers")
+            }
+
+            fn visit_str<E: Error>(self, word: &str) -> Result<NormalParams, E> {
+                Direction::deserialize(StrDeserializer::new(word)).map(NormalParams::Axis)
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<NormalParams, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(seq)).map(NormalParams::Vector)
+            }
+        }
+        deserializer.deserialize_any(NormalVisitor)
     }
 }
 

@@ -16,12 +16,17 @@ const NAMES: &[(Powers, &str)] = &[
     (Density::POWERS, Density::NAME),
     (Pressure::POWERS, Pressure::NAME),
     (Angle::POWERS, Angle::NAME),
+    (Temperature::POWERS, Temperature::NAME),
+    (SpecificEnergy::POWERS, SpecificEnergy::NAME),
+    (SpecificHeat::POWERS, SpecificHeat::NAME),
+    (Viscosity::POWERS, Viscosity::NAME),
+    (Rate::POWERS, Rate::NAME),
+    (PerPressure::POWERS, PerPressure::NAME),
+    (PerTemperature::POWERS, PerTemperature::NAME),
     ([0, 1, 0, 0, 0], "a mass"),
-    ([0, 0, 0, 1, 0], "a temperature"),
-    ([1, 0, -2, 0, 0], "an acceleration"),
+    (Acceleration::POWERS, Acceleration::NAME),
     ([1, 1, -2, 0, 0], "a force"),
     ([2, 1, -2, 0, 0], "an energy"),
-    ([2, 0, -2, 0, 0], "a specific energy"),
 ];
 
 /// A kind of quantity that an input key can ask for.
@@ -54,12 +59,28 @@ kinds! {
     Time = [0, 0, 1, 0, 0], "a time", "0.2 us";
     /// Metres in a second.
     Velocity = [1, 0, -1, 0, 0], "a velocity", "7 km/s";
+    /// Metres in a second squared.
+    Acceleration = [1, 0, -2, 0, 0], "an acceleration", "9.81 m/s^2";
     /// Kilograms in a cubic metre.
     Density = [-3, 1, 0, 0, 0], "a density", "2785 kg/m^3";
     /// Pascals: pressures, stresses and moduli.
     Pressure = [-1, 1, -2, 0, 0], "a pressure or modulus", "0.26 GPa";
     /// Radians.
     Angle = [0, 0, 0, 0, 1], "an angle", "30 deg";
+    /// Kelvins.
+    Temperature = [0, 0, 0, 1, 0], "a temperature", "300 K";
+    /// Joules per kilogram.
+    SpecificEnergy = [2, 0, -2, 0, 0], "a specific energy", "2.5 MJ/kg";
+    /// Joules per kilogram and kelvin.
+    SpecificHeat = [2, 0, -2, -1, 0], "a specific heat", "896 J/(kg K)";
+    /// Pascal seconds.
+    Viscosity = [-1, 1, -1, 0, 0], "a dynamic viscosity", "1 mPa s";
+    /// Per second.
+    Rate = [0, 0, -1, 0, 0], "a rate", "1/s";
+    /// Per pascal.
+    PerPressure = [1, -1, 2, 0, 0], "an inverse pressure", "6.52/Mbar";
+    /// Per kelvin.
+    PerTemperature = [0, 0, 0, -1, 0], "an inverse temperature", "6.16e-4/K";
 }
 
 /// A number in SI units that was written with a unit of the kind. Zero needs none.
@@ -202,6 +223,10 @@ mod tests {
         for density in ["2.785 g/cm^3", "2785 kg/m^3", "2.785 g/cm3", "2785 kg m^-3"] {
             assert_eq!(si::<Density>(density), 2785.0);
         }
+        assert_eq!(si::<Rate>("1/s"), 1.0);
+        assert_eq!(si::<Rate>("2.5 /us"), 2.5e6);
+        assert_eq!(si::<PerPressure>("6.52/Mbar"), 6.52e-11);
+        assert_eq!(si::<Viscosity>("1 mPa s"), 1e-3);
         assert_eq!(si::<Angle>("180 deg"), std::f64::consts::PI);
         assert_eq!(si::<Angle>("0.5 rad"), 0.5);
         assert_eq!(si::<Length>("0"), 0.0);

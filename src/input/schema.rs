@@ -6,8 +6,10 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::forms::{LatticeParams, Named, OrNone};
-use super::quantity::{Angle, Density, Extent, Length, Pressure, Quantity, Time, Velocity};
+use super::forms::{LatticeParams, Named, NormalParams, OneOrMany};
+use super::quantity::{
+    Acceleration, Angle, Density, Extent, Length, Quantity, SpecificEnergy, Time, Velocity,
+};
 
 /// A quantity with its place in the text.
 pub type Placed<K> = Spanned<Quantity<K>>;
@@ -56,6 +58,14 @@ tables! {
         /// Symmetry planes.
         #[serde(default)]
         symmetry: Vec<SymmetryParams>,
+        /// Acceleration of gravity.
+        gravity: Option<Spanned<Vec<Placed<Acceleration>>>>,
+        /// Prescribed velocities.
+        #[serde(default)]
+        load: Vec<Spanned<LoadParams>>,
+        /// Rigid planes.
+        #[serde(default)]
+        plane: Vec<Spanned<PlaneParams>>,
         /// What is written.
         #[serde(default)]
         output: OutputParams,
@@ -73,8 +83,8 @@ tables! {
     BodyParams {
         /// Unique name.
         name: Spanned<String>,
-        /// Name of a material.
-        material: Spanned<String>,
+        /// Name of a material; only a rigid body needs none.
+        material: Option<Spanned<String>>,
         /// Geometry.
         shape: Spanned<ShapeParams>,
         /// Stacking of the particles; cubic if absent.
@@ -83,8 +93,70 @@ tables! {
         spacing: Option<Placed<Length>>,
         /// Initial velocity; at rest if absent.
         velocity: Option<Spanned<Vec<Placed<Velocity>>>>,
+        /// Initial density; the material's reference density if absent.
+        density: Option<Placed<Density>>,
+        /// Initial specific energy; that of the material's reference state if absent.
+        specific_energy: Option<Placed<SpecificEnergy>>,
         /// Moves the body until it touches another one.
         touch: Option<TouchParams>,
+        /// Whether the body is rigid: it keeps its velocity, whatever acts on it.
+        rigid: Option<bool>,
+        /// Motion of a rigid body.
+        motion: Option<Spanned<MotionParams>>,
+    }
+
+    /// `[[load]]`
+    LoadParams {
+        /// Name in reports.
+        name: Option<Spanned<String>>,
+        /// Name of a body.
+        body: Spanned<String>,
+        /// Smallest coordinates of the region.
+        above: Option<Spanned<SidesParams>>,
+        /// Largest coordinates of the region.
+        below: Option<Spanned<SidesParams>>,
+        /// The velocity.
+        velocity: Spanned<MotionParams>,
+        /// When the particles are free again.
+        until: Option<Placed<Time>>,
+    }
+
+    /// `above`, `below`: sides of a region, open where absent.
+    SidesParams {
+        /// On the first axis.
+        x: Option<Spanned<Extent>>,
+        /// On the second axis.
+        y: Option<Spanned<Extent>>,
+        /// On the third axis.
+        z: Option<Spanned<Extent>>,
+    }
+
+    /// A velocity as a function of time; free on axes that are absent.
+    MotionParams {
+        /// Times of the table.
+        times: Option<Spanned<Vec<Placed<Time>>>>,
+        /// Along the first axis.
+        x: Option<Spanned<OneOrMany<Velocity>>>,
+        /// Along the second axis.
+        y: Option<Spanned<OneOrMany<Velocity>>>,
+        /// Along the third axis.
+        z: Option<Spanned<OneOrMany<Velocity>>>,
+    }
+
+    /// `[[plane]]`
+    PlaneParams {
+        /// Name in reports.
+        name: Option<Spanned<String>>,
+        /// To the side that the plane keeps.
+        normal: Spanned<NormalParams>,
+        /// A point of the plane; the origin if absent.
+        point: Option<Spanned<Vec<Placed<Length>>>>,
+        /// Names of the bodies that feel it; all if absent.
+        bodies: Option<Vec<Spanned<String>>>,
+        /// Stiffness κ.
+        stiffness: Option<Spanned<f64>>,
+        /// Motion of the plane; fixed if absent.
+        motion: Option<Spanned<MotionParams>>,
     }
 
     /// `shape`: exactly one of these.
@@ -178,6 +250,9 @@ macro_rules! optional_tables {
     )+ };
 }
 
+mod materials;
+pub use materials::*;
+
 optional_tables! {
     /// `[sph]`
     SphParams {
@@ -221,82 +296,6 @@ optional_tables! {
         axis: Option<Spanned<AxisName>>,
         /// Steps between two balances.
         balance_every: Option<Spanned<i64>>,
-    }
-
-    /// `[material.NAME]`: from the library, or inline, or single values changed.
-    MaterialParams {
-        /// Name in the library.
-        library: Option<Spanned<String>>,
-        /// Reference density.
-        density: Option<Placed<Density>>,
-        /// Equation of state.
-        eos: Option<Spanned<EosParams>>,
-        /// Resistance to shear.
-        strength: Option<Spanned<OrNone<StrengthParams>>>,
-        /// Largest tension.
-        spall: Option<Spanned<OrNone<SpallParams>>>,
-    }
-
-    /// `eos`: exactly one of these.
-    EosParams {
-        /// Linear.
-        linear: Option<LinearParams>,
-        /// Mie–Grüneisen.
-        mie_gruneisen: Option<MieGruneisenParams>,
-    }
-
-    /// `eos.linear`
-    LinearParams {
-        /// Bulk modulus.
-        bulk_modulus: Option<Placed<Pressure>>,
-        /// Dependence on the density ratio.
-        form: Option<FormName>,
-    }
-
-    /// `eos.mie_gruneisen`
-    MieGruneisenParams {
-        /// Bulk sound speed.
-        c0: Option<Placed<Velocity>>,
-        /// Hugoniot.
-        s1: Option<Spanned<f64>>,
-        /// Hugoniot.
-        s2: Option<Spanned<f64>>,
-        /// Hugoniot.
-        s3: Option<Spanned<f64>>,
-        /// Grüneisen parameter.
-        gamma0: Option<Spanned<f64>>,
-        /// Its linear coefficient.
-        b: Option<Spanned<f64>>,
-    }
-
-    /// `strength`: exactly one of these.
-    StrengthParams {
-        /// Linear elastic.
-        elastic: Option<ElasticParams>,
-        /// Elastic–plastic.
-        von_mises: Option<VonMisesParams>,
-    }
-
-    /// `strength.elastic`
-    ElasticParams {
-        /// Shear modulus.
-        shear_modulus: Option<Placed<Pressure>>,
-    }
-
-    /// `strength.von_mises`
-    VonMisesParams {
-        /// Shear modulus.
-        shear_modulus: Option<Placed<Pressure>>,
-        /// Yield stress.
-        yield_stress: Option<Placed<Pressure>>,
-        /// Hardening modulus.
-        hardening_modulus: Option<Placed<Pressure>>,
-    }
-
-    /// `spall`
-    SpallParams {
-        /// Lowest pressure.
-        pressure: Option<Placed<Pressure>>,
     }
 
     /// `[contact]`

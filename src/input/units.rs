@@ -115,6 +115,13 @@ impl Unit {
     fn read<'a>(&mut self, text: &'a str, sign: i32) -> Result<&'a str, String> {
         let mut rest = text.trim_start();
         let mut factor_sign = sign;
+        // A divisor may come first: `1/s`.
+        if let Some(after) = rest.strip_prefix('/') {
+            (rest, factor_sign) = (after.trim_start(), -sign);
+            if rest.is_empty() {
+                return Err(format!("the unit `{}` ends too early", text.trim()));
+            }
+        }
         while !rest.is_empty() && !rest.starts_with(')') {
             if let Some(inner) = rest.strip_prefix('(') {
                 let after = self.read(inner, factor_sign)?;
@@ -210,6 +217,9 @@ mod tests {
         assert_eq!(parse("3.5 kJ/g").unwrap(), (3.5e6, [2, 0, -2, 0, 0]));
         assert_eq!(parse("1 g/(cm us^2)").unwrap(), (1e11, [-1, 1, -2, 0, 0]));
         assert_eq!(parse("1 g cm^-1·us^-2").unwrap(), (1e11, [-1, 1, -2, 0, 0]));
+        assert_eq!(parse("6.5 /s").unwrap(), (6.5, [0, 0, -1, 0, 0]));
+        assert_eq!(parse("2/Mbar").unwrap(), (2e-11, [1, -1, 2, 0, 0]));
+        assert!(parse("1/").unwrap_err().contains("ends too early"));
         assert_eq!(parse("300 K").unwrap(), (300.0, [0, 0, 0, 1, 0]));
         assert_eq!(parse("-.5").unwrap(), (-0.5, [0; 5]));
     }

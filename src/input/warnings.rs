@@ -10,7 +10,8 @@ pub fn warnings(case: &Case) -> Vec<String> {
     let mut found = Vec::new();
     for (a, body) in case.bodies.iter().enumerate() {
         for (b, other) in case.bodies.iter().enumerate().skip(a + 1) {
-            let sees = !matches!(case.contact_between(a, b), ContactMode::None);
+            let sees = !matches!(case.contact_between(a, b), ContactMode::None)
+                && (body.rigid.is_none() || other.rigid.is_none());
             if sees && may_overlap(body, other, case.dimension) {
                 found.push(format!(
                     "the particles of `{}` and `{}` may overlap at the start: their bounding \
@@ -33,7 +34,29 @@ pub fn warnings(case: &Case) -> Vec<String> {
             }
         }
     }
+    planes(case, &mut found);
     found
+}
+
+/// Bodies that a rigid plane pushes from the start.
+fn planes(case: &Case, found: &mut Vec<String>) {
+    for plane in &case.loads.planes {
+        for (body, _) in case
+            .bodies
+            .iter()
+            .zip(&plane.bodies)
+            .filter(|(_, acts)| **acts)
+        {
+            let gap = populate::least(body, case.dimension, &case.symmetry, |x| plane.gap(x));
+            let gap = gap / body.lattice.spacing;
+            if gap < 0.45 {
+                found.push(format!(
+                    "`{}` begins {gap:.2} spacings from `{}`, which pushes what is nearer than 0.5",
+                    body.name, plane.name
+                ));
+            }
+        }
+    }
 }
 
 /// Whether the boxes around all particles come closer than half a spacing on every axis.

@@ -8,10 +8,14 @@ pub mod eos;
 pub mod library;
 pub mod spall;
 pub mod strength;
+pub mod thermal;
 
-pub use eos::{Eos, Linear, LinearForm, MieGruneisen};
+pub use eos::{Eos, IdealGas, Linear, LinearForm, MieGruneisen, Tait, Tillotson};
 pub use spall::Spall;
-pub use strength::{Elastic, Strength, VonMises};
+pub use strength::{
+    Elastic, JohnsonCook, NeoHookean, SteinbergGuinan, Strength, Viscous, VonMises,
+};
+pub use thermal::{Thermal, ThermalConstants};
 
 /// Points advanced together; a batch lane is one point.
 pub const LANES: usize = 8;
@@ -44,7 +48,7 @@ pub struct PointBatch {
     pub sound_speed: Lanes,
 }
 
-/// A material: equation of state, strength and spall.
+/// A material: equation of state, strength, spall and heat.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// Name for reports.
@@ -57,22 +61,52 @@ pub struct Material {
     pub strength: Strength,
     /// Largest tension, if the material has one.
     pub spall: Option<Spall>,
+    /// Temperature as a function of density and specific energy; without it, strength stays that
+    /// of the reference temperature.
+    pub thermal: Option<Thermal>,
 }
 
 impl Material {
-    /// Reference p-wave modulus `M = K + 4G/3` (Pa): what contact stiffness scales with.
+    /// Reference p-wave modulus `M = K + 4G/3` (Pa): what contact stiffness scales with. For a
+    /// fluid K alone, for a gas that of its reference pressure.
     #[must_use]
     pub fn p_wave_modulus(&self) -> f64 {
         self.eos.bulk_modulus(self.reference_density) + self.strength.shear_modulus() * (4.0 / 3.0)
     }
 
+    /// Longest stable step (s) of viscous diffusion at the smoothing length `h` (m),
+    /// `h² ρ₀/(8 η)` (Morris, Fox & Zhu 1997, J. Comput. Phys. 136, 214); infinite without
+    /// viscosity.
+    #[must_use]
+    pub fn diffusion_time(&self, h: f64) -> f64 {
+        match self.strength {
+            Strength::Viscous(law) => 0.125 * h * h * self.reference_density / law.viscosity,
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// Temperature (K) at a density (kg/m³) and specific energy (J/kg), if the material has
+    /// thermal constants.
+    #[must_use]
+    pub fn temperature(&self, density: f64, specific_energy: f64) -> Option<f64> {
+        let thermal = self.thermal.as_ref()?;
+        let at = self
+            .eos
+            .at(self.reference_density, density, specific_energy);
+        let limited = self
+            .spall
+            .map_or(at.pressure, |spall| at_least(at.pressure, spall.pressure));
+        let matter = density + thermal::opening(limited - at.pressure, at.dp_drho);
+        Some(thermal.temperature(matter, specific_energy))
+    }
+
     /// Advances a batch of points by `dt` (s).
     ///
-    /// With `dt = 0` the stress and plastic strain stay as they are, to the last bit, and the
-    /// pressure and sound speed become those of the given density and energy.
+    /// With `dt = 0` the elastic stress and plastic strain stay as they are, to the last bit, and
+    /// all that follows from the given state (pressure, sound speed, viscous stress) becomes that
+    /// of it.
     #[inline(always)]
     pub fn update(&self, batch: &mut PointBatch, dt: f64) {
-        self.strength.update(batch, dt);
         let response = self.eos.response(
             self.reference_density,
             &batch.density,
@@ -82,7 +116,49 @@ impl Material {
             Some(spall) => spall.limit(&response.pressure),
             None => response.pressure,
         };
-        self.set_sound_speed(batch, &response);
+        let shear_modulus = self.advance_stress(batch, &response, dt);
+        self.set_sound_speed(batch, &response, &shear_modulus);
+    }
+
+    /// Advances stress and plastic strain; gives the shear moduli (Pa).
+    #[inline(always)]
+    fn advance_stress(&self, batch: &mut PointBatch, response: &eos::Response, dt: f64) -> Lanes {
+        let rho0 = self.reference_density;
+        match &self.strength {
+            Strength::None => batch.deviatoric_stress = [[0.0; LANES]; 6],
+            Strength::Viscous(law) => law.update(batch),
+            Strength::Elastic(law) => law.update(batch, dt),
+            Strength::NeoHookean(law) => return law.update(batch, dt, rho0),
+            Strength::VonMises(law) => law.update(batch, dt),
+            Strength::JohnsonCook(law) => {
+                if dt != 0.0 {
+                    let (temperature, constants) = self.temperatures(batch, response);
+                    law.update(batch, dt, &temperature, &constants);
+                }
+            }
+            Strength::SteinbergGuinan(law) => {
+                let (temperature, constants) = self.temperatures(batch, response);
+                let reference = constants.reference_temperature;
+                return law.update(batch, dt, rho0, &temperature, reference);
+            }
+        }
+        [self.strength.shear_modulus(); LANES]
+    }
+
+    /// Temperatures (K) of a batch after the spall cut-off, and the constants they are judged by.
+    #[inline(never)]
+    fn temperatures(
+        &self,
+        batch: &PointBatch,
+        response: &eos::Response,
+    ) -> (Lanes, ThermalConstants) {
+        let Some(thermal) = &self.thermal else {
+            let constants = ThermalConstants::ISOTHERMAL;
+            return ([constants.reference_temperature; LANES], constants);
+        };
+        let (rho, e) = (&batch.density, &batch.specific_energy);
+        let temperature = thermal.temperatures(rho, e, &batch.pressure, response);
+        (temperature, *thermal.constants())
     }
 
     /// Longitudinal sound speed, `c² = ∂p/∂ρ|ₛ + 4G/(3ρ)`, where by the first law
@@ -92,14 +168,19 @@ impl Material {
     /// pressure no longer answers to density; its derivatives are kept, so that the speed is
     /// that of the recompression to come.
     #[inline(always)]
-    fn set_sound_speed(&self, batch: &mut PointBatch, response: &eos::Response) {
+    fn set_sound_speed(
+        &self,
+        batch: &mut PointBatch,
+        response: &eos::Response,
+        shear_modulus: &Lanes,
+    ) {
         let floor = SOUND_SPEED_SQUARED_FLOOR * self.eos.bulk_modulus(self.reference_density)
             / self.reference_density;
-        let shear = self.strength.shear_modulus() * (4.0 / 3.0);
         for k in 0..LANES {
             let volume = 1.0 / batch.density[k];
             let de_drho = batch.pressure[k] * volume * volume;
             let bulk = response.dp_drho[k] + de_drho * response.dp_de[k];
+            let shear = shear_modulus[k] * (4.0 / 3.0);
             batch.sound_speed[k] = (at_least(bulk, floor) + shear * volume).sqrt();
         }
     }

@@ -1,6 +1,6 @@
 //! Bodies: a shape filled with particles of one material on one lattice.
 
-use super::Vec3;
+use super::{Motion, Vec3};
 
 /// A coordinate axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -104,8 +104,14 @@ pub struct Body {
     pub material: usize,
     /// Lattice of its particles.
     pub lattice: Lattice,
+    /// Initial density (kg/m³), if not the material's reference density.
+    pub density: Option<f64>,
+    /// Initial specific internal energy (J/kg), if not that of the material's reference state.
+    pub specific_energy: Option<f64>,
     /// Initial velocity (m/s).
     pub velocity: Vec3,
+    /// The motion of a rigid body; its particles feel nothing. Absent for bodies that deform.
+    pub rigid: Option<Motion>,
     /// Constant smoothing length h₀ (m): the reference of contact, and of the SPH sums unless
     /// they vary it.
     pub smoothing_length: f64,

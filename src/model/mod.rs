@@ -7,12 +7,16 @@
 mod body;
 mod contact;
 mod control;
+mod load;
+mod motion;
 
 pub use body::{Axis, Body, Lattice, LatticeKind, Shape, SymmetryPlane};
 pub use contact::{ContactMode, ContactPair, Overlap, Potential, PotentialRange};
 pub use control::{
     DomainOptions, OutputOptions, RunControl, SmoothingLength, SphOptions, TimeStepOptions,
 };
+pub use load::{Loads, RigidPlane, VelocityLoad};
+pub use motion::Motion;
 
 use crate::material::Material;
 
@@ -37,6 +41,8 @@ pub struct Case {
     pub default_contact: ContactMode,
     /// Planes of symmetry, at most one for each axis.
     pub symmetry: Vec<SymmetryPlane>,
+    /// Gravity, prescribed velocities and rigid planes.
+    pub loads: Loads,
     /// Options of the SPH sums.
     pub sph: SphOptions,
     /// Stability factors.
@@ -59,6 +65,33 @@ impl Case {
             .iter()
             .find(|pair| (pair.bodies == [a, b]) || (pair.bodies == [b, a]))
             .map_or(&self.default_contact, |pair| &pair.mode)
+    }
+
+    /// Names of what acts from outside, in the order of its ledgers: prescribed velocities, rigid
+    /// bodies, rigid planes.
+    pub fn load_names(&self) -> impl Iterator<Item = &str> {
+        let loads = self.loads.velocities.iter().map(|load| &load.name);
+        let rigid = self.bodies.iter().filter(|body| body.rigid.is_some());
+        let planes = self.loads.planes.iter().map(|plane| &plane.name);
+        (loads.chain(rigid.map(|body| &body.name)))
+            .chain(planes)
+            .map(String::as_str)
+    }
+
+    /// Initial density of a body (kg/m³).
+    #[must_use]
+    pub fn initial_density(&self, body: &Body) -> f64 {
+        let reference = self.materials[body.material].reference_density;
+        body.density.unwrap_or(reference)
+    }
+
+    /// Initial specific energy of a body (J/kg).
+    #[must_use]
+    pub fn initial_energy(&self, body: &Body) -> f64 {
+        let eos = &self.materials[body.material].eos;
+        let density = self.initial_density(body);
+        body.specific_energy
+            .unwrap_or_else(|| eos.reference_energy(density))
     }
 
     /// Largest difference of initial velocity between two bodies, or the largest speed of a

@@ -71,6 +71,8 @@ pub struct Lengths {
     pub longest: f64,
     /// Whether all its images have that length.
     pub uniform: bool,
+    /// Whether it is a rigid body, whose particles need no neighbours of their own.
+    pub rigid: bool,
 }
 
 /// Gathers the clusters of a chunk and lists their neighbours.
@@ -93,9 +95,18 @@ impl Vectorised for Build<'_> {
             ends,
             neighbours,
         } = self.chunk;
-        let (sequence, Lengths { longest, uniform }) = (self.sequence, self.lengths);
+        let (sequence, lengths) = (self.sequence, self.lengths);
+        let Lengths {
+            longest,
+            uniform,
+            rigid,
+        } = lengths;
         gatherer.gather(sequence, *group, places.clone(), 2.0 * longest, clusters);
         ends.clear();
+        if rigid {
+            ends.resize(clusters.len(), (0, Among::default()));
+            return;
+        }
         let mut lister = Lister {
             sequence,
             longest,

@@ -128,7 +128,11 @@ fn write_parts(
         let row = row_type(field.kind);
         let path = format!("{FIELDS}/{}", field.name);
         let block = rows.block();
-        let bytes = rows.collect(comm, &store.bytes(field.id)[..row.bytes() * store.owned()], row.bytes());
+        let bytes = rows.collect(
+            comm,
+            &store.bytes(field.id)[..row.bytes() * store.owned()],
+            row.bytes(),
+        );
         file.rows(&path, row, block, bytes)?;
         file.note(&path, "unit", field.unit)?;
         file.note(&path, "description", field.description)?;

@@ -11,10 +11,11 @@ use super::checkpoint::{self, step_of};
 use super::{OutputError, files, on_root, series, snapshot, write_atomically, write_json};
 
 /// Files that a run writes into its folder, beside two folders.
-const FILES: [&str; 8] = [
+const FILES: [&str; 9] = [
     "case.toml",
     "history.csv",
     "contacts.csv",
+    "loads.csv",
     "performance.csv",
     "log.txt",
     "status.json",
@@ -214,6 +215,12 @@ impl RunFolder {
     #[must_use]
     pub fn contacts(&self) -> PathBuf {
         self.path.join("contacts.csv")
+    }
+
+    /// Table of loads.
+    #[must_use]
+    pub fn loads(&self) -> PathBuf {
+        self.path.join("loads.csv")
     }
 
     /// Table of wall-clock times.

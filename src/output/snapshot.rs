@@ -9,7 +9,7 @@ use std::path::Path;
 use crate::comm::Comm;
 use crate::model::Case;
 use crate::particles::{
-    FIELDS, FieldId, FieldInfo, FieldKind, FieldUse, ParticleStore, VON_MISES_STRESS,
+    FIELDS, FieldId, FieldInfo, FieldKind, FieldUse, ParticleStore, TEMPERATURE, VON_MISES_STRESS,
 };
 
 use super::h5::{Element, RowType, Writer};
@@ -30,6 +30,8 @@ pub enum Quantity {
     Field(&'static FieldInfo),
     /// `√(3/2 s:s)` of the deviatoric stress s.
     VonMisesStress,
+    /// Temperature; no number for materials without thermal constants.
+    Temperature,
 }
 
 impl Quantity {
@@ -39,6 +41,7 @@ impl Quantity {
         match self {
             Self::Field(field) => field.name,
             Self::VonMisesStress => VON_MISES_STRESS,
+            Self::Temperature => TEMPERATURE,
         }
     }
 
@@ -46,6 +49,7 @@ impl Quantity {
         match self {
             Self::Field(field) => field.unit,
             Self::VonMisesStress => "Pa",
+            Self::Temperature => "K",
         }
     }
 
@@ -58,6 +62,9 @@ impl Quantity {
                 _ => field.description.to_owned(),
             },
             Self::VonMisesStress => "Von Mises equivalent stress.".to_owned(),
+            Self::Temperature => {
+                "Temperature; no number for materials without thermal constants.".to_owned()
+            }
         }
     }
 }
@@ -75,7 +82,7 @@ pub fn quantities(names: &[String]) -> Result<Vec<Quantity>, OutputError> {
         .filter(|f| f.uses.meets(allowed) || f.uses.meets(FieldUse::ON_DEMAND))
         .map(Quantity::Field)
         .collect();
-    choices.push(Quantity::VonMisesStress);
+    choices.extend([Quantity::VonMisesStress, Quantity::Temperature]);
     for name in names {
         let known = choices.iter().any(|choice| choice.name() == name);
         if !known && name != "position" {
@@ -152,7 +159,7 @@ fn write_file(
     let file = Writer::create(comm, path)?;
     write_grid(comm, &file, store, meta.time, rows)?;
     for &quantity in quantities {
-        write_quantity(comm, &file, store, quantity, rows)?;
+        write_quantity(comm, &file, store, meta.case, quantity, rows)?;
     }
     write_meta(comm, &file, meta)?;
     file.close()
@@ -219,6 +226,7 @@ fn write_quantity(
     comm: &Comm,
     file: &Writer,
     store: &ParticleStore,
+    case: &Case,
     quantity: Quantity,
     rows: &mut Rows,
 ) -> Result<(), OutputError> {
@@ -245,6 +253,13 @@ fn write_quantity(
             let bytes = rows.collect(comm, bytemuck::cast_slice(&stress), 8);
             file.rows(&path, RowType::single(Element::F64), block, bytes)?;
         }
+        Quantity::Temperature => {
+            let temperature: Vec<f64> = (0..store.owned())
+                .map(|i| temperature(case, store, i))
+                .collect();
+            let bytes = rows.collect(comm, bytemuck::cast_slice(&temperature), 8);
+            file.rows(&path, RowType::single(Element::F64), block, bytes)?;
+        }
     }
     file.note(&path, "unit", quantity.unit())?;
     file.note(&path, "description", &quantity.description())
@@ -255,6 +270,15 @@ fn von_mises(s: &[f64; 6]) -> f64 {
     let normal = s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
     let shear = s[3] * s[3] + s[4] * s[4] + s[5] * s[5];
     (1.5 * (normal + 2.0 * shear)).sqrt()
+}
+
+/// Temperature (K) of an owned particle.
+fn temperature(case: &Case, store: &ParticleStore, i: usize) -> f64 {
+    let body = case.bodies.get(store.body[i] as usize);
+    let material = body.and_then(|body| case.materials.get(body.material));
+    material
+        .and_then(|m| m.temperature(store.density[i], store.specific_energy[i]))
+        .unwrap_or(f64::NAN)
 }
 
 /// VTK has no unsigned ids, so an id keeps its bits as `i64`.

@@ -76,7 +76,9 @@ impl FieldUse {
     /// Held only with XSPH.
     pub const XSPH: Self = Self(1024);
     /// Held only where the case has use for it.
-    pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024);
+    pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024 | 2048);
+    /// Held only where loads or rigid bodies prescribe velocities.
+    pub const LOADS: Self = Self(2048);
     /// In snapshots at all.
     pub const SNAPSHOT_OR_ON_DEMAND: Self = Self(32 | 64);
     /// What a rank sends with a particle that leaves it.
@@ -225,6 +227,8 @@ particle_fields! {
     touch_relief: Scalar, "", STATE | ON_DEMAND | CONTACT;
     /// How long the foreign fraction with current volumes has stayed above one half.
     enclosed_time: Scalar, "s", STATE | ON_DEMAND | CONTACT;
+    /// Which loads and rigid bodies prescribe its velocity: a set of bits, in the input's order.
+    load: Index, "", STATE | ON_DEMAND | LOADS;
     /// Velocity at the end of the step as predicted from the last accelerations.
     predicted_velocity: Vector, "m/s", MIGRATED | HALO_MOTION;
     /// Density at the end of the step as predicted from the last velocity gradient.

@@ -6,4 +6,4 @@ mod store;
 
 pub use fields::{FIELDS, FieldId, FieldInfo, FieldKind, FieldUse, ParticleStore};
 pub use scatter::Scatter;
-pub use store::{SCRATCH_WORDS, VON_MISES_STRESS, resize, snapshot_names, with_use};
+pub use store::{SCRATCH_WORDS, TEMPERATURE, VON_MISES_STRESS, resize, snapshot_names, with_use};

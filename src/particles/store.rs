@@ -224,11 +224,13 @@ pub fn with_use(uses: FieldUse) -> impl Iterator<Item = &'static FieldInfo> {
 pub fn snapshot_names() -> impl Iterator<Item = &'static str> {
     with_use(FieldUse::SNAPSHOT_OR_ON_DEMAND)
         .map(|field| field.name)
-        .chain([VON_MISES_STRESS])
+        .chain([VON_MISES_STRESS, TEMPERATURE])
 }
 
-/// The one derived quantity of snapshots.
+/// A quantity that snapshots derive from the stress.
 pub const VON_MISES_STRESS: &str = "von_mises_stress";
+/// A quantity that snapshots derive from density and specific energy.
+pub const TEMPERATURE: &str = "temperature";
 
 #[cfg(test)]
 mod tests {
@@ -299,7 +301,12 @@ mod tests {
 
     #[test]
     fn a_store_has_no_trace_of_what_it_dropped() {
-        for uses in [FieldUse::CONTACT, FieldUse::XSPH, FieldUse::OPTIONAL] {
+        for uses in [
+            FieldUse::CONTACT,
+            FieldUse::XSPH,
+            FieldUse::LOADS,
+            FieldUse::OPTIONAL,
+        ] {
             let mut store = sentinel(4);
             let message = store.bytes_per_particle(FieldUse::LEAVING);
             store.drop_fields(FieldUse::BALSARA);

@@ -158,11 +158,32 @@ fn share(value: f64, span: [f64; 2]) -> f32 {
     ((value - span[0]) / (span[1] - span[0])) as f32
 }
 
+/// How a thing of the legend looks in the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mark {
+    /// A line.
+    Line,
+    /// A thin line, for what is exact.
+    Thin,
+    /// A disc for each point.
+    Dots,
+    /// A disc with a dark rim for each point, for what was measured.
+    Rings,
+}
+
+/// A line of the legend.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Entry {
+    pub name: String,
+    pub colour: Rgb,
+    pub mark: Mark,
+}
+
 /// Title, subtitle and legend at the head of a picture.
 pub struct Header<'a> {
     pub title: &'a str,
     pub subtitle: &'a str,
-    pub legend: Vec<(&'a str, Rgb)>,
+    pub legend: Vec<Entry>,
 }
 
 impl Header<'_> {
@@ -181,14 +202,14 @@ impl Header<'_> {
         pen.y + style.gap()
     }
 
-    /// Names with a disc of their colour, in as many rows as they need.
+    /// Names with a mark of their colour, in as many rows as they need.
     fn draw_legend(&self, pen: &mut Pen, style: Style, room: f32) {
         let disc = 0.4 * style.text();
         let mut x = 0.0;
         pen.y += 1.4 * style.text();
-        for &(name, colour) in &self.legend {
-            let lead = 2.0 * disc + style.gap();
-            let name = shorten(name, style.text(), room - lead);
+        for entry in &self.legend {
+            let lead = 2.0 * disc + style.gap() + entry.mark.excess(style);
+            let name = shorten(&entry.name, style.text(), room - lead);
             let width = lead + font::width(&name, style.text());
             if x > 0.0 && x + width > room {
                 x = 0.0;
@@ -196,19 +217,48 @@ impl Header<'_> {
             }
             if let Some(canvas) = pen.canvas.as_deref_mut() {
                 let left = style.margin() + x;
-                let page = Frame {
-                    left: 0.0,
-                    top: 0.0,
-                    width: f32::MAX,
-                    height: f32::MAX,
-                };
                 let centre = (left + disc, pen.y - 0.36 * style.text());
-                canvas.disc(centre, disc, colour, &page);
+                entry.draw_mark(canvas, style, centre, disc);
                 canvas.text(&name, (left + lead, pen.y), style.text(), Align::Start);
             }
             x += width + 3.0 * style.gap();
         }
         pen.y += style.gap();
+    }
+}
+
+impl Mark {
+    /// By how much its sign in the legend is longer than a disc.
+    fn excess(self, style: Style) -> f32 {
+        match self {
+            Self::Dots | Self::Rings => 0.0,
+            Self::Line | Self::Thin => 16.0 * style.unit,
+        }
+    }
+}
+
+impl Entry {
+    /// The sign before the name; `centre` is that of a disc of radius `disc` in its place.
+    fn draw_mark(&self, canvas: &mut Canvas, style: Style, centre: (f32, f32), disc: f32) {
+        let page = Frame {
+            left: 0.0,
+            top: 0.0,
+            width: f32::MAX,
+            height: f32::MAX,
+        };
+        match self.mark {
+            Mark::Dots => canvas.disc(centre, disc, self.colour, &page),
+            Mark::Rings => {
+                canvas.disc(centre, disc, INK, &page);
+                canvas.disc(centre, disc - 2.0 * style.unit, self.colour, &page);
+            }
+            Mark::Line | Mark::Thin => {
+                let (x, y) = (centre.0 - disc, centre.1);
+                let end = x + 2.0 * disc + self.mark.excess(style);
+                let width = if self.mark == Mark::Thin { 1.7 } else { 4.0 };
+                canvas.line(&[(x, y), (end, y)], width * style.unit, self.colour);
+            }
+        }
     }
 }
 

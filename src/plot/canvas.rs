@@ -15,6 +15,9 @@ pub type Rgb = [u8; 3];
 /// Colour of text and axes.
 pub const INK: Rgb = [32, 32, 32];
 
+/// Colour of the paper.
+const PAPER: Rgb = [255, 255, 255];
+
 /// A rectangle of the picture (pixels).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
@@ -143,6 +146,25 @@ impl Canvas {
         if let Some(path) = path.finish() {
             self.pixmap
                 .stroke_path(&path, &paint(colour), &stroke, Transform::identity(), None);
+        }
+    }
+
+    /// Blank paper around a frame: what was drawn beyond it goes.
+    pub fn clear_around(&mut self, frame: &Frame) {
+        let (width, height) = (self.pixmap.width() as f32, self.pixmap.height() as f32);
+        let band = |left, top, width, height| Frame {
+            left,
+            top,
+            width,
+            height,
+        };
+        for band in [
+            band(0.0, 0.0, width, frame.top),
+            band(0.0, frame.bottom(), width, height - frame.bottom()),
+            band(0.0, 0.0, frame.left, height),
+            band(frame.right(), 0.0, width - frame.right(), height),
+        ] {
+            self.fill(&band, PAPER);
         }
     }
 

@@ -70,6 +70,16 @@ pub fn body(index: usize) -> Rgb {
     colour.map(|c| c / rounds.saturating_add(1))
 }
 
+/// Colour of one of several curves in order, as of times: those of bodies while they last, else
+/// even shares of a colour map.
+pub fn series(index: usize, count: usize) -> Rgb {
+    if count < BODIES.len() {
+        BODIES[index]
+    } else {
+        sample(&VIRIDIS, 0.92 * index as f64 / (count - 1) as f64)
+    }
+}
+
 /// A range of values and the colour map over it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {

@@ -86,13 +86,25 @@ pub enum PlotError {
         /// Largest coordinate, with unit.
         highest: String,
     },
-    /// The history cannot be drawn.
+    /// A table cannot be drawn.
     #[error("cannot plot {}: {reason}", path.display())]
-    History {
+    Table {
         /// The file.
         path: PathBuf,
         /// What is wrong, and in which line.
         reason: String,
+    },
+    /// The run has no answer that is known exactly.
+    #[error("no exact answer: {reason}")]
+    Exact {
+        /// Why, and what would have one.
+        reason: String,
+    },
+    /// No particle lies on the line.
+    #[error("no particle lies on the line {line}: choose another with --through, or --thickness")]
+    Line {
+        /// The line.
+        line: String,
     },
     /// Two options, or an option and the input, exclude each other.
     #[error("{0}")]

@@ -39,10 +39,13 @@ enum Pick {
     Component(usize),
     Magnitude,
     VonMises,
+    /// A component of −p I + S, made from pressure and deviatoric stress.
+    Stress(usize),
 }
 
 impl Shown {
-    /// Finds what `name` means in a snapshot: `body`, a field, or `FIELD.COMPONENT`.
+    /// Finds what `name` means in a snapshot: `body`, a field, or `FIELD.COMPONENT`; `stress` is
+    /// made from its parts.
     pub fn find(snapshot: &Snapshot, name: &str) -> Result<Self, PlotError> {
         match name {
             "body" => Ok(Self::Body),
@@ -51,6 +54,9 @@ impl Shown {
                 find(snapshot, "von_mises_stress", None).map(Self::Field)
             }
             "von_mises" => find(snapshot, "deviatoric_stress", Some("von_mises")).map(Self::Field),
+            _ if name.strip_prefix("stress.").is_some() && !has(snapshot, "stress")? => {
+                stress(snapshot, name).map(Self::Field)
+            }
             _ => {
                 let (dataset, component) = match name.split_once('.') {
                     Some((dataset, component)) => (dataset, Some(component)),
@@ -81,6 +87,16 @@ impl Field {
             Pick::VonMises => {
                 let values = snapshot.file.values(&self.dataset, rows)?;
                 Ok(values.as_chunks::<6>().0.iter().map(von_mises).collect())
+            }
+            Pick::Stress(k) => {
+                let mut values = snapshot.file.scalar(&self.dataset, k, rows.clone())?;
+                if k < 3 {
+                    let pressure = snapshot.file.scalar("pressure", 0, rows)?;
+                    for (value, p) in values.iter_mut().zip(pressure) {
+                        *value -= p;
+                    }
+                }
+                Ok(values)
             }
         }
     }
@@ -135,6 +151,27 @@ fn find(snapshot: &Snapshot, dataset: &str, part: Option<&str>) -> Result<Field,
         label,
         unit: snapshot.file.field_attribute(dataset, "unit")?,
     })
+}
+
+/// A component of the stress −p I + S, tension positive.
+fn stress(snapshot: &Snapshot, name: &str) -> Result<Field, PlotError> {
+    find(snapshot, "pressure", None)?;
+    let component = name.split_once('.').map(|(_, component)| component);
+    let known = |part: &&str| SYMMETRIC.contains(part);
+    let deviator = find(snapshot, "deviatoric_stress", component.filter(known));
+    let mut field = deviator.map_err(|error| match error {
+        PlotError::Component { .. } => PlotError::Component {
+            field: "stress".to_owned(),
+            component: component.map(str::to_owned),
+            known: SYMMETRIC.join(", "),
+        },
+        other => other,
+    })?;
+    if let Pick::Component(k) = field.pick {
+        field.pick = Pick::Stress(k);
+    }
+    field.label = field.label.replace("deviatoric ", "");
+    Ok(field)
 }
 
 fn von_mises_label(dataset: &str, words: &str) -> String {

@@ -1,7 +1,7 @@
 //! A picture of one or several sections: panels to scale, axes, legend or colour bar.
 
 use super::PlotError;
-use super::axes::{Axes, Header, Style};
+use super::axes::{Axes, Entry, Header, Mark, Style};
 use super::bar::ColourBar;
 use super::canvas::{Align, Canvas, Frame, Rgb};
 use super::colour;
@@ -75,8 +75,16 @@ impl Figure<'_> {
     fn header(&self) -> Header<'_> {
         let legend = match self.colours {
             Colours::Bodies(names) => {
-                let colours = (0..).map(colour::body);
-                names.iter().map(String::as_str).zip(colours).collect()
+                let entry = |(name, colour): (&String, Rgb)| Entry {
+                    name: name.clone(),
+                    colour,
+                    mark: Mark::Dots,
+                };
+                names
+                    .iter()
+                    .zip((0..).map(colour::body))
+                    .map(entry)
+                    .collect()
             }
             Colours::Bar(_) => Vec::new(),
         };

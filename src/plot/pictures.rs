@@ -11,6 +11,7 @@ use super::figure::{Colours, Figure, PANELS_WIDTH, WIDTH};
 use super::layout::View;
 use super::section::{Cut, Plane, Section};
 use super::snapshot::Snapshot;
+use super::source::Source;
 use super::units::{self, Readable};
 use crate::model::{Axis, SymmetryPlane};
 
@@ -35,6 +36,8 @@ pub struct Request {
 #[derive(Debug)]
 pub struct Pictures {
     title: String,
+    /// Names of the runs that the snapshots belong to, if there are several.
+    names: Option<Vec<String>>,
     spacings: Vec<f64>,
     cut: Cut,
     where_text: String,
@@ -44,12 +47,14 @@ pub struct Pictures {
 }
 
 impl Pictures {
-    /// Takes the sections of one or more snapshots; the first one decides the plane.
+    /// Takes the sections of one or more snapshots of one or more runs; the first one decides the
+    /// plane.
     ///
     /// # Errors
     /// Any [`PlotError`] but those of writing: a snapshot that cannot be read, a request that
     /// cannot be understood, or a plane that misses all particles.
-    pub fn new(paths: &[PathBuf], request: &Request) -> Result<Self, PlotError> {
+    pub fn new(sources: &[Source], request: &Request) -> Result<Self, PlotError> {
+        let paths: Vec<&PathBuf> = sources.iter().flat_map(|s| &s.snapshots).collect();
         let path = paths
             .first()
             .ok_or(PlotError::Options("no snapshot to draw"))?;
@@ -74,16 +79,22 @@ impl Pictures {
         let view = request.view.as_deref().map(parse_view).transpose()?;
 
         let mut sections = Vec::with_capacity(paths.len());
-        for path in paths {
+        for path in &paths {
             sections.push(cut.take(&Snapshot::open(path)?)?);
         }
         if sections.iter().all(|section| section.discs.is_empty()) {
             return Err(cut.miss(&first));
         }
         Ok(Self {
-            where_text: where_text(&cut, &first),
+            where_text: where_text(&cut, &first)?,
             colours: colours(&cut.shown, &first.bodies, &sections, range),
             view: view.unwrap_or_else(|| View::around(&sections, &first.spacings)),
+            names: (sources.len() > 1).then(|| {
+                let names = sources
+                    .iter()
+                    .map(|s| vec![s.name.clone(); s.snapshots.len()]);
+                names.flatten().collect()
+            }),
             title: first.title,
             spacings: first.spacings,
             cut,
@@ -98,7 +109,10 @@ impl Pictures {
     pub fn single(&self, index: usize, width: Option<u32>) -> Result<Canvas, PlotError> {
         let section = &self.sections[index..=index];
         let time = &self.times()[index];
-        let subtitle = format!("t = {time},  {}", self.where_text);
+        let subtitle = match self.where_text.as_str() {
+            "" => format!("t = {time}"),
+            place => format!("t = {time},  {place}"),
+        };
         self.figure(section, subtitle, Vec::new(), width.unwrap_or(WIDTH))
             .draw()
     }
@@ -112,22 +126,18 @@ impl Pictures {
             return self.single(0, width);
         }
         let times = self.times();
-        let headings = times.iter().map(|time| format!("t = {time}")).collect();
+        let heading = |(k, time): (usize, &String)| match &self.names {
+            Some(names) => format!("{}, t = {time}", names[k]),
+            None => format!("t = {time}"),
+        };
+        let headings = times.iter().enumerate().map(heading).collect();
         let width = width.unwrap_or(PANELS_WIDTH);
         self.figure(&self.sections, self.where_text.clone(), headings, width)
             .draw()
     }
 
-    /// Times with one unit and as many digits for all.
     fn times(&self) -> Vec<String> {
-        let largest = self.sections.iter().map(|s| s.time).fold(0.0, f64::max);
-        let unit = Readable::new("s", largest);
-        let decimals = match largest {
-            0.0 => 0,
-            largest => units::decimals(largest / unit.size),
-        };
-        let text = |s: &Section| format!("{} {}", unit.number(s.time, decimals), unit.name);
-        self.sections.iter().map(text).collect()
+        units::times(&self.sections.iter().map(|s| s.time).collect::<Vec<_>>())
     }
 
     fn figure<'a>(
@@ -159,7 +169,8 @@ pub fn title(path: &Path) -> Result<String, PlotError> {
     Ok(Snapshot::open(path)?.title)
 }
 
-fn thickness(text: &str) -> Result<f64, PlotError> {
+/// Reads the thickness of a slice (m).
+pub fn thickness(text: &str) -> Result<f64, PlotError> {
     let value = units::parse(text, "m")?;
     if value > 0.0 {
         Ok(value)
@@ -184,27 +195,30 @@ fn parse_view(text: &str) -> Result<View, PlotError> {
     })
 }
 
-/// `"section y = 0 mm, mirrored at x = 0 mm"`.
-fn where_text(cut: &Cut, snapshot: &Snapshot) -> String {
-    let at = |axis: &str, position: f64| {
-        let unit = Readable::new("m", position.abs().max(snapshot.finest()));
-        let number = unit.number(position, 3);
-        let number = number.trim_end_matches('0').trim_end_matches('.');
-        if number == "0" {
-            format!("{axis} = 0")
-        } else {
-            format!("{axis} = {number} {}", unit.name)
-        }
-    };
+/// `"y = 0.1 mm"`, in a unit that suits the position and the particle spacing.
+pub fn place(axis: &str, position: f64, spacing: f64) -> String {
+    let unit = Readable::new("m", position.abs().max(spacing));
+    let number = unit.number(position, 3);
+    let number = number.trim_end_matches('0').trim_end_matches('.');
+    if number == "0" {
+        format!("{axis} = 0")
+    } else {
+        format!("{axis} = {number} {}", unit.name)
+    }
+}
+
+/// `"section y = 0 mm, mirrored at x = 0 mm"`; a flat model has no section.
+fn where_text(cut: &Cut, snapshot: &Snapshot) -> Result<String, PlotError> {
+    let at = |axis: &str, position: f64| place(axis, position, snapshot.finest());
     let section = at(cut.plane.axis.name(), cut.plane.position);
     let seen = |p: &&SymmetryPlane| cut.mirror && p.axis != cut.plane.axis;
     let planes = snapshot.symmetry.iter().filter(seen);
     let planes: Vec<String> = planes.map(|p| at(p.axis.name(), p.position)).collect();
-    if planes.is_empty() {
-        format!("section {section}")
-    } else {
-        format!("section {section},  mirrored at {}", planes.join(" and "))
-    }
+    let depth = snapshot.extent()?[cut.plane.axis.index()];
+    let section = Some(format!("section {section}")).filter(|_| depth.highest > depth.lowest);
+    let mirrored = (!planes.is_empty()).then(|| format!("mirrored at {}", planes.join(" and ")));
+    let texts: Vec<String> = section.into_iter().chain(mirrored).collect();
+    Ok(texts.join(",  "))
 }
 
 fn colours(

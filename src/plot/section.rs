@@ -64,7 +64,8 @@ impl Plane {
         Ok(Self::through(axis, snapshot, &extent))
     }
 
-    fn through(axis: Axis, snapshot: &Snapshot, extent: &[Extent; 3]) -> Self {
+    /// The plane of symmetry, or through the middle of the model.
+    pub fn through(axis: Axis, snapshot: &Snapshot, extent: &[Extent; 3]) -> Self {
         let plane = snapshot.symmetry.iter().find(|plane| plane.axis == axis);
         // Without the round-off of a mean.
         let step = 1e-3 * snapshot.finest();
@@ -179,11 +180,9 @@ impl Cut {
         value: f64,
     ) -> Option<Disc> {
         let distance = point[self.plane.axis.index()] - self.plane.position;
-        let nudge = NUDGE * spacing;
         let [right, up] = self.plane.picture_axes();
         let at = [point[right.index()], point[up.index()]];
-        let inside = distance > nudge - half && distance <= half + nudge;
-        (inside && at.iter().all(|c| c.is_finite())).then_some(Disc {
+        (slice(distance, half, spacing) && at.iter().all(|c| c.is_finite())).then_some(Disc {
             at,
             depth: distance.abs(),
             body,
@@ -212,6 +211,13 @@ impl Cut {
             highest: show(extent.highest),
         }
     }
+}
+
+/// Whether a slice of a half thickness holds a distance from its middle: −half < d ≤ half but
+/// for round-off, so that a lattice shows exactly one layer.
+pub fn slice(distance: f64, half: f64, spacing: f64) -> bool {
+    let nudge = NUDGE * spacing;
+    distance > nudge - half && distance <= half + nudge
 }
 
 #[cfg(test)]

@@ -20,6 +20,15 @@ pub enum Wanted {
     Indices(Vec<usize>),
 }
 
+/// A run, or a snapshot alone, and which of its snapshots are drawn.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Source {
+    /// Its name where several stand in one picture.
+    pub name: String,
+    /// Snapshots in the order of time.
+    pub snapshots: Vec<PathBuf>,
+}
+
 /// The snapshots of a run folder, or of its snapshots folder, in the order of time.
 ///
 /// # Errors

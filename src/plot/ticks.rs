@@ -1,6 +1,6 @@
 //! Where the marks of an axis sit and what stands beside them.
 
-use super::units::fixed;
+use super::units::{fixed, superscript};
 
 /// Marks of an axis, in the axis' own unit.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +24,51 @@ impl Ticks {
         }
         let labels = values.iter().map(|&v| fixed(v, decimals)).collect();
         Self { values, labels }
+    }
+
+    /// Marks of a logarithmic axis between two powers of ten (the powers are the axis' own
+    /// unit): 1, 2 and 5 times each power of a short span, else the powers, or some of them.
+    pub fn powers(span: [f64; 2]) -> Self {
+        let decades = span[1] - span[0];
+        let factors: &[f64] = if decades < 2.5 {
+            &[1.0, 2.0, 5.0]
+        } else {
+            &[1.0]
+        };
+        let step = nice_step(decades / 9.0).max(1.0);
+        let mut ticks = Self {
+            values: Vec::new(),
+            labels: Vec::new(),
+        };
+        let in_full = decades < 4.0 && span[0] > -5.0 && span[1] < 5.0;
+        let mut power = (span[0] / step - 1.0).floor() * step;
+        while power <= span[1] {
+            for factor in factors {
+                let value = power + factor.log10();
+                if value >= span[0] - 1e-6 && value <= span[1] + 1e-6 {
+                    ticks.values.push(value);
+                    ticks.labels.push(number(*factor, power, in_full));
+                }
+            }
+            power += step;
+        }
+        ticks
+    }
+}
+
+/// A factor times a power of ten, in full if all numbers of the axis are short.
+fn number(factor: f64, power: f64, in_full: bool) -> String {
+    if in_full {
+        return fixed(factor * 10_f64.powf(power), decimals(10_f64.powf(power)));
+    }
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "a power of ten of a double"
+    )]
+    let power = superscript(power as i32);
+    match factor {
+        1.0 => format!("10{power}"),
+        factor => format!("{}·10{power}", fixed(factor, 0)),
     }
 }
 
@@ -65,6 +110,14 @@ mod tests {
         ] {
             assert!((nice_step(least) / step - 1.0).abs() < 1e-12, "{least}");
         }
+    }
+
+    #[test]
+    fn powers_have_short_labels() {
+        let labels = |low: f64, high: f64| Ticks::powers([low, high]).labels;
+        assert_eq!(labels(-1.0, 0.31), ["0.1", "0.2", "0.5", "1", "2"]);
+        assert_eq!(labels(-6.2, -2.9), ["10⁻⁶", "10⁻⁵", "10⁻⁴", "10⁻³"]);
+        assert_eq!(labels(4.9, 6.1), ["10⁵", "2·10⁵", "5·10⁵", "10⁶"]);
     }
 
     #[test]

@@ -102,6 +102,18 @@ pub fn decimals(largest: f64) -> usize {
     }
 }
 
+/// Times (s) with one unit and as many digits for all.
+pub fn times(times: &[f64]) -> Vec<String> {
+    let largest = times.iter().copied().fold(0.0, f64::max);
+    let unit = Readable::new("s", largest);
+    let decimals = match largest {
+        0.0 => 0,
+        largest => decimals(largest / unit.size),
+    };
+    let text = |&time: &f64| format!("{} {}", unit.number(time, decimals), unit.name);
+    times.iter().map(text).collect()
+}
+
 /// Reads `"0.1 mm"` for a quantity whose SI unit is `unit`; zero and pure numbers need no unit.
 ///
 /// # Errors
@@ -223,7 +235,8 @@ fn power_of_thousand(largest: f64) -> i32 {
     3 * power
 }
 
-fn superscript(power: i32) -> String {
+/// A whole number in small raised digits.
+pub fn superscript(power: i32) -> String {
     let digits = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     power
         .to_string()

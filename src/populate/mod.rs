@@ -100,8 +100,24 @@ pub fn first_layer(
         .min_by(f64::total_cmp)
 }
 
+/// Smallest value of `along`, a linear function of the position (m), at the [`sites`] above all
+/// symmetry planes; infinite if there are none.
+#[must_use]
+pub fn least(
+    body: &Body,
+    dimension: usize,
+    symmetry: &[SymmetryPlane],
+    along: impl Fn(&[f64; 3]) -> f64,
+) -> f64 {
+    let stack = Stack::new(body, dimension);
+    row::rows(stack, symmetry, None)
+        .flat_map(|row| [row.first, row.end - 1].map(|i| stack.position(i, row.j, row.k)))
+        .map(|position| along(&position))
+        .fold(f64::INFINITY, f64::min)
+}
+
 /// Volume of one particle of the body, Δp^d (m³; m² or m in two or one dimensions), so that its
-/// mass is `ρ₀ Δp^d`.
+/// mass is `ρ Δp^d` with its initial density.
 #[must_use]
 pub fn particle_volume(body: &Body, dimension: usize) -> f64 {
     (1..dimension).fold(body.lattice.spacing, |v, _| v * body.lattice.spacing)

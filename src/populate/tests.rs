@@ -15,7 +15,10 @@ fn body(shape: Shape, kind: LatticeKind, spacing: f64, angle: f64) -> Body {
             spacing,
             angle,
         },
+        density: None,
+        specific_energy: None,
         velocity: Vec3::zeros(),
+        rigid: None,
         smoothing_length: 1.3 * spacing,
     }
 }

@@ -146,6 +146,7 @@ impl Simulation {
         if self.contact.is_active() {
             self.run_reactions();
             self.store_reactions();
+            self.plane_forces();
         }
         for force in self.sweeps.from_mirrors.iter().flatten() {
             self.sums.add_plane_force(force);

@@ -13,6 +13,7 @@
 use rayon::iter::repeat_n;
 use rayon::prelude::*;
 
+use super::loads::{Drive, Free, Goal, LoadStep};
 use super::search::GRAIN;
 use super::simulation::Simulation;
 use crate::diagnose::exact_sum::ExactSum;
@@ -60,31 +61,65 @@ fn add_scaled(v: &[f64; 3], factor: f64, a: &[f64; 3]) -> [f64; 3] {
 }
 
 impl Simulation {
-    /// First half kick and drift of a step `dt` (s), and the predictions for its end.
-    pub(super) fn kick_and_drift(&mut self, dt: f64) {
+    /// First half kick and drift of a step `dt` (s) that ends at time `end` (s), and the
+    /// predictions for its end.
+    pub(super) fn kick_and_drift(&mut self, dt: f64, end: f64) {
+        self.loads.prepare(&self.case, self.state.time, end);
         self.book_contact_work(dt, 0.25 * dt);
+        self.book_loads(dt, true);
         self.book_plane_force(dt);
         self.store.resize_halo(0);
-        let contact = std::mem::take(&mut self.store.contact_acceleration);
-        if self.contact.is_active() {
-            self.kick_and_drift_by(dt, contact.par_iter().copied());
-        } else {
-            self.kick_and_drift_by(dt, repeat_n([0.0; 3], self.store.owned()));
-        }
-        self.store.contact_acceleration = contact;
+        self.half_kick(dt, Goal::Middle);
         self.drift_with_neighbours(dt);
         self.fold_at_planes();
     }
 
-    /// [`Self::kick_and_drift`] of the particles, with the accelerations by contact (m/s²).
-    fn kick_and_drift_by(
+    /// One of the two half kicks of the particles, with all that acts on them beside stress.
+    fn half_kick(&mut self, dt: f64, goal: Goal) {
+        let contact = std::mem::take(&mut self.store.contact_acceleration);
+        let owned = self.store.owned();
+        let gravity = self.loads.gravity;
+        if self.loads.drives() {
+            let bits = std::mem::take(&mut self.store.load);
+            let loads = std::mem::take(&mut self.loads);
+            let outside = (0..owned).into_par_iter().map(|i| {
+                let contact = contact.get(i).copied().unwrap_or_default();
+                (add(&contact, &gravity), loads.of(bits[i]))
+            });
+            self.half_kick_by(dt, goal, outside);
+            (self.store.load, self.loads) = (bits, loads);
+        } else if self.contact.is_active() {
+            let outside = contact.par_iter().map(|c| (add(c, &gravity), Free));
+            self.half_kick_by(dt, goal, outside);
+        } else {
+            self.half_kick_by(dt, goal, repeat_n((gravity, Free), owned));
+        }
+        self.store.contact_acceleration = contact;
+    }
+
+    /// [`Self::half_kick`], given the accelerations by contact and gravity (m/s²) and loads.
+    fn half_kick_by<D: Drive>(
         &mut self,
         dt: f64,
-        contact: impl IndexedParallelIterator<Item = [f64; 3]>,
+        goal: Goal,
+        outside: impl IndexedParallelIterator<Item = ([f64; 3], D)>,
+    ) {
+        match goal {
+            Goal::Middle => self.kick_and_drift_by(dt, outside),
+            Goal::End => self.kick_by(dt, outside),
+        }
+    }
+
+    /// [`Self::kick_and_drift`] of the particles.
+    fn kick_and_drift_by<D: Drive>(
+        &mut self,
+        dt: f64,
+        outside: impl IndexedParallelIterator<Item = ([f64; 3], D)>,
     ) {
         let rule = SmoothingRule::new(self.case.sph.smoothing_length, self.case.dimension);
         let (table, reference_h) = (&self.contact, &self.reference_h);
         let half = 0.5 * dt;
+        let per_half = LoadStep::per_half(dt);
         let store = &mut self.store;
         (
             &mut store.velocity,
@@ -93,7 +128,7 @@ impl Simulation {
             &mut store.predicted_velocity,
             &mut store.predicted_density,
             &mut store.smoothing_length,
-            contact,
+            outside,
             (
                 &store.acceleration,
                 &store.d_specific_energy_dt,
@@ -104,19 +139,24 @@ impl Simulation {
         )
             .into_par_iter()
             .with_min_len(GRAIN)
-            .for_each(|(v, e, x, v_p, rho_p, h, c, (a, de, l, &rho, &body))| {
-                let total = add(a, &c);
-                *e += half * (de - 0.25 * dt * dot(a, &total));
-                *v = add_scaled(v, half, &total);
-                for k in 0..3 {
-                    x[k] += dt * v[k];
-                }
-                *v_p = add_scaled(v, half, &total);
-                let strain = half * (l[0] + l[4] + l[8]);
-                *rho_p = rho * ((1.0 - strain) / (1.0 + strain));
-                let reference = 1.0 / table.inverse_density(body as usize);
-                *h = rule.length(reference_h[body as usize], reference / *rho_p);
-            });
+            .for_each(
+                |(v, e, x, v_p, rho_p, h, (o, drive), (a, de, l, &rho, &body))| {
+                    let mut total = add(a, &o);
+                    drive.steer(Goal::Middle, v, per_half, &mut total);
+                    *e += half * (de - 0.25 * dt * dot(a, &total));
+                    *v = add_scaled(v, half, &total);
+                    drive.set(Goal::Middle, v);
+                    for k in 0..3 {
+                        x[k] += dt * v[k];
+                    }
+                    *v_p = add_scaled(v, half, &total);
+                    drive.set(Goal::End, v_p);
+                    let strain = half * (l[0] + l[4] + l[8]);
+                    *rho_p = rho * ((1.0 - strain) / (1.0 + strain));
+                    let reference = 1.0 / table.inverse_density(body as usize);
+                    *h = rule.length(reference_h[body as usize], reference / *rho_p);
+                },
+            );
     }
 
     /// Particles that crossed a symmetry plane change places with their images.
@@ -140,6 +180,14 @@ impl Simulation {
             let before = self.store.velocity[i];
             mirrors.fold(&mut self.store, i);
             let after = self.store.velocity[i];
+            if self
+                .store
+                .load
+                .get(i)
+                .is_some_and(|&bits| self.loads.is_rigid(bits))
+            {
+                continue;
+            }
             let mass = self.store.mass[i];
             for a in 0..3 {
                 self.sums.crossing_impulse[a].add(mass * (after[a] - before[a]));
@@ -149,19 +197,19 @@ impl Simulation {
 
     /// Second half kick of a step `dt` (s); zero at the start of a case.
     pub(super) fn kick(&mut self, dt: f64) {
-        let contact = std::mem::take(&mut self.store.contact_acceleration);
-        if self.contact.is_active() {
-            self.kick_by(dt, contact.par_iter().copied());
-        } else {
-            self.kick_by(dt, repeat_n([0.0; 3], self.store.owned()));
-        }
-        self.store.contact_acceleration = contact;
+        self.half_kick(dt, Goal::End);
         self.book_contact_work(dt, -0.25 * dt);
+        self.book_loads(dt, false);
     }
 
-    /// [`Self::kick`] of the particles, with the accelerations by contact (m/s²).
-    fn kick_by(&mut self, dt: f64, contact: impl IndexedParallelIterator<Item = [f64; 3]>) {
+    /// [`Self::kick`] of the particles.
+    fn kick_by<D: Drive>(
+        &mut self,
+        dt: f64,
+        outside: impl IndexedParallelIterator<Item = ([f64; 3], D)>,
+    ) {
         let half = 0.5 * dt;
+        let per_half = LoadStep::per_half(dt);
         let owned = self.store.owned();
         let store = &mut self.store;
         (
@@ -169,14 +217,16 @@ impl Simulation {
             &mut store.specific_energy,
             &mut store.d_specific_energy_dt,
             &store.acceleration,
-            contact,
+            outside,
             &store.predicted_velocity[..owned],
         )
             .into_par_iter()
             .with_min_len(GRAIN)
-            .for_each(|(v, e, de, a, c, v_p)| {
-                let total = add(a, &c);
+            .for_each(|(v, e, de, a, (o, drive), v_p)| {
+                let mut total = add(a, &o);
+                drive.steer(Goal::End, v, per_half, &mut total);
                 *v = add_scaled(v, half, &total);
+                drive.set(Goal::End, v);
                 let late = [v[0] - v_p[0], v[1] - v_p[1], v[2] - v_p[2]];
                 *de -= dot(a, &late);
                 *e += half * (*de + 0.25 * dt * dot(a, &total));
@@ -189,7 +239,7 @@ impl Simulation {
         if !self.contact.is_active() {
             return;
         }
-        let store = &self.store;
+        let (store, loads, gravity) = (&self.store, &self.loads, self.loads.gravity);
         let work = (store.contact_acceleration.par_chunks(GRAIN).enumerate())
             // same bits in any order: exact sums are integers
             .fold(ExactSum::default, |mut work, (chunk, accelerations)| {
@@ -198,8 +248,11 @@ impl Simulation {
                         continue;
                     }
                     let i = chunk * GRAIN + k;
-                    let total = add(&store.acceleration[i], c);
-                    let mean = add_scaled(&store.velocity[i], shift, &total);
+                    let total = add(&store.acceleration[i], &add(c, &gravity));
+                    let mut mean = add_scaled(&store.velocity[i], shift, &total);
+                    if let Some(&bits) = store.load.get(i) {
+                        loads.correct_mean(bits, &store.velocity[i], &mut mean);
+                    }
                     work.add(0.5 * dt * store.mass[i] * dot(c, &mean));
                 }
                 work

@@ -16,6 +16,8 @@ pub(super) struct MaterialUpdate<'a> {
     images: &'a [Image],
     materials: &'a [Material],
     material_of_body: &'a [usize],
+    /// By group: whether it is a rigid body.
+    rigid: &'a [bool],
     dt: f64,
     body: &'a [u32],
     /// Specific energy after the first half kick, and its last rate.
@@ -38,12 +40,14 @@ impl<'a> MaterialUpdate<'a> {
         images: &'a [Image],
         materials: &'a [Material],
         material_of_body: &'a [usize],
+        rigid: &'a [bool],
         dt: f64,
     ) -> Self {
         Self {
             images,
             materials,
             material_of_body,
+            rigid,
             dt,
             body: &store.body,
             specific_energy: &store.specific_energy,
@@ -63,6 +67,10 @@ impl<'a> MaterialUpdate<'a> {
     /// the step is `gradient`; `neighbours` is the length of its list.
     #[inline(always)]
     pub(super) fn apply(&self, cluster: &Cluster, gradient: &[F64x8; 9], neighbours: usize) {
+        if self.rigid[cluster.group] {
+            self.store_rigid(cluster);
+            return;
+        }
         let places = &cluster.receivers;
         let at = |k: usize| self.images[places[k] as usize].base();
         let base = [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)];
@@ -93,6 +101,20 @@ impl<'a> MaterialUpdate<'a> {
                     // SAFETY: the place belongs to this cluster alone, as its particle does.
                     unsafe { *self.stresses.slot(places[lane] as usize) = record };
                 }
+            }
+        }
+    }
+
+    /// Particles of a rigid body have no stress; nobody reads their records.
+    #[cold]
+    fn store_rigid(&self, cluster: &Cluster) {
+        for &place in &cluster.receivers[..cluster.lanes] {
+            let i = self.images[place as usize].base();
+            // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
+            unsafe {
+                *self.pressure.slot(i) = 0.0;
+                *self.sound_speed.slot(i) = 0.0;
+                *self.work.slot(i) = OWN_WORK;
             }
         }
     }

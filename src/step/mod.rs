@@ -2,8 +2,10 @@
 
 mod contact_phase;
 mod integrate;
+mod loads;
 mod material_update;
 mod options;
+mod plane_forces;
 mod search;
 mod setup;
 mod simulation;
@@ -15,5 +17,5 @@ mod vote;
 
 pub use setup::SetupError;
 pub use simulation::{Simulation, StepError};
-pub use state::{PairState, Reason, RunState, Totals, Worst};
+pub use state::{LoadState, PairState, Reason, RunState, Totals, Worst};
 pub use timers::{Phase, Timers};

@@ -4,10 +4,9 @@ use rayon::prelude::*;
 
 use super::search::GRAIN;
 use super::simulation::Simulation;
-use crate::contact::ContactTable;
 use crate::domain::Mirrors;
 use crate::model::{Case, SphOptions};
-use crate::particles::{FieldUse, resize};
+use crate::particles::resize;
 use crate::sph::kernel::Kernel;
 use crate::sph::options::{
     ARTIFICIAL_STRESS, BALSARA, CONDUCTION, OptionRecord, Options, XSPH, limiter, repulsion,
@@ -58,20 +57,6 @@ impl OptionPhase {
     pub(super) fn memory(&self) -> usize {
         self.records.capacity() * size_of::<OptionRecord>()
     }
-}
-
-/// Fields that a case has no use for.
-pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> FieldUse {
-    let sph = &case.sph;
-    [
-        (FieldUse::CONTACT, contact.is_active()),
-        (FieldUse::BALSARA, sph.balsara),
-        (FieldUse::CONDUCTION, sph.conduction > 0.0),
-        (FieldUse::XSPH, sph.xsph > 0.0),
-    ]
-    .into_iter()
-    .filter(|&(_, used)| !used)
-    .fold(FieldUse::default(), |all, (fields, _)| all.with(fields))
 }
 
 impl Simulation {
@@ -138,13 +123,14 @@ impl Simulation {
             return;
         }
         let store = &mut self.store;
-        let contact = &store.contact_acceleration;
+        let (contact, load) = (&store.contact_acceleration, &store.load);
         (&mut store.position, &store.velocity_correction)
             .into_par_iter()
             .with_min_len(GRAIN)
             .enumerate()
             .for_each(|(i, (x, correction))| {
-                if contact.get(i).is_some_and(|force| *force != [0.0; 3]) {
+                let touched = contact.get(i).is_some_and(|force| *force != [0.0; 3]);
+                if touched || load.get(i).is_some_and(|load| *load != 0) {
                     return;
                 }
                 for a in 0..3 {

@@ -67,6 +67,7 @@ fn group_lengths(case: &Case, contact: &ContactTable) -> Vec<Lengths> {
             Lengths {
                 longest,
                 uniform: constant && h().all(|h| h.to_bits() == longest.to_bits()),
+                rigid: contact.rigid[group],
             }
         })
         .collect()
@@ -126,7 +127,7 @@ impl Simulation {
             }
         }
         search.clusters.build(&search.sequence, &search.lengths);
-        if self.contact.is_active() {
+        if self.contact.has_pairs() {
             let images = search.sequence.images();
             search.foreign.build(
                 &search.clusters,

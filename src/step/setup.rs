@@ -3,10 +3,12 @@
 use thiserror::Error;
 
 use super::contact_phase::ContactPhase;
-use super::options::{OptionPhase, unused_fields};
+use super::loads::{Drive, Goal, LoadStep};
+use super::options::OptionPhase;
+use super::plane_forces::PlaneForces;
 use super::search::Search;
 use super::simulation::{Simulation, StepError};
-use super::state::{PairState, Reason, RunState, Totals, Worst};
+use super::state::{LoadState, PairState, Reason, RunState, Totals, Worst};
 use super::sums::StepSums;
 use super::sweeps::Sweeps;
 use super::timers::Timers;
@@ -15,7 +17,7 @@ use crate::contact::ContactTable;
 use crate::domain::{Halo, Histogram, Migration, Mirrors, Slabs, balance};
 use crate::model::Case;
 use crate::neighbours::{ColumnGrid, Image};
-use crate::particles::ParticleStore;
+use crate::particles::{FieldUse, ParticleStore};
 use crate::populate::{self, Slab};
 
 /// Why a case cannot start; the same on all ranks.
@@ -111,9 +113,10 @@ impl Simulation {
         };
         let mut store = ParticleStore::default();
         store.drop_fields(unused_fields(&case, &contact));
+        let loads = LoadStep::new(&case);
         Self {
             store,
-            state: fresh_state(pairs.len()),
+            state: fresh_state(pairs.len(), case.load_names().count()),
             timers: Timers::default(),
             poison: false,
             spare_calm: true,
@@ -128,7 +131,9 @@ impl Simulation {
             sweeps: Sweeps::new(&case, &contact.kernel),
             options: OptionPhase::new(&case, &contact.kernel),
             contact_phase: ContactPhase::default(),
-            sums: StepSums::new(pairs, enclosed_limit),
+            plane_forces: PlaneForces::new(&case),
+            sums: StepSums::new(pairs, enclosed_limit, loads.driven(), loads.planes.len()),
+            loads,
             scratch: Vec::new(),
             order: Vec::new(),
             unordered: true,
@@ -163,8 +168,8 @@ impl Simulation {
         let mut i = 0;
         let mut first_id = 0_u64;
         for (b, body) in case.bodies.iter().enumerate() {
-            let material = &case.materials[body.material];
-            let mass = material.reference_density * populate::particle_volume(body, case.dimension);
+            let (density, energy) = (case.initial_density(body), case.initial_energy(body));
+            let mass = density * populate::particle_volume(body, case.dimension);
             let velocity = body.velocity.into();
             for site in populate::sites(body, case.dimension, &case.symmetry, Some(slab)) {
                 let store = &mut self.store;
@@ -174,9 +179,17 @@ impl Simulation {
                 store.position[i] = site.position;
                 store.velocity[i] = velocity;
                 store.predicted_velocity[i] = velocity;
-                store.density[i] = material.reference_density;
-                store.predicted_density[i] = material.reference_density;
+                store.density[i] = density;
+                store.predicted_density[i] = density;
+                store.specific_energy[i] = energy;
                 store.smoothing_length[i] = body.smoothing_length;
+                if self.loads.drives() {
+                    let bits = self.loads.bits(case, b, &site.position);
+                    let prescribed = self.loads.of(bits);
+                    prescribed.set(Goal::End, &mut store.velocity[i]);
+                    prescribed.set(Goal::End, &mut store.predicted_velocity[i]);
+                    store.load[i] = bits;
+                }
                 i += 1;
             }
             first_id = first_id
@@ -208,6 +221,22 @@ impl Simulation {
     }
 }
 
+/// Fields that a case has no use for.
+fn unused_fields(case: &Case, contact: &ContactTable) -> FieldUse {
+    let sph = &case.sph;
+    let driven = !case.loads.velocities.is_empty() || case.bodies.iter().any(|b| b.rigid.is_some());
+    [
+        (FieldUse::CONTACT, contact.is_active()),
+        (FieldUse::LOADS, driven),
+        (FieldUse::BALSARA, sph.balsara),
+        (FieldUse::CONDUCTION, sph.conduction > 0.0),
+        (FieldUse::XSPH, sph.xsph > 0.0),
+    ]
+    .into_iter()
+    .filter(|&(_, used)| !used)
+    .fold(FieldUse::default(), |all, (fields, _)| all.with(fields))
+}
+
 /// Refuses a case without particles, or a rank with more than it can number. Collective.
 fn limit_count(comm: &Comm, owned: u64) -> Result<(), SetupError> {
     // Halo particles and images need numbers too.
@@ -221,7 +250,7 @@ fn limit_count(comm: &Comm, owned: u64) -> Result<(), SetupError> {
     }
 }
 
-fn fresh_state(pairs: usize) -> RunState {
+fn fresh_state(pairs: usize, loads: usize) -> RunState {
     RunState {
         step: 0,
         time: 0.0,
@@ -236,6 +265,9 @@ fn fresh_state(pairs: usize) -> RunState {
         plane_force: [0.0; 3],
         plane_impulse: [0.0; 3],
         pairs: vec![PairState::default(); pairs],
+        loads: vec![LoadState::default(); loads],
+        work_put_in: 0.0,
+        momentum_put_in: 0.0,
         capped_reliefs: 0,
         interpenetrated: 0,
         worst: Worst::default(),

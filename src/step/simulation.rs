@@ -3,7 +3,9 @@
 use thiserror::Error;
 
 use super::contact_phase::ContactPhase;
+use super::loads::LoadStep;
 use super::options::OptionPhase;
+use super::plane_forces::PlaneForces;
 use super::search::Search;
 use super::state::{Reason, RunState};
 use super::sums::StepSums;
@@ -64,6 +66,8 @@ pub struct Simulation {
     pub(super) sweeps: Sweeps,
     pub(super) options: OptionPhase,
     pub(super) contact_phase: ContactPhase,
+    pub(super) loads: LoadStep,
+    pub(super) plane_forces: PlaneForces,
     pub(super) sums: StepSums,
     pub(super) scratch: Vec<u64>,
     pub(super) order: Vec<u32>,
@@ -96,7 +100,11 @@ impl Simulation {
             self.store.poison();
         }
         self.timers.skip();
-        self.kick_and_drift(dt);
+        let end = match reason {
+            Reason::End => self.case.run.end_time,
+            _ => self.state.time + dt,
+        };
+        self.kick_and_drift(dt, end);
         self.timers.lap(Phase::Integrate);
         self.balance_work(comm);
         self.timers.lap(Phase::Balance);
@@ -106,10 +114,7 @@ impl Simulation {
         self.kick(dt);
         self.timers.lap(Phase::Integrate);
         self.state.step += 1;
-        self.state.time = match reason {
-            Reason::End => self.case.run.end_time,
-            _ => self.state.time + dt,
-        };
+        self.state.time = end;
         (self.state.last_dt, self.state.last_reason) = (dt, reason);
         self.book_step(comm, dt);
         self.vote(comm)?;
@@ -168,7 +173,7 @@ impl Simulation {
     }
 
     fn stress_uses(&self) -> FieldUse {
-        if self.contact.is_active() {
+        if self.contact.has_pairs() {
             FieldUse::HALO_FORCES
         } else {
             FieldUse::HALO_STRESS
@@ -194,6 +199,8 @@ impl Simulation {
             + self.sweeps.memory()
             + self.options.memory()
             + self.contact_phase.memory()
+            + self.loads.memory()
+            + self.plane_forces.memory()
             + self.sums.memory()
             + self.halo.memory()
             + self.migration.memory()

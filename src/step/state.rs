@@ -54,7 +54,18 @@ pub struct PairState {
     pub contact_dt: Option<f64>,
 }
 
-/// Sums over all particles (SI).
+/// Ledger of what acts from outside: a prescribed velocity, a rigid body, a rigid plane.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct LoadState {
+    /// Force on the model (N): the mean of the last step, of planes that of now.
+    pub force: [f64; 3],
+    /// Impulse given to the model so far (N s).
+    pub impulse: [f64; 3],
+    /// Work done on the model so far (J).
+    pub work: f64,
+}
+
+/// Sums over all particles that are no part of a rigid body (SI).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Totals {
     /// `Σ ½ m v²` (J).
@@ -63,6 +74,10 @@ pub struct Totals {
     pub internal_energy: f64,
     /// Φ (J).
     pub contact_energy: f64,
+    /// `−Σ m g·x` (J), zero at the origin.
+    pub gravity_energy: f64,
+    /// `Σ m` (kg).
+    pub mass: f64,
     /// `Σ m v` (kg m/s).
     pub momentum: [f64; 3],
     /// `Σ |m v|` (kg m/s).
@@ -70,10 +85,10 @@ pub struct Totals {
 }
 
 impl Totals {
-    /// Kinetic, internal and contact energy together (J).
+    /// Kinetic, internal, contact and gravity's energy together (J).
     #[must_use]
     pub fn energy(&self) -> f64 {
-        self.kinetic_energy + self.internal_energy + self.contact_energy
+        self.kinetic_energy + self.internal_energy + self.contact_energy + self.gravity_energy
     }
 }
 
@@ -106,6 +121,12 @@ pub struct RunState {
     pub plane_impulse: [f64; 3],
     /// Ledgers of the pairs of bodies in contact.
     pub pairs: Vec<PairState>,
+    /// Ledgers of prescribed velocities, rigid bodies and rigid planes.
+    pub loads: Vec<LoadState>,
+    /// Largest work of loads and gravity so far (J).
+    pub work_put_in: f64,
+    /// Largest impulse of loads and gravity so far (N s).
+    pub momentum_put_in: f64,
     /// Particles whose relief was capped at the start.
     pub capped_reliefs: i64,
     /// Interpenetrated particles now.
@@ -114,14 +135,34 @@ pub struct RunState {
     pub worst: Worst,
 }
 
+impl RunState {
+    /// Work done by all loads so far (J).
+    #[must_use]
+    pub fn load_work(&self) -> f64 {
+        self.loads.iter().map(|load| load.work).sum()
+    }
+
+    /// Impulse given by all loads so far (N s).
+    #[must_use]
+    pub fn load_impulse(&self) -> [f64; 3] {
+        std::array::from_fn(|a| self.loads.iter().map(|load| load.impulse[a]).sum())
+    }
+}
+
 /// Largest deviations over a run.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Worst {
-    /// |total energy − first value| / initial kinetic energy.
+    /// |total energy − first value − work of loads| (J).
+    pub energy_deviation: f64,
+    /// |contact work + Φ − Φ(0)| (J).
+    pub contact_deviation: f64,
+    /// |momentum − first value − impulses of planes, loads and gravity| (kg m/s), by component.
+    pub momentum_deviation: [f64; 3],
+    /// `energy_deviation` over the initial kinetic energy, or over the work put in if that is more.
     pub energy_error: f64,
-    /// |contact work + Φ − Φ(0)| / initial kinetic energy.
+    /// `contact_deviation` over the same.
     pub contact_defect: f64,
-    /// |momentum − first value − impulse of the planes| / Σ|m v| at the start, by component.
+    /// `momentum_deviation` over Σ|m v| at the start, or over the impulse put in if that is more.
     pub momentum_error: [f64; 3],
     /// Interpenetrated particles.
     pub interpenetrated: i64,

@@ -18,6 +18,10 @@ pub struct StepSums {
     pub(super) contact_energy: ExactSum,
     pub(super) crossing_impulse: [ExactSum; 3],
     plane_force: [ExactSum; 3],
+    /// Impulse and work of prescribed velocities and of rigid bodies in this step.
+    loads: Vec<[ExactSum; 4]>,
+    /// Force along the normal of each rigid plane.
+    pushes: Vec<ExactSum>,
     pair_bodies: Vec<[usize; 2]>,
     pairs: Vec<PairSums>,
     interpenetrated: i64,
@@ -50,13 +54,20 @@ impl Default for PairSums {
 }
 
 impl StepSums {
-    pub(super) fn new(pair_bodies: Vec<[usize; 2]>, enclosed_limit: f64) -> Self {
+    pub(super) fn new(
+        pair_bodies: Vec<[usize; 2]>,
+        enclosed_limit: f64,
+        loads: usize,
+        planes: usize,
+    ) -> Self {
         Self {
             enclosed_limit,
             contact_work: ExactSum::default(),
             contact_energy: ExactSum::default(),
             crossing_impulse: Default::default(),
             plane_force: Default::default(),
+            loads: (0..loads).map(|_| Default::default()).collect(),
+            pushes: vec![ExactSum::default(); planes],
             pairs: pair_bodies.iter().map(|_| PairSums::default()).collect(),
             pair_bodies,
             interpenetrated: 0,
@@ -69,6 +80,7 @@ impl StepSums {
 
     pub(super) fn memory(&self) -> usize {
         size_of::<PairSums>() * self.pairs.capacity()
+            + size_of::<ExactSum>() * (4 * self.loads.capacity() + self.pushes.capacity())
             + 8 * (self.limbs.capacity() + self.extremes.capacity())
     }
 
@@ -76,6 +88,7 @@ impl StepSums {
     pub(super) fn clear_rates(&mut self) {
         self.contact_energy = ExactSum::default();
         self.plane_force = Default::default();
+        self.pushes.fill_with(ExactSum::default);
         self.pairs.fill_with(PairSums::default);
         self.interpenetrated = 0;
         self.closest = f64::INFINITY;
@@ -86,6 +99,17 @@ impl StepSums {
         for a in 0..3 {
             self.plane_force[a].add(force[a]);
         }
+    }
+
+    /// Books impulse (N s) along `axis` and work (J) of a load.
+    pub(super) fn add_load(&mut self, load: usize, axis: usize, impulse: f64, work: f64) {
+        self.loads[load][axis].add(impulse);
+        self.loads[load][3].add(work);
+    }
+
+    /// Books the force (N) that a rigid plane exerts on a particle.
+    pub(super) fn add_push(&mut self, plane: usize, force: f64) {
+        self.pushes[plane].add(force);
     }
 
     pub(super) fn note_particle(&mut self, inside: bool, closest: f64, fraction: f64) {
@@ -118,6 +142,8 @@ impl StepSums {
             .into_iter()
             .chain(&mut self.crossing_impulse)
             .chain(&mut self.plane_force)
+            .chain(self.loads.iter_mut().flatten())
+            .chain(&mut self.pushes)
             .chain(
                 self.pairs
                     .iter_mut()
@@ -191,8 +217,9 @@ fn scatter_limbs<'a, 'b>(
 }
 
 impl Simulation {
-    /// Impulse of the symmetry planes in the first half of a step.
+    /// Impulse of the symmetry planes and the rigid ones in the first half of a step.
     pub(super) fn book_plane_force(&mut self, dt: f64) {
+        self.book_pushes(dt, true);
         for a in 0..3 {
             self.state.plane_impulse[a] += 0.5 * dt * self.state.plane_force[a];
         }
@@ -203,12 +230,54 @@ impl Simulation {
         }
     }
 
+    /// Impulse and work of the rigid planes in a half of a step `dt` (s). The work is also what
+    /// contact takes from the planes.
+    fn book_pushes(&mut self, dt: f64, first: bool) {
+        let driven = self.loads.driven();
+        let ledgers = &mut self.state.loads[driven..];
+        let planes = self.loads.planes.iter().zip(&self.case.loads.planes);
+        for (ledger, (step, plane)) in ledgers.iter_mut().zip(planes) {
+            let [start, middle, end] = step.velocity;
+            let speed = 0.5 * (middle + if first { start } else { end });
+            let impulse = 0.5 * dt * plane.along(&ledger.force);
+            for a in 0..3 {
+                ledger.impulse[a] += plane.normal[a] * impulse;
+            }
+            ledger.work += impulse * speed;
+            self.state.contact_work -= impulse * speed;
+        }
+    }
+
+    /// Impulses and work of loads, after the second half of a step `dt` (s).
+    fn book_load_sums(&mut self, dt: f64) {
+        let driven = self.loads.driven();
+        let per_step = if dt > 0.0 { 1.0 / dt } else { 0.0 };
+        for (ledger, sums) in self.state.loads.iter_mut().zip(&mut self.sums.loads) {
+            for a in 0..3 {
+                let impulse = sums[a].value();
+                ledger.force[a] = impulse * per_step;
+                ledger.impulse[a] += impulse;
+            }
+            ledger.work += sums[3].value();
+            *sums = Default::default();
+        }
+        let ledgers = self.state.loads[driven..].iter_mut();
+        for ((ledger, plane), push) in ledgers.zip(&self.case.loads.planes).zip(&self.sums.pushes) {
+            ledger.force = plane.normal.map(|n| n * push.value());
+        }
+        self.book_pushes(dt, false);
+        let state = &mut self.state;
+        state.work_put_in = state.work_put_in.max(state.load_work().abs());
+    }
+
     /// Joins the sums of all ranks into the state, after the second half of a step `dt` (s).
     pub(super) fn book_step(&mut self, comm: &Comm, dt: f64) {
-        let (sums, state) = (&mut self.sums, &mut self.state);
-        if self.contact.is_active() || !self.halo.mirrors().is_empty() {
-            sums.reduce(comm);
+        let mirrors = !self.halo.mirrors().is_empty();
+        if self.contact.is_active() || mirrors || self.loads.drives() {
+            self.sums.reduce(comm);
         }
+        self.book_load_sums(dt);
+        let (sums, state) = (&mut self.sums, &mut self.state);
         state.contact_energy = sums.contact_energy.value();
         state.contact_work += sums.contact_work.value();
         sums.contact_work = ExactSum::default();
@@ -239,10 +308,11 @@ impl Simulation {
             let closest = worst.closest.map_or(sums.closest, |c| c.min(sums.closest));
             worst.closest = Some(closest);
         }
-        let scale = state.initial.kinetic_energy;
+        let defect = state.contact_work + state.contact_energy - state.initial.contact_energy;
+        worst.contact_deviation = worst.contact_deviation.max(defect.abs());
+        let scale = state.initial.kinetic_energy.max(state.work_put_in);
         if scale > 0.0 {
-            let defect = state.contact_work + state.contact_energy - state.initial.contact_energy;
-            worst.contact_defect = worst.contact_defect.max(defect.abs() / scale);
+            worst.contact_defect = worst.contact_deviation / scale;
         }
     }
 
@@ -250,31 +320,48 @@ impl Simulation {
     /// Collective.
     pub fn diagnose(&mut self, comm: &Comm) {
         let totals = self.totals(comm);
+        let gravity = self.loads.gravity;
         let state = &mut self.state;
         state.totals = totals;
+        let (work, impulse) = (state.load_work(), state.load_impulse());
+        let fallen = totals.gravity_energy - state.initial.gravity_energy;
+        state.work_put_in = state.work_put_in.max(work.abs()).max(fallen.abs());
         let worst = &mut state.worst;
-        if state.initial.kinetic_energy > 0.0 {
-            let error = (totals.energy() - state.initial.energy()).abs();
-            worst.energy_error = worst.energy_error.max(error / state.initial.kinetic_energy);
+        let error = totals.energy() - state.initial.energy() - work;
+        worst.energy_deviation = worst.energy_deviation.max(error.abs());
+        let scale = state.initial.kinetic_energy.max(state.work_put_in);
+        if scale > 0.0 {
+            worst.energy_error = worst.energy_deviation / scale;
+            worst.contact_defect = worst.contact_deviation / scale;
         }
-        if state.initial.momentum_scale > 0.0 {
-            for a in 0..3 {
-                let error = totals.momentum[a] - state.initial.momentum[a] - state.plane_impulse[a];
-                worst.momentum_error[a] =
-                    worst.momentum_error[a].max(error.abs() / state.initial.momentum_scale);
+        for a in 0..3 {
+            let falling = totals.mass * gravity[a] * state.time;
+            let outside = impulse[a] + falling;
+            let gained = totals.momentum[a] - state.initial.momentum[a];
+            let error = gained - state.plane_impulse[a] - outside;
+            worst.momentum_deviation[a] = worst.momentum_deviation[a].max(error.abs());
+            for put in [impulse[a], falling] {
+                state.momentum_put_in = state.momentum_put_in.max(put.abs());
             }
+        }
+        let scale = state.initial.momentum_scale.max(state.momentum_put_in);
+        if scale > 0.0 {
+            worst.momentum_error = worst.momentum_deviation.map(|error| error / scale);
         }
     }
 
     pub(super) fn totals(&self, comm: &Comm) -> Totals {
-        let store = &self.store;
+        let (store, loads) = (&self.store, &self.loads);
         let owned = store.owned();
         let mut sums = (0..owned.div_ceil(GRAIN))
             .into_par_iter()
             // same bits in any order: exact sums are integers
             .fold(TotalSums::default, |mut sums, chunk| {
                 for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(owned) {
-                    sums.add(store, i);
+                    if loads.drives() && loads.is_rigid(store.load[i]) {
+                        continue;
+                    }
+                    sums.add(store, i, &loads.gravity);
                 }
                 sums
             })
@@ -285,28 +372,33 @@ impl Simulation {
         gather_limbs(sums.iter_mut(), &mut limbs);
         comm.sum_i64(&mut limbs);
         scatter_limbs(sums.iter_mut(), &limbs);
-        let [kinetic, internal, x, y, z, scale] = sums.map(|sum| sum.value());
+        let [kinetic, internal, gravity, mass, x, y, z, scale] = sums.map(|sum| sum.value());
         Totals {
             kinetic_energy: kinetic,
             internal_energy: internal,
             contact_energy: self.state.contact_energy,
+            gravity_energy: gravity,
+            mass,
             momentum: [x, y, z],
             momentum_scale: scale,
         }
     }
 }
 
-/// Kinetic and internal energy, momentum, and the sum of its magnitudes.
+/// Kinetic, internal and gravity's energy, mass, momentum, and the sum of its magnitudes.
 #[derive(Default)]
-struct TotalSums([ExactSum; 6]);
+struct TotalSums([ExactSum; 8]);
 
 impl TotalSums {
-    fn add(&mut self, store: &ParticleStore, i: usize) {
-        let (m, v) = (store.mass[i], &store.velocity[i]);
+    fn add(&mut self, store: &ParticleStore, i: usize, gravity: &[f64; 3]) {
+        let (m, v, x) = (store.mass[i], &store.velocity[i], &store.position[i]);
+        let height = -(gravity[0] * x[0] + gravity[1] * x[1] + gravity[2] * x[2]);
         let v2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
         let terms = [
             0.5 * m * v2,
             m * store.specific_energy[i],
+            m * height,
+            m,
             m * v[0],
             m * v[1],
             m * v[2],

@@ -120,6 +120,7 @@ impl Simulation {
             self.search.sequence.images(),
             &self.case.materials,
             &self.sweeps.material_of_body,
+            &self.contact.rigid,
             dt,
         );
         let sources = &self.search.motion[..];

@@ -4,6 +4,7 @@
 
 use rayon::prelude::*;
 
+use super::loads::LoadStep;
 use super::search::GRAIN;
 use super::simulation::{Simulation, StepError};
 use super::state::Reason;
@@ -73,6 +74,7 @@ impl Simulation {
             store: &self.store,
             case: &self.case,
             contact: self.contact.is_active(),
+            loads: &self.loads,
         };
         (0..owned.div_ceil(GRAIN))
             .into_par_iter()
@@ -112,17 +114,24 @@ struct Voter<'a> {
     store: &'a ParticleStore,
     case: &'a Case,
     contact: bool,
+    loads: &'a LoadStep,
 }
 
 impl Voter<'_> {
     /// Sound and viscosity (Monaghan 1989) `C h / (c + 0.6 (α c + β |μ|))`, acceleration
-    /// `C_f √(h/|a|)`, contact `2 f √(m/k)`.
+    /// `C_f √(h/|a|)`, contact `2 f √(m/k)`; none by particles of rigid bodies.
     fn vote(&self, i: usize) -> Vote {
+        if self.loads.drives() && self.loads.is_rigid(self.store.load[i]) {
+            return ABSTAIN;
+        }
         let (store, case) = (self.store, self.case);
         let (h, c) = (store.smoothing_length[i], store.sound_speed[i]);
         let signal = c + 0.6 * (case.sph.alpha * c + case.sph.beta * store.approach_speed[i]);
         let sound = case.time_step.courant * h / signal;
         let mut total = store.acceleration[i];
+        for (total, gravity) in total.iter_mut().zip(self.loads.gravity) {
+            *total += gravity;
+        }
         if self.contact {
             for a in 0..3 {
                 total[a] += store.contact_acceleration[i][a];

@@ -173,6 +173,7 @@ impl Cloud {
                 Lengths {
                     longest,
                     uniform: all().all(|h| h == longest),
+                    rigid: false,
                 }
             })
             .collect();

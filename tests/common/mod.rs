@@ -9,8 +9,8 @@ pub mod sentinel;
 
 use whipple::material::{Elastic, Eos, Linear, LinearForm, Strength, VonMises, library};
 use whipple::model::{
-    Axis, Body, Case, ContactMode, DomainOptions, Lattice, LatticeKind, OutputOptions, Overlap,
-    RunControl, Shape, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
+    Axis, Body, Case, ContactMode, DomainOptions, Lattice, LatticeKind, Loads, OutputOptions,
+    Overlap, RunControl, Shape, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
 };
 
 /// A body on a cubic lattice with h = 1.3 Δp.
@@ -24,7 +24,10 @@ pub fn body(name: &str, shape: Shape, spacing: f64, velocity: Vec3) -> Body {
             spacing,
             angle: 0.0,
         },
+        density: None,
+        specific_energy: None,
         velocity,
+        rigid: None,
         smoothing_length: 1.3 * spacing,
     }
 }
@@ -39,6 +42,7 @@ pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
         contacts: Vec::new(),
         default_contact: ContactMode::Overlap(Overlap::default()),
         symmetry: Vec::new(),
+        loads: Loads::default(),
         sph: SphOptions::default(),
         time_step: TimeStepOptions {
             courant: 0.4,

@@ -12,8 +12,8 @@ pub use sentinel::{id, mix, sentinel};
 
 use whipple::comm::Comm;
 use whipple::model::{
-    Body, Case, ContactMode, DomainOptions, Lattice, LatticeKind, OutputOptions, RunControl, Shape,
-    SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
+    Body, Case, ContactMode, DomainOptions, Lattice, LatticeKind, Loads, OutputOptions, RunControl,
+    Shape, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
 };
 use whipple::output::snapshot;
 use whipple::particles::{FIELDS, ParticleStore};
@@ -32,7 +32,10 @@ pub fn case() -> Case {
             spacing,
             angle: 0.0,
         },
+        density: None,
+        specific_energy: None,
         velocity: Vec3::zeros(),
+        rigid: None,
         smoothing_length: 1.3 * spacing,
     };
     Case {
@@ -46,6 +49,7 @@ pub fn case() -> Case {
             axis: whipple::model::Axis::Y,
             position: 0.0,
         }],
+        loads: Loads::default(),
         sph: SphOptions::default(),
         time_step: TimeStepOptions {
             courant: 0.3,

@@ -1,4 +1,5 @@
 //! Synthetic snapshots in the layout of the developer guide, for the tests of `whipple plot`.
+#![allow(dead_code, reason = "each test file uses some of these")]
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

@@ -2,14 +2,16 @@
 
 use toml::Spanned;
 
-use super::check::{Allowed, Value, number};
+use super::check::{Allowed, Value, number, optional};
+use super::motion::motion;
 use super::shapes::Shapes;
 use super::touch;
 use crate::input::forms::LatticeParams;
 use crate::input::quantity::{Length, Velocity};
 use crate::input::schema::{BodyParams, LatticeName, Placed};
 use crate::input::source::Complaint;
-use crate::model::{Body, Lattice, LatticeKind, SymmetryPlane, Vec3};
+use crate::material::{Eos, Linear, LinearForm, Material, Strength};
+use crate::model::{Body, Lattice, LatticeKind, Motion, SymmetryPlane, Vec3};
 use crate::populate;
 
 /// Bounding lattices beyond this are a slip in a unit rather than a body.
@@ -17,6 +19,22 @@ const MOST_SITES: u64 = 100_000_000_000;
 /// Where the first layer above a symmetry plane may lie, in spacings, so that particles neither
 /// sit on their own mirror images nor leave a gap.
 const FIRST_LAYER: (f64, f64) = (0.25, 0.75);
+
+/// What a rigid body without a material is made of: contact takes the smaller of two moduli, so
+/// that of its partner. The density stands for nothing, since only volumes count.
+pub fn no_material() -> Material {
+    Material {
+        name: "rigid".to_owned(),
+        reference_density: 1000.0,
+        eos: Eos::Linear(Linear {
+            bulk_modulus: f64::INFINITY,
+            form: LinearForm::Logarithmic,
+        }),
+        strength: Strength::None,
+        spall: None,
+        thermal: None,
+    }
+}
 
 /// What all bodies share.
 pub struct Reader<'a> {
@@ -40,12 +58,15 @@ impl Reader<'_> {
         }
         let mut bodies: Vec<Body> = Vec::new();
         for table in params {
-            let body = self.body(table.get_ref())?;
+            let body = self.body(table)?;
             if bodies.iter().any(|other| other.name == body.name) {
                 let title = format!("a second body is named `{}`", body.name);
                 return Err(Complaint::new(table.get_ref().name.span(), title));
             }
             bodies.push(body);
+        }
+        if bodies.iter().all(|body| body.rigid.is_some()) {
+            return Err(Complaint::new(params[0].span(), "every body is rigid"));
         }
         self.check_size(params, &bodies)?;
         touch::resolve(params, &mut bodies, self.dimension)?;
@@ -55,21 +76,14 @@ impl Reader<'_> {
         Ok(bodies)
     }
 
-    fn body(&self, params: &BodyParams) -> Result<Body, Complaint> {
+    fn body(&self, table: &Spanned<BodyParams>) -> Result<Body, Complaint> {
+        let params = table.get_ref();
         let name = params.name.get_ref();
         if name.is_empty() || name.bytes().all(|c| c.is_ascii_digit()) {
             let title = "a body's name must have a letter";
             return Err(Complaint::new(params.name.span(), title));
         }
-        let wanted = params.material.get_ref();
-        let material = self
-            .materials
-            .iter()
-            .position(|m| m == wanted)
-            .ok_or_else(|| {
-                let known = self.materials.iter().map(String::as_str);
-                Complaint::unknown(params.material.span(), "material", wanted, known)
-            })?;
+        let material = self.material(params, table)?;
         let Some(spacing) = params.spacing.as_ref().or(self.spacing) else {
             let title = format!("the body `{name}` has no `spacing`");
             return Err(Complaint::new(params.name.span(), title)
@@ -80,14 +94,68 @@ impl Reader<'_> {
             dimension: self.dimension,
             spacing,
         };
+        let (velocity, rigid) = self.motion(params)?;
         Ok(Body {
             name: name.clone(),
             shape: shapes.shape(&params.shape)?,
             material,
             lattice: self.lattice(params, spacing)?,
-            velocity: self.velocity(params.velocity.as_ref())?,
+            velocity,
+            rigid,
+            density: optional(params.density.as_ref(), "density", Allowed::Positive)?,
+            specific_energy: optional(
+                params.specific_energy.as_ref(),
+                "specific_energy",
+                Allowed::Any,
+            )?,
             smoothing_length: self.smoothing * spacing,
         })
+    }
+
+    /// Index of the material; one beyond the last for a rigid body that names none.
+    fn material(
+        &self,
+        params: &BodyParams,
+        table: &Spanned<BodyParams>,
+    ) -> Result<usize, Complaint> {
+        let Some(name) = &params.material else {
+            if params.rigid == Some(true) {
+                return Ok(self.materials.len());
+            }
+            let title = "the key `material` is missing";
+            return Err(Complaint::new(table.span(), title).label("in this table"));
+        };
+        let wanted = name.get_ref();
+        let found = self.materials.iter().position(|m| m == wanted);
+        found.ok_or_else(|| {
+            let known = self.materials.iter().map(String::as_str);
+            Complaint::unknown(name.span(), "material", wanted, known)
+        })
+    }
+
+    /// The initial velocity, and the motion of a rigid body.
+    fn motion(&self, params: &BodyParams) -> Result<(Vec3, Option<Motion>), Complaint> {
+        let velocity = self.velocity(params.velocity.as_ref())?;
+        let rigid = params.rigid == Some(true);
+        let Some(table) = &params.motion else {
+            let motion = rigid.then(|| Motion::constant(velocity.into()));
+            return Ok((velocity, motion));
+        };
+        if !rigid || params.velocity.is_some() {
+            let title = if rigid {
+                "a rigid body has a `velocity` or a `motion`, not both"
+            } else {
+                "only a rigid body has a `motion`"
+            };
+            return Err(Complaint::new(table.span(), title)
+                .help("regions of other bodies are driven by a `[[load]]`"));
+        }
+        let mut motion = motion(table, self.dimension)?;
+        for velocities in &mut motion.velocities {
+            velocities.get_or_insert_with(|| vec![0.0; motion.times.len()]);
+        }
+        let start = std::array::from_fn::<f64, 3, _>(|a| motion.velocity(a, 0.0));
+        Ok((start.into(), Some(motion)))
     }
 
     fn lattice(&self, params: &BodyParams, spacing: f64) -> Result<Lattice, Complaint> {

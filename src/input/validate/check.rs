@@ -18,6 +18,8 @@ pub enum Allowed {
     NotNegative,
     /// Zero or less.
     NotPositive,
+    /// Above one.
+    AboveOne,
     /// Above zero, at most one.
     UpToOne,
     /// Between two numbers, both included.
@@ -32,6 +34,7 @@ impl Allowed {
                 Self::Positive => x > 0.0,
                 Self::NotNegative => x >= 0.0,
                 Self::NotPositive => x <= 0.0,
+                Self::AboveOne => x > 1.0,
                 Self::UpToOne => x > 0.0 && x <= 1.0,
                 Self::Within(low, high) => low <= x && x <= high,
             }
@@ -43,6 +46,7 @@ impl Allowed {
             Self::Positive => "positive".to_owned(),
             Self::NotNegative => "zero or positive".to_owned(),
             Self::NotPositive => "zero or negative".to_owned(),
+            Self::AboveOne => "above 1".to_owned(),
             Self::UpToOne => "above 0 and at most 1".to_owned(),
             Self::Within(low, high) => format!("between {low} and {high}"),
         }
@@ -83,6 +87,17 @@ pub fn number<V: Value>(
         Some(x) if allowed.has(x.get_ref().si()) => Ok(x.get_ref().si()),
         Some(x) => Err(out_of_range(x.span(), key, &allowed.words())),
     }
+}
+
+/// A number in SI units, if there is one.
+pub fn optional<V: Value>(
+    value: Option<&Spanned<V>>,
+    key: &str,
+    allowed: Allowed,
+) -> Result<Option<f64>, Complaint> {
+    value
+        .map(|x| number(Some(x), key, 0.0, allowed))
+        .transpose()
 }
 
 /// A number in SI units that has no default but the `base`, if there is one; `table` is where it

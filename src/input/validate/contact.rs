@@ -39,9 +39,20 @@ pub fn contacts(
         potential: potential(&params.potential, Potential::default())?,
     };
     let mut pairs: Vec<ContactPair> = Vec::new();
+    let is_rigid = |b: usize| bodies[b].get_ref().rigid == Some(true);
+    let rigid = bodies.iter().find(|b| b.get_ref().rigid == Some(true));
+    if let (ModeName::Kernel, Some(body)) = (default.mode, rigid) {
+        return Err(unjoined(&body.get_ref().name, body.get_ref().name.span()));
+    }
     for pair in &params.pair {
         let indices = indices(pair, bodies)?;
         let [a, b] = indices;
+        if let (Some(ModeName::Kernel), Some(n)) =
+            (pair.mode, [a, b].into_iter().position(is_rigid))
+        {
+            let at = pair.bodies.get_ref()[n].span();
+            return Err(unjoined(&bodies[indices[n]].get_ref().name, at));
+        }
         if pairs
             .iter()
             .any(|p| p.bodies == [a, b] || p.bodies == [b, a])
@@ -60,6 +71,15 @@ pub fn contacts(
         });
     }
     Ok((default.mode(), pairs))
+}
+
+/// A rigid body has no stress that could join the sums of another.
+fn unjoined(body: &Spanned<String>, at: std::ops::Range<usize>) -> Complaint {
+    let title = format!(
+        "the rigid body `{}` cannot have contact of mode `kernel`",
+        body.get_ref()
+    );
+    Complaint::new(at, title).help("take \"overlap\" or \"potential\" for its pairs")
 }
 
 fn indices(pair: &PairParams, bodies: &[Spanned<BodyParams>]) -> Result<[usize; 2], Complaint> {

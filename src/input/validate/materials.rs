@@ -4,16 +4,16 @@ use std::ops::Range;
 
 use toml::Spanned;
 
-use super::check::{Allowed, number, required};
+use super::check::{Allowed, number, optional, required};
+use super::eos::eos;
+use super::strength::strength;
 use crate::input::forms::{Named, OrNone};
-use crate::input::schema::{
-    ElasticParams, EosParams, FormName, LinearParams, MaterialParams, MieGruneisenParams,
-    SpallParams, StrengthParams, VonMisesParams,
-};
+use crate::input::schema::{MaterialParams, SpallParams, ThermalParams};
 use crate::input::source::Complaint;
-use crate::material::{
-    Elastic, Eos, Linear, LinearForm, Material, MieGruneisen, Spall, Strength, VonMises, library,
-};
+use crate::material::{Eos, Material, Spall, Thermal, ThermalConstants, library};
+
+/// Temperature of the reference state (K) where none is given.
+const ROOM: f64 = 300.0;
 
 /// Names and materials in the order of the input.
 pub fn materials(
@@ -44,154 +44,108 @@ fn material(
     if base.is_none() && params.density.is_none() {
         return Err(missing("density"));
     }
-    Ok(Material {
+    let reference_density = number(
+        params.density.as_ref(),
+        "density",
+        base.map_or(0.0, |b| b.reference_density),
+        Allowed::Positive,
+    )?;
+    let eos = match (&params.eos, base.map(|b| &b.eos)) {
+        (Some(table), base) => eos(table, base, reference_density)?,
+        (None, base) => base.cloned().ok_or_else(|| missing("eos"))?,
+    };
+    let strength = match (&params.strength, base.map(|b| &b.strength)) {
+        (Some(table), base) => strength(table, base)?,
+        (None, base) => base.cloned().ok_or_else(|| missing("strength"))?,
+    };
+    let base_thermal = base.and_then(|b| b.thermal.as_ref());
+    let thermal = thermal(
+        params.thermal.as_ref(),
+        base_thermal,
+        reference_density,
+        &eos,
+    )?;
+    let material = Material {
         name: name.get_ref().clone(),
-        reference_density: number(
-            params.density.as_ref(),
-            "density",
-            base.map_or(0.0, |b| b.reference_density),
-            Allowed::Positive,
-        )?,
-        eos: match (&params.eos, base.map(|b| &b.eos)) {
-            (Some(table), base) => eos(table, base)?,
-            (None, base) => base.cloned().ok_or_else(|| missing("eos"))?,
-        },
-        strength: match (&params.strength, base.map(|b| &b.strength)) {
-            (Some(table), base) => strength(table, base)?,
-            (None, base) => base.cloned().ok_or_else(|| missing("strength"))?,
-        },
+        reference_density,
+        eos,
+        strength,
         spall: match &params.spall {
             Some(table) => spall(table)?,
             None => base.and_then(|b| b.spall),
         },
-    })
+        thermal,
+    };
+    match (&params.strength, missing_heat(&material)) {
+        (_, None) => Ok(material),
+        (Some(table), Some(key)) => Err(heat_complaint(table.span(), key)),
+        (None, Some(key)) => Err(heat_complaint(name.span(), key)),
+    }
+}
+
+/// The key without which a strength that follows the temperature cannot.
+fn missing_heat(material: &Material) -> Option<&'static str> {
+    let melting = |thermal: &Thermal| thermal.constants().melting_temperature.is_some();
+    match &material.thermal {
+        None if material.strength.needs_temperature() => Some("thermal.specific_heat"),
+        Some(thermal) if material.strength.needs_melting() && !melting(thermal) => {
+            Some("thermal.melting_temperature")
+        }
+        _ => None,
+    }
+}
+
+fn heat_complaint(at: Range<usize>, key: &str) -> Complaint {
+    let title = format!("this strength follows the temperature and needs `{key}`");
+    Complaint::new(at, title)
 }
 
 /// Says that a table must have exactly one of several others.
-fn exactly_one(at: Range<usize>, table: &str, choices: &str) -> Complaint {
+pub fn exactly_one(at: Range<usize>, table: &str, choices: &str) -> Complaint {
     Complaint::new(at, format!("`{table}` must have exactly one of {choices}"))
 }
 
-fn eos(table: &Spanned<EosParams>, base: Option<&Eos>) -> Result<Eos, Complaint> {
-    let at = table.span();
-    let EosParams {
-        linear: linear_table,
-        mie_gruneisen: mie_gruneisen_table,
-    } = table.get_ref();
-    match (linear_table, mie_gruneisen_table) {
-        (Some(params), None) => linear(params, base, &at).map(Eos::Linear),
-        (None, Some(params)) => mie_gruneisen(params, base, &at).map(Eos::MieGruneisen),
-        _ => Err(exactly_one(at, "eos", "`linear`, `mie_gruneisen`")),
-    }
-}
-
-fn linear(
-    params: &LinearParams,
-    base: Option<&Eos>,
-    at: &Range<usize>,
-) -> Result<Linear, Complaint> {
-    let base = match base {
-        Some(Eos::Linear(linear)) => Some(linear),
-        _ => None,
+/// Thermal constants, with the cold curve of this material's own equation of state.
+fn thermal(
+    table: Option<&Spanned<ThermalParams>>,
+    base: Option<&Thermal>,
+    reference_density: f64,
+    eos: &Eos,
+) -> Result<Option<Thermal>, Complaint> {
+    let base = base.map(Thermal::constants);
+    let constants = match table {
+        None => base.copied(),
+        Some(table) => {
+            let params = table.get_ref();
+            let cold = base.map_or(ROOM, |b| b.reference_temperature);
+            let reference_temperature = number(
+                params.reference_temperature.as_ref(),
+                "reference_temperature",
+                cold,
+                Allowed::NotNegative,
+            )?;
+            let melting = params.melting_temperature.as_ref();
+            let given = optional(melting, "melting_temperature", Allowed::Positive)?;
+            if let (Some(value), Some(t)) = (melting, given)
+                && t <= reference_temperature
+            {
+                let title = "`melting_temperature` must be above `reference_temperature`";
+                return Err(Complaint::new(value.span(), title).label("out of range"));
+            }
+            Some(ThermalConstants {
+                specific_heat: required(
+                    params.specific_heat.as_ref(),
+                    "specific_heat",
+                    base.map(|b| b.specific_heat),
+                    Allowed::Positive,
+                    &table.span(),
+                )?,
+                reference_temperature,
+                melting_temperature: given.or(base.and_then(|b| b.melting_temperature)),
+            })
+        }
     };
-    let modulus = params.bulk_modulus.as_ref();
-    let base_modulus = base.map(|l| l.bulk_modulus);
-    Ok(Linear {
-        bulk_modulus: required(modulus, "bulk_modulus", base_modulus, Allowed::Positive, at)?,
-        form: match params.form {
-            Some(FormName::Logarithmic) => LinearForm::Logarithmic,
-            Some(FormName::DensityRatio) => LinearForm::DensityRatio,
-            None => base.map_or(LinearForm::Logarithmic, |l| l.form),
-        },
-    })
-}
-
-fn mie_gruneisen(
-    params: &MieGruneisenParams,
-    base: Option<&Eos>,
-    at: &Range<usize>,
-) -> Result<MieGruneisen, Complaint> {
-    let base = match base {
-        Some(Eos::MieGruneisen(law)) => Some(law),
-        _ => None,
-    };
-    let positive = Allowed::NotNegative;
-    let [s1, gamma0] = [params.s1.as_ref(), params.gamma0.as_ref()];
-    let curved = |value: &Option<Spanned<f64>>, key, base: Option<f64>| {
-        number(value.as_ref(), key, base.unwrap_or(0.0), Allowed::Any)
-    };
-    Ok(MieGruneisen {
-        c0: required(
-            params.c0.as_ref(),
-            "c0",
-            base.map(|m| m.c0),
-            Allowed::Positive,
-            at,
-        )?,
-        s1: required(s1, "s1", base.map(|m| m.s1), positive, at)?,
-        s2: curved(&params.s2, "s2", base.map(|m| m.s2))?,
-        s3: curved(&params.s3, "s3", base.map(|m| m.s3))?,
-        gamma0: required(gamma0, "gamma0", base.map(|m| m.gamma0), positive, at)?,
-        b: curved(&params.b, "b", base.map(|m| m.b))?,
-    })
-}
-
-fn strength(
-    table: &Spanned<OrNone<StrengthParams>>,
-    base: Option<&Strength>,
-) -> Result<Strength, Complaint> {
-    let at = table.span();
-    let OrNone::Table(params) = table.get_ref() else {
-        return Ok(Strength::None);
-    };
-    match (&params.elastic, &params.von_mises) {
-        (Some(params), None) => elastic(params, base, &at).map(Strength::Elastic),
-        (None, Some(params)) => von_mises(params, base, &at).map(Strength::VonMises),
-        _ => Err(exactly_one(at, "strength", "`elastic`, `von_mises`")
-            .help("or write `strength = \"none\"` for a fluid")),
-    }
-}
-
-/// Every law of solids has a shear modulus, so one may take it from another.
-fn shear_modulus(base: Option<&Strength>) -> Option<f64> {
-    base.map(Strength::shear_modulus).filter(|g| *g > 0.0)
-}
-
-fn elastic(
-    params: &ElasticParams,
-    base: Option<&Strength>,
-    at: &Range<usize>,
-) -> Result<Elastic, Complaint> {
-    let value = params.shear_modulus.as_ref();
-    let base = shear_modulus(base);
-    Ok(Elastic {
-        shear_modulus: required(value, "shear_modulus", base, Allowed::Positive, at)?,
-    })
-}
-
-fn von_mises(
-    params: &VonMisesParams,
-    base: Option<&Strength>,
-    at: &Range<usize>,
-) -> Result<VonMises, Complaint> {
-    let base_law = match base {
-        Some(Strength::VonMises(law)) => Some(law),
-        _ => None,
-    };
-    let base_yield = base_law.map(|law| law.yield_stress);
-    let base_hardening = base_law.map_or(0.0, |law| law.hardening_modulus);
-    let [shear, yielding, hardening] = [
-        params.shear_modulus.as_ref(),
-        params.yield_stress.as_ref(),
-        params.hardening_modulus.as_ref(),
-    ];
-    let positive = Allowed::Positive;
-    let or_zero = Allowed::NotNegative;
-    Ok(VonMises {
-        shear_modulus: required(shear, "shear_modulus", shear_modulus(base), positive, at)?,
-        yield_stress: required(yielding, "yield_stress", base_yield, or_zero, at)?,
-        hardening_modulus: number(hardening, "hardening_modulus", base_hardening, or_zero)?,
-    })
+    Ok(constants.map(|constants| Thermal::new(constants, reference_density, eos)))
 }
 
 fn spall(table: &Spanned<OrNone<SpallParams>>) -> Result<Option<Spall>, Complaint> {

@@ -3,20 +3,26 @@
 mod bodies;
 mod check;
 mod contact;
+mod eos;
+mod loads;
 mod materials;
+mod motion;
 mod shapes;
+mod strength;
 mod touch;
 
+use std::ops::Range;
+
 use super::schema::{
-    AxisName, CaseParams, DomainParams, OutputParams, RunParams, SmoothingName, SphParams,
-    SymmetryParams, TimeStepParams,
+    AxisName, BodyParams, CaseParams, DomainParams, OutputParams, RunParams, SmoothingName,
+    SphParams, SymmetryParams, TimeStepParams,
 };
 use super::source::Complaint;
 use crate::model::{
-    Axis, Case, DomainOptions, OutputOptions, RunControl, SmoothingLength, SphOptions,
+    Axis, Case, ContactMode, DomainOptions, OutputOptions, RunControl, SmoothingLength, SphOptions,
     SymmetryPlane, TimeStepOptions,
 };
-use crate::particles::snapshot_names;
+use crate::particles::{TEMPERATURE, snapshot_names};
 use check::{Allowed, number, whole};
 use toml::Spanned;
 
@@ -24,7 +30,8 @@ use toml::Spanned;
 pub fn case(params: CaseParams) -> Result<Case, Complaint> {
     let dimension = dimension(&params.dimension)?;
     let symmetry = symmetry(&params.symmetry, dimension)?;
-    let (names, materials) = materials::materials(&params.material)?;
+    let (names, mut materials) = materials::materials(&params.material)?;
+    let sph = sph(&params.sph)?;
     let smoothing = number(
         params.sph.smoothing.as_ref(),
         "smoothing",
@@ -38,8 +45,24 @@ pub fn case(params: CaseParams) -> Result<Case, Complaint> {
         smoothing,
     }
     .bodies(&params.body, &symmetry)?;
+    if bodies.iter().any(|body| body.material == materials.len()) {
+        materials.push(bodies::no_material());
+    }
     let (default_contact, contacts) = contact::contacts(&params.contact, &params.body)?;
-    Ok(Case {
+    let loads = loads::Reader {
+        dimension,
+        bodies: &bodies,
+        symmetry: &symmetry,
+    }
+    .loads(&params)?;
+    let mut time_step = time_step(&params.time_step)?;
+    for body in &bodies {
+        let shortest = body.smoothing_length * smallest_smoothing(&sph);
+        let diffusion = materials[body.material].diffusion_time(shortest);
+        time_step.max = time_step.max.min(diffusion);
+    }
+    let fields = field_spans(&params.output);
+    let case = Case {
         title: params.title.unwrap_or_else(|| "untitled".to_owned()),
         dimension,
         materials,
@@ -47,13 +70,55 @@ pub fn case(params: CaseParams) -> Result<Case, Complaint> {
         contacts,
         default_contact,
         symmetry,
-        sph: sph(&params.sph)?,
-        time_step: time_step(&params.time_step)?,
+        loads,
+        sph,
+        time_step,
         domain: domain(&params.domain, dimension)?,
         run: run(params.run.get_ref())?,
         output: output(params.output)?,
         resolved: String::new(),
-    })
+    };
+    check_moduli(&case, &params.body)?;
+    check_temperature(&case, &fields)?;
+    Ok(case)
+}
+
+/// Contact scales with a modulus, which a gas has only at a reference pressure.
+fn check_moduli(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Complaint> {
+    for (a, (body, table)) in case.bodies.iter().zip(params).enumerate() {
+        let material = &case.materials[body.material];
+        let pushes = |b| match case.contact_between(a, b) {
+            ContactMode::None | ContactMode::Kernel => false,
+            ContactMode::Overlap(_) | ContactMode::Potential(_) => a != b,
+        };
+        if material.p_wave_modulus() == 0.0 && (0..case.bodies.len()).any(pushes) {
+            let title = format!(
+                "the gas `{}` has no modulus that contact could scale with",
+                material.name
+            );
+            let named = table.get_ref().material.as_ref();
+            return Err(Complaint::new(named.map_or_else(|| table.span(), Spanned::span), title)
+                .help("give its `eos.ideal_gas` a `reference_pressure`, or join the bodies by `kernel` contact"));
+        }
+    }
+    Ok(())
+}
+
+fn check_temperature(case: &Case, fields: &[(String, Range<usize>)]) -> Result<(), Complaint> {
+    match fields.iter().find(|(name, _)| name == TEMPERATURE) {
+        Some((_, at)) if case.materials.iter().all(|m| m.thermal.is_none()) => {
+            let title = "no material has `thermal` constants that would give it a temperature";
+            Err(Complaint::new(at.clone(), title))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn field_spans(params: &OutputParams) -> Vec<(String, Range<usize>)> {
+    let spans = params.fields.iter();
+    spans
+        .map(|field| (field.get_ref().clone(), field.span()))
+        .collect()
 }
 
 fn dimension(params: &Spanned<i64>) -> Result<usize, Complaint> {
@@ -127,6 +192,14 @@ fn sph(params: &SphParams) -> Result<SphOptions, Complaint> {
         )?,
         xsph: number(params.xsph.as_ref(), "xsph", 0.0, Allowed::Within(0.0, 1.0))?,
     })
+}
+
+/// Smallest h/h₀ that a particle may have.
+fn smallest_smoothing(sph: &SphOptions) -> f64 {
+    match sph.smoothing_length {
+        SmoothingLength::Constant => 1.0,
+        SmoothingLength::Variable { min, .. } => min,
+    }
 }
 
 fn time_step(params: &TimeStepParams) -> Result<TimeStepOptions, Complaint> {

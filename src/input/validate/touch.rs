@@ -1,5 +1,7 @@
 //! `touch`: bodies moved until their outermost layers are one mean spacing apart.
 
+use std::ops::Range;
+
 use toml::Spanned;
 
 use crate::input::schema::{BodyParams, Direction, TouchParams};
@@ -39,7 +41,11 @@ pub fn resolve(
             return Err(Complaint::new(touch.body.span(), title));
         }
         for (index, target, touch) in ready {
-            let (axis, forward) = direction(&touch.direction, dimension)?;
+            let (axis, forward) = direction(
+                *touch.direction.get_ref(),
+                touch.direction.span(),
+                dimension,
+            )?;
             let (body, other) = (&bodies[index], &bodies[target]);
             // A body without particles is refused later on.
             let distance = populate::touching_distance(body, other, dimension, axis, forward);
@@ -50,8 +56,13 @@ pub fn resolve(
     Ok(())
 }
 
-fn direction(direction: &Spanned<Direction>, dimension: usize) -> Result<(Axis, bool), Complaint> {
-    let (axis, forward) = match direction.get_ref() {
+/// The axis that a word at `at` names, and whether it points to larger coordinates.
+pub fn direction(
+    direction: Direction,
+    at: Range<usize>,
+    dimension: usize,
+) -> Result<(Axis, bool), Complaint> {
+    let (axis, forward) = match direction {
         Direction::PlusX => (Axis::X, true),
         Direction::MinusX => (Axis::X, false),
         Direction::PlusY => (Axis::Y, true),
@@ -63,7 +74,7 @@ fn direction(direction: &Spanned<Direction>, dimension: usize) -> Result<(Axis, 
         return Ok((axis, forward));
     }
     let title = format!("a {dimension}-dimensional case has no {} axis", axis.name());
-    Err(Complaint::new(direction.span(), title))
+    Err(Complaint::new(at, title))
 }
 
 fn translate(shape: &mut Shape, axis: Axis, distance: f64) {

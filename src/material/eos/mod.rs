@@ -1,10 +1,16 @@
 //! Equations of state: pressure from density and specific energy.
 
+pub mod ideal_gas;
 pub mod linear;
 pub mod mie_gruneisen;
+pub mod tait;
+pub mod tillotson;
 
+pub use ideal_gas::IdealGas;
 pub use linear::{Linear, LinearForm};
 pub use mie_gruneisen::MieGruneisen;
+pub use tait::Tait;
+pub use tillotson::Tillotson;
 
 use super::{LANES, Lanes};
 
@@ -15,6 +21,12 @@ pub enum Eos {
     Linear(Linear),
     /// Mie–Grüneisen about the Hugoniot of the reference state.
     MieGruneisen(MieGruneisen),
+    /// Tait's law of a liquid, without heat.
+    Tait(Tait),
+    /// Tillotson's law, from cold compression to vapour.
+    Tillotson(Tillotson),
+    /// Ideal or stiffened gas.
+    IdealGas(IdealGas),
 }
 
 /// Pressure and its derivatives at one state.
@@ -43,6 +55,32 @@ impl Eos {
         match self {
             Self::Linear(eos) => eos.bulk_modulus,
             Self::MieGruneisen(eos) => reference_density * eos.c0 * eos.c0,
+            Self::Tait(eos) => eos.gamma * eos.b,
+            Self::Tillotson(eos) => eos.bulk_modulus,
+            Self::IdealGas(eos) => eos.bulk_modulus(),
+        }
+    }
+
+    /// Specific energy (J/kg) of the reference state at density `rho` (kg/m³): where a body
+    /// begins that states none.
+    #[must_use]
+    pub fn reference_energy(&self, rho: f64) -> f64 {
+        match self {
+            Self::IdealGas(eos) => eos.reference_energy(rho),
+            Self::Linear(_) | Self::MieGruneisen(_) | Self::Tait(_) | Self::Tillotson(_) => 0.0,
+        }
+    }
+
+    /// Pressure and derivatives at one state: reference density and density (kg/m³), specific
+    /// energy (J/kg).
+    #[must_use]
+    pub fn at(&self, rho0: f64, rho: f64, e: f64) -> PointResponse {
+        match self {
+            Self::Linear(eos) => eos.response(rho0, rho),
+            Self::MieGruneisen(eos) => eos.response(rho0, rho, e),
+            Self::Tait(eos) => eos.response(rho0, rho),
+            Self::Tillotson(eos) => eos.response(rho0, rho, e),
+            Self::IdealGas(eos) => eos.response(rho, e),
         }
     }
 
@@ -56,6 +94,9 @@ impl Eos {
                 let bounds = eos.bounds();
                 map(rho, e, |rho, e| eos.bounded_response(bounds, rho0, rho, e))
             }
+            Self::Tait(eos) => map(rho, e, |rho, _| eos.response(rho0, rho)),
+            Self::Tillotson(eos) => map(rho, e, |rho, e| eos.response(rho0, rho, e)),
+            Self::IdealGas(eos) => map(rho, e, |rho, e| eos.response(rho, e)),
         }
     }
 }

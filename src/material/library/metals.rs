@@ -98,5 +98,6 @@ fn metal(
             hardening_modulus: 0.0,
         }),
         spall: None,
+        thermal: None,
     }
 }

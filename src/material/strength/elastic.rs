@@ -1,7 +1,7 @@
 //! Linear elasticity in shear.
 
 use super::jaumann;
-use crate::material::PointBatch;
+use crate::material::{LANES, PointBatch};
 
 /// Linear elastic in shear.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,9 +13,9 @@ pub struct Elastic {
 impl Elastic {
     /// Advances the stress of a batch by `dt` (s).
     #[inline(always)]
-    pub(super) fn update(self, batch: &mut PointBatch, dt: f64) {
+    pub(in crate::material) fn update(self, batch: &mut PointBatch, dt: f64) {
         if dt != 0.0 {
-            jaumann::advance(batch, self.shear_modulus, dt);
+            jaumann::advance(batch, &[self.shear_modulus; LANES], dt);
         }
     }
 }

@@ -13,11 +13,11 @@
 //! before the rotation and half after it, which makes the step second order where strain and
 //! rotation come together.
 
-use crate::material::{LANES, PointBatch};
+use crate::material::{LANES, Lanes, PointBatch};
 
-/// Advances the deviatoric stress by `dt` (s) with shear modulus `g` (Pa).
+/// Advances the deviatoric stress by `dt` (s) with shear moduli `g` (Pa).
 #[inline(always)]
-pub(super) fn advance(batch: &mut PointBatch, g: f64, dt: f64) {
+pub(super) fn advance(batch: &mut PointBatch, g: &Lanes, dt: f64) {
     let l = &batch.velocity_gradient;
     let s = &batch.deviatoric_stress;
     let mut new = [[0.0; LANES]; 6];
@@ -26,7 +26,7 @@ pub(super) fn advance(batch: &mut PointBatch, g: f64, dt: f64) {
             l[0][k], l[1][k], l[2][k], l[3][k], l[4][k], l[5][k], l[6][k], l[7][k], l[8][k],
         ];
         let s_k = [s[0][k], s[1][k], s[2][k], s[3][k], s[4][k], s[5][k]];
-        let [xx, yy, zz, xy, xz, yz] = advance_point(&l_k, &s_k, g * dt, dt);
+        let [xx, yy, zz, xy, xz, yz] = advance_point(&l_k, &s_k, g[k] * dt, dt);
         new[0][k] = xx;
         new[1][k] = yy;
         new[2][k] = zz;

@@ -23,9 +23,9 @@ pub struct VonMises {
 impl VonMises {
     /// Advances stress and plastic strain of a batch by `dt` (s).
     #[inline(always)]
-    pub(super) fn update(&self, batch: &mut PointBatch, dt: f64) {
+    pub(in crate::material) fn update(&self, batch: &mut PointBatch, dt: f64) {
         if dt != 0.0 {
-            jaumann::advance(batch, self.shear_modulus, dt);
+            jaumann::advance(batch, &[self.shear_modulus; LANES], dt);
             self.return_to_yield(batch);
         }
     }

@@ -1,0 +1,183 @@
+//! Impact of elastic bars in uniaxial strain with the program's own laws: the first shocks and
+//! the release fans behind them, in closed form.
+//!
+//! With the stretch `λ = ρ₀/ρ` the stress along the bar is a function of λ alone, since uniaxial
+//! strain does not rotate and neither law knows heat:
+//!
+//! | form | σ(λ), G from `dS/dt = 2G dev D` | C² = σ′/ρ₀ | L(λ) = ∫₁ C dλ |
+//! |---|---|---|---|
+//! | logarithmic | `M ln λ`, that is `dσ/dt = M D` | `M/(ρ₀ λ)` | `2 c (√λ − 1)` |
+//! | density ratio | `−K (1/λ − 1) + g ln λ`, `g = 4G/3` | `(K/λ² + g/λ)/ρ₀` | `{2 (s − s₁) + √K [ln λ − 2 ln((s + √K)/(s₁ + √K))]}/√ρ₀`, `s = √(K + g λ)`, `s₁ = √M` |
+//!
+//! In reference coordinates `ρ₀ ∂v/∂t = ∂σ/∂X`, `∂λ/∂t = ∂v/∂X`. Jumps at a front of speed U
+//! into a bar at rest: `u = U (1 − λ)`, `−σ = ρ₀ U u`, so `u² = −σ (1 − λ)/ρ₀`. C falls with λ in
+//! either law: compression runs as a shock, release as a fan of straight characteristics of
+//! speed C(λ), along which `v ± L` stays. A free end that the shock reaches at `X/U` sends back a
+//! fan between C(λ) and C(1), and gains `L(1) − L(λ) = −L(λ)`.
+
+use super::bisect;
+use crate::material::{Eos, LinearForm, Material, Strength};
+
+/// An elastic medium at rest without stress.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Medium {
+    /// Reference density ρ₀ (kg/m³).
+    pub reference_density: f64,
+    /// Bulk modulus K (Pa).
+    pub bulk_modulus: f64,
+    /// Shear modulus G (Pa).
+    pub shear_modulus: f64,
+    /// How the pressure follows the density.
+    pub form: LinearForm,
+}
+
+/// The state behind a shock into a [`Medium`] at rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shock {
+    /// Velocity of the material behind the shock, relative to the medium ahead (m/s).
+    pub particle_velocity: f64,
+    /// Stretch λ = ρ₀/ρ.
+    pub stretch: f64,
+    /// Stress along the bar, tension positive (Pa).
+    pub stress: f64,
+    /// Speed of the shock in reference coordinates (m/s).
+    pub speed: f64,
+}
+
+/// When a release fan passes a place (s).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fan {
+    /// First characteristic: the shocked state ends.
+    pub head: f64,
+    /// Last characteristic: without stress from here on.
+    pub tail: f64,
+}
+
+/// The impact of two media.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Impact {
+    /// Stress at the interface, tension positive (Pa).
+    pub stress: f64,
+    /// Velocity of the interface (m/s).
+    pub interface_velocity: f64,
+    /// The shocks that run into the left and the right medium, away from the interface.
+    pub shocks: [Shock; 2],
+}
+
+impl Medium {
+    /// The medium of a material, if it is linear elastic.
+    #[must_use]
+    pub fn of(material: &Material) -> Option<Self> {
+        let Eos::Linear(eos) = &material.eos else {
+            return None;
+        };
+        let elastic = matches!(material.strength, Strength::None | Strength::Elastic(_));
+        (elastic && material.spall.is_none()).then_some(Self {
+            reference_density: material.reference_density,
+            bulk_modulus: eos.bulk_modulus,
+            shear_modulus: material.strength.shear_modulus(),
+            form: eos.form,
+        })
+    }
+
+    /// p-wave modulus M = K + 4G/3 (Pa).
+    #[must_use]
+    pub fn p_wave_modulus(&self) -> f64 {
+        self.bulk_modulus + self.shear_modulus * (4.0 / 3.0)
+    }
+
+    /// Stress σ along the bar at stretch λ, tension positive (Pa).
+    #[must_use]
+    pub fn stress(&self, stretch: f64) -> f64 {
+        let logarithm = libm::log(stretch);
+        match self.form {
+            LinearForm::Logarithmic => self.p_wave_modulus() * logarithm,
+            LinearForm::DensityRatio => {
+                self.shear_modulus * (4.0 / 3.0) * logarithm
+                    - self.bulk_modulus * (1.0 / stretch - 1.0)
+            }
+        }
+    }
+
+    /// Speed C of small waves in reference coordinates at stretch λ (m/s).
+    #[must_use]
+    pub fn wave_speed(&self, stretch: f64) -> f64 {
+        let slope = match self.form {
+            LinearForm::Logarithmic => self.p_wave_modulus() / stretch,
+            LinearForm::DensityRatio => {
+                let shear = self.shear_modulus * (4.0 / 3.0);
+                (self.bulk_modulus / stretch + shear) / stretch
+            }
+        };
+        (slope / self.reference_density).sqrt()
+    }
+
+    /// The Riemann integral L(λ) = ∫₁ C dλ (m/s), negative in compression.
+    #[must_use]
+    pub fn riemann_integral(&self, stretch: f64) -> f64 {
+        match self.form {
+            LinearForm::Logarithmic => 2.0 * self.wave_speed(1.0) * (stretch.sqrt() - 1.0),
+            LinearForm::DensityRatio => {
+                let shear = self.shear_modulus * (4.0 / 3.0);
+                let root = self.bulk_modulus.sqrt();
+                let s = |stretch: f64| (self.bulk_modulus + shear * stretch).sqrt();
+                let (s, s_1) = (s(stretch), s(1.0));
+                let logarithms = libm::log(stretch) - 2.0 * libm::log((s + root) / (s_1 + root));
+                (2.0 * (s - s_1) + root * logarithms) / self.reference_density.sqrt()
+            }
+        }
+    }
+
+    /// The shock that drives the medium to `particle_velocity` (m/s, > 0).
+    #[must_use]
+    pub fn shock(&self, particle_velocity: f64) -> Shock {
+        let u = particle_velocity;
+        let wanted = self.reference_density * u * u;
+        // −σ (1 − λ) falls from infinity to 0 as λ goes from 0 to 1.
+        let stretch = bisect(0.0, 1.0, |stretch| {
+            wanted + self.stress(stretch) * (1.0 - stretch)
+        });
+        Shock {
+            particle_velocity: u,
+            stretch,
+            stress: self.stress(stretch),
+            speed: u / (1.0 - stretch),
+        }
+    }
+
+    /// Velocity that a free end gains when a shock is released there (m/s); it then moves at
+    /// the particle velocity and this.
+    #[must_use]
+    pub fn release_velocity(&self, shock: &Shock) -> f64 {
+        -self.riemann_integral(shock.stretch)
+    }
+
+    /// When the fan that the free end of a bar of `length` (m, in reference coordinates) sends
+    /// back passes the end where the shock began at t = 0: each characteristic straight, as it
+    /// is in the shocked state. What the end itself sends into the fan bends those after the
+    /// first, by less than the fan's own share of the way.
+    #[must_use]
+    pub fn release(&self, shock: &Shock, length: f64) -> Fan {
+        let reaches_the_end = length / shock.speed;
+        Fan {
+            head: reaches_the_end + length / self.wave_speed(shock.stretch),
+            tail: reaches_the_end + length / self.wave_speed(1.0),
+        }
+    }
+}
+
+/// The impact of two media with velocities (m/s), the left one the faster.
+#[must_use]
+pub fn impact(media: [&Medium; 2], velocities: [f64; 2]) -> Impact {
+    let closing = velocities[0] - velocities[1];
+    // What the right medium takes of the closing velocity; −σ on its side rises with it.
+    let right = bisect(0.0, closing, |u| {
+        media[0].shock(closing - u).stress - media[1].shock(u).stress
+    });
+    let shocks = [media[0].shock(closing - right), media[1].shock(right)];
+    Impact {
+        stress: shocks[1].stress,
+        interface_velocity: velocities[1] + right,
+        shocks,
+    }
+}

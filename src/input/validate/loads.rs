@@ -1,0 +1,268 @@
+//! Gravity, prescribed velocities and rigid planes.
+
+use toml::Spanned;
+
+use super::check::{Allowed, Value, number};
+use super::motion::motion;
+use super::shapes::wrong_length;
+use super::touch::direction;
+use crate::input::forms::NormalParams;
+use crate::input::quantity::{Acceleration, Length};
+use crate::input::schema::{CaseParams, LoadParams, Placed, PlaneParams, SidesParams};
+use crate::input::source::Complaint;
+use crate::model::{Axis, Body, Loads, Motion, RigidPlane, SymmetryPlane, VelocityLoad};
+use crate::populate;
+
+/// Default stiffness of a rigid plane: that of the half spacing of material before it.
+const PLANE_STIFFNESS: f64 = 2.0;
+
+/// What loads are read with.
+pub struct Reader<'a> {
+    pub dimension: usize,
+    pub bodies: &'a [Body],
+    pub symmetry: &'a [SymmetryPlane],
+}
+
+impl Reader<'_> {
+    /// All loads of a case.
+    pub fn loads(&self, params: &CaseParams) -> Result<Loads, Complaint> {
+        let velocities: Result<Vec<VelocityLoad>, _> = params
+            .load
+            .iter()
+            .enumerate()
+            .map(|(n, table)| self.load(table.get_ref(), n + 1))
+            .collect();
+        let planes: Result<Vec<RigidPlane>, _> = params
+            .plane
+            .iter()
+            .enumerate()
+            .map(|(n, table)| self.plane(table, n + 1))
+            .collect();
+        let rigid = self.bodies.iter().filter(|body| body.rigid.is_some());
+        if let Some(table) = params.load.last()
+            && params.load.len() + rigid.count() > Loads::MOST
+        {
+            let title = format!(
+                "a case can have at most {} loads and rigid bodies together",
+                Loads::MOST
+            );
+            return Err(Complaint::new(table.span(), title));
+        }
+        let names = || {
+            let loads = params.load.iter().map(|t| &t.get_ref().name);
+            let planes = params.plane.iter().map(|t| &t.get_ref().name);
+            loads.chain(planes).flatten()
+        };
+        for (n, name) in names().enumerate() {
+            let mut before = names().take(n).map(Spanned::get_ref);
+            let mut bodies = self.bodies.iter().map(|body| &body.name);
+            if before.any(|b| b == name.get_ref()) || bodies.any(|b| b == name.get_ref()) {
+                let title = format!("the name `{}` is taken already", name.get_ref());
+                return Err(Complaint::new(name.span(), title));
+            }
+        }
+        Ok(Loads {
+            gravity: self.gravity(params.gravity.as_ref())?,
+            velocities: velocities?,
+            planes: planes?,
+        })
+    }
+
+    fn gravity(
+        &self,
+        params: Option<&Spanned<Vec<Placed<Acceleration>>>>,
+    ) -> Result<[f64; 3], Complaint> {
+        let mut gravity = [0.0; 3];
+        let Some(params) = params else {
+            return Ok(gravity);
+        };
+        if params.get_ref().len() != self.dimension {
+            return Err(wrong_length("gravity", params, self.dimension));
+        }
+        for (component, value) in gravity.iter_mut().zip(params.get_ref()) {
+            *component = value.get_ref().si();
+        }
+        let across = |plane: &&SymmetryPlane| gravity[plane.axis.index()] != 0.0;
+        if let Some(plane) = self.symmetry.iter().find(across) {
+            let axis = plane.axis;
+            let title = format!(
+                "gravity along {} is not its own mirror image at the symmetry plane of {}",
+                axis.name(),
+                axis.name()
+            );
+            return Err(Complaint::new(params.get_ref()[axis.index()].span(), title)
+                .help("a frictionless floor is a `[[plane]]`"));
+        }
+        Ok(gravity)
+    }
+
+    fn body(&self, name: &Spanned<String>) -> Result<(usize, &Body), Complaint> {
+        let wanted = name.get_ref();
+        let found = self.bodies.iter().enumerate();
+        found
+            .clone()
+            .find(|(_, body)| body.name == *wanted)
+            .ok_or_else(|| {
+                let known = found.map(|(_, body)| body.name.as_str());
+                Complaint::unknown(name.span(), "body", wanted, known)
+            })
+    }
+
+    fn load(&self, params: &LoadParams, number_of: usize) -> Result<VelocityLoad, Complaint> {
+        let (index, body) = self.body(&params.body)?;
+        if body.rigid.is_some() {
+            let title = format!("the body `{}` is rigid", body.name);
+            return Err(Complaint::new(params.body.span(), title)
+                .help("give the body a `velocity` or a `motion` instead"));
+        }
+        let until = params.until.as_ref();
+        let load = VelocityLoad {
+            name: given_name(params.name.as_ref(), "load", number_of),
+            body: index,
+            above: self.sides(params.above.as_ref(), body, f64::NEG_INFINITY)?,
+            below: self.sides(params.below.as_ref(), body, f64::INFINITY)?,
+            motion: motion(&params.velocity, self.dimension)?,
+            until: number(until, "until", f64::INFINITY, Allowed::Positive)?,
+        };
+        let mut sites = populate::sites(body, self.dimension, self.symmetry, None);
+        if sites.any(|site| load.contains(&site.position)) {
+            return Ok(load);
+        }
+        let at = params.below.as_ref().or(params.above.as_ref());
+        let at = at.map_or(params.body.span(), Spanned::span);
+        let title = format!("the region holds no particle of `{}`", body.name);
+        let (lower, upper) = populate::bounds(body, self.dimension).unwrap_or_default();
+        let range =
+            |a: usize| format!("{}: {:e} to {:e} m", ["x", "y", "z"][a], lower[a], upper[a]);
+        let ranges: Vec<String> = (0..self.dimension).map(range).collect();
+        Err(Complaint::new(at, title).help(format!("its particles stand in {}", ranges.join(", "))))
+    }
+
+    fn sides(
+        &self,
+        params: Option<&Spanned<SidesParams>>,
+        body: &Body,
+        open: f64,
+    ) -> Result<[f64; 3], Complaint> {
+        let mut sides = [open; 3];
+        let Some(table) = params else {
+            return Ok(sides);
+        };
+        let params = table.get_ref();
+        for (axis, side) in Axis::ALL.into_iter().zip([&params.x, &params.y, &params.z]) {
+            let Some(side) = side else { continue };
+            if axis.index() >= self.dimension {
+                let title = format!(
+                    "a {}-dimensional case has no {} axis",
+                    self.dimension,
+                    axis.name()
+                );
+                return Err(Complaint::new(side.span(), title));
+            }
+            sides[axis.index()] = side.get_ref().metres(body.lattice.spacing);
+        }
+        Ok(sides)
+    }
+
+    fn plane(
+        &self,
+        table: &Spanned<PlaneParams>,
+        number_of: usize,
+    ) -> Result<RigidPlane, Complaint> {
+        let params = table.get_ref();
+        let normal = self.normal(&params.normal)?;
+        let mut bodies: Vec<bool> = self.bodies.iter().map(|b| b.rigid.is_none()).collect();
+        if let Some(names) = &params.bodies {
+            bodies.fill(false);
+            for name in names {
+                let (index, body) = self.body(name)?;
+                if body.rigid.is_some() {
+                    let title = format!("the body `{}` is rigid: no plane moves it", body.name);
+                    return Err(Complaint::new(name.span(), title));
+                }
+                bodies[index] = true;
+            }
+        }
+        let stiffness = params.stiffness.as_ref();
+        let given = params.motion.as_ref();
+        let mut plane = RigidPlane {
+            name: given_name(params.name.as_ref(), "plane", number_of),
+            normal,
+            position: 0.0,
+            stiffness: number(stiffness, "stiffness", PLANE_STIFFNESS, Allowed::Positive)?,
+            bodies,
+            motion: given.map_or(Ok(Motion::default()), |m| motion(m, self.dimension))?,
+        };
+        plane.position = plane.along(&self.point(params.point.as_ref())?);
+        for (body, _) in self
+            .bodies
+            .iter()
+            .zip(&plane.bodies)
+            .filter(|(_, acts)| **acts)
+        {
+            let gap = populate::least(body, self.dimension, self.symmetry, |x| plane.gap(x));
+            if gap < 0.0 {
+                let title = format!(
+                    "the body `{}` reaches {:.3} spacings behind the plane",
+                    body.name,
+                    -gap / body.lattice.spacing
+                );
+                return Err(Complaint::new(table.get_ref().normal.span(), title).help(
+                    "the normal points to the side of the bodies; `bodies` names those that it \
+                     stops",
+                ));
+            }
+        }
+        Ok(plane)
+    }
+
+    /// The unit normal.
+    fn normal(&self, params: &Spanned<NormalParams>) -> Result<[f64; 3], Complaint> {
+        let mut normal = [0.0; 3];
+        match params.get_ref() {
+            NormalParams::Axis(word) => {
+                let (axis, forward) = direction(*word, params.span(), self.dimension)?;
+                normal[axis.index()] = if forward { 1.0 } else { -1.0 };
+            }
+            NormalParams::Vector(vector) => {
+                if vector.len() != self.dimension {
+                    let title = format!(
+                        "`normal` must have {} components, found {}",
+                        self.dimension,
+                        vector.len()
+                    );
+                    return Err(Complaint::new(params.span(), title));
+                }
+                let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+                if !(length > 0.0 && length.is_finite()) {
+                    let title = "`normal` must be a vector of some length";
+                    return Err(Complaint::new(params.span(), title));
+                }
+                for (component, x) in normal.iter_mut().zip(vector) {
+                    *component = x / length;
+                }
+            }
+        }
+        Ok(normal)
+    }
+
+    fn point(&self, params: Option<&Spanned<Vec<Placed<Length>>>>) -> Result<[f64; 3], Complaint> {
+        let mut point = [0.0; 3];
+        if let Some(params) = params {
+            if params.get_ref().len() != self.dimension {
+                return Err(wrong_length("point", params, self.dimension));
+            }
+            for (component, value) in point.iter_mut().zip(params.get_ref()) {
+                *component = value.get_ref().si();
+            }
+        }
+        Ok(point)
+    }
+}
+
+fn given_name(name: Option<&Spanned<String>>, kind: &str, number_of: usize) -> String {
+    name.map_or_else(
+        || format!("{kind}-{number_of}"),
+        |name| name.get_ref().clone(),
+    )
+}

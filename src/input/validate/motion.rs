@@ -1,0 +1,76 @@
+//! Velocities as functions of time.
+
+use toml::Spanned;
+
+use super::check::Value;
+use crate::input::forms::OneOrMany;
+use crate::input::quantity::Velocity;
+use crate::input::schema::MotionParams;
+use crate::input::source::Complaint;
+use crate::model::{Axis, Motion};
+
+/// The motion in a table that names at least one axis, all of them in the dimension.
+pub fn motion(table: &Spanned<MotionParams>, dimension: usize) -> Result<Motion, Complaint> {
+    let params = table.get_ref();
+    let times = times(params)?;
+    let mut motion = Motion {
+        times,
+        ..Motion::default()
+    };
+    for (axis, values) in Axis::ALL.into_iter().zip([&params.x, &params.y, &params.z]) {
+        let Some(values) = values else { continue };
+        if axis.index() >= dimension {
+            let title = format!("a {dimension}-dimensional case has no {} axis", axis.name());
+            return Err(Complaint::new(values.span(), title));
+        }
+        motion.velocities[axis.index()] = Some(along(values, axis, params, motion.times.len())?);
+    }
+    if motion.velocities.iter().all(Option::is_none) {
+        let title = "a velocity must be given along at least one of `x`, `y`, `z`";
+        return Err(Complaint::new(table.span(), title));
+    }
+    Ok(motion)
+}
+
+fn times(params: &MotionParams) -> Result<Vec<f64>, Complaint> {
+    let Some(times) = &params.times else {
+        return Ok(vec![0.0]);
+    };
+    let mut read: Vec<f64> = Vec::new();
+    for time in times.get_ref() {
+        let t = time.get_ref().si();
+        if t < 0.0 || read.last().is_some_and(|&before| t < before) {
+            let title = "`times` must begin at zero or later and never fall";
+            return Err(Complaint::new(time.span(), title).label("out of order"));
+        }
+        read.push(t);
+    }
+    if read.is_empty() {
+        return Err(Complaint::new(times.span(), "`times` must not be empty"));
+    }
+    Ok(read)
+}
+
+fn along(
+    values: &Spanned<OneOrMany<Velocity>>,
+    axis: Axis,
+    params: &MotionParams,
+    count: usize,
+) -> Result<Vec<f64>, Complaint> {
+    let name = axis.name();
+    match values.get_ref() {
+        OneOrMany::One(value) => Ok(vec![value.si(); count]),
+        OneOrMany::Many(_) if params.times.is_none() => {
+            let title = format!("`{name}` is a table of time without `times`");
+            Err(Complaint::new(values.span(), title)
+                .help("add `times`, one for each value, or give one value for ever"))
+        }
+        OneOrMany::Many(list) if list.len() == count => {
+            Ok(list.iter().map(|value| value.get_ref().si()).collect())
+        }
+        OneOrMany::Many(list) => {
+            let title = format!("`{name}` has {} values for {count} `times`", list.len());
+            Err(Complaint::new(values.span(), title).help("give one for each time"))
+        }
+    }
+}

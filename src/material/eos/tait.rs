@@ -1,0 +1,43 @@
+//! Tait's equation of state for liquids, in the form of Vignjevic et al. (2006), equation (25):
+//!
+//! ```text
+//! p = B [(ρ/ρ₀)^γ − 1],    B = ρ₀ c₀²/γ
+//! ```
+//!
+//! without heat. In free-surface flow (Monaghan 1994, *Simulating free surface flows with SPH*, J.
+//! Comput. Phys. 110, 399) c₀ is set to some ten times the largest velocity instead of the
+//! liquid's own speed of sound, which keeps the density within a percent and steps long.
+
+use super::PointResponse;
+
+/// Tait's law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tait {
+    /// Coefficient B (Pa).
+    pub b: f64,
+    /// Exponent γ.
+    pub gamma: f64,
+}
+
+impl Tait {
+    /// The law whose bulk sound speed at the reference density `rho0` (kg/m³) is `c0` (m/s).
+    #[must_use]
+    pub fn with_sound_speed(rho0: f64, c0: f64, gamma: f64) -> Self {
+        Self {
+            b: rho0 * c0 * c0 / gamma,
+            gamma,
+        }
+    }
+
+    /// Pressure and derivatives at density `rho`, for the reference density `rho0` (kg/m³).
+    #[must_use]
+    #[inline]
+    pub fn response(&self, rho0: f64, rho: f64) -> PointResponse {
+        let power = libm::pow(rho / rho0, self.gamma);
+        PointResponse {
+            pressure: self.b * (power - 1.0),
+            dp_drho: self.gamma * self.b * power / rho,
+            dp_de: 0.0,
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Tillotson's equation of state for hypervelocity impact, from cold compression to vapour.
+//!
+//! With `η = ρ/ρ₀`, `μ = η − 1`, `w = e/(E₀ η²) + 1`: where the material is compressed (`μ ≥ 0`) or
+//! too cold to vaporise (`e ≤ e_iv`)
+//!
+//! ```text
+//! p_c = (a + b/w) ρ e + A μ + B μ²
+//! ```
+//!
+//! where it is expanded and vaporised (`μ < 0`, `e ≥ e_cv`), with `z = 1/η − 1`,
+//!
+//! ```text
+//! p_v = a ρ e + [b ρ e/w + A μ exp(−β z)] exp(−α z²)
+//! ```
+//!
+//! and between the two energies the mean `[(e − e_iv) p_v + (e_cv − e) p_c]/(e_cv − e_iv)`.
+//! The branches meet in value, and at `μ = 0` in slope. Source: Tillotson (1962), *Metallic equations of state for
+//! hypervelocity impact*, GA-3216; in this form Melosh (1989), *Impact cratering*, appendix II, and
+//! Benz & Asphaug (1999), Icarus 142, 5.
+//!
+//! Below zero energy, which the fit does not know, `w = 1`. The expanded cold branch bears any
+//! tension: a spall cut-off ends it.
+
+use super::PointResponse;
+
+/// Tillotson's law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tillotson {
+    /// Coefficient a of the thermal pressure of a dense vapour (γ − 1 of the ideal gas).
+    pub a: f64,
+    /// Coefficient b of the thermal pressure: `a + b` is the Grüneisen parameter of the cold solid.
+    pub b: f64,
+    /// Bulk modulus A (Pa).
+    pub bulk_modulus: f64,
+    /// Coefficient B of the square of the compression (Pa).
+    pub quadratic_modulus: f64,
+    /// Exponent α of the vapour's branch.
+    pub alpha: f64,
+    /// Exponent β of the vapour's branch.
+    pub beta: f64,
+    /// Scale of energy E₀ (J/kg).
+    pub e0: f64,
+    /// Specific energy of incipient vaporisation (J/kg).
+    pub e_iv: f64,
+    /// Specific energy of complete vaporisation (J/kg).
+    pub e_cv: f64,
+}
+
+/// What the branches share at one state.
+struct Shared {
+    rho0: f64,
+    rho: f64,
+    e: f64,
+    mu: f64,
+    /// `b ρ e/w` and its derivatives by ρ and e.
+    hot: PointResponse,
+}
+
+impl Tillotson {
+    /// Pressure and derivatives at density `rho` and specific energy `e` (J/kg), for the
+    /// reference density `rho0` (kg/m³).
+    #[must_use]
+    pub fn response(&self, rho0: f64, rho: f64, e: f64) -> PointResponse {
+        let at = self.shared(rho0, rho, e);
+        if at.mu >= 0.0 || e <= self.e_iv {
+            return self.condensed(&at);
+        }
+        let vapour = self.vapour(&at);
+        if e >= self.e_cv {
+            return vapour;
+        }
+        let solid = self.condensed(&at);
+        let span = self.e_cv - self.e_iv;
+        let share = (e - self.e_iv) / span;
+        let mix = |v: f64, s: f64| share * v + (1.0 - share) * s;
+        PointResponse {
+            pressure: mix(vapour.pressure, solid.pressure),
+            dp_drho: mix(vapour.dp_drho, solid.dp_drho),
+            dp_de: mix(vapour.dp_de, solid.dp_de) + (vapour.pressure - solid.pressure) / span,
+        }
+    }
+
+    fn shared(&self, rho0: f64, rho: f64, e: f64) -> Shared {
+        let eta = rho / rho0;
+        // u = w − 1; d(e/w)/de = 1/w², d(ρ/w)/dρ = 1/w + 2 u/w² since du/dρ = −2 u/ρ.
+        let u = if e < 0.0 {
+            0.0
+        } else {
+            e / (self.e0 * eta * eta)
+        };
+        let inverse = 1.0 / (u + 1.0);
+        Shared {
+            rho0,
+            rho,
+            e,
+            mu: eta - 1.0,
+            hot: PointResponse {
+                pressure: self.b * rho * e * inverse,
+                dp_drho: self.b * e * inverse * (1.0 + 2.0 * u * inverse),
+                dp_de: self.b * rho * if e < 0.0 { 1.0 } else { inverse * inverse },
+            },
+        }
+    }
+
+    fn condensed(&self, at: &Shared) -> PointResponse {
+        let (a, b) = (self.bulk_modulus, self.quadratic_modulus);
+        PointResponse {
+            pressure: self.a * at.rho * at.e + at.hot.pressure + at.mu * (a + b * at.mu),
+            dp_drho: self.a * at.e + at.hot.dp_drho + (a + 2.0 * b * at.mu) / at.rho0,
+            dp_de: self.a * at.rho + at.hot.dp_de,
+        }
+    }
+
+    fn vapour(&self, at: &Shared) -> PointResponse {
+        let z = at.rho0 / at.rho - 1.0;
+        let dz_drho = -at.rho0 / (at.rho * at.rho);
+        let fade = libm::exp(-self.alpha * z * z);
+        let cold = self.bulk_modulus * at.mu * libm::exp(-self.beta * z);
+        let dcold_drho =
+            self.bulk_modulus / at.rho0 * libm::exp(-self.beta * z) - self.beta * dz_drho * cold;
+        let inner = at.hot.pressure + cold;
+        PointResponse {
+            pressure: self.a * at.rho * at.e + inner * fade,
+            dp_drho: self.a * at.e
+                + (at.hot.dp_drho + dcold_drho - 2.0 * self.alpha * z * dz_drho * inner) * fade,
+            dp_de: self.a * at.rho + at.hot.dp_de * fade,
+        }
+    }
+}

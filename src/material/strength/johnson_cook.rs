@@ -1,0 +1,114 @@
+//! Johnson–Cook plasticity.
+//!
+//! ```text
+//! Y = (A + B ε^n) (1 + C ln ε̇*) (1 − T*^m),    T* = (T − T₀)/(T_m − T₀)
+//! ```
+//!
+//! with the equivalent plastic strain ε, its rate over the reference rate ε̇*, and the temperature
+//! between the material's reference and melting temperatures. Source: Johnson & Cook (1983), *A
+//! constitutive model and data for metals subjected to large strains, high strain rates and high
+//! temperatures*, Proc. 7th Int. Symp. Ballistics, 541.
+//!
+//! Rates below the reference rate count as that rate, T* stays between 0 and 1 (molten: Y = 0). ε
+//! and ε̇ are those of the end of the step: the return solves for both at once.
+
+use super::{jaumann, radial_return};
+use crate::material::{LANES, Lanes, PointBatch, ThermalConstants};
+
+/// Elastic–plastic with strain hardening, strain rate hardening and thermal softening.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JohnsonCook {
+    /// Shear modulus G (Pa).
+    pub shear_modulus: f64,
+    /// Yield stress A (Pa).
+    pub a: f64,
+    /// Hardening coefficient B (Pa).
+    pub b: f64,
+    /// Hardening exponent n.
+    pub n: f64,
+    /// Rate coefficient C.
+    pub c: f64,
+    /// Exponent m of thermal softening.
+    pub m: f64,
+    /// Reference strain rate (1/s).
+    pub reference_rate: f64,
+}
+
+impl JohnsonCook {
+    /// Flow stress (Pa) at an equivalent plastic strain, its rate (1/s) and a temperature (K).
+    #[must_use]
+    pub fn flow_stress(
+        &self,
+        strain: f64,
+        rate: f64,
+        temperature: f64,
+        thermal: &ThermalConstants,
+    ) -> f64 {
+        let softening = self.softening(temperature, thermal);
+        self.flow(strain, rate, softening)[0]
+    }
+
+    /// `1 − T*^m`.
+    fn softening(&self, temperature: f64, thermal: &ThermalConstants) -> f64 {
+        let cold = thermal.reference_temperature;
+        let melting = thermal.melting_temperature.unwrap_or(f64::INFINITY);
+        if temperature >= melting {
+            0.0
+        } else if temperature > cold {
+            1.0 - libm::pow((temperature - cold) / (melting - cold), self.m)
+        } else {
+            1.0
+        }
+    }
+
+    /// Y (Pa), and its derivatives by the strain (Pa) and by the logarithm of the rate (Pa).
+    #[inline(always)]
+    fn flow(&self, strain: f64, rate: f64, softening: f64) -> [f64; 3] {
+        let power = if strain > 0.0 {
+            self.b * libm::pow(strain, self.n)
+        } else {
+            0.0
+        };
+        let hard = (self.a + power) * softening;
+        let slope = self.n * power / strain * softening;
+        if rate > self.reference_rate {
+            let fast = 1.0 + self.c * libm::log(rate / self.reference_rate);
+            [hard * fast, slope * fast, hard * self.c]
+        } else {
+            [hard, slope, 0.0]
+        }
+    }
+
+    /// Advances stress and plastic strain of a batch at these temperatures (K) by `dt` (s).
+    #[inline(always)]
+    pub(in crate::material) fn update(
+        &self,
+        batch: &mut PointBatch,
+        dt: f64,
+        temperature: &Lanes,
+        thermal: &ThermalConstants,
+    ) {
+        jaumann::advance(batch, &[self.shear_modulus; LANES], dt);
+        self.return_to_yield(batch, dt, temperature, thermal);
+    }
+
+    /// Radial return of a batch, lane by lane: not for vectors, so it stays out of their loops.
+    #[inline(never)]
+    fn return_to_yield(
+        &self,
+        batch: &mut PointBatch,
+        dt: f64,
+        temperature: &Lanes,
+        thermal: &ThermalConstants,
+    ) {
+        for k in 0..LANES {
+            let before = batch.plastic_strain[k];
+            let softening = self.softening(temperature[k], thermal);
+            radial_return::return_lane(batch, k, self.shear_modulus, |increment| {
+                let [y, by_strain, by_log] =
+                    self.flow(before + increment, increment / dt, softening);
+                [y, by_strain + by_log / increment]
+            });
+        }
+    }
+}

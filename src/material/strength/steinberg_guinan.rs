@@ -1,0 +1,138 @@
+//! Steinberg–Guinan: shear modulus and yield stress at high pressure, temperature and strain rate.
+//!
+//! With `η = ρ/ρ₀`, equivalent plastic strain ε and `T₀` the material's reference temperature
+//! (300 K in the source),
+//!
+//! ```text
+//! G = G₀ g,    Y = min(Y₀ [1 + β (ε + ε_i)]^n, Y_max) g,    g = 1 + A p η^(−1/3) − B (T − T₀)
+//! T_m = T_m0 exp[2 a (1 − 1/η)] η^{2 (γ₀ − a − 1/3)}
+//! ```
+//!
+//! where `A = G'_p/G₀` and `B = −G'_T/G₀`; above T_m both are zero, and so they are where the fit
+//! would be negative. Source: Steinberg, Cochran & Guinan (1980), *A constitutive model for metals
+//! applicable at high-strain rate*, J. Appl. Phys. 51, 1498, whose assumption `Y'_p/Y₀ = G'_p/G₀` is
+//! part of this form. It holds above some 1e5/s, where the flow stress no longer follows the rate.
+//!
+//! T_m0 is a constant of the fit, above the melting point at zero pressure.
+
+use super::{jaumann, radial_return};
+use crate::material::{LANES, Lanes, PointBatch, at_least, at_most};
+
+/// Elastic–plastic with a shear modulus and a yield stress that follow pressure and temperature.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SteinbergGuinan {
+    /// Shear modulus G₀ of the reference state (Pa).
+    pub shear_modulus: f64,
+    /// Yield stress Y₀ (Pa).
+    pub yield_stress: f64,
+    /// Largest yield stress by hardening Y_max (Pa).
+    pub max_yield_stress: f64,
+    /// Hardening coefficient β.
+    pub beta: f64,
+    /// Hardening exponent n.
+    pub n: f64,
+    /// Initial plastic strain `ε_i`.
+    pub initial_strain: f64,
+    /// `G'_p/G₀` (1/Pa).
+    pub pressure_coefficient: f64,
+    /// `−G'_T/G₀` (1/K), positive for softening.
+    pub temperature_coefficient: f64,
+    /// Melting temperature T_m0 of the fit (K).
+    pub melting_temperature: f64,
+    /// Grüneisen parameter γ₀ in the melting law.
+    pub gamma0: f64,
+    /// Its volume correction a in the melting law.
+    pub a: f64,
+}
+
+impl SteinbergGuinan {
+    /// Melting temperature (K) at the compression `η = ρ/ρ₀`.
+    #[must_use]
+    pub fn melting_temperature(&self, eta: f64) -> f64 {
+        let exponent = 2.0 * (self.gamma0 - self.a - 1.0 / 3.0);
+        self.melting_temperature
+            * libm::exp(2.0 * self.a * (1.0 - 1.0 / eta))
+            * libm::pow(eta, exponent)
+    }
+
+    /// Shear modulus over that of the reference state, at a pressure (Pa), the compression
+    /// `η = ρ/ρ₀` and a temperature, whose `reference` is T₀ (K).
+    #[must_use]
+    pub fn stiffening(&self, pressure: f64, eta: f64, temperature: f64, reference: f64) -> f64 {
+        let g = 1.0 + self.pressure_coefficient * pressure / libm::cbrt(eta)
+            - self.temperature_coefficient * (temperature - reference);
+        if temperature >= self.melting_temperature(eta) {
+            0.0
+        } else {
+            at_least(g, 0.0)
+        }
+    }
+
+    /// Yield stress before pressure and temperature (Pa) and its slope (Pa).
+    #[inline(always)]
+    fn hardened(&self, strain: f64) -> [f64; 2] {
+        let base = 1.0 + self.beta * (strain + self.initial_strain);
+        let y = self.yield_stress * libm::pow(base, self.n);
+        if y < self.max_yield_stress {
+            [y, self.n * self.beta * y / base]
+        } else {
+            [at_most(y, self.max_yield_stress), 0.0]
+        }
+    }
+
+    /// Advances stress and plastic strain of a batch by `dt` (s); gives the shear moduli (Pa).
+    #[inline(always)]
+    pub(in crate::material) fn update(
+        &self,
+        batch: &mut PointBatch,
+        dt: f64,
+        rho0: f64,
+        temperature: &Lanes,
+        reference_temperature: f64,
+    ) -> Lanes {
+        let g = self.stiffenings(batch, rho0, temperature, reference_temperature);
+        let mut modulus = [0.0; LANES];
+        for k in 0..LANES {
+            modulus[k] = self.shear_modulus * g[k];
+        }
+        if dt != 0.0 {
+            jaumann::advance(batch, &modulus, dt);
+            self.return_to_yield(batch, &g);
+        }
+        modulus
+    }
+
+    #[inline(never)]
+    fn stiffenings(
+        &self,
+        batch: &PointBatch,
+        rho0: f64,
+        temperature: &Lanes,
+        reference_temperature: f64,
+    ) -> Lanes {
+        let mut g = [0.0; LANES];
+        for k in 0..LANES {
+            let (eta, t) = (batch.density[k] / rho0, temperature[k]);
+            g[k] = self.stiffening(batch.pressure[k], eta, t, reference_temperature);
+        }
+        g
+    }
+
+    /// Radial return of a batch, lane by lane: not for vectors, so it stays out of their loops.
+    #[inline(never)]
+    fn return_to_yield(&self, batch: &mut PointBatch, g: &Lanes) {
+        for k in 0..LANES {
+            if g[k] == 0.0 {
+                // Molten: no stress, and no measure of strain.
+                for component in &mut batch.deviatoric_stress {
+                    component[k] = 0.0;
+                }
+                continue;
+            }
+            let before = batch.plastic_strain[k];
+            radial_return::return_lane(batch, k, self.shear_modulus * g[k], |increment| {
+                self.hardened(before + increment).map(|y| y * g[k])
+            });
+        }
+    }
+}

@@ -1,0 +1,31 @@
+//! Newtonian viscosity, `S = 2 η dev D` with `D = sym L`.
+//!
+//! L is that of the middle of the step, so that the stress lags half a step behind.
+
+use crate::material::{LANES, PointBatch};
+
+/// A Newtonian fluid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Viscous {
+    /// Dynamic viscosity η (Pa s).
+    pub viscosity: f64,
+}
+
+impl Viscous {
+    /// Sets the stress of a batch.
+    #[inline(always)]
+    pub(in crate::material) fn update(self, batch: &mut PointBatch) {
+        let two_eta = 2.0 * self.viscosity;
+        let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = &batch.velocity_gradient;
+        let s = &mut batch.deviatoric_stress;
+        for k in 0..LANES {
+            let third = (xx[k] + yy[k] + zz[k]) * (1.0 / 3.0);
+            s[0][k] = two_eta * (xx[k] - third);
+            s[1][k] = two_eta * (yy[k] - third);
+            s[2][k] = two_eta * (zz[k] - third);
+            s[3][k] = self.viscosity * (xy[k] + yx[k]);
+            s[4][k] = self.viscosity * (xz[k] + zx[k]);
+            s[5][k] = self.viscosity * (yz[k] + zy[k]);
+        }
+    }
+}

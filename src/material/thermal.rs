@@ -1,0 +1,153 @@
+//! Temperature from density and specific energy.
+//!
+//! With a constant specific heat c_v, `T = (e − e_c(ρ))/c_v`, where `e_c` is the energy of the cold
+//! curve: the isentrope of zero temperature, `de_c/dρ = p(ρ, e_c)/ρ²`, through
+//! `e_c(ρ₀) = e₀ − c_v T₀`, since the reference state (ρ₀, e₀) has the temperature T₀. This is exact
+//! for an equation of state that is linear in e (Mie–Grüneisen, ideal gas), for which
+//! `p = p_c(ρ) + Γ(ρ) ρ c_v T` follows; for Tillotson's it is an approximation. Source: Zel'dovich
+//! & Raizer (1967), *Physics of shock waves*, XI §§3–5. Heat of melting and vaporisation is not
+//! part of it, and T is never below zero.
+
+use super::eos::{Eos, Response};
+use super::{LANES, Lanes, at_least, at_most};
+
+/// The cold curve is held constant beyond these relative volumes ρ₀/ρ.
+const VOLUMES: [f64; 2] = [0.2, 2.0];
+/// Intervals of the table between them; ρ₀, where branches of an equation of state may join, is a
+/// node.
+const INTERVALS: usize = 180;
+/// Fourth-order steps in each interval.
+const STEPS: usize = 8;
+
+/// Thermal constants of a material, with the cold curve of its equation of state.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Thermal {
+    constants: ThermalConstants,
+    reference_density: f64,
+    /// `e_c` (J/kg) and its slope by interval, `de_c/dn`, at each node.
+    cold: Vec<[f64; 2]>,
+}
+
+/// What a user states of a material's heat.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ThermalConstants {
+    /// Specific heat c_v (J/(kg K)).
+    pub specific_heat: f64,
+    /// Temperature T₀ of the reference state (K).
+    pub reference_temperature: f64,
+    /// Melting temperature (K), if there is one.
+    pub melting_temperature: Option<f64>,
+}
+
+impl ThermalConstants {
+    /// Of a material without heat: always at its reference temperature.
+    pub(super) const ISOTHERMAL: Self = Self {
+        specific_heat: f64::INFINITY,
+        reference_temperature: 0.0,
+        melting_temperature: None,
+    };
+}
+
+impl Thermal {
+    /// Integrates the cold curve of an equation of state with reference density `rho0` (kg/m³).
+    #[must_use]
+    pub fn new(constants: ThermalConstants, rho0: f64, eos: &Eos) -> Self {
+        let width = (VOLUMES[1] - VOLUMES[0]) / INTERVALS as f64;
+        let slope = |v: f64, e: f64| -eos.at(rho0, rho0 / v, e).pressure / rho0;
+        let reference = ((1.0 - VOLUMES[0]) / width).round() as usize;
+        let first =
+            eos.reference_energy(rho0) - constants.specific_heat * constants.reference_temperature;
+        let mut cold = vec![[0.0; 2]; INTERVALS + 1];
+        // From the reference volume down and up.
+        for (step, last) in [(-1.0, 0), (1.0, INTERVALS)] {
+            let mut e = first;
+            let mut n = reference;
+            loop {
+                let v = VOLUMES[0] + width * n as f64;
+                cold[n] = [e, slope(v, e) * width];
+                if n == last {
+                    break;
+                }
+                e = integrate(v, e, step * width, slope);
+                n = if step > 0.0 { n + 1 } else { n - 1 };
+            }
+        }
+        Self {
+            constants,
+            reference_density: rho0,
+            cold,
+        }
+    }
+
+    /// The constants.
+    #[must_use]
+    pub fn constants(&self) -> &ThermalConstants {
+        &self.constants
+    }
+
+    /// Energy of the cold curve (J/kg) at density `rho` (kg/m³).
+    #[must_use]
+    pub fn cold_energy(&self, rho: f64) -> f64 {
+        let v = at_most(
+            at_least(self.reference_density / rho, VOLUMES[0]),
+            VOLUMES[1],
+        );
+        let place = (v - VOLUMES[0]) * (INTERVALS as f64 / (VOLUMES[1] - VOLUMES[0]));
+        // NaN as an index is 0 and stays NaN in `t`.
+        let n = (place as usize).min(INTERVALS - 1);
+        let t = place - n as f64;
+        let ([e0, d0], [e1, d1]) = (self.cold[n], self.cold[n + 1]);
+        let (s, rise) = (1.0 - t, e1 - e0);
+        e0 * s + e1 * t + t * s * ((d0 - rise) * s - (d1 - rise) * t)
+    }
+
+    /// Temperature (K) at density `rho` (kg/m³) and specific energy `e` (J/kg).
+    #[must_use]
+    pub fn temperature(&self, rho: f64, e: f64) -> f64 {
+        at_least(
+            (e - self.cold_energy(rho)) / self.constants.specific_heat,
+            0.0,
+        )
+    }
+
+    /// Temperatures (K) of a batch whose pressure was limited from that of `response`.
+    pub(super) fn temperatures(
+        &self,
+        rho: &Lanes,
+        e: &Lanes,
+        limited: &Lanes,
+        response: &Response,
+    ) -> Lanes {
+        let mut temperature = [0.0; LANES];
+        for k in 0..LANES {
+            let excess = limited[k] - response.pressure[k];
+            let matter = rho[k] + opening(excess, response.dp_drho[k]);
+            temperature[k] = self.temperature(matter, e[k]);
+        }
+        temperature
+    }
+}
+
+/// How much denser (kg/m³) than its mean torn matter is, whose pressure a cut-off has raised by
+/// `excess` (Pa): voids hold no energy, so the cold energy is that of the matter between them,
+/// whose pressure is the cut-off. Exact where pressure is linear in density.
+pub(super) fn opening(excess: f64, dp_drho: f64) -> f64 {
+    if excess > 0.0 && dp_drho > 0.0 {
+        excess / dp_drho
+    } else {
+        0.0
+    }
+}
+
+/// Runge and Kutta's fourth-order rule over one interval of the volume.
+fn integrate(v: f64, e: f64, width: f64, slope: impl Fn(f64, f64) -> f64) -> f64 {
+    let d = width / STEPS as f64;
+    (0..STEPS).fold(e, |e, n| {
+        let v = v + d * n as f64;
+        let a = slope(v, e);
+        let b = slope(v + 0.5 * d, e + 0.5 * d * a);
+        let c = slope(v + 0.5 * d, e + 0.5 * d * b);
+        let last = slope(v + d, e + d * c);
+        e + d / 6.0 * (a + 2.0 * (b + c) + last)
+    })
+}

@@ -1,0 +1,275 @@
+//! Loads in the step: what they prescribe, and what they put into the model.
+//!
+//! A prescribed component of a velocity is V(t) at whole steps, and its mean over the step is the
+//! velocity in the middle, so that places follow the integral of V. In a half kick a load gives a
+//! particle the impulse that forces lack, `J = m (v_to − v_from) − ½Δt m a`, and with it the work
+//! `J · ½(v_from + v_to)`, which balances the energy of the half kick to round-off. A rigid body
+//! has no mass of its own here: what holds it gives the reaction of contact, `J = −½Δt m a_c`.
+
+use super::simulation::Simulation;
+use crate::model::{Case, Loads, Motion, RigidPlane};
+
+/// Which of the two prescribed velocities of a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Goal {
+    /// That after the first half kick.
+    Middle,
+    /// That after the second.
+    End,
+}
+
+/// What is prescribed of the velocity of a particle in one step.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Prescribed {
+    /// The ledger of who prescribes each component, if anybody does.
+    by: [Option<u8>; 3],
+    middle: [f64; 3],
+    end: [f64; 3],
+    rigid: bool,
+}
+
+impl Prescribed {
+    fn velocity(&self, goal: Goal) -> &[f64; 3] {
+        match goal {
+            Goal::Middle => &self.middle,
+            Goal::End => &self.end,
+        }
+    }
+
+    /// The motion from time `from` to `to` (s), by the ledger `by`.
+    fn new(motion: &Motion, by: usize, rigid: bool, from: f64, to: f64) -> Self {
+        Self {
+            by: std::array::from_fn(|a| motion.has(a).then(|| u8::try_from(by).unwrap_or(u8::MAX))),
+            middle: std::array::from_fn(|a| motion.mean(a, from, to)),
+            end: std::array::from_fn(|a| motion.velocity(a, to)),
+            rigid,
+        }
+    }
+}
+
+/// What moves a particle beside forces.
+pub(super) trait Drive: Copy + Send {
+    /// Replaces what forces do (`total`, m/s²) by what takes the velocity `v` (m/s) to the goal
+    /// in a half kick, of which there are `per_half` in a second.
+    fn steer(&self, goal: Goal, v: &[f64; 3], per_half: f64, total: &mut [f64; 3]);
+    /// Sets what is prescribed of a velocity (m/s).
+    fn set(&self, goal: Goal, v: &mut [f64; 3]);
+}
+
+/// No load anywhere.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Free;
+
+impl Drive for Free {
+    #[inline(always)]
+    fn steer(&self, _: Goal, _: &[f64; 3], _: f64, _: &mut [f64; 3]) {}
+    #[inline(always)]
+    fn set(&self, _: Goal, _: &mut [f64; 3]) {}
+}
+
+impl Drive for Prescribed {
+    #[inline(always)]
+    fn steer(&self, goal: Goal, v: &[f64; 3], per_half: f64, total: &mut [f64; 3]) {
+        for a in 0..3 {
+            if self.by[a].is_some() {
+                total[a] = (self.velocity(goal)[a] - v[a]) * per_half;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn set(&self, goal: Goal, v: &mut [f64; 3]) {
+        for a in 0..3 {
+            if self.by[a].is_some() {
+                v[a] = self.velocity(goal)[a];
+            }
+        }
+    }
+}
+
+/// A rigid plane in one step.
+#[derive(Debug, Clone)]
+pub(super) struct PlaneStep {
+    /// Where it stands at the end of the step: the normal's product with a point of it (m).
+    pub position: f64,
+    /// Velocities along the normal at the beginning, in the middle and at the end (m/s).
+    pub velocity: [f64; 3],
+}
+
+/// What the loads of a case prescribe in the current step.
+#[derive(Debug, Default)]
+pub(super) struct LoadStep {
+    /// By bit of [`crate::particles::ParticleStore::load`]: prescribed velocities, then rigid
+    /// bodies. Ledgers have the same order, then come those of the planes.
+    drives: Vec<Prescribed>,
+    /// Body of each rigid body's drive.
+    rigid_bodies: Vec<usize>,
+    velocities: usize,
+    rigid_bits: u32,
+    pub planes: Vec<PlaneStep>,
+    pub gravity: [f64; 3],
+}
+
+impl LoadStep {
+    pub(super) fn new(case: &Case) -> Self {
+        let rigid = |&b: &usize| case.bodies[b].rigid.is_some();
+        let rigid_bodies: Vec<usize> = (0..case.bodies.len()).filter(rigid).collect();
+        let velocities = case.loads.velocities.len();
+        let drives = velocities + rigid_bodies.len();
+        assert!(drives <= Loads::MOST, "too many loads and rigid bodies");
+        let mut step = Self {
+            drives: vec![Prescribed::default(); drives],
+            rigid_bits: (0..drives).fold(0, |bits, k| bits | u32::from(k >= velocities) << k),
+            rigid_bodies,
+            velocities,
+            planes: case
+                .loads
+                .planes
+                .iter()
+                .map(|_| PlaneStep {
+                    position: 0.0,
+                    velocity: [0.0; 3],
+                })
+                .collect(),
+            gravity: case.loads.gravity,
+        };
+        step.prepare(case, 0.0, 0.0);
+        step
+    }
+
+    /// Half kicks in a second of steps `dt` (s); zero at the start of a case.
+    pub(super) fn per_half(dt: f64) -> f64 {
+        if dt > 0.0 { 2.0 / dt } else { 0.0 }
+    }
+
+    /// Whether velocities of any particle are prescribed.
+    pub(super) fn drives(&self) -> bool {
+        !self.drives.is_empty()
+    }
+
+    /// Number of ledgers before those of planes.
+    pub(super) fn driven(&self) -> usize {
+        self.drives.len()
+    }
+
+    /// Whether a particle with these bits is part of a rigid body.
+    #[inline]
+    pub(super) fn is_rigid(&self, bits: u32) -> bool {
+        bits & self.rigid_bits != 0
+    }
+
+    /// Works out the step from time `from` to `to` (s).
+    pub(super) fn prepare(&mut self, case: &Case, from: f64, to: f64) {
+        let middle = from + 0.5 * (to - from);
+        for (k, load) in case.loads.velocities.iter().enumerate() {
+            self.drives[k] = if middle < load.until {
+                Prescribed::new(&load.motion, k, false, from, to)
+            } else {
+                Prescribed::default()
+            };
+        }
+        for (n, &body) in self.rigid_bodies.iter().enumerate() {
+            let k = self.velocities + n;
+            if let Some(motion) = &case.bodies[body].rigid {
+                self.drives[k] = Prescribed::new(motion, k, true, from, to);
+            }
+        }
+        for (step, plane) in self.planes.iter_mut().zip(&case.loads.planes) {
+            *step = plane_step(plane, from, to);
+        }
+    }
+
+    /// The bits of a particle of `body` that begins at `position` (m).
+    pub(super) fn bits(&self, case: &Case, body: usize, position: &[f64; 3]) -> u32 {
+        let loads = case.loads.velocities.iter();
+        let held = loads.map(|load| load.body == body && load.contains(position));
+        let rigid = self.rigid_bodies.iter().map(|&rigid| rigid == body);
+        (held.chain(rigid).enumerate()).fold(0, |bits, (k, is)| bits | u32::from(is) << k)
+    }
+
+    /// What is prescribed to a particle with these bits; on each axis the last load holds.
+    #[inline]
+    pub(super) fn of(&self, bits: u32) -> Prescribed {
+        let mut all = Prescribed::default();
+        let mut rest = bits;
+        while rest != 0 {
+            let one = &self.drives[rest.trailing_zeros() as usize];
+            rest &= rest - 1;
+            all.rigid |= one.rigid;
+            for a in 0..3 {
+                if one.by[a].is_some() {
+                    all.by[a] = one.by[a];
+                    all.middle[a] = one.middle[a];
+                    all.end[a] = one.end[a];
+                }
+            }
+        }
+        all
+    }
+
+    /// Corrects the mean velocity (m/s) in a half kick, as forces make it, of a particle with these
+    /// bits and the velocity `v` (m/s) at the whole step that begins or ends it.
+    #[inline]
+    pub(super) fn correct_mean(&self, bits: u32, v: &[f64; 3], mean: &mut [f64; 3]) {
+        if bits == 0 {
+            return;
+        }
+        let prescribed = self.of(bits);
+        for a in 0..3 {
+            if prescribed.by[a].is_some() {
+                mean[a] = 0.5 * (v[a] + prescribed.middle[a]);
+            }
+        }
+    }
+
+    pub(super) fn memory(&self) -> usize {
+        size_of::<Prescribed>() * self.drives.capacity()
+            + size_of::<PlaneStep>() * self.planes.capacity()
+            + size_of::<usize>() * self.rigid_bodies.capacity()
+    }
+}
+
+fn plane_step(plane: &RigidPlane, from: f64, to: f64) -> PlaneStep {
+    PlaneStep {
+        position: plane.position + plane.velocity(0.0, to) * to,
+        velocity: [
+            plane.velocity(from, from),
+            plane.velocity(from, to),
+            plane.velocity(to, to),
+        ],
+    }
+}
+
+impl Simulation {
+    /// Books impulse and work of loads and of what holds rigid bodies in a half kick of a step
+    /// `dt` (s): before the first one, or after the second.
+    pub(super) fn book_loads(&mut self, dt: f64, first: bool) {
+        let (store, loads, gravity) = (&self.store, &self.loads, self.loads.gravity);
+        let half = 0.5 * dt;
+        for (i, &bits) in store.load.iter().enumerate() {
+            if bits == 0 {
+                continue;
+            }
+            let contact = store.contact_acceleration.get(i);
+            if loads.is_rigid(bits) && contact.is_none_or(|c| *c == [0.0; 3]) {
+                continue;
+            }
+            let contact = contact.copied().unwrap_or_default();
+            let prescribed = loads.of(bits);
+            let (mass, v) = (store.mass[i], &store.velocity[i]);
+            for a in 0..3 {
+                let Some(by) = prescribed.by[a] else { continue };
+                let middle = prescribed.middle[a];
+                let change = if first { middle - v[a] } else { v[a] - middle };
+                let impulse = if prescribed.rigid {
+                    -mass * (half * contact[a])
+                } else {
+                    let forces = store.acceleration[i][a] + (contact[a] + gravity[a]);
+                    mass * (change - half * forces)
+                };
+                let work = impulse * (0.5 * (v[a] + middle));
+                self.sums.add_load(by.into(), a, impulse, work);
+            }
+        }
+    }
+}

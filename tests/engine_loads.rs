@@ -1,0 +1,441 @@
+//! Loads in whole steps: what is prescribed holds exactly, and what loads put in is booked.
+
+mod physics_support;
+
+use physics_support::bars::{BAR_MATERIALS, STEEL_SPEED};
+use physics_support::{inline, run_to, run_with, sorted_by, start};
+use whipple::step::{Reason, Simulation};
+
+/// Free fall is exact: velocity g t, place ½ g t², and no force inside, to the bit.
+#[test]
+fn free_fall() {
+    let mut s = start(inline(
+        r#"
+dimension = 2
+spacing = "1 mm"
+gravity = ["1.5 m/s2", "-9.81 m/s2"]
+run.end_time = "10 ms"
+time_step.max = "0.01 ms"
+material.a.library = "copper"
+[[body]]
+name = "block"
+material = "a"
+shape.box = { size = ["8 mm", "8 mm"] }
+velocity = ["2 m/s", 0]
+"#,
+    ));
+    let first = sorted_by(&s, 0, |_| 0.0)
+        .into_iter()
+        .map(|i| (s.store.id[i], s.store.position[i]))
+        .collect::<std::collections::BTreeMap<_, _>>();
+    run_to(&mut s, 10e-3);
+    let (t, g) = (s.state.time, [1.5, -9.81]);
+    assert!((t - 10e-3).abs() < 1e-15);
+    for i in 0..s.store.owned() {
+        let begin = first[&s.store.id[i]];
+        for a in 0..2 {
+            let v0 = [2.0, 0.0][a];
+            let v = v0 + g[a] * t;
+            let x = begin[a] + v0 * t + 0.5 * g[a] * t * t;
+            // A thousand steps of a few roundings each.
+            assert!((s.store.velocity[i][a] - v).abs() < 1e-13, "velocity");
+            assert!((s.store.position[i][a] - x).abs() < 1e-15, "place");
+        }
+        assert_eq!(s.store.acceleration[i], [0.0; 3]);
+    }
+    let worst = &s.state.worst;
+    println!("{worst:?}");
+    assert!(worst.energy_error < 1e-12, "{:e}", worst.energy_error);
+    assert!(worst.momentum_error.iter().all(|&e| e < 1e-13));
+}
+
+/// The bar of the paper's section 3.1, its first particle driven.
+fn driven_bar(more: &str, load: &str) -> Simulation {
+    start(inline(&format!(
+        r#"
+dimension = 1
+spacing = "1 cm"
+sph.smoothing = 1.0
+run.end_time = "400 us"
+{more}
+{BAR_MATERIALS}
+[[body]]
+name = "bar"
+material = "steel"
+shape.box = {{ lower = [0], upper = ["100 cm"] }}
+[[load]]
+body = "bar"
+below.x = "1 spacing"
+{load}
+"#
+    )))
+}
+
+/// Stress (Pa) behind the front of the step is the exact one, the front runs at the wave's speed
+/// from the driven particle, and energy and momentum are balanced to round-off.
+#[test]
+fn a_step_of_velocity_on_a_bar() {
+    let mut s = driven_bar("", "velocity.x = \"0.001 cm/us\"");
+    assert_eq!(s.store.velocity[0][0].to_bits(), 10f64.to_bits());
+    let before = s.store.position.iter().map(|x| x[0]).fold(1.0, f64::min);
+    run_with(&mut s, 128.8e-6, |s| {
+        let first = sorted_by(s, 0, |i| s.store.position[i][0])[0];
+        assert_eq!(s.store.velocity[first][0].to_bits(), 10f64.to_bits());
+        let place = before + 10.0 * s.state.time;
+        assert!((s.store.position[first][0] - place).abs() < 1e-15);
+    });
+    let order = sorted_by(&s, 0, |i| s.store.position[i][0]);
+    let stress = |i: usize| s.store.pressure[i] - s.store.deviatoric_stress[i][0];
+    let plateau: Vec<f64> = order[15..60].iter().map(|&i| stress(i)).collect();
+    let mean = plateau.iter().sum::<f64>() / 45.0;
+    // ρ c v = .0045849 Mbar; the lattice's own stiffness at h = Δp is exact.
+    println!(
+        "plateau {mean:e} Pa, {:.5} of the exact one",
+        mean / 0.0045849e11
+    );
+    assert!((mean / 0.0045849e11 - 1.0).abs() < 0.005);
+    let v = |k: usize| s.store.velocity[order[k]][0];
+    let k = (0..99)
+        .find(|&k| v(k) > 5.0 && v(k + 1) <= 5.0)
+        .expect("a front");
+    let reference = |k: usize| 0.01 * (k as f64 + 0.5);
+    let front = reference(k) + 0.01 * (v(k) - 5.0) / (v(k) - v(k + 1));
+    // The driven particle is the first one: half a spacing from the bar's end.
+    let exact = STEEL_SPEED * s.state.time + 0.005;
+    println!("front {front} m, exact {exact} m");
+    assert!((front - exact).abs() < 0.01);
+    let worst = &s.state.worst;
+    println!("{worst:?}");
+    assert!(worst.energy_error < 1e-13, "{:e}", worst.energy_error);
+    assert!(worst.momentum_error[0] < 1e-14);
+    // The work is traction × velocity × time but for the start of the wave.
+    let expected = 0.0045849e11 * 10.0 * s.state.time;
+    assert!((s.state.load_work() / expected - 1.0).abs() < 0.02);
+}
+
+/// The pulse: after `until` the particle is free, and nothing more is put in.
+#[test]
+fn a_pulse_ends_and_frees_its_particles() {
+    let mut s = driven_bar("", "velocity.x = \"0.001 cm/us\"\nuntil = \"35 us\"");
+    run_to(&mut s, 35e-6);
+    let dt = s.state.last_dt;
+    let (released, put_in) = (s.state.time, s.state.load_work());
+    run_to(&mut s, 128.8e-6);
+    let per_step = 0.0045849e11 * 10.0 * dt;
+    assert!(
+        s.state.load_work() - put_in <= 1.01 * per_step,
+        "one more step at most"
+    );
+    println!(
+        "released at {:.3} us in steps of {:.3} us",
+        released * 1e6,
+        dt * 1e6
+    );
+    let order = sorted_by(&s, 0, |i| s.store.position[i][0]);
+    let v = |k: usize| s.store.velocity[order[k]][0];
+    assert!(
+        v(0).abs() < 1.0,
+        "free and at rest behind the pulse: {}",
+        v(0)
+    );
+    let worst = &s.state.worst;
+    println!("{worst:?}");
+    assert!(worst.energy_error < 1e-13);
+    assert!(worst.momentum_error[0] < 1e-14);
+    // Half heights of the pulse in reference coordinates, cm: 54.9 and 75.4.
+    let crossing = |range: std::ops::Range<usize>, up: bool| {
+        let k = range
+            .rev()
+            .find(|&k| (v(k) <= 5.0) == up && (v(k + 1) > 5.0) == up)
+            .unwrap();
+        k as f64 + 0.5 + (5.0 - v(k)) / (v(k + 1) - v(k))
+    };
+    let (tail, head) = (crossing(30..68, true), crossing(60..90, false));
+    println!("pulse from {tail:.2} to {head:.2} cm");
+    assert!((tail - 54.9 - 0.5).abs() < 1.5 && (head - 75.4 - 0.5).abs() < 1.0);
+}
+
+/// A table of time: velocities at whole steps are the table's, places its integral, also across
+/// corners and jumps, and free axes stay free.
+#[test]
+fn velocities_and_places_follow_the_table() {
+    let mut s = start(inline(
+        r#"
+dimension = 2
+spacing = "1 mm"
+run.end_time = "10 us"
+material.a.library = "copper"
+[[body]]
+name = "block"
+material = "a"
+shape.box = { lower = [0, 0], upper = ["8 mm", "4 mm"] }
+[[load]]
+name = "left"
+body = "block"
+below.x = "1 spacing"
+velocity = { times = [0, "2 us", "4 us", "4 us", "6 us"], x = [0, "10 m/s", "10 m/s", "-5 m/s", 0] }
+[[load]]
+name = "bottom"
+body = "block"
+below.y = "1 spacing"
+velocity.y = 0
+"#,
+    ));
+    let begin = s.store.clone();
+    let at = |id: u64| begin.id.iter().position(|&x| x == id).unwrap();
+    let velocity = |t: f64| match t * 1e6 {
+        t if t < 2.0 => 5.0 * t,
+        t if t < 4.0 => 10.0,
+        t if t < 6.0 => -5.0 + 2.5 * (t - 4.0),
+        _ => 0.0,
+    };
+    let moved = |t: f64| {
+        1e-6 * match t * 1e6 {
+            t if t < 2.0 => 2.5 * t * t,
+            t if t < 4.0 => 10.0 + 10.0 * (t - 2.0),
+            t if t < 6.0 => 30.0 - 5.0 * (t - 4.0) + 1.25 * (t - 4.0) * (t - 4.0),
+            _ => 25.0,
+        }
+    };
+    let mut stretched = false;
+    run_with(&mut s, 10e-6, |s| {
+        let (store, t) = (&s.store, s.state.time);
+        for i in 0..store.owned() {
+            let first = begin.position[at(store.id[i])];
+            if first[0] < 1e-3 {
+                assert!((store.velocity[i][0] - velocity(t)).abs() < 1e-12);
+                let place = first[0] + moved(t);
+                assert!((store.position[i][0] - place).abs() < 1e-16, "{t:e}");
+                stretched |= first[1] > 1e-3 && store.velocity[i][1].abs() > 1e-3;
+            }
+            if first[1] < 1e-3 {
+                assert_eq!(store.velocity[i][1], 0.0);
+                assert_eq!(store.position[i][1], first[1]);
+            }
+        }
+    });
+    assert!(stretched, "the free axis of driven particles");
+    let worst = &s.state.worst;
+    println!("{:?} {worst:?}", s.state.loads);
+    assert!(worst.energy_error < 1e-13);
+    assert!(worst.momentum_error.iter().all(|&e| e < 1e-13));
+}
+
+/// An elastic block of `rows` on a floor, in so many dimensions.
+fn block_on(floor: &str, more: &str) -> Simulation {
+    start(inline(&format!(
+        r#"
+dimension = 2
+spacing = "1 mm"
+run.end_time = "1 s"
+{more}
+[material.soft]
+density = "1000 kg/m^3"
+eos.linear.bulk_modulus = "10 MPa"
+strength.elastic.shear_modulus = "3 MPa"
+[[body]]
+name = "block"
+material = "soft"
+shape.box = {{ lower = [0, 0], upper = ["10 mm", "10 mm"] }}
+{floor}
+"#
+    )))
+}
+
+const PLANE: &str = "[[plane]]\nname = \"floor\"\nnormal = \"+y\"\n";
+const RIGID: &str = "[[body]]\nname = \"floor\"\nrigid = true\n\
+     shape.box = { lower = [\"-5 mm\", \"-4 mm\"], upper = [\"15 mm\", 0] }\n";
+
+/// A block under gravity comes to rest on a plane and on a rigid body: the support carries its
+/// weight, and energy is balanced to the order of the scheme.
+#[test]
+fn a_block_rests_on_the_floor() {
+    for floor in [PLANE, RIGID] {
+        let mut s = block_on(floor, "gravity = [0, \"-1000 m/s2\"]\nsph.alpha = 2.0");
+        let weight = 1000.0 * 1e-4 * 1000.0;
+        let (mut mean, mut count) = (0.0, 0);
+        run_with(&mut s, 4e-3, |s| {
+            if s.state.time > 2e-3 {
+                mean += s.state.loads[0].force[1];
+                count += 1;
+            }
+        });
+        let mean = mean / f64::from(count);
+        let fastest = s
+            .store
+            .velocity
+            .iter()
+            .map(|v| v[1].abs())
+            .fold(0.0, f64::max);
+        let worst = &s.state.worst;
+        println!("carried {mean} of {weight} N/m, speed {fastest:e}, {worst:?}");
+        assert!((mean / weight - 1.0).abs() < 0.01);
+        // A thousandth of what falling its own height would give.
+        assert!(fastest < 5e-3, "{fastest}");
+        assert!(worst.energy_error < 1e-3, "{:e}", worst.energy_error);
+        assert!(worst.momentum_error.iter().all(|&e| e < 1e-12));
+        let lowest = s
+            .store
+            .position
+            .iter()
+            .zip(&s.store.body)
+            .filter(|(_, b)| **b == 0);
+        let lowest = lowest.map(|(x, _)| x[1]).fold(1.0, f64::min);
+        assert!((lowest - 0.5e-3).abs() < 0.1e-3, "{lowest}");
+    }
+}
+
+/// Largest energy error and the speed that an elastic block leaves with, over that of its fall.
+fn bounce(floor: &str, courant: f64) -> (f64, f64) {
+    let more = format!(
+        "time_step.courant = {courant}\ntime_step.force = {}\nsph.alpha = 0.1\nsph.beta = 0.2",
+        0.5 * courant
+    );
+    let mut s = block_on(
+        &floor
+            .replace("\"-4 mm\"", "\"-5 mm\"")
+            .replace("\"15 mm\", 0", "\"15 mm\", \"-1 mm\""),
+        &more,
+    );
+    for (v, body) in s.store.velocity.iter_mut().zip(&s.store.body) {
+        if *body == 0 {
+            v[1] = -1.0;
+        }
+    }
+    s.store.predicted_velocity.clone_from(&s.store.velocity);
+    let mut case = s.case.clone();
+    case.bodies[0].velocity.y = -1.0;
+    let mut s = start(case);
+    let momentum = s.state.initial.momentum[1];
+    run_with(&mut s, 3.5e-3, |s| {
+        assert_ne!(s.state.last_reason, Reason::Contact);
+        assert!(s.state.loads[0].force[1] >= 0.0);
+    });
+    let worst = &s.state.worst;
+    assert!(worst.momentum_error.iter().all(|&e| e < 1e-13), "{worst:?}");
+    assert!((worst.energy_error - worst.contact_defect).abs() < 1e-12);
+    assert_eq!(s.state.contact_energy, 0.0, "it has left");
+    assert_eq!(s.state.load_work(), 0.0, "what stands still does no work");
+    (worst.energy_error, -s.state.totals.momentum[1] / momentum)
+}
+
+/// An elastic block thrown on a plane and on a rigid body: it comes back, and the energy error is
+/// of second order.
+#[test]
+fn a_block_bounces_off() {
+    let plane = "[[plane]]\nnormal = \"+y\"\npoint = [0, \"-1 mm\"]\n";
+    for floor in [plane, RIGID] {
+        let [(coarse, _), (fine, speed)] = [0.4, 0.1].map(|courant| bounce(floor, courant));
+        println!("energy error {coarse:e}, {fine:e}, leaves with {speed:.3}");
+        assert!(coarse < 1e-3 && fine < coarse / 8.0);
+        assert!(speed > 0.9 && speed < 1.0, "{speed}");
+    }
+}
+
+/// A punch that moves at a given velocity drives a wave: its work is what the model gains, and the
+/// same punch as a moving plane does the same to the order of the contact's stiffness.
+#[test]
+fn a_moving_punch_does_work() {
+    let rigid = "[[body]]\nname = \"punch\"\nrigid = true\nvelocity = [\"0.001 cm/us\"]\n\
+                 shape.box = { lower = [\"-6 cm\"], upper = [0] }\n";
+    let plane = "[[plane]]\nname = \"punch\"\nnormal = \"+x\"\nmotion.x = \"0.001 cm/us\"\n";
+    let table = "[[body]]\nname = \"punch\"\nrigid = true\nshape.box = { lower = [\"-6 cm\"], \
+                 upper = [0] }\nmotion = { times = [0, \"300 us\"], x = [\"10 m/s\", \"10 m/s\"] }\n";
+    for punch in [rigid, plane, table] {
+        let mut s = start(inline(&format!(
+            r#"
+dimension = 1
+spacing = "1 cm"
+sph.smoothing = 1.0
+run.end_time = "400 us"
+{BAR_MATERIALS}
+[[body]]
+name = "bar"
+material = "steel"
+shape.box = {{ lower = [0], upper = ["100 cm"] }}
+{punch}
+"#
+        )));
+        assert_eq!(s.state.initial.kinetic_energy, 0.0);
+        run_to(&mut s, 128.8e-6);
+        let order = sorted_by(&s, 0, |i| s.store.position[i][0]);
+        let stress = |i: usize| s.store.pressure[i] - s.store.deviatoric_stress[i][0];
+        let mean = order[15..60].iter().map(|&i| stress(i)).sum::<f64>() / 45.0;
+        let load = &s.state.loads[0];
+        let worst = &s.state.worst;
+        println!(
+            "plateau {:.4}, force {:.4} of the exact one; {worst:?}",
+            mean / 0.0045849e11,
+            load.force[0] / 0.0045849e11
+        );
+        assert!((mean / 0.0045849e11 - 1.0).abs() < 0.005);
+        assert!((load.force[0] / 0.0045849e11 - 1.0).abs() < 0.01);
+        assert!((load.work / (load.impulse[0] * 10.0) - 1.0).abs() < 1e-12);
+        assert!((worst.energy_error - worst.contact_defect).abs() < 1e-12);
+        assert!(worst.energy_error < 1e-3);
+        assert!(worst.momentum_error[0] < 1e-13);
+    }
+}
+
+/// Laid in touch, nothing happens: with rigid bodies and planes, in one, two and three dimensions,
+/// also beneath a turned lattice.
+#[test]
+fn in_touch_at_rest_nothing_happens() {
+    for (dimension, lattice) in [(1, "cubic"), (2, "cubic"), (3, "cubic"), (2, "turned")] {
+        let point = |x: &str| {
+            let mut point = vec!["\"-3 mm\""; dimension];
+            point[dimension - 1] = x;
+            point.join(", ")
+        };
+        let wide = |x: &str| point(x).replace("-3 mm", "-8 mm");
+        let positive = |text: String| text.replace("\"-", "\"");
+        let up = ["+x", "+y", "+z"][dimension - 1];
+        let angle = if lattice == "turned" {
+            "lattice = { kind = \"cubic\", angle = \"30 deg\" }"
+        } else {
+            ""
+        };
+        let mut s = start(inline(&format!(
+            r#"
+dimension = {dimension}
+spacing = "1 mm"
+run.end_time = "1 s"
+material.a.library = "copper"
+[[body]]
+name = "tool"
+rigid = true
+shape.box = {{ lower = [{}], upper = [{}] }}
+[[body]]
+name = "block"
+material = "a"
+{angle}
+shape.box = {{ lower = [{}], upper = [{}] }}
+touch = {{ body = "tool", direction = "-{}" }}
+[[plane]]
+normal = "{up}"
+point = [{}]
+"#,
+            wide("\"-5 mm\""),
+            positive(wide("0")),
+            point("\"1 mm\""),
+            positive(point("\"7 mm\"")),
+            &up[1..],
+            vec!["0"; dimension].join(", "),
+        )));
+        let contact = s.store.contact_acceleration.clone();
+        assert!(
+            contact.iter().flatten().all(|a| a.abs() < 1e-3),
+            "{dimension} {lattice}"
+        );
+        run_to(&mut s, 20e-6);
+        let fastest = s
+            .store
+            .velocity
+            .iter()
+            .flatten()
+            .map(|v| v.abs())
+            .fold(0.0, f64::max);
+        println!("{dimension}-D {lattice}: {fastest:e} m/s");
+        assert!(fastest < 1e-6, "{fastest:e}");
+    }
+}

@@ -1,0 +1,93 @@
+//! The cold curve and the temperature.
+
+mod material_support;
+
+use material_support::{aluminium, equations_of_state, material};
+use whipple::material::{Eos, IdealGas, Linear, LinearForm, Strength, Thermal, ThermalConstants};
+
+const CONSTANTS: ThermalConstants = ThermalConstants {
+    specific_heat: 875.0,
+    reference_temperature: 300.0,
+    melting_temperature: None,
+};
+
+#[test]
+fn the_reference_state_has_the_reference_temperature() {
+    for (rho0, eos) in equations_of_state() {
+        let thermal = Thermal::new(CONSTANTS, rho0, &eos);
+        let e = eos.reference_energy(rho0);
+        // Rounding of the gas's energy, which is large against c_v T.
+        let bound = 1e-9 + 1e-13 * e / 875.0;
+        assert!(
+            (thermal.temperature(rho0, e) - 300.0).abs() < bound,
+            "{eos:?}"
+        );
+        assert!((thermal.temperature(rho0, e + 875.0) - 301.0).abs() < bound);
+        assert!(thermal.temperature(rho0, e - 1e9) == 0.0);
+        assert!(thermal.temperature(f64::NAN, e).is_nan());
+    }
+}
+
+#[test]
+fn the_linear_cold_curve_is_its_closed_form() {
+    // p = K ln r: e_c − e_c(ρ₀) = (K/ρ₀) [1 − (1 + ln r)/r].
+    let (k, rho0) = (75e9, 2700.0);
+    let eos = Eos::Linear(Linear {
+        bulk_modulus: k,
+        form: LinearForm::Logarithmic,
+    });
+    let thermal = Thermal::new(CONSTANTS, rho0, &eos);
+    for r in [0.51_f64, 0.7, 0.93, 1.004, 1.3, 2.1, 4.3] {
+        let exact = k / rho0 * (1.0 - (1.0 + r.ln()) / r) - 875.0 * 300.0;
+        let error = (thermal.cold_energy(rho0 * r) - exact).abs() / 875.0;
+        assert!(error < 2e-3, "{error} K at {r}");
+    }
+}
+
+#[test]
+fn an_isentrope_of_a_mie_gruneisen_solid_follows_its_parameter() {
+    // dT/dρ along de = p/ρ² dρ is Γ T/ρ with Γ ρ = (γ₀ + b μ) ρ₀, whatever the cold curve.
+    let rho0 = 2785.0;
+    let mut metal = material(rho0, Eos::MieGruneisen(aluminium()), Strength::None);
+    metal.thermal = Some(Thermal::new(CONSTANTS, rho0, &metal.eos));
+    let steps = 4000;
+    let (mut rho, mut e, mut logarithm) = (rho0, 2e5, 0.0);
+    let first = metal.temperature(rho, e).unwrap();
+    let d = 0.35 * rho0 / f64::from(steps);
+    for _ in 0..steps {
+        let slope = |rho: f64, e: f64| metal.eos.at(rho0, rho, e).pressure / (rho * rho);
+        let half = e + 0.5 * d * slope(rho, e);
+        e += d * slope(rho + 0.5 * d, half);
+        let middle = rho + 0.5 * d;
+        logarithm += d * (2.0 + 0.48 * (middle / rho0 - 1.0)) * rho0 / (middle * middle);
+        rho += d;
+    }
+    let ratio = metal.temperature(rho, e).unwrap() / first;
+    assert!((ratio / libm::exp(logarithm) - 1.0).abs() < 1e-5, "{ratio}");
+    // The Hugoniot of 2024 at 50 GPa heats by some 900 K; tables say 1000 to 1200 K.
+    let (rho, u) = (rho0 / (1.0 - 2.0e3 / 8.0e3), 2.0e3);
+    let hot = metal.temperature(rho, 0.5 * u * u).unwrap();
+    assert!((800.0..1400.0).contains(&hot), "{hot} K");
+}
+
+#[test]
+fn a_gas_has_the_temperature_of_its_energy() {
+    let gas = IdealGas {
+        gamma: 1.4,
+        stiffening_pressure: 0.0,
+        reference_pressure: 101_325.0,
+    };
+    let rho0 = 1.2041;
+    let eos = Eos::IdealGas(gas);
+    // c_v = e₀/T₀ makes the cold curve vanish: T = e/c_v at any density.
+    let constants = ThermalConstants {
+        specific_heat: gas.reference_energy(rho0) / 293.15,
+        reference_temperature: 293.15,
+        melting_temperature: None,
+    };
+    let thermal = Thermal::new(constants, rho0, &eos);
+    for ratio in [1e-4, 0.6, 1.0, 4.0, 20.0] {
+        let t = thermal.temperature(rho0 * ratio, constants.specific_heat * 500.0);
+        assert!((t - 500.0).abs() < 1e-9, "{t} K at {ratio}");
+    }
+}
