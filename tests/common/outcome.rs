@@ -70,3 +70,12 @@ pub fn everything() -> Case {
     case.domain.balance_every = 7;
     case
 }
+
+/// A case with all loads there are.
+pub fn loaded() -> Case {
+    let text = include_str!("loaded.toml");
+    whipple::input::parse("loaded.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Cases that between them have everything.
+pub const CASES: [fn() -> Case; 2] = [everything, loaded];
