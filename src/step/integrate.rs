@@ -138,22 +138,24 @@ impl Simulation {
         )
             .into_par_iter()
             .with_min_len(GRAIN)
-            .for_each(|(v, e, x, v_p, rho_p, h, (o, drive), (a, de, l, &rho, &body))| {
-                let mut total = add(a, &o);
-                drive.steer(Goal::Middle, v, per_half, &mut total);
-                *e += half * (de - 0.25 * dt * dot(a, &total));
-                *v = add_scaled(v, half, &total);
-                drive.set(Goal::Middle, v);
-                for k in 0..3 {
-                    x[k] += dt * v[k];
-                }
-                *v_p = add_scaled(v, half, &total);
-                drive.set(Goal::End, v_p);
-                let strain = half * (l[0] + l[4] + l[8]);
-                *rho_p = rho * ((1.0 - strain) / (1.0 + strain));
-                let reference = 1.0 / table.inverse_density(body as usize);
-                *h = rule.length(reference_h[body as usize], reference / *rho_p);
-            });
+            .for_each(
+                |(v, e, x, v_p, rho_p, h, (o, drive), (a, de, l, &rho, &body))| {
+                    let mut total = add(a, &o);
+                    drive.steer(Goal::Middle, v, per_half, &mut total);
+                    *e += half * (de - 0.25 * dt * dot(a, &total));
+                    *v = add_scaled(v, half, &total);
+                    drive.set(Goal::Middle, v);
+                    for k in 0..3 {
+                        x[k] += dt * v[k];
+                    }
+                    *v_p = add_scaled(v, half, &total);
+                    drive.set(Goal::End, v_p);
+                    let strain = half * (l[0] + l[4] + l[8]);
+                    *rho_p = rho * ((1.0 - strain) / (1.0 + strain));
+                    let reference = 1.0 / table.inverse_density(body as usize);
+                    *h = rule.length(reference_h[body as usize], reference / *rho_p);
+                },
+            );
     }
 
     /// Particles that crossed a symmetry plane change places with their images.
@@ -177,7 +179,12 @@ impl Simulation {
             let before = self.store.velocity[i];
             mirrors.fold(&mut self.store, i);
             let after = self.store.velocity[i];
-            if self.store.load.get(i).is_some_and(|&bits| self.loads.is_rigid(bits)) {
+            if self
+                .store
+                .load
+                .get(i)
+                .is_some_and(|&bits| self.loads.is_rigid(bits))
+            {
                 continue;
             }
             let mass = self.store.mass[i];

@@ -77,5 +77,19 @@ pub fn loaded() -> Case {
     whipple::input::parse("loaded.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// The same with nothing in contact but a block and a plane.
+pub fn on_a_plane() -> Case {
+    let mut case = loaded();
+    for body in &mut case.bodies {
+        body.rigid = None;
+    }
+    case.bodies.drain(..1);
+    case.bodies.truncate(1);
+    case.loads.velocities.clear();
+    let plane = &mut case.loads.planes[0];
+    plane.bodies = vec![true];
+    case
+}
+
 /// Cases that between them have everything.
-pub const CASES: [fn() -> Case; 2] = [everything, loaded];
+pub const CASES: [fn() -> Case; 3] = [everything, loaded, on_a_plane];
