@@ -69,8 +69,16 @@ impl FieldUse {
     pub const ALL: Self = Self(u16::MAX);
     /// Of contact: held only where bodies have contact beyond the SPH sums.
     pub const CONTACT: Self = Self(128);
+    /// Held only with the Balsara switch.
+    pub const BALSARA: Self = Self(256);
+    /// Held only with artificial conduction.
+    pub const CONDUCTION: Self = Self(512);
+    /// Held only with XSPH.
+    pub const XSPH: Self = Self(1024);
     /// Held only where loads or rigid bodies prescribe velocities.
     pub const LOADS: Self = Self(2048);
+    /// Held only where the case has use for it.
+    pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024 | 2048);
     /// In snapshots at all.
     pub const SNAPSHOT_OR_ON_DEMAND: Self = Self(32 | 64);
     /// What a rank sends with a particle that leaves it.
@@ -247,6 +255,12 @@ particle_fields! {
     approach_speed: Scalar, "m/s", ON_DEMAND;
     /// Stiffness of contact, for the time step.
     contact_stiffness: Scalar, "N/m", ON_DEMAND | CONTACT;
+    /// Factor of the Balsara switch on artificial viscosity.
+    viscosity_limiter: Scalar, "", HALO_STRESS | ON_DEMAND | BALSARA;
+    /// Specific internal energy at the end of the step as predicted from its last rate.
+    predicted_energy: Scalar, "J/kg", HALO_STRESS | CONDUCTION;
+    /// What XSPH adds to the velocity when it moves the particle.
+    velocity_correction: Vector, "m/s", STATE | ON_DEMAND | XSPH;
     /// Work of the last step, in neighbours of the pair sums, for the balance between ranks.
     work: Index, "", MIGRATED;
 }

@@ -299,15 +299,21 @@ mod tests {
 
     #[test]
     fn a_store_has_no_trace_of_what_it_dropped() {
-        for uses in [FieldUse::CONTACT, FieldUse::LOADS] {
+        for uses in [
+            FieldUse::CONTACT,
+            FieldUse::LOADS,
+            FieldUse::XSPH,
+            FieldUse::OPTIONAL,
+        ] {
             let mut store = sentinel(4);
             let message = store.bytes_per_particle(FieldUse::LEAVING);
+            store.drop_fields(FieldUse::BALSARA);
             store.drop_fields(uses);
             store.resize_owned(6);
             store.resize_halo(3);
             store.keep(&[2, 0], &mut [0; 2 * SCRATCH_WORDS]);
             assert!(store.bytes_per_particle(FieldUse::LEAVING) < message);
-            for field in with_use(uses) {
+            for field in with_use(uses.with(FieldUse::BALSARA)) {
                 assert!(store.bytes(field.id).is_empty(), "{}", field.name);
                 let zeros = store.bytes_or_zeros(field);
                 assert_eq!(*zeros, vec![0; 2 * field.kind.bytes()]);

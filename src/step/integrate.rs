@@ -70,6 +70,7 @@ impl Simulation {
         self.book_plane_force(dt);
         self.store.resize_halo(0);
         self.half_kick(dt, Goal::Middle);
+        self.drift_with_neighbours(dt);
         self.fold_at_planes();
     }
 

@@ -214,6 +214,17 @@ impl LoadStep {
         }
     }
 
+    /// Clears the components of a vector that are prescribed to a particle with these bits.
+    #[inline]
+    pub(super) fn clear_prescribed(&self, bits: u32, vector: &mut [f64; 3]) {
+        let prescribed = self.of(bits);
+        for a in 0..3 {
+            if prescribed.by[a].is_some() {
+                vector[a] = 0.0;
+            }
+        }
+    }
+
     pub(super) fn memory(&self) -> usize {
         size_of::<Prescribed>() * self.drives.capacity()
             + size_of::<PlaneStep>() * self.planes.capacity()

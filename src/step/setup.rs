@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use super::contact_phase::ContactPhase;
 use super::loads::{Drive, Goal, LoadStep};
+use super::options::{OptionPhase, unused_fields};
 use super::plane_forces::PlaneForces;
 use super::search::Search;
 use super::simulation::{Simulation, StepError};
@@ -16,7 +17,7 @@ use crate::contact::ContactTable;
 use crate::domain::{Halo, Histogram, Migration, Mirrors, Slabs, balance};
 use crate::model::Case;
 use crate::neighbours::{ColumnGrid, Image};
-use crate::particles::{FieldUse, ParticleStore};
+use crate::particles::ParticleStore;
 use crate::populate::{self, Slab};
 
 /// Why a case cannot start; the same on all ranks.
@@ -128,6 +129,7 @@ impl Simulation {
             halo: Halo::new(axis, Mirrors::new(&case.symmetry)),
             search: Search::new(&case, &contact, grids),
             sweeps: Sweeps::new(&case, &contact.kernel),
+            options: OptionPhase::new(&case, &contact.kernel),
             contact_phase: ContactPhase::default(),
             plane_forces: PlaneForces::new(&case),
             sums: StepSums::new(pairs, enclosed_limit, loads.driven(), loads.planes.len()),
@@ -216,18 +218,6 @@ impl Simulation {
         self.vote(comm)?;
         Ok(())
     }
-}
-
-/// Fields that a case has no use for.
-fn unused_fields(case: &Case, contact: &ContactTable) -> FieldUse {
-    let driven = !case.loads.velocities.is_empty() || case.bodies.iter().any(|b| b.rigid.is_some());
-    [
-        (FieldUse::CONTACT, contact.is_active()),
-        (FieldUse::LOADS, driven),
-    ]
-    .into_iter()
-    .filter(|&(_, used)| !used)
-    .fold(FieldUse::default(), |all, (fields, _)| all.with(fields))
 }
 
 /// Refuses a case without particles, or a rank with more than it can number. Collective.

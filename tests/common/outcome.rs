@@ -63,7 +63,18 @@ pub fn assert_same(a: &Outcome, b: &Outcome) {
     assert!(a.rows == b.rows, "the particles differ");
 }
 
-/// A case with all there is: contact, two planes, variable h, plasticity.
+/// [`everything`] with all options of the SPH sums.
+pub fn every_option() -> Case {
+    let mut case = everything();
+    case.sph.artificial_stress = 0.3;
+    case.sph.balsara = true;
+    case.sph.conduction = 0.5;
+    case.sph.xsph = 0.5;
+    case
+}
+
+/// A case with all there is: contact, two planes, variable h, plasticity; without options of the
+/// SPH sums.
 pub fn everything() -> Case {
     let mut case = sphere_on_plate(6e-5, 7000.0, true, 1.0);
     case.sph.smoothing_length = SmoothingLength::Variable { min: 0.6, max: 2.0 };
@@ -91,5 +102,18 @@ pub fn on_a_plane() -> Case {
     case
 }
 
-/// Cases that between them have everything.
-pub const CASES: [fn() -> Case; 3] = [everything, loaded, on_a_plane];
+/// All loads with all options of the SPH sums.
+pub fn loaded_with_options() -> Case {
+    let mut case = loaded();
+    case.sph = every_option().sph;
+    case
+}
+
+/// Without options of the SPH sums and with all, without loads and with all.
+pub const CASES: [fn() -> Case; 5] = [
+    everything,
+    every_option,
+    loaded,
+    on_a_plane,
+    loaded_with_options,
+];
