@@ -6,7 +6,9 @@ mod common;
 use std::path::Path;
 use std::process::Command;
 
-use common::outcome::{Outcome, advance, assert_same, every_option, everything, start};
+use common::outcome::{
+    CASES, Outcome, advance, assert_same, every_option, everything, loaded, start,
+};
 use common::random::Random;
 use whipple::comm::Comm;
 use whipple::input;
@@ -16,9 +18,6 @@ use whipple::sph::dispatch::available;
 use whipple::step::Simulation;
 
 const STEPS: usize = 40;
-
-/// Without options of the SPH sums and with all.
-const CASES: [fn() -> Case; 2] = [everything, every_option];
 
 fn reference(case: fn() -> Case) -> Outcome {
     let mut simulation = start(case());
@@ -56,7 +55,7 @@ fn sparing_what_is_calm_changes_no_bit() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/quarter-impact/case.toml");
         input::load(&path, &["spacing=\"0.05 mm\"".to_owned()]).unwrap()
     };
-    for case in [everything, every_option, quarter as fn() -> Case] {
+    for case in [everything, every_option, loaded, quarter as fn() -> Case] {
         let [spared, whole] = [true, false].map(|spare| {
             let mut simulation = Simulation::start(case(), &Comm::solo()).unwrap();
             simulation.spare_calm = spare;

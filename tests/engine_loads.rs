@@ -4,7 +4,11 @@ mod physics_support;
 
 use physics_support::bars::{BAR_MATERIALS, STEEL_SPEED};
 use physics_support::{inline, run_to, run_with, sorted_by, start};
+use whipple::model::Case;
 use whipple::step::{Reason, Simulation};
+
+/// ρ c v of the bar's step (Pa).
+const PLATEAU: f64 = 0.004_584_9e11;
 
 /// Free fall is exact: velocity g t, place ½ g t², and no force inside, to the bit.
 #[test]
@@ -14,8 +18,7 @@ fn free_fall() {
 dimension = 2
 spacing = "1 mm"
 gravity = ["1.5 m/s2", "-9.81 m/s2"]
-run.end_time = "10 ms"
-time_step.max = "0.01 ms"
+run.end_time = "0.1 ms"
 material.a.library = "copper"
 [[body]]
 name = "block"
@@ -28,33 +31,42 @@ velocity = ["2 m/s", 0]
         .into_iter()
         .map(|i| (s.store.id[i], s.store.position[i]))
         .collect::<std::collections::BTreeMap<_, _>>();
-    run_to(&mut s, 10e-3);
+    run_to(&mut s, 1e-4);
     let (t, g) = (s.state.time, [1.5, -9.81]);
-    assert!((t - 10e-3).abs() < 1e-15);
+    #[allow(clippy::cast_precision_loss, reason = "few steps")]
+    let steps = s.state.step as f64;
     for i in 0..s.store.owned() {
         let begin = first[&s.store.id[i]];
         for a in 0..2 {
             let v0 = [2.0, 0.0][a];
             let v = v0 + g[a] * t;
             let x = begin[a] + v0 * t + 0.5 * g[a] * t * t;
-            // A thousand steps of a few roundings each.
-            assert!((s.store.velocity[i][a] - v).abs() < 1e-13, "velocity");
-            assert!((s.store.position[i][a] - x).abs() < 1e-15, "place");
+            // A rounding or two of each step.
+            assert!(
+                (s.store.velocity[i][a] - v).abs() < 4e-16 * steps,
+                "velocity"
+            );
+            assert!((s.store.position[i][a] - x).abs() < 2e-18 * steps, "place");
         }
         assert_eq!(s.store.acceleration[i], [0.0; 3]);
     }
     let worst = &s.state.worst;
-    println!("{worst:?}");
-    assert!(worst.energy_error < 1e-12, "{:e}", worst.energy_error);
-    assert!(worst.momentum_error.iter().all(|&e| e < 1e-13));
+    println!("{steps} steps: {worst:?}");
+    // The work of gravity is a small part of the kinetic energy that it is seen in.
+    assert!(
+        worst.energy_error < 4e-16 * steps,
+        "{:e}",
+        worst.energy_error
+    );
+    assert!(worst.momentum_error.iter().all(|&e| e < 4e-16 * steps));
 }
 
 /// The bar of the paper's section 3.1, its first particle driven.
-fn driven_bar(more: &str, load: &str) -> Simulation {
+fn driven_bar(spacing: f64, more: &str, load: &str) -> Simulation {
     start(inline(&format!(
         r#"
 dimension = 1
-spacing = "1 cm"
+spacing = "{spacing} cm"
 sph.smoothing = 1.0
 run.end_time = "400 us"
 {more}
@@ -74,8 +86,9 @@ below.x = "1 spacing"
 /// Stress (Pa) behind the front of the step is the exact one, the front runs at the wave's speed
 /// from the driven particle, and energy and momentum are balanced to round-off.
 #[test]
+#[allow(clippy::cast_precision_loss, reason = "few particles")]
 fn a_step_of_velocity_on_a_bar() {
-    let mut s = driven_bar("", "velocity.x = \"0.001 cm/us\"");
+    let mut s = driven_bar(1.0, "", "velocity.x = \"0.001 cm/us\"");
     assert_eq!(s.store.velocity[0][0].to_bits(), 10f64.to_bits());
     let before = s.store.position.iter().map(|x| x[0]).fold(1.0, f64::min);
     run_with(&mut s, 128.8e-6, |s| {
@@ -91,9 +104,9 @@ fn a_step_of_velocity_on_a_bar() {
     // ρ c v = .0045849 Mbar; the lattice's own stiffness at h = Δp is exact.
     println!(
         "plateau {mean:e} Pa, {:.5} of the exact one",
-        mean / 0.0045849e11
+        mean / PLATEAU
     );
-    assert!((mean / 0.0045849e11 - 1.0).abs() < 0.005);
+    assert!((mean / PLATEAU - 1.0).abs() < 0.005);
     let v = |k: usize| s.store.velocity[order[k]][0];
     let k = (0..99)
         .find(|&k| v(k) > 5.0 && v(k + 1) <= 5.0)
@@ -109,50 +122,57 @@ fn a_step_of_velocity_on_a_bar() {
     assert!(worst.energy_error < 1e-13, "{:e}", worst.energy_error);
     assert!(worst.momentum_error[0] < 1e-14);
     // The work is traction × velocity × time but for the start of the wave.
-    let expected = 0.0045849e11 * 10.0 * s.state.time;
+    let expected = PLATEAU * 10.0 * s.state.time;
     assert!((s.state.load_work() / expected - 1.0).abs() < 0.02);
 }
 
-/// The pulse: after `until` the particle is free, and nothing more is put in.
-#[test]
-fn a_pulse_ends_and_frees_its_particles() {
-    let mut s = driven_bar("", "velocity.x = \"0.001 cm/us\"\nuntil = \"35 us\"");
+/// Where the pulse of 35 µs stands at 128.8 µs on the bar of particles `spacing` (cm) apart: half
+/// heights of its tail and its head in reference coordinates, in cm from the driven particle.
+fn pulse(spacing: f64) -> (f64, f64) {
+    let more = format!("time_step.max = \"{} us\"", 0.5 * spacing);
+    let load = "velocity.x = \"0.001 cm/us\"\nuntil = \"35 us\"";
+    let mut s = driven_bar(spacing, &more, load);
     run_to(&mut s, 35e-6);
-    let dt = s.state.last_dt;
-    let (released, put_in) = (s.state.time, s.state.load_work());
+    assert!(s.state.time - 35e-6 < 1.5 * s.state.last_dt);
+    let put_in = s.state.load_work();
     run_to(&mut s, 128.8e-6);
-    let per_step = 0.0045849e11 * 10.0 * dt;
+    let one_step = PLATEAU * 10.0 * s.state.last_dt;
     assert!(
-        s.state.load_work() - put_in <= 1.01 * per_step,
-        "one more step at most"
-    );
-    println!(
-        "released at {:.3} us in steps of {:.3} us",
-        released * 1e6,
-        dt * 1e6
-    );
-    let order = sorted_by(&s, 0, |i| s.store.position[i][0]);
-    let v = |k: usize| s.store.velocity[order[k]][0];
-    assert!(
-        v(0).abs() < 1.0,
-        "free and at rest behind the pulse: {}",
-        v(0)
+        s.state.load_work() - put_in < 1.1 * one_step,
+        "driven too long"
     );
     let worst = &s.state.worst;
     println!("{worst:?}");
-    assert!(worst.energy_error < 1e-13);
-    assert!(worst.momentum_error[0] < 1e-14);
-    // Half heights of the pulse in reference coordinates, cm: 54.9 and 75.4.
-    let crossing = |range: std::ops::Range<usize>, up: bool| {
-        let k = range
-            .rev()
-            .find(|&k| (v(k) <= 5.0) == up && (v(k + 1) > 5.0) == up)
-            .unwrap();
-        k as f64 + 0.5 + (5.0 - v(k)) / (v(k + 1) - v(k))
+    assert!(worst.energy_error < 1e-13 && worst.momentum_error[0] < 1e-13);
+    let order = sorted_by(&s, 0, |i| s.store.position[i][0]);
+    let v = |k: usize| s.store.velocity[order[k]][0];
+    assert!(
+        v(0).abs() < 0.5,
+        "free and at rest behind the pulse: {}",
+        v(0)
+    );
+    let above = |k: &usize| v(*k) > 5.0;
+    let first = (0..order.len()).find(above).expect("a pulse");
+    let last = (0..order.len()).rfind(above).expect("a pulse");
+    #[allow(clippy::cast_precision_loss, reason = "few particles")]
+    let place = |k: usize, next: usize| {
+        let part = (v(k) - 5.0) / (v(k) - v(next));
+        spacing * (k as f64 + part * (next as f64 - k as f64))
     };
-    let (tail, head) = (crossing(30..68, true), crossing(60..90, false));
-    println!("pulse from {tail:.2} to {head:.2} cm");
-    assert!((tail - 54.9 - 0.5).abs() < 1.5 && (head - 75.4 - 0.5).abs() < 1.0);
+    (place(first, first - 1), place(last, last + 1))
+}
+
+/// After `until` the particles are free and nothing more is put in. Head and tail of the pulse
+/// stand at 75.42 and 54.92 cm (from the driven particle; the tail from the bar's end, half a
+/// spacing behind it) but for a number of spacings.
+#[test]
+fn a_pulse_ends_and_frees_its_particles() {
+    for spacing in [1.0, 0.25] {
+        let (tail, head) = pulse(spacing);
+        println!("spacing {spacing} cm: pulse from {tail:.2} to {head:.2} cm");
+        assert!((head - 75.42).abs() < spacing, "{head}");
+        assert!((tail - 54.92).abs() < 2.5 * spacing, "{tail}");
+    }
 }
 
 /// A table of time: velocities at whole steps are the table's, places its integral, also across
@@ -221,9 +241,9 @@ velocity.y = 0
     assert!(worst.momentum_error.iter().all(|&e| e < 1e-13));
 }
 
-/// An elastic block of `rows` on a floor, in so many dimensions.
-fn block_on(floor: &str, more: &str) -> Simulation {
-    start(inline(&format!(
+/// An elastic block of ten by ten particles on a floor.
+fn block_on(floor: &str, more: &str) -> Case {
+    inline(&format!(
         r#"
 dimension = 2
 spacing = "1 mm"
@@ -239,7 +259,7 @@ material = "soft"
 shape.box = {{ lower = [0, 0], upper = ["10 mm", "10 mm"] }}
 {floor}
 "#
-    )))
+    ))
 }
 
 const PLANE: &str = "[[plane]]\nname = \"floor\"\nnormal = \"+y\"\n";
@@ -251,7 +271,10 @@ const RIGID: &str = "[[body]]\nname = \"floor\"\nrigid = true\n\
 #[test]
 fn a_block_rests_on_the_floor() {
     for floor in [PLANE, RIGID] {
-        let mut s = block_on(floor, "gravity = [0, \"-1000 m/s2\"]\nsph.alpha = 2.0");
+        let mut s = start(block_on(
+            floor,
+            "gravity = [0, \"-1000 m/s2\"]\nsph.alpha = 2.0",
+        ));
         let weight = 1000.0 * 1e-4 * 1000.0;
         let (mut mean, mut count) = (0.0, 0);
         run_with(&mut s, 4e-3, |s| {
@@ -291,19 +314,11 @@ fn bounce(floor: &str, courant: f64) -> (f64, f64) {
         "time_step.courant = {courant}\ntime_step.force = {}\nsph.alpha = 0.1\nsph.beta = 0.2",
         0.5 * courant
     );
-    let mut s = block_on(
-        &floor
-            .replace("\"-4 mm\"", "\"-5 mm\"")
-            .replace("\"15 mm\", 0", "\"15 mm\", \"-1 mm\""),
+    let floor = floor.replace("\"-4 mm\"", "\"-5 mm\"");
+    let mut case = block_on(
+        &floor.replace("\"15 mm\", 0", "\"15 mm\", \"-1 mm\""),
         &more,
     );
-    for (v, body) in s.store.velocity.iter_mut().zip(&s.store.body) {
-        if *body == 0 {
-            v[1] = -1.0;
-        }
-    }
-    s.store.predicted_velocity.clone_from(&s.store.velocity);
-    let mut case = s.case.clone();
     case.bodies[0].velocity.y = -1.0;
     let mut s = start(case);
     let momentum = s.state.initial.momentum[1];
@@ -324,11 +339,16 @@ fn bounce(floor: &str, courant: f64) -> (f64, f64) {
 #[test]
 fn a_block_bounces_off() {
     let plane = "[[plane]]\nnormal = \"+y\"\npoint = [0, \"-1 mm\"]\n";
-    for floor in [plane, RIGID] {
+    for floor in [RIGID, plane] {
         let [(coarse, _), (fine, speed)] = [0.4, 0.1].map(|courant| bounce(floor, courant));
         println!("energy error {coarse:e}, {fine:e}, leaves with {speed:.3}");
-        assert!(coarse < 1e-3 && fine < coarse / 8.0);
-        assert!(speed > 0.9 && speed < 1.0, "{speed}");
+        // Who meets a spring of frequency ω within a step gains or loses up to ¼ ω² Δt² of his
+        // energy: here one row of ten, all at once, at κ = 2.
+        let step = 0.4 * 1.3 / (1.0 + 0.6 * 0.1);
+        assert!(coarse < 1.2 * 0.25 * 2.0 * step * step / 10.0);
+        assert!(fine < coarse / 10.0);
+        // The rest of the fall's energy rings on inside.
+        assert!((0.75..0.85).contains(&speed), "{speed}");
     }
 }
 
@@ -365,11 +385,11 @@ shape.box = {{ lower = [0], upper = ["100 cm"] }}
         let worst = &s.state.worst;
         println!(
             "plateau {:.4}, force {:.4} of the exact one; {worst:?}",
-            mean / 0.0045849e11,
-            load.force[0] / 0.0045849e11
+            mean / PLATEAU,
+            load.force[0] / PLATEAU
         );
-        assert!((mean / 0.0045849e11 - 1.0).abs() < 0.005);
-        assert!((load.force[0] / 0.0045849e11 - 1.0).abs() < 0.01);
+        assert!((mean / PLATEAU - 1.0).abs() < 0.005);
+        assert!((load.force[0] / PLATEAU - 1.0).abs() < 0.01);
         assert!((load.work / (load.impulse[0] * 10.0) - 1.0).abs() < 1e-12);
         assert!((worst.energy_error - worst.contact_defect).abs() < 1e-12);
         assert!(worst.energy_error < 1e-3);

@@ -5,7 +5,7 @@ mod common;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use common::outcome::{Outcome, everything};
+use common::outcome::{CASES, Outcome};
 use common::random::Random;
 use common::ranks::on_each;
 use common::sentinel::{id, mix, sentinel};
@@ -423,12 +423,13 @@ fn balance_evens_out_the_work() {
     on_each("balance_evens_out_the_work", &[1, 4], balance_work);
 }
 
-/// Steps of a case with contact, planes and variable h: every rank holds what one rank alone
+/// Steps of cases with all there is: every rank holds what one rank alone
 /// computes, to the last bit.
 fn step_together(comm: &Comm) {
-    for axis in [Axis::X, Axis::Z] {
+    let cases = CASES.map(|case| [Axis::X, Axis::Z].map(|axis| (case, axis)));
+    for (case, axis) in cases.into_iter().flatten() {
         let case = || {
-            let mut case = everything();
+            let mut case = case();
             case.domain.axis = Some(axis);
             case.domain.balance_every = 4;
             case

@@ -59,7 +59,7 @@ fn a_misspelled_key_names_the_nearest() {
 13 | materiel = \"metal\"
    | ^^^^^^^^ did you mean `material`?
    |
-   = help: the choices are `name`, `material`, `shape`, `lattice`, `spacing`, `velocity`, `density`, `specific_energy`, `touch`";
+   = help: the choices are `name`, `material`, `shape`, `lattice`, `spacing`, `velocity`, `density`, `specific_energy`, `touch`, `rigid`, `motion`";
     assert_eq!(
         message(&GOOD.replacen("material = ", "materiel = ", 1), &[]),
         expected
@@ -74,7 +74,7 @@ fn an_override_is_shown_itself() {
 1 | body.ball.velocty=[0, 0, 0]
   |           ^^^^^^^ did you mean `velocity`?
   |
-  = help: the choices are `name`, `material`, `shape`, `lattice`, `spacing`, `velocity`, `density`, `specific_energy`, `touch`";
+  = help: the choices are `name`, `material`, `shape`, `lattice`, `spacing`, `velocity`, `density`, `specific_energy`, `touch`, `rigid`, `motion`";
     let set = [
         "run.max_steps=1",
         "body.ball.velocty=[0, 0, 0]",
@@ -466,6 +466,223 @@ fn mistakes_in_overrides() {
         };
         assert!(message.contains(&place), "{set}: {message}");
     }
+}
+
+/// A case with loads.
+const LOADED: &str = r#"dimension = 2
+spacing = "1 mm"
+gravity = [0, "-9.81 m/s^2"]
+run.end_time = "1 us"
+material.metal.library = "copper"
+
+[[body]]
+name = "block"
+material = "metal"
+shape.box = { lower = [0, 0], upper = ["5 mm", "5 mm"] }
+
+[[body]]
+name = "tool"
+rigid = true
+shape.box = { lower = [0, "-5 mm"], upper = ["5 mm", 0] }
+motion = { times = [0, "1 us"], y = [0, "1 m/s"] }
+
+[[load]]
+name = "grip"
+body = "block"
+below = { x = "1 spacing" }
+velocity = { x = "1 m/s" }
+until = "1 us"
+
+[[plane]]
+normal = "+x"
+
+[[symmetry]]
+axis = "x"
+"#;
+
+/// What is replaced by what in [`LOADED`], the title and the place.
+const IN_LOADS: &[(&str, &str, &str, &str)] = &[
+    (
+        "\"-9.81 m/s^2\"",
+        "\"-9.81 m/s\"",
+        "expected an acceleration with a unit, such as \"9.81 m/s^2\", found a velocity",
+        ":3:15",
+    ),
+    (
+        "gravity = [0, ",
+        "gravity = [",
+        "`gravity` must have 2 components, found 1",
+        ":3:11",
+    ),
+    (
+        "gravity = [0, \"-9.81 m/s^2\"]",
+        "gravity = [\"1 m/s2\", 0]",
+        "gravity along x is not its own mirror image",
+        ":3:12",
+    ),
+    (
+        "material = \"metal\"\n",
+        "",
+        "the key `material` is missing",
+        ":7:1",
+    ),
+    (
+        "rigid = true\n",
+        "material = \"metal\"\n",
+        "only a rigid body has a `motion`",
+        ":16:10",
+    ),
+    (
+        "rigid = true\n",
+        "rigid = true\nvelocity = [0, \"1 m/s\"]\n",
+        "a rigid body has a `velocity` or a `motion`, not both",
+        ":17:10",
+    ),
+    (
+        "name = \"block\"",
+        "name = \"block\"\nrigid = true",
+        "every body is rigid",
+        ":7:1",
+    ),
+    (
+        "y = [0, \"1 m/s\"]",
+        "y = [0]",
+        "`y` must have 2 values as `times` has, found 1",
+        ":16:37",
+    ),
+    (
+        "times = [0, \"1 us\"], ",
+        "",
+        "`y` is a table of time without `times`",
+        ":16:16",
+    ),
+    (
+        "times = [0, \"1 us\"]",
+        "times = [\"1 us\", 0]",
+        "never fall",
+        ":16:29",
+    ),
+    (
+        "motion = { times = [0, \"1 us\"], y",
+        "motion = { times = [0, \"1 us\"], z",
+        "a 2-dimensional case has no z axis",
+        ":16:37",
+    ),
+    (
+        "{ x = \"1 m/s\" }",
+        "{}",
+        "a velocity must be given along at least one of `x`, `y`, `z`",
+        ":22:12",
+    ),
+    (
+        "{ x = \"1 m/s\" }",
+        "{ x = true }",
+        "expected a velocity with a unit, such as \"7 km/s\", or an array of such",
+        ":22:18",
+    ),
+    (
+        "body = \"block\"",
+        "body = \"blok\"",
+        "unknown body `blok`",
+        ":20:8",
+    ),
+    (
+        "body = \"block\"",
+        "body = \"tool\"",
+        "the body `tool` is rigid",
+        ":20:8",
+    ),
+    (
+        "below = { x = \"1 spacing\" }",
+        "below = { x = \"-1 mm\" }",
+        "the region holds no particle of `block`",
+        ":21:9",
+    ),
+    (
+        "below = { x = \"1 spacing\" }",
+        "below = { z = \"1 mm\" }",
+        "a 2-dimensional case has no z axis",
+        ":21:15",
+    ),
+    (
+        "until = \"1 us\"",
+        "until = 0",
+        "`until` must be positive",
+        ":23:9",
+    ),
+    (
+        "name = \"grip\"",
+        "name = \"tool\"",
+        "the name `tool` is taken already",
+        ":19:8",
+    ),
+    (
+        "\"+x\"",
+        "\"+z\"",
+        "a 2-dimensional case has no z axis",
+        ":26:10",
+    ),
+    (
+        "\"+x\"",
+        "[1, 0, 0]",
+        "`normal` must have 2 components, found 3",
+        ":26:10",
+    ),
+    (
+        "\"+x\"",
+        "[0, 0]",
+        "`normal` must be a vector of some length",
+        ":26:10",
+    ),
+    (
+        "\"+x\"",
+        "\"-x\"",
+        "the body `block` reaches 4.500 spacings behind the plane",
+        ":26:10",
+    ),
+    (
+        "normal = \"+x\"",
+        "normal = \"+x\"\nbodies = [\"tool\"]",
+        "the body `tool` is rigid: no plane moves it",
+        ":27:11",
+    ),
+    (
+        "normal = \"+x\"",
+        "normal = \"+x\"\nstiffness = 0",
+        "`stiffness` must be positive",
+        ":27:13",
+    ),
+    (
+        "[[symmetry]]",
+        "[contact]\nmode = \"kernel\"\n\n[[symmetry]]",
+        "the rigid body `tool` cannot have contact of mode `kernel`",
+        ":13:8",
+    ),
+    (
+        "[[symmetry]]",
+        "[[contact.pair]]\nbodies = [\"block\", \"tool\"]\nmode = \"kernel\"\n\n[[symmetry]]",
+        "the rigid body `tool` cannot have contact of mode `kernel`",
+        ":29:20",
+    ),
+];
+
+#[test]
+fn mistakes_in_loads() {
+    parse("case.toml", LOADED, &[]).unwrap_or_else(|error| panic!("{error}"));
+    for (old, new, title, place) in IN_LOADS {
+        assert!(LOADED.contains(old), "{old}");
+        let message = message(&LOADED.replacen(old, new, 1), &[]);
+        assert!(message.contains(title), "{new}: {message}");
+        let place = format!("--> case.toml{place}\n");
+        assert!(message.contains(&place), "{new}: {message}");
+    }
+    let one = LOADED[LOADED.find("[[load]]").unwrap()..LOADED.find("[[plane]]").unwrap()]
+        .replace("name = \"grip\"\n", "");
+    let message = message(&(LOADED.to_owned() + &one.repeat(31)), &[]);
+    assert!(
+        message.contains("at most 32 loads and rigid bodies together"),
+        "{message}"
+    );
 }
 
 #[test]

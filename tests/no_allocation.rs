@@ -41,11 +41,14 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Two blocks in touch, at rest: contact, mirrors and lists are busy, and their sizes stay.
+/// Two blocks in touch on a plane, at rest but for a breath of gravity: contact, mirrors, loads and
+/// lists are busy, and their sizes stay.
 const CASE: &str = r#"
 title = "Two blocks in touch"
 dimension = 3
 spacing = "0.1 mm"
+
+gravity = [0, 0, "-9.81 m/s^2"]
 
 [run]
 end_time = "1 ms"
@@ -62,6 +65,20 @@ shape.box = { lower = ["0 mm", "0 mm", "-0.8 mm"], upper = ["2 mm", "2 mm", "0 m
 name = "above"
 material = "aluminium"
 shape.box = { lower = ["0 mm", "0 mm", "0 mm"], upper = ["1 mm", "1 mm", "0.8 mm"] }
+
+[[body]]
+name = "rigid"
+rigid = true
+shape.box = { lower = ["0 mm", "0 mm", "0.8 mm"], upper = ["1 mm", "1 mm", "1.2 mm"] }
+
+[[load]]
+body = "below"
+above.x = "1.8 mm"
+velocity = { x = 0, y = 0 }
+
+[[plane]]
+normal = "+z"
+point = [0, 0, "-0.8 mm"]
 
 [[symmetry]]
 axis = "x"

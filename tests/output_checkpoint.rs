@@ -10,7 +10,7 @@ use output_support::{case, particles};
 use whipple::comm::Comm;
 use whipple::output::h5::{Element, RowType, Writer};
 use whipple::output::{Block, OutputError, Rows, checkpoint, write_json};
-use whipple::particles::{FieldUse, ParticleStore, with_use};
+use whipple::particles::{FieldKind, FieldUse, ParticleStore, with_use};
 
 fn write(folder: &Path, step: u64, keep: usize) -> PathBuf {
     let (comm, case) = (Comm::solo(), case());
@@ -111,9 +111,9 @@ fn fields_that_the_program_does_not_share_are_told() {
                 .unwrap();
         };
         for field in with_use(FieldUse::STATE).filter(|field| field.name != skip) {
-            let element = match field.name {
-                "id" => Element::U64,
-                "body" => Element::U32,
+            let element = match field.kind {
+                FieldKind::Id => Element::U64,
+                FieldKind::Index => Element::U32,
                 _ => Element::F64,
             };
             let components = field.kind.components();

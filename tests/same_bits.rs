@@ -164,6 +164,26 @@ fn stop_and_restart_on_other_ranks() {
     assert_same(&last(&reference), &last(&elsewhere), "restart elsewhere");
 }
 
+#[test]
+fn loads_and_rigid_bodies_on_any_ranks_and_through_a_restart() {
+    let (_keep, at) = folder();
+    let case = ["tests/common/loaded.toml"];
+    let (one, three, stopped) = (at("one"), at("three"), at("stopped"));
+    run(1, 2, &case, &[], &one);
+    run(3, 1, &case, &["--set", "domain.axis=y"], &three);
+    assert_same(&one, &three, "three ranks");
+    run(2, 1, &case, &["--until", "0.35us"], &stopped);
+    let path = stopped.to_str().expect("a plain path");
+    let again = ["restart", path, "--until", "0.58us", "--poison", "-t", "2"];
+    must(&whipple(1, &again), 0);
+    must(&whipple(2, &["restart", path, "--poison", "-t", "1"]), 0);
+    assert_same(&one, &stopped, "restart on 1 and 2 ranks");
+    let loads = std::fs::read_to_string(one.join("loads.csv")).expect("the table");
+    for name in ["load-1", "corner", "floor", "punch", "plane-1"] {
+        assert!(loads.contains(&format!(",{name},")), "{name} in loads.csv");
+    }
+}
+
 /// A disc on a bar in two dimensions and a hammer on a rod in one, with all options of the sums and
 /// a symmetry plane each.
 const DISC: &str = r#"

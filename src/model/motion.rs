@@ -54,6 +54,8 @@ impl Motion {
         if first == last {
             return mean(first, from, to);
         }
+        // About the first value, so that a constant stays one to the bit.
+        let base = self.on_segment(values, first, from);
         let mut moved = 0.0;
         let mut a = from;
         for segment in first..=last {
@@ -62,10 +64,10 @@ impl Motion {
             } else {
                 self.times[segment]
             };
-            moved += mean(segment, a, b) * (b - a);
+            moved += (mean(segment, a, b) - base) * (b - a);
             a = b;
         }
-        moved / (to - from)
+        base + moved / (to - from)
     }
 
     /// The value at `t` on the line between entries `segment − 1` and `segment`.

@@ -75,10 +75,10 @@ impl FieldUse {
     pub const CONDUCTION: Self = Self(512);
     /// Held only with XSPH.
     pub const XSPH: Self = Self(1024);
-    /// Held only where the case has use for it.
-    pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024 | 2048);
     /// Held only where loads or rigid bodies prescribe velocities.
     pub const LOADS: Self = Self(2048);
+    /// Held only where the case has use for it.
+    pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024 | 2048);
     /// In snapshots at all.
     pub const SNAPSHOT_OR_ON_DEMAND: Self = Self(32 | 64);
     /// What a rank sends with a particle that leaves it.

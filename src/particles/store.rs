@@ -303,8 +303,8 @@ mod tests {
     fn a_store_has_no_trace_of_what_it_dropped() {
         for uses in [
             FieldUse::CONTACT,
-            FieldUse::XSPH,
             FieldUse::LOADS,
+            FieldUse::XSPH,
             FieldUse::OPTIONAL,
         ] {
             let mut store = sentinel(4);

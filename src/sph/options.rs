@@ -95,7 +95,9 @@ pub fn limiter(l: &[f64; 9], sound_speed: f64, h: f64) -> f64 {
     let divergence = (l[0] + l[4] + l[8]).abs();
     let curl = [l[7] - l[5], l[2] - l[6], l[3] - l[1]];
     let curl = (curl[0] * curl[0] + curl[1] * curl[1] + curl[2] * curl[2]).sqrt();
-    divergence / (divergence + curl + 1e-4 * sound_speed / h)
+    let all = divergence + curl + 1e-4 * sound_speed / h;
+    // A rigid body has neither strain nor sound.
+    divergence / all.max(f64::MIN_POSITIVE)
 }
 
 /// What eight receivers show for a set of options, and what they sum for it.

@@ -88,7 +88,7 @@ impl Drive for Prescribed {
 }
 
 /// A rigid plane in one step.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct PlaneStep {
     /// Where it stands at the end of the step: the normal's product with a point of it (m).
     pub position: f64,
@@ -122,15 +122,7 @@ impl LoadStep {
             rigid_bits: (0..drives).fold(0, |bits, k| bits | u32::from(k >= velocities) << k),
             rigid_bodies,
             velocities,
-            planes: case
-                .loads
-                .planes
-                .iter()
-                .map(|_| PlaneStep {
-                    position: 0.0,
-                    velocity: [0.0; 3],
-                })
-                .collect(),
+            planes: vec![PlaneStep::default(); case.loads.planes.len()],
             gravity: case.loads.gravity,
         };
         step.prepare(case, 0.0, 0.0);
@@ -222,6 +214,17 @@ impl LoadStep {
         }
     }
 
+    /// Clears the components of a vector that are prescribed to a particle with these bits.
+    #[inline]
+    pub(super) fn clear_prescribed(&self, bits: u32, vector: &mut [f64; 3]) {
+        let prescribed = self.of(bits);
+        for a in 0..3 {
+            if prescribed.by[a].is_some() {
+                vector[a] = 0.0;
+            }
+        }
+    }
+
     pub(super) fn memory(&self) -> usize {
         size_of::<Prescribed>() * self.drives.capacity()
             + size_of::<PlaneStep>() * self.planes.capacity()
@@ -271,5 +274,45 @@ impl Simulation {
                 self.sums.add_load(by.into(), a, impulse, work);
             }
         }
+    }
+
+    /// Impulse and work of the rigid planes in a half of a step `dt` (s). The work is also what
+    /// contact takes from the planes.
+    pub(super) fn book_pushes(&mut self, dt: f64, first: bool) {
+        let driven = self.loads.driven();
+        let ledgers = &mut self.state.loads[driven..];
+        let planes = self.loads.planes.iter().zip(&self.case.loads.planes);
+        for (ledger, (step, plane)) in ledgers.iter_mut().zip(planes) {
+            let [start, middle, end] = step.velocity;
+            let speed = 0.5 * (middle + if first { start } else { end });
+            let impulse = 0.5 * dt * plane.along(&ledger.force);
+            for a in 0..3 {
+                ledger.impulse[a] += plane.normal[a] * impulse;
+            }
+            ledger.work += impulse * speed;
+            self.state.contact_work -= impulse * speed;
+        }
+    }
+
+    /// Impulses and work of loads, after the second half of a step `dt` (s).
+    pub(super) fn book_load_sums(&mut self, dt: f64) {
+        let driven = self.loads.driven();
+        let per_step = if dt > 0.0 { 1.0 / dt } else { 0.0 };
+        for (ledger, sums) in self.state.loads.iter_mut().zip(&mut self.sums.loads) {
+            for a in 0..3 {
+                let impulse = sums[a].value();
+                ledger.force[a] = impulse * per_step;
+                ledger.impulse[a] += impulse;
+            }
+            ledger.work += sums[3].value();
+            *sums = Default::default();
+        }
+        let ledgers = self.state.loads[driven..].iter_mut();
+        for ((ledger, plane), push) in ledgers.zip(&self.case.loads.planes).zip(&self.sums.pushes) {
+            ledger.force = plane.normal.map(|n| n * push.value());
+        }
+        self.book_pushes(dt, false);
+        let state = &mut self.state;
+        state.work_put_in = state.work_put_in.max(state.load_work().abs());
     }
 }

@@ -4,9 +4,10 @@ use rayon::prelude::*;
 
 use super::search::GRAIN;
 use super::simulation::Simulation;
+use crate::contact::ContactTable;
 use crate::domain::Mirrors;
 use crate::model::{Case, SphOptions};
-use crate::particles::resize;
+use crate::particles::{FieldUse, resize};
 use crate::sph::kernel::Kernel;
 use crate::sph::options::{
     ARTIFICIAL_STRESS, BALSARA, CONDUCTION, OptionRecord, Options, XSPH, limiter, repulsion,
@@ -57,6 +58,22 @@ impl OptionPhase {
     pub(super) fn memory(&self) -> usize {
         self.records.capacity() * size_of::<OptionRecord>()
     }
+}
+
+/// Fields that a case has no use for.
+pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> FieldUse {
+    let sph = &case.sph;
+    let driven = !case.loads.velocities.is_empty() || case.bodies.iter().any(|b| b.rigid.is_some());
+    [
+        (FieldUse::CONTACT, contact.is_active()),
+        (FieldUse::LOADS, driven),
+        (FieldUse::BALSARA, sph.balsara),
+        (FieldUse::CONDUCTION, sph.conduction > 0.0),
+        (FieldUse::XSPH, sph.xsph > 0.0),
+    ]
+    .into_iter()
+    .filter(|&(_, used)| !used)
+    .fold(FieldUse::default(), |all, (fields, _)| all.with(fields))
 }
 
 impl Simulation {
@@ -118,23 +135,27 @@ impl Simulation {
     ///
     /// Particles that feel contact move with their own velocity: the energy of contact is a
     /// function of their positions, and its balance holds only where force times velocity is work.
+    /// So do particles that a load drives, along the axes that it prescribes.
     pub(super) fn drift_with_neighbours(&mut self, dt: f64) {
         if self.options.set & XSPH == 0 {
             return;
         }
         let store = &mut self.store;
-        let (contact, load) = (&store.contact_acceleration, &store.load);
+        let (contact, loads, bits) = (&store.contact_acceleration, &self.loads, &store.load);
         (&mut store.position, &store.velocity_correction)
             .into_par_iter()
             .with_min_len(GRAIN)
             .enumerate()
             .for_each(|(i, (x, correction))| {
-                let touched = contact.get(i).is_some_and(|force| *force != [0.0; 3]);
-                if touched || load.get(i).is_some_and(|load| *load != 0) {
+                if contact.get(i).is_some_and(|force| *force != [0.0; 3]) {
                     return;
                 }
+                let mut drift = *correction;
+                if let Some(&bits) = bits.get(i) {
+                    loads.clear_prescribed(bits, &mut drift);
+                }
                 for a in 0..3 {
-                    x[a] += dt * correction[a];
+                    x[a] += dt * drift[a];
                 }
             });
     }

@@ -6,10 +6,12 @@
 
 use rayon::prelude::*;
 
+use super::loads::PlaneStep;
 use super::search::GRAIN;
 use super::simulation::Simulation;
 use crate::contact::ContactTable;
-use crate::model::Case;
+use crate::model::{Case, RigidPlane};
+use crate::particles::ParticleStore;
 
 /// What a plane does to one particle.
 #[derive(Debug, Clone, Copy)]
@@ -108,41 +110,58 @@ impl Simulation {
 
     /// The particles near planes, chunk after chunk.
     fn find_pushes(&mut self) {
-        let store = &self.store;
-        let owned = store.owned();
-        let PlaneForces { penalties, pushes } = &mut self.plane_forces;
-        let (planes, steps) = (&self.case.loads.planes, &self.loads.planes);
-        let table: &ContactTable = &self.contact;
+        let owned = self.store.owned();
+        let PlaneForces { penalties, pushes } = std::mem::take(&mut self.plane_forces);
+        let mut pushes = pushes;
         pushes.resize(owned.div_ceil(GRAIN), Vec::new());
-        pushes
-            .par_iter_mut()
-            .enumerate()
-            .for_each(|(chunk, pushes)| {
-                pushes.clear();
-                for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(owned) {
-                    let body = store.body[i] as usize;
-                    for (n, (plane, step)) in planes.iter().zip(steps).enumerate() {
-                        let Some(penalty) = &penalties[n][body] else {
-                            continue;
-                        };
-                        let gap = plane.along(&store.position[i]) - step.position;
-                        if gap >= penalty.h.max(penalty.reach) {
-                            continue;
-                        }
-                        let rate = plane.along(&store.predicted_velocity[i]) - step.velocity[2];
-                        let volume = store.mass[i] * table.inverse_density(body);
-                        let [force, energy, stiffness, approach] = penalty.push(volume, gap, rate);
-                        pushes.push(Push {
-                            particle: i,
-                            plane: n,
-                            force,
-                            energy,
-                            stiffness,
-                            approach,
-                        });
-                    }
-                }
-            });
+        let view = View {
+            store: &self.store,
+            table: &self.contact,
+            planes: &self.case.loads.planes,
+            steps: &self.loads.planes,
+            penalties: &penalties,
+        };
+        let chunks = pushes.par_iter_mut().enumerate();
+        chunks.for_each(|(chunk, pushes)| {
+            pushes.clear();
+            for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(owned) {
+                pushes.extend((0..view.planes.len()).filter_map(|n| view.push(i, n)));
+            }
+        });
+        self.plane_forces = PlaneForces { penalties, pushes };
+    }
+}
+
+/// What a push depends on.
+struct View<'a> {
+    store: &'a ParticleStore,
+    table: &'a ContactTable,
+    planes: &'a [RigidPlane],
+    steps: &'a [PlaneStep],
+    penalties: &'a [Vec<Option<Penalty>>],
+}
+
+impl View<'_> {
+    /// What plane `n` does to particle `i`, if that is near it.
+    fn push(&self, i: usize, n: usize) -> Option<Push> {
+        let (plane, step) = (&self.planes[n], &self.steps[n]);
+        let body = self.store.body[i] as usize;
+        let penalty = self.penalties[n][body].as_ref()?;
+        let gap = plane.along(&self.store.position[i]) - step.position;
+        if gap >= penalty.h.max(penalty.reach) {
+            return None;
+        }
+        let rate = plane.along(&self.store.predicted_velocity[i]) - step.velocity[2];
+        let volume = self.store.mass[i] * self.table.inverse_density(body);
+        let [force, energy, stiffness, approach] = penalty.push(volume, gap, rate);
+        Some(Push {
+            particle: i,
+            plane: n,
+            force,
+            energy,
+            stiffness,
+            approach,
+        })
     }
 }
 

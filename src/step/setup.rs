@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::contact_phase::ContactPhase;
 use super::loads::{Drive, Goal, LoadStep};
-use super::options::OptionPhase;
+use super::options::{OptionPhase, unused_fields};
 use super::plane_forces::PlaneForces;
 use super::search::Search;
 use super::simulation::{Simulation, StepError};
@@ -17,7 +17,7 @@ use crate::contact::ContactTable;
 use crate::domain::{Halo, Histogram, Migration, Mirrors, Slabs, balance};
 use crate::model::Case;
 use crate::neighbours::{ColumnGrid, Image};
-use crate::particles::{FieldUse, ParticleStore};
+use crate::particles::ParticleStore;
 use crate::populate::{self, Slab};
 
 /// Why a case cannot start; the same on all ranks.
@@ -219,22 +219,6 @@ impl Simulation {
         self.vote(comm)?;
         Ok(())
     }
-}
-
-/// Fields that a case has no use for.
-fn unused_fields(case: &Case, contact: &ContactTable) -> FieldUse {
-    let sph = &case.sph;
-    let driven = !case.loads.velocities.is_empty() || case.bodies.iter().any(|b| b.rigid.is_some());
-    [
-        (FieldUse::CONTACT, contact.is_active()),
-        (FieldUse::LOADS, driven),
-        (FieldUse::BALSARA, sph.balsara),
-        (FieldUse::CONDUCTION, sph.conduction > 0.0),
-        (FieldUse::XSPH, sph.xsph > 0.0),
-    ]
-    .into_iter()
-    .filter(|&(_, used)| !used)
-    .fold(FieldUse::default(), |all, (fields, _)| all.with(fields))
 }
 
 /// Refuses a case without particles, or a rank with more than it can number. Collective.

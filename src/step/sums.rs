@@ -19,9 +19,9 @@ pub struct StepSums {
     pub(super) crossing_impulse: [ExactSum; 3],
     plane_force: [ExactSum; 3],
     /// Impulse and work of prescribed velocities and of rigid bodies in this step.
-    loads: Vec<[ExactSum; 4]>,
+    pub(super) loads: Vec<[ExactSum; 4]>,
     /// Force along the normal of each rigid plane.
-    pushes: Vec<ExactSum>,
+    pub(super) pushes: Vec<ExactSum>,
     pair_bodies: Vec<[usize; 2]>,
     pairs: Vec<PairSums>,
     interpenetrated: i64,
@@ -228,46 +228,6 @@ impl Simulation {
                 pair.impulse[a] += 0.5 * dt * pair.force[a];
             }
         }
-    }
-
-    /// Impulse and work of the rigid planes in a half of a step `dt` (s). The work is also what
-    /// contact takes from the planes.
-    fn book_pushes(&mut self, dt: f64, first: bool) {
-        let driven = self.loads.driven();
-        let ledgers = &mut self.state.loads[driven..];
-        let planes = self.loads.planes.iter().zip(&self.case.loads.planes);
-        for (ledger, (step, plane)) in ledgers.iter_mut().zip(planes) {
-            let [start, middle, end] = step.velocity;
-            let speed = 0.5 * (middle + if first { start } else { end });
-            let impulse = 0.5 * dt * plane.along(&ledger.force);
-            for a in 0..3 {
-                ledger.impulse[a] += plane.normal[a] * impulse;
-            }
-            ledger.work += impulse * speed;
-            self.state.contact_work -= impulse * speed;
-        }
-    }
-
-    /// Impulses and work of loads, after the second half of a step `dt` (s).
-    fn book_load_sums(&mut self, dt: f64) {
-        let driven = self.loads.driven();
-        let per_step = if dt > 0.0 { 1.0 / dt } else { 0.0 };
-        for (ledger, sums) in self.state.loads.iter_mut().zip(&mut self.sums.loads) {
-            for a in 0..3 {
-                let impulse = sums[a].value();
-                ledger.force[a] = impulse * per_step;
-                ledger.impulse[a] += impulse;
-            }
-            ledger.work += sums[3].value();
-            *sums = Default::default();
-        }
-        let ledgers = self.state.loads[driven..].iter_mut();
-        for ((ledger, plane), push) in ledgers.zip(&self.case.loads.planes).zip(&self.sums.pushes) {
-            ledger.force = plane.normal.map(|n| n * push.value());
-        }
-        self.book_pushes(dt, false);
-        let state = &mut self.state;
-        state.work_put_in = state.work_put_in.max(state.load_work().abs());
     }
 
     /// Joins the sums of all ranks into the state, after the second half of a step `dt` (s).

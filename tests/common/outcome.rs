@@ -81,3 +81,39 @@ pub fn everything() -> Case {
     case.domain.balance_every = 7;
     case
 }
+
+/// A case with all loads there are.
+pub fn loaded() -> Case {
+    let text = include_str!("loaded.toml");
+    whipple::input::parse("loaded.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The same with nothing in contact but a block and a plane.
+pub fn on_a_plane() -> Case {
+    let mut case = loaded();
+    for body in &mut case.bodies {
+        body.rigid = None;
+    }
+    case.bodies.drain(..1);
+    case.bodies.truncate(1);
+    case.loads.velocities.clear();
+    let plane = &mut case.loads.planes[0];
+    plane.bodies = vec![true];
+    case
+}
+
+/// All loads with all options of the SPH sums.
+pub fn loaded_with_options() -> Case {
+    let mut case = loaded();
+    case.sph = every_option().sph;
+    case
+}
+
+/// Without options of the SPH sums and with all, without loads and with all.
+pub const CASES: [fn() -> Case; 5] = [
+    everything,
+    every_option,
+    loaded,
+    on_a_plane,
+    loaded_with_options,
+];

@@ -48,6 +48,16 @@ impl Reader<'_> {
             );
             return Err(Complaint::new(table.span(), title));
         }
+        self.check_names(params)?;
+        Ok(Loads {
+            gravity: self.gravity(params.gravity.as_ref())?,
+            velocities: velocities?,
+            planes: planes?,
+        })
+    }
+
+    /// Names are those of rows in one table, with rigid bodies.
+    fn check_names(&self, params: &CaseParams) -> Result<(), Complaint> {
         let names = || {
             let loads = params.load.iter().map(|t| &t.get_ref().name);
             let planes = params.plane.iter().map(|t| &t.get_ref().name);
@@ -61,11 +71,7 @@ impl Reader<'_> {
                 return Err(Complaint::new(name.span(), title));
             }
         }
-        Ok(Loads {
-            gravity: self.gravity(params.gravity.as_ref())?,
-            velocities: velocities?,
-            planes: planes?,
-        })
+        Ok(())
     }
 
     fn gravity(
@@ -97,15 +103,12 @@ impl Reader<'_> {
     }
 
     fn body(&self, name: &Spanned<String>) -> Result<(usize, &Body), Complaint> {
-        let wanted = name.get_ref();
-        let found = self.bodies.iter().enumerate();
-        found
-            .clone()
-            .find(|(_, body)| body.name == *wanted)
-            .ok_or_else(|| {
-                let known = found.map(|(_, body)| body.name.as_str());
-                Complaint::unknown(name.span(), "body", wanted, known)
-            })
+        let found = self.bodies.iter().position(|b| b.name == *name.get_ref());
+        let index = found.ok_or_else(|| {
+            let known = self.bodies.iter().map(|body| body.name.as_str());
+            Complaint::unknown(name.span(), "body", name.get_ref(), known)
+        })?;
+        Ok((index, &self.bodies[index]))
     }
 
     fn load(&self, params: &LoadParams, number_of: usize) -> Result<VelocityLoad, Complaint> {

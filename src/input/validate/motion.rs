@@ -69,8 +69,9 @@ fn along(
             Ok(list.iter().map(|value| value.get_ref().si()).collect())
         }
         OneOrMany::Many(list) => {
-            let title = format!("`{name}` has {} values for {count} `times`", list.len());
-            Err(Complaint::new(values.span(), title).help("give one for each time"))
+            let found = list.len();
+            let title = format!("`{name}` must have {count} values as `times` has, found {found}");
+            Err(Complaint::new(values.span(), title))
         }
     }
 }
