@@ -160,6 +160,67 @@ fn stop_and_restart_on_other_ranks() {
     assert_same(&last(&reference), &last(&elsewhere), "restart elsewhere");
 }
 
+/// One cube of each law, in a row of collisions.
+fn zoo() -> String {
+    let mut text = r#"
+title = "A row of cubes of different materials"
+dimension = 3
+spacing = "0.1 mm"
+[run]
+end_time = "1.5 us"
+[domain]
+axis = "x"
+balance_every = 9
+[output]
+snapshot_every = "0.5 us"
+checkpoint_every = "0.5 us"
+history_every = 5
+fields = ["temperature", "pressure", "deviatoric_stress", "plastic_strain"]
+"#
+    .to_owned();
+    let materials = [
+        "copper-johnson-cook",
+        "water",
+        "aluminium-6061-steinberg-guinan",
+        "rubber",
+        "iron-tillotson",
+        "air",
+    ];
+    for (n, name) in materials.into_iter().enumerate() {
+        let x = 0.6 * n as f64;
+        let speed = if n % 2 == 0 { "400 m/s" } else { "-400 m/s" };
+        text += &format!(
+            r#"
+[material.{name}]
+library = "{name}"
+[[body]]
+name = "{name}"
+material = "{name}"
+shape.box = {{ size = ["0.5 mm", "0.5 mm", "0.5 mm"], centre = ["{x} mm", 0, 0] }}
+velocity = ["{speed}", 0, 0]
+"#
+        );
+    }
+    // A thin hot cloud rather than air at rest.
+    text + "density = \"10 kg/m^3\"\nspecific_energy = \"0.3 MJ/kg\"\n"
+}
+
+#[test]
+fn every_material() {
+    let (_keep, at) = folder();
+    let case = at("zoo.toml");
+    std::fs::write(&case, zoo()).expect("the case is written");
+    let case = [case.to_str().expect("a plain path")];
+    let (one, three, stopped) = (at("one"), at("three"), at("stopped"));
+    run(1, 2, &case, &[], &one);
+    run(3, 1, &case, &[], &three);
+    assert_same(&one, &three, "three ranks");
+    run(2, 1, &case, &["--until", "0.7us"], &stopped);
+    let path = stopped.to_str().expect("a plain path");
+    must(&whipple(3, &["restart", path, "--poison", "-t", "1"]), 0);
+    assert_same(&one, &stopped, "restart on three ranks");
+}
+
 /// Five cubes of as many particles each, one to a slab of faces that never move. Two of them fly
 /// along the row, graze what they pass and hit the last: slabs lose all particles and get others.
 const FLYBY: &str = r#"
