@@ -186,10 +186,10 @@ fields = ["temperature", "pressure", "deviatoric_stress", "plastic_strain"]
         "iron-tillotson",
         "air",
     ];
-    for (n, name) in materials.into_iter().enumerate() {
-        let x = 0.6 * n as f64;
+    for (n, name) in (0_u32..).zip(materials) {
+        let x = 0.6 * f64::from(n);
         let speed = if n % 2 == 0 { "400 m/s" } else { "-400 m/s" };
-        text += &format!(
+        let cube = format!(
             r#"
 [material.{name}]
 library = "{name}"
@@ -200,6 +200,7 @@ shape.box = {{ size = ["0.5 mm", "0.5 mm", "0.5 mm"], centre = ["{x} mm", 0, 0] 
 velocity = ["{speed}", 0, 0]
 "#
         );
+        text += &cube;
     }
     // A thin hot cloud rather than air at rest.
     text + "density = \"10 kg/m^3\"\nspecific_energy = \"0.3 MJ/kg\"\n"

@@ -21,7 +21,7 @@ pub(super) const RECORDS: &[Record] = &[
                 reference_pressure: 101_325.0,
             }),
             strength: Strength::None,
-            thermal: heat(717.63, 288.15, 0.0),
+            thermal: Some(heat(717.63, 288.15, None)),
         },
         sources: &[
             ("eos.ideal_gas.gamma", DIATOMIC),

@@ -64,7 +64,7 @@ pub(super) const RECORDS: &[Record] = &[
     Record {
         name: "aluminium-2024",
         title: "aluminium 2024-T4, constant yield stress",
-        make: || von_mises(&AL_2024, 0.26e9, heat(875.0, 300.0, 775.0)),
+        make: || von_mises(&AL_2024, 0.26e9, heat(875.0, 300.0, Some(775.0))),
         sources: simple!(UINTAH, JOHNSON_COOK),
     },
     Record {
@@ -74,7 +74,7 @@ pub(super) const RECORDS: &[Record] = &[
             jc(
                 &AL_2024,
                 [265e6, 426e6, 0.34, 0.015, 1.00],
-                heat(875.0, 300.0, 775.0),
+                heat(875.0, 300.0, Some(775.0)),
             )
         },
         sources: johnson_cook!(UINTAH, UINTAH, JOHNSON_COOK),
@@ -87,7 +87,7 @@ pub(super) const RECORDS: &[Record] = &[
                 &AL_2024,
                 [0.26e9, 0.76e9, 310.0, 0.185],
                 [6.52e-11, 6.16e-4, 1220.0, 1.5],
-                heat(875.0, 300.0, 0.0),
+                heat(875.0, 300.0, None),
             )
         },
         sources: steinberg!(JOHNSON_COOK),
@@ -95,7 +95,7 @@ pub(super) const RECORDS: &[Record] = &[
     Record {
         name: "aluminium-6061",
         title: "aluminium 6061-T6, constant yield stress",
-        make: || von_mises(&AL_6061, 0.29e9, heat(896.0, 300.0, 925.0)),
+        make: || von_mises(&AL_6061, 0.29e9, heat(896.0, 300.0, Some(925.0))),
         sources: simple!(UINTAH, UINTAH_JC),
     },
     Record {
@@ -105,7 +105,7 @@ pub(super) const RECORDS: &[Record] = &[
             jc(
                 &AL_6061,
                 [324e6, 114e6, 0.42, 0.002, 1.34],
-                heat(896.0, 300.0, 925.0),
+                heat(896.0, 300.0, Some(925.0)),
             )
         },
         sources: johnson_cook!(UINTAH, UINTAH, UINTAH_JC),
@@ -118,7 +118,7 @@ pub(super) const RECORDS: &[Record] = &[
                 &AL_6061,
                 [0.29e9, 0.68e9, 125.0, 0.10],
                 [6.52e-11, 6.16e-4, 1220.0, 1.5],
-                heat(896.0, 300.0, 0.0),
+                heat(896.0, 300.0, None),
             )
         },
         sources: steinberg!(UINTAH_JC),
@@ -134,7 +134,7 @@ pub(super) const RECORDS: &[Record] = &[
             jc(
                 &metal,
                 [337e6, 343e6, 0.41, 0.010, 1.00],
-                heat(875.0, 300.0, 877.0),
+                heat(875.0, 300.0, Some(877.0)),
             )
         },
         sources: &[
@@ -148,7 +148,7 @@ pub(super) const RECORDS: &[Record] = &[
     Record {
         name: "copper",
         title: "copper OFHC half-hard, constant yield stress",
-        make: || von_mises(&COPPER, 0.12e9, heat(383.0, 300.0, 1356.0)),
+        make: || von_mises(&COPPER, 0.12e9, heat(383.0, 300.0, Some(1356.0))),
         sources: simple!(UINTAH, JOHNSON_COOK),
     },
     Record {
@@ -158,7 +158,7 @@ pub(super) const RECORDS: &[Record] = &[
             jc(
                 &COPPER,
                 [90e6, 292e6, 0.31, 0.025, 1.09],
-                heat(383.0, 300.0, 1356.0),
+                heat(383.0, 300.0, Some(1356.0)),
             )
         },
         sources: johnson_cook!(UINTAH, UINTAH, JOHNSON_COOK),
@@ -171,7 +171,7 @@ pub(super) const RECORDS: &[Record] = &[
                 &COPPER,
                 [0.12e9, 0.64e9, 36.0, 0.45],
                 [2.83e-11, 3.77e-4, 1790.0, 1.5],
-                heat(383.0, 300.0, 0.0),
+                heat(383.0, 300.0, None),
             )
         },
         sources: steinberg!(JOHNSON_COOK),
@@ -179,7 +179,7 @@ pub(super) const RECORDS: &[Record] = &[
     Record {
         name: "steel-304",
         title: "stainless steel 304, constant yield stress",
-        make: || von_mises(&STEEL_304, 0.34e9, heat(500.0, 300.0, 1673.0)),
+        make: || von_mises(&STEEL_304, 0.34e9, heat(500.0, 300.0, Some(1673.0))),
         sources: simple!(SPHERAL, TEXTBOOK),
     },
     Record {
@@ -189,7 +189,7 @@ pub(super) const RECORDS: &[Record] = &[
             jc(
                 &STEEL_4340,
                 [792e6, 510e6, 0.26, 0.014, 1.03],
-                heat(477.0, 300.0, 1793.0),
+                heat(477.0, 300.0, Some(1793.0)),
             )
         },
         sources: &[
@@ -246,7 +246,7 @@ const STEEL_4340: Metal = Metal {
 };
 
 impl Metal {
-    fn with(&self, strength: Strength, thermal: Option<ThermalConstants>) -> Parts {
+    fn with(&self, strength: Strength, thermal: ThermalConstants) -> Parts {
         let [c0, s1, gamma0, b] = self.hugoniot;
         Parts {
             density: self.density,
@@ -259,12 +259,12 @@ impl Metal {
                 b,
             }),
             strength,
-            thermal,
+            thermal: Some(thermal),
         }
     }
 }
 
-fn von_mises(metal: &Metal, yield_stress: f64, thermal: Option<ThermalConstants>) -> Parts {
+fn von_mises(metal: &Metal, yield_stress: f64, thermal: ThermalConstants) -> Parts {
     let law = VonMises {
         shear_modulus: metal.shear_modulus,
         yield_stress,
@@ -274,7 +274,7 @@ fn von_mises(metal: &Metal, yield_stress: f64, thermal: Option<ThermalConstants>
 }
 
 /// `[A (Pa), B (Pa), n, C, m]`.
-fn jc(metal: &Metal, [a, b, n, c, m]: [f64; 5], thermal: Option<ThermalConstants>) -> Parts {
+fn jc(metal: &Metal, [a, b, n, c, m]: [f64; 5], thermal: ThermalConstants) -> Parts {
     let law = JohnsonCook {
         shear_modulus: metal.shear_modulus,
         a,
@@ -292,7 +292,7 @@ fn sg(
     metal: &Metal,
     [yield_stress, max_yield_stress, beta, n]: [f64; 4],
     [pressure, temperature, melting_temperature, a]: [f64; 4],
-    thermal: Option<ThermalConstants>,
+    thermal: ThermalConstants,
 ) -> Parts {
     let law = SteinbergGuinan {
         shear_modulus: metal.shear_modulus,

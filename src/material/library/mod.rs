@@ -85,10 +85,10 @@ fn record(name: &str) -> Option<&'static Record> {
 }
 
 /// Thermal constants: specific heat (J/(kg K)), reference and melting temperatures (K).
-fn heat(specific_heat: f64, reference: f64, melting: f64) -> Option<ThermalConstants> {
-    Some(ThermalConstants {
+fn heat(specific_heat: f64, reference: f64, melting: Option<f64>) -> ThermalConstants {
+    ThermalConstants {
         specific_heat,
         reference_temperature: reference,
-        melting_temperature: (melting > 0.0).then_some(melting),
-    })
+        melting_temperature: melting,
+    }
 }
