@@ -6,7 +6,7 @@ mod common;
 use std::path::Path;
 use std::process::Command;
 
-use common::outcome::{Outcome, advance, assert_same, everything, start};
+use common::outcome::{Outcome, advance, assert_same, every_option, everything, start};
 use common::random::Random;
 use whipple::comm::Comm;
 use whipple::input;
@@ -17,8 +17,11 @@ use whipple::step::Simulation;
 
 const STEPS: usize = 40;
 
-fn reference() -> Outcome {
-    let mut simulation = start(everything());
+/// Without options of the SPH sums and with all.
+const CASES: [fn() -> Case; 2] = [everything, every_option];
+
+fn reference(case: fn() -> Case) -> Outcome {
+    let mut simulation = start(case());
     advance(&mut simulation, STEPS);
     Outcome::of(&simulation)
 }
@@ -26,18 +29,22 @@ fn reference() -> Outcome {
 /// NaN in everything that is not state, between any two steps, changes no bit.
 #[test]
 fn only_state_carries_over_a_step() {
-    let mut poisoned = start(everything());
-    poisoned.poison = true;
-    advance(&mut poisoned, STEPS);
-    assert_same(&Outcome::of(&poisoned), &reference());
+    for case in CASES {
+        let mut poisoned = start(case());
+        poisoned.poison = true;
+        advance(&mut poisoned, STEPS);
+        assert_same(&Outcome::of(&poisoned), &reference(case));
+    }
 }
 
 #[test]
 fn threads_change_no_bit() {
-    let reference = reference();
-    for threads in [1, 2, 5] {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        assert_same(&pool.unwrap().install(self::reference), &reference);
+    for case in CASES {
+        let reference = reference(case);
+        for threads in [1, 2, 5] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            assert_same(&pool.unwrap().install(|| self::reference(case)), &reference);
+        }
     }
 }
 
@@ -45,11 +52,11 @@ fn threads_change_no_bit() {
 /// sparing them changes no bit.
 #[test]
 fn sparing_what_is_calm_changes_no_bit() {
-    let quarter = || {
+    let quarter = || -> Case {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/quarter-impact/case.toml");
         input::load(&path, &["spacing=\"0.05 mm\"".to_owned()]).unwrap()
     };
-    for case in [&everything, &quarter as &dyn Fn() -> Case] {
+    for case in [everything, every_option, quarter as fn() -> Case] {
         let [spared, whole] = [true, false].map(|spare| {
             let mut simulation = Simulation::start(case(), &Comm::solo()).unwrap();
             simulation.spare_calm = spare;
@@ -68,31 +75,35 @@ fn sparing_what_is_calm_changes_no_bit() {
 /// The order of particles in memory is nobody's business.
 #[test]
 fn order_in_memory_changes_no_bit() {
-    let mut simulation = start(everything());
-    let mut random = Random::new(2);
-    for _ in 0..STEPS {
-        let mut order: Vec<u32> = (0..u32::try_from(simulation.store.owned()).unwrap()).collect();
-        random.shuffle(&mut order);
-        simulation
-            .store
-            .keep(&order, &mut vec![0; SCRATCH_WORDS * order.len()]);
-        advance(&mut simulation, 1);
+    for case in CASES {
+        let mut simulation = start(case());
+        let mut random = Random::new(2);
+        for _ in 0..STEPS {
+            let count = u32::try_from(simulation.store.owned()).unwrap();
+            let mut order: Vec<u32> = (0..count).collect();
+            random.shuffle(&mut order);
+            let mut scratch = vec![0; SCRATCH_WORDS * order.len()];
+            simulation.store.keep(&order, &mut scratch);
+            advance(&mut simulation, 1);
+        }
+        assert_same(&Outcome::of(&simulation), &reference(case));
     }
-    assert_same(&Outcome::of(&simulation), &reference());
 }
 
 /// A run taken up again from its state alone goes on as if nothing had happened.
 #[test]
 fn resuming_changes_no_bit() {
-    let mut first = start(everything());
-    advance(&mut first, STEPS / 2);
-    let mut saved = first.store.clone();
-    saved.resize_halo(0);
-    saved.poison();
-    let state = first.state.clone();
-    let mut second = Simulation::resume(everything(), &Comm::solo(), state, saved).unwrap();
-    advance(&mut second, STEPS - STEPS / 2);
-    assert_same(&Outcome::of(&second), &reference());
+    for case in CASES {
+        let mut first = start(case());
+        advance(&mut first, STEPS / 2);
+        let mut saved = first.store.clone();
+        saved.resize_halo(0);
+        saved.poison();
+        let state = first.state.clone();
+        let mut second = Simulation::resume(case(), &Comm::solo(), state, saved).unwrap();
+        advance(&mut second, STEPS - STEPS / 2);
+        assert_same(&Outcome::of(&second), &reference(case));
+    }
 }
 
 const DIGEST: &str = "WHIPPLE_TEST_DIGEST";
@@ -101,15 +112,16 @@ const DIGEST: &str = "WHIPPLE_TEST_DIGEST";
 #[test]
 fn instruction_sets_change_no_bit() {
     if std::env::var_os(DIGEST).is_some() {
-        let Outcome { rows, state } = reference();
+        let outcomes = CASES.map(reference);
+        let states: Vec<&String> = outcomes.iter().map(|outcome| &outcome.state).collect();
         // FNV-1a.
-        let digest = rows
-            .into_values()
-            .flatten()
-            .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+        let digest = outcomes
+            .iter()
+            .flat_map(|outcome| outcome.rows.values().flatten())
+            .fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
                 (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
             });
-        println!("digest {digest:x} {state}");
+        println!("digest {digest:x} {states:?}");
         return;
     }
     let outputs: Vec<String> = available()

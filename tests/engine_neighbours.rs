@@ -200,7 +200,7 @@ proptest! {
 /// Enough particles for several tasks, chunks and halves of the sort.
 #[test]
 fn large_clouds_agree_with_brute_force() {
-    for (dimension, along, runaways) in [(2, 0, 4), (3, 2, 9)] {
+    for (dimension, along, runaways) in [(1, 0, 3), (2, 0, 4), (3, 2, 9)] {
         let cloud = Cloud::new(&Recipe {
             seed: 11,
             dimension,

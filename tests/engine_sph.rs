@@ -16,6 +16,7 @@ use whipple::sph::gradient::{MotionRecord, VelocityGradient};
 use whipple::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use whipple::sph::lanes::{F64x8, LANES};
 use whipple::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
+use whipple::sph::options::Options;
 
 const VISCOSITY: Viscosity = Viscosity {
     alpha: 1.3,
@@ -168,7 +169,7 @@ fn momentum<S: PairScale, const MIRRORED: bool>(
     neighbours: &[u32],
     scale: S,
 ) -> Forces {
-    set.run(Momentum::<S, MIRRORED> {
+    set.run(Momentum::<S, 0, MIRRORED> {
         sources: &records.motion,
         lengths: &records.lengths,
         stresses: &records.stress,
@@ -177,6 +178,7 @@ fn momentum<S: PairScale, const MIRRORED: bool>(
         neighbours,
         scale,
         viscosity: VISCOSITY,
+        options: Options::NONE,
     })
 }
 

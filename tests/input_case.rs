@@ -144,6 +144,28 @@ fn overrides_reach_every_place() {
 }
 
 #[test]
+fn options_of_the_sums() {
+    let case = ready("quarter-impact", &[]);
+    assert!(!case.sph.balsara);
+    let off = [
+        case.sph.artificial_stress,
+        case.sph.conduction,
+        case.sph.xsph,
+    ];
+    assert_eq!(off.map(f64::to_bits), [0; 3]);
+    let sets = [
+        "sph.artificial_stress=0.3",
+        "sph.balsara=true",
+        "sph.conduction=1",
+        "sph.xsph=0.5",
+    ];
+    let sph = ready("quarter-impact", &sets).sph;
+    assert!(sph.balsara);
+    let on = [sph.artificial_stress, sph.conduction, sph.xsph];
+    assert_eq!(on.map(f64::to_bits), [0.3, 1.0, 0.5].map(f64::to_bits));
+}
+
+#[test]
 fn the_resolved_text_gives_the_same_case() {
     let sets: [&[&str]; 3] = [
         &[],

@@ -339,6 +339,18 @@ const IN_OVERRIDES: &[(&str, &str, usize)] = &[
         "expected a number, found string \"much\"",
         11,
     ),
+    (
+        "sph.artificial_stress=3",
+        "`artificial_stress` must be between 0 and 1",
+        23,
+    ),
+    (
+        "sph.conduction=-1",
+        "`conduction` must be between 0 and 2",
+        16,
+    ),
+    ("sph.xsph=1.1", "`xsph` must be between 0 and 1", 10),
+    ("sph.balsara=1", "expected a boolean", 13),
     ("output.fields=[\"presure\"]", "unknown field `presure`", 16),
     ("output.fields=[\"body\", \"body\"]", "is listed twice", 24),
     (

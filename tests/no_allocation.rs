@@ -78,15 +78,26 @@ fn a_warm_step_allocates_nothing_and_all_that_is_held_is_told() {
     let comm = Comm::solo();
     // The pool of threads is there before anything is counted.
     rayon::join(|| (), || ());
+    check(&comm, &[]);
+    let options = [
+        "artificial_stress=0.3",
+        "balsara=true",
+        "conduction=1",
+        "xsph=0.5",
+    ];
+    check(&comm, &options.map(|option| format!("sph.{option}")));
+}
+
+fn check(comm: &Comm, set: &[String]) {
     let held_before = HELD.load(Ordering::Relaxed);
-    let case = input::parse("case", CASE, &[]).unwrap_or_else(|e| panic!("{e}"));
-    let mut simulation = Simulation::start(case, &comm).expect("it starts");
+    let case = input::parse("case", CASE, set).unwrap_or_else(|e| panic!("{e}"));
+    let mut simulation = Simulation::start(case, comm).expect("it starts");
     for _ in 0..20 {
-        simulation.advance(&comm).expect("a step");
+        simulation.advance(comm).expect("a step");
     }
     let before = COUNT.load(Ordering::Relaxed);
     for _ in 0..20 {
-        simulation.advance(&comm).expect("a step");
+        simulation.advance(comm).expect("a step");
     }
     let allocations = COUNT.load(Ordering::Relaxed) - before;
     // The thread pool now and then adds a block of 63 jobs to a queue; nothing else may.

@@ -106,7 +106,7 @@ fn slabs_along_and_across_the_impact_balanced_or_not() {
 }
 
 #[test]
-fn every_contact_mode_and_variable_h() {
+fn every_contact_mode_variable_h_and_options() {
     let (_keep, at) = folder();
     for options in [
         ["contact.mode=potential", "run.end_time=0.05us"],
@@ -114,6 +114,10 @@ fn every_contact_mode_and_variable_h() {
         ["contact.mode=none", "run.end_time=0.05us"],
         ["sph.smoothing_length=variable", "run.end_time=0.1us"],
         ["sph.smoothing_length=constant", "run.end_time=0.1us"],
+        ["sph.artificial_stress=0.3", "run.end_time=0.1us"],
+        ["sph.balsara=true", "run.end_time=0.05us"],
+        ["sph.conduction=1", "run.end_time=0.05us"],
+        ["sph.xsph=0.5", "run.end_time=0.1us"],
     ] {
         let more = ["--set", options[0], "--set", options[1]];
         let (one, three) = (
@@ -220,6 +224,104 @@ fn every_material() {
     let path = stopped.to_str().expect("a plain path");
     must(&whipple(3, &["restart", path, "--poison", "-t", "1"]), 0);
     assert_same(&one, &stopped, "restart on three ranks");
+}
+
+/// A disc on a bar in two dimensions and a hammer on a rod in one, with all options of the sums and
+/// a symmetry plane each.
+const DISC: &str = r#"
+title = "A disc hits a bar"
+dimension = 2
+spacing = "0.1 mm"
+
+[run]
+end_time = "1 us"
+
+[sph]
+smoothing_length = "variable"
+artificial_stress = 0.3
+balsara = true
+conduction = 1.0
+xsph = 0.5
+
+[output]
+checkpoint_every = "0.3 us"
+
+[material.aluminium]
+library = "aluminium-2024"
+
+[[body]]
+name = "bar"
+material = "aluminium"
+shape.box = { lower = ["-2 mm", "-3 mm"], upper = ["0 mm", "3 mm"] }
+
+[[body]]
+name = "disc"
+material = "aluminium"
+shape.sphere = { radius = "1 mm", centre = ["0 mm", "0 mm"] }
+velocity = ["-4 km/s", "0 km/s"]
+touch = { body = "bar", direction = "-x" }
+
+[[symmetry]]
+axis = "y"
+"#;
+
+const RODS: &str = r#"
+title = "A hammer hits a rod whose far end is a plane"
+dimension = 1
+spacing = "0.1 mm"
+
+[run]
+end_time = "3 us"
+
+[sph]
+artificial_stress = 0.3
+balsara = true
+conduction = 1.0
+xsph = 0.5
+
+[output]
+checkpoint_every = "1 us"
+
+[material.aluminium]
+library = "aluminium-2024"
+
+[[body]]
+name = "rod"
+material = "aluminium"
+shape.box = { lower = ["0 mm"], upper = ["10 mm"] }
+
+[[body]]
+name = "hammer"
+material = "aluminium"
+shape.box = { lower = ["10 mm"], upper = ["14 mm"] }
+velocity = ["-1 km/s"]
+
+[[symmetry]]
+axis = "x"
+"#;
+
+#[test]
+fn one_and_two_dimensions_with_all_options() {
+    let (_keep, at) = folder();
+    for (name, text) in [("disc", DISC), ("rods", RODS)] {
+        let case = at(&format!("{name}.toml"));
+        std::fs::write(&case, text).expect("the case is written");
+        let case = [case.to_str().expect("a plain path")];
+        let one = at(&format!("{name}1"));
+        run(1, 2, &case, &[], &one);
+        for (ranks, balance) in [(2, 0), (3, 5)] {
+            let what = format!("{name} on {ranks} ranks");
+            let balance = format!("domain.balance_every={balance}");
+            run(ranks, 1, &case, &["--set", &balance], &at(&what));
+            assert_same(&one, &at(&what), &what);
+        }
+        let stopped = at(&format!("{name} stopped"));
+        let until = if name == "disc" { "0.5us" } else { "1.5us" };
+        run(2, 1, &case, &["--until", until], &stopped);
+        let path = stopped.to_str().expect("a plain path");
+        must(&whipple(1, &["restart", path, "--poison", "-t", "2"]), 0);
+        assert_same(&one, &stopped, "restart on one rank");
+    }
 }
 
 /// Five cubes of as many particles each, one to a slab of faces that never move. Two of them fly

@@ -18,6 +18,7 @@ use whipple::sph::gradient::VelocityGradient;
 use whipple::sph::kernel::{ConstantScale, Kernel};
 use whipple::sph::lanes::{LANES, Lanes};
 use whipple::sph::momentum::{Momentum, StressRecord, Viscosity};
+use whipple::sph::options::Options;
 
 /// A group whose throughput counts so many elements.
 fn group<'a>(
@@ -68,7 +69,7 @@ fn momentum(criterion: &mut Criterion) {
         group.bench_function(set.name(), |bencher| {
             bencher.iter(|| {
                 scene.sweep(|receivers, neighbours| {
-                    black_box(set.run(Momentum::<_, false> {
+                    black_box(set.run(Momentum::<_, 0, false> {
                         sources: &scene.motion,
                         lengths: scene.sequence.smoothing_lengths(),
                         stresses: &stresses,
@@ -77,6 +78,7 @@ fn momentum(criterion: &mut Criterion) {
                         neighbours,
                         scale,
                         viscosity,
+                        options: Options::NONE,
                     }));
                 });
             });

@@ -31,12 +31,14 @@ struct Peer {
 /// perhaps nothing. Buffers are kept from step to step.
 ///
 /// Either [`Exchange::post`] when both sides know the sizes ([`Exchange::expect`]), or
-/// [`Exchange::post_sizes`] first; then [`Exchange::wait`].
+/// [`Exchange::post_sizes`] first; then [`Exchange::wait`], which waits for what comes in only: a
+/// peer that is still at work holds up nobody who needs nothing from it.
 #[derive(Default)]
 pub struct Exchange {
     peers: Vec<Peer>,
     count: usize,
-    requests: Vec<ffi::MPI_Request>,
+    receives: Vec<ffi::MPI_Request>,
+    sends: Vec<ffi::MPI_Request>,
     /// Size of the message to and from each peer.
     sizes: Vec<[u64; 2]>,
     /// What this exchange has sent so far.
@@ -49,7 +51,8 @@ impl Exchange {
     /// # Panics
     /// If messages are still under way.
     pub fn set_peers(&mut self, ranks: impl Iterator<Item = usize>) {
-        assert!(self.requests.is_empty(), "an exchange is still under way");
+        assert!(self.receives.is_empty(), "an exchange is still under way");
+        wait_all(&mut self.sends);
         self.count = 0;
         for rank in ranks {
             if self.count == self.peers.len() {
@@ -77,6 +80,7 @@ impl Exchange {
 
     /// The message to the k-th peer, to be filled.
     pub fn outgoing(&mut self, k: usize) -> &mut Vec<u8> {
+        wait_all(&mut self.sends);
         &mut self.peers[k].send
     }
 
@@ -111,15 +115,14 @@ impl Exchange {
             }
         }
         self.wait();
+        wait_all(&mut self.sends);
         for (peer, size) in self.peers[..self.count].iter_mut().zip(&self.sizes) {
             let bytes = usize::try_from(size[1]).expect("a size fits memory");
             peer.receive.resize(bytes, 0);
         }
     }
 
-    /// Starts all messages; returns at once. Outgoing messages must not change before
-    /// [`Self::wait`], which the borrow of buffers through `&mut self` methods leaves to the
-    /// caller's order of calls.
+    /// Starts all messages; returns at once.
     pub fn post(&mut self, comm: &Comm) {
         let Some(raw) = comm.raw() else { return };
         for k in 0..self.count {
@@ -129,7 +132,7 @@ impl Exchange {
                 (receive.as_mut_ptr(), receive.len())
             };
             for start in (0..length).step_by(PIECE) {
-                // SAFETY: the buffer is owned by `self`, lives until `wait`, and the piece lies in it.
+                // SAFETY: the buffer is owned by `self`, lives until the requests end, and the piece lies in it.
                 unsafe {
                     let piece = pointer.add(start).cast();
                     self.receive_piece(raw, piece, PIECE.min(length - start), rank, TAG_DATA);
@@ -152,24 +155,13 @@ impl Exchange {
         }
     }
 
-    /// Waits for all messages of [`Self::post`].
+    /// Waits for the messages of the peers. This rank's own may still be under way: their buffers
+    /// stay untouched until then.
     ///
     /// # Panics
     /// If there are more messages than MPI can count.
     pub fn wait(&mut self) {
-        if self.requests.is_empty() {
-            return;
-        }
-        let count = c_int::try_from(self.requests.len()).expect("requests fit an int");
-        // SAFETY: the requests are live and their buffers are owned by `self` or the caller.
-        unsafe {
-            ffi::MPI_Waitall(
-                count,
-                self.requests.as_mut_ptr(),
-                ffi::RSMPI_STATUSES_IGNORE,
-            );
-        }
-        self.requests.clear();
+        wait_all(&mut self.receives);
     }
 
     /// Bytes allocated.
@@ -178,7 +170,7 @@ impl Exchange {
         let message = |peer: &Peer| peer.send.capacity() + peer.receive.capacity();
         self.peers.iter().map(message).sum::<usize>()
             + size_of::<Peer>() * self.peers.capacity()
-            + size_of::<ffi::MPI_Request>() * self.requests.capacity()
+            + size_of::<ffi::MPI_Request>() * (self.receives.capacity() + self.sends.capacity())
             + size_of::<[u64; 2]>() * self.sizes.capacity()
     }
 
@@ -205,7 +197,7 @@ impl Exchange {
                 &raw mut request,
             );
         }
-        self.requests.push(request);
+        self.receives.push(request);
     }
 
     unsafe fn send_piece(
@@ -231,7 +223,7 @@ impl Exchange {
                 &raw mut request,
             );
         }
-        self.requests.push(request);
+        self.sends.push(request);
         self.traffic.messages += 1;
         self.traffic.bytes += bytes as u64;
     }
@@ -241,6 +233,20 @@ impl Drop for Exchange {
     fn drop(&mut self) {
         if !std::thread::panicking() {
             self.wait();
+            wait_all(&mut self.sends);
         }
     }
+}
+
+/// Waits for requests whose buffers their owner keeps alive.
+fn wait_all(requests: &mut Vec<ffi::MPI_Request>) {
+    if requests.is_empty() {
+        return;
+    }
+    let count = c_int::try_from(requests.len()).expect("requests fit an int");
+    // SAFETY: the requests are live.
+    unsafe {
+        ffi::MPI_Waitall(count, requests.as_mut_ptr(), ffi::RSMPI_STATUSES_IGNORE);
+    }
+    requests.clear();
 }

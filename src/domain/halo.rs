@@ -58,7 +58,9 @@ pub struct Halo {
     sends: Vec<(Vec<u32>, Vec<u8>)>,
     /// For each peer, how many particles it sent.
     received: Vec<usize>,
-    /// Images of owned particles, and halo particles with theirs.
+    /// Images of owned particles.
+    own: Vec<Image>,
+    /// Halo particles of lower ranks with their images, [`Self::own`], those of higher ranks.
     others: Vec<Image>,
     /// How many of them stand below this rank's slab or a plane.
     below: usize,
@@ -94,6 +96,7 @@ impl Halo {
             theirs: Vec::new(),
             sends: Vec::new(),
             received: Vec::new(),
+            own: Vec::new(),
             others: Vec::new(),
             below: 0,
             found: Vec::new(),
@@ -133,9 +136,14 @@ impl Halo {
             self.received.push(self.exchange.incoming(k).len() / size);
         }
         store.resize_halo(self.received.iter().sum());
-        self.below = self.others.len();
+        self.others.clear();
+        let mut own = Some(&self.own);
         let mut first = store.owned();
         for (k, &count) in self.received.iter().enumerate() {
+            if self.exchange.rank(k) > self.rank {
+                self.others.extend(own.take().into_iter().flatten());
+                self.below = self.others.len();
+            }
             let (needs, fields) = self.exchange.incoming(k).split_at(count);
             store.unpack(FieldUse::HALO_MOTION, first, count, fields);
             for (i, &need) in needs.iter().enumerate() {
@@ -144,9 +152,10 @@ impl Halo {
                 }
             }
             first += count;
-            if self.exchange.rank(k) < self.rank {
-                self.below = self.others.len();
-            }
+        }
+        if let Some(own) = own {
+            self.others.extend(own);
+            self.below = self.others.len();
         }
     }
 
@@ -207,7 +216,7 @@ impl Halo {
         self.exchange.memory()
             + 8 * (self.words.capacity() + self.received.capacity())
             + size_of::<Extent>() * (self.extents.capacity() + self.theirs.capacity())
-            + size_of::<Image>() * self.others.capacity()
+            + size_of::<Image>() * (self.own.capacity() + self.others.capacity())
             + self.sends.iter().map(send).sum::<usize>()
             + self.found.iter().map(found).sum::<usize>()
     }
@@ -275,7 +284,7 @@ impl Halo {
             particles.clear();
             needs.clear();
         }
-        self.others.clear();
+        self.own.clear();
         if peers == 0 && self.mirrors.is_empty() {
             return;
         }
@@ -305,8 +314,7 @@ impl Halo {
             if entry.peer == MYSELF {
                 let images = (1..8).filter(|code| entry.needs >> code & 1 == 1);
                 let base = entry.particle as usize;
-                self.others
-                    .extend(images.map(|code| Image::new(base, code)));
+                self.own.extend(images.map(|code| Image::new(base, code)));
             } else {
                 let (particles, needs) = &mut self.sends[usize::from(entry.peer)];
                 particles.push(entry.particle);

@@ -202,6 +202,14 @@ optional_tables! {
         smoothing_length_min: Option<Spanned<f64>>,
         /// Largest h/h₀ of a variable smoothing length.
         smoothing_length_max: Option<Spanned<f64>>,
+        /// Factor of the artificial stress.
+        artificial_stress: Option<Spanned<f64>>,
+        /// The Balsara switch.
+        balsara: Option<bool>,
+        /// Coefficient of the artificial conduction.
+        conduction: Option<Spanned<f64>>,
+        /// Factor of XSPH.
+        xsph: Option<Spanned<f64>>,
     }
 
     /// `[time_step]`

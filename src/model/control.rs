@@ -26,6 +26,29 @@ pub struct SphOptions {
     pub beta: f64,
     /// Constant or variable smoothing length.
     pub smoothing_length: SmoothingLength,
+    /// Factor ε of the artificial stress; 0 for none.
+    pub artificial_stress: f64,
+    /// Whether the Balsara switch limits the artificial viscosity.
+    pub balsara: bool,
+    /// Coefficient `α_u` of the artificial conduction; 0 for none.
+    pub conduction: f64,
+    /// Factor ε of XSPH; 0 for none.
+    pub xsph: f64,
+}
+
+impl Default for SphOptions {
+    /// Viscosity of α = 1 and β = 2, and nothing else.
+    fn default() -> Self {
+        Self {
+            alpha: 1.0,
+            beta: 2.0,
+            smoothing_length: SmoothingLength::Constant,
+            artificial_stress: 0.0,
+            balsara: false,
+            conduction: 0.0,
+            xsph: 0.0,
+        }
+    }
 }
 
 /// Stability factors of the explicit scheme.

@@ -124,11 +124,11 @@ fn write_parts(
     file.text("/state", meta.state)?;
     file.text("/input", meta.input)?;
     file.group(FIELDS)?;
-    for field in with_use(FieldUse::STATE) {
+    for field in store.held(FieldUse::STATE) {
         let row = row_type(field.kind);
         let path = format!("{FIELDS}/{}", field.name);
         let block = rows.block();
-        let bytes = rows.collect(comm, &store.bytes_or_zeros(field), row.bytes());
+        let bytes = rows.collect(comm, &store.bytes(field.id)[..row.bytes() * store.owned()], row.bytes());
         file.rows(&path, row, block, bytes)?;
         file.note(&path, "unit", field.unit)?;
         file.note(&path, "description", field.description)?;
@@ -176,10 +176,10 @@ pub fn read(
     verify(comm, &state, &manifest)?;
 
     let file = agree(comm, Content::open_shared(comm, &state))?;
-    agree(comm, check_content(&file, &manifest))?;
+    let fields = agree(comm, check_content(&file, &manifest))?;
     let block = Block::even(manifest.particles, comm.rank(), comm.size());
     store.resize_owned(block.count);
-    for field in store.held(FieldUse::STATE) {
+    for field in fields {
         let row = row_type(field.kind);
         let path = format!("{FIELDS}/{}", field.name);
         let bytes = &mut store.bytes_mut(field.id)[..block.count * row.bytes()];
@@ -346,8 +346,12 @@ fn verify(comm: &Comm, state: &Path, manifest: &Manifest) -> Result<(), OutputEr
     Err(OutputError::damaged(state, what))
 }
 
-/// Whether the file holds this program's state, no less and no more.
-fn check_content(file: &Content, manifest: &Manifest) -> Result<(), OutputError> {
+/// The fields in the file, if it holds this program's state, no less (but for what the case had no
+/// use for, which is zero) and no more.
+fn check_content(
+    file: &Content,
+    manifest: &Manifest,
+) -> Result<Vec<&'static FieldInfo>, OutputError> {
     let damaged = |what: String| Err(OutputError::damaged(file.path(), what));
     let step: u64 = file.number("/", "step")?;
     let time: f64 = file.number("/", "time")?;
@@ -358,8 +362,12 @@ fn check_content(file: &Content, manifest: &Manifest) -> Result<(), OutputError>
         ));
     }
     let arrays = file.arrays(FIELDS)?;
+    let mut fields = Vec::new();
     for field in with_use(FieldUse::STATE) {
         let Some(array) = arrays.iter().find(|array| array.name == field.name) else {
+            if field.uses.meets(FieldUse::OPTIONAL) {
+                continue;
+            }
             return damaged(format!("it lacks the field {}; {OTHER}", field.name));
         };
         if array.row != row_type(field.kind) || array.rows != manifest.particles {
@@ -368,11 +376,12 @@ fn check_content(file: &Content, manifest: &Manifest) -> Result<(), OutputError>
                 field.name
             ));
         }
+        fields.push(field);
     }
     let known = |name: &str| with_use(FieldUse::STATE).any(|f: &FieldInfo| f.name == name);
     match arrays.iter().find(|array| !known(&array.name)) {
         Some(array) => damaged(format!("it has an unknown field {}; {OTHER}", array.name)),
-        None => Ok(()),
+        None => Ok(fields),
     }
 }
 

@@ -47,8 +47,8 @@ impl FieldKind {
 }
 
 /// When a field is carried along: a set of the constants below.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct FieldUse(u8);
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct FieldUse(u16);
 
 impl FieldUse {
     /// Read by a step before it is written: in checkpoints, and moved between ranks.
@@ -66,9 +66,17 @@ impl FieldUse {
     /// In snapshots on demand.
     pub const ON_DEMAND: Self = Self(64);
     /// Every field.
-    pub const ALL: Self = Self(255);
+    pub const ALL: Self = Self(u16::MAX);
     /// Of contact: held only where bodies have contact beyond the SPH sums.
     pub const CONTACT: Self = Self(128);
+    /// Held only with the Balsara switch.
+    pub const BALSARA: Self = Self(256);
+    /// Held only with artificial conduction.
+    pub const CONDUCTION: Self = Self(512);
+    /// Held only with XSPH.
+    pub const XSPH: Self = Self(1024);
+    /// Held only where the case has use for it.
+    pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024);
     /// In snapshots at all.
     pub const SNAPSHOT_OR_ON_DEMAND: Self = Self(32 | 64);
     /// What a rank sends with a particle that leaves it.
@@ -84,7 +92,9 @@ impl FieldUse {
         self.0 & other.0 != 0
     }
 
-    const fn with(self, other: Self) -> Self {
+    /// This set and `other` together.
+    #[must_use]
+    pub const fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 }
@@ -150,7 +160,7 @@ macro_rules! particle_fields {
         pub struct ParticleStore {
             pub(super) owned: usize,
             pub(super) halo: usize,
-            pub(super) contactless: bool,
+            pub(super) dropped: FieldUse,
             $( $(#[doc = $doc])+ pub $name: Vec<kind_type!($kind)>, )+
         }
 
@@ -241,6 +251,12 @@ particle_fields! {
     approach_speed: Scalar, "m/s", ON_DEMAND;
     /// Stiffness of contact, for the time step.
     contact_stiffness: Scalar, "N/m", ON_DEMAND | CONTACT;
+    /// Factor of the Balsara switch on artificial viscosity.
+    viscosity_limiter: Scalar, "", HALO_STRESS | ON_DEMAND | BALSARA;
+    /// Specific internal energy at the end of the step as predicted from its last rate.
+    predicted_energy: Scalar, "J/kg", HALO_STRESS | CONDUCTION;
+    /// What XSPH adds to the velocity when it moves the particle.
+    velocity_correction: Vector, "m/s", STATE | ON_DEMAND | XSPH;
     /// Work of the last step, in neighbours of the pair sums, for the balance between ranks.
     work: Index, "", MIGRATED;
 }

@@ -87,18 +87,18 @@ impl ParticleStore {
         self.capacity_bytes()
     }
 
-    /// Gives up the fields of contact, for a case without contact.
-    pub fn drop_contact(&mut self) {
-        for field in with_use(FieldUse::CONTACT) {
+    /// Gives up the fields of `uses`, which a case has no use for.
+    pub fn drop_fields(&mut self, uses: FieldUse) {
+        for field in with_use(uses) {
             self.resize_field(field.id, 0);
         }
-        self.contactless = true;
+        self.dropped = self.dropped.with(uses);
     }
 
     /// Rows of the table that this store holds, with any of the given uses.
     pub fn held(&self, uses: FieldUse) -> impl Iterator<Item = &'static FieldInfo> + use<> {
-        let contactless = self.contactless;
-        with_use(uses).filter(move |field| !(contactless && field.uses.meets(FieldUse::CONTACT)))
+        let dropped = self.dropped;
+        with_use(uses).filter(move |field| !field.uses.meets(dropped))
     }
 
     /// Bytes that a particle's fields of `uses` take in a message.
@@ -300,18 +300,21 @@ mod tests {
     }
 
     #[test]
-    fn a_store_without_contact_has_no_trace_of_it() {
-        let mut store = sentinel(4);
-        let message = store.bytes_per_particle(FieldUse::LEAVING);
-        store.drop_contact();
-        store.resize_owned(6);
-        store.resize_halo(3);
-        store.keep(&[2, 0], &mut [0; 2 * SCRATCH_WORDS]);
-        assert!(store.bytes_per_particle(FieldUse::LEAVING) < message);
-        for field in with_use(FieldUse::CONTACT) {
-            assert!(store.bytes(field.id).is_empty(), "{}", field.name);
-            let zeros = store.bytes_or_zeros(field);
-            assert_eq!(*zeros, vec![0; 2 * field.kind.bytes()]);
+    fn a_store_has_no_trace_of_what_it_dropped() {
+        for uses in [FieldUse::CONTACT, FieldUse::XSPH, FieldUse::OPTIONAL] {
+            let mut store = sentinel(4);
+            let message = store.bytes_per_particle(FieldUse::LEAVING);
+            store.drop_fields(FieldUse::BALSARA);
+            store.drop_fields(uses);
+            store.resize_owned(6);
+            store.resize_halo(3);
+            store.keep(&[2, 0], &mut [0; 2 * SCRATCH_WORDS]);
+            assert!(store.bytes_per_particle(FieldUse::LEAVING) < message);
+            for field in with_use(uses.with(FieldUse::BALSARA)) {
+                assert!(store.bytes(field.id).is_empty(), "{}", field.name);
+                let zeros = store.bytes_or_zeros(field);
+                assert_eq!(*zeros, vec![0; 2 * field.kind.bytes()]);
+            }
         }
     }
 

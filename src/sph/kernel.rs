@@ -85,8 +85,10 @@ impl Kernel {
 pub struct PairKernel<V> {
     /// `W'` (1/m^(d+1)); an exact zero outside the support.
     pub slope: V,
-    /// Positive inside the support.
+    /// Positive inside the support: proportional to `⟨2 − q⟩₊`.
     pub inside: V,
+    /// Proportional to `⟨1 − q⟩₊`.
+    pub core: V,
     /// `h_ij` (m).
     pub h: V,
 }
@@ -98,6 +100,19 @@ pub trait PairScale: Copy + Sync {
 
     /// For pairs at `distance` (m) of receivers of `h_i` and a neighbour of `h_j` (m).
     fn kernel<V: Lanes>(&self, distance: V, h_i: V, h_j: f64) -> PairKernel<V>;
+
+    /// `w = W h^d/σ_d` of these pairs.
+    fn shape<V: Lanes>(&self, pairs: &PairKernel<V>) -> V;
+
+    /// `W` of these pairs (1/m^d) from their [`Self::shape`].
+    fn value<V: Lanes>(&self, pairs: &PairKernel<V>, shape: V) -> V;
+}
+
+/// `w = ¼⟨2 − q⟩₊³ − ⟨1 − q⟩₊³`.
+#[inline(always)]
+fn shape<V: Lanes>(outer: V, inner: V) -> V {
+    let quarter = outer.mul(V::splat(0.25)).mul(outer);
+    inner.mul(inner).neg_mul_add(inner, quarter.mul(outer))
 }
 
 /// One constant smoothing length for all pairs.
@@ -107,6 +122,8 @@ pub trait PairScale: Copy + Sync {
 #[derive(Debug, Clone, Copy)]
 pub struct ConstantScale {
     h: f64,
+    /// `σ_d/h^d` (1/m^d).
+    height: f64,
     inner: Ramp,
     outer: Ramp,
 }
@@ -141,6 +158,7 @@ impl ConstantScale {
         };
         Self {
             h,
+            height: factor * h,
             inner: ramp(3.0, 1.0),
             outer: ramp(0.75, 2.0),
         }
@@ -156,8 +174,20 @@ impl PairScale for ConstantScale {
         PairKernel {
             slope: outer.neg_mul_add(outer, inner.mul(inner)),
             inside: outer,
+            core: inner,
             h: V::splat(self.h),
         }
+    }
+
+    #[inline(always)]
+    fn shape<V: Lanes>(&self, pairs: &PairKernel<V>) -> V {
+        let outer = pairs.inside.mul(V::splat(2.0 / self.outer.height));
+        shape(outer, pairs.core.mul(V::splat(1.0 / self.inner.height)))
+    }
+
+    #[inline(always)]
+    fn value<V: Lanes>(&self, _: &PairKernel<V>, shape: V) -> V {
+        shape.mul(V::splat(self.height))
     }
 }
 
@@ -203,8 +233,25 @@ impl<const D: usize> PairScale for MeanScale<D> {
         PairKernel {
             slope: shape.mul(factor.mul(V::splat(self.normalisation))),
             inside: outer,
+            core: inner,
             h,
         }
+    }
+
+    #[inline(always)]
+    fn shape<V: Lanes>(&self, pairs: &PairKernel<V>) -> V {
+        shape(pairs.inside, pairs.core)
+    }
+
+    #[inline(always)]
+    fn value<V: Lanes>(&self, pairs: &PairKernel<V>, shape: V) -> V {
+        let inverse = V::splat(1.0).div(pairs.h);
+        let factor = match D {
+            1 => inverse,
+            2 => inverse.mul(inverse),
+            _ => inverse.mul(inverse).mul(inverse),
+        };
+        shape.mul(factor.mul(V::splat(self.normalisation)))
     }
 }
 

@@ -9,3 +9,5 @@ pub mod gradient;
 pub mod kernel;
 pub mod lanes;
 pub mod momentum;
+pub mod options;
+pub mod principal;

@@ -5,6 +5,7 @@ use super::dispatch::Vectorised;
 use super::gradient::{MotionRecord, Separation, gather, gather3, length, lengths, records};
 use super::kernel::PairScale;
 use super::lanes::{F64x8, LANES, Lanes};
+use super::options::{BALSARA, CONDUCTION, OptionSums, Options, SHAPED};
 
 /// What a particle shows to its neighbours of its stress: one cache line.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -59,8 +60,8 @@ pub struct Viscosity {
 /// The receivers of one cluster with their neighbours; sums in the order of `neighbours`.
 ///
 /// `MIRRORED` clusters have images behind symmetry planes among their neighbours and also sum
-/// what those alone exert.
-pub struct Momentum<'a, S, const MIRRORED: bool> {
+/// what those alone exert. `OPTIONS` is a set of the constants of [`super::options`].
+pub struct Momentum<'a, S, const OPTIONS: u8, const MIRRORED: bool> {
     /// All particles and images.
     pub sources: &'a [MotionRecord],
     /// Their smoothing lengths (m); empty where the scale is constant.
@@ -77,20 +78,24 @@ pub struct Momentum<'a, S, const MIRRORED: bool> {
     pub scale: S,
     /// Artificial viscosity.
     pub viscosity: Viscosity,
+    /// What the options in use need.
+    pub options: Options<'a>,
 }
 
 /// The sums of [`Momentum`].
 #[derive(Debug, Clone, Copy)]
 pub struct Forces {
-    /// `dv/dt = Σ m_j (σ_i/ρ_i² + σ_j/ρ_j² − Π_ij I) ∇W_ij` (m/s²).
+    /// `dv/dt = Σ m_j (σ_i/ρ_i² + σ_j/ρ_j² − Π_ij I + R_ij f⁴) ∇W_ij` (m/s²).
     pub acceleration: [F64x8; 3],
-    /// `de/dt = −½ Σ m_j v_ij · (pair stress) · ∇W_ij` (W/kg).
+    /// `de/dt = −½ Σ m_j v_ij · (pair stress) · ∇W_ij` and conduction (W/kg).
     pub power: F64x8,
     /// Largest approach speed `|μ_ij|` (m/s).
     pub approach: F64x8,
     /// The part of `acceleration` that images behind symmetry planes exert (m/s²); zero unless
     /// `MIRRORED`.
     pub from_mirrors: [F64x8; 3],
+    /// `ε Σ (m_j/ρ̄) (v_j − v_i) W_ij` (m/s); zero without XSPH.
+    pub correction: [F64x8; 3],
 }
 
 impl Forces {
@@ -100,10 +105,13 @@ impl Forces {
         power: F64x8([0.0; LANES]),
         approach: F64x8([0.0; LANES]),
         from_mirrors: [F64x8([0.0; LANES]); 3],
+        correction: [F64x8([0.0; LANES]); 3],
     };
 }
 
-impl<S: PairScale, const MIRRORED: bool> Vectorised for Momentum<'_, S, MIRRORED> {
+impl<S: PairScale, const OPTIONS: u8, const MIRRORED: bool> Vectorised
+    for Momentum<'_, S, OPTIONS, MIRRORED>
+{
     type Output = Forces;
 
     #[inline(always)]
@@ -123,6 +131,7 @@ impl<S: PairScale, const MIRRORED: bool> Vectorised for Momentum<'_, S, MIRRORED
             V::splat(2.0 * self.viscosity.beta),
         );
         let c_i = c_i.mul(alpha);
+        let mut options = OptionSums::<V, OPTIONS>::begin(&self.options, &self.receivers);
         let mut acceleration = [zero; 3];
         let mut from_mirrors = [zero; 3];
         let mut power = zero;
@@ -141,6 +150,7 @@ impl<S: PairScale, const MIRRORED: bool> Vectorised for Momentum<'_, S, MIRRORED
         for k in 0..count {
             let ((place, source), now) = (following, next);
             let state = &self.stresses[place];
+            let option = self.options.record::<OPTIONS>(place);
             following = begin(k + 1);
             next = Separation::begin(&position, &following.1.position);
             let (r, square) = (now.r, now.square);
@@ -161,20 +171,36 @@ impl<S: PairScale, const MIRRORED: bool> Vectorised for Momentum<'_, S, MIRRORED
             let mu = h.mul(approach).mul(inverse.mul(rho_sum));
             // Π = μ (β μ − α c̄)/ρ̄ with c̄ = ½ c_sum and ρ̄ = ½ rho_sum.
             let linear = V::splat(state.sound_speed).mul_add(alpha, c_i);
-            let pi = mu.mul(inverse.mul(soft)).mul(mu.mul(beta).sub(linear));
+            let mut signal = mu.mul(beta).sub(linear);
+            if OPTIONS & BALSARA != 0 {
+                signal = options.limit(signal, option);
+            }
+            let pi = mu.mul(inverse.mul(soft)).mul(signal);
             fastest = fastest.min_where_positive(mu, kernel.inside);
             let s = |c: usize| V::splat(state.stress_over_density2[c]);
             let pull = |a: usize| normal[a].add(s(a)).sub(pi);
-            let [xx, yy, zz] = [pull(0), pull(1), pull(2)];
             let slide = |a: usize| shear[a].add(s(3 + a));
-            let [xy, xz, yz] = [slide(0), slide(1), slide(2)];
+            let mut stress = [pull(0), pull(1), pull(2), slide(0), slide(1), slide(2)];
+            if OPTIONS & SHAPED != 0 {
+                let shape = self.scale.shape(&kernel);
+                options.repel(&mut stress, option, shape);
+                let w = self.scale.value(&kernel, shape).mul(V::splat(source.mass));
+                options.follow(&v, w.mul(inverse.mul(soft)));
+            }
+            let [xx, yy, zz, xy, xz, yz] = stress;
             let weight = now.inverse.mul(V::splat(source.mass)).mul(kernel.slope);
             let traction = [
                 xx.mul_add(r[0], xy.mul_add(r[1], xz.mul(r[2]))),
                 xy.mul_add(r[0], yy.mul_add(r[1], yz.mul(r[2]))),
                 xz.mul_add(r[0], yz.mul_add(r[1], zz.mul(r[2]))),
             ];
-            let work = traction[2].mul_add(v[2], traction[1].mul_add(v[1], traction[0].mul(v[0])));
+            let mut work =
+                traction[2].mul_add(v[2], traction[1].mul_add(v[1], traction[0].mul(v[0])));
+            if OPTIONS & CONDUCTION != 0 {
+                let signal = zero.min_where_positive(signal, zero.sub(mu));
+                let speed = signal.mul(now.distance).mul(inverse.mul(soft));
+                work = options.flow(option).mul_add(speed, work);
+            }
             power = work.mul_add(weight, power);
             for a in 0..3 {
                 acceleration[a] = traction[a].mul_add(weight, acceleration[a]);
@@ -191,6 +217,7 @@ impl<S: PairScale, const MIRRORED: bool> Vectorised for Momentum<'_, S, MIRRORED
             power: zero.sub(power.mul(V::splat(0.5))).store(),
             approach: zero.sub(fastest).store(),
             from_mirrors: from_mirrors.map(V::store),
+            correction: options.correction().map(V::store),
         }
     }
 }

@@ -72,6 +72,7 @@ impl Simulation {
             self.kick_and_drift_by(dt, repeat_n([0.0; 3], self.store.owned()));
         }
         self.store.contact_acceleration = contact;
+        self.drift_with_neighbours(dt);
         self.fold_at_planes();
     }
 

@@ -3,6 +3,7 @@
 mod contact_phase;
 mod integrate;
 mod material_update;
+mod options;
 mod search;
 mod setup;
 mod simulation;

@@ -72,6 +72,9 @@ fn group_lengths(case: &Case, contact: &ContactTable) -> Vec<Lengths> {
         .collect()
 }
 
+/// The store is put in order if more than one particle in so many does not follow the one before.
+const ASTRAY: usize = 256;
+
 /// Elements that a task handles at least.
 pub(super) const GRAIN: usize = 1024;
 
@@ -135,8 +138,8 @@ impl Simulation {
         }
     }
 
-    /// Puts the store into the canonical order of the last search, so that memory follows space.
-    /// Results do not depend on it. Returns whether there was such a search.
+    /// Puts the store into the canonical order of the last search, so that memory follows space,
+    /// unless it nearly is. Results do not depend on it. Returns whether there was such a search.
     pub(super) fn restore_order(&mut self) -> bool {
         let owned = self.store.owned();
         self.order.clear();
@@ -147,7 +150,8 @@ impl Simulation {
             }
         }
         let known = self.order.len() == owned;
-        if known {
+        let astray = self.order.windows(2).filter(|pair| pair[1] != pair[0] + 1);
+        if known && astray.count() > owned / ASTRAY {
             // Stresses are of the last step: their memory is free.
             let scratch = bytemuck::cast_slice_mut(&mut self.sweeps.stresses);
             self.store.keep(&self.order, scratch);

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::contact_phase::ContactPhase;
+use super::options::{OptionPhase, unused_fields};
 use super::search::Search;
 use super::simulation::{Simulation, StepError};
 use super::state::{PairState, Reason, RunState, Totals, Worst};
@@ -70,9 +71,8 @@ impl Simulation {
         let boxes = body_boxes(&case).ok_or(SetupError::Empty)?;
         let mut simulation = Self::empty(case, comm, &boxes);
         simulation.store = store;
-        if !simulation.contact.is_active() {
-            simulation.store.drop_contact();
-        }
+        let unused = unused_fields(&simulation.case, &simulation.contact);
+        simulation.store.drop_fields(unused);
         simulation.state = state;
         simulation.slabs = balance(
             comm,
@@ -110,9 +110,7 @@ impl Simulation {
             f64::INFINITY
         };
         let mut store = ParticleStore::default();
-        if !contact.is_active() {
-            store.drop_contact();
-        }
+        store.drop_fields(unused_fields(&case, &contact));
         Self {
             store,
             state: fresh_state(pairs.len()),
@@ -128,6 +126,7 @@ impl Simulation {
             halo: Halo::new(axis, Mirrors::new(&case.symmetry)),
             search: Search::new(&case, &contact, grids),
             sweeps: Sweeps::new(&case, &contact.kernel),
+            options: OptionPhase::new(&case, &contact.kernel),
             contact_phase: ContactPhase::default(),
             sums: StepSums::new(pairs, enclosed_limit),
             scratch: Vec::new(),

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::contact_phase::ContactPhase;
+use super::options::OptionPhase;
 use super::search::Search;
 use super::state::{Reason, RunState};
 use super::sums::StepSums;
@@ -61,6 +62,7 @@ pub struct Simulation {
     pub(super) halo: Halo,
     pub(super) search: Search,
     pub(super) sweeps: Sweeps,
+    pub(super) options: OptionPhase,
     pub(super) contact_phase: ContactPhase,
     pub(super) sums: StepSums,
     pub(super) scratch: Vec<u64>,
@@ -124,6 +126,7 @@ impl Simulation {
         self.find_neighbours();
         self.timers.lap(Phase::Neighbours);
         self.velocity_gradient_and_material(dt);
+        self.prepare_options(dt);
         self.timers.lap(Phase::Material);
         self.contact_fractions(dt);
         self.timers.lap(Phase::ContactFractions);
@@ -141,13 +144,14 @@ impl Simulation {
 
     fn balance_work(&mut self, comm: &Comm) {
         let every = self.case.domain.balance_every;
-        let due = every != 0 && self.state.step.is_multiple_of(every);
-        if due || self.unordered {
+        if self.unordered {
             self.unordered = !self.restore_order();
         }
-        if !due {
+        if every == 0 || !self.state.step.is_multiple_of(every) {
             return;
         }
+        // After the next search, when those that change ranks now have found their place.
+        self.unordered = true;
         if comm.size() > 1 {
             let positions = &self.store.position[..self.store.owned()];
             let work = &self.store.work;
@@ -188,6 +192,7 @@ impl Simulation {
         self.store.memory()
             + self.search.memory()
             + self.sweeps.memory()
+            + self.options.memory()
             + self.contact_phase.memory()
             + self.sums.memory()
             + self.halo.memory()

@@ -14,6 +14,7 @@ use crate::sph::gradient::{MotionRecord, VelocityGradient};
 use crate::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use crate::sph::lanes::{F64x8, LANES, Lanes};
 use crate::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
+use crate::sph::options::{ARTIFICIAL_STRESS, BALSARA, CONDUCTION, Options, XSPH};
 
 /// Records of the second sweep and what mirrors exert, kept from step to step.
 pub struct Sweeps {
@@ -45,6 +46,35 @@ macro_rules! with_scale {
         }
     };
 }
+
+/// Calls `$work` with a set of options as a constant: no options, or those of solids (artificial
+/// stress and XSPH), of shocks (the Balsara switch and conduction), or all, whichever has all that
+/// are wanted. The others then have neutral data.
+macro_rules! with_options {
+    ($wanted:expr, $name:ident => $work:expr) => {
+        match $wanted {
+            0 => {
+                const $name: u8 = 0;
+                $work
+            }
+            set if set & !SOLIDS == 0 => {
+                const $name: u8 = SOLIDS;
+                $work
+            }
+            set if set & !SHOCKS == 0 => {
+                const $name: u8 = SHOCKS;
+                $work
+            }
+            _ => {
+                const $name: u8 = SOLIDS | SHOCKS;
+                $work
+            }
+        }
+    };
+}
+
+const SOLIDS: u8 = ARTIFICIAL_STRESS | XSPH;
+const SHOCKS: u8 = BALSARA | CONDUCTION;
 
 impl Sweeps {
     pub(super) fn new(case: &Case, kernel: &Kernel) -> Self {
@@ -108,6 +138,7 @@ impl Simulation {
             return;
         }
         self.fill_records(halo);
+        self.fill_options(halo);
         let set = instructions();
         let chunks = self.search.clusters.chunks();
         let images = self.search.sequence.images();
@@ -126,7 +157,9 @@ impl Simulation {
             stresses,
             mirrored: self.search.sequence.mirrored(),
             viscosity: *viscosity,
+            options: self.options.of_sums(),
         };
+        let options = self.options.set;
         with_scale!(*scale, scale => chunks
         .par_iter()
         .zip(from_mirrors)
@@ -135,7 +168,9 @@ impl Simulation {
             if !halo {
                 from_mirrors.clear();
             }
-            set.run(MomentumChunk { chunk, halo, sources, scale, target, from_mirrors });
+            with_options!(options, OPTIONS => set.run(MomentumChunk::<_, OPTIONS> {
+                chunk, halo, sources, scale, target, from_mirrors,
+            }));
         }));
     }
 
@@ -213,6 +248,7 @@ struct ForceSources<'a> {
     stresses: &'a [StressRecord],
     mirrored: &'a [u8],
     viscosity: Viscosity,
+    options: Options<'a>,
 }
 
 /// Where the second sweep writes.
@@ -222,21 +258,24 @@ struct ForceTarget<'a> {
     acceleration: Scatter<'a, [f64; 3]>,
     power: Scatter<'a, f64>,
     approach: Scatter<'a, f64>,
+    correction: Option<Scatter<'a, [f64; 3]>>,
 }
 
 impl<'a> ForceTarget<'a> {
     fn new(store: &'a mut ParticleStore, images: &'a [Image]) -> Self {
+        let correction = &mut store.velocity_correction;
         Self {
             images,
             mass: &store.mass,
             acceleration: Scatter::new(&mut store.acceleration),
             power: Scatter::new(&mut store.d_specific_energy_dt),
             approach: Scatter::new(&mut store.approach_speed),
+            correction: (!correction.is_empty()).then(|| Scatter::new(correction)),
         }
     }
 
     #[inline(always)]
-    fn store(&self, cluster: &Cluster, forces: &Forces) {
+    fn store<const OPTIONS: u8>(&self, cluster: &Cluster, forces: &Forces) {
         for k in 0..cluster.lanes {
             let i = self.images[cluster.receivers[k] as usize].base();
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
@@ -244,13 +283,18 @@ impl<'a> ForceTarget<'a> {
                 *self.acceleration.slot(i) = std::array::from_fn(|a| forces.acceleration[a].0[k]);
                 *self.power.slot(i) = forces.power.0[k];
                 *self.approach.slot(i) = forces.approach.0[k];
+                if OPTIONS & XSPH != 0
+                    && let Some(correction) = &self.correction
+                {
+                    *correction.slot(i) = std::array::from_fn(|a| forces.correction[a].0[k]);
+                }
             }
         }
     }
 }
 
-/// The second sweep over one task's clusters.
-struct MomentumChunk<'a, S> {
+/// The second sweep over one task's clusters, with a set of options.
+struct MomentumChunk<'a, S, const OPTIONS: u8> {
     chunk: &'a Chunk,
     /// Only clusters with halo particles among their neighbours, or only those without.
     halo: bool,
@@ -261,7 +305,7 @@ struct MomentumChunk<'a, S> {
     from_mirrors: &'a mut Vec<[f64; 3]>,
 }
 
-impl<S: PairScale> Vectorised for MomentumChunk<'_, S> {
+impl<S: PairScale, const OPTIONS: u8> Vectorised for MomentumChunk<'_, S, OPTIONS> {
     type Output = ();
 
     #[inline(always)]
@@ -272,16 +316,19 @@ impl<S: PairScale> Vectorised for MomentumChunk<'_, S> {
         for (cluster, neighbours, among) in all.filter(|(_, _, among)| among.halo == halo) {
             let free = |&j: &u32| self.sources.stresses[j as usize].is_free();
             if !among.moving && neighbours.iter().all(free) {
-                target.store(cluster, &Forces::NONE);
+                target.store::<OPTIONS>(cluster, &Forces::NONE);
                 continue;
             }
-            if !among.mirrors {
+            if !among.mirrors && OPTIONS == 0 {
                 let forces = self.sum::<V, false>(cluster, neighbours);
-                target.store(cluster, &forces);
+                target.store::<OPTIONS>(cluster, &forces);
                 continue;
             }
             let forces = self.sum::<V, true>(cluster, neighbours);
-            target.store(cluster, &forces);
+            target.store::<OPTIONS>(cluster, &forces);
+            if !among.mirrors {
+                continue;
+            }
             for k in 0..cluster.lanes {
                 let mass = target.mass[target.images[cluster.receivers[k] as usize].base()];
                 let part = |a: usize| mass * forces.from_mirrors[a].0[k];
@@ -291,10 +338,10 @@ impl<S: PairScale> Vectorised for MomentumChunk<'_, S> {
     }
 }
 
-impl<S: PairScale> MomentumChunk<'_, S> {
+impl<S: PairScale, const OPTIONS: u8> MomentumChunk<'_, S, OPTIONS> {
     #[inline(always)]
     fn sum<V: Lanes, const MIRRORED: bool>(&self, cluster: &Cluster, neighbours: &[u32]) -> Forces {
-        let sums = Momentum::<S, MIRRORED> {
+        let sums = Momentum::<S, OPTIONS, MIRRORED> {
             sources: self.sources.motion,
             lengths: self.sources.lengths,
             stresses: self.sources.stresses,
@@ -303,6 +350,7 @@ impl<S: PairScale> MomentumChunk<'_, S> {
             neighbours,
             scale: self.scale,
             viscosity: self.sources.viscosity,
+            options: self.sources.options,
         };
         sums.run::<V>()
     }

@@ -10,7 +10,7 @@ pub mod sentinel;
 use whipple::material::{Elastic, Eos, Linear, LinearForm, Strength, VonMises, library};
 use whipple::model::{
     Axis, Body, Case, ContactMode, DomainOptions, Lattice, LatticeKind, OutputOptions, Overlap,
-    RunControl, Shape, SmoothingLength, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
+    RunControl, Shape, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
 };
 
 /// A body on a cubic lattice with h = 1.3 Δp.
@@ -41,11 +41,7 @@ pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
         contacts: Vec::new(),
         default_contact: ContactMode::Overlap(Overlap::default()),
         symmetry: Vec::new(),
-        sph: SphOptions {
-            alpha: 1.0,
-            beta: 2.0,
-            smoothing_length: SmoothingLength::Constant,
-        },
+        sph: SphOptions::default(),
         time_step: TimeStepOptions {
             courant: 0.4,
             force: 0.25,

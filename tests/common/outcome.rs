@@ -63,7 +63,18 @@ pub fn assert_same(a: &Outcome, b: &Outcome) {
     assert!(a.rows == b.rows, "the particles differ");
 }
 
-/// A case with all there is: contact, two planes, variable h, plasticity.
+/// [`everything`] with all options of the SPH sums.
+pub fn every_option() -> Case {
+    let mut case = everything();
+    case.sph.artificial_stress = 0.3;
+    case.sph.balsara = true;
+    case.sph.conduction = 0.5;
+    case.sph.xsph = 0.5;
+    case
+}
+
+/// A case with all there is: contact, two planes, variable h, plasticity; without options of the
+/// SPH sums.
 pub fn everything() -> Case {
     let mut case = sphere_on_plate(6e-5, 7000.0, true, 1.0);
     case.sph.smoothing_length = SmoothingLength::Variable { min: 0.6, max: 2.0 };

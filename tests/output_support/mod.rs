@@ -13,7 +13,7 @@ pub use sentinel::{id, mix, sentinel};
 use whipple::comm::Comm;
 use whipple::model::{
     Body, Case, ContactMode, DomainOptions, Lattice, LatticeKind, OutputOptions, RunControl, Shape,
-    SmoothingLength, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
+    SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
 };
 use whipple::output::snapshot;
 use whipple::particles::{FIELDS, ParticleStore};
@@ -48,11 +48,7 @@ pub fn case() -> Case {
             axis: whipple::model::Axis::Y,
             position: 0.0,
         }],
-        sph: SphOptions {
-            alpha: 1.0,
-            beta: 2.0,
-            smoothing_length: SmoothingLength::Constant,
-        },
+        sph: SphOptions::default(),
         time_step: TimeStepOptions {
             courant: 0.3,
             force: 0.3,

@@ -164,6 +164,20 @@ fn sph(params: &SphParams) -> Result<SphOptions, Complaint> {
             None | Some(SmoothingName::Constant) => SmoothingLength::Constant,
             Some(SmoothingName::Variable) => bounds,
         },
+        artificial_stress: number(
+            params.artificial_stress.as_ref(),
+            "artificial_stress",
+            0.0,
+            Allowed::Within(0.0, 1.0),
+        )?,
+        balsara: params.balsara.unwrap_or(false),
+        conduction: number(
+            params.conduction.as_ref(),
+            "conduction",
+            0.0,
+            Allowed::Within(0.0, 2.0),
+        )?,
+        xsph: number(params.xsph.as_ref(), "xsph", 0.0, Allowed::Within(0.0, 1.0))?,
     })
 }
 
@@ -191,7 +205,7 @@ fn domain(params: &DomainParams, dimension: usize) -> Result<DomainOptions, Comp
     let axis = params.axis.as_ref().map(|name| axis(name, dimension));
     Ok(DomainOptions {
         axis: axis.transpose()?,
-        balance_every: whole(params.balance_every.as_ref(), "balance_every", 50, 0)?,
+        balance_every: whole(params.balance_every.as_ref(), "balance_every", 25, 0)?,
     })
 }
 

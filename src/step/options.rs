@@ -1,0 +1,155 @@
+//! What particles show to each other for the options of the SPH sums, and the drift of XSPH.
+
+use rayon::prelude::*;
+
+use super::search::GRAIN;
+use super::simulation::Simulation;
+use crate::contact::ContactTable;
+use crate::domain::Mirrors;
+use crate::model::{Case, SphOptions};
+use crate::particles::{FieldUse, resize};
+use crate::sph::kernel::Kernel;
+use crate::sph::options::{
+    ARTIFICIAL_STRESS, BALSARA, CONDUCTION, OptionRecord, Options, XSPH, limiter, repulsion,
+};
+
+/// The options of a case, and what particles and images show for them.
+pub struct OptionPhase {
+    /// A set of the constants of [`crate::sph::options`].
+    pub(super) set: u8,
+    records: Vec<OptionRecord>,
+    inverse_shape: f64,
+    sph: SphOptions,
+}
+
+impl OptionPhase {
+    pub(super) fn new(case: &Case, kernel: &Kernel) -> Self {
+        let sph = case.sph;
+        let mut set = 0;
+        for (option, wanted) in [
+            (ARTIFICIAL_STRESS, sph.artificial_stress > 0.0),
+            (BALSARA, sph.balsara),
+            (CONDUCTION, sph.conduction > 0.0),
+            (XSPH, sph.xsph > 0.0),
+        ] {
+            set |= if wanted { option } else { 0 };
+        }
+        // All bodies of a case have the same h/Δp.
+        let body = case.bodies.first();
+        let ratio = body.map_or(1.0, |b| b.lattice.spacing / b.smoothing_length);
+        Self {
+            set,
+            records: Vec::new(),
+            inverse_shape: kernel.normalisation() / kernel.value(ratio, 1.0),
+            sph,
+        }
+    }
+
+    /// What the sums need.
+    pub(super) fn of_sums(&self) -> Options<'_> {
+        Options {
+            records: &self.records,
+            inverse_shape: self.inverse_shape,
+            conduction: self.sph.conduction,
+            xsph: self.sph.xsph,
+        }
+    }
+
+    pub(super) fn memory(&self) -> usize {
+        self.records.capacity() * size_of::<OptionRecord>()
+    }
+}
+
+/// Fields that a case has no use for.
+pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> FieldUse {
+    let sph = &case.sph;
+    [
+        (FieldUse::CONTACT, contact.is_active()),
+        (FieldUse::BALSARA, sph.balsara),
+        (FieldUse::CONDUCTION, sph.conduction > 0.0),
+        (FieldUse::XSPH, sph.xsph > 0.0),
+    ]
+    .into_iter()
+    .filter(|&(_, used)| !used)
+    .fold(FieldUse::default(), |all, (fields, _)| all.with(fields))
+}
+
+impl Simulation {
+    /// What this rank's particles show to others for the options, after the first sweep of a step
+    /// `dt` (s).
+    pub(super) fn prepare_options(&mut self, dt: f64) {
+        let store = &mut self.store;
+        let owned = store.owned();
+        if self.options.set & BALSARA != 0 {
+            store.viscosity_limiter[..owned]
+                .par_iter_mut()
+                .with_min_len(GRAIN)
+                .zip(&store.velocity_gradient)
+                .zip((&store.sound_speed, &store.smoothing_length))
+                .for_each(|((factor, l), (&c, &h))| *factor = limiter(l, c, h));
+        }
+        if self.options.set & CONDUCTION != 0 {
+            store.predicted_energy[..owned]
+                .par_iter_mut()
+                .with_min_len(GRAIN)
+                .zip((&store.specific_energy, &store.d_specific_energy_dt))
+                .for_each(|(predicted, (e, de))| *predicted = e + 0.5 * dt * de);
+        }
+    }
+
+    /// Records of halo particles and their images, or of this rank's particles and theirs.
+    pub(super) fn fill_options(&mut self, halo: bool) {
+        let set = self.options.set;
+        if set == 0 {
+            return;
+        }
+        let store = &self.store;
+        let images = self.search.sequence.images();
+        let epsilon = self.options.sph.artificial_stress;
+        resize(&mut self.options.records, images.len());
+        let records = self.options.records.par_iter_mut().zip(images);
+        records.with_min_len(GRAIN).for_each(|(record, image)| {
+            let (i, code) = (image.base(), image.code());
+            if (i >= store.owned()) != halo {
+                return;
+            }
+            *record = OptionRecord::NEUTRAL;
+            if set & ARTIFICIAL_STRESS != 0 {
+                let stress = &store.deviatoric_stress[i];
+                let repulsion = repulsion(epsilon, store.pressure[i], stress, store.density[i]);
+                record.repulsion = Mirrors::reflect_symmetric(&repulsion, code);
+            }
+            if set & BALSARA != 0 {
+                record.half_limiter = 0.5 * store.viscosity_limiter[i];
+            }
+            if set & CONDUCTION != 0 {
+                record.specific_energy = store.predicted_energy[i];
+            }
+        });
+    }
+
+    /// XSPH: the rest of the drift of a step `dt` (s). The mean velocity of the neighbours is that
+    /// of the last sums, taken with the velocities predicted for the beginning of this step.
+    ///
+    /// Particles that feel contact move with their own velocity: the energy of contact is a
+    /// function of their positions, and its balance holds only where force times velocity is work.
+    pub(super) fn drift_with_neighbours(&mut self, dt: f64) {
+        if self.options.set & XSPH == 0 {
+            return;
+        }
+        let store = &mut self.store;
+        let contact = &store.contact_acceleration;
+        (&mut store.position, &store.velocity_correction)
+            .into_par_iter()
+            .with_min_len(GRAIN)
+            .enumerate()
+            .for_each(|(i, (x, correction))| {
+                if contact.get(i).is_some_and(|force| *force != [0.0; 3]) {
+                    return;
+                }
+                for a in 0..3 {
+                    x[a] += dt * correction[a];
+                }
+            });
+    }
+}
