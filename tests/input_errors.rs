@@ -409,29 +409,14 @@ const IN_OVERRIDES: &[(&str, &str, usize)] = &[
         45,
     ),
     (
-        "material.metal.strength={johnson_cook={a=\"90 MPa\",b=\"292 MPa\",n=0.31,c=0.025,m=1.09}}",
-        "this strength follows the temperature and needs `thermal.specific_heat`",
-        25,
-    ),
-    (
         "material.metal.thermal={specific_heat=\"383 J/kg\"}",
         "expected a specific heat with a unit, such as \"896 J/(kg K)\", found a specific energy",
         39,
     ),
     (
-        "material.metal.thermal={}",
-        "the key `specific_heat` is missing",
-        24,
-    ),
-    (
         "material.metal.thermal={specific_heat=\"383 J/(kg K)\", melting_temperature=\"200 K\"}",
         "`melting_temperature` must be above `reference_temperature`",
         75,
-    ),
-    (
-        "output.fields=[\"temperature\"]",
-        "no material has `thermal` constants",
-        16,
     ),
     (
         "body.ball.density=-1 g/cm^3",
@@ -666,6 +651,25 @@ const IN_LOADS: &[(&str, &str, &str, &str)] = &[
     ),
 ];
 
+/// As [`IN_OVERRIDES`], of a material without heat.
+const WITHOUT_HEAT: &[(&str, &str, usize)] = &[
+    (
+        "material.metal.strength={johnson_cook={a=\"90 MPa\",b=\"292 MPa\",n=0.31,c=0.025,m=1.09}}",
+        "this strength follows the temperature and needs `thermal.specific_heat`",
+        25,
+    ),
+    (
+        "material.metal.thermal={}",
+        "the key `specific_heat` is missing",
+        24,
+    ),
+    (
+        "output.fields=[\"temperature\"]",
+        "no material has `thermal` constants",
+        16,
+    ),
+];
+
 #[test]
 fn mistakes_in_loads() {
     parse("case.toml", LOADED, &[]).unwrap_or_else(|error| panic!("{error}"));
@@ -683,6 +687,19 @@ fn mistakes_in_loads() {
         message.contains("at most 32 loads and rigid bodies together"),
         "{message}"
     );
+}
+
+#[test]
+fn heat_is_asked_for() {
+    let cold = GOOD.replace("\"copper\"", "\"steel-bar\"");
+    for (set, title, column) in WITHOUT_HEAT {
+        let message = message(&cold, &[set]);
+        assert!(message.contains(title), "{set}: {message}");
+        assert!(
+            message.contains(&format!("--> --set:1:{column}\n")),
+            "{set}: {message}"
+        );
+    }
 }
 
 #[test]

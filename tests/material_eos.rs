@@ -92,8 +92,13 @@ fn sound_speed_is_the_slope_of_the_isentrope() {
 fn reference_state_has_no_pressure_and_the_reference_speed() {
     for name in library::names() {
         let material = library::find(name).unwrap();
-        let (p, c) = state(&material, material.reference_density, 0.0);
-        assert!(p == 0.0, "{name}: {p}");
+        let energy = material.eos.reference_energy(material.reference_density);
+        let (p, c) = state(&material, material.reference_density, energy);
+        let reference = match &material.eos {
+            Eos::IdealGas(gas) => gas.reference_pressure,
+            _ => 0.0,
+        };
+        assert!((p - reference).abs() <= 1e-15 * reference, "{name}: {p}");
         let modulus = material.reference_density * c * c;
         assert!((modulus / material.p_wave_modulus() - 1.0).abs() < 1e-14);
     }
@@ -116,6 +121,9 @@ fn strong_compression_gives_finite_growing_pressure() {
     // Beyond the Hugoniot's pole (μ = 2.96 for 2024) and the maximum of the cold part (1.18).
     for name in library::names() {
         let material = library::find(name).unwrap();
+        if !matches!(material.eos, Eos::MieGruneisen(_) | Eos::Tillotson(_)) {
+            continue;
+        }
         let mut last = 0.0;
         for i in 1..4000 {
             let rho = material.reference_density * (1.0 + 0.002 * f64::from(i));
@@ -200,9 +208,16 @@ fn library_is_sorted_complete_and_sourced() {
         assert!(names.contains(&name));
     }
     for name in names {
-        assert_eq!(library::find(name).unwrap().name, name);
-        assert!(library::sources(name).unwrap().contains("Steinberg"));
+        let material = library::find(name).unwrap();
+        assert_eq!(material.name, name);
+        assert!(!library::title(name).unwrap().is_empty());
+        for constant in material.constants() {
+            assert!(library::source(name, &constant.key).is_some());
+        }
     }
+    let source = |key| library::source("copper-johnson-cook", key).unwrap();
+    assert!(source("strength.johnson_cook.a").contains("Johnson & Cook"));
+    assert!(source("eos.mie_gruneisen.c0").contains("Steinberg"));
     assert!(library::find("aluminum").is_none());
     let Strength::VonMises(law) = library::find("aluminium-2024").unwrap().strength else {
         panic!("aluminium 2024 is elastic-plastic");

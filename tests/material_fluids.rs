@@ -21,9 +21,6 @@ fn derivatives_are_those_of_the_pressure() {
                 let by_e = eos.at(rho0, rho, e + de).pressure - eos.at(rho0, rho, e - de).pressure;
                 let error = (by_rho / (2.0 * dr) - at.dp_drho).abs() * rho / scale;
                 assert!(error < 1e-8, "{eos:?} by ρ at {ratio}, {e}: {error}");
-                if e == 0.0 {
-                    continue; // Tillotson's fit ends there
-                }
                 let error = (by_e / (2.0 * de) - at.dp_de).abs() * 1e7 / scale;
                 assert!(error < 1e-8, "{eos:?} by e at {ratio}, {e}: {error}");
             }

@@ -184,6 +184,68 @@ fn loads_and_rigid_bodies_on_any_ranks_and_through_a_restart() {
     }
 }
 
+/// One cube of each law, in a row of collisions.
+fn zoo() -> String {
+    let mut text = r#"
+title = "A row of cubes of different materials"
+dimension = 3
+spacing = "0.1 mm"
+[run]
+end_time = "1.5 us"
+[domain]
+axis = "x"
+balance_every = 9
+[output]
+snapshot_every = "0.5 us"
+checkpoint_every = "0.5 us"
+history_every = 5
+fields = ["temperature", "pressure", "deviatoric_stress", "plastic_strain"]
+"#
+    .to_owned();
+    let materials = [
+        "copper-johnson-cook",
+        "water",
+        "aluminium-6061-steinberg-guinan",
+        "rubber",
+        "iron-tillotson",
+        "air",
+    ];
+    for (n, name) in (0_u32..).zip(materials) {
+        let x = 0.6 * f64::from(n);
+        let speed = if n % 2 == 0 { "400 m/s" } else { "-400 m/s" };
+        let cube = format!(
+            r#"
+[material.{name}]
+library = "{name}"
+[[body]]
+name = "{name}"
+material = "{name}"
+shape.box = {{ size = ["0.5 mm", "0.5 mm", "0.5 mm"], centre = ["{x} mm", 0, 0] }}
+velocity = ["{speed}", 0, 0]
+"#
+        );
+        text += &cube;
+    }
+    // A thin hot cloud rather than air at rest.
+    text + "density = \"10 kg/m^3\"\nspecific_energy = \"0.3 MJ/kg\"\n"
+}
+
+#[test]
+fn every_material() {
+    let (_keep, at) = folder();
+    let case = at("zoo.toml");
+    std::fs::write(&case, zoo()).expect("the case is written");
+    let case = [case.to_str().expect("a plain path")];
+    let (one, three, stopped) = (at("one"), at("three"), at("stopped"));
+    run(1, 2, &case, &[], &one);
+    run(3, 1, &case, &[], &three);
+    assert_same(&one, &three, "three ranks");
+    run(2, 1, &case, &["--until", "0.7us"], &stopped);
+    let path = stopped.to_str().expect("a plain path");
+    must(&whipple(3, &["restart", path, "--poison", "-t", "1"]), 0);
+    assert_same(&one, &stopped, "restart on three ranks");
+}
+
 /// A disc on a bar in two dimensions and a hammer on a rod in one, with all options of the sums and
 /// a symmetry plane each.
 const DISC: &str = r#"

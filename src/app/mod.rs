@@ -7,6 +7,7 @@ mod driver;
 mod fault;
 pub mod info;
 mod launch;
+mod materials;
 pub mod plot;
 mod progress;
 mod report;
@@ -56,6 +57,7 @@ enum Command {
     Check(check::CheckArgs),
     Plot(Box<plot::PlotArgs>),
     Info(info::InfoArgs),
+    Materials(materials::MaterialsArgs),
     Compare(compare::CompareArgs),
     Bench(bench::BenchArgs),
 }
@@ -87,6 +89,7 @@ pub fn main() -> ExitCode {
             |()| 0,
         ),
         Command::Info(args) => info::run(&args),
+        Command::Materials(args) => materials::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Bench(args) => bench::run(&args),
     };

@@ -4,12 +4,14 @@
 //! made once for each batch, never for each point. Stress is positive in tension, pressure in
 //! compression: `σ = −p I + S`. A NaN in a point's state gives NaN at that point, no panic.
 
+pub mod constants;
 pub mod eos;
 pub mod library;
 pub mod spall;
 pub mod strength;
 pub mod thermal;
 
+pub use constants::{Constant, Value};
 pub use eos::{Eos, IdealGas, Linear, LinearForm, MieGruneisen, Tait, Tillotson};
 pub use spall::Spall;
 pub use strength::{

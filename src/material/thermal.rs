@@ -1,6 +1,6 @@
 //! Temperature from density and specific energy.
 //!
-//! With a constant specific heat c_v, `T = (e − e_c(ρ))/c_v`, where `e_c` is the energy of the cold
+//! With a constant specific heat `c_v`, `T = (e − e_c(ρ))/c_v`, where `e_c` is the energy of the cold
 //! curve: the isentrope of zero temperature, `de_c/dρ = p(ρ, e_c)/ρ²`, through
 //! `e_c(ρ₀) = e₀ − c_v T₀`, since the reference state (ρ₀, e₀) has the temperature T₀. This is exact
 //! for an equation of state that is linear in e (Mie–Grüneisen, ideal gas), for which
@@ -13,11 +13,12 @@ use super::{LANES, Lanes, at_least, at_most};
 
 /// The cold curve is held constant beyond these relative volumes ρ₀/ρ.
 const VOLUMES: [f64; 2] = [0.2, 2.0];
-/// Intervals of the table between them; ρ₀, where branches of an equation of state may join, is a
-/// node.
-const INTERVALS: usize = 180;
+/// Intervals of the table between them.
+const INTERVALS: u32 = 180;
+/// The node of the volume one, where branches of an equation of state may join.
+const REFERENCE: u32 = 80;
 /// Fourth-order steps in each interval.
-const STEPS: usize = 8;
+const STEPS: u32 = 8;
 
 /// Thermal constants of a material, with the cold curve of its equation of state.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,7 +32,7 @@ pub struct Thermal {
 /// What a user states of a material's heat.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ThermalConstants {
-    /// Specific heat c_v (J/(kg K)).
+    /// Specific heat `c_v` (J/(kg K)).
     pub specific_heat: f64,
     /// Temperature T₀ of the reference state (K).
     pub reference_temperature: f64,
@@ -52,25 +53,22 @@ impl Thermal {
     /// Integrates the cold curve of an equation of state with reference density `rho0` (kg/m³).
     #[must_use]
     pub fn new(constants: ThermalConstants, rho0: f64, eos: &Eos) -> Self {
-        let width = (VOLUMES[1] - VOLUMES[0]) / INTERVALS as f64;
         let slope = |v: f64, e: f64| -eos.at(rho0, rho0 / v, e).pressure / rho0;
-        let reference = ((1.0 - VOLUMES[0]) / width).round() as usize;
+        let node = |n: u32, e: f64| [e, slope(volume(n), e) * width()];
         let first =
             eos.reference_energy(rho0) - constants.specific_heat * constants.reference_temperature;
-        let mut cold = vec![[0.0; 2]; INTERVALS + 1];
         // From the reference volume down and up.
-        for (step, last) in [(-1.0, 0), (1.0, INTERVALS)] {
-            let mut e = first;
-            let mut n = reference;
-            loop {
-                let v = VOLUMES[0] + width * n as f64;
-                cold[n] = [e, slope(v, e) * width];
-                if n == last {
-                    break;
-                }
-                e = integrate(v, e, step * width, slope);
-                n = if step > 0.0 { n + 1 } else { n - 1 };
-            }
+        let mut e = first;
+        let mut cold = vec![node(REFERENCE, e)];
+        for n in (0..REFERENCE).rev() {
+            e = integrate(volume(n + 1), e, -width(), slope);
+            cold.push(node(n, e));
+        }
+        cold.reverse();
+        e = first;
+        for n in REFERENCE..INTERVALS {
+            e = integrate(volume(n), e, width(), slope);
+            cold.push(node(n + 1, e));
         }
         Self {
             constants,
@@ -92,10 +90,12 @@ impl Thermal {
             at_least(self.reference_density / rho, VOLUMES[0]),
             VOLUMES[1],
         );
-        let place = (v - VOLUMES[0]) * (INTERVALS as f64 / (VOLUMES[1] - VOLUMES[0]));
-        // NaN as an index is 0 and stays NaN in `t`.
-        let n = (place as usize).min(INTERVALS - 1);
-        let t = place - n as f64;
+        let place = (v - VOLUMES[0]) / width();
+        // NaN has the interval 0 and stays in `t`.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // within the table
+        let n = (place as u32).min(INTERVALS - 1);
+        let t = place - f64::from(n);
+        let n = n as usize;
         let ([e0, d0], [e1, d1]) = (self.cold[n], self.cold[n + 1]);
         let (s, rise) = (1.0 - t, e1 - e0);
         e0 * s + e1 * t + t * s * ((d0 - rise) * s - (d1 - rise) * t)
@@ -139,11 +139,25 @@ pub(super) fn opening(excess: f64, dp_drho: f64) -> f64 {
     }
 }
 
-/// Runge and Kutta's fourth-order rule over one interval of the volume.
+/// Width of an interval.
+fn width() -> f64 {
+    (VOLUMES[1] - VOLUMES[0]) / f64::from(INTERVALS)
+}
+
+/// Relative volume of a node.
+fn volume(n: u32) -> f64 {
+    if n == REFERENCE {
+        1.0
+    } else {
+        VOLUMES[0] + width() * f64::from(n)
+    }
+}
+
+/// Runge and Kutta's fourth-order rule over an interval of the volume.
 fn integrate(v: f64, e: f64, width: f64, slope: impl Fn(f64, f64) -> f64) -> f64 {
-    let d = width / STEPS as f64;
+    let d = width / f64::from(STEPS);
     (0..STEPS).fold(e, |e, n| {
-        let v = v + d * n as f64;
+        let v = v + d * f64::from(n);
         let a = slope(v, e);
         let b = slope(v + 0.5 * d, e + 0.5 * d * a);
         let c = slope(v + 0.5 * d, e + 0.5 * d * b);

@@ -18,10 +18,13 @@
 //! hypervelocity impact*, GA-3216; in this form Melosh (1989), *Impact cratering*, appendix II, and
 //! Benz & Asphaug (1999), Icarus 142, 5.
 //!
-//! Below zero energy, which the fit does not know, `w = 1`. The expanded cold branch bears any
-//! tension: a spall cut-off ends it.
+//! Towards `e = −E₀ η²`, far below anything the fit knows, w would vanish: it stays at or above ½. The
+//! expanded cold branch bears any tension: a spall cut-off ends it.
 
 use super::PointResponse;
+
+/// Smallest `w − 1`.
+const LEAST: f64 = -0.5;
 
 /// Tillotson's law.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,12 +86,12 @@ impl Tillotson {
     fn shared(&self, rho0: f64, rho: f64, e: f64) -> Shared {
         let eta = rho / rho0;
         // u = w − 1; d(e/w)/de = 1/w², d(ρ/w)/dρ = 1/w + 2 u/w² since du/dρ = −2 u/ρ.
-        let u = if e < 0.0 {
-            0.0
+        let u = e / (self.e0 * eta * eta);
+        let (inverse, bent) = if u < LEAST {
+            (1.0 / (LEAST + 1.0), 0.0)
         } else {
-            e / (self.e0 * eta * eta)
+            (1.0 / (u + 1.0), u / (u + 1.0))
         };
-        let inverse = 1.0 / (u + 1.0);
         Shared {
             rho0,
             rho,
@@ -96,8 +99,8 @@ impl Tillotson {
             mu: eta - 1.0,
             hot: PointResponse {
                 pressure: self.b * rho * e * inverse,
-                dp_drho: self.b * e * inverse * (1.0 + 2.0 * u * inverse),
-                dp_de: self.b * rho * if e < 0.0 { 1.0 } else { inverse * inverse },
+                dp_drho: self.b * e * inverse * (1.0 + 2.0 * bent),
+                dp_de: self.b * rho * inverse * (1.0 - bent),
             },
         }
     }

@@ -1,103 +1,311 @@
-//! Metals: Mie–Grüneisen with von Mises strength.
+//! Metals: Mie–Grüneisen with von Mises, Johnson–Cook or Steinberg–Guinan strength.
 //!
-//! Strengths are the initial yield stress Y₀ of the Steinberg–Guinan model, kept constant.
+//! Von Mises strengths are the initial yield stress Y₀ of the Steinberg–Guinan model, kept constant.
 
-use super::Record;
-use crate::material::{Eos, Material, MieGruneisen, Strength, VonMises};
+use super::{Parts, Record, heat};
+use crate::material::{
+    Eos, JohnsonCook, MieGruneisen, SteinbergGuinan, Strength, ThermalConstants, VonMises,
+};
 
-/// Sorted by name.
+const UINTAH: &str = "Steinberg-Guinan constants in Uintah, citing Steinberg, UCRL-MA-106439";
+const KEPT: &str = "no hardening: the initial yield stress is kept";
+const SPHERAL: &str = "Steinberg-Guinan constants of 304 steel in Spheral's tests";
+const JOHNSON_COOK: &str = "Johnson & Cook (1983), Proc. 7th Int. Symp. Ballistics, 541";
+const UINTAH_JC: &str = "Johnson-Cook constants in Uintah";
+const ROOM: &str = "300 K, to which the other constants belong";
+const RATE: &str = "1/s, as in Johnson & Cook (1983)";
+const TEXTBOOK: &str = "textbook value";
+const MARSH: &str = "Hugoniot of iron: Marsh (1980), LASL shock Hugoniot data";
+const LIKE_2024: &str = "of aluminium 2024, as an approximation: Steinberg-Guinan constants in \
+     Uintah, citing Steinberg, UCRL-MA-106439";
+const MELTING_LAW: &str = "Steinberg, Cochran & Guinan (1980), J. Appl. Phys. 51, 1498";
+const FRESH: &str = "no plastic strain at the start";
+
+/// Sources of a Mie–Grüneisen metal with von Mises strength.
+macro_rules! simple {
+    ($hugoniot:expr, $heat:expr) => {
+        &[
+            ("strength.von_mises.hardening_modulus", KEPT),
+            ("thermal.reference_temperature", ROOM),
+            ("thermal", $heat),
+            ("", $hugoniot),
+        ]
+    };
+}
+
+/// Sources of a Mie–Grüneisen metal with Johnson–Cook strength.
+macro_rules! johnson_cook {
+    ($hugoniot:expr, $shear:expr, $law:expr) => {
+        &[
+            ("strength.johnson_cook.shear_modulus", $shear),
+            ("strength.johnson_cook.reference_rate", RATE),
+            ("thermal.reference_temperature", ROOM),
+            ("density", $shear),
+            ("eos", $hugoniot),
+            ("", $law),
+        ]
+    };
+}
+
+/// Sources of a Mie–Grüneisen metal with Steinberg–Guinan strength.
+macro_rules! steinberg {
+    ($heat:expr) => {
+        &[
+            ("strength.steinberg_guinan.a", MELTING_LAW),
+            ("strength.steinberg_guinan.initial_strain", FRESH),
+            ("thermal.reference_temperature", ROOM),
+            ("thermal", $heat),
+            ("", UINTAH),
+        ]
+    };
+}
+
 pub(super) const RECORDS: &[Record] = &[
     Record {
         name: "aluminium-2024",
-        make: aluminium_2024,
-        sources: STEINBERG_2024,
+        title: "aluminium 2024-T4, constant yield stress",
+        make: || von_mises(&AL_2024, 0.26e9, heat(875.0, 300.0, Some(775.0))),
+        sources: simple!(UINTAH, JOHNSON_COOK),
+    },
+    Record {
+        name: "aluminium-2024-johnson-cook",
+        title: "aluminium 2024-T351",
+        make: || {
+            jc(
+                &AL_2024,
+                [265e6, 426e6, 0.34, 0.015, 1.00],
+                heat(875.0, 300.0, Some(775.0)),
+            )
+        },
+        sources: johnson_cook!(UINTAH, UINTAH, JOHNSON_COOK),
+    },
+    Record {
+        name: "aluminium-2024-steinberg-guinan",
+        title: "aluminium 2024-T4",
+        make: || {
+            sg(
+                &AL_2024,
+                [0.26e9, 0.76e9, 310.0, 0.185],
+                [6.52e-11, 6.16e-4, 1220.0, 1.5],
+                heat(875.0, 300.0, None),
+            )
+        },
+        sources: steinberg!(JOHNSON_COOK),
     },
     Record {
         name: "aluminium-6061",
-        make: aluminium_6061,
-        sources: STEINBERG_6061,
+        title: "aluminium 6061-T6, constant yield stress",
+        make: || von_mises(&AL_6061, 0.29e9, heat(896.0, 300.0, Some(925.0))),
+        sources: simple!(UINTAH, UINTAH_JC),
+    },
+    Record {
+        name: "aluminium-6061-johnson-cook",
+        title: "aluminium 6061-T6",
+        make: || {
+            jc(
+                &AL_6061,
+                [324e6, 114e6, 0.42, 0.002, 1.34],
+                heat(896.0, 300.0, Some(925.0)),
+            )
+        },
+        sources: johnson_cook!(UINTAH, UINTAH, UINTAH_JC),
+    },
+    Record {
+        name: "aluminium-6061-steinberg-guinan",
+        title: "aluminium 6061-T6",
+        make: || {
+            sg(
+                &AL_6061,
+                [0.29e9, 0.68e9, 125.0, 0.10],
+                [6.52e-11, 6.16e-4, 1220.0, 1.5],
+                heat(896.0, 300.0, None),
+            )
+        },
+        sources: steinberg!(UINTAH_JC),
+    },
+    Record {
+        name: "aluminium-7039-johnson-cook",
+        title: "aluminium 7039",
+        make: || {
+            let metal = Metal {
+                density: 2770.0,
+                ..AL_2024
+            };
+            jc(
+                &metal,
+                [337e6, 343e6, 0.41, 0.010, 1.00],
+                heat(875.0, 300.0, Some(877.0)),
+            )
+        },
+        sources: &[
+            ("strength.johnson_cook.shear_modulus", LIKE_2024),
+            ("strength.johnson_cook.reference_rate", RATE),
+            ("thermal.reference_temperature", ROOM),
+            ("eos", LIKE_2024),
+            ("", JOHNSON_COOK),
+        ],
     },
     Record {
         name: "copper",
-        make: copper,
-        sources: STEINBERG_COPPER,
+        title: "copper OFHC half-hard, constant yield stress",
+        make: || von_mises(&COPPER, 0.12e9, heat(383.0, 300.0, Some(1356.0))),
+        sources: simple!(UINTAH, JOHNSON_COOK),
+    },
+    Record {
+        name: "copper-johnson-cook",
+        title: "copper OFHC",
+        make: || {
+            jc(
+                &COPPER,
+                [90e6, 292e6, 0.31, 0.025, 1.09],
+                heat(383.0, 300.0, Some(1356.0)),
+            )
+        },
+        sources: johnson_cook!(UINTAH, UINTAH, JOHNSON_COOK),
+    },
+    Record {
+        name: "copper-steinberg-guinan",
+        title: "copper OFHC half-hard",
+        make: || {
+            sg(
+                &COPPER,
+                [0.12e9, 0.64e9, 36.0, 0.45],
+                [2.83e-11, 3.77e-4, 1790.0, 1.5],
+                heat(383.0, 300.0, None),
+            )
+        },
+        sources: steinberg!(JOHNSON_COOK),
     },
     Record {
         name: "steel-304",
-        make: steel_304,
-        sources: SPHERAL_304,
+        title: "stainless steel 304, constant yield stress",
+        make: || von_mises(&STEEL_304, 0.34e9, heat(500.0, 300.0, Some(1673.0))),
+        sources: simple!(SPHERAL, TEXTBOOK),
+    },
+    Record {
+        name: "steel-4340-johnson-cook",
+        title: "steel 4340 (Rockwell C 30)",
+        make: || {
+            jc(
+                &STEEL_4340,
+                [792e6, 510e6, 0.26, 0.014, 1.03],
+                heat(477.0, 300.0, Some(1793.0)),
+            )
+        },
+        sources: &[
+            (
+                "strength.johnson_cook.shear_modulus",
+                "E = 200 GPa, ν = .29: textbook values",
+            ),
+            ("strength.johnson_cook.reference_rate", RATE),
+            ("thermal.reference_temperature", ROOM),
+            ("eos.mie_gruneisen.b", "no volume dependence of γρ assumed"),
+            ("eos", MARSH),
+            ("", JOHNSON_COOK),
+        ],
     },
 ];
 
-const STEINBERG_2024: &str = "Al 2024-T4: ρ0, C0, S1, γ0, b, G0, Y0 of the Steinberg-Guinan \
-     constants in Uintah, citing Steinberg, UCRL-MA-106439";
-const STEINBERG_6061: &str = "Al 6061-T6: ρ0, C0, S1, γ0, b, G0, Y0 of the Steinberg-Guinan \
-     constants in Uintah, citing Steinberg, UCRL-MA-106439";
-const STEINBERG_COPPER: &str = "Cu OFHC half-hard: ρ0, C0, S1, γ0, b, G0, Y0 of the \
-     Steinberg-Guinan constants in Uintah, citing Steinberg, UCRL-MA-106439";
-const SPHERAL_304: &str = "304 stainless steel: ρ0, C0, S1, γ0, b, G0, Y0 of the \
-     Steinberg-Guinan constants in Spheral's tests";
-
-fn aluminium_2024() -> Material {
-    metal(
-        "aluminium-2024",
-        2785.0,
-        [5328.0, 1.338, 2.00, 0.48],
-        [28.6e9, 0.26e9],
-    )
+/// Density (kg/m³), shear modulus (Pa) and Hugoniot.
+#[derive(Clone, Copy)]
+struct Metal {
+    density: f64,
+    shear_modulus: f64,
+    /// `[c₀ (m/s), s₁, γ₀, b]`
+    hugoniot: [f64; 4],
 }
 
-fn aluminium_6061() -> Material {
-    metal(
-        "aluminium-6061",
-        2703.0,
-        [5240.0, 1.40, 1.97, 0.48],
-        [27.6e9, 0.29e9],
-    )
-}
+const AL_2024: Metal = Metal {
+    density: 2785.0,
+    shear_modulus: 28.6e9,
+    hugoniot: [5328.0, 1.338, 2.00, 0.48],
+};
 
-fn copper() -> Material {
-    metal(
-        "copper",
-        8930.0,
-        [3940.0, 1.489, 2.02, 0.47],
-        [47.7e9, 0.12e9],
-    )
-}
+const AL_6061: Metal = Metal {
+    density: 2703.0,
+    shear_modulus: 27.6e9,
+    hugoniot: [5240.0, 1.40, 1.97, 0.48],
+};
 
-fn steel_304() -> Material {
-    metal(
-        "steel-304",
-        7900.0,
-        [4570.0, 1.49, 1.93, 0.50],
-        [77.0e9, 0.34e9],
-    )
-}
+const COPPER: Metal = Metal {
+    density: 8930.0,
+    shear_modulus: 47.7e9,
+    hugoniot: [3940.0, 1.489, 2.02, 0.47],
+};
 
-/// A metal of reference density ρ₀ (kg/m³), `[c₀ (m/s), s₁, γ₀, b]` and `[G, Y₀]` (Pa).
-fn metal(
-    name: &str,
-    reference_density: f64,
-    [c0, s1, gamma0, b]: [f64; 4],
-    [shear_modulus, yield_stress]: [f64; 2],
-) -> Material {
-    Material {
-        name: name.to_owned(),
-        reference_density,
-        eos: Eos::MieGruneisen(MieGruneisen {
-            c0,
-            s1,
-            s2: 0.0,
-            s3: 0.0,
-            gamma0,
-            b,
-        }),
-        strength: Strength::VonMises(VonMises {
-            shear_modulus,
-            yield_stress,
-            hardening_modulus: 0.0,
-        }),
-        spall: None,
-        thermal: None,
+const STEEL_304: Metal = Metal {
+    density: 7900.0,
+    shear_modulus: 77.0e9,
+    hugoniot: [4570.0, 1.49, 1.93, 0.50],
+};
+
+const STEEL_4340: Metal = Metal {
+    density: 7830.0,
+    shear_modulus: 77.5e9,
+    hugoniot: [3574.0, 1.92, 1.69, 0.0],
+};
+
+impl Metal {
+    fn with(&self, strength: Strength, thermal: ThermalConstants) -> Parts {
+        let [c0, s1, gamma0, b] = self.hugoniot;
+        Parts {
+            density: self.density,
+            eos: Eos::MieGruneisen(MieGruneisen {
+                c0,
+                s1,
+                s2: 0.0,
+                s3: 0.0,
+                gamma0,
+                b,
+            }),
+            strength,
+            thermal: Some(thermal),
+        }
     }
+}
+
+fn von_mises(metal: &Metal, yield_stress: f64, thermal: ThermalConstants) -> Parts {
+    let law = VonMises {
+        shear_modulus: metal.shear_modulus,
+        yield_stress,
+        hardening_modulus: 0.0,
+    };
+    metal.with(Strength::VonMises(law), thermal)
+}
+
+/// `[A (Pa), B (Pa), n, C, m]`.
+fn jc(metal: &Metal, [a, b, n, c, m]: [f64; 5], thermal: ThermalConstants) -> Parts {
+    let law = JohnsonCook {
+        shear_modulus: metal.shear_modulus,
+        a,
+        b,
+        n,
+        c,
+        m,
+        reference_rate: 1.0,
+    };
+    metal.with(Strength::JohnsonCook(law), thermal)
+}
+
+/// `[Y₀ (Pa), Y_max (Pa), β, n]` and `[G'_p/G₀ (1/Pa), −G'_T/G₀ (1/K), T_m0 (K), a]`.
+fn sg(
+    metal: &Metal,
+    [yield_stress, max_yield_stress, beta, n]: [f64; 4],
+    [pressure, temperature, melting_temperature, a]: [f64; 4],
+    thermal: ThermalConstants,
+) -> Parts {
+    let law = SteinbergGuinan {
+        shear_modulus: metal.shear_modulus,
+        yield_stress,
+        max_yield_stress,
+        beta,
+        n,
+        initial_strain: 0.0,
+        pressure_coefficient: pressure,
+        temperature_coefficient: temperature,
+        melting_temperature,
+        gamma0: metal.hugoniot[2],
+        a,
+    };
+    metal.with(Strength::SteinbergGuinan(law), thermal)
 }

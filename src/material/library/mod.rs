@@ -3,35 +3,92 @@
 //! No record has a spall cut-off: spall strengths depend on the rate of the load, so a case
 //! states its own.
 
-pub mod metals;
+mod fluids;
+mod impact;
+mod metals;
+mod paper;
 
-use super::Material;
+use super::{Eos, Material, Strength, Thermal, ThermalConstants};
 
 /// One material of the library.
 struct Record {
     name: &'static str,
-    make: fn() -> Material,
-    sources: &'static str,
+    /// What it is, in a line.
+    title: &'static str,
+    make: fn() -> Parts,
+    /// Keys, or what they begin with, and where their numbers come from; the first that fits
+    /// counts.
+    sources: &'static [(&'static str, &'static str)],
+}
+
+/// What a record makes its material from.
+struct Parts {
+    /// kg/m³
+    density: f64,
+    eos: Eos,
+    strength: Strength,
+    thermal: Option<ThermalConstants>,
+}
+
+/// All records, sorted by name.
+fn records() -> Vec<&'static Record> {
+    let lists = [
+        fluids::RECORDS,
+        impact::RECORDS,
+        metals::RECORDS,
+        paper::RECORDS,
+    ];
+    let mut all: Vec<&Record> = lists.into_iter().flatten().collect();
+    all.sort_by_key(|record| record.name);
+    all
 }
 
 /// Names of all materials, in alphabetical order.
 #[must_use]
 pub fn names() -> Vec<&'static str> {
-    metals::RECORDS.iter().map(|record| record.name).collect()
+    records().iter().map(|record| record.name).collect()
 }
 
 /// The material of this name, if the library has it.
 #[must_use]
 pub fn find(name: &str) -> Option<Material> {
-    record(name).map(|record| (record.make)())
+    record(name).map(|record| {
+        let parts = (record.make)();
+        let heat = |constants| Thermal::new(constants, parts.density, &parts.eos);
+        Material {
+            name: record.name.to_owned(),
+            reference_density: parts.density,
+            thermal: parts.thermal.map(heat),
+            eos: parts.eos,
+            strength: parts.strength,
+            spall: None,
+        }
+    })
 }
 
-/// Where each number of the material of this name comes from, if the library has it.
+/// What the material of this name is, in a line.
 #[must_use]
-pub fn sources(name: &str) -> Option<&'static str> {
-    record(name).map(|record| record.sources)
+pub fn title(name: &str) -> Option<&'static str> {
+    record(name).map(|record| record.title)
+}
+
+/// Where the number at a key (`eos.mie_gruneisen.c0`) of the material of this name comes from.
+#[must_use]
+pub fn source(name: &str, key: &str) -> Option<&'static str> {
+    let fits = |(begin, _): &&(&str, &str)| key.starts_with(begin);
+    let sources = record(name)?.sources;
+    sources.iter().find(fits).map(|(_, source)| *source)
 }
 
 fn record(name: &str) -> Option<&'static Record> {
-    metals::RECORDS.iter().find(|record| record.name == name)
+    records().into_iter().find(|record| record.name == name)
+}
+
+/// Thermal constants: specific heat (J/(kg K)), reference and melting temperatures (K).
+fn heat(specific_heat: f64, reference: f64, melting: Option<f64>) -> ThermalConstants {
+    ThermalConstants {
+        specific_heat,
+        reference_temperature: reference,
+        melting_temperature: melting,
+    }
 }

@@ -8,12 +8,12 @@
 //! T_m = T_m0 exp[2 a (1 − 1/η)] η^{2 (γ₀ − a − 1/3)}
 //! ```
 //!
-//! where `A = G'_p/G₀` and `B = −G'_T/G₀`; above T_m both are zero, and so they are where the fit
+//! where `A = G'_p/G₀` and `B = −G'_T/G₀`; above `T_m` both are zero, and so they are where the fit
 //! would be negative. Source: Steinberg, Cochran & Guinan (1980), *A constitutive model for metals
 //! applicable at high-strain rate*, J. Appl. Phys. 51, 1498, whose assumption `Y'_p/Y₀ = G'_p/G₀` is
 //! part of this form. It holds above some 1e5/s, where the flow stress no longer follows the rate.
 //!
-//! T_m0 is a constant of the fit, above the melting point at zero pressure.
+//! `T_m0` is a constant of the fit, above the melting point at zero pressure.
 
 use super::{jaumann, radial_return};
 use crate::material::{LANES, Lanes, PointBatch, at_least, at_most};
@@ -25,7 +25,7 @@ pub struct SteinbergGuinan {
     pub shear_modulus: f64,
     /// Yield stress Y₀ (Pa).
     pub yield_stress: f64,
-    /// Largest yield stress by hardening Y_max (Pa).
+    /// Largest yield stress by hardening `Y_max` (Pa).
     pub max_yield_stress: f64,
     /// Hardening coefficient β.
     pub beta: f64,
@@ -37,7 +37,7 @@ pub struct SteinbergGuinan {
     pub pressure_coefficient: f64,
     /// `−G'_T/G₀` (1/K), positive for softening.
     pub temperature_coefficient: f64,
-    /// Melting temperature T_m0 of the fit (K).
+    /// Melting temperature `T_m0` of the fit (K).
     pub melting_temperature: f64,
     /// Grüneisen parameter γ₀ in the melting law.
     pub gamma0: f64,

@@ -1,0 +1,211 @@
+//! `whipple materials`: the library, each number with its unit and source.
+
+use std::fmt::Write as _;
+
+use serde_json::json;
+
+use super::EXIT_INPUT;
+use crate::material::{Constant, Material, Value, library};
+
+/// Print the material library: all names, or each number of one material with its source
+///
+/// What is printed of a material is a table of the input that gives the same material.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  whipple materials
+  whipple materials copper-johnson-cook
+  whipple materials copper --json")]
+pub struct MaterialsArgs {
+    /// Name of a material
+    #[arg(value_name = "NAME")]
+    name: Option<String>,
+
+    /// Print JSON, in SI units
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command; returns the exit code.
+pub fn run(args: &MaterialsArgs) -> u8 {
+    let Some(name) = &args.name else {
+        if args.json {
+            let all: Vec<_> = library::names().into_iter().filter_map(as_json).collect();
+            println!("{:#}", serde_json::Value::Array(all));
+        } else {
+            print!("{}", list());
+        }
+        return 0;
+    };
+    let text = if args.json {
+        as_json(name).map(|value| format!("{value:#}\n"))
+    } else {
+        table(name)
+    };
+    if let Some(text) = text {
+        print!("{text}");
+        return 0;
+    }
+    let names = library::names().join(", ");
+    eprintln!("error: unknown material `{name}`\n  = help: the library has {names}");
+    EXIT_INPUT
+}
+
+/// All materials, one in a line.
+fn list() -> String {
+    let mut text = format!(
+        "{:<32} {:>9}  {:<14} {:<16} what it is\n",
+        "name", "kg/m^3", "eos", "strength"
+    );
+    for name in library::names() {
+        let Some(material) = library::find(name) else {
+            continue;
+        };
+        let constants = material.constants();
+        let _ = writeln!(
+            text,
+            "{name:<32} {:>9}  {:<14} {:<16} {}",
+            material.reference_density,
+            law(&constants, "eos"),
+            law(&constants, "strength"),
+            library::title(name).unwrap_or_default(),
+        );
+    }
+    text + "\n`whipple materials NAME` prints each number of one with its source.\n"
+}
+
+/// Which law of a kind the constants belong to: `tait` of `eos.tait.b`.
+fn law<'a>(constants: &'a [Constant], kind: &str) -> &'a str {
+    let second = |constant: &'a Constant| {
+        let mut words = constant.key.split('.');
+        (words.next() == Some(kind)).then(|| words.next().unwrap_or("none"))
+    };
+    constants.iter().find_map(second).unwrap_or("none")
+}
+
+/// A material as a table of the input, with sources as comments.
+fn table(name: &str) -> Option<String> {
+    let material = library::find(name)?;
+    let title = library::title(name).unwrap_or_default();
+    let mut text = format!("# {title}\n[material.{name}]\n");
+    let lines: Vec<(String, &str)> = material
+        .constants()
+        .iter()
+        .map(|constant| {
+            let line = format!("{} = {}", constant.key, written(constant.value));
+            let source = library::source(name, &constant.key).unwrap_or("no source");
+            (line, source)
+        })
+        .collect();
+    let width = lines.iter().map(|(line, _)| line.len()).max().unwrap_or(0);
+    for (line, source) in lines {
+        let _ = writeln!(text, "{line:<width$}  # {source}");
+    }
+    let _ = writeln!(text, "# {}", derived(&material));
+    Some(text)
+}
+
+/// What users compare and no table holds.
+fn derived(material: &Material) -> String {
+    let modulus = material.p_wave_modulus();
+    let speed = (modulus / material.reference_density).sqrt();
+    format!(
+        "p-wave modulus {}, longitudinal sound speed {speed:.0} m/s",
+        scaled(modulus, "Pa", 4)
+    )
+}
+
+/// A value as the input writes it.
+fn written(value: Value) -> String {
+    match value {
+        Value::Word(word) => format!("\"{word}\""),
+        Value::Number(number, "") => format!("{number:?}"),
+        Value::Number(number, unit) => format!("\"{}\"", scaled(number, unit, usize::MAX)),
+    }
+}
+
+/// A number with its unit and the prefix that makes it short; all its digits, or so many. The
+/// decimal point only moves, so that reading it gives the same bits.
+fn scaled(number: f64, unit: &str, digits: usize) -> String {
+    if number < 0.0 {
+        return format!("-{}", scaled(-number, unit, digits));
+    }
+    if let Some(divisor) = unit.strip_prefix('1') {
+        return format!("{number:?}{divisor}");
+    }
+    let scientific = if digits == usize::MAX {
+        format!("{number:e}")
+    } else {
+        format!("{number:.*e}", digits - 1)
+    };
+    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    let power = exponent.div_euclid(3) * 3;
+    let prefix = match power {
+        3 => "k",
+        6 => "M",
+        9 => "G",
+        _ => return format!("{number} {unit}"),
+    };
+    if !["Pa", "J/kg"].contains(&unit) {
+        return format!("{number} {unit}");
+    }
+    let digits = mantissa.replace('.', "");
+    let whole = 1 + usize::try_from(exponent - power).unwrap_or(0);
+    let (front, back) = digits.split_at(whole.min(digits.len()));
+    let point = if back.is_empty() { "" } else { "." };
+    format!("{front:0<whole$}{point}{back} {prefix}{unit}")
+}
+
+fn as_json(name: &str) -> Option<serde_json::Value> {
+    let material = library::find(name)?;
+    let constants: Vec<_> = material
+        .constants()
+        .iter()
+        .map(|constant| {
+            let (value, unit) = match constant.value {
+                Value::Number(number, unit) => (json!(number), unit),
+                Value::Word(word) => (json!(word), ""),
+            };
+            let source = library::source(name, &constant.key);
+            json!({ "key": constant.key, "value": value, "unit": unit, "source": source })
+        })
+        .collect();
+    Some(json!({
+        "name": name,
+        "title": library::title(name),
+        "p_wave_modulus": material.p_wave_modulus(),
+        "constants": constants,
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::parse;
+
+    #[test]
+    fn every_table_gives_its_material_again() {
+        for name in library::names() {
+            let table = table(name).unwrap();
+            assert!(!table.contains("no source"), "{table}");
+            let text = format!(
+                "dimension = 1\nspacing = \"1 mm\"\nrun.end_time = \"1 us\"\ncontact.mode = \"none\"\n\
+                 [[body]]\nname = \"b\"\nmaterial = \"{name}\"\nshape.box.size = [\"1 cm\"]\n{table}"
+            );
+            let case = parse(name, &text, &[]).unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!(Some(&case.materials[0]), library::find(name).as_ref());
+        }
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!(scaled(28.6e9, "Pa", usize::MAX), "28.6 GPa");
+        assert_eq!(scaled(1.002e-3, "Pa s", usize::MAX), "0.001002 Pa s");
+        assert_eq!(scaled(4.72e6, "J/kg", usize::MAX), "4.72 MJ/kg");
+        assert_eq!(scaled(6.52e-11, "1/Pa", usize::MAX), "6.52e-11/Pa");
+        assert_eq!(scaled(1.0, "1/s", usize::MAX), "1.0/s");
+        assert_eq!(scaled(0.0, "Pa", usize::MAX), "0 Pa");
+        assert_eq!(scaled(2e11, "Pa", usize::MAX), "200 GPa");
+        assert_eq!(scaled(123_456.0e6, "Pa", 4), "123.5 GPa");
+    }
+}

@@ -1,0 +1,191 @@
+//! The constants of a material by the names that the input gives them.
+
+use super::eos::{Eos, LinearForm};
+use super::strength::Strength;
+use super::{Material, ThermalConstants};
+
+/// One constant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Constant {
+    /// Its key below `[material.NAME]`: `eos.mie_gruneisen.c0`.
+    pub key: String,
+    /// What it is.
+    pub value: Value,
+}
+
+/// The value of a [`Constant`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Value {
+    /// A number in an SI unit (empty for a pure number).
+    Number(f64, &'static str),
+    /// A choice.
+    Word(&'static str),
+}
+
+const PRESSURE: &str = "Pa";
+const ENERGY: &str = "J/kg";
+const PLAIN: &str = "";
+
+/// Values with their keys and units.
+type Rows = Vec<(&'static str, f64, &'static str)>;
+
+impl Material {
+    /// All constants of the material, each at a key of the input.
+    #[must_use]
+    pub fn constants(&self) -> Vec<Constant> {
+        let mut list = vec![number("density", self.reference_density, "kg/m^3")];
+        let (law, rows) = eos(&self.eos);
+        list.extend(group(law, rows));
+        if let Eos::Linear(linear) = &self.eos {
+            let form = match linear.form {
+                LinearForm::Logarithmic => "logarithmic",
+                LinearForm::DensityRatio => "density_ratio",
+            };
+            list.push(word("eos.linear.form", form));
+        }
+        match strength(&self.strength) {
+            None => list.push(word("strength", "none")),
+            Some((law, rows)) => list.extend(group(law, rows)),
+        }
+        if let Some(spall) = self.spall {
+            list.push(number("spall.pressure", spall.pressure, PRESSURE));
+        }
+        if let Some(thermal) = &self.thermal {
+            list.extend(group("thermal", heat(thermal.constants())));
+        }
+        list
+    }
+}
+
+fn number(key: &str, value: f64, unit: &'static str) -> Constant {
+    Constant {
+        key: key.to_owned(),
+        value: Value::Number(value, unit),
+    }
+}
+
+fn word(key: &str, word: &'static str) -> Constant {
+    Constant {
+        key: key.to_owned(),
+        value: Value::Word(word),
+    }
+}
+
+fn group(law: &str, rows: Rows) -> impl Iterator<Item = Constant> {
+    rows.into_iter()
+        .map(move |(key, value, unit)| number(&format!("{law}.{key}"), value, unit))
+}
+
+fn eos(eos: &Eos) -> (&'static str, Rows) {
+    match eos {
+        Eos::Linear(law) => (
+            "eos.linear",
+            vec![("bulk_modulus", law.bulk_modulus, PRESSURE)],
+        ),
+        Eos::MieGruneisen(law) => (
+            "eos.mie_gruneisen",
+            vec![
+                ("c0", law.c0, "m/s"),
+                ("s1", law.s1, PLAIN),
+                ("s2", law.s2, PLAIN),
+                ("s3", law.s3, PLAIN),
+                ("gamma0", law.gamma0, PLAIN),
+                ("b", law.b, PLAIN),
+            ],
+        ),
+        Eos::Tait(law) => (
+            "eos.tait",
+            vec![("b", law.b, PRESSURE), ("gamma", law.gamma, PLAIN)],
+        ),
+        Eos::Tillotson(law) => (
+            "eos.tillotson",
+            vec![
+                ("a", law.a, PLAIN),
+                ("b", law.b, PLAIN),
+                ("bulk_modulus", law.bulk_modulus, PRESSURE),
+                ("quadratic_modulus", law.quadratic_modulus, PRESSURE),
+                ("alpha", law.alpha, PLAIN),
+                ("beta", law.beta, PLAIN),
+                ("e0", law.e0, ENERGY),
+                ("e_iv", law.e_iv, ENERGY),
+                ("e_cv", law.e_cv, ENERGY),
+            ],
+        ),
+        Eos::IdealGas(law) => (
+            "eos.ideal_gas",
+            vec![
+                ("gamma", law.gamma, PLAIN),
+                ("stiffening_pressure", law.stiffening_pressure, PRESSURE),
+                ("reference_pressure", law.reference_pressure, PRESSURE),
+            ],
+        ),
+    }
+}
+
+fn strength(strength: &Strength) -> Option<(&'static str, Rows)> {
+    let shear = ("shear_modulus", strength.shear_modulus(), PRESSURE);
+    let law = match strength {
+        Strength::None => return None,
+        Strength::Viscous(law) => (
+            "strength.viscous",
+            vec![("viscosity", law.viscosity, "Pa s")],
+        ),
+        Strength::Elastic(_) => ("strength.elastic", vec![shear]),
+        Strength::NeoHookean(_) => ("strength.neo_hookean", vec![shear]),
+        Strength::VonMises(law) => (
+            "strength.von_mises",
+            vec![
+                shear,
+                ("yield_stress", law.yield_stress, PRESSURE),
+                ("hardening_modulus", law.hardening_modulus, PRESSURE),
+            ],
+        ),
+        Strength::JohnsonCook(law) => (
+            "strength.johnson_cook",
+            vec![
+                shear,
+                ("a", law.a, PRESSURE),
+                ("b", law.b, PRESSURE),
+                ("n", law.n, PLAIN),
+                ("c", law.c, PLAIN),
+                ("m", law.m, PLAIN),
+                ("reference_rate", law.reference_rate, "1/s"),
+            ],
+        ),
+        Strength::SteinbergGuinan(law) => (
+            "strength.steinberg_guinan",
+            vec![
+                shear,
+                ("yield_stress", law.yield_stress, PRESSURE),
+                ("max_yield_stress", law.max_yield_stress, PRESSURE),
+                ("beta", law.beta, PLAIN),
+                ("n", law.n, PLAIN),
+                ("initial_strain", law.initial_strain, PLAIN),
+                ("pressure_coefficient", law.pressure_coefficient, "1/Pa"),
+                (
+                    "temperature_coefficient",
+                    law.temperature_coefficient,
+                    "1/K",
+                ),
+                ("melting_temperature", law.melting_temperature, "K"),
+                ("gamma0", law.gamma0, PLAIN),
+                ("a", law.a, PLAIN),
+            ],
+        ),
+    };
+    Some(law)
+}
+
+fn heat(constants: &ThermalConstants) -> Rows {
+    let mut rows = vec![
+        ("specific_heat", constants.specific_heat, "J/(kg K)"),
+        (
+            "reference_temperature",
+            constants.reference_temperature,
+            "K",
+        ),
+    ];
+    let melting = constants.melting_temperature;
+    rows.extend(melting.map(|t| ("melting_temperature", t, "K")));
+    rows
+}

@@ -1,0 +1,110 @@
+//! Tillotson's law of metals and rocks.
+
+use super::{Parts, Record};
+use crate::material::{Eos, Strength, Tillotson, VonMises};
+
+const TILLOTSON: &str = "constants on which miluphcuda, SWIFT, Phantom, OpenSPH and Spheral agree; \
+     metals of Tillotson (1962), GA-3216, rocks of Benz & Asphaug (1999), Icarus 142, 5";
+const BASALT: &str = "basalt of Benz & Asphaug (1999), Icarus 142, 5, in the codes named above";
+const STEINBERG_6061: &str = "of aluminium 6061-T6: Steinberg-Guinan constants in Uintah, citing \
+     Steinberg, UCRL-MA-106439";
+const PLAIN: &str = "no hardening";
+const FLUID: &str = "without strength: its own is for the case to choose";
+
+pub(super) const RECORDS: &[Record] = &[
+    Record {
+        name: "aluminium-tillotson",
+        title: "aluminium to vaporisation, strength of 6061-T6",
+        make: || {
+            tillotson(
+                2700.0,
+                [0.5, 1.63, 75.2e9, 65e9],
+                [5e6, 3e6, 13.9e6],
+                [27.6e9, 0.29e9],
+            )
+        },
+        sources: &[
+            ("strength.von_mises.hardening_modulus", PLAIN),
+            ("strength", STEINBERG_6061),
+            ("", TILLOTSON),
+        ],
+    },
+    Record {
+        name: "basalt-tillotson",
+        title: "basalt to vaporisation",
+        make: || {
+            tillotson(
+                2700.0,
+                [0.5, 1.5, 26.7e9, 26.7e9],
+                [487e6, 4.72e6, 18.2e6],
+                [22.7e9, 3.5e9],
+            )
+        },
+        sources: &[
+            ("strength.von_mises.hardening_modulus", PLAIN),
+            ("strength", BASALT),
+            ("", TILLOTSON),
+        ],
+    },
+    Record {
+        name: "granite-tillotson",
+        title: "granite to vaporisation, without strength",
+        make: || {
+            tillotson(
+                2680.0,
+                [0.5, 1.3, 18e9, 18e9],
+                [16e6, 3.5e6, 18e6],
+                [0.0; 2],
+            )
+        },
+        sources: &[("strength", FLUID), ("", TILLOTSON)],
+    },
+    Record {
+        name: "iron-tillotson",
+        title: "iron to vaporisation, without strength",
+        make: || {
+            tillotson(
+                7800.0,
+                [0.5, 1.5, 128e9, 105e9],
+                [9.5e6, 2.4e6, 8.67e6],
+                [0.0; 2],
+            )
+        },
+        sources: &[("strength", FLUID), ("", TILLOTSON)],
+    },
+];
+
+/// Density (kg/m³), `[a, b, A (Pa), B (Pa)]`, `[E₀, e_iv, e_cv]` (J/kg), `[G, Y]` (Pa; zero for a
+/// fluid); α = β = 5.
+fn tillotson(
+    density: f64,
+    [a, b, bulk_modulus, quadratic_modulus]: [f64; 4],
+    [e0, e_iv, e_cv]: [f64; 3],
+    [shear_modulus, yield_stress]: [f64; 2],
+) -> Parts {
+    let strength = if shear_modulus > 0.0 {
+        Strength::VonMises(VonMises {
+            shear_modulus,
+            yield_stress,
+            hardening_modulus: 0.0,
+        })
+    } else {
+        Strength::None
+    };
+    Parts {
+        density,
+        eos: Eos::Tillotson(Tillotson {
+            a,
+            b,
+            bulk_modulus,
+            quadratic_modulus,
+            alpha: 5.0,
+            beta: 5.0,
+            e0,
+            e_iv,
+            e_cv,
+        }),
+        strength,
+        thermal: None,
+    }
+}
