@@ -33,7 +33,6 @@ struct Records {
     lengths: Vec<f64>,
     stress: Vec<StressRecord>,
     options: Vec<OptionRecord>,
-    mirrored: Vec<u8>,
     inverse_shape: f64,
 }
 
@@ -51,7 +50,6 @@ impl Records {
             lengths: found.sequence.smoothing_lengths().to_vec(),
             stress: Vec::new(),
             options: Vec::new(),
-            mirrored: Vec::new(),
             inverse_shape: kernel.normalisation() / kernel.value(RATIO, 1.0),
         };
         for (image, motion) in found.sequence.images().iter().zip(&found.motion) {
@@ -68,7 +66,6 @@ impl Records {
                 half_limiter: 0.25 * limiter,
                 specific_energy: energy,
             });
-            records.mirrored.push(u8::from(image.code() != 0));
         }
         records
     }
@@ -80,11 +77,10 @@ impl Records {
         neighbours: &[u32],
         scale: S,
     ) -> Forces {
-        set.run(Momentum::<S, OPTIONS, true> {
+        set.run(Momentum::<S, OPTIONS> {
             sources: &self.motion,
             lengths: &self.lengths,
             stresses: &self.stress,
-            mirrored: &self.mirrored,
             receivers,
             neighbours,
             scale,
@@ -188,7 +184,7 @@ fn cloud(dimension: usize, spread: f64, planes: usize, seed: u64) -> Cloud {
 }
 
 fn bits(forces: &Forces) -> Vec<u64> {
-    let vectors = [forces.acceleration, forces.from_mirrors, forces.correction];
+    let vectors = [forces.acceleration, forces.correction];
     let lanes = vectors.as_flattened().iter();
     lanes
         .chain([&forces.power, &forces.approach])

@@ -132,13 +132,14 @@ fn force_records(cloud: &Cloud, found: &Found, seed: u64) -> Records {
     }
 }
 
-fn mirrored(found: &Found) -> Vec<u8> {
-    let images = found.sequence.images().iter();
-    images.map(|image| u8::from(image.code() != 0)).collect()
+/// The images behind planes among neighbours.
+fn mirrored(found: &Found, neighbours: &[u32]) -> Vec<u32> {
+    let is_image = |&&j: &&u32| found.sequence.images()[j as usize].code() != 0;
+    neighbours.iter().filter(is_image).copied().collect()
 }
 
 fn bits(forces: &Forces) -> Vec<u64> {
-    let lanes = forces.acceleration.iter().chain(&forces.from_mirrors);
+    let lanes = forces.acceleration.iter();
     lanes
         .chain([&forces.power, &forces.approach])
         .flat_map(|lane| lane.0.map(f64::to_bits))
@@ -161,19 +162,17 @@ fn gradient<S: PairScale>(
     })
 }
 
-fn momentum<S: PairScale, const MIRRORED: bool>(
+fn momentum<S: PairScale>(
     set: Instructions,
     records: &Records,
-    mirrored: &[u8],
     receivers: [u32; LANES],
     neighbours: &[u32],
     scale: S,
 ) -> Forces {
-    set.run(Momentum::<S, 0, MIRRORED> {
+    set.run(Momentum::<S, 0> {
         sources: &records.motion,
         lengths: &records.lengths,
         stresses: &records.stress,
-        mirrored,
         receivers,
         neighbours,
         scale,
@@ -199,17 +198,18 @@ fn check_sweeps<S: PairScale>(cloud: &Cloud, scale: S) {
     let kernel = Kernel::new(cloud.dimension);
     let found = cloud.find();
     let records = force_records(cloud, &found, 77);
-    let mirrored = mirrored(&found);
     let motion = (&found.motion[..], found.sequence.smoothing_lengths());
     let sets = available();
-    for (cluster, list, among) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
+    for (cluster, list, _) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
         let receivers = cluster.receivers;
         let slow: Vec<Plain> = receivers[..cluster.lanes]
             .iter()
             .map(|&i| plain(cloud, &found, &records, &kernel, i))
             .collect();
         let first = gradient(sets[0], motion, receivers, list, scale);
-        let forces = momentum::<S, true>(sets[0], &records, &mirrored, receivers, list, scale);
+        let forces = momentum(sets[0], &records, receivers, list, scale);
+        let images = mirrored(&found, list);
+        let from_mirrors = momentum(sets[0], &records, receivers, &images, scale).acceleration;
         for (k, slow) in slow.iter().enumerate() {
             for c in 0..9 {
                 assert_close(first[c].0[k], slow.gradient[c], slow.gradient_size);
@@ -217,7 +217,7 @@ fn check_sweeps<S: PairScale>(cloud: &Cloud, scale: S) {
             for a in 0..3 {
                 let size = slow.acceleration_size;
                 assert_close(forces.acceleration[a].0[k], slow.acceleration[a], size);
-                assert_close(forces.from_mirrors[a].0[k], slow.from_mirrors[a], size);
+                assert_close(from_mirrors[a].0[k], slow.from_mirrors[a], size);
             }
             assert_close(forces.power.0[k], slow.power, slow.power_size);
             assert_close(forces.approach.0[k], slow.approach, slow.approach);
@@ -234,13 +234,8 @@ fn check_sweeps<S: PairScale>(cloud: &Cloud, scale: S) {
                     other.map(|l| l.0.map(f64::to_bits)),
                     first.map(|l| l.0.map(f64::to_bits))
                 );
-                let other = momentum::<S, true>(set, &records, &mirrored, receivers, list, scale);
+                let other = momentum(set, &records, receivers, list, scale);
                 assert_eq!(bits(&other), bits(&forces), "{}", set.name());
-                if !among.mirrors {
-                    let plain =
-                        momentum::<S, false>(set, &records, &mirrored, receivers, list, scale);
-                    assert_eq!(bits(&plain), bits(&forces), "{}", set.name());
-                }
             }
         }
     }
@@ -300,14 +295,7 @@ fn momentum_and_energy_balance() {
         let (mut force, mut power, mut size, mut power_size) = ([0.0; 3], 0.0, 0.0, 0.0);
         for (cluster, list, _) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
             let scale = MeanScale::<3>::new(&Kernel::new(3));
-            let sums = momentum::<_, false>(
-                available()[0],
-                &records,
-                &[],
-                cluster.receivers,
-                list,
-                scale,
-            );
+            let sums = momentum(available()[0], &records, cluster.receivers, list, scale);
             for k in 0..cluster.lanes {
                 let record = &records.motion[cluster.receivers[k] as usize];
                 power += record.mass * sums.power.0[k];
@@ -427,8 +415,8 @@ fn lone_and_coincident_particles_are_harmless() {
                         .iter()
                         .all(|lanes| lanes.0.iter().all(|&x| x == 0.0))
                 );
-                let sums = momentum::<_, true>(set, &force, &[0; 2], receivers, neighbours, scale);
-                let all = sums.acceleration.iter().chain(&sums.from_mirrors);
+                let sums = momentum(set, &force, receivers, neighbours, scale);
+                let all = sums.acceleration.iter();
                 let all = all.chain([&sums.power, &sums.approach]);
                 assert!(all.flat_map(|lanes| &lanes.0).all(|&x| x == 0.0));
             }
@@ -445,7 +433,7 @@ fn lone_and_coincident_particles_are_harmless() {
         scale,
     );
     assert!(gradient.iter().all(|lanes| lanes.0[0].is_finite()));
-    let sums = momentum::<_, true>(available()[0], &force, &[0; 2], [0; LANES], &[0, 1], scale);
+    let sums = momentum(available()[0], &force, [0; LANES], &[0, 1], scale);
     assert!(sums.acceleration.iter().all(|lanes| lanes.0[0].is_finite()));
     assert!(sums.power.0[0].is_finite() && sums.approach.0[0].is_finite());
 }

@@ -69,11 +69,10 @@ fn momentum(criterion: &mut Criterion) {
         group.bench_function(set.name(), |bencher| {
             bencher.iter(|| {
                 scene.sweep(|receivers, neighbours| {
-                    black_box(set.run(Momentum::<_, 0, false> {
+                    black_box(set.run(Momentum::<_, 0> {
                         sources: &scene.motion,
                         lengths: scene.sequence.smoothing_lengths(),
                         stresses: &stresses,
-                        mirrored: scene.sequence.mirrored(),
                         receivers,
                         neighbours,
                         scale,

@@ -58,18 +58,14 @@ pub struct Viscosity {
 }
 
 /// The receivers of one cluster with their neighbours; sums in the order of `neighbours`.
-///
-/// `MIRRORED` clusters have images behind symmetry planes among their neighbours and also sum
-/// what those alone exert. `OPTIONS` is a set of the constants of [`super::options`].
-pub struct Momentum<'a, S, const OPTIONS: u8, const MIRRORED: bool> {
+/// `OPTIONS` is a set of the constants of [`super::options`].
+pub struct Momentum<'a, S, const OPTIONS: u8> {
     /// All particles and images.
     pub sources: &'a [MotionRecord],
     /// Their smoothing lengths (m); empty where the scale is constant.
     pub lengths: &'a [f64],
     /// Their stresses.
     pub stresses: &'a [StressRecord],
-    /// Odd for images behind symmetry planes, even for particles.
-    pub mirrored: &'a [u8],
     /// Receivers; unused lanes repeat a valid one.
     pub receivers: [u32; LANES],
     /// Neighbours, in canonical order, those of all receivers together.
@@ -91,9 +87,6 @@ pub struct Forces {
     pub power: F64x8,
     /// Largest approach speed `|μ_ij|` (m/s).
     pub approach: F64x8,
-    /// The part of `acceleration` that images behind symmetry planes exert (m/s²); zero unless
-    /// `MIRRORED`.
-    pub from_mirrors: [F64x8; 3],
     /// `ε Σ (m_j/ρ̄) (v_j − v_i) W_ij` (m/s); zero without XSPH.
     pub correction: [F64x8; 3],
 }
@@ -104,14 +97,11 @@ impl Forces {
         acceleration: [F64x8([0.0; LANES]); 3],
         power: F64x8([0.0; LANES]),
         approach: F64x8([0.0; LANES]),
-        from_mirrors: [F64x8([0.0; LANES]); 3],
         correction: [F64x8([0.0; LANES]); 3],
     };
 }
 
-impl<S: PairScale, const OPTIONS: u8, const MIRRORED: bool> Vectorised
-    for Momentum<'_, S, OPTIONS, MIRRORED>
-{
+impl<S: PairScale, const OPTIONS: u8> Vectorised for Momentum<'_, S, OPTIONS> {
     type Output = Forces;
 
     #[inline(always)]
@@ -133,7 +123,6 @@ impl<S: PairScale, const OPTIONS: u8, const MIRRORED: bool> Vectorised
         let c_i = c_i.mul(alpha);
         let mut options = OptionSums::<V, OPTIONS>::begin(&self.options, &self.receivers);
         let mut acceleration = [zero; 3];
-        let mut from_mirrors = [zero; 3];
         let mut power = zero;
         let mut fastest = zero;
         // A particle whose position is no number has no neighbours, not even itself.
@@ -205,18 +194,11 @@ impl<S: PairScale, const OPTIONS: u8, const MIRRORED: bool> Vectorised
             for a in 0..3 {
                 acceleration[a] = traction[a].mul_add(weight, acceleration[a]);
             }
-            if MIRRORED {
-                let mirrored = weight.mul(V::splat(f64::from(self.mirrored[place] & 1)));
-                for a in 0..3 {
-                    from_mirrors[a] = traction[a].mul_add(mirrored, from_mirrors[a]);
-                }
-            }
         }
         Forces {
             acceleration: acceleration.map(V::store),
             power: zero.sub(power.mul(V::splat(0.5))).store(),
             approach: zero.sub(fastest).store(),
-            from_mirrors: from_mirrors.map(V::store),
             correction: options.correction().map(V::store),
         }
     }

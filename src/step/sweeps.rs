@@ -22,8 +22,23 @@ pub struct Sweeps {
     viscosity: Viscosity,
     material_of_body: Vec<usize>,
     pub(super) stresses: Vec<StressRecord>,
-    /// Forces of mirror images on single particles (N), by chunk.
-    pub(super) from_mirrors: Vec<Vec<[f64; 3]>>,
+    /// What mirror images exert, by chunk.
+    pub(super) from_mirrors: Vec<FromMirrors>,
+}
+
+/// What the images behind symmetry planes exert on the particles of a chunk.
+#[derive(Debug, Clone, Default)]
+pub(super) struct FromMirrors {
+    /// The images among the neighbours of one cluster.
+    places: Vec<u32>,
+    /// Forces on single particles (N).
+    pub(super) forces: Vec<[f64; 3]>,
+}
+
+impl FromMirrors {
+    fn memory(&self) -> usize {
+        4 * self.places.capacity() + size_of::<[f64; 3]>() * self.forces.capacity()
+    }
 }
 
 /// The pair scale of a case, chosen once.
@@ -103,8 +118,8 @@ impl Sweeps {
     }
 
     pub(super) fn memory(&self) -> usize {
-        let forces: usize = self.from_mirrors.iter().map(Vec::capacity).sum();
-        self.stresses.capacity() * size_of::<StressRecord>() + forces * size_of::<[f64; 3]>()
+        let mirrors: usize = self.from_mirrors.iter().map(FromMirrors::memory).sum();
+        self.stresses.capacity() * size_of::<StressRecord>() + mirrors
     }
 }
 
@@ -150,7 +165,7 @@ impl Simulation {
             from_mirrors,
             ..
         } = &mut self.sweeps;
-        from_mirrors.resize(chunks.len(), Vec::new());
+        from_mirrors.resize_with(chunks.len(), FromMirrors::default);
         let target = &ForceTarget::new(&mut self.store, images);
         let sources = ForceSources {
             motion: &self.search.motion,
@@ -167,7 +182,7 @@ impl Simulation {
         .with_max_len(CHUNKS_AT_ONCE)
         .for_each(|(chunk, from_mirrors)| {
             if !halo {
-                from_mirrors.clear();
+                from_mirrors.forces.clear();
             }
             with_options!(options, OPTIONS => set.run(MomentumChunk::<_, OPTIONS> {
                 chunk, halo, sources, scale, target, from_mirrors,
@@ -302,8 +317,7 @@ struct MomentumChunk<'a, S, const OPTIONS: u8> {
     sources: ForceSources<'a>,
     scale: S,
     target: &'a ForceTarget<'a>,
-    /// Forces of mirror images on single particles (N).
-    from_mirrors: &'a mut Vec<[f64; 3]>,
+    from_mirrors: &'a mut FromMirrors,
 }
 
 impl<S: PairScale, const OPTIONS: u8> Vectorised for MomentumChunk<'_, S, OPTIONS> {
@@ -320,20 +334,25 @@ impl<S: PairScale, const OPTIONS: u8> Vectorised for MomentumChunk<'_, S, OPTION
                 target.store::<OPTIONS>(cluster, &Forces::NONE);
                 continue;
             }
-            if !among.mirrors && OPTIONS == 0 {
-                let forces = self.sum::<V, false>(cluster, neighbours);
-                target.store::<OPTIONS>(cluster, &forces);
-                continue;
-            }
-            let forces = self.sum::<V, true>(cluster, neighbours);
-            target.store::<OPTIONS>(cluster, &forces);
+            target.store::<OPTIONS>(
+                cluster,
+                &Self::sum::<V>(&self.sources, self.scale, cluster, neighbours),
+            );
             if !among.mirrors {
                 continue;
             }
+            let FromMirrors { places, forces } = &mut *self.from_mirrors;
+            let is_image = |&j: &u32| self.sources.mirrored[j as usize] & 1 == 1;
+            places.clear();
+            places.extend(neighbours.iter().copied().filter(is_image));
+            let part = Self::sum::<V>(&self.sources, self.scale, cluster, places).acceleration;
             for k in 0..cluster.lanes {
                 let mass = target.mass[target.images[cluster.receivers[k] as usize].base()];
-                let part = |a: usize| mass * forces.from_mirrors[a].0[k];
-                self.from_mirrors.push([part(0), part(1), part(2)]);
+                forces.push([
+                    mass * part[0].0[k],
+                    mass * part[1].0[k],
+                    mass * part[2].0[k],
+                ]);
             }
         }
     }
@@ -341,17 +360,21 @@ impl<S: PairScale, const OPTIONS: u8> Vectorised for MomentumChunk<'_, S, OPTION
 
 impl<S: PairScale, const OPTIONS: u8> MomentumChunk<'_, S, OPTIONS> {
     #[inline(always)]
-    fn sum<V: Lanes, const MIRRORED: bool>(&self, cluster: &Cluster, neighbours: &[u32]) -> Forces {
-        let sums = Momentum::<S, OPTIONS, MIRRORED> {
-            sources: self.sources.motion,
-            lengths: self.sources.lengths,
-            stresses: self.sources.stresses,
-            mirrored: self.sources.mirrored,
+    fn sum<V: Lanes>(
+        sources: &ForceSources,
+        scale: S,
+        cluster: &Cluster,
+        neighbours: &[u32],
+    ) -> Forces {
+        let sums = Momentum::<S, OPTIONS> {
+            sources: sources.motion,
+            lengths: sources.lengths,
+            stresses: sources.stresses,
             receivers: cluster.receivers,
             neighbours,
-            scale: self.scale,
-            viscosity: self.sources.viscosity,
-            options: self.sources.options,
+            scale,
+            viscosity: sources.viscosity,
+            options: sources.options,
         };
         sums.run::<V>()
     }
