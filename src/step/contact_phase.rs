@@ -148,7 +148,12 @@ impl Simulation {
             self.store_reactions();
             self.plane_forces();
         }
-        for force in self.sweeps.from_mirrors.iter().flat_map(|part| &part.forces) {
+        for force in self
+            .sweeps
+            .from_mirrors
+            .iter()
+            .flat_map(|part| &part.forces)
+        {
             self.sums.add_plane_force(force);
         }
     }
