@@ -7,7 +7,7 @@ use physics_support::{lattice_factor, ready, run_to, slope, start};
 
 /// Speed (m/s) at which half of the step runs along the undisturbed bar.
 fn wave_speed(smoothing: f64) -> f64 {
-    let mut s = start(step_bar(1, smoothing, "overlap"));
+    let mut s = start(step_bar(smoothing));
     let mut fronts = Vec::new();
     for k in 0..10_i32 {
         run_to(&mut s, 1e-6 * f64::from(60 + 10 * k));

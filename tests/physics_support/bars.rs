@@ -1,6 +1,6 @@
 //! The elastic bars of the paper's sections 3.1 and 3.2.
 
-use whipple::model::Case;
+use whipple::model::{Case, Shape};
 use whipple::step::Simulation;
 
 use super::inline;
@@ -25,29 +25,60 @@ pub const STEEL_SPEED: f64 = 5855.5;
 /// Velocity of the step wave (m/s).
 pub const STEP: f64 = 10.0;
 
-/// A steel bar of 100 particles, 1 cm apart, that runs into a plane at 10 m/s, in one piece or in
-/// two: the step wave of section 3.1 in the frame of the undisturbed bar.
-pub fn step_bar(pieces: usize, smoothing: f64, contact: &str) -> Case {
-    let piece = |name: &str, lower: u32, upper: u32| {
-        format!(
-            "[[body]]\nname = \"{name}\"\nmaterial = \"steel\"\nvelocity = [\"-{STEP} m/s\"]\n\
-             shape.box = {{ lower = [\"{lower} cm\"], upper = [\"{upper} cm\"] }}\n"
-        )
-    };
-    let bodies = match pieces {
-        1 => piece("bar", 0, 100),
-        _ => piece("left", 0, 50) + &piece("right", 50, 100),
-    };
+/// Stress ρ c v behind it (Pa).
+pub const PLATEAU: f64 = 0.004_584_9e11;
+
+/// A steel bar of 100 particles, 1 cm apart, that runs into a plane at 10 m/s: the step wave of
+/// section 3.1 in the frame of the undisturbed bar.
+pub fn step_bar(smoothing: f64) -> Case {
     inline(&format!(
         "dimension = 1\nspacing = \"1 cm\"\n[sph]\nsmoothing = {smoothing}\n\
-         [run]\nend_time = \"200 us\"\n[contact]\nmode = \"{contact}\"\n\
-         [[symmetry]]\naxis = \"x\"\n{BAR_MATERIALS}\n{bodies}"
+         [run]\nend_time = \"200 us\"\n[[symmetry]]\naxis = \"x\"\n{BAR_MATERIALS}\n\
+         [[body]]\nname = \"bar\"\nmaterial = \"steel\"\nvelocity = [\"-{STEP} m/s\"]\n\
+         shape.box = {{ lower = [0], upper = [\"100 cm\"] }}\n"
     ))
 }
 
 /// Velocities along a [`step_bar`] in the frame of its undisturbed part (m/s).
 pub fn bar_velocities(s: &Simulation) -> Vec<f64> {
+    let all = in_order(s).into_iter();
+    all.map(|i| s.store.velocity[i][0] + STEP).collect()
+}
+
+/// The first bar of a case made as long as all together, and alone.
+pub fn in_one_piece(mut case: Case) -> Case {
+    let Some(Shape::Box { upper: end, .. }) = case.bodies.last().map(|bar| bar.shape.clone())
+    else {
+        panic!("a bar is a box");
+    };
+    case.bodies.truncate(1);
+    if let Shape::Box { upper, .. } = &mut case.bodies[0].shape {
+        *upper = end;
+    }
+    case
+}
+
+/// All particles from left to right.
+pub fn in_order(s: &Simulation) -> Vec<usize> {
     let mut all: Vec<usize> = (0..s.store.owned()).collect();
     all.sort_by(|&a, &b| s.store.position[a][0].total_cmp(&s.store.position[b][0]));
-    all.iter().map(|&i| s.store.velocity[i][0] + STEP).collect()
+    all
+}
+
+/// Stress of a particle along the bar (Pa), tension positive.
+pub fn axial_stress(s: &Simulation, i: usize) -> f64 {
+    s.store.deviatoric_stress[i][0] - s.store.pressure[i]
+}
+
+/// Force (Pa, positive to the right) that the particles up to the `first`-th from the left exert
+/// on all others in the SPH sums: what accelerates these.
+pub fn force_on_right(s: &Simulation, first: usize) -> f64 {
+    let right = in_order(s).split_off(first);
+    let force = |&i: &usize| s.store.mass[i] * s.store.acceleration[i][0];
+    right.iter().map(force).sum()
+}
+
+/// Force of the second bar on the first, compression positive (Pa), from the pair ledger.
+pub fn interface_force(s: &Simulation) -> f64 {
+    s.state.pairs.first().map_or(0.0, |pair| -pair.force[0])
 }
