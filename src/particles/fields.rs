@@ -185,6 +185,10 @@ macro_rules! particle_fields {
                 } )+ }
             }
 
+            pub(super) fn free_field(&mut self, field: FieldId) {
+                match field { $( FieldId::$name => self.$name = Vec::new(), )+ }
+            }
+
             pub(super) fn gather_field(&mut self, field: FieldId, order: &[u32], scratch: &mut [u64]) {
                 match field { $( FieldId::$name => super::store::gather(&mut self.$name, order, scratch), )+ }
             }

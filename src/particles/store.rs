@@ -90,7 +90,7 @@ impl ParticleStore {
     /// Gives up the fields of `uses`, which a case has no use for.
     pub fn drop_fields(&mut self, uses: FieldUse) {
         for field in with_use(uses) {
-            self.resize_field(field.id, 0);
+            self.free_field(field.id);
         }
         self.dropped = self.dropped.with(uses);
     }
