@@ -109,6 +109,43 @@ impl Material {
     /// of it.
     #[inline(always)]
     pub fn update(&self, batch: &mut PointBatch, dt: f64) {
+        match &self.strength {
+            Strength::None => batch.deviatoric_stress = [[0.0; LANES]; 6],
+            Strength::Viscous(law) => law.update(batch),
+            Strength::Elastic(law) => law.update(batch, dt),
+            Strength::VonMises(law) => law.update(batch, dt),
+            _ => return self.update_from_state(batch, dt),
+        }
+        let response = self.respond(batch);
+        self.set_sound_speed(batch, &response, &[self.strength.shear_modulus(); LANES]);
+    }
+
+    /// [`Self::update`] where the stress follows density or temperature. A function of its own:
+    /// inside the other, these laws slow down those that have no need of them.
+    #[inline(never)]
+    fn update_from_state(&self, batch: &mut PointBatch, dt: f64) {
+        let rho0 = self.reference_density;
+        let response = self.respond(batch);
+        let mut shear_modulus = [self.strength.shear_modulus(); LANES];
+        match &self.strength {
+            Strength::NeoHookean(law) => shear_modulus = law.update(batch, dt, rho0),
+            Strength::JohnsonCook(law) if dt != 0.0 => {
+                let (temperature, constants) = self.temperatures(batch, &response);
+                law.update(batch, dt, &temperature, &constants);
+            }
+            Strength::SteinbergGuinan(law) => {
+                let (temperature, constants) = self.temperatures(batch, &response);
+                let reference = constants.reference_temperature;
+                shear_modulus = law.update(batch, dt, rho0, &temperature, reference);
+            }
+            _ => {}
+        }
+        self.set_sound_speed(batch, &response, &shear_modulus);
+    }
+
+    /// Sets the pressures of a batch and gives the whole answer of the equation of state.
+    #[inline(always)]
+    fn respond(&self, batch: &mut PointBatch) -> eos::Response {
         let response = self.eos.response(
             self.reference_density,
             &batch.density,
@@ -118,37 +155,10 @@ impl Material {
             Some(spall) => spall.limit(&response.pressure),
             None => response.pressure,
         };
-        let shear_modulus = self.advance_stress(batch, &response, dt);
-        self.set_sound_speed(batch, &response, &shear_modulus);
-    }
-
-    /// Advances stress and plastic strain; gives the shear moduli (Pa).
-    #[inline(always)]
-    fn advance_stress(&self, batch: &mut PointBatch, response: &eos::Response, dt: f64) -> Lanes {
-        let rho0 = self.reference_density;
-        match &self.strength {
-            Strength::None => batch.deviatoric_stress = [[0.0; LANES]; 6],
-            Strength::Viscous(law) => law.update(batch),
-            Strength::Elastic(law) => law.update(batch, dt),
-            Strength::NeoHookean(law) => return law.update(batch, dt, rho0),
-            Strength::VonMises(law) => law.update(batch, dt),
-            Strength::JohnsonCook(law) => {
-                if dt != 0.0 {
-                    let (temperature, constants) = self.temperatures(batch, response);
-                    law.update(batch, dt, &temperature, &constants);
-                }
-            }
-            Strength::SteinbergGuinan(law) => {
-                let (temperature, constants) = self.temperatures(batch, response);
-                let reference = constants.reference_temperature;
-                return law.update(batch, dt, rho0, &temperature, reference);
-            }
-        }
-        [self.strength.shear_modulus(); LANES]
+        response
     }
 
     /// Temperatures (K) of a batch after the spall cut-off, and the constants they are judged by.
-    #[inline(never)]
     fn temperatures(
         &self,
         batch: &PointBatch,
