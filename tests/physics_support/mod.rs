@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test file uses some of these")]
 
 pub mod bars;
+pub mod dam;
 pub mod impact;
 pub mod steps;
 
