@@ -49,19 +49,22 @@ fn sliding_is_free_of_friction() {
     for angle in [0.0, 30.0] {
         let lattice = format!("body.block.lattice={{kind=\"cubic\",angle=\"{angle} deg\"}}");
         let friction = slide(&[&lattice]);
-        assert!((friction.pressure / 1e-3 - 1.0).abs() < 0.1);
+        // The tool's way is given, not its force: about a thousandth.
+        assert!((0.8e-3..1.2e-3).contains(&friction.pressure));
         assert!(friction.largest <= 0.02, "{}", friction.largest);
         assert!(friction.mean.abs() <= 0.01, "{}", friction.mean);
     }
 }
 
-/// The same figures for `potential`, reported.
+/// The same figures for `potential`, reported, at a stiffness that presses with about a hundredth of
+/// the modulus: with 1, bodies laid in touch throw each other off.
 #[test]
 #[ignore = "slow: make validation"]
 fn sliding_with_the_potential() {
     for exponent in [1, 2, 4] {
         let exponent = format!("contact.potential.exponent={exponent}");
-        let friction = slide(&["contact.mode=potential", &exponent]);
-        assert!(friction.pressure > 0.0);
+        let stiffness = "contact.potential.stiffness=0.002";
+        let friction = slide(&["contact.mode=potential", stiffness, &exponent]);
+        assert!(friction.pressure > 1e-3, "the block is thrown off");
     }
 }
