@@ -114,7 +114,9 @@ fn lay_in_touch(case: &mut Case, axis: Axis) {
             lower[axis.index()] += way;
             upper[axis.index()] += way;
         }
-        Shape::Sphere { centre, .. } | Shape::Cylinder { centre, .. } => {
+        Shape::Sphere { centre, .. }
+        | Shape::Shell { centre, .. }
+        | Shape::Cylinder { centre, .. } => {
             centre[axis.index()] += way;
         }
     }

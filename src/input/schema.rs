@@ -187,6 +187,8 @@ tables! {
         centre: Option<Point>,
         /// Radius.
         radius: Spanned<Extent>,
+        /// Radius of a hole in the middle; none if absent.
+        inner_radius: Option<Spanned<Extent>>,
     }
 
     /// `shape.cylinder`

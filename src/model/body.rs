@@ -41,8 +41,8 @@ pub struct SymmetryPlane {
 
 /// The geometry of a body, in its final place (m).
 ///
-/// In one dimension a box is an interval of x; in two dimensions a box is a rectangle and a
-/// sphere a disc of the x-y plane.
+/// In one dimension a box is an interval of x; in two dimensions a box is a rectangle, a sphere a
+/// disc and a shell a ring of the x-y plane.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
     /// Axis-aligned box between two corners.
@@ -58,6 +58,15 @@ pub enum Shape {
         centre: Vec3,
         /// Radius (m).
         radius: f64,
+    },
+    /// Ball with a concentric hole; a ring in two dimensions.
+    Shell {
+        /// Centre (m).
+        centre: Vec3,
+        /// Outer radius (m).
+        radius: f64,
+        /// Radius of the hole (m).
+        inner_radius: f64,
     },
     /// Circular cylinder along a coordinate axis.
     Cylinder {

@@ -19,7 +19,8 @@ use crate::model::{Body, Case, ContactMode, Motion, Shape, VelocityLoad};
 const KNOWN: &str = "an exact answer is known for one-dimensional runs of linear elastic bars \
     that meet, whose outer ends may be moved at steps of velocity, and of two plates of \
     Mie-Grüneisen materials with strength = \"none\" until a shock reaches a free face, and of two \
-    bodies of one ideal gas in touch until their waves meet those of the ends";
+    bodies of one ideal gas in touch, or one at a symmetry plane, until their waves meet those of \
+    the ends";
 
 /// Fields that an answer has, as they are usually called.
 pub const FIELDS: [&str; 7] = [
@@ -41,6 +42,8 @@ pub enum Exact {
     Plates([Plate; 2]),
     /// Two bodies of gas: where they touch (m), and their far ends and whether these are held.
     Gas(Riemann, f64, [(f64, bool); 2]),
+    /// Gas above a symmetry plane (m), which is half of the same with its mirror image.
+    GasAtWall(Riemann, f64, [(f64, bool); 2]),
 }
 
 /// A body as a stretch of the x axis.
@@ -96,7 +99,7 @@ impl Exact {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Bars(..) => "exact, linear elastic",
-            Self::Plates(_) | Self::Gas(..) => "exact",
+            Self::Plates(_) | Self::Gas(..) | Self::GasAtWall(..) => "exact",
         }
     }
 
@@ -109,16 +112,19 @@ impl Exact {
                 let reason = format!("a shock has reached a free face at {since:.3} us; {KNOWN}");
                 PlotError::Exact { reason }
             }),
-            Self::Gas(riemann, origin, ends) => gas_profile(riemann, *origin, *ends, time)
-                .ok_or_else(|| PlotError::Exact {
-                    reason: format!("a wave has met an end or what comes from there; {KNOWN}"),
-                }),
+            Self::Gas(riemann, origin, ends) => {
+                gas_profile(riemann, *origin, *ends, f64::NEG_INFINITY, time)
+            }
+            Self::GasAtWall(riemann, wall, ends) => gas_profile(riemann, *wall, *ends, *wall, time),
         }
     }
 }
 
 /// Two bodies of one gas in touch, their far ends free or moved as the gas there moves.
 fn two_gases(parts: &[Part], gases: &[(f64, Gas)], ends: &[End; 2]) -> Result<Exact, String> {
+    if let (&[part], &[(gamma, gas)]) = (parts, gases) {
+        return gas_at_wall(&part, gamma, gas, ends);
+    }
     let (&[left, right], &[(gamma, a), (other, b)]) = (parts, gases) else {
         return Err(format!("there are {} bodies of gas", parts.len()));
     };
@@ -134,6 +140,22 @@ fn two_gases(parts: &[Part], gases: &[(f64, Gas)], ends: &[End; 2]) -> Result<Ex
     };
     let far = [(left.ends[0], held(0)?), (right.ends[1], held(1)?)];
     Ok(Exact::Gas(riemann, left.ends[1], far))
+}
+
+/// Gas whose near end stands on a symmetry plane and whose far end is free.
+fn gas_at_wall(part: &Part, gamma: f64, gas: Gas, ends: &[End; 2]) -> Result<Exact, String> {
+    let at_rest = End::Moved(vec![(0.0, Some(0.0))]);
+    if *ends != [at_rest, End::Free] {
+        return Err("the gas has no wall, or its far end is held".to_owned());
+    }
+    let image = Gas {
+        velocity: -gas.velocity,
+        ..gas
+    };
+    let riemann = Riemann::new(gamma, image, gas).ok_or("a vacuum opens at the wall")?;
+    let [wall, far] = part.ends;
+    let ends = [(2.0 * wall - far, false), (far, false)];
+    Ok(Exact::GasAtWall(riemann, wall, ends))
 }
 
 /// The ratio of specific heats and the initial state of an ideal gas.
@@ -152,13 +174,14 @@ fn gas(part: &Part) -> Option<(f64, Gas)> {
 }
 
 /// The states of two gases until their waves meet the far ends, or what comes from free ones: a
-/// wave of their own at the speed of sound, behind which nothing is shown.
+/// wave of their own at the speed of sound, behind which nothing is shown; from a place (m) on.
 fn gas_profile(
     riemann: &Riemann,
     origin: f64,
     ends: [(f64, bool); 2],
+    from: f64,
     time: f64,
-) -> Option<Profile> {
+) -> Result<Profile, PlotError> {
     let undisturbed = |k: usize, sign: f64| {
         let (gas, (end, held)) = (&riemann.sides[k], ends[k]);
         let sound = (riemann.gamma * gas.pressure / gas.density).sqrt();
@@ -167,7 +190,12 @@ fn gas_profile(
     let span = [undisturbed(0, 1.0), undisturbed(1, -1.0)];
     let waves = riemann.waves().map(|wave| origin + wave[0] * time);
     let apart = span[0] <= waves[0] && waves[1] <= span[1];
-    apart.then(|| vec![riemann.profile(origin, time, span)])
+    if apart {
+        let shown = [span[0].max(from), span[1]];
+        return Ok(vec![riemann.profile(origin, time, shown)]);
+    }
+    let reason = format!("a wave has met an end or what comes from there; {KNOWN}");
+    Err(PlotError::Exact { reason })
 }
 
 /// The bodies of a one-dimensional case from left to right, if each sees all others.

@@ -47,13 +47,23 @@ pub(super) struct Inside {
     pub round: [f64; 3],
     /// Square of the radius; infinite without one (m²).
     pub radius_squared: f64,
+    /// Square of the radius of a hole; negative without one (m²).
+    pub hole_squared: f64,
 }
 
 impl Inside {
-    /// Whether an offset from the centre (m) belongs to the body.
+    /// Whether an offset from the centre (m) lies within the outer faces of the body.
     pub fn contains(&self, o: [f64; 3]) -> bool {
-        (0..3).all(|a| o[a].abs() < self.flat[a])
-            && (0..3).fold(0.0, |sum, a| sum + self.round[a] * (o[a] * o[a])) < self.radius_squared
+        (0..3).all(|a| o[a].abs() < self.flat[a]) && self.square(o) < self.radius_squared
+    }
+
+    /// Whether an offset from the centre (m) lies in the hole.
+    pub fn hollows(&self, o: [f64; 3]) -> bool {
+        self.square(o) < self.hole_squared
+    }
+
+    fn square(&self, o: [f64; 3]) -> f64 {
+        (0..3).fold(0.0, |sum, a| sum + self.round[a] * (o[a] * o[a]))
     }
 }
 
@@ -78,6 +88,10 @@ impl Stack {
     pub fn new(body: &Body, dimension: usize) -> Self {
         let lattice = &body.lattice;
         let (centre, half, round, radius) = extent(&body.shape, dimension);
+        let hole_squared = match body.shape {
+            Shape::Shell { inner_radius, .. } => inner_radius * inner_radius * FACE,
+            _ => -1.0,
+        };
         let turn = if lattice.angle == 0.0 {
             [1.0, 0.0]
         } else {
@@ -111,6 +125,7 @@ impl Stack {
                 flat,
                 round: round.map(|r| if r { 1.0 } else { 0.0 }),
                 radius_squared: radius * radius * FACE,
+                hole_squared,
             },
         }
     }
@@ -167,7 +182,7 @@ fn extent(shape: &Shape, dimension: usize) -> ([f64; 3], [f64; 3], [bool; 3], f6
             [false; 3],
             f64::INFINITY,
         ),
-        Shape::Sphere { centre, radius } => (
+        Shape::Sphere { centre, radius } | Shape::Shell { centre, radius, .. } => (
             centre,
             [radius; 3].into(),
             [0, 1, 2].map(|a| a < dimension),

@@ -1,7 +1,7 @@
 //! The parts of lattice rows that lie in a body and in a slab.
 //!
-//! A shape is convex and a coordinate is monotone along a row, so what is left of a row is always
-//! one run of indices.
+//! Shape and hole are convex and a coordinate is monotone along a row, so what is left of a row is
+//! one run of indices, or two beside the hole.
 
 use std::ops::Range;
 
@@ -42,14 +42,8 @@ pub(super) fn rows(
             })
         })
         .flat_map(move |k| (0..rows).map(move |j| (j, k)))
-        .filter_map(move |(j, k)| {
-            let run = shape_run(&stack, j, k);
-            let mut row = Row {
-                j,
-                k,
-                first: run.start,
-                end: run.end,
-            };
+        .flat_map(move |(j, k)| shape_runs(&stack, j, k))
+        .filter_map(move |mut row| {
             for plane in &planes {
                 row.drop_below(&stack, plane.axis.index(), |x| x <= plane.position);
             }
@@ -83,53 +77,93 @@ impl Row {
     }
 }
 
-/// The run of a whole row that lies in the shape: estimated from the formulas of the line, then
-/// settled by the test of the sites at its ends.
-fn shape_run(stack: &Stack, j: u64, k: u64) -> Range<u64> {
+/// The runs of a whole row that lie in the shape, before and behind its hole.
+fn shape_runs(stack: &Stack, j: u64, k: u64) -> [Row; 2] {
     let inside = &stack.inside;
-    let origin = stack.offset(0, j, k);
-    let step = stack.step();
-    #[allow(clippy::cast_precision_loss)] // counts stay far below 2^52
-    let (mut low, mut high) = (0.0_f64, stack.counts[0] as f64 - 1.0);
-    for a in 0..3 {
-        if inside.flat[a].is_finite() && step[a] != 0.0 {
-            let t = [-inside.flat[a], inside.flat[a]].map(|face| (face - origin[a]) / step[a]);
-            low = low.max(t[0].min(t[1]));
-            high = high.min(t[0].max(t[1]));
+    let line = Line {
+        stack,
+        j,
+        k,
+        origin: stack.offset(0, j, k),
+    };
+    let shape = line.run(inside.flat, inside.radius_squared, |o| inside.contains(o));
+    let row = |first, end| Row { j, k, first, end };
+    let mut runs = [row(shape.start, shape.end), row(shape.end, shape.end)];
+    if inside.hole_squared > 0.0 {
+        let hole = line.run([f64::INFINITY; 3], inside.hole_squared, |o| {
+            inside.hollows(o)
+        });
+        if hole.start < hole.end {
+            runs = [row(shape.start, hole.start), row(hole.end, shape.end)];
         }
     }
-    if inside.radius_squared.is_finite() {
-        let dot = |p: [f64; 3], q: [f64; 3]| (0..3).map(|a| inside.round[a] * p[a] * q[a]).sum();
-        let (squared, half, rest): (f64, f64, f64) = (
-            dot(step, step),
-            dot(step, origin),
-            dot(origin, origin) - inside.radius_squared,
-        );
-        if squared > 0.0 {
-            let root = (half * half - squared * rest).max(0.0).sqrt();
-            low = low.max((-half - root) / squared);
-            high = high.min((-half + root) / squared);
-        }
-    }
-    settle(stack, j, k, low, high)
+    runs
 }
 
-/// Indices in `[low, high]`, one more at each side for rounding, less those outside the shape.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // clamped before
-fn settle(stack: &Stack, j: u64, k: u64, low: f64, high: f64) -> Range<u64> {
-    if high < low - 1.0 || stack.counts[0] == 0 {
-        return 0..0;
+/// One row of the lattice.
+struct Line<'a> {
+    stack: &'a Stack,
+    j: u64,
+    k: u64,
+    /// Vector from the centre to the first site (m).
+    origin: [f64; 3],
+}
+
+impl Line<'_> {
+    /// The run within flat faces and a radius: estimated from the formulas of the line, then settled
+    /// by a test of the sites at its ends.
+    fn run(
+        &self,
+        flat: [f64; 3],
+        radius_squared: f64,
+        contains: impl Fn([f64; 3]) -> bool,
+    ) -> Range<u64> {
+        let (stack, origin, step) = (self.stack, self.origin, self.stack.step());
+        let round = &stack.inside.round;
+        #[allow(clippy::cast_precision_loss)] // counts stay far below 2^52
+        let (mut low, mut high) = (0.0_f64, stack.counts[0] as f64 - 1.0);
+        for a in 0..3 {
+            if flat[a].is_finite() && step[a] != 0.0 {
+                let t = [-flat[a], flat[a]].map(|face| (face - origin[a]) / step[a]);
+                low = low.max(t[0].min(t[1]));
+                high = high.min(t[0].max(t[1]));
+            }
+        }
+        if radius_squared.is_finite() {
+            let dot = |p: [f64; 3], q: [f64; 3]| (0..3).map(|a| round[a] * p[a] * q[a]).sum();
+            let (squared, half, rest): (f64, f64, f64) = (
+                dot(step, step),
+                dot(step, origin),
+                dot(origin, origin) - radius_squared,
+            );
+            if squared > 0.0 {
+                let root = (half * half - squared * rest).max(0.0).sqrt();
+                low = low.max((-half - root) / squared);
+                high = high.min((-half + root) / squared);
+            }
+        }
+        self.settle(low, high, contains)
     }
-    let mut first = (low.floor() - 1.0).max(0.0) as u64;
-    let mut end = ((high.ceil() + 2.0).max(0.0) as u64).min(stack.counts[0]);
-    let contains = |i| stack.inside.contains(stack.offset(i, j, k));
-    while first < end && !contains(first) {
-        first += 1;
+
+    /// Indices in `[low, high]`, one more at each side for rounding, less those that are not
+    /// contained.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // clamped before
+    fn settle(&self, low: f64, high: f64, contains: impl Fn([f64; 3]) -> bool) -> Range<u64> {
+        let Self { stack, j, k, .. } = *self;
+        if high < low - 1.0 || stack.counts[0] == 0 {
+            return 0..0;
+        }
+        let mut first = (low.floor() - 1.0).max(0.0) as u64;
+        let mut end = ((high.ceil() + 2.0).max(0.0) as u64).min(stack.counts[0]);
+        let contains = |i| contains(stack.offset(i, j, k));
+        while first < end && !contains(first) {
+            first += 1;
+        }
+        while first < end && !contains(end - 1) {
+            end -= 1;
+        }
+        first..end
     }
-    while first < end && !contains(end - 1) {
-        end -= 1;
-    }
-    first..end
 }
 
 /// First index of a range at which `before` is false; `before` is true up to there.

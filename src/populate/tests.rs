@@ -37,6 +37,14 @@ fn ball(radius: f64) -> Shape {
     }
 }
 
+fn shell(radius: f64, inner_radius: f64) -> Shape {
+    Shape::Shell {
+        centre: Vec3::zeros(),
+        radius,
+        inner_radius,
+    }
+}
+
 fn plate(axis: Axis) -> Shape {
     Shape::Cylinder {
         centre: Vec3::new(0.3, -0.2, 0.1),
@@ -122,12 +130,18 @@ fn the_main_jobs_sphere_and_plate() {
 fn mass_is_that_of_the_shape() {
     let volume = |shape: &Shape| match shape {
         Shape::Sphere { radius, .. } => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
+        Shape::Shell {
+            radius,
+            inner_radius,
+            ..
+        } => 4.0 / 3.0 * std::f64::consts::PI * (radius.powi(3) - inner_radius.powi(3)),
         Shape::Cylinder { radius, length, .. } => std::f64::consts::PI * radius.powi(2) * length,
         Shape::Box { lower, upper } => (upper - lower).product(),
     };
     for kind in KINDS {
         for (shape, spacing, bound) in [
             (ball(1.0), 0.05, 0.01),
+            (shell(1.0, 0.6), 0.05, 0.02),
             (plate(Axis::Z), 0.02, 0.02),
             (plate(Axis::X), 0.02, 0.08),
             (block([0.0; 3], [2.0, 1.0, 1.0]), 0.05, 0.04),
@@ -232,7 +246,7 @@ proptest! {
         hexagonal in any::<bool>(),
         angle in prop_oneof![Just(0.0), Just(std::f64::consts::FRAC_PI_2), -3.0..3.0f64],
         shape in prop_oneof![
-            Just(ball(1.0)), Just(plate(Axis::X)), Just(plate(Axis::Z)),
+            Just(ball(1.0)), Just(shell(1.0, 0.6)), Just(plate(Axis::X)), Just(plate(Axis::Z)),
             Just(block([-1.0; 3], [0.5, 1.0, 0.3]))
         ],
         axis in 0usize..3,

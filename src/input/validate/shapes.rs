@@ -86,10 +86,21 @@ impl Shapes {
     }
 
     fn sphere(&self, params: &SphereParams) -> Result<Shape, Complaint> {
-        Ok(Shape::Sphere {
-            centre: self.point(params.centre.as_ref(), "centre")?,
-            radius: self.positive(&params.radius, "radius")?,
-        })
+        let centre = self.point(params.centre.as_ref(), "centre")?;
+        let radius = self.positive(&params.radius, "radius")?;
+        let Some(inner) = &params.inner_radius else {
+            return Ok(Shape::Sphere { centre, radius });
+        };
+        let inner_radius = self.positive(inner, "inner_radius")?;
+        if inner_radius < radius {
+            return Ok(Shape::Shell {
+                centre,
+                radius,
+                inner_radius,
+            });
+        }
+        let title = "`inner_radius` must be smaller than `radius`";
+        Err(Complaint::new(inner.span(), title))
     }
 
     fn cylinder(&self, params: &CylinderParams) -> Result<Shape, Complaint> {

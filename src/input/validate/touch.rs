@@ -84,6 +84,8 @@ fn translate(shape: &mut Shape, axis: Axis, distance: f64) {
             lower[a] += distance;
             upper[a] += distance;
         }
-        Shape::Sphere { centre, .. } | Shape::Cylinder { centre, .. } => centre[a] += distance,
+        Shape::Sphere { centre, .. }
+        | Shape::Shell { centre, .. }
+        | Shape::Cylinder { centre, .. } => centre[a] += distance,
     }
 }

@@ -1,0 +1,78 @@
+//! Rubber rings that collide (`inputs/rubber-rings`): they rebound whole.
+
+mod physics_support;
+
+use physics_support::{ready, run_to, start};
+use whipple::step::Simulation;
+
+/// Number of connected pieces of a body whose particles are linked when they are nearer than
+/// `reach` (m).
+fn pieces(s: &Simulation, body: u32, reach: f64) -> usize {
+    let of_body = |&i: &usize| s.store.body[i] == body;
+    let mut left: Vec<usize> = (0..s.store.owned()).filter(of_body).collect();
+    let near = |i: usize, j: usize| {
+        let (a, b) = (&s.store.position[i], &s.store.position[j]);
+        (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) < reach * reach
+    };
+    let mut pieces = 0;
+    while let Some(first) = left.pop() {
+        pieces += 1;
+        let mut open = vec![first];
+        while let Some(i) = open.pop() {
+            let (linked, rest) = left.into_iter().partition(|&j| near(i, j));
+            left = rest;
+            open.extend::<Vec<usize>>(linked);
+        }
+    }
+    pieces
+}
+
+/// Mean velocity of a body along x (m/s).
+fn mean_velocity(s: &Simulation, body: u32) -> f64 {
+    let (mut momentum, mut mass) = (0.0, 0.0);
+    for i in (0..s.store.owned()).filter(|&i| s.store.body[i] == body) {
+        momentum += s.store.mass[i] * s.store.velocity[i][0];
+        mass += s.store.mass[i];
+    }
+    momentum / mass
+}
+
+/// The rings after .003 s, and the largest number of pieces that each was in on the way.
+fn collide(overrides: &[&str]) -> (Simulation, [usize; 2]) {
+    let mut s = start(ready("rubber-rings", overrides));
+    let reach = 1.5 * s.case.bodies[0].lattice.spacing;
+    let mut most = [0, 0];
+    for k in 1..=10 {
+        run_to(&mut s, 0.3e-3 * f64::from(k));
+        for body in [0, 1] {
+            most[body as usize] = pieces(&s, body, reach).max(most[body as usize]);
+        }
+    }
+    (s, most)
+}
+
+/// At twice the input's spacing they part again, each in one piece at all times; without artificial
+/// stress they break, at a tension that the material bears.
+#[test]
+fn rings_rebound_whole() {
+    for epsilon in [0.3, 0.0] {
+        let stress = format!("sph.artificial_stress={epsilon}");
+        let (s, most) = collide(&["spacing=\"2 mm\"", &stress]);
+        let velocities = [0, 1].map(|body| mean_velocity(&s, body));
+        let restitution = (velocities[1] - velocities[0]) / (2.0 * 50.27);
+        let worst = &s.state.worst;
+        println!(
+            "artificial stress {epsilon}: pieces {most:?}, restitution {restitution:.3}, \
+             energy error {:.1e}, closest {:?}",
+            worst.energy_error, worst.closest
+        );
+        if epsilon > 0.0 {
+            assert_eq!(most, [1, 1]);
+            assert!(restitution > 0.7, "{restitution}");
+            assert!((velocities[0] + velocities[1]).abs() < 1e-9);
+            assert_eq!(worst.interpenetrated, 0);
+        } else {
+            assert!(most[0] > 1 && most[1] > 1, "{most:?}");
+        }
+    }
+}
