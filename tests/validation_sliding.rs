@@ -42,7 +42,7 @@ fn slide(overrides: &[&str]) -> Friction {
     friction
 }
 
-/// Mean at most .01 and largest at most .02 for `overlap`, whatever the lattices.
+/// Mean and largest at most .01 for `overlap`, whatever the lattices; the case asks for .01 and .02.
 #[test]
 #[ignore = "slow: make validation"]
 fn sliding_is_free_of_friction() {
@@ -51,7 +51,7 @@ fn sliding_is_free_of_friction() {
         let friction = slide(&[&lattice]);
         // The tool's way is given, not its force: about a thousandth.
         assert!((0.8e-3..1.2e-3).contains(&friction.pressure));
-        assert!(friction.largest <= 0.02, "{}", friction.largest);
+        assert!(friction.largest <= 0.01, "{}", friction.largest);
         assert!(friction.mean.abs() <= 0.01, "{}", friction.mean);
     }
 }
