@@ -3,31 +3,15 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use clap::Parser;
 use tiny_skia::Pixmap;
-use whipple::app::plot::{PlotArgs, run};
 use whipple::output::h5::read::SnapshotFile;
 
 mod plot_fixture;
-use plot_fixture::{Case, Particles, impact, write};
+use plot_fixture::{Case, Particles, impact, plot, write};
 
 /// Colours of the first two bodies.
 const SPHERE: [u8; 3] = [0, 114, 178];
 const PLATE: [u8; 3] = [230, 159, 0];
-
-#[derive(Parser)]
-struct Cli {
-    #[command(flatten)]
-    args: PlotArgs,
-}
-
-/// Runs `whipple plot` with the options of one line; the complaint, if there is one.
-fn plot(source: &Path, options: &str) -> Result<(), String> {
-    let words = ["plot", source.to_str().unwrap()];
-    let words = words.into_iter().chain(options.split_whitespace());
-    let cli = Cli::try_parse_from(words).map_err(|e| e.to_string())?;
-    run(&cli.args).map_err(|e| e.to_string())
-}
 
 /// Draws one picture of a snapshot and reads it back.
 fn picture(snapshot: &Path, options: &str) -> Pixmap {

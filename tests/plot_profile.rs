@@ -3,27 +3,11 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use clap::Parser;
 use tiny_skia::Pixmap;
-use whipple::app::plot::{PlotArgs, run};
 use whipple::plot::{Along, Mark, ProfileRequest, Profiles, Source};
 
 mod plot_fixture;
-use plot_fixture::{Case, Particles, write};
-
-#[derive(Parser)]
-struct Cli {
-    #[command(flatten)]
-    args: PlotArgs,
-}
-
-/// Runs `whipple plot` with the options of one line; the complaint, if there is one.
-fn plot(source: &Path, options: &str) -> Result<(), String> {
-    let words = ["plot", source.to_str().unwrap()];
-    let words = words.into_iter().chain(options.split_whitespace());
-    let cli = Cli::try_parse_from(words).map_err(|e| e.to_string())?;
-    run(&cli.args).map_err(|e| e.to_string())
-}
+use plot_fixture::{Case, Particles, plot, write};
 
 /// Two elastic bars of 4 mm that meet at ±200 m/s, with waves at 6 km/s and an impedance of 45e6 (SI).
 const BARS: &str = r#"

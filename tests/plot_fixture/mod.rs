@@ -4,7 +4,9 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use clap::Parser;
 use hdf5::types::{FixedAscii, FixedUnicode, VarLenUnicode};
+use whipple::app::plot::{self as command, PlotArgs};
 
 /// Particle spacing of the synthetic impact (m).
 pub const SPACING: f64 = 2e-5;
@@ -222,4 +224,18 @@ pub fn run(folder: &Path) -> PathBuf {
     }
     std::fs::write(run.join("history.csv"), rows).unwrap();
     run
+}
+
+#[derive(Parser)]
+struct Cli {
+    #[command(flatten)]
+    args: PlotArgs,
+}
+
+/// Runs `whipple plot` with the options of one line; the complaint, if there is one.
+pub fn plot(source: &Path, options: &str) -> Result<(), String> {
+    let words = ["plot", source.to_str().unwrap()];
+    let words = words.into_iter().chain(options.split_whitespace());
+    let cli = Cli::try_parse_from(words).map_err(|e| e.to_string())?;
+    command::run(&cli.args).map_err(|e| e.to_string())
 }
