@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::cloud::{Cloud, Found, Recipe};
+use common::cloud::{Cloud, Found, small as cloud};
 use common::random::Random;
 use whipple::domain::Mirrors;
 use whipple::neighbours::Chunk;
@@ -168,19 +168,6 @@ fn plain(
         sum.sizes[2] += share * dot(&v, &v).sqrt();
     }
     sum
-}
-
-fn cloud(dimension: usize, spread: f64, planes: usize, seed: u64) -> Cloud {
-    Cloud::new(&Recipe {
-        seed,
-        dimension,
-        particles: [60, 150, 260][dimension - 1],
-        bodies: 3,
-        planes,
-        spread,
-        runaways: 2,
-        along: 0,
-    })
 }
 
 fn bits(forces: &Forces) -> Vec<u64> {

@@ -8,7 +8,7 @@
 
 mod common;
 
-use common::cloud::{Cloud, Found, Recipe};
+use common::cloud::{Cloud, Found, small as cloud};
 use common::random::Random;
 use whipple::neighbours::Chunk;
 use whipple::sph::dispatch::{Instructions, available};
@@ -239,19 +239,6 @@ fn check_sweeps<S: PairScale>(cloud: &Cloud, scale: S) {
             }
         }
     }
-}
-
-fn cloud(dimension: usize, spread: f64, planes: usize, seed: u64) -> Cloud {
-    Cloud::new(&Recipe {
-        seed,
-        dimension,
-        particles: [60, 150, 260][dimension - 1],
-        bodies: 3,
-        planes,
-        spread,
-        runaways: 2,
-        along: 0,
-    })
 }
 
 #[test]

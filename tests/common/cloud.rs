@@ -50,6 +50,20 @@ pub struct Found {
     pub clusters: ClusterLists,
 }
 
+/// A small cloud of three bodies, two particles of which have flown away.
+pub fn small(dimension: usize, spread: f64, planes: usize, seed: u64) -> Cloud {
+    Cloud::new(&Recipe {
+        seed,
+        dimension,
+        particles: [60, 150, 260][dimension - 1],
+        bodies: 3,
+        planes,
+        spread,
+        runaways: 2,
+        along: 0,
+    })
+}
+
 impl Cloud {
     pub fn new(recipe: &Recipe) -> Self {
         let mut random = Random::new(recipe.seed);
