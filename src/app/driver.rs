@@ -69,7 +69,8 @@ impl<'a> Driver<'a> {
         on_root(comm, || {
             let resume = restarted.is_some().then_some(&simulation.state);
             let any_load = simulation.case.load_names().next().is_some();
-            tables = Some(Tables::open(folder, any_load, resume)?);
+            let dimension = simulation.case.dimension;
+            tables = Some(Tables::open(folder, dimension, any_load, resume)?);
             Ok(())
         })?;
         let stop = comm.is_root().then(|| folder.stop());

@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use crate::comm::Comm;
-use crate::output::{COMMIT, Column, OutputError, RunFolder, Table, VERSION, Value};
+use crate::output::{COMMIT, Column, OutputError, RunFolder, Table, VERSION, Value, unit_of_model};
 use crate::step::{PairState, RunState, Simulation};
 
 /// The tables of a run, written by rank 0.
@@ -49,90 +49,104 @@ pub fn load(comm: &Comm, simulation: &Simulation) -> Load {
     }
 }
 
-fn columns(list: &[(&str, &str)]) -> Vec<Column> {
+/// Columns with SI units; what a model of fewer dimensions has is by length or area.
+fn columns(dimension: usize, list: &[(&str, &str)]) -> Vec<Column> {
     list.iter()
-        .map(|(name, unit)| Column::new(name, unit))
+        .map(|(name, unit)| Column::new(name, unit_of_model(unit, dimension)))
         .collect()
 }
 
-fn history_columns() -> Vec<Column> {
-    columns(&[
-        ("step", ""),
-        ("time", "s"),
-        ("dt", "s"),
-        ("dt_reason", ""),
-        ("kinetic_energy", "J"),
-        ("internal_energy", "J"),
-        ("contact_energy", "J"),
-        ("gravity_energy", "J"),
-        ("total_energy", "J"),
-        ("momentum_x", "kg m/s"),
-        ("momentum_y", "kg m/s"),
-        ("momentum_z", "kg m/s"),
-        ("plane_impulse_x", "N s"),
-        ("plane_impulse_y", "N s"),
-        ("plane_impulse_z", "N s"),
-        ("load_work", "J"),
-        ("load_impulse_x", "N s"),
-        ("load_impulse_y", "N s"),
-        ("load_impulse_z", "N s"),
-        ("contact_work", "J"),
-        ("interpenetrated", ""),
-    ])
+fn history_columns(dimension: usize) -> Vec<Column> {
+    columns(
+        dimension,
+        &[
+            ("step", ""),
+            ("time", "s"),
+            ("dt", "s"),
+            ("dt_reason", ""),
+            ("kinetic_energy", "J"),
+            ("internal_energy", "J"),
+            ("contact_energy", "J"),
+            ("gravity_energy", "J"),
+            ("total_energy", "J"),
+            ("momentum_x", "kg m/s"),
+            ("momentum_y", "kg m/s"),
+            ("momentum_z", "kg m/s"),
+            ("plane_impulse_x", "N s"),
+            ("plane_impulse_y", "N s"),
+            ("plane_impulse_z", "N s"),
+            ("load_work", "J"),
+            ("load_impulse_x", "N s"),
+            ("load_impulse_y", "N s"),
+            ("load_impulse_z", "N s"),
+            ("contact_work", "J"),
+            ("interpenetrated", ""),
+        ],
+    )
 }
 
-fn contact_columns() -> Vec<Column> {
-    columns(&[
-        ("time", "s"),
-        ("body_a", ""),
-        ("body_b", ""),
-        ("force_x", "N"),
-        ("force_y", "N"),
-        ("force_z", "N"),
-        ("impulse_x", "N s"),
-        ("impulse_y", "N s"),
-        ("impulse_z", "N s"),
-        ("contact_energy", "J"),
-        ("touching", ""),
-        ("largest_excess", ""),
-        ("closest_pair", "spacings"),
-        ("contact_dt", "s"),
-    ])
+fn contact_columns(dimension: usize) -> Vec<Column> {
+    columns(
+        dimension,
+        &[
+            ("time", "s"),
+            ("body_a", ""),
+            ("body_b", ""),
+            ("force_x", "N"),
+            ("force_y", "N"),
+            ("force_z", "N"),
+            ("impulse_x", "N s"),
+            ("impulse_y", "N s"),
+            ("impulse_z", "N s"),
+            ("contact_energy", "J"),
+            ("touching", ""),
+            ("largest_excess", ""),
+            ("closest_pair", "spacings"),
+            ("contact_dt", "s"),
+        ],
+    )
 }
 
-fn load_columns() -> Vec<Column> {
-    columns(&[
-        ("time", "s"),
-        ("load", ""),
-        ("force_x", "N"),
-        ("force_y", "N"),
-        ("force_z", "N"),
-        ("impulse_x", "N s"),
-        ("impulse_y", "N s"),
-        ("impulse_z", "N s"),
-        ("work", "J"),
-    ])
+fn load_columns(dimension: usize) -> Vec<Column> {
+    columns(
+        dimension,
+        &[
+            ("time", "s"),
+            ("load", ""),
+            ("force_x", "N"),
+            ("force_y", "N"),
+            ("force_z", "N"),
+            ("impulse_x", "N s"),
+            ("impulse_y", "N s"),
+            ("impulse_z", "N s"),
+            ("work", "J"),
+        ],
+    )
 }
 
 fn performance_columns() -> Vec<Column> {
-    columns(&[
-        ("step", ""),
-        ("wall_seconds", "s"),
-        ("million_updates", ""),
-        ("particles", ""),
-        ("particle_imbalance", ""),
-        ("work_imbalance", ""),
-        ("empty_ranks", ""),
-        ("messages", ""),
-        ("megabytes_sent", "MB"),
-    ])
+    columns(
+        3,
+        &[
+            ("step", ""),
+            ("wall_seconds", "s"),
+            ("million_updates", ""),
+            ("particles", ""),
+            ("particle_imbalance", ""),
+            ("work_imbalance", ""),
+            ("empty_ranks", ""),
+            ("messages", ""),
+            ("megabytes_sent", "MB"),
+        ],
+    )
 }
 
 impl Tables {
-    /// Starts the tables of a run (that of loads if it has `any_load`), or goes on with them after
-    /// the state `resume`.
+    /// Starts the tables of a run in some dimensions (that of loads if it has `any_load`), or goes
+    /// on with them after the state `resume`.
     pub fn open(
         folder: &RunFolder,
+        dimension: usize,
         any_load: bool,
         resume: Option<&RunState>,
     ) -> Result<Self, OutputError> {
@@ -145,10 +159,15 @@ impl Tables {
         let step = resume.map(|state| state.step as f64);
         let time = resume.map(|state| state.time);
         Ok(Self {
-            history: open(&folder.history(), &history_columns(), "step", step)?,
-            contacts: open(&folder.contacts(), &contact_columns(), "time", time)?,
+            history: open(&folder.history(), &history_columns(dimension), "step", step)?,
+            contacts: open(
+                &folder.contacts(),
+                &contact_columns(dimension),
+                "time",
+                time,
+            )?,
             loads: any_load
-                .then(|| open(&folder.loads(), &load_columns(), "time", time))
+                .then(|| open(&folder.loads(), &load_columns(dimension), "time", time))
                 .transpose()?,
             performance: open(&folder.performance(), &performance_columns(), "step", step)?,
         })
