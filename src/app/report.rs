@@ -3,6 +3,7 @@
 use serde_json::json;
 
 use crate::comm::Comm;
+use crate::model::{Case, SphForm};
 use crate::output::{COMMIT, Column, OutputError, RunFolder, Table, VERSION, Value};
 use crate::step::{PairState, RunState, Simulation};
 
@@ -55,8 +56,9 @@ fn columns(list: &[(&str, &str)]) -> Vec<Column> {
         .collect()
 }
 
-fn history_columns() -> Vec<Column> {
-    columns(&[
+/// Of the history; with a count of uncorrected gradients in the `normalised` form.
+fn history_columns(case: &Case) -> Vec<Column> {
+    let mut all = columns(&[
         ("step", ""),
         ("time", "s"),
         ("dt", "s"),
@@ -78,7 +80,11 @@ fn history_columns() -> Vec<Column> {
         ("load_impulse_z", "N s"),
         ("contact_work", "J"),
         ("interpenetrated", ""),
-    ])
+    ]);
+    if case.sph.form == SphForm::Normalised {
+        all.push(Column::new("uncorrected", ""));
+    }
+    all
 }
 
 fn contact_columns() -> Vec<Column> {
@@ -129,11 +135,10 @@ fn performance_columns() -> Vec<Column> {
 }
 
 impl Tables {
-    /// Starts the tables of a run (that of loads if it has `any_load`), or goes on with them after
-    /// the state `resume`.
+    /// Starts the tables of a run of `case`, or goes on with them after the state `resume`.
     pub fn open(
         folder: &RunFolder,
-        any_load: bool,
+        case: &Case,
         resume: Option<&RunState>,
     ) -> Result<Self, OutputError> {
         let open =
@@ -145,9 +150,9 @@ impl Tables {
         let step = resume.map(|state| state.step as f64);
         let time = resume.map(|state| state.time);
         Ok(Self {
-            history: open(&folder.history(), &history_columns(), "step", step)?,
+            history: open(&folder.history(), &history_columns(case), "step", step)?,
             contacts: open(&folder.contacts(), &contact_columns(), "time", time)?,
-            loads: any_load
+            loads: (case.load_names().next().is_some())
                 .then(|| open(&folder.loads(), &load_columns(), "time", time))
                 .transpose()?,
             performance: open(&folder.performance(), &performance_columns(), "step", step)?,
@@ -166,7 +171,7 @@ impl Tables {
         let [px, py, pz] = totals.momentum.map(Value::Real);
         let [ix, iy, iz] = state.plane_impulse.map(Value::Real);
         let [lx, ly, lz] = state.load_impulse().map(Value::Real);
-        self.history.row(&[
+        let mut row = vec![
             Value::Count(state.step),
             Value::Real(state.time),
             Value::Real(state.last_dt),
@@ -188,7 +193,11 @@ impl Tables {
             lz,
             Value::Real(state.contact_work),
             Value::Count(state.interpenetrated.unsigned_abs()),
-        ])?;
+        ];
+        if simulation.case.sph.form == SphForm::Normalised {
+            row.push(Value::Count(state.uncorrected.unsigned_abs()));
+        }
+        self.history.row(&row)?;
         let pairs = simulation.contact().active_pairs();
         for (bodies, pair) in pairs.iter().zip(&state.pairs) {
             let names = bodies.map(|b| simulation.case.bodies[b].name.as_str());
@@ -264,6 +273,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::V
     let cores = (comm.size() * threads) as f64;
     let rate = load.updates as f64 * 1e-6 / stepping.max(f64::MIN_POSITIVE) / cores;
     let contact = simulation.contact();
+    let normalised = simulation.case.sph.form == SphForm::Normalised;
     // No particle is ever lost, so this is what the ranks have stepped since they started.
     let steps = load.updates as f64 / (load.particles[0] as f64).max(1.0);
     let each = |sent: u64| sent as f64 / (steps.max(1.0) * comm.size() as f64);
@@ -290,6 +300,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::V
         "closest_foreign_pair": worst.closest,
         "largest_foreign_fraction": contact.has_overlap().then_some(worst.foreign_fraction),
         "capped_reliefs": state.capped_reliefs,
+        "uncorrected_gradients": normalised.then_some(worst.uncorrected),
         "contact_limited_steps": worst.contact_limited_steps,
     })
 }
