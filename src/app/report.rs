@@ -3,6 +3,7 @@
 use serde_json::json;
 
 use crate::comm::Comm;
+use crate::model::{Case, SphForm};
 use crate::output::{COMMIT, Column, OutputError, RunFolder, Table, VERSION, Value, unit_of_model};
 use crate::step::{PairState, RunState, Simulation};
 
@@ -56,9 +57,10 @@ fn columns(dimension: usize, list: &[(&str, &str)]) -> Vec<Column> {
         .collect()
 }
 
-fn history_columns(dimension: usize) -> Vec<Column> {
-    columns(
-        dimension,
+/// Of the history; with a count of uncorrected gradients in the `normalised` form.
+fn history_columns(case: &Case) -> Vec<Column> {
+    let mut all = columns(
+        case.dimension,
         &[
             ("step", ""),
             ("time", "s"),
@@ -82,7 +84,11 @@ fn history_columns(dimension: usize) -> Vec<Column> {
             ("contact_work", "J"),
             ("interpenetrated", ""),
         ],
-    )
+    );
+    if case.sph.form == SphForm::Normalised {
+        all.push(Column::new("uncorrected", ""));
+    }
+    all
 }
 
 fn contact_columns(dimension: usize) -> Vec<Column> {
@@ -142,12 +148,10 @@ fn performance_columns() -> Vec<Column> {
 }
 
 impl Tables {
-    /// Starts the tables of a run in some dimensions (that of loads if it has `any_load`), or goes
-    /// on with them after the state `resume`.
+    /// Starts the tables of a run of `case`, or goes on with them after the state `resume`.
     pub fn open(
         folder: &RunFolder,
-        dimension: usize,
-        any_load: bool,
+        case: &Case,
         resume: Option<&RunState>,
     ) -> Result<Self, OutputError> {
         let open =
@@ -158,15 +162,16 @@ impl Tables {
         #[allow(clippy::cast_precision_loss, reason = "steps fit a double")]
         let step = resume.map(|state| state.step as f64);
         let time = resume.map(|state| state.time);
+        let dimension = case.dimension;
         Ok(Self {
-            history: open(&folder.history(), &history_columns(dimension), "step", step)?,
+            history: open(&folder.history(), &history_columns(case), "step", step)?,
             contacts: open(
                 &folder.contacts(),
                 &contact_columns(dimension),
                 "time",
                 time,
             )?,
-            loads: any_load
+            loads: (case.load_names().next().is_some())
                 .then(|| open(&folder.loads(), &load_columns(dimension), "time", time))
                 .transpose()?,
             performance: open(&folder.performance(), &performance_columns(), "step", step)?,
@@ -185,7 +190,7 @@ impl Tables {
         let [px, py, pz] = totals.momentum.map(Value::Real);
         let [ix, iy, iz] = state.plane_impulse.map(Value::Real);
         let [lx, ly, lz] = state.load_impulse().map(Value::Real);
-        self.history.row(&[
+        let mut row = vec![
             Value::Count(state.step),
             Value::Real(state.time),
             Value::Real(state.last_dt),
@@ -207,7 +212,11 @@ impl Tables {
             lz,
             Value::Real(state.contact_work),
             Value::Count(state.interpenetrated.unsigned_abs()),
-        ])?;
+        ];
+        if simulation.case.sph.form == SphForm::Normalised {
+            row.push(Value::Count(state.uncorrected.unsigned_abs()));
+        }
+        self.history.row(&row)?;
         let pairs = simulation.contact().active_pairs();
         for (bodies, pair) in pairs.iter().zip(&state.pairs) {
             let names = bodies.map(|b| simulation.case.bodies[b].name.as_str());
@@ -283,6 +292,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::V
     let cores = (comm.size() * threads) as f64;
     let rate = load.updates as f64 * 1e-6 / stepping.max(f64::MIN_POSITIVE) / cores;
     let contact = simulation.contact();
+    let normalised = simulation.case.sph.form == SphForm::Normalised;
     // No particle is ever lost, so this is what the ranks have stepped since they started.
     let steps = load.updates as f64 / (load.particles[0] as f64).max(1.0);
     let each = |sent: u64| sent as f64 / (steps.max(1.0) * comm.size() as f64);
@@ -309,6 +319,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::V
         "closest_foreign_pair": worst.closest,
         "largest_foreign_fraction": contact.has_overlap().then_some(worst.foreign_fraction),
         "capped_reliefs": state.capped_reliefs,
+        "uncorrected_gradients": normalised.then_some(worst.uncorrected),
         "contact_limited_steps": worst.contact_limited_steps,
     })
 }

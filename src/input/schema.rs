@@ -258,6 +258,8 @@ pub use materials::*;
 optional_tables! {
     /// `[sph]`
     SphParams {
+        /// How gradients are taken.
+        form: Option<SphFormName>,
         /// Smoothing length over particle spacing.
         smoothing: Option<Spanned<f64>>,
         /// Linear viscosity.
@@ -373,6 +375,13 @@ choices! {
         Cubic,
         /// Hexagonal close-packed.
         Hexagonal,
+    }
+    /// How the SPH sums take gradients.
+    SphFormName {
+        /// By the kernel's gradient.
+        Conventional,
+        /// By the corrected gradient.
+        Normalised,
     }
     /// Smoothing length in the SPH sums.
     SmoothingName {

@@ -13,7 +13,7 @@ mod motion;
 pub use body::{Axis, Body, Lattice, LatticeKind, Shape, SymmetryPlane};
 pub use contact::{ContactMode, ContactPair, Overlap, Potential, PotentialRange};
 pub use control::{
-    DomainOptions, OutputOptions, RunControl, SmoothingLength, SphOptions, TimeStepOptions,
+    DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm, SphOptions, TimeStepOptions,
 };
 pub use load::{Loads, RigidPlane, VelocityLoad};
 pub use motion::Motion;

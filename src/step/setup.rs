@@ -256,6 +256,7 @@ fn fresh_state(pairs: usize, loads: usize) -> RunState {
         momentum_put_in: 0.0,
         capped_reliefs: 0,
         interpenetrated: 0,
+        uncorrected: 0,
         worst: Worst::default(),
     }
 }

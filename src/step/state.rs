@@ -131,6 +131,8 @@ pub struct RunState {
     pub capped_reliefs: i64,
     /// Interpenetrated particles now.
     pub interpenetrated: i64,
+    /// Particles whose gradient has no correction now, in the normalised form.
+    pub uncorrected: i64,
     /// Largest values over the run.
     pub worst: Worst,
 }
@@ -166,6 +168,8 @@ pub struct Worst {
     pub momentum_error: [f64; 3],
     /// Interpenetrated particles.
     pub interpenetrated: i64,
+    /// Particles whose gradient has no correction, in the normalised form.
+    pub uncorrected: i64,
     /// Smallest foreign distance in mean spacings.
     pub closest: Option<f64>,
     /// Largest foreign fraction.

@@ -9,6 +9,7 @@ use crate::comm::Comm;
 use crate::contact::BodyReaction;
 use crate::diagnose::exact_sum::ExactSum;
 use crate::particles::ParticleStore;
+use crate::sph::options::NORMALISED;
 
 /// Sums of one step, first of this rank, then (after [`StepSums::reduce`]) of all.
 pub struct StepSums {
@@ -25,6 +26,8 @@ pub struct StepSums {
     pair_bodies: Vec<[usize; 2]>,
     pairs: Vec<PairSums>,
     interpenetrated: i64,
+    /// Particles whose gradient has no correction, in the normalised form.
+    pub(super) uncorrected: i64,
     closest: f64,
     foreign_fraction: f64,
     limbs: Vec<i64>,
@@ -71,6 +74,7 @@ impl StepSums {
             pairs: pair_bodies.iter().map(|_| PairSums::default()).collect(),
             pair_bodies,
             interpenetrated: 0,
+            uncorrected: 0,
             closest: f64::INFINITY,
             foreign_fraction: 0.0,
             limbs: Vec::new(),
@@ -159,12 +163,13 @@ impl StepSums {
         let mut limbs = std::mem::take(&mut self.limbs);
         limbs.clear();
         gather_limbs(self.exact(), &mut limbs);
-        limbs.push(self.interpenetrated);
+        limbs.extend([self.interpenetrated, self.uncorrected]);
         limbs.extend(self.pairs.iter().map(|pair| pair.touching));
         comm.sum_i64(&mut limbs);
         let mut rest = scatter_limbs(self.exact(), &limbs).iter();
         let mut next = || rest.next().copied().unwrap_or(0);
         self.interpenetrated = next();
+        self.uncorrected = next();
         for pair in &mut self.pairs {
             pair.touching = next();
         }
@@ -233,7 +238,8 @@ impl Simulation {
     /// Joins the sums of all ranks into the state, after the second half of a step `dt` (s).
     pub(super) fn book_step(&mut self, comm: &Comm, dt: f64) {
         let mirrors = !self.halo.mirrors().is_empty();
-        if self.contact.is_active() || mirrors || self.loads.drives() {
+        let normalised = self.options.set & NORMALISED != 0;
+        if self.contact.is_active() || mirrors || self.loads.drives() || normalised {
             self.sums.reduce(comm);
         }
         self.book_load_sums(dt);
@@ -261,8 +267,10 @@ impl Simulation {
             };
         }
         state.interpenetrated = sums.interpenetrated;
+        state.uncorrected = sums.uncorrected;
         let worst = &mut state.worst;
         worst.interpenetrated = worst.interpenetrated.max(sums.interpenetrated);
+        worst.uncorrected = worst.uncorrected.max(sums.uncorrected);
         worst.foreign_fraction = worst.foreign_fraction.max(sums.foreign_fraction);
         if sums.closest.is_finite() {
             let closest = worst.closest.map_or(sums.closest, |c| c.min(sums.closest));

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use whipple::comm::Comm;
-use whipple::model::{Case, SmoothingLength};
+use whipple::model::{Case, SmoothingLength, SphForm};
 use whipple::particles::{FieldUse, with_use};
 use whipple::step::Simulation;
 
@@ -109,11 +109,27 @@ pub fn loaded_with_options() -> Case {
     case
 }
 
-/// Without options of the SPH sums and with all, without loads and with all.
-pub const CASES: [fn() -> Case; 5] = [
+/// [`everything`] in the normalised form.
+pub fn normalised() -> Case {
+    let mut case = everything();
+    case.sph.form = SphForm::Normalised;
+    case
+}
+
+/// All loads with all options of the SPH sums in the normalised form.
+pub fn loaded_normalised() -> Case {
+    let mut case = loaded_with_options();
+    case.sph.form = SphForm::Normalised;
+    case
+}
+
+/// Without options of the SPH sums and with all, without loads and with all, in both forms.
+pub const CASES: [fn() -> Case; 7] = [
     everything,
     every_option,
     loaded,
     on_a_plane,
     loaded_with_options,
+    normalised,
+    loaded_normalised,
 ];
