@@ -97,7 +97,7 @@ pub fn on_a_plane() -> Case {
     case.bodies.drain(..1);
     case.bodies.truncate(1);
     case.loads.velocities.clear();
-    let plane = &mut case.loads.planes[0];
+    let plane = &mut case.loads.surfaces[0];
     plane.bodies = vec![true];
     case
 }
