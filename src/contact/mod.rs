@@ -6,6 +6,7 @@
 
 pub mod overlap;
 pub mod potential;
+pub mod surface;
 mod table;
 
 pub use table::{ContactTable, Pair};

@@ -75,8 +75,8 @@ impl Exact {
     /// The answer for a case, or what it has that no answer covers.
     fn of(case: &Case) -> Result<Self, String> {
         let mut parts = parts(case)?;
-        if case.loads.has_gravity() || !case.loads.planes.is_empty() {
-            return Err("there is gravity or a rigid plane".to_owned());
+        if case.loads.has_gravity() || !case.loads.surfaces.is_empty() {
+            return Err("there is gravity or a rigid surface".to_owned());
         }
         let ends = outer_ends(case, &mut parts)?;
         if let Some(bars) = parts.iter().map(bar).collect() {

@@ -54,11 +54,14 @@ pub struct PairState {
     pub contact_dt: Option<f64>,
 }
 
-/// Ledger of what acts from outside: a prescribed velocity, a rigid body, a rigid plane.
+/// Ledger of what acts from outside: a prescribed velocity, a rigid body, a rigid surface.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct LoadState {
-    /// Force on the model (N): the mean of the last step, of planes that of now.
+    /// Force on the model (N): the mean of the last step, of surfaces that of now.
     pub force: [f64; 3],
+    /// Torque on the model about the axis of a surface that turns (N m), now.
+    #[serde(default)]
+    pub torque: f64,
     /// Impulse given to the model so far (N s).
     pub impulse: [f64; 3],
     /// Work done on the model so far (J).
@@ -121,7 +124,7 @@ pub struct RunState {
     pub plane_impulse: [f64; 3],
     /// Ledgers of the pairs of bodies in contact.
     pub pairs: Vec<PairState>,
-    /// Ledgers of prescribed velocities, rigid bodies and rigid planes.
+    /// Ledgers of prescribed velocities, rigid bodies and rigid surfaces.
     pub loads: Vec<LoadState>,
     /// Largest work of loads and gravity so far (J).
     pub work_put_in: f64,

@@ -21,8 +21,8 @@ pub struct StepSums {
     plane_force: [ExactSum; 3],
     /// Impulse and work of prescribed velocities and of rigid bodies in this step.
     pub(super) loads: Vec<[ExactSum; 4]>,
-    /// Force along the normal of each rigid plane.
-    pub(super) pushes: Vec<ExactSum>,
+    /// Force of each rigid surface, and its torque about the axis that it turns about.
+    pub(super) pushes: Vec<[ExactSum; 4]>,
     pair_bodies: Vec<[usize; 2]>,
     pairs: Vec<PairSums>,
     interpenetrated: i64,
@@ -61,7 +61,7 @@ impl StepSums {
         pair_bodies: Vec<[usize; 2]>,
         enclosed_limit: f64,
         loads: usize,
-        planes: usize,
+        surfaces: usize,
     ) -> Self {
         Self {
             enclosed_limit,
@@ -70,7 +70,7 @@ impl StepSums {
             crossing_impulse: Default::default(),
             plane_force: Default::default(),
             loads: (0..loads).map(|_| Default::default()).collect(),
-            pushes: vec![ExactSum::default(); planes],
+            pushes: (0..surfaces).map(|_| Default::default()).collect(),
             pairs: pair_bodies.iter().map(|_| PairSums::default()).collect(),
             pair_bodies,
             interpenetrated: 0,
@@ -84,7 +84,7 @@ impl StepSums {
 
     pub(super) fn memory(&self) -> usize {
         size_of::<PairSums>() * self.pairs.capacity()
-            + size_of::<ExactSum>() * (4 * self.loads.capacity() + self.pushes.capacity())
+            + 4 * size_of::<ExactSum>() * (self.loads.capacity() + self.pushes.capacity())
             + 8 * (self.limbs.capacity() + self.extremes.capacity())
     }
 
@@ -92,7 +92,7 @@ impl StepSums {
     pub(super) fn clear_rates(&mut self) {
         self.contact_energy = ExactSum::default();
         self.plane_force = Default::default();
-        self.pushes.fill_with(ExactSum::default);
+        self.pushes.fill_with(Default::default);
         self.pairs.fill_with(PairSums::default);
         self.interpenetrated = 0;
         self.closest = f64::INFINITY;
@@ -111,9 +111,13 @@ impl StepSums {
         self.loads[load][3].add(work);
     }
 
-    /// Books the force (N) that a rigid plane exerts on a particle.
-    pub(super) fn add_push(&mut self, plane: usize, force: f64) {
-        self.pushes[plane].add(force);
+    /// Books the force (N) and torque (N m) that a rigid surface exerts on a particle.
+    pub(super) fn add_push(&mut self, surface: usize, force: &[f64; 3], torque: f64) {
+        let push = &mut self.pushes[surface];
+        for a in 0..3 {
+            push[a].add(force[a]);
+        }
+        push[3].add(torque);
     }
 
     pub(super) fn note_particle(&mut self, inside: bool, closest: f64, fraction: f64) {
@@ -147,7 +151,7 @@ impl StepSums {
             .chain(&mut self.crossing_impulse)
             .chain(&mut self.plane_force)
             .chain(self.loads.iter_mut().flatten())
-            .chain(&mut self.pushes)
+            .chain(self.pushes.iter_mut().flatten())
             .chain(
                 self.pairs
                     .iter_mut()
@@ -222,7 +226,7 @@ fn scatter_limbs<'a, 'b>(
 }
 
 impl Simulation {
-    /// Impulse of the symmetry planes and the rigid ones in the first half of a step.
+    /// Impulse of symmetry planes and rigid surfaces in the first half of a step.
     pub(super) fn book_plane_force(&mut self, dt: f64) {
         self.book_pushes(dt, true);
         for a in 0..3 {

@@ -85,7 +85,7 @@ pub fn everything() -> Case {
 /// A case with all loads there are.
 pub fn loaded() -> Case {
     let text = include_str!("loaded.toml");
-    whipple::input::parse("loaded.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"))
+    whipple::input::parse("tests/common/loaded.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The same with nothing in contact but a block and a plane.
@@ -97,8 +97,8 @@ pub fn on_a_plane() -> Case {
     case.bodies.drain(..1);
     case.bodies.truncate(1);
     case.loads.velocities.clear();
-    let plane = &mut case.loads.planes[0];
-    plane.bodies = vec![true];
+    case.loads.surfaces.truncate(1);
+    case.loads.surfaces[0].bodies = vec![true];
     case
 }
 
