@@ -77,6 +77,7 @@ fn history_columns() -> Vec<Column> {
         ("load_impulse_y", "N s"),
         ("load_impulse_z", "N s"),
         ("contact_work", "J"),
+        ("contact_heat", "J"),
         ("interpenetrated", ""),
     ])
 }
@@ -93,6 +94,7 @@ fn contact_columns() -> Vec<Column> {
         ("impulse_y", "N s"),
         ("impulse_z", "N s"),
         ("contact_energy", "J"),
+        ("heat", "J"),
         ("touching", ""),
         ("largest_excess", ""),
         ("closest_pair", "spacings"),
@@ -187,6 +189,7 @@ impl Tables {
             ly,
             lz,
             Value::Real(state.contact_work),
+            Value::Real(state.contact_heat()),
             Value::Count(state.interpenetrated.unsigned_abs()),
         ])?;
         let pairs = simulation.contact().active_pairs();
@@ -224,6 +227,7 @@ impl Tables {
             iy,
             iz,
             Value::Real(pair.energy),
+            Value::Real(pair.heat),
             Value::Count(pair.touching.unsigned_abs()),
             Value::Real(pair.largest_excess),
             Value::Real(pair.closest.unwrap_or(f64::INFINITY)),

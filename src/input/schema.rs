@@ -6,7 +6,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::forms::{LatticeParams, Named, NormalParams, OneOrMany};
+use super::forms::{FrictionParams, LatticeParams, Named, NormalParams, OneOrMany};
 use super::quantity::{
     Acceleration, Angle, Density, Extent, Length, Quantity, SpecificEnergy, Time, Velocity,
 };
@@ -233,6 +233,10 @@ tables! {
         bodies: Spanned<Vec<Spanned<String>>>,
         /// What happens where they meet; as for all others if absent.
         mode: Option<ModeName>,
+        /// Coefficients of friction.
+        friction: Option<Spanned<FrictionParams>>,
+        /// Share of critical damping.
+        damping: Option<Spanned<f64>>,
         /// Parameters of the mode `overlap`.
         #[serde(default)]
         overlap: OverlapParams,
@@ -304,6 +308,10 @@ optional_tables! {
     ContactParams {
         /// Mode of all pairs that have no own.
         mode: Option<ModeName>,
+        /// Coefficients of friction.
+        friction: Option<Spanned<FrictionParams>>,
+        /// Share of critical damping.
+        damping: Option<Spanned<f64>>,
         /// Parameters of the mode `overlap`.
         overlap: OverlapParams,
         /// Parameters of the mode `potential`.
@@ -344,6 +352,16 @@ optional_tables! {
         history_every: Option<Spanned<i64>>,
         /// Snapshot fields.
         fields: Vec<Spanned<String>>,
+    }
+}
+
+tables! {
+    /// `friction` as a table.
+    FrictionTable {
+        /// Of faces that stick.
+        r#static: Spanned<f64>,
+        /// Of faces that slide.
+        kinetic: Spanned<f64>,
     }
 }
 

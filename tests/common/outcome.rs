@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use whipple::comm::Comm;
-use whipple::model::{Case, SmoothingLength};
+use whipple::model::{Case, ContactMode, Overlap, Resistance, SmoothingLength};
 use whipple::particles::{FieldUse, with_use};
 use whipple::step::Simulation;
 
@@ -102,6 +102,20 @@ pub fn on_a_plane() -> Case {
     case
 }
 
+/// [`everything`] with friction and damping.
+pub fn rubbing() -> Case {
+    let mut case = everything();
+    case.default_contact = ContactMode::Overlap(Overlap {
+        resistance: Resistance {
+            static_friction: 0.4,
+            kinetic_friction: 0.3,
+            damping: 0.1,
+        },
+        ..Overlap::default()
+    });
+    case
+}
+
 /// All loads with all options of the SPH sums.
 pub fn loaded_with_options() -> Case {
     let mut case = loaded();
@@ -109,11 +123,12 @@ pub fn loaded_with_options() -> Case {
     case
 }
 
-/// Without options of the SPH sums and with all, without loads and with all.
-pub const CASES: [fn() -> Case; 5] = [
+/// Without options of the SPH sums and with all, without loads and with all, with friction.
+pub const CASES: [fn() -> Case; 6] = [
     everything,
     every_option,
     loaded,
     on_a_plane,
     loaded_with_options,
+    rubbing,
 ];
