@@ -82,6 +82,7 @@ fn history_columns(case: &Case) -> Vec<Column> {
             ("load_impulse_y", "N s"),
             ("load_impulse_z", "N s"),
             ("contact_work", "J"),
+            ("contact_heat", "J"),
             ("interpenetrated", ""),
         ],
     );
@@ -105,6 +106,7 @@ fn contact_columns(dimension: usize) -> Vec<Column> {
             ("impulse_y", "N s"),
             ("impulse_z", "N s"),
             ("contact_energy", "J"),
+            ("heat", "J"),
             ("touching", ""),
             ("largest_excess", ""),
             ("closest_pair", "spacings"),
@@ -211,6 +213,7 @@ impl Tables {
             ly,
             lz,
             Value::Real(state.contact_work),
+            Value::Real(state.contact_heat()),
             Value::Count(state.interpenetrated.unsigned_abs()),
         ];
         if simulation.case.sph.form == SphForm::Normalised {
@@ -252,6 +255,7 @@ impl Tables {
             iy,
             iz,
             Value::Real(pair.energy),
+            Value::Real(pair.heat),
             Value::Count(pair.touching.unsigned_abs()),
             Value::Real(pair.largest_excess),
             Value::Real(pair.closest.unwrap_or(f64::INFINITY)),

@@ -6,9 +6,10 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::forms::{LatticeParams, Named, NormalParams, OneOrMany};
+use super::forms::{FrictionParams, LatticeParams, Named, NormalParams, OneOrMany};
 use super::quantity::{
-    Acceleration, Angle, AngularRate, Density, Extent, Length, Quantity, SpecificEnergy, Time, Velocity,
+    Acceleration, Angle, AngularRate, Density, Extent, Length, Quantity, SpecificEnergy, Time,
+    Velocity,
 };
 
 /// A quantity with its place in the text.
@@ -318,6 +319,10 @@ tables! {
         bodies: Spanned<Vec<Spanned<String>>>,
         /// What happens where they meet; as for all others if absent.
         mode: Option<ModeName>,
+        /// Coefficients of friction.
+        friction: Option<Spanned<FrictionParams>>,
+        /// Share of critical damping.
+        damping: Option<Spanned<f64>>,
         /// Parameters of the mode `overlap`.
         #[serde(default)]
         overlap: OverlapParams,
@@ -391,6 +396,10 @@ optional_tables! {
     ContactParams {
         /// Mode of all pairs that have no own.
         mode: Option<ModeName>,
+        /// Coefficients of friction.
+        friction: Option<Spanned<FrictionParams>>,
+        /// Share of critical damping.
+        damping: Option<Spanned<f64>>,
         /// Parameters of the mode `overlap`.
         overlap: OverlapParams,
         /// Parameters of the mode `potential`.
@@ -431,6 +440,16 @@ optional_tables! {
         history_every: Option<Spanned<i64>>,
         /// Snapshot fields.
         fields: Vec<Spanned<String>>,
+    }
+}
+
+tables! {
+    /// `friction` as a table.
+    FrictionTable {
+        /// Of faces that stick.
+        r#static: Spanned<f64>,
+        /// Of faces that slide.
+        kinetic: Spanned<f64>,
     }
 }
 

@@ -144,6 +144,7 @@ impl Simulation {
         self.timers.lap(Phase::HaloStress);
         self.momentum_and_energy(true);
         self.timers.lap(Phase::Momentum);
+        self.hold_by_friction(comm, dt);
         self.contact_forces();
         self.timers.lap(Phase::ContactForces);
     }

@@ -44,6 +44,12 @@ pub struct PairState {
     pub impulse: [f64; 3],
     /// Contact energy between the two now (J).
     pub energy: f64,
+    /// What friction and damping turn into heat now (W).
+    #[serde(default)]
+    pub heat_power: f64,
+    /// Its time integral (J).
+    #[serde(default)]
+    pub heat: f64,
     /// Particles with excess now.
     pub touching: i64,
     /// Largest excess now.
@@ -145,6 +151,12 @@ impl RunState {
     #[must_use]
     pub fn load_work(&self) -> f64 {
         self.loads.iter().map(|load| load.work).sum()
+    }
+
+    /// Heat by friction and damping of contact so far (J).
+    #[must_use]
+    pub fn contact_heat(&self) -> f64 {
+        self.pairs.iter().map(|pair| pair.heat).sum()
     }
 
     /// Impulse given by all loads so far (N s).
