@@ -7,6 +7,7 @@
 pub mod friction;
 pub mod overlap;
 pub mod potential;
+pub mod surface;
 mod table;
 
 pub use table::{ContactTable, Pair, PairResistance};

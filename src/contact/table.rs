@@ -92,7 +92,7 @@ pub struct ContactTable {
     pub foreign: ForeignTable,
     pairs: Vec<Pair>,
     inverse_densities: Vec<f64>,
-    has_planes: bool,
+    has_surfaces: bool,
 }
 
 impl ContactTable {
@@ -140,7 +140,7 @@ impl ContactTable {
             foreign,
             pairs,
             inverse_densities,
-            has_planes: !case.loads.planes.is_empty(),
+            has_surfaces: !case.loads.surfaces.is_empty(),
         }
     }
 
@@ -164,10 +164,10 @@ impl ContactTable {
         self.groups.iter().max().map_or(0, |&g| g + 1)
     }
 
-    /// Whether there is contact beyond the SPH sums: of pairs of bodies, or with rigid planes.
+    /// Whether there is contact beyond the SPH sums: of pairs of bodies, or with rigid surfaces.
     #[must_use]
     pub fn is_active(&self) -> bool {
-        self.has_planes || self.has_pairs()
+        self.has_surfaces || self.has_pairs()
     }
 
     /// Whether any pair of bodies has contact beyond the SPH sums.

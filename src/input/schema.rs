@@ -8,7 +8,7 @@ use toml::Spanned;
 
 use super::forms::{FrictionParams, LatticeParams, Named, NormalParams, OneOrMany};
 use super::quantity::{
-    Acceleration, Angle, Density, Extent, Length, Quantity, SpecificEnergy, Time, Velocity,
+    Acceleration, Angle, AngularRate, Density, Extent, Length, Quantity, SpecificEnergy, Time, Velocity,
 };
 
 /// A quantity with its place in the text.
@@ -66,6 +66,9 @@ tables! {
         /// Rigid planes.
         #[serde(default)]
         plane: Vec<Spanned<PlaneParams>>,
+        /// Rigid surfaces of other shapes.
+        #[serde(default)]
+        surface: Vec<Spanned<SurfaceParams>>,
         /// What is written.
         #[serde(default)]
         output: OutputParams,
@@ -157,6 +160,88 @@ tables! {
         stiffness: Option<Spanned<f64>>,
         /// Motion of the plane; fixed if absent.
         motion: Option<Spanned<MotionParams>>,
+    }
+
+    /// `[[surface]]`
+    SurfaceParams {
+        /// Name in reports.
+        name: Option<Spanned<String>>,
+        /// Geometry.
+        shape: Spanned<SurfaceShapeParams>,
+        /// Where the particles are; outside if absent.
+        side: Option<SideName>,
+        /// Names of the bodies that feel it; all if absent.
+        bodies: Option<Vec<Spanned<String>>>,
+        /// Stiffness κ.
+        stiffness: Option<Spanned<f64>>,
+        /// Motion of the surface; fixed if absent.
+        motion: Option<Spanned<MotionParams>>,
+        /// Rotation of the surface; none if absent.
+        rotation: Option<Spanned<RotationParams>>,
+    }
+
+    /// `shape` of a surface: exactly one of these.
+    SurfaceShapeParams {
+        /// Ball; a disc in two dimensions.
+        sphere: Option<SurfaceSphereParams>,
+        /// Circular cylinder.
+        cylinder: Option<SurfaceCylinderParams>,
+        /// Triangles from a file.
+        stl: Option<StlParams>,
+    }
+
+    /// `shape.sphere` of a surface.
+    SurfaceSphereParams {
+        /// The origin if absent.
+        centre: Option<Spanned<Vec<Placed<Length>>>>,
+        /// Radius.
+        radius: Placed<Length>,
+    }
+
+    /// `shape.cylinder` of a surface.
+    SurfaceCylinderParams {
+        /// Middle of the axis; the origin if absent.
+        centre: Option<Spanned<Vec<Placed<Length>>>>,
+        /// Direction of the axis; z if absent.
+        axis: Option<Spanned<AxisName>>,
+        /// Radius.
+        radius: Placed<Length>,
+        /// Length along the axis; without ends if absent.
+        length: Option<Placed<Length>>,
+    }
+
+    /// `shape.stl`
+    StlParams {
+        /// Path, from the folder of the case.
+        file: Spanned<String>,
+        /// Length of one unit of the file.
+        unit: Placed<Length>,
+        /// Where the file's origin stands; the origin if absent.
+        at: Option<Spanned<Vec<Placed<Length>>>>,
+        /// Turns the surface about the file's origin, before it is placed.
+        turn: Option<TurnParams>,
+        /// SHA-256 that the file must have.
+        sha256: Option<Spanned<String>>,
+    }
+
+    /// `turn`
+    TurnParams {
+        /// Axis through the origin.
+        axis: Spanned<AxisName>,
+        /// By how much.
+        angle: Placed<Angle>,
+    }
+
+    /// `rotation`
+    RotationParams {
+        /// Axis of the rotation.
+        axis: Spanned<AxisName>,
+        /// A point of the axis; the origin if absent.
+        point: Option<Spanned<Vec<Placed<Length>>>>,
+        /// Times of the table.
+        times: Option<Spanned<Vec<Placed<Time>>>>,
+        /// Rate, right-handed about the axis.
+        rate: Spanned<OneOrMany<AngularRate>>,
     }
 
     /// `shape`: exactly one of these.
@@ -262,6 +347,8 @@ pub use materials::*;
 optional_tables! {
     /// `[sph]`
     SphParams {
+        /// How gradients are taken.
+        form: Option<SphFormName>,
         /// Smoothing length over particle spacing.
         smoothing: Option<Spanned<f64>>,
         /// Linear viscosity.
@@ -385,12 +472,26 @@ choices! {
         /// Third.
         Z,
     }
+    /// Side of a surface.
+    SideName {
+        /// Outside, as of a punch.
+        Outside,
+        /// Inside, as of a container.
+        Inside,
+    }
     /// Kind of lattice.
     LatticeName {
         /// Simple cubic.
         Cubic,
         /// Hexagonal close-packed.
         Hexagonal,
+    }
+    /// How the SPH sums take gradients.
+    SphFormName {
+        /// By the kernel's gradient.
+        Conventional,
+        /// By the corrected gradient.
+        Normalised,
     }
     /// Smoothing length in the SPH sums.
     SmoothingName {

@@ -79,8 +79,10 @@ impl FieldUse {
     pub const LOADS: Self = Self(2048);
     /// Held only where bodies in contact have friction or damping.
     pub const FRICTION: Self = Self(4096);
+    /// Held only in the normalised form of the sums.
+    pub const NORMALISED: Self = Self(16384);
     /// Held only where the case has use for it.
-    pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024 | 2048 | 4096);
+    pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024 | 2048 | 4096 | 16384);
     /// In snapshots at all.
     pub const SNAPSHOT_OR_ON_DEMAND: Self = Self(32 | 64);
     /// What a rank sends with a particle that leaves it.
@@ -285,6 +287,12 @@ particle_fields! {
     predicted_energy: Scalar, "J/kg", HALO_STRESS | CONDUCTION;
     /// What XSPH adds to the velocity when it moves the particle.
     velocity_correction: Vector, "m/s", STATE | ON_DEMAND | XSPH;
+    /// Matrix of the correction that makes gradients of linear fields exact, row-major.
+    gradient_correction: Tensor, "", HALO_STRESS | ON_DEMAND | NORMALISED;
+    /// Gradient of the kernel sum over the kernel sum; it points into the body.
+    gradient_shift: Vector, "1/m", HALO_STRESS | ON_DEMAND | NORMALISED;
+    /// How much the correction enlarges gradients; 0 where it is ill-conditioned and left out.
+    correction_norm: Scalar, "", ON_DEMAND | NORMALISED;
     /// Work of the last step, in neighbours of the pair sums, for the balance between ranks.
     work: Index, "", MIGRATED;
 }

@@ -222,7 +222,7 @@ impl Simulation {
         if self.contact.is_active() {
             self.run_reactions();
             self.store_reactions();
-            self.plane_forces();
+            self.surface_forces();
         }
         for force in self
             .sweeps

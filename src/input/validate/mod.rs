@@ -9,25 +9,27 @@ mod materials;
 mod motion;
 mod shapes;
 mod strength;
+mod surfaces;
 mod touch;
 
 use std::ops::Range;
+use std::path::Path;
 
 use super::schema::{
     AxisName, BodyParams, CaseParams, DomainParams, OutputParams, RunParams, SmoothingName,
-    SphParams, SymmetryParams, TimeStepParams,
+    SphFormName, SphParams, SymmetryParams, TimeStepParams,
 };
 use super::source::Complaint;
 use crate::model::{
-    Axis, Case, ContactMode, DomainOptions, OutputOptions, RunControl, SmoothingLength, SphOptions,
-    SymmetryPlane, TimeStepOptions,
+    Axis, Case, ContactMode, DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm,
+    SphOptions, SymmetryPlane, TimeStepOptions,
 };
 use crate::particles::{TEMPERATURE, snapshot_names};
 use check::{Allowed, number, whole};
 use toml::Spanned;
 
-/// Builds the case; `resolved` is left empty.
-pub fn case(params: CaseParams) -> Result<Case, Complaint> {
+/// Builds the case, whose files stand in `folder`; `resolved` is left empty.
+pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
     let dimension = dimension(&params.dimension)?;
     let symmetry = symmetry(&params.symmetry, dimension)?;
     let (names, mut materials) = materials::materials(&params.material)?;
@@ -53,6 +55,7 @@ pub fn case(params: CaseParams) -> Result<Case, Complaint> {
         dimension,
         bodies: &bodies,
         symmetry: &symmetry,
+        folder,
     }
     .loads(&params)?;
     let mut time_step = time_step(&params.time_step)?;
@@ -171,6 +174,10 @@ fn sph(params: &SphParams) -> Result<SphOptions, Complaint> {
         max: number(max, "smoothing_length_max", 2.0, Allowed::Within(1.0, 10.0))?,
     };
     Ok(SphOptions {
+        form: match params.form {
+            None | Some(SphFormName::Conventional) => SphForm::Conventional,
+            Some(SphFormName::Normalised) => SphForm::Normalised,
+        },
         alpha: number(params.alpha.as_ref(), "alpha", 1.0, Allowed::NotNegative)?,
         beta: number(params.beta.as_ref(), "beta", 2.0, Allowed::NotNegative)?,
         smoothing_length: match params.smoothing_length {
