@@ -12,7 +12,9 @@ mod motion;
 mod surface;
 
 pub use body::{Axis, Body, Lattice, LatticeKind, Shape, SymmetryPlane};
-pub use contact::{ContactMode, ContactPair, Overlap, Potential, PotentialRange};
+pub use contact::{
+    ContactMode, ContactPair, Overlap, Penalty, PenaltyLaw, Potential, PotentialRange,
+};
 pub use control::{
     DomainOptions, OutputOptions, RunControl, SmoothingLength, SphOptions, TimeStepOptions,
 };

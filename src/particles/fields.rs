@@ -77,8 +77,10 @@ impl FieldUse {
     pub const XSPH: Self = Self(1024);
     /// Held only where loads or rigid bodies prescribe velocities.
     pub const LOADS: Self = Self(2048);
+    /// Held only with `penalty` contact.
+    pub const PENALTY: Self = Self(32768);
     /// Held only where the case has use for it.
-    pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024 | 2048);
+    pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024 | 2048 | 32768);
     /// In snapshots at all.
     pub const SNAPSHOT_OR_ON_DEMAND: Self = Self(32 | 64);
     /// What a rank sends with a particle that leaves it.
@@ -253,6 +255,8 @@ particle_fields! {
     touching_value: Scalar, "", HALO_CONTACT | CONTACT;
     /// Sum of kernel gradients over foreign volume where there is excess, for the time step.
     contact_slope: Scalar, "1/m", HALO_CONTACT | CONTACT;
+    /// Outward normal of a boundary particle, longer at corners, zero inside: of `penalty` contact.
+    boundary_normal: Vector, "", HALO_CONTACT | ON_DEMAND | PENALTY;
     /// Contact energy.
     contact_energy: Scalar, "J", ON_DEMAND | CONTACT;
     /// Largest approach speed towards a neighbour, for the time step.

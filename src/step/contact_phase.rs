@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use super::search::GRAIN;
 use super::simulation::Simulation;
 use crate::contact::overlap::{self, Fraction};
-use crate::contact::{BodyReaction, ContactView, Reaction, potential};
-use crate::neighbours::{CHUNKS_AT_ONCE, ForeignChunk};
+use crate::contact::{BodyReaction, ContactView, Reaction, penalty, potential};
+use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, ForeignChunk};
 
 /// Results of each task before they go into the store, kept from step to step.
 #[derive(Default)]
@@ -17,6 +17,8 @@ pub struct ContactPhase {
 #[derive(Default)]
 struct Task {
     fractions: Vec<(usize, Fraction)>,
+    /// Of `penalty` contact, see [`penalty::boundary`].
+    boundary: Vec<(usize, [f64; 3])>,
     reactions: Vec<Booked>,
     /// Receiving particle and its body, and what another body does to it.
     by_body: Vec<(usize, usize, BodyReaction)>,
@@ -50,6 +52,7 @@ impl ContactPhase {
     pub(super) fn memory(&self) -> usize {
         let task = |task: &Task| {
             size_of::<(usize, Fraction)>() * task.fractions.capacity()
+                + size_of::<(usize, [f64; 3])>() * task.boundary.capacity()
                 + size_of::<Booked>() * task.reactions.capacity()
                 + size_of::<(usize, usize, BodyReaction)>() * task.by_body.capacity()
                 + size_of::<BodyReaction>() * task.reaction.by_body.capacity()
@@ -65,6 +68,7 @@ impl Simulation {
             return;
         }
         self.run_fractions();
+        self.find_boundaries();
         let store = &mut self.store;
         for field in [
             &mut store.foreign_fraction,
@@ -107,6 +111,7 @@ impl Simulation {
             motion: &self.search.motion,
             store: &self.store,
             table: &self.contact,
+            dt: 0.0,
         };
         self.contact_phase
             .tasks
@@ -122,6 +127,31 @@ impl Simulation {
                     task.fractions.push((base, fraction));
                 }
             });
+    }
+
+    /// Normals of the boundary particles that `penalty` contact may press on.
+    fn find_boundaries(&mut self) {
+        if !self.contact.has_penalty() {
+            return;
+        }
+        let view = ContactView {
+            images: self.search.sequence.images(),
+            motion: &self.search.motion,
+            store: &self.store,
+            table: &self.contact,
+            dt: 0.0,
+        };
+        self.contact_phase
+            .tasks
+            .par_iter_mut()
+            .zip(self.search.foreign.chunks())
+            .zip(self.search.clusters.chunks())
+            .with_max_len(CHUNKS_AT_ONCE)
+            .for_each(|((task, foreign), own)| task.find_boundaries(&view, foreign, own));
+        fill(&mut self.store.boundary_normal, [0.0; 3]);
+        for (i, normal) in self.contact_phase.tasks.iter().flat_map(|t| &t.boundary) {
+            self.store.boundary_normal[*i] = *normal;
+        }
     }
 
     /// Gives every particle the relief that makes it start free of force; returns how many had
@@ -140,11 +170,12 @@ impl Simulation {
         capped
     }
 
-    /// Contact forces, the energy of contact, and what the time step must know of both.
-    pub(super) fn contact_forces(&mut self) {
+    /// Contact forces after a step `dt` (s), the energy of contact, and what the time step must know
+    /// of both.
+    pub(super) fn contact_forces(&mut self, dt: f64) {
         self.sums.clear_rates();
         if self.contact.is_active() {
-            self.run_reactions();
+            self.run_reactions(dt);
             self.store_reactions();
             self.surface_forces();
         }
@@ -158,12 +189,13 @@ impl Simulation {
         }
     }
 
-    fn run_reactions(&mut self) {
+    fn run_reactions(&mut self, dt: f64) {
         let view = ContactView {
             images: self.search.sequence.images(),
             motion: &self.search.motion,
             store: &self.store,
             table: &self.contact,
+            dt,
         };
         self.contact_phase
             .tasks
@@ -215,6 +247,21 @@ fn fill<T: Copy + Send + Sync>(values: &mut [T], value: T) {
 }
 
 impl Task {
+    /// Receivers of both lists stand in the same order.
+    fn find_boundaries(&mut self, view: &ContactView, foreign: &ForeignChunk, own: &Chunk) {
+        self.boundary.clear();
+        let mut wanted = foreign.penalty.iter().map(|(place, _)| place).peekable();
+        for (cluster, neighbours, _) in own.iter() {
+            for &place in &cluster.receivers[..cluster.lanes] {
+                if wanted.next_if_eq(&place).is_some() {
+                    let normal = penalty::boundary(view, place, neighbours);
+                    self.boundary
+                        .push((view.images[place as usize].base(), normal));
+                }
+            }
+        }
+    }
+
     /// Reactions of one chunk's receivers, mode after mode.
     fn react(&mut self, view: &ContactView, chunk: &ForeignChunk) {
         self.reactions.clear();
@@ -227,6 +274,11 @@ impl Task {
         for (place, neighbours) in chunk.potential.iter() {
             self.reaction.clear();
             potential::react(view, place, neighbours, &mut self.reaction);
+            self.keep(view, place, neighbours.len());
+        }
+        for (place, neighbours) in chunk.penalty.iter() {
+            self.reaction.clear();
+            penalty::react(view, place, neighbours, &mut self.reaction);
             self.keep(view, place, neighbours.len());
         }
     }

@@ -143,7 +143,7 @@ impl Simulation {
         self.timers.lap(Phase::HaloStress);
         self.momentum_and_energy(true);
         self.timers.lap(Phase::Momentum);
-        self.contact_forces();
+        self.contact_forces(dt);
         self.timers.lap(Phase::ContactForces);
     }
 
