@@ -12,7 +12,9 @@ mod motion;
 mod surface;
 
 pub use body::{Axis, Body, Lattice, LatticeKind, Shape, SymmetryPlane};
-pub use contact::{ContactMode, ContactPair, Overlap, Potential, PotentialRange, Resistance};
+pub use contact::{
+    ContactMode, ContactPair, Overlap, Penalty, PenaltyLaw, Potential, PotentialRange, Resistance,
+};
 pub use control::{
     DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm, SphOptions, TimeStepOptions,
 };

@@ -85,7 +85,8 @@ pub fn everything() -> Case {
 /// A case with all loads there are.
 pub fn loaded() -> Case {
     let text = include_str!("loaded.toml");
-    whipple::input::parse("tests/common/loaded.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"))
+    whipple::input::parse("tests/common/loaded.toml", text, &[])
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The same with nothing in contact but a block and a plane.
