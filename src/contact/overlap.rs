@@ -97,7 +97,7 @@ pub fn react(view: &ContactView, place: u32, neighbours: &[u32], reaction: &mut 
             view.table.pair(j.body, i.body),
         );
         let there = stored(view, j.base);
-        let mut force = 0.0;
+        let (mut force, mut core) = (0.0, 0.0);
         let mut energy = 0.0;
         if here.excess > 0.0 || there.excess > 0.0 {
             let kernel = &view.table.kernel;
@@ -114,12 +114,22 @@ pub fn react(view: &ContactView, place: u32, neighbours: &[u32], reaction: &mut 
         let depth = 1.0 - gap.distance / pair.core_radius;
         if depth > 0.0 {
             let stress = pair.core_modulus * (0.5 * (i.volume + j.volume));
-            force += stress * depth / pair.core_radius;
+            core = stress * depth / pair.core_radius;
             // Half of the pair's energy stands on each side.
             energy += 0.25 * stress * (depth * depth);
             reaction.stiffness += 2.0 * stress / (pair.core_radius * pair.core_radius);
         }
-        reaction.book(&j, &gap, pair, gap.along(force), energy);
+        let force = if pair.along_normal {
+            // The core has no use for normals: it keeps lone particles apart.
+            let (bulk, core) = (
+                gap.along_normal(force, view.normal(place, other)),
+                gap.along(core),
+            );
+            [bulk[0] + core[0], bulk[1] + core[1], bulk[2] + core[2]]
+        } else {
+            gap.along(force + core)
+        };
+        reaction.book(&j, &gap, pair, force, energy);
     }
 }
 

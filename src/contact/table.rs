@@ -1,6 +1,6 @@
 //! Parameters of every pair of bodies, computed once at set-up.
 
-use crate::model::{Case, ContactMode, PotentialRange};
+use crate::model::{Case, ContactDirection, ContactMode, PotentialRange};
 use crate::neighbours::{ContactClass, ForeignTable};
 use crate::populate;
 use crate::sph::kernel::Kernel;
@@ -20,6 +20,8 @@ pub struct Pair {
     pub core_modulus: f64,
     /// `overlap`: radius of the core (m).
     pub core_radius: f64,
+    /// Whether forces act along the normals of the surfaces.
+    pub along_normal: bool,
     /// `potential`: K (Pa/m^d).
     pub potential: f64,
     /// `potential`: exponent n.
@@ -185,6 +187,7 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
         touching: 0.0,
         core_modulus: 0.0,
         core_radius: 0.0,
+        along_normal: false,
         potential: 0.0,
         exponent: 1,
         range: 0.0,
@@ -198,6 +201,7 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
         ContactMode::None | ContactMode::Kernel => (ContactClass::None, pair),
         ContactMode::Potential(potential) => {
             pair.potential = potential.stiffness * smaller / kernel.power(spacing);
+            pair.along_normal = potential.direction == ContactDirection::Normal;
             pair.exponent = i32::try_from(potential.exponent).unwrap_or(i32::MAX);
             pair.inverse_kernel = 1.0 / kernel.value(spacing, h);
             (pair.range, pair.floor) = match potential.range {
@@ -211,6 +215,7 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
             pair.touching = populate::touching_value(body_a, body_b, case.dimension);
             pair.core_modulus = overlap.core_stiffness * smaller;
             pair.core_radius = overlap.core_radius * spacing;
+            pair.along_normal = overlap.direction == ContactDirection::Normal;
             (ContactClass::Overlap, pair)
         }
     }

@@ -11,7 +11,7 @@ mod load;
 mod motion;
 
 pub use body::{Axis, Body, Lattice, LatticeKind, Shape, SymmetryPlane};
-pub use contact::{ContactMode, ContactPair, Overlap, Potential, PotentialRange};
+pub use contact::{ContactDirection, ContactMode, ContactPair, Overlap, Potential, PotentialRange};
 pub use control::{
     DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm, SphOptions,
     TimeStepOptions,
