@@ -628,7 +628,7 @@ const IN_LOADS: &[(&str, &str, &str, &str)] = &[
     (
         "normal = \"+x\"",
         "normal = \"+x\"\nbodies = [\"tool\"]",
-        "the body `tool` is rigid: no plane moves it",
+        "the body `tool` is rigid: no surface moves it",
         ":27:11",
     ),
     (

@@ -4,7 +4,7 @@ use serde_json::json;
 
 use crate::comm::Comm;
 use crate::model::{Case, SphForm};
-use crate::output::{COMMIT, Column, OutputError, RunFolder, Table, VERSION, Value};
+use crate::output::{COMMIT, Column, OutputError, RunFolder, Table, VERSION, Value, unit_of_model};
 use crate::step::{PairState, RunState, Simulation};
 
 /// The tables of a run, written by rank 0.
@@ -50,88 +50,103 @@ pub fn load(comm: &Comm, simulation: &Simulation) -> Load {
     }
 }
 
-fn columns(list: &[(&str, &str)]) -> Vec<Column> {
+/// Columns with SI units; what a model of fewer dimensions has is by length or area.
+fn columns(dimension: usize, list: &[(&str, &str)]) -> Vec<Column> {
     list.iter()
-        .map(|(name, unit)| Column::new(name, unit))
+        .map(|(name, unit)| Column::new(name, unit_of_model(unit, dimension)))
         .collect()
 }
 
 /// Of the history; with a count of uncorrected gradients in the `normalised` form.
 fn history_columns(case: &Case) -> Vec<Column> {
-    let mut all = columns(&[
-        ("step", ""),
-        ("time", "s"),
-        ("dt", "s"),
-        ("dt_reason", ""),
-        ("kinetic_energy", "J"),
-        ("internal_energy", "J"),
-        ("contact_energy", "J"),
-        ("gravity_energy", "J"),
-        ("total_energy", "J"),
-        ("momentum_x", "kg m/s"),
-        ("momentum_y", "kg m/s"),
-        ("momentum_z", "kg m/s"),
-        ("plane_impulse_x", "N s"),
-        ("plane_impulse_y", "N s"),
-        ("plane_impulse_z", "N s"),
-        ("load_work", "J"),
-        ("load_impulse_x", "N s"),
-        ("load_impulse_y", "N s"),
-        ("load_impulse_z", "N s"),
-        ("contact_work", "J"),
-        ("interpenetrated", ""),
-    ]);
+    let mut all = columns(
+        case.dimension,
+        &[
+            ("step", ""),
+            ("time", "s"),
+            ("dt", "s"),
+            ("dt_reason", ""),
+            ("kinetic_energy", "J"),
+            ("internal_energy", "J"),
+            ("contact_energy", "J"),
+            ("gravity_energy", "J"),
+            ("total_energy", "J"),
+            ("momentum_x", "kg m/s"),
+            ("momentum_y", "kg m/s"),
+            ("momentum_z", "kg m/s"),
+            ("plane_impulse_x", "N s"),
+            ("plane_impulse_y", "N s"),
+            ("plane_impulse_z", "N s"),
+            ("load_work", "J"),
+            ("load_impulse_x", "N s"),
+            ("load_impulse_y", "N s"),
+            ("load_impulse_z", "N s"),
+            ("contact_work", "J"),
+            ("contact_heat", "J"),
+            ("interpenetrated", ""),
+        ],
+    );
     if case.sph.form == SphForm::Normalised {
         all.push(Column::new("uncorrected", ""));
     }
     all
 }
 
-fn contact_columns() -> Vec<Column> {
-    columns(&[
-        ("time", "s"),
-        ("body_a", ""),
-        ("body_b", ""),
-        ("force_x", "N"),
-        ("force_y", "N"),
-        ("force_z", "N"),
-        ("impulse_x", "N s"),
-        ("impulse_y", "N s"),
-        ("impulse_z", "N s"),
-        ("contact_energy", "J"),
-        ("touching", ""),
-        ("largest_excess", ""),
-        ("closest_pair", "spacings"),
-        ("contact_dt", "s"),
-    ])
+fn contact_columns(dimension: usize) -> Vec<Column> {
+    columns(
+        dimension,
+        &[
+            ("time", "s"),
+            ("body_a", ""),
+            ("body_b", ""),
+            ("force_x", "N"),
+            ("force_y", "N"),
+            ("force_z", "N"),
+            ("impulse_x", "N s"),
+            ("impulse_y", "N s"),
+            ("impulse_z", "N s"),
+            ("contact_energy", "J"),
+            ("heat", "J"),
+            ("touching", ""),
+            ("largest_excess", ""),
+            ("closest_pair", "spacings"),
+            ("contact_dt", "s"),
+        ],
+    )
 }
 
-fn load_columns() -> Vec<Column> {
-    columns(&[
-        ("time", "s"),
-        ("load", ""),
-        ("force_x", "N"),
-        ("force_y", "N"),
-        ("force_z", "N"),
-        ("impulse_x", "N s"),
-        ("impulse_y", "N s"),
-        ("impulse_z", "N s"),
-        ("work", "J"),
-    ])
+fn load_columns(dimension: usize) -> Vec<Column> {
+    columns(
+        dimension,
+        &[
+            ("time", "s"),
+            ("load", ""),
+            ("force_x", "N"),
+            ("force_y", "N"),
+            ("force_z", "N"),
+            ("impulse_x", "N s"),
+            ("impulse_y", "N s"),
+            ("impulse_z", "N s"),
+            ("work", "J"),
+        ],
+    )
 }
 
 fn performance_columns() -> Vec<Column> {
-    columns(&[
-        ("step", ""),
-        ("wall_seconds", "s"),
-        ("million_updates", ""),
-        ("particles", ""),
-        ("particle_imbalance", ""),
-        ("work_imbalance", ""),
-        ("empty_ranks", ""),
-        ("messages", ""),
-        ("megabytes_sent", "MB"),
-    ])
+    columns(
+        3,
+        &[
+            ("step", ""),
+            ("wall_seconds", "s"),
+            ("million_updates", ""),
+            ("particles", ""),
+            ("particle_imbalance", ""),
+            ("work_imbalance", ""),
+            ("empty_ranks", ""),
+            ("messages", ""),
+            ("megabytes_sent", "MB"),
+        ],
+    )
 }
 
 impl Tables {
@@ -149,11 +164,17 @@ impl Tables {
         #[allow(clippy::cast_precision_loss, reason = "steps fit a double")]
         let step = resume.map(|state| state.step as f64);
         let time = resume.map(|state| state.time);
+        let dimension = case.dimension;
         Ok(Self {
             history: open(&folder.history(), &history_columns(case), "step", step)?,
-            contacts: open(&folder.contacts(), &contact_columns(), "time", time)?,
+            contacts: open(
+                &folder.contacts(),
+                &contact_columns(dimension),
+                "time",
+                time,
+            )?,
             loads: (case.load_names().next().is_some())
-                .then(|| open(&folder.loads(), &load_columns(), "time", time))
+                .then(|| open(&folder.loads(), &load_columns(dimension), "time", time))
                 .transpose()?,
             performance: open(&folder.performance(), &performance_columns(), "step", step)?,
         })
@@ -192,6 +213,7 @@ impl Tables {
             ly,
             lz,
             Value::Real(state.contact_work),
+            Value::Real(state.contact_heat()),
             Value::Count(state.interpenetrated.unsigned_abs()),
         ];
         if simulation.case.sph.form == SphForm::Normalised {
@@ -233,6 +255,7 @@ impl Tables {
             iy,
             iz,
             Value::Real(pair.energy),
+            Value::Real(pair.heat),
             Value::Count(pair.touching.unsigned_abs()),
             Value::Real(pair.largest_excess),
             Value::Real(pair.closest.unwrap_or(f64::INFINITY)),

@@ -4,11 +4,13 @@
 //! only, so that its energy is a function of positions alone and its forces are that function's
 //! exact gradient (physics page, section 5).
 
+pub mod friction;
 pub mod overlap;
 pub mod potential;
+pub mod surface;
 mod table;
 
-pub use table::{ContactTable, Pair};
+pub use table::{ContactTable, Pair, PairResistance};
 
 use crate::domain::Mirrors;
 use crate::neighbours::Image;
@@ -84,6 +86,10 @@ pub struct Reaction {
     pub energy: f64,
     /// Stiffness for the time step (N/m).
     pub stiffness: f64,
+    /// Damping for the time step (N s/m).
+    pub dashpot: f64,
+    /// Its share of the heat by friction and damping (W).
+    pub heat: f64,
     /// Smallest distance to a foreign particle in mean spacings.
     pub closest: f64,
     /// Largest approach speed `|μ|` towards a foreign particle (m/s).
@@ -101,6 +107,8 @@ pub struct BodyReaction {
     pub force: [f64; 3],
     /// Share of the contact energy (J).
     pub energy: f64,
+    /// Share of the heat by friction and damping (W).
+    pub heat: f64,
     /// Smallest distance to a particle of that body in mean spacings.
     pub closest: f64,
 }
@@ -117,6 +125,15 @@ impl Reaction {
         self.by_body.clear();
     }
 
+    /// Books what friction and damping of the pair with a body turn into heat (W) for the receiver,
+    /// after [`Self::book`].
+    fn book_heat(&mut self, body: usize, heat: f64) {
+        self.heat += heat;
+        if let Some(entry) = self.by_body.iter_mut().find(|e| e.body == body) {
+            entry.heat += heat;
+        }
+    }
+
     /// Books what the pair with `other` at `gap` does: distance, approach, force and energy.
     fn book(&mut self, other: &Party, gap: &Gap, pair: &Pair, force: [f64; 3], energy: f64) {
         let distance = gap.distance / pair.spacing;
@@ -129,6 +146,7 @@ impl Reaction {
                 body: other.body,
                 force: [0.0; 3],
                 energy: 0.0,
+                heat: 0.0,
                 closest: f64::INFINITY,
             });
             self.by_body.len() - 1

@@ -89,6 +89,8 @@ pub struct Overlap {
     pub core_radius: f64,
     /// Along what it acts, but for the core.
     pub direction: ContactDirection,
+    /// Friction and damping.
+    pub resistance: Resistance,
 }
 
 impl Default for Overlap {
@@ -98,6 +100,26 @@ impl Default for Overlap {
             core_stiffness: 2.0,
             core_radius: 0.6,
             direction: ContactDirection::Pair,
+            resistance: Resistance::default(),
         }
+    }
+}
+
+/// What bodies in contact do against their relative motion.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Resistance {
+    /// Coefficient of friction of faces that stick.
+    pub static_friction: f64,
+    /// Coefficient of friction of faces that slide; at most that of faces that stick.
+    pub kinetic_friction: f64,
+    /// Share of critical damping, 0 to 1.
+    pub damping: f64,
+}
+
+impl Resistance {
+    /// Whether there is any.
+    #[must_use]
+    pub fn is_any(&self) -> bool {
+        self.static_friction > 0.0 || self.damping > 0.0
     }
 }

@@ -75,6 +75,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> FieldUse {
     [
         (FieldUse::CONTACT, contact.is_active()),
         (FieldUse::LOADS, driven),
+        (FieldUse::FRICTION, contact.has_friction()),
         (FieldUse::BALSARA, sph.balsara),
         (FieldUse::CONDUCTION, sph.conduction > 0.0),
         (FieldUse::XSPH, sph.xsph > 0.0),

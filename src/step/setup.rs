@@ -5,16 +5,16 @@ use thiserror::Error;
 use super::contact_phase::ContactPhase;
 use super::loads::{Drive, Goal, LoadStep};
 use super::options::{OptionPhase, unused_fields};
-use super::plane_forces::PlaneForces;
 use super::search::Search;
 use super::simulation::{Simulation, StepError};
 use super::state::{LoadState, PairState, Reason, RunState, Totals, Worst};
 use super::sums::StepSums;
+use super::surface_forces::SurfaceForces;
 use super::sweeps::Sweeps;
 use super::timers::Timers;
 use crate::comm::Comm;
 use crate::contact::ContactTable;
-use crate::domain::{Halo, Histogram, Migration, Mirrors, Slabs, balance};
+use crate::domain::{Halo, Histogram, Migration, Mirrors, Paces, Slabs, balance};
 use crate::model::Case;
 use crate::neighbours::{ColumnGrid, Image};
 use crate::particles::ParticleStore;
@@ -82,6 +82,7 @@ impl Simulation {
             &simulation.store.position[..simulation.store.owned()],
             &simulation.store.work,
             &mut simulation.histogram,
+            &simulation.paces,
         );
         let slabs = simulation.slabs.clone();
         simulation
@@ -125,14 +126,21 @@ impl Simulation {
             updates: 0,
             slabs: Slabs::new(axis, vec![f64::INFINITY; comm.size() - 1]),
             histogram: Histogram::default(),
+            paces: Paces::default(),
             migration: Migration::default(),
             halo: Halo::new(axis, Mirrors::new(&case.symmetry)),
             search: Search::new(&case, &contact, grids),
             sweeps: Sweeps::new(&case, &contact.kernel),
             options: OptionPhase::new(&case, &contact.kernel),
             contact_phase: ContactPhase::default(),
-            plane_forces: PlaneForces::new(&case),
-            sums: StepSums::new(pairs, enclosed_limit, loads.driven(), loads.planes.len()),
+            surface_forces: SurfaceForces::new(&case),
+            sums: StepSums::new(
+                pairs,
+                enclosed_limit,
+                contact.has_friction(),
+                loads.driven(),
+                loads.surfaces.len(),
+            ),
             loads,
             scratch: Vec::new(),
             order: Vec::new(),
@@ -348,5 +356,5 @@ fn first_slabs(
             histogram.add(site.position[axis], 1);
         }
     }
-    Slabs::new(axis, histogram.split(comm))
+    Slabs::new(axis, histogram.split(comm, &Paces::default()))
 }

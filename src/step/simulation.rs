@@ -5,15 +5,15 @@ use thiserror::Error;
 use super::contact_phase::ContactPhase;
 use super::loads::LoadStep;
 use super::options::OptionPhase;
-use super::plane_forces::PlaneForces;
 use super::search::Search;
 use super::state::{Reason, RunState};
 use super::sums::StepSums;
+use super::surface_forces::SurfaceForces;
 use super::sweeps::Sweeps;
 use super::timers::{Phase, Timers};
 use crate::comm::Comm;
 use crate::contact::ContactTable;
-use crate::domain::{Halo, Histogram, Migration, Slabs, balance};
+use crate::domain::{Halo, Histogram, Migration, Paces, Slabs, balance};
 use crate::model::Case;
 use crate::neighbours::Chunk;
 use crate::particles::{FieldUse, ParticleStore};
@@ -60,6 +60,7 @@ pub struct Simulation {
     pub(super) contact: ContactTable,
     pub(super) slabs: Slabs,
     pub(super) histogram: Histogram,
+    pub(super) paces: Paces,
     pub(super) migration: Migration,
     pub(super) halo: Halo,
     pub(super) search: Search,
@@ -67,7 +68,7 @@ pub struct Simulation {
     pub(super) options: OptionPhase,
     pub(super) contact_phase: ContactPhase,
     pub(super) loads: LoadStep,
-    pub(super) plane_forces: PlaneForces,
+    pub(super) surface_forces: SurfaceForces,
     pub(super) sums: StepSums,
     pub(super) scratch: Vec<u64>,
     pub(super) order: Vec<u32>,
@@ -143,6 +144,7 @@ impl Simulation {
         self.timers.lap(Phase::HaloStress);
         self.momentum_and_energy(true);
         self.timers.lap(Phase::Momentum);
+        self.hold_by_friction(comm, dt);
         self.contact_forces();
         self.timers.lap(Phase::ContactForces);
     }
@@ -160,7 +162,16 @@ impl Simulation {
         if comm.size() > 1 {
             let positions = &self.store.position[..self.store.owned()];
             let work = &self.store.work;
-            self.slabs = balance(comm, &self.slabs, positions, work, &mut self.histogram);
+            let counted = work.iter().map(|&w| u64::from(w)).sum();
+            self.paces.measure(comm, counted, self.timers.busy());
+            self.slabs = balance(
+                comm,
+                &self.slabs,
+                positions,
+                work,
+                &mut self.histogram,
+                &self.paces,
+            );
         }
     }
 
@@ -200,11 +211,12 @@ impl Simulation {
             + self.options.memory()
             + self.contact_phase.memory()
             + self.loads.memory()
-            + self.plane_forces.memory()
+            + self.surface_forces.memory()
             + self.sums.memory()
             + self.halo.memory()
             + self.migration.memory()
             + self.histogram.memory()
+            + self.paces.memory()
             + words
     }
 

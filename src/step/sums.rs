@@ -15,14 +15,16 @@ use crate::sph::options::NORMALISED;
 pub struct StepSums {
     /// How long a particle may be enclosed before it counts as interpenetrated (s).
     pub(super) enclosed_limit: f64,
+    /// Whether there is friction or damping, whose heat is summed.
+    friction: bool,
     pub(super) contact_work: ExactSum,
     pub(super) contact_energy: ExactSum,
     pub(super) crossing_impulse: [ExactSum; 3],
     plane_force: [ExactSum; 3],
     /// Impulse and work of prescribed velocities and of rigid bodies in this step.
     pub(super) loads: Vec<[ExactSum; 4]>,
-    /// Force along the normal of each rigid plane.
-    pub(super) pushes: Vec<ExactSum>,
+    /// Force of each rigid surface, and its torque about the axis that it turns about.
+    pub(super) pushes: Vec<[ExactSum; 4]>,
     pair_bodies: Vec<[usize; 2]>,
     pairs: Vec<PairSums>,
     interpenetrated: i64,
@@ -37,6 +39,7 @@ pub struct StepSums {
 struct PairSums {
     force: [ExactSum; 3],
     energy: ExactSum,
+    heat: ExactSum,
     touching: i64,
     largest_excess: f64,
     closest: f64,
@@ -48,6 +51,7 @@ impl Default for PairSums {
         Self {
             force: Default::default(),
             energy: ExactSum::default(),
+            heat: ExactSum::default(),
             touching: 0,
             largest_excess: 0.0,
             closest: f64::INFINITY,
@@ -60,17 +64,19 @@ impl StepSums {
     pub(super) fn new(
         pair_bodies: Vec<[usize; 2]>,
         enclosed_limit: f64,
+        friction: bool,
         loads: usize,
-        planes: usize,
+        surfaces: usize,
     ) -> Self {
         Self {
             enclosed_limit,
+            friction,
             contact_work: ExactSum::default(),
             contact_energy: ExactSum::default(),
             crossing_impulse: Default::default(),
             plane_force: Default::default(),
             loads: (0..loads).map(|_| Default::default()).collect(),
-            pushes: vec![ExactSum::default(); planes],
+            pushes: (0..surfaces).map(|_| Default::default()).collect(),
             pairs: pair_bodies.iter().map(|_| PairSums::default()).collect(),
             pair_bodies,
             interpenetrated: 0,
@@ -84,7 +90,7 @@ impl StepSums {
 
     pub(super) fn memory(&self) -> usize {
         size_of::<PairSums>() * self.pairs.capacity()
-            + size_of::<ExactSum>() * (4 * self.loads.capacity() + self.pushes.capacity())
+            + 4 * size_of::<ExactSum>() * (self.loads.capacity() + self.pushes.capacity())
             + 8 * (self.limbs.capacity() + self.extremes.capacity())
     }
 
@@ -92,7 +98,7 @@ impl StepSums {
     pub(super) fn clear_rates(&mut self) {
         self.contact_energy = ExactSum::default();
         self.plane_force = Default::default();
-        self.pushes.fill_with(ExactSum::default);
+        self.pushes.fill_with(Default::default);
         self.pairs.fill_with(PairSums::default);
         self.interpenetrated = 0;
         self.closest = f64::INFINITY;
@@ -111,9 +117,13 @@ impl StepSums {
         self.loads[load][3].add(work);
     }
 
-    /// Books the force (N) that a rigid plane exerts on a particle.
-    pub(super) fn add_push(&mut self, plane: usize, force: f64) {
-        self.pushes[plane].add(force);
+    /// Books the force (N) and torque (N m) that a rigid surface exerts on a particle.
+    pub(super) fn add_push(&mut self, surface: usize, force: &[f64; 3], torque: f64) {
+        let push = &mut self.pushes[surface];
+        for a in 0..3 {
+            push[a].add(force[a]);
+        }
+        push[3].add(torque);
     }
 
     pub(super) fn note_particle(&mut self, inside: bool, closest: f64, fraction: f64) {
@@ -135,6 +145,9 @@ impl StepSums {
             }
         }
         pair.energy.add(reaction.energy);
+        if self.friction {
+            pair.heat.add(reaction.heat);
+        }
         pair.touching += i64::from(excess > 0.0);
         pair.largest_excess = pair.largest_excess.max(excess);
         pair.closest = pair.closest.min(reaction.closest);
@@ -142,17 +155,17 @@ impl StepSums {
     }
 
     fn exact(&mut self) -> impl Iterator<Item = &mut ExactSum> {
+        let friction = self.friction;
         [&mut self.contact_work, &mut self.contact_energy]
             .into_iter()
             .chain(&mut self.crossing_impulse)
             .chain(&mut self.plane_force)
             .chain(self.loads.iter_mut().flatten())
-            .chain(&mut self.pushes)
-            .chain(
-                self.pairs
-                    .iter_mut()
-                    .flat_map(|pair| pair.force.iter_mut().chain([&mut pair.energy])),
-            )
+            .chain(self.pushes.iter_mut().flatten())
+            .chain(self.pairs.iter_mut().flat_map(move |pair| {
+                let heat = friction.then_some(&mut pair.heat);
+                pair.force.iter_mut().chain([&mut pair.energy]).chain(heat)
+            }))
     }
 
     /// Joins the sums of all ranks.
@@ -222,7 +235,7 @@ fn scatter_limbs<'a, 'b>(
 }
 
 impl Simulation {
-    /// Impulse of the symmetry planes and the rigid ones in the first half of a step.
+    /// Impulse of symmetry planes and rigid surfaces in the first half of a step.
     pub(super) fn book_plane_force(&mut self, dt: f64) {
         self.book_pushes(dt, true);
         for a in 0..3 {
@@ -232,6 +245,7 @@ impl Simulation {
             for a in 0..3 {
                 pair.impulse[a] += 0.5 * dt * pair.force[a];
             }
+            pair.heat += 0.5 * dt * pair.heat_power;
         }
     }
 
@@ -256,10 +270,13 @@ impl Simulation {
         for (pair, sum) in state.pairs.iter_mut().zip(&sums.pairs) {
             let finite = |x: f64| x.is_finite().then_some(x);
             let force: [f64; 3] = std::array::from_fn(|a| sum.force[a].value());
+            let heat_power = sum.heat.value();
             *pair = PairState {
                 force,
                 impulse: std::array::from_fn(|a| pair.impulse[a] + 0.5 * dt * force[a]),
                 energy: sum.energy.value(),
+                heat_power,
+                heat: pair.heat + 0.5 * dt * heat_power,
                 touching: sum.touching,
                 largest_excess: sum.largest_excess,
                 closest: finite(sum.closest),
@@ -276,7 +293,8 @@ impl Simulation {
             let closest = worst.closest.map_or(sums.closest, |c| c.min(sums.closest));
             worst.closest = Some(closest);
         }
-        let defect = state.contact_work + state.contact_energy - state.initial.contact_energy;
+        let defect = state.contact_work + state.contact_energy - state.initial.contact_energy
+            + state.pairs.iter().map(|pair| pair.heat).sum::<f64>();
         worst.contact_deviation = worst.contact_deviation.max(defect.abs());
         let scale = state.initial.kinetic_energy.max(state.work_put_in);
         if scale > 0.0 {

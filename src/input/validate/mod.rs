@@ -9,9 +9,11 @@ mod materials;
 mod motion;
 mod shapes;
 mod strength;
+mod surfaces;
 mod touch;
 
 use std::ops::Range;
+use std::path::Path;
 
 use super::schema::{
     AxisName, BodyParams, CaseParams, DomainParams, OutputParams, RunParams, SmoothingName,
@@ -26,8 +28,8 @@ use crate::particles::{TEMPERATURE, snapshot_names};
 use check::{Allowed, number, whole};
 use toml::Spanned;
 
-/// Builds the case; `resolved` is left empty.
-pub fn case(params: CaseParams) -> Result<Case, Complaint> {
+/// Builds the case, whose files stand in `folder`; `resolved` is left empty.
+pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
     let dimension = dimension(&params.dimension)?;
     let symmetry = symmetry(&params.symmetry, dimension)?;
     let (names, mut materials) = materials::materials(&params.material)?;
@@ -53,6 +55,7 @@ pub fn case(params: CaseParams) -> Result<Case, Complaint> {
         dimension,
         bodies: &bodies,
         symmetry: &symmetry,
+        folder,
     }
     .loads(&params)?;
     let mut time_step = time_step(&params.time_step)?;
