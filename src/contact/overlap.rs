@@ -285,7 +285,7 @@ pub fn react<const FRICTION: bool>(
             view.table.pair(j.body, i.body),
         );
         let there = stored(view, j.base);
-        let mut force = 0.0;
+        let (mut force, mut core) = (0.0, 0.0);
         let mut energy = 0.0;
         if here.excess > 0.0 || there.excess > 0.0 {
             let kernel = &view.table.kernel;
@@ -302,12 +302,19 @@ pub fn react<const FRICTION: bool>(
         let depth = 1.0 - gap.distance / pair.core_radius;
         if depth > 0.0 {
             let stress = pair.core_modulus * (0.5 * (i.volume + j.volume));
-            force += stress * depth / pair.core_radius;
+            core = stress * depth / pair.core_radius;
             // Half of the pair's energy stands on each side.
             energy += 0.25 * stress * (depth * depth);
             reaction.stiffness += 2.0 * stress / (pair.core_radius * pair.core_radius);
         }
-        let mut force = gap.along(force);
+        let mut force = if pair.along_normal {
+            // The core has no use for normals: it keeps lone particles apart.
+            let bulk = gap.along_normal(force, view.normal(place, other));
+            let core = gap.along(core);
+            [bulk[0] + core[0], bulk[1] + core[1], bulk[2] + core[2]]
+        } else {
+            gap.along(force + core)
+        };
         if let Some(at) = &mut resisting {
             (at.force, at.energy, at.heat) = ([0.0; 3], 0.0, 0.0);
             resist(view, [&i, &j], other, &gap, at);

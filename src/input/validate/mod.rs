@@ -50,7 +50,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
     if bodies.iter().any(|body| body.material == materials.len()) {
         materials.push(bodies::no_material());
     }
-    let (default_contact, contacts) = contact::contacts(&params.contact, &params.body)?;
+    let (default_contact, contacts) = contact::contacts(&params.contact, &params.body, sph.form)?;
     let loads = loads::Reader {
         dimension,
         bodies: &bodies,
