@@ -130,8 +130,8 @@ pub struct Hold {
 
 /// Friction and damping of the receiver at `place` after a step of `dt` (s).
 ///
-/// The normal `n` is opposite to those that its neighbours see, weighted with `o_ij`: what is before
-/// a rough face sees how it lies as a whole. Its load is `Σ_j o_ij e_ij·n`, its velocity against what it lies on
+/// The normal `n` is that which it sees less the mean of those that its neighbours see, weighted
+/// with `o_ij`. Its load is `Σ_j o_ij e_ij·n`, its velocity against what it lies on
 /// `Σ_j o_ij v_ij/O_i`.
 #[must_use]
 pub fn hold(view: &ContactView, place: u32, neighbours: &[u32], dt: f64) -> Hold {
@@ -161,6 +161,9 @@ pub fn hold(view: &ContactView, place: u32, neighbours: &[u32], dt: f64) -> Hold
         law.kinetic_friction += own * pair.kinetic_friction;
         law.stiffness += own * (pair.stick * i.volume);
         law.dashpot += own * (pair.dashpot * i.volume);
+    }
+    for (facing, seen) in facing.iter_mut().zip(&view.store.contact_normal[i.base]) {
+        *facing += load * seen;
     }
     let size = dot(&facing, &facing).sqrt();
     if size <= 0.0 {

@@ -77,10 +77,10 @@ impl FieldUse {
     pub const XSPH: Self = Self(1024);
     /// Held only where loads or rigid bodies prescribe velocities.
     pub const LOADS: Self = Self(2048);
-    /// Held only in the normalised form of the sums.
-    pub const NORMALISED: Self = Self(16384);
     /// Held only where bodies in contact have friction or damping.
     pub const FRICTION: Self = Self(4096);
+    /// Held only in the normalised form of the sums.
+    pub const NORMALISED: Self = Self(16384);
     /// Held only where the case has use for it.
     pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024 | 2048 | 4096 | 16384);
     /// In snapshots at all.

@@ -85,8 +85,7 @@ pub fn everything() -> Case {
 /// A case with all loads there are.
 pub fn loaded() -> Case {
     let text = include_str!("loaded.toml");
-    whipple::input::parse("tests/common/loaded.toml", text, &[])
-        .unwrap_or_else(|error| panic!("{error}"))
+    whipple::input::parse("tests/common/loaded.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The same with nothing in contact but a block and a plane.
@@ -138,15 +137,15 @@ pub fn loaded_normalised() -> Case {
     case
 }
 
-/// Without options of the SPH sums and with all, without loads and with all, in both forms, with
-/// friction.
+/// Without options of the SPH sums and with all, without loads and with all, in both forms,
+/// with friction.
 pub const CASES: [fn() -> Case; 8] = [
     everything,
     every_option,
     loaded,
     on_a_plane,
     loaded_with_options,
+    rubbing,
     normalised,
     loaded_normalised,
-    rubbing,
 ];
