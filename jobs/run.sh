@@ -102,4 +102,9 @@ while :; do
     [ -n "$caught" ] || break
 done
 [ -z "$repeats" ] || kill "$repeats" 2>/dev/null || true
+# mpirun says nothing when a rank is killed.
+if [ "$code" -gt 128 ]; then
+    echo "a rank was ended by signal $((code - 128)) (9: out of memory, or killed by somebody); what" \
+        "the run wrote is whole, and 'jobs/run.sh restart RUN' goes on from its last checkpoint" >&2
+fi
 exit "$code"

@@ -98,10 +98,10 @@ fn a_rank_killed_anywhere_costs_what_came_after_the_last_checkpoint() {
     let reference = place.path().join("reference");
     end(&mut coarse_run(2, &reference)).with_code(0);
     for fault in [
-        "kill:1:80",
-        "kill:0:81",
-        "kill-in-checkpoint:1:60",
-        "kill-in-checkpoint:0:60",
+        "kill:1:60",
+        "kill:0:61",
+        "kill-in-checkpoint:1:40",
+        "kill-in-checkpoint:0:40",
     ] {
         let run = place.path().join(fault);
         let mut command = faulty_run(3, &run, fault);
@@ -123,10 +123,14 @@ fn a_disk_full_for_one_rank_ends_all_with_one_message() {
     for rank in [0, 1] {
         let run = place.path().join(format!("{rank}"));
         let mut command = faulty_run(3, &run, &format!("full:{rank}:40"));
-        let ended = end(&mut command).with_code(1);
-        let line = only_line(&ended);
-        assert!(line.starts_with("error: cannot "), "{line}");
-        assert!(line.contains("File too large"), "{line}");
+        let ended = end(&mut command);
+        // HDF5 may crash when it cannot even write its records: after the verdict, on a file that
+        // has no final name.
+        assert!(!matches!(ended.code, Some(0 | 75)), "{ended:#?}");
+        assert!(ended.took < SECONDS, "{ended:#?}");
+        let told = ended.complaints("error: ");
+        assert_eq!(told.len(), 1, "{ended:#?}");
+        assert!(told[0].starts_with("error: cannot "), "{ended:#?}");
         eprintln!(
             "full:{rank}: all ended after {:.1} s",
             ended.took.as_secs_f64()

@@ -30,7 +30,7 @@ fn a_particle_out_of_range_stops_a_run_with_a_post_mortem() {
         ("density_max=1.25", "has a density outside"),
         ("energy_max=\"1 kJ/kg\"", "has a specific energy beyond"),
         ("speed_max=\"7.1 km/s\"", "is faster than"),
-        ("step_min=\"1 ns\"", "asks for a time step below"),
+        ("step_min=\"5 ns\"", "asks for a time step below"),
     ] {
         let run = place.path().join(&key[..6]);
         let set = format!("trouble.{key}");

@@ -79,10 +79,10 @@ fn a_bit_flipped_anywhere_is_told_before_hdf5_sees_it() {
     let whole = fs::read(&state).unwrap();
     let mut places: Vec<usize> = (0..64).map(|k| k * whole.len() / 64).collect();
     places.extend([8, 13, whole.len() - 1]);
-    // The values of each field that 40 particles have: those of `id` and so on stand in the file.
+    // A particle's value of each field, wherever it stands in the file.
     let store = particles(&Comm::solo(), 40);
     for field in store.held(FieldUse::STATE) {
-        let bytes = &store.bytes(field.id)[..field.kind.bytes() * 2];
+        let bytes = &store.bytes(field.id)[..field.kind.bytes()];
         let found = whole
             .windows(bytes.len())
             .position(|window| window == bytes);

@@ -349,7 +349,9 @@ macro_rules! optional_tables {
 }
 
 mod materials;
+mod trouble;
 pub use materials::*;
+pub use trouble::*;
 
 optional_tables! {
     /// `[sph]`
@@ -388,22 +390,6 @@ optional_tables! {
         contact: Option<Spanned<f64>>,
         /// Upper bound.
         max: Option<Placed<Time>>,
-    }
-
-    /// `[trouble]`
-    TroubleParams {
-        /// What happens to a particle whose state is out of range.
-        policy: Option<TroublePolicyName>,
-        /// Largest speed.
-        speed_max: Option<Placed<Velocity>>,
-        /// Largest magnitude of the specific energy.
-        energy_max: Option<Placed<SpecificEnergy>>,
-        /// Smallest density over that at the start.
-        density_min: Option<Spanned<f64>>,
-        /// Largest density over that at the start.
-        density_max: Option<Spanned<f64>>,
-        /// Smallest time step.
-        step_min: Option<Placed<Time>>,
     }
 
     /// `[domain]`
@@ -533,13 +519,6 @@ choices! {
         Conventional,
         /// By the corrected gradient.
         Normalised,
-    }
-    /// What happens to a particle whose state is out of range.
-    TroublePolicyName {
-        /// The run ends.
-        Stop,
-        /// It is taken out and booked.
-        Remove,
     }
     /// Smoothing length in the SPH sums.
     SmoothingName {

@@ -1,0 +1,35 @@
+//! Numerical trouble as it is typed.
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::Placed;
+use crate::input::quantity::{SpecificEnergy, Time, Velocity};
+
+optional_tables! {
+    /// `[trouble]`
+    TroubleParams {
+        /// What happens to a particle whose state is out of range.
+        policy: Option<TroublePolicyName>,
+        /// Largest speed.
+        speed_max: Option<Placed<Velocity>>,
+        /// Largest magnitude of the specific energy.
+        energy_max: Option<Placed<SpecificEnergy>>,
+        /// Smallest density over that at the start.
+        density_min: Option<Spanned<f64>>,
+        /// Largest density over that at the start.
+        density_max: Option<Spanned<f64>>,
+        /// Smallest time step.
+        step_min: Option<Placed<Time>>,
+    }
+}
+
+/// What happens to a particle whose state is out of range.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TroublePolicyName {
+    /// The run ends.
+    Stop,
+    /// It is taken out and booked.
+    Remove,
+}
