@@ -649,6 +649,12 @@ const IN_LOADS: &[(&str, &str, &str, &str)] = &[
         "the rigid body `tool` cannot have contact of mode `kernel`",
         ":29:20",
     ),
+    (
+        "[[symmetry]]",
+        "[[contact.pair]]\nbodies = [\"block\", \"tool\"]\nmode = \"penalty\"\n\n[[symmetry]]",
+        "the rigid body `tool` cannot have contact of mode `penalty`",
+        ":29:20",
+    ),
 ];
 
 /// As [`IN_OVERRIDES`], of a material without heat.

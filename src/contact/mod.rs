@@ -6,6 +6,7 @@
 
 pub mod friction;
 pub mod overlap;
+pub mod penalty;
 pub mod potential;
 pub mod surface;
 mod table;
@@ -28,6 +29,8 @@ pub struct ContactView<'a> {
     pub store: &'a ParticleStore,
     /// Parameters of all pairs of bodies.
     pub table: &'a ContactTable,
+    /// The step that led here (s); zero at the start.
+    pub dt: f64,
 }
 
 /// One end of a contact pair.

@@ -128,13 +128,13 @@ pub struct Hold {
     pub grip: Grip,
 }
 
-/// Friction and damping of the receiver at `place` after a step of `dt` (s).
+/// Friction and damping of the receiver at `place` after the step.
 ///
-/// The normal `n` is opposite to those that its neighbours see, weighted with `o_ij`: what is before
-/// a rough face sees how it lies as a whole. Its load is `Σ_j o_ij e_ij·n`, its velocity against what it lies on
+/// The normal `n` is that which it sees less the mean of those that its neighbours see, weighted
+/// with `o_ij`. Its load is `Σ_j o_ij e_ij·n`, its velocity against what it lies on
 /// `Σ_j o_ij v_ij/O_i`.
 #[must_use]
-pub fn hold(view: &ContactView, place: u32, neighbours: &[u32], dt: f64) -> Hold {
+pub fn hold(view: &ContactView, place: u32, neighbours: &[u32]) -> Hold {
     let i = view.party(place);
     let here = stored(view, i.base);
     let (mut load, mut force) = (0.0, [0.0; 3]);
@@ -162,6 +162,9 @@ pub fn hold(view: &ContactView, place: u32, neighbours: &[u32], dt: f64) -> Hold
         law.stiffness += own * (pair.stick * i.volume);
         law.dashpot += own * (pair.dashpot * i.volume);
     }
+    for (facing, seen) in facing.iter_mut().zip(&view.store.contact_normal[i.base]) {
+        *facing += load * seen;
+    }
     let size = dot(&facing, &facing).sqrt();
     if size <= 0.0 {
         return Hold::default();
@@ -181,7 +184,7 @@ pub fn hold(view: &ContactView, place: u32, neighbours: &[u32], dt: f64) -> Hold
     let velocity = motion.map(|v| v / load);
     Hold {
         load,
-        grip: law.step(&memory, &force, &normal, &velocity, dt),
+        grip: law.step(&memory, &force, &normal, &velocity, view.dt),
     }
 }
 

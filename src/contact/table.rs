@@ -1,6 +1,9 @@
 //! Parameters of every pair of bodies, computed once at set-up.
 
-use crate::model::{Body, Case, ContactDirection, ContactMode, PotentialRange, Resistance};
+use super::penalty::Boundary;
+use crate::model::{
+    Body, Case, ContactDirection, ContactMode, PenaltyLaw, PotentialRange, Resistance,
+};
 use crate::neighbours::{ContactClass, ForeignTable};
 use crate::populate;
 use crate::sph::kernel::Kernel;
@@ -34,6 +37,10 @@ pub struct Pair {
     pub floor: f64,
     /// `potential`: 1/W(Δp̄) (m^d).
     pub inverse_kernel: f64,
+    /// `penalty`: κ times the smaller p-wave modulus (Pa).
+    pub penalty: f64,
+    /// `penalty`: whether the force is no more than what stops the approach in one step.
+    pub pinball: bool,
 }
 
 /// Friction and damping of an ordered pair of bodies.
@@ -94,6 +101,7 @@ pub struct ContactTable {
     pub foreign: ForeignTable,
     pairs: Vec<Pair>,
     inverse_densities: Vec<f64>,
+    boundaries: Vec<Boundary>,
     has_surfaces: bool,
 }
 
@@ -135,7 +143,11 @@ impl ContactTable {
             .iter()
             .map(|body| 1.0 / case.initial_density(body))
             .collect();
+        let boundaries = case.bodies.iter().map(|body| {
+            Boundary::of_lattice(&kernel, body.smoothing_length / body.lattice.spacing)
+        });
         Self {
+            boundaries: boundaries.collect(),
             kernel,
             groups,
             rigid,
@@ -158,6 +170,13 @@ impl ContactTable {
     #[must_use]
     pub fn inverse_density(&self, body: usize) -> f64 {
         self.inverse_densities[body]
+    }
+
+    /// What tells boundary particles of a body.
+    #[inline]
+    #[must_use]
+    pub fn boundary(&self, body: usize) -> &Boundary {
+        &self.boundaries[body]
     }
 
     /// Number of groups of bodies.
@@ -189,6 +208,12 @@ impl ContactTable {
     pub fn has_friction(&self) -> bool {
         let mut pairs = self.pairs.iter();
         pairs.any(|pair| pair.resistance.is_any())
+    }
+
+    /// Whether any pair of bodies has penalty contact, which alone looks for boundaries.
+    #[must_use]
+    pub fn has_penalty(&self) -> bool {
+        self.foreign.class.contains(&ContactClass::Penalty)
     }
 
     /// The unordered pairs of bodies with contact beyond the SPH sums.
@@ -248,6 +273,8 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
         range: 0.0,
         floor: 0.0,
         inverse_kernel: 0.0,
+        penalty: 0.0,
+        pinball: false,
     };
     if a == b || (body_a.rigid.is_some() && body_b.rigid.is_some()) {
         return (ContactClass::None, pair);
@@ -264,6 +291,11 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
                 PotentialRange::Spacing => (spacing, 1.0),
             };
             (ContactClass::Potential, pair)
+        }
+        ContactMode::Penalty(penalty) => {
+            pair.penalty = penalty.stiffness * smaller;
+            pair.pinball = penalty.law == PenaltyLaw::Pinball;
+            (ContactClass::Penalty, pair)
         }
         ContactMode::Overlap(overlap) => {
             pair.modulus = overlap.stiffness * smaller;

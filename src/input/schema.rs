@@ -329,6 +329,9 @@ tables! {
         /// Parameters of the mode `potential`.
         #[serde(default)]
         potential: PotentialParams,
+        /// Parameters of the mode `penalty`.
+        #[serde(default)]
+        penalty: PenaltyParams,
     }
 }
 
@@ -404,6 +407,8 @@ optional_tables! {
         overlap: OverlapParams,
         /// Parameters of the mode `potential`.
         potential: PotentialParams,
+        /// Parameters of the mode `penalty`.
+        penalty: PenaltyParams,
         /// Pairs with a mode or parameters of their own.
         pair: Vec<PairParams>,
     }
@@ -430,6 +435,14 @@ optional_tables! {
         range: Option<RangeName>,
         /// Along what it acts.
         direction: Option<Spanned<DirectionName>>,
+    }
+
+    /// `contact.penalty`
+    PenaltyParams {
+        /// Stiffness κ.
+        stiffness: Option<Spanned<f64>>,
+        /// Law of the force.
+        law: Option<PenaltyLawName>,
     }
 
     /// `[output]`
@@ -522,6 +535,15 @@ choices! {
         Potential,
         /// Overlap energy.
         Overlap,
+        /// Penalty between boundary particles.
+        Penalty,
+    }
+    /// Law of the penalty force.
+    PenaltyLawName {
+        /// Depth to the power 3/2.
+        Hertz,
+        /// No more than what stops the approach in one step.
+        Pinball,
     }
     /// Range of the contact potential.
     RangeName {

@@ -20,6 +20,8 @@ pub enum ContactMode {
     Potential(Potential),
     /// Overlap energy of the foreign volume fraction above the touching value.
     Overlap(Overlap),
+    /// Penalty between boundary particles (Campbell, Vignjevic & Libersky 2000).
+    Penalty(Penalty),
 }
 
 impl ContactMode {
@@ -31,6 +33,7 @@ impl ContactMode {
             Self::Kernel => "kernel",
             Self::Potential(_) => "potential",
             Self::Overlap(_) => "overlap",
+            Self::Penalty(_) => "penalty",
         }
     }
 }
@@ -121,5 +124,32 @@ impl Resistance {
     #[must_use]
     pub fn is_any(&self) -> bool {
         self.static_friction > 0.0 || self.damping > 0.0
+    }
+}
+
+/// Law of the penalty force (Belytschko & Neal 1991).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PenaltyLaw {
+    /// As the depth to the power 3/2, as between spheres: a function of places.
+    Hertz,
+    /// The smaller of that and what stops the approach in one step; nothing while parting.
+    Pinball,
+}
+
+/// Parameters of [`ContactMode::Penalty`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Penalty {
+    /// Stiffness κ relative to the p-wave modulus.
+    pub stiffness: f64,
+    /// Law of the force.
+    pub law: PenaltyLaw,
+}
+
+impl Default for Penalty {
+    fn default() -> Self {
+        Self {
+            stiffness: 2.0,
+            law: PenaltyLaw::Hertz,
+        }
     }
 }

@@ -77,12 +77,14 @@ impl FieldUse {
     pub const XSPH: Self = Self(1024);
     /// Held only where loads or rigid bodies prescribe velocities.
     pub const LOADS: Self = Self(2048);
-    /// Held only in the normalised form of the sums.
-    pub const NORMALISED: Self = Self(16384);
     /// Held only where bodies in contact have friction or damping.
     pub const FRICTION: Self = Self(4096);
+    /// Held only in the normalised form of the sums.
+    pub const NORMALISED: Self = Self(16384);
+    /// Held only with `penalty` contact.
+    pub const PENALTY: Self = Self(32768);
     /// Held only where the case has use for it.
-    pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024 | 2048 | 4096 | 16384);
+    pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024 | 2048 | 4096 | 16384 | 32768);
     /// In snapshots at all.
     pub const SNAPSHOT_OR_ON_DEMAND: Self = Self(32 | 64);
     /// What a rank sends with a particle that leaves it.
@@ -275,6 +277,8 @@ particle_fields! {
     friction_power: Scalar, "W", HALO_FRICTION | FRICTION;
     /// Energy of sticking friction.
     friction_energy: Scalar, "J", FRICTION;
+    /// Outward normal of a boundary particle, longer at corners, zero inside: of `penalty` contact.
+    boundary_normal: Vector, "", HALO_CONTACT | ON_DEMAND | PENALTY;
     /// Contact energy.
     contact_energy: Scalar, "J", ON_DEMAND | CONTACT;
     /// Largest approach speed towards a neighbour, for the time step.

@@ -6,8 +6,8 @@ use super::search::GRAIN;
 use super::simulation::Simulation;
 use crate::comm::Comm;
 use crate::contact::overlap::{self, Fraction, Hold};
-use crate::contact::{BodyReaction, ContactView, Reaction, potential};
-use crate::neighbours::{CHUNKS_AT_ONCE, ForeignChunk};
+use crate::contact::{BodyReaction, ContactView, Reaction, penalty, potential};
+use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, ForeignChunk};
 use crate::particles::FieldUse;
 
 /// Results of each task before they go into the store, kept from step to step.
@@ -21,6 +21,8 @@ struct Task {
     fractions: Vec<(usize, Fraction)>,
     normals: Vec<(usize, [f64; 3])>,
     holds: Vec<(usize, Hold)>,
+    /// Of `penalty` contact, see [`penalty::boundary`].
+    boundary: Vec<(usize, [f64; 3])>,
     reactions: Vec<Booked>,
     /// Receiving particle and its body, and what another body does to it.
     by_body: Vec<(usize, usize, BodyReaction)>,
@@ -58,6 +60,7 @@ impl ContactPhase {
             size_of::<(usize, Fraction)>() * task.fractions.capacity()
                 + size_of::<(usize, [f64; 3])>() * task.normals.capacity()
                 + size_of::<(usize, Hold)>() * task.holds.capacity()
+                + size_of::<(usize, [f64; 3])>() * task.boundary.capacity()
                 + size_of::<Booked>() * task.reactions.capacity()
                 + size_of::<(usize, usize, BodyReaction)>() * task.by_body.capacity()
                 + size_of::<BodyReaction>() * task.reaction.by_body.capacity()
@@ -73,6 +76,7 @@ impl Simulation {
             return;
         }
         self.run_fractions();
+        self.find_boundaries();
         let store = &mut self.store;
         for field in [
             &mut store.foreign_fraction,
@@ -119,6 +123,7 @@ impl Simulation {
             motion: &self.search.motion,
             store: &self.store,
             table: &self.contact,
+            dt,
         };
         self.contact_phase
             .tasks
@@ -129,7 +134,7 @@ impl Simulation {
                 task.holds.clear();
                 for (place, neighbours) in chunk.overlap.iter() {
                     let base = view.images[place as usize].base();
-                    let hold = overlap::hold(&view, place, neighbours, dt);
+                    let hold = overlap::hold(&view, place, neighbours);
                     task.holds.push((base, hold));
                 }
             });
@@ -178,6 +183,7 @@ impl Simulation {
             motion: &self.search.motion,
             store: &self.store,
             table: &self.contact,
+            dt: 0.0,
         };
         self.contact_phase
             .tasks
@@ -200,6 +206,31 @@ impl Simulation {
             });
     }
 
+    /// Normals of the boundary particles that `penalty` contact may press on.
+    fn find_boundaries(&mut self) {
+        if !self.contact.has_penalty() {
+            return;
+        }
+        let view = ContactView {
+            images: self.search.sequence.images(),
+            motion: &self.search.motion,
+            store: &self.store,
+            table: &self.contact,
+            dt: 0.0,
+        };
+        self.contact_phase
+            .tasks
+            .par_iter_mut()
+            .zip(self.search.foreign.chunks())
+            .zip(self.search.clusters.chunks())
+            .with_max_len(CHUNKS_AT_ONCE)
+            .for_each(|((task, foreign), own)| task.find_boundaries(&view, foreign, own));
+        fill(&mut self.store.boundary_normal, [0.0; 3]);
+        for (i, normal) in self.contact_phase.tasks.iter().flat_map(|t| &t.boundary) {
+            self.store.boundary_normal[*i] = *normal;
+        }
+    }
+
     /// Gives every particle the relief that makes it start free of force; returns how many had
     /// to be capped on this rank. For the start of a case, before the first forces.
     pub(super) fn set_touch_relief(&mut self) -> i64 {
@@ -216,11 +247,12 @@ impl Simulation {
         capped
     }
 
-    /// Contact forces, the energy of contact, and what the time step must know of both.
-    pub(super) fn contact_forces(&mut self) {
+    /// Contact forces after a step `dt` (s), the energy of contact, and what the time step must know
+    /// of both.
+    pub(super) fn contact_forces(&mut self, dt: f64) {
         self.sums.clear_rates();
         if self.contact.is_active() {
-            self.run_reactions();
+            self.run_reactions(dt);
             self.store_reactions();
             self.surface_forces();
         }
@@ -234,13 +266,14 @@ impl Simulation {
         }
     }
 
-    fn run_reactions(&mut self) {
+    fn run_reactions(&mut self, dt: f64) {
         let friction = self.contact.has_friction();
         let view = ContactView {
             images: self.search.sequence.images(),
             motion: &self.search.motion,
             store: &self.store,
             table: &self.contact,
+            dt,
         };
         self.contact_phase
             .tasks
@@ -305,6 +338,21 @@ fn fill<T: Copy + Send + Sync>(values: &mut [T], value: T) {
 }
 
 impl Task {
+    /// Receivers of both lists stand in the same order.
+    fn find_boundaries(&mut self, view: &ContactView, foreign: &ForeignChunk, own: &Chunk) {
+        self.boundary.clear();
+        let mut wanted = foreign.penalty.iter().map(|(place, _)| place).peekable();
+        for (cluster, neighbours, _) in own.iter() {
+            for &place in &cluster.receivers[..cluster.lanes] {
+                if wanted.next_if_eq(&place).is_some() {
+                    let normal = penalty::boundary(view, place, neighbours);
+                    self.boundary
+                        .push((view.images[place as usize].base(), normal));
+                }
+            }
+        }
+    }
+
     /// Reactions of one chunk's receivers, mode after mode.
     fn react<const FRICTION: bool>(&mut self, view: &ContactView, chunk: &ForeignChunk) {
         self.reactions.clear();
@@ -317,6 +365,11 @@ impl Task {
         for (place, neighbours) in chunk.potential.iter() {
             self.reaction.clear();
             potential::react(view, place, neighbours, &mut self.reaction);
+            self.keep(view, place, neighbours.len());
+        }
+        for (place, neighbours) in chunk.penalty.iter() {
+            self.reaction.clear();
+            penalty::react(view, place, neighbours, &mut self.reaction);
             self.keep(view, place, neighbours.len());
         }
     }

@@ -74,6 +74,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> FieldUse {
     let driven = !case.loads.velocities.is_empty() || case.bodies.iter().any(|b| b.rigid.is_some());
     [
         (FieldUse::CONTACT, contact.is_active()),
+        (FieldUse::PENALTY, contact.has_penalty()),
         (FieldUse::LOADS, driven),
         (FieldUse::FRICTION, contact.has_friction()),
         (FieldUse::BALSARA, sph.balsara),

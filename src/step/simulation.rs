@@ -145,7 +145,7 @@ impl Simulation {
         self.momentum_and_energy(true);
         self.timers.lap(Phase::Momentum);
         self.hold_by_friction(comm, dt);
-        self.contact_forces();
+        self.contact_forces(dt);
         self.timers.lap(Phase::ContactForces);
     }
 

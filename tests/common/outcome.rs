@@ -144,15 +144,15 @@ pub fn loaded_normalised() -> Case {
     case
 }
 
-/// Without options of the SPH sums and with all, without loads and with all, in both forms, with
-/// friction.
+/// Without options of the SPH sums and with all, without loads and with all, in both forms,
+/// with friction.
 pub const CASES: [fn() -> Case; 8] = [
     everything,
     every_option,
     loaded,
     on_a_plane,
     loaded_with_options,
+    rubbing,
     normalised,
     loaded_normalised,
-    rubbing,
 ];

@@ -104,6 +104,7 @@ impl World {
             motion: &self.motion,
             store: &self.store,
             table: &self.table,
+            dt: 0.0,
         }
     }
 
@@ -209,7 +210,7 @@ impl World {
                     ContactMode::Potential(potential) => {
                         energy += 0.5 * self.potential_energy(i, j, &pair, potential);
                     }
-                    ContactMode::None | ContactMode::Kernel => {}
+                    ContactMode::None | ContactMode::Kernel | ContactMode::Penalty(_) => {}
                 }
             }
             if fraction > 0.0 {

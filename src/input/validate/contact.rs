@@ -5,13 +5,13 @@ use toml::Spanned;
 use super::check::{Allowed, number, whole};
 use crate::input::forms::FrictionParams;
 use crate::input::schema::{
-    BodyParams, ContactParams, DirectionName, ModeName, OverlapParams, PairParams, PotentialParams,
-    RangeName,
+    BodyParams, ContactParams, DirectionName, ModeName, OverlapParams, PairParams, PenaltyLawName,
+    PenaltyParams, PotentialParams, RangeName,
 };
 use crate::input::source::Complaint;
 use crate::model::{
-    ContactDirection, ContactMode, ContactPair, Overlap, Potential, PotentialRange, Resistance,
-    SphForm,
+    ContactDirection, ContactMode, ContactPair, Overlap, Penalty, PenaltyLaw, Potential,
+    PotentialRange, Resistance, SphForm,
 };
 
 /// A choice of mode with the parameters of all modes.
@@ -21,6 +21,7 @@ struct Choice {
     overlap: Overlap,
     potential: Potential,
     resistance: Resistance,
+    penalty: Penalty,
 }
 
 impl Choice {
@@ -33,6 +34,7 @@ impl Choice {
                 resistance: self.resistance,
                 ..self.overlap
             }),
+            ModeName::Penalty => ContactMode::Penalty(self.penalty),
         }
     }
 }
@@ -52,6 +54,7 @@ pub fn contacts(
             params.damping.as_ref(),
             Resistance::default(),
         )?,
+        penalty: penalty(&params.penalty, Penalty::default())?,
     };
     let modes = params.pair.iter().map(|pair| pair.mode);
     let used = |mode: Option<ModeName>| mode.unwrap_or(default.mode) == ModeName::Overlap;
@@ -61,17 +64,18 @@ pub fn contacts(
     let mut pairs: Vec<ContactPair> = Vec::new();
     let is_rigid = |b: usize| bodies[b].get_ref().rigid == Some(true);
     let rigid = bodies.iter().find(|b| b.get_ref().rigid == Some(true));
-    if let (ModeName::Kernel, Some(body)) = (default.mode, rigid) {
-        return Err(unjoined(&body.get_ref().name, body.get_ref().name.span()));
+    if let (ModeName::Kernel | ModeName::Penalty, Some(body)) = (default.mode, rigid) {
+        let at = body.get_ref().name.span();
+        return Err(unfit(&body.get_ref().name, default.mode, at));
     }
     for pair in &params.pair {
         let indices = indices(pair, bodies)?;
         let [a, b] = indices;
-        if let (Some(ModeName::Kernel), Some(n)) =
+        if let (Some(mode @ (ModeName::Kernel | ModeName::Penalty)), Some(n)) =
             (pair.mode, [a, b].into_iter().position(is_rigid))
         {
             let at = pair.bodies.get_ref()[n].span();
-            return Err(unjoined(&bodies[indices[n]].get_ref().name, at));
+            return Err(unfit(&bodies[indices[n]].get_ref().name, mode, at));
         }
         if pairs
             .iter()
@@ -92,6 +96,7 @@ pub fn contacts(
             )?,
             overlap: overlap(&pair.overlap, default.overlap, form)?,
             potential: potential(&pair.potential, default.potential, form)?,
+            penalty: penalty(&pair.penalty, default.penalty)?,
         };
         pairs.push(ContactPair {
             bodies: indices,
@@ -101,10 +106,15 @@ pub fn contacts(
     Ok((default.mode(), pairs))
 }
 
-/// A rigid body has no stress that could join the sums of another.
-fn unjoined(body: &Spanned<String>, at: std::ops::Range<usize>) -> Complaint {
+/// A rigid body has no stress that could join the sums of another, and no sums that could tell its
+/// boundary.
+fn unfit(body: &Spanned<String>, mode: ModeName, at: std::ops::Range<usize>) -> Complaint {
+    let mode = match mode {
+        ModeName::Kernel => "kernel",
+        _ => "penalty",
+    };
     let title = format!(
-        "the rigid body `{}` cannot have contact of mode `kernel`",
+        "the rigid body `{}` cannot have contact of mode `{mode}`",
         body.get_ref()
     );
     Complaint::new(at, title).help("take \"overlap\" or \"potential\" for its pairs")
@@ -217,6 +227,18 @@ fn potential(
             None => base.range,
         },
         direction: direction(params.direction.as_ref(), base.direction, form)?,
+    })
+}
+
+fn penalty(params: &PenaltyParams, base: Penalty) -> Result<Penalty, Complaint> {
+    let stiffness = params.stiffness.as_ref();
+    Ok(Penalty {
+        stiffness: number(stiffness, "stiffness", base.stiffness, Allowed::Positive)?,
+        law: match params.law {
+            Some(PenaltyLawName::Hertz) => PenaltyLaw::Hertz,
+            Some(PenaltyLawName::Pinball) => PenaltyLaw::Pinball,
+            None => base.law,
+        },
     })
 }
 

@@ -92,7 +92,7 @@ fn check_moduli(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Compl
         let material = &case.materials[body.material];
         let pushes = |b| match case.contact_between(a, b) {
             ContactMode::None | ContactMode::Kernel => false,
-            ContactMode::Overlap(_) | ContactMode::Potential(_) => a != b,
+            ContactMode::Overlap(_) | ContactMode::Potential(_) | ContactMode::Penalty(_) => a != b,
         };
         if material.p_wave_modulus() == 0.0 && (0..case.bodies.len()).any(pushes) {
             let title = format!(
