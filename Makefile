@@ -28,8 +28,9 @@ check: test-deps
 	$(ENV) RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps
 	$(MAKE) run-tests
 
-validation: test-deps $(VENV)/ready ## Run the slow physics tests, those marked #[ignore]
+validation: test-deps $(VENV)/ready ## Run the slow physics tests and draw the pictures
 	$(ENV) jobs/cargo-test.sh --ignored
+	$(MAKE) pictures
 
 pictures: release ## Run the cases of the validation page and draw its pictures
 	jobs/validation-pictures.sh

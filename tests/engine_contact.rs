@@ -190,6 +190,7 @@ fn mixed_modes_are_the_gradient_of_one_energy() {
                 stiffness: 9.0,
                 core_stiffness: 0.5,
                 core_radius: 0.4,
+                ..Overlap::default()
             }),
         ),
     ];

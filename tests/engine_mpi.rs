@@ -10,7 +10,7 @@ use common::random::Random;
 use common::ranks::on_each;
 use common::sentinel::{id, mix, sentinel};
 use whipple::comm::{Comm, Exchange};
-use whipple::domain::{Decomposition, Halo, Histogram, Migration, Mirrors, Slabs, balance};
+use whipple::domain::{Decomposition, Halo, Histogram, Migration, Mirrors, Paces, Slabs, balance};
 use whipple::model::{Axis, SymmetryPlane};
 use whipple::neighbours::Image;
 use whipple::particles::{FIELDS, FieldInfo, FieldUse, ParticleStore, SCRATCH_WORDS};
@@ -372,6 +372,7 @@ fn balance_work(comm: &Comm) {
     let mut store = scattered(comm, 31);
     let mut migration = Migration::default();
     let mut histogram = Histogram::default();
+    let paces = Paces::default();
     let numbers = numbers();
     for round in 1..12_u64 {
         // Work unevenly spread; in the last rounds all particles stand in few places.
@@ -389,7 +390,14 @@ fn balance_work(comm: &Comm) {
         let axis = usize::try_from(round % 3).unwrap();
         let before = Slabs::new(axis, vec![f64::INFINITY; comm.size() - 1]);
         let positions = &store.position[..store.owned()];
-        let slabs = balance(comm, &before, positions, &store.work, &mut histogram);
+        let slabs = balance(
+            comm,
+            &before,
+            positions,
+            &store.work,
+            &mut histogram,
+            &paces,
+        );
         // The same faces everywhere.
         let mut faces = Vec::new();
         let mine: Vec<u64> = slabs.faces().iter().map(|face| face.to_bits()).collect();
@@ -415,12 +423,49 @@ fn balance_work(comm: &Comm) {
     }
     // Nobody anywhere: the faces stay.
     let slabs = Slabs::new(0, vec![1.0; comm.size() - 1]);
-    assert_eq!(balance(comm, &slabs, &[], &[], &mut histogram), slabs);
+    assert_eq!(
+        balance(comm, &slabs, &[], &[], &mut histogram, &paces),
+        slabs
+    );
+}
+
+/// Rank 0 takes twice as long for the same work: after some balances it has half of what each
+/// other rank has; a measurement too short to mean anything changes nothing.
+fn balance_paces(comm: &Comm) {
+    let (mut histogram, mut paces) = (Histogram::default(), Paces::default());
+    let positions: Vec<[f64; 3]> = (0..1000)
+        .filter(|k| k % comm.size() == comm.rank())
+        .map(|k| [0.001 * f64::from(u32::try_from(k).unwrap()), 0.0, 0.0])
+        .collect();
+    let slabs = Slabs::new(0, vec![f64::INFINITY; comm.size() - 1]);
+    let work = vec![1; positions.len()];
+    let mut faces = |paces: &Paces| {
+        let slabs = balance(comm, &slabs, &positions, &work, &mut histogram, paces);
+        slabs.faces().to_vec()
+    };
+    let even = faces(&paces);
+    let slow = if comm.is_root() { 2.0 } else { 1.0 };
+    paces.measure(comm, 1000, 1e-3 * slow);
+    assert_eq!(faces(&paces), even);
+    for round in 1..=20 {
+        paces.measure(comm, 1000, f64::from(round) * slow);
+    }
+    let ranks = f64::from(u32::try_from(comm.size()).unwrap());
+    let first = 1.0 / (2.0 * ranks - 1.0);
+    for (r, face) in (0_u32..).zip(faces(&paces)) {
+        let share = first * (1.0 + 2.0 * f64::from(r));
+        assert!((face - share).abs() < 0.005, "{r}: {face} {share}");
+    }
 }
 
 #[test]
 fn balance_evens_out_the_work() {
     on_each("balance_evens_out_the_work", &[1, 4], balance_work);
+}
+
+#[test]
+fn slower_ranks_get_less_work() {
+    on_each("slower_ranks_get_less_work", &[1, 2, 3], balance_paces);
 }
 
 /// Steps of cases with all there is: every rank holds what one rank alone

@@ -4,13 +4,14 @@
 //! only, so that its energy is a function of positions alone and its forces are that function's
 //! exact gradient (physics page, section 5).
 
+pub mod friction;
 pub mod overlap;
 pub mod penalty;
 pub mod potential;
 pub mod surface;
 mod table;
 
-pub use table::{ContactTable, Pair};
+pub use table::{ContactTable, Pair, PairResistance};
 
 use crate::neighbours::Image;
 use crate::particles::ParticleStore;
@@ -72,6 +73,10 @@ pub struct Reaction {
     pub energy: f64,
     /// Stiffness for the time step (N/m).
     pub stiffness: f64,
+    /// Damping for the time step (N s/m).
+    pub dashpot: f64,
+    /// Its share of the heat by friction and damping (W).
+    pub heat: f64,
     /// Smallest distance to a foreign particle in mean spacings.
     pub closest: f64,
     /// Largest approach speed `|μ|` towards a foreign particle (m/s).
@@ -89,6 +94,8 @@ pub struct BodyReaction {
     pub force: [f64; 3],
     /// Share of the contact energy (J).
     pub energy: f64,
+    /// Share of the heat by friction and damping (W).
+    pub heat: f64,
     /// Smallest distance to a particle of that body in mean spacings.
     pub closest: f64,
 }
@@ -105,6 +112,15 @@ impl Reaction {
         self.by_body.clear();
     }
 
+    /// Books what friction and damping of the pair with a body turn into heat (W) for the receiver,
+    /// after [`Self::book`].
+    fn book_heat(&mut self, body: usize, heat: f64) {
+        self.heat += heat;
+        if let Some(entry) = self.by_body.iter_mut().find(|e| e.body == body) {
+            entry.heat += heat;
+        }
+    }
+
     /// Books what the pair with `other` at `gap` does: distance, approach, force and energy.
     fn book(&mut self, other: &Party, gap: &Gap, pair: &Pair, force: [f64; 3], energy: f64) {
         let distance = gap.distance / pair.spacing;
@@ -117,6 +133,7 @@ impl Reaction {
                 body: other.body,
                 force: [0.0; 3],
                 energy: 0.0,
+                heat: 0.0,
                 closest: f64::INFINITY,
             });
             self.by_body.len() - 1

@@ -1,7 +1,7 @@
 //! Parameters of every pair of bodies, computed once at set-up.
 
 use super::penalty::Boundary;
-use crate::model::{Case, ContactMode, PenaltyLaw, PotentialRange};
+use crate::model::{Body, Case, ContactMode, PenaltyLaw, PotentialRange, Resistance};
 use crate::neighbours::{ContactClass, ForeignTable};
 use crate::populate;
 use crate::sph::kernel::Kernel;
@@ -21,6 +21,8 @@ pub struct Pair {
     pub core_modulus: f64,
     /// `overlap`: radius of the core (m).
     pub core_radius: f64,
+    /// `overlap`: friction and damping.
+    pub resistance: PairResistance,
     /// `potential`: K (Pa/m^d).
     pub potential: f64,
     /// `potential`: exponent n.
@@ -35,6 +37,51 @@ pub struct Pair {
     pub penalty: f64,
     /// `penalty`: whether the force is no more than what stops the approach in one step.
     pub pinball: bool,
+}
+
+/// Friction and damping of an ordered pair of bodies.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PairResistance {
+    /// Coefficient of friction of faces that stick.
+    pub static_friction: f64,
+    /// Coefficient of friction of faces that slide.
+    pub kinetic_friction: f64,
+    /// Stiffness of the spring that sticks over volume, `¼ M/Δp²` (Pa/m²).
+    pub stick: f64,
+    /// Damping over volume, `ζ √(M ρ₀)/Δp` (Pa s/m²).
+    pub dashpot: f64,
+    /// Share of heat that goes to the receiver: ½, or all where the other body is rigid.
+    pub heat_share: f64,
+}
+
+impl PairResistance {
+    /// Whether there is any.
+    #[inline]
+    #[must_use]
+    pub fn is_any(&self) -> bool {
+        self.static_friction > 0.0 || self.dashpot > 0.0
+    }
+
+    /// Of bodies that resist as `input` says. The softer body gives modulus and density.
+    fn new(case: &Case, bodies: [&Body; 2], spacing: f64, input: &Resistance) -> Self {
+        let facts = bodies.map(|body| {
+            let modulus = case.materials[body.material].p_wave_modulus();
+            (modulus, case.initial_density(body))
+        });
+        let softer = usize::from(facts[1].0 < facts[0].0);
+        let (modulus, density) = facts[softer];
+        Self {
+            static_friction: input.static_friction,
+            kinetic_friction: input.kinetic_friction,
+            stick: 0.25 * modulus / (spacing * spacing),
+            dashpot: input.damping * (modulus * density).sqrt() / spacing,
+            heat_share: match bodies.map(|body| body.rigid.is_some()) {
+                [false, false] => 0.5,
+                [false, true] => 1.0,
+                [true, _] => 0.0,
+            },
+        }
+    }
 }
 
 /// All pairs of bodies.
@@ -158,6 +205,13 @@ impl ContactTable {
         self.foreign.class.contains(&ContactClass::Penalty)
     }
 
+    /// Whether any pair of bodies has friction or damping.
+    #[must_use]
+    pub fn has_friction(&self) -> bool {
+        let mut pairs = self.pairs.iter();
+        pairs.any(|pair| pair.resistance.is_any())
+    }
+
     /// The unordered pairs of bodies with contact beyond the SPH sums.
     #[must_use]
     pub fn active_pairs(&self) -> Vec<[usize; 2]> {
@@ -197,7 +251,7 @@ fn join_groups(case: &Case) -> Vec<usize> {
 
 fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass, Pair) {
     let (body_a, body_b) = (&case.bodies[a], &case.bodies[b]);
-    let modulus = |body: &crate::model::Body| case.materials[body.material].p_wave_modulus();
+    let modulus = |body: &Body| case.materials[body.material].p_wave_modulus();
     let smaller = modulus(body_a).min(modulus(body_b));
     let spacing = 0.5 * (body_a.lattice.spacing + body_b.lattice.spacing);
     let h = 0.5 * (body_a.smoothing_length + body_b.smoothing_length);
@@ -208,6 +262,7 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
         touching: 0.0,
         core_modulus: 0.0,
         core_radius: 0.0,
+        resistance: PairResistance::default(),
         potential: 0.0,
         exponent: 1,
         range: 0.0,
@@ -241,6 +296,8 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
             pair.touching = populate::touching_value(body_a, body_b, case.dimension);
             pair.core_modulus = overlap.core_stiffness * smaller;
             pair.core_radius = overlap.core_radius * spacing;
+            pair.resistance =
+                PairResistance::new(case, [body_a, body_b], spacing, &overlap.resistance);
             (ContactClass::Overlap, pair)
         }
     }

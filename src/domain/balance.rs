@@ -1,5 +1,6 @@
 //! Faces of the slabs so that counted work is even.
 
+use super::pace::Paces;
 use super::slabs::Slabs;
 use crate::comm::Comm;
 
@@ -47,36 +48,43 @@ impl Histogram {
         8 * self.counts.capacity()
     }
 
-    /// Faces that split the work of all ranks evenly.
-    pub fn split(&mut self, comm: &Comm) -> Vec<f64> {
+    /// Faces that split the work of all ranks by their shares.
+    pub fn split(&mut self, comm: &Comm, paces: &Paces) -> Vec<f64> {
         comm.sum_u64(&mut self.counts);
-        let ranks = comm.size() as u64;
+        let ranks = comm.size();
         let total: u64 = self.counts.iter().sum();
-        let mut faces = Vec::with_capacity(comm.size().saturating_sub(1));
+        let mut faces = Vec::with_capacity(ranks - 1);
         let mut below = 0;
         for (bin, &count) in self.counts.iter().enumerate() {
-            // A face goes to whichever side of this bin is nearer to an even split.
-            while (faces.len() as u64) + 1 < ranks {
-                let target = u128::from(total) * (faces.len() as u128 + 1) / u128::from(ranks);
-                if u128::from(below) + u128::from(count) < target {
+            // A face goes to whichever side of this bin is nearer to its share.
+            while faces.len() + 1 < ranks {
+                #[allow(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    clippy::cast_precision_loss,
+                    reason = "a part of the total"
+                )]
+                let target = (paces.up_to(faces.len(), ranks) * total as f64) as u64;
+                if below + count < target {
                     break;
                 }
-                let over = u128::from(below) + u128::from(count) - target;
-                let under = target.saturating_sub(u128::from(below));
+                let over = below + count - target;
+                let under = target.saturating_sub(below);
                 let at = if under < over { bin } else { bin + 1 };
                 #[allow(clippy::cast_precision_loss, reason = "few bins")]
                 faces.push(self.lower + self.width * at as f64);
             }
             below += count;
         }
-        while (faces.len() as u64) + 1 < ranks {
+        while faces.len() + 1 < ranks {
             faces.push(f64::INFINITY);
         }
         faces
     }
 }
 
-/// New slabs along the same axis for owned particles at `positions` with counted `work`.
+/// New slabs along the same axis for owned particles at `positions` with counted `work`, of which
+/// each rank gets its share by `paces`.
 /// Particles whose work is unknown count as one.
 pub fn balance(
     comm: &Comm,
@@ -84,6 +92,7 @@ pub fn balance(
     positions: &[[f64; 3]],
     work: &[u32],
     histogram: &mut Histogram,
+    paces: &Paces,
 ) -> Slabs {
     let along = |p: &[f64; 3]| p[slabs.axis];
     let lower = positions.iter().map(along).fold(f64::INFINITY, f64::min);
@@ -99,7 +108,7 @@ pub fn balance(
     for (position, &work) in positions.iter().zip(work) {
         histogram.add(along(position), u64::from(work.max(1)));
     }
-    Slabs::new(slabs.axis, histogram.split(comm))
+    Slabs::new(slabs.axis, histogram.split(comm, paces))
 }
 
 #[cfg(test)]
@@ -112,7 +121,14 @@ mod tests {
         let slabs = Slabs::new(1, Vec::new());
         let mut histogram = Histogram::default();
         let positions = [[0.0, 2.0, 0.0]; 3];
-        let new = balance(&comm, &slabs, &positions, &[5, 5, 5], &mut histogram);
+        let new = balance(
+            &comm,
+            &slabs,
+            &positions,
+            &[5, 5, 5],
+            &mut histogram,
+            &Paces::default(),
+        );
         assert_eq!(new, slabs);
     }
 }

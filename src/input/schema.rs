@@ -6,9 +6,10 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::forms::{LatticeParams, Named, NormalParams, OneOrMany};
+use super::forms::{FrictionParams, LatticeParams, Named, NormalParams, OneOrMany};
 use super::quantity::{
-    Acceleration, Angle, AngularRate, Density, Extent, Length, Quantity, SpecificEnergy, Time, Velocity,
+    Acceleration, Angle, AngularRate, Density, Extent, Length, Quantity, SpecificEnergy, Time,
+    Velocity,
 };
 
 /// A quantity with its place in the text.
@@ -318,6 +319,10 @@ tables! {
         bodies: Spanned<Vec<Spanned<String>>>,
         /// What happens where they meet; as for all others if absent.
         mode: Option<ModeName>,
+        /// Coefficients of friction.
+        friction: Option<Spanned<FrictionParams>>,
+        /// Share of critical damping.
+        damping: Option<Spanned<f64>>,
         /// Parameters of the mode `overlap`.
         #[serde(default)]
         overlap: OverlapParams,
@@ -346,6 +351,8 @@ pub use materials::*;
 optional_tables! {
     /// `[sph]`
     SphParams {
+        /// How gradients are taken.
+        form: Option<SphFormName>,
         /// Smoothing length over particle spacing.
         smoothing: Option<Spanned<f64>>,
         /// Linear viscosity.
@@ -392,6 +399,10 @@ optional_tables! {
     ContactParams {
         /// Mode of all pairs that have no own.
         mode: Option<ModeName>,
+        /// Coefficients of friction.
+        friction: Option<Spanned<FrictionParams>>,
+        /// Share of critical damping.
+        damping: Option<Spanned<f64>>,
         /// Parameters of the mode `overlap`.
         overlap: OverlapParams,
         /// Parameters of the mode `potential`.
@@ -445,6 +456,16 @@ optional_tables! {
     }
 }
 
+tables! {
+    /// `friction` as a table.
+    FrictionTable {
+        /// Of faces that stick.
+        r#static: Spanned<f64>,
+        /// Of faces that slide.
+        kinetic: Spanned<f64>,
+    }
+}
+
 /// Declares words to choose from.
 macro_rules! choices {
     ($($(#[$doc:meta])+ $choice:ident { $($(#[$word_doc:meta])+ $word:ident,)+ })+) => { $(
@@ -478,6 +499,13 @@ choices! {
         Cubic,
         /// Hexagonal close-packed.
         Hexagonal,
+    }
+    /// How the SPH sums take gradients.
+    SphFormName {
+        /// By the kernel's gradient.
+        Conventional,
+        /// By the corrected gradient.
+        Normalised,
     }
     /// Smoothing length in the SPH sums.
     SmoothingName {

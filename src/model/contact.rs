@@ -78,6 +78,8 @@ pub struct Overlap {
     pub core_stiffness: f64,
     /// Radius of the core in mean particle spacings.
     pub core_radius: f64,
+    /// Friction and damping.
+    pub resistance: Resistance,
 }
 
 impl Default for Overlap {
@@ -86,6 +88,7 @@ impl Default for Overlap {
             stiffness: 4.0,
             core_stiffness: 2.0,
             core_radius: 0.6,
+            resistance: Resistance::default(),
         }
     }
 }
@@ -114,5 +117,24 @@ impl Default for Penalty {
             stiffness: 2.0,
             law: PenaltyLaw::Hertz,
         }
+    }
+}
+
+/// What bodies in contact do against their relative motion.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Resistance {
+    /// Coefficient of friction of faces that stick.
+    pub static_friction: f64,
+    /// Coefficient of friction of faces that slide; at most that of faces that stick.
+    pub kinetic_friction: f64,
+    /// Share of critical damping, 0 to 1.
+    pub damping: f64,
+}
+
+impl Resistance {
+    /// Whether there is any.
+    #[must_use]
+    pub fn is_any(&self) -> bool {
+        self.static_friction > 0.0 || self.damping > 0.0
     }
 }

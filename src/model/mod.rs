@@ -13,10 +13,10 @@ mod surface;
 
 pub use body::{Axis, Body, Lattice, LatticeKind, Shape, SymmetryPlane};
 pub use contact::{
-    ContactMode, ContactPair, Overlap, Penalty, PenaltyLaw, Potential, PotentialRange,
+    ContactMode, ContactPair, Overlap, Penalty, PenaltyLaw, Potential, PotentialRange, Resistance,
 };
 pub use control::{
-    DomainOptions, OutputOptions, RunControl, SmoothingLength, SphOptions, TimeStepOptions,
+    DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm, SphOptions, TimeStepOptions,
 };
 pub use load::{Loads, VelocityLoad};
 pub use motion::Motion;

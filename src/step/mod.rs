@@ -4,6 +4,7 @@ mod contact_phase;
 mod integrate;
 mod loads;
 mod material_update;
+mod normalised;
 mod options;
 mod search;
 mod setup;

@@ -14,7 +14,7 @@ use super::sweeps::Sweeps;
 use super::timers::Timers;
 use crate::comm::Comm;
 use crate::contact::ContactTable;
-use crate::domain::{Halo, Histogram, Migration, Mirrors, Slabs, balance};
+use crate::domain::{Halo, Histogram, Migration, Mirrors, Paces, Slabs, balance};
 use crate::model::Case;
 use crate::neighbours::{ColumnGrid, Image};
 use crate::particles::ParticleStore;
@@ -82,6 +82,7 @@ impl Simulation {
             &simulation.store.position[..simulation.store.owned()],
             &simulation.store.work,
             &mut simulation.histogram,
+            &simulation.paces,
         );
         let slabs = simulation.slabs.clone();
         simulation
@@ -125,6 +126,7 @@ impl Simulation {
             updates: 0,
             slabs: Slabs::new(axis, vec![f64::INFINITY; comm.size() - 1]),
             histogram: Histogram::default(),
+            paces: Paces::default(),
             migration: Migration::default(),
             halo: Halo::new(axis, Mirrors::new(&case.symmetry)),
             search: Search::new(&case, &contact, grids),
@@ -132,7 +134,13 @@ impl Simulation {
             options: OptionPhase::new(&case, &contact.kernel),
             contact_phase: ContactPhase::default(),
             surface_forces: SurfaceForces::new(&case),
-            sums: StepSums::new(pairs, enclosed_limit, loads.driven(), loads.surfaces.len()),
+            sums: StepSums::new(
+                pairs,
+                enclosed_limit,
+                contact.has_friction(),
+                loads.driven(),
+                loads.surfaces.len(),
+            ),
             loads,
             scratch: Vec::new(),
             order: Vec::new(),
@@ -254,6 +262,7 @@ fn fresh_state(pairs: usize, loads: usize) -> RunState {
         momentum_put_in: 0.0,
         capped_reliefs: 0,
         interpenetrated: 0,
+        uncorrected: 0,
         worst: Worst::default(),
     }
 }
@@ -347,5 +356,5 @@ fn first_slabs(
             histogram.add(site.position[axis], 1);
         }
     }
-    Slabs::new(axis, histogram.split(comm))
+    Slabs::new(axis, histogram.split(comm, &Paces::default()))
 }

@@ -13,7 +13,7 @@ use super::sweeps::Sweeps;
 use super::timers::{Phase, Timers};
 use crate::comm::Comm;
 use crate::contact::ContactTable;
-use crate::domain::{Halo, Histogram, Migration, Slabs, balance};
+use crate::domain::{Halo, Histogram, Migration, Paces, Slabs, balance};
 use crate::model::Case;
 use crate::neighbours::Chunk;
 use crate::particles::{FieldUse, ParticleStore};
@@ -60,6 +60,7 @@ pub struct Simulation {
     pub(super) contact: ContactTable,
     pub(super) slabs: Slabs,
     pub(super) histogram: Histogram,
+    pub(super) paces: Paces,
     pub(super) migration: Migration,
     pub(super) halo: Halo,
     pub(super) search: Search,
@@ -143,6 +144,7 @@ impl Simulation {
         self.timers.lap(Phase::HaloStress);
         self.momentum_and_energy(true);
         self.timers.lap(Phase::Momentum);
+        self.hold_by_friction(comm, dt);
         self.contact_forces(dt);
         self.timers.lap(Phase::ContactForces);
     }
@@ -160,7 +162,16 @@ impl Simulation {
         if comm.size() > 1 {
             let positions = &self.store.position[..self.store.owned()];
             let work = &self.store.work;
-            self.slabs = balance(comm, &self.slabs, positions, work, &mut self.histogram);
+            let counted = work.iter().map(|&w| u64::from(w)).sum();
+            self.paces.measure(comm, counted, self.timers.busy());
+            self.slabs = balance(
+                comm,
+                &self.slabs,
+                positions,
+                work,
+                &mut self.histogram,
+                &self.paces,
+            );
         }
     }
 
@@ -205,6 +216,7 @@ impl Simulation {
             + self.halo.memory()
             + self.migration.memory()
             + self.histogram.memory()
+            + self.paces.memory()
             + words
     }
 

@@ -44,6 +44,12 @@ pub struct PairState {
     pub impulse: [f64; 3],
     /// Contact energy between the two now (J).
     pub energy: f64,
+    /// What friction and damping turn into heat now (W).
+    #[serde(default)]
+    pub heat_power: f64,
+    /// Its time integral (J).
+    #[serde(default)]
+    pub heat: f64,
     /// Particles with excess now.
     pub touching: i64,
     /// Largest excess now.
@@ -134,6 +140,8 @@ pub struct RunState {
     pub capped_reliefs: i64,
     /// Interpenetrated particles now.
     pub interpenetrated: i64,
+    /// Particles whose gradient has no correction now, in the normalised form.
+    pub uncorrected: i64,
     /// Largest values over the run.
     pub worst: Worst,
 }
@@ -143,6 +151,12 @@ impl RunState {
     #[must_use]
     pub fn load_work(&self) -> f64 {
         self.loads.iter().map(|load| load.work).sum()
+    }
+
+    /// Heat by friction and damping of contact so far (J).
+    #[must_use]
+    pub fn contact_heat(&self) -> f64 {
+        self.pairs.iter().map(|pair| pair.heat).sum()
     }
 
     /// Impulse given by all loads so far (N s).
@@ -169,6 +183,8 @@ pub struct Worst {
     pub momentum_error: [f64; 3],
     /// Interpenetrated particles.
     pub interpenetrated: i64,
+    /// Particles whose gradient has no correction, in the normalised form.
+    pub uncorrected: i64,
     /// Smallest foreign distance in mean spacings.
     pub closest: Option<f64>,
     /// Largest foreign fraction.

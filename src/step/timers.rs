@@ -71,6 +71,23 @@ impl Timers {
         self.last = now;
     }
 
+    /// Seconds of this rank's own work, without the phases in which it waits for others.
+    #[must_use]
+    pub fn busy(&self) -> f64 {
+        use Phase::{ContactForces, ContactFractions, Integrate, Material, Momentum, Neighbours};
+        [
+            Integrate,
+            Neighbours,
+            Material,
+            ContactFractions,
+            Momentum,
+            ContactForces,
+        ]
+        .map(|phase| self.seconds[phase as usize])
+        .iter()
+        .sum()
+    }
+
     /// Name and seconds of each phase.
     pub fn report(&self) -> impl Iterator<Item = (&'static str, f64)> {
         Phase::ALL

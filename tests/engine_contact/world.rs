@@ -158,7 +158,7 @@ impl World {
         let mut reaction = Reaction::default();
         reaction.clear();
         let place = u32::try_from(i).unwrap();
-        overlap::react(&self.view(), place, overlap, &mut reaction);
+        overlap::react::<false>(&self.view(), place, overlap, &mut reaction);
         potential::react(&self.view(), place, potential, &mut reaction);
         reaction
     }

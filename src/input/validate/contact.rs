@@ -3,13 +3,14 @@
 use toml::Spanned;
 
 use super::check::{Allowed, number, whole};
+use crate::input::forms::FrictionParams;
 use crate::input::schema::{
     BodyParams, ContactParams, ModeName, OverlapParams, PairParams, PenaltyLawName, PenaltyParams,
     PotentialParams, RangeName,
 };
 use crate::input::source::Complaint;
 use crate::model::{
-    ContactMode, ContactPair, Overlap, Penalty, PenaltyLaw, Potential, PotentialRange,
+    ContactMode, ContactPair, Overlap, Penalty, PenaltyLaw, Potential, PotentialRange, Resistance,
 };
 
 /// A choice of mode with the parameters of all modes.
@@ -19,6 +20,7 @@ struct Choice {
     overlap: Overlap,
     potential: Potential,
     penalty: Penalty,
+    resistance: Resistance,
 }
 
 impl Choice {
@@ -27,7 +29,10 @@ impl Choice {
             ModeName::None => ContactMode::None,
             ModeName::Kernel => ContactMode::Kernel,
             ModeName::Potential => ContactMode::Potential(self.potential),
-            ModeName::Overlap => ContactMode::Overlap(self.overlap),
+            ModeName::Overlap => ContactMode::Overlap(Overlap {
+                resistance: self.resistance,
+                ..self.overlap
+            }),
             ModeName::Penalty => ContactMode::Penalty(self.penalty),
         }
     }
@@ -43,7 +48,17 @@ pub fn contacts(
         overlap: overlap(&params.overlap, Overlap::default())?,
         potential: potential(&params.potential, Potential::default())?,
         penalty: penalty(&params.penalty, Penalty::default())?,
+        resistance: resistance(
+            params.friction.as_ref(),
+            params.damping.as_ref(),
+            Resistance::default(),
+        )?,
     };
+    let modes = params.pair.iter().map(|pair| pair.mode);
+    let used = |mode: Option<ModeName>| mode.unwrap_or(default.mode) == ModeName::Overlap;
+    if !modes.chain([None]).any(used) {
+        refuse_resistance(params.friction.as_ref(), params.damping.as_ref())?;
+    }
     let mut pairs: Vec<ContactPair> = Vec::new();
     let is_rigid = |b: usize| bodies[b].get_ref().rigid == Some(true);
     let rigid = bodies.iter().find(|b| b.get_ref().rigid == Some(true));
@@ -67,8 +82,16 @@ pub fn contacts(
             let title = "this pair of bodies has a contact already";
             return Err(Complaint::new(pair.bodies.span(), title));
         }
+        if !used(pair.mode) {
+            refuse_resistance(pair.friction.as_ref(), pair.damping.as_ref())?;
+        }
         let choice = Choice {
             mode: pair.mode.unwrap_or(default.mode),
+            resistance: resistance(
+                pair.friction.as_ref(),
+                pair.damping.as_ref(),
+                default.resistance,
+            )?,
             overlap: overlap(&pair.overlap, default.overlap)?,
             potential: potential(&pair.potential, default.potential)?,
             penalty: penalty(&pair.penalty, default.penalty)?,
@@ -128,6 +151,55 @@ fn overlap(params: &OverlapParams, base: Overlap) -> Result<Overlap, Complaint> 
             or_zero,
         )?,
         core_radius: number(core_radius, "core_radius", base.core_radius, range)?,
+        resistance: base.resistance,
+    })
+}
+
+/// Only one mode knows friction and damping.
+fn refuse_resistance(
+    friction: Option<&Spanned<FrictionParams>>,
+    damping: Option<&Spanned<f64>>,
+) -> Result<(), Complaint> {
+    let at = [
+        friction.map(|key| ("friction", key.span())),
+        damping.map(|key| ("damping", key.span())),
+    ];
+    match at.into_iter().flatten().next() {
+        None => Ok(()),
+        Some((key, at)) => {
+            let title = format!("`{key}` acts in no contact but that of mode `overlap`");
+            Err(Complaint::new(at, title).help("set `mode = \"overlap\"`, or leave it out"))
+        }
+    }
+}
+
+fn resistance(
+    friction: Option<&Spanned<FrictionParams>>,
+    damping: Option<&Spanned<f64>>,
+    base: Resistance,
+) -> Result<Resistance, Complaint> {
+    let of = |value: &Spanned<f64>, key: &str| {
+        number(Some(value), key, 0.0, Allowed::NotNegative).map(Some)
+    };
+    let [sticking, sliding] = match friction.map(|f| (f.get_ref(), f.span())) {
+        None => [None, None],
+        Some((&FrictionParams::One(value), at)) => [of(&Spanned::new(at, value), "friction")?; 2],
+        Some((FrictionParams::Two(table), _)) => {
+            let [sticking, sliding] = [
+                of(&table.r#static, "static")?,
+                of(&table.kinetic, "kinetic")?,
+            ];
+            if sliding > sticking {
+                let title = "`kinetic` must be at most `static`";
+                return Err(Complaint::new(table.kinetic.span(), title).label("out of range"));
+            }
+            [sticking, sliding]
+        }
+    };
+    Ok(Resistance {
+        static_friction: sticking.unwrap_or(base.static_friction),
+        kinetic_friction: sliding.unwrap_or(base.kinetic_friction),
+        damping: number(damping, "damping", base.damping, Allowed::Within(0.0, 1.0))?,
     })
 }
 

@@ -17,12 +17,12 @@ use std::path::Path;
 
 use super::schema::{
     AxisName, BodyParams, CaseParams, DomainParams, OutputParams, RunParams, SmoothingName,
-    SphParams, SymmetryParams, TimeStepParams,
+    SphFormName, SphParams, SymmetryParams, TimeStepParams,
 };
 use super::source::Complaint;
 use crate::model::{
-    Axis, Case, ContactMode, DomainOptions, OutputOptions, RunControl, SmoothingLength, SphOptions,
-    SymmetryPlane, TimeStepOptions,
+    Axis, Case, ContactMode, DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm,
+    SphOptions, SymmetryPlane, TimeStepOptions,
 };
 use crate::particles::{TEMPERATURE, snapshot_names};
 use check::{Allowed, number, whole};
@@ -176,6 +176,10 @@ fn sph(params: &SphParams) -> Result<SphOptions, Complaint> {
         max: number(max, "smoothing_length_max", 2.0, Allowed::Within(1.0, 10.0))?,
     };
     Ok(SphOptions {
+        form: match params.form {
+            None | Some(SphFormName::Conventional) => SphForm::Conventional,
+            Some(SphFormName::Normalised) => SphForm::Normalised,
+        },
         alpha: number(params.alpha.as_ref(), "alpha", 1.0, Allowed::NotNegative)?,
         beta: number(params.beta.as_ref(), "beta", 2.0, Allowed::NotNegative)?,
         smoothing_length: match params.smoothing_length {

@@ -94,10 +94,15 @@ impl Eos {
                 let bounds = eos.bounds();
                 map(rho, e, |rho, e| eos.bounded_response(bounds, rho0, rho, e))
             }
-            Self::Tait(eos) => map(rho, e, |rho, _| eos.response(rho0, rho)),
-            Self::Tillotson(eos) => map(rho, e, |rho, e| eos.response(rho0, rho, e)),
-            Self::IdealGas(eos) => map(rho, e, |rho, e| eos.response(rho, e)),
+            _ => self.transcendental_response(rho0, rho, e),
         }
+    }
+
+    /// [`Self::response`] of the equations that raise to powers. A function of its own: inside the
+    /// vector code, their calls slow down those that have no need of them.
+    #[inline(never)]
+    fn transcendental_response(&self, rho0: f64, rho: &Lanes, e: &Lanes) -> Response {
+        map(rho, e, |rho, e| self.at(rho0, rho, e))
     }
 }
 

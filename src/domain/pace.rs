@@ -1,0 +1,88 @@
+//! How fast each rank gets through counted work, by the clock.
+
+use crate::comm::Comm;
+
+/// Share of the work that each rank is to have.
+///
+/// Counted work alone leaves ranks waiting where their cores differ in speed or the count is off
+/// in places: with 4 % between two cores, two ranks lose 2 %. Shares follow what was measured
+/// between balances; they decide who computes a particle, never what comes out.
+#[derive(Debug, Clone, Default)]
+pub struct Paces {
+    /// Of the whole, by rank; empty before the first measurement, when all are equal.
+    shares: Vec<f64>,
+    busy: f64,
+    scratch: Vec<u64>,
+}
+
+/// Seconds below which the clock says little: shares stay as they are.
+const SHORTEST: f64 = 0.05;
+
+/// Factor that a share may be from the even one.
+const WIDEST: f64 = 2.0;
+
+impl Paces {
+    /// Takes what this rank has done since the last call: `work` counted now for one step, and
+    /// `busy`, the seconds since its start that it spent neither waiting nor sending. Collective.
+    pub fn measure(&mut self, comm: &Comm, work: u64, busy: f64) {
+        let seconds = busy - self.busy;
+        self.busy = busy;
+        #[allow(clippy::cast_precision_loss, reason = "a measure of speed")]
+        let speed = work as f64 / seconds.max(f64::MIN_POSITIVE);
+        comm.all_gather_u64(&[speed.to_bits(), seconds.to_bits()], &mut self.scratch);
+        let gathered = &self.scratch;
+        let measured = |k: usize| f64::from_bits(gathered[k]);
+        let ranks = comm.size();
+        if (0..ranks).any(|r| measured(2 * r) <= 0.0 || measured(2 * r + 1) < SHORTEST) {
+            return;
+        }
+        let mut total = 0.0;
+        for r in 0..ranks {
+            total += measured(2 * r);
+        }
+        #[allow(clippy::cast_precision_loss, reason = "few ranks")]
+        let even = 1.0 / ranks as f64;
+        // Later ones count by half: what slows a rank for a moment is not chased.
+        let weight = if self.shares.is_empty() { 1.0 } else { 0.5 };
+        self.shares.resize(ranks, even);
+        for (r, share) in self.shares.iter_mut().enumerate() {
+            let wanted = (measured(2 * r) / total).clamp(even / WIDEST, even * WIDEST);
+            *share += weight * (wanted - *share);
+        }
+    }
+
+    /// The part of all work that ranks up to and with `rank` are to have, of `ranks`.
+    #[allow(clippy::cast_precision_loss, reason = "few ranks")]
+    pub(super) fn up_to(&self, rank: usize, ranks: usize) -> f64 {
+        if self.shares.len() != ranks {
+            return (rank + 1) as f64 / ranks as f64;
+        }
+        let sum = |to: usize| self.shares[..to].iter().fold(0.0, |sum, share| sum + share);
+        sum(rank + 1) / sum(ranks)
+    }
+
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        8 * (self.shares.capacity() + self.scratch.capacity())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_are_equal_until_something_was_measured() {
+        let paces = Paces::default();
+        assert!((paces.up_to(0, 4) - 0.25).abs() < 1e-15);
+        assert!((paces.up_to(2, 4) - 0.75).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_rank_by_itself_has_all() {
+        let mut paces = Paces::default();
+        paces.measure(&Comm::solo(), 1000, 1.0);
+        assert!((paces.up_to(0, 1) - 1.0).abs() < 1e-15);
+    }
+}
