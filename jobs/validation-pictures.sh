@@ -13,8 +13,8 @@ whipple=target/release/whipple
 
 # run CASE FOLDER [OPTION…]: the last part of FOLDER is the run's name in pictures.
 run() { "$whipple" run "inputs/$1" --out "$runs/$2" --force "${@:3}"; }
-# draw FOLDER PICTURE [OPTION…]
-draw() { "$whipple" plot "$runs/$1" --out "$pictures/$2.png" --width 760 "${@:3}"; }
+# draw FOLDER PICTURE [OPTION…]: $width pixels wide, 760 unless set
+draw() { "$whipple" plot "$runs/$1" --out "$pictures/$2.png" --width "${width:-760}" "${@:3}"; }
 
 # Figures 3 and 4: the wave in two bars, beside one piece and the exact wave.
 for wave in wave-step wave-pulse; do
@@ -52,4 +52,4 @@ draw dam dam-front --front water --view 0:0.35s --range 0:0.7m \
 
 # Figure 16: the sphere and the plate.
 run quarter-impact quarter
-draw quarter quarter-impact --panels --width 1300
+width=1300 draw quarter quarter-impact --panels

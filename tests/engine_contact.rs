@@ -157,6 +157,7 @@ fn potential_forces_are_the_gradient_of_the_energy() {
                 stiffness: 0.7,
                 exponent,
                 range,
+                ..Potential::default()
             });
             let particles = blobs(&case, 7);
             let mut world = World::new(case, &particles);

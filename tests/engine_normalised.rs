@@ -9,15 +9,17 @@
 mod common;
 
 use common::cloud::{Cloud, Found, small as cloud};
-use common::outcome::start;
+use common::outcome::{advance, start};
 use common::random::Random;
 use common::ranks::on_each;
-use common::{body, case, make_elastic, planes};
+use common::{ball, body, case, make_elastic, planes};
 use nalgebra::Matrix3;
 use whipple::comm::Comm;
 use whipple::domain::Mirrors;
 use whipple::material::{Eos, Linear, LinearForm, Strength};
-use whipple::model::{Axis, Case, Shape, SphForm, Vec3};
+use whipple::model::{
+    Axis, Case, ContactDirection, ContactMode, Overlap, Potential, Shape, SphForm, Vec3,
+};
 use whipple::neighbours::Chunk;
 use whipple::sph::dispatch::available;
 use whipple::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
@@ -504,4 +506,54 @@ fn receivers_without_neighbours_have_no_gradient() {
         ..sums
     });
     assert_eq!(none.gradient, Corrected::NONE.gradient);
+}
+
+/// Contact along normals keeps momentum, and pushes; an energy it has only along pairs.
+#[test]
+fn contact_along_normals_keeps_momentum() {
+    let overlap = |direction| {
+        ContactMode::Overlap(Overlap {
+            direction,
+            ..Overlap::default()
+        })
+    };
+    let potential = |direction| {
+        ContactMode::Potential(Potential {
+            direction,
+            ..Potential::default()
+        })
+    };
+    let modes: [(&str, &dyn Fn(ContactDirection) -> ContactMode); 2] =
+        [("overlap", &overlap), ("potential", &potential)];
+    for (name, mode) in modes {
+        let [pair, normal] = [ContactDirection::Pair, ContactDirection::Normal].map(|direction| {
+            let bodies = vec![
+                ball("lower", -4.0, 4.0, 200.0),
+                ball("upper", 4.0, 4.0, -200.0),
+            ];
+            let mut case = case(3, bodies, 1.0);
+            make_elastic(&mut case);
+            case.sph.form = SphForm::Normalised;
+            case.default_contact = mode(direction);
+            let mut simulation = start(case);
+            advance(&mut simulation, 150);
+            simulation.state
+        });
+        for state in [&pair, &normal] {
+            let error = state.worst.momentum_error;
+            assert!(error.iter().all(|&e| e < 1e-13), "{error:?}");
+            // They have met and come apart.
+            assert!(state.pairs[0].impulse[2] < 0.0);
+        }
+        println!(
+            "{name}: contact defect {:.2e} along pairs, {:.2e} along normals; energy error {:.2e}, \
+             {:.2e}; impulse {:e}, {:e}",
+            pair.worst.contact_defect,
+            normal.worst.contact_defect,
+            pair.worst.energy_error,
+            normal.worst.energy_error,
+            pair.pairs[0].impulse[2],
+            normal.pairs[0].impulse[2],
+        );
+    }
 }

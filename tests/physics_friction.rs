@@ -62,7 +62,7 @@ fn tilt(s: &Simulation, friction: &str, tangent: f64, angle: f64) -> Simulation 
 /// Tilts the slope in small steps until the block has slid by a hundredth of a spacing within one,
 /// and returns the tangent.
 fn critical(friction: &str, step: f64, angle: f64) -> f64 {
-    let mut tangent = 85.0 * step;
+    let mut tangent = 46.0 * step;
     let mut s = settle(friction, 0.0, angle);
     for part in 1..=12 {
         s = tilt(&s, friction, f64::from(part) / 12.0 * tangent, angle);
@@ -87,26 +87,39 @@ fn critical(friction: &str, step: f64, angle: f64) -> f64 {
     }
 }
 
-/// Acceleration over the last half of 10 ms (m/s²), and the way (m).
+/// Acceleration from 5 to 25 ms (m/s²), and the way (m). Prints the friction of the interface and that
+/// of the laws of its particles over the normal force.
 fn slide(s: &mut Simulation) -> (f64, f64) {
+    let (mut normal, mut along, mut laws) = (0.0, 0.0, 0.0);
     let from = s.state.time;
     let (mut points, mut way) = (Vec::new(), 0.0);
-    run_with(s, from + 10e-3, |s| {
+    run_with(s, from + 25e-3, |s| {
         way += s.state.last_dt * speed(s);
         if s.state.time > from + 5e-3 {
             points.push((s.state.time, speed(s)));
+            let f = s.state.pairs[0].force;
+            normal -= f[1];
+            along += f[0];
+            for i in 0..s.store.owned() {
+                let sign = if s.store.body[i] == 1 { -1.0 } else { 1.0 };
+                laws += sign * s.store.friction_force.get(i).map_or(0.0, |f| f[0]);
+            }
         }
     });
+    println!(
+        "along/normal {:.4}, laws/normal {:.4}",
+        along / normal,
+        laws / normal
+    );
     (slope(&points), way)
 }
 
 #[test]
 fn a_block_starts_to_slide_at_the_angle_of_friction() {
     for angle in [0.0, 30.0] {
-        let tangent = critical("0.3", 0.003, angle);
-        println!("angle {angle}: {:.4}", tangent / 0.3);
-        let tangent = critical("{ static = 0.4, kinetic = 0.3 }", 0.004, angle);
-        println!("angle {angle}: {:.4}", tangent / 0.4);
+        let tangent = critical("0.3", 0.006, angle);
+        // The slope is tilted by two hundredths of that at a time.
+        assert!((tangent / 0.3 - 1.0).abs() <= 0.021, "{angle}: {tangent}");
     }
 }
 
@@ -117,8 +130,8 @@ fn a_block_slides_with_the_exact_acceleration() {
         ("{ static = 0.4, kinetic = 0.3 }", 0.3),
         ("0", 0.0),
     ] {
-        for angle in [0.0, 15.0, 30.0] {
-            for tangent in [0.45, 0.6] {
+        for angle in [0.0, 30.0] {
+            for tangent in [0.45] {
                 let mut s = start(inline(&block(friction, tangent, angle, "1 s")));
                 let (acceleration, way) = slide(&mut s);
                 let exact = 200.0 * (tangent - kinetic);
@@ -131,7 +144,38 @@ fn a_block_slides_with_the_exact_acceleration() {
                     worst.contact_defect,
                     worst.momentum_error
                 );
+                let error = (acceleration / exact - 1.0).abs();
+                // A turned lattice stands on three particles and rocks: measured, not held.
+                assert!(
+                    angle > 0.0 || error <= 0.02,
+                    "{friction} {tangent} {angle}: {error}"
+                );
+                assert!(worst.contact_defect < 0.002);
             }
         }
+    }
+}
+
+/// What is wrong with friction in an input.
+#[test]
+fn mistakes_are_told() {
+    for (friction, told) in [
+        ("-0.1", "`friction` must be zero or positive"),
+        (
+            "{ static = 0.3, kinetic = 0.4 }",
+            "`kinetic` must be at most `static`",
+        ),
+        (
+            "\"much\"",
+            "a number, or a table with `static` and `kinetic`",
+        ),
+        (
+            "0.3\nmode = \"potential\"",
+            "acts in no contact but that of mode `overlap`",
+        ),
+    ] {
+        let text = block(friction, 0.0, 0.0, "1 s");
+        let error = whipple::input::parse("test.toml", &text, &[]).expect_err("a mistake");
+        assert!(error.to_string().contains(told), "{error}");
     }
 }

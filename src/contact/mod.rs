@@ -13,6 +13,7 @@ mod table;
 
 pub use table::{ContactTable, Pair, PairResistance};
 
+use crate::domain::Mirrors;
 use crate::neighbours::Image;
 use crate::particles::ParticleStore;
 use crate::sph::gradient::MotionRecord;
@@ -59,6 +60,21 @@ impl ContactView<'_> {
             position: record.position,
             velocity: record.velocity,
         }
+    }
+}
+
+impl ContactView<'_> {
+    /// The normal of the surface between two particles: that of both, from their bodies' corrected
+    /// gradients, into the first one's body; none inside bodies.
+    fn normal(&self, i: u32, j: u32) -> Option<[f64; 3]> {
+        let inward = |place: u32| {
+            let image = self.images[place as usize];
+            Mirrors::reflect_vector(&self.store.gradient_shift[image.base()], image.code())
+        };
+        let (a, b) = (inward(i), inward(j));
+        let n = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+        let size = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
+        (size > 0.0).then(|| n.map(|x| x / size))
     }
 }
 
@@ -186,5 +202,16 @@ impl Gap {
     fn along(&self, magnitude: f64) -> [f64; 3] {
         let scale = magnitude / self.distance;
         self.r.map(|x| x * scale)
+    }
+
+    /// [`Self::along`], of which only the part along a unit normal stays: it never attracts, and is
+    /// opposite for the other side.
+    fn along_normal(&self, magnitude: f64, normal: Option<[f64; 3]>) -> [f64; 3] {
+        let Some(n) = normal else {
+            return self.along(magnitude);
+        };
+        let cosine = self.r[0] * n[0] + self.r[1] * n[1] + self.r[2] * n[2];
+        let scale = magnitude / self.distance * cosine;
+        n.map(|x| x * scale)
     }
 }

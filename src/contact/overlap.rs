@@ -128,13 +128,13 @@ pub struct Hold {
     pub grip: Grip,
 }
 
-/// Friction and damping of the receiver at `place` after a step of `dt` (s).
+/// Friction and damping of the receiver at `place` after the step.
 ///
-/// The normal `n` is opposite to those that its neighbours see, weighted with `o_ij`: what is before
-/// a rough face sees how it lies as a whole. Its load is `Σ_j o_ij e_ij·n`, its velocity against what it lies on
+/// The normal `n` is that which it sees less the mean of those that its neighbours see, weighted
+/// with `o_ij`. Its load is `Σ_j o_ij e_ij·n`, its velocity against what it lies on
 /// `Σ_j o_ij v_ij/O_i`.
 #[must_use]
-pub fn hold(view: &ContactView, place: u32, neighbours: &[u32], dt: f64) -> Hold {
+pub fn hold(view: &ContactView, place: u32, neighbours: &[u32]) -> Hold {
     let i = view.party(place);
     let here = stored(view, i.base);
     let (mut load, mut force) = (0.0, [0.0; 3]);
@@ -162,6 +162,9 @@ pub fn hold(view: &ContactView, place: u32, neighbours: &[u32], dt: f64) -> Hold
         law.stiffness += own * (pair.stick * i.volume);
         law.dashpot += own * (pair.dashpot * i.volume);
     }
+    for (facing, seen) in facing.iter_mut().zip(&view.store.contact_normal[i.base]) {
+        *facing += load * seen;
+    }
     let size = dot(&facing, &facing).sqrt();
     if size <= 0.0 {
         return Hold::default();
@@ -181,7 +184,7 @@ pub fn hold(view: &ContactView, place: u32, neighbours: &[u32], dt: f64) -> Hold
     let velocity = motion.map(|v| v / load);
     Hold {
         load,
-        grip: law.step(&memory, &force, &normal, &velocity, dt),
+        grip: law.step(&memory, &force, &normal, &velocity, view.dt),
     }
 }
 
@@ -282,7 +285,7 @@ pub fn react<const FRICTION: bool>(
             view.table.pair(j.body, i.body),
         );
         let there = stored(view, j.base);
-        let mut force = 0.0;
+        let (mut force, mut core) = (0.0, 0.0);
         let mut energy = 0.0;
         if here.excess > 0.0 || there.excess > 0.0 {
             let kernel = &view.table.kernel;
@@ -299,12 +302,19 @@ pub fn react<const FRICTION: bool>(
         let depth = 1.0 - gap.distance / pair.core_radius;
         if depth > 0.0 {
             let stress = pair.core_modulus * (0.5 * (i.volume + j.volume));
-            force += stress * depth / pair.core_radius;
+            core = stress * depth / pair.core_radius;
             // Half of the pair's energy stands on each side.
             energy += 0.25 * stress * (depth * depth);
             reaction.stiffness += 2.0 * stress / (pair.core_radius * pair.core_radius);
         }
-        let mut force = gap.along(force);
+        let mut force = if pair.along_normal {
+            // The core has no use for normals: it keeps lone particles apart.
+            let bulk = gap.along_normal(force, view.normal(place, other));
+            let core = gap.along(core);
+            [bulk[0] + core[0], bulk[1] + core[1], bulk[2] + core[2]]
+        } else {
+            gap.along(force + core)
+        };
         if let Some(at) = &mut resisting {
             (at.force, at.energy, at.heat) = ([0.0; 3], 0.0, 0.0);
             resist(view, [&i, &j], other, &gap, at);

@@ -1,7 +1,9 @@
 //! Parameters of every pair of bodies, computed once at set-up.
 
 use super::penalty::Boundary;
-use crate::model::{Body, Case, ContactMode, PenaltyLaw, PotentialRange, Resistance};
+use crate::model::{
+    Body, Case, ContactDirection, ContactMode, PenaltyLaw, PotentialRange, Resistance,
+};
 use crate::neighbours::{ContactClass, ForeignTable};
 use crate::populate;
 use crate::sph::kernel::Kernel;
@@ -21,6 +23,8 @@ pub struct Pair {
     pub core_modulus: f64,
     /// `overlap`: radius of the core (m).
     pub core_radius: f64,
+    /// Whether forces act along the normals of the surfaces.
+    pub along_normal: bool,
     /// `overlap`: friction and damping.
     pub resistance: PairResistance,
     /// `potential`: K (Pa/m^d).
@@ -199,17 +203,17 @@ impl ContactTable {
         self.foreign.class.contains(&ContactClass::Overlap)
     }
 
-    /// Whether any pair of bodies has penalty contact, which alone looks for boundaries.
-    #[must_use]
-    pub fn has_penalty(&self) -> bool {
-        self.foreign.class.contains(&ContactClass::Penalty)
-    }
-
     /// Whether any pair of bodies has friction or damping.
     #[must_use]
     pub fn has_friction(&self) -> bool {
         let mut pairs = self.pairs.iter();
         pairs.any(|pair| pair.resistance.is_any())
+    }
+
+    /// Whether any pair of bodies has penalty contact, which alone looks for boundaries.
+    #[must_use]
+    pub fn has_penalty(&self) -> bool {
+        self.foreign.class.contains(&ContactClass::Penalty)
     }
 
     /// The unordered pairs of bodies with contact beyond the SPH sums.
@@ -262,6 +266,7 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
         touching: 0.0,
         core_modulus: 0.0,
         core_radius: 0.0,
+        along_normal: false,
         resistance: PairResistance::default(),
         potential: 0.0,
         exponent: 1,
@@ -278,6 +283,7 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
         ContactMode::None | ContactMode::Kernel => (ContactClass::None, pair),
         ContactMode::Potential(potential) => {
             pair.potential = potential.stiffness * smaller / kernel.power(spacing);
+            pair.along_normal = potential.direction == ContactDirection::Normal;
             pair.exponent = i32::try_from(potential.exponent).unwrap_or(i32::MAX);
             pair.inverse_kernel = 1.0 / kernel.value(spacing, h);
             (pair.range, pair.floor) = match potential.range {
@@ -296,6 +302,7 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
             pair.touching = populate::touching_value(body_a, body_b, case.dimension);
             pair.core_modulus = overlap.core_stiffness * smaller;
             pair.core_radius = overlap.core_radius * spacing;
+            pair.along_normal = overlap.direction == ContactDirection::Normal;
             pair.resistance =
                 PairResistance::new(case, [body_a, body_b], spacing, &overlap.resistance);
             (ContactClass::Overlap, pair)

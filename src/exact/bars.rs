@@ -208,10 +208,10 @@ impl Waves {
             }
         }
         for (end, held) in self.ends.iter().enumerate() {
-            if let End::Moved(steps) = held {
-                if let Some(step) = steps.iter().find(|step| step.0 > self.time + instant) {
-                    vote(step.0 - self.time, Event::Given(end));
-                }
+            if let End::Moved(steps) = held
+                && let Some(step) = steps.iter().find(|step| step.0 > self.time + instant)
+            {
+                vote(step.0 - self.time, Event::Given(end));
             }
         }
         for (joint, gap) in self.gaps.iter().enumerate() {

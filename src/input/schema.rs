@@ -421,6 +421,8 @@ optional_tables! {
         core_stiffness: Option<Spanned<f64>>,
         /// Radius of the core in mean spacings.
         core_radius: Option<Spanned<f64>>,
+        /// Along what it acts.
+        direction: Option<Spanned<DirectionName>>,
     }
 
     /// `contact.potential`
@@ -431,6 +433,8 @@ optional_tables! {
         exponent: Option<Spanned<i64>>,
         /// Range of the force.
         range: Option<RangeName>,
+        /// Along what it acts.
+        direction: Option<Spanned<DirectionName>>,
     }
 
     /// `contact.penalty`
@@ -513,6 +517,13 @@ choices! {
         Constant,
         /// h follows the density.
         Variable,
+    }
+    /// Along what contact forces act.
+    DirectionName {
+        /// The line between particles.
+        Pair,
+        /// The normal of the surfaces.
+        Normal,
     }
     /// Contact mode.
     ModeName {

@@ -13,7 +13,8 @@ mod surface;
 
 pub use body::{Axis, Body, Lattice, LatticeKind, Shape, SymmetryPlane};
 pub use contact::{
-    ContactMode, ContactPair, Overlap, Penalty, PenaltyLaw, Potential, PotentialRange, Resistance,
+    ContactDirection, ContactMode, ContactPair, Overlap, Penalty, PenaltyLaw, Potential,
+    PotentialRange, Resistance,
 };
 pub use control::{
     DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm, SphOptions, TimeStepOptions,

@@ -77,12 +77,12 @@ impl FieldUse {
     pub const XSPH: Self = Self(1024);
     /// Held only where loads or rigid bodies prescribe velocities.
     pub const LOADS: Self = Self(2048);
-    /// Held only with `penalty` contact.
-    pub const PENALTY: Self = Self(32768);
-    /// Held only in the normalised form of the sums.
-    pub const NORMALISED: Self = Self(16384);
     /// Held only where bodies in contact have friction or damping.
     pub const FRICTION: Self = Self(4096);
+    /// Held only in the normalised form of the sums.
+    pub const NORMALISED: Self = Self(16384);
+    /// Held only with `penalty` contact.
+    pub const PENALTY: Self = Self(32768);
     /// Held only where the case has use for it.
     pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024 | 2048 | 4096 | 16384 | 32768);
     /// In snapshots at all.
@@ -267,8 +267,6 @@ particle_fields! {
     touching_value: Scalar, "", HALO_CONTACT | CONTACT;
     /// Sum of kernel gradients over foreign volume where there is excess, for the time step.
     contact_slope: Scalar, "1/m", HALO_CONTACT | CONTACT;
-    /// Outward normal of a boundary particle, longer at corners, zero inside: of `penalty` contact.
-    boundary_normal: Vector, "", HALO_CONTACT | ON_DEMAND | PENALTY;
     /// Normal of contact as the particle sees it, times the square of the foreign fraction.
     contact_normal: Vector, "", HALO_CONTACT | FRICTION;
     /// Friction and damping of the particle against what it lies on.
@@ -279,6 +277,8 @@ particle_fields! {
     friction_power: Scalar, "W", HALO_FRICTION | FRICTION;
     /// Energy of sticking friction.
     friction_energy: Scalar, "J", FRICTION;
+    /// Outward normal of a boundary particle, longer at corners, zero inside: of `penalty` contact.
+    boundary_normal: Vector, "", HALO_CONTACT | ON_DEMAND | PENALTY;
     /// Contact energy.
     contact_energy: Scalar, "J", ON_DEMAND | CONTACT;
     /// Largest approach speed towards a neighbour, for the time step.

@@ -19,10 +19,10 @@ pub struct ContactPhase {
 #[derive(Default)]
 struct Task {
     fractions: Vec<(usize, Fraction)>,
-    /// Of `penalty` contact, see [`penalty::boundary`].
-    boundary: Vec<(usize, [f64; 3])>,
     normals: Vec<(usize, [f64; 3])>,
     holds: Vec<(usize, Hold)>,
+    /// Of `penalty` contact, see [`penalty::boundary`].
+    boundary: Vec<(usize, [f64; 3])>,
     reactions: Vec<Booked>,
     /// Receiving particle and its body, and what another body does to it.
     by_body: Vec<(usize, usize, BodyReaction)>,
@@ -58,9 +58,9 @@ impl ContactPhase {
     pub(super) fn memory(&self) -> usize {
         let task = |task: &Task| {
             size_of::<(usize, Fraction)>() * task.fractions.capacity()
-                + size_of::<(usize, [f64; 3])>() * task.boundary.capacity()
                 + size_of::<(usize, [f64; 3])>() * task.normals.capacity()
                 + size_of::<(usize, Hold)>() * task.holds.capacity()
+                + size_of::<(usize, [f64; 3])>() * task.boundary.capacity()
                 + size_of::<Booked>() * task.reactions.capacity()
                 + size_of::<(usize, usize, BodyReaction)>() * task.by_body.capacity()
                 + size_of::<BodyReaction>() * task.reaction.by_body.capacity()
@@ -123,7 +123,7 @@ impl Simulation {
             motion: &self.search.motion,
             store: &self.store,
             table: &self.contact,
-            dt: 0.0,
+            dt,
         };
         self.contact_phase
             .tasks
@@ -134,7 +134,7 @@ impl Simulation {
                 task.holds.clear();
                 for (place, neighbours) in chunk.overlap.iter() {
                     let base = view.images[place as usize].base();
-                    let hold = overlap::hold(&view, place, neighbours, dt);
+                    let hold = overlap::hold(&view, place, neighbours);
                     task.holds.push((base, hold));
                 }
             });

@@ -4,7 +4,9 @@
 use std::collections::BTreeMap;
 
 use whipple::comm::Comm;
-use whipple::model::{Case, ContactMode, Overlap, Resistance, SmoothingLength, SphForm};
+use whipple::model::{
+    Case, ContactDirection, ContactMode, Overlap, Resistance, SmoothingLength, SphForm,
+};
 use whipple::particles::{FieldUse, with_use};
 use whipple::step::Simulation;
 
@@ -124,10 +126,14 @@ pub fn loaded_with_options() -> Case {
     case
 }
 
-/// [`everything`] in the normalised form.
+/// [`everything`] in the normalised form, with contact along normals.
 pub fn normalised() -> Case {
     let mut case = everything();
     case.sph.form = SphForm::Normalised;
+    case.default_contact = ContactMode::Overlap(Overlap {
+        direction: ContactDirection::Normal,
+        ..Overlap::default()
+    });
     case
 }
 
@@ -138,15 +144,15 @@ pub fn loaded_normalised() -> Case {
     case
 }
 
-/// Without options of the SPH sums and with all, without loads and with all, in both forms, with
-/// friction.
+/// Without options of the SPH sums and with all, without loads and with all, in both forms,
+/// with friction.
 pub const CASES: [fn() -> Case; 8] = [
     everything,
     every_option,
     loaded,
     on_a_plane,
     loaded_with_options,
+    rubbing,
     normalised,
     loaded_normalised,
-    rubbing,
 ];

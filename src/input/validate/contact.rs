@@ -5,12 +5,13 @@ use toml::Spanned;
 use super::check::{Allowed, number, whole};
 use crate::input::forms::FrictionParams;
 use crate::input::schema::{
-    BodyParams, ContactParams, ModeName, OverlapParams, PairParams, PenaltyLawName, PenaltyParams,
-    PotentialParams, RangeName,
+    BodyParams, ContactParams, DirectionName, ModeName, OverlapParams, PairParams, PenaltyLawName,
+    PenaltyParams, PotentialParams, RangeName,
 };
 use crate::input::source::Complaint;
 use crate::model::{
-    ContactMode, ContactPair, Overlap, Penalty, PenaltyLaw, Potential, PotentialRange, Resistance,
+    ContactDirection, ContactMode, ContactPair, Overlap, Penalty, PenaltyLaw, Potential,
+    PotentialRange, Resistance, SphForm,
 };
 
 /// A choice of mode with the parameters of all modes.
@@ -19,8 +20,8 @@ struct Choice {
     mode: ModeName,
     overlap: Overlap,
     potential: Potential,
-    penalty: Penalty,
     resistance: Resistance,
+    penalty: Penalty,
 }
 
 impl Choice {
@@ -42,17 +43,18 @@ impl Choice {
 pub fn contacts(
     params: &ContactParams,
     bodies: &[Spanned<BodyParams>],
+    form: SphForm,
 ) -> Result<(ContactMode, Vec<ContactPair>), Complaint> {
     let default = Choice {
         mode: params.mode.unwrap_or(ModeName::Overlap),
-        overlap: overlap(&params.overlap, Overlap::default())?,
-        potential: potential(&params.potential, Potential::default())?,
-        penalty: penalty(&params.penalty, Penalty::default())?,
+        overlap: overlap(&params.overlap, Overlap::default(), form)?,
+        potential: potential(&params.potential, Potential::default(), form)?,
         resistance: resistance(
             params.friction.as_ref(),
             params.damping.as_ref(),
             Resistance::default(),
         )?,
+        penalty: penalty(&params.penalty, Penalty::default())?,
     };
     let modes = params.pair.iter().map(|pair| pair.mode);
     let used = |mode: Option<ModeName>| mode.unwrap_or(default.mode) == ModeName::Overlap;
@@ -92,8 +94,8 @@ pub fn contacts(
                 pair.damping.as_ref(),
                 default.resistance,
             )?,
-            overlap: overlap(&pair.overlap, default.overlap)?,
-            potential: potential(&pair.potential, default.potential)?,
+            overlap: overlap(&pair.overlap, default.overlap, form)?,
+            potential: potential(&pair.potential, default.potential, form)?,
             penalty: penalty(&pair.penalty, default.penalty)?,
         };
         pairs.push(ContactPair {
@@ -134,7 +136,7 @@ fn indices(pair: &PairParams, bodies: &[Spanned<BodyParams>]) -> Result<[usize; 
     }
 }
 
-fn overlap(params: &OverlapParams, base: Overlap) -> Result<Overlap, Complaint> {
+fn overlap(params: &OverlapParams, base: Overlap, form: SphForm) -> Result<Overlap, Complaint> {
     let [stiffness, core_stiffness, core_radius] = [
         params.stiffness.as_ref(),
         params.core_stiffness.as_ref(),
@@ -151,6 +153,7 @@ fn overlap(params: &OverlapParams, base: Overlap) -> Result<Overlap, Complaint> 
             or_zero,
         )?,
         core_radius: number(core_radius, "core_radius", base.core_radius, range)?,
+        direction: direction(params.direction.as_ref(), base.direction, form)?,
         resistance: base.resistance,
     })
 }
@@ -203,7 +206,11 @@ fn resistance(
     })
 }
 
-fn potential(params: &PotentialParams, base: Potential) -> Result<Potential, Complaint> {
+fn potential(
+    params: &PotentialParams,
+    base: Potential,
+    form: SphForm,
+) -> Result<Potential, Complaint> {
     let stiffness = params.stiffness.as_ref();
     let exponent = whole(
         params.exponent.as_ref(),
@@ -219,6 +226,7 @@ fn potential(params: &PotentialParams, base: Potential) -> Result<Potential, Com
             Some(RangeName::Spacing) => PotentialRange::Spacing,
             None => base.range,
         },
+        direction: direction(params.direction.as_ref(), base.direction, form)?,
     })
 }
 
@@ -232,4 +240,24 @@ fn penalty(params: &PenaltyParams, base: Penalty) -> Result<Penalty, Complaint> 
             None => base.law,
         },
     })
+}
+
+/// Normals are those of corrected gradients.
+fn direction(
+    name: Option<&Spanned<DirectionName>>,
+    base: ContactDirection,
+    form: SphForm,
+) -> Result<ContactDirection, Complaint> {
+    let Some(name) = name else {
+        return Ok(base);
+    };
+    match (name.get_ref(), form) {
+        (DirectionName::Pair, _) => Ok(ContactDirection::Pair),
+        (DirectionName::Normal, SphForm::Normalised) => Ok(ContactDirection::Normal),
+        (DirectionName::Normal, SphForm::Conventional) => {
+            let title = "contact along normals needs the corrected gradients of normalised SPH";
+            let help = "set `form = \"normalised\"` in [sph], or take \"pair\"";
+            Err(Complaint::new(name.span(), title).help(help))
+        }
+    }
 }

@@ -50,7 +50,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
     if bodies.iter().any(|body| body.material == materials.len()) {
         materials.push(bodies::no_material());
     }
-    let (default_contact, contacts) = contact::contacts(&params.contact, &params.body)?;
+    let (default_contact, contacts) = contact::contacts(&params.contact, &params.body, sph.form)?;
     let loads = loads::Reader {
         dimension,
         bodies: &bodies,
@@ -92,9 +92,7 @@ fn check_moduli(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Compl
         let material = &case.materials[body.material];
         let pushes = |b| match case.contact_between(a, b) {
             ContactMode::None | ContactMode::Kernel => false,
-            ContactMode::Overlap(_) | ContactMode::Potential(_) | ContactMode::Penalty(_) => {
-                a != b
-            }
+            ContactMode::Overlap(_) | ContactMode::Potential(_) | ContactMode::Penalty(_) => a != b,
         };
         if material.p_wave_modulus() == 0.0 && (0..case.bodies.len()).any(pushes) {
             let title = format!(
