@@ -22,7 +22,7 @@ pub const NORMALISED: u8 = 16;
 /// The options that need the kernel's value.
 pub(super) const SHAPED: u8 = ARTIFICIAL_STRESS | XSPH | NORMALISED;
 /// The options for which particles show an [`OptionRecord`].
-pub const RECORDED: u8 = ARTIFICIAL_STRESS | BALSARA | CONDUCTION;
+const RECORDED: u8 = ARTIFICIAL_STRESS | BALSARA | CONDUCTION;
 
 /// What a particle shows to its neighbours for the options: one cache line.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -48,7 +48,7 @@ impl OptionRecord {
 /// Coefficients of the options, and what particles show for them.
 #[derive(Debug, Clone, Copy)]
 pub struct Options<'a> {
-    /// Records of all particles and images; empty without [`RECORDED`] options.
+    /// Records of all particles and images; empty without options that show any.
     pub records: &'a [OptionRecord],
     /// Stresses with corrections of all particles and images; empty without [`NORMALISED`].
     pub normalised: &'a [NormalisedRecord],
