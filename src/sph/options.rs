@@ -22,7 +22,7 @@ pub const NORMALISED: u8 = 16;
 /// The options that need the kernel's value.
 pub(super) const SHAPED: u8 = ARTIFICIAL_STRESS | XSPH | NORMALISED;
 /// The options for which particles show an [`OptionRecord`].
-const RECORDED: u8 = ARTIFICIAL_STRESS | BALSARA | CONDUCTION;
+pub const RECORDED: u8 = ARTIFICIAL_STRESS | BALSARA | CONDUCTION;
 
 /// What a particle shows to its neighbours for the options: one cache line.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
