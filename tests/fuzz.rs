@@ -70,7 +70,12 @@ impl Met {
     pub fn is_new(&mut self, message: &str) -> bool {
         let title = message.lines().next().unwrap_or_default();
         let plain = title.split(['`', '"']).step_by(2).collect::<String>();
-        self.0.insert(plain.chars().filter(|c| c.is_alphabetic() || *c == ' ').collect())
+        self.0.insert(
+            plain
+                .chars()
+                .filter(|c| c.is_alphabetic() || *c == ' ')
+                .collect(),
+        )
     }
 
     /// How many there are.

@@ -46,10 +46,16 @@ pub fn of_rank(case: &Case, ranks: usize) -> f64 {
         count(case, Some(slab)) as f64
     };
     let halo = (0..ranks).map(|rank| {
-        let below = rank.checked_sub(1).map_or(0.0, |k| beyond(faces[k], -reach));
+        let below = rank
+            .checked_sub(1)
+            .map_or(0.0, |k| beyond(faces[k], -reach));
         below + faces.get(rank).map_or(0.0, |&face| beyond(face, reach))
     });
-    let uneven = if case.domain.balance_every == 0 { 1.0 } else { UNEVEN };
+    let uneven = if case.domain.balance_every == 0 {
+        1.0
+    } else {
+        UNEVEN
+    };
     let share = particles / ranks as f64 * uneven;
     PROCESS + share * owned + halo.fold(0.0, f64::max) * HALO
 }
@@ -76,7 +82,9 @@ fn longest(case: &Case) -> Option<(usize, [f64; 2])> {
         *lower = lower.max(plane.position);
     }
     let length = |axis: &usize| ends[*axis][1] - ends[*axis][0];
-    let longest = (0..case.dimension).rev().max_by(|a, b| length(a).total_cmp(&length(b)))?;
+    let longest = (0..case.dimension)
+        .rev()
+        .max_by(|a, b| length(a).total_cmp(&length(b)))?;
     let axis = case.domain.axis.map_or(longest, Axis::index);
     Some((axis, ends[axis]))
 }
@@ -127,7 +135,9 @@ pub fn shortage(comm: &Comm, case: &Case) -> Option<String> {
 /// Ranks on this machine.
 fn local_ranks(ranks: usize) -> usize {
     let names = ["OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS"];
-    let found = names.iter().find_map(|name| std::env::var(name).ok()?.parse().ok());
+    let found = names
+        .iter()
+        .find_map(|name| std::env::var(name).ok()?.parse().ok());
     found.unwrap_or(ranks).max(1)
 }
 
@@ -140,7 +150,9 @@ fn free(root: &Path) -> Option<u64> {
 
 fn machine(root: &Path) -> Option<u64> {
     let text = std::fs::read_to_string(root.join("proc/meminfo")).ok()?;
-    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let line = text
+        .lines()
+        .find_map(|line| line.strip_prefix("MemAvailable:"))?;
     let kilobytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kilobytes * 1024)
 }
@@ -153,10 +165,17 @@ fn group(root: &Path) -> Option<u64> {
         let mut parts = line.splitn(3, ':').skip(1);
         let (controllers, path) = (parts.next()?, parts.next()?);
         let (mount, names) = match controllers {
-            "" => ("sys/fs/cgroup", ["memory.max", "memory.current", "inactive_file "]),
+            "" => (
+                "sys/fs/cgroup",
+                ["memory.max", "memory.current", "inactive_file "],
+            ),
             _ if controllers.split(',').any(|name| name == "memory") => (
                 "sys/fs/cgroup/memory",
-                ["memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file "],
+                [
+                    "memory.limit_in_bytes",
+                    "memory.usage_in_bytes",
+                    "total_inactive_file ",
+                ],
             ),
             _ => continue,
         };
@@ -203,7 +222,10 @@ mod tests {
         assert_eq!(free(root.path()), Some(3_072_000));
         write("sys/fs/cgroup/job/memory.max", "1000000\n");
         write("sys/fs/cgroup/job/memory.current", "600000\n");
-        write("sys/fs/cgroup/job/memory.stat", "anon 5\ninactive_file 100000\n");
+        write(
+            "sys/fs/cgroup/job/memory.stat",
+            "anon 5\ninactive_file 100000\n",
+        );
         assert_eq!(free(root.path()), Some(500_000));
         write("proc/self/cgroup", "7:cpu:/x\n4:cpuset,memory:/y\n");
         write("sys/fs/cgroup/memory/y/memory.limit_in_bytes", "900\n");

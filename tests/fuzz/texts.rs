@@ -17,18 +17,72 @@ const MOST_PARTICLES: u64 = 1_000_000;
 
 /// Words that mean something somewhere.
 const WORDS: &[&str] = &[
-    "0", "-1", "1e308", "-0.0", "nan", "inf", "-inf", "true", "{}", "[]", "\"\"", "\"none\"",
-    "1979-05-27", "9223372036854775807", "0x7fffffff", "\"1 mm\"", "\"1e300 m\"", "\"-3 spacing\"",
-    "\"1e308 spacing\"", "\"7 km/s\"", "\"1 m/(s\"", "\"((((((\"", "\"1e-320 us\"", "\"°\"",
-    "\"2 us\"", "\"1 g/cm^3\"", "\"1e12 GPa\"", "\"0 K\"", "\"+z\"", "\"-x\"", "[0, 0, 0]",
-    "[0, 0]", "[0]", "[\"1 mm\", \"1 mm\", \"1 mm\"]", "dimension = 1\n", "dimension = 2\n",
-    "spacing = \"1 mm\"\n", "[[body]]\n", "[[load]]\n", "[[plane]]\n", "[[symmetry]]\n",
-    "[contact]\n", "[[contact.pair]]\n", "[sph]\n", "[material.metal]\n", "library = \"copper\"\n",
-    "shape.sphere.radius = \"3 mm\"\n", "shape.box.size = [\"3 mm\", \"3 mm\"]\n",
-    "touch = { body = \"a\", direction = \"-z\" }\n", "rigid = true\n", "material = \"metal\"\n",
-    "name = \"a\"\n", "strength = \"none\"\n", "lattice = \"hexagonal\"\n",
-    "velocity = { x = \"1 m/s\" }\n", "inner_radius = \"1 mm\"", "smoothing_length = \"variable\"\n",
-    "mode = \"kernel\"\n", "mode = \"potential\"\n", "#", "\"", "'''", "\\u0000", "\u{feff}", "\r", "é",
+    "0",
+    "-1",
+    "1e308",
+    "-0.0",
+    "nan",
+    "inf",
+    "-inf",
+    "true",
+    "{}",
+    "[]",
+    "\"\"",
+    "\"none\"",
+    "1979-05-27",
+    "9223372036854775807",
+    "0x7fffffff",
+    "\"1 mm\"",
+    "\"1e300 m\"",
+    "\"-3 spacing\"",
+    "\"1e308 spacing\"",
+    "\"7 km/s\"",
+    "\"1 m/(s\"",
+    "\"((((((\"",
+    "\"1e-320 us\"",
+    "\"°\"",
+    "\"2 us\"",
+    "\"1 g/cm^3\"",
+    "\"1e12 GPa\"",
+    "\"0 K\"",
+    "\"+z\"",
+    "\"-x\"",
+    "[0, 0, 0]",
+    "[0, 0]",
+    "[0]",
+    "[\"1 mm\", \"1 mm\", \"1 mm\"]",
+    "dimension = 1\n",
+    "dimension = 2\n",
+    "spacing = \"1 mm\"\n",
+    "[[body]]\n",
+    "[[load]]\n",
+    "[[plane]]\n",
+    "[[symmetry]]\n",
+    "[contact]\n",
+    "[[contact.pair]]\n",
+    "[sph]\n",
+    "[material.metal]\n",
+    "library = \"copper\"\n",
+    "shape.sphere.radius = \"3 mm\"\n",
+    "shape.box.size = [\"3 mm\", \"3 mm\"]\n",
+    "touch = { body = \"a\", direction = \"-z\" }\n",
+    "rigid = true\n",
+    "material = \"metal\"\n",
+    "name = \"a\"\n",
+    "strength = \"none\"\n",
+    "lattice = \"hexagonal\"\n",
+    "velocity = { x = \"1 m/s\" }\n",
+    "inner_radius = \"1 mm\"",
+    "smoothing_length = \"variable\"\n",
+    "mode = \"kernel\"\n",
+    "mode = \"potential\"\n",
+    "#",
+    "\"",
+    "'''",
+    "\\u0000",
+    "\u{feff}",
+    "\r",
+    "é",
 ];
 
 fn seeds() -> Vec<String> {
@@ -39,7 +93,11 @@ fn seeds() -> Vec<String> {
         .map(|entry| entry.unwrap().path().join("case.toml"))
         .collect();
     cases.sort();
-    seeds.extend(cases.iter().filter_map(|path| fs::read_to_string(path).ok()));
+    seeds.extend(
+        cases
+            .iter()
+            .filter_map(|path| fs::read_to_string(path).ok()),
+    );
     for name in ["texts.txt", "panics.txt"] {
         let kept = fs::read_to_string(folder().join(name)).unwrap_or_default();
         seeds.extend(kept.split(BETWEEN).map(str::to_owned));
@@ -59,7 +117,11 @@ fn attempt(text: &str, overrides: &[String]) -> String {
     }
     let mut said = warnings(&case);
     said.extend(advice(&case));
-    said.extend(approaches(&case).iter().map(|pair| format!("gap {}", pair.gap)));
+    said.extend(
+        approaches(&case)
+            .iter()
+            .map(|pair| format!("gap {}", pair.gap)),
+    );
     parse("resolved", &case.resolved, &[]).expect("a resolved case can be read again");
     "sound ".to_owned() + &said.join(" ")
 }
@@ -67,8 +129,12 @@ fn attempt(text: &str, overrides: &[String]) -> String {
 fn word_at(text: &str, at: usize) -> std::ops::Range<usize> {
     let inside = |c: char| c.is_alphanumeric() || "_.-+^".contains(c);
     let begin = text[..at].rfind(|c| !inside(c)).map_or(0, |n| n + 1);
-    let begin = (begin..=at).find(|&n| text.is_char_boundary(n)).unwrap_or(at);
-    let end = text[at..].find(|c| !inside(c)).map_or(text.len(), |n| at + n);
+    let begin = (begin..=at)
+        .find(|&n| text.is_char_boundary(n))
+        .unwrap_or(at);
+    let end = text[at..]
+        .find(|c| !inside(c))
+        .map_or(text.len(), |n| at + n);
     begin..end
 }
 
@@ -95,7 +161,9 @@ fn change(text: &str, other: &str, random: &mut Random) -> String {
             }
             3 | 4 => {
                 // The value of a key.
-                let Some(n) = text[at..].find("= ") else { continue };
+                let Some(n) = text[at..].find("= ") else {
+                    continue;
+                };
                 let begin = at + n + 2;
                 let end = text[begin..].find(['\n', ',', '}', ']']);
                 let end = end.map_or(text.len(), |n| begin + n);
@@ -103,7 +171,9 @@ fn change(text: &str, other: &str, random: &mut Random) -> String {
             }
             5 => {
                 // A digit.
-                let Some(n) = text[at..].find(|c: char| c.is_ascii_digit()) else { continue };
+                let Some(n) = text[at..].find(|c: char| c.is_ascii_digit()) else {
+                    continue;
+                };
                 let digit = random.below(10).to_string();
                 text.replace_range(at + n..=at + n, &digit);
             }
@@ -144,7 +214,10 @@ fn no_text_makes_the_reader_panic() {
         let (text, overrides) = if done < begun {
             (seeds[done].clone(), Vec::new())
         } else if random.below(8) == 0 {
-            let line = seeds[other].lines().nth(random.below(40)).unwrap_or_default();
+            let line = seeds[other]
+                .lines()
+                .nth(random.below(40))
+                .unwrap_or_default();
             let line = change(&line.replace(" = ", "="), &seeds[pick], &mut random);
             (seeds[pick].clone(), vec![line])
         } else {
@@ -163,7 +236,10 @@ fn no_text_makes_the_reader_panic() {
             seeds.push(text);
         }
     }
-    eprintln!("{done} texts, {} messages, {begun} texts to begin with", met.count());
+    eprintln!(
+        "{done} texts, {} messages, {begun} texts to begin with",
+        met.count()
+    );
 }
 
 /// Adds a text to a file of texts.
