@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::driver::{Driver, fail};
 use super::launch::{Launch, complain, with_ranks};
+use super::memory;
 use super::stop::{parse_until, parse_walltime};
 use crate::comm::Comm;
 use crate::input;
@@ -62,9 +63,21 @@ pub struct CommonArgs {
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
 
+    /// Start even if the memory that the ranks will take is more than there is
+    #[arg(long)]
+    pub ignore_memory: bool,
+
     /// Fill all that is not state with NaN between steps, to find what a checkpoint forgets
     #[arg(long, hide = true)]
     pub poison: bool,
+}
+
+impl CommonArgs {
+    /// Why there is not enough memory for a case, unless the user will not hear of it. Collective.
+    pub fn shortage(&self, comm: &Comm, case: &Case) -> Option<String> {
+        let shortage = (!self.ignore_memory).then(|| memory::shortage(comm, case));
+        shortage.flatten().map(|why| format!("error: {why}"))
+    }
 }
 
 /// Runs the command; returns the exit code.
@@ -81,6 +94,9 @@ pub fn run(args: &RunArgs) -> u8 {
         };
         if let Err(error) = snapshot::quantities(&case.output.fields) {
             return complain(comm, &format!("error: {error}"));
+        }
+        if let Some(message) = args.common.shortage(comm, &case) {
+            return complain(comm, &message);
         }
         let out = args.out.clone().unwrap_or_else(|| default_folder(&path));
         match RunFolder::create(comm, &out, &case.resolved, args.force) {
