@@ -1,5 +1,7 @@
 //! From a case to the particles of this rank at time zero, or from saved particles to a run.
 
+use std::collections::VecDeque;
+
 use thiserror::Error;
 
 use super::contact_phase::ContactPhase;
@@ -12,6 +14,7 @@ use super::sums::StepSums;
 use super::surface_forces::SurfaceForces;
 use super::sweeps::Sweeps;
 use super::timers::Timers;
+use super::trouble::{Limits, PAST_VOTES};
 use crate::comm::Comm;
 use crate::contact::ContactTable;
 use crate::domain::{Halo, Histogram, Migration, Mirrors, Paces, Slabs, balance};
@@ -159,6 +162,8 @@ impl Simulation {
             unordered: true,
             crossed: Vec::new(),
             reference_h: case.bodies.iter().map(|b| b.smoothing_length).collect(),
+            limits: Limits::new(&case),
+            votes: VecDeque::with_capacity(PAST_VOTES),
             contact,
             case,
         }
@@ -275,6 +280,8 @@ fn fresh_state(pairs: usize, loads: usize) -> RunState {
         capped_reliefs: 0,
         interpenetrated: 0,
         uncorrected: 0,
+        removed: Vec::new(),
+        removed_contact_energy: 0.0,
         worst: Worst::default(),
     }
 }

@@ -11,6 +11,7 @@ mod shapes;
 mod strength;
 mod surfaces;
 mod touch;
+mod trouble;
 
 use std::ops::Range;
 use std::path::Path;
@@ -23,7 +24,7 @@ use super::schema::{
 use super::source::Complaint;
 use crate::model::{
     Axis, Case, ContactMode, DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm,
-    SphOptions, SymmetryPlane, TimeStepOptions,
+    SphOptions, SymmetryPlane, TimeStepOptions, Trouble,
 };
 use crate::particles::{TEMPERATURE, snapshot_names};
 use check::{Allowed, number, whole};
@@ -69,7 +70,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
         time_step.max = time_step.max.min(diffusion);
     }
     let fields = field_spans(&params.output);
-    let case = Case {
+    let mut case = Case {
         title: params.title.unwrap_or_else(|| "untitled".to_owned()),
         dimension,
         materials,
@@ -81,10 +82,12 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
         sph,
         time_step,
         domain: domain(&params.domain, dimension)?,
+        trouble: Trouble::default(),
         run: run(params.run.get_ref())?,
         output: output(params.output)?,
         resolved: String::new(),
     };
+    case.trouble = trouble::trouble(&params.trouble, &case)?;
     check_moduli(&case, &params.body)?;
     check_overlaps(&case, &params.body)?;
     check_temperature(&case, &fields)?;
@@ -294,6 +297,10 @@ fn output(params: OutputParams) -> Result<OutputOptions, Complaint> {
     Ok(OutputOptions {
         snapshot_every: every(params.snapshot_every, "snapshot_every")?,
         checkpoint_every: every(params.checkpoint_every, "checkpoint_every")?,
+        checkpoint_every_steps: (params.checkpoint_every_steps.as_ref())
+            .map(|steps| whole(Some(steps), "checkpoint_every_steps", 0, 1))
+            .transpose()?,
+        checkpoint_every_wall: every(params.checkpoint_every_wall, "checkpoint_every_wall")?,
         checkpoints_kept: usize::try_from(kept).unwrap_or(usize::MAX),
         history_every: whole(params.history_every.as_ref(), "history_every", 10, 1)?,
         fields: params.fields.into_iter().map(Spanned::into_inner).collect(),
