@@ -168,7 +168,10 @@ fn a_case_that_fits_no_memory_is_refused_before_it_takes_any() {
     let huge = ["run", &case, "--set", "spacing=0.0006mm", "--out", out];
     let said = complaint_alone(&huge);
     assert!(said.starts_with("error: a rank takes about "), "{said}");
-    assert!(said.contains(" GB of memory are free") && said.contains("--ignore-memory"), "{said}");
+    assert!(
+        said.contains(" GB of memory are free") && said.contains("--ignore-memory"),
+        "{said}"
+    );
     assert!(!run.exists());
 }
 

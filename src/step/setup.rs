@@ -86,7 +86,11 @@ impl Simulation {
             return Err(SetupError::Foreign("it has other pairs of bodies or loads"));
         }
         let bodies = simulation.case.bodies.len();
-        let of_no_body = simulation.store.body.iter().any(|&body| body as usize >= bodies);
+        let of_no_body = simulation
+            .store
+            .body
+            .iter()
+            .any(|&body| body as usize >= bodies);
         if comm.any(of_no_body) {
             return Err(SetupError::Foreign("it has particles of another body"));
         }
