@@ -31,8 +31,9 @@ check: test-deps
 fuzz: test-deps ## Read random inputs and checkpoints for ten minutes each; new ones stay in tests/fuzz/
 	$(ENV) WHIPPLE_FUZZ_SECONDS=600 cargo test --locked --test fuzz -- --nocapture --test-threads=1
 
-validation: test-deps $(VENV)/ready ## Run the slow physics tests, those marked #[ignore]
+validation: test-deps $(VENV)/ready ## Run the slow physics tests and draw the pictures
 	$(ENV) jobs/cargo-test.sh --ignored
+	$(MAKE) pictures
 
 pictures: release ## Run the cases of the validation page and draw its pictures
 	jobs/validation-pictures.sh

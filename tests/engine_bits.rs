@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::Command;
 
 use common::outcome::{
-    CASES, Outcome, advance, assert_same, every_option, everything, loaded, start,
+    CASES, Outcome, advance, assert_same, every_option, everything, loaded, normalised, start,
 };
 use common::random::Random;
 use whipple::comm::Comm;
@@ -55,7 +55,13 @@ fn sparing_what_is_calm_changes_no_bit() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/quarter-impact/case.toml");
         input::load(&path, &["spacing=\"0.05 mm\"".to_owned()]).unwrap()
     };
-    for case in [everything, every_option, loaded, quarter as fn() -> Case] {
+    for case in [
+        everything,
+        every_option,
+        loaded,
+        normalised,
+        quarter as fn() -> Case,
+    ] {
         let [spared, whole] = [true, false].map(|spare| {
             let mut simulation = Simulation::start(case(), &Comm::solo()).unwrap();
             simulation.spare_calm = spare;

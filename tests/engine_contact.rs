@@ -157,6 +157,7 @@ fn potential_forces_are_the_gradient_of_the_energy() {
                 stiffness: 0.7,
                 exponent,
                 range,
+                ..Potential::default()
             });
             let particles = blobs(&case, 7);
             let mut world = World::new(case, &particles);
@@ -190,6 +191,7 @@ fn mixed_modes_are_the_gradient_of_one_energy() {
                 stiffness: 9.0,
                 core_stiffness: 0.5,
                 core_radius: 0.4,
+                ..Overlap::default()
             }),
         ),
     ];

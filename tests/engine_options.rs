@@ -87,6 +87,7 @@ impl Records {
             viscosity: VISCOSITY,
             options: Options {
                 records: &self.options,
+                normalised: &[],
                 inverse_shape: self.inverse_shape,
                 conduction: CONDUCTIVITY,
                 xsph: EPSILON,

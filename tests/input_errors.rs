@@ -628,7 +628,7 @@ const IN_LOADS: &[(&str, &str, &str, &str)] = &[
     (
         "normal = \"+x\"",
         "normal = \"+x\"\nbodies = [\"tool\"]",
-        "the body `tool` is rigid: no plane moves it",
+        "the body `tool` is rigid: no surface moves it",
         ":27:11",
     ),
     (
@@ -647,6 +647,12 @@ const IN_LOADS: &[(&str, &str, &str, &str)] = &[
         "[[symmetry]]",
         "[[contact.pair]]\nbodies = [\"block\", \"tool\"]\nmode = \"kernel\"\n\n[[symmetry]]",
         "the rigid body `tool` cannot have contact of mode `kernel`",
+        ":29:20",
+    ),
+    (
+        "[[symmetry]]",
+        "[[contact.pair]]\nbodies = [\"block\", \"tool\"]\nmode = \"penalty\"\n\n[[symmetry]]",
+        "the rigid body `tool` cannot have contact of mode `penalty`",
         ":29:20",
     ),
 ];

@@ -80,6 +80,14 @@ velocity = { x = 0, y = 0 }
 normal = "+z"
 point = [0, 0, "-0.8 mm"]
 
+[[surface]]
+shape.stl = { file = "tests/common/hook.stl", unit = "0.1 mm", at = ["1.35 mm", 0, "0.42 mm"] }
+rotation = { axis = "z", rate = "1e-6 rad/s" }
+
+[[surface]]
+shape.cylinder = { radius = "4 mm", length = "1.6 mm" }
+side = "inside"
+
 [[symmetry]]
 axis = "x"
 position = 0

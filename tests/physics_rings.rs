@@ -3,28 +3,16 @@
 mod physics_support;
 
 use physics_support::{ready, run_to, start};
+use whipple::diagnose;
 use whipple::step::Simulation;
 
 /// Number of connected pieces of a body whose particles are linked when they are nearer than
 /// `reach` (m).
 fn pieces(s: &Simulation, body: u32, reach: f64) -> usize {
     let of_body = |&i: &usize| s.store.body[i] == body;
-    let mut left: Vec<usize> = (0..s.store.owned()).filter(of_body).collect();
-    let near = |i: usize, j: usize| {
-        let (a, b) = (&s.store.position[i], &s.store.position[j]);
-        (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) < reach * reach
-    };
-    let mut pieces = 0;
-    while let Some(first) = left.pop() {
-        pieces += 1;
-        let mut open = vec![first];
-        while let Some(i) = open.pop() {
-            let (linked, rest) = left.into_iter().partition(|&j| near(i, j));
-            left = rest;
-            open.extend::<Vec<usize>>(linked);
-        }
-    }
-    pieces
+    let particles = (0..s.store.owned()).filter(of_body);
+    let points: Vec<[f64; 3]> = particles.map(|i| s.store.position[i]).collect();
+    diagnose::pieces::pieces(&points, reach).len()
 }
 
 /// Mean velocity of a body along x (m/s).

@@ -4,12 +4,14 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use tiny_skia::Pixmap;
+use whipple::exact::finite_strain::Medium;
+use whipple::material::LinearForm;
 use whipple::plot::{Along, Mark, ProfileRequest, Profiles, Source};
 
 mod plot_fixture;
 use plot_fixture::{Case, Particles, plot, write};
 
-/// Two elastic bars of 4 mm that meet at ±200 m/s, with waves at 6 km/s and an impedance of 45e6 (SI).
+/// Two elastic bars of 4 mm that meet at ±200 m/s, with waves at 6 km/s.
 const BARS: &str = r#"
 dimension = 1
 spacing = "0.1 mm"
@@ -29,6 +31,14 @@ material = "metal"
 shape.box = { lower = ["4 mm"], upper = ["8 mm"] }
 velocity = ["-200 m/s"]
 "#;
+
+/// The metal of the bars.
+const METAL: Medium = Medium {
+    reference_density: 7500.0,
+    bulk_modulus: 150e9,
+    shear_modulus: 90e9,
+    form: LinearForm::Logarithmic,
+};
 
 const PLATES: &str = r#"
 dimension = 1
@@ -113,11 +123,15 @@ fn dots_are_the_particles_and_the_line_the_exact_answer() {
             .iter()
             .all(|c| c.points.len() == 40 && c.mark == Mark::Dots)
     );
-    // Fronts 3 mm from the interface, which stays at 4 mm; σ = ρ c u = 9 GPa; the undisturbed
-    // parts have moved by 0.1 mm.
+    // Fronts from the interface, which stays at 4 mm; the undisturbed parts have moved by 0.1 mm.
     let exact = &curves[2].points;
     let found = jumps(exact);
-    let expected = [[1.1e-3, 0.0, -9e9], [6.9e-3, -9e9, 0.0]];
+    let shock = METAL.shock(200.0);
+    let way = 0.5e-6 * shock.speed - 0.1e-3;
+    let expected = [
+        [4e-3 - way, 0.0, shock.stress],
+        [4e-3 + way, shock.stress, 0.0],
+    ];
     assert_eq!(found.len(), 2, "{exact:?}");
     for (found, expected) in found.iter().zip(expected) {
         assert!((found[0] - expected[0]).abs() < 1e-9, "{found:?}");
@@ -127,7 +141,8 @@ fn dots_are_the_particles_and_the_line_the_exact_answer() {
     // K/M = 5/9 of the stress is pressure.
     let pressure = Profiles::new(&[source(&run, 1)], &request("pressure")).unwrap();
     let found = jumps(&pressure.chart().curves[2].points);
-    assert!((found[0][2] - 5e9).abs() < 1.0, "{found:?}");
+    let expected = -5.0 / 9.0 * shock.stress;
+    assert!((found[0][2] - expected).abs() < 1.0, "{found:?}");
 }
 
 #[test]
@@ -143,16 +158,22 @@ fn moved_ends_and_symmetry_planes_are_known() {
         "velocity = { times = [0, \"0.3 us\", \"0.3 us\"], x = [\"10 m/s\", \"10 m/s\", 0] }",
     );
     let profiles = Profiles::new(&[source(&pulse, 1)], &request("velocity.x")).unwrap();
-    // From the first particle, half a spacing from the end; what the pulse has passed is 3 um on.
-    let found = jumps(&profiles.chart().curves[2].points);
-    let expected = [[1.253e-3, 0.0, 10.0], [3.05e-3, 10.0, 0.0]];
-    assert_eq!(found.len(), 2, "{found:?}");
-    for (found, expected) in found.iter().zip(expected) {
-        assert!(
-            (0..3).all(|k| (found[k] - expected[k]).abs() < 1e-9),
-            "{found:?}"
-        );
-    }
+    // From the first particle, half a spacing from the end; the tail of the pulse is a fan.
+    let points = &profiles.chart().curves[2].points;
+    let found = jumps(points);
+    let expected = [0.05e-3 + 0.5e-6 * METAL.shock(10.0).speed, 10.0, 0.0];
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(
+        (0..3).all(|k| (found[0][k] - expected[k]).abs() < 1e-9),
+        "{found:?}"
+    );
+    // Within it velocities from 0 to 10 m/s; what it has passed is 3 um on.
+    let fan: Vec<_> = points.iter().filter(|p| p[1] > 0.5 && p[1] < 9.5).collect();
+    assert!(fan.len() > 50 && fan.windows(2).all(|p| p[0][1] < p[1][1]));
+    assert!(
+        fan.iter().all(|p| (p[0] - 1.253e-3).abs() < 3e-6),
+        "{fan:?}"
+    );
     let complaint = |run: &Path| plot(run, "--profile velocity.x --exact").unwrap_err();
     let ramp = moved("velocity = { times = [0, \"1 us\"], x = [0, \"10 m/s\"] }");
     assert!(complaint(&ramp).contains("has a ramp"));
@@ -166,7 +187,7 @@ fn moved_ends_and_symmetry_planes_are_known() {
     let wall = bars(folder.path(), "wall", &case, &[0.1]);
     let profiles = Profiles::new(&[source(&wall, 1)], &request("velocity.x")).unwrap();
     let points = &profiles.chart().curves[2].points;
-    assert_eq!((points[0][0], points[0][1]), (2e-3, 0.0));
+    assert!((points[0][0] - 2e-3).abs() < 1e-12 && points[0][1].abs() < 1e-9);
 }
 
 #[test]
@@ -180,11 +201,11 @@ fn several_times_and_runs_are_told_apart() {
         let named = profiles.chart().curves.iter().map(|c| c.name.clone());
         named.filter(|name| !name.is_empty()).collect()
     };
-    let exact = "exact, linear elastic";
-    assert_eq!(names(&sources[..1]), ["0.250 µs", "0.500 µs", exact]);
+    let exact = "exact";
+    assert_eq!(names(&sources[..1]), ["0.25 µs", "0.50 µs", exact]);
     let both = names(&sources);
-    assert_eq!(both[..2], ["first, 0.250 µs", "first, 0.500 µs"]);
-    assert_eq!(both[3..], ["second, 0.500 µs", exact]);
+    assert_eq!(both[..2], ["first, 0.25 µs", "first, 0.50 µs"]);
+    assert_eq!(both[3..], ["second, 0.50 µs", exact]);
 
     plot(&first, "--profile velocity.x --at 0.5us --with missing").unwrap_err();
     let with = format!(
@@ -399,4 +420,37 @@ fn tables_are_drawn_with_measured_points() {
     assert!(plot(&run, "--xy time").unwrap_err().contains("X:Y"));
     assert!(plot(&run, "--points a.csv").unwrap_err().contains("--xy"));
     assert!(plot(&run, "--history").unwrap_err().contains("no column"));
+    plot(&run, "--xy time:front --view 0:0.2s --range 0:2m").unwrap();
+    assert!(
+        plot(&run, "--xy time:front --range 0:2s")
+            .unwrap_err()
+            .contains("0:2s")
+    );
+}
+
+#[test]
+fn a_front_is_a_table_and_a_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = bars(folder.path(), "bars", BARS, &[0.0, 0.5]);
+    plot(&run, "--front right").unwrap();
+    let table = std::fs::read_to_string(run.join("pictures/front-right.csv")).unwrap();
+    let lines: Vec<&str> = table.lines().collect();
+    assert_eq!(lines[..2], ["# units: s,m", "time,front"]);
+    assert_eq!(lines.len(), 4, "{table}");
+    let [time, front] = lines[3]
+        .split(',')
+        .map(|cell| cell.parse::<f64>().unwrap())
+        .collect::<Vec<_>>()[..]
+    else {
+        panic!("{table}");
+    };
+    assert!((time - 0.5e-6).abs() < 1e-15 && (front - 8e-3).abs() < 1e-12);
+    assert!(run.join("pictures/front-right.png").exists());
+    let unknown = plot(&run, "--front middle").unwrap_err();
+    assert!(unknown.contains("left, right"), "{unknown}");
+    assert!(
+        plot(&run, "--front left --along r")
+            .unwrap_err()
+            .contains("x, y or z")
+    );
 }

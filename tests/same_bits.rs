@@ -110,6 +110,7 @@ fn every_contact_mode_variable_h_and_options() {
     let (_keep, at) = folder();
     for options in [
         ["contact.mode=potential", "run.end_time=0.05us"],
+        ["contact.mode=penalty", "run.end_time=0.05us"],
         ["contact.mode=kernel", "run.end_time=0.05us"],
         ["contact.mode=none", "run.end_time=0.05us"],
         ["sph.smoothing_length=variable", "run.end_time=0.1us"],
@@ -179,7 +180,9 @@ fn loads_and_rigid_bodies_on_any_ranks_and_through_a_restart() {
     must(&whipple(2, &["restart", path, "--poison", "-t", "1"]), 0);
     assert_same(&one, &stopped, "restart on 1 and 2 ranks");
     let loads = std::fs::read_to_string(one.join("loads.csv")).expect("the table");
-    for name in ["load-1", "corner", "floor", "punch", "plane-1"] {
+    for name in [
+        "load-1", "corner", "floor", "punch", "plane-1", "hook", "pipe",
+    ] {
         assert!(loads.contains(&format!(",{name},")), "{name} in loads.csv");
     }
 }

@@ -131,7 +131,7 @@ fn contact(criterion: &mut Criterion) {
         bencher.iter(|| {
             for (place, neighbours) in pairs() {
                 reaction.clear();
-                overlap::react(&view, place, neighbours, &mut reaction);
+                overlap::react::<false>(&view, place, neighbours, &mut reaction);
                 black_box(&reaction);
             }
         });

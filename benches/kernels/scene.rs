@@ -137,6 +137,7 @@ impl Scene {
             motion: &self.motion,
             store: &self.store,
             table,
+            dt: 0.0,
         }
     }
 }

@@ -68,8 +68,7 @@ impl<'a> Driver<'a> {
         let mut tables = None;
         on_root(comm, || {
             let resume = restarted.is_some().then_some(&simulation.state);
-            let any_load = simulation.case.load_names().next().is_some();
-            tables = Some(Tables::open(folder, any_load, resume)?);
+            tables = Some(Tables::open(folder, &simulation.case, resume)?);
             Ok(())
         })?;
         let stop = comm.is_root().then(|| folder.stop());

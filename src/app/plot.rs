@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::plot::{
     Along, Canvas, Columns, Pictures, PlotError, Points, ProfileRequest, Profiles, Request, Source,
-    Tables, Wanted, choose, energies, parse_quantity, snapshots, title,
+    Tables, Wanted, choose, energies, front, parse_quantity, snapshots, title,
 };
 
 /// Draw sections of snapshots, profiles along a line, energies or tables as PNG pictures
@@ -22,7 +22,7 @@ use crate::plot::{
   whipple plot runs/impact --history
   whipple plot runs/bars --profile stress.xx --at 0.48us --exact
   whipple plot runs/bars --profile velocity.x --with runs/bars-kernel
-  whipple plot runs/dam --xy time:front --points martin-moyce.csv
+  whipple plot runs/dam --front water --points martin-moyce.csv
   whipple plot errors.csv --xy spacing:error --log xy")]
 #[expect(
     clippy::struct_excessive_bools,
@@ -63,13 +63,13 @@ pub struct PlotArgs {
     #[arg(long)]
     pub no_mirror: bool,
 
-    /// Values at the ends of the colour bar, or of a profile's axis, as in 0:100GPa [default: all
-    /// values; of colours all but a few outliers]
+    /// Values at the ends of the colour bar, or of the upward axis of a profile or table, as in
+    /// 0:100GPa [default: all values; of colours all but a few outliers]
     #[arg(long, value_name = "LOW:HIGH", allow_hyphen_values = true)]
     pub range: Option<String>,
 
-    /// Part of the plane to draw, as in -1:1,0:2mm, or of a profile's line, as in -1:1mm [default:
-    /// all particles]
+    /// Part of the plane to draw, as in -1:1,0:2mm, or of a profile's line or a table's axis to the
+    /// right, as in -1:1mm [default: all of it]
     #[arg(
         long,
         value_name = "LEFT:RIGHT[,BOTTOM:TOP]",
@@ -116,18 +116,13 @@ pub struct PlotArgs {
 
     /// Draw a field along a line instead: FIELD or FIELD.COMPONENT, as for --field; stress.xx … are
     /// made from pressure and deviatoric stress
-    #[arg(long, value_name = "FIELD", conflicts_with_all = [
+    #[arg(long, value_name = "FIELD", group = "line", conflicts_with_all = [
         "field", "section", "no_mirror", "panels", "history",
     ])]
     pub profile: Option<String>,
 
-    /// Axis of the profile's line, or r for the distance from a point
-    #[arg(
-        long,
-        value_name = "x|y|z|r",
-        requires = "profile",
-        default_value = "x"
-    )]
+    /// Axis of the profile's line, or r for the distance from a point; axis of the front
+    #[arg(long, value_name = "x|y|z|r", requires = "line", default_value = "x")]
     pub along: String,
 
     /// Where the profile's line crosses the other axes, or the point, as in y=0,z=0.1mm [default:
@@ -146,13 +141,20 @@ pub struct PlotArgs {
 
     /// Draw columns of a table (of a run: history.csv) against another: X:Y or X:Y,Y2
     #[arg(long, value_name = "X:Y", conflicts_with_all = [
-        "which", "field", "section", "thickness", "no_mirror", "panels", "range", "view", "history",
-        "profile",
+        "which", "field", "section", "thickness", "no_mirror", "panels", "history", "profile",
     ])]
     pub xy: Option<String>,
 
-    /// Points of another table, drawn as rings over --xy; its columns if they have other names
-    #[arg(long, value_name = "FILE[:X:Y]", requires = "xy")]
+    /// Draw how far a body reaches along an axis over time, and write it as a table: the largest
+    /// coordinate of its largest piece, of particles within one and a half spacings
+    #[arg(long, value_name = "BODY", group = "line", conflicts_with_all = [
+        "which", "field", "section", "thickness", "no_mirror", "panels", "history", "profile", "xy",
+    ])]
+    pub front: Option<String>,
+
+    /// Points of other tables, drawn as rings over --xy or --front; their columns if they have
+    /// other names
+    #[arg(long, value_name = "FILE[:X:Y]")]
     pub points: Vec<String>,
 
     /// Logarithmic axes of --xy
@@ -169,6 +171,10 @@ pub fn run(args: &PlotArgs) -> Result<(), PlotError> {
         draw_history(args)
     } else if let Some(columns) = &args.xy {
         draw_tables(args, columns)
+    } else if let Some(body) = &args.front {
+        draw_front(args, body)
+    } else if !args.points.is_empty() {
+        Err(PlotError::Options("--points belong to --xy or --front"))
     } else if let Some(field) = &args.profile {
         draw_profile(args, field)
     } else {
@@ -232,21 +238,52 @@ fn draw_history(args: &PlotArgs) -> Result<(), PlotError> {
     write(&chart.draw(args.width)?, &target(args, "history.png"))
 }
 
+/// Writes the table of each run beside the picture, or into the run's pictures.
+fn draw_front(args: &PlotArgs, body: &str) -> Result<(), PlotError> {
+    let Along::Line(axis) = Along::parse(&args.along)? else {
+        return Err(PlotError::Options("a front runs along x, y or z"));
+    };
+    let mut tables = Vec::new();
+    for place in places(args) {
+        let found: Vec<_> = snapshots(place)?.into_iter().map(|found| found.1).collect();
+        let path = place.join(format!("pictures/front-{body}.csv"));
+        save(&path, |path| {
+            let text = front(&found, body, axis)?;
+            std::fs::write(path, text).map_err(|e| unsaved(path, &e))
+        })?;
+        tables.push((name(place), path));
+    }
+    let columns = Columns {
+        x: "time".to_owned(),
+        y: vec!["front".to_owned()],
+    };
+    draw_curves(args, tables, columns, &format!("front-{body}.png"))
+}
+
 fn draw_tables(args: &PlotArgs, columns: &str) -> Result<(), PlotError> {
+    let tables = places(args).map(|place| (name(place), table(place)));
+    let picture = format!("xy-{}.png", columns.replace([':', ','], "-"));
+    draw_curves(args, tables.collect(), Columns::parse(columns)?, &picture)
+}
+
+fn draw_curves(
+    args: &PlotArgs,
+    tables: Vec<(String, PathBuf)>,
+    columns: Columns,
+    picture: &str,
+) -> Result<(), PlotError> {
     let log = args.log.as_deref().unwrap_or_default();
     let points = args.points.iter().map(|text| Points::parse(text));
     let tables = Tables {
         title: title_of(&args.source),
-        tables: places(args)
-            .map(|place| (name(place), table(place)))
-            .collect(),
-        columns: Columns::parse(columns)?,
+        tables,
+        columns,
         points: points.collect::<Result<_, _>>()?,
+        spans: [args.view.clone(), args.range.clone()],
         logarithmic: ['x', 'y'].map(|axis| log.contains(axis)),
     };
     let canvas = tables.chart()?.draw(args.width)?;
-    let stem = columns.replace([':', ','], "-");
-    write(&canvas, &target(args, &format!("xy-{stem}.png")))
+    write(&canvas, &target(args, picture))
 }
 
 /// What is drawn: the source, and what goes with it.
@@ -335,16 +372,25 @@ fn is_png(path: &Path) -> bool {
 }
 
 fn write(canvas: &Canvas, path: &Path) -> Result<(), PlotError> {
+    save(path, |path| canvas.save(path))
+}
+
+/// Writes a file, whose folder is made if it lacks, and says so.
+fn save(path: &Path, write: impl FnOnce(&Path) -> Result<(), PlotError>) -> Result<(), PlotError> {
     if let Some(folder) = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty())
     {
-        std::fs::create_dir_all(folder).map_err(|e| PlotError::Save {
-            path: path.to_owned(),
-            reason: e.to_string(),
-        })?;
+        std::fs::create_dir_all(folder).map_err(|e| unsaved(path, &e))?;
     }
-    canvas.save(path)?;
+    write(path)?;
     println!("wrote {}", path.display());
     Ok(())
+}
+
+fn unsaved(path: &Path, error: &std::io::Error) -> PlotError {
+    PlotError::Save {
+        path: path.to_owned(),
+        reason: error.to_string(),
+    }
 }

@@ -133,6 +133,7 @@ mod tests {
             momentum_put_in: 0.0,
             capped_reliefs: 0,
             interpenetrated: 0,
+            uncorrected: 0,
             worst: Worst::default(),
         }
     }

@@ -3,7 +3,8 @@
 use serde_json::json;
 
 use crate::comm::Comm;
-use crate::output::{COMMIT, Column, OutputError, RunFolder, Table, VERSION, Value};
+use crate::model::{Case, SphForm};
+use crate::output::{COMMIT, Column, OutputError, RunFolder, Table, VERSION, Value, unit_of_model};
 use crate::step::{PairState, RunState, Simulation};
 
 /// The tables of a run, written by rank 0.
@@ -49,91 +50,110 @@ pub fn load(comm: &Comm, simulation: &Simulation) -> Load {
     }
 }
 
-fn columns(list: &[(&str, &str)]) -> Vec<Column> {
+/// Columns with SI units; what a model of fewer dimensions has is by length or area.
+fn columns(dimension: usize, list: &[(&str, &str)]) -> Vec<Column> {
     list.iter()
-        .map(|(name, unit)| Column::new(name, unit))
+        .map(|(name, unit)| Column::new(name, unit_of_model(unit, dimension)))
         .collect()
 }
 
-fn history_columns() -> Vec<Column> {
-    columns(&[
-        ("step", ""),
-        ("time", "s"),
-        ("dt", "s"),
-        ("dt_reason", ""),
-        ("kinetic_energy", "J"),
-        ("internal_energy", "J"),
-        ("contact_energy", "J"),
-        ("gravity_energy", "J"),
-        ("total_energy", "J"),
-        ("momentum_x", "kg m/s"),
-        ("momentum_y", "kg m/s"),
-        ("momentum_z", "kg m/s"),
-        ("plane_impulse_x", "N s"),
-        ("plane_impulse_y", "N s"),
-        ("plane_impulse_z", "N s"),
-        ("load_work", "J"),
-        ("load_impulse_x", "N s"),
-        ("load_impulse_y", "N s"),
-        ("load_impulse_z", "N s"),
-        ("contact_work", "J"),
-        ("interpenetrated", ""),
-    ])
+/// Of the history; with a count of uncorrected gradients in the `normalised` form.
+fn history_columns(case: &Case) -> Vec<Column> {
+    let mut all = columns(
+        case.dimension,
+        &[
+            ("step", ""),
+            ("time", "s"),
+            ("dt", "s"),
+            ("dt_reason", ""),
+            ("kinetic_energy", "J"),
+            ("internal_energy", "J"),
+            ("contact_energy", "J"),
+            ("gravity_energy", "J"),
+            ("total_energy", "J"),
+            ("momentum_x", "kg m/s"),
+            ("momentum_y", "kg m/s"),
+            ("momentum_z", "kg m/s"),
+            ("plane_impulse_x", "N s"),
+            ("plane_impulse_y", "N s"),
+            ("plane_impulse_z", "N s"),
+            ("load_work", "J"),
+            ("load_impulse_x", "N s"),
+            ("load_impulse_y", "N s"),
+            ("load_impulse_z", "N s"),
+            ("contact_work", "J"),
+            ("contact_heat", "J"),
+            ("interpenetrated", ""),
+        ],
+    );
+    if case.sph.form == SphForm::Normalised {
+        all.push(Column::new("uncorrected", ""));
+    }
+    all
 }
 
-fn contact_columns() -> Vec<Column> {
-    columns(&[
-        ("time", "s"),
-        ("body_a", ""),
-        ("body_b", ""),
-        ("force_x", "N"),
-        ("force_y", "N"),
-        ("force_z", "N"),
-        ("impulse_x", "N s"),
-        ("impulse_y", "N s"),
-        ("impulse_z", "N s"),
-        ("contact_energy", "J"),
-        ("touching", ""),
-        ("largest_excess", ""),
-        ("closest_pair", "spacings"),
-        ("contact_dt", "s"),
-    ])
+fn contact_columns(dimension: usize) -> Vec<Column> {
+    columns(
+        dimension,
+        &[
+            ("time", "s"),
+            ("body_a", ""),
+            ("body_b", ""),
+            ("force_x", "N"),
+            ("force_y", "N"),
+            ("force_z", "N"),
+            ("impulse_x", "N s"),
+            ("impulse_y", "N s"),
+            ("impulse_z", "N s"),
+            ("contact_energy", "J"),
+            ("heat", "J"),
+            ("touching", ""),
+            ("largest_excess", ""),
+            ("closest_pair", "spacings"),
+            ("contact_dt", "s"),
+        ],
+    )
 }
 
-fn load_columns() -> Vec<Column> {
-    columns(&[
-        ("time", "s"),
-        ("load", ""),
-        ("force_x", "N"),
-        ("force_y", "N"),
-        ("force_z", "N"),
-        ("impulse_x", "N s"),
-        ("impulse_y", "N s"),
-        ("impulse_z", "N s"),
-        ("work", "J"),
-    ])
+fn load_columns(dimension: usize) -> Vec<Column> {
+    columns(
+        dimension,
+        &[
+            ("time", "s"),
+            ("load", ""),
+            ("force_x", "N"),
+            ("force_y", "N"),
+            ("force_z", "N"),
+            ("impulse_x", "N s"),
+            ("impulse_y", "N s"),
+            ("impulse_z", "N s"),
+            ("work", "J"),
+        ],
+    )
 }
 
 fn performance_columns() -> Vec<Column> {
-    columns(&[
-        ("step", ""),
-        ("wall_seconds", "s"),
-        ("million_updates", ""),
-        ("particles", ""),
-        ("particle_imbalance", ""),
-        ("work_imbalance", ""),
-        ("empty_ranks", ""),
-        ("messages", ""),
-        ("megabytes_sent", "MB"),
-    ])
+    columns(
+        3,
+        &[
+            ("step", ""),
+            ("wall_seconds", "s"),
+            ("million_updates", ""),
+            ("particles", ""),
+            ("particle_imbalance", ""),
+            ("work_imbalance", ""),
+            ("empty_ranks", ""),
+            ("messages", ""),
+            ("megabytes_sent", "MB"),
+        ],
+    )
 }
 
 impl Tables {
-    /// Starts the tables of a run (that of loads if it has `any_load`), or goes on with them after
-    /// the state `resume`.
+    /// Starts the tables of a run of `case`, or goes on with them after the state `resume`.
     pub fn open(
         folder: &RunFolder,
-        any_load: bool,
+        case: &Case,
         resume: Option<&RunState>,
     ) -> Result<Self, OutputError> {
         let open =
@@ -144,11 +164,17 @@ impl Tables {
         #[allow(clippy::cast_precision_loss, reason = "steps fit a double")]
         let step = resume.map(|state| state.step as f64);
         let time = resume.map(|state| state.time);
+        let dimension = case.dimension;
         Ok(Self {
-            history: open(&folder.history(), &history_columns(), "step", step)?,
-            contacts: open(&folder.contacts(), &contact_columns(), "time", time)?,
-            loads: any_load
-                .then(|| open(&folder.loads(), &load_columns(), "time", time))
+            history: open(&folder.history(), &history_columns(case), "step", step)?,
+            contacts: open(
+                &folder.contacts(),
+                &contact_columns(dimension),
+                "time",
+                time,
+            )?,
+            loads: (case.load_names().next().is_some())
+                .then(|| open(&folder.loads(), &load_columns(dimension), "time", time))
                 .transpose()?,
             performance: open(&folder.performance(), &performance_columns(), "step", step)?,
         })
@@ -166,7 +192,7 @@ impl Tables {
         let [px, py, pz] = totals.momentum.map(Value::Real);
         let [ix, iy, iz] = state.plane_impulse.map(Value::Real);
         let [lx, ly, lz] = state.load_impulse().map(Value::Real);
-        self.history.row(&[
+        let mut row = vec![
             Value::Count(state.step),
             Value::Real(state.time),
             Value::Real(state.last_dt),
@@ -187,8 +213,13 @@ impl Tables {
             ly,
             lz,
             Value::Real(state.contact_work),
+            Value::Real(state.contact_heat()),
             Value::Count(state.interpenetrated.unsigned_abs()),
-        ])?;
+        ];
+        if simulation.case.sph.form == SphForm::Normalised {
+            row.push(Value::Count(state.uncorrected.unsigned_abs()));
+        }
+        self.history.row(&row)?;
         let pairs = simulation.contact().active_pairs();
         for (bodies, pair) in pairs.iter().zip(&state.pairs) {
             let names = bodies.map(|b| simulation.case.bodies[b].name.as_str());
@@ -224,6 +255,7 @@ impl Tables {
             iy,
             iz,
             Value::Real(pair.energy),
+            Value::Real(pair.heat),
             Value::Count(pair.touching.unsigned_abs()),
             Value::Real(pair.largest_excess),
             Value::Real(pair.closest.unwrap_or(f64::INFINITY)),
@@ -264,6 +296,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::V
     let cores = (comm.size() * threads) as f64;
     let rate = load.updates as f64 * 1e-6 / stepping.max(f64::MIN_POSITIVE) / cores;
     let contact = simulation.contact();
+    let normalised = simulation.case.sph.form == SphForm::Normalised;
     // No particle is ever lost, so this is what the ranks have stepped since they started.
     let steps = load.updates as f64 / (load.particles[0] as f64).max(1.0);
     let each = |sent: u64| sent as f64 / (steps.max(1.0) * comm.size() as f64);
@@ -290,6 +323,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::V
         "closest_foreign_pair": worst.closest,
         "largest_foreign_fraction": contact.has_overlap().then_some(worst.foreign_fraction),
         "capped_reliefs": state.capped_reliefs,
+        "uncorrected_gradients": normalised.then_some(worst.uncorrected),
         "contact_limited_steps": worst.contact_limited_steps,
     })
 }

@@ -134,7 +134,9 @@ fn read_case(comm: &Comm, path: &Path) -> Result<(PathBuf, String), String> {
     comm.broadcast(&mut bytes);
     let text = String::from_utf8_lossy(bytes.get(1..).unwrap_or_default()).into_owned();
     match text.split_once('\0') {
-        Some((path, text)) if bytes.first() == Some(&0) => Ok((PathBuf::from(path), text.to_owned())),
+        Some((path, text)) if bytes.first() == Some(&0) => {
+            Ok((PathBuf::from(path), text.to_owned()))
+        }
         _ => Err(text),
     }
 }

@@ -4,12 +4,16 @@
 //! only, so that its energy is a function of positions alone and its forces are that function's
 //! exact gradient (physics page, section 5).
 
+pub mod friction;
 pub mod overlap;
+pub mod penalty;
 pub mod potential;
+pub mod surface;
 mod table;
 
-pub use table::{ContactTable, Pair};
+pub use table::{ContactTable, Pair, PairResistance};
 
+use crate::domain::Mirrors;
 use crate::neighbours::Image;
 use crate::particles::ParticleStore;
 use crate::sph::gradient::MotionRecord;
@@ -25,6 +29,8 @@ pub struct ContactView<'a> {
     pub store: &'a ParticleStore,
     /// Parameters of all pairs of bodies.
     pub table: &'a ContactTable,
+    /// The step that led here (s); zero at the start.
+    pub dt: f64,
 }
 
 /// One end of a contact pair.
@@ -57,6 +63,21 @@ impl ContactView<'_> {
     }
 }
 
+impl ContactView<'_> {
+    /// The normal of the surface between two particles: that of both, from their bodies' corrected
+    /// gradients, into the first one's body; none inside bodies.
+    fn normal(&self, i: u32, j: u32) -> Option<[f64; 3]> {
+        let inward = |place: u32| {
+            let image = self.images[place as usize];
+            Mirrors::reflect_vector(&self.store.gradient_shift[image.base()], image.code())
+        };
+        let (a, b) = (inward(i), inward(j));
+        let n = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+        let size = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
+        (size > 0.0).then(|| n.map(|x| x / size))
+    }
+}
+
 /// What contact does to one receiver.
 #[derive(Debug, Clone, Default)]
 pub struct Reaction {
@@ -68,6 +89,10 @@ pub struct Reaction {
     pub energy: f64,
     /// Stiffness for the time step (N/m).
     pub stiffness: f64,
+    /// Damping for the time step (N s/m).
+    pub dashpot: f64,
+    /// Its share of the heat by friction and damping (W).
+    pub heat: f64,
     /// Smallest distance to a foreign particle in mean spacings.
     pub closest: f64,
     /// Largest approach speed `|μ|` towards a foreign particle (m/s).
@@ -85,6 +110,8 @@ pub struct BodyReaction {
     pub force: [f64; 3],
     /// Share of the contact energy (J).
     pub energy: f64,
+    /// Share of the heat by friction and damping (W).
+    pub heat: f64,
     /// Smallest distance to a particle of that body in mean spacings.
     pub closest: f64,
 }
@@ -101,6 +128,15 @@ impl Reaction {
         self.by_body.clear();
     }
 
+    /// Books what friction and damping of the pair with a body turn into heat (W) for the receiver,
+    /// after [`Self::book`].
+    fn book_heat(&mut self, body: usize, heat: f64) {
+        self.heat += heat;
+        if let Some(entry) = self.by_body.iter_mut().find(|e| e.body == body) {
+            entry.heat += heat;
+        }
+    }
+
     /// Books what the pair with `other` at `gap` does: distance, approach, force and energy.
     fn book(&mut self, other: &Party, gap: &Gap, pair: &Pair, force: [f64; 3], energy: f64) {
         let distance = gap.distance / pair.spacing;
@@ -113,6 +149,7 @@ impl Reaction {
                 body: other.body,
                 force: [0.0; 3],
                 energy: 0.0,
+                heat: 0.0,
                 closest: f64::INFINITY,
             });
             self.by_body.len() - 1
@@ -165,5 +202,16 @@ impl Gap {
     fn along(&self, magnitude: f64) -> [f64; 3] {
         let scale = magnitude / self.distance;
         self.r.map(|x| x * scale)
+    }
+
+    /// [`Self::along`], of which only the part along a unit normal stays: it never attracts, and is
+    /// opposite for the other side.
+    fn along_normal(&self, magnitude: f64, normal: Option<[f64; 3]>) -> [f64; 3] {
+        let Some(n) = normal else {
+            return self.along(magnitude);
+        };
+        let cosine = self.r[0] * n[0] + self.r[1] * n[1] + self.r[2] * n[2];
+        let scale = magnitude / self.distance * cosine;
+        n.map(|x| x * scale)
     }
 }

@@ -31,7 +31,12 @@ pub fn react(view: &ContactView, place: u32, neighbours: &[u32], reaction: &mut 
             * strength
             * n
             * ((n - 1.0) * power(ratio, pair.exponent - 2) * (slope * slope) + steeper * curvature);
-        reaction.book(&j, &gap, pair, gap.along(force), energy);
+        let force = if pair.along_normal {
+            gap.along_normal(force, view.normal(place, other))
+        } else {
+            gap.along(force)
+        };
+        reaction.book(&j, &gap, pair, force, energy);
     }
 }
 

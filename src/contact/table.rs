@@ -1,6 +1,9 @@
 //! Parameters of every pair of bodies, computed once at set-up.
 
-use crate::model::{Case, ContactMode, PotentialRange};
+use super::penalty::Boundary;
+use crate::model::{
+    Body, Case, ContactDirection, ContactMode, PenaltyLaw, PotentialRange, Resistance,
+};
 use crate::neighbours::{ContactClass, ForeignTable};
 use crate::populate;
 use crate::sph::kernel::Kernel;
@@ -20,6 +23,10 @@ pub struct Pair {
     pub core_modulus: f64,
     /// `overlap`: radius of the core (m).
     pub core_radius: f64,
+    /// Whether forces act along the normals of the surfaces.
+    pub along_normal: bool,
+    /// `overlap`: friction and damping.
+    pub resistance: PairResistance,
     /// `potential`: K (Pa/m^d).
     pub potential: f64,
     /// `potential`: exponent n.
@@ -30,6 +37,55 @@ pub struct Pair {
     pub floor: f64,
     /// `potential`: 1/W(Δp̄) (m^d).
     pub inverse_kernel: f64,
+    /// `penalty`: κ times the smaller p-wave modulus (Pa).
+    pub penalty: f64,
+    /// `penalty`: whether the force is no more than what stops the approach in one step.
+    pub pinball: bool,
+}
+
+/// Friction and damping of an ordered pair of bodies.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PairResistance {
+    /// Coefficient of friction of faces that stick.
+    pub static_friction: f64,
+    /// Coefficient of friction of faces that slide.
+    pub kinetic_friction: f64,
+    /// Stiffness of the spring that sticks over volume, `¼ M/Δp²` (Pa/m²).
+    pub stick: f64,
+    /// Damping over volume, `ζ √(M ρ₀)/Δp` (Pa s/m²).
+    pub dashpot: f64,
+    /// Share of heat that goes to the receiver: ½, or all where the other body is rigid.
+    pub heat_share: f64,
+}
+
+impl PairResistance {
+    /// Whether there is any.
+    #[inline]
+    #[must_use]
+    pub fn is_any(&self) -> bool {
+        self.static_friction > 0.0 || self.dashpot > 0.0
+    }
+
+    /// Of bodies that resist as `input` says. The softer body gives modulus and density.
+    fn new(case: &Case, bodies: [&Body; 2], spacing: f64, input: &Resistance) -> Self {
+        let facts = bodies.map(|body| {
+            let modulus = case.materials[body.material].p_wave_modulus();
+            (modulus, case.initial_density(body))
+        });
+        let softer = usize::from(facts[1].0 < facts[0].0);
+        let (modulus, density) = facts[softer];
+        Self {
+            static_friction: input.static_friction,
+            kinetic_friction: input.kinetic_friction,
+            stick: 0.25 * modulus / (spacing * spacing),
+            dashpot: input.damping * (modulus * density).sqrt() / spacing,
+            heat_share: match bodies.map(|body| body.rigid.is_some()) {
+                [false, false] => 0.5,
+                [false, true] => 1.0,
+                [true, _] => 0.0,
+            },
+        }
+    }
 }
 
 /// All pairs of bodies.
@@ -45,7 +101,8 @@ pub struct ContactTable {
     pub foreign: ForeignTable,
     pairs: Vec<Pair>,
     inverse_densities: Vec<f64>,
-    has_planes: bool,
+    boundaries: Vec<Boundary>,
+    has_surfaces: bool,
 }
 
 impl ContactTable {
@@ -86,14 +143,18 @@ impl ContactTable {
             .iter()
             .map(|body| 1.0 / case.initial_density(body))
             .collect();
+        let boundaries = case.bodies.iter().map(|body| {
+            Boundary::of_lattice(&kernel, body.smoothing_length / body.lattice.spacing)
+        });
         Self {
+            boundaries: boundaries.collect(),
             kernel,
             groups,
             rigid,
             foreign,
             pairs,
             inverse_densities,
-            has_planes: !case.loads.planes.is_empty(),
+            has_surfaces: !case.loads.surfaces.is_empty(),
         }
     }
 
@@ -111,16 +172,23 @@ impl ContactTable {
         self.inverse_densities[body]
     }
 
+    /// What tells boundary particles of a body.
+    #[inline]
+    #[must_use]
+    pub fn boundary(&self, body: usize) -> &Boundary {
+        &self.boundaries[body]
+    }
+
     /// Number of groups of bodies.
     #[must_use]
     pub fn group_count(&self) -> usize {
         self.groups.iter().max().map_or(0, |&g| g + 1)
     }
 
-    /// Whether there is contact beyond the SPH sums: of pairs of bodies, or with rigid planes.
+    /// Whether there is contact beyond the SPH sums: of pairs of bodies, or with rigid surfaces.
     #[must_use]
     pub fn is_active(&self) -> bool {
-        self.has_planes || self.has_pairs()
+        self.has_surfaces || self.has_pairs()
     }
 
     /// Whether any pair of bodies has contact beyond the SPH sums.
@@ -133,6 +201,19 @@ impl ContactTable {
     #[must_use]
     pub fn has_overlap(&self) -> bool {
         self.foreign.class.contains(&ContactClass::Overlap)
+    }
+
+    /// Whether any pair of bodies has friction or damping.
+    #[must_use]
+    pub fn has_friction(&self) -> bool {
+        let mut pairs = self.pairs.iter();
+        pairs.any(|pair| pair.resistance.is_any())
+    }
+
+    /// Whether any pair of bodies has penalty contact, which alone looks for boundaries.
+    #[must_use]
+    pub fn has_penalty(&self) -> bool {
+        self.foreign.class.contains(&ContactClass::Penalty)
     }
 
     /// The unordered pairs of bodies with contact beyond the SPH sums.
@@ -174,7 +255,7 @@ fn join_groups(case: &Case) -> Vec<usize> {
 
 fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass, Pair) {
     let (body_a, body_b) = (&case.bodies[a], &case.bodies[b]);
-    let modulus = |body: &crate::model::Body| case.materials[body.material].p_wave_modulus();
+    let modulus = |body: &Body| case.materials[body.material].p_wave_modulus();
     let smaller = modulus(body_a).min(modulus(body_b));
     let spacing = 0.5 * (body_a.lattice.spacing + body_b.lattice.spacing);
     let h = 0.5 * (body_a.smoothing_length + body_b.smoothing_length);
@@ -185,11 +266,15 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
         touching: 0.0,
         core_modulus: 0.0,
         core_radius: 0.0,
+        along_normal: false,
+        resistance: PairResistance::default(),
         potential: 0.0,
         exponent: 1,
         range: 0.0,
         floor: 0.0,
         inverse_kernel: 0.0,
+        penalty: 0.0,
+        pinball: false,
     };
     if a == b || (body_a.rigid.is_some() && body_b.rigid.is_some()) {
         return (ContactClass::None, pair);
@@ -198,6 +283,7 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
         ContactMode::None | ContactMode::Kernel => (ContactClass::None, pair),
         ContactMode::Potential(potential) => {
             pair.potential = potential.stiffness * smaller / kernel.power(spacing);
+            pair.along_normal = potential.direction == ContactDirection::Normal;
             pair.exponent = i32::try_from(potential.exponent).unwrap_or(i32::MAX);
             pair.inverse_kernel = 1.0 / kernel.value(spacing, h);
             (pair.range, pair.floor) = match potential.range {
@@ -206,11 +292,19 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
             };
             (ContactClass::Potential, pair)
         }
+        ContactMode::Penalty(penalty) => {
+            pair.penalty = penalty.stiffness * smaller;
+            pair.pinball = penalty.law == PenaltyLaw::Pinball;
+            (ContactClass::Penalty, pair)
+        }
         ContactMode::Overlap(overlap) => {
             pair.modulus = overlap.stiffness * smaller;
             pair.touching = populate::touching_value(body_a, body_b, case.dimension);
             pair.core_modulus = overlap.core_stiffness * smaller;
             pair.core_radius = overlap.core_radius * spacing;
+            pair.along_normal = overlap.direction == ContactDirection::Normal;
+            pair.resistance =
+                PairResistance::new(case, [body_a, body_b], spacing, &overlap.resistance);
             (ContactClass::Overlap, pair)
         }
     }

@@ -2,3 +2,4 @@
 
 pub mod exact_sum;
 pub mod hole;
+pub mod pieces;

@@ -99,6 +99,21 @@ impl Mirrors {
         image
     }
 
+    /// The image of a tensor (row-major) under a code.
+    #[inline]
+    #[must_use]
+    pub fn reflect_tensor(tensor: &[f64; 9], code: u8) -> [f64; 9] {
+        let mut image = *tensor;
+        for a in 0..3 {
+            for b in 0..3 {
+                if (code >> a ^ code >> b) & 1 == 1 {
+                    image[3 * a + b] *= -1.0;
+                }
+            }
+        }
+        image
+    }
+
     /// Code of the planes that a position is beyond.
     #[inline]
     #[must_use]
@@ -122,14 +137,13 @@ impl Mirrors {
             store.position[i] = self.reflect_position(&store.position[i], code);
             store.velocity[i] = Self::reflect_vector(&store.velocity[i], code);
             store.predicted_velocity[i] = Self::reflect_vector(&store.predicted_velocity[i], code);
-            store.deviatoric_stress[i] = Self::reflect_symmetric(&store.deviatoric_stress[i], code);
-            for a in 0..3 {
-                for b in 0..3 {
-                    if (code >> a ^ code >> b) & 1 == 1 {
-                        store.velocity_gradient[i][3 * a + b] *= -1.0;
-                    }
+            for field in [&mut store.slip, &mut store.slip_rate] {
+                if let Some(slip) = field.get_mut(i) {
+                    *slip = Self::reflect_vector(slip, code);
                 }
             }
+            store.deviatoric_stress[i] = Self::reflect_symmetric(&store.deviatoric_stress[i], code);
+            store.velocity_gradient[i] = Self::reflect_tensor(&store.velocity_gradient[i], code);
         }
         code
     }

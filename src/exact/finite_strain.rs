@@ -128,6 +128,58 @@ impl Medium {
         }
     }
 
+    /// Pressure at stretch λ, compression positive (Pa).
+    #[must_use]
+    pub fn pressure(&self, stretch: f64) -> f64 {
+        match self.form {
+            LinearForm::Logarithmic => -self.bulk_modulus * libm::log(stretch),
+            LinearForm::DensityRatio => self.bulk_modulus * (1.0 / stretch - 1.0),
+        }
+    }
+
+    /// `∫₁ σ dλ/ρ₀` (J/kg): the strain energy; the heat of shocks, of third order in the strain,
+    /// is not in it.
+    #[must_use]
+    pub fn strain_energy(&self, stretch: f64) -> f64 {
+        let logarithm = libm::log(stretch);
+        let of_logarithm = stretch * logarithm - (stretch - 1.0);
+        let energy = match self.form {
+            LinearForm::Logarithmic => self.p_wave_modulus() * of_logarithm,
+            LinearForm::DensityRatio => {
+                self.shear_modulus * (4.0 / 3.0) * of_logarithm
+                    - self.bulk_modulus * (logarithm - (stretch - 1.0))
+            }
+        };
+        energy / self.reference_density
+    }
+
+    /// The stretch λ at a stress (Pa): the inverse of [`Self::stress`].
+    #[must_use]
+    pub fn stretch(&self, stress: f64) -> f64 {
+        match self.form {
+            LinearForm::Logarithmic => libm::exp(stress / self.p_wave_modulus()),
+            LinearForm::DensityRatio => bisect(1e-3, 1e3, |stretch| self.stress(stretch) - stress),
+        }
+    }
+
+    /// Speed of a front between two stretches in reference coordinates (m/s).
+    pub(super) fn front_speed(&self, a: f64, b: f64) -> f64 {
+        if (a - b).abs() < 1e-6 {
+            return self.wave_speed(0.5 * (a + b));
+        }
+        ((self.stress(b) - self.stress(a)) / (b - a) / self.reference_density).sqrt()
+    }
+
+    /// Change of velocity (m/s) of the material behind a wave to the left from stretch `ahead` to
+    /// `stretch`, a shock or a fan; one to the right changes it by as much the other way.
+    pub(super) fn change(&self, stretch: f64, ahead: f64) -> f64 {
+        if stretch >= ahead {
+            self.riemann_integral(stretch) - self.riemann_integral(ahead)
+        } else {
+            (stretch - ahead) * self.front_speed(ahead, stretch)
+        }
+    }
+
     /// The shock that drives the medium to `particle_velocity` (m/s, > 0).
     #[must_use]
     pub fn shock(&self, particle_velocity: f64) -> Shock {

@@ -3,6 +3,7 @@
 //! Mathematics from `libm` and nothing of the engine, so that a solution is the same everywhere
 //! and checks the engine from outside.
 
+pub mod bars;
 pub mod elastic;
 pub mod finite_strain;
 pub mod hugoniot;

@@ -10,7 +10,7 @@ use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use toml::Spanned;
 
 use super::quantity::{Angle, Kind, Quantity};
-use super::schema::{Direction, LatticeName, LatticeTable, Placed};
+use super::schema::{Direction, FrictionTable, LatticeName, LatticeTable, Placed};
 
 /// `"cubic"`, or a table with more.
 #[derive(Debug)]
@@ -45,6 +45,42 @@ impl<'de> Deserialize<'de> for LatticeParams {
             }
         }
         deserializer.deserialize_any(LatticeVisitor)
+    }
+}
+
+/// A coefficient of friction, or one of faces that stick and one of faces that slide.
+#[derive(Debug)]
+pub enum FrictionParams {
+    /// One for both.
+    One(f64),
+    /// One for each.
+    Two(FrictionTable),
+}
+
+impl<'de> Deserialize<'de> for FrictionParams {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct FrictionVisitor;
+        impl<'de> Visitor<'de> for FrictionVisitor {
+            type Value = FrictionParams;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number, or a table with `static` and `kinetic`")
+            }
+
+            fn visit_f64<E: Error>(self, value: f64) -> Result<FrictionParams, E> {
+                Ok(FrictionParams::One(value))
+            }
+
+            #[allow(clippy::cast_precision_loss, reason = "as typed")]
+            fn visit_i64<E: Error>(self, value: i64) -> Result<FrictionParams, E> {
+                Ok(FrictionParams::One(value as f64))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<FrictionParams, A::Error> {
+                FrictionTable::deserialize(MapAccessDeserializer::new(map)).map(FrictionParams::Two)
+            }
+        }
+        deserializer.deserialize_any(FrictionVisitor)
     }
 }
 

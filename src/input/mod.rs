@@ -12,6 +12,7 @@ mod overrides;
 mod quantity;
 mod schema;
 mod source;
+mod stl;
 mod units;
 mod validate;
 mod warnings;
@@ -77,15 +78,17 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Case, InputError> {
     parse(&path.display().to_string(), &text, overrides)
 }
 
-/// Reads a case from a text; `name` stands for the file in messages.
+/// Reads a case from a text; `name` stands for the file in messages, and the files that the case
+/// names are looked for in its folder.
 ///
 /// # Errors
 /// [`InputError::Invalid`] for the first thing in the text or in an override that is wrong.
 pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Case, InputError> {
     with_sources(Some((name, text)), overrides, |places| {
         let (params, resolved) = document::read(text, overrides, places)?;
-        let mut case = validate::case(params)?;
-        case.resolved = resolved;
+        let folder = Path::new(name).parent().unwrap_or(Path::new(""));
+        let mut case = validate::case(params, folder)?;
+        case.resolved = stl::settle(resolved, &case.loads)?;
         Ok(case)
     })
 }

@@ -67,6 +67,8 @@ kinds! {
     Pressure = [-1, 1, -2, 0, 0], "a pressure or modulus", "0.26 GPa";
     /// Radians.
     Angle = [0, 0, 0, 0, 1], "an angle", "30 deg";
+    /// Radians in a second.
+    AngularRate = [0, 0, -1, 0, 1], "an angular rate", "100 rad/s";
     /// Kelvins.
     Temperature = [0, 0, 0, 1, 0], "a temperature", "300 K";
     /// Joules per kilogram.

@@ -6,9 +6,10 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::forms::{LatticeParams, Named, NormalParams, OneOrMany};
+use super::forms::{FrictionParams, LatticeParams, Named, NormalParams, OneOrMany};
 use super::quantity::{
-    Acceleration, Angle, Density, Extent, Length, Quantity, SpecificEnergy, Time, Velocity,
+    Acceleration, Angle, AngularRate, Density, Extent, Length, Quantity, SpecificEnergy, Time,
+    Velocity,
 };
 
 /// A quantity with its place in the text.
@@ -66,6 +67,9 @@ tables! {
         /// Rigid planes.
         #[serde(default)]
         plane: Vec<Spanned<PlaneParams>>,
+        /// Rigid surfaces of other shapes.
+        #[serde(default)]
+        surface: Vec<Spanned<SurfaceParams>>,
         /// What is written.
         #[serde(default)]
         output: OutputParams,
@@ -159,6 +163,88 @@ tables! {
         motion: Option<Spanned<MotionParams>>,
     }
 
+    /// `[[surface]]`
+    SurfaceParams {
+        /// Name in reports.
+        name: Option<Spanned<String>>,
+        /// Geometry.
+        shape: Spanned<SurfaceShapeParams>,
+        /// Where the particles are; outside if absent.
+        side: Option<SideName>,
+        /// Names of the bodies that feel it; all if absent.
+        bodies: Option<Vec<Spanned<String>>>,
+        /// Stiffness κ.
+        stiffness: Option<Spanned<f64>>,
+        /// Motion of the surface; fixed if absent.
+        motion: Option<Spanned<MotionParams>>,
+        /// Rotation of the surface; none if absent.
+        rotation: Option<Spanned<RotationParams>>,
+    }
+
+    /// `shape` of a surface: exactly one of these.
+    SurfaceShapeParams {
+        /// Ball; a disc in two dimensions.
+        sphere: Option<SurfaceSphereParams>,
+        /// Circular cylinder.
+        cylinder: Option<SurfaceCylinderParams>,
+        /// Triangles from a file.
+        stl: Option<StlParams>,
+    }
+
+    /// `shape.sphere` of a surface.
+    SurfaceSphereParams {
+        /// The origin if absent.
+        centre: Option<Spanned<Vec<Placed<Length>>>>,
+        /// Radius.
+        radius: Placed<Length>,
+    }
+
+    /// `shape.cylinder` of a surface.
+    SurfaceCylinderParams {
+        /// Middle of the axis; the origin if absent.
+        centre: Option<Spanned<Vec<Placed<Length>>>>,
+        /// Direction of the axis; z if absent.
+        axis: Option<Spanned<AxisName>>,
+        /// Radius.
+        radius: Placed<Length>,
+        /// Length along the axis; without ends if absent.
+        length: Option<Placed<Length>>,
+    }
+
+    /// `shape.stl`
+    StlParams {
+        /// Path, from the folder of the case.
+        file: Spanned<String>,
+        /// Length of one unit of the file.
+        unit: Placed<Length>,
+        /// Where the file's origin stands; the origin if absent.
+        at: Option<Spanned<Vec<Placed<Length>>>>,
+        /// Turns the surface about the file's origin, before it is placed.
+        turn: Option<TurnParams>,
+        /// SHA-256 that the file must have.
+        sha256: Option<Spanned<String>>,
+    }
+
+    /// `turn`
+    TurnParams {
+        /// Axis through the origin.
+        axis: Spanned<AxisName>,
+        /// By how much.
+        angle: Placed<Angle>,
+    }
+
+    /// `rotation`
+    RotationParams {
+        /// Axis of the rotation.
+        axis: Spanned<AxisName>,
+        /// A point of the axis; the origin if absent.
+        point: Option<Spanned<Vec<Placed<Length>>>>,
+        /// Times of the table.
+        times: Option<Spanned<Vec<Placed<Time>>>>,
+        /// Rate, right-handed about the axis.
+        rate: Spanned<OneOrMany<AngularRate>>,
+    }
+
     /// `shape`: exactly one of these.
     ShapeParams {
         /// Axis-aligned box.
@@ -233,12 +319,19 @@ tables! {
         bodies: Spanned<Vec<Spanned<String>>>,
         /// What happens where they meet; as for all others if absent.
         mode: Option<ModeName>,
+        /// Coefficients of friction.
+        friction: Option<Spanned<FrictionParams>>,
+        /// Share of critical damping.
+        damping: Option<Spanned<f64>>,
         /// Parameters of the mode `overlap`.
         #[serde(default)]
         overlap: OverlapParams,
         /// Parameters of the mode `potential`.
         #[serde(default)]
         potential: PotentialParams,
+        /// Parameters of the mode `penalty`.
+        #[serde(default)]
+        penalty: PenaltyParams,
     }
 }
 
@@ -258,6 +351,8 @@ pub use materials::*;
 optional_tables! {
     /// `[sph]`
     SphParams {
+        /// How gradients are taken.
+        form: Option<SphFormName>,
         /// Smoothing length over particle spacing.
         smoothing: Option<Spanned<f64>>,
         /// Linear viscosity.
@@ -304,10 +399,16 @@ optional_tables! {
     ContactParams {
         /// Mode of all pairs that have no own.
         mode: Option<ModeName>,
+        /// Coefficients of friction.
+        friction: Option<Spanned<FrictionParams>>,
+        /// Share of critical damping.
+        damping: Option<Spanned<f64>>,
         /// Parameters of the mode `overlap`.
         overlap: OverlapParams,
         /// Parameters of the mode `potential`.
         potential: PotentialParams,
+        /// Parameters of the mode `penalty`.
+        penalty: PenaltyParams,
         /// Pairs with a mode or parameters of their own.
         pair: Vec<PairParams>,
     }
@@ -320,6 +421,8 @@ optional_tables! {
         core_stiffness: Option<Spanned<f64>>,
         /// Radius of the core in mean spacings.
         core_radius: Option<Spanned<f64>>,
+        /// Along what it acts.
+        direction: Option<Spanned<DirectionName>>,
     }
 
     /// `contact.potential`
@@ -330,6 +433,16 @@ optional_tables! {
         exponent: Option<Spanned<i64>>,
         /// Range of the force.
         range: Option<RangeName>,
+        /// Along what it acts.
+        direction: Option<Spanned<DirectionName>>,
+    }
+
+    /// `contact.penalty`
+    PenaltyParams {
+        /// Stiffness κ.
+        stiffness: Option<Spanned<f64>>,
+        /// Law of the force.
+        law: Option<PenaltyLawName>,
     }
 
     /// `[output]`
@@ -344,6 +457,16 @@ optional_tables! {
         history_every: Option<Spanned<i64>>,
         /// Snapshot fields.
         fields: Vec<Spanned<String>>,
+    }
+}
+
+tables! {
+    /// `friction` as a table.
+    FrictionTable {
+        /// Of faces that stick.
+        r#static: Spanned<f64>,
+        /// Of faces that slide.
+        kinetic: Spanned<f64>,
     }
 }
 
@@ -367,6 +490,13 @@ choices! {
         /// Third.
         Z,
     }
+    /// Side of a surface.
+    SideName {
+        /// Outside, as of a punch.
+        Outside,
+        /// Inside, as of a container.
+        Inside,
+    }
     /// Kind of lattice.
     LatticeName {
         /// Simple cubic.
@@ -374,12 +504,26 @@ choices! {
         /// Hexagonal close-packed.
         Hexagonal,
     }
+    /// How the SPH sums take gradients.
+    SphFormName {
+        /// By the kernel's gradient.
+        Conventional,
+        /// By the corrected gradient.
+        Normalised,
+    }
     /// Smoothing length in the SPH sums.
     SmoothingName {
         /// h = h₀.
         Constant,
         /// h follows the density.
         Variable,
+    }
+    /// Along what contact forces act.
+    DirectionName {
+        /// The line between particles.
+        Pair,
+        /// The normal of the surfaces.
+        Normal,
     }
     /// Contact mode.
     ModeName {
@@ -391,6 +535,15 @@ choices! {
         Potential,
         /// Overlap energy.
         Overlap,
+        /// Penalty between boundary particles.
+        Penalty,
+    }
+    /// Law of the penalty force.
+    PenaltyLawName {
+        /// Depth to the power 3/2.
+        Hertz,
+        /// No more than what stops the approach in one step.
+        Pinball,
     }
     /// Range of the contact potential.
     RangeName {

@@ -47,7 +47,7 @@ pub fn warnings(case: &Case) -> Vec<String> {
             }
         }
     }
-    planes(case, &mut found);
+    surfaces(case, &mut found);
     let approaches = approaches(case);
     case::stiffness(case, &mut found);
     case::meetings(case, &approaches, &mut found);
@@ -63,21 +63,19 @@ pub fn advice(case: &Case) -> Vec<String> {
     found
 }
 
-/// Bodies that a rigid plane pushes from the start.
-fn planes(case: &Case, found: &mut Vec<String>) {
-    for plane in &case.loads.planes {
-        for (body, _) in case
-            .bodies
-            .iter()
-            .zip(&plane.bodies)
-            .filter(|(_, acts)| **acts)
-        {
-            let gap = populate::least(body, case.dimension, &case.symmetry, |x| plane.gap(x));
-            let gap = gap / body.lattice.spacing;
-            if gap < 0.45 {
+/// Bodies that a rigid surface pushes from the start.
+fn surfaces(case: &Case, found: &mut Vec<String>) {
+    for surface in &case.loads.surfaces {
+        let acts = surface.bodies.iter();
+        for (body, _) in case.bodies.iter().zip(acts).filter(|(_, acts)| **acts) {
+            let spacing = body.lattice.spacing;
+            let gap = populate::smallest_gap(body, case.dimension, &case.symmetry, surface);
+            if gap < 0.45 * spacing {
                 found.push(format!(
-                    "`{}` begins {gap:.2} spacings from `{}`, which pushes what is nearer than 0.5",
-                    body.name, plane.name
+                    "`{}` begins {:.2} spacings from `{}`, which pushes what is nearer than 0.5",
+                    body.name,
+                    gap / spacing,
+                    surface.name
                 ));
             }
         }

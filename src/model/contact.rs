@@ -20,6 +20,8 @@ pub enum ContactMode {
     Potential(Potential),
     /// Overlap energy of the foreign volume fraction above the touching value.
     Overlap(Overlap),
+    /// Penalty between boundary particles (Campbell, Vignjevic & Libersky 2000).
+    Penalty(Penalty),
 }
 
 impl ContactMode {
@@ -31,6 +33,7 @@ impl ContactMode {
             Self::Kernel => "kernel",
             Self::Potential(_) => "potential",
             Self::Overlap(_) => "overlap",
+            Self::Penalty(_) => "penalty",
         }
     }
 }
@@ -44,6 +47,15 @@ pub enum PotentialRange {
     Spacing,
 }
 
+/// Along what contact forces act.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ContactDirection {
+    /// The line between two particles, as the gradient of an energy.
+    Pair,
+    /// The mean normal of both surfaces, in the normalised form of the SPH sums.
+    Normal,
+}
+
 /// Parameters of [`ContactMode::Potential`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Potential {
@@ -54,6 +66,8 @@ pub struct Potential {
     pub exponent: u32,
     /// Range of the force.
     pub range: PotentialRange,
+    /// Along what it acts.
+    pub direction: ContactDirection,
 }
 
 impl Default for Potential {
@@ -62,6 +76,7 @@ impl Default for Potential {
             stiffness: 1.0,
             exponent: 4,
             range: PotentialRange::Support,
+            direction: ContactDirection::Pair,
         }
     }
 }
@@ -75,6 +90,10 @@ pub struct Overlap {
     pub core_stiffness: f64,
     /// Radius of the core in mean particle spacings.
     pub core_radius: f64,
+    /// Along what it acts, but for the core.
+    pub direction: ContactDirection,
+    /// Friction and damping.
+    pub resistance: Resistance,
 }
 
 impl Default for Overlap {
@@ -83,6 +102,54 @@ impl Default for Overlap {
             stiffness: 4.0,
             core_stiffness: 2.0,
             core_radius: 0.6,
+            direction: ContactDirection::Pair,
+            resistance: Resistance::default(),
+        }
+    }
+}
+
+/// What bodies in contact do against their relative motion.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Resistance {
+    /// Coefficient of friction of faces that stick.
+    pub static_friction: f64,
+    /// Coefficient of friction of faces that slide; at most that of faces that stick.
+    pub kinetic_friction: f64,
+    /// Share of critical damping, 0 to 1.
+    pub damping: f64,
+}
+
+impl Resistance {
+    /// Whether there is any.
+    #[must_use]
+    pub fn is_any(&self) -> bool {
+        self.static_friction > 0.0 || self.damping > 0.0
+    }
+}
+
+/// Law of the penalty force (Belytschko & Neal 1991).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PenaltyLaw {
+    /// As the depth to the power 3/2, as between spheres: a function of places.
+    Hertz,
+    /// The smaller of that and what stops the approach in one step; nothing while parting.
+    Pinball,
+}
+
+/// Parameters of [`ContactMode::Penalty`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Penalty {
+    /// Stiffness κ relative to the p-wave modulus.
+    pub stiffness: f64,
+    /// Law of the force.
+    pub law: PenaltyLaw,
+}
+
+impl Default for Penalty {
+    fn default() -> Self {
+        Self {
+            stiffness: 2.0,
+            law: PenaltyLaw::Hertz,
         }
     }
 }

@@ -17,9 +17,21 @@ pub enum SmoothingLength {
     },
 }
 
+/// How the SPH sums take gradients.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum SphForm {
+    /// By the gradient of the kernel.
+    #[default]
+    Conventional,
+    /// By the corrected gradient of the normalised kernel.
+    Normalised,
+}
+
 /// Options of the SPH sums.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SphOptions {
+    /// How gradients are taken.
+    pub form: SphForm,
     /// Linear coefficient α of the Monaghan–Gingold viscosity.
     pub alpha: f64,
     /// Quadratic coefficient β of the Monaghan–Gingold viscosity.
@@ -40,6 +52,7 @@ impl Default for SphOptions {
     /// Viscosity of α = 1 and β = 2, and nothing else.
     fn default() -> Self {
         Self {
+            form: SphForm::Conventional,
             alpha: 1.0,
             beta: 2.0,
             smoothing_length: SmoothingLength::Constant,

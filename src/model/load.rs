@@ -1,6 +1,6 @@
-//! What acts on bodies from outside: gravity, prescribed velocities, rigid planes.
+//! What acts on bodies from outside: gravity, prescribed velocities, rigid surfaces.
 
-use super::Motion;
+use super::{Motion, RigidSurface};
 
 /// All loads of a case.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -9,8 +9,8 @@ pub struct Loads {
     pub gravity: [f64; 3],
     /// Velocities prescribed to regions of bodies. Where several hold, the last one does.
     pub velocities: Vec<VelocityLoad>,
-    /// Rigid planes.
-    pub planes: Vec<RigidPlane>,
+    /// Rigid planes and other surfaces.
+    pub surfaces: Vec<RigidSurface>,
 }
 
 impl Loads {
@@ -47,44 +47,5 @@ impl VelocityLoad {
     #[must_use]
     pub fn contains(&self, position: &[f64; 3]) -> bool {
         (0..3).all(|a| self.above[a] <= position[a] && position[a] <= self.below[a])
-    }
-}
-
-/// A frictionless rigid plane, which pushes particles that come nearer than half a spacing to the
-/// side that its normal points to.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RigidPlane {
-    /// Name in reports.
-    pub name: String,
-    /// Unit normal.
-    pub normal: [f64; 3],
-    /// Where it stands at time zero: the normal's product with a point of the plane (m).
-    pub position: f64,
-    /// Stiffness κ of the penalty relative to the p-wave modulus.
-    pub stiffness: f64,
-    /// Whether it acts on each of [`super::Case::bodies`].
-    pub bodies: Vec<bool>,
-    /// Its motion; fixed on free axes.
-    pub motion: Motion,
-}
-
-impl RigidPlane {
-    /// Distance of a place (m) from the plane at time zero, positive on the side that it keeps.
-    #[must_use]
-    pub fn gap(&self, position: &[f64; 3]) -> f64 {
-        self.along(position) - self.position
-    }
-
-    /// Component of a vector along the normal.
-    #[inline]
-    #[must_use]
-    pub fn along(&self, vector: &[f64; 3]) -> f64 {
-        self.normal[0] * vector[0] + self.normal[1] * vector[1] + self.normal[2] * vector[2]
-    }
-
-    /// Mean velocity along the normal (m/s) from time `from` to `to` (s).
-    #[must_use]
-    pub fn velocity(&self, from: f64, to: f64) -> f64 {
-        self.along(&std::array::from_fn(|a| self.motion.mean(a, from, to)))
     }
 }

@@ -10,14 +10,22 @@ mod control;
 mod distance;
 mod load;
 mod motion;
+mod surface;
 
 pub use body::{Axis, Body, Lattice, LatticeKind, Shape, SymmetryPlane};
-pub use contact::{ContactMode, ContactPair, Overlap, Potential, PotentialRange};
-pub use control::{
-    DomainOptions, OutputOptions, RunControl, SmoothingLength, SphOptions, TimeStepOptions,
+pub use contact::{
+    ContactDirection, ContactMode, ContactPair, Overlap, Penalty, PenaltyLaw, Potential,
+    PotentialRange, Resistance,
 };
-pub use load::{Loads, RigidPlane, VelocityLoad};
+pub use control::{
+    DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm, SphOptions, TimeStepOptions,
+};
+pub use load::{Loads, VelocityLoad};
 pub use motion::Motion;
+pub use surface::{
+    Feature, Foot, Mesh, MeshError, RigidSurface, Spin, SurfaceFile, SurfaceShape,
+    closest_on_triangle,
+};
 
 use crate::material::Material;
 
@@ -42,7 +50,7 @@ pub struct Case {
     pub default_contact: ContactMode,
     /// Planes of symmetry, at most one for each axis.
     pub symmetry: Vec<SymmetryPlane>,
-    /// Gravity, prescribed velocities and rigid planes.
+    /// Gravity, prescribed velocities and rigid surfaces.
     pub loads: Loads,
     /// Options of the SPH sums.
     pub sph: SphOptions,
@@ -69,13 +77,13 @@ impl Case {
     }
 
     /// Names of what acts from outside, in the order of its ledgers: prescribed velocities, rigid
-    /// bodies, rigid planes.
+    /// bodies, rigid surfaces.
     pub fn load_names(&self) -> impl Iterator<Item = &str> {
         let loads = self.loads.velocities.iter().map(|load| &load.name);
         let rigid = self.bodies.iter().filter(|body| body.rigid.is_some());
-        let planes = self.loads.planes.iter().map(|plane| &plane.name);
+        let surfaces = self.loads.surfaces.iter().map(|surface| &surface.name);
         (loads.chain(rigid.map(|body| &body.name)))
-            .chain(planes)
+            .chain(surfaces)
             .map(String::as_str)
     }
 

@@ -18,6 +18,8 @@ pub enum ContactClass {
     Potential,
     /// Overlap energy.
     Overlap,
+    /// Penalty between boundary particles.
+    Penalty,
 }
 
 /// For each ordered pair of bodies, the algorithm and its range.
@@ -81,6 +83,8 @@ pub struct ForeignChunk {
     pub overlap: PairList,
     /// Pairs of [`ContactClass::Potential`].
     pub potential: PairList,
+    /// Pairs of [`ContactClass::Penalty`].
+    pub penalty: PairList,
     candidates: Vec<u32>,
 }
 
@@ -133,7 +137,7 @@ impl ForeignLists {
             .iter()
             .map(|chunk| {
                 4 * chunk.candidates.capacity()
-                    + [&chunk.overlap, &chunk.potential]
+                    + [&chunk.overlap, &chunk.potential, &chunk.penalty]
                         .map(|list| 8 * list.receivers.capacity() + 4 * list.sources.capacity())
                         .iter()
                         .sum::<usize>()
@@ -160,6 +164,7 @@ impl<B: Fn(u32) -> usize> Vectorised for Find<'_, B> {
         let chunk = self.chunk;
         chunk.overlap.clear();
         chunk.potential.clear();
+        chunk.penalty.clear();
         let mut hints = [0; 64];
         for (cluster, _, _) in self.own.iter() {
             chunk.find_candidates::<V>(cluster, self.sequence, self.table, &mut hints);
@@ -233,10 +238,12 @@ impl ForeignChunk {
                     ContactClass::None => {}
                     ContactClass::Overlap => self.overlap.sources.push(place),
                     ContactClass::Potential => self.potential.sources.push(place),
+                    ContactClass::Penalty => self.penalty.sources.push(place),
                 }
             }
         }
         self.overlap.close(receiver);
         self.potential.close(receiver);
+        self.penalty.close(receiver);
     }
 }

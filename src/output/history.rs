@@ -38,6 +38,25 @@ impl Column {
     }
 }
 
+/// The SI unit of a sum over a model of 1, 2 or 3 dimensions: by area in one dimension, by length
+/// in two. Other units stay.
+#[must_use]
+pub fn unit_of_model(unit: &str, dimension: usize) -> &str {
+    match (unit, dimension) {
+        ("J", 1) => "J/m^2",
+        ("J", 2) => "J/m",
+        ("N", 1) => "N/m^2",
+        ("N", 2) => "N/m",
+        ("N s", 1) => "N s/m^2",
+        ("N s", 2) => "N s/m",
+        ("kg", 1) => "kg/m^2",
+        ("kg", 2) => "kg/m",
+        ("kg m/s", 1) => "kg/(m s)",
+        ("kg m/s", 2) => "kg/s",
+        _ => unit,
+    }
+}
+
 /// A table being written; rank 0's alone. Each row goes out in one call at once.
 #[derive(Debug)]
 pub struct Table {

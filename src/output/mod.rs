@@ -20,7 +20,7 @@ mod vote;
 
 pub use error::OutputError;
 pub use files::{write_atomically, write_json};
-pub use history::{Column, Table, Value};
+pub use history::{Column, Table, Value, unit_of_model};
 pub use log::Log;
 pub use rows::{Block, Rows};
 pub use run_folder::{Phase, RunFolder, Status};

@@ -13,7 +13,7 @@ use crate::particles::{
 };
 
 use super::h5::{Element, RowType, Writer};
-use super::{COMMIT, OutputError, Rows, VERSION, files, on_root};
+use super::{COMMIT, OutputError, Rows, VERSION, files, on_root, unit_of_model};
 
 /// Extension of snapshot files.
 pub const EXTENSION: &str = "vtkhdf";
@@ -261,7 +261,8 @@ fn write_quantity(
             file.rows(&path, RowType::single(Element::F64), block, bytes)?;
         }
     }
-    file.note(&path, "unit", quantity.unit())?;
+    let unit = unit_of_model(quantity.unit(), case.dimension);
+    file.note(&path, "unit", unit)?;
     file.note(&path, "description", &quantity.description())
 }
 
@@ -306,6 +307,8 @@ fn write_meta(comm: &Comm, file: &Writer, meta: &Meta) -> Result<(), OutputError
     file.note(group, "title", &case.title)?;
     file.note(group, "bodies", &serde_json::json!(names).to_string())?;
     file.note(group, "spacings", &serde_json::json!(spacings).to_string())?;
+    let rigid: Vec<bool> = case.bodies.iter().map(|b| b.rigid.is_some()).collect();
+    file.note(group, "rigid", &serde_json::json!(rigid).to_string())?;
     file.note(group, "symmetry", &serde_json::json!(planes).to_string())?;
     file.note(group, "version", VERSION)?;
     file.note(group, "commit", COMMIT)?;

@@ -77,8 +77,14 @@ impl FieldUse {
     pub const XSPH: Self = Self(1024);
     /// Held only where loads or rigid bodies prescribe velocities.
     pub const LOADS: Self = Self(2048);
+    /// Held only where bodies in contact have friction or damping.
+    pub const FRICTION: Self = Self(4096);
+    /// Held only in the normalised form of the sums.
+    pub const NORMALISED: Self = Self(16384);
+    /// Held only with `penalty` contact.
+    pub const PENALTY: Self = Self(32768);
     /// Held only where the case has use for it.
-    pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024 | 2048);
+    pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024 | 2048 | 4096 | 16384 | 32768);
     /// In snapshots at all.
     pub const SNAPSHOT_OR_ON_DEMAND: Self = Self(32 | 64);
     /// What a rank sends with a particle that leaves it.
@@ -86,7 +92,9 @@ impl FieldUse {
     /// Whatever halo particles need before forces of stress and contact.
     pub const HALO_FORCES: Self = Self(8 | 16);
     /// Whatever a halo particle has at any time.
-    pub const ANY_HALO: Self = Self(4 | 8 | 16);
+    pub const ANY_HALO: Self = Self(4 | 8 | 16 | 8192);
+    /// Halo particles need it before the contact forces, if these have friction.
+    pub const HALO_FRICTION: Self = Self(8192);
 
     /// Whether this set and `other` have a use in common.
     #[must_use]
@@ -231,6 +239,12 @@ particle_fields! {
     touch_relief: Scalar, "", STATE | ON_DEMAND | CONTACT;
     /// How long the foreign fraction with current volumes has stayed above one half.
     enclosed_time: Scalar, "s", STATE | ON_DEMAND | CONTACT;
+    /// Elastic tangential displacement against the other bodies, by which friction holds.
+    slip: Vector, "m", STATE | ON_DEMAND | FRICTION;
+    /// Tangential velocity against the other bodies.
+    slip_rate: Vector, "m/s", STATE | ON_DEMAND | FRICTION;
+    /// Whether friction is kinetic (1) or static (0).
+    sliding: Index, "", STATE | ON_DEMAND | FRICTION;
     /// Which loads and rigid bodies prescribe its velocity: a set of bits, in the input's order.
     load: Index, "", STATE | ON_DEMAND | LOADS;
     /// Velocity at the end of the step as predicted from the last accelerations.
@@ -253,6 +267,18 @@ particle_fields! {
     touching_value: Scalar, "", HALO_CONTACT | CONTACT;
     /// Sum of kernel gradients over foreign volume where there is excess, for the time step.
     contact_slope: Scalar, "1/m", HALO_CONTACT | CONTACT;
+    /// Normal of contact as the particle sees it, times the square of the foreign fraction.
+    contact_normal: Vector, "", HALO_CONTACT | FRICTION;
+    /// Friction and damping of the particle against what it lies on.
+    friction_force: Vector, "N", HALO_FRICTION | FRICTION;
+    /// Sum of its shares of the pair forces that they rest on.
+    friction_load: Scalar, "N", HALO_FRICTION | FRICTION;
+    /// What they turn into heat.
+    friction_power: Scalar, "W", HALO_FRICTION | FRICTION;
+    /// Energy of sticking friction.
+    friction_energy: Scalar, "J", FRICTION;
+    /// Outward normal of a boundary particle, longer at corners, zero inside: of `penalty` contact.
+    boundary_normal: Vector, "", HALO_CONTACT | ON_DEMAND | PENALTY;
     /// Contact energy.
     contact_energy: Scalar, "J", ON_DEMAND | CONTACT;
     /// Largest approach speed towards a neighbour, for the time step.
@@ -265,6 +291,12 @@ particle_fields! {
     predicted_energy: Scalar, "J/kg", HALO_STRESS | CONDUCTION;
     /// What XSPH adds to the velocity when it moves the particle.
     velocity_correction: Vector, "m/s", STATE | ON_DEMAND | XSPH;
+    /// Matrix of the correction that makes gradients of linear fields exact, row-major.
+    gradient_correction: Tensor, "", HALO_STRESS | ON_DEMAND | NORMALISED;
+    /// Gradient of the kernel sum over the kernel sum; it points into the body.
+    gradient_shift: Vector, "1/m", HALO_STRESS | ON_DEMAND | NORMALISED;
+    /// How much the correction enlarges gradients; 0 where it is ill-conditioned and left out.
+    correction_norm: Scalar, "", ON_DEMAND | NORMALISED;
     /// Work of the last step, in neighbours of the pair sums, for the balance between ranks.
     work: Index, "", MIGRATED;
 }

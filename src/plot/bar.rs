@@ -39,7 +39,7 @@ impl ColourBar {
         };
         let body = self.draw_colours(canvas, style, &frame);
         let span = self.span();
-        let marks = f64::from(body.height / (48.0 * style.unit)).max(2.0);
+        let marks = f64::from(body.height / (48.0 * style.unit)).clamp(2.0, 12.0);
         let ticks = Ticks::new(span, nice_step((span[1] - span[0]) / marks));
         let axes = Axes {
             frame: body,

@@ -13,6 +13,9 @@ const BODIES: [Rgb; 7] = [
     [240, 228, 66],
 ];
 
+/// Colour of rigid bodies in pictures of a field.
+pub const RIGID: Rgb = [190, 190, 190];
+
 /// Colour of a value that is not finite: in no colour map.
 pub const NOT_FINITE: Rgb = [255, 0, 255];
 

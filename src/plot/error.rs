@@ -55,6 +55,14 @@ pub enum PlotError {
         /// What there is.
         known: String,
     },
+    /// The snapshots hold no such body.
+    #[error("no body \"{name}\": the snapshot has {}", known.join(", "))]
+    Body {
+        /// As asked for.
+        name: String,
+        /// All names.
+        known: Vec<String>,
+    },
     /// A number, its unit or a range is wrong.
     #[error("cannot read \"{text}\": give {expected}")]
     Quantity {

@@ -6,7 +6,8 @@
 use std::path::Path;
 
 use super::PlotError;
-use crate::exact::elastic::{Bar, End, Joint, Row, Waves};
+use crate::exact::bars::{Bar, Row, Waves};
+use crate::exact::elastic::End;
 use crate::exact::hugoniot::Medium;
 use crate::exact::plates::{self, Plate};
 use crate::exact::riemann::{Gas, Riemann};
@@ -36,8 +37,8 @@ pub const FIELDS: [&str; 7] = [
 /// A case with an exact answer.
 #[derive(Debug, Clone)]
 pub enum Exact {
-    /// Elastic bars in a row, each with the bulk share K/M of its stress.
-    Bars(Row, Vec<f64>),
+    /// Elastic bars in a row.
+    Bars(Row),
     /// Two plates, left and right.
     Plates([Plate; 2]),
     /// Two bodies of gas: where they touch (m), and their far ends and whether these are held.
@@ -74,13 +75,12 @@ impl Exact {
     /// The answer for a case, or what it has that no answer covers.
     fn of(case: &Case) -> Result<Self, String> {
         let mut parts = parts(case)?;
-        if case.loads.has_gravity() || !case.loads.planes.is_empty() {
-            return Err("there is gravity or a rigid plane".to_owned());
+        if case.loads.has_gravity() || !case.loads.surfaces.is_empty() {
+            return Err("there is gravity or a rigid surface".to_owned());
         }
         let ends = outer_ends(case, &mut parts)?;
-        let elastic = |part: &Part| finite_strain::Medium::of(part.material).is_some();
-        if parts.iter().all(elastic) {
-            return Ok(bars(&parts, ends));
+        if let Some(bars) = parts.iter().map(bar).collect() {
+            return Ok(Self::Bars(Row { bars, ends }));
         }
         if let Some(gases) = parts.iter().map(gas).collect::<Option<Vec<_>>>() {
             return two_gases(&parts, &gases, &ends);
@@ -95,18 +95,10 @@ impl Exact {
         }
     }
 
-    /// What the answer assumes, for the picture.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Bars(..) => "exact, linear elastic",
-            Self::Plates(_) | Self::Gas(..) | Self::GasAtWall(..) => "exact",
-        }
-    }
-
     /// The states at a time (s), where the material is then.
     pub fn profile(&self, time: f64) -> Result<Profile, PlotError> {
         match self {
-            Self::Bars(row, shares) => Ok(bar_profile(row, shares, time)),
+            Self::Bars(row) => Ok(Waves::new(row, time).profile()),
             Self::Plates([left, right]) => plates::profile([left, right], time).map_err(|past| {
                 let since = 1e6 * past.since;
                 let reason = format!("a shock has reached a free face at {since:.3} us; {KNOWN}");
@@ -255,28 +247,15 @@ fn outer_ends(case: &Case, parts: &mut [Part]) -> Result<[End; 2], String> {
     Ok(ends)
 }
 
-/// Bars in a row.
-fn bars(parts: &[Part], ends: [End; 2]) -> Exact {
-    let bar = |part: &Part| Bar {
-        modulus: part.material.p_wave_modulus(),
-        density: part.material.reference_density,
+/// A linear elastic bar.
+fn bar(part: &Part) -> Option<Bar> {
+    let medium = finite_strain::Medium::of(part.material)?;
+    (part.density == medium.reference_density).then_some(Bar {
+        medium,
         left: part.ends[0],
         length: part.ends[1] - part.ends[0],
         velocity: part.body.velocity.x,
-    };
-    let share = |part: &Part| {
-        let bulk = part
-            .material
-            .eos
-            .bulk_modulus(part.material.reference_density);
-        bulk / part.material.p_wave_modulus()
-    };
-    let row = Row {
-        bars: parts.iter().map(bar).collect(),
-        joints: vec![Joint::Contact; parts.len() - 1],
-        ends,
-    };
-    Exact::Bars(row, parts.iter().map(share).collect())
+    })
 }
 
 /// The outermost particles (m) that a load moves in a part, left and right; absent on a side
@@ -337,26 +316,6 @@ fn plate(part: &Part) -> Result<Plate, String> {
         length: part.ends[1] - part.ends[0],
         velocity: part.body.velocity.x,
     })
-}
-
-/// Elastic waves as states; lengths and densities to first order in the strain, as the waves.
-fn bar_profile(row: &Row, shares: &[f64], time: f64) -> Profile {
-    let waves = Waves::new(row, time);
-    let mut lines = vec![Vec::new(); row.bars.len()];
-    for piece in waves.profile(time) {
-        let bar = &row.bars[piece.bar];
-        let (stress, share) = (piece.state.stress, shares[piece.bar]);
-        let strain = stress / bar.modulus;
-        lines[piece.bar].extend([piece.from, piece.to].map(|x| Sample {
-            position: x + waves.displacement(piece.bar, x - bar.left, time),
-            velocity: piece.state.velocity,
-            density: bar.density * (1.0 - strain),
-            pressure: -stress * share,
-            deviatoric_stress: stress * (1.0 - share),
-            specific_energy: 0.5 * stress * strain / bar.density,
-        }));
-    }
-    lines
 }
 
 /// The number of a sample that a field along x shows; `None` for fields without exact answer.

@@ -131,7 +131,7 @@ impl Figure<'_> {
     fn colour(&self, disc: &Disc) -> Rgb {
         match self.colours {
             Colours::Bodies(_) => colour::body(disc.body),
-            Colours::Bar(bar) => bar.scale.colour(disc.value),
+            Colours::Bar(bar) => disc.value.map_or(colour::RIGID, |v| bar.scale.colour(v)),
         }
     }
 }

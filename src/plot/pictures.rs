@@ -234,7 +234,7 @@ fn colours(
                 sections
                     .iter()
                     .flat_map(|s| &s.discs)
-                    .map(|disc| disc.value)
+                    .filter_map(|disc| disc.value)
             };
             let scale = Scale::new(values(), range);
             let unit = Readable::new(&field.unit, scale.high.abs().max(scale.low.abs()));

@@ -333,7 +333,7 @@ fn exact_curves(
     }
     // For the legend alone.
     curves.push(Curve {
-        name: answer.name().to_owned(),
+        name: "exact".to_owned(),
         colour: INK,
         mark: Mark::Thin,
         points: Vec::new(),

@@ -86,8 +86,8 @@ pub struct Disc {
     depth: f64,
     /// Index of its body.
     pub body: usize,
-    /// The shown field in its own unit.
-    pub value: f64,
+    /// The shown field in its own unit; rigid bodies show none.
+    pub value: Option<f64>,
 }
 
 /// What a plane shows of one snapshot.
@@ -131,6 +131,7 @@ impl Cut {
                 let spacing = snapshot.spacings[body];
                 self.reflect(&point, &snapshot.symmetry, &mut images);
                 let half = self.half_thickness(spacing, &snapshot.symmetry);
+                let value = (!snapshot.rigid[body]).then_some(value);
                 let found = images
                     .iter()
                     .filter_map(|p| self.disc(p, half, spacing, body, value));
@@ -177,7 +178,7 @@ impl Cut {
         half: f64,
         spacing: f64,
         body: usize,
-        value: f64,
+        value: Option<f64>,
     ) -> Option<Disc> {
         let distance = point[self.plane.axis.index()] - self.plane.position;
         let [right, up] = self.plane.picture_axes();
@@ -246,7 +247,7 @@ mod tests {
                 let layers = (-10..10)
                     .map(|n| (f64::from(n) + 0.5) * spacing + shift)
                     .filter(|&y| {
-                        cut.disc(&[0.0, y, 0.0], 0.5 * spacing, spacing, 0, 0.0)
+                        cut.disc(&[0.0, y, 0.0], 0.5 * spacing, spacing, 0, None)
                             .is_some()
                     });
                 assert_eq!(layers.count(), 1, "plane at {k}/8 spacings");
@@ -277,6 +278,6 @@ mod tests {
     #[test]
     fn lost_positions_are_left_out() {
         let point = [f64::NAN, 0.0, 0.0];
-        assert_eq!(cut(0.0, false).disc(&point, 0.5, 1.0, 0, 0.0), None);
+        assert_eq!(cut(0.0, false).disc(&point, 0.5, 1.0, 0, None), None);
     }
 }

@@ -22,6 +22,8 @@ pub struct Snapshot {
     pub bodies: Vec<String>,
     /// Particle spacing Δp of each body (m).
     pub spacings: Vec<f64>,
+    /// Which bodies are rigid.
+    pub rigid: Vec<bool>,
     /// Planes of symmetry.
     pub symmetry: Vec<SymmetryPlane>,
 }
@@ -37,10 +39,16 @@ impl Snapshot {
         let title = file.attribute("/whipple", "title")?;
         let bodies: Vec<String> = json(&file, "bodies")?;
         let spacings: Vec<f64> = json(&file, "spacings")?;
+        let rigid: Vec<bool> = json(&file, "rigid")?;
         let planes: Vec<(String, f64)> = json(&file, "symmetry")?;
-        if bodies.len() != spacings.len() {
-            let (b, s) = (bodies.len(), spacings.len());
-            return Err(damaged(format!("{b} bodies but {s} spacings")));
+        for (count, what) in [
+            (spacings.len(), "spacings"),
+            (rigid.len(), "marks of rigid"),
+        ] {
+            if count != bodies.len() {
+                let b = bodies.len();
+                return Err(damaged(format!("{b} bodies but {count} {what}")));
+            }
         }
         if let Some(&bad) = spacings.iter().find(|&&s| !(s > 0.0 && s.is_finite())) {
             return Err(damaged(format!(
@@ -62,6 +70,7 @@ impl Snapshot {
             title,
             bodies,
             spacings,
+            rigid,
             symmetry,
         })
     }

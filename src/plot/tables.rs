@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use super::PlotError;
 use super::axes::Mark;
 use super::chart::{Chart, Curve, Quantity};
 use super::colour;
 use super::table::{Table, wrong};
+use super::{PlotError, units};
 
 /// What is drawn against what.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -79,6 +79,8 @@ pub struct Tables {
     pub columns: Columns,
     /// Measured points.
     pub points: Vec<Points>,
+    /// `LOW:HIGH` of the axes, right and up; all values if absent.
+    pub spans: [Option<String>; 2],
     /// Whether the axes, right and up, are logarithmic; then the rows of a table, which may be
     /// few, are marked.
     pub logarithmic: [bool; 2],
@@ -152,13 +154,17 @@ impl Tables {
         ];
         if chart.curves.is_empty() {
             let axis = |name: &str, k: usize| -> Result<Quantity, PlotError> {
+                let unit = table.unit(name).map_err(failed)?;
+                let span = self.spans[k].as_deref();
                 Ok(Quantity {
                     label: words(name),
-                    unit: table.unit(name).map_err(failed)?.to_owned(),
+                    unit: unit.to_owned(),
                     logarithmic: self.logarithmic[k],
                     from_zero: !self.logarithmic[k],
                     room: true,
-                    span: None,
+                    span: span
+                        .map(|text| units::parse_span(text, None, unit))
+                        .transpose()?,
                 })
             };
             (chart.x, chart.y) = (axis(x, 0)?, axis(y, 1)?);

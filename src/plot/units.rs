@@ -106,10 +106,18 @@ pub fn decimals(largest: f64) -> usize {
 pub fn times(times: &[f64]) -> Vec<String> {
     let largest = times.iter().copied().fold(0.0, f64::max);
     let unit = Readable::new("s", largest);
-    let decimals = match largest {
+    // As few decimals as tell each time to two thousandths of the largest.
+    let most = match largest {
         0.0 => 0,
         largest => decimals(largest / unit.size),
     };
+    let exact = |&decimals: &usize| {
+        let size = 10_f64.powi(i32::try_from(decimals).unwrap_or(0)) / unit.size;
+        times
+            .iter()
+            .all(|t| ((t * size).round() / size - t).abs() <= 2e-3 * largest)
+    };
+    let decimals = (0..most).find(exact).unwrap_or(most);
     let text = |&time: &f64| format!("{} {}", unit.number(time, decimals), unit.name);
     times.iter().map(text).collect()
 }

@@ -9,7 +9,7 @@ mod touch;
 
 pub use touch::{touching_distance, touching_value};
 
-use crate::model::{Axis, Body, SymmetryPlane};
+use crate::model::{Axis, Body, RigidSurface, SurfaceShape, SymmetryPlane};
 use lattice::Stack;
 use row::Row;
 
@@ -112,19 +112,29 @@ pub fn first_layer(
         .min_by(f64::total_cmp)
 }
 
-/// Smallest value of `along`, a linear function of the position (m), at the [`sites`] above all
-/// symmetry planes; infinite if there are none.
+/// Smallest distance (m) of the [`sites`] above all symmetry planes from a rigid surface, negative
+/// behind it; may be infinite where none is within a spacing.
 #[must_use]
-pub fn least(
+pub fn smallest_gap(
     body: &Body,
     dimension: usize,
     symmetry: &[SymmetryPlane],
-    along: impl Fn(&[f64; 3]) -> f64,
+    surface: &RigidSurface,
 ) -> f64 {
     let stack = Stack::new(body, dimension);
+    // Along a row the distance from a plane is monotone, so its ends suffice.
+    let ends_suffice = matches!(surface.shape, SurfaceShape::Plane { .. });
     row::rows(stack, symmetry, None)
-        .flat_map(|row| [row.first, row.end - 1].map(|i| stack.position(i, row.j, row.k)))
-        .map(|position| along(&position))
+        .flat_map(|row| {
+            let stride = if ends_suffice {
+                (row.end - row.first - 1).max(1)
+            } else {
+                1
+            };
+            let sites = (row.first..row.end).step_by(usize::try_from(stride).unwrap_or(usize::MAX));
+            sites.map(move |i| stack.position(i, row.j, row.k))
+        })
+        .map(|position| surface.gap(&position, body.lattice.spacing))
         .fold(f64::INFINITY, f64::min)
 }
 

@@ -9,5 +9,6 @@ pub mod gradient;
 pub mod kernel;
 pub mod lanes;
 pub mod momentum;
+pub mod normalised;
 pub mod options;
 pub mod principal;

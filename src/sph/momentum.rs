@@ -5,7 +5,8 @@ use super::dispatch::Vectorised;
 use super::gradient::{MotionRecord, Separation, gather, gather3, length, lengths, records};
 use super::kernel::PairScale;
 use super::lanes::{F64x8, LANES, Lanes};
-use super::options::{BALSARA, CONDUCTION, OptionSums, Options, SHAPED};
+use super::normalised::NormalisedSums;
+use super::options::{BALSARA, CONDUCTION, NORMALISED, OptionSums, Options, SHAPED};
 
 /// What a particle shows to its neighbours of its stress: one cache line.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -81,9 +82,11 @@ pub struct Momentum<'a, S, const OPTIONS: u8> {
 /// The sums of [`Momentum`].
 #[derive(Debug, Clone, Copy)]
 pub struct Forces {
-    /// `dv/dt = Σ m_j (σ_i/ρ_i² + σ_j/ρ_j² − Π_ij I + R_ij f⁴) ∇W_ij` (m/s²).
+    /// `dv/dt = Σ m_j (σ_i/ρ_i² + σ_j/ρ_j² − Π_ij I + R_ij f⁴) ∇W_ij` (m/s²); in the normalised form
+    /// the stresses stand in [`super::normalised`] instead.
     pub acceleration: [F64x8; 3],
-    /// `de/dt = −½ Σ m_j v_ij · (pair stress) · ∇W_ij` and conduction (W/kg).
+    /// `de/dt = −½ Σ m_j v_ij · (pair stress) · ∇W_ij` and conduction (W/kg); in the normalised form
+    /// without the power of `σ`.
     pub power: F64x8,
     /// Largest approach speed `|μ_ij|` (m/s).
     pub approach: F64x8,
@@ -122,6 +125,8 @@ impl<S: PairScale, const OPTIONS: u8> Vectorised for Momentum<'_, S, OPTIONS> {
         );
         let c_i = c_i.mul(alpha);
         let mut options = OptionSums::<V, OPTIONS>::begin(&self.options, &self.receivers);
+        let mut corrected =
+            NormalisedSums::<V, OPTIONS>::begin(&self.options, &self.receivers, &receivers);
         let mut acceleration = [zero; 3];
         let mut power = zero;
         let mut fastest = zero;
@@ -169,11 +174,18 @@ impl<S: PairScale, const OPTIONS: u8> Vectorised for Momentum<'_, S, OPTIONS> {
             let s = |c: usize| V::splat(state.stress_over_density2[c]);
             let pull = |a: usize| normal[a].add(s(a)).sub(pi);
             let slide = |a: usize| shear[a].add(s(3 + a));
-            let mut stress = [pull(0), pull(1), pull(2), slide(0), slide(1), slide(2)];
+            let mut stress = if OPTIONS & NORMALISED == 0 {
+                [pull(0), pull(1), pull(2), slide(0), slide(1), slide(2)]
+            } else {
+                [zero.sub(pi), zero.sub(pi), zero.sub(pi), zero, zero, zero]
+            };
             if OPTIONS & SHAPED != 0 {
                 let shape = self.scale.shape(&kernel);
                 options.repel(&mut stress, option, shape);
-                let w = self.scale.value(&kernel, shape).mul(V::splat(source.mass));
+                let w = self.scale.value(&kernel, shape);
+                let other = self.options.normalised::<OPTIONS>(place);
+                corrected.pull(other, &now, kernel.slope, w, source.volume);
+                let w = w.mul(V::splat(source.mass));
                 options.follow(&v, w.mul(inverse.mul(soft)));
             }
             let [xx, yy, zz, xy, xz, yz] = stress;
@@ -196,7 +208,7 @@ impl<S: PairScale, const OPTIONS: u8> Vectorised for Momentum<'_, S, OPTIONS> {
             }
         }
         Forces {
-            acceleration: acceleration.map(V::store),
+            acceleration: corrected.add_to(acceleration).map(V::store),
             power: zero.sub(power.mul(V::splat(0.5))).store(),
             approach: zero.sub(fastest).store(),
             correction: options.correction().map(V::store),

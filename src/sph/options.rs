@@ -5,6 +5,7 @@
 
 use super::gradient::{gather, gather3, records};
 use super::lanes::{LANES, Lanes};
+use super::normalised::NormalisedRecord;
 use super::principal::tensile_part;
 
 /// Artificial stress (Monaghan 2000; Gray, Monaghan & Swift 2001).
@@ -15,9 +16,11 @@ pub const BALSARA: u8 = 2;
 pub const CONDUCTION: u8 = 4;
 /// XSPH (Monaghan 1989).
 pub const XSPH: u8 = 8;
+/// Stress along corrected gradients: [`super::normalised`].
+pub const NORMALISED: u8 = 16;
 
 /// The options that need the kernel's value.
-pub(super) const SHAPED: u8 = ARTIFICIAL_STRESS | XSPH;
+pub(super) const SHAPED: u8 = ARTIFICIAL_STRESS | XSPH | NORMALISED;
 /// The options for which particles show an [`OptionRecord`].
 pub const RECORDED: u8 = ARTIFICIAL_STRESS | BALSARA | CONDUCTION;
 
@@ -45,8 +48,10 @@ impl OptionRecord {
 /// Coefficients of the options, and what particles show for them.
 #[derive(Debug, Clone, Copy)]
 pub struct Options<'a> {
-    /// Records of all particles and images; empty without [`RECORDED`] options.
+    /// Records of all particles and images; empty without options that show any.
     pub records: &'a [OptionRecord],
+    /// Stresses with corrections of all particles and images; empty without [`NORMALISED`].
+    pub normalised: &'a [NormalisedRecord],
     /// `1/w(Δp/h)`, with `w = W h^d/σ_d`.
     pub inverse_shape: f64,
     /// Coefficient `α_u` of the conduction.
@@ -59,6 +64,7 @@ impl Options<'_> {
     /// No options.
     pub const NONE: Self = Self {
         records: &[],
+        normalised: &[],
         inverse_shape: 0.0,
         conduction: 0.0,
         xsph: 0.0,
@@ -71,6 +77,16 @@ impl Options<'_> {
             &OptionRecord::NEUTRAL
         } else {
             &self.records[place]
+        }
+    }
+
+    /// The same of [`NORMALISED`].
+    #[inline(always)]
+    pub(super) fn normalised<const OPTIONS: u8>(&self, place: usize) -> &NormalisedRecord {
+        if OPTIONS & NORMALISED == 0 {
+            &NormalisedRecord::FREE
+        } else {
+            &self.normalised[place]
         }
     }
 }

@@ -4,9 +4,11 @@ use rayon::prelude::*;
 
 use super::search::GRAIN;
 use super::simulation::Simulation;
-use crate::contact::overlap::{self, Fraction};
-use crate::contact::{BodyReaction, ContactView, Reaction, potential};
-use crate::neighbours::{CHUNKS_AT_ONCE, ForeignChunk};
+use crate::comm::Comm;
+use crate::contact::overlap::{self, Fraction, Hold};
+use crate::contact::{BodyReaction, ContactView, Reaction, penalty, potential};
+use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, ForeignChunk};
+use crate::particles::FieldUse;
 
 /// Results of each task before they go into the store, kept from step to step.
 #[derive(Default)]
@@ -17,6 +19,10 @@ pub struct ContactPhase {
 #[derive(Default)]
 struct Task {
     fractions: Vec<(usize, Fraction)>,
+    normals: Vec<(usize, [f64; 3])>,
+    holds: Vec<(usize, Hold)>,
+    /// Of `penalty` contact, see [`penalty::boundary`].
+    boundary: Vec<(usize, [f64; 3])>,
     reactions: Vec<Booked>,
     /// Receiving particle and its body, and what another body does to it.
     by_body: Vec<(usize, usize, BodyReaction)>,
@@ -31,6 +37,8 @@ struct Booked {
     from_mirrors: [f64; 3],
     energy: f64,
     stiffness: f64,
+    dashpot: f64,
+    heat: f64,
     closest: f64,
     approach: f64,
     /// Number of foreign neighbours.
@@ -50,6 +58,9 @@ impl ContactPhase {
     pub(super) fn memory(&self) -> usize {
         let task = |task: &Task| {
             size_of::<(usize, Fraction)>() * task.fractions.capacity()
+                + size_of::<(usize, [f64; 3])>() * task.normals.capacity()
+                + size_of::<(usize, Hold)>() * task.holds.capacity()
+                + size_of::<(usize, [f64; 3])>() * task.boundary.capacity()
                 + size_of::<Booked>() * task.reactions.capacity()
                 + size_of::<(usize, usize, BodyReaction)>() * task.by_body.capacity()
                 + size_of::<BodyReaction>() * task.reaction.by_body.capacity()
@@ -65,6 +76,7 @@ impl Simulation {
             return;
         }
         self.run_fractions();
+        self.find_boundaries();
         let store = &mut self.store;
         for field in [
             &mut store.foreign_fraction,
@@ -75,7 +87,11 @@ impl Simulation {
         ] {
             fill(field, 0.0);
         }
+        fill(&mut store.contact_normal, [0.0; 3]);
         let tasks = &mut self.contact_phase.tasks;
+        for &(i, normal) in tasks.iter().flat_map(|task| &task.normals) {
+            store.contact_normal[i] = normal;
+        }
         for (i, fraction) in tasks.iter().flat_map(|task| &task.fractions) {
             store.foreign_fraction[*i] = fraction.fraction;
             store.contact_excess[*i] = fraction.excess;
@@ -97,7 +113,67 @@ impl Simulation {
         }
     }
 
+    /// Friction and damping after a step of `dt` (s), of every particle in contact. Collective.
+    pub(super) fn hold_by_friction(&mut self, comm: &Comm, dt: f64) {
+        if !self.contact.has_friction() {
+            return;
+        }
+        let view = ContactView {
+            images: self.search.sequence.images(),
+            motion: &self.search.motion,
+            store: &self.store,
+            table: &self.contact,
+            dt,
+        };
+        self.contact_phase
+            .tasks
+            .par_iter_mut()
+            .zip(self.search.foreign.chunks())
+            .with_max_len(CHUNKS_AT_ONCE)
+            .for_each(|(task, chunk)| {
+                task.holds.clear();
+                for (place, neighbours) in chunk.overlap.iter() {
+                    let base = view.images[place as usize].base();
+                    let hold = overlap::hold(&view, place, neighbours);
+                    task.holds.push((base, hold));
+                }
+            });
+        self.store_holds();
+        self.halo.post(comm, &self.store, FieldUse::HALO_FRICTION);
+        self.halo.finish(&mut self.store, FieldUse::HALO_FRICTION);
+    }
+
+    /// What friction remembers, and what it does to each pair.
+    fn store_holds(&mut self) {
+        let store = &mut self.store;
+        for field in [
+            &mut store.slip,
+            &mut store.slip_rate,
+            &mut store.friction_force,
+        ] {
+            fill(field, [0.0; 3]);
+        }
+        fill(&mut store.sliding, 0);
+        for field in [
+            &mut store.friction_load,
+            &mut store.friction_power,
+            &mut store.friction_energy,
+        ] {
+            fill(field, 0.0);
+        }
+        for &(i, Hold { load, grip }) in self.contact_phase.tasks.iter().flat_map(|t| &t.holds) {
+            store.slip[i] = grip.memory.slip;
+            store.slip_rate[i] = grip.memory.rate;
+            store.sliding[i] = u32::from(grip.memory.sliding);
+            store.friction_force[i] = grip.force;
+            store.friction_load[i] = load;
+            store.friction_power[i] = grip.power;
+            store.friction_energy[i] = grip.energy;
+        }
+    }
+
     fn run_fractions(&mut self) {
+        let friction = self.contact.has_friction();
         let chunks = self.search.foreign.chunks();
         self.contact_phase
             .tasks
@@ -107,6 +183,7 @@ impl Simulation {
             motion: &self.search.motion,
             store: &self.store,
             table: &self.contact,
+            dt: 0.0,
         };
         self.contact_phase
             .tasks
@@ -115,13 +192,43 @@ impl Simulation {
             .with_max_len(CHUNKS_AT_ONCE)
             .for_each(|(task, chunk)| {
                 task.fractions.clear();
+                task.normals.clear();
                 for (place, neighbours) in chunk.overlap.iter() {
                     let base = view.images[place as usize].base();
                     let relief = view.store.touch_relief[base];
                     let fraction = overlap::fraction(&view, place, neighbours, relief);
                     task.fractions.push((base, fraction));
+                    if friction {
+                        let normal = overlap::normal(&view, place, neighbours, &fraction);
+                        task.normals.push((base, normal));
+                    }
                 }
             });
+    }
+
+    /// Normals of the boundary particles that `penalty` contact may press on.
+    fn find_boundaries(&mut self) {
+        if !self.contact.has_penalty() {
+            return;
+        }
+        let view = ContactView {
+            images: self.search.sequence.images(),
+            motion: &self.search.motion,
+            store: &self.store,
+            table: &self.contact,
+            dt: 0.0,
+        };
+        self.contact_phase
+            .tasks
+            .par_iter_mut()
+            .zip(self.search.foreign.chunks())
+            .zip(self.search.clusters.chunks())
+            .with_max_len(CHUNKS_AT_ONCE)
+            .for_each(|((task, foreign), own)| task.find_boundaries(&view, foreign, own));
+        fill(&mut self.store.boundary_normal, [0.0; 3]);
+        for (i, normal) in self.contact_phase.tasks.iter().flat_map(|t| &t.boundary) {
+            self.store.boundary_normal[*i] = *normal;
+        }
     }
 
     /// Gives every particle the relief that makes it start free of force; returns how many had
@@ -140,13 +247,14 @@ impl Simulation {
         capped
     }
 
-    /// Contact forces, the energy of contact, and what the time step must know of both.
-    pub(super) fn contact_forces(&mut self) {
+    /// Contact forces after a step `dt` (s), the energy of contact, and what the time step must know
+    /// of both.
+    pub(super) fn contact_forces(&mut self, dt: f64) {
         self.sums.clear_rates();
         if self.contact.is_active() {
-            self.run_reactions();
+            self.run_reactions(dt);
             self.store_reactions();
-            self.plane_forces();
+            self.surface_forces();
         }
         for force in self
             .sweeps
@@ -158,22 +266,31 @@ impl Simulation {
         }
     }
 
-    fn run_reactions(&mut self) {
+    fn run_reactions(&mut self, dt: f64) {
+        let friction = self.contact.has_friction();
         let view = ContactView {
             images: self.search.sequence.images(),
             motion: &self.search.motion,
             store: &self.store,
             table: &self.contact,
+            dt,
         };
         self.contact_phase
             .tasks
             .par_iter_mut()
             .zip(self.search.foreign.chunks())
             .with_max_len(CHUNKS_AT_ONCE)
-            .for_each(|(task, chunk)| task.react(&view, chunk));
+            .for_each(|(task, chunk)| {
+                if friction {
+                    task.react::<true>(&view, chunk);
+                } else {
+                    task.react::<false>(&view, chunk);
+                }
+            });
     }
 
     fn store_reactions(&mut self) {
+        let friction = self.contact.has_friction();
         let (store, sums) = (&mut self.store, &mut self.sums);
         fill(&mut store.contact_acceleration, [0.0; 3]);
         fill(&mut store.contact_energy, 0.0);
@@ -188,6 +305,12 @@ impl Simulation {
             store.work[i] = store.work[i].saturating_add(work.unwrap_or(u32::MAX));
             store.contact_energy[i] += booked.energy;
             store.contact_stiffness[i] += booked.stiffness;
+            if friction {
+                store.d_specific_energy_dt[i] += booked.heat * per_mass;
+                // A step of m/c is stable: as if it were that of a spring, 2 √(m/k).
+                let rate = booked.dashpot * per_mass;
+                store.contact_stiffness[i] += 4.0 * store.mass[i] * (rate * rate);
+            }
             store.approach_speed[i] = store.approach_speed[i].max(booked.approach);
             sums.contact_energy.add(booked.energy);
             sums.add_plane_force(&booked.from_mirrors);
@@ -215,18 +338,38 @@ fn fill<T: Copy + Send + Sync>(values: &mut [T], value: T) {
 }
 
 impl Task {
+    /// Receivers of both lists stand in the same order.
+    fn find_boundaries(&mut self, view: &ContactView, foreign: &ForeignChunk, own: &Chunk) {
+        self.boundary.clear();
+        let mut wanted = foreign.penalty.iter().map(|(place, _)| place).peekable();
+        for (cluster, neighbours, _) in own.iter() {
+            for &place in &cluster.receivers[..cluster.lanes] {
+                if wanted.next_if_eq(&place).is_some() {
+                    let normal = penalty::boundary(view, place, neighbours);
+                    self.boundary
+                        .push((view.images[place as usize].base(), normal));
+                }
+            }
+        }
+    }
+
     /// Reactions of one chunk's receivers, mode after mode.
-    fn react(&mut self, view: &ContactView, chunk: &ForeignChunk) {
+    fn react<const FRICTION: bool>(&mut self, view: &ContactView, chunk: &ForeignChunk) {
         self.reactions.clear();
         self.by_body.clear();
         for (place, neighbours) in chunk.overlap.iter() {
             self.reaction.clear();
-            overlap::react(view, place, neighbours, &mut self.reaction);
+            overlap::react::<FRICTION>(view, place, neighbours, &mut self.reaction);
             self.keep(view, place, neighbours.len());
         }
         for (place, neighbours) in chunk.potential.iter() {
             self.reaction.clear();
             potential::react(view, place, neighbours, &mut self.reaction);
+            self.keep(view, place, neighbours.len());
+        }
+        for (place, neighbours) in chunk.penalty.iter() {
+            self.reaction.clear();
+            penalty::react(view, place, neighbours, &mut self.reaction);
             self.keep(view, place, neighbours.len());
         }
     }
@@ -241,6 +384,8 @@ impl Task {
             from_mirrors: reaction.from_mirrors,
             energy: reaction.energy,
             stiffness: reaction.stiffness,
+            dashpot: reaction.dashpot,
+            heat: reaction.heat,
             closest: reaction.closest,
             approach: reaction.approach,
             neighbours,

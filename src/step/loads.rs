@@ -7,7 +7,8 @@
 //! has no mass of its own here: what holds it gives the reaction of contact, `J = −½Δt m a_c`.
 
 use super::simulation::Simulation;
-use crate::model::{Case, Loads, Motion, RigidPlane};
+use super::surface_forces::SurfaceStep;
+use crate::model::{Case, Loads, Motion};
 
 /// Which of the two prescribed velocities of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,26 +88,17 @@ impl Drive for Prescribed {
     }
 }
 
-/// A rigid plane in one step.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct PlaneStep {
-    /// Where it stands at the end of the step: the normal's product with a point of it (m).
-    pub position: f64,
-    /// Velocities along the normal at the beginning, in the middle and at the end (m/s).
-    pub velocity: [f64; 3],
-}
-
 /// What the loads of a case prescribe in the current step.
 #[derive(Debug, Default)]
 pub(super) struct LoadStep {
     /// By bit of [`crate::particles::ParticleStore::load`]: prescribed velocities, then rigid
-    /// bodies. Ledgers have the same order, then come those of the planes.
+    /// bodies. Ledgers have the same order, then come those of the surfaces.
     drives: Vec<Prescribed>,
     /// Body of each rigid body's drive.
     rigid_bodies: Vec<usize>,
     velocities: usize,
     rigid_bits: u32,
-    pub planes: Vec<PlaneStep>,
+    pub surfaces: Vec<SurfaceStep>,
     pub gravity: [f64; 3],
 }
 
@@ -122,7 +114,7 @@ impl LoadStep {
             rigid_bits: (0..drives).fold(0, |bits, k| bits | u32::from(k >= velocities) << k),
             rigid_bodies,
             velocities,
-            planes: vec![PlaneStep::default(); case.loads.planes.len()],
+            surfaces: vec![SurfaceStep::default(); case.loads.surfaces.len()],
             gravity: case.loads.gravity,
         };
         step.prepare(case, 0.0, 0.0);
@@ -139,7 +131,7 @@ impl LoadStep {
         !self.drives.is_empty()
     }
 
-    /// Number of ledgers before those of planes.
+    /// Number of ledgers before those of surfaces.
     pub(super) fn driven(&self) -> usize {
         self.drives.len()
     }
@@ -166,8 +158,8 @@ impl LoadStep {
                 self.drives[k] = Prescribed::new(motion, k, true, from, to);
             }
         }
-        for (step, plane) in self.planes.iter_mut().zip(&case.loads.planes) {
-            *step = plane_step(plane, from, to);
+        for (step, surface) in self.surfaces.iter_mut().zip(&case.loads.surfaces) {
+            *step = SurfaceStep::new(surface, from, to);
         }
     }
 
@@ -227,19 +219,8 @@ impl LoadStep {
 
     pub(super) fn memory(&self) -> usize {
         size_of::<Prescribed>() * self.drives.capacity()
-            + size_of::<PlaneStep>() * self.planes.capacity()
+            + size_of::<SurfaceStep>() * self.surfaces.capacity()
             + size_of::<usize>() * self.rigid_bodies.capacity()
-    }
-}
-
-fn plane_step(plane: &RigidPlane, from: f64, to: f64) -> PlaneStep {
-    PlaneStep {
-        position: plane.position + plane.velocity(0.0, to) * to,
-        velocity: [
-            plane.velocity(from, from),
-            plane.velocity(from, to),
-            plane.velocity(to, to),
-        ],
     }
 }
 
@@ -276,21 +257,23 @@ impl Simulation {
         }
     }
 
-    /// Impulse and work of the rigid planes in a half of a step `dt` (s). The work is also what
-    /// contact takes from the planes.
+    /// Impulse and work of the rigid surfaces in a half of a step `dt` (s). The work is also what
+    /// contact takes from the surfaces.
     pub(super) fn book_pushes(&mut self, dt: f64, first: bool) {
         let driven = self.loads.driven();
         let ledgers = &mut self.state.loads[driven..];
-        let planes = self.loads.planes.iter().zip(&self.case.loads.planes);
-        for (ledger, (step, plane)) in ledgers.iter_mut().zip(planes) {
-            let [start, middle, end] = step.velocity;
-            let speed = 0.5 * (middle + if first { start } else { end });
-            let impulse = 0.5 * dt * plane.along(&ledger.force);
+        for (ledger, step) in ledgers.iter_mut().zip(&self.loads.surfaces) {
+            let impulse = ledger.force.map(|f| 0.5 * dt * f);
+            let (velocity, rate) = step.in_half(first);
+            let work = impulse[0] * velocity[0]
+                + impulse[1] * velocity[1]
+                + impulse[2] * velocity[2]
+                + 0.5 * dt * ledger.torque * rate;
             for a in 0..3 {
-                ledger.impulse[a] += plane.normal[a] * impulse;
+                ledger.impulse[a] += impulse[a];
             }
-            ledger.work += impulse * speed;
-            self.state.contact_work -= impulse * speed;
+            ledger.work += work;
+            self.state.contact_work -= work;
         }
     }
 
@@ -308,8 +291,9 @@ impl Simulation {
             *sums = Default::default();
         }
         let ledgers = self.state.loads[driven..].iter_mut();
-        for ((ledger, plane), push) in ledgers.zip(&self.case.loads.planes).zip(&self.sums.pushes) {
-            ledger.force = plane.normal.map(|n| n * push.value());
+        for (ledger, push) in ledgers.zip(&self.sums.pushes) {
+            ledger.force = std::array::from_fn(|a| push[a].value());
+            ledger.torque = push[3].value();
         }
         self.book_pushes(dt, false);
         let state = &mut self.state;

@@ -2,15 +2,18 @@
 
 use rayon::prelude::*;
 
+use super::normalised;
 use super::search::GRAIN;
 use super::simulation::Simulation;
 use crate::contact::ContactTable;
 use crate::domain::Mirrors;
-use crate::model::{Case, SphOptions};
+use crate::model::{Case, SphForm, SphOptions};
 use crate::particles::{FieldUse, resize};
 use crate::sph::kernel::Kernel;
+use crate::sph::normalised::NormalisedRecord;
 use crate::sph::options::{
-    ARTIFICIAL_STRESS, BALSARA, CONDUCTION, OptionRecord, Options, XSPH, limiter, repulsion,
+    ARTIFICIAL_STRESS, BALSARA, CONDUCTION, NORMALISED, OptionRecord, Options, XSPH, limiter,
+    repulsion,
 };
 
 /// The options of a case, and what particles and images show for them.
@@ -18,6 +21,7 @@ pub struct OptionPhase {
     /// A set of the constants of [`crate::sph::options`].
     pub(super) set: u8,
     records: Vec<OptionRecord>,
+    normalised: Vec<NormalisedRecord>,
     inverse_shape: f64,
     sph: SphOptions,
 }
@@ -31,6 +35,7 @@ impl OptionPhase {
             (BALSARA, sph.balsara),
             (CONDUCTION, sph.conduction > 0.0),
             (XSPH, sph.xsph > 0.0),
+            (NORMALISED, sph.form == SphForm::Normalised),
         ] {
             set |= if wanted { option } else { 0 };
         }
@@ -40,6 +45,7 @@ impl OptionPhase {
         Self {
             set,
             records: Vec::new(),
+            normalised: Vec::new(),
             inverse_shape: kernel.normalisation() / kernel.value(ratio, 1.0),
             sph,
         }
@@ -49,6 +55,7 @@ impl OptionPhase {
     pub(super) fn of_sums(&self) -> Options<'_> {
         Options {
             records: &self.records,
+            normalised: &self.normalised,
             inverse_shape: self.inverse_shape,
             conduction: self.sph.conduction,
             xsph: self.sph.xsph,
@@ -57,6 +64,7 @@ impl OptionPhase {
 
     pub(super) fn memory(&self) -> usize {
         self.records.capacity() * size_of::<OptionRecord>()
+            + self.normalised.capacity() * size_of::<NormalisedRecord>()
     }
 }
 
@@ -66,10 +74,13 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> FieldUse {
     let driven = !case.loads.velocities.is_empty() || case.bodies.iter().any(|b| b.rigid.is_some());
     [
         (FieldUse::CONTACT, contact.is_active()),
+        (FieldUse::PENALTY, contact.has_penalty()),
         (FieldUse::LOADS, driven),
+        (FieldUse::FRICTION, contact.has_friction()),
         (FieldUse::BALSARA, sph.balsara),
         (FieldUse::CONDUCTION, sph.conduction > 0.0),
         (FieldUse::XSPH, sph.xsph > 0.0),
+        (FieldUse::NORMALISED, sph.form == SphForm::Normalised),
     ]
     .into_iter()
     .filter(|&(_, used)| !used)
@@ -102,7 +113,11 @@ impl Simulation {
     /// Records of halo particles and their images, or of this rank's particles and theirs.
     pub(super) fn fill_options(&mut self, halo: bool) {
         let set = self.options.set;
-        if set == 0 {
+        if set & NORMALISED != 0 {
+            self.fill_normalised(halo);
+        }
+        // A compiled set may have more options than the case: then they show neutral data.
+        if set & !NORMALISED == 0 {
             return;
         }
         let store = &self.store;
@@ -126,6 +141,19 @@ impl Simulation {
             }
             if set & CONDUCTION != 0 {
                 record.specific_energy = store.predicted_energy[i];
+            }
+        });
+    }
+
+    /// Stresses along corrected gradients, of the same.
+    fn fill_normalised(&mut self, halo: bool) {
+        let store = &self.store;
+        let images = self.search.sequence.images();
+        resize(&mut self.options.normalised, images.len());
+        let records = self.options.normalised.par_iter_mut().zip(images);
+        records.with_min_len(GRAIN).for_each(|(record, &image)| {
+            if (image.base() >= store.owned()) == halo {
+                *record = normalised::record(store, image);
             }
         });
     }

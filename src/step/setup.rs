@@ -5,11 +5,11 @@ use thiserror::Error;
 use super::contact_phase::ContactPhase;
 use super::loads::{Drive, Goal, LoadStep};
 use super::options::{OptionPhase, unused_fields};
-use super::plane_forces::PlaneForces;
 use super::search::Search;
 use super::simulation::{Simulation, StepError};
 use super::state::{LoadState, PairState, Reason, RunState, Totals, Worst};
 use super::sums::StepSums;
+use super::surface_forces::SurfaceForces;
 use super::sweeps::Sweeps;
 use super::timers::Timers;
 use crate::comm::Comm;
@@ -145,8 +145,14 @@ impl Simulation {
             sweeps: Sweeps::new(&case, &contact.kernel),
             options: OptionPhase::new(&case, &contact.kernel),
             contact_phase: ContactPhase::default(),
-            plane_forces: PlaneForces::new(&case),
-            sums: StepSums::new(pairs, enclosed_limit, loads.driven(), loads.planes.len()),
+            surface_forces: SurfaceForces::new(&case),
+            sums: StepSums::new(
+                pairs,
+                enclosed_limit,
+                contact.has_friction(),
+                loads.driven(),
+                loads.surfaces.len(),
+            ),
             loads,
             scratch: Vec::new(),
             order: Vec::new(),
@@ -268,6 +274,7 @@ fn fresh_state(pairs: usize, loads: usize) -> RunState {
         momentum_put_in: 0.0,
         capped_reliefs: 0,
         interpenetrated: 0,
+        uncorrected: 0,
         worst: Worst::default(),
     }
 }

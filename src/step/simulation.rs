@@ -5,10 +5,10 @@ use thiserror::Error;
 use super::contact_phase::ContactPhase;
 use super::loads::LoadStep;
 use super::options::OptionPhase;
-use super::plane_forces::PlaneForces;
 use super::search::Search;
 use super::state::{Reason, RunState};
 use super::sums::StepSums;
+use super::surface_forces::SurfaceForces;
 use super::sweeps::Sweeps;
 use super::timers::{Phase, Timers};
 use crate::comm::Comm;
@@ -68,7 +68,7 @@ pub struct Simulation {
     pub(super) options: OptionPhase,
     pub(super) contact_phase: ContactPhase,
     pub(super) loads: LoadStep,
-    pub(super) plane_forces: PlaneForces,
+    pub(super) surface_forces: SurfaceForces,
     pub(super) sums: StepSums,
     pub(super) scratch: Vec<u64>,
     pub(super) order: Vec<u32>,
@@ -144,7 +144,8 @@ impl Simulation {
         self.timers.lap(Phase::HaloStress);
         self.momentum_and_energy(true);
         self.timers.lap(Phase::Momentum);
-        self.contact_forces();
+        self.hold_by_friction(comm, dt);
+        self.contact_forces(dt);
         self.timers.lap(Phase::ContactForces);
     }
 
@@ -210,7 +211,7 @@ impl Simulation {
             + self.options.memory()
             + self.contact_phase.memory()
             + self.loads.memory()
-            + self.plane_forces.memory()
+            + self.surface_forces.memory()
             + self.sums.memory()
             + self.halo.memory()
             + self.migration.memory()

@@ -44,6 +44,12 @@ pub struct PairState {
     pub impulse: [f64; 3],
     /// Contact energy between the two now (J).
     pub energy: f64,
+    /// What friction and damping turn into heat now (W).
+    #[serde(default)]
+    pub heat_power: f64,
+    /// Its time integral (J).
+    #[serde(default)]
+    pub heat: f64,
     /// Particles with excess now.
     pub touching: i64,
     /// Largest excess now.
@@ -54,11 +60,14 @@ pub struct PairState {
     pub contact_dt: Option<f64>,
 }
 
-/// Ledger of what acts from outside: a prescribed velocity, a rigid body, a rigid plane.
+/// Ledger of what acts from outside: a prescribed velocity, a rigid body, a rigid surface.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct LoadState {
-    /// Force on the model (N): the mean of the last step, of planes that of now.
+    /// Force on the model (N): the mean of the last step, of surfaces that of now.
     pub force: [f64; 3],
+    /// Torque on the model about the axis of a surface that turns (N m), now.
+    #[serde(default)]
+    pub torque: f64,
     /// Impulse given to the model so far (N s).
     pub impulse: [f64; 3],
     /// Work done on the model so far (J).
@@ -121,7 +130,7 @@ pub struct RunState {
     pub plane_impulse: [f64; 3],
     /// Ledgers of the pairs of bodies in contact.
     pub pairs: Vec<PairState>,
-    /// Ledgers of prescribed velocities, rigid bodies and rigid planes.
+    /// Ledgers of prescribed velocities, rigid bodies and rigid surfaces.
     pub loads: Vec<LoadState>,
     /// Largest work of loads and gravity so far (J).
     pub work_put_in: f64,
@@ -131,6 +140,8 @@ pub struct RunState {
     pub capped_reliefs: i64,
     /// Interpenetrated particles now.
     pub interpenetrated: i64,
+    /// Particles whose gradient has no correction now, in the normalised form.
+    pub uncorrected: i64,
     /// Largest values over the run.
     pub worst: Worst,
 }
@@ -140,6 +151,12 @@ impl RunState {
     #[must_use]
     pub fn load_work(&self) -> f64 {
         self.loads.iter().map(|load| load.work).sum()
+    }
+
+    /// Heat by friction and damping of contact so far (J).
+    #[must_use]
+    pub fn contact_heat(&self) -> f64 {
+        self.pairs.iter().map(|pair| pair.heat).sum()
     }
 
     /// Impulse given by all loads so far (N s).
@@ -166,6 +183,8 @@ pub struct Worst {
     pub momentum_error: [f64; 3],
     /// Interpenetrated particles.
     pub interpenetrated: i64,
+    /// Particles whose gradient has no correction, in the normalised form.
+    pub uncorrected: i64,
     /// Smallest foreign distance in mean spacings.
     pub closest: Option<f64>,
     /// Largest foreign fraction.

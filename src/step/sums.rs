@@ -9,22 +9,27 @@ use crate::comm::Comm;
 use crate::contact::BodyReaction;
 use crate::diagnose::exact_sum::ExactSum;
 use crate::particles::ParticleStore;
+use crate::sph::options::NORMALISED;
 
 /// Sums of one step, first of this rank, then (after [`StepSums::reduce`]) of all.
 pub struct StepSums {
     /// How long a particle may be enclosed before it counts as interpenetrated (s).
     pub(super) enclosed_limit: f64,
+    /// Whether there is friction or damping, whose heat is summed.
+    friction: bool,
     pub(super) contact_work: ExactSum,
     pub(super) contact_energy: ExactSum,
     pub(super) crossing_impulse: [ExactSum; 3],
     plane_force: [ExactSum; 3],
     /// Impulse and work of prescribed velocities and of rigid bodies in this step.
     pub(super) loads: Vec<[ExactSum; 4]>,
-    /// Force along the normal of each rigid plane.
-    pub(super) pushes: Vec<ExactSum>,
+    /// Force of each rigid surface, and its torque about the axis that it turns about.
+    pub(super) pushes: Vec<[ExactSum; 4]>,
     pair_bodies: Vec<[usize; 2]>,
     pairs: Vec<PairSums>,
     interpenetrated: i64,
+    /// Particles whose gradient has no correction, in the normalised form.
+    pub(super) uncorrected: i64,
     closest: f64,
     foreign_fraction: f64,
     limbs: Vec<i64>,
@@ -34,6 +39,7 @@ pub struct StepSums {
 struct PairSums {
     force: [ExactSum; 3],
     energy: ExactSum,
+    heat: ExactSum,
     touching: i64,
     largest_excess: f64,
     closest: f64,
@@ -45,6 +51,7 @@ impl Default for PairSums {
         Self {
             force: Default::default(),
             energy: ExactSum::default(),
+            heat: ExactSum::default(),
             touching: 0,
             largest_excess: 0.0,
             closest: f64::INFINITY,
@@ -57,20 +64,23 @@ impl StepSums {
     pub(super) fn new(
         pair_bodies: Vec<[usize; 2]>,
         enclosed_limit: f64,
+        friction: bool,
         loads: usize,
-        planes: usize,
+        surfaces: usize,
     ) -> Self {
         Self {
             enclosed_limit,
+            friction,
             contact_work: ExactSum::default(),
             contact_energy: ExactSum::default(),
             crossing_impulse: Default::default(),
             plane_force: Default::default(),
             loads: (0..loads).map(|_| Default::default()).collect(),
-            pushes: vec![ExactSum::default(); planes],
+            pushes: (0..surfaces).map(|_| Default::default()).collect(),
             pairs: pair_bodies.iter().map(|_| PairSums::default()).collect(),
             pair_bodies,
             interpenetrated: 0,
+            uncorrected: 0,
             closest: f64::INFINITY,
             foreign_fraction: 0.0,
             limbs: Vec::new(),
@@ -80,7 +90,7 @@ impl StepSums {
 
     pub(super) fn memory(&self) -> usize {
         size_of::<PairSums>() * self.pairs.capacity()
-            + size_of::<ExactSum>() * (4 * self.loads.capacity() + self.pushes.capacity())
+            + 4 * size_of::<ExactSum>() * (self.loads.capacity() + self.pushes.capacity())
             + 8 * (self.limbs.capacity() + self.extremes.capacity())
     }
 
@@ -88,7 +98,7 @@ impl StepSums {
     pub(super) fn clear_rates(&mut self) {
         self.contact_energy = ExactSum::default();
         self.plane_force = Default::default();
-        self.pushes.fill_with(ExactSum::default);
+        self.pushes.fill_with(Default::default);
         self.pairs.fill_with(PairSums::default);
         self.interpenetrated = 0;
         self.closest = f64::INFINITY;
@@ -107,9 +117,13 @@ impl StepSums {
         self.loads[load][3].add(work);
     }
 
-    /// Books the force (N) that a rigid plane exerts on a particle.
-    pub(super) fn add_push(&mut self, plane: usize, force: f64) {
-        self.pushes[plane].add(force);
+    /// Books the force (N) and torque (N m) that a rigid surface exerts on a particle.
+    pub(super) fn add_push(&mut self, surface: usize, force: &[f64; 3], torque: f64) {
+        let push = &mut self.pushes[surface];
+        for a in 0..3 {
+            push[a].add(force[a]);
+        }
+        push[3].add(torque);
     }
 
     pub(super) fn note_particle(&mut self, inside: bool, closest: f64, fraction: f64) {
@@ -131,6 +145,9 @@ impl StepSums {
             }
         }
         pair.energy.add(reaction.energy);
+        if self.friction {
+            pair.heat.add(reaction.heat);
+        }
         pair.touching += i64::from(excess > 0.0);
         pair.largest_excess = pair.largest_excess.max(excess);
         pair.closest = pair.closest.min(reaction.closest);
@@ -138,17 +155,17 @@ impl StepSums {
     }
 
     fn exact(&mut self) -> impl Iterator<Item = &mut ExactSum> {
+        let friction = self.friction;
         [&mut self.contact_work, &mut self.contact_energy]
             .into_iter()
             .chain(&mut self.crossing_impulse)
             .chain(&mut self.plane_force)
             .chain(self.loads.iter_mut().flatten())
-            .chain(&mut self.pushes)
-            .chain(
-                self.pairs
-                    .iter_mut()
-                    .flat_map(|pair| pair.force.iter_mut().chain([&mut pair.energy])),
-            )
+            .chain(self.pushes.iter_mut().flatten())
+            .chain(self.pairs.iter_mut().flat_map(move |pair| {
+                let heat = friction.then_some(&mut pair.heat);
+                pair.force.iter_mut().chain([&mut pair.energy]).chain(heat)
+            }))
     }
 
     /// Joins the sums of all ranks.
@@ -159,12 +176,13 @@ impl StepSums {
         let mut limbs = std::mem::take(&mut self.limbs);
         limbs.clear();
         gather_limbs(self.exact(), &mut limbs);
-        limbs.push(self.interpenetrated);
+        limbs.extend([self.interpenetrated, self.uncorrected]);
         limbs.extend(self.pairs.iter().map(|pair| pair.touching));
         comm.sum_i64(&mut limbs);
         let mut rest = scatter_limbs(self.exact(), &limbs).iter();
         let mut next = || rest.next().copied().unwrap_or(0);
         self.interpenetrated = next();
+        self.uncorrected = next();
         for pair in &mut self.pairs {
             pair.touching = next();
         }
@@ -217,7 +235,7 @@ fn scatter_limbs<'a, 'b>(
 }
 
 impl Simulation {
-    /// Impulse of the symmetry planes and the rigid ones in the first half of a step.
+    /// Impulse of symmetry planes and rigid surfaces in the first half of a step.
     pub(super) fn book_plane_force(&mut self, dt: f64) {
         self.book_pushes(dt, true);
         for a in 0..3 {
@@ -227,13 +245,15 @@ impl Simulation {
             for a in 0..3 {
                 pair.impulse[a] += 0.5 * dt * pair.force[a];
             }
+            pair.heat += 0.5 * dt * pair.heat_power;
         }
     }
 
     /// Joins the sums of all ranks into the state, after the second half of a step `dt` (s).
     pub(super) fn book_step(&mut self, comm: &Comm, dt: f64) {
         let mirrors = !self.halo.mirrors().is_empty();
-        if self.contact.is_active() || mirrors || self.loads.drives() {
+        let normalised = self.options.set & NORMALISED != 0;
+        if self.contact.is_active() || mirrors || self.loads.drives() || normalised {
             self.sums.reduce(comm);
         }
         self.book_load_sums(dt);
@@ -250,10 +270,13 @@ impl Simulation {
         for (pair, sum) in state.pairs.iter_mut().zip(&sums.pairs) {
             let finite = |x: f64| x.is_finite().then_some(x);
             let force: [f64; 3] = std::array::from_fn(|a| sum.force[a].value());
+            let heat_power = sum.heat.value();
             *pair = PairState {
                 force,
                 impulse: std::array::from_fn(|a| pair.impulse[a] + 0.5 * dt * force[a]),
                 energy: sum.energy.value(),
+                heat_power,
+                heat: pair.heat + 0.5 * dt * heat_power,
                 touching: sum.touching,
                 largest_excess: sum.largest_excess,
                 closest: finite(sum.closest),
@@ -261,14 +284,17 @@ impl Simulation {
             };
         }
         state.interpenetrated = sums.interpenetrated;
+        state.uncorrected = sums.uncorrected;
         let worst = &mut state.worst;
         worst.interpenetrated = worst.interpenetrated.max(sums.interpenetrated);
+        worst.uncorrected = worst.uncorrected.max(sums.uncorrected);
         worst.foreign_fraction = worst.foreign_fraction.max(sums.foreign_fraction);
         if sums.closest.is_finite() {
             let closest = worst.closest.map_or(sums.closest, |c| c.min(sums.closest));
             worst.closest = Some(closest);
         }
-        let defect = state.contact_work + state.contact_energy - state.initial.contact_energy;
+        let defect = state.contact_work + state.contact_energy - state.initial.contact_energy
+            + state.pairs.iter().map(|pair| pair.heat).sum::<f64>();
         worst.contact_deviation = worst.contact_deviation.max(defect.abs());
         let scale = state.initial.kinetic_energy.max(state.work_put_in);
         if scale > 0.0 {

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::material_update::MaterialUpdate;
+use super::normalised::{CorrectionFields, NormalisedChunk, StressPower};
 use super::search::GRAIN;
 use super::simulation::Simulation;
 use crate::domain::Mirrors;
@@ -14,7 +15,7 @@ use crate::sph::gradient::{MotionRecord, VelocityGradient};
 use crate::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use crate::sph::lanes::{F64x8, LANES, Lanes};
 use crate::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
-use crate::sph::options::{ARTIFICIAL_STRESS, BALSARA, CONDUCTION, Options, XSPH};
+use crate::sph::options::{ARTIFICIAL_STRESS, BALSARA, CONDUCTION, NORMALISED, Options, XSPH};
 
 /// Records of the second sweep and what mirrors exert, kept from step to step.
 pub struct Sweeps {
@@ -64,7 +65,7 @@ macro_rules! with_scale {
 
 /// Calls `$work` with a set of options as a constant: no options, or those of solids (artificial
 /// stress and XSPH), of shocks (the Balsara switch and conduction), or all, whichever has all that
-/// are wanted. The others then have neutral data.
+/// are wanted. The others then have neutral data. The normalised form has none or all.
 macro_rules! with_options {
     ($wanted:expr, $name:ident => $work:expr) => {
         match $wanted {
@@ -80,8 +81,16 @@ macro_rules! with_options {
                 const $name: u8 = SHOCKS;
                 $work
             }
-            _ => {
+            set if set & NORMALISED == 0 => {
                 const $name: u8 = SOLIDS | SHOCKS;
+                $work
+            }
+            NORMALISED => {
+                const $name: u8 = NORMALISED;
+                $work
+            }
+            _ => {
+                const $name: u8 = NORMALISED | SOLIDS | SHOCKS;
                 $work
             }
         }
@@ -128,6 +137,8 @@ impl Simulation {
     /// with the gradient at the start.
     pub(super) fn velocity_gradient_and_material(&mut self, dt: f64) {
         let set = instructions();
+        let normalised = self.options.set & NORMALISED != 0;
+        let fields = normalised.then(|| CorrectionFields::take(&mut self.store));
         let chunks = self.search.clusters.chunks();
         let update = &MaterialUpdate::new(
             &mut self.store,
@@ -140,10 +151,23 @@ impl Simulation {
         );
         let sources = &self.search.motion[..];
         let lengths = self.search.sequence.smoothing_lengths();
-        with_scale!(self.sweeps.scale, scale => chunks
-            .par_iter()
-            .with_max_len(CHUNKS_AT_ONCE)
-            .for_each(|chunk| set.run(GradientChunk { chunk, sources, lengths, scale, update })));
+        let chunks = chunks.par_iter().with_max_len(CHUNKS_AT_ONCE);
+        let Some(mut fields) = fields else {
+            with_scale!(self.sweeps.scale, scale => chunks.for_each(|chunk| {
+                set.run(GradientChunk { chunk, sources, lengths, scale, update });
+            }));
+            return;
+        };
+        let corrections = &fields.target();
+        let images = self.search.sequence.images();
+        let dimension = self.case.dimension;
+        with_scale!(self.sweeps.scale, scale => chunks.for_each(|chunk| {
+            set.run(NormalisedChunk {
+                chunk, sources, lengths, scale, dimension, images, update, corrections,
+            });
+        }));
+        fields.give_back(&mut self.store);
+        self.count_uncorrected();
     }
 
     /// Second sweep: accelerations by stress and viscosity, and the power they put into heat, of
@@ -275,6 +299,7 @@ struct ForceTarget<'a> {
     power: Scatter<'a, f64>,
     approach: Scatter<'a, f64>,
     correction: Option<Scatter<'a, [f64; 3]>>,
+    stress_power: StressPower<'a>,
 }
 
 impl<'a> ForceTarget<'a> {
@@ -287,6 +312,12 @@ impl<'a> ForceTarget<'a> {
             power: Scatter::new(&mut store.d_specific_energy_dt),
             approach: Scatter::new(&mut store.approach_speed),
             correction: (!correction.is_empty()).then(|| Scatter::new(correction)),
+            stress_power: StressPower::new(
+                &store.pressure,
+                &store.deviatoric_stress,
+                &store.velocity_gradient,
+                &store.predicted_density,
+            ),
         }
     }
 
@@ -299,6 +330,9 @@ impl<'a> ForceTarget<'a> {
                 *self.acceleration.slot(i) = std::array::from_fn(|a| forces.acceleration[a].0[k]);
                 *self.power.slot(i) = forces.power.0[k];
                 *self.approach.slot(i) = forces.approach.0[k];
+                if OPTIONS & NORMALISED != 0 {
+                    *self.power.slot(i) += self.stress_power.of(i);
+                }
                 if OPTIONS & XSPH != 0
                     && let Some(correction) = &self.correction
                 {

@@ -4,7 +4,9 @@
 use std::collections::BTreeMap;
 
 use whipple::comm::Comm;
-use whipple::model::{Case, SmoothingLength};
+use whipple::model::{
+    Case, ContactDirection, ContactMode, Overlap, Resistance, SmoothingLength, SphForm,
+};
 use whipple::particles::{FieldUse, with_use};
 use whipple::step::Simulation;
 
@@ -85,7 +87,8 @@ pub fn everything() -> Case {
 /// A case with all loads there are.
 pub fn loaded() -> Case {
     let text = include_str!("loaded.toml");
-    whipple::input::parse("loaded.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"))
+    whipple::input::parse("tests/common/loaded.toml", text, &[])
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The same with nothing in contact but a block and a plane.
@@ -97,8 +100,22 @@ pub fn on_a_plane() -> Case {
     case.bodies.drain(..1);
     case.bodies.truncate(1);
     case.loads.velocities.clear();
-    let plane = &mut case.loads.planes[0];
-    plane.bodies = vec![true];
+    case.loads.surfaces.truncate(1);
+    case.loads.surfaces[0].bodies = vec![true];
+    case
+}
+
+/// [`everything`] with friction and damping.
+pub fn rubbing() -> Case {
+    let mut case = everything();
+    case.default_contact = ContactMode::Overlap(Overlap {
+        resistance: Resistance {
+            static_friction: 0.4,
+            kinetic_friction: 0.3,
+            damping: 0.1,
+        },
+        ..Overlap::default()
+    });
     case
 }
 
@@ -109,11 +126,33 @@ pub fn loaded_with_options() -> Case {
     case
 }
 
-/// Without options of the SPH sums and with all, without loads and with all.
-pub const CASES: [fn() -> Case; 5] = [
+/// [`everything`] in the normalised form, with contact along normals.
+pub fn normalised() -> Case {
+    let mut case = everything();
+    case.sph.form = SphForm::Normalised;
+    case.default_contact = ContactMode::Overlap(Overlap {
+        direction: ContactDirection::Normal,
+        ..Overlap::default()
+    });
+    case
+}
+
+/// All loads with all options of the SPH sums in the normalised form.
+pub fn loaded_normalised() -> Case {
+    let mut case = loaded_with_options();
+    case.sph.form = SphForm::Normalised;
+    case
+}
+
+/// Without options of the SPH sums and with all, without loads and with all, in both forms,
+/// with friction.
+pub const CASES: [fn() -> Case; 8] = [
     everything,
     every_option,
     loaded,
     on_a_plane,
     loaded_with_options,
+    rubbing,
+    normalised,
+    loaded_normalised,
 ];

@@ -104,6 +104,7 @@ impl World {
             motion: &self.motion,
             store: &self.store,
             table: &self.table,
+            dt: 0.0,
         }
     }
 
@@ -157,7 +158,7 @@ impl World {
         let mut reaction = Reaction::default();
         reaction.clear();
         let place = u32::try_from(i).unwrap();
-        overlap::react(&self.view(), place, overlap, &mut reaction);
+        overlap::react::<false>(&self.view(), place, overlap, &mut reaction);
         potential::react(&self.view(), place, potential, &mut reaction);
         reaction
     }
@@ -209,7 +210,7 @@ impl World {
                     ContactMode::Potential(potential) => {
                         energy += 0.5 * self.potential_energy(i, j, &pair, potential);
                     }
-                    ContactMode::None | ContactMode::Kernel => {}
+                    ContactMode::None | ContactMode::Kernel | ContactMode::Penalty(_) => {}
                 }
             }
             if fraction > 0.0 {

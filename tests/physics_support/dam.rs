@@ -1,5 +1,6 @@
 //! The breaking dam, `inputs/dam-break`, and what is measured on it.
 
+use whipple::diagnose::pieces;
 use whipple::step::Simulation;
 
 use super::{ready, run_with, start};
@@ -39,8 +40,8 @@ pub fn run(overrides: &[&str], end: f64) -> Dam {
         worst = worst.max((volume(s) / first - 1.0).abs());
         wall = wall.min(distance_to_walls(s) / spacing);
         if arrivals[2].is_nan() {
-            // The outermost centre stands half a spacing inside the water, and touches a wall there.
-            let front = (bulk_front(s, spacing) + 0.55 * spacing) / WIDTH;
+            // Water that touches the far wall stands a trifle before it.
+            let front = (front(s, spacing) + 0.05 * spacing) / WIDTH;
             for (arrival, [z, time]) in arrivals.iter_mut().zip(MEASURED) {
                 if arrival.is_nan() && front >= z {
                     *arrival = s.state.time / TIME / time;
@@ -75,30 +76,10 @@ fn distance_to_walls(s: &Simulation) -> f64 {
     water(s).map(distance).fold(f64::INFINITY, f64::min)
 }
 
-/// Largest x of the water that hangs together with the column's foot, each particle within one and
-/// a half spacings of the next (m).
-fn bulk_front(s: &Simulation, spacing: f64) -> f64 {
-    let reach = 1.5 * spacing;
-    let mut order: Vec<usize> = water(s).collect();
-    order.sort_by(|&i, &j| s.store.position[i][0].total_cmp(&s.store.position[j][0]));
-    let at = |k: usize| s.store.position[order[k]];
-    let mut reached = vec![false; order.len()];
-    let (mut open, mut front) = (vec![0], at(0)[0]);
-    reached[0] = true;
-    while let Some(k) = open.pop() {
-        let [x, y, _] = at(k);
-        front = front.max(x);
-        let from = (0..k).rev().take_while(|&j| x - at(j)[0] < reach);
-        let to = (k + 1..order.len()).take_while(|&j| at(j)[0] - x < reach);
-        for j in from.chain(to) {
-            let [u, v, _] = at(j);
-            if !reached[j] && (u - x) * (u - x) + (v - y) * (v - y) < reach * reach {
-                reached[j] = true;
-                open.push(j);
-            }
-        }
-    }
-    front
+/// How far the bulk of the water reaches (m).
+fn front(s: &Simulation, spacing: f64) -> f64 {
+    let points: Vec<[f64; 3]> = water(s).map(|i| s.store.position[i]).collect();
+    pieces::front(&points, 0, spacing).expect("there is water")
 }
 
 /// One line for people.

@@ -166,6 +166,11 @@ pub fn write(path: &Path, case: &Case, particles: &Particles, time: f64) {
     );
     text(
         &about,
+        "rigid",
+        &serde_json::to_string(&vec![false; case.bodies.len()]).unwrap(),
+    );
+    text(
+        &about,
         "symmetry",
         &serde_json::to_string(&case.symmetry).unwrap(),
     );

@@ -3,11 +3,16 @@
 use toml::Spanned;
 
 use super::check::{Allowed, number};
+use crate::input::forms::FrictionParams;
 use crate::input::schema::{
-    BodyParams, ContactParams, ModeName, OverlapParams, PairParams, PotentialParams, RangeName,
+    BodyParams, ContactParams, DirectionName, ModeName, OverlapParams, PairParams, PenaltyLawName,
+    PenaltyParams, PotentialParams, RangeName,
 };
 use crate::input::source::Complaint;
-use crate::model::{ContactMode, ContactPair, Overlap, Potential, PotentialRange};
+use crate::model::{
+    ContactDirection, ContactMode, ContactPair, Overlap, Penalty, PenaltyLaw, Potential,
+    PotentialRange, Resistance, SphForm,
+};
 
 /// Largest exponent of the contact potential: beyond it a power of the kernel ratio says no more
 /// than that particles are closer than the mean spacing or not.
@@ -19,6 +24,8 @@ struct Choice {
     mode: ModeName,
     overlap: Overlap,
     potential: Potential,
+    resistance: Resistance,
+    penalty: Penalty,
 }
 
 impl Choice {
@@ -27,7 +34,11 @@ impl Choice {
             ModeName::None => ContactMode::None,
             ModeName::Kernel => ContactMode::Kernel,
             ModeName::Potential => ContactMode::Potential(self.potential),
-            ModeName::Overlap => ContactMode::Overlap(self.overlap),
+            ModeName::Overlap => ContactMode::Overlap(Overlap {
+                resistance: self.resistance,
+                ..self.overlap
+            }),
+            ModeName::Penalty => ContactMode::Penalty(self.penalty),
         }
     }
 }
@@ -36,26 +47,39 @@ impl Choice {
 pub fn contacts(
     params: &ContactParams,
     bodies: &[Spanned<BodyParams>],
+    form: SphForm,
 ) -> Result<(ContactMode, Vec<ContactPair>), Complaint> {
     let default = Choice {
         mode: params.mode.unwrap_or(ModeName::Overlap),
-        overlap: overlap(&params.overlap, Overlap::default())?,
-        potential: potential(&params.potential, Potential::default())?,
+        overlap: overlap(&params.overlap, Overlap::default(), form)?,
+        potential: potential(&params.potential, Potential::default(), form)?,
+        resistance: resistance(
+            params.friction.as_ref(),
+            params.damping.as_ref(),
+            Resistance::default(),
+        )?,
+        penalty: penalty(&params.penalty, Penalty::default())?,
     };
+    let modes = params.pair.iter().map(|pair| pair.mode);
+    let used = |mode: Option<ModeName>| mode.unwrap_or(default.mode) == ModeName::Overlap;
+    if !modes.chain([None]).any(used) {
+        refuse_resistance(params.friction.as_ref(), params.damping.as_ref())?;
+    }
     let mut pairs: Vec<ContactPair> = Vec::new();
     let is_rigid = |b: usize| bodies[b].get_ref().rigid == Some(true);
     let rigid = bodies.iter().find(|b| b.get_ref().rigid == Some(true));
-    if let (ModeName::Kernel, Some(body)) = (default.mode, rigid) {
-        return Err(unjoined(&body.get_ref().name, body.get_ref().name.span()));
+    if let (ModeName::Kernel | ModeName::Penalty, Some(body)) = (default.mode, rigid) {
+        let at = body.get_ref().name.span();
+        return Err(unfit(&body.get_ref().name, default.mode, at));
     }
     for pair in &params.pair {
         let indices = indices(pair, bodies)?;
         let [a, b] = indices;
-        if let (Some(ModeName::Kernel), Some(n)) =
+        if let (Some(mode @ (ModeName::Kernel | ModeName::Penalty)), Some(n)) =
             (pair.mode, [a, b].into_iter().position(is_rigid))
         {
             let at = pair.bodies.get_ref()[n].span();
-            return Err(unjoined(&bodies[indices[n]].get_ref().name, at));
+            return Err(unfit(&bodies[indices[n]].get_ref().name, mode, at));
         }
         if pairs
             .iter()
@@ -64,10 +88,19 @@ pub fn contacts(
             let title = "this pair of bodies has a contact already";
             return Err(Complaint::new(pair.bodies.span(), title));
         }
+        if !used(pair.mode) {
+            refuse_resistance(pair.friction.as_ref(), pair.damping.as_ref())?;
+        }
         let choice = Choice {
             mode: pair.mode.unwrap_or(default.mode),
-            overlap: overlap(&pair.overlap, default.overlap)?,
-            potential: potential(&pair.potential, default.potential)?,
+            resistance: resistance(
+                pair.friction.as_ref(),
+                pair.damping.as_ref(),
+                default.resistance,
+            )?,
+            overlap: overlap(&pair.overlap, default.overlap, form)?,
+            potential: potential(&pair.potential, default.potential, form)?,
+            penalty: penalty(&pair.penalty, default.penalty)?,
         };
         pairs.push(ContactPair {
             bodies: indices,
@@ -77,10 +110,15 @@ pub fn contacts(
     Ok((default.mode(), pairs))
 }
 
-/// A rigid body has no stress that could join the sums of another.
-fn unjoined(body: &Spanned<String>, at: std::ops::Range<usize>) -> Complaint {
+/// A rigid body has no stress that could join the sums of another, and no sums that could tell its
+/// boundary.
+fn unfit(body: &Spanned<String>, mode: ModeName, at: std::ops::Range<usize>) -> Complaint {
+    let mode = match mode {
+        ModeName::Kernel => "kernel",
+        _ => "penalty",
+    };
     let title = format!(
-        "the rigid body `{}` cannot have contact of mode `kernel`",
+        "the rigid body `{}` cannot have contact of mode `{mode}`",
         body.get_ref()
     );
     Complaint::new(at, title).help("take \"overlap\" or \"potential\" for its pairs")
@@ -102,7 +140,7 @@ fn indices(pair: &PairParams, bodies: &[Spanned<BodyParams>]) -> Result<[usize; 
     }
 }
 
-fn overlap(params: &OverlapParams, base: Overlap) -> Result<Overlap, Complaint> {
+fn overlap(params: &OverlapParams, base: Overlap, form: SphForm) -> Result<Overlap, Complaint> {
     let [stiffness, core_stiffness, core_radius] = [
         params.stiffness.as_ref(),
         params.core_stiffness.as_ref(),
@@ -119,6 +157,56 @@ fn overlap(params: &OverlapParams, base: Overlap) -> Result<Overlap, Complaint> 
             or_zero,
         )?,
         core_radius: number(core_radius, "core_radius", base.core_radius, range)?,
+        direction: direction(params.direction.as_ref(), base.direction, form)?,
+        resistance: base.resistance,
+    })
+}
+
+/// Only one mode knows friction and damping.
+fn refuse_resistance(
+    friction: Option<&Spanned<FrictionParams>>,
+    damping: Option<&Spanned<f64>>,
+) -> Result<(), Complaint> {
+    let at = [
+        friction.map(|key| ("friction", key.span())),
+        damping.map(|key| ("damping", key.span())),
+    ];
+    match at.into_iter().flatten().next() {
+        None => Ok(()),
+        Some((key, at)) => {
+            let title = format!("`{key}` acts in no contact but that of mode `overlap`");
+            Err(Complaint::new(at, title).help("set `mode = \"overlap\"`, or leave it out"))
+        }
+    }
+}
+
+fn resistance(
+    friction: Option<&Spanned<FrictionParams>>,
+    damping: Option<&Spanned<f64>>,
+    base: Resistance,
+) -> Result<Resistance, Complaint> {
+    let of = |value: &Spanned<f64>, key: &str| {
+        number(Some(value), key, 0.0, Allowed::NotNegative).map(Some)
+    };
+    let [sticking, sliding] = match friction.map(|f| (f.get_ref(), f.span())) {
+        None => [None, None],
+        Some((&FrictionParams::One(value), at)) => [of(&Spanned::new(at, value), "friction")?; 2],
+        Some((FrictionParams::Two(table), _)) => {
+            let [sticking, sliding] = [
+                of(&table.r#static, "static")?,
+                of(&table.kinetic, "kinetic")?,
+            ];
+            if sliding > sticking {
+                let title = "`kinetic` must be at most `static`";
+                return Err(Complaint::new(table.kinetic.span(), title).label("out of range"));
+            }
+            [sticking, sliding]
+        }
+    };
+    Ok(Resistance {
+        static_friction: sticking.unwrap_or(base.static_friction),
+        kinetic_friction: sliding.unwrap_or(base.kinetic_friction),
+        damping: number(damping, "damping", base.damping, Allowed::Within(0.0, 1.0))?,
     })
 }
 
@@ -135,7 +223,11 @@ fn exponent(value: Option<&Spanned<i64>>, base: u32) -> Result<u32, Complaint> {
     })
 }
 
-fn potential(params: &PotentialParams, base: Potential) -> Result<Potential, Complaint> {
+fn potential(
+    params: &PotentialParams,
+    base: Potential,
+    form: SphForm,
+) -> Result<Potential, Complaint> {
     let stiffness = params.stiffness.as_ref();
     Ok(Potential {
         stiffness: number(stiffness, "stiffness", base.stiffness, Allowed::Positive)?,
@@ -145,5 +237,38 @@ fn potential(params: &PotentialParams, base: Potential) -> Result<Potential, Com
             Some(RangeName::Spacing) => PotentialRange::Spacing,
             None => base.range,
         },
+        direction: direction(params.direction.as_ref(), base.direction, form)?,
     })
+}
+
+fn penalty(params: &PenaltyParams, base: Penalty) -> Result<Penalty, Complaint> {
+    let stiffness = params.stiffness.as_ref();
+    Ok(Penalty {
+        stiffness: number(stiffness, "stiffness", base.stiffness, Allowed::Positive)?,
+        law: match params.law {
+            Some(PenaltyLawName::Hertz) => PenaltyLaw::Hertz,
+            Some(PenaltyLawName::Pinball) => PenaltyLaw::Pinball,
+            None => base.law,
+        },
+    })
+}
+
+/// Normals are those of corrected gradients.
+fn direction(
+    name: Option<&Spanned<DirectionName>>,
+    base: ContactDirection,
+    form: SphForm,
+) -> Result<ContactDirection, Complaint> {
+    let Some(name) = name else {
+        return Ok(base);
+    };
+    match (name.get_ref(), form) {
+        (DirectionName::Pair, _) => Ok(ContactDirection::Pair),
+        (DirectionName::Normal, SphForm::Normalised) => Ok(ContactDirection::Normal),
+        (DirectionName::Normal, SphForm::Conventional) => {
+            let title = "contact along normals needs the corrected gradients of normalised SPH";
+            let help = "set `form = \"normalised\"` in [sph], or take \"pair\"";
+            Err(Complaint::new(name.span(), title).help(help))
+        }
+    }
 }

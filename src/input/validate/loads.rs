@@ -1,26 +1,25 @@
-//! Gravity, prescribed velocities and rigid planes.
+//! Gravity and prescribed velocities; rigid surfaces stand in `surfaces`.
+
+use std::path::Path;
 
 use toml::Spanned;
 
 use super::check::{Allowed, Value, number};
 use super::motion::motion;
 use super::shapes::wrong_length;
-use super::touch::direction;
-use crate::input::forms::NormalParams;
-use crate::input::quantity::{Acceleration, Length};
-use crate::input::schema::{CaseParams, LoadParams, Placed, PlaneParams, SidesParams};
+use crate::input::quantity::Acceleration;
+use crate::input::schema::{CaseParams, LoadParams, Placed, SidesParams};
 use crate::input::source::Complaint;
-use crate::model::{Axis, Body, Loads, Motion, RigidPlane, SymmetryPlane, VelocityLoad};
+use crate::model::{Axis, Body, Loads, SymmetryPlane, VelocityLoad};
 use crate::populate;
-
-/// Default stiffness of a rigid plane: that of the half spacing of material before it.
-const PLANE_STIFFNESS: f64 = 2.0;
 
 /// What loads are read with.
 pub struct Reader<'a> {
     pub dimension: usize,
     pub bodies: &'a [Body],
     pub symmetry: &'a [SymmetryPlane],
+    /// Where the files that the case names stand.
+    pub folder: &'a Path,
 }
 
 impl Reader<'_> {
@@ -31,12 +30,6 @@ impl Reader<'_> {
             .iter()
             .enumerate()
             .map(|(n, table)| self.load(table.get_ref(), n + 1))
-            .collect();
-        let planes: Result<Vec<RigidPlane>, _> = params
-            .plane
-            .iter()
-            .enumerate()
-            .map(|(n, table)| self.plane(table, n + 1))
             .collect();
         let rigid = self.bodies.iter().filter(|body| body.rigid.is_some());
         if let Some(table) = params.load.last()
@@ -52,7 +45,7 @@ impl Reader<'_> {
         Ok(Loads {
             gravity: self.gravity(params.gravity.as_ref())?,
             velocities: velocities?,
-            planes: planes?,
+            surfaces: self.surfaces(params)?,
         })
     }
 
@@ -61,7 +54,8 @@ impl Reader<'_> {
         let names = || {
             let loads = params.load.iter().map(|t| &t.get_ref().name);
             let planes = params.plane.iter().map(|t| &t.get_ref().name);
-            loads.chain(planes).flatten()
+            let surfaces = params.surface.iter().map(|t| &t.get_ref().name);
+            loads.chain(planes).chain(surfaces).flatten()
         };
         for (n, name) in names().enumerate() {
             let mut before = names().take(n).map(Spanned::get_ref);
@@ -102,7 +96,7 @@ impl Reader<'_> {
         Ok(gravity)
     }
 
-    fn body(&self, name: &Spanned<String>) -> Result<(usize, &Body), Complaint> {
+    pub fn body(&self, name: &Spanned<String>) -> Result<(usize, &Body), Complaint> {
         let found = self.bodies.iter().position(|b| b.name == *name.get_ref());
         let index = found.ok_or_else(|| {
             let known = self.bodies.iter().map(|body| body.name.as_str());
@@ -166,104 +160,9 @@ impl Reader<'_> {
         }
         Ok(sides)
     }
-
-    fn plane(
-        &self,
-        table: &Spanned<PlaneParams>,
-        number_of: usize,
-    ) -> Result<RigidPlane, Complaint> {
-        let params = table.get_ref();
-        let normal = self.normal(&params.normal)?;
-        let mut bodies: Vec<bool> = self.bodies.iter().map(|b| b.rigid.is_none()).collect();
-        if let Some(names) = &params.bodies {
-            bodies.fill(false);
-            for name in names {
-                let (index, body) = self.body(name)?;
-                if body.rigid.is_some() {
-                    let title = format!("the body `{}` is rigid: no plane moves it", body.name);
-                    return Err(Complaint::new(name.span(), title));
-                }
-                bodies[index] = true;
-            }
-        }
-        let stiffness = params.stiffness.as_ref();
-        let given = params.motion.as_ref();
-        let mut plane = RigidPlane {
-            name: given_name(params.name.as_ref(), "plane", number_of),
-            normal,
-            position: 0.0,
-            stiffness: number(stiffness, "stiffness", PLANE_STIFFNESS, Allowed::Positive)?,
-            bodies,
-            motion: given.map_or(Ok(Motion::default()), |m| motion(m, self.dimension))?,
-        };
-        plane.position = plane.along(&self.point(params.point.as_ref())?);
-        for (body, _) in self
-            .bodies
-            .iter()
-            .zip(&plane.bodies)
-            .filter(|(_, acts)| **acts)
-        {
-            let gap = populate::least(body, self.dimension, self.symmetry, |x| plane.gap(x));
-            if gap < 0.0 {
-                let title = format!(
-                    "the body `{}` reaches {:.3} spacings behind the plane",
-                    body.name,
-                    -gap / body.lattice.spacing
-                );
-                return Err(Complaint::new(table.get_ref().normal.span(), title).help(
-                    "the normal points to the side of the bodies; `bodies` names those that it \
-                     stops",
-                ));
-            }
-        }
-        Ok(plane)
-    }
-
-    /// The unit normal.
-    fn normal(&self, params: &Spanned<NormalParams>) -> Result<[f64; 3], Complaint> {
-        let mut normal = [0.0; 3];
-        match params.get_ref() {
-            NormalParams::Axis(word) => {
-                let (axis, forward) = direction(*word, params.span(), self.dimension)?;
-                normal[axis.index()] = if forward { 1.0 } else { -1.0 };
-            }
-            NormalParams::Vector(vector) => {
-                if vector.len() != self.dimension {
-                    let title = format!(
-                        "`normal` must have {} components, found {}",
-                        self.dimension,
-                        vector.len()
-                    );
-                    return Err(Complaint::new(params.span(), title));
-                }
-                let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
-                if !(length > 0.0 && length.is_finite()) {
-                    let title = "`normal` must be a vector of some length";
-                    return Err(Complaint::new(params.span(), title));
-                }
-                for (component, x) in normal.iter_mut().zip(vector) {
-                    *component = x / length;
-                }
-            }
-        }
-        Ok(normal)
-    }
-
-    fn point(&self, params: Option<&Spanned<Vec<Placed<Length>>>>) -> Result<[f64; 3], Complaint> {
-        let mut point = [0.0; 3];
-        if let Some(params) = params {
-            if params.get_ref().len() != self.dimension {
-                return Err(wrong_length("point", params, self.dimension));
-            }
-            for (component, value) in point.iter_mut().zip(params.get_ref()) {
-                *component = value.get_ref().si();
-            }
-        }
-        Ok(point)
-    }
 }
 
-fn given_name(name: Option<&Spanned<String>>, kind: &str, number_of: usize) -> String {
+pub fn given_name(name: Option<&Spanned<String>>, kind: &str, number_of: usize) -> String {
     name.map_or_else(
         || format!("{kind}-{number_of}"),
         |name| name.get_ref().clone(),

@@ -9,19 +9,21 @@ mod materials;
 mod motion;
 mod shapes;
 mod strength;
+mod surfaces;
 mod touch;
 
 use std::ops::Range;
+use std::path::Path;
 
+use super::overlap::overlap;
 use super::schema::{
     AxisName, BodyParams, CaseParams, DomainParams, OutputParams, RunParams, SmoothingName,
-    SphParams, SymmetryParams, TimeStepParams,
+    SphFormName, SphParams, SymmetryParams, TimeStepParams,
 };
-use super::overlap::overlap;
 use super::source::Complaint;
 use crate::model::{
-    Axis, Case, ContactMode, DomainOptions, OutputOptions, RunControl, SmoothingLength, SphOptions,
-    SymmetryPlane, TimeStepOptions,
+    Axis, Case, ContactMode, DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm,
+    SphOptions, SymmetryPlane, TimeStepOptions,
 };
 use crate::particles::{TEMPERATURE, snapshot_names};
 use check::{Allowed, number, whole};
@@ -30,8 +32,8 @@ use toml::Spanned;
 /// Overlaps up to this may be those of curved faces on a lattice (spacings).
 const MOST_OVERLAP: f64 = 0.5;
 
-/// Builds the case; `resolved` is left empty.
-pub fn case(params: CaseParams) -> Result<Case, Complaint> {
+/// Builds the case, whose files stand in `folder`; `resolved` is left empty.
+pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
     let dimension = dimension(&params.dimension)?;
     let symmetry = symmetry(&params.symmetry, dimension)?;
     let (names, mut materials) = materials::materials(&params.material)?;
@@ -52,11 +54,12 @@ pub fn case(params: CaseParams) -> Result<Case, Complaint> {
     if bodies.iter().any(|body| body.material == materials.len()) {
         materials.push(bodies::no_material());
     }
-    let (default_contact, contacts) = contact::contacts(&params.contact, &params.body)?;
+    let (default_contact, contacts) = contact::contacts(&params.contact, &params.body, sph.form)?;
     let loads = loads::Reader {
         dimension,
         bodies: &bodies,
         symmetry: &symmetry,
+        folder,
     }
     .loads(&params)?;
     let mut time_step = time_step(&params.time_step)?;
@@ -94,7 +97,7 @@ fn check_moduli(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Compl
         let material = &case.materials[body.material];
         let pushes = |b| match case.contact_between(a, b) {
             ContactMode::None | ContactMode::Kernel => false,
-            ContactMode::Overlap(_) | ContactMode::Potential(_) => a != b,
+            ContactMode::Overlap(_) | ContactMode::Potential(_) | ContactMode::Penalty(_) => a != b,
         };
         if material.p_wave_modulus() == 0.0 && (0..case.bodies.len()).any(pushes) {
             let title = format!(
@@ -203,6 +206,10 @@ fn sph(params: &SphParams) -> Result<SphOptions, Complaint> {
         max: number(max, "smoothing_length_max", 2.0, Allowed::Within(1.0, 10.0))?,
     };
     Ok(SphOptions {
+        form: match params.form {
+            None | Some(SphFormName::Conventional) => SphForm::Conventional,
+            Some(SphFormName::Normalised) => SphForm::Normalised,
+        },
         alpha: number(params.alpha.as_ref(), "alpha", 1.0, Allowed::NotNegative)?,
         beta: number(params.beta.as_ref(), "beta", 2.0, Allowed::NotNegative)?,
         smoothing_length: match params.smoothing_length {

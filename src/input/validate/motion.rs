@@ -4,26 +4,28 @@ use toml::Spanned;
 
 use super::check::Value;
 use crate::input::forms::OneOrMany;
-use crate::input::quantity::Velocity;
-use crate::input::schema::MotionParams;
+use crate::input::quantity::Time;
+use crate::input::schema::{MotionParams, Placed, RotationParams};
 use crate::input::source::Complaint;
 use crate::model::{Axis, Motion};
 
 /// The motion in a table that names at least one axis, all of them in the dimension.
 pub fn motion(table: &Spanned<MotionParams>, dimension: usize) -> Result<Motion, Complaint> {
     let params = table.get_ref();
-    let times = times(params)?;
+    let times = times(params.times.as_ref())?;
     let mut motion = Motion {
         times,
         ..Motion::default()
     };
+    let count = motion.times.len();
     for (axis, values) in Axis::ALL.into_iter().zip([&params.x, &params.y, &params.z]) {
         let Some(values) = values else { continue };
         if axis.index() >= dimension {
             let title = format!("a {dimension}-dimensional case has no {} axis", axis.name());
             return Err(Complaint::new(values.span(), title));
         }
-        motion.velocities[axis.index()] = Some(along(values, axis, params, motion.times.len())?);
+        motion.velocities[axis.index()] =
+            Some(along(values, axis.name(), params.times.is_some(), count)?);
     }
     if motion.velocities.iter().all(Option::is_none) {
         let title = "a velocity must be given along at least one of `x`, `y`, `z`";
@@ -32,8 +34,19 @@ pub fn motion(table: &Spanned<MotionParams>, dimension: usize) -> Result<Motion,
     Ok(motion)
 }
 
-fn times(params: &MotionParams) -> Result<Vec<f64>, Complaint> {
-    let Some(times) = &params.times else {
+/// The rate of a rotation (rad/s), as a motion along the first axis.
+pub fn rate(params: &RotationParams) -> Result<Motion, Complaint> {
+    let times = times(params.times.as_ref())?;
+    let timed = params.times.is_some();
+    let values = along(&params.rate, "rate", timed, times.len())?;
+    Ok(Motion {
+        times,
+        velocities: [Some(values), None, None],
+    })
+}
+
+fn times(params: Option<&Spanned<Vec<Placed<Time>>>>) -> Result<Vec<f64>, Complaint> {
+    let Some(times) = params else {
         return Ok(vec![0.0]);
     };
     let mut read: Vec<f64> = Vec::new();
@@ -51,16 +64,15 @@ fn times(params: &MotionParams) -> Result<Vec<f64>, Complaint> {
     Ok(read)
 }
 
-fn along(
-    values: &Spanned<OneOrMany<Velocity>>,
-    axis: Axis,
-    params: &MotionParams,
+fn along<K>(
+    values: &Spanned<OneOrMany<K>>,
+    name: &str,
+    timed: bool,
     count: usize,
 ) -> Result<Vec<f64>, Complaint> {
-    let name = axis.name();
     match values.get_ref() {
         OneOrMany::One(value) => Ok(vec![value.si(); count]),
-        OneOrMany::Many(_) if params.times.is_none() => {
+        OneOrMany::Many(_) if !timed => {
             let title = format!("`{name}` is a table of time without `times`");
             Err(Complaint::new(values.span(), title)
                 .help("add `times`, one for each value, or give one value for ever"))

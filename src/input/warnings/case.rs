@@ -1,7 +1,7 @@
 //! Mistakes of physics that a case as a whole can have.
 
 use super::approach::{Approach, flies_straight};
-use crate::model::{Body, Case, ContactMode, Overlap, Potential};
+use crate::model::{Body, Case, ContactMode, Overlap, Penalty, Potential};
 
 /// Fewer particles than this across the thinnest part resolve no bending and no wave.
 const ACROSS: f64 = 6.0;
@@ -92,6 +92,7 @@ pub fn stiffness(case: &Case, found: &mut Vec<String>) {
         let (stiffness, usual) = match mode {
             ContactMode::Potential(mode) => (mode.stiffness, Potential::default().stiffness),
             ContactMode::Overlap(mode) => (mode.stiffness, Overlap::default().stiffness),
+            ContactMode::Penalty(mode) => (mode.stiffness, Penalty::default().stiffness),
             ContactMode::None | ContactMode::Kernel => continue,
         };
         let name = mode.name();

@@ -6,7 +6,8 @@ use crate::material::{Eos, IdealGas, Strength, Tait, Viscous};
 const ATMOSPHERE: &str = "U.S. Standard Atmosphere (1976), sea level";
 const DIATOMIC: &str = "ideal gas of two atoms: γ = 7/5, c_v = R/(γ − 1) with R = 287.053 J/(kg K)";
 const NONE: &str = "none";
-const WATER: &str = "textbook value, at 20 °C: c = 1483 m/s";
+const WATER: &str = "water at 20 °C, c = 1483 m/s: Chaplin, Water structure and science, table of \
+     physical properties";
 const COLE: &str = "Cole (1948), Underwater explosions; Monaghan (1994), J. Comput. Phys. 110, 399";
 
 pub(super) const RECORDS: &[Record] = &[

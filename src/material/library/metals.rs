@@ -10,16 +10,16 @@ use crate::material::{
 const UINTAH: &str = "Steinberg-Guinan constants in Uintah, citing Steinberg, UCRL-MA-106439";
 const KEPT: &str = "no hardening: the initial yield stress is kept";
 const SPHERAL: &str = "Steinberg-Guinan constants of 304 steel in Spheral's tests";
-const JOHNSON_COOK: &str = "Johnson & Cook (1983), Proc. 7th Int. Symp. Ballistics, 541";
+const JOHNSON_COOK: &str = "Johnson & Cook (1983), Proc. 7th Int. Symp. Ballistics, 541, as other \
+     programs quote it";
 const UINTAH_JC: &str = "Johnson-Cook constants in Uintah";
 const ROOM: &str = "300 K, to which the other constants belong";
 const RATE: &str = "1/s, as in Johnson & Cook (1983)";
-const TEXTBOOK: &str = "textbook value";
+const ASSUMED_7039: &str = "assumed: about that of aluminium 2024";
+const ASSUMED: &str = "assumed: a round value of austenitic steel, from no one source";
 const MARSH: &str = "Hugoniot of iron: Marsh (1980), LASL shock Hugoniot data";
 const LIKE_2024: &str = "of aluminium 2024, as an approximation: Steinberg-Guinan constants in \
      Uintah, citing Steinberg, UCRL-MA-106439";
-const MELTING_LAW: &str = "Steinberg, Cochran & Guinan (1980), J. Appl. Phys. 51, 1498";
-const FRESH: &str = "no plastic strain at the start";
 
 /// Sources of a Mie–Grüneisen metal with von Mises strength.
 macro_rules! simple {
@@ -51,8 +51,6 @@ macro_rules! johnson_cook {
 macro_rules! steinberg {
     ($heat:expr) => {
         &[
-            ("strength.steinberg_guinan.a", MELTING_LAW),
-            ("strength.steinberg_guinan.initial_strain", FRESH),
             ("thermal.reference_temperature", ROOM),
             ("thermal", $heat),
             ("", UINTAH),
@@ -142,6 +140,8 @@ pub(super) const RECORDS: &[Record] = &[
             ("strength.johnson_cook.reference_rate", RATE),
             ("thermal.reference_temperature", ROOM),
             ("eos", LIKE_2024),
+            ("density", ASSUMED_7039),
+            ("thermal.specific_heat", ASSUMED_7039),
             ("", JOHNSON_COOK),
         ],
     },
@@ -180,7 +180,7 @@ pub(super) const RECORDS: &[Record] = &[
         name: "steel-304",
         title: "stainless steel 304, constant yield stress",
         make: || von_mises(&STEEL_304, 0.34e9, heat(500.0, 300.0, Some(1673.0))),
-        sources: simple!(SPHERAL, TEXTBOOK),
+        sources: simple!(SPHERAL, ASSUMED),
     },
     Record {
         name: "steel-4340-johnson-cook",
@@ -195,7 +195,7 @@ pub(super) const RECORDS: &[Record] = &[
         sources: &[
             (
                 "strength.johnson_cook.shear_modulus",
-                "E = 200 GPa, ν = .29: textbook values",
+                "assumed: E = 200 GPa, ν = .29, round values of low-alloy steel",
             ),
             ("strength.johnson_cook.reference_rate", RATE),
             ("thermal.reference_temperature", ROOM),

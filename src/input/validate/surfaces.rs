@@ -1,0 +1,313 @@
+//! Rigid surfaces: planes, and the shapes of `[[surface]]`.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use toml::Spanned;
+
+use super::axis;
+use super::check::{Allowed, Value, number};
+use super::loads::{Reader, given_name};
+use super::motion::{motion, rate};
+use super::shapes::wrong_length;
+use super::touch::direction;
+use crate::input::forms::NormalParams;
+use crate::input::quantity::Length;
+use crate::input::schema::{
+    AxisName, CaseParams, Placed, PlaneParams, RotationParams, SideName, StlParams,
+    SurfaceCylinderParams, SurfaceParams, SurfaceShapeParams, SurfaceSphereParams,
+};
+use crate::input::source::Complaint;
+use crate::input::stl;
+use crate::model::{Mesh, Motion, RigidSurface, Spin, SurfaceFile, SurfaceShape};
+use crate::populate;
+
+/// Default stiffness of a rigid surface: that of the half spacing of material before it.
+const STIFFNESS: f64 = 2.0;
+
+/// A place as it is typed.
+type Place = Spanned<Vec<Placed<Length>>>;
+
+impl Reader<'_> {
+    /// The planes and the other surfaces of a case.
+    pub fn surfaces(&self, params: &CaseParams) -> Result<Vec<RigidSurface>, Complaint> {
+        let planes = params.plane.iter().enumerate();
+        let mut all = Vec::new();
+        for (n, table) in planes {
+            let (surface, table) = (self.plane(table.get_ref(), n + 1)?, table.get_ref());
+            self.check_start(&surface, &table.normal.span())?;
+            all.push(surface);
+        }
+        for (n, table) in params.surface.iter().enumerate() {
+            let (surface, table) = (self.surface(table.get_ref(), n + 1)?, table.get_ref());
+            self.check_start(&surface, &table.shape.span())?;
+            all.push(surface);
+        }
+        Ok(all)
+    }
+
+    fn plane(&self, params: &PlaneParams, number_of: usize) -> Result<RigidSurface, Complaint> {
+        let normal = self.normal(&params.normal)?;
+        let point = self.place("point", params.point.as_ref())?;
+        let position = normal[0] * point[0] + normal[1] * point[1] + normal[2] * point[2];
+        let stiffness = params.stiffness.as_ref();
+        let given = params.motion.as_ref();
+        Ok(RigidSurface {
+            name: given_name(params.name.as_ref(), "plane", number_of),
+            shape: SurfaceShape::Plane { normal, position },
+            inside: false,
+            stiffness: number(stiffness, "stiffness", STIFFNESS, Allowed::Positive)?,
+            bodies: self.acts_on(params.bodies.as_deref())?,
+            motion: given.map_or(Ok(Motion::default()), |m| motion(m, self.dimension))?,
+            spin: None,
+            file: None,
+        })
+    }
+
+    fn surface(&self, params: &SurfaceParams, number_of: usize) -> Result<RigidSurface, Complaint> {
+        let (shape, file) = self.shape(&params.shape)?;
+        let stiffness = params.stiffness.as_ref();
+        let given = params.motion.as_ref();
+        let spin = params.rotation.as_ref().map(|table| self.spin(table));
+        Ok(RigidSurface {
+            name: given_name(params.name.as_ref(), "surface", number_of),
+            shape,
+            inside: params.side == Some(SideName::Inside),
+            stiffness: number(stiffness, "stiffness", STIFFNESS, Allowed::Positive)?,
+            bodies: self.acts_on(params.bodies.as_deref())?,
+            motion: given.map_or(Ok(Motion::default()), |m| motion(m, self.dimension))?,
+            spin: spin.transpose()?,
+            file,
+        })
+    }
+
+    /// Which bodies feel a surface: those named, or all that are not rigid.
+    fn acts_on(&self, names: Option<&[Spanned<String>]>) -> Result<Vec<bool>, Complaint> {
+        let mut bodies: Vec<bool> = self.bodies.iter().map(|b| b.rigid.is_none()).collect();
+        let Some(names) = names else {
+            return Ok(bodies);
+        };
+        bodies.fill(false);
+        for name in names {
+            let (index, body) = self.body(name)?;
+            if body.rigid.is_some() {
+                let title = format!("the body `{}` is rigid: no surface moves it", body.name);
+                return Err(Complaint::new(name.span(), title));
+            }
+            bodies[index] = true;
+        }
+        Ok(bodies)
+    }
+
+    /// No body may begin behind a surface.
+    fn check_start(&self, surface: &RigidSurface, at: &Range<usize>) -> Result<(), Complaint> {
+        let acts = surface.bodies.iter();
+        for (body, _) in self.bodies.iter().zip(acts).filter(|(_, acts)| **acts) {
+            let gap = populate::smallest_gap(body, self.dimension, self.symmetry, surface);
+            if gap >= 0.0 {
+                continue;
+            }
+            let behind = -gap / body.lattice.spacing;
+            let (what, help) = match surface.shape {
+                SurfaceShape::Plane { .. } => (
+                    "plane",
+                    "the normal points to the side of the bodies; `bodies` names those that it \
+                     stops",
+                ),
+                _ => (
+                    "surface",
+                    "`side` says whether bodies are outside or inside; `bodies` names those that \
+                     it stops",
+                ),
+            };
+            let name = &body.name;
+            let title = format!("the body `{name}` reaches {behind:.3} spacings behind the {what}");
+            return Err(Complaint::new(at.clone(), title).help(help));
+        }
+        Ok(())
+    }
+
+    fn shape(
+        &self,
+        table: &Spanned<SurfaceShapeParams>,
+    ) -> Result<(SurfaceShape, Option<SurfaceFile>), Complaint> {
+        let SurfaceShapeParams {
+            sphere,
+            cylinder,
+            stl,
+        } = table.get_ref();
+        let needs = |least: usize, shape: &str| {
+            let title = format!("a {}-dimensional case has no {shape}", self.dimension);
+            if self.dimension >= least {
+                return Ok(());
+            }
+            let other = if self.dimension == 1 {
+                "a `[[plane]]`"
+            } else {
+                "`shape.sphere`, a disc,"
+            };
+            Err(Complaint::new(table.span(), title).help(format!("take {other} instead")))
+        };
+        match (sphere, cylinder, stl) {
+            (Some(params), None, None) => {
+                needs(2, "sphere")?;
+                Ok((self.sphere(params)?, None))
+            }
+            (None, Some(params), None) => {
+                needs(3, "cylinder")?;
+                Ok((self.cylinder(params)?, None))
+            }
+            (None, None, Some(params)) => {
+                needs(3, "surface of triangles")?;
+                let (shape, file) = self.mesh(params)?;
+                Ok((shape, Some(file)))
+            }
+            _ => Err(Complaint::new(
+                table.span(),
+                "`shape` must have exactly one of `sphere`, `cylinder`, `stl`",
+            )),
+        }
+    }
+
+    fn sphere(&self, params: &SurfaceSphereParams) -> Result<SurfaceShape, Complaint> {
+        Ok(SurfaceShape::Sphere {
+            centre: self.place("centre", params.centre.as_ref())?,
+            radius: number(Some(&params.radius), "radius", 0.0, Allowed::Positive)?,
+        })
+    }
+
+    fn cylinder(&self, params: &SurfaceCylinderParams) -> Result<SurfaceShape, Complaint> {
+        let length = params.length.as_ref();
+        Ok(SurfaceShape::Cylinder {
+            centre: self.place("centre", params.centre.as_ref())?,
+            axis: unit(params.axis.as_ref().map_or(&AxisName::Z, Spanned::get_ref)),
+            radius: number(Some(&params.radius), "radius", 0.0, Allowed::Positive)?,
+            half_length: 0.5 * number(length, "length", f64::INFINITY, Allowed::Positive)?,
+        })
+    }
+
+    fn mesh(&self, params: &StlParams) -> Result<(SurfaceShape, SurfaceFile), Complaint> {
+        let unit_length = number(Some(&params.unit), "unit", 0.0, Allowed::Positive)?;
+        let at = self.place("at", params.at.as_ref())?;
+        let path = self.folder.join(params.file.get_ref());
+        let refuse = |cause: &str| {
+            let title = format!(
+                "cannot take the surface `{}`: {cause}",
+                params.file.get_ref()
+            );
+            Complaint::new(params.file.span(), title)
+        };
+        let (mut soup, file) = stl::read(&path).map_err(|cause| {
+            refuse(&cause).help(format!("the file should be {}", path.display()))
+        })?;
+        if let Some(known) = params
+            .sha256
+            .as_ref()
+            .filter(|d| *d.get_ref() != file.sha256)
+        {
+            let title = format!(
+                "the file {} is no longer the one that the case began with",
+                file.path
+            );
+            return Err(Complaint::new(known.span(), title)
+                .help("bring it back, or begin a new case without `sha256`"));
+        }
+        let turn = params.turn.as_ref();
+        let turn = turn.map(|turn| (unit(turn.axis.get_ref()), turn.angle.get_ref().si()));
+        for x in soup.iter_mut().flatten() {
+            let scaled = x.map(|c| c * unit_length);
+            let turned = turn.map_or(scaled, |(axis, angle)| turned(&scaled, &axis, angle));
+            *x = std::array::from_fn(|a| turned[a] + at[a]);
+        }
+        let mesh = Mesh::new(&soup).map_err(|cause| {
+            refuse(&cause.to_string()).help("a rigid surface must be one or more closed solids")
+        })?;
+        Ok((SurfaceShape::Mesh(Arc::new(mesh)), file))
+    }
+
+    fn spin(&self, table: &Spanned<RotationParams>) -> Result<Spin, Complaint> {
+        let params = table.get_ref();
+        match self.dimension {
+            1 => {
+                let title = "a 1-dimensional case has no rotation";
+                return Err(Complaint::new(table.span(), title));
+            }
+            2 if *params.axis.get_ref() != AxisName::Z => {
+                let title = "a 2-dimensional case turns about z alone";
+                return Err(Complaint::new(params.axis.span(), title));
+            }
+            2 => {}
+            _ => {
+                axis(&params.axis, self.dimension)?;
+            }
+        }
+        Ok(Spin {
+            point: self.place("point", params.point.as_ref())?,
+            axis: unit(params.axis.get_ref()),
+            rate: rate(params)?,
+        })
+    }
+
+    /// The unit normal.
+    fn normal(&self, params: &Spanned<NormalParams>) -> Result<[f64; 3], Complaint> {
+        let mut normal = [0.0; 3];
+        match params.get_ref() {
+            NormalParams::Axis(word) => {
+                let (axis, forward) = direction(*word, params.span(), self.dimension)?;
+                normal[axis.index()] = if forward { 1.0 } else { -1.0 };
+            }
+            NormalParams::Vector(vector) => {
+                if vector.len() != self.dimension {
+                    let title = format!(
+                        "`normal` must have {} components, found {}",
+                        self.dimension,
+                        vector.len()
+                    );
+                    return Err(Complaint::new(params.span(), title));
+                }
+                let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+                if !(length > 0.0 && length.is_finite()) {
+                    let title = "`normal` must be a vector of some length";
+                    return Err(Complaint::new(params.span(), title));
+                }
+                for (component, x) in normal.iter_mut().zip(vector) {
+                    *component = x / length;
+                }
+            }
+        }
+        Ok(normal)
+    }
+
+    /// A place (m); the origin if absent.
+    fn place(&self, key: &str, params: Option<&Place>) -> Result<[f64; 3], Complaint> {
+        let mut place = [0.0; 3];
+        if let Some(params) = params {
+            if params.get_ref().len() != self.dimension {
+                return Err(wrong_length(key, params, self.dimension));
+            }
+            for (component, value) in place.iter_mut().zip(params.get_ref()) {
+                *component = value.get_ref().si();
+            }
+        }
+        Ok(place)
+    }
+}
+
+fn unit(axis: &AxisName) -> [f64; 3] {
+    match axis {
+        AxisName::X => [1.0, 0.0, 0.0],
+        AxisName::Y => [0.0, 1.0, 0.0],
+        AxisName::Z => [0.0, 0.0, 1.0],
+    }
+}
+
+/// A vector turned by an angle (rad) about a coordinate axis.
+fn turned(x: &[f64; 3], axis: &[f64; 3], angle: f64) -> [f64; 3] {
+    let (s, c) = (libm::sin(angle), libm::cos(angle));
+    let n = (0..3).position(|a| axis[a] == 1.0).unwrap_or(2);
+    let (k, l) = ((n + 1) % 3, (n + 2) % 3);
+    let mut turned = *x;
+    turned[k] = c * x[k] - s * x[l];
+    turned[l] = s * x[k] + c * x[l];
+    turned
+}
