@@ -161,7 +161,8 @@ fn overridden(key: &Key, value: &str) -> String {
         .replace("contact.pair.", "contact.pair.0.")
         .replace("symmetry.", "symmetry.0.")
         .replace("load.", "load.0.")
-        .replace("plane.", "plane.0.");
+        .replace("plane.", "plane.0.")
+        .replace("surface.", "surface.0.");
     // Keys below `touch` and the like end with the same words.
     let path = path.replace("load.0.body.0.", "load.0.body.");
     let set = format!("{path}={value}");
