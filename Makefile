@@ -4,7 +4,7 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help deps test-deps release impact test run-tests check validation fuzz pictures bench bench-kernels docs clean
+.PHONY: help deps test-deps release impact test run-tests check validation fuzz pictures contact-lab bench bench-kernels docs clean
 
 # The environment of every build and launch: Open MPI's settings, HDF5_DIR.
 ENV := source jobs/env.sh;
@@ -37,6 +37,9 @@ validation: test-deps $(VENV)/ready ## Run the slow physics tests and draw the p
 
 pictures: release ## Run the cases of the validation page and draw its pictures
 	jobs/validation-pictures.sh
+
+contact-lab: release ## Measure contact on small cases, write the tables of the book's page on it
+	jobs/contact-lab.sh
 
 bench: release ## Time fixed cases on threads and ranks, beside other programs where installed
 	$(ENV) target/release/whipple bench --json target/bench.json
