@@ -39,7 +39,9 @@ fn text(path: &Path) -> &str {
 
 #[test]
 fn check_says_what_a_case_costs() {
-    let said = output(&["check", &quarter_impact(), "--set", "spacing=0.05mm"]);
+    let coarse = ["check", &quarter_impact(), "--set", "spacing=0.05mm"];
+    let ended = end(without_mpi().args(coarse)).with_code(0);
+    assert_eq!(ended.complaints("warning: `plate` has 4.0 particles across").len(), 1);
     let expected = "\
 Aluminium sphere at 7 km/s on an aluminium plate (3-D): sound
   plate                  2828 particles of aluminium, spacing 0.0500 mm, h 0.0650 mm
@@ -47,7 +49,7 @@ Aluminium sphere at 7 km/s on an aluminium plate (3-D): sound
   all                    3056 particles, about 2 MB over all ranks
   about 55 steps to 0.2000 us
 ";
-    assert_eq!(said, expected);
+    assert_eq!(ended.stdout, expected);
 
     // What is doubtful is said, and said by a run, too.
     let set = [

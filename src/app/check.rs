@@ -36,12 +36,7 @@ const BYTES_FOR_CONTACT: f64 = 170.0;
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &CheckArgs) -> u8 {
-    let path = if args.case.is_dir() {
-        args.case.join("case.toml")
-    } else {
-        args.case.clone()
-    };
-    let case = match input::load(&path, &args.set) {
+    let case = match input::load(&args.case, &args.set) {
         Ok(case) => case,
         Err(error) => {
             eprintln!("{}", error.to_string().trim_end());
@@ -52,7 +47,8 @@ pub fn run(args: &CheckArgs) -> u8 {
         eprintln!("error: {error}");
         return EXIT_INPUT;
     }
-    for warning in input::warnings(&case) {
+    let warnings = input::warnings(&case);
+    for warning in warnings.into_iter().chain(input::advice(&case)) {
         eprintln!("warning: {warning}");
     }
     print_report(&case);

@@ -105,32 +105,23 @@ fn start(launch: &Launch, args: &CommonArgs, case: Case, folder: &RunFolder) -> 
 
 /// The case file and its text, read by rank 0 for all.
 fn read_case(comm: &Comm, path: &Path) -> Result<(PathBuf, String), String> {
-    let path = if path.is_dir() {
-        path.join("case.toml")
-    } else {
-        path.to_owned()
-    };
-    // The first byte tells whether the rest is the text or an error.
+    // The first byte tells whether the rest is path and text or an error.
     let mut bytes = Vec::new();
     if comm.is_root() {
-        match std::fs::read_to_string(&path) {
-            Ok(text) => {
-                bytes.push(0);
-                bytes.extend_from_slice(text.as_bytes());
-            }
-            Err(error) => {
-                bytes.push(1);
-                let text = format!("error: cannot read the case {}: {error}", path.display());
-                bytes.extend_from_slice(text.as_bytes());
-            }
-        }
+        let (kind, text) = match input::text(path) {
+            Ok((path, text)) => (0, format!("{}\0{text}", path.display())),
+            Err(error) => (1, error.to_string()),
+        };
+        bytes.push(kind);
+        bytes.extend_from_slice(text.as_bytes());
     }
     comm.broadcast(&mut bytes);
     let text = String::from_utf8_lossy(bytes.get(1..).unwrap_or_default()).into_owned();
-    if bytes.first() == Some(&0) {
-        Ok((path, text))
-    } else {
-        Err(text)
+    match text.split_once('\0') {
+        Some((path, text)) if bytes.first() == Some(&0) => {
+            Ok((PathBuf::from(path), text.to_owned()))
+        }
+        _ => Err(text),
     }
 }
 

@@ -116,7 +116,7 @@ impl Simulation {
         if set & NORMALISED != 0 {
             self.fill_normalised(halo);
         }
-        // All options but the normalised form are summed together with some that read records.
+        // A compiled set may have more options than the case: then they show neutral data.
         if set & !NORMALISED == 0 {
             return;
         }
