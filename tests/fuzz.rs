@@ -70,12 +70,9 @@ impl Met {
     pub fn is_new(&mut self, message: &str) -> bool {
         let title = message.lines().next().unwrap_or_default();
         let plain = title.split(['`', '"']).step_by(2).collect::<String>();
-        self.0.insert(
-            plain
-                .chars()
-                .filter(|c| c.is_alphabetic() || *c == ' ')
-                .collect(),
-        )
+        let plain = plain.chars().filter(|c| c.is_ascii_alphabetic());
+        // The begin of a message: what is quoted may have quotes of its own.
+        self.0.insert(plain.take(30).collect())
     }
 
     /// How many there are.

@@ -203,6 +203,10 @@ fn values(dataset: &hdf5::Dataset, random: &mut Random) -> hdf5::Result<()> {
         1e308_f64.to_bits(),
         random.bits(),
     ];
+    // One that was declared and never filled.
+    if dataset.size() > 1 << 20 {
+        return Ok(());
+    }
     macro_rules! change {
         ($type:ty, $of:expr) => {{
             let mut all = dataset.read_raw::<$type>()?;
