@@ -26,6 +26,7 @@ pub struct Budget {
 
 impl Budget {
     /// The seconds in `WHIPPLE_FUZZ_SECONDS`, or so many executions.
+    #[must_use]
     pub fn new(executions: usize) -> Self {
         let seconds = std::env::var("WHIPPLE_FUZZ_SECONDS").ok();
         let seconds = seconds.and_then(|text| text.parse().ok());
@@ -34,11 +35,13 @@ impl Budget {
     }
 
     /// Whether new texts are kept.
+    #[must_use]
     pub fn keeps(&self) -> bool {
         self.until.is_some()
     }
 
     /// Whether to go on after so many.
+    #[must_use]
     pub fn allows(&self, done: usize) -> bool {
         match self.until {
             Some(until) => Instant::now() < until,
@@ -48,6 +51,7 @@ impl Budget {
 }
 
 /// Random numbers; other ones each time when there is time to spend.
+#[must_use]
 pub fn random(budget: &Budget) -> Random {
     let clock = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
     Random::new(match clock {
@@ -57,6 +61,7 @@ pub fn random(budget: &Budget) -> Random {
 }
 
 /// Where texts are kept.
+#[must_use]
 pub fn folder() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz")
 }
@@ -70,12 +75,13 @@ impl Met {
     pub fn is_new(&mut self, message: &str) -> bool {
         let title = message.lines().next().unwrap_or_default();
         let plain = title.split(['`', '"']).step_by(2).collect::<String>();
-        let plain = plain.chars().filter(|c| c.is_ascii_alphabetic());
+        let plain = plain.chars().filter(char::is_ascii_alphabetic);
         // The begin of a message: what is quoted may have quotes of its own.
         self.0.insert(plain.take(30).collect())
     }
 
     /// How many there are.
+    #[must_use]
     pub fn count(&self) -> usize {
         self.0.len()
     }

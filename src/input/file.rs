@@ -46,7 +46,7 @@ pub fn text(path: &Path) -> Result<(PathBuf, String), InputError> {
             let (at, bytes) = (error.utf8_error().valid_up_to(), error.as_bytes());
             Err(InputError::NoText {
                 path,
-                line: 1 + bytes[..at].iter().filter(|byte| **byte == b'\n').count(),
+                line: bytes[..at].split(|&byte| byte == b'\n').count(),
                 byte: bytes[at],
             })
         }

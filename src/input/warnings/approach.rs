@@ -24,6 +24,7 @@ pub struct Approach {
 }
 
 /// All pairs of bodies whose velocities are constant until something is met.
+#[must_use]
 pub fn approaches(case: &Case) -> Vec<Approach> {
     let mut found = Vec::new();
     for a in 0..case.bodies.len() {
@@ -73,14 +74,7 @@ fn from_points(case: &Case, body: &Body, target: &Body, velocity: Vec3) -> (f64,
     for point in points().step_by(stride).map(Vec3::from) {
         let start = distance(&point);
         gap = gap.min(start);
-        time = time.min(hit(
-            &distance,
-            point,
-            start,
-            velocity,
-            TOUCH * spacing,
-            time,
-        ));
+        time = time.min(hit(distance, point, start, velocity, TOUCH * spacing, time));
     }
     let resting = speed == 0.0 && gap > TOUCH * spacing;
     (gap, if resting { f64::INFINITY } else { time })

@@ -7,7 +7,7 @@ use crate::model::Case;
 /// A linear equation of state misses the stiffening of compressed matter, by a tenth of the
 /// pressure and more once the strain `u/c` of the shock is a tenth or so.
 const LINEAR: f64 = 0.1;
-/// Tait's law is right to some 2.5 GPa for water (Cole 1948, *Underwater Explosions*, section 2.3),
+/// Tait's law is right to some 2.5 `GPa` for water (Cole 1948, *Underwater Explosions*, section 2.3),
 /// which a shock of `u/c = 0.6` reaches.
 const TAIT: f64 = 0.6;
 /// Matter shocked to `u = c₀` has gained `c₀²/2`, about what binds a metal (aluminium: 14 of
@@ -28,15 +28,14 @@ pub fn warnings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
             }
             let partner = &case.bodies[pair.bodies[other]];
             let material = &case.materials[index];
-            let share = match partner.rigid {
-                Some(_) => 1.0,
-                None => {
-                    let (z, z_other) = (
-                        impedance(material),
-                        impedance(&case.materials[materials[other]]),
-                    );
-                    z_other / (z + z_other)
-                }
+            let share = if partner.rigid.is_some() {
+                1.0
+            } else {
+                let (z, z_other) = (
+                    impedance(material),
+                    impedance(&case.materials[materials[other]]),
+                );
+                z_other / (z + z_other)
             };
             let ratio = pair.speed * share / sound_speed(material);
             if let Some(what) = beyond(&material.eos, ratio) {
