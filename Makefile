@@ -4,7 +4,7 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help deps test-deps release impact test run-tests check validation pictures bench bench-kernels docs clean
+.PHONY: help deps test-deps release impact test run-tests check validation fuzz pictures contact-lab bench bench-kernels docs clean
 
 # The environment of every build and launch: Open MPI's settings, HDF5_DIR.
 ENV := source jobs/env.sh;
@@ -28,12 +28,18 @@ check: test-deps
 	$(ENV) RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps
 	$(MAKE) run-tests
 
+fuzz: test-deps ## Read random inputs and checkpoints for ten minutes each; new ones stay in tests/fuzz/
+	$(ENV) WHIPPLE_FUZZ_SECONDS=600 cargo test --locked --test fuzz -- --nocapture --test-threads=1
+
 validation: test-deps $(VENV)/ready ## Run the slow physics tests and draw the pictures
 	$(ENV) jobs/cargo-test.sh --ignored
 	$(MAKE) pictures
 
 pictures: release ## Run the cases of the validation page and draw its pictures
 	jobs/validation-pictures.sh
+
+contact-lab: release ## Measure contact on small cases, write the tables of the book's page on it
+	jobs/contact-lab.sh
 
 bench: release ## Time fixed cases on threads and ranks, beside other programs where installed
 	$(ENV) target/release/whipple bench --json target/bench.json

@@ -120,7 +120,7 @@ rotation = { axis = "x", point = [0, "8 mm", "12 mm"], times = [0, "3 ms"], rate
         s.case.time_step.courant = courant.parse().expect("a number");
         let mut twist = 0.0_f64;
         run_with(&mut s, 6e-3, |s| {
-            twist = twist.max(s.state.loads[0].torque.abs())
+            twist = twist.max(s.state.loads[0].torque.abs());
         });
         let (worst, load) = (&s.state.worst, &s.state.loads[0]);
         println!("courant {courant}: {load:?} {worst:?}");

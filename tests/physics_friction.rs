@@ -131,7 +131,8 @@ fn a_block_slides_with_the_exact_acceleration() {
         ("0", 0.0),
     ] {
         for angle in [0.0, 30.0] {
-            for tangent in [0.45] {
+            {
+                let tangent = 0.45;
                 let mut s = start(inline(&block(friction, tangent, angle, "1 s")));
                 let (acceleration, way) = slide(&mut s);
                 let exact = 200.0 * (tangent - kinetic);

@@ -133,6 +133,9 @@ fn resume(launch: &Launch, args: &RestartArgs, found: Found) -> u8 {
     if let Err(error) = snapshot::quantities(&case.output.fields) {
         return complain(comm, &format!("error: {error}"));
     }
+    if let Some(message) = args.common.shortage(comm, &case) {
+        return complain(comm, &message);
+    }
     let Ok(state) = serde_json::from_str::<RunState>(&restored.state) else {
         let message = "the saved state is not one that this version of the program can read";
         return complain(comm, &format!("error: {}: {message}", checkpoint.display()));

@@ -182,7 +182,7 @@ mod tests {
         let limit = Some(Duration::from_secs(100));
         let signals = Signals(Arc::new(AtomicBool::new(false)));
         let mut watch = Watch::new(signals, None, Instant::now(), limit);
-        watch.wrote_checkpoint(Duration::from_secs(60));
+        watch.wrote_checkpoint(Duration::from_mins(1));
         assert_eq!(watch.wishes(), 0);
         watch.wrote_snapshot(Duration::from_secs(40));
         assert_eq!(watch.wishes(), CLOCK);

@@ -12,16 +12,19 @@ use crate::model::{Loads, SurfaceFile};
 const HEAD: usize = 84;
 const TRIANGLE: usize = 50;
 
+/// The corners of a triangle.
+type Triangle = [[f64; 3]; 3];
+
 /// Reads the triangles of a file, in its own units.
 ///
 /// # Errors
 /// What is wrong, as the end of "cannot read `file`: …".
-pub fn read(path: &Path) -> Result<(Vec<[[f64; 3]; 3]>, SurfaceFile), String> {
+pub fn read(path: &Path) -> Result<(Vec<Triangle>, SurfaceFile), String> {
     let mut bytes = std::fs::read(path).map_err(|cause| cause.to_string())?;
     let digest = Sha256::digest(&bytes);
     let file = SurfaceFile {
         path: absolute(path),
-        sha256: digest.iter().map(|byte| format!("{byte:02x}")).collect(),
+        sha256: format!("{digest:x}"),
     };
     prepare(&mut bytes)?;
     let mut content = Cursor::new(bytes);
@@ -109,9 +112,9 @@ mod tests {
         let mut bytes = header.to_vec();
         bytes.resize(80, b' ');
         bytes.extend(count.to_le_bytes());
-        bytes.extend((0..count).flat_map(|n| {
+        bytes.extend((0_u8..).take(count as usize).flat_map(|n| {
             let mut triangle = [0; 50];
-            triangle[12..16].copy_from_slice(&(1.0 + f32::from(n as u8)).to_le_bytes());
+            triangle[12..16].copy_from_slice(&(1.0 + f32::from(n)).to_le_bytes());
             triangle
         }));
         bytes

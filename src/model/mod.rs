@@ -7,6 +7,7 @@
 mod body;
 mod contact;
 mod control;
+mod distance;
 mod load;
 mod motion;
 mod surface;

@@ -51,7 +51,7 @@ pub enum OutputError {
         "the run {} has no {}checkpoint to restart from; run its case again{}",
         path.display(),
         if passed_over.is_empty() { "" } else { "whole " },
-        passed_over.iter().map(|why| format!("\n  {why}")).collect::<String>()
+        lines(passed_over)
     )]
     NoCheckpoint {
         /// The run's folder.
@@ -141,4 +141,9 @@ impl OutputError {
                 | Self::UnknownField { .. }
         )
     }
+}
+
+/// Each on a line of its own, after what stands before them.
+fn lines(reasons: &[String]) -> String {
+    [&[String::new()], reasons].concat().join("\n  ")
 }

@@ -40,6 +40,9 @@ pub enum SetupError {
     /// The lattices need more identities than there are.
     #[error("the bodies' lattices have too many sites to number; use larger spacings")]
     TooManySites,
+    /// A restored state is not one of the case.
+    #[error("the saved state is not one of this case: {0}")]
+    Foreign(&'static str),
     /// The first evaluation failed.
     #[error(transparent)]
     Step(#[from] StepError),
@@ -78,6 +81,19 @@ impl Simulation {
         simulation.store = store;
         let unused = unused_fields(&simulation.case, &simulation.contact);
         simulation.store.drop_fields(unused);
+        let [pairs, loads] = [simulation.state.pairs.len(), simulation.state.loads.len()];
+        if [state.pairs.len(), state.loads.len()] != [pairs, loads] {
+            return Err(SetupError::Foreign("it has other pairs of bodies or loads"));
+        }
+        let bodies = simulation.case.bodies.len();
+        let of_no_body = simulation
+            .store
+            .body
+            .iter()
+            .any(|&body| body as usize >= bodies);
+        if comm.any(of_no_body) {
+            return Err(SetupError::Foreign("it has particles of another body"));
+        }
         simulation.state = state;
         simulation.slabs = balance(
             comm,

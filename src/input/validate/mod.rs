@@ -16,6 +16,7 @@ mod trouble;
 use std::ops::Range;
 use std::path::Path;
 
+use super::overlap::overlap;
 use super::schema::{
     AxisName, BodyParams, CaseParams, DomainParams, OutputParams, RunParams, SmoothingName,
     SphFormName, SphParams, SymmetryParams, TimeStepParams,
@@ -28,6 +29,9 @@ use crate::model::{
 use crate::particles::{TEMPERATURE, snapshot_names};
 use check::{Allowed, number, whole};
 use toml::Spanned;
+
+/// Overlaps up to this may be those of curved faces on a lattice (spacings).
+const MOST_OVERLAP: f64 = 0.5;
 
 /// Builds the case, whose files stand in `folder`; `resolved` is left empty.
 pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
@@ -85,6 +89,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
     };
     case.trouble = trouble::trouble(&params.trouble, &case)?;
     check_moduli(&case, &params.body)?;
+    check_overlaps(&case, &params.body)?;
     check_temperature(&case, &fields)?;
     Ok(case)
 }
@@ -105,6 +110,33 @@ fn check_moduli(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Compl
             let named = table.get_ref().material.as_ref();
             return Err(Complaint::new(named.map_or_else(|| table.span(), Spanned::span), title)
                 .help("give its `eos.ideal_gas` a `reference_pressure`, or join the bodies by `kernel` contact"));
+        }
+    }
+    Ok(())
+}
+
+/// Bodies that begin within each other would fly apart at once.
+fn check_overlaps(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Complaint> {
+    for (b, table) in params.iter().enumerate() {
+        for a in 0..b {
+            let bodies = [a, b].map(|body| &case.bodies[body]);
+            let sees = !matches!(case.contact_between(a, b), ContactMode::None)
+                && bodies.iter().any(|body| body.rigid.is_none());
+            let found = sees.then(|| overlap(case, a, b)).flatten();
+            if let Some(found) = found.filter(|found| found.depth > MOST_OVERLAP) {
+                let at = found.at.map(|x| format!("{x:.4e}"));
+                let title = format!(
+                    "`{}` begins {:.1} spacings within `{}`, near [{}] m",
+                    bodies[1].name,
+                    found.depth,
+                    bodies[0].name,
+                    at[..case.dimension].join(", ")
+                );
+                return Err(Complaint::new(table.get_ref().shape.span(), title).help(
+                    "move one of them, or let it `touch` the other; only bodies with contact of \
+                     mode \"none\" may overlap",
+                ));
+            }
         }
     }
     Ok(())

@@ -180,7 +180,12 @@ impl Reader<'_> {
         let length = params.length.as_ref();
         Ok(SurfaceShape::Cylinder {
             centre: self.place("centre", params.centre.as_ref())?,
-            axis: unit(params.axis.as_ref().map_or(&AxisName::Z, Spanned::get_ref)),
+            axis: unit(
+                params
+                    .axis
+                    .as_ref()
+                    .map_or(AxisName::Z, |axis| *axis.get_ref()),
+            ),
             radius: number(Some(&params.radius), "radius", 0.0, Allowed::Positive)?,
             half_length: 0.5 * number(length, "length", f64::INFINITY, Allowed::Positive)?,
         })
@@ -213,7 +218,7 @@ impl Reader<'_> {
                 .help("bring it back, or begin a new case without `sha256`"));
         }
         let turn = params.turn.as_ref();
-        let turn = turn.map(|turn| (unit(turn.axis.get_ref()), turn.angle.get_ref().si()));
+        let turn = turn.map(|turn| (unit(*turn.axis.get_ref()), turn.angle.get_ref().si()));
         for x in soup.iter_mut().flatten() {
             let scaled = x.map(|c| c * unit_length);
             let turned = turn.map_or(scaled, |(axis, angle)| turned(&scaled, &axis, angle));
@@ -243,7 +248,7 @@ impl Reader<'_> {
         }
         Ok(Spin {
             point: self.place("point", params.point.as_ref())?,
-            axis: unit(params.axis.get_ref()),
+            axis: unit(*params.axis.get_ref()),
             rate: rate(params)?,
         })
     }
@@ -293,7 +298,7 @@ impl Reader<'_> {
     }
 }
 
-fn unit(axis: &AxisName) -> [f64; 3] {
+fn unit(axis: AxisName) -> [f64; 3] {
     match axis {
         AxisName::X => [1.0, 0.0, 0.0],
         AxisName::Y => [0.0, 1.0, 0.0],

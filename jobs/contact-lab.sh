@@ -1,0 +1,94 @@
+#!/usr/bin/env bash
+# Measures contact on small cases and writes the tables of the book's page on choosing a contact.
+# A few minutes on two cores.
+#
+#   jobs/contact-lab.sh [FOLDER]      FOLDER: of runs and table.md, target/contact-lab by default
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+source jobs/env.sh
+
+folder=${1:-target/contact-lab}
+whipple=${WHIPPLE_PROGRAM:-target/release/whipple}
+mkdir -p "$folder"
+table=$folder/table.md
+: >"$table"
+
+say() { printf '%s\n' "$@" | tee -a "$table"; }
+
+# number FILE KEY: a value of a summary; phase FILE: share of the contact phases in %
+number() { sed -nE "s/^ *\"$2\": ([^,]*),?$/\1/p" "$1" | head -n 1; }
+share() {
+    awk -F'[:,]' '/seconds_by_phase/ { on = 1; next } on && /}/ { on = 0 }
+        on { all += $2; if ($1 ~ /contact/) part += $2 }
+        END { if (all > 0) printf "%.0f %%", 100 * part / all; else printf "–" }' "$1"
+}
+
+# energy FILE: largest change of total energy, and its change at the end, of the first kinetic
+# energy, in %, from history.csv; what loads put in is taken off.
+energy() {
+    awk -F, '/^#/ { next } !named { for (i = 1; i <= NF; i++) at[$i] = i; named = 1; next }
+        { e = $at["total_energy"] - $at["load_work"]
+          if (!seen) { first = e; scale = $at["kinetic_energy"]; seen = 1 }
+          w = $at["load_work"]; if (w < 0) w = -w; if (w > scale) scale = w
+          d = e - first; if (d < 0) d = -d; if (d > most) most = d }
+        END { if (scale > 0) printf "%.3f, %.3f", 100 * most / scale, 100 * d / scale
+              else printf "–" }' "$1"
+}
+
+# measure NAME CASE [OVERRIDE…]: runs CASE and writes a row.
+measure() {
+    local name=$1 case=$2 run=$folder/${1//[^a-zA-Z0-9.]/-} set=() summary
+    shift 2
+    for override; do set+=(--set "$override"); done
+    if ! "$whipple" run "inputs/$case" --out "$run" --force "${set[@]}" >"$run.log" 2>&1; then
+        say "| $name | stopped: $(tail -n 1 "$run.log") | | | | | |"
+        return
+    fi
+    summary=$run/summary.json
+    say "$(printf '| %s | %s | %s | %s | %s, %s | %s | %s |' "$name" \
+        "$(number "$summary" closest_foreign_pair | cut -c 1-5)" \
+        "$(awk -v d="$(number "$summary" contact_defect)" 'BEGIN { printf "%.3f", 100 * d }')" \
+        "$(energy "$run/history.csv")" \
+        "$(number "$summary" steps)" "$(number "$summary" contact_limited_steps)" \
+        "$(number "$summary" interpenetrated_particles)" "$(share "$summary")")"
+}
+
+heading() {
+    say '' "## $1" '' \
+        '| | closest foreign pair, Δp | contact defect, % | energy, largest and last, % | steps, limited by contact | interpenetrated | share of the time |' \
+        '|---|---|---|---|---|---|---|'
+}
+
+# box LEFT BOTTOM RIGHT TOP in spacings, disc RADIUS
+box() { echo "shape={ box = { lower = [\"$1 spacing\", \"$2 spacing\"], upper = [\"$3 spacing\", \"$4 spacing\"] } }"; }
+disc='body.above.shape={ sphere = { centre = [0, "6 spacing"], radius = "6 spacing" } }'
+on='body.above.touch={ body = "below", direction = "-y" }'
+
+# All two-dimensional geometries of the laboratory, in one mode of contact.
+geometries() {
+    local mode=$1
+    shift
+    try() { local name=$1; shift; measure "$mode: $name" contact-lab "$mode_is" "$@"; }
+    local mode_is=contact.mode=$mode
+    try 'block, flat'
+    try 'one particle on flat' "body.above.$(box 0 0 1 1)"
+    try 'one on one' "body.above.$(box 0 0 1 1)" "body.below.$(box 0 -1 1 0)"
+    try 'one on one, aside' "body.above.$(box 0.25 0 1.25 1)" "body.below.$(box 0 -1 1 0)"
+    try 'edge on edge' "body.above.$(box 14 0 30 8)"
+    try 'sheet on edge' "body.above.$(box -10 0 10 1)" "body.below.$(box -1 -10 2 0)"
+    try 'finer on coarser' 'body.above.spacing="0.05 mm"'
+    try 'coarser on finer' 'body.below.spacing="0.05 mm"'
+    try 'on dense' body.below.material=dense
+    try '11.7 km/s' 'body.above.velocity=[0, "-11.7 km/s"]'
+    for angle in 15 30 45; do
+        try "lattice at $angle°" "body.above.lattice={ kind = \"cubic\", angle = \"$angle deg\" }" "$on"
+    done
+    try 'disc' "$disc"
+    try 'disc, 30°' "$disc" 'body.above.velocity=["3.5 km/s", "-6.062 km/s"]'
+    try 'disc, 60°' "$disc" 'body.above.velocity=["6.062 km/s", "-3.5 km/s"]'
+    local seam=inputs/contact-lab/seam.toml
+    [ ! -f "$seam" ] || measure "$mode: seam" contact-lab/seam.toml "$mode_is"
+}
+
+heading 'Where `overlap` might be weak'
+geometries overlap
