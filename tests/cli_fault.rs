@@ -91,6 +91,59 @@ fn a_killed_rank_ends_all() {
     assert_eq!(status(&run).0, "running");
 }
 
+/// In a step and while a checkpoint is written; the restart ends in the same bits.
+#[test]
+fn a_rank_killed_anywhere_costs_what_came_after_the_last_checkpoint() {
+    let place = tempfile::tempdir().unwrap();
+    let reference = place.path().join("reference");
+    end(&mut coarse_run(2, &reference)).with_code(0);
+    for fault in [
+        "kill:1:80",
+        "kill:0:81",
+        "kill-in-checkpoint:1:60",
+        "kill-in-checkpoint:0:60",
+    ] {
+        let run = place.path().join(fault);
+        let mut command = faulty_run(3, &run, fault);
+        command.args(["--set", "output.checkpoint_every_steps=16"]);
+        let ended = end(&mut command);
+        assert!(!matches!(ended.code, Some(0 | 75)), "{ended:#?}");
+        assert!(ended.took < SECONDS, "{ended:#?}");
+        assert_eq!(status(&run).0, "running");
+        eprintln!("{fault}: all ended after {:.1} s", ended.took.as_secs_f64());
+        end(ranks(2).arg("restart").arg(&run)).with_code(0);
+        assert_same(&run, &reference);
+    }
+}
+
+/// A limit on the size of files in one rank is a disk that is full for that rank alone.
+#[test]
+fn a_disk_full_for_one_rank_ends_all_with_one_message() {
+    let place = tempfile::tempdir().unwrap();
+    for rank in [0, 1] {
+        let run = place.path().join(format!("{rank}"));
+        let mut command = faulty_run(3, &run, &format!("full:{rank}:40"));
+        let ended = end(&mut command).with_code(1);
+        let line = only_line(&ended);
+        assert!(line.starts_with("error: cannot "), "{line}");
+        assert!(line.contains("File too large"), "{line}");
+        eprintln!(
+            "full:{rank}: all ended after {:.1} s",
+            ended.took.as_secs_f64()
+        );
+        end(ranks(2).arg("restart").arg(&run)).with_code(0);
+    }
+}
+
+#[test]
+fn a_folder_that_nobody_may_write_to_is_told() {
+    let place = tempfile::tempdir().unwrap();
+    let run = Path::new("/proc/self/run");
+    let ended = end(&mut coarse_run(2, run)).with_code(2);
+    assert!(only_line(&ended).starts_with("error: cannot create the folder "));
+    drop(place);
+}
+
 #[test]
 fn a_full_disk_ends_all_and_leaves_the_last_checkpoint() {
     let place = tempfile::tempdir().unwrap();

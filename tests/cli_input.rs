@@ -160,6 +160,21 @@ fn folders_are_not_overwritten_by_mistake() {
     );
 }
 
+#[test]
+fn a_case_that_fits_no_memory_is_refused_before_it_takes_any() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("run");
+    let (case, out) = (quarter_impact(), run.to_str().unwrap());
+    let huge = ["run", &case, "--set", "spacing=0.0006mm", "--out", out];
+    let said = complaint_alone(&huge);
+    assert!(said.starts_with("error: a rank takes about "), "{said}");
+    assert!(
+        said.contains(" GB of memory are free") && said.contains("--ignore-memory"),
+        "{said}"
+    );
+    assert!(!run.exists());
+}
+
 /// Changes a byte in the middle of a file.
 fn damage(path: &Path) {
     let mut bytes = fs::read(path).unwrap();

@@ -39,12 +39,17 @@ fn text(path: &Path) -> &str {
 
 #[test]
 fn check_says_what_a_case_costs() {
-    let said = output(&["check", &quarter_impact(), "--set", "spacing=0.05mm"]);
+    let check = ["check", &quarter_impact(), "--set", "spacing=0.05mm"];
+    let ended = end(without_mpi().args(check)).with_code(0);
+    let thin = "warning: `plate` has 4.0 particles across its thinnest part";
+    assert_eq!(ended.complaints(thin).len(), 1, "{ended:#?}");
+    assert_eq!(ended.stderr.lines().count(), 1, "{ended:#?}");
+    let said = ended.stdout;
     let expected = "\
 Aluminium sphere at 7 km/s on an aluminium plate (3-D): sound
   plate                  2828 particles of aluminium, spacing 0.0500 mm, h 0.0650 mm
   sphere                  228 particles of aluminium, spacing 0.0500 mm, h 0.0650 mm
-  all                    3056 particles, about 2 MB over all ranks
+  all                    3056 particles, about 35 MB a rank on 1 rank
   about 55 steps to 0.2000 us
 ";
     assert_eq!(said, expected);

@@ -319,14 +319,23 @@ fn overlapping_bodies_and_crooked_lattices_are_doubted() {
         "elastic-impact",
         &["body.sphere.touch={body=\"block\",direction=\"-x\"}"],
     );
-    assert!(warnings(&deep).is_empty(), "beside the block");
+    assert!(
+        warnings(&deep)[0].starts_with("nothing meets"),
+        "beside the block"
+    );
     let text = ready("elastic-impact", &[]).resolved;
     let text = text.replace("touch = { body = \"block\", direction = \"-z\" }", "");
+    let near = text.replace("\"1 mm\"]", "\"0.77 mm\"]");
+    let case = parse("overlap", &near, &[]).unwrap();
+    assert!(warnings(&case)[0].contains("begin 0.30 spacings within each other"));
     let text = text.replace("\"1 mm\"]", "\"0.5 mm\"]");
-    let case = parse("overlap", &text, &[]).unwrap();
-    assert!(warnings(&case)[0].contains("`block` and `sphere` may overlap"));
+    let error = parse("overlap", &text, &[]).unwrap_err().to_string();
+    assert!(
+        error.contains("`sphere` begins 3.0 spacings within `block`"),
+        "{error}"
+    );
     let silent = parse("overlap", &text, &strings(&["contact.mode=none"])).unwrap();
-    assert!(warnings(&silent).is_empty());
+    assert!(warnings(&silent)[0].contains("they pass through each other"));
     let crooked = ready("quarter-impact", &["body.plate.lattice=hexagonal"]);
     assert!(warnings(&crooked)[0].contains("is not its own mirror image"));
 }

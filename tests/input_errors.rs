@@ -324,7 +324,7 @@ const IN_OVERRIDES: &[(&str, &str, usize)] = &[
     ),
     (
         "contact.potential.exponent=0",
-        "`exponent` must be 1 or more",
+        "`exponent` must be between 1 and 100",
         28,
     ),
     ("run.max_steps=-1", "`max_steps` must be 1 or more", 15),
@@ -350,7 +350,7 @@ const IN_OVERRIDES: &[(&str, &str, usize)] = &[
         16,
     ),
     ("sph.xsph=1.1", "`xsph` must be between 0 and 1", 10),
-    ("sph.balsara=1", "expected a boolean", 13),
+    ("sph.balsara=1", "expected `true` or `false`", 13),
     ("output.fields=[\"presure\"]", "unknown field `presure`", 16),
     ("output.fields=[\"body\", \"body\"]", "is listed twice", 24),
     (

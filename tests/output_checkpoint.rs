@@ -70,6 +70,37 @@ fn a_flipped_bit_or_a_missing_end_is_told_before_hdf5_sees_it() {
     assert!(checkpoint::read(&comm, &path, &mut ParticleStore::default()).is_ok());
 }
 
+/// A bit in the superblock, and in every stretch of 1/64 of the file: its records, each dataset.
+#[test]
+fn a_bit_flipped_anywhere_is_told_before_hdf5_sees_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = write(folder.path(), 3, 1);
+    let state = checkpoint::state_file(&path);
+    let whole = fs::read(&state).unwrap();
+    let mut places: Vec<usize> = (0..64).map(|k| k * whole.len() / 64).collect();
+    places.extend([8, 13, whole.len() - 1]);
+    // The values of each field that 40 particles have: those of `id` and so on stand in the file.
+    let store = particles(&Comm::solo(), 40);
+    for field in store.held(FieldUse::STATE) {
+        let bytes = &store.bytes(field.id)[..field.kind.bytes() * 2];
+        let found = whole
+            .windows(bytes.len())
+            .position(|window| window == bytes);
+        places.push(found.unwrap_or_else(|| panic!("no {} in the file", field.name)));
+    }
+    for (n, &at) in places.iter().enumerate() {
+        let mut flipped = whole.clone();
+        flipped[at] ^= 1 << (n % 8);
+        fs::write(&state, &flipped).unwrap();
+        assert!(
+            refusal(&path).contains("do not match their digest"),
+            "byte {at}"
+        );
+    }
+    fs::write(&state, "").unwrap();
+    assert!(refusal(&path).contains("it has 0 bytes"));
+}
+
 #[test]
 fn a_broken_manifest_or_another_format_is_told() {
     let folder = tempfile::tempdir().unwrap();

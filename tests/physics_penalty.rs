@@ -109,7 +109,8 @@ fn blocks_collide_and_part() {
 
 /// The figures by which contact is compared: a block that slides, and a coarse quarter impact.
 #[test]
-fn sliding_and_impact_run() {
+#[ignore = "slow: make validation"]
+fn validation_sliding_and_impact() {
     for law in ["hertz", "pinball"] {
         let law_is = format!("contact.penalty.law={law}");
         for angle in [0.0, 30.0] {

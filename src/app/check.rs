@@ -2,8 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::EXIT_INPUT;
-use crate::contact::ContactTable;
+use super::{EXIT_INPUT, memory};
 use crate::input;
 use crate::model::Case;
 use crate::output::snapshot;
@@ -25,23 +24,16 @@ pub struct CheckArgs {
     /// Change a value of the case, as in spacing=0.015mm; may be given many times
     #[arg(short, long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-}
 
-/// Bytes that a particle takes with its lists and buffers on one rank at the peak, as `whipple
-/// bench` measures them on a block of a million particles; halo particles come on top.
-const BYTES_PER_PARTICLE: f64 = 590.0;
-/// What contact between bodies and images behind symmetry planes add, as measured on the quarter
-/// impact of 400,000.
-const BYTES_FOR_CONTACT: f64 = 170.0;
+    /// Ranks that the run will have, for the memory that each takes
+    #[arg(short = 'n', long, value_name = "N", default_value_t = 1)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    ranks: u32,
+}
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &CheckArgs) -> u8 {
-    let path = if args.case.is_dir() {
-        args.case.join("case.toml")
-    } else {
-        args.case.clone()
-    };
-    let case = match input::load(&path, &args.set) {
+    let case = match input::load(&args.case, &args.set) {
         Ok(case) => case,
         Err(error) => {
             eprintln!("{}", error.to_string().trim_end());
@@ -52,15 +44,16 @@ pub fn run(args: &CheckArgs) -> u8 {
         eprintln!("error: {error}");
         return EXIT_INPUT;
     }
-    for warning in input::warnings(&case) {
+    let warnings = input::warnings(&case);
+    for warning in warnings.into_iter().chain(input::advice(&case)) {
         eprintln!("warning: {warning}");
     }
-    print_report(&case);
+    print_report(&case, args.ranks as usize);
     0
 }
 
 #[allow(clippy::cast_precision_loss, reason = "for people")]
-fn print_report(case: &Case) {
+fn print_report(case: &Case, ranks: usize) {
     println!("{} ({}-D): sound", case.title, case.dimension);
     let mut total = 0;
     for body in &case.bodies {
@@ -74,16 +67,22 @@ fn print_report(case: &Case) {
             body.smoothing_length * 1e3,
         );
     }
-    let contact = if ContactTable::new(case).is_active() {
-        BYTES_FOR_CONTACT
-    } else {
-        0.0
-    };
-    let memory = total as f64 * (BYTES_PER_PARTICLE + contact) / 1e6;
+    let memory = memory::of_rank(case, ranks) * 1e-6;
+    let plural = if ranks == 1 { "" } else { "s" };
     println!(
-        "  {:<16} {total:>10} particles, about {memory:.0} MB over all ranks",
+        "  {:<16} {total:>10} particles, about {memory:.0} MB a rank on {ranks} rank{plural}",
         "all"
     );
+    for pair in input::approaches(case) {
+        let [a, b] = pair.bodies.map(|body| case.bodies[body].name.as_str());
+        if pair.time.is_finite() && pair.time > 0.0 {
+            println!(
+                "  {a} and {b} meet at {:.4} us, from {:.1} spacings apart",
+                pair.time * 1e6,
+                pair.gap
+            );
+        }
+    }
     if let Some(steps) = expected_steps(case) {
         println!(
             "  about {steps:.0} steps to {:.4} us",

@@ -13,13 +13,14 @@ use super::say::{complain, say};
 use super::stop::{self, Watch};
 use super::{EXIT_FAILED, EXIT_STOPPED};
 use crate::comm::Comm;
-use crate::output::checkpoint;
+use crate::model::TroublePolicy;
 use crate::output::snapshot::{self, Quantity};
 use crate::output::{
-    COMMIT, Log, OutputError, Phase, Rows, RunFolder, Schedule, Status, VERSION, on_root, series,
-    write_json,
+    COMMIT, Log, OutputError, Phase, Rows, RunFolder, Schedule, Status, VERSION, agree, on_root,
+    series, write_json,
 };
-use crate::step::{self, Simulation, Timers};
+use crate::output::{checkpoint, post_mortem};
+use crate::step::{self, Simulation, StepError, Timers, TroubleKind};
 
 /// The step that this process is in, for the message of a panic.
 pub static STEP: AtomicU64 = AtomicU64::new(0);
@@ -37,7 +38,12 @@ pub struct Driver<'a> {
     tables: Option<Tables>,
     log: Log,
     progress: Progress,
+    /// Post-mortems written.
+    post_mortems: usize,
 }
+
+/// Post-mortems that a process writes: where particles are removed, the first ones tell the most.
+const POST_MORTEMS: usize = 10;
 
 /// How a loop ended.
 enum End {
@@ -84,7 +90,13 @@ impl<'a> Driver<'a> {
             progress: Progress::new(comm.is_root(), &simulation.case.run),
             simulation,
             folder,
+            post_mortems: 0,
         };
+        if comm.is_root() {
+            driver
+                .watch
+                .ask_every(driver.simulation.case.output.checkpoint_every_wall);
+        }
         driver.announce(comm, restarted, warnings);
         if restarted.is_none() {
             driver.write_row(comm)?;
@@ -128,10 +140,12 @@ impl<'a> Driver<'a> {
             STEP.store(self.simulation.state.step + 1, Ordering::Relaxed);
             self.simulation.wishes = self.watch.wishes();
             if let Some(fault) = self.fault {
-                fault.strike(&mut self.simulation);
+                fault.strike(&mut self.simulation, &self.folder.checkpoints());
             }
             let before = self.simulation.state.time;
-            self.simulation.advance(comm).map_err(|e| e.to_string())?;
+            if let Err(error) = self.simulation.advance(comm) {
+                self.meet_trouble(comm, error)?;
+            }
             self.write(comm, before).map_err(|e| e.to_string())?;
             self.simulation.timers.lap(step::Phase::Output);
             if let Some(reason) = stop::reason(self.simulation.agreed_wishes)
@@ -142,13 +156,58 @@ impl<'a> Driver<'a> {
         }
     }
 
+    /// A post-mortem of trouble, and then what the case says: the end, or particles removed until
+    /// there is none.
+    fn meet_trouble(&mut self, comm: &Comm, mut error: StepError) -> Result<(), String> {
+        loop {
+            let StepError::Trouble { step, id, kind, .. } = error else {
+                return Err(error.to_string());
+            };
+            let stem = self.folder.post_mortem(step);
+            let mut text = error.to_string();
+            if self.post_mortems < POST_MORTEMS {
+                self.post_mortems += 1;
+                let simulation = &self.simulation;
+                let about = simulation.post_mortem(id, comm.rank());
+                let written = about.map_or(Ok(()), |about| {
+                    post_mortem::write(&stem, &text, &simulation.case, &simulation.store, &about)
+                });
+                text = match agree(comm, written) {
+                    Ok(()) => format!("{text}; see {}.txt", stem.display()),
+                    Err(refused) => format!("{text}; {refused}"),
+                };
+            }
+            let remove = self.simulation.case.trouble.policy == TroublePolicy::Remove;
+            if !remove || kind == TroubleKind::NotFinite {
+                return Err(text);
+            }
+            match self.simulation.remove_troubled(comm) {
+                Ok(count) => {
+                    self.log(
+                        comm,
+                        &format!("removed {}: {text}", counted_u64(count, "particle")),
+                    );
+                    return Ok(());
+                }
+                Err(next) => {
+                    self.log(comm, &format!("removed particles: {text}"));
+                    error = next;
+                }
+            }
+        }
+    }
+
     /// Whatever is due after a step that began at time `before` (s).
     fn write(&mut self, comm: &Comm, before: f64) -> Result<(), OutputError> {
         let finished = self.simulation.is_finished();
         let (now, step) = (self.simulation.state.time, self.simulation.state.step);
         let output = &self.simulation.case.output;
         let snapshot_due = Schedule::new(output.snapshot_every).is_due(before, now);
-        let checkpoint_due = Schedule::new(output.checkpoint_every).is_due(before, now);
+        let checkpoint_due = Schedule::new(output.checkpoint_every).is_due(before, now)
+            || output
+                .checkpoint_every_steps
+                .is_some_and(|n| step.is_multiple_of(n))
+            || stop::wants_checkpoint(self.simulation.agreed_wishes);
         if finished || step.is_multiple_of(output.history_every.max(1)) {
             self.simulation.diagnose(comm);
             self.write_row(comm)?;
@@ -178,6 +237,7 @@ impl<'a> Driver<'a> {
     }
 
     fn write_snapshot(&mut self, comm: &Comm) -> Result<(), OutputError> {
+        let begun = Instant::now();
         let state = &self.simulation.state;
         let path = self.folder.snapshot(state.step);
         let meta = snapshot::Meta {
@@ -193,12 +253,14 @@ impl<'a> Driver<'a> {
             let name = RunFolder::snapshot_name(state.step);
             series::add(&self.folder.series(), &name, state.time)
         })?;
+        self.watch.wrote_snapshot(begun.elapsed());
         let text = format!("snapshot {}", path.display());
         self.log(comm, &text);
         Ok(())
     }
 
     fn write_checkpoint(&mut self, comm: &Comm) -> Result<(), OutputError> {
+        let begun = Instant::now();
         let state = &self.simulation.state;
         let text = serde_json::to_string(state).expect("plain numbers");
         let meta = checkpoint::Meta {
@@ -211,6 +273,7 @@ impl<'a> Driver<'a> {
         let store = &self.simulation.store;
         let folder = self.folder.checkpoints();
         let path = checkpoint::write(comm, &folder, store, &meta, keep, &mut self.rows)?;
+        self.watch.wrote_checkpoint(begun.elapsed());
         let text = format!("checkpoint {}", path.display());
         self.log(comm, &text);
         Ok(())
@@ -310,6 +373,10 @@ pub fn fail(comm: &Comm, folder: &RunFolder, message: &str, step: u64, time: f64
 }
 
 fn counted(number: usize, thing: &str) -> String {
+    counted_u64(number as u64, thing)
+}
+
+fn counted_u64(number: u64, thing: &str) -> String {
     let plural = if number == 1 { "" } else { "s" };
     format!("{number} {thing}{plural}")
 }

@@ -2,8 +2,11 @@
 //!
 //! `WHIPPLE_TEST_FAULT=KIND:RANK:STEP` lets that rank meet the trouble before that step. KIND is
 //! `panic` (on the main thread), `task` (a panic on another thread, where there is one), `nan`
-//! (a particle's velocity is no number) or `pause` (all wait for this rank, to be stopped).
+//! (a particle's velocity is no number), `pause` (all wait for this rank, to be stopped), `kill`
+//! (SIGKILL), `kill-in-checkpoint` (SIGKILL while the next checkpoint is written) or `full` (no
+//! file of this rank may grow beyond 300 kB, as if the disk were full).
 
+use std::path::Path;
 use std::time::Duration;
 
 use crate::step::Simulation;
@@ -14,6 +17,9 @@ enum Kind {
     Task,
     Nan,
     Pause,
+    Kill,
+    KillInCheckpoint,
+    Full,
 }
 
 /// How long a pause takes: the file `stop` is looked for once a second.
@@ -34,7 +40,7 @@ impl Fault {
 
     /// Makes the trouble if it is time for it.
     #[expect(clippy::manual_assert, reason = "nothing is asserted")]
-    pub fn strike(self, simulation: &mut Simulation) {
+    pub fn strike(self, simulation: &mut Simulation, checkpoints: &Path) {
         if simulation.state.step + 1 != self.step {
             return;
         }
@@ -53,7 +59,43 @@ impl Fault {
                 }
             }
             Kind::Pause => std::thread::sleep(PAUSE),
+            Kind::Kill => kill(),
+            Kind::KillInCheckpoint => {
+                let folder = checkpoints.to_owned();
+                std::thread::spawn(move || {
+                    while !holds_partial(&folder) {
+                        std::hint::spin_loop();
+                    }
+                    kill();
+                });
+            }
+            Kind::Full => limit_files(),
         }
+    }
+}
+
+fn kill() {
+    let _ = signal_hook::low_level::raise(signal_hook::consts::SIGKILL);
+}
+
+/// Whether a checkpoint is being written.
+fn holds_partial(folder: &Path) -> bool {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut names = entries.map(|entry| entry.path());
+    names.any(|path| {
+        path.extension().is_some_and(|e| e == "partial") && path.join("state.h5").exists()
+    })
+}
+
+fn limit_files() {
+    let limit = libc::rlimit {
+        rlim_cur: 300_000,
+        rlim_max: 300_000,
+    };
+    // SAFETY: plain calls of the system; the signal is ignored so that writes return an error.
+    unsafe {
+        libc::signal(libc::SIGXFSZ, libc::SIG_IGN);
+        libc::setrlimit(libc::RLIMIT_FSIZE, &raw const limit);
     }
 }
 
@@ -64,6 +106,9 @@ fn parse(text: &str, rank: usize) -> Option<Fault> {
         "task" => Kind::Task,
         "nan" => Kind::Nan,
         "pause" => Kind::Pause,
+        "kill" => Kind::Kill,
+        "kill-in-checkpoint" => Kind::KillInCheckpoint,
+        "full" => Kind::Full,
         _ => return None,
     };
     let here = parts.next()?.parse() == Ok(rank);

@@ -8,6 +8,7 @@ mod fault;
 pub mod info;
 mod launch;
 mod materials;
+mod memory;
 pub mod plot;
 mod progress;
 mod report;

@@ -134,6 +134,8 @@ mod tests {
             capped_reliefs: 0,
             interpenetrated: 0,
             uncorrected: 0,
+            removed: Vec::new(),
+            removed_contact_energy: 0.0,
             worst: Worst::default(),
         }
     }

@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use crate::comm::Comm;
-use crate::model::{Case, SphForm};
+use crate::model::{Case, SphForm, TroublePolicy};
 use crate::output::{COMMIT, Column, OutputError, RunFolder, Table, VERSION, Value, unit_of_model};
 use crate::step::{PairState, RunState, Simulation};
 
@@ -12,6 +12,7 @@ pub struct Tables {
     history: Table,
     contacts: Table,
     loads: Option<Table>,
+    removed: Option<Table>,
     performance: Table,
 }
 
@@ -132,6 +133,24 @@ fn load_columns(dimension: usize) -> Vec<Column> {
     )
 }
 
+fn removed_columns(dimension: usize) -> Vec<Column> {
+    columns(
+        dimension,
+        &[
+            ("time", "s"),
+            ("body", ""),
+            ("particles", ""),
+            ("mass", "kg"),
+            ("momentum_x", "kg m/s"),
+            ("momentum_y", "kg m/s"),
+            ("momentum_z", "kg m/s"),
+            ("kinetic_energy", "J"),
+            ("internal_energy", "J"),
+            ("gravity_energy", "J"),
+        ],
+    )
+}
+
 fn performance_columns() -> Vec<Column> {
     columns(
         3,
@@ -175,6 +194,9 @@ impl Tables {
             )?,
             loads: (case.load_names().next().is_some())
                 .then(|| open(&folder.loads(), &load_columns(dimension), "time", time))
+                .transpose()?,
+            removed: (case.trouble.policy == TroublePolicy::Remove)
+                .then(|| open(&folder.removed(), &removed_columns(dimension), "time", time))
                 .transpose()?,
             performance: open(&folder.performance(), &performance_columns(), "step", step)?,
         })
@@ -231,6 +253,23 @@ impl Tables {
                 let [ix, iy, iz] = load.impulse.map(Value::Real);
                 let (time, work) = (Value::Real(state.time), Value::Real(load.work));
                 table.row(&[time, Value::Word(name), fx, fy, fz, ix, iy, iz, work])?;
+            }
+        }
+        if let Some(table) = &mut self.removed {
+            for (body, gone) in simulation.case.bodies.iter().zip(&state.removed) {
+                let [px, py, pz] = gone.momentum.map(Value::Real);
+                table.row(&[
+                    Value::Real(state.time),
+                    Value::Word(&body.name),
+                    Value::Count(gone.particles),
+                    Value::Real(gone.mass),
+                    px,
+                    py,
+                    pz,
+                    Value::Real(gone.kinetic_energy),
+                    Value::Real(gone.internal_energy),
+                    Value::Real(gone.gravity_energy),
+                ])?;
             }
         }
         self.write_performance(state.step, load, wall)
@@ -297,7 +336,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::V
     let rate = load.updates as f64 * 1e-6 / stepping.max(f64::MIN_POSITIVE) / cores;
     let contact = simulation.contact();
     let normalised = simulation.case.sph.form == SphForm::Normalised;
-    // No particle is ever lost, so this is what the ranks have stepped since they started.
+    // What the ranks have stepped since they started, if no particle was removed.
     let steps = load.updates as f64 / (load.particles[0] as f64).max(1.0);
     let each = |sent: u64| sent as f64 / (steps.max(1.0) * comm.size() as f64);
     json!({
@@ -308,6 +347,8 @@ pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::V
         "threads": threads,
         "instructions": crate::sph::dispatch::instructions().name(),
         "particles": load.particles[0],
+        "removed_particles": state.removed.iter().map(|r| r.particles).sum::<u64>(),
+        "removed_energy": state.removed_energy(),
         "steps": state.step,
         "time": state.time,
         "wall_seconds": wall,

@@ -26,7 +26,7 @@ use crate::step::{Reason, RunState, Simulation};
   mpirun -n 4 whipple restart runs/quarter-impact --set run.end_time=0.3us
   mpirun -n 4 whipple restart runs/fine/checkpoints/step-00000100 --out runs/branch")]
 pub struct RestartArgs {
-    /// Run folder (its newest checkpoint is taken), or one checkpoint's folder
+    /// Run folder (its newest whole checkpoint is taken), or one checkpoint's folder
     #[arg(value_name = "RUN_OR_CHECKPOINT")]
     from: PathBuf,
 
@@ -34,8 +34,8 @@ pub struct RestartArgs {
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
 
-    /// Change a value of `run`, `output` or `domain`, as in `run.end_time=0.3us`; may be given many
-    /// times
+    /// Change a value of `run`, `output`, `domain` or `trouble`, as in `run.end_time=0.3us`; may be
+    /// given many times
     #[arg(short, long, value_name = "KEY=VALUE")]
     set: Vec<String>,
 
@@ -54,45 +54,77 @@ pub fn run(args: &RestartArgs) -> u8 {
         if let Err(error) = input::output_and_run_only(&args.set) {
             return complain(comm, &error.to_string());
         }
-        match find(comm, &args.from) {
-            Ok(checkpoint) => resume(launch, args, &checkpoint),
+        match find(comm, &args.from).and_then(|found| read(comm, &args.from, found)) {
+            Ok(found) => resume(launch, args, found),
             Err(error) => complain(comm, &format!("error: {error}")),
         }
     })
 }
 
-/// The checkpoint that the user means, found by rank 0 for all.
-fn find(comm: &Comm, from: &Path) -> Result<PathBuf, OutputError> {
+/// A checkpoint that could be read, and why newer ones could not.
+struct Found {
+    checkpoint: PathBuf,
+    store: ParticleStore,
+    restored: Restored,
+    passed_over: Vec<String>,
+}
+
+/// The checkpoints that the user may mean, newest first, found by rank 0 for all.
+fn find(comm: &Comm, from: &Path) -> Result<Vec<PathBuf>, OutputError> {
     let mut found = Vec::new();
     on_root(comm, || {
-        let path = if RunFolder::is_run(from) {
-            RunFolder::at(from)
-                .newest_checkpoint()?
-                .ok_or_else(|| OutputError::NoCheckpoint {
-                    path: from.to_owned(),
-                })?
+        let paths = if RunFolder::is_run(from) {
+            RunFolder::at(from).checkpoint_folders()?
         } else if from.join(MANIFEST).is_file() {
-            from.to_owned()
+            vec![from.to_owned()]
         } else {
             std::fs::metadata(from).map_err(OutputError::io("restart", from))?;
             return Err(OutputError::OutsideRun {
                 path: from.to_owned(),
             });
         };
-        found = path.to_string_lossy().into_owned().into_bytes();
+        let names: Vec<_> = paths.iter().map(|path| path.to_string_lossy()).collect();
+        found = names.join("\0").into_bytes();
         Ok(())
     })?;
     comm.broadcast(&mut found);
-    Ok(PathBuf::from(String::from_utf8_lossy(&found).into_owned()))
+    let names = String::from_utf8_lossy(&found).into_owned();
+    let names = names.split('\0').filter(|name| !name.is_empty());
+    Ok(names.map(PathBuf::from).collect())
 }
 
-fn resume(launch: &Launch, args: &RestartArgs, checkpoint: &Path) -> u8 {
+/// Reads the newest checkpoint that is whole. Collective.
+fn read(comm: &Comm, from: &Path, paths: Vec<PathBuf>) -> Result<Found, OutputError> {
+    let mut passed_over = Vec::new();
+    if comm.is_root() && RunFolder::is_run(from) {
+        let broken = checkpoint::list_broken(&RunFolder::at(from).checkpoints());
+        let tell = |path: PathBuf| format!("{} has no {MANIFEST}", path.display());
+        passed_over.extend(broken.unwrap_or_default().into_iter().map(tell));
+    }
+    for checkpoint in paths {
+        let mut store = ParticleStore::default();
+        match checkpoint::read(comm, &checkpoint, &mut store) {
+            Ok(restored) => {
+                return Ok(Found {
+                    checkpoint,
+                    store,
+                    restored,
+                    passed_over,
+                });
+            }
+            Err(error) if checkpoint == from => return Err(error),
+            Err(error) => passed_over.push(error.to_string()),
+        }
+    }
+    Err(OutputError::NoCheckpoint {
+        path: from.to_owned(),
+        passed_over,
+    })
+}
+
+fn resume(launch: &Launch, args: &RestartArgs, found: Found) -> u8 {
     let comm = launch.comm;
-    let mut store = ParticleStore::default();
-    let restored = match checkpoint::read(comm, checkpoint, &mut store) {
-        Ok(restored) => restored,
-        Err(error) => return complain(comm, &format!("error: {error}")),
-    };
+    let (checkpoint, restored) = (&found.checkpoint, &found.restored);
     let name = format!("{}: the saved input", checkpoint.display());
     let case = match input::parse(&name, &restored.input, &args.set) {
         Ok(case) => case,
@@ -100,6 +132,9 @@ fn resume(launch: &Launch, args: &RestartArgs, checkpoint: &Path) -> u8 {
     };
     if let Err(error) = snapshot::quantities(&case.output.fields) {
         return complain(comm, &format!("error: {error}"));
+    }
+    if let Some(message) = args.common.shortage(comm, &case) {
+        return complain(comm, &message);
     }
     let Ok(state) = serde_json::from_str::<RunState>(&restored.state) else {
         let message = "the saved state is not one that this version of the program can read";
@@ -116,11 +151,11 @@ fn resume(launch: &Launch, args: &RestartArgs, checkpoint: &Path) -> u8 {
         comm.barrier();
         return 0;
     }
-    let folder = match make_folder(comm, args, checkpoint, &case.resolved, &restored) {
+    let folder = match make_folder(comm, args, checkpoint, &case.resolved, restored) {
         Ok(folder) => folder,
         Err(error) => return complain(comm, &format!("error: {error}")),
     };
-    go_on(launch, args, case, state, store, &folder, checkpoint)
+    go_on(launch, args, case, state, found, &folder)
 }
 
 fn go_on(
@@ -128,13 +163,13 @@ fn go_on(
     args: &RestartArgs,
     case: Case,
     state: RunState,
-    store: ParticleStore,
+    found: Found,
     folder: &RunFolder,
-    checkpoint: &Path,
 ) -> u8 {
     let comm = launch.comm;
     let (step, time) = (state.step, state.time);
-    let mut warnings = Vec::new();
+    let passed = found.passed_over.iter();
+    let mut warnings: Vec<String> = passed.map(|why| format!("passed over: {why}")).collect();
     if state.last_reason == Reason::End {
         warnings.push(format!(
             "step {step} was shortened to end at {}, so that a run with the later end from its \
@@ -142,7 +177,7 @@ fn go_on(
             seconds(time)
         ));
     }
-    let simulation = match Simulation::resume(case, comm, state, store) {
+    let simulation = match Simulation::resume(case, comm, state, found.store) {
         Ok(simulation) => simulation,
         Err(error) => return fail(comm, folder, &error.to_string(), step, time),
     };
@@ -151,7 +186,7 @@ fn go_on(
         &args.common,
         simulation,
         folder,
-        Some(checkpoint),
+        Some(&found.checkpoint),
         &warnings,
     ) {
         Ok(driver) => driver.run(comm),

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::driver::{Driver, fail};
 use super::launch::{Launch, complain, with_ranks};
+use super::memory;
 use super::stop::{parse_until, parse_walltime};
 use crate::comm::Comm;
 use crate::input;
@@ -62,9 +63,21 @@ pub struct CommonArgs {
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
 
+    /// Start even if the memory that the ranks will take is more than there is
+    #[arg(long)]
+    pub ignore_memory: bool,
+
     /// Fill all that is not state with NaN between steps, to find what a checkpoint forgets
     #[arg(long, hide = true)]
     pub poison: bool,
+}
+
+impl CommonArgs {
+    /// Why there is not enough memory for a case, unless the user will not hear of it. Collective.
+    pub fn shortage(&self, comm: &Comm, case: &Case) -> Option<String> {
+        let shortage = (!self.ignore_memory).then(|| memory::shortage(comm, case));
+        shortage.flatten().map(|why| format!("error: {why}"))
+    }
 }
 
 /// Runs the command; returns the exit code.
@@ -81,6 +94,9 @@ pub fn run(args: &RunArgs) -> u8 {
         };
         if let Err(error) = snapshot::quantities(&case.output.fields) {
             return complain(comm, &format!("error: {error}"));
+        }
+        if let Some(message) = args.common.shortage(comm, &case) {
+            return complain(comm, &message);
         }
         let out = args.out.clone().unwrap_or_else(|| default_folder(&path));
         match RunFolder::create(comm, &out, &case.resolved, args.force) {
@@ -105,32 +121,23 @@ fn start(launch: &Launch, args: &CommonArgs, case: Case, folder: &RunFolder) -> 
 
 /// The case file and its text, read by rank 0 for all.
 fn read_case(comm: &Comm, path: &Path) -> Result<(PathBuf, String), String> {
-    let path = if path.is_dir() {
-        path.join("case.toml")
-    } else {
-        path.to_owned()
-    };
-    // The first byte tells whether the rest is the text or an error.
+    // The first byte tells whether the rest is path and text or an error.
     let mut bytes = Vec::new();
     if comm.is_root() {
-        match std::fs::read_to_string(&path) {
-            Ok(text) => {
-                bytes.push(0);
-                bytes.extend_from_slice(text.as_bytes());
-            }
-            Err(error) => {
-                bytes.push(1);
-                let text = format!("error: cannot read the case {}: {error}", path.display());
-                bytes.extend_from_slice(text.as_bytes());
-            }
-        }
+        let (kind, text) = match input::text(path) {
+            Ok((path, text)) => (0, format!("{}\0{text}", path.display())),
+            Err(error) => (1, error.to_string()),
+        };
+        bytes.push(kind);
+        bytes.extend_from_slice(text.as_bytes());
     }
     comm.broadcast(&mut bytes);
     let text = String::from_utf8_lossy(bytes.get(1..).unwrap_or_default()).into_owned();
-    if bytes.first() == Some(&0) {
-        Ok((path, text))
-    } else {
-        Err(text)
+    match text.split_once('\0') {
+        Some((path, text)) if bytes.first() == Some(&0) => {
+            Ok((PathBuf::from(path), text.to_owned()))
+        }
+        _ => Err(text),
     }
 }
 

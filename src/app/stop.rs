@@ -15,6 +15,8 @@ use crate::input;
 const SIGNAL: u64 = 1;
 const FILE: u64 = 2;
 const CLOCK: u64 = 4;
+/// Not to stop, but to write a checkpoint.
+const CHECKPOINT: u64 = 8;
 
 /// Seconds between two looks at the file system.
 const LOOK_EVERY: Duration = Duration::from_secs(1);
@@ -45,6 +47,11 @@ pub struct Watch {
     limit: Option<Duration>,
     looked: Instant,
     seen: bool,
+    /// Time between checkpoints, and of the last one; rank 0 alone asks for them.
+    every: Option<Duration>,
+    last: Instant,
+    /// Time that a stop will take, as of what has been written so far.
+    reserve: Duration,
 }
 
 impl Watch {
@@ -63,7 +70,31 @@ impl Watch {
             limit,
             looked: Instant::now(),
             seen: false,
+            every: None,
+            last: Instant::now(),
+            reserve: Duration::ZERO,
         }
+    }
+
+    /// Asks for checkpoints every so often by the clock.
+    pub fn ask_every(&mut self, every: Option<f64>) {
+        self.every = every.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    }
+
+    /// A checkpoint has been written in so much time. The next one is taken to need half as much
+    /// again, and that much is kept of the wall time.
+    pub fn wrote_checkpoint(&mut self, took: Duration) {
+        self.last = Instant::now();
+        self.keep(took.mul_f64(1.5));
+    }
+
+    /// A snapshot has been written in so much time: a checkpoint is some twice as large.
+    pub fn wrote_snapshot(&mut self, took: Duration) {
+        self.keep(took.mul_f64(3.0));
+    }
+
+    fn keep(&mut self, time: Duration) {
+        self.reserve = self.reserve.max(time);
     }
 
     /// This rank's wishes now.
@@ -83,12 +114,20 @@ impl Watch {
         }
         if self
             .limit
-            .is_some_and(|limit| self.start.elapsed() >= limit)
+            .is_some_and(|limit| self.start.elapsed() + self.reserve >= limit)
         {
             wishes |= CLOCK;
         }
+        if self.every.is_some_and(|every| self.last.elapsed() >= every) {
+            wishes |= CHECKPOINT;
+        }
         wishes
     }
+}
+
+/// Whether the clock asks for a checkpoint.
+pub fn wants_checkpoint(wishes: u64) -> bool {
+    wishes & CHECKPOINT != 0
 }
 
 /// Why all ranks stop, in words; `None` if nobody wishes to.
@@ -137,6 +176,20 @@ pub fn parse_walltime(text: &str) -> Result<Duration, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_wall_time_leaves_room_for_the_next_checkpoint() {
+        let limit = Some(Duration::from_secs(100));
+        let signals = Signals(Arc::new(AtomicBool::new(false)));
+        let mut watch = Watch::new(signals, None, Instant::now(), limit);
+        watch.wrote_checkpoint(Duration::from_secs(60));
+        assert_eq!(watch.wishes(), 0);
+        watch.wrote_snapshot(Duration::from_secs(40));
+        assert_eq!(watch.wishes(), CLOCK);
+        assert!(!wants_checkpoint(watch.wishes()));
+        watch.ask_every(Some(0.0));
+        assert!(wants_checkpoint(watch.wishes()));
+    }
 
     #[test]
     fn wall_times() {

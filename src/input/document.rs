@@ -65,7 +65,15 @@ fn translate(error: &Error) -> Complaint {
             .split_once(", expected ")
             .unwrap_or((types, "another"));
         let [found, expected] = [plain_type(found), plain_type(expected)];
+        if let Some(number) = found.strip_suffix(" as i128") {
+            let title = format!("expected {expected}, found {number}, which is too large");
+            return Complaint::new(span, title);
+        }
         return Complaint::new(span, format!("expected {expected}, found {found}"));
+    }
+    // What the reader says where one of several words is wanted.
+    if message.starts_with("wanted ") {
+        return Complaint::new(span, "expected a word in quotes");
     }
     Complaint::new(span, message)
 }
@@ -85,6 +93,7 @@ fn plain_type(name: &str) -> &str {
         "i64" => "a whole number",
         "a sequence" | "sequence" => "an array",
         "a map" | "map" => "a table",
+        "a boolean" => "`true` or `false`",
         other if other.starts_with("struct ") => "a table",
         other if other.starts_with("enum ") => "a word in quotes",
         other => other,

@@ -5,7 +5,9 @@
 //! (`validate`). The first thing that is wrong ends the reading with one message.
 
 mod document;
+mod file;
 mod forms;
+mod overlap;
 mod overrides;
 mod quantity;
 mod schema;
@@ -20,7 +22,8 @@ use std::path::{Path, PathBuf};
 use crate::model::Case;
 use source::{Complaint, Sources};
 
-pub use warnings::warnings;
+pub use file::text;
+pub use warnings::{Approach, advice, approaches, warnings};
 
 /// Why a case cannot be read. `Display` is the whole message for the user, several lines long.
 #[derive(Debug, thiserror::Error)]
@@ -33,21 +36,45 @@ pub enum InputError {
         /// What the system says.
         cause: std::io::Error,
     },
+    /// The file is longer than any case.
+    #[error(
+        "error: the case {} has {size}, more than the {} MB that a case may have: is it a file of \
+         results?",
+        path.display(),
+        file::MOST_BYTES / 1_000_000
+    )]
+    TooLong {
+        /// The file.
+        path: PathBuf,
+        /// How much it has, in words.
+        size: String,
+    },
+    /// The file is no text.
+    #[error(
+        "error: the case {} is no UTF-8 text: the byte {byte:#04x} in line {line}; save it as UTF-8",
+        path.display()
+    )]
+    NoText {
+        /// The file.
+        path: PathBuf,
+        /// Number of the first line with such a byte.
+        line: usize,
+        /// The byte.
+        byte: u8,
+    },
     /// Something in the file or in an override is wrong: title, place, caret, help.
     #[error("{0}")]
     Invalid(String),
 }
 
-/// Reads a case from a file, with `--set` overrides (`key=value`).
+/// Reads a case from a file or from the `case.toml` of a folder, with `--set` overrides
+/// (`key=value`).
 ///
 /// # Errors
-/// [`InputError::Read`] if the file cannot be read, [`InputError::Invalid`] for the first thing in
-/// the file or in an override that is wrong.
+/// Those of [`text`], and [`InputError::Invalid`] for the first thing in the file or in an override
+/// that is wrong.
 pub fn load(path: &Path, overrides: &[String]) -> Result<Case, InputError> {
-    let text = std::fs::read_to_string(path).map_err(|cause| InputError::Read {
-        path: path.to_owned(),
-        cause,
-    })?;
+    let (path, text) = text(path)?;
     parse(&path.display().to_string(), &text, overrides)
 }
 

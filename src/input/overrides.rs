@@ -13,7 +13,7 @@ use toml::de::{DeArray, DeTable, DeValue};
 use super::source::Complaint;
 
 /// Sections that do not touch the state of a run, so that a restart may change them.
-const RESTARTABLE: [&str; 3] = ["run", "output", "domain"];
+const RESTARTABLE: [&str; 4] = ["run", "output", "domain", "trouble"];
 
 type Key<'t> = Spanned<Cow<'t, str>>;
 type Value<'t> = Spanned<DeValue<'t>>;
@@ -71,7 +71,7 @@ impl<'t> Override<'t> {
             return Ok(());
         }
         let title = format!("`{}` cannot change on a restart", section.get_ref());
-        let help = "a restart may change `run`, `output` and `domain`";
+        let help = "a restart may change `run`, `output`, `domain` and `trouble`";
         Err(Complaint::new(section.span(), title).help(help))
     }
 }

@@ -70,6 +70,9 @@ tables! {
         /// Rigid surfaces of other shapes.
         #[serde(default)]
         surface: Vec<Spanned<SurfaceParams>>,
+        /// Numerical trouble.
+        #[serde(default)]
+        trouble: TroubleParams,
         /// What is written.
         #[serde(default)]
         output: OutputParams,
@@ -387,6 +390,22 @@ optional_tables! {
         max: Option<Placed<Time>>,
     }
 
+    /// `[trouble]`
+    TroubleParams {
+        /// What happens to a particle whose state is out of range.
+        policy: Option<TroublePolicyName>,
+        /// Largest speed.
+        speed_max: Option<Placed<Velocity>>,
+        /// Largest magnitude of the specific energy.
+        energy_max: Option<Placed<SpecificEnergy>>,
+        /// Smallest density over that at the start.
+        density_min: Option<Spanned<f64>>,
+        /// Largest density over that at the start.
+        density_max: Option<Spanned<f64>>,
+        /// Smallest time step.
+        step_min: Option<Placed<Time>>,
+    }
+
     /// `[domain]`
     DomainParams {
         /// Axis of the slabs.
@@ -451,6 +470,10 @@ optional_tables! {
         snapshot_every: Option<Placed<Time>>,
         /// Time between checkpoints.
         checkpoint_every: Option<Placed<Time>>,
+        /// Steps between checkpoints.
+        checkpoint_every_steps: Option<Spanned<i64>>,
+        /// Time of the clock between checkpoints.
+        checkpoint_every_wall: Option<Placed<Time>>,
         /// How many are kept.
         checkpoints_kept: Option<Spanned<i64>>,
         /// Steps between rows of the histories.
@@ -510,6 +533,13 @@ choices! {
         Conventional,
         /// By the corrected gradient.
         Normalised,
+    }
+    /// What happens to a particle whose state is out of range.
+    TroublePolicyName {
+        /// The run ends.
+        Stop,
+        /// It is taken out and booked.
+        Remove,
     }
     /// Smoothing length in the SPH sums.
     SmoothingName {

@@ -120,7 +120,7 @@ fn nearest<'a>(word: &str, names: &[&'a str]) -> Option<&'a str> {
     names
         .iter()
         .map(|name| (distance(word, name), *name))
-        .filter(|(d, name)| *d <= (name.chars().count() / 3).max(1))
+        .filter(|(d, name)| *d <= name.chars().count().div_ceil(3))
         .min_by_key(|(d, _)| *d)
         .map(|(_, name)| name)
 }
@@ -158,6 +158,7 @@ mod tests {
         let names = ["smoothing", "alpha", "beta", "axis"];
         assert_eq!(nearest("smothing", &names), Some("smoothing"));
         assert_eq!(nearest("Alpah", &names), Some("alpha"));
+        assert_eq!(nearest("alfa", &names), Some("alpha"));
         assert_eq!(nearest("axsi", &names), Some("axis"));
         assert_eq!(nearest("velocity", &names), None);
     }

@@ -40,9 +40,19 @@ const PREFIXES: &[(&str, i32)] = &[
     ("p", -12),
 ];
 
+/// Longest text of a number with its unit (bytes): nobody writes more, and nothing that is read
+/// from less can overflow.
+const LONGEST: usize = 200;
+/// Largest decimal exponent that is told from infinity.
+const LARGEST_EXPONENT: i32 = 100_000;
+
 /// Value in SI units and dimension of a number with an optional unit.
 pub fn parse(text: &str) -> Result<(f64, Powers), String> {
     let text = text.trim();
+    if text.len() > LONGEST {
+        let begin: String = text.chars().take(20).collect();
+        return Err(format!("`{begin}…` is too long for a number with a unit"));
+    }
     let (mantissa, exponent, rest) =
         split_number(text).ok_or_else(|| format!("`{text}` does not begin with a number"))?;
     let mut unit = Unit::default();
@@ -86,7 +96,10 @@ fn split_number(text: &str) -> Option<(&str, i32, &str)> {
         let length = digits(&power[signed..]);
         if length > 0 {
             let (exponent, rest) = power.split_at(signed + length);
-            return Some((mantissa, exponent.parse().ok()?, rest));
+            let most = LARGEST_EXPONENT;
+            let beyond = if power.starts_with('-') { -most } else { most };
+            let exponent: i32 = exponent.parse().unwrap_or(beyond);
+            return Some((mantissa, exponent.clamp(-most, most), rest));
         }
     }
     Some((mantissa, 0, rest))

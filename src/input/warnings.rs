@@ -1,10 +1,21 @@
 //! What is allowed but looks like a mistake.
 
+mod approach;
+mod case;
+mod impact;
+
+pub use approach::{Approach, approaches};
+
+use super::overlap::overlap;
 use crate::model::{Body, Case, ContactMode};
 use crate::populate;
 
-/// Doubtful things in a valid case, one line each: bodies whose particles may lie closer than a
-/// spacing, lattices that a symmetry plane does not mirror into themselves.
+/// Overlaps below this are within the rounding of curved faces to a lattice (spacings).
+const SHALLOW: f64 = 0.2;
+
+/// Doubtful things in a valid case, one line each: bodies that overlap a little, lattices that a
+/// symmetry plane does not mirror into themselves, planes that push from the start, bodies that
+/// meet without contact or never, contact of an odd stiffness, impacts beyond an equation of state.
 #[must_use]
 pub fn warnings(case: &Case) -> Vec<String> {
     let mut found = Vec::new();
@@ -12,11 +23,13 @@ pub fn warnings(case: &Case) -> Vec<String> {
         for (b, other) in case.bodies.iter().enumerate().skip(a + 1) {
             let sees = !matches!(case.contact_between(a, b), ContactMode::None)
                 && (body.rigid.is_none() || other.rigid.is_none());
-            if sees && may_overlap(body, other, case.dimension) {
+            if let Some(overlap) = sees.then(|| overlap(case, a, b)).flatten()
+                && overlap.depth > SHALLOW
+            {
                 found.push(format!(
-                    "the particles of `{}` and `{}` may overlap at the start: their bounding \
-                     boxes do; `touch` would lay one against the other",
-                    body.name, other.name
+                    "`{}` and `{}` begin {:.2} spacings within each other, which contact takes \
+                     for their state of rest; `touch` would lay one against the other",
+                    body.name, other.name, overlap.depth
                 ));
             }
         }
@@ -35,6 +48,18 @@ pub fn warnings(case: &Case) -> Vec<String> {
         }
     }
     surfaces(case, &mut found);
+    let approaches = approaches(case);
+    case::stiffness(case, &mut found);
+    case::meetings(case, &approaches, &mut found);
+    impact::warnings(case, &approaches, &mut found);
+    found
+}
+
+/// What is too coarse, one line each; a run that is meant to be coarse need not hear it.
+#[must_use]
+pub fn advice(case: &Case) -> Vec<String> {
+    let mut found = Vec::new();
+    case::thin_parts(case, &mut found);
     found
 }
 
@@ -55,18 +80,6 @@ fn surfaces(case: &Case, found: &mut Vec<String>) {
             }
         }
     }
-}
-
-/// Whether the boxes around all particles come closer than half a spacing on every axis.
-fn may_overlap(a: &Body, b: &Body, dimension: usize) -> bool {
-    let (Some((a_lower, a_upper)), Some((b_lower, b_upper))) = (
-        populate::bounds(a, dimension),
-        populate::bounds(b, dimension),
-    ) else {
-        return false;
-    };
-    let near = 0.25 * (a.lattice.spacing + b.lattice.spacing);
-    (0..dimension).all(|x| a_lower[x] < b_upper[x] + near && b_lower[x] < a_upper[x] + near)
 }
 
 /// Whether the whole body has particles behind the plane or within a spacing of it.

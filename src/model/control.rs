@@ -102,6 +102,10 @@ pub struct OutputOptions {
     pub snapshot_every: Option<f64>,
     /// Time between checkpoints (s); none if absent. A soft stop always writes one.
     pub checkpoint_every: Option<f64>,
+    /// Steps between checkpoints; none if absent.
+    pub checkpoint_every_steps: Option<u64>,
+    /// Time of the clock between checkpoints (s); none if absent.
+    pub checkpoint_every_wall: Option<f64>,
     /// How many checkpoints are kept.
     pub checkpoints_kept: usize,
     /// Steps between two rows of `history.csv`, `contacts.csv` and `performance.csv`.

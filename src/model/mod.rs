@@ -7,9 +7,11 @@
 mod body;
 mod contact;
 mod control;
+mod distance;
 mod load;
 mod motion;
 mod surface;
+mod trouble;
 
 pub use body::{Axis, Body, Lattice, LatticeKind, Shape, SymmetryPlane};
 pub use contact::{
@@ -25,6 +27,7 @@ pub use surface::{
     Feature, Foot, Mesh, MeshError, RigidSurface, Spin, SurfaceFile, SurfaceShape,
     closest_on_triangle,
 };
+pub use trouble::{Trouble, TroublePolicy};
 
 use crate::material::Material;
 
@@ -57,6 +60,8 @@ pub struct Case {
     pub time_step: TimeStepOptions,
     /// Distribution over ranks.
     pub domain: DomainOptions,
+    /// What counts as numerical trouble.
+    pub trouble: Trouble,
     /// When to stop.
     pub run: RunControl,
     /// What to write and when.

@@ -27,6 +27,14 @@ impl Motion {
         self.velocities[axis].is_some()
     }
 
+    /// Largest speed (m/s), or somewhat more.
+    #[must_use]
+    pub fn largest_speed(&self) -> f64 {
+        let axes = self.velocities.iter().flatten();
+        let largest = axes.map(|values| values.iter().fold(0.0_f64, |most, v| most.max(v.abs())));
+        largest.map(|v| v * v).fold(0.0, |sum, v| sum + v).sqrt()
+    }
+
     /// Velocity along an axis (m/s) at time `t` (s); zero on a free axis.
     #[must_use]
     pub fn velocity(&self, axis: usize, t: f64) -> f64 {

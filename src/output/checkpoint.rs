@@ -222,6 +222,24 @@ pub fn state_file(folder: &Path) -> PathBuf {
     folder.join(STATE)
 }
 
+/// Folders named like checkpoints that are none, since they lack a manifest, newest first.
+///
+/// # Errors
+/// [`OutputError::Io`].
+pub fn list_broken(folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
+    let mut found = Vec::new();
+    let entries = fs::read_dir(folder).map_err(OutputError::io("list", folder))?;
+    for entry in entries {
+        let path = entry.map_err(OutputError::io("list", folder))?.path();
+        if step_of(&path, "").is_some() && !path.join(MANIFEST).exists() {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found.reverse();
+    Ok(found)
+}
+
 /// The whole checkpoints in a folder with their steps, oldest first.
 ///
 /// # Errors
@@ -255,7 +273,7 @@ pub(super) fn step_of(path: &Path, ending: &str) -> Option<u64> {
     digits.parse().ok()
 }
 
-fn row_type(kind: FieldKind) -> RowType {
+pub(super) fn row_type(kind: FieldKind) -> RowType {
     let element = match kind {
         FieldKind::Id => Element::U64,
         FieldKind::Index => Element::U32,

@@ -47,10 +47,17 @@ pub enum OutputError {
         path: PathBuf,
     },
     /// A run without a checkpoint.
-    #[error("the run {} has no checkpoint to restart from; run its case again", path.display())]
+    #[error(
+        "the run {} has no {}checkpoint to restart from; run its case again{}",
+        path.display(),
+        if passed_over.is_empty() { "" } else { "whole " },
+        passed_over.iter().map(|why| format!("\n  {why}")).collect::<String>()
+    )]
     NoCheckpoint {
         /// The run's folder.
         path: PathBuf,
+        /// Why those that there are could not be read.
+        passed_over: Vec<String>,
     },
     /// A checkpoint that stands in no run folder.
     #[error(

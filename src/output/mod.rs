@@ -11,6 +11,7 @@ mod files;
 pub mod h5;
 mod history;
 mod log;
+pub mod post_mortem;
 mod rows;
 mod run_folder;
 mod schedule;

@@ -11,11 +11,12 @@ use super::checkpoint::{self, step_of};
 use super::{OutputError, files, on_root, series, snapshot, write_atomically, write_json};
 
 /// Files that a run writes into its folder, beside two folders.
-const FILES: [&str; 9] = [
+const FILES: [&str; 10] = [
     "case.toml",
     "history.csv",
     "contacts.csv",
     "loads.csv",
+    "removed.csv",
     "performance.csv",
     "log.txt",
     "status.json",
@@ -24,6 +25,7 @@ const FILES: [&str; 9] = [
 ];
 const SNAPSHOTS: &str = "snapshots";
 const CHECKPOINTS: &str = "checkpoints";
+const TROUBLE: &str = "trouble";
 
 /// Where a run stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -166,13 +168,25 @@ impl RunFolder {
         Self::is_run(path).then(|| Self::at(path))
     }
 
-    /// The newest whole checkpoint, if there is one.
+    /// The checkpoints there are, newest first.
     ///
     /// # Errors
     /// [`OutputError::Io`].
-    pub fn newest_checkpoint(&self) -> Result<Option<PathBuf>, OutputError> {
-        let mut found = checkpoint::list(&self.checkpoints())?;
-        Ok(found.pop().map(|(_, path)| path))
+    pub fn checkpoint_folders(&self) -> Result<Vec<PathBuf>, OutputError> {
+        let found = checkpoint::list(&self.checkpoints())?;
+        Ok(found.into_iter().rev().map(|(_, path)| path).collect())
+    }
+
+    /// Where post-mortems of a step go, without an ending.
+    #[must_use]
+    pub fn post_mortem(&self, step: u64) -> PathBuf {
+        self.path.join(TROUBLE).join(format!("step-{step:08}"))
+    }
+
+    /// Table of what removed particles took with them.
+    #[must_use]
+    pub fn removed(&self) -> PathBuf {
+        self.path.join("removed.csv")
     }
 
     /// Reads `status.json`.
@@ -317,6 +331,7 @@ impl RunFolder {
                 }
             }
         }
+        files::remove(&path.join(TROUBLE))?;
         // The status goes last, so that a clearing that was cut short can be taken up again.
         for name in FILES.iter().filter(|&&name| name != "status.json") {
             files::remove(&path.join(name))?;
@@ -414,7 +429,7 @@ mod tests {
             [run.snapshot(2), run.snapshot(4)]
         );
         assert_eq!(series::read(&run.series()).unwrap().len(), 2);
-        let newest = run.newest_checkpoint().unwrap().unwrap();
+        let newest = run.checkpoint_folders().unwrap().remove(0);
         assert!(newest.ends_with("step-00000004"));
         assert!(!run.stop().exists());
         assert_eq!(

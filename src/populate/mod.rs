@@ -63,6 +63,18 @@ pub fn count(body: &Body, dimension: usize, symmetry: &[SymmetryPlane], slab: Op
         .sum()
 }
 
+/// The ends (m) of all lattice rows above the symmetry planes: the outermost particles, as seen
+/// along the rows.
+pub fn row_ends(
+    body: &Body,
+    dimension: usize,
+    symmetry: &[SymmetryPlane],
+) -> impl Iterator<Item = [f64; 3]> + use<> {
+    let stack = Stack::new(body, dimension);
+    row::rows(stack, symmetry, None)
+        .flat_map(move |row| [row.first, row.end - 1].map(|i| stack.position(i, row.j, row.k)))
+}
+
 /// Smallest and largest coordinates (m) of the sites of a whole body, or `None` if it has none.
 ///
 /// These are the extreme layers of particles, which lie half a spacing or so inside the shape.

@@ -177,8 +177,7 @@ impl<S: PairScale, const OPTIONS: u8> Vectorised for Momentum<'_, S, OPTIONS> {
             let mut stress = if OPTIONS & NORMALISED == 0 {
                 [pull(0), pull(1), pull(2), slide(0), slide(1), slide(2)]
             } else {
-                let friction = zero.sub(pi);
-                [friction, friction, friction, zero, zero, zero]
+                [zero.sub(pi), zero.sub(pi), zero.sub(pi), zero, zero, zero]
             };
             if OPTIONS & SHAPED != 0 {
                 let shape = self.scale.shape(&kernel);

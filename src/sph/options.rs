@@ -48,7 +48,7 @@ impl OptionRecord {
 /// Coefficients of the options, and what particles show for them.
 #[derive(Debug, Clone, Copy)]
 pub struct Options<'a> {
-    /// Records of all particles and images; empty without [`RECORDED`] options.
+    /// Records of all particles and images; empty without options that show any.
     pub records: &'a [OptionRecord],
     /// Stresses with corrections of all particles and images; empty without [`NORMALISED`].
     pub normalised: &'a [NormalisedRecord],

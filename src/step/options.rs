@@ -12,8 +12,8 @@ use crate::particles::{FieldUse, resize};
 use crate::sph::kernel::Kernel;
 use crate::sph::normalised::NormalisedRecord;
 use crate::sph::options::{
-    ARTIFICIAL_STRESS, BALSARA, CONDUCTION, NORMALISED, OptionRecord, Options, RECORDED, XSPH,
-    limiter, repulsion,
+    ARTIFICIAL_STRESS, BALSARA, CONDUCTION, NORMALISED, OptionRecord, Options, XSPH, limiter,
+    repulsion,
 };
 
 /// The options of a case, and what particles and images show for them.
@@ -116,7 +116,8 @@ impl Simulation {
         if set & NORMALISED != 0 {
             self.fill_normalised(halo);
         }
-        if set & RECORDED == 0 {
+        // A compiled set may have more options than the case: then they show neutral data.
+        if set & !NORMALISED == 0 {
             return;
         }
         let store = &self.store;

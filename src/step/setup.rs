@@ -1,5 +1,7 @@
 //! From a case to the particles of this rank at time zero, or from saved particles to a run.
 
+use std::collections::VecDeque;
+
 use thiserror::Error;
 
 use super::contact_phase::ContactPhase;
@@ -12,6 +14,7 @@ use super::sums::StepSums;
 use super::surface_forces::SurfaceForces;
 use super::sweeps::Sweeps;
 use super::timers::Timers;
+use super::trouble::{Limits, PAST_VOTES};
 use crate::comm::Comm;
 use crate::contact::ContactTable;
 use crate::domain::{Halo, Histogram, Migration, Mirrors, Paces, Slabs, balance};
@@ -37,6 +40,9 @@ pub enum SetupError {
     /// The lattices need more identities than there are.
     #[error("the bodies' lattices have too many sites to number; use larger spacings")]
     TooManySites,
+    /// A restored state is not one of the case.
+    #[error("the saved state is not one of this case: {0}")]
+    Foreign(&'static str),
     /// The first evaluation failed.
     #[error(transparent)]
     Step(#[from] StepError),
@@ -75,6 +81,19 @@ impl Simulation {
         simulation.store = store;
         let unused = unused_fields(&simulation.case, &simulation.contact);
         simulation.store.drop_fields(unused);
+        let [pairs, loads] = [simulation.state.pairs.len(), simulation.state.loads.len()];
+        if [state.pairs.len(), state.loads.len()] != [pairs, loads] {
+            return Err(SetupError::Foreign("it has other pairs of bodies or loads"));
+        }
+        let bodies = simulation.case.bodies.len();
+        let of_no_body = simulation
+            .store
+            .body
+            .iter()
+            .any(|&body| body as usize >= bodies);
+        if comm.any(of_no_body) {
+            return Err(SetupError::Foreign("it has particles of another body"));
+        }
         simulation.state = state;
         simulation.slabs = balance(
             comm,
@@ -147,6 +166,8 @@ impl Simulation {
             unordered: true,
             crossed: Vec::new(),
             reference_h: case.bodies.iter().map(|b| b.smoothing_length).collect(),
+            limits: Limits::new(&case),
+            votes: VecDeque::with_capacity(PAST_VOTES),
             contact,
             case,
         }
@@ -263,6 +284,8 @@ fn fresh_state(pairs: usize, loads: usize) -> RunState {
         capped_reliefs: 0,
         interpenetrated: 0,
         uncorrected: 0,
+        removed: Vec::new(),
+        removed_contact_energy: 0.0,
         worst: Worst::default(),
     }
 }

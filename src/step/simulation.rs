@@ -1,5 +1,7 @@
 //! The simulation: everything a rank holds, and one step of it.
 
+use std::collections::VecDeque;
+
 use thiserror::Error;
 
 use super::contact_phase::ContactPhase;
@@ -11,6 +13,7 @@ use super::sums::StepSums;
 use super::surface_forces::SurfaceForces;
 use super::sweeps::Sweeps;
 use super::timers::{Phase, Timers};
+use super::trouble::{Limits, PastVote, TroubleKind};
 use crate::comm::Comm;
 use crate::contact::ContactTable;
 use crate::domain::{Halo, Histogram, Migration, Paces, Slabs, balance};
@@ -21,18 +24,25 @@ use crate::particles::{FieldUse, ParticleStore};
 /// Why a step failed; the same on all ranks.
 #[derive(Debug, Clone, Error)]
 pub enum StepError {
-    /// A number left the range of numbers.
-    #[error(
-        "step {step}: particle {id} has a non-finite or absurd state ({detail}); \
-         a smaller courant factor or a look at the last snapshot may tell why"
-    )]
-    NotFinite {
+    /// A particle's state is no number or out of range.
+    #[error("step {step}: particle {id} {what} ({detail})")]
+    Trouble {
         /// Step in which it was found.
         step: u64,
         /// Identity of the particle.
         id: u64,
-        /// What was found.
+        /// What is wrong.
+        kind: TroubleKind,
+        /// The same in words.
+        what: String,
+        /// The particle's state.
         detail: String,
+    },
+    /// Every particle was out of range.
+    #[error("step {step}: no particle is left, all were out of range")]
+    NothingLeft {
+        /// Step in which the last one went.
+        step: u64,
     },
 }
 
@@ -77,6 +87,9 @@ pub struct Simulation {
     /// Particles that have crossed a symmetry plane, by task.
     pub(super) crossed: Vec<Vec<usize>>,
     pub(super) reference_h: Vec<f64>,
+    pub(super) limits: Limits,
+    /// The last votes, for post-mortems.
+    pub(super) votes: VecDeque<PastVote>,
 }
 
 impl Simulation {
@@ -94,7 +107,7 @@ impl Simulation {
     /// One step of kick–drift–kick. Collective.
     ///
     /// # Errors
-    /// The same on all ranks if any particle's state is no longer a number.
+    /// The same on all ranks if any particle's state is no number or out of range.
     pub fn advance(&mut self, comm: &Comm) -> Result<(), StepError> {
         let (dt, reason) = self.next_step();
         if self.poison {
@@ -118,8 +131,8 @@ impl Simulation {
         self.state.time = end;
         (self.state.last_dt, self.state.last_reason) = (dt, reason);
         self.book_step(comm, dt);
-        self.vote(comm)?;
         self.updates += self.store.owned() as u64;
+        self.vote(comm)?;
         self.timers.lap(Phase::Vote);
         Ok(())
     }

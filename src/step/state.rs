@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::trouble::Removed;
+
 /// What limited a time step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -142,6 +144,12 @@ pub struct RunState {
     pub interpenetrated: i64,
     /// Particles whose gradient has no correction now, in the normalised form.
     pub uncorrected: i64,
+    /// What removed particles took with them, by body; empty as long as there are none.
+    #[serde(default)]
+    pub removed: Vec<Removed>,
+    /// Contact energy that went with them (J).
+    #[serde(default)]
+    pub removed_contact_energy: f64,
     /// Largest values over the run.
     pub worst: Worst,
 }
@@ -157,6 +165,12 @@ impl RunState {
     #[must_use]
     pub fn contact_heat(&self) -> f64 {
         self.pairs.iter().map(|pair| pair.heat).sum()
+    }
+
+    /// Energy that went with removed particles, that of contact included (J).
+    #[must_use]
+    pub fn removed_energy(&self) -> f64 {
+        self.removed.iter().map(Removed::energy).sum::<f64>() + self.removed_contact_energy
     }
 
     /// Impulse given by all loads so far (N s).

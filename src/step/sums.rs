@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::search::GRAIN;
 use super::simulation::Simulation;
 use super::state::{PairState, Totals};
+use super::trouble::Removed;
 use crate::comm::Comm;
 use crate::contact::BodyReaction;
 use crate::diagnose::exact_sum::ExactSum;
@@ -214,7 +215,7 @@ impl StepSums {
     }
 }
 
-fn gather_limbs<'a>(sums: impl Iterator<Item = &'a mut ExactSum>, limbs: &mut Vec<i64>) {
+pub(super) fn gather_limbs<'a>(sums: impl Iterator<Item = &'a mut ExactSum>, limbs: &mut Vec<i64>) {
     for sum in sums {
         sum.normalise();
         limbs.extend_from_slice(sum.limbs());
@@ -222,7 +223,7 @@ fn gather_limbs<'a>(sums: impl Iterator<Item = &'a mut ExactSum>, limbs: &mut Ve
 }
 
 /// Gives the sums their limbs back; returns what is left of `limbs`.
-fn scatter_limbs<'a, 'b>(
+pub(super) fn scatter_limbs<'a, 'b>(
     sums: impl Iterator<Item = &'a mut ExactSum>,
     mut limbs: &'b [i64],
 ) -> &'b [i64] {
@@ -293,7 +294,15 @@ impl Simulation {
             let closest = worst.closest.map_or(sums.closest, |c| c.min(sums.closest));
             worst.closest = Some(closest);
         }
-        let defect = state.contact_work + state.contact_energy - state.initial.contact_energy
+        self.book_defect();
+    }
+
+    /// The contact defect, after the sums of a step.
+    pub(super) fn book_defect(&mut self) {
+        let state = &mut self.state;
+        let worst = &mut state.worst;
+        let defect = state.contact_work + state.removed_contact_energy + state.contact_energy
+            - state.initial.contact_energy
             + state.pairs.iter().map(|pair| pair.heat).sum::<f64>();
         worst.contact_deviation = worst.contact_deviation.max(defect.abs());
         let scale = state.initial.kinetic_energy.max(state.work_put_in);
@@ -312,8 +321,9 @@ impl Simulation {
         let (work, impulse) = (state.load_work(), state.load_impulse());
         let fallen = totals.gravity_energy - state.initial.gravity_energy;
         state.work_put_in = state.work_put_in.max(work.abs()).max(fallen.abs());
+        let removed = state.removed_energy();
         let worst = &mut state.worst;
-        let error = totals.energy() - state.initial.energy() - work;
+        let error = totals.energy() + removed - state.initial.energy() - work;
         worst.energy_deviation = worst.energy_deviation.max(error.abs());
         let scale = state.initial.kinetic_energy.max(state.work_put_in);
         if scale > 0.0 {
@@ -321,9 +331,12 @@ impl Simulation {
             worst.contact_defect = worst.contact_deviation / scale;
         }
         for a in 0..3 {
-            let falling = totals.mass * gravity[a] * state.time;
+            let removed = |part: fn(&Removed) -> f64| state.removed.iter().map(part).sum::<f64>();
+            let mass_time = totals.mass * state.time + removed(|r| r.mass_time);
+            let falling = mass_time * gravity[a];
             let outside = impulse[a] + falling;
-            let gained = totals.momentum[a] - state.initial.momentum[a];
+            let taken: f64 = state.removed.iter().map(|r| r.momentum[a]).sum();
+            let gained = totals.momentum[a] + taken - state.initial.momentum[a];
             let error = gained - state.plane_impulse[a] - outside;
             worst.momentum_deviation[a] = worst.momentum_deviation[a].max(error.abs());
             for put in [impulse[a], falling] {

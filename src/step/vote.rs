@@ -8,12 +8,16 @@ use super::loads::LoadStep;
 use super::search::GRAIN;
 use super::simulation::{Simulation, StepError};
 use super::state::Reason;
+use super::trouble::{Limits, PAST_VOTES, PastVote, TroubleKind};
 use crate::comm::Comm;
 use crate::model::Case;
 use crate::particles::ParticleStore;
 
 /// Largest coordinate that still counts as a position (m).
 const FARTHEST: f64 = 1e12;
+
+/// How much corrections enlarge gradients at surfaces of lattices, which steps need not heed.
+const SURFACE_CORRECTION: f64 = 2.0;
 
 /// A vote: bits of Δt (s; positive doubles order as their bits), reason, id.
 type Vote = (u64, u64, u64);
@@ -40,7 +44,7 @@ impl Simulation {
             .unwrap_or(ABSTAIN);
         self.scratch = words;
         if best.0 == ERROR {
-            return Err(self.post_mortem(comm, best.2));
+            return Err(self.trouble(comm, best.1, best.2));
         }
         self.state.dt = f64::from_bits(best.0);
         self.state.dt_reason = Reason::ALL[usize::try_from(best.1)
@@ -53,6 +57,15 @@ impl Simulation {
             self.state.dt = self.case.time_step.max;
             self.state.dt_reason = Reason::Maximum;
         }
+        if self.votes.len() == PAST_VOTES {
+            self.votes.pop_front();
+        }
+        self.votes.push_back(PastVote {
+            step: self.state.step,
+            dt: self.state.dt,
+            reason: self.state.dt_reason.name(),
+            id: best.2,
+        });
         let contact = self.state.dt_reason == Reason::Contact;
         self.state.worst.contact_limited_steps += u64::from(contact);
         Ok(())
@@ -68,14 +81,25 @@ impl Simulation {
         }
     }
 
-    fn local_vote(&self) -> Vote {
-        let owned = self.store.owned();
-        let voter = Voter {
+    fn voter(&self) -> Voter<'_> {
+        Voter {
             store: &self.store,
             case: &self.case,
             contact: self.contact.is_active(),
             loads: &self.loads,
-        };
+            limits: &self.limits,
+        }
+    }
+
+    /// What is wrong with a particle of this rank, if anything is.
+    pub(super) fn trouble_of(&self, i: usize) -> Option<TroubleKind> {
+        let (dt, kind, _) = self.voter().vote(i);
+        (dt == ERROR).then(|| kind_of(kind))
+    }
+
+    fn local_vote(&self) -> Vote {
+        let owned = self.store.owned();
+        let voter = self.voter();
         (0..owned.div_ceil(GRAIN))
             .into_par_iter()
             .map(|chunk| {
@@ -89,10 +113,11 @@ impl Simulation {
     }
 
     /// Describes the particle `id`, wherever it is; the same text on all ranks.
-    fn post_mortem(&self, comm: &Comm, id: u64) -> StepError {
+    fn trouble(&self, comm: &Comm, kind: u64, id: u64) -> StepError {
         let store = &self.store;
         let found = store.id[..store.owned()].iter().position(|&x| x == id);
-        let mine = found.map_or_else(Vec::new, |i| describe(store, i, comm.rank()).into_bytes());
+        let describe = |i| describe(store, &self.case, i, comm.rank()).into_bytes();
+        let mine = found.map_or_else(Vec::new, describe);
         let mut owner = [if mine.is_empty() {
             u64::MAX
         } else {
@@ -101,12 +126,20 @@ impl Simulation {
         comm.min_u64(&mut owner);
         let mut text = mine;
         comm.broadcast_from(usize::try_from(owner[0]).unwrap_or(0), &mut text);
-        StepError::NotFinite {
+        let kind = kind_of(kind);
+        StepError::Trouble {
             step: self.state.step,
             id,
+            kind,
+            what: kind.describe(&self.case.trouble),
             detail: String::from_utf8_lossy(&text).into_owned(),
         }
     }
+}
+
+fn kind_of(number: u64) -> TroubleKind {
+    let last = TroubleKind::ALL.len() - 1;
+    TroubleKind::ALL[usize::try_from(number).unwrap_or(0).min(last)]
 }
 
 /// What a particle's vote depends on.
@@ -115,11 +148,13 @@ struct Voter<'a> {
     case: &'a Case,
     contact: bool,
     loads: &'a LoadStep,
+    limits: &'a Limits,
 }
 
 impl Voter<'_> {
     /// Sound and viscosity (Monaghan 1989) `C h / (c + 0.6 (α c + β |μ|))`, acceleration
-    /// `C_f √(h/|a|)`, contact `2 f √(m/k)`; none by particles of rigid bodies.
+    /// `C_f √(h/|a|)`, contact `2 f √(m/k)`; none by particles of rigid bodies. A correction that
+    /// enlarges gradients more than those of plain surfaces do raises frequencies as much.
     fn vote(&self, i: usize) -> Vote {
         if self.loads.drives() && self.loads.is_rigid(self.store.load[i]) {
             return ABSTAIN;
@@ -127,6 +162,8 @@ impl Voter<'_> {
         let (store, case) = (self.store, self.case);
         let (h, c) = (store.smoothing_length[i], store.sound_speed[i]);
         let signal = c + 0.6 * (case.sph.alpha * c + case.sph.beta * store.approach_speed[i]);
+        let correction = store.correction_norm.get(i).copied().unwrap_or_default();
+        let signal = signal * (correction / SURFACE_CORRECTION).max(1.0);
         let sound = case.time_step.courant * h / signal;
         let mut total = store.acceleration[i];
         for (total, gravity) in total.iter_mut().zip(self.loads.gravity) {
@@ -147,11 +184,15 @@ impl Voter<'_> {
         let id = store.id[i];
         let sane = sound > 0.0
             && !force.is_nan()
+            && store.density[i].is_finite()
             && store.specific_energy[i].is_finite()
             && store.velocity[i].iter().all(|v| v.is_finite())
             && store.position[i].iter().all(|x| x.abs() < FARTHEST);
         if !sane {
-            return (ERROR, 0, id);
+            return (ERROR, TroubleKind::NotFinite as u64, id);
+        }
+        if let Some(kind) = self.limits.check(store, i) {
+            return (ERROR, kind as u64, id);
         }
         let (dt, reason) = [
             (sound, Reason::Sound),
@@ -161,15 +202,18 @@ impl Voter<'_> {
         .into_iter()
         .reduce(|best, next| if next.0 < best.0 { next } else { best })
         .unwrap_or((f64::INFINITY, Reason::Sound));
+        if dt < self.limits.step_min {
+            return (ERROR, TroubleKind::Step as u64, id);
+        }
         (dt.to_bits(), reason as u64, id)
     }
 }
 
-fn describe(store: &ParticleStore, i: usize, rank: usize) -> String {
+fn describe(store: &ParticleStore, case: &Case, i: usize, rank: usize) -> String {
     format!(
-        "body {}, rank {rank}, position {:?} m, velocity {:?} m/s, density {} kg/m^3, \
+        "body `{}`, rank {rank}, position {:?} m, velocity {:?} m/s, density {} kg/m^3, \
          specific energy {} J/kg, pressure {} Pa, sound speed {} m/s; nearest particles {}",
-        store.body[i],
+        case.bodies[store.body[i] as usize].name,
         store.position[i],
         store.velocity[i],
         store.density[i],

@@ -44,6 +44,7 @@ pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
         symmetry: Vec::new(),
         loads: Loads::default(),
         sph: SphOptions::default(),
+        trouble: whipple::model::Trouble::default(),
         time_step: TimeStepOptions {
             courant: 0.4,
             force: 0.25,
@@ -61,6 +62,8 @@ pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
         output: OutputOptions {
             snapshot_every: None,
             checkpoint_every: None,
+            checkpoint_every_steps: None,
+            checkpoint_every_wall: None,
             checkpoints_kept: 2,
             history_every: 10,
             fields: Vec::new(),

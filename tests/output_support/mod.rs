@@ -51,6 +51,7 @@ pub fn case() -> Case {
         }],
         loads: Loads::default(),
         sph: SphOptions::default(),
+        trouble: whipple::model::Trouble::default(),
         time_step: TimeStepOptions {
             courant: 0.3,
             force: 0.3,
@@ -68,6 +69,8 @@ pub fn case() -> Case {
         output: OutputOptions {
             snapshot_every: None,
             checkpoint_every: None,
+            checkpoint_every_steps: None,
+            checkpoint_every_wall: None,
             checkpoints_kept: 2,
             history_every: 1,
             fields: Vec::new(),

@@ -16,6 +16,8 @@ use crate::populate;
 
 /// Bounding lattices beyond this are a slip in a unit rather than a body.
 const MOST_SITES: u64 = 100_000_000_000;
+/// Speed of light (m/s).
+const LIGHT: f64 = 299_792_458.0;
 /// Where the first layer above a symmetry plane may lie, in spacings, so that particles neither
 /// sit on their own mirror images nor leave a gap.
 const FIRST_LAYER: (f64, f64) = (0.25, 0.75);
@@ -198,6 +200,10 @@ impl Reader<'_> {
         }
         for (component, value) in velocity.iter_mut().zip(params.get_ref()) {
             *component = value.get_ref().si();
+            if component.abs() >= LIGHT {
+                let title = "this velocity is faster than light";
+                return Err(Complaint::new(value.span(), title).help("check its unit"));
+            }
         }
         Ok(velocity)
     }

@@ -2,7 +2,7 @@
 
 use toml::Spanned;
 
-use super::check::{Allowed, number, whole};
+use super::check::{Allowed, number};
 use crate::input::forms::FrictionParams;
 use crate::input::schema::{
     BodyParams, ContactParams, DirectionName, ModeName, OverlapParams, PairParams, PenaltyLawName,
@@ -13,6 +13,10 @@ use crate::model::{
     ContactDirection, ContactMode, ContactPair, Overlap, Penalty, PenaltyLaw, Potential,
     PotentialRange, Resistance, SphForm,
 };
+
+/// Largest exponent of the contact potential: beyond it a power of the kernel ratio says no more
+/// than that particles are closer than the mean spacing or not.
+const LARGEST_EXPONENT: u32 = 100;
 
 /// A choice of mode with the parameters of all modes.
 #[derive(Clone, Copy)]
@@ -206,21 +210,28 @@ fn resistance(
     })
 }
 
+/// The exponent of the contact potential.
+fn exponent(value: Option<&Spanned<i64>>, base: u32) -> Result<u32, Complaint> {
+    let Some(value) = value else {
+        return Ok(base);
+    };
+    let exponent = u32::try_from(*value.get_ref()).ok();
+    let allowed = exponent.filter(|n| (1..=LARGEST_EXPONENT).contains(n));
+    allowed.ok_or_else(|| {
+        let title = format!("`exponent` must be between 1 and {LARGEST_EXPONENT}");
+        Complaint::new(value.span(), title).label("out of range")
+    })
+}
+
 fn potential(
     params: &PotentialParams,
     base: Potential,
     form: SphForm,
 ) -> Result<Potential, Complaint> {
     let stiffness = params.stiffness.as_ref();
-    let exponent = whole(
-        params.exponent.as_ref(),
-        "exponent",
-        base.exponent.into(),
-        1,
-    )?;
     Ok(Potential {
         stiffness: number(stiffness, "stiffness", base.stiffness, Allowed::Positive)?,
-        exponent: u32::try_from(exponent).unwrap_or(u32::MAX),
+        exponent: exponent(params.exponent.as_ref(), base.exponent)?,
         range: match params.range {
             Some(RangeName::Support) => PotentialRange::Support,
             Some(RangeName::Spacing) => PotentialRange::Spacing,

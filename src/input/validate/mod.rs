@@ -11,10 +11,12 @@ mod shapes;
 mod strength;
 mod surfaces;
 mod touch;
+mod trouble;
 
 use std::ops::Range;
 use std::path::Path;
 
+use super::overlap::overlap;
 use super::schema::{
     AxisName, BodyParams, CaseParams, DomainParams, OutputParams, RunParams, SmoothingName,
     SphFormName, SphParams, SymmetryParams, TimeStepParams,
@@ -22,11 +24,14 @@ use super::schema::{
 use super::source::Complaint;
 use crate::model::{
     Axis, Case, ContactMode, DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm,
-    SphOptions, SymmetryPlane, TimeStepOptions,
+    SphOptions, SymmetryPlane, TimeStepOptions, Trouble,
 };
 use crate::particles::{TEMPERATURE, snapshot_names};
 use check::{Allowed, number, whole};
 use toml::Spanned;
+
+/// Overlaps up to this may be those of curved faces on a lattice (spacings).
+const MOST_OVERLAP: f64 = 0.5;
 
 /// Builds the case, whose files stand in `folder`; `resolved` is left empty.
 pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
@@ -65,7 +70,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
         time_step.max = time_step.max.min(diffusion);
     }
     let fields = field_spans(&params.output);
-    let case = Case {
+    let mut case = Case {
         title: params.title.unwrap_or_else(|| "untitled".to_owned()),
         dimension,
         materials,
@@ -77,11 +82,14 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
         sph,
         time_step,
         domain: domain(&params.domain, dimension)?,
+        trouble: Trouble::default(),
         run: run(params.run.get_ref())?,
         output: output(params.output)?,
         resolved: String::new(),
     };
+    case.trouble = trouble::trouble(&params.trouble, &case)?;
     check_moduli(&case, &params.body)?;
+    check_overlaps(&case, &params.body)?;
     check_temperature(&case, &fields)?;
     Ok(case)
 }
@@ -102,6 +110,33 @@ fn check_moduli(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Compl
             let named = table.get_ref().material.as_ref();
             return Err(Complaint::new(named.map_or_else(|| table.span(), Spanned::span), title)
                 .help("give its `eos.ideal_gas` a `reference_pressure`, or join the bodies by `kernel` contact"));
+        }
+    }
+    Ok(())
+}
+
+/// Bodies that begin within each other would fly apart at once.
+fn check_overlaps(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Complaint> {
+    for (b, table) in params.iter().enumerate() {
+        for a in 0..b {
+            let bodies = [a, b].map(|body| &case.bodies[body]);
+            let sees = !matches!(case.contact_between(a, b), ContactMode::None)
+                && bodies.iter().any(|body| body.rigid.is_none());
+            let found = sees.then(|| overlap(case, a, b)).flatten();
+            if let Some(found) = found.filter(|found| found.depth > MOST_OVERLAP) {
+                let at = found.at.map(|x| format!("{x:.4e}"));
+                let title = format!(
+                    "`{}` begins {:.1} spacings within `{}`, near [{}] m",
+                    bodies[1].name,
+                    found.depth,
+                    bodies[0].name,
+                    at[..case.dimension].join(", ")
+                );
+                return Err(Complaint::new(table.get_ref().shape.span(), title).help(
+                    "move one of them, or let it `touch` the other; only bodies with contact of \
+                     mode \"none\" may overlap",
+                ));
+            }
         }
     }
     Ok(())
@@ -262,6 +297,10 @@ fn output(params: OutputParams) -> Result<OutputOptions, Complaint> {
     Ok(OutputOptions {
         snapshot_every: every(params.snapshot_every, "snapshot_every")?,
         checkpoint_every: every(params.checkpoint_every, "checkpoint_every")?,
+        checkpoint_every_steps: (params.checkpoint_every_steps.as_ref())
+            .map(|steps| whole(Some(steps), "checkpoint_every_steps", 0, 1))
+            .transpose()?,
+        checkpoint_every_wall: every(params.checkpoint_every_wall, "checkpoint_every_wall")?,
         checkpoints_kept: usize::try_from(kept).unwrap_or(usize::MAX),
         history_every: whole(params.history_every.as_ref(), "history_every", 10, 1)?,
         fields: params.fields.into_iter().map(Spanned::into_inner).collect(),

@@ -106,6 +106,11 @@ impl Content {
                 element: Element::of(&dataset.dtype()?)?,
                 components,
             };
+            // Nothing is compressed: what is longer than the file would only take memory.
+            let length = (rows as u64).checked_mul(row.bytes() as u64);
+            if length.is_none_or(|length| length > self.file.size()) {
+                return Err(format!("{rows} rows are more than the file holds").into());
+            }
             Ok(Array {
                 name: path.rsplit('/').next().unwrap_or(path).to_owned(),
                 row,

@@ -1,0 +1,100 @@
+//! Numerical trouble: the ranges that a particle's state may not leave, and what follows if it does.
+
+use super::Case;
+
+/// What happens to a particle whose state is out of range.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum TroublePolicy {
+    /// The run ends.
+    #[default]
+    Stop,
+    /// The particle is taken out and its mass, momentum and energy are booked.
+    Remove,
+}
+
+/// Ranges of a particle's state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Trouble {
+    /// What happens outside of them.
+    pub policy: TroublePolicy,
+    /// Largest speed (m/s).
+    pub speed_max: f64,
+    /// Largest magnitude of the specific energy (J/kg).
+    pub energy_max: f64,
+    /// Smallest density over that of the body at the start.
+    pub density_min: f64,
+    /// Largest density over that of the body at the start.
+    pub density_max: f64,
+    /// Smallest time step (s).
+    pub step_min: f64,
+}
+
+impl Default for Trouble {
+    /// The run ends at what is no number, and at nothing else.
+    fn default() -> Self {
+        Self {
+            policy: TroublePolicy::Stop,
+            speed_max: f64::INFINITY,
+            energy_max: f64::INFINITY,
+            density_min: 0.0,
+            density_max: f64::INFINITY,
+            step_min: 0.0,
+        }
+    }
+}
+
+/// Largest speed over the natural one: jets reach a few times the speed of an impact.
+const SPEEDS: f64 = 20.0;
+/// Smallest step over the time in which the natural speed crosses the shortest smoothing length.
+const STEPS: f64 = 1e-6;
+
+impl Trouble {
+    /// Ranges that no healthy run of a case leaves, however violent: they are made of its own
+    /// velocities, sound speeds, energies and lengths.
+    #[must_use]
+    pub fn natural(case: &Case) -> Self {
+        let speed = natural_speed(case);
+        let shortest = case.bodies.iter().map(|b| b.smoothing_length);
+        let shortest = shortest.fold(f64::INFINITY, f64::min);
+        let speed_max = if speed > 0.0 {
+            SPEEDS * speed
+        } else {
+            f64::INFINITY
+        };
+        Self {
+            policy: TroublePolicy::Stop,
+            speed_max,
+            energy_max: 0.5 * speed_max * speed_max,
+            density_min: 1e-6,
+            density_max: 100.0,
+            step_min: STEPS
+                * (shortest / speed)
+                    .min(case.time_step.max)
+                    .min(case.run.end_time),
+        }
+    }
+}
+
+/// Speeds that a case itself names, added up (m/s): of bodies, loads and surfaces, of a fall to the
+/// end, of sound, and of what the initial energy may drive.
+fn natural_speed(case: &Case) -> f64 {
+    let largest = |speeds: &mut dyn Iterator<Item = f64>| speeds.fold(0.0, f64::max);
+    let motions = (case.loads.velocities.iter().map(|load| &load.motion))
+        .chain(case.loads.surfaces.iter().map(|surface| &surface.motion))
+        .chain(case.bodies.iter().filter_map(|body| body.rigid.as_ref()));
+    let driven = largest(&mut motions.map(super::Motion::largest_speed));
+    let moving = largest(&mut case.bodies.iter().map(|body| body.velocity.norm()));
+    let sound = largest(&mut case.bodies.iter().map(|body| {
+        let material = &case.materials[body.material];
+        (material.p_wave_modulus() / material.reference_density).sqrt()
+    }));
+    let hot = largest(
+        &mut case
+            .bodies
+            .iter()
+            .map(|b| (2.0 * case.initial_energy(b).abs()).sqrt()),
+    );
+    let g = case.loads.gravity;
+    let gravity = (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]).sqrt();
+    driven + moving + sound + hot + gravity * case.run.end_time
+}

@@ -1,0 +1,145 @@
+//! Post-mortems: a particle in trouble with all that is about it, as text and as HDF5.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use crate::comm::Comm;
+use crate::model::Case;
+use crate::particles::{FieldInfo, FieldKind, FieldUse, ParticleStore};
+use crate::step::PostMortem;
+
+use super::checkpoint::row_type;
+use super::h5::{Element, RowType, Writer};
+use super::{Block, OutputError, write_atomically};
+
+/// Writes `STEM.txt` and `STEM.h5`; `what` is what is wrong. By the rank that owns the particle.
+///
+/// # Errors
+/// [`OutputError::Io`], [`OutputError::Hdf5`].
+pub fn write(
+    stem: &Path,
+    what: &str,
+    case: &Case,
+    store: &ParticleStore,
+    about: &PostMortem,
+) -> Result<(), OutputError> {
+    if let Some(folder) = stem.parent() {
+        std::fs::create_dir_all(folder).map_err(OutputError::io("create the folder", folder))?;
+    }
+    let text = text(what, case, store, about);
+    write_atomically(&stem.with_extension("txt"), text.as_bytes())?;
+    let alone = Comm::solo();
+    let file = Writer::create(&alone, &stem.with_extension("h5"))?;
+    file.number("/", "step", &about.step)?;
+    file.number("/", "time", &about.time)?;
+    file.number("/", "rank", &(about.rank as u64))?;
+    file.text("/what", what)?;
+    file.text("/input", &case.resolved)?;
+    for (group, members, uses) in [
+        ("/particle", &about.members[..1], FieldUse::ALL),
+        ("/neighbours", &about.members[1..], FieldUse::ANY_HALO),
+    ] {
+        file.group(group)?;
+        let block = Block::even(members.len() as u64, 0, 1);
+        for field in store.held(uses) {
+            let row = row_type(field.kind);
+            let path = format!("{group}/{}", field.name);
+            file.rows(&path, row, block, &gather(store, field, members))?;
+            file.note(&path, "unit", field.unit)?;
+        }
+    }
+    let block = Block::even(about.distances.len() as u64 - 1, 0, 1);
+    let bytes = bytemuck::cast_slice(&about.distances[1..]);
+    file.rows(
+        "/neighbours/distance",
+        RowType::single(Element::F64),
+        block,
+        bytes,
+    )?;
+    file.close()
+}
+
+/// A field's bytes of some particles; zeros where a particle does not have it now.
+fn gather(store: &ParticleStore, field: &FieldInfo, members: &[u32]) -> Vec<u8> {
+    let (size, bytes) = (field.kind.bytes(), store.bytes(field.id));
+    let mut rows = Vec::with_capacity(size * members.len());
+    for &i in members {
+        let start = i as usize * size;
+        match bytes.get(start..start + size) {
+            Some(value) => rows.extend_from_slice(value),
+            None => rows.resize(rows.len() + size, 0),
+        }
+    }
+    rows
+}
+
+fn text(what: &str, case: &Case, store: &ParticleStore, about: &PostMortem) -> String {
+    let name = |i: u32| case.bodies[store.body[i as usize] as usize].name.as_str();
+    let particle = about.members[0];
+    let spacing = case.bodies[store.body[particle as usize] as usize]
+        .lattice
+        .spacing;
+    let mut text = format!(
+        "Particle {} of body `{}`, on rank {}, after step {} at {:e} s:\n{what}\n\n",
+        about.id,
+        name(particle),
+        about.rank,
+        about.step,
+        about.time
+    );
+    for field in store.held(FieldUse::ALL) {
+        let bytes = gather(store, field, &[particle]);
+        let values = match field.kind {
+            FieldKind::Id => {
+                vec![u64::from_le_bytes(bytes[..8].try_into().unwrap_or_default()).to_string()]
+            }
+            FieldKind::Index => {
+                vec![u32::from_le_bytes(bytes[..4].try_into().unwrap_or_default()).to_string()]
+            }
+            _ => bytemuck::pod_collect_to_vec::<u8, f64>(&bytes)
+                .iter()
+                .map(|x| format!("{x:e}"))
+                .collect(),
+        };
+        let _ = writeln!(
+            text,
+            "{:24} {} {}",
+            field.name,
+            values.join(" "),
+            field.unit
+        );
+    }
+    for (title, other) in [
+        ("Neighbours of its own body", false),
+        ("Contact partners", true),
+    ] {
+        let _ = writeln!(
+            text,
+            "\n{title}, nearest first (id, body, distance in its spacings, density in kg/m^3, velocity in m/s, owned here):"
+        );
+        for (&i, r) in about.members.iter().zip(&about.distances).skip(1) {
+            let k = i as usize;
+            if (store.body[k] != store.body[particle as usize]) == other {
+                let _ = writeln!(
+                    text,
+                    "{} {} {:.4} {:e} {:?} {}",
+                    store.id[k],
+                    name(i),
+                    r / spacing,
+                    store.predicted_density[k],
+                    store.predicted_velocity[k],
+                    k < store.owned()
+                );
+            }
+        }
+    }
+    text.push_str("\nThe last votes (step, next time step in s, its reason, particle):\n");
+    for vote in &about.votes {
+        let _ = writeln!(
+            text,
+            "{} {:e} {} {}",
+            vote.step, vote.dt, vote.reason, vote.id
+        );
+    }
+    text
+}

@@ -1,0 +1,246 @@
+//! Numerical trouble: who is in it, and taking particles out with all that they carry booked.
+//!
+//! The check is part of the vote, which looks at each particle once a step anyway. What is no number
+//! can be neither booked nor kept from its neighbours, so it always ends the run; what is out of
+//! range but finite may be removed: the forces on the others are then summed anew where they stand,
+//! as at the start of a case, and the run goes on from there.
+
+use serde::{Deserialize, Serialize};
+
+use super::simulation::{Simulation, StepError};
+use super::sums::{gather_limbs, scatter_limbs};
+use crate::comm::Comm;
+use crate::diagnose::exact_sum::ExactSum;
+use crate::model::{Case, Trouble};
+use crate::particles::ParticleStore;
+
+/// What is wrong with a particle, the worst first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TroubleKind {
+    /// A number is none.
+    NotFinite,
+    /// The density left its range.
+    Density,
+    /// The specific energy left its range.
+    Energy,
+    /// The speed left its range.
+    Speed,
+    /// It asks for a time step below the floor.
+    Step,
+}
+
+impl TroubleKind {
+    /// All kinds, in the order of votes.
+    pub const ALL: [Self; 5] = [
+        Self::NotFinite,
+        Self::Density,
+        Self::Energy,
+        Self::Speed,
+        Self::Step,
+    ];
+
+    /// What is wrong and which key says so.
+    #[must_use]
+    pub fn describe(self, limits: &Trouble) -> String {
+        match self {
+            Self::NotFinite => "has a non-finite or absurd state".to_owned(),
+            Self::Density => format!(
+                "has a density outside of {:e} to {:e} of that at the start \
+                 (trouble.density_min, density_max)",
+                limits.density_min, limits.density_max
+            ),
+            Self::Energy => format!(
+                "has a specific energy beyond {:e} J/kg (trouble.energy_max)",
+                limits.energy_max
+            ),
+            Self::Speed => format!(
+                "is faster than {:e} m/s (trouble.speed_max)",
+                limits.speed_max
+            ),
+            Self::Step => format!(
+                "asks for a time step below {:e} s (trouble.step_min)",
+                limits.step_min
+            ),
+        }
+    }
+}
+
+/// The ranges of a case, by body where they depend on it.
+pub(super) struct Limits {
+    speed2_max: f64,
+    energy_max: f64,
+    pub step_min: f64,
+    /// Smallest and largest density of each body (kg/m³).
+    density: Vec<[f64; 2]>,
+}
+
+impl Limits {
+    pub(super) fn new(case: &Case) -> Self {
+        let limits = &case.trouble;
+        let range = |body| {
+            let first = case.initial_density(body);
+            [limits.density_min * first, limits.density_max * first]
+        };
+        Self {
+            speed2_max: limits.speed_max * limits.speed_max,
+            energy_max: limits.energy_max,
+            step_min: limits.step_min,
+            density: case.bodies.iter().map(range).collect(),
+        }
+    }
+
+    /// What is out of range of a particle whose numbers are numbers.
+    #[inline]
+    pub(super) fn check(&self, store: &ParticleStore, i: usize) -> Option<TroubleKind> {
+        let [lower, upper] = self.density[store.body[i] as usize];
+        let (v, rho) = (&store.velocity[i], store.density[i]);
+        if rho < lower || rho > upper {
+            Some(TroubleKind::Density)
+        } else if store.specific_energy[i].abs() > self.energy_max {
+            Some(TroubleKind::Energy)
+        } else if v[0] * v[0] + v[1] * v[1] + v[2] * v[2] > self.speed2_max {
+            Some(TroubleKind::Speed)
+        } else {
+            None
+        }
+    }
+}
+
+/// What removed particles took with them, of one body.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Removed {
+    /// How many.
+    pub particles: u64,
+    /// `Σ m` (kg).
+    pub mass: f64,
+    /// `Σ m v` (kg m/s).
+    pub momentum: [f64; 3],
+    /// `Σ ½ m v²` (J).
+    pub kinetic_energy: f64,
+    /// `Σ m e` (J).
+    pub internal_energy: f64,
+    /// `−Σ m g·x` (J).
+    pub gravity_energy: f64,
+    /// `Σ m t` with the time of removal (kg s): how long gravity has pulled.
+    pub mass_time: f64,
+}
+
+impl Removed {
+    /// All energy of the particles (J); that of contact is booked for the whole model.
+    #[must_use]
+    pub fn energy(&self) -> f64 {
+        self.kinetic_energy + self.internal_energy + self.gravity_energy
+    }
+}
+
+/// A step's vote, for post-mortems.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PastVote {
+    /// Steps done.
+    pub step: u64,
+    /// Step chosen (s).
+    pub dt: f64,
+    /// What limits it.
+    pub reason: &'static str,
+    /// Who asks for it.
+    pub id: u64,
+}
+
+/// Votes kept for post-mortems.
+pub(super) const PAST_VOTES: usize = 16;
+
+impl Simulation {
+    /// Takes out all particles whose state is out of range, books them, and sums the forces on the
+    /// others anew. For a step that [`StepError::Trouble`] has ended and whose particles are all
+    /// finite. Collective. Gives the number of particles taken out on all ranks.
+    ///
+    /// # Errors
+    /// The same on all ranks if there is trouble again, or nothing left.
+    pub fn remove_troubled(&mut self, comm: &Comm) -> Result<u64, StepError> {
+        let mut leaving = std::mem::take(&mut self.order);
+        leaving.clear();
+        for i in 0..self.store.owned() {
+            if self.trouble_of(i).is_some() {
+                leaving.push(u32::try_from(i).unwrap_or(u32::MAX));
+            }
+        }
+        let mut count = [leaving.len() as u64, self.store.owned() as u64];
+        self.book_removal(comm, &leaving);
+        self.store.remove(&mut leaving, &mut Vec::new());
+        self.order = leaving;
+        comm.sum_u64(&mut count);
+        if count[0] == count[1] {
+            return Err(StepError::NothingLeft {
+                step: self.state.step,
+            });
+        }
+        let contact_energy = self.state.contact_energy;
+        let owned = self.store.owned();
+        let store = &mut self.store;
+        store.predicted_velocity[..owned].copy_from_slice(&store.velocity[..owned]);
+        store.predicted_density[..owned].copy_from_slice(&store.density[..owned]);
+        self.loads
+            .prepare(&self.case, self.state.time, self.state.time);
+        self.evaluate(comm, 0.0);
+        self.kick(0.0);
+        self.removed_contact(comm, contact_energy);
+        self.vote(comm)?;
+        Ok(count[0])
+    }
+
+    /// Sums of the remaining particles, and what contact has lost with the others.
+    fn removed_contact(&mut self, comm: &Comm, before: f64) {
+        // The sums of a step of no length have no work in them. Its defect is taken with what has
+        // been lost, so the loss must be known first.
+        let worst = self.state.worst;
+        self.book_step(comm, 0.0);
+        self.state.removed_contact_energy += before - self.state.contact_energy;
+        self.state.worst = worst;
+        self.book_defect();
+    }
+
+    fn book_removal(&mut self, comm: &Comm, leaving: &[u32]) {
+        let (store, bodies) = (&self.store, self.case.bodies.len());
+        let mut sums: Vec<[ExactSum; 7]> = (0..bodies).map(|_| Default::default()).collect();
+        let mut counts = vec![0_u64; bodies];
+        let g = self.loads.gravity;
+        for &i in leaving {
+            let i = i as usize;
+            let (m, v, x) = (store.mass[i], &store.velocity[i], &store.position[i]);
+            let body = store.body[i] as usize;
+            counts[body] += 1;
+            let terms = [
+                m,
+                m * v[0],
+                m * v[1],
+                m * v[2],
+                0.5 * m * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]),
+                m * store.specific_energy[i],
+                -m * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]),
+            ];
+            for (sum, term) in sums[body].iter_mut().zip(terms) {
+                sum.add(term);
+            }
+        }
+        let mut limbs = Vec::new();
+        gather_limbs(sums.iter_mut().flatten(), &mut limbs);
+        comm.sum_i64(&mut limbs);
+        scatter_limbs(sums.iter_mut().flatten(), &limbs);
+        comm.sum_u64(&mut counts);
+        let time = self.state.time;
+        self.state.removed.resize(bodies, Removed::default());
+        for ((booked, sums), count) in self.state.removed.iter_mut().zip(&sums).zip(counts) {
+            let [mass, x, y, z, kinetic, internal, gravity] =
+                std::array::from_fn(|k| sums[k].value());
+            booked.particles += count;
+            booked.mass += mass;
+            for (total, part) in booked.momentum.iter_mut().zip([x, y, z]) {
+                *total += part;
+            }
+            booked.kinetic_energy += kinetic;
+            booked.internal_energy += internal;
+            booked.gravity_energy += gravity;
+            booked.mass_time += mass * time;
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! Random inputs and random checkpoints: whatever is wrong is told, nothing panics.
+//!
+//! What a message says, but for its names and numbers, tells how far a reader came; texts that
+//! reach a new message are changed further. `make test` makes a short run of this, `make fuzz` one
+//! of ten minutes each, which keeps new texts in `tests/fuzz/`. A text that panics is kept there
+//! too and tried first from then on.
+
+#[path = "fuzz/checkpoints.rs"]
+mod checkpoints;
+#[path = "common/random.rs"]
+mod random;
+#[path = "fuzz/texts.rs"]
+mod texts;
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use random::Random;
+
+/// How long to go on.
+pub struct Budget {
+    executions: usize,
+    until: Option<Instant>,
+}
+
+impl Budget {
+    /// The seconds in `WHIPPLE_FUZZ_SECONDS`, or so many executions.
+    pub fn new(executions: usize) -> Self {
+        let seconds = std::env::var("WHIPPLE_FUZZ_SECONDS").ok();
+        let seconds = seconds.and_then(|text| text.parse().ok());
+        let until = seconds.map(|seconds| Instant::now() + Duration::from_secs(seconds));
+        Self { executions, until }
+    }
+
+    /// Whether new texts are kept.
+    pub fn keeps(&self) -> bool {
+        self.until.is_some()
+    }
+
+    /// Whether to go on after so many.
+    pub fn allows(&self, done: usize) -> bool {
+        match self.until {
+            Some(until) => Instant::now() < until,
+            None => done < self.executions,
+        }
+    }
+}
+
+/// Random numbers; other ones each time when there is time to spend.
+pub fn random(budget: &Budget) -> Random {
+    let clock = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
+    Random::new(match clock {
+        Ok(now) if budget.keeps() => now.as_secs(),
+        _ => 1,
+    })
+}
+
+/// Where texts are kept.
+pub fn folder() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz")
+}
+
+/// Messages met so far, without what is in quotes, numbers and places.
+#[derive(Default)]
+pub struct Met(BTreeSet<String>);
+
+impl Met {
+    /// Whether a message is a new one.
+    pub fn is_new(&mut self, message: &str) -> bool {
+        let title = message.lines().next().unwrap_or_default();
+        let plain = title.split(['`', '"']).step_by(2).collect::<String>();
+        self.0.insert(
+            plain
+                .chars()
+                .filter(|c| c.is_alphabetic() || *c == ' ')
+                .collect(),
+        )
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.0.len()
+    }
+}

@@ -1,0 +1,190 @@
+//! Mistakes of physics that are told before a run, each beside a case that is free of it.
+
+use whipple::input::{advice, approaches, parse, warnings};
+
+/// A bar flies at a plate, ten spacings away.
+const BAR: &str = r#"
+dimension = 2
+spacing = "0.1 mm"
+run.end_time = "20 us"
+material.metal.library = "copper"
+material.spring = { density = "8.9 g/cm^3", eos.linear.bulk_modulus = "138 GPa", strength = "none" }
+material.water = { density = "1 g/cm^3", eos.tait.sound_speed = "1.5 km/s", strength = "none" }
+
+[[body]]
+name = "bar"
+material = "metal"
+shape.box = { lower = [0, "2 mm"], upper = ["1 mm", "4 mm"] }
+velocity = [0, "-100 m/s"]
+
+[[body]]
+name = "plate"
+material = "metal"
+shape.box = { lower = ["-2 mm", 0], upper = ["3 mm", "1 mm"] }
+"#;
+
+fn told(set: &[&str]) -> Vec<String> {
+    let set: Vec<String> = set.iter().map(ToString::to_string).collect();
+    let case = parse("bar", BAR, &set).unwrap_or_else(|error| panic!("{error}"));
+    warnings(&case)
+}
+
+#[track_caller]
+fn assert_told(set: &[&str], expected: &[&str]) {
+    assert_eq!(told(set), expected, "{set:?}");
+}
+
+#[test]
+fn when_bodies_meet_follows_from_gap_and_speed() {
+    assert_told(&[], &[]);
+    let case = parse("bar", BAR, &[]).unwrap();
+    let [pair] = approaches(&case)[..] else {
+        panic!("one pair")
+    };
+    assert!((pair.gap - 10.0).abs() < 1e-9, "{pair:?}");
+    assert!((pair.time - 1e-5).abs() < 1e-11, "{pair:?}");
+}
+
+#[test]
+fn bodies_that_meet_without_contact_are_told() {
+    let none = "contact.mode=none";
+    assert_told(
+        &[none],
+        &[
+            "`bar` and `plate` meet at 10.0000 us and have contact of mode \"none\": they pass \
+           through each other",
+        ],
+    );
+    assert_told(
+        &[none, "body.bar.velocity=[0, \"100 m/s\"]"],
+        &["nothing meets: no body flies towards another"],
+    );
+}
+
+#[test]
+fn an_end_before_anything_meets_is_told() {
+    assert_told(
+        &["run.end_time=5us"],
+        &[
+            "nothing meets: `bar` reaches `plate`, 10.0 spacings away, at 10.0000 us, after the end \
+           at 5.0000 us",
+        ],
+    );
+    // Past the plate.
+    assert_told(
+        &["body.bar.velocity=[\"100 m/s\", 0]"],
+        &["nothing meets: no body flies towards another"],
+    );
+    // Whatever falls or is driven may meet later on, and bodies at rest have other things to do.
+    assert_told(&["run.end_time=5us", "gravity=[0, \"-9.81 m/s^2\"]"], &[]);
+    assert_told(&["run.end_time=5us", "plane=[{ normal = \"+y\" }]"], &[]);
+    assert_told(&["run.end_time=5us", "body.bar.velocity=[0, 0]"], &[]);
+    assert_told(
+        &[
+            "run.end_time=5us",
+            "body.bar.touch={ body = \"plate\", direction = \"-y\" }",
+        ],
+        &[],
+    );
+}
+
+#[test]
+fn a_slanting_flight_and_a_sphere_are_followed() {
+    let sphere = "body.bar.shape={ sphere = { centre = [0, \"3 mm\"], radius = \"1 mm\" } }";
+    assert_told(&[sphere], &[]);
+    let slanting = "body.bar.velocity=[\"300 m/s\", \"-100 m/s\"]";
+    assert_told(
+        &[slanting],
+        &["nothing meets: no body flies towards another"],
+    );
+    assert_told(
+        &[slanting, "body.plate.shape.box.upper=[\"4 mm\", \"1 mm\"]"],
+        &[],
+    );
+}
+
+#[test]
+fn a_small_overlap_is_told_in_spacings() {
+    let set = ["body.bar.shape.box.lower=[0, \"0.96 mm\"]"];
+    assert!(told(&set)[0].starts_with("`bar` and `plate` begin 0.40 spacings within each other"));
+    let touching = ["body.bar.shape.box.lower=[0, \"1 mm\"]"];
+    assert_told(&touching, &[]);
+    let deeper = ["body.bar.shape.box.lower=[0, \"0.9 mm\"]".to_owned()];
+    let error = parse("bar", BAR, &deeper).unwrap_err().to_string();
+    assert!(
+        error.contains("`plate` begins 1.0 spacings within `bar`"),
+        "{error}"
+    );
+}
+
+#[test]
+fn thin_bodies_are_told() {
+    let thin = |set: &[String]| advice(&parse("bar", BAR, set).unwrap());
+    assert!(thin(&[]).is_empty());
+    let set = ["body.plate.shape.box.lower=[\"-2 mm\", \"0.5 mm\"]".to_owned()];
+    assert_eq!(thin(&set).len(), 1);
+    assert!(thin(&set)[0].starts_with("`plate` has 5.0 particles across its thinnest part"));
+    // Half of it stands behind the mirror.
+    let [a, b] = [
+        "body.plate.shape.box.lower=[\"-2 mm\", 0]",
+        "body.plate.shape.box.upper=[\"3 mm\", \"0.5 mm\"]",
+    ];
+    let mirror = "symmetry=[{ axis = \"y\" }]";
+    assert!(thin(&[a, b, mirror].map(str::to_owned)).is_empty());
+    assert_eq!(thin(&[a, b].map(str::to_owned)).len(), 1);
+}
+
+#[test]
+fn contact_far_from_the_stiffness_of_the_materials_is_told() {
+    for (set, said) in [
+        (
+            "contact={mode=\"potential\",potential={stiffness=50}}",
+            "`contact.potential.stiffness` is 50, 50 times its default of 1: contact is stiffer",
+        ),
+        (
+            "contact={mode=\"potential\",potential={stiffness=0.01}}",
+            "`contact.potential.stiffness` is 0.01, 100 times below its default of 1: contact is softer",
+        ),
+        (
+            "contact.overlap.stiffness=100",
+            "`contact.overlap.stiffness` is 100, 25 times its default of 4",
+        ),
+    ] {
+        let told = told(&[set]);
+        assert!(told.len() == 1 && told[0].starts_with(said), "{told:?}");
+    }
+    assert_told(
+        &["contact={mode=\"potential\",potential={stiffness=3}}"],
+        &[],
+    );
+    // Not in use.
+    assert_told(&["contact.potential.stiffness=50"], &[]);
+}
+
+#[test]
+fn impacts_beyond_an_equation_of_state_are_told() {
+    let fast = "body.bar.velocity=[0, \"-9 km/s\"]";
+    let said = told(&[fast]);
+    assert_eq!(said.len(), 1, "once for a material: {said:?}");
+    assert!(
+        said[0].contains("drives `metal` to 1.14 of its sound speed"),
+        "{said:?}"
+    );
+    assert!(said[0].contains("take `tillotson`"));
+    assert_told(&["body.bar.velocity=[0, \"-7 km/s\"]"], &[]);
+
+    let linear = [
+        "body.bar.material=spring",
+        "body.bar.velocity=[0, \"-2 km/s\"]",
+    ];
+    assert!(told(&linear)[0].contains("`eos.linear` knows no shocks"));
+    assert_told(&linear[..1], &[]);
+    let drop = [
+        "body.bar.material=water",
+        "body.bar.velocity=[0, \"-2 km/s\"]",
+    ];
+    assert!(told(&drop)[0].contains("`eos.tait` stands for liquids"));
+    // Nothing meets, nothing is shocked.
+    let past = told(&["body.bar.velocity=[\"9 km/s\", 0]"]);
+    assert_eq!(past, ["nothing meets: no body flies towards another"]);
+}
