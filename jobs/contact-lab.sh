@@ -90,5 +90,30 @@ geometries() {
     [ ! -f "$seam" ] || measure "$mode: seam" contact-lab/seam.toml "$mode_is"
 }
 
-heading 'Where `overlap` might be weak'
-geometries overlap
+for mode in overlap potential penalty; do
+    heading "Two bodies at 7 km/s, \`$mode\`"
+    geometries "$mode"
+done
+
+heading 'Stiffness, core and time step of `overlap`'
+lone=("body.above.$(box 0 0 1 1)" "body.below.$(box 0 -1 1 0)")
+for kappa in 2 4 6 8; do
+    measure "κ = $kappa, block" contact-lab "contact.overlap.stiffness=$kappa"
+done
+for core in 2 2.5 3 4; do
+    measure "core $core, block" contact-lab "contact.overlap.core_stiffness=$core"
+    measure "core $core, one on one" contact-lab "contact.overlap.core_stiffness=$core" "${lone[@]}"
+done
+for courant in 0.5 0.25 0.1; do
+    measure "courant $courant, block" contact-lab "time_step.courant=$courant"
+    measure "courant $courant, one on one" contact-lab "time_step.courant=$courant" "${lone[@]}"
+done
+
+heading 'Ready cases'
+for mode in overlap potential penalty; do
+    for case in bar-impact block-impact elastic-impact; do
+        measure "$case, $mode" "$case" "contact.mode=$mode"
+    done
+    measure "quarter-impact at .05 mm, $mode" quarter-impact "contact.mode=$mode" \
+        'spacing="0.05 mm"' 'run.end_time="0.1 us"'
+done
