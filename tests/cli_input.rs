@@ -223,13 +223,14 @@ fn what_cannot_be_restarted_is_left_alone() {
     );
     fs::write(newest.join("manifest.json"), manifest).unwrap();
     damage(&newest.join("state.h5"));
-    let said = complaint_alone(&["restart", out]);
+    let named = newest.to_str().unwrap();
+    let said = complaint_alone(&["restart", named]);
     assert!(
         said.contains("is damaged") && said.contains("older checkpoint"),
         "{said}"
     );
     fs::remove_file(newest.join("state.h5")).unwrap();
-    let said = complaint_alone(&["restart", out]);
+    let said = complaint_alone(&["restart", named]);
     assert!(
         said.contains("cannot read") && said.contains("state.h5"),
         "{said}"

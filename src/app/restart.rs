@@ -93,7 +93,7 @@ fn find(comm: &Comm, from: &Path) -> Result<Vec<PathBuf>, OutputError> {
     Ok(names.map(PathBuf::from).collect())
 }
 
-/// Reads the newest checkpoint that is whole. Collective.
+/// Reads the newest checkpoint that is whole, unless that has another format. Collective.
 fn read(comm: &Comm, from: &Path, paths: Vec<PathBuf>) -> Result<Found, OutputError> {
     let mut passed_over = Vec::new();
     if comm.is_root() && RunFolder::is_run(from) {
@@ -112,6 +112,8 @@ fn read(comm: &Comm, from: &Path, paths: Vec<PathBuf>) -> Result<Found, OutputEr
                     passed_over,
                 });
             }
+            // One of another program's format is no damage: older ones would undo its work.
+            Err(error @ OutputError::Format { .. }) => return Err(error),
             Err(error) if checkpoint == from => return Err(error),
             Err(error) => passed_over.push(error.to_string()),
         }
