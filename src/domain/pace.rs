@@ -11,7 +11,8 @@ use crate::comm::Comm;
 pub struct Paces {
     /// Of the whole, by rank; empty before the first measurement, when all are equal.
     shares: Vec<f64>,
-    busy: f64,
+    /// At the last call.
+    busy: Option<f64>,
     scratch: Vec<u64>,
 }
 
@@ -23,10 +24,13 @@ const WIDEST: f64 = 2.0;
 
 impl Paces {
     /// Takes what this rank has done since the last call: `work` counted now for one step, and
-    /// `busy`, the seconds since its start that it spent neither waiting nor sending. Collective.
+    /// `busy`, the seconds since its start that it spent neither waiting nor sending. What was
+    /// before the first call, with its cold memory, does not count. Collective.
     pub fn measure(&mut self, comm: &Comm, work: u64, busy: f64) {
-        let seconds = busy - self.busy;
-        self.busy = busy;
+        let Some(before) = self.busy.replace(busy) else {
+            return;
+        };
+        let seconds = busy - before;
         #[allow(clippy::cast_precision_loss, reason = "a measure of speed")]
         let speed = work as f64 / seconds.max(f64::MIN_POSITIVE);
         comm.all_gather_u64(&[speed.to_bits(), seconds.to_bits()], &mut self.scratch);
@@ -83,6 +87,7 @@ mod tests {
     fn a_rank_by_itself_has_all() {
         let mut paces = Paces::default();
         paces.measure(&Comm::solo(), 1000, 1.0);
+        paces.measure(&Comm::solo(), 1000, 2.0);
         assert!((paces.up_to(0, 1) - 1.0).abs() < 1e-15);
     }
 }

@@ -13,8 +13,9 @@ use crate::output::{Rows, checkpoint};
 use crate::particles::ParticleStore;
 use crate::step::{Phase, Simulation};
 
-/// Steps before the timed ones, in which buffers grow and caches fill.
-const WARM_UP: u64 = 5;
+/// Steps before the timed ones, in which buffers grow, caches fill and, over one interval between
+/// balances, ranks learn their speeds.
+const WARM_UP: u64 = 30;
 /// How many steps before the store is put in order a prepared state is taken: the warm-up passes
 /// the order, and the timed steps find memory as a long run does.
 const BEFORE_ORDER: u64 = 2;
