@@ -46,12 +46,12 @@ impl Paces {
         }
         #[allow(clippy::cast_precision_loss, reason = "few ranks")]
         let even = 1.0 / ranks as f64;
-        // Later ones count by half: what slows a rank for a moment is not chased.
-        let weight = if self.shares.is_empty() { 1.0 } else { 0.5 };
+        // A part of the way: what slows a rank for a moment is not chased.
+
         self.shares.resize(ranks, even);
         for (r, share) in self.shares.iter_mut().enumerate() {
             let wanted = (measured(2 * r) / total).clamp(even / WIDEST, even * WIDEST);
-            *share += weight * (wanted - *share);
+            *share += 0.25 * (wanted - *share);
         }
     }
 
