@@ -1,23 +1,13 @@
 //! Bars by the program's own laws (`exact::bars`): against small strain, closed forms of the
 //! first shocks, and what is conserved. Units: cm, µs, g/cm³, Mbar.
 
+mod exact_support;
+
+use exact_support::{ALUMINIUM, STEEL, medium};
 use whipple::exact::bars::{Bar, Row, Waves};
 use whipple::exact::elastic::{self, End, Joint};
-use whipple::exact::finite_strain::{Medium, impact};
+use whipple::exact::finite_strain::impact;
 use whipple::material::LinearForm::{self, DensityRatio, Logarithmic};
-
-/// Young's modulus (Mbar), Poisson's ratio, density (g/cm³).
-const STEEL: [f64; 3] = [2.1, 0.28, 7.83];
-const ALUMINIUM: [f64; 3] = [0.7, 0.33, 2.70];
-
-fn medium([e, nu, density]: [f64; 3], form: LinearForm) -> Medium {
-    Medium {
-        reference_density: density,
-        bulk_modulus: e / (3.0 * (1.0 - 2.0 * nu)),
-        shear_modulus: e / (2.0 * (1.0 + nu)),
-        form,
-    }
-}
 
 /// Steel on aluminium at ±`velocity`.
 fn row(form: LinearForm, velocity: f64, gap: f64) -> Row {

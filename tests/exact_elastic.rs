@@ -3,23 +3,13 @@
 //!
 //! Units of this file: cm, µs, g/cm³, Mbar, in which `ρ c²` needs no factors.
 
+mod exact_support;
+
+use exact_support::{ALUMINIUM, STEEL, medium};
 use proptest::prelude::*;
 use whipple::exact::elastic::{Bar, End, Joint, Row, Waves};
-use whipple::exact::finite_strain::{Medium, impact};
+use whipple::exact::finite_strain::impact;
 use whipple::material::LinearForm;
-
-/// Young's modulus (Mbar), Poisson's ratio, density (g/cm³).
-const STEEL: [f64; 3] = [2.1, 0.28, 7.83];
-const ALUMINIUM: [f64; 3] = [0.7, 0.33, 2.70];
-
-fn medium([e, nu, density]: [f64; 3], form: LinearForm) -> Medium {
-    Medium {
-        reference_density: density,
-        bulk_modulus: e / (3.0 * (1.0 - 2.0 * nu)),
-        shear_modulus: e / (2.0 * (1.0 + nu)),
-        form,
-    }
-}
 
 fn bar(material: [f64; 3], left: f64, length: f64, velocity: f64) -> Bar {
     let medium = medium(material, LinearForm::Logarithmic);

@@ -195,22 +195,10 @@ fn rest_on(walls: &[Wall], set: usize) -> Option<[f64; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Mesh, Motion, SurfaceShape};
+    use crate::model::surface_tests::surface;
+    use crate::model::{Mesh, SurfaceShape};
 
     const R: f64 = 0.5;
-
-    fn surface(shape: SurfaceShape, inside: bool) -> RigidSurface {
-        RigidSurface {
-            name: String::new(),
-            shape,
-            inside,
-            stiffness: 2.0,
-            bodies: Vec::new(),
-            motion: Motion::default(),
-            spin: None,
-            file: None,
-        }
-    }
 
     /// The solid over an outline in x and y (counter-clockwise), from z = −9 to 9.
     fn prism(outline: &[[f64; 2]], ends: &[[usize; 3]]) -> RigidSurface {

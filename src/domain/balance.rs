@@ -54,17 +54,18 @@ impl Histogram {
         let ranks = comm.size();
         let total: u64 = self.counts.iter().sum();
         let mut faces = Vec::with_capacity(ranks - 1);
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            clippy::cast_precision_loss,
+            reason = "a part of the total"
+        )]
+        let target_of = |face: usize| (paces.up_to(face, ranks) * total as f64) as u64;
+        let mut target = target_of(0);
         let mut below = 0;
         for (bin, &count) in self.counts.iter().enumerate() {
             // A face goes to whichever side of this bin is nearer to its share.
             while faces.len() + 1 < ranks {
-                #[allow(
-                    clippy::cast_possible_truncation,
-                    clippy::cast_sign_loss,
-                    clippy::cast_precision_loss,
-                    reason = "a part of the total"
-                )]
-                let target = (paces.up_to(faces.len(), ranks) * total as f64) as u64;
                 if below + count < target {
                     break;
                 }
@@ -73,6 +74,7 @@ impl Histogram {
                 let at = if under < over { bin } else { bin + 1 };
                 #[allow(clippy::cast_precision_loss, reason = "few bins")]
                 faces.push(self.lower + self.width * at as f64);
+                target = target_of(faces.len());
             }
             below += count;
         }

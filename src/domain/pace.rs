@@ -19,6 +19,9 @@ pub struct Paces {
 /// Seconds below which the clock says little: shares stay as they are.
 const SHORTEST: f64 = 0.05;
 
+/// How far shares go towards what was measured: what slows a rank for a moment is not chased.
+const FOLLOWED: f64 = 0.25;
+
 /// Factor that a share may be from the even one.
 const WIDEST: f64 = 2.0;
 
@@ -46,12 +49,10 @@ impl Paces {
         }
         #[allow(clippy::cast_precision_loss, reason = "few ranks")]
         let even = 1.0 / ranks as f64;
-        // A part of the way: what slows a rank for a moment is not chased.
-
         self.shares.resize(ranks, even);
         for (r, share) in self.shares.iter_mut().enumerate() {
             let wanted = (measured(2 * r) / total).clamp(even / WIDEST, even * WIDEST);
-            *share += 0.25 * (wanted - *share);
+            *share += FOLLOWED * (wanted - *share);
         }
     }
 

@@ -11,6 +11,9 @@ mod distance;
 mod load;
 mod motion;
 mod surface;
+
+#[cfg(test)]
+pub(crate) use surface::tests as surface_tests;
 mod trouble;
 
 pub use body::{Axis, Body, Lattice, LatticeKind, Shape, SymmetryPlane};

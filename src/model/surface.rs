@@ -265,10 +265,11 @@ impl RigidSurface {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    fn surface(shape: SurfaceShape, inside: bool) -> RigidSurface {
+    /// At rest, for all bodies.
+    pub(crate) fn surface(shape: SurfaceShape, inside: bool) -> RigidSurface {
         RigidSurface {
             name: String::new(),
             shape,
@@ -281,7 +282,7 @@ mod tests {
         }
     }
 
-    fn near(foot: Foot, normal: [f64; 3], gap: f64) {
+    pub(super) fn near(foot: Foot, normal: [f64; 3], gap: f64) {
         assert!((foot.gap - gap).abs() < 1e-14, "{foot:?}, gap {gap}");
         for a in 0..3 {
             assert!(

@@ -2,13 +2,13 @@
 
 use rayon::prelude::*;
 
-use super::search::GRAIN;
+use super::search::{GRAIN, Search};
 use super::simulation::Simulation;
 use crate::comm::Comm;
 use crate::contact::overlap::{self, Fraction, Hold};
-use crate::contact::{BodyReaction, ContactView, Reaction, penalty, potential};
+use crate::contact::{BodyReaction, ContactTable, ContactView, Reaction, penalty, potential};
 use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, ForeignChunk};
-use crate::particles::FieldUse;
+use crate::particles::{FieldUse, ParticleStore};
 
 /// Results of each task before they go into the store, kept from step to step.
 #[derive(Default)]
@@ -69,6 +69,22 @@ impl ContactPhase {
     }
 }
 
+/// What the contact sums read after a step of `dt` (s).
+fn view<'a>(
+    search: &'a Search,
+    store: &'a ParticleStore,
+    table: &'a ContactTable,
+    dt: f64,
+) -> ContactView<'a> {
+    ContactView {
+        images: search.sequence.images(),
+        motion: &search.motion,
+        store,
+        table,
+        dt,
+    }
+}
+
 impl Simulation {
     /// Foreign fraction, excess and their weights of every particle with foreign neighbours.
     pub(super) fn contact_fractions(&mut self, dt: f64) {
@@ -118,13 +134,7 @@ impl Simulation {
         if !self.contact.has_friction() {
             return;
         }
-        let view = ContactView {
-            images: self.search.sequence.images(),
-            motion: &self.search.motion,
-            store: &self.store,
-            table: &self.contact,
-            dt,
-        };
+        let view = view(&self.search, &self.store, &self.contact, dt);
         self.contact_phase
             .tasks
             .par_iter_mut()
@@ -268,13 +278,7 @@ impl Simulation {
 
     fn run_reactions(&mut self, dt: f64) {
         let friction = self.contact.has_friction();
-        let view = ContactView {
-            images: self.search.sequence.images(),
-            motion: &self.search.motion,
-            store: &self.store,
-            table: &self.contact,
-            dt,
-        };
+        let view = view(&self.search, &self.store, &self.contact, dt);
         self.contact_phase
             .tasks
             .par_iter_mut()

@@ -370,14 +370,7 @@ mod tests {
     }
 
     fn near(foot: Option<Foot>, normal: [f64; 3], gap: f64) {
-        let foot = foot.expect("a foot");
-        assert!((foot.gap - gap).abs() < 1e-14, "{foot:?}, gap {gap}");
-        for a in 0..3 {
-            assert!(
-                (foot.normal[a] - normal[a]).abs() < 1e-14,
-                "{foot:?}, normal {normal:?}"
-            );
-        }
+        super::super::tests::near(foot.expect("a foot"), normal, gap);
     }
 
     #[test]
