@@ -11,10 +11,10 @@ mod distance;
 mod load;
 mod motion;
 mod surface;
+mod trouble;
 
 #[cfg(test)]
 pub(crate) use surface::tests as surface_tests;
-mod trouble;
 
 pub use body::{Axis, Body, Lattice, LatticeKind, Shape, SymmetryPlane};
 pub use contact::{

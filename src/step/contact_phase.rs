@@ -188,13 +188,7 @@ impl Simulation {
         self.contact_phase
             .tasks
             .resize_with(chunks.len(), Task::default);
-        let view = ContactView {
-            images: self.search.sequence.images(),
-            motion: &self.search.motion,
-            store: &self.store,
-            table: &self.contact,
-            dt: 0.0,
-        };
+        let view = view(&self.search, &self.store, &self.contact, 0.0);
         self.contact_phase
             .tasks
             .par_iter_mut()
@@ -221,13 +215,7 @@ impl Simulation {
         if !self.contact.has_penalty() {
             return;
         }
-        let view = ContactView {
-            images: self.search.sequence.images(),
-            motion: &self.search.motion,
-            store: &self.store,
-            table: &self.contact,
-            dt: 0.0,
-        };
+        let view = view(&self.search, &self.store, &self.contact, 0.0);
         self.contact_phase
             .tasks
             .par_iter_mut()
