@@ -252,7 +252,7 @@ impl Simulation {
         if self.contact.is_active() {
             self.run_reactions(dt);
             self.store_reactions();
-            self.surface_forces();
+            self.surface_forces(dt);
         }
         for force in self
             .sweeps

@@ -13,6 +13,8 @@ mod simulation;
 mod state;
 mod sums;
 mod surface_forces;
+mod surface_friction;
+mod surface_motion;
 mod sweeps;
 mod timers;
 mod trouble;

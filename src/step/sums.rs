@@ -26,6 +26,8 @@ pub struct StepSums {
     pub(super) loads: Vec<[ExactSum; 4]>,
     /// Force of each rigid surface, and its torque about the axis that it turns about.
     pub(super) pushes: Vec<[ExactSum; 4]>,
+    /// Heat of each, if they have friction or damping.
+    pub(super) push_heat: Vec<ExactSum>,
     pair_bodies: Vec<[usize; 2]>,
     pairs: Vec<PairSums>,
     interpenetrated: i64,
@@ -67,7 +69,7 @@ impl StepSums {
         enclosed_limit: f64,
         friction: bool,
         loads: usize,
-        surfaces: usize,
+        [surfaces, resisting]: [usize; 2],
     ) -> Self {
         Self {
             enclosed_limit,
@@ -78,6 +80,7 @@ impl StepSums {
             plane_force: Default::default(),
             loads: (0..loads).map(|_| Default::default()).collect(),
             pushes: (0..surfaces).map(|_| Default::default()).collect(),
+            push_heat: vec![ExactSum::default(); resisting],
             pairs: pair_bodies.iter().map(|_| PairSums::default()).collect(),
             pair_bodies,
             interpenetrated: 0,
@@ -92,6 +95,7 @@ impl StepSums {
     pub(super) fn memory(&self) -> usize {
         size_of::<PairSums>() * self.pairs.capacity()
             + 4 * size_of::<ExactSum>() * (self.loads.capacity() + self.pushes.capacity())
+            + size_of::<ExactSum>() * self.push_heat.capacity()
             + 8 * (self.limbs.capacity() + self.extremes.capacity())
     }
 
@@ -100,6 +104,7 @@ impl StepSums {
         self.contact_energy = ExactSum::default();
         self.plane_force = Default::default();
         self.pushes.fill_with(Default::default);
+        self.push_heat.fill_with(ExactSum::default);
         self.pairs.fill_with(PairSums::default);
         self.interpenetrated = 0;
         self.closest = f64::INFINITY;
@@ -163,6 +168,7 @@ impl StepSums {
             .chain(&mut self.plane_force)
             .chain(self.loads.iter_mut().flatten())
             .chain(self.pushes.iter_mut().flatten())
+            .chain(&mut self.push_heat)
             .chain(self.pairs.iter_mut().flat_map(move |pair| {
                 let heat = friction.then_some(&mut pair.heat);
                 pair.force.iter_mut().chain([&mut pair.energy]).chain(heat)
@@ -300,10 +306,11 @@ impl Simulation {
     /// The contact defect, after the sums of a step.
     pub(super) fn book_defect(&mut self) {
         let state = &mut self.state;
+        let heat = state.contact_heat();
         let worst = &mut state.worst;
         let defect = state.contact_work + state.removed_contact_energy + state.contact_energy
             - state.initial.contact_energy
-            + state.pairs.iter().map(|pair| pair.heat).sum::<f64>();
+            + heat;
         worst.contact_deviation = worst.contact_deviation.max(defect.abs());
         let scale = state.initial.kinetic_energy.max(state.work_put_in);
         if scale > 0.0 {

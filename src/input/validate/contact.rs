@@ -180,7 +180,8 @@ fn refuse_resistance(
     }
 }
 
-fn resistance(
+/// Friction and damping; what is not given is that of `base`.
+pub(super) fn resistance(
     friction: Option<&Spanned<FrictionParams>>,
     damping: Option<&Spanned<f64>>,
     base: Resistance,
