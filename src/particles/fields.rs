@@ -286,7 +286,7 @@ particle_fields! {
     friction_power: Scalar, "W", HALO_FRICTION | FRICTION;
     /// Energy of sticking friction.
     friction_energy: Scalar, "J", FRICTION;
-    /// Outward normal of a boundary particle, longer at corners, zero inside: of `penalty` contact.
+    /// Outward normal of a boundary particle, shorter at corners, zero inside: of `penalty` contact.
     boundary_normal: Vector, "", HALO_CONTACT | ON_DEMAND | PENALTY;
     /// Contact energy.
     contact_energy: Scalar, "J", ON_DEMAND | CONTACT;

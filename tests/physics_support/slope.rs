@@ -114,8 +114,9 @@ shape.box = {{ lower = ["-10 mm", 0], upper = ["10 mm", "8 mm"] }}
         Simulation::resume(case, &Comm::solo(), s.state.clone(), store).expect("it resumes")
     }
 
-    /// Tilts the slope in small steps until the block has slid by a hundredth of a spacing within
-    /// one, and returns the tangent.
+    /// Tilts the slope in small steps until the block has slid by half a hundredth of a spacing
+    /// within one, and returns the tangent. Half of what Coulomb's law gives on the first slope that is
+    /// too steep by two hundredths; a block that sticks moves by less than a fifth of it.
     pub fn critical(&self, step: f64) -> f64 {
         let mut tangent = 46.0 * step;
         let mut s = self.laid(0.0);
@@ -137,7 +138,7 @@ shape.box = {{ lower = ["-10 mm", 0], upper = ["10 mm", "8 mm"] }}
                 sliding.filter(|&&x| x == 1).count(),
                 speed(&s)
             );
-            if way > 1e-5 {
+            if way > 5e-6 {
                 return tangent;
             }
         }
