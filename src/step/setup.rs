@@ -239,13 +239,13 @@ impl Simulation {
         self.state.capped_reliefs = capped[0];
         self.restore_order();
         self.evaluate(comm, 0.0);
-        self.kick(0.0);
+        let vote = self.kick(0.0);
         self.book_step(comm, 0.0);
         self.state.initial = self.totals(comm);
         self.state.initial.contact_energy = self.state.contact_energy;
         self.state.worst = Worst::default();
         self.diagnose(comm);
-        self.vote(comm)?;
+        self.vote(comm, vote)?;
         Ok(())
     }
 }
