@@ -6,7 +6,8 @@ use super::contact_sums::ContactSums;
 use super::search::{GRAIN, Search};
 use super::simulation::Simulation;
 use crate::comm::Comm;
-use crate::contact::overlap::{self, Fraction, Hold};
+use crate::contact::hold::{self, Hold};
+use crate::contact::overlap::{self, Fraction};
 use crate::contact::{BodyReaction, ContactTable, ContactView, Reaction, penalty, potential};
 use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, ForeignChunk};
 use crate::particles::{FieldUse, ParticleStore, Scatter};
@@ -141,14 +142,7 @@ impl Simulation {
             .par_iter_mut()
             .zip(self.search.foreign.chunks())
             .with_max_len(CHUNKS_AT_ONCE)
-            .for_each(|(task, chunk)| {
-                task.holds.clear();
-                for (place, neighbours) in chunk.overlap.iter() {
-                    let base = view.images[place as usize].base();
-                    let hold = overlap::hold(&view, place, neighbours);
-                    task.holds.push((base, hold));
-                }
-            });
+            .for_each(|(task, chunk)| task.hold(&view, chunk));
         self.store_holds();
         self.halo.post(comm, &self.store, FieldUse::HALO_FRICTION);
         self.halo.finish(&mut self.store, FieldUse::HALO_FRICTION);
@@ -253,7 +247,7 @@ impl Simulation {
         if self.contact.is_active() {
             self.run_reactions(dt);
             self.store_reactions();
-            self.surface_forces();
+            self.surface_forces(dt);
         }
         for force in self
             .sweeps
@@ -413,6 +407,26 @@ impl Task {
         }
     }
 
+    /// Friction and damping of one chunk's receivers, whose lists stand in the same order.
+    fn hold(&mut self, view: &ContactView, chunk: &ForeignChunk) {
+        self.holds.clear();
+        let mut overlap = chunk.overlap.iter().peekable();
+        let mut penalty = chunk.penalty.iter().peekable();
+        loop {
+            let place = match (overlap.peek(), penalty.peek()) {
+                (Some(&(a, _)), Some(&(b, _))) => a.min(b),
+                (Some(&(a, _)), None) | (None, Some(&(a, _))) => a,
+                (None, None) => return,
+            };
+            let [mine, theirs] = [&mut overlap, &mut penalty].map(|list| {
+                list.next_if(|(at, _)| *at == place)
+                    .map_or(&[][..], |(_, n)| n)
+            });
+            let hold = hold::hold(view, place, mine, theirs);
+            self.holds.push((view.images[place as usize].base(), hold));
+        }
+    }
+
     /// Reactions of one chunk's receivers, mode after mode.
     fn react<const FRICTION: bool>(&mut self, view: &ContactView, chunk: &ForeignChunk) {
         self.reactions.clear();
@@ -429,7 +443,7 @@ impl Task {
         }
         for (place, neighbours) in chunk.penalty.iter() {
             self.reaction.clear();
-            penalty::react(view, place, neighbours, &mut self.reaction);
+            penalty::react::<FRICTION>(view, place, neighbours, &mut self.reaction);
             self.keep(view, place, neighbours.len());
         }
     }

@@ -7,7 +7,7 @@
 //! has no mass of its own here: what holds it gives the reaction of contact, `J = −½Δt m a_c`.
 
 use super::simulation::Simulation;
-use super::surface_forces::SurfaceStep;
+use super::surface_motion::SurfaceStep;
 use crate::model::{Case, Loads, Motion};
 
 /// Which of the two prescribed velocities of a step.
@@ -283,6 +283,7 @@ impl Simulation {
                 ledger.impulse[a] += impulse[a];
             }
             ledger.work += work;
+            ledger.heat += 0.5 * dt * ledger.heat_power;
             self.state.contact_work -= work;
         }
     }
@@ -304,6 +305,10 @@ impl Simulation {
         for (ledger, push) in ledgers.zip(&self.sums.pushes) {
             ledger.force = std::array::from_fn(|a| push[a].value());
             ledger.torque = push[3].value();
+        }
+        let ledgers = self.state.loads[driven..].iter_mut();
+        for (ledger, heat) in ledgers.zip(&self.sums.push_heat) {
+            ledger.heat_power = heat.value();
         }
         self.book_pushes(dt, false);
         let state = &mut self.state;

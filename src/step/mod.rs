@@ -14,6 +14,8 @@ mod simulation;
 mod state;
 mod sums;
 mod surface_forces;
+mod surface_friction;
+mod surface_motion;
 mod sweeps;
 mod timers;
 mod trouble;

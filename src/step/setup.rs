@@ -158,7 +158,14 @@ impl Simulation {
                 enclosed_limit,
                 contact.has_friction(),
                 loads.driven(),
-                loads.surfaces.len(),
+                [
+                    loads.surfaces.len(),
+                    if case.loads.has_friction() {
+                        loads.surfaces.len()
+                    } else {
+                        0
+                    },
+                ],
             ),
             loads,
             scratch: Vec::new(),

@@ -26,6 +26,8 @@ pub struct StepSums {
     pub(super) loads: Vec<[ExactSum; 4]>,
     /// Force of each rigid surface, and its torque about the axis that it turns about.
     pub(super) pushes: Vec<[ExactSum; 4]>,
+    /// Heat of each, if they have friction or damping.
+    pub(super) push_heat: Vec<ExactSum>,
     /// Particles whose gradient has no correction, in the normalised form.
     pub(super) uncorrected: i64,
     limbs: Vec<i64>,
@@ -38,7 +40,7 @@ impl StepSums {
         enclosed_limit: f64,
         friction: bool,
         loads: usize,
-        surfaces: usize,
+        [surfaces, resisting]: [usize; 2],
     ) -> Self {
         let contact = ContactSums::new(pair_bodies, friction);
         Self {
@@ -49,6 +51,7 @@ impl StepSums {
             contact,
             loads: (0..loads).map(|_| Default::default()).collect(),
             pushes: (0..surfaces).map(|_| Default::default()).collect(),
+            push_heat: vec![ExactSum::default(); resisting],
             uncorrected: 0,
             limbs: Vec::new(),
             extremes: Vec::new(),
@@ -60,6 +63,7 @@ impl StepSums {
         self.contact.memory()
             + parts
             + 4 * size_of::<ExactSum>() * (self.loads.capacity() + self.pushes.capacity())
+            + size_of::<ExactSum>() * self.push_heat.capacity()
             + 8 * (self.limbs.capacity() + self.extremes.capacity())
     }
 
@@ -67,6 +71,7 @@ impl StepSums {
     pub(super) fn clear_rates(&mut self) {
         self.contact.clear();
         self.pushes.fill_with(Default::default);
+        self.push_heat.fill_with(ExactSum::default);
     }
 
     /// Books impulse (N s) along `axis` and work (J) of a load.
@@ -90,6 +95,7 @@ impl StepSums {
             .chain(&mut self.crossing_impulse)
             .chain(self.loads.iter_mut().flatten())
             .chain(self.pushes.iter_mut().flatten())
+            .chain(&mut self.push_heat)
             .chain(self.contact.exact())
     }
 
@@ -207,10 +213,11 @@ impl Simulation {
     /// The contact defect, after the sums of a step.
     pub(super) fn book_defect(&mut self) {
         let state = &mut self.state;
+        let heat = state.contact_heat();
         let worst = &mut state.worst;
         let defect = state.contact_work + state.removed_contact_energy + state.contact_energy
             - state.initial.contact_energy
-            + state.pairs.iter().map(|pair| pair.heat).sum::<f64>();
+            + heat;
         worst.contact_deviation = worst.contact_deviation.max(defect.abs());
         let scale = state.initial.kinetic_energy.max(state.work_put_in);
         if scale > 0.0 {
