@@ -331,6 +331,7 @@ struct Books<'a> {
 }
 
 impl Books<'_> {
+    #[inline]
     fn book(&self, task: &Task, sums: &mut ContactSums) {
         for booked in &task.reactions {
             self.book_particle(booked);
@@ -353,6 +354,7 @@ impl Books<'_> {
         }
     }
 
+    #[inline]
     fn book_particle(&self, booked: &Booked) {
         let (i, mass) = (booked.base, self.mass[booked.base]);
         let per_mass = 1.0 / mass;

@@ -100,12 +100,14 @@ impl ContactSums {
         self.foreign_fraction = self.foreign_fraction.max(other.foreign_fraction);
     }
 
+    #[inline]
     pub fn add_plane_force(&mut self, force: &[f64; 3]) {
         for a in 0..3 {
             self.plane_force[a].add(force[a]);
         }
     }
 
+    #[inline]
     pub fn note_particle(&mut self, inside: bool, closest: f64, fraction: f64) {
         self.interpenetrated += i64::from(inside);
         self.closest = self.closest.min(closest);
@@ -113,6 +115,7 @@ impl ContactSums {
     }
 
     /// Books what a body does to a particle of `body` with excess `excess` and contact step `dt`.
+    #[inline]
     pub fn note_pair(&mut self, body: usize, reaction: &BodyReaction, excess: f64, dt: f64) {
         let bodies = [body.min(reaction.body), body.max(reaction.body)];
         let Some(index) = self.pair_bodies.iter().position(|&pair| pair == bodies) else {
