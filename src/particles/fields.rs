@@ -48,7 +48,7 @@ impl FieldKind {
 
 /// When a field is carried along: a set of the constants below.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct FieldUse(u16);
+pub struct FieldUse(u32);
 
 impl FieldUse {
     /// Read by a step before it is written: in checkpoints, and moved between ranks.
@@ -66,7 +66,7 @@ impl FieldUse {
     /// In snapshots on demand.
     pub const ON_DEMAND: Self = Self(64);
     /// Every field.
-    pub const ALL: Self = Self(u16::MAX);
+    pub const ALL: Self = Self(u32::MAX);
     /// Of contact: held only where bodies have contact beyond the SPH sums.
     pub const CONTACT: Self = Self(128);
     /// Held only with the Balsara switch.
@@ -83,8 +83,10 @@ impl FieldUse {
     pub const NORMALISED: Self = Self(16384);
     /// Held only with `penalty` contact.
     pub const PENALTY: Self = Self(32768);
+    /// Held only where particles in trouble are frozen.
+    pub const FREEZE: Self = Self(65536);
     /// Held only where the case has use for it.
-    pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024 | 2048 | 4096 | 16384 | 32768);
+    pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024 | 2048 | 4096 | 16384 | 32768 | 65536);
     /// In snapshots at all.
     pub const SNAPSHOT_OR_ON_DEMAND: Self = Self(32 | 64);
     /// What a rank sends with a particle that leaves it.
@@ -106,6 +108,12 @@ impl FieldUse {
     #[must_use]
     pub const fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
+    }
+
+    /// This set without `other`.
+    #[must_use]
+    pub const fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
     }
 }
 
@@ -247,6 +255,8 @@ particle_fields! {
     sliding: Index, "", STATE | ON_DEMAND | FRICTION;
     /// Which loads and rigid bodies prescribe its velocity: a set of bits, in the input's order.
     load: Index, "", STATE | ON_DEMAND | LOADS;
+    /// Whether it left the range of its state and stands still, outside of all sums (1).
+    frozen: Index, "", STATE | ON_DEMAND | FREEZE;
     /// Velocity at the end of the step as predicted from the last accelerations.
     predicted_velocity: Vector, "m/s", MIGRATED | HALO_MOTION;
     /// Density at the end of the step as predicted from the last velocity gradient.

@@ -1,6 +1,7 @@
 //! The loop, the integrator and the time-step votes.
 
 mod contact_phase;
+mod freeze;
 mod integrate;
 mod loads;
 mod material_update;

@@ -7,7 +7,7 @@ use super::search::GRAIN;
 use super::simulation::Simulation;
 use crate::contact::ContactTable;
 use crate::domain::Mirrors;
-use crate::model::{Case, SphForm, SphOptions};
+use crate::model::{Case, SphForm, SphOptions, TroublePolicy};
 use crate::particles::{FieldUse, resize};
 use crate::sph::kernel::Kernel;
 use crate::sph::normalised::NormalisedRecord;
@@ -81,6 +81,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> FieldUse {
         (FieldUse::CONDUCTION, sph.conduction > 0.0),
         (FieldUse::XSPH, sph.xsph > 0.0),
         (FieldUse::NORMALISED, sph.form == SphForm::Normalised),
+        (FieldUse::FREEZE, case.trouble.policy == TroublePolicy::Freeze),
     ]
     .into_iter()
     .filter(|&(_, used)| !used)

@@ -11,7 +11,7 @@ use super::simulation::{Simulation, StepError};
 use super::sums::{gather_limbs, scatter_limbs};
 use crate::comm::Comm;
 use crate::diagnose::exact_sum::ExactSum;
-use crate::model::{Case, Trouble};
+use crate::model::{Case, Trouble, TroublePolicy};
 use crate::particles::ParticleStore;
 
 /// What is wrong with a particle, the worst first.
@@ -150,8 +150,8 @@ pub struct PastVote {
 pub(super) const PAST_VOTES: usize = 16;
 
 impl Simulation {
-    /// Takes out all particles whose state is out of range, books them, and sums the forces on the
-    /// others anew. For a step that [`StepError::Trouble`] has ended and whose particles are all
+    /// Takes out all particles whose state is out of range, books them (and keeps them for the files
+    /// if they are to be frozen), and sums the forces on the others anew. For a step that [`StepError::Trouble`] has ended and whose particles are all
     /// finite. Collective. Gives the number of particles taken out on all ranks.
     ///
     /// # Errors
@@ -166,6 +166,9 @@ impl Simulation {
         }
         let mut count = [leaving.len() as u64, self.store.owned() as u64];
         self.book_removal(comm, &leaving);
+        if self.case.trouble.policy == TroublePolicy::Freeze {
+            self.freeze(&leaving);
+        }
         self.store.remove(&mut leaving, &mut Vec::new());
         self.order = leaving;
         comm.sum_u64(&mut count);
