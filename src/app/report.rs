@@ -367,6 +367,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::V
         "interpenetrated_particles": contact.has_pairs().then_some(worst.interpenetrated),
         "closest_foreign_pair": worst.closest,
         "largest_foreign_fraction": contact.has_overlap().then_some(worst.foreign_fraction),
+        "plane_crossings": (!simulation.case.symmetry.is_empty()).then_some(state.plane_crossings),
         "capped_reliefs": state.capped_reliefs,
         "uncorrected_gradients": normalised.then_some(worst.uncorrected),
         "contact_limited_steps": worst.contact_limited_steps,

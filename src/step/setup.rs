@@ -278,6 +278,7 @@ fn fresh_state(pairs: usize, loads: usize) -> RunState {
         contact_work: 0.0,
         plane_force: [0.0; 3],
         plane_impulse: [0.0; 3],
+        plane_crossings: 0,
         pairs: vec![PairState::default(); pairs],
         loads: vec![LoadState::default(); loads],
         work_put_in: 0.0,

@@ -21,6 +21,8 @@ pub struct StepSums {
     pub(super) contact_work: ExactSum,
     pub(super) contact_energy: ExactSum,
     pub(super) crossing_impulse: [ExactSum; 3],
+    /// Particles that crossed a symmetry plane in this step.
+    pub(super) crossings: i64,
     plane_force: [ExactSum; 3],
     /// Impulse and work of prescribed velocities and of rigid bodies in this step.
     pub(super) loads: Vec<[ExactSum; 4]>,
@@ -75,6 +77,7 @@ impl StepSums {
             contact_work: ExactSum::default(),
             contact_energy: ExactSum::default(),
             crossing_impulse: Default::default(),
+            crossings: 0,
             plane_force: Default::default(),
             loads: (0..loads).map(|_| Default::default()).collect(),
             pushes: (0..surfaces).map(|_| Default::default()).collect(),
@@ -177,13 +180,14 @@ impl StepSums {
         let mut limbs = std::mem::take(&mut self.limbs);
         limbs.clear();
         gather_limbs(self.exact(), &mut limbs);
-        limbs.extend([self.interpenetrated, self.uncorrected]);
+        limbs.extend([self.interpenetrated, self.uncorrected, self.crossings]);
         limbs.extend(self.pairs.iter().map(|pair| pair.touching));
         comm.sum_i64(&mut limbs);
         let mut rest = scatter_limbs(self.exact(), &limbs).iter();
         let mut next = || rest.next().copied().unwrap_or(0);
         self.interpenetrated = next();
         self.uncorrected = next();
+        self.crossings = next();
         for pair in &mut self.pairs {
             pair.touching = next();
         }
@@ -268,6 +272,7 @@ impl Simulation {
                 0.5 * dt * state.plane_force[a] + sums.crossing_impulse[a].value();
             sums.crossing_impulse[a] = ExactSum::default();
         }
+        state.plane_crossings += std::mem::take(&mut sums.crossings);
         for (pair, sum) in state.pairs.iter_mut().zip(&sums.pairs) {
             let finite = |x: f64| x.is_finite().then_some(x);
             let force: [f64; 3] = std::array::from_fn(|a| sum.force[a].value());
