@@ -19,6 +19,7 @@ mod timers;
 mod trouble;
 mod vote;
 
+pub use options::bytes_of_options;
 pub use post_mortem::PostMortem;
 pub use setup::SetupError;
 pub use simulation::{Simulation, StepError};
