@@ -85,9 +85,11 @@ impl FieldUse {
     pub const PENALTY: Self = Self(32768);
     /// Held only where rigid surfaces have friction or damping.
     pub const SURFACE_FRICTION: Self = Self(1 << 16);
+    /// Held only where particles in trouble are frozen.
+    pub const FREEZE: Self = Self(1 << 17);
     /// Held only where the case has use for it.
     pub const OPTIONAL: Self =
-        Self(128 | 256 | 512 | 1024 | 2048 | 4096 | 16384 | 32768 | (1 << 16));
+        Self(128 | 256 | 512 | 1024 | 2048 | 4096 | 16384 | 32768 | (1 << 16) | (1 << 17));
     /// In snapshots at all.
     pub const SNAPSHOT_OR_ON_DEMAND: Self = Self(32 | 64);
     /// What a rank sends with a particle that leaves it.
@@ -109,6 +111,12 @@ impl FieldUse {
     #[must_use]
     pub const fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
+    }
+
+    /// This set without `other`.
+    #[must_use]
+    pub const fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
     }
 }
 
@@ -256,6 +264,8 @@ particle_fields! {
     surface_sliding: Index, "", STATE | ON_DEMAND | SURFACE_FRICTION;
     /// Which loads and rigid bodies prescribe its velocity: a set of bits, in the input's order.
     load: Index, "", STATE | ON_DEMAND | LOADS;
+    /// Whether it left the range of its state and stands still, outside of all sums (1).
+    frozen: Index, "", STATE | ON_DEMAND | FREEZE;
     /// Velocity at the end of the step as predicted from the last accelerations.
     predicted_velocity: Vector, "m/s", MIGRATED | HALO_MOTION;
     /// Density at the end of the step as predicted from the last velocity gradient.

@@ -196,6 +196,7 @@ impl Simulation {
                 crossed.extend(indices.map(|(k, _)| chunk * GRAIN + k));
             });
         for &i in self.crossed.iter().flatten() {
+            self.sums.crossings += 1;
             let before = self.store.velocity[i];
             mirrors.fold(&mut self.store, i);
             let after = self.store.velocity[i];

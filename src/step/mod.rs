@@ -2,6 +2,7 @@
 
 mod contact_phase;
 mod contact_sums;
+mod freeze;
 mod integrate;
 mod loads;
 mod material_update;
@@ -21,6 +22,7 @@ mod timers;
 mod trouble;
 mod vote;
 
+pub use options::bytes_of_options;
 pub use post_mortem::PostMortem;
 pub use setup::SetupError;
 pub use simulation::{Simulation, StepError};

@@ -52,6 +52,8 @@ pub struct Simulation {
     pub case: Case,
     /// This rank's particles.
     pub store: ParticleStore,
+    /// Particles that this rank has frozen: they are in files, and in nothing else.
+    pub(super) frozen: ParticleStore,
     /// The scalar state, equal on all ranks.
     pub state: RunState,
     /// Seconds by phase.
@@ -219,6 +221,7 @@ impl Simulation {
         let crossed: usize = self.crossed.iter().map(Vec::capacity).sum();
         let words = 8 * (self.scratch.capacity() + crossed) + 4 * self.order.capacity();
         self.store.memory()
+            + self.frozen.memory()
             + self.search.memory()
             + self.sweeps.memory()
             + self.options.memory()

@@ -18,6 +18,8 @@ pub struct StepSums {
     pub(super) enclosed_limit: f64,
     pub(super) contact_work: ExactSum,
     pub(super) crossing_impulse: [ExactSum; 3],
+    /// Particles that crossed a symmetry plane in this step.
+    pub(super) crossings: i64,
     /// What contact adds up.
     pub(super) contact: ContactSums,
     /// The same by thread, until they are joined.
@@ -47,6 +49,7 @@ impl StepSums {
             enclosed_limit,
             contact_work: ExactSum::default(),
             crossing_impulse: Default::default(),
+            crossings: 0,
             parts: vec![contact.clone(); rayon::current_num_threads()],
             contact,
             loads: (0..loads).map(|_| Default::default()).collect(),
@@ -107,12 +110,13 @@ impl StepSums {
         let mut limbs = std::mem::take(&mut self.limbs);
         limbs.clear();
         gather_limbs(self.exact(), &mut limbs);
-        limbs.push(self.uncorrected);
+        limbs.extend([self.uncorrected, self.crossings]);
         limbs.extend(self.contact.counts().map(|count| *count));
         comm.sum_i64(&mut limbs);
         let mut rest = scatter_limbs(self.exact(), &limbs).iter();
         let mut next = || rest.next().copied().unwrap_or(0);
         self.uncorrected = next();
+        self.crossings = next();
         self.contact.counts().for_each(|count| *count = next());
         self.limbs = limbs;
         self.reduce_extremes(comm);
@@ -180,6 +184,7 @@ impl Simulation {
                 0.5 * dt * state.plane_force[a] + sums.crossing_impulse[a].value();
             sums.crossing_impulse[a] = ExactSum::default();
         }
+        state.plane_crossings += std::mem::take(&mut sums.crossings);
         for (pair, sum) in state.pairs.iter_mut().zip(&sums.contact.pairs) {
             let finite = |x: f64| x.is_finite().then_some(x);
             let force: [f64; 3] = std::array::from_fn(|a| sum.force[a].value());

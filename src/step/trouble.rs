@@ -12,7 +12,7 @@ use super::sums::{gather_limbs, scatter_limbs};
 use super::vote::{Moved, square};
 use crate::comm::Comm;
 use crate::diagnose::exact_sum::ExactSum;
-use crate::model::{Case, Trouble};
+use crate::model::{Case, Trouble, TroublePolicy};
 
 /// What is wrong with a particle, the worst first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -164,9 +164,9 @@ pub struct PastVote {
 pub(super) const PAST_VOTES: usize = 16;
 
 impl Simulation {
-    /// Takes out all particles whose state is out of range, books them, and sums the forces on the
-    /// others anew. For a step that [`StepError::Trouble`] has ended and whose particles are all
-    /// finite. Collective. Gives the number of particles taken out on all ranks.
+    /// Takes out all particles whose state is out of range, books them (and keeps them for the files
+    /// if they are to be frozen), and sums the forces on the others anew. For a step that
+    /// [`StepError::Trouble`] has ended and whose particles are all finite. Collective. Gives the number of particles taken out on all ranks.
     ///
     /// # Errors
     /// The same on all ranks if there is trouble again, or nothing left.
@@ -180,6 +180,9 @@ impl Simulation {
         }
         let mut count = [leaving.len() as u64, self.store.owned() as u64];
         self.book_removal(comm, &leaving);
+        if self.case.trouble.policy == TroublePolicy::Freeze {
+            self.freeze(&leaving);
+        }
         self.store.remove(&mut leaving, &mut Vec::new());
         self.order = leaving;
         comm.sum_u64(&mut count);
