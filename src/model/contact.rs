@@ -81,6 +81,15 @@ impl Default for Potential {
     }
 }
 
+/// Contact of a body with itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SelfContact {
+    /// Its law.
+    pub overlap: Overlap,
+    /// Particles of one part are strangers if they began farther from each other than this (spacings).
+    pub folds: Option<f64>,
+}
+
 /// Parameters of [`ContactMode::Overlap`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Overlap {
