@@ -75,7 +75,10 @@ impl Met {
     pub fn is_new(&mut self, message: &str) -> bool {
         let title = message.lines().next().unwrap_or_default();
         // With half a quotation of the text in it nobody knows what are its own words.
-        if ['`', '"'].iter().any(|&quote| title.matches(quote).count() % 2 == 1) {
+        if ['`', '"']
+            .iter()
+            .any(|&quote| title.matches(quote).count() % 2 == 1)
+        {
             return false;
         }
         let plain = title.split(['`', '"']).step_by(2).collect::<String>();

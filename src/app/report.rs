@@ -129,6 +129,7 @@ fn load_columns(dimension: usize) -> Vec<Column> {
             ("impulse_y", "N s"),
             ("impulse_z", "N s"),
             ("work", "J"),
+            ("heat", "J"),
         ],
     )
 }
@@ -252,8 +253,8 @@ impl Tables {
             for (name, load) in simulation.case.load_names().zip(&state.loads) {
                 let [fx, fy, fz] = load.force.map(Value::Real);
                 let [ix, iy, iz] = load.impulse.map(Value::Real);
-                let (time, work) = (Value::Real(state.time), Value::Real(load.work));
-                table.row(&[time, Value::Word(name), fx, fy, fz, ix, iy, iz, work])?;
+                let [time, work, heat] = [state.time, load.work, load.heat].map(Value::Real);
+                table.row(&[time, Value::Word(name), fx, fy, fz, ix, iy, iz, work, heat])?;
             }
         }
         if let Some(table) = &mut self.removed {

@@ -25,7 +25,7 @@ pub struct Pair {
     pub core_radius: f64,
     /// Whether forces act along the normals of the surfaces.
     pub along_normal: bool,
-    /// `overlap`: friction and damping.
+    /// `overlap`, `penalty`: friction and damping.
     pub resistance: PairResistance,
     /// `potential`: K (Pa/m^d).
     pub potential: f64,
@@ -295,6 +295,8 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
         ContactMode::Penalty(penalty) => {
             pair.penalty = penalty.stiffness * smaller;
             pair.pinball = penalty.law == PenaltyLaw::Pinball;
+            pair.resistance =
+                PairResistance::new(case, [body_a, body_b], spacing, &penalty.resistance);
             (ContactClass::Penalty, pair)
         }
         ContactMode::Overlap(overlap) => {

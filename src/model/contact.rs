@@ -143,6 +143,8 @@ pub struct Penalty {
     pub stiffness: f64,
     /// Law of the force.
     pub law: PenaltyLaw,
+    /// Friction and damping.
+    pub resistance: Resistance,
 }
 
 impl Default for Penalty {
@@ -150,6 +152,7 @@ impl Default for Penalty {
         Self {
             stiffness: 2.0,
             law: PenaltyLaw::Hertz,
+            resistance: Resistance::default(),
         }
     }
 }

@@ -83,10 +83,13 @@ impl FieldUse {
     pub const NORMALISED: Self = Self(16384);
     /// Held only with `penalty` contact.
     pub const PENALTY: Self = Self(32768);
+    /// Held only where rigid surfaces have friction or damping.
+    pub const SURFACE_FRICTION: Self = Self(1 << 16);
     /// Held only where particles in trouble are frozen.
-    pub const FREEZE: Self = Self(65536);
+    pub const FREEZE: Self = Self(1 << 17);
     /// Held only where the case has use for it.
-    pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024 | 2048 | 4096 | 16384 | 32768 | 65536);
+    pub const OPTIONAL: Self =
+        Self(128 | 256 | 512 | 1024 | 2048 | 4096 | 16384 | 32768 | (1 << 16) | (1 << 17));
     /// In snapshots at all.
     pub const SNAPSHOT_OR_ON_DEMAND: Self = Self(32 | 64);
     /// What a rank sends with a particle that leaves it.
@@ -253,6 +256,12 @@ particle_fields! {
     slip_rate: Vector, "m/s", STATE | ON_DEMAND | FRICTION;
     /// Whether friction is kinetic (1) or static (0).
     sliding: Index, "", STATE | ON_DEMAND | FRICTION;
+    /// Elastic tangential displacement against rigid surfaces, by which their friction holds.
+    surface_slip: Vector, "m", STATE | ON_DEMAND | SURFACE_FRICTION;
+    /// Tangential velocity against rigid surfaces.
+    surface_slip_rate: Vector, "m/s", STATE | ON_DEMAND | SURFACE_FRICTION;
+    /// Whether friction of rigid surfaces is kinetic (1) or static (0).
+    surface_sliding: Index, "", STATE | ON_DEMAND | SURFACE_FRICTION;
     /// Which loads and rigid bodies prescribe its velocity: a set of bits, in the input's order.
     load: Index, "", STATE | ON_DEMAND | LOADS;
     /// Whether it left the range of its state and stands still, outside of all sums (1).
@@ -287,7 +296,7 @@ particle_fields! {
     friction_power: Scalar, "W", HALO_FRICTION | FRICTION;
     /// Energy of sticking friction.
     friction_energy: Scalar, "J", FRICTION;
-    /// Outward normal of a boundary particle, longer at corners, zero inside: of `penalty` contact.
+    /// Outward normal of a boundary particle, shorter at corners, zero inside: of `penalty` contact.
     boundary_normal: Vector, "", HALO_CONTACT | ON_DEMAND | PENALTY;
     /// Contact energy.
     contact_energy: Scalar, "J", ON_DEMAND | CONTACT;

@@ -1,6 +1,7 @@
 //! The loop, the integrator and the time-step votes.
 
 mod contact_phase;
+mod contact_sums;
 mod freeze;
 mod integrate;
 mod loads;
@@ -14,6 +15,8 @@ mod simulation;
 mod state;
 mod sums;
 mod surface_forces;
+mod surface_friction;
+mod surface_motion;
 mod sweeps;
 mod timers;
 mod trouble;

@@ -77,6 +77,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> FieldUse {
         (FieldUse::PENALTY, contact.has_penalty()),
         (FieldUse::LOADS, driven),
         (FieldUse::FRICTION, contact.has_friction()),
+        (FieldUse::SURFACE_FRICTION, case.loads.has_friction()),
         (FieldUse::BALSARA, sph.balsara),
         (FieldUse::CONDUCTION, sph.conduction > 0.0),
         (FieldUse::XSPH, sph.xsph > 0.0),

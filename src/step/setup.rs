@@ -159,7 +159,14 @@ impl Simulation {
                 enclosed_limit,
                 contact.has_friction(),
                 loads.driven(),
-                loads.surfaces.len(),
+                [
+                    loads.surfaces.len(),
+                    if case.loads.has_friction() {
+                        loads.surfaces.len()
+                    } else {
+                        0
+                    },
+                ],
             ),
             loads,
             scratch: Vec::new(),
@@ -240,13 +247,13 @@ impl Simulation {
         self.state.capped_reliefs = capped[0];
         self.restore_order();
         self.evaluate(comm, 0.0);
-        self.kick(0.0);
+        let vote = self.kick(0.0);
         self.book_step(comm, 0.0);
         self.state.initial = self.totals(comm);
         self.state.initial.contact_energy = self.state.contact_energy;
         self.state.worst = Worst::default();
         self.diagnose(comm);
-        self.vote(comm)?;
+        self.vote(comm, vote)?;
         Ok(())
     }
 }

@@ -127,14 +127,14 @@ impl Simulation {
         self.migration.migrate(comm, &self.slabs, &mut self.store);
         self.timers.lap(Phase::Migrate);
         self.evaluate(comm, dt);
-        self.kick(dt);
+        let vote = self.kick(dt);
         self.timers.lap(Phase::Integrate);
         self.state.step += 1;
         self.state.time = end;
         (self.state.last_dt, self.state.last_reason) = (dt, reason);
         self.book_step(comm, dt);
         self.updates += self.store.owned() as u64;
-        self.vote(comm)?;
+        self.vote(comm, vote)?;
         self.timers.lap(Phase::Vote);
         Ok(())
     }

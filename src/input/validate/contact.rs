@@ -38,7 +38,10 @@ impl Choice {
                 resistance: self.resistance,
                 ..self.overlap
             }),
-            ModeName::Penalty => ContactMode::Penalty(self.penalty),
+            ModeName::Penalty => ContactMode::Penalty(Penalty {
+                resistance: self.resistance,
+                ..self.penalty
+            }),
         }
     }
 }
@@ -61,7 +64,10 @@ pub fn contacts(
         penalty: penalty(&params.penalty, Penalty::default())?,
     };
     let modes = params.pair.iter().map(|pair| pair.mode);
-    let used = |mode: Option<ModeName>| mode.unwrap_or(default.mode) == ModeName::Overlap;
+    let used = |mode: Option<ModeName>| {
+        let mode = mode.unwrap_or(default.mode);
+        matches!(mode, ModeName::Overlap | ModeName::Penalty)
+    };
     if !modes.chain([None]).any(used) {
         refuse_resistance(params.friction.as_ref(), params.damping.as_ref())?;
     }
@@ -162,7 +168,7 @@ fn overlap(params: &OverlapParams, base: Overlap, form: SphForm) -> Result<Overl
     })
 }
 
-/// Only one mode knows friction and damping.
+/// Two modes know friction and damping.
 fn refuse_resistance(
     friction: Option<&Spanned<FrictionParams>>,
     damping: Option<&Spanned<f64>>,
@@ -174,13 +180,15 @@ fn refuse_resistance(
     match at.into_iter().flatten().next() {
         None => Ok(()),
         Some((key, at)) => {
-            let title = format!("`{key}` acts in no contact but that of mode `overlap`");
+            let title =
+                format!("`{key}` acts in no contact but that of the modes `overlap` and `penalty`");
             Err(Complaint::new(at, title).help("set `mode = \"overlap\"`, or leave it out"))
         }
     }
 }
 
-fn resistance(
+/// Friction and damping; what is not given is that of `base`.
+pub(super) fn resistance(
     friction: Option<&Spanned<FrictionParams>>,
     damping: Option<&Spanned<f64>>,
     base: Resistance,
@@ -250,6 +258,7 @@ fn penalty(params: &PenaltyParams, base: Penalty) -> Result<Penalty, Complaint> 
             Some(PenaltyLawName::Pinball) => PenaltyLaw::Pinball,
             None => base.law,
         },
+        resistance: base.resistance,
     })
 }
 
