@@ -35,7 +35,7 @@ patience=120
 declare -A times codes slowest lost
 legs=0 runs=0 most_ranks=5
 
-fail() { echo "soak: $*; seed $seed, leg $legs" >&2; table >&2; cp -r "$place" "${TMPDIR:-/tmp}/soak-failed.$$"; exit 1; }
+fail() { echo "soak: $*; seed $seed, leg $legs" >&2; table >&2; cp -r "$place" "${TMPDIR:-/tmp}/soak-failed.$$" || true; exit 1; }
 
 table() {
     echo
@@ -79,10 +79,12 @@ strike() {
 
 lives() { [ -d "/proc/$1" ] && ! grep -q '^State:.Z' "/proc/$1/status" 2>/dev/null; }
 
-# Waits for mpirun and the ranks that it had; sets `code` and `took` (ms).
+# Waits for mpirun and the ranks that it had; sets `code` and `took` (ms), in which a time when
+# everything here stood still does not count.
 wait_for_all() {
-    local began children alive pid
-    began=$(now)
+    local last passed children alive pid
+    last=$(now)
+    took=0
     children=$1
     while :; do
         alive=''
@@ -90,10 +92,12 @@ wait_for_all() {
             if lives "$pid"; then alive=1; fi
         done
         [ -n "$alive" ] || break
-        if [ $(($(now) - began)) -gt $((patience * 1000)) ]; then fail "a hang after $fault"; fi
+        if [ "$took" -gt $((patience * 1000)) ]; then fail "a hang after $fault"; fi
         sleep 0.02
+        passed=$(($(now) - last))
+        last=$((last + passed))
+        took=$((took + (passed < 200 ? passed : 200)))
     done
-    took=$(($(now) - began))
     code=0
     { wait "$job" || code=$?; } 2>/dev/null
 }
