@@ -19,7 +19,7 @@ pub struct Pair {
     pub modulus: f64,
     /// `overlap`: touching value C* of the receiver's body on the other.
     pub touching: f64,
-    /// `overlap`: `κ_c` times the smaller p-wave modulus (Pa).
+    /// `overlap`: `κ_c` times what [`core_scale`] says (Pa).
     pub core_modulus: f64,
     /// `overlap`: radius of the core (m).
     pub core_radius: f64,
@@ -316,7 +316,7 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
         ContactMode::Overlap(overlap) => {
             pair.modulus = overlap.stiffness * smaller;
             pair.touching = populate::touching_value(body_a, body_b, case.dimension);
-            pair.core_modulus = overlap.core_stiffness * smaller;
+            pair.core_modulus = overlap.core_stiffness * core_scale(case, [body_a, body_b]);
             pair.core_radius = overlap.core_radius * spacing;
             pair.along_normal = overlap.direction == ContactDirection::Normal;
             pair.resistance =
@@ -324,4 +324,18 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
             (ContactClass::Overlap, pair)
         }
     }
+}
+
+/// What the core of two bodies is as stiff as (Pa): `max(M, ¾ ρ v²)` with v (m/s) their speed against
+/// each other at the start. M and ρ are harmonic means of moduli and densities, as the mass of two
+/// particles that meet head-on is; what is rigid counts as infinite.
+fn core_scale(case: &Case, bodies: [&Body; 2]) -> f64 {
+    let harmonic_mean = |value: &dyn Fn(&Body) -> f64| {
+        let soft = bodies.iter().filter(|body| body.rigid.is_none());
+        2.0 / soft.map(|body| 1.0 / value(body)).sum::<f64>()
+    };
+    let modulus = harmonic_mean(&|body| case.materials[body.material].p_wave_modulus());
+    let density = harmonic_mean(&|body| case.initial_density(body));
+    let speed = (bodies[0].velocity - bodies[1].velocity).norm_squared();
+    modulus.max(0.75 * density * speed)
 }

@@ -14,6 +14,29 @@ use super::schema::{
     Direction, FrictionTable, LatticeName, LatticeTable, Placed, SelfContactTable,
 };
 
+/// What is read from a table alone.
+pub trait Table: Sized {
+    /// Reads the entries of a table.
+    fn from_map<'de, A: MapAccess<'de>>(map: A) -> Result<Self, A::Error>;
+}
+
+/// Reads a table and refuses all else.
+pub fn table<'de, T: Table, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
+    struct TableVisitor<T>(PhantomData<T>);
+    impl<'de, T: Table> Visitor<'de> for TableVisitor<T> {
+        type Value = T;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a table")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<T, A::Error> {
+            T::from_map(map)
+        }
+    }
+    deserializer.deserialize_any(TableVisitor(PhantomData))
+}
+
 /// `"cubic"`, or a table with more.
 #[derive(Debug)]
 pub struct LatticeParams {

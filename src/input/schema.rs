@@ -21,9 +21,28 @@ macro_rules! tables {
     ($($(#[$doc:meta])+ $table:ident { $($(#[$key_doc:meta])+ $key:ident: $value:ty,)* })+) => { $(
         $(#[$doc])+
         #[derive(Debug, Deserialize)]
-        #[serde(deny_unknown_fields)]
+        #[serde(deny_unknown_fields, remote = "Self")]
         pub struct $table { $($(#[$key_doc])+ pub $key: $value,)* }
+        from_table!($table);
     )+ };
+}
+
+/// Reads a struct from a table alone: serde would take an array of its values too, in the order of
+/// the declaration. What is derived is an inherent function, by `remote = "Self"`.
+macro_rules! from_table {
+    ($table:ident) => {
+        impl crate::input::forms::Table for $table {
+            fn from_map<'de, A: serde::de::MapAccess<'de>>(map: A) -> Result<Self, A::Error> {
+                Self::deserialize(serde::de::value::MapAccessDeserializer::new(map))
+            }
+        }
+
+        impl<'de> Deserialize<'de> for $table {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                crate::input::forms::table(deserializer)
+            }
+        }
+    };
 }
 
 tables! {
@@ -244,8 +263,9 @@ macro_rules! optional_tables {
     ($($(#[$doc:meta])+ $table:ident { $($(#[$key_doc:meta])+ $key:ident: $value:ty,)* })+) => { $(
         $(#[$doc])+
         #[derive(Debug, Default, Deserialize)]
-        #[serde(default, deny_unknown_fields)]
+        #[serde(default, deny_unknown_fields, remote = "Self")]
         pub struct $table { $($(#[$key_doc])+ pub $key: $value,)* }
+        from_table!($table);
     )+ };
 }
 

@@ -91,6 +91,17 @@ pub enum SurfaceShape {
     Mesh(Arc<Mesh>),
 }
 
+impl RigidSurface {
+    /// Bytes that its mesh takes, if it has one.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        match &self.shape {
+            SurfaceShape::Mesh(mesh) => mesh.memory(),
+            _ => 0,
+        }
+    }
+}
+
 /// The nearest place of a surface, as seen from a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Foot {

@@ -91,9 +91,21 @@ impl FieldUse {
     pub const FOLDS: Self = Self(1 << 18);
     /// Halo particles need it when parts are told.
     pub const HALO_PARTS: Self = Self(1 << 19);
+    /// Held only where particles in trouble are frozen.
+    pub const FREEZE: Self = Self(1 << 20);
     /// Held only where the case has use for it.
-    pub const OPTIONAL: Self =
-        Self(128 | 256 | 512 | 1024 | 2048 | 4096 | 16384 | 32768 | (0b111 << 16));
+    pub const OPTIONAL: Self = Self::CONTACT
+        .with(Self::BALSARA)
+        .with(Self::CONDUCTION)
+        .with(Self::XSPH)
+        .with(Self::LOADS)
+        .with(Self::FRICTION)
+        .with(Self::NORMALISED)
+        .with(Self::PENALTY)
+        .with(Self::SURFACE_FRICTION)
+        .with(Self::SELF_CONTACT)
+        .with(Self::FOLDS)
+        .with(Self::FREEZE);
     /// In snapshots at all.
     pub const SNAPSHOT_OR_ON_DEMAND: Self = Self(32 | 64);
     /// What a rank sends with a particle that leaves it.
@@ -115,6 +127,12 @@ impl FieldUse {
     #[must_use]
     pub const fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
+    }
+
+    /// This set without `other`.
+    #[must_use]
+    pub const fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
     }
 }
 
@@ -268,6 +286,8 @@ particle_fields! {
     reference_position: Vector, "m", STATE | HALO_MOTION | FOLDS;
     /// Which loads and rigid bodies prescribe its velocity: a set of bits, in the input's order.
     load: Index, "", STATE | ON_DEMAND | LOADS;
+    /// Whether it left the range of its state and stands still, outside of all sums (1).
+    frozen: Index, "", STATE | ON_DEMAND | FREEZE;
     /// Velocity at the end of the step as predicted from the last accelerations.
     predicted_velocity: Vector, "m/s", MIGRATED | HALO_MOTION;
     /// Density at the end of the step as predicted from the last velocity gradient.

@@ -1,6 +1,8 @@
 //! The loop, the integrator and the time-step votes.
 
 mod contact_phase;
+mod contact_sums;
+mod freeze;
 mod integrate;
 mod loads;
 mod material_update;
@@ -21,6 +23,7 @@ mod timers;
 mod trouble;
 mod vote;
 
+pub use options::bytes_of_options;
 pub use post_mortem::PostMortem;
 pub use setup::SetupError;
 pub use simulation::{Simulation, StepError};

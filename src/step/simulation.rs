@@ -53,6 +53,8 @@ pub struct Simulation {
     pub case: Case,
     /// This rank's particles.
     pub store: ParticleStore,
+    /// Particles that this rank has frozen: they are in files, and in nothing else.
+    pub(super) frozen: ParticleStore,
     /// The scalar state, equal on all ranks.
     pub state: RunState,
     /// Seconds by phase.
@@ -127,14 +129,14 @@ impl Simulation {
         self.migration.migrate(comm, &self.slabs, &mut self.store);
         self.timers.lap(Phase::Migrate);
         self.evaluate(comm, dt);
-        self.kick(dt);
+        let vote = self.kick(dt);
         self.timers.lap(Phase::Integrate);
         self.state.step += 1;
         self.state.time = end;
         (self.state.last_dt, self.state.last_reason) = (dt, reason);
         self.book_step(comm, dt);
         self.updates += self.store.owned() as u64;
-        self.vote(comm)?;
+        self.vote(comm, vote)?;
         self.timers.lap(Phase::Vote);
         Ok(())
     }
@@ -222,6 +224,7 @@ impl Simulation {
         let crossed: usize = self.crossed.iter().map(Vec::capacity).sum();
         let words = 8 * (self.scratch.capacity() + crossed) + 4 * self.order.capacity();
         self.store.memory()
+            + self.frozen.memory()
             + self.search.memory()
             + self.sweeps.memory()
             + self.options.memory()

@@ -136,6 +136,9 @@ pub struct RunState {
     pub plane_force: [f64; 3],
     /// Its time integral, particles that crossed a plane included (N s).
     pub plane_impulse: [f64; 3],
+    /// How often a particle has crossed a symmetry plane so far.
+    #[serde(default)]
+    pub plane_crossings: i64,
     /// Ledgers of the pairs of bodies in contact.
     pub pairs: Vec<PairState>,
     /// Ledgers of prescribed velocities, rigid bodies and rigid surfaces.

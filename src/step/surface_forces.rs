@@ -138,7 +138,7 @@ impl Simulation {
             store.contact_energy[i] += push.energy;
             store.contact_stiffness[i] += push.stiffness;
             store.approach_speed[i] = store.approach_speed[i].max(push.approach);
-            sums.contact_energy.add(push.energy);
+            sums.contact.energy.add(push.energy);
             sums.add_push(push.surface, &push.force, push.torque);
             if let Some(heat) = sums.push_heat.get_mut(push.surface) {
                 heat.add(push.heat);
