@@ -127,13 +127,12 @@ impl Parts {
     /// Labels of all ranks' particles. Collective.
     fn label(&mut self, comm: &Comm, halo: &mut Halo, store: &mut ParticleStore) {
         let owned = store.owned();
-        for i in 0..owned {
-            let root = self.root(u32::try_from(i).unwrap_or(u32::MAX)) as usize;
-            store.part[i] = store.id[i];
-            store.part_planes[i] = self.labels[root].1;
-        }
+        let particles = store.part.len();
+        store.part.copy_from_slice(&store.id[..particles]);
+        // Roots know what their own pairs have found.
+        store.part_planes.fill(0);
         loop {
-            for i in 0..store.part.len() {
+            for i in 0..particles {
                 let root = self.root(u32::try_from(i).unwrap_or(u32::MAX)) as usize;
                 let label = &mut self.labels[root];
                 label.0 = label.0.min(store.part[i]);
