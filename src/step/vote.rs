@@ -157,10 +157,13 @@ pub(super) struct Ballot {
     /// Its square and its fourth power, infinite where they cannot tell.
     step2: f64,
     step4: f64,
+    /// Smoothing length (m) and signal speed (m/s) of a best vote by sound: where all is at rest,
+    /// all votes are this one, and the smallest id has it.
+    by_sound: Option<[f64; 2]>,
 }
 
 impl Ballot {
-    fn new(best: Vote, step_min: f64) -> Self {
+    fn new(best: Vote, step_min: f64, by_sound: Option<[f64; 2]>) -> Self {
         let dt = match best {
             ABSTAIN => f64::INFINITY,
             (bits, ..) => f64::from_bits(bits),
@@ -175,7 +178,14 @@ impl Ballot {
             step,
             step2,
             step4,
+            by_sound,
         }
+    }
+
+    /// Whether a vote by sound is the best one too.
+    #[inline(always)]
+    fn is_matched(&self, h: f64, signal: f64) -> bool {
+        self.by_sound == Some([h, signal])
     }
 
     pub(super) fn vote(&self) -> Vote {
@@ -200,7 +210,7 @@ pub(super) struct Voter<'a> {
 impl Voter<'_> {
     /// Nobody has voted.
     pub(super) fn ballot(&self) -> Ballot {
-        Ballot::new(ABSTAIN, self.limits.step_min)
+        Ballot::new(ABSTAIN, self.limits.step_min, None)
     }
 
     /// Lets a particle vote.
@@ -209,7 +219,9 @@ impl Voter<'_> {
         if !self.is_beyond(i, moved, ballot) {
             let vote = self.vote(i, moved);
             if vote < ballot.best {
-                *ballot = Ballot::new(vote, self.limits.step_min);
+                let by_sound = vote.1 == Reason::Sound as u64 && vote.0 != ERROR;
+                let by_sound = by_sound.then(|| [self.store.smoothing_length[i], self.signal(i)]);
+                *ballot = Ballot::new(vote, self.limits.step_min, by_sound);
             }
         }
     }
@@ -220,7 +232,8 @@ impl Voter<'_> {
     fn is_beyond(&self, i: usize, moved: &Moved, ballot: &Ballot) -> bool {
         let (store, factors) = (self.store, &self.case.time_step);
         let (h, signal) = (store.smoothing_length[i], self.signal(i));
-        let by_sound = signal >= 0.0 && factors.courant * h > ballot.step * signal;
+        let by_sound = (signal >= 0.0 && factors.courant * h > ballot.step * signal)
+            || (ballot.is_matched(h, signal) && store.id[i] > ballot.best.2);
         let reach = factors.force * factors.force * h;
         let a = self.acceleration(i, &moved.contact);
         let by_force = reach * reach > ballot.step4 * square(&a);
