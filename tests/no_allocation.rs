@@ -111,6 +111,8 @@ fn a_warm_step_allocates_nothing_and_all_that_is_held_is_told() {
         "xsph=0.5",
     ];
     check(&comm, &options.map(|option| format!("sph.{option}")));
+    let contact = ["self_contact={folds=8}", "friction=0.3"];
+    check(&comm, &contact.map(|option| format!("contact.{option}")));
 }
 
 fn check(comm: &Comm, set: &[String]) {
