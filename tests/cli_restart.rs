@@ -255,11 +255,6 @@ fn hard(matrix: &[(usize, &[usize])]) {
         for &m in others {
             let run = place.path().join(format!("{n}-{m}"));
             copy(&stopped, &run);
-            let axis = if m > 3 {
-                "domain.axis=y"
-            } else {
-                "domain.axis=x"
-            };
             let mut restart = ranks(m);
             restart.arg("restart").arg(&run);
             must(restart, &[]);

@@ -136,6 +136,9 @@ impl Mirrors {
         if code != 0 {
             store.position[i] = self.reflect_position(&store.position[i], code);
             store.velocity[i] = Self::reflect_vector(&store.velocity[i], code);
+            if let Some(start) = store.reference_position.get_mut(i) {
+                *start = self.reflect_position(start, code);
+            }
             store.predicted_velocity[i] = Self::reflect_vector(&store.predicted_velocity[i], code);
             for field in [
                 &mut store.slip,

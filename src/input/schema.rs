@@ -6,7 +6,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::forms::{FrictionParams, LatticeParams, Named, OneOrMany};
+use super::forms::{FrictionParams, LatticeParams, Named, OneOrMany, SelfContactParams};
 use super::quantity::{
     Acceleration, Angle, Density, Extent, Length, Quantity, SpecificEnergy, Time, Velocity,
 };
@@ -331,6 +331,8 @@ optional_tables! {
         friction: Option<Spanned<FrictionParams>>,
         /// Share of critical damping.
         damping: Option<Spanned<f64>>,
+        /// Contact of a body with itself.
+        self_contact: Option<Spanned<SelfContactParams>>,
         /// Parameters of the mode `overlap`.
         overlap: OverlapParams,
         /// Parameters of the mode `potential`.
@@ -339,6 +341,12 @@ optional_tables! {
         penalty: PenaltyParams,
         /// Pairs with a mode or parameters of their own.
         pair: Vec<PairParams>,
+    }
+
+    /// `contact.self_contact` as a table.
+    SelfContactTable {
+        /// Spacings between the beginnings of particles that can fold onto each other.
+        folds: Option<Spanned<f64>>,
     }
 
     /// `contact.overlap`

@@ -85,11 +85,27 @@ impl FieldUse {
     pub const PENALTY: Self = Self(32768);
     /// Held only where rigid surfaces have friction or damping.
     pub const SURFACE_FRICTION: Self = Self(1 << 16);
+    /// Held only with self-contact.
+    pub const SELF_CONTACT: Self = Self(1 << 17);
+    /// Held only where folds are in self-contact.
+    pub const FOLDS: Self = Self(1 << 18);
+    /// Halo particles need it when parts are told.
+    pub const HALO_PARTS: Self = Self(1 << 19);
     /// Held only where particles in trouble are frozen.
-    pub const FREEZE: Self = Self(1 << 17);
+    pub const FREEZE: Self = Self(1 << 20);
     /// Held only where the case has use for it.
-    pub const OPTIONAL: Self =
-        Self(128 | 256 | 512 | 1024 | 2048 | 4096 | 16384 | 32768 | (1 << 16) | (1 << 17));
+    pub const OPTIONAL: Self = Self::CONTACT
+        .with(Self::BALSARA)
+        .with(Self::CONDUCTION)
+        .with(Self::XSPH)
+        .with(Self::LOADS)
+        .with(Self::FRICTION)
+        .with(Self::NORMALISED)
+        .with(Self::PENALTY)
+        .with(Self::SURFACE_FRICTION)
+        .with(Self::SELF_CONTACT)
+        .with(Self::FOLDS)
+        .with(Self::FREEZE);
     /// In snapshots at all.
     pub const SNAPSHOT_OR_ON_DEMAND: Self = Self(32 | 64);
     /// What a rank sends with a particle that leaves it.
@@ -262,6 +278,12 @@ particle_fields! {
     surface_slip_rate: Vector, "m/s", STATE | ON_DEMAND | SURFACE_FRICTION;
     /// Whether friction of rigid surfaces is kinetic (1) or static (0).
     surface_sliding: Index, "", STATE | ON_DEMAND | SURFACE_FRICTION;
+    /// Smallest id among the particles that it is connected with.
+    part: Id, "", STATE | HALO_MOTION | HALO_PARTS | SNAPSHOT | SELF_CONTACT;
+    /// Symmetry planes that the part reaches across: a set of bits.
+    part_planes: Index, "", STATE | HALO_MOTION | HALO_PARTS | SELF_CONTACT;
+    /// Position at the start.
+    reference_position: Vector, "m", STATE | HALO_MOTION | FOLDS;
     /// Which loads and rigid bodies prescribe its velocity: a set of bits, in the input's order.
     load: Index, "", STATE | ON_DEMAND | LOADS;
     /// Whether it left the range of its state and stands still, outside of all sums (1).

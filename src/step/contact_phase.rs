@@ -141,8 +141,9 @@ impl Simulation {
             .tasks
             .par_iter_mut()
             .zip(self.search.foreign.chunks())
+            .zip(self.search.clusters.chunks())
             .with_max_len(CHUNKS_AT_ONCE)
-            .for_each(|(task, chunk)| task.hold(&view, chunk));
+            .for_each(|((task, foreign), own)| task.hold(&view, foreign, own));
         self.store_holds();
         self.halo.post(comm, &self.store, FieldUse::HALO_FRICTION);
         self.halo.finish(&mut self.store, FieldUse::HALO_FRICTION);
@@ -409,23 +410,22 @@ impl Task {
         }
     }
 
-    /// Friction and damping of one chunk's receivers, whose lists stand in the same order.
-    fn hold(&mut self, view: &ContactView, chunk: &ForeignChunk) {
+    /// Friction and damping of one chunk's receivers, which stand in the same order in all lists.
+    fn hold(&mut self, view: &ContactView, foreign: &ForeignChunk, own: &Chunk) {
         self.holds.clear();
-        let mut overlap = chunk.overlap.iter().peekable();
-        let mut penalty = chunk.penalty.iter().peekable();
-        loop {
-            let place = match (overlap.peek(), penalty.peek()) {
-                (Some(&(a, _)), Some(&(b, _))) => a.min(b),
-                (Some(&(a, _)), None) | (None, Some(&(a, _))) => a,
-                (None, None) => return,
-            };
-            let [mine, theirs] = [&mut overlap, &mut penalty].map(|list| {
-                list.next_if(|(at, _)| *at == place)
-                    .map_or(&[][..], |(_, n)| n)
-            });
-            let hold = hold::hold(view, place, mine, theirs);
-            self.holds.push((view.images[place as usize].base(), hold));
+        let mut overlap = foreign.overlap.iter().peekable();
+        let mut penalty = foreign.penalty.iter().peekable();
+        for (cluster, _, _) in own.iter() {
+            for &place in &cluster.receivers[..cluster.lanes] {
+                let mine = overlap.next_if(|(at, _)| *at == place);
+                let theirs = penalty.next_if(|(at, _)| *at == place);
+                if mine.is_none() && theirs.is_none() {
+                    continue;
+                }
+                let [mine, theirs] = [mine, theirs].map(|list| list.map_or(&[][..], |(_, n)| n));
+                let hold = hold::hold(view, place, mine, theirs);
+                self.holds.push((view.images[place as usize].base(), hold));
+            }
         }
     }
 

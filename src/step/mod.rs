@@ -8,6 +8,7 @@ mod loads;
 mod material_update;
 mod normalised;
 mod options;
+mod parts;
 mod post_mortem;
 mod search;
 mod setup;

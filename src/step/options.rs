@@ -77,6 +77,11 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> FieldUse {
         (FieldUse::PENALTY, contact.has_penalty()),
         (FieldUse::LOADS, driven),
         (FieldUse::FRICTION, contact.has_friction()),
+        (FieldUse::SELF_CONTACT, case.self_contact.is_some()),
+        (
+            FieldUse::FOLDS,
+            case.self_contact.is_some_and(|s| s.folds.is_some()),
+        ),
         (FieldUse::SURFACE_FRICTION, case.loads.has_friction()),
         (FieldUse::BALSARA, sph.balsara),
         (FieldUse::CONDUCTION, sph.conduction > 0.0),

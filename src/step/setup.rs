@@ -7,6 +7,7 @@ use thiserror::Error;
 use super::contact_phase::ContactPhase;
 use super::loads::{Drive, Goal, LoadStep};
 use super::options::{OptionPhase, unused_fields};
+use super::parts::Parts;
 use super::search::Search;
 use super::simulation::{Simulation, StepError};
 use super::state::{LoadState, PairState, Reason, RunState, Totals, Worst};
@@ -159,6 +160,7 @@ impl Simulation {
             sweeps: Sweeps::new(&case, &contact.kernel),
             options: OptionPhase::new(&case, &contact.kernel),
             contact_phase: ContactPhase::default(),
+            parts: Parts::new(&case),
             surface_forces: SurfaceForces::new(&case),
             sums: StepSums::new(
                 pairs,
@@ -227,6 +229,7 @@ impl Simulation {
                 store.predicted_density[i] = density;
                 store.specific_energy[i] = energy;
                 store.smoothing_length[i] = body.smoothing_length;
+                Self::begin_parts(store, i, first_id);
                 if self.loads.drives() {
                     let bits = self.loads.bits(case, b, &site.position);
                     let prescribed = self.loads.of(bits);

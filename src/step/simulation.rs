@@ -7,6 +7,7 @@ use thiserror::Error;
 use super::contact_phase::ContactPhase;
 use super::loads::LoadStep;
 use super::options::OptionPhase;
+use super::parts::Parts;
 use super::search::Search;
 use super::state::{Reason, RunState};
 use super::sums::StepSums;
@@ -79,6 +80,7 @@ pub struct Simulation {
     pub(super) sweeps: Sweeps,
     pub(super) options: OptionPhase,
     pub(super) contact_phase: ContactPhase,
+    pub(super) parts: Parts,
     pub(super) loads: LoadStep,
     pub(super) surface_forces: SurfaceForces,
     pub(super) sums: StepSums,
@@ -148,6 +150,7 @@ impl Simulation {
         self.exchange_motion(comm);
         self.timers.lap(Phase::HaloMotion);
         self.find_neighbours();
+        self.find_parts(comm);
         self.timers.lap(Phase::Neighbours);
         self.velocity_gradient_and_material(dt);
         self.prepare_options(dt);
@@ -229,6 +232,7 @@ impl Simulation {
             + self.sweeps.memory()
             + self.options.memory()
             + self.contact_phase.memory()
+            + self.parts.memory()
             + self.loads.memory()
             + self.surface_forces.memory()
             + self.sums.memory()

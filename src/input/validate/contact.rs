@@ -3,7 +3,7 @@
 use toml::Spanned;
 
 use super::check::{Allowed, number};
-use crate::input::forms::FrictionParams;
+use crate::input::forms::{FrictionParams, SelfContactParams};
 use crate::input::schema::{
     BodyParams, ContactParams, DirectionName, ModeName, OverlapParams, PairParams, PenaltyLawName,
     PenaltyParams, PotentialParams, RangeName,
@@ -11,7 +11,7 @@ use crate::input::schema::{
 use crate::input::source::Complaint;
 use crate::model::{
     ContactDirection, ContactMode, ContactPair, Overlap, Penalty, PenaltyLaw, Potential,
-    PotentialRange, Resistance, SphForm,
+    PotentialRange, Resistance, SelfContact, SphForm,
 };
 
 /// Largest exponent of the contact potential: beyond it a power of the kernel ratio says no more
@@ -46,12 +46,16 @@ impl Choice {
     }
 }
 
-/// The default mode and the pairs; a pair takes what it does not give from the default.
+/// The default mode, the pairs, and contact of bodies with themselves.
+type Contacts = (ContactMode, Vec<ContactPair>, Option<SelfContact>);
+
+/// The default mode and the pairs, and self-contact; a pair takes what it does not give from the default.
 pub fn contacts(
     params: &ContactParams,
     bodies: &[Spanned<BodyParams>],
     form: SphForm,
-) -> Result<(ContactMode, Vec<ContactPair>), Complaint> {
+    ratio: f64,
+) -> Result<Contacts, Complaint> {
     let default = Choice {
         mode: params.mode.unwrap_or(ModeName::Overlap),
         overlap: overlap(&params.overlap, Overlap::default(), form)?,
@@ -63,12 +67,13 @@ pub fn contacts(
         )?,
         penalty: penalty(&params.penalty, Penalty::default())?,
     };
+    let own = self_contact(params, ratio, default)?;
     let modes = params.pair.iter().map(|pair| pair.mode);
     let used = |mode: Option<ModeName>| {
         let mode = mode.unwrap_or(default.mode);
         matches!(mode, ModeName::Overlap | ModeName::Penalty)
     };
-    if !modes.chain([None]).any(used) {
+    if own.is_none() && !modes.chain([None]).any(used) {
         refuse_resistance(params.friction.as_ref(), params.damping.as_ref())?;
     }
     let mut pairs: Vec<ContactPair> = Vec::new();
@@ -113,7 +118,52 @@ pub fn contacts(
             mode: choice.mode(),
         });
     }
-    Ok((default.mode(), pairs))
+    Ok((default.mode(), pairs, own))
+}
+
+/// Contact of bodies with themselves.
+fn self_contact(
+    params: &ContactParams,
+    ratio: f64,
+    default: Choice,
+) -> Result<Option<SelfContact>, Complaint> {
+    let Some(given) = &params.self_contact else {
+        return Ok(None);
+    };
+    let folds = match given.get_ref() {
+        SelfContactParams::Is(false) => return Ok(None),
+        SelfContactParams::Is(true) => None,
+        SelfContactParams::With(table) => table.folds.as_ref(),
+    };
+    let modes = params.pair.iter().map(|pair| pair.mode);
+    if modes
+        .chain([Some(default.mode)])
+        .any(|mode| mode == Some(ModeName::Kernel))
+    {
+        let title = "self-contact knows no bodies that are joined by `kernel` contact";
+        return Err(Complaint::new(given.span(), title)
+            .help("take another mode for all pairs, or leave `self_contact` out"));
+    }
+    // No pair that begins within the support may be a fold.
+    let least = 2.0 * ratio;
+    let folds = match folds {
+        None => None,
+        Some(folds) => {
+            let spacings = number(Some(folds), "folds", 0.0, Allowed::Positive)?;
+            if spacings < least {
+                let title = format!("`folds` must be at least {least:.2} spacings, the support");
+                return Err(Complaint::new(folds.span(), title).label("out of range"));
+            }
+            Some(spacings)
+        }
+    };
+    Ok(Some(SelfContact {
+        overlap: Overlap {
+            resistance: default.resistance,
+            ..default.overlap
+        },
+        folds,
+    }))
 }
 
 /// A rigid body has no stress that could join the sums of another, and no sums that could tell its
