@@ -8,7 +8,8 @@
 mod physics_support;
 
 use physics_support::steps::{ANY, Factors, Outcome, SMALL, SOLID, growth_of_noise, plateau};
-use physics_support::{inline, ready};
+use physics_support::{inline, ready, start};
+use whipple::comm::Comm;
 
 /// Beyond the recommended factor by the margin of the rule.
 const MARGIN: f64 = 1.25;
@@ -90,5 +91,46 @@ fn an_elastic_impact_keeps_its_bounce_at_the_largest_factors() {
         let (off, what) = outcome.differs(&exact);
         assert!(off <= 0.005, "{what} off by {off}");
         assert_eq!(outcome.contact_limited, 0, "contact limited the step");
+    }
+}
+
+/// Blocks of a liquid whose sound is much slower than they are, with and without viscosity for
+/// shocks, in touch and apart: they meet, and no step makes energy.
+#[test]
+fn bodies_much_faster_than_sound_meet() {
+    for (speed, gap, beta) in [
+        (10, 0, 0.0),
+        (40, 0, 0.0),
+        (40, 7, 0.0),
+        (40, 7, 2.0),
+        (400, 7, 2.0),
+    ] {
+        let (lower, upper) = (10 + gap, 20 + gap);
+        let case = inline(&format!(
+            "dimension = 2\nspacing = \"1 mm\"\n[run]\nend_time = \"1 s\"\n\
+             [sph]\nbeta = {beta:?}\n[material.water]\nlibrary = \"water\"\n\
+             eos.tait.sound_speed = \"25 m/s\"\n[[body]]\nname = \"lower\"\n\
+             material = \"water\"\nshape.box = {{ lower = [0, 0], upper = [\"20 mm\", \"10 mm\"] }}\n\
+             [[body]]\nname = \"upper\"\nmaterial = \"water\"\n\
+             shape.box = {{ lower = [\"5 mm\", \"{lower} mm\"], upper = [\"15 mm\", \"{upper} mm\"] }}\n\
+             velocity = [0, \"-{} m/s\"]\n",
+            25 * speed
+        ));
+        let mut simulation = start(case);
+        let comm = Comm::solo();
+        // Until the back of the upper one would have reached the face of the lower one.
+        let end = f64::from(10 + gap) * 1e-3 / f64::from(25 * speed);
+        while simulation.state.time < end {
+            simulation.advance(&comm).unwrap();
+            simulation.diagnose(&comm);
+        }
+        let state = &simulation.state;
+        let given = state.pairs[0].impulse[1].abs() / state.initial.momentum[1].abs();
+        let error = state.worst.energy_error;
+        let closest = state.worst.closest.unwrap_or(f64::INFINITY);
+        let what = format!("{speed} c, gap {gap}, beta {beta}");
+        println!("{what}: impulse {given:.3}, closest {closest:.3}, energy error {error:.4}");
+        assert!(given > 0.0 && closest < 0.8, "{what}: not met");
+        assert!(error < 0.05, "{what}: energy error {error}");
     }
 }

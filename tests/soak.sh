@@ -32,25 +32,28 @@ case=(inputs/quarter-impact --set spacing=0.03mm --set trouble.density_max=1.25
 faults=(kill-rank term-rank usr1-rank usr1-mpirun term-mpirun kill-mpirun stop-file none)
 patience=120
 
-declare -A times codes slowest lost
+declare -A times codes waits lost
 legs=0 runs=0 most_ranks=5
 
 fail() { echo "soak: $*; seed $seed, leg $legs" >&2; table >&2; cp -r "$place" "${TMPDIR:-/tmp}/soak-failed.$$" || true; exit 1; }
 
 table() {
     echo
-    echo "| fault | times | exit codes of mpirun | all ended after, at most | steps lost, at most |"
+    echo "| fault | times | exit codes of mpirun | all ended after: median, at most | steps lost, at most |"
     echo "|---|---|---|---|---|"
     local fault
     for fault in "${faults[@]}"; do
         [ -n "${times[$fault]:-}" ] || continue
         echo "| $fault | ${times[$fault]} | $(tr ' ' '\n' <<<"${codes[$fault]}" | sort -nu | tr '\n' ' ')|" \
-            "${slowest[$fault]} ms | ${lost[$fault]} |"
+            "$(median "${waits[$fault]}"), $(largest "${waits[$fault]}") ms | ${lost[$fault]} |"
     done
     echo
     echo "$legs legs, $runs finished runs with the same bits, seed $seed"
 }
 
+sorted() { tr ' ' '\n' <<<"$1" | grep . | sort -n; }
+median() { sorted "$1" | sed -n "$((($(wc -w <<<"$1") + 1) / 2))p"; }
+largest() { sorted "$1" | tail -n 1; }
 now() { date +%s%3N; }
 last_step() { tail -n 1 "$run/history.csv" 2>/dev/null | grep -oE '^[0-9]+' || echo 0; }
 newest_checkpoint() {
@@ -62,7 +65,7 @@ newest_checkpoint() {
 
 # Ranks that live, by their number in the list of mpirun's children.
 ranks_of() { pgrep -P "$1" -x whipple || true; }
-random_rank() { ranks_of "$job" | sort -n | sed -n "$((RANDOM % ranks + 1))p"; }
+random_rank() { ranks_of "$job" | sort -n | sed -n "$(((RANDOM >> 5) % ranks + 1))p"; }
 send() { [ -z "$2" ] || kill -"$1" "$2" 2>/dev/null || true; }
 
 strike() {
@@ -106,9 +109,9 @@ wait_for_all() {
 leg() {
     local children wait_ms
     legs=$((legs + 1))
-    ranks=$((RANDOM % most_ranks + 1))
-    fault=${faults[RANDOM % ${#faults[@]}]}
-    wait_ms=$((RANDOM % 5000))
+    ranks=$(((RANDOM >> 5) % most_ranks + 1))
+    fault=${faults[(RANDOM >> 5) % ${#faults[@]}]}
+    wait_ms=$((RANDOM * 5000 / 32768))
     if [ "$(newest_checkpoint)" -gt 0 ]; then
         mpirun -n "$ranks" "$program" restart "$run" -t 1 </dev/null >"$place/out" 2>&1 &
     else
@@ -126,7 +129,7 @@ leg() {
     times[$fault]=$((${times[$fault]:-0} + 1))
     codes[$fault]="${codes[$fault]:-} $code"
     if [ "$fault" = none ]; then took=0; fi
-    if [ "$took" -gt "${slowest[$fault]:-0}" ] || [ -z "${slowest[$fault]:-}" ]; then slowest[$fault]=$took; fi
+    waits[$fault]="${waits[$fault]:-} $took"
     local gone=$(($(last_step) - $(newest_checkpoint)))
     if [ "$gone" -gt "${lost[$fault]:--1}" ]; then lost[$fault]=$gone; fi
     # A restart that cannot go on says so with 2; nothing here may cause that.

@@ -92,6 +92,9 @@ pub struct Simulation {
     pub(super) crossed: Vec<Vec<usize>>,
     pub(super) reference_h: Vec<f64>,
     pub(super) limits: Limits,
+    /// The time (s) in which bodies fly a smoothing length towards each other: in longer steps they
+    /// could pass each other before either is in the other's support.
+    pub(super) longest_flight: f64,
     /// The last votes, for post-mortems.
     pub(super) votes: VecDeque<PastVote>,
 }

@@ -18,22 +18,25 @@ pub enum Reason {
     Maximum,
     /// The end of the case.
     End,
+    /// The speed at which bodies fly towards each other.
+    Flight,
 }
 
 impl Reason {
     /// All reasons, in the order of ties.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Sound,
         Self::Force,
         Self::Contact,
         Self::Maximum,
         Self::End,
+        Self::Flight,
     ];
 
     /// Name in histories.
     #[must_use]
     pub fn name(self) -> &'static str {
-        ["sound", "force", "contact", "maximum", "end"][self as usize]
+        ["sound", "force", "contact", "maximum", "end", "flight"][self as usize]
     }
 }
 

@@ -53,6 +53,10 @@ impl Simulation {
             self.state.dt = self.case.time_step.max;
             self.state.dt_reason = Reason::Maximum;
         }
+        if self.longest_flight < self.state.dt {
+            self.state.dt = self.longest_flight;
+            self.state.dt_reason = Reason::Flight;
+        }
         if self.votes.len() == PAST_VOTES {
             self.votes.pop_front();
         }
@@ -246,12 +250,14 @@ impl Voter<'_> {
         by_sound & by_force & by_contact & inside & near
     }
 
-    /// Speed (m/s) of sound and viscosity for the step.
+    /// Speed (m/s) of sound and viscosity for the step: no less than that of the approach, however
+    /// little viscosity there is.
     #[inline(always)]
     fn signal(&self, i: usize) -> f64 {
         let (store, sph) = (self.store, &self.case.sph);
         let c = store.sound_speed[i];
-        let signal = c + 0.6 * (sph.alpha * c + sph.beta * store.approach_speed[i]);
+        let approach = store.approach_speed[i];
+        let signal = (c + 0.6 * (sph.alpha * c + sph.beta * approach)).max(approach);
         let correction = store.correction_norm.get(i).copied().unwrap_or_default();
         signal * (correction / SURFACE_CORRECTION).max(1.0)
     }
@@ -262,7 +268,7 @@ impl Voter<'_> {
         std::array::from_fn(|k| a[k] + self.gravity[k] + contact[k])
     }
 
-    /// Sound and viscosity (Monaghan 1989) `C h / (c + 0.6 (α c + β |μ|))`, acceleration
+    /// Sound and viscosity (Monaghan 1989) `C h / max(c + 0.6 (α c + β |μ|), |μ|)`, acceleration
     /// `C_f √(h/|a|)`, contact `2 f √(m/k)`; none by particles of rigid bodies. A correction that
     /// enlarges gradients more than those of plain surfaces do raises frequencies as much.
     #[cold]
