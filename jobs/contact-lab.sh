@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
-# Measures contact on small cases and writes the tables of the book's page on choosing a contact.
-# A few minutes on two cores.
+# Measures contact on small cases and writes the tables of the book's page on choosing a contact, and
+# its pictures. A quarter of an hour on two cores, half of it for sliding blocks.
 #
-#   jobs/contact-lab.sh [FOLDER]      FOLDER: of runs and table.md, target/contact-lab by default
+#   jobs/contact-lab.sh [FOLDER [PICTURES]]      FOLDER: of runs and table.md, target/contact-lab by
+#                                                default; PICTURES: docs/src/images by default
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source jobs/env.sh
 
 folder=${1:-target/contact-lab}
+pictures=${2:-docs/src/images}
 whipple=${WHIPPLE_PROGRAM:-target/release/whipple}
 mkdir -p "$folder"
 table=$folder/table.md
@@ -157,3 +159,25 @@ for mode in overlap potential penalty; do
     measure "quarter-impact at .05 mm, $mode" quarter-impact "contact.mode=$mode" \
         'spacing="0.05 mm"' 'run.end_time="0.1 us"'
 done
+
+# draw PICTURE CASE END [OVERRIDE…]: three modes side by side at END.
+draw() {
+    local picture=$1 case=$2 end=$3 set=() runs=$folder/$1 mode with=()
+    shift 3
+    for override; do set+=(--set "$override"); done
+    for mode in overlap potential penalty; do
+        "$whipple" run "inputs/$case" --out "$runs/$mode" --force --set contact.mode=$mode \
+            --set "run.end_time=\"$end\"" "${set[@]}" >"$runs.log" 2>&1
+        [ $mode = overlap ] || with+=(--with "$runs/$mode")
+    done
+    "$whipple" plot "$runs/overlap" --panels --index 1 "${with[@]}" --width 1200 --out "$pictures/$picture.png"
+}
+draw contact-turned contact-lab '0.12 us' "$on" \
+    'body.above.lattice={ kind = "cubic", angle = "30 deg" }'
+draw contact-seam contact-lab/seam.toml '0.1 us'
+"$whipple" run inputs/hertz-disc --out "$folder/hertz-disc" --force >"$folder/hertz-disc.log" 2>&1
+"$whipple" plot "$folder/hertz-disc" --field von_mises --width 760 --out "$pictures/hertz-disc.png"
+
+# Every mode on every problem.
+cargo test --locked --test validation_contacts -- --ignored --nocapture |
+    sed -nE '/^## /,/^test /{/^test /!p}' | tee -a "$table"
