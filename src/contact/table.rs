@@ -25,7 +25,7 @@ pub struct Pair {
     pub core_radius: f64,
     /// Whether forces act along the normals of the surfaces.
     pub along_normal: bool,
-    /// `overlap`: friction and damping.
+    /// `overlap`, `penalty`: friction and damping.
     pub resistance: PairResistance,
     /// `potential`: K (Pa/m^d).
     pub potential: f64,
@@ -124,6 +124,11 @@ impl ContactTable {
             for b in 0..n {
                 let (class, pair) = make_pair(case, &kernel, a, b);
                 pairs.push(pair);
+                if a == b && class != ContactClass::None {
+                    // Found among the own neighbours, not as of another group.
+                    foreign.class[a * n + a] = class;
+                    foreign.reach2[a * n + a] = 4.0 * pair.h * pair.h;
+                }
                 if groups[a] == groups[b] || class == ContactClass::None {
                     continue;
                 }
@@ -216,12 +221,13 @@ impl ContactTable {
         self.foreign.class.contains(&ContactClass::Penalty)
     }
 
-    /// The unordered pairs of bodies with contact beyond the SPH sums.
+    /// The unordered pairs of bodies with contact beyond the SPH sums; a body with itself where its
+    /// parts have contact.
     #[must_use]
     pub fn active_pairs(&self) -> Vec<[usize; 2]> {
         let n = self.foreign.bodies;
         (0..n)
-            .flat_map(|a| (a + 1..n).map(move |b| [a, b]))
+            .flat_map(|a| (a..n).map(move |b| [a, b]))
             .filter(|&[a, b]| self.foreign.class[a * n + b] != ContactClass::None)
             .collect()
     }
@@ -276,10 +282,18 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
         penalty: 0.0,
         pinball: false,
     };
-    if a == b || (body_a.rigid.is_some() && body_b.rigid.is_some()) {
+    if body_a.rigid.is_some() && body_b.rigid.is_some() {
         return (ContactClass::None, pair);
     }
-    match case.contact_between(a, b) {
+    let own = case
+        .self_contact
+        .map(|own| ContactMode::Overlap(own.overlap));
+    let mode = if a == b {
+        own.as_ref().unwrap_or(&ContactMode::None)
+    } else {
+        case.contact_between(a, b)
+    };
+    match mode {
         ContactMode::None | ContactMode::Kernel => (ContactClass::None, pair),
         ContactMode::Potential(potential) => {
             pair.potential = potential.stiffness * smaller / kernel.power(spacing);
@@ -295,6 +309,8 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
         ContactMode::Penalty(penalty) => {
             pair.penalty = penalty.stiffness * smaller;
             pair.pinball = penalty.law == PenaltyLaw::Pinball;
+            pair.resistance =
+                PairResistance::new(case, [body_a, body_b], spacing, &penalty.resistance);
             (ContactClass::Penalty, pair)
         }
         ContactMode::Overlap(overlap) => {

@@ -136,8 +136,16 @@ impl Mirrors {
         if code != 0 {
             store.position[i] = self.reflect_position(&store.position[i], code);
             store.velocity[i] = Self::reflect_vector(&store.velocity[i], code);
+            if let Some(start) = store.reference_position.get_mut(i) {
+                *start = self.reflect_position(start, code);
+            }
             store.predicted_velocity[i] = Self::reflect_vector(&store.predicted_velocity[i], code);
-            for field in [&mut store.slip, &mut store.slip_rate] {
+            for field in [
+                &mut store.slip,
+                &mut store.slip_rate,
+                &mut store.surface_slip,
+                &mut store.surface_slip_rate,
+            ] {
                 if let Some(slip) = field.get_mut(i) {
                     *slip = Self::reflect_vector(slip, code);
                 }
