@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
-# Measures contact on small cases and writes the tables of the book's page on choosing a contact.
-# A few minutes on two cores.
+# Measures contact on small cases and writes the tables of the book's page on choosing a contact, and
+# its pictures. A quarter of an hour on two cores, half of it for sliding blocks.
 #
-#   jobs/contact-lab.sh [FOLDER]      FOLDER: of runs and table.md, target/contact-lab by default
+#   jobs/contact-lab.sh [FOLDER [PICTURES]]      FOLDER: of runs and table.md, target/contact-lab by
+#                                                default; PICTURES: docs/src/images by default
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source jobs/env.sh
 
 folder=${1:-target/contact-lab}
+pictures=${2:-docs/src/images}
 whipple=${WHIPPLE_PROGRAM:-target/release/whipple}
 mkdir -p "$folder"
 table=$folder/table.md
@@ -61,6 +63,13 @@ heading() {
 
 # box LEFT BOTTOM RIGHT TOP in spacings, disc RADIUS
 box() { echo "shape={ box = { lower = [\"$1 spacing\", \"$2 spacing\"], upper = [\"$3 spacing\", \"$4 spacing\"] } }"; }
+# solid BODY LOWER… UPPER… in spacings
+solid() {
+    echo "body.$1.shape={ box = { lower = [\"$2 spacing\", \"$3 spacing\", \"$4 spacing\"], upper = [\"$5 spacing\", \"$6 spacing\", \"$7 spacing\"] } }"
+}
+plus() { awk -v a="$1" -v b="$2" 'BEGIN { print a + b }'; }
+# Its surface meets the corner of a cube on the diagonal.
+ball='body.below.shape={ sphere = { centre = ["-4.619 spacing", "-4.619 spacing", "-4.619 spacing"], radius = "8 spacing" } }'
 disc='body.above.shape={ sphere = { centre = [0, "6 spacing"], radius = "6 spacing" } }'
 on='body.above.touch={ body = "below", direction = "-y" }'
 
@@ -90,9 +99,42 @@ geometries() {
     [ ! -f "$seam" ] || measure "$mode: seam" contact-lab/seam.toml "$mode_is"
 }
 
+# The same in three dimensions.
+solids() {
+    local mode_is=contact.mode=$1 name=$1
+    try() { local what=$1; shift; measure "$name: $what, solid" contact-lab/solid.toml "$mode_is" "$@"; }
+    local one plate='body.below.lattice={ kind = "cubic", angle = "45 deg" }'
+    one() { solid above "$1" "$2" 0 "$(plus "$1" 1)" "$(plus "$2" 1)" 1; }
+    try 'one particle on a particle' "$(one 0 0)"
+    try 'one particle on a pore' "$(one 0.5 0.5)"
+    try 'one particle on a bridge' "$(one 0.5 0)"
+    try 'one on one' "$(one 0 0)" "$(solid below 0 0 -1 1 1 0)"
+    try 'one on one, aside' "$(one 0.25 0.1)" "$(solid below 0 0 -1 1 1 0)"
+    try 'corner on a sphere' "$ball" "$(solid above 0 0 0 6 6 6)" \
+        'body.above.velocity=["-4.0415 km/s", "-4.0415 km/s", "-4.0415 km/s"]'
+    try 'edge on edge' "$(solid below -8 -1 -8 8 1 0)" "$(solid above -1 -8 0 1 8 8)"
+    try 'sheet on sheet, edges' "$(solid below -8 0 -8 8 1 0)" "$(solid above 0 -8 0 1 8 8)"
+    try 'sheet on edge' "$(solid below -8 -1 -8 8 1 0)" "$(solid above -6 -6 0 6 6 1)"
+    try 'sheet on sheet' "$(solid below -8 -8 -1 8 8 0)" "$(solid above -6 -6 0 6 6 1)"
+    try 'sphere'
+    try 'sphere, 30°' 'body.above.velocity=["3.5 km/s", 0, "-6.062 km/s"]'
+    try 'sphere, 60°' 'body.above.velocity=["6.062 km/s", 0, "-3.5 km/s"]'
+    try 'sphere on a lattice at 45°' "$plate" 'body.above.touch={ body = "below", direction = "-z" }'
+    try 'sphere on tungsten' body.below.material=tungsten
+    try 'one particle on tungsten' body.below.material=tungsten "$(one 0 0)"
+    try 'one on one of tungsten' body.below.material=tungsten "$(one 0 0)" "$(solid below 0 0 -1 1 1 0)"
+    try 'tungsten on aluminium' body.above.material=tungsten
+    try 'copper on copper' 'material.aluminium={ library = "copper" }'
+    try 'one on one of copper' 'material.aluminium={ library = "copper" }' "$(one 0 0)" \
+        "$(solid below 0 0 -1 1 1 0)"
+    measure "$name: seam, solid" contact-lab/seam-solid.toml "$mode_is"
+}
+
 for mode in overlap potential penalty; do
     heading "Two bodies at 7 km/s, \`$mode\`"
     geometries "$mode"
+    heading "In three dimensions, \`$mode\`"
+    solids "$mode"
 done
 
 heading 'Stiffness, core and time step of `overlap`'
@@ -117,3 +159,25 @@ for mode in overlap potential penalty; do
     measure "quarter-impact at .05 mm, $mode" quarter-impact "contact.mode=$mode" \
         'spacing="0.05 mm"' 'run.end_time="0.1 us"'
 done
+
+# draw PICTURE CASE END [OVERRIDE…]: three modes side by side at END.
+draw() {
+    local picture=$1 case=$2 end=$3 set=() runs=$folder/$1 mode with=()
+    shift 3
+    for override; do set+=(--set "$override"); done
+    for mode in overlap potential penalty; do
+        "$whipple" run "inputs/$case" --out "$runs/$mode" --force --set contact.mode=$mode \
+            --set "run.end_time=\"$end\"" "${set[@]}" >"$runs.log" 2>&1
+        [ $mode = overlap ] || with+=(--with "$runs/$mode")
+    done
+    "$whipple" plot "$runs/overlap" --panels --index 1 "${with[@]}" --width 1200 --out "$pictures/$picture.png"
+}
+draw contact-turned contact-lab '0.12 us' "$on" \
+    'body.above.lattice={ kind = "cubic", angle = "30 deg" }'
+draw contact-seam contact-lab/seam.toml '0.1 us'
+"$whipple" run inputs/hertz-disc --out "$folder/hertz-disc" --force >"$folder/hertz-disc.log" 2>&1
+"$whipple" plot "$folder/hertz-disc" --field von_mises --width 760 --out "$pictures/hertz-disc.png"
+
+# Every mode on every problem.
+cargo test --locked --test validation_contacts -- --ignored --nocapture |
+    sed -nE '/^## /,/^test /{/^test /!p}' | tee -a "$table"

@@ -53,7 +53,9 @@ impl<'de> Deserialize<'de> for LatticeParams {
             type Value = LatticeParams;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("\"cubic\", \"hexagonal\" or a table with `kind` and `angle`")
+                f.write_str(
+                    "\"cubic\", \"hexagonal\", \"rings\" or a table with `kind` and `angle`",
+                )
             }
 
             fn visit_str<E: Error>(self, word: &str) -> Result<LatticeParams, E> {

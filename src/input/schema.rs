@@ -443,6 +443,8 @@ choices! {
         Cubic,
         /// Hexagonal close-packed.
         Hexagonal,
+        /// Concentric rings.
+        Rings,
     }
     /// How the SPH sums take gradients.
     SphFormName {

@@ -88,6 +88,9 @@ pub enum LatticeKind {
     Cubic,
     /// Hexagonal close-packed (triangular in two dimensions), stacked along z.
     Hexagonal,
+    /// Concentric rings about z, as wide apart as their particles; the outermost follows the outline of
+    /// a disc, a ring or a cylinder along z.
+    Rings,
 }
 
 /// A lattice of particles: its kind, spacing and orientation.
@@ -96,7 +99,7 @@ pub struct Lattice {
     /// Kind of stacking.
     pub kind: LatticeKind,
     /// Particle spacing Δp (m): the edge of the cube that holds one particle's volume, so that
-    /// a particle's volume is Δp^d for every kind.
+    /// a particle's volume is Δp^d for every kind (but for what rounding leaves of rings).
     pub spacing: f64,
     /// Turn of the lattice about the z axis through the shape's centre (rad).
     pub angle: f64,

@@ -1,5 +1,7 @@
 //! The bounding lattice of a body: where the site of a triple of indices lies.
 
+use std::f64::consts::FRAC_PI_2;
+
 use crate::model::{Body, LatticeKind, Shape};
 
 /// Nearest distance of a hexagonal close-packed lattice with one site in a unit volume, 2^(1/6).
@@ -76,8 +78,10 @@ pub(super) struct Stack {
     centre: [f64; 3],
     /// Cosine and sine of the turn about z.
     turn: [f64; 2],
-    /// Sites of a row, rows of a layer, layers.
+    /// Sites of a row (of the longest one), rows of a layer, layers.
     pub counts: [u64; 3],
+    /// Radius of the innermost ring (m).
+    innermost: f64,
     /// Their distances (m).
     pub pitch: [f64; 3],
     /// What the shape cuts out of the lattice.
@@ -100,6 +104,7 @@ impl Stack {
         let pitch = pitches(lattice.kind, dimension).map(|p| p * lattice.spacing);
         let mut counts = [1; 3];
         let mut flat = [f64::INFINITY; 3];
+        let mut innermost = 0.0;
         for a in 0..dimension {
             let is_filled = !round[a] && (lattice.angle == 0.0 || a == 2);
             counts[a] = if is_filled {
@@ -113,6 +118,12 @@ impl Stack {
                 2 * as_count((turned_half(half, turn, a) / pitch[a]).ceil() + 1.0)
             };
         }
+        if lattice.kind == LatticeKind::Rings {
+            let rings = ((radius - hole_squared.max(0.0).sqrt()) / lattice.spacing).round();
+            innermost = radius - (rings - 0.5) * lattice.spacing;
+            counts[0] = quarter(radius - 0.5 * lattice.spacing, lattice.spacing);
+            counts[1] = 4 * as_count(rings);
+        }
         Self {
             kind: lattice.kind,
             dimension,
@@ -120,6 +131,7 @@ impl Stack {
             centre,
             turn,
             counts,
+            innermost,
             pitch,
             inside: Inside {
                 flat,
@@ -133,6 +145,9 @@ impl Stack {
     /// Vector from the centre to a site (m).
     #[allow(clippy::cast_precision_loss)] // indices stay far below 2^52
     pub fn offset(&self, i: u64, j: u64, k: u64) -> [f64; 3] {
+        if self.kind == LatticeKind::Rings {
+            return self.on_ring(i, j, k);
+        }
         let along = |index: u64, axis: usize| {
             (index as f64 - 0.5 * (self.counts[axis] as f64 - 1.0)) * self.pitch[axis]
         };
@@ -149,14 +164,49 @@ impl Stack {
         ]
     }
 
+    /// Whether rows are quarters of rings: whole rows belong to the body.
+    pub fn has_rings(&self) -> bool {
+        self.kind == LatticeKind::Rings
+    }
+
+    /// [`Self::offset`] in rings: four rows, quarter after quarter, make one. Each is the mirror image
+    /// of the one before to the bit.
+    #[allow(clippy::cast_precision_loss)] // as above
+    fn on_ring(&self, i: u64, j: u64, k: u64) -> [f64; 3] {
+        let radius = self.innermost + (j / 4) as f64 * self.spacing;
+        let angle = FRAC_PI_2 * ((i as f64 + 0.5) / self.sites(j) as f64);
+        let [right, up] = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]][(j % 4) as usize];
+        let layer = (k as f64 - 0.5 * (self.counts[2] as f64 - 1.0)) * self.pitch[2];
+        [
+            right * (radius * libm::cos(angle)),
+            up * (radius * libm::sin(angle)),
+            layer,
+        ]
+    }
+
+    /// Sites of row `j`.
+    #[allow(clippy::cast_precision_loss)] // as above
+    pub fn sites(&self, j: u64) -> u64 {
+        if self.has_rings() {
+            quarter(self.innermost + (j / 4) as f64 * self.spacing, self.spacing)
+        } else {
+            self.counts[0]
+        }
+    }
+
     /// Position of a site (m).
     pub fn position(&self, i: u64, j: u64, k: u64) -> [f64; 3] {
         let o = self.offset(i, j, k);
         [0, 1, 2].map(|a| self.centre[a] + o[a])
     }
 
-    /// Step from a site to the next one of its row (m).
-    pub fn step(&self) -> [f64; 3] {
+    /// Step from a site to the next one of row `j` (m); of rings, the signs of each.
+    pub fn step(&self, j: u64) -> [f64; 3] {
+        if self.has_rings() {
+            let [right, up] =
+                [[-1.0, 1.0], [1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]][(j % 4) as usize];
+            return [right, up, 0.0];
+        }
         [
             self.turn[0] * self.pitch[0],
             self.turn[1] * self.pitch[0],
@@ -211,6 +261,11 @@ fn turned_half(half: [f64; 3], [c, s]: [f64; 2], axis: usize) -> f64 {
         1 => s.abs() * half[0] + c.abs() * half[1],
         _ => half[2],
     }
+}
+
+/// Particles of a quarter of a ring of `radius` (m), about one spacing apart.
+fn quarter(radius: f64, spacing: f64) -> u64 {
+    as_count((FRAC_PI_2 * radius / spacing).round()).max(1)
 }
 
 /// A rounded, non-negative number as a count; absurd ones saturate.

@@ -123,7 +123,8 @@ pub fn smallest_gap(
 ) -> f64 {
     let stack = Stack::new(body, dimension);
     // Along a row the distance from a plane is monotone, so its ends suffice.
-    let ends_suffice = matches!(surface.shape, SurfaceShape::Plane { .. });
+    let is_plane = matches!(surface.shape, SurfaceShape::Plane { .. });
+    let ends_suffice = is_plane && !stack.has_rings();
     row::rows(stack, symmetry, None)
         .flat_map(|row| {
             let stride = if ends_suffice {

@@ -59,7 +59,7 @@ impl Row {
     /// Drops the sites whose coordinate is too small.
     fn drop_below(&mut self, stack: &Stack, axis: usize, too_small: impl Fn(f64) -> bool) {
         let at = |i| stack.position(i, self.j, self.k)[axis];
-        if stack.step()[axis] >= 0.0 {
+        if stack.step(self.j)[axis] >= 0.0 {
             self.first = partition(self.range(), |i| too_small(at(i)));
         } else {
             self.end = partition(self.range(), |i| !too_small(at(i)));
@@ -69,7 +69,7 @@ impl Row {
     /// Drops the sites whose coordinate is too large.
     fn drop_above(&mut self, stack: &Stack, axis: usize, too_large: impl Fn(f64) -> bool) {
         let at = |i| stack.position(i, self.j, self.k)[axis];
-        if stack.step()[axis] >= 0.0 {
+        if stack.step(self.j)[axis] >= 0.0 {
             self.end = partition(self.range(), |i| !too_large(at(i)));
         } else {
             self.first = partition(self.range(), |i| too_large(at(i)));
@@ -80,6 +80,10 @@ impl Row {
 /// The runs of a whole row that lie in the shape, before and behind its hole.
 fn shape_runs(stack: &Stack, j: u64, k: u64) -> [Row; 2] {
     let inside = &stack.inside;
+    let row = |first, end| Row { j, k, first, end };
+    if stack.has_rings() {
+        return [row(0, stack.sites(j)), row(0, 0)];
+    }
     let line = Line {
         stack,
         j,
@@ -87,7 +91,6 @@ fn shape_runs(stack: &Stack, j: u64, k: u64) -> [Row; 2] {
         origin: stack.offset(0, j, k),
     };
     let shape = line.run(inside.flat, inside.radius_squared, |o| inside.contains(o));
-    let row = |first, end| Row { j, k, first, end };
     let mut runs = [row(shape.start, shape.end), row(shape.end, shape.end)];
     if inside.hole_squared > 0.0 {
         let hole = line.run([f64::INFINITY; 3], inside.hole_squared, |o| {
@@ -118,7 +121,7 @@ impl Line<'_> {
         radius_squared: f64,
         contains: impl Fn([f64; 3]) -> bool,
     ) -> Range<u64> {
-        let (stack, origin, step) = (self.stack, self.origin, self.stack.step());
+        let (stack, origin, step) = (self.stack, self.origin, self.stack.step(self.j));
         let round = &stack.inside.round;
         #[allow(clippy::cast_precision_loss)] // counts stay far below 2^52
         let (mut low, mut high) = (0.0_f64, stack.counts[0] as f64 - 1.0);

@@ -1,5 +1,7 @@
 //! Counts, symmetry, mass, slabs, touch.
 
+use std::f64::consts::PI;
+
 use proptest::prelude::*;
 
 use super::*;
@@ -235,6 +237,56 @@ fn a_quarter_is_exactly_its_part_of_the_whole() {
         let part =
             sites(&body, 3, &[], None).filter(|s| s.position[0] > 0.0 && s.position[1] > 0.0);
         assert_eq!(bits(part), bits(sites(&body, 3, &planes(), None)));
+    }
+}
+
+/// The outermost ring lies half a spacing inside, the innermost half a spacing outside of a hole; all
+/// mirror images are there, and any slabs add up.
+#[test]
+fn rings_follow_the_outline() {
+    for (shape, dimension, volume) in [
+        (ball(1.0), 2, PI),
+        (shell(1.0, 0.6), 2, 0.64 * PI),
+        (plate(Axis::Z), 3, 2.25 * PI * 0.2),
+    ] {
+        let body = body(shape, LatticeKind::Rings, 0.05, 0.0);
+        let sites = all(&body, dimension);
+        let [x, y] = if dimension == 3 {
+            [0.3, -0.2]
+        } else {
+            [0.0; 2]
+        };
+        let radius = |s: &Site| (s.position[0] - x).hypot(s.position[1] - y);
+        let outermost = sites.iter().map(radius).fold(0.0, f64::max);
+        assert!((outermost - if dimension == 3 { 1.475 } else { 0.975 }).abs() < 1e-12);
+        #[allow(clippy::cast_precision_loss)] // counts of thousands
+        let filled = sites.len() as f64 * particle_volume(&body, dimension);
+        assert!((filled / volume - 1.0).abs() < 5e-3, "{filled} of {volume}");
+        assert!(sites.iter().all(|s| s.index < index_end(&body, dimension)));
+        let mut whole = bits(sites.iter().copied());
+        whole.sort_unstable();
+        let mut parts: Vec<_> = [f64::NEG_INFINITY, -0.7, sites[7].position[0], f64::INFINITY]
+            .windows(2)
+            .map(|w| Slab {
+                axis: 0,
+                lower: w[0],
+                upper: w[1],
+            })
+            .flat_map(|slab| bits(super::sites(&body, dimension, &[], Some(slab))))
+            .collect();
+        parts.sort_unstable();
+        assert_eq!(parts, whole);
+        if dimension == 2 {
+            let places = |flip: f64| {
+                let flipped = sites.iter().map(|s| [s.position[0] * flip, s.position[1]]);
+                let mut places: Vec<_> = flipped.map(|p| p.map(f64::to_bits)).collect();
+                places.sort_unstable();
+                places
+            };
+            assert_eq!(places(1.0), places(-1.0));
+            let quarter = count(&body, 2, &planes(), None);
+            assert_eq!(4 * quarter, sites.len() as u64);
+        }
     }
 }
 

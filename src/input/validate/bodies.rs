@@ -11,7 +11,7 @@ use crate::input::quantity::{Length, Velocity};
 use crate::input::schema::{BodyParams, LatticeName, Placed};
 use crate::input::source::Complaint;
 use crate::material::{Eos, Linear, LinearForm, Material, Strength};
-use crate::model::{Body, Lattice, LatticeKind, Motion, SymmetryPlane, Vec3};
+use crate::model::{Axis, Body, Lattice, LatticeKind, Motion, Shape, SymmetryPlane, Vec3};
 use crate::populate;
 
 /// Bounding lattices beyond this are a slip in a unit rather than a body.
@@ -97,11 +97,13 @@ impl Reader<'_> {
             spacing,
         };
         let (velocity, rigid) = self.motion(params)?;
+        let shape = shapes.shape(&params.shape)?;
+        let lattice = self.lattice(params, spacing, &shape)?;
         Ok(Body {
             name: name.clone(),
-            shape: shapes.shape(&params.shape)?,
+            shape,
             material,
-            lattice: self.lattice(params, spacing)?,
+            lattice,
             velocity,
             rigid,
             density: optional(params.density.as_ref(), "density", Allowed::Positive)?,
@@ -160,7 +162,12 @@ impl Reader<'_> {
         Ok((start.into(), Some(motion)))
     }
 
-    fn lattice(&self, params: &BodyParams, spacing: f64) -> Result<Lattice, Complaint> {
+    fn lattice(
+        &self,
+        params: &BodyParams,
+        spacing: f64,
+        shape: &Shape,
+    ) -> Result<Lattice, Complaint> {
         let (kind, angle) = match &params.lattice {
             None => (LatticeKind::Cubic, 0.0),
             Some(lattice) => {
@@ -168,6 +175,7 @@ impl Reader<'_> {
                 let kind = match kind {
                     LatticeName::Cubic => LatticeKind::Cubic,
                     LatticeName::Hexagonal => LatticeKind::Hexagonal,
+                    LatticeName::Rings => LatticeKind::Rings,
                 };
                 (kind, number(angle.as_ref(), "angle", 0.0, Allowed::Any)?)
             }
@@ -178,6 +186,20 @@ impl Reader<'_> {
         {
             let title = "in one dimension particles stand in a row: `lattice` must be \"cubic\"";
             return Err(Complaint::new(lattice.span(), title));
+        }
+        if kind == LatticeKind::Rings
+            && let Some(lattice) = &params.lattice
+        {
+            let is_round = match shape {
+                Shape::Box { .. } => false,
+                Shape::Sphere { .. } | Shape::Shell { .. } => self.dimension == 2,
+                Shape::Cylinder { axis, .. } => *axis == Axis::Z,
+            };
+            if !is_round || angle != 0.0 {
+                let title = "a lattice of rings, which has no `angle`, fills discs and rings in two \
+                    dimensions and cylinders along z in three";
+                return Err(Complaint::new(lattice.span(), title));
+            }
         }
         Ok(Lattice {
             kind,
