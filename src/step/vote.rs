@@ -257,7 +257,9 @@ impl Voter<'_> {
         let (store, sph) = (self.store, &self.case.sph);
         let c = store.sound_speed[i];
         let approach = store.approach_speed[i];
-        let signal = (c + 0.6 * (sph.alpha * c + sph.beta * approach)).max(approach);
+        let signal = c + 0.6 * (sph.alpha * c + sph.beta * approach);
+        // Not `max`, which would hide what is no number.
+        let signal = if approach > signal { approach } else { signal };
         let correction = store.correction_norm.get(i).copied().unwrap_or_default();
         signal * (correction / SURFACE_CORRECTION).max(1.0)
     }
