@@ -137,9 +137,13 @@ impl Mirrors {
             store.position[i] = self.reflect_position(&store.position[i], code);
             store.velocity[i] = Self::reflect_vector(&store.velocity[i], code);
             store.predicted_velocity[i] = Self::reflect_vector(&store.predicted_velocity[i], code);
-            for field in [&mut store.slip, &mut store.slip_rate] {
-                if let Some(slip) = field.get_mut(i) {
-                    *slip = Self::reflect_vector(slip, code);
+            for field in [
+                &mut store.slip,
+                &mut store.slip_rate,
+                &mut store.drift_acceleration,
+            ] {
+                if let Some(vector) = field.get_mut(i) {
+                    *vector = Self::reflect_vector(vector, code);
                 }
             }
             store.deviatoric_stress[i] = Self::reflect_symmetric(&store.deviatoric_stress[i], code);

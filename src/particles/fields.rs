@@ -48,7 +48,7 @@ impl FieldKind {
 
 /// When a field is carried along: a set of the constants below.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct FieldUse(u16);
+pub struct FieldUse(u32);
 
 impl FieldUse {
     /// Read by a step before it is written: in checkpoints, and moved between ranks.
@@ -66,7 +66,7 @@ impl FieldUse {
     /// In snapshots on demand.
     pub const ON_DEMAND: Self = Self(64);
     /// Every field.
-    pub const ALL: Self = Self(u16::MAX);
+    pub const ALL: Self = Self(u32::MAX);
     /// Of contact: held only where bodies have contact beyond the SPH sums.
     pub const CONTACT: Self = Self(128);
     /// Held only with the Balsara switch.
@@ -83,8 +83,10 @@ impl FieldUse {
     pub const NORMALISED: Self = Self(16384);
     /// Held only with `penalty` contact.
     pub const PENALTY: Self = Self(32768);
+    /// Held only where stress points carry the stress.
+    pub const STRESS_POINTS: Self = Self(65536);
     /// Held only where the case has use for it.
-    pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024 | 2048 | 4096 | 16384 | 32768);
+    pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024 | 2048 | 4096 | 16384 | 32768 | 65536);
     /// In snapshots at all.
     pub const SNAPSHOT_OR_ON_DEMAND: Self = Self(32 | 64);
     /// What a rank sends with a particle that leaves it.
@@ -247,6 +249,10 @@ particle_fields! {
     sliding: Index, "", STATE | ON_DEMAND | FRICTION;
     /// Which loads and rigid bodies prescribe its velocity: a set of bits, in the input's order.
     load: Index, "", STATE | ON_DEMAND | LOADS;
+    /// Mass of the material whose stress a stress point carries; zero for velocity particles.
+    stress_mass: Scalar, "kg", STATE | HALO_MOTION | ON_DEMAND | STRESS_POINTS;
+    /// Acceleration of a stress point, which follows the velocity particles about it.
+    drift_acceleration: Vector, "m/s^2", STATE | ON_DEMAND | STRESS_POINTS;
     /// Velocity at the end of the step as predicted from the last accelerations.
     predicted_velocity: Vector, "m/s", MIGRATED | HALO_MOTION;
     /// Density at the end of the step as predicted from the last velocity gradient.
@@ -297,6 +303,11 @@ particle_fields! {
     gradient_shift: Vector, "1/m", HALO_STRESS | ON_DEMAND | NORMALISED;
     /// How much the correction enlarges gradients; 0 where it is ill-conditioned and left out.
     correction_norm: Scalar, "", ON_DEMAND | NORMALISED;
+    /// Force of a stress point on velocity particles by their distance from their weighted mean,
+    /// row-major.
+    stress_moment: Tensor, "N/m", HALO_STRESS | STRESS_POINTS;
+    /// Its product with the distance of that mean from the stress point.
+    stress_offset: Vector, "N", HALO_STRESS | STRESS_POINTS;
     /// Work of the last step, in neighbours of the pair sums, for the balance between ranks.
     work: Index, "", MIGRATED;
 }

@@ -12,3 +12,4 @@ pub mod momentum;
 pub mod normalised;
 pub mod options;
 pub mod principal;
+pub mod stress_points;

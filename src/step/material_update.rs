@@ -68,7 +68,7 @@ impl<'a> MaterialUpdate<'a> {
     #[inline(always)]
     pub(super) fn apply(&self, cluster: &Cluster, gradient: &[F64x8; 9], neighbours: usize) {
         if self.rigid[cluster.group] {
-            self.store_rigid(cluster);
+            self.store_free(cluster, 0);
             return;
         }
         let places = &cluster.receivers;
@@ -105,16 +105,18 @@ impl<'a> MaterialUpdate<'a> {
         }
     }
 
-    /// Particles of a rigid body have no stress; nobody reads their records.
+    /// Particles of a rigid body, or beside stress points, have no stress; nobody reads their
+    /// records.
     #[cold]
-    fn store_rigid(&self, cluster: &Cluster) {
+    pub(super) fn store_free(&self, cluster: &Cluster, neighbours: usize) {
+        let work = OWN_WORK + u32::try_from(neighbours).unwrap_or(u32::MAX / 2);
         for &place in &cluster.receivers[..cluster.lanes] {
             let i = self.images[place as usize].base();
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
             unsafe {
                 *self.pressure.slot(i) = 0.0;
                 *self.sound_speed.slot(i) = 0.0;
-                *self.work.slot(i) = OWN_WORK;
+                *self.work.slot(i) = work;
             }
         }
     }

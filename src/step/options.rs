@@ -81,6 +81,10 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> FieldUse {
         (FieldUse::CONDUCTION, sph.conduction > 0.0),
         (FieldUse::XSPH, sph.xsph > 0.0),
         (FieldUse::NORMALISED, sph.form == SphForm::Normalised),
+        (
+            FieldUse::STRESS_POINTS,
+            sph.form == SphForm::StressPoints,
+        ),
     ]
     .into_iter()
     .filter(|&(_, used)| !used)

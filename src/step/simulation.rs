@@ -9,6 +9,7 @@ use super::loads::LoadStep;
 use super::options::OptionPhase;
 use super::search::Search;
 use super::state::{Reason, RunState};
+use super::stress_points::StressPoints;
 use super::sums::StepSums;
 use super::surface_forces::SurfaceForces;
 use super::sweeps::Sweeps;
@@ -76,6 +77,7 @@ pub struct Simulation {
     pub(super) search: Search,
     pub(super) sweeps: Sweeps,
     pub(super) options: OptionPhase,
+    pub(super) stress_points: StressPoints,
     pub(super) contact_phase: ContactPhase,
     pub(super) loads: LoadStep,
     pub(super) surface_forces: SurfaceForces,
@@ -222,6 +224,7 @@ impl Simulation {
             + self.search.memory()
             + self.sweeps.memory()
             + self.options.memory()
+            + self.stress_points.memory()
             + self.contact_phase.memory()
             + self.loads.memory()
             + self.surface_forces.memory()
