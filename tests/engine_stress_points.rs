@@ -105,6 +105,8 @@ fn check_linear(comm: &Comm, dimension: usize, mirrors: &[Axis]) {
     for i in 0..s.store.owned() {
         s.store.velocity[i] = (field * Vec3::from(s.store.position[i])).into();
     }
+    // Nothing is known of velocities before.
+    s.state.last_dt = 1e30;
     let (mut gradient, mut velocity) = (0.0_f64, 0.0_f64);
     for _ in 0..12 {
         s.advance(comm).unwrap();
@@ -228,6 +230,7 @@ fn seen(form: SphForm, dimension: usize) -> f64 {
     }
     s.case.time_step.max = 1e-15;
     s.state.dt = 1e-15;
+    s.state.last_dt = 1e30;
     s.advance(&Comm::solo()).unwrap();
     let inside = |i: &usize| {
         let x = &s.store.position[*i];

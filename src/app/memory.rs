@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::comm::Comm;
 use crate::contact::ContactTable;
-use crate::model::{Axis, Case};
+use crate::model::{Axis, Case, SphForm};
 use crate::populate::{self, Slab};
 
 /// What a process takes with MPI and HDF5 before it has a particle (bytes). This and the figures
@@ -62,9 +62,14 @@ pub fn of_rank(case: &Case, ranks: usize) -> f64 {
 
 fn count(case: &Case, slab: Option<Slab>) -> u64 {
     let bodies = case.bodies.iter();
-    bodies
+    let particles: u64 = bodies
         .map(|body| populate::count(body, case.dimension, &case.symmetry, slab))
-        .sum()
+        .sum();
+    // As many stress points for each as there are axes, less some at surfaces.
+    match case.sph.form {
+        SphForm::StressPoints => particles * (1 + case.dimension as u64),
+        SphForm::Conventional | SphForm::Normalised => particles,
+    }
 }
 
 /// The axis of the slabs and the ends of the case on it (m).

@@ -147,6 +147,9 @@ impl Mirrors {
                 }
             }
             store.deviatoric_stress[i] = Self::reflect_symmetric(&store.deviatoric_stress[i], code);
+            if let Some(stress) = store.specific_stress.get_mut(i) {
+                *stress = Self::reflect_symmetric(stress, code);
+            }
             store.velocity_gradient[i] = Self::reflect_tensor(&store.velocity_gradient[i], code);
         }
         code

@@ -253,6 +253,8 @@ particle_fields! {
     stress_mass: Scalar, "kg", STATE | HALO_MOTION | ON_DEMAND | STRESS_POINTS;
     /// Acceleration of a stress point, which follows the velocity particles about it.
     drift_acceleration: Vector, "m/s^2", STATE | ON_DEMAND | STRESS_POINTS;
+    /// Stress of a stress point, that of viscosity included, over its density.
+    specific_stress: Symmetric, "J/kg", STATE | ON_DEMAND | STRESS_POINTS;
     /// Velocity at the end of the step as predicted from the last accelerations.
     predicted_velocity: Vector, "m/s", MIGRATED | HALO_MOTION;
     /// Density at the end of the step as predicted from the last velocity gradient.
@@ -303,6 +305,12 @@ particle_fields! {
     gradient_shift: Vector, "1/m", HALO_STRESS | ON_DEMAND | NORMALISED;
     /// How much the correction enlarges gradients; 0 where it is ill-conditioned and left out.
     correction_norm: Scalar, "", ON_DEMAND | NORMALISED;
+    /// Velocity gradient at a stress point at the predicted velocities.
+    predicted_gradient: Tensor, "1/s", STRESS_POINTS;
+    /// How steep the gradients at a stress point are: 1.4 in a cubic lattice at h = 1.3 Δp.
+    fit_norm: Scalar, "", ON_DEMAND | STRESS_POINTS;
+    /// What a stress point takes over of the energy of velocity particles, over the sum of weights.
+    stress_heat: Scalar, "J", HALO_STRESS | STRESS_POINTS;
     /// Force of a stress point on velocity particles by their distance from their weighted mean,
     /// row-major.
     stress_moment: Tensor, "N/m", HALO_STRESS | STRESS_POINTS;

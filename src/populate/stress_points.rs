@@ -22,8 +22,11 @@ pub struct StressSite {
     pub share: f64,
 }
 
-/// How near to half a pitch a particle must stand to a symmetry plane to be next to its image.
-const SAME: f64 = 1e-6;
+/// A particle is next to its image behind a symmetry plane if it stands between these parts of a
+/// pitch from it, along an axis of the lattice.
+const NEXT: [f64; 2] = [0.25, 0.75];
+/// Cosine of an angle that is none.
+const ALONG: f64 = 1.0 - 1e-6;
 
 /// What a particle has beside it on one side along one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -159,8 +162,8 @@ impl Grid {
             } else {
                 along[normal]
             };
-            let gap = x[normal] - plane.position;
-            if (down - 1.0).abs() < SAME && (2.0 * gap - pitch).abs() < SAME * pitch {
+            let gap = (x[normal] - plane.position) / pitch;
+            if down > ALONG && (NEXT[0]..NEXT[1]).contains(&gap) {
                 return Beside::Image(normal, plane.position);
             }
         }

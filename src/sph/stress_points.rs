@@ -13,15 +13,17 @@ use super::dispatch::Vectorised;
 use super::gradient::{MotionRecord, Separation, gather3, length, lengths, records};
 use super::kernel::{PairKernel, PairScale};
 use super::lanes::{F64x8, LANES, Lanes};
+use super::mid_step::product;
 use super::momentum::Viscosity;
 use super::principal::tensile_part;
 
-/// Determinants of `M` below this, over the third (second) power of its mean diagonal, are those of
-/// particles in a row or in a plane.
-const SMALLEST_DETERMINANT: f64 = 1e-10;
-/// Such an `M` gets so much of its trace along the diagonal: gradients along the row or the plane
-/// stay, less as much, and those across it are zero.
-const REGULAR: f64 = 1e-3;
+/// Fits of a larger [`Fit::norm`] are those of particles nearly in a row, in a plane or at one place.
+const LARGEST_NORM: f64 = 6.0;
+/// Their `M` gets so much of `h² Σ w` along the diagonal, about a third of what it has in a lattice:
+/// gradients along the row or the plane become less, those across it vanish.
+const REGULAR: f64 = 0.05;
+/// The norm over `h √(Σ |G|²)`.
+const NORM: f64 = 0.8;
 
 /// The weight `(W h^d/σ_d)⁴`: sharp, so that the next particles decide and alternating velocities
 /// are seen, yet as far as the kernel, so that no stretch of the body leaves a point without them.
@@ -39,6 +41,11 @@ pub struct Fit {
     pub inverse: [f64; 9],
     /// `x̄ − x_s` (m).
     pub offset: [f64; 3],
+    /// `Σ w`.
+    pub weight: f64,
+    /// `.8 h √(Σ |G_a|²)` with `L = Σ v_a ⊗ G_a`: 1.4 in a cubic lattice at h = 1.3 Δp. Frequencies
+    /// rise with it.
+    pub norm: f64,
     /// Whether the particles span the space.
     pub complete: bool,
 }
@@ -48,47 +55,69 @@ impl Fit {
     pub const NONE: Self = Self {
         inverse: [0.0; 9],
         offset: [0.0; 3],
+        weight: 0.0,
+        norm: 0.0,
         complete: false,
     };
 
-    /// From `M` (m²), components xx, yy, zz, xy, xz, yz, and `x̄ − x_s` (m).
+    /// From `M` and `Σ w² (x_a − x̄) ⊗ (x_a − x̄)` (m²), components xx, yy, zz, xy, xz, yz, `x̄ − x_s`
+    /// (m), `Σ w` and the smoothing length (m).
     #[inline(always)]
-    fn new(mut m: [f64; 6], offset: [f64; 3], dimension: usize) -> Self {
-        let mut trace = 0.0;
-        for a in 0..dimension {
-            trace += m[a];
-        }
-        let mean = trace / [1.0, 1.0, 2.0, 3.0][dimension];
-        for a in dimension..3 {
-            m[a] = mean;
-        }
-        let cube = mean * mean * mean;
-        let (mut adjugate, mut determinant) = adjugate(&m);
+    fn new(
+        mut m: [f64; 6],
+        squares: &[f64; 6],
+        offset: [f64; 3],
+        weight: f64,
+        h: f64,
+        dimension: usize,
+    ) -> Self {
+        let (mut inverse, mut norm) = invert(&m, squares, h, dimension);
         // Also false for what is no number.
-        let complete = determinant > SMALLEST_DETERMINANT * cube;
+        let complete = norm <= LARGEST_NORM;
         if !complete {
             for a in 0..3 {
-                m[a] += REGULAR * trace;
+                m[a] += REGULAR * (h * h * weight);
             }
-            (adjugate, determinant) = self::adjugate(&m);
+            (inverse, norm) = invert(&m, squares, h, dimension);
         }
-        if !(determinant > 0.0 && mean > 0.0) {
+        if !norm.is_finite() {
             return Self::NONE;
-        }
-        let scale = 1.0 / determinant;
-        let [xx, yy, zz, xy, xz, yz] = adjugate;
-        let mut inverse = [xx, xy, xz, xy, yy, yz, xz, yz, zz];
-        for value in &mut inverse {
-            *value *= scale;
-        }
-        for a in dimension..3 {
-            inverse[4 * a] = 0.0;
         }
         Self {
             inverse,
             offset,
+            weight,
+            norm,
             complete,
         }
+    }
+}
+
+/// `M⁻¹` (1/m², row-major) and the norm of its fit.
+#[inline(always)]
+fn invert(m: &[f64; 6], squares: &[f64; 6], h: f64, dimension: usize) -> ([f64; 9], f64) {
+    let mut m = *m;
+    for a in dimension..3 {
+        m[a] = m[0];
+    }
+    let (adjugate, determinant) = adjugate(&m);
+    let scale = 1.0 / determinant;
+    let [xx, yy, zz, xy, xz, yz] = adjugate;
+    let mut inverse = [xx, xy, xz, xy, yy, yz, xz, yz, zz];
+    for value in &mut inverse {
+        *value *= scale;
+    }
+    for a in dimension..3 {
+        inverse[4 * a] = 0.0;
+    }
+    let [xx, yy, zz, xy, xz, yz] = *squares;
+    let squares = [xx, xy, xz, xy, yy, yz, xz, yz, zz];
+    let all = product(&product(&inverse, &squares), &inverse);
+    let square = all[0] + all[4] + all[8];
+    if determinant > 0.0 {
+        (inverse, NORM * h * square.max(0.0).sqrt())
+    } else {
+        (inverse, f64::INFINITY)
     }
 }
 
@@ -147,7 +176,9 @@ impl<S: PairScale> Vectorised for LinearFit<'_, S> {
         let h_i = lengths::<V, S>(self.lengths, &self.receivers);
         let zero = V::splat(0.0);
         // Σ w, Σ w y, Σ w y ⊗ y, Σ w u, Σ w u ⊗ y with y = x_a − x_s, u = v_a less the last v_s.
+        // Of the first three also with w² in place of w.
         let (mut all, mut first, mut second) = (zero, [zero; 3], [zero; 6]);
+        let (mut all2, mut first2, mut second2) = (zero, [zero; 3], [zero; 6]);
         let (mut drift, mut product) = ([zero; 3], [zero; 9]);
         for &place in self.neighbours {
             let place = place as usize;
@@ -164,7 +195,11 @@ impl<S: PairScale> Vectorised for LinearFit<'_, S> {
                 zero.sub(r[2].mul(w)),
             ];
             all = all.add(w);
+            all2 = w.mul_add(w, all2);
+            let wwy = [wy[0].mul(w), wy[1].mul(w), wy[2].mul(w)];
             for a in 0..3 {
+                first2[a] = first2[a].add(wwy[a]);
+                second2[a] = r[a].neg_mul_add(wwy[a], second2[a]);
                 first[a] = first[a].add(wy[a]);
                 second[a] = r[a].neg_mul_add(wy[a], second[a]);
                 let u = V::splat(here.velocity[a]).sub(velocity[a]);
@@ -176,53 +211,85 @@ impl<S: PairScale> Vectorised for LinearFit<'_, S> {
             second[3] = r[0].neg_mul_add(wy[1], second[3]);
             second[4] = r[0].neg_mul_add(wy[2], second[4]);
             second[5] = r[1].neg_mul_add(wy[2], second[5]);
+            second2[3] = r[0].neg_mul_add(wwy[1], second2[3]);
+            second2[4] = r[0].neg_mul_add(wwy[2], second2[4]);
+            second2[5] = r[1].neg_mul_add(wwy[2], second2[5]);
         }
         let sums = Sums {
-            all: all.store(),
-            first: first.map(V::store),
-            second: second.map(V::store),
+            once: Moments {
+                all: all.store(),
+                first: first.map(V::store),
+                second: second.map(V::store),
+            },
+            twice: Moments {
+                all: all2.store(),
+                first: first2.map(V::store),
+                second: second2.map(V::store),
+            },
             drift: drift.map(V::store),
             product: product.map(V::store),
         };
-        sums.fit(&velocity.map(V::store), self.dimension)
+        let h = if S::VARIABLE {
+            h_i.store()
+        } else {
+            self.scale.kernel(zero, zero, 0.0).h.store()
+        };
+        sums.fit(&velocity.map(V::store), &h, self.dimension)
     }
 }
 
 /// The sums of eight stress points.
 struct Sums {
-    all: F64x8,
-    first: [F64x8; 3],
-    second: [F64x8; 6],
+    once: Moments,
+    twice: Moments,
     drift: [F64x8; 3],
     product: [F64x8; 9],
 }
 
+/// Sums of weights, and of these times y and y ⊗ y.
+struct Moments {
+    all: F64x8,
+    first: [F64x8; 3],
+    second: [F64x8; 6],
+}
+
+impl Moments {
+    /// `Σ w (y − d) ⊗ (y − d)` of lane `k`.
+    #[inline(always)]
+    fn about(&self, k: usize, d: &[f64; 3]) -> [f64; 6] {
+        let (all, f) = (self.all.0[k], |a: usize| self.first[a].0[k]);
+        let part = |c: usize, a: usize, b: usize| {
+            self.second[c].0[k] - f(a) * d[b] - d[a] * (f(b) - all * d[b])
+        };
+        [
+            part(0, 0, 0),
+            part(1, 1, 1),
+            part(2, 2, 2),
+            part(3, 0, 1),
+            part(4, 0, 2),
+            part(5, 1, 2),
+        ]
+    }
+}
+
 impl Sums {
     #[inline(always)]
-    fn fit(&self, velocity: &[F64x8; 3], dimension: usize) -> Fitted {
+    fn fit(&self, velocity: &[F64x8; 3], h: &F64x8, dimension: usize) -> Fitted {
         let mut fitted = Fitted {
             gradient: [F64x8([0.0; LANES]); 9],
             velocity: *velocity,
             fits: [Fit::NONE; LANES],
         };
         for k in 0..LANES {
-            let all = self.all.0[k];
+            let all = self.once.all.0[k];
             if !(all > 0.0) {
                 continue;
             }
             let per = 1.0 / all;
-            let first = [self.first[0].0[k], self.first[1].0[k], self.first[2].0[k]];
-            let d = [first[0] * per, first[1] * per, first[2] * per];
-            let s = |c: usize| self.second[c].0[k];
-            let m = [
-                s(0) - first[0] * d[0],
-                s(1) - first[1] * d[1],
-                s(2) - first[2] * d[2],
-                s(3) - first[0] * d[1],
-                s(4) - first[0] * d[2],
-                s(5) - first[1] * d[2],
-            ];
-            let fit = Fit::new(m, d, dimension);
+            let first = |a: usize| self.once.first[a].0[k] * per;
+            let d = [first(0), first(1), first(2)];
+            let (m, squares) = (self.once.about(k, &d), self.twice.about(k, &d));
+            let fit = Fit::new(m, &squares, d, all, h.0[k], dimension);
             let b = &fit.inverse;
             for a in 0..3 {
                 let drift = self.drift[a].0[k];
@@ -252,6 +319,8 @@ pub struct StressPointRecord {
     pub offset: [f64; 3],
     /// Density (kg/m³).
     pub density: f64,
+    /// Energy that it takes over from velocity particles, over the sum of weights (J).
+    pub heat: f64,
 }
 
 /// `Q` and `Q (x̄ − x_s)` from the stress `σ` (Pa; xx, yy, zz, xy, xz, yz), the volume (m^d) and the
@@ -301,6 +370,8 @@ pub struct Pulled {
     pub force: [F64x8; 3],
     /// `Σ w ρ_s/Σ w` (kg/m³); no number without stress points.
     pub density: F64x8,
+    /// Energy that stress points take over (J).
+    pub heat: F64x8,
 }
 
 impl<S: PairScale> Vectorised for Pull<'_, S> {
@@ -312,7 +383,7 @@ impl<S: PairScale> Vectorised for Pull<'_, S> {
         let position = gather3::<V, _>(&receivers, |record, a| record.position[a]);
         let h_i = lengths::<V, S>(self.lengths, &self.receivers);
         let zero = V::splat(0.0);
-        let (mut force, mut mass, mut all) = ([zero; 3], zero, zero);
+        let (mut force, mut mass, mut heat, mut all) = ([zero; 3], zero, zero, zero);
         for &place in self.neighbours {
             let place = place as usize;
             let (here, point) = (&self.sources[place], &self.points[place]);
@@ -329,11 +400,13 @@ impl<S: PairScale> Vectorised for Pull<'_, S> {
                 force[a] = pull.neg_mul_add(w, force[a]);
             }
             mass = V::splat(point.density).mul_add(w, mass);
+            heat = V::splat(point.heat).mul_add(w, heat);
             all = all.add(w);
         }
         Pulled {
             force: force.map(V::store),
             density: mass.div(all).store(),
+            heat: heat.store(),
         }
     }
 }

@@ -11,6 +11,7 @@ mod search;
 mod setup;
 mod simulation;
 mod state;
+mod stress_fit;
 mod stress_points;
 mod sums;
 mod surface_forces;

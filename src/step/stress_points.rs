@@ -1,26 +1,21 @@
-//! Stress points in the step: strain and stress at them in the first sweep, what they do to
-//! velocity particles in the second, and how they follow those.
-
-use std::sync::atomic::{AtomicI64, Ordering};
+//! Stress points in the step: their moments, what they do to velocity particles in the second sweep,
+//! and how they follow those. Their first sweep stands in `stress_fit`.
 
 use rayon::prelude::*;
 
-use super::material_update::MaterialUpdate;
 use super::search::GRAIN;
 use super::simulation::Simulation;
 use super::sweeps::{FromMirrors, Sweeps, with_scale};
 use crate::domain::Mirrors;
 use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Cluster, Image};
-use crate::particles::{ParticleStore, Scatter, resize};
+use crate::particles::{Scatter, resize};
 use crate::sph::dispatch::{Vectorised, instructions};
 use crate::sph::gradient::MotionRecord;
 use crate::sph::kernel::PairScale;
 use crate::sph::lanes::Lanes;
 use crate::sph::momentum::Viscosity;
 use crate::sph::normalised::stress_power;
-use crate::sph::stress_points::{
-    Fitted, LinearFit, Pull, Pulled, StressPointRecord, moment, viscous_stress,
-};
+use crate::sph::stress_points::{Pull, Pulled, StressPointRecord, moment, viscous_stress};
 
 /// The quadratic viscosity limits steps by three times the approach speed at a stress point: its
 /// rate is `4 (½ h)(α c + 2 β h E)/Δp²`, twice the mean by its slope, and grids alternate by
@@ -39,124 +34,6 @@ impl StressPoints {
     }
 }
 
-/// Fields of stress points, out of the store while the material is updated.
-struct Fields {
-    moment: Vec<[f64; 9]>,
-    offset: Vec<[f64; 3]>,
-    velocity: Vec<[f64; 3]>,
-    acceleration: Vec<[f64; 3]>,
-}
-
-impl Fields {
-    fn take(store: &mut ParticleStore) -> Self {
-        Self {
-            moment: std::mem::take(&mut store.stress_moment),
-            offset: std::mem::take(&mut store.stress_offset),
-            velocity: std::mem::take(&mut store.velocity),
-            acceleration: std::mem::take(&mut store.drift_acceleration),
-        }
-    }
-
-    fn give_back(self, store: &mut ParticleStore) {
-        store.stress_moment = self.moment;
-        store.stress_offset = self.offset;
-        store.velocity = self.velocity;
-        store.drift_acceleration = self.acceleration;
-    }
-
-    fn target(&mut self, dt: f64, gravity: [f64; 3]) -> FitTarget<'_> {
-        FitTarget {
-            moment: Scatter::new(&mut self.moment),
-            offset: Scatter::new(&mut self.offset),
-            velocity: Scatter::new(&mut self.velocity),
-            acceleration: Scatter::new(&mut self.acceleration),
-            incomplete: AtomicI64::new(0),
-            dt,
-            gravity,
-        }
-    }
-}
-
-/// Where the first sweep writes what it finds at stress points: velocities, and the geometry of
-/// fits in place of the moments that follow from it.
-struct FitTarget<'a> {
-    moment: Scatter<'a, [f64; 9]>,
-    offset: Scatter<'a, [f64; 3]>,
-    velocity: Scatter<'a, [f64; 3]>,
-    acceleration: Scatter<'a, [f64; 3]>,
-    incomplete: AtomicI64,
-    dt: f64,
-    gravity: [f64; 3],
-}
-
-impl FitTarget<'_> {
-    #[inline(always)]
-    fn store(&self, i: usize, k: usize, fitted: &Fitted) {
-        let fit = &fitted.fits[k];
-        if !fit.complete {
-            // same bits in any order: a count
-            self.incomplete.fetch_add(1, Ordering::Relaxed);
-        }
-        // SAFETY: particle `i` belongs to one cluster alone, and this thread has the cluster.
-        let (v, drift) = unsafe {
-            *self.moment.slot(i) = fit.inverse;
-            *self.offset.slot(i) = fit.offset;
-            (self.velocity.slot(i), self.acceleration.slot(i))
-        };
-        for a in 0..3 {
-            // Half kicks know gravity alone, as long as the other half is to come.
-            let pull = 0.5 * self.dt * self.gravity[a];
-            let after = fitted.velocity[a].0[k];
-            if self.dt > 0.0 {
-                drift[a] = (after - (v[a] - pull)) / self.dt;
-            }
-            v[a] = after - pull;
-        }
-    }
-}
-
-/// The first sweep over one task's clusters.
-struct FitChunk<'a, S> {
-    chunk: &'a Chunk,
-    sources: &'a [MotionRecord],
-    lengths: &'a [f64],
-    scale: S,
-    dimension: usize,
-    body_groups: usize,
-    images: &'a [Image],
-    update: &'a MaterialUpdate<'a>,
-    target: &'a FitTarget<'a>,
-}
-
-impl<S: PairScale> Vectorised for FitChunk<'_, S> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<V: Lanes>(self) {
-        for (cluster, neighbours, _) in self.chunk.iter() {
-            if cluster.group < self.body_groups {
-                self.update.store_free(cluster, neighbours.len());
-                continue;
-            }
-            let sums = LinearFit {
-                sources: self.sources,
-                lengths: self.lengths,
-                receivers: cluster.receivers,
-                neighbours,
-                scale: self.scale,
-                dimension: self.dimension,
-            };
-            let fitted = sums.run::<V>();
-            for k in 0..cluster.lanes {
-                let i = self.images[cluster.receivers[k] as usize].base();
-                self.target.store(i, k, &fitted);
-            }
-            self.update
-                .apply(cluster, &fitted.gradient, neighbours.len());
-        }
-    }
-}
-
 /// What the second sweep reads.
 #[derive(Clone, Copy)]
 struct PullSources<'a> {
@@ -172,6 +49,7 @@ struct PullTarget<'a> {
     mass: &'a [f64],
     acceleration: Scatter<'a, [f64; 3]>,
     density: Scatter<'a, f64>,
+    energy: Scatter<'a, f64>,
     power: Scatter<'a, f64>,
     approach: Scatter<'a, f64>,
 }
@@ -186,6 +64,7 @@ impl PullTarget<'_> {
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
             unsafe {
                 *self.acceleration.slot(i) = [f(0), f(1), f(2)];
+                *self.energy.slot(i) -= per_mass * pulled.heat.0[k];
                 *self.power.slot(i) = 0.0;
                 *self.approach.slot(i) = 0.0;
                 if pulled.density.0[k] > 0.0 {
@@ -265,39 +144,9 @@ impl<S: PairScale> PullChunk<'_, S> {
 }
 
 impl Simulation {
-    /// First sweep: velocities and strain rates at stress points, material and moments there.
-    pub(super) fn strain_stress_points(&mut self, dt: f64) {
-        let set = instructions();
-        let mut fields = Fields::take(&mut self.store);
-        let update = &MaterialUpdate::new(
-            &mut self.store,
-            &mut self.sweeps.stresses,
-            self.search.sequence.images(),
-            &self.case.materials,
-            &self.sweeps.material_of_body,
-            &self.contact.rigid,
-            dt,
-        );
-        let target = &fields.target(dt, self.loads.gravity);
-        let sources = &self.search.motion[..];
-        let lengths = self.search.sequence.smoothing_lengths();
-        let images = self.search.sequence.images();
-        let (dimension, body_groups) = (self.case.dimension, self.contact.body_groups);
-        let chunks = self.search.clusters.chunks().par_iter();
-        let chunks = chunks.with_max_len(CHUNKS_AT_ONCE);
-        with_scale!(self.sweeps.scale, scale => chunks.for_each(|chunk| {
-            set.run(FitChunk {
-                chunk, sources, lengths, scale, dimension, body_groups, images, update, target,
-            });
-        }));
-        self.sums.uncorrected = target.incomplete.load(Ordering::Relaxed);
-        fields.give_back(&mut self.store);
-        self.find_moments();
-    }
-
     /// Moments of this rank's stress points from their stress, that of viscosity included, and
     /// their power.
-    fn find_moments(&mut self) {
+    pub(super) fn find_moments(&mut self) {
         let viscosity = self.sweeps.viscosity;
         let store = &mut self.store;
         let owned = store.owned();
@@ -307,7 +156,7 @@ impl Simulation {
             density: &store.density,
             pressure: &store.pressure,
             deviatoric_stress: &store.deviatoric_stress,
-            velocity_gradient: &store.velocity_gradient,
+            predicted_gradient: &store.predicted_gradient,
             sound_speed: &store.sound_speed,
             smoothing_length: &store.smoothing_length,
             viscosity,
@@ -315,17 +164,19 @@ impl Simulation {
         (
             &mut store.stress_moment[..owned],
             &mut store.stress_offset[..owned],
+            &mut store.specific_stress,
             &mut store.d_specific_energy_dt,
             &mut store.approach_speed,
+            &mut store.fit_norm,
         )
             .into_par_iter()
             .with_min_len(GRAIN)
             .enumerate()
-            .for_each(|(i, (moment, offset, power, approach))| {
+            .for_each(|(i, (moment, offset, specific, power, approach, norm))| {
                 if point.stress_mass[i] > 0.0 {
-                    (*power, *approach) = point.stress(i, moment, offset);
+                    (*power, *approach) = point.stress(i, moment, offset, specific);
                 } else {
-                    (*moment, *offset) = ([0.0; 9], [0.0; 3]);
+                    (*moment, *offset, *norm) = ([0.0; 9], [0.0; 3], 0.0);
                 }
             });
     }
@@ -349,6 +200,7 @@ impl Simulation {
             mass: &store.mass,
             acceleration: Scatter::new(&mut store.acceleration),
             density: Scatter::new(&mut store.density),
+            energy: Scatter::new(&mut store.specific_energy),
             power: Scatter::new(&mut store.d_specific_energy_dt),
             approach: Scatter::new(&mut store.approach_speed),
         };
@@ -386,6 +238,7 @@ impl Simulation {
                     moment: Mirrors::reflect_tensor(&store.stress_moment[i], code),
                     offset: Mirrors::reflect_vector(&store.stress_offset[i], code),
                     density: store.density[i],
+                    heat: store.stress_heat[i],
                 };
             }
         });
@@ -420,7 +273,7 @@ struct PointView<'a> {
     density: &'a [f64],
     pressure: &'a [f64],
     deviatoric_stress: &'a [[f64; 6]],
-    velocity_gradient: &'a [[f64; 9]],
+    predicted_gradient: &'a [[f64; 9]],
     sound_speed: &'a [f64],
     smoothing_length: &'a [f64],
     viscosity: Viscosity,
@@ -430,8 +283,14 @@ impl PointView<'_> {
     /// Turns the geometry of the fit of point `i` into its moment; gives its power (W/kg) and the
     /// approach speed for the time step (m/s).
     #[inline]
-    fn stress(&self, i: usize, inverse: &mut [f64; 9], offset: &mut [f64; 3]) -> (f64, f64) {
-        let l = &self.velocity_gradient[i];
+    fn stress(
+        &self,
+        i: usize,
+        inverse: &mut [f64; 9],
+        offset: &mut [f64; 3],
+        specific: &mut [f64; 6],
+    ) -> (f64, f64) {
+        let l = &self.predicted_gradient[i];
         let (mut total, approach) = viscous_stress(
             l,
             self.density[i],
@@ -447,6 +306,9 @@ impl PointView<'_> {
         let power = stress_power(pressure, &total, l, density);
         for a in 0..3 {
             total[a] -= pressure;
+        }
+        for c in 0..6 {
+            specific[c] = total[c] / density;
         }
         let volume = self.stress_mass[i] / density;
         (*inverse, *offset) = moment(&total, volume, inverse, offset);

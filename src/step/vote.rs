@@ -162,7 +162,8 @@ impl Voter<'_> {
         let (store, case) = (self.store, self.case);
         let (h, c) = (store.smoothing_length[i], store.sound_speed[i]);
         let signal = c + 0.6 * (case.sph.alpha * c + case.sph.beta * store.approach_speed[i]);
-        let correction = store.correction_norm.get(i).copied().unwrap_or_default();
+        let correction = store.correction_norm.get(i).or(store.fit_norm.get(i));
+        let correction = correction.copied().unwrap_or_default();
         let signal = signal * (correction / SURFACE_CORRECTION).max(1.0);
         let sound = case.time_step.courant * h / signal;
         let mut total = store.acceleration[i];
