@@ -4,7 +4,7 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help deps test-deps release impact test run-tests check validation fuzz pictures contact-lab bench bench-kernels docs clean
+.PHONY: help deps test-deps release impact test run-tests check validation fuzz soak pictures contact-lab bench bench-kernels docs clean
 
 # The environment of every build and launch: Open MPI's settings, HDF5_DIR.
 ENV := source jobs/env.sh;
@@ -30,6 +30,9 @@ check: test-deps
 
 fuzz: test-deps ## Read random inputs and checkpoints for ten minutes each; new ones stay in tests/fuzz/
 	$(ENV) WHIPPLE_FUZZ_SECONDS=600 cargo test --locked --test fuzz -- --nocapture --test-threads=1
+
+soak: release ## Kill, stop and restart a run at random for MINUTES=30, with SEED=1; the bits must stay
+	tests/soak.sh -m $(or $(MINUTES),30) -s $(or $(SEED),1)
 
 validation: test-deps $(VENV)/ready ## Run the slow physics tests and draw the pictures
 	$(ENV) jobs/cargo-test.sh --ignored

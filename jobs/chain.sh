@@ -5,6 +5,7 @@
 #SBATCH --cpus-per-task=8
 #SBATCH --time=04:00:00
 #SBATCH --signal=B:USR1@120
+#SBATCH --ignore-pbs
 #PBS -N whipple
 #PBS -l select=1:ncpus=32:mpiprocs=4:ompthreads=8
 #PBS -l walltime=04:00:00
@@ -16,8 +17,9 @@
 #   qsub -v WHIPPLE_ARGS="CASE RUN …" jobs/chain.sh
 #
 # A leg ends softly when the scheduler's time is nearly up (USR1) or at --walltime; the chain then
-# goes on. Ctrl-C, TERM, scancel and a file RUN/stop end the leg softly and the chain with it (75).
-# A run that failed, or a leg without a new checkpoint, ends it too: going on would repeat it.
+# goes on. Ctrl-C, TERM (scancel --batch --signal=TERM JOB) and a file RUN/stop end the leg softly
+# and the chain with it (75). A plain scancel signals mpirun too, which kills its ranks. A run that
+# failed, or a leg without a new checkpoint, ends the chain as well: going on would repeat it.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -38,12 +40,51 @@ if [ $# -lt 2 ]; then sed -n '/^#   jobs/s/^#  //p' "$root/jobs/chain.sh" >&2; e
 case=$1 run=$2
 shift 2
 
+# What this job was given, beyond the headers above, the next one is to have too.
+same_job=()
+if [ -n "${SLURM_JOB_ID:-}" ]; then
+    same_job=(--job-name="$SLURM_JOB_NAME" --partition="$SLURM_JOB_PARTITION"
+        --nodes="$SLURM_JOB_NUM_NODES" --ntasks="$SLURM_NTASKS"
+        --time="$(squeue --noheader --jobs="$SLURM_JOB_ID" --format=%l)")
+    # One that was not asked for has no variable.
+    while read -r option value; do
+        [ -z "$value" ] || same_job+=("--$option=$value")
+    done <<END
+ntasks-per-node ${SLURM_NTASKS_PER_NODE:-}
+cpus-per-task ${SLURM_CPUS_PER_TASK:-}
+account ${SLURM_JOB_ACCOUNT:-}
+qos ${SLURM_JOB_QOS:-}
+mem ${SLURM_MEM_PER_NODE:-}
+mem-per-cpu ${SLURM_MEM_PER_CPU:-}
+END
+fi
+
 # finished, stopped or failed; nothing before the first leg, and after the machine went down.
 status() { grep -oEsm1 '"(finished|stopped|failed)"' "$run/status.json" | tr -d '"' || true; }
 # By name, which is the step; one that is being written is called *.partial.
 newest_checkpoint() {
     { compgen -G "$run/checkpoints/step-*[0-9]" || true; } | sort | tail -n 1
 }
+
+# Of the options, those that a restart takes: what else was set is in the checkpoint.
+first=("$@")
+again=()
+while [ $# -gt 0 ]; do
+    option=$1
+    case $option in
+        -s | --set)
+            option="--set=${2:-}"
+            shift
+            ;;
+        -s*) option="--set=${option#-s}" ;;
+    esac
+    shift
+    case $option in
+        --set=run.* | --set=output.* | --set=domain.* | --set=trouble.*) again+=("$option") ;;
+        --set=*) ;;
+        *) again+=("$option") ;;
+    esac
+done
 
 # Runs a leg and passes signals on to it; `caught` is the last one.
 leg=''
@@ -65,12 +106,12 @@ run_leg() {
 while [ "$(status)" != finished ]; do
     checkpoint=$(newest_checkpoint)
     if [ -n "$checkpoint" ]; then
-        run_leg restart "$run" "$@"
+        run_leg restart "$run" "${again[@]}"
     elif [ -e "$run/status.json" ]; then
         echo "$run has no checkpoint to restart from; remove it to start anew" >&2
         exit 1
     else
-        run_leg "$case" --out "$run" "$@"
+        run_leg "$case" --out "$run" "${first[@]}"
     fi
     [ "$code" = 0 ] || [ "$code" = 75 ] || exit "$code"
     [ "$(status)" != failed ] || exit 1
@@ -81,7 +122,7 @@ while [ "$(status)" != finished ]; do
         exit 1
     fi
     if [ -n "${SLURM_JOB_ID:-}" ]; then
-        exec sbatch "$root/jobs/chain.sh" "${arguments[@]}"
+        exec sbatch "${same_job[@]}" "$root/jobs/chain.sh" "${arguments[@]}"
     elif [ -n "${PBS_JOBID:-}" ]; then
         exec qsub -v WHIPPLE_ARGS="${arguments[*]}" "$root/jobs/chain.sh"
     fi

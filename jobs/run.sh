@@ -5,6 +5,7 @@
 #SBATCH --cpus-per-task=8
 #SBATCH --time=04:00:00
 #SBATCH --signal=B:USR1@120
+#SBATCH --ignore-pbs
 #PBS -N whipple
 #PBS -l select=1:ncpus=32:mpiprocs=4:ompthreads=8
 #PBS -l walltime=04:00:00

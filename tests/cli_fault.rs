@@ -23,7 +23,9 @@ fn only_line(ended: &Ended) -> &str {
     assert!(ended.took < SECONDS, "{ended:#?}");
     // Open MPI's own file layer may add a line of its own when a disk is full: it prints one if
     // the system refuses a write, and none if it takes a part of it first.
-    let open_mpi = |line: &&str| line.starts_with("mca_fbtl_posix_pwritev: ");
+    // mpirun's event loop may warn of a pipe that an abort has closed.
+    let ignored = ["mca_fbtl_posix_pwritev: ", "[warn] Epoll "];
+    let open_mpi = |line: &&str| ignored.iter().any(|begin| line.starts_with(begin));
     let mut lines = ended.stderr.lines().filter(|line| !open_mpi(line));
     let line = lines.next().unwrap_or_else(|| panic!("{ended:#?}"));
     assert_eq!(lines.next(), None, "{ended:#?}");
@@ -123,14 +125,10 @@ fn a_disk_full_for_one_rank_ends_all_with_one_message() {
     for rank in [0, 1] {
         let run = place.path().join(format!("{rank}"));
         let mut command = faulty_run(3, &run, &format!("full:{rank}:40"));
-        let ended = end(&mut command);
-        // HDF5 may crash when it cannot even write its records: after the verdict, on a file that
-        // has no final name.
-        assert!(!matches!(ended.code, Some(0 | 75)), "{ended:#?}");
-        assert!(ended.took < SECONDS, "{ended:#?}");
-        let told = ended.complaints("error: ");
-        assert_eq!(told.len(), 1, "{ended:#?}");
-        assert!(told[0].starts_with("error: cannot "), "{ended:#?}");
+        let ended = end(&mut command).with_code(1);
+        let line = only_line(&ended);
+        assert!(line.starts_with("error: cannot "), "{line}");
+        assert_eq!(status(&run).0, "failed");
         eprintln!(
             "full:{rank}: all ended after {:.1} s",
             ended.took.as_secs_f64()

@@ -11,15 +11,14 @@ use cli_support::{assert_same, coarse_run, end, json, ranks, status};
 /// The shock compresses the metal by half: whatever is compressed by more than a quarter is out of
 /// range here, beside the faces of slabs and symmetry planes too.
 fn removing(number: usize, folder: &Path) -> Command {
+    taking_out("remove", number, folder)
+}
+
+fn taking_out(policy: &str, number: usize, folder: &Path) -> Command {
     let mut command = coarse_run(number, folder);
     command.args(["--set", "trouble.density_max=1.25"]);
-    command.args([
-        "--set",
-        "trouble.policy=remove",
-        "--poison",
-        "--threads",
-        "1",
-    ]);
+    command.args(["--set", &format!("trouble.policy={policy}")]);
+    command.args(["--poison", "--threads", "1"]);
     command
 }
 
@@ -65,10 +64,15 @@ fn removed_particles_are_booked_with_the_same_bits_on_any_ranks_and_through_a_re
     let at = |name: &str| place.path().join(name);
     let one = at("1");
     end(&mut removing(1, &one)).with_code(0);
-    for number in 2..=5 {
+    // Slabs along the impact have faces where bodies touch.
+    for (number, axis) in [(2, "z"), (3, "x"), (4, "z"), (5, "y")] {
         let other = at(&number.to_string());
-        end(&mut removing(number, &other)).with_code(0);
+        let axis = format!("domain.axis={axis}");
+        end(removing(number, &other).args(["--set", &axis])).with_code(0);
         assert_same(&one, &other);
+        let seen = seen_by_another_rank(&other);
+        eprintln!("{number} ranks: halo particles removed: {seen}");
+        assert!(seen, "{number} ranks");
     }
     let stopped = at("stopped");
     end(removing(3, &stopped).args(["--until", "0.03us"])).with_code(0);
@@ -103,4 +107,87 @@ fn removed_particles_are_booked_with_the_same_bits_on_any_ranks_and_through_a_re
         figure("contact_defect"),
         summary["momentum_error"]
     );
+}
+
+/// Whether a particle that was removed had a neighbour within the support on another rank, and so
+/// was a halo particle there.
+fn seen_by_another_rank(run: &Path) -> bool {
+    let texts = std::fs::read_dir(run.join("trouble")).unwrap();
+    let texts = texts.map(|entry| entry.unwrap().path());
+    let mut texts = texts.filter(|path| path.extension().is_some_and(|e| e == "txt"));
+    texts.any(|path| {
+        let text = std::fs::read_to_string(path).unwrap();
+        text.lines().any(|line| {
+            let distance = line.split(' ').nth(2).and_then(|r| r.parse::<f64>().ok());
+            line.ends_with(" false") && distance.is_some_and(|r| r < 2.6)
+        })
+    })
+}
+
+/// The last snapshot of a run: its particles, how many of them are frozen, and whether these rest.
+fn frozen_in_last_snapshot(run: &Path) -> (usize, usize) {
+    let mut files: Vec<_> = std::fs::read_dir(run.join("snapshots"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|e| e == "vtkhdf"))
+        .collect();
+    files.sort();
+    let file = hdf5::File::open(files.last().unwrap()).unwrap();
+    let field = |name: &str| file.dataset(&format!("/VTKHDF/PointData/{name}")).unwrap();
+    let frozen: Vec<u32> = field("frozen").read_raw().unwrap();
+    let velocity: Vec<f64> = field("velocity").read_raw().unwrap();
+    let pressure: Vec<f64> = field("pressure").read_raw().unwrap();
+    for (i, _) in frozen.iter().enumerate().filter(|&(_, &f)| f == 1) {
+        assert_eq!(
+            (&velocity[3 * i..3 * i + 3], pressure[i]),
+            (&[0.0; 3][..], 0.0)
+        );
+    }
+    (frozen.len(), frozen.iter().filter(|&&f| f == 1).count())
+}
+
+#[test]
+fn frozen_particles_stay_in_files_and_all_else_is_as_without_them() {
+    let place = tempfile::tempdir().unwrap();
+    let at = |name: &str| place.path().join(name);
+    let (removed, one) = (at("removed"), at("1"));
+    end(&mut removing(1, &removed)).with_code(0);
+    end(&mut taking_out("freeze", 1, &one)).with_code(0);
+    for table in ["history.csv", "contacts.csv", "removed.csv"] {
+        let text = |run: &Path| std::fs::read(run.join(table)).unwrap();
+        assert!(text(&removed) == text(&one), "{table} differs");
+    }
+    let [removed, frozen] = [&removed, &one].map(|run| json(&run.join("summary.json")));
+    assert_eq!(removed["removed_particles"], frozen["frozen_particles"]);
+    assert_eq!(removed["particles"], frozen["particles"]);
+    assert_eq!(frozen["removed_particles"], 0);
+    let (all, still) = frozen_in_last_snapshot(&one);
+    assert_eq!(all, 3056);
+    assert_eq!(frozen["frozen_particles"], still);
+
+    for number in [2, 5] {
+        let other = at(&number.to_string());
+        end(&mut taking_out("freeze", number, &other)).with_code(0);
+        assert_same(&one, &other);
+    }
+    let stopped = at("stopped");
+    let until = ["--until", "0.03us"];
+    end(taking_out("freeze", 3, &stopped).args(until)).with_code(0);
+    let (_, earlier) = frozen_in_last_snapshot(&stopped);
+    assert_eq!(earlier, 0, "the only snapshot is that of the start");
+    end(ranks(2).arg("restart").arg(&stopped).arg("--poison")).with_code(0);
+    assert_same(&one, &stopped);
+
+    // Whatever is decided about later ones, those that are frozen stay so.
+    let changed = at("changed");
+    end(taking_out("freeze", 3, &changed).args(until)).with_code(0);
+    let mut again = ranks(2);
+    again
+        .arg("restart")
+        .arg(&changed)
+        .args(["--set", "trouble.policy=remove"]);
+    end(&mut again).with_code(0);
+    let (all, kept) = frozen_in_last_snapshot(&changed);
+    assert!(0 < kept && kept < still, "{kept} of {still}");
+    assert_eq!(3056 - all, still - kept);
 }

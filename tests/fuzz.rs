@@ -74,6 +74,13 @@ impl Met {
     /// Whether a message is a new one.
     pub fn is_new(&mut self, message: &str) -> bool {
         let title = message.lines().next().unwrap_or_default();
+        // With half a quotation of the text in it nobody knows what are its own words.
+        if ['`', '"']
+            .iter()
+            .any(|&quote| title.matches(quote).count() % 2 == 1)
+        {
+            return false;
+        }
         let plain = title.split(['`', '"']).step_by(2).collect::<String>();
         let plain = plain.chars().filter(char::is_ascii_alphabetic);
         // The begin of a message: what is quoted may have quotes of its own.

@@ -299,3 +299,58 @@ fn deep_nesting_is_told_and_not_followed() {
         });
     told.unwrap().join().unwrap();
 }
+
+/// Each table of the sound case once as an array of its values, which serde would take in the order
+/// of the schema.
+#[test]
+fn an_array_is_no_table() {
+    let sound = toml::Value::Table(SOUND.parse().unwrap());
+    let mut tables = Vec::new();
+    find_tables(&sound, &mut Vec::new(), &mut tables);
+    assert!(tables.len() > 40, "{}", tables.len());
+    for path in tables {
+        let mut changed = sound.clone();
+        let table = path.iter().fold(&mut changed, |value, step| match step {
+            Step::Key(key) => &mut value[key.as_str()],
+            Step::Element(n) => &mut value[*n],
+        });
+        let values = table.as_table().unwrap().values().cloned().collect();
+        *table = toml::Value::Array(values);
+        let text = toml::to_string(&changed).unwrap();
+        let message = parse("case.toml", &text, &[]).unwrap_err().to_string();
+        let title = message.lines().next().unwrap();
+        assert!(title.contains("table"), "{path:?}: {message}");
+        assert!(title.contains("found an array"), "{path:?}: {message}");
+    }
+}
+
+#[derive(Debug, Clone)]
+enum Step {
+    Key(String),
+    Element(usize),
+}
+
+fn find_tables(value: &toml::Value, path: &mut Vec<Step>, found: &mut Vec<Vec<Step>>) {
+    let steps: Vec<(Step, &toml::Value)> = match value {
+        toml::Value::Table(table) => {
+            if !path.is_empty() {
+                found.push(path.clone());
+            }
+            let keys = table.iter();
+            keys.map(|(key, value)| (Step::Key(key.clone()), value))
+                .collect()
+        }
+        toml::Value::Array(array) => {
+            let elements = array.iter().enumerate();
+            elements
+                .map(|(n, value)| (Step::Element(n), value))
+                .collect()
+        }
+        _ => return,
+    };
+    for (step, value) in steps {
+        path.push(step);
+        find_tables(value, path, found);
+        path.pop();
+    }
+}

@@ -204,7 +204,7 @@ fn not_a_number_stays_one_and_stays_in_its_lane() {
 fn library_is_sorted_complete_and_sourced() {
     let names = library::names();
     assert!(names.is_sorted());
-    for name in ["aluminium-2024", "aluminium-6061", "copper", "steel-304"] {
+    for name in ["aluminium-2024", "aluminium-6061", "copper", "steel-304", "tungsten"] {
         assert!(names.contains(&name));
     }
     for name in names {

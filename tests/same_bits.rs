@@ -166,6 +166,55 @@ fn stop_and_restart_on_other_ranks() {
 }
 
 #[test]
+fn penalty_with_friction_on_any_ranks_and_through_a_restart() {
+    let (_keep, at) = folder();
+    let mut case = QUARTER.to_vec();
+    for set in [
+        "contact.mode=penalty",
+        "contact.friction={static=0.4, kinetic=0.3}",
+        "contact.damping=0.1",
+        "run.end_time=0.06us",
+    ] {
+        case.extend(["--set", set]);
+    }
+    let (one, three, stopped) = (at("one"), at("three"), at("stopped"));
+    run(1, 2, &case, &[], &one);
+    run(3, 1, &case, &["--set", "domain.balance_every=7"], &three);
+    assert_same(&one, &three, "three ranks");
+    run(2, 1, &case, &["--until", "0.03us"], &stopped);
+    let path = stopped.to_str().expect("a plain path");
+    must(&whipple(3, &["restart", path, "--poison", "-t", "1"]), 0);
+    assert_same(&one, &stopped, "restart on 3 ranks");
+    let history = std::fs::read_to_string(one.join("contacts.csv")).expect("the table");
+    let last: Vec<&str> = history.lines().last().expect("a row").split(',').collect();
+    assert!(last[10].parse::<f64>().expect("heat") > 0.0, "{last:?}");
+}
+
+#[test]
+fn self_contact_on_any_ranks_and_through_a_restart() {
+    let (_keep, at) = folder();
+    let case = ["tests/common/torn.toml"];
+    let (one, stopped) = (at("one"), at("stopped"));
+    run(1, 2, &case, &[], &one);
+    for (ranks, axis) in [(2, "x"), (3, "x"), (3, "y")] {
+        let other = at(&format!("{ranks}{axis}"));
+        let axis = format!("domain.axis={axis}");
+        run(ranks, 1, &case, &["--set", &axis], &other);
+        assert_same(&one, &other, &format!("{ranks} ranks, {axis}"));
+    }
+    run(2, 1, &case, &["--until", "1.1ms"], &stopped);
+    let path = stopped.to_str().expect("a plain path");
+    let again = ["restart", path, "--until", "1.9ms", "--poison", "-t", "2"];
+    must(&whipple(1, &again), 0);
+    must(&whipple(3, &["restart", path, "--poison", "-t", "1"]), 0);
+    assert_same(&one, &stopped, "restart on 1 and 3 ranks");
+    let contacts = std::fs::read_to_string(one.join("contacts.csv")).expect("the table");
+    let last: Vec<&str> = contacts.lines().last().expect("a row").split(',').collect();
+    assert_eq!(last[1..3], ["bar", "bar"]);
+    assert!(last[10].parse::<f64>().expect("heat") > 0.0, "{last:?}");
+}
+
+#[test]
 fn loads_and_rigid_bodies_on_any_ranks_and_through_a_restart() {
     let (_keep, at) = folder();
     let case = ["tests/common/loaded.toml"];

@@ -106,6 +106,7 @@ impl Scene {
     pub fn list(&mut self) {
         let lengths = Lengths {
             longest: LENGTH,
+            least: 0.0,
             uniform: true,
             rigid: false,
         };

@@ -156,7 +156,7 @@ impl<'a> Driver<'a> {
         }
     }
 
-    /// A post-mortem of trouble, and then what the case says: the end, or particles removed until
+    /// A post-mortem of trouble, and then what the case says: the end, or particles taken out until
     /// there is none.
     fn meet_trouble(&mut self, comm: &Comm, mut error: StepError) -> Result<(), String> {
         loop {
@@ -177,20 +177,24 @@ impl<'a> Driver<'a> {
                     Err(refused) => format!("{text}; {refused}"),
                 };
             }
-            let remove = self.simulation.case.trouble.policy == TroublePolicy::Remove;
-            if !remove || kind == TroubleKind::NotFinite {
+            let done = match self.simulation.case.trouble.policy {
+                TroublePolicy::Stop => return Err(text),
+                TroublePolicy::Remove => "removed",
+                TroublePolicy::Freeze => "froze",
+            };
+            if kind == TroubleKind::NotFinite {
                 return Err(text);
             }
             match self.simulation.remove_troubled(comm) {
                 Ok(count) => {
                     self.log(
                         comm,
-                        &format!("removed {}: {text}", counted_u64(count, "particle")),
+                        &format!("{done} {}: {text}", counted_u64(count, "particle")),
                     );
                     return Ok(());
                 }
                 Err(next) => {
-                    self.log(comm, &format!("removed particles: {text}"));
+                    self.log(comm, &format!("{done} particles: {text}"));
                     error = next;
                 }
             }
@@ -238,17 +242,19 @@ impl<'a> Driver<'a> {
 
     fn write_snapshot(&mut self, comm: &Comm) -> Result<(), OutputError> {
         let begun = Instant::now();
+        let (quantities, rows) = (&self.quantities, &mut self.rows);
+        let path = self.folder.snapshot(self.simulation.state.step);
+        self.simulation.with_frozen(|simulation| {
+            let meta = snapshot::Meta {
+                case: &simulation.case,
+                step: simulation.state.step,
+                time: simulation.state.time,
+                threads: rayon::current_num_threads(),
+                wall_seconds: self.start.elapsed().as_secs_f64(),
+            };
+            snapshot::write(comm, &path, &simulation.store, &meta, quantities, rows)
+        })?;
         let state = &self.simulation.state;
-        let path = self.folder.snapshot(state.step);
-        let meta = snapshot::Meta {
-            case: &self.simulation.case,
-            step: state.step,
-            time: state.time,
-            threads: rayon::current_num_threads(),
-            wall_seconds: self.start.elapsed().as_secs_f64(),
-        };
-        let store = &self.simulation.store;
-        snapshot::write(comm, &path, store, &meta, &self.quantities, &mut self.rows)?;
         on_root(comm, || {
             let name = RunFolder::snapshot_name(state.step);
             series::add(&self.folder.series(), &name, state.time)
@@ -261,18 +267,20 @@ impl<'a> Driver<'a> {
 
     fn write_checkpoint(&mut self, comm: &Comm) -> Result<(), OutputError> {
         let begun = Instant::now();
-        let state = &self.simulation.state;
-        let text = serde_json::to_string(state).expect("plain numbers");
-        let meta = checkpoint::Meta {
-            step: state.step,
-            time: state.time,
-            state: &text,
-            input: &self.simulation.case.resolved,
-        };
-        let keep = self.simulation.case.output.checkpoints_kept;
-        let store = &self.simulation.store;
         let folder = self.folder.checkpoints();
-        let path = checkpoint::write(comm, &folder, store, &meta, keep, &mut self.rows)?;
+        let rows = &mut self.rows;
+        let path = self.simulation.with_frozen(|simulation| {
+            let state = &simulation.state;
+            let text = serde_json::to_string(state).expect("plain numbers");
+            let meta = checkpoint::Meta {
+                step: state.step,
+                time: state.time,
+                state: &text,
+                input: &simulation.case.resolved,
+            };
+            let keep = simulation.case.output.checkpoints_kept;
+            checkpoint::write(comm, &folder, &simulation.store, &meta, keep, rows)
+        })?;
         self.watch.wrote_checkpoint(begun.elapsed());
         let text = format!("checkpoint {}", path.display());
         self.log(comm, &text);

@@ -9,6 +9,7 @@ use super::say;
 use super::stop::Signals;
 use super::{EXIT_FAILED, EXIT_INPUT};
 use crate::comm::{Comm, Session, abort_job};
+use crate::output::h5::abandoned;
 
 /// Exit code of a program that panicked.
 const EXIT_PANIC: i32 = 101;
@@ -41,6 +42,11 @@ pub fn with_ranks(args: &CommonArgs, work: impl FnOnce(&Launch) -> u8) -> u8 {
         start,
         signals,
     });
+    if abandoned() {
+        // All ranks are here, and all has been said.
+        comm.barrier();
+        abort_job(code.into());
+    }
     drop(comm);
     drop(session);
     code

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use crate::comm::Comm;
 use crate::contact::ContactTable;
-use crate::model::{Axis, Case, SphForm};
+use crate::model::{Axis, Case, RigidSurface, SphForm};
 use crate::populate::{self, Slab};
+use crate::step::bytes_of_options;
 
 /// What a process takes with MPI and HDF5 before it has a particle (bytes). This and the figures
 /// below are peaks of the resident memory of ranks that step and write, as measured on the quarter
@@ -17,6 +18,8 @@ const OWNED: f64 = 620.0;
 const CONTACT: f64 = 170.0;
 /// A halo particle with its lists and messages (bytes).
 const HALO: f64 = 1200.0;
+/// What arrays take over their content as they grow.
+const SPARE: f64 = 1.06;
 /// By how much a rank's share may rise as work is balanced.
 const UNEVEN: f64 = 1.05;
 /// Halvings of the case's length that find a face between slabs.
@@ -26,13 +29,16 @@ const HALVINGS: usize = 40;
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
 pub fn of_rank(case: &Case, ranks: usize) -> f64 {
     let contact = ContactTable::new(case).is_active();
-    let owned = OWNED + if contact { CONTACT } else { 0.0 };
+    let [owned_options, halo_options] = bytes_of_options(case).map(|bytes| SPARE * bytes as f64);
+    let owned = OWNED + if contact { CONTACT } else { 0.0 } + owned_options;
     let particles = count(case, None) as f64;
+    let surfaces = case.loads.surfaces.iter().map(RigidSurface::memory);
+    let process = PROCESS + surfaces.sum::<usize>() as f64;
     if ranks < 2 {
-        return PROCESS + particles * owned;
+        return process + particles * owned;
     }
     let Some((axis, ends)) = longest(case) else {
-        return PROCESS;
+        return process;
     };
     let faces: Vec<f64> = (1..ranks)
         .map(|k| face(case, axis, ends, particles * k as f64 / ranks as f64))
@@ -57,7 +63,7 @@ pub fn of_rank(case: &Case, ranks: usize) -> f64 {
         UNEVEN
     };
     let share = particles / ranks as f64 * uneven;
-    PROCESS + share * owned + halo.fold(0.0, f64::max) * HALO
+    process + share * owned + halo.fold(0.0, f64::max) * (HALO + halo_options)
 }
 
 fn count(case: &Case, slab: Option<Slab>) -> u64 {

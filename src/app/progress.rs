@@ -127,6 +127,7 @@ mod tests {
             contact_work: 0.0,
             plane_force: [0.0; 3],
             plane_impulse: [0.0; 3],
+            plane_crossings: 0,
             pairs: Vec::new(),
             loads: Vec::new(),
             work_put_in: 0.0,

@@ -129,6 +129,7 @@ fn load_columns(dimension: usize) -> Vec<Column> {
             ("impulse_y", "N s"),
             ("impulse_z", "N s"),
             ("work", "J"),
+            ("heat", "J"),
         ],
     )
 }
@@ -195,9 +196,10 @@ impl Tables {
             loads: (case.load_names().next().is_some())
                 .then(|| open(&folder.loads(), &load_columns(dimension), "time", time))
                 .transpose()?,
-            removed: (case.trouble.policy == TroublePolicy::Remove)
-                .then(|| open(&folder.removed(), &removed_columns(dimension), "time", time))
-                .transpose()?,
+            removed: (case.trouble.policy != TroublePolicy::Stop
+                || resume.is_some_and(|state| !state.removed.is_empty()))
+            .then(|| open(&folder.removed(), &removed_columns(dimension), "time", time))
+            .transpose()?,
             performance: open(&folder.performance(), &performance_columns(), "step", step)?,
         })
     }
@@ -251,8 +253,8 @@ impl Tables {
             for (name, load) in simulation.case.load_names().zip(&state.loads) {
                 let [fx, fy, fz] = load.force.map(Value::Real);
                 let [ix, iy, iz] = load.impulse.map(Value::Real);
-                let (time, work) = (Value::Real(state.time), Value::Real(load.work));
-                table.row(&[time, Value::Word(name), fx, fy, fz, ix, iy, iz, work])?;
+                let [time, work, heat] = [state.time, load.work, load.heat].map(Value::Real);
+                table.row(&[time, Value::Word(name), fx, fy, fz, ix, iy, iz, work, heat])?;
             }
         }
         if let Some(table) = &mut self.removed {
@@ -329,14 +331,16 @@ pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::V
     let worst = &state.worst;
     let phases = mean_seconds(comm, simulation.timers.report());
     let stepping: f64 = phases.iter().map(|(_, seconds)| seconds).sum();
-    let mut memory = [simulation.memory() as u64];
-    comm.sum_u64(&mut memory);
+    let mut counts = [simulation.memory() as u64, simulation.frozen() as u64];
+    comm.sum_u64(&mut counts);
+    let [memory, frozen] = counts;
+    let taken_out: u64 = state.removed.iter().map(|r| r.particles).sum();
     let threads = rayon::current_num_threads();
     let cores = (comm.size() * threads) as f64;
     let rate = load.updates as f64 * 1e-6 / stepping.max(f64::MIN_POSITIVE) / cores;
     let contact = simulation.contact();
     let normalised = simulation.case.sph.form != SphForm::Conventional;
-    // What the ranks have stepped since they started, if no particle was removed.
+    // What the ranks have stepped since they started, if no particle was taken out.
     let steps = load.updates as f64 / (load.particles[0] as f64).max(1.0);
     let each = |sent: u64| sent as f64 / (steps.max(1.0) * comm.size() as f64);
     json!({
@@ -347,13 +351,14 @@ pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::V
         "threads": threads,
         "instructions": crate::sph::dispatch::instructions().name(),
         "particles": load.particles[0],
-        "removed_particles": state.removed.iter().map(|r| r.particles).sum::<u64>(),
+        "removed_particles": taken_out - frozen,
+        "frozen_particles": frozen,
         "removed_energy": state.removed_energy(),
         "steps": state.step,
         "time": state.time,
         "wall_seconds": wall,
         "million_updates_per_second_per_core": rate,
-        "bytes_per_particle": memory[0] as f64 / (load.particles[0] as f64).max(1.0),
+        "bytes_per_particle": memory as f64 / (load.particles[0] as f64).max(1.0),
         "messages_per_rank_and_step": each(load.messages),
         "bytes_sent_per_rank_and_step": each(load.bytes),
         "seconds_by_phase": object(phases),
@@ -363,6 +368,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::V
         "interpenetrated_particles": contact.has_pairs().then_some(worst.interpenetrated),
         "closest_foreign_pair": worst.closest,
         "largest_foreign_fraction": contact.has_overlap().then_some(worst.foreign_fraction),
+        "plane_crossings": (!simulation.case.symmetry.is_empty()).then_some(state.plane_crossings),
         "capped_reliefs": state.capped_reliefs,
         "uncorrected_gradients": normalised.then_some(worst.uncorrected),
         "contact_limited_steps": worst.contact_limited_steps,

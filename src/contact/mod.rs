@@ -5,6 +5,7 @@
 //! exact gradient (physics page, section 5).
 
 pub mod friction;
+pub mod hold;
 pub mod overlap;
 pub mod penalty;
 pub mod potential;

@@ -6,7 +6,7 @@
 //! `E_i = ⟨S_i − C̄_i − s_i⟩₊` and the energy `Φ = Σ_i ½ M̄_i V_i E_i²` (the stiffness κ is part
 //! of `M`). A core `½ κ_c M V̄ ⟨1 − r/r_c⟩₊²` keeps lone particles apart.
 
-use super::friction::{Grip, Law, Memory, dot};
+use super::hold::{Bearing, Resisting};
 use super::{ContactView, Gap, Pair, Party, Reaction};
 use crate::domain::Mirrors;
 
@@ -118,145 +118,27 @@ pub fn normal(view: &ContactView, place: u32, neighbours: &[u32], fraction: &Fra
     sum.map(|x| x * weight)
 }
 
-/// Friction and damping that rest on one receiver.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Hold {
-    /// `O_i = Σ_j o_ij` (N), over pairs that have friction or damping.
-    pub load: f64,
-    /// Force on the receiver, of which neighbour j bears the share `o_ij/O_i`; heat; energy; and
-    /// what it remembers.
-    pub grip: Grip,
-}
-
-/// Friction and damping of the receiver at `place` after the step.
+/// Adds the neighbours that friction and damping of `i` rest on.
 ///
-/// The normal `n` is that which it sees less the mean of those that its neighbours see, weighted
-/// with `o_ij`. Its load is `Σ_j o_ij e_ij·n`, its velocity against what it lies on
-/// `Σ_j o_ij v_ij/O_i`.
-#[must_use]
-pub fn hold(view: &ContactView, place: u32, neighbours: &[u32]) -> Hold {
-    let i = view.party(place);
+/// The normal is that which i sees less the mean of those that its neighbours see, weighted with
+/// `o_ij`.
+pub(super) fn bear(view: &ContactView, i: &Party, neighbours: &[u32], bearing: &mut Bearing) {
     let here = stored(view, i.base);
-    let (mut load, mut force) = (0.0, [0.0; 3]);
-    let (mut motion, mut facing) = ([0.0; 3], [0.0; 3]);
-    let mut law = Law::default();
     for &other in neighbours {
         let j = view.party(other);
-        let pair = &view.table.pair(i.body, j.body).resistance;
-        if !pair.is_any() {
+        let pair = view.table.pair(i.body, j.body);
+        if !pair.resistance.is_any() {
             continue;
         }
-        let gap = Gap::between(&i, &j);
-        let own = own_force(view, &i, &j, &gap, &here);
-        let along = gap.along(own);
+        let gap = Gap::between(i, &j);
+        let own = own_force(view, i, &j, &gap, &here);
+        bearing.add(pair, [i, &j], own, &gap.along(own));
         let code = view.images[other as usize].code();
         let theirs = Mirrors::reflect_vector(&view.store.contact_normal[j.base], code);
-        load += own;
-        for a in 0..3 {
-            force[a] += along[a];
-            facing[a] -= own * theirs[a];
-            motion[a] += own * (i.velocity[a] - j.velocity[a]);
-        }
-        law.static_friction += own * pair.static_friction;
-        law.kinetic_friction += own * pair.kinetic_friction;
-        law.stiffness += own * (pair.stick * i.volume);
-        law.dashpot += own * (pair.dashpot * i.volume);
-    }
-    for (facing, seen) in facing.iter_mut().zip(&view.store.contact_normal[i.base]) {
-        *facing += load * seen;
-    }
-    let size = dot(&facing, &facing).sqrt();
-    if size <= 0.0 {
-        return Hold::default();
-    }
-    let law = Law {
-        static_friction: law.static_friction / load,
-        kinetic_friction: law.kinetic_friction / load,
-        stiffness: law.stiffness / load,
-        dashpot: law.dashpot / load,
-    };
-    let memory = Memory {
-        slip: view.store.slip[i.base],
-        rate: view.store.slip_rate[i.base],
-        sliding: view.store.sliding[i.base] != 0,
-    };
-    let normal = facing.map(|n| n / size);
-    let velocity = motion.map(|v| v / load);
-    Hold {
-        load,
-        grip: law.step(&memory, &force, &normal, &velocity, view.dt),
-    }
-}
-
-/// What friction that rests on one particle does to its pairs, over its load.
-struct Shared {
-    /// Force on the particle.
-    force: [f64; 3],
-    /// Heat (m/s).
-    power: f64,
-    /// Energy (m).
-    energy: f64,
-    /// 1/N.
-    inverse_load: f64,
-}
-
-impl Shared {
-    const NONE: Self = Self {
-        force: [0.0; 3],
-        power: 0.0,
-        energy: 0.0,
-        inverse_load: 0.0,
-    };
-
-    /// Of the particle `base`, of which an image with `code` is met.
-    fn of(view: &ContactView, base: usize, code: u8) -> Self {
-        let store = view.store;
-        let load = store.friction_load[base];
-        if load <= 0.0 {
-            return Self::NONE;
-        }
-        let force = Mirrors::reflect_vector(&store.friction_force[base], code);
-        Self {
-            force: force.map(|f| f / load),
-            power: store.friction_power[base] / load,
-            // Of this rank's particles only, and never asked of others.
-            energy: store.friction_energy.get(base).map_or(0.0, |e| e / load),
-            inverse_load: 1.0 / load,
+        for (facing, seen) in bearing.facing.iter_mut().zip(theirs) {
+            *facing -= own * seen;
         }
     }
-}
-
-/// Adds friction and damping of a pair: `o_ij T_i/O_i − o_ji T_j/O_j`, its heat and its energy.
-fn resist(view: &ContactView, [i, j]: [&Party; 2], other: u32, gap: &Gap, at: &mut Resisting) {
-    let (pair, back) = (
-        &view.table.pair(i.body, j.body).resistance,
-        &view.table.pair(j.body, i.body).resistance,
-    );
-    if !pair.is_any() {
-        return;
-    }
-    let there = Shared::of(view, j.base, view.images[other as usize].code());
-    let own = own_force(view, i, j, gap, &stored(view, i.base));
-    let their = own_force(view, j, i, gap, &stored(view, j.base));
-    for a in 0..3 {
-        at.force[a] = own * at.here.force[a] - their * there.force[a];
-    }
-    at.energy = own * at.here.energy;
-    at.heat = pair.heat_share * (own * at.here.power + their * there.power);
-    // Rows of the matrices of all springs and dashpots that i has a part in.
-    let [mine, theirs] = [own * at.here.inverse_load, their * there.inverse_load];
-    at.stiffness += 2.0 * (mine * (pair.stick * i.volume) + theirs * (back.stick * j.volume));
-    at.dashpot += 2.0 * (mine * (pair.dashpot * i.volume) + theirs * (back.dashpot * j.volume));
-}
-
-/// Friction of a receiver: its own, that of the pair in hand, and sums over pairs.
-struct Resisting {
-    here: Shared,
-    force: [f64; 3],
-    energy: f64,
-    heat: f64,
-    stiffness: f64,
-    dashpot: f64,
 }
 
 /// Adds what the foreign neighbours do to the receiver at `place` to `reaction`:
@@ -269,14 +151,7 @@ pub fn react<const FRICTION: bool>(
 ) {
     let i = view.party(place);
     let here = stored(view, i.base);
-    let mut resisting = FRICTION.then(|| Resisting {
-        here: Shared::of(view, i.base, 0),
-        force: [0.0; 3],
-        energy: 0.0,
-        heat: 0.0,
-        stiffness: 0.0,
-        dashpot: 0.0,
-    });
+    let mut resisting = FRICTION.then(|| Resisting::of(view, &i));
     for &other in neighbours {
         let j = view.party(other);
         let gap = Gap::between(&i, &j);
@@ -316,8 +191,10 @@ pub fn react<const FRICTION: bool>(
             gap.along(force + core)
         };
         if let Some(at) = &mut resisting {
-            (at.force, at.energy, at.heat) = ([0.0; 3], 0.0, 0.0);
-            resist(view, [&i, &j], other, &gap, at);
+            at.pair(view, [&i, &j], other, || {
+                let own = own_force(view, &i, &j, &gap, &here);
+                [own, own_force(view, &j, &i, &gap, &there)]
+            });
             for a in 0..3 {
                 force[a] += at.force[a];
             }
@@ -325,12 +202,11 @@ pub fn react<const FRICTION: bool>(
         }
         reaction.book(&j, &gap, pair, force, energy);
         if let Some(at) = &resisting {
-            reaction.book_heat(j.body, at.heat);
+            at.book_heat(j.body, reaction);
         }
     }
     if let Some(at) = resisting {
-        reaction.stiffness += at.stiffness;
-        reaction.dashpot += at.dashpot;
+        at.finish(reaction);
     }
 }
 

@@ -7,21 +7,23 @@
 //! corner, which has two normals, along that of the face it is pressed on. The laws are those of
 //! pinballs (Belytschko & Neal 1991).
 
+use super::hold::{Bearing, Resisting};
 use super::{ContactView, Gap, Pair, Party, Reaction};
 use crate::domain::Mirrors;
 use crate::sph::kernel::Kernel;
 
-/// A boundary vector longer than this times that of a flat face is one of a corner; that of a right
-/// angle is √2 as long.
-const CORNER: f64 = 1.2;
+/// Weight of a corner's normal beside that of a face.
+const CORNER: f64 = 1e-3;
 
-/// Lengths of the boundary vector `|b| Δp` that tell particles of a body apart.
+/// What tells particles of a body apart.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Boundary {
-    /// Above it a particle is of the outermost layer.
+    /// Length of the boundary vector `|b| Δp` above which a particle is of the outermost layer.
     pub outer: f64,
-    /// Above it, of a corner.
-    pub corner: f64,
+    /// Share of the support that the body fills, `Σ V_j W_ij`, of a particle of a flat face.
+    pub face: f64,
+    /// The same of an edge between two faces at a right angle.
+    pub edge: f64,
 }
 
 impl Boundary {
@@ -29,14 +31,14 @@ impl Boundary {
     /// between the first layer and the second.
     #[must_use]
     pub fn of_lattice(kernel: &Kernel, h: f64) -> Self {
-        let layer = |depth: i32| {
-            let (mut outward, mut slope) = (0.0, 0.0);
-            let across = |a: usize| {
-                if a < kernel.dimension() - 1 {
-                    -6..=6
-                } else {
-                    0..=0
-                }
+        // Length of the boundary vector and filled share, `depth` below a face that is `edges` times
+        // cut at a right angle.
+        let layer = |depth: i32, edges: usize| {
+            let (mut outward, mut slope, mut filled) = (0.0, 0.0, kernel.value(0.0, h));
+            let across = |a: usize| match a < kernel.dimension() - 1 {
+                true if a < edges => 0..=6,
+                true => -6..=6,
+                false => 0..=0,
             };
             for x in across(0) {
                 for y in across(1) {
@@ -47,38 +49,51 @@ impl Boundary {
                             let pull = -kernel.slope(r, h) / r;
                             outward += pull * f64::from(z);
                             slope += pull * f64::from(z * z);
+                            filled += kernel.value(r, h);
                         }
                     }
                 }
             }
-            outward / slope
+            (outward / slope, filled)
         };
-        let first = layer(0);
+        let ((first, face), (second, _)) = (layer(0, 0), layer(1, 0));
         Self {
-            outer: 0.5 * (first + layer(1)),
-            corner: CORNER * first,
+            outer: 0.5 * (first + second),
+            face,
+            // A line has ends and no edges.
+            edge: if kernel.dimension() == 1 {
+                0.0
+            } else {
+                layer(0, 1).1
+            },
         }
+    }
+
+    /// How much the normal of a particle counts whose body fills `filled` of its support: 1 on
+    /// faces, next to nothing at corners.
+    fn weight(&self, filled: f64) -> f64 {
+        ((filled - self.edge) / (self.face - self.edge)).clamp(CORNER, 1.0)
     }
 }
 
-/// The boundary vector times spacing of the receiver at `place`, `|b| Δp` long, from the images of
-/// its own group; zero inside of the body.
+/// The outward normal of the receiver at `place`, as long as it counts beside others, from the images
+/// of its own group; zero inside of the body.
 #[must_use]
 pub fn boundary(view: &ContactView, place: u32, own: &[u32]) -> [f64; 3] {
     let i = view.party(place);
     let pair = view.table.pair(i.body, i.body);
     let kernel = &view.table.kernel;
-    let mut outward = [0.0; 3];
+    let (mut outward, mut filled) = ([0.0; 3], 0.0);
     // B⁻¹; one on axes that the case does not have.
     let mut matrix = [[0.0; 3]; 3];
     for &other in own {
         let record = &view.motion[other as usize];
         let r: [f64; 3] = std::array::from_fn(|a| i.position[a] - record.position[a]);
-        let square = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
-        if square == 0.0 {
+        let distance = length2(&r).sqrt();
+        filled += record.volume * kernel.value(distance, pair.h);
+        if distance == 0.0 {
             continue;
         }
-        let distance = square.sqrt();
         let pull = -record.volume * kernel.slope(distance, pair.h) / distance;
         for a in 0..3 {
             outward[a] += pull * r[a];
@@ -91,10 +106,11 @@ pub fn boundary(view: &ContactView, place: u32, own: &[u32]) -> [f64; 3] {
         matrix[a][a] = 1.0;
     }
     let corrected = solve(&matrix, &outward).unwrap_or(outward);
-    let vector = corrected.map(|c| c * pair.spacing);
-    let limit = view.table.boundary(i.body).outer;
-    if length2(&vector) > limit * limit {
-        vector
+    let length = length2(&corrected).sqrt();
+    let known = view.table.boundary(i.body);
+    if length * pair.spacing > known.outer {
+        let scale = known.weight(filled) / length;
+        corrected.map(|c| c * scale)
     } else {
         [0.0; 3]
     }
@@ -119,7 +135,8 @@ fn solve(a: &[[f64; 3]; 3], v: &[f64; 3]) -> Option<[f64; 3]> {
     })
 }
 
-/// The direction from `j` to `i` that both normals give, if both are of the boundary.
+/// The direction from `j` to `i` that both normals give, if both are of the boundary. Of a corner
+/// and a face the face's normal holds.
 fn direction(view: &ContactView, i: &Party, j: &Party, code: u8) -> Option<[f64; 3]> {
     let here = view.store.boundary_normal[i.base];
     let there = Mirrors::reflect_vector(&view.store.boundary_normal[j.base], code);
@@ -127,22 +144,43 @@ fn direction(view: &ContactView, i: &Party, j: &Party, code: u8) -> Option<[f64;
     if a == 0.0 || b == 0.0 {
         return None;
     }
-    let corner = |length: f64, body: usize| length > view.table.boundary(body).corner;
-    // Of a corner and a face the face's normal holds.
-    let (weight_i, weight_j) = match (corner(a, i.body), corner(b, j.body)) {
-        (true, false) => (0.0, 1.0),
-        (false, true) => (1.0, 0.0),
-        _ => (1.0, 1.0),
-    };
-    let sum: [f64; 3] = std::array::from_fn(|k| weight_j * there[k] / b - weight_i * here[k] / a);
+    let sum: [f64; 3] = std::array::from_fn(|k| there[k] - here[k]);
     let length = length2(&sum).sqrt();
     // Faces that look the same way do not press on each other.
-    (length > 0.5).then(|| sum.map(|x| x / length))
+    (length > 0.25 * (a + b)).then(|| sum.map(|x| x / length))
 }
 
-/// Adds what the foreign neighbours do to the receiver at `place` to `reaction`.
-pub fn react(view: &ContactView, place: u32, neighbours: &[u32], reaction: &mut Reaction) {
+/// Adds the neighbours that friction and damping of `i` rest on: half of each push.
+pub(super) fn bear(view: &ContactView, i: &Party, neighbours: &[u32], bearing: &mut Bearing) {
+    for &other in neighbours {
+        let j = view.party(other);
+        let pair = view.table.pair(i.body, j.body);
+        if !pair.resistance.is_any() {
+            continue;
+        }
+        let code = view.images[other as usize].code();
+        if let Some(normal) = direction(view, i, &j, code) {
+            let gap = Gap::between(i, &j);
+            let own = 0.5 * push(pair, i, &j, &gap, &normal, view)[0];
+            let force = normal.map(|n| own * n);
+            bearing.add(pair, [i, &j], own, &force);
+            for (facing, part) in bearing.facing.iter_mut().zip(force) {
+                *facing += part;
+            }
+        }
+    }
+}
+
+/// Adds what the foreign neighbours do to the receiver at `place` to `reaction`, with `FRICTION`
+/// friction and damping too.
+pub fn react<const FRICTION: bool>(
+    view: &ContactView,
+    place: u32,
+    neighbours: &[u32],
+    reaction: &mut Reaction,
+) {
     let i = view.party(place);
+    let mut resisting = FRICTION.then(|| Resisting::of(view, &i));
     for &other in neighbours {
         let j = view.party(other);
         let gap = Gap::between(&i, &j);
@@ -150,12 +188,26 @@ pub fn react(view: &ContactView, place: u32, neighbours: &[u32], reaction: &mut 
         let code = view.images[other as usize].code();
         let push = direction(view, &i, &j, code)
             .map(|normal| (normal, push(pair, &i, &j, &gap, &normal, view)));
-        let Some((normal, [force, energy, stiffness])) = push else {
+        let Some((normal, [push, mut energy, stiffness])) = push else {
             reaction.book(&j, &gap, pair, [0.0; 3], 0.0);
             continue;
         };
         reaction.stiffness += stiffness;
-        reaction.book(&j, &gap, pair, normal.map(|n| force * n), energy);
+        let mut force = normal.map(|n| push * n);
+        if let Some(at) = &mut resisting {
+            at.pair(view, [&i, &j], other, || [0.5 * push; 2]);
+            for a in 0..3 {
+                force[a] += at.force[a];
+            }
+            energy += at.energy;
+        }
+        reaction.book(&j, &gap, pair, force, energy);
+        if let Some(at) = &resisting {
+            at.book_heat(j.body, reaction);
+        }
+    }
+    if let Some(at) = resisting {
+        at.finish(reaction);
     }
 }
 
@@ -203,18 +255,16 @@ fn push(
 mod tests {
     use super::*;
 
-    /// A face in one dimension and the rows of a flat one in three have lengths that are well
-    /// apart, and a right angle is longer than a face.
+    /// Edges fill well less of their support than faces, and these less than the inside.
     #[test]
     fn layers_are_told_apart() {
         for dimension in 1..=3 {
             for h in [1.0, 1.2, 1.3, 1.5] {
                 let kernel = Kernel::new(dimension);
                 let known = Boundary::of_lattice(&kernel, h);
-                let first = known.corner / CORNER;
-                let second = 2.0 * known.outer - first;
-                println!("{dimension}-D h {h}: {first:.3} {second:.3}");
-                assert!(second < 0.7 * first && second >= 0.0);
+                println!("{dimension}-D h {h}: {known:?}");
+                assert!(known.outer > 0.2 && known.outer < 1.0);
+                assert!(known.edge < 0.9 * known.face && known.face < 0.9);
             }
         }
     }

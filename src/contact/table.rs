@@ -19,13 +19,13 @@ pub struct Pair {
     pub modulus: f64,
     /// `overlap`: touching value C* of the receiver's body on the other.
     pub touching: f64,
-    /// `overlap`: `κ_c` times the smaller p-wave modulus (Pa).
+    /// `overlap`: `κ_c` times what [`core_scale`] says (Pa).
     pub core_modulus: f64,
     /// `overlap`: radius of the core (m).
     pub core_radius: f64,
     /// Whether forces act along the normals of the surfaces.
     pub along_normal: bool,
-    /// `overlap`: friction and damping.
+    /// `overlap`, `penalty`: friction and damping.
     pub resistance: PairResistance,
     /// `potential`: K (Pa/m^d).
     pub potential: f64,
@@ -131,6 +131,11 @@ impl ContactTable {
             for b in 0..n {
                 let (class, pair) = make_pair(case, &kernel, a, b);
                 pairs.push(pair);
+                if a == b && class != ContactClass::None {
+                    // Found among the own neighbours, not as of another group.
+                    foreign.class[a * n + a] = class;
+                    foreign.reach2[a * n + a] = 4.0 * pair.h * pair.h;
+                }
                 if groups[a] == groups[b] || class == ContactClass::None {
                     continue;
                 }
@@ -237,12 +242,13 @@ impl ContactTable {
         self.foreign.class.contains(&ContactClass::Penalty)
     }
 
-    /// The unordered pairs of bodies with contact beyond the SPH sums.
+    /// The unordered pairs of bodies with contact beyond the SPH sums; a body with itself where its
+    /// parts have contact.
     #[must_use]
     pub fn active_pairs(&self) -> Vec<[usize; 2]> {
         let n = self.foreign.bodies;
         (0..n)
-            .flat_map(|a| (a + 1..n).map(move |b| [a, b]))
+            .flat_map(|a| (a..n).map(move |b| [a, b]))
             .filter(|&[a, b]| self.foreign.class[a * n + b] != ContactClass::None)
             .collect()
     }
@@ -297,10 +303,18 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
         penalty: 0.0,
         pinball: false,
     };
-    if a == b || (body_a.rigid.is_some() && body_b.rigid.is_some()) {
+    if body_a.rigid.is_some() && body_b.rigid.is_some() {
         return (ContactClass::None, pair);
     }
-    match case.contact_between(a, b) {
+    let own = case
+        .self_contact
+        .map(|own| ContactMode::Overlap(own.overlap));
+    let mode = if a == b {
+        own.as_ref().unwrap_or(&ContactMode::None)
+    } else {
+        case.contact_between(a, b)
+    };
+    match mode {
         ContactMode::None | ContactMode::Kernel => (ContactClass::None, pair),
         ContactMode::Potential(potential) => {
             pair.potential = potential.stiffness * smaller / kernel.power(spacing);
@@ -316,12 +330,14 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
         ContactMode::Penalty(penalty) => {
             pair.penalty = penalty.stiffness * smaller;
             pair.pinball = penalty.law == PenaltyLaw::Pinball;
+            pair.resistance =
+                PairResistance::new(case, [body_a, body_b], spacing, &penalty.resistance);
             (ContactClass::Penalty, pair)
         }
         ContactMode::Overlap(overlap) => {
             pair.modulus = overlap.stiffness * smaller;
             pair.touching = populate::touching_value(body_a, body_b, case.dimension);
-            pair.core_modulus = overlap.core_stiffness * smaller;
+            pair.core_modulus = overlap.core_stiffness * core_scale(case, [body_a, body_b]);
             pair.core_radius = overlap.core_radius * spacing;
             pair.along_normal = overlap.direction == ContactDirection::Normal;
             pair.resistance =
@@ -329,4 +345,18 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
             (ContactClass::Overlap, pair)
         }
     }
+}
+
+/// What the core of two bodies is as stiff as (Pa): `max(M, ¾ ρ v²)` with v (m/s) their speed against
+/// each other at the start. M and ρ are harmonic means of moduli and densities, as the mass of two
+/// particles that meet head-on is; what is rigid counts as infinite.
+fn core_scale(case: &Case, bodies: [&Body; 2]) -> f64 {
+    let harmonic_mean = |value: &dyn Fn(&Body) -> f64| {
+        let soft = bodies.iter().filter(|body| body.rigid.is_none());
+        2.0 / soft.map(|body| 1.0 / value(body)).sum::<f64>()
+    };
+    let modulus = harmonic_mean(&|body| case.materials[body.material].p_wave_modulus());
+    let density = harmonic_mean(&|body| case.initial_density(body));
+    let speed = (bodies[0].velocity - bodies[1].velocity).norm_squared();
+    modulus.max(0.75 * density * speed)
 }

@@ -136,14 +136,19 @@ impl Mirrors {
         if code != 0 {
             store.position[i] = self.reflect_position(&store.position[i], code);
             store.velocity[i] = Self::reflect_vector(&store.velocity[i], code);
+            if let Some(start) = store.reference_position.get_mut(i) {
+                *start = self.reflect_position(start, code);
+            }
             store.predicted_velocity[i] = Self::reflect_vector(&store.predicted_velocity[i], code);
             for field in [
                 &mut store.slip,
                 &mut store.slip_rate,
                 &mut store.drift_acceleration,
+                &mut store.surface_slip,
+                &mut store.surface_slip_rate,
             ] {
-                if let Some(vector) = field.get_mut(i) {
-                    *vector = Self::reflect_vector(vector, code);
+                if let Some(slip) = field.get_mut(i) {
+                    *slip = Self::reflect_vector(slip, code);
                 }
             }
             store.deviatoric_stress[i] = Self::reflect_symmetric(&store.deviatoric_stress[i], code);

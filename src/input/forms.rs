@@ -10,7 +10,32 @@ use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use toml::Spanned;
 
 use super::quantity::{Angle, Kind, Quantity};
-use super::schema::{Direction, FrictionTable, LatticeName, LatticeTable, Placed};
+use super::schema::{
+    Direction, FrictionTable, LatticeName, LatticeTable, Placed, SelfContactTable,
+};
+
+/// What is read from a table alone.
+pub trait Table: Sized {
+    /// Reads the entries of a table.
+    fn from_map<'de, A: MapAccess<'de>>(map: A) -> Result<Self, A::Error>;
+}
+
+/// Reads a table and refuses all else.
+pub fn table<'de, T: Table, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
+    struct TableVisitor<T>(PhantomData<T>);
+    impl<'de, T: Table> Visitor<'de> for TableVisitor<T> {
+        type Value = T;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a table")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<T, A::Error> {
+            T::from_map(map)
+        }
+    }
+    deserializer.deserialize_any(TableVisitor(PhantomData))
+}
 
 /// `"cubic"`, or a table with more.
 #[derive(Debug)]
@@ -81,6 +106,38 @@ impl<'de> Deserialize<'de> for FrictionParams {
             }
         }
         deserializer.deserialize_any(FrictionVisitor)
+    }
+}
+
+/// Whether there is self-contact, or a table of what it does.
+#[derive(Debug)]
+pub enum SelfContactParams {
+    /// With parts alone, or not at all.
+    Is(bool),
+    /// With more.
+    With(SelfContactTable),
+}
+
+impl<'de> Deserialize<'de> for SelfContactParams {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct SelfContactVisitor;
+        impl<'de> Visitor<'de> for SelfContactVisitor {
+            type Value = SelfContactParams;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("true, false, or a table with `folds`")
+            }
+
+            fn visit_bool<E: Error>(self, value: bool) -> Result<SelfContactParams, E> {
+                Ok(SelfContactParams::Is(value))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<SelfContactParams, A::Error> {
+                SelfContactTable::deserialize(MapAccessDeserializer::new(map))
+                    .map(SelfContactParams::With)
+            }
+        }
+        deserializer.deserialize_any(SelfContactVisitor)
     }
 }
 

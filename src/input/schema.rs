@@ -6,10 +6,9 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::forms::{FrictionParams, LatticeParams, Named, NormalParams, OneOrMany};
+use super::forms::{FrictionParams, LatticeParams, Named, OneOrMany, SelfContactParams};
 use super::quantity::{
-    Acceleration, Angle, AngularRate, Density, Extent, Length, Quantity, SpecificEnergy, Time,
-    Velocity,
+    Acceleration, Angle, Density, Extent, Length, Quantity, SpecificEnergy, Time, Velocity,
 };
 
 /// A quantity with its place in the text.
@@ -22,9 +21,28 @@ macro_rules! tables {
     ($($(#[$doc:meta])+ $table:ident { $($(#[$key_doc:meta])+ $key:ident: $value:ty,)* })+) => { $(
         $(#[$doc])+
         #[derive(Debug, Deserialize)]
-        #[serde(deny_unknown_fields)]
+        #[serde(deny_unknown_fields, remote = "Self")]
         pub struct $table { $($(#[$key_doc])+ pub $key: $value,)* }
+        from_table!($table);
     )+ };
+}
+
+/// Reads a struct from a table alone: serde would take an array of its values too, in the order of
+/// the declaration. What is derived is an inherent function, by `remote = "Self"`.
+macro_rules! from_table {
+    ($table:ident) => {
+        impl crate::input::forms::Table for $table {
+            fn from_map<'de, A: serde::de::MapAccess<'de>>(map: A) -> Result<Self, A::Error> {
+                Self::deserialize(serde::de::value::MapAccessDeserializer::new(map))
+            }
+        }
+
+        impl<'de> Deserialize<'de> for $table {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                crate::input::forms::table(deserializer)
+            }
+        }
+    };
 }
 
 tables! {
@@ -150,104 +168,6 @@ tables! {
         z: Option<Spanned<OneOrMany<Velocity>>>,
     }
 
-    /// `[[plane]]`
-    PlaneParams {
-        /// Name in reports.
-        name: Option<Spanned<String>>,
-        /// To the side that the plane keeps.
-        normal: Spanned<NormalParams>,
-        /// A point of the plane; the origin if absent.
-        point: Option<Spanned<Vec<Placed<Length>>>>,
-        /// Names of the bodies that feel it; all if absent.
-        bodies: Option<Vec<Spanned<String>>>,
-        /// Stiffness κ.
-        stiffness: Option<Spanned<f64>>,
-        /// Motion of the plane; fixed if absent.
-        motion: Option<Spanned<MotionParams>>,
-    }
-
-    /// `[[surface]]`
-    SurfaceParams {
-        /// Name in reports.
-        name: Option<Spanned<String>>,
-        /// Geometry.
-        shape: Spanned<SurfaceShapeParams>,
-        /// Where the particles are; outside if absent.
-        side: Option<SideName>,
-        /// Names of the bodies that feel it; all if absent.
-        bodies: Option<Vec<Spanned<String>>>,
-        /// Stiffness κ.
-        stiffness: Option<Spanned<f64>>,
-        /// Motion of the surface; fixed if absent.
-        motion: Option<Spanned<MotionParams>>,
-        /// Rotation of the surface; none if absent.
-        rotation: Option<Spanned<RotationParams>>,
-    }
-
-    /// `shape` of a surface: exactly one of these.
-    SurfaceShapeParams {
-        /// Ball; a disc in two dimensions.
-        sphere: Option<SurfaceSphereParams>,
-        /// Circular cylinder.
-        cylinder: Option<SurfaceCylinderParams>,
-        /// Triangles from a file.
-        stl: Option<StlParams>,
-    }
-
-    /// `shape.sphere` of a surface.
-    SurfaceSphereParams {
-        /// The origin if absent.
-        centre: Option<Spanned<Vec<Placed<Length>>>>,
-        /// Radius.
-        radius: Placed<Length>,
-    }
-
-    /// `shape.cylinder` of a surface.
-    SurfaceCylinderParams {
-        /// Middle of the axis; the origin if absent.
-        centre: Option<Spanned<Vec<Placed<Length>>>>,
-        /// Direction of the axis; z if absent.
-        axis: Option<Spanned<AxisName>>,
-        /// Radius.
-        radius: Placed<Length>,
-        /// Length along the axis; without ends if absent.
-        length: Option<Placed<Length>>,
-    }
-
-    /// `shape.stl`
-    StlParams {
-        /// Path, from the folder of the case.
-        file: Spanned<String>,
-        /// Length of one unit of the file.
-        unit: Placed<Length>,
-        /// Where the file's origin stands; the origin if absent.
-        at: Option<Spanned<Vec<Placed<Length>>>>,
-        /// Turns the surface about the file's origin, before it is placed.
-        turn: Option<TurnParams>,
-        /// SHA-256 that the file must have.
-        sha256: Option<Spanned<String>>,
-    }
-
-    /// `turn`
-    TurnParams {
-        /// Axis through the origin.
-        axis: Spanned<AxisName>,
-        /// By how much.
-        angle: Placed<Angle>,
-    }
-
-    /// `rotation`
-    RotationParams {
-        /// Axis of the rotation.
-        axis: Spanned<AxisName>,
-        /// A point of the axis; the origin if absent.
-        point: Option<Spanned<Vec<Placed<Length>>>>,
-        /// Times of the table.
-        times: Option<Spanned<Vec<Placed<Time>>>>,
-        /// Rate, right-handed about the axis.
-        rate: Spanned<OneOrMany<AngularRate>>,
-    }
-
     /// `shape`: exactly one of these.
     ShapeParams {
         /// Axis-aligned box.
@@ -343,14 +263,17 @@ macro_rules! optional_tables {
     ($($(#[$doc:meta])+ $table:ident { $($(#[$key_doc:meta])+ $key:ident: $value:ty,)* })+) => { $(
         $(#[$doc])+
         #[derive(Debug, Default, Deserialize)]
-        #[serde(default, deny_unknown_fields)]
+        #[serde(default, deny_unknown_fields, remote = "Self")]
         pub struct $table { $($(#[$key_doc])+ pub $key: $value,)* }
+        from_table!($table);
     )+ };
 }
 
 mod materials;
+mod surfaces;
 mod trouble;
 pub use materials::*;
+pub use surfaces::*;
 pub use trouble::*;
 
 optional_tables! {
@@ -408,6 +331,8 @@ optional_tables! {
         friction: Option<Spanned<FrictionParams>>,
         /// Share of critical damping.
         damping: Option<Spanned<f64>>,
+        /// Contact of a body with itself.
+        self_contact: Option<Spanned<SelfContactParams>>,
         /// Parameters of the mode `overlap`.
         overlap: OverlapParams,
         /// Parameters of the mode `potential`.
@@ -416,6 +341,12 @@ optional_tables! {
         penalty: PenaltyParams,
         /// Pairs with a mode or parameters of their own.
         pair: Vec<PairParams>,
+    }
+
+    /// `contact.self_contact` as a table.
+    SelfContactTable {
+        /// Spacings between the beginnings of particles that can fold onto each other.
+        folds: Option<Spanned<f64>>,
     }
 
     /// `contact.overlap`

@@ -81,6 +81,15 @@ impl Default for Potential {
     }
 }
 
+/// Contact of a body with itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SelfContact {
+    /// Its law.
+    pub overlap: Overlap,
+    /// Particles of one part are strangers if they began farther from each other than this (spacings).
+    pub folds: Option<f64>,
+}
+
 /// Parameters of [`ContactMode::Overlap`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Overlap {
@@ -100,7 +109,7 @@ impl Default for Overlap {
     fn default() -> Self {
         Self {
             stiffness: 4.0,
-            core_stiffness: 2.0,
+            core_stiffness: 3.0,
             core_radius: 0.6,
             direction: ContactDirection::Pair,
             resistance: Resistance::default(),
@@ -143,6 +152,8 @@ pub struct Penalty {
     pub stiffness: f64,
     /// Law of the force.
     pub law: PenaltyLaw,
+    /// Friction and damping.
+    pub resistance: Resistance,
 }
 
 impl Default for Penalty {
@@ -150,6 +161,7 @@ impl Default for Penalty {
         Self {
             stiffness: 2.0,
             law: PenaltyLaw::Hertz,
+            resistance: Resistance::default(),
         }
     }
 }

@@ -17,6 +17,12 @@ impl Loads {
     /// Most prescribed velocities and rigid bodies together: a particle keeps a bit of each.
     pub const MOST: usize = 32;
 
+    /// Whether any rigid surface has friction or damping.
+    #[must_use]
+    pub fn has_friction(&self) -> bool {
+        self.surfaces.iter().any(|s| s.resistance.is_any())
+    }
+
     /// Whether there is gravity.
     #[must_use]
     pub fn has_gravity(&self) -> bool {

@@ -19,7 +19,7 @@ pub(crate) use surface::tests as surface_tests;
 pub use body::{Axis, Body, Lattice, LatticeKind, Shape, SymmetryPlane};
 pub use contact::{
     ContactDirection, ContactMode, ContactPair, Overlap, Penalty, PenaltyLaw, Potential,
-    PotentialRange, Resistance,
+    PotentialRange, Resistance, SelfContact,
 };
 pub use control::{
     DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm, SphOptions, TimeStepOptions,
@@ -53,6 +53,8 @@ pub struct Case {
     pub contacts: Vec<ContactPair>,
     /// Contact between bodies that no entry of [`Case::contacts`] names.
     pub default_contact: ContactMode,
+    /// Contact of parts of one body with each other, of all bodies that are not rigid.
+    pub self_contact: Option<SelfContact>,
     /// Planes of symmetry, at most one for each axis.
     pub symmetry: Vec<SymmetryPlane>,
     /// Gravity, prescribed velocities and rigid surfaces.

@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub use mesh::{Mesh, MeshError};
 pub use triangle::{Feature, closest_on_triangle};
 
-use super::Motion;
+use super::{Motion, Resistance};
 
 /// A rigid surface, which pushes particles that come nearer than half a spacing to its kept side.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +27,8 @@ pub struct RigidSurface {
     pub inside: bool,
     /// Stiffness κ of the penalty relative to the p-wave modulus.
     pub stiffness: f64,
+    /// Friction and damping.
+    pub resistance: Resistance,
     /// Whether it acts on each of [`super::Case::bodies`].
     pub bodies: Vec<bool>,
     /// Its motion; fixed on free axes.
@@ -87,6 +89,17 @@ pub enum SurfaceShape {
     },
     /// Closed mesh of triangles.
     Mesh(Arc<Mesh>),
+}
+
+impl RigidSurface {
+    /// Bytes that its mesh takes, if it has one.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        match &self.shape {
+            SurfaceShape::Mesh(mesh) => mesh.memory(),
+            _ => 0,
+        }
+    }
 }
 
 /// The nearest place of a surface, as seen from a point.
@@ -275,6 +288,7 @@ pub(crate) mod tests {
             shape,
             inside,
             stiffness: 2.0,
+            resistance: Resistance::default(),
             bodies: Vec::new(),
             motion: Motion::default(),
             spin: None,

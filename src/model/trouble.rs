@@ -10,6 +10,8 @@ pub enum TroublePolicy {
     Stop,
     /// The particle is taken out and its mass, momentum and energy are booked.
     Remove,
+    /// The same, and it stays in the files, at rest where it was.
+    Freeze,
 }
 
 /// Ranges of a particle's state.

@@ -5,6 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::gather::Gatherer;
+use super::parts::Parted;
 use super::sequence::{HALO, MIRROR, MOVING, Sequence};
 use crate::sph::dispatch::{Vectorised, instructions};
 use crate::sph::lanes::{LANES, Lanes};
@@ -47,9 +48,23 @@ pub struct Chunk {
     ends: Vec<(u32, Among)>,
     /// The lists one after the other, and unused space.
     neighbours: Vec<u32>,
+    /// What [`ClusterLists::part`] has taken out of them; empty without self-contact.
+    pub(super) parted: Parted,
 }
 
 impl Chunk {
+    /// Exchanges the lists for others.
+    pub(super) fn swap(
+        &mut self,
+        clusters: &mut Vec<Cluster>,
+        ends: &mut Vec<(u32, Among)>,
+        neighbours: &mut Vec<u32>,
+    ) {
+        std::mem::swap(&mut self.clusters, clusters);
+        std::mem::swap(&mut self.ends, ends);
+        std::mem::swap(&mut self.neighbours, neighbours);
+    }
+
     /// The clusters, each with its neighbours in canonical order and what is among those.
     pub fn iter(&self) -> impl Iterator<Item = (&Cluster, &[u32], Among)> {
         self.clusters.iter().enumerate().map(|(k, cluster)| {
@@ -69,6 +84,8 @@ impl Chunk {
 pub struct Lengths {
     /// Largest smoothing length among its images (m).
     pub longest: f64,
+    /// Least range of lists (m): that of self-contact, which does not follow h; else zero.
+    pub least: f64,
     /// Whether all its images have that length.
     pub uniform: bool,
     /// Whether it is a rigid body, whose particles need no neighbours of their own.
@@ -96,10 +113,12 @@ impl Vectorised for Build<'_> {
             clusters,
             ends,
             neighbours,
+            parted: _,
         } = self.chunk;
         let (sequence, lengths) = (self.sequence, self.lengths);
         let Lengths {
             longest,
+            least,
             uniform,
             rigid,
         } = lengths;
@@ -113,6 +132,7 @@ impl Vectorised for Build<'_> {
             sequence,
             sources: self.sources,
             longest,
+            least,
             list: neighbours,
             used: 0,
             hints: [0; 64],
@@ -134,6 +154,7 @@ struct Lister<'a> {
     sequence: &'a Sequence,
     sources: usize,
     longest: f64,
+    least: f64,
     list: &'a mut Vec<u32>,
     used: usize,
     /// Where the last cluster began to read a column, by the last bits of the column's indices:
@@ -152,7 +173,7 @@ impl Lister<'_> {
                 f64::max(h, sequence.smoothing_lengths()[i as usize])
             })
         };
-        let far = (own + self.longest) * INFLATION;
+        let far = (own + self.longest).max(self.least) * INFLATION;
         let (low, high) = (cluster.lower.map(V::splat), cluster.upper.map(V::splat));
         let sources = self.sources;
         let along = sequence.along(sources);
@@ -181,7 +202,8 @@ impl Lister<'_> {
                         V::splat(far)
                     } else {
                         let other = V::read(eight.lengths);
-                        other.add(V::splat(own)).mul(V::splat(INFLATION))
+                        let both = other.add(V::splat(own)).max(V::splat(self.least));
+                        both.mul(V::splat(INFLATION))
                     };
                     let mut bits = square.less_than(range.mul(range));
                     let left = column.end - first;
@@ -334,8 +356,13 @@ impl ClusterLists {
                     + 8 * chunk.ends.capacity()
                     + size_of::<Cluster>() * chunk.clusters.capacity()
                     + chunk.gatherer.memory()
+                    + chunk.parted.memory()
             })
             .sum()
+    }
+
+    pub(super) fn chunks_mut(&mut self) -> &mut [Chunk] {
+        &mut self.chunks[..self.used]
     }
 
     fn lay_out(&mut self, sequence: &Sequence) {

@@ -61,9 +61,19 @@ impl PairList {
         self.receivers.is_empty()
     }
 
-    fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.receivers.clear();
         self.sources.clear();
+    }
+
+    /// Adds a receiver, if it has neighbours.
+    pub(super) fn add(&mut self, receiver: u32, neighbours: impl Iterator<Item = u32>) {
+        self.sources.extend(neighbours);
+        self.close(receiver);
+    }
+
+    pub(super) fn memory(&self) -> usize {
+        8 * self.receivers.capacity() + 4 * self.sources.capacity()
     }
 
     fn close(&mut self, receiver: u32) {
@@ -138,7 +148,7 @@ impl ForeignLists {
             .map(|chunk| {
                 4 * chunk.candidates.capacity()
                     + [&chunk.overlap, &chunk.potential, &chunk.penalty]
-                        .map(|list| 8 * list.receivers.capacity() + 4 * list.sources.capacity())
+                        .map(PairList::memory)
                         .iter()
                         .sum::<usize>()
             })
@@ -166,14 +176,21 @@ impl<B: Fn(u32) -> usize> Vectorised for Find<'_, B> {
         chunk.potential.clear();
         chunk.penalty.clear();
         let mut hints = [0; 64];
+        let mut strangers = self.own.parted.strangers.iter().peekable();
         for (cluster, _, _) in self.own.iter() {
             chunk.find_candidates::<V>(cluster, self.sequence, self.table, &mut hints);
-            if chunk.candidates.is_empty() {
+            if chunk.candidates.is_empty() && strangers.peek().is_none() {
                 continue;
             }
+            let candidates = std::mem::take(&mut chunk.candidates);
             for &receiver in &cluster.receivers[..cluster.lanes] {
-                chunk.test_candidates(receiver, self.sources, self.table, self.body_of);
+                let parted = strangers.next_if(|(at, _)| *at == receiver);
+                for list in [parted.map_or(&[][..], |(_, list)| list), &candidates] {
+                    chunk.test_candidates(receiver, list, self.sources, self.table, self.body_of);
+                }
+                chunk.close(receiver);
             }
+            chunk.candidates = candidates;
         }
     }
 }
@@ -223,13 +240,14 @@ impl ForeignChunk {
     fn test_candidates(
         &mut self,
         receiver: u32,
+        candidates: &[u32],
         sources: &[MotionRecord],
         table: &ForeignTable,
         body_of: &impl Fn(u32) -> usize,
     ) {
         let here = &sources[receiver as usize].position;
         let row = body_of(receiver) * table.bodies;
-        for &place in &self.candidates {
+        for &place in candidates {
             let there = &sources[place as usize].position;
             let r = [here[0] - there[0], here[1] - there[1], here[2] - there[2]];
             let pair = row + body_of(place);
@@ -242,6 +260,9 @@ impl ForeignChunk {
                 }
             }
         }
+    }
+
+    fn close(&mut self, receiver: u32) {
         self.overlap.close(receiver);
         self.potential.close(receiver);
         self.penalty.close(receiver);

@@ -6,10 +6,12 @@ mod columns;
 mod foreign;
 mod gather;
 pub mod oracle;
+mod parts;
 mod sequence;
 mod sort;
 
 pub use clusters::{Among, CHUNKS_AT_ONCE, Chunk, Cluster, ClusterLists, Lengths};
 pub use columns::ColumnGrid;
 pub use foreign::{ContactClass, ForeignChunk, ForeignLists, ForeignTable, PairList};
+pub use parts::{Kin, Part};
 pub use sequence::{Image, ImageFacts, Sequence};

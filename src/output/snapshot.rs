@@ -176,11 +176,19 @@ fn write_file(
     rows.plan(comm, &store.id[..store.owned()])?;
     let file = Writer::create(comm, path)?;
     write_grid(comm, &file, store, meta.time, rows)?;
-    for &quantity in quantities {
+    for quantity in with_frozen(store, quantities) {
         write_quantity(comm, &file, store, meta.case, quantity, rows)?;
     }
     write_meta(comm, &file, meta)?;
     file.close()
+}
+
+/// The quantities chosen, and which particles are frozen where any may be.
+fn with_frozen(store: &ParticleStore, chosen: &[Quantity]) -> impl Iterator<Item = Quantity> {
+    let name = |quantity: &Quantity| quantity.name();
+    let missing = store.held(FieldUse::FREEZE).map(Quantity::Field);
+    let missing = missing.filter(move |field| !chosen.iter().any(|q| name(q) == name(field)));
+    chosen.iter().copied().chain(missing)
 }
 
 /// Points and their cells.

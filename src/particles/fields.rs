@@ -83,10 +83,32 @@ impl FieldUse {
     pub const NORMALISED: Self = Self(16384);
     /// Held only with `penalty` contact.
     pub const PENALTY: Self = Self(32768);
+    /// Held only where rigid surfaces have friction or damping.
+    pub const SURFACE_FRICTION: Self = Self(1 << 16);
+    /// Held only with self-contact.
+    pub const SELF_CONTACT: Self = Self(1 << 17);
+    /// Held only where folds are in self-contact.
+    pub const FOLDS: Self = Self(1 << 18);
+    /// Halo particles need it when parts are told.
+    pub const HALO_PARTS: Self = Self(1 << 19);
+    /// Held only where particles in trouble are frozen.
+    pub const FREEZE: Self = Self(1 << 20);
     /// Held only where stress points carry the stress.
-    pub const STRESS_POINTS: Self = Self(65536);
+    pub const STRESS_POINTS: Self = Self(1 << 21);
     /// Held only where the case has use for it.
-    pub const OPTIONAL: Self = Self(128 | 256 | 512 | 1024 | 2048 | 4096 | 16384 | 32768 | 65536);
+    pub const OPTIONAL: Self = Self::CONTACT
+        .with(Self::BALSARA)
+        .with(Self::CONDUCTION)
+        .with(Self::XSPH)
+        .with(Self::LOADS)
+        .with(Self::FRICTION)
+        .with(Self::NORMALISED)
+        .with(Self::PENALTY)
+        .with(Self::SURFACE_FRICTION)
+        .with(Self::SELF_CONTACT)
+        .with(Self::FOLDS)
+        .with(Self::FREEZE)
+        .with(Self::STRESS_POINTS);
     /// In snapshots at all.
     pub const SNAPSHOT_OR_ON_DEMAND: Self = Self(32 | 64);
     /// What a rank sends with a particle that leaves it.
@@ -108,6 +130,12 @@ impl FieldUse {
     #[must_use]
     pub const fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
+    }
+
+    /// This set without `other`.
+    #[must_use]
+    pub const fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
     }
 }
 
@@ -247,8 +275,22 @@ particle_fields! {
     slip_rate: Vector, "m/s", STATE | ON_DEMAND | FRICTION;
     /// Whether friction is kinetic (1) or static (0).
     sliding: Index, "", STATE | ON_DEMAND | FRICTION;
+    /// Elastic tangential displacement against rigid surfaces, by which their friction holds.
+    surface_slip: Vector, "m", STATE | ON_DEMAND | SURFACE_FRICTION;
+    /// Tangential velocity against rigid surfaces.
+    surface_slip_rate: Vector, "m/s", STATE | ON_DEMAND | SURFACE_FRICTION;
+    /// Whether friction of rigid surfaces is kinetic (1) or static (0).
+    surface_sliding: Index, "", STATE | ON_DEMAND | SURFACE_FRICTION;
+    /// Smallest id among the particles that it is connected with.
+    part: Id, "", STATE | HALO_MOTION | HALO_PARTS | SNAPSHOT | SELF_CONTACT;
+    /// Symmetry planes that the part reaches across: a set of bits.
+    part_planes: Index, "", STATE | HALO_MOTION | HALO_PARTS | SELF_CONTACT;
+    /// Position at the start.
+    reference_position: Vector, "m", STATE | HALO_MOTION | FOLDS;
     /// Which loads and rigid bodies prescribe its velocity: a set of bits, in the input's order.
     load: Index, "", STATE | ON_DEMAND | LOADS;
+    /// Whether it left the range of its state and stands still, outside of all sums (1).
+    frozen: Index, "", STATE | ON_DEMAND | FREEZE;
     /// Mass of the material whose stress a stress point carries; zero for velocity particles.
     stress_mass: Scalar, "kg", STATE | HALO_MOTION | ON_DEMAND | STRESS_POINTS;
     /// Acceleration of a stress point, which follows the velocity particles about it.
@@ -285,7 +327,7 @@ particle_fields! {
     friction_power: Scalar, "W", HALO_FRICTION | FRICTION;
     /// Energy of sticking friction.
     friction_energy: Scalar, "J", FRICTION;
-    /// Outward normal of a boundary particle, longer at corners, zero inside: of `penalty` contact.
+    /// Outward normal of a boundary particle, shorter at corners, zero inside: of `penalty` contact.
     boundary_normal: Vector, "", HALO_CONTACT | ON_DEMAND | PENALTY;
     /// Contact energy.
     contact_energy: Scalar, "J", ON_DEMAND | CONTACT;

@@ -136,6 +136,18 @@ impl ParticleStore {
         }
     }
 
+    /// Appends the owned particles of another store, with zeros for what that does not hold; drops
+    /// the halo.
+    pub fn append(&mut self, other: &Self) {
+        let first = self.owned;
+        self.resize_owned(first + other.owned);
+        for field in self.held(FieldUse::ALL) {
+            let size = field.kind.bytes();
+            let bytes = &mut self.bytes_mut(field.id)[first * size..];
+            bytes.copy_from_slice(&other.bytes_or_zeros(field)[..other.owned * size]);
+        }
+    }
+
     /// Sets the number of halo particles.
     pub fn resize_halo(&mut self, halo: usize) {
         self.halo = halo;

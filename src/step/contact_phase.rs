@@ -2,13 +2,15 @@
 
 use rayon::prelude::*;
 
+use super::contact_sums::ContactSums;
 use super::search::{GRAIN, Search};
 use super::simulation::Simulation;
 use crate::comm::Comm;
-use crate::contact::overlap::{self, Fraction, Hold};
+use crate::contact::hold::{self, Hold};
+use crate::contact::overlap::{self, Fraction};
 use crate::contact::{BodyReaction, ContactTable, ContactView, Reaction, penalty, potential};
 use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, ForeignChunk};
-use crate::particles::{FieldUse, ParticleStore};
+use crate::particles::{FieldUse, ParticleStore, Scatter};
 
 /// Results of each task before they go into the store, kept from step to step.
 #[derive(Default)]
@@ -139,15 +141,9 @@ impl Simulation {
             .tasks
             .par_iter_mut()
             .zip(self.search.foreign.chunks())
+            .zip(self.search.clusters.chunks())
             .with_max_len(CHUNKS_AT_ONCE)
-            .for_each(|(task, chunk)| {
-                task.holds.clear();
-                for (place, neighbours) in chunk.overlap.iter() {
-                    let base = view.images[place as usize].base();
-                    let hold = overlap::hold(&view, place, neighbours);
-                    task.holds.push((base, hold));
-                }
-            });
+            .for_each(|((task, foreign), own)| task.hold(&view, foreign, own));
         self.store_holds();
         self.halo.post(comm, &self.store, FieldUse::HALO_FRICTION);
         self.halo.finish(&mut self.store, FieldUse::HALO_FRICTION);
@@ -252,7 +248,7 @@ impl Simulation {
         if self.contact.is_active() {
             self.run_reactions(dt);
             self.store_reactions();
-            self.surface_forces();
+            self.surface_forces(dt);
         }
         for force in self
             .sweeps
@@ -260,7 +256,7 @@ impl Simulation {
             .iter()
             .flat_map(|part| &part.forces)
         {
-            self.sums.add_plane_force(force);
+            self.sums.contact.add_plane_force(force);
         }
     }
 
@@ -281,44 +277,113 @@ impl Simulation {
             });
     }
 
+    /// What contact does to each particle, and the sums of it. Each thread takes every so manieth
+    /// task, since those that have contact stand together.
     fn store_reactions(&mut self) {
-        let friction = self.contact.has_friction();
         let (store, sums) = (&mut self.store, &mut self.sums);
         fill(&mut store.contact_acceleration, [0.0; 3]);
         fill(&mut store.contact_energy, 0.0);
         fill(&mut store.contact_stiffness, 0.0);
-        for booked in self.contact_phase.tasks.iter().flat_map(|t| &t.reactions) {
+        let books = Books {
+            acceleration: Scatter::new(&mut store.contact_acceleration),
+            energy: Scatter::new(&mut store.contact_energy),
+            stiffness: Scatter::new(&mut store.contact_stiffness),
+            heating: Scatter::new(&mut store.d_specific_energy_dt),
+            approach: Scatter::new(&mut store.approach_speed),
+            work: Scatter::new(&mut store.work),
+            mass: &store.mass,
+            enclosed_time: &store.enclosed_time,
+            foreign_fraction: &store.foreign_fraction,
+            excess: &store.contact_excess,
+            enclosed_limit: sums.enclosed_limit,
+            safety: self.case.time_step.contact,
+            friction: self.contact.has_friction(),
+        };
+        let (tasks, threads) = (&self.contact_phase.tasks, sums.parts.len());
+        let parts = sums.parts.par_iter_mut().enumerate();
+        parts.with_max_len(1).for_each(|(thread, part)| {
+            part.clear();
+            for task in tasks.iter().skip(thread).step_by(threads) {
+                books.book(task, part);
+            }
+        });
+        for part in &sums.parts {
+            sums.contact.merge(part);
+        }
+    }
+}
+
+/// Where reactions go, and what of the particles the sums need.
+struct Books<'a> {
+    acceleration: Scatter<'a, [f64; 3]>,
+    energy: Scatter<'a, f64>,
+    stiffness: Scatter<'a, f64>,
+    heating: Scatter<'a, f64>,
+    approach: Scatter<'a, f64>,
+    work: Scatter<'a, u32>,
+    mass: &'a [f64],
+    enclosed_time: &'a [f64],
+    foreign_fraction: &'a [f64],
+    excess: &'a [f64],
+    enclosed_limit: f64,
+    /// Safety factor of the contact step.
+    safety: f64,
+    friction: bool,
+}
+
+impl Books<'_> {
+    #[inline]
+    fn book(&self, task: &Task, sums: &mut ContactSums) {
+        for booked in &task.reactions {
+            self.book_particle(booked);
             let i = booked.base;
-            let per_mass = 1.0 / store.mass[i];
-            for a in 0..3 {
-                store.contact_acceleration[i][a] += booked.force[a] * per_mass;
-            }
-            let work = u32::try_from(FOREIGN_WORK * booked.neighbours);
-            store.work[i] = store.work[i].saturating_add(work.unwrap_or(u32::MAX));
-            store.contact_energy[i] += booked.energy;
-            store.contact_stiffness[i] += booked.stiffness;
-            if friction {
-                store.d_specific_energy_dt[i] += booked.heat * per_mass;
-                // A step of m/c is stable: as if it were that of a spring, 2 √(m/k).
-                let rate = booked.dashpot * per_mass;
-                store.contact_stiffness[i] += 4.0 * store.mass[i] * (rate * rate);
-            }
-            store.approach_speed[i] = store.approach_speed[i].max(booked.approach);
-            sums.contact_energy.add(booked.energy);
+            sums.energy.add(booked.energy);
             sums.add_plane_force(&booked.from_mirrors);
             let inside = booked.closest < INTERPENETRATION_DISTANCE
-                || store.enclosed_time[i] > sums.enclosed_limit;
-            sums.note_particle(inside, booked.closest, store.foreign_fraction[i]);
+                || self.enclosed_time[i] > self.enclosed_limit;
+            sums.note_particle(inside, booked.closest, self.foreign_fraction[i]);
         }
-        for (i, body, reaction) in self.contact_phase.tasks.iter().flat_map(|t| &t.by_body) {
-            let stiffness = store.contact_stiffness[*i];
+        for (i, body, reaction) in &task.by_body {
+            // SAFETY: a particle is receiver in one task, and each thread has its own tasks.
+            let stiffness = unsafe { *self.stiffness.slot(*i) };
             let dt = if stiffness > 0.0 {
-                2.0 * self.case.time_step.contact * (store.mass[*i] / stiffness).sqrt()
+                2.0 * self.safety * (self.mass[*i] / stiffness).sqrt()
             } else {
                 f64::INFINITY
             };
-            sums.note_pair(*body, reaction, store.contact_excess[*i], dt);
+            sums.note_pair(*body, reaction, self.excess[*i], dt);
         }
+    }
+
+    #[inline]
+    fn book_particle(&self, booked: &Booked) {
+        let (i, mass) = (booked.base, self.mass[booked.base]);
+        let per_mass = 1.0 / mass;
+        // SAFETY: a particle is receiver in one task, and each thread has its own tasks.
+        let (acceleration, energy, stiffness, heating, approach, work) = unsafe {
+            (
+                self.acceleration.slot(i),
+                self.energy.slot(i),
+                self.stiffness.slot(i),
+                self.heating.slot(i),
+                self.approach.slot(i),
+                self.work.slot(i),
+            )
+        };
+        for a in 0..3 {
+            acceleration[a] += booked.force[a] * per_mass;
+        }
+        let more = u32::try_from(FOREIGN_WORK * booked.neighbours);
+        *work = work.saturating_add(more.unwrap_or(u32::MAX));
+        *energy += booked.energy;
+        *stiffness += booked.stiffness;
+        if self.friction {
+            *heating += booked.heat * per_mass;
+            // A step of m/c is stable: as if it were that of a spring, 2 √(m/k).
+            let rate = booked.dashpot * per_mass;
+            *stiffness += 4.0 * mass * (rate * rate);
+        }
+        *approach = approach.max(booked.approach);
     }
 }
 
@@ -345,6 +410,25 @@ impl Task {
         }
     }
 
+    /// Friction and damping of one chunk's receivers, which stand in the same order in all lists.
+    fn hold(&mut self, view: &ContactView, foreign: &ForeignChunk, own: &Chunk) {
+        self.holds.clear();
+        let mut overlap = foreign.overlap.iter().peekable();
+        let mut penalty = foreign.penalty.iter().peekable();
+        for (cluster, _, _) in own.iter() {
+            for &place in &cluster.receivers[..cluster.lanes] {
+                let mine = overlap.next_if(|(at, _)| *at == place);
+                let theirs = penalty.next_if(|(at, _)| *at == place);
+                if mine.is_none() && theirs.is_none() {
+                    continue;
+                }
+                let [mine, theirs] = [mine, theirs].map(|list| list.map_or(&[][..], |(_, n)| n));
+                let hold = hold::hold(view, place, mine, theirs);
+                self.holds.push((view.images[place as usize].base(), hold));
+            }
+        }
+    }
+
     /// Reactions of one chunk's receivers, mode after mode.
     fn react<const FRICTION: bool>(&mut self, view: &ContactView, chunk: &ForeignChunk) {
         self.reactions.clear();
@@ -361,7 +445,7 @@ impl Task {
         }
         for (place, neighbours) in chunk.penalty.iter() {
             self.reaction.clear();
-            penalty::react(view, place, neighbours, &mut self.reaction);
+            penalty::react::<FRICTION>(view, place, neighbours, &mut self.reaction);
             self.keep(view, place, neighbours.len());
         }
     }

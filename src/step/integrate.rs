@@ -10,12 +10,12 @@
 //! energy rate is `E − a^sph · (v̄ − v^p)`: kinetic plus internal energy at whole steps is then
 //! constant to round-off for the SPH forces, without stored pair forces and without another sweep.
 
-use rayon::iter::repeat_n;
 use rayon::prelude::*;
 
 use super::loads::{Drive, Free, Goal, LoadStep};
 use super::search::GRAIN;
 use super::simulation::Simulation;
+use super::vote::{ABSTAIN, Moved, Vote};
 use crate::diagnose::exact_sum::ExactSum;
 use crate::model::SmoothingLength;
 
@@ -65,7 +65,6 @@ impl Simulation {
     /// predictions for its end.
     pub(super) fn kick_and_drift(&mut self, dt: f64, end: f64) {
         self.loads.prepare(&self.case, self.state.time, end);
-        self.book_contact_work(dt, 0.25 * dt);
         self.book_loads(dt, true);
         self.book_plane_force(dt);
         self.store.resize_halo(0);
@@ -75,89 +74,109 @@ impl Simulation {
         self.fold_at_planes();
     }
 
-    /// One of the two half kicks of the particles, with all that acts on them beside stress.
-    fn half_kick(&mut self, dt: f64, goal: Goal) {
-        let contact = std::mem::take(&mut self.store.contact_acceleration);
-        let owned = self.store.owned();
-        let gravity = self.loads.gravity;
-        if self.loads.drives() {
-            let bits = std::mem::take(&mut self.store.load);
-            let loads = std::mem::take(&mut self.loads);
-            let outside = (0..owned).into_par_iter().map(|i| {
-                let contact = contact.get(i).copied().unwrap_or_default();
-                (add(&contact, &gravity), loads.of(bits[i]))
-            });
-            self.half_kick_by(dt, goal, outside);
-            (self.store.load, self.loads) = (bits, loads);
-        } else if self.contact.is_active() {
-            let outside = contact.par_iter().map(|c| (add(c, &gravity), Free));
-            self.half_kick_by(dt, goal, outside);
-        } else {
-            self.half_kick_by(dt, goal, repeat_n((gravity, Free), owned));
-        }
-        self.store.contact_acceleration = contact;
+    /// Second half kick of a step `dt` (s), zero at the start of a case. Gives this rank's vote on
+    /// the next one, taken while each particle is at hand.
+    #[must_use]
+    pub(super) fn kick(&mut self, dt: f64) -> Vote {
+        let vote = self.half_kick(dt, Goal::End);
+        self.book_loads(dt, false);
+        vote
     }
 
-    /// [`Self::half_kick`], given the accelerations by contact and gravity (m/s²) and loads.
+    /// One of the two half kicks of the particles, with all that acts on them beside stress, and
+    /// the work of contact in it. Only the second one votes.
+    fn half_kick(&mut self, dt: f64, goal: Goal) -> Vote {
+        let contact = std::mem::take(&mut self.store.contact_acceleration);
+        let bits = std::mem::take(&mut self.store.load);
+        let loads = std::mem::take(&mut self.loads);
+        let gravity = loads.gravity;
+        let kick = Kick { dt, gravity };
+        let (work, vote) = if loads.drives() {
+            self.half_kick_by(kick, goal, |i| {
+                (
+                    contact.get(i).copied().unwrap_or_default(),
+                    loads.of(bits[i]),
+                )
+            })
+        } else if self.contact.is_active() {
+            self.half_kick_by(kick, goal, |i| (contact[i], Free))
+        } else {
+            self.half_kick_by(kick, goal, |_| ([0.0; 3], Free))
+        };
+        self.sums.contact_work.merge(&work);
+        (self.loads, self.store.load) = (loads, bits);
+        self.store.contact_acceleration = contact;
+        vote
+    }
+
+    /// [`Self::half_kick`], given the acceleration by contact (m/s²) and the loads of a particle.
     fn half_kick_by<D: Drive>(
         &mut self,
-        dt: f64,
+        kick: Kick,
         goal: Goal,
-        outside: impl IndexedParallelIterator<Item = ([f64; 3], D)>,
-    ) {
+        outside: impl Fn(usize) -> ([f64; 3], D) + Sync,
+    ) -> (ExactSum, Vote) {
         match goal {
-            Goal::Middle => self.kick_and_drift_by(dt, outside),
-            Goal::End => self.kick_by(dt, outside),
+            Goal::Middle => (self.kick_and_drift_by(kick, outside), ABSTAIN),
+            Goal::End => self.kick_by(kick, outside),
         }
     }
 
-    /// [`Self::kick_and_drift`] of the particles.
+    /// [`Self::kick_and_drift`] of the particles. Gives the work of contact (J).
     fn kick_and_drift_by<D: Drive>(
         &mut self,
-        dt: f64,
-        outside: impl IndexedParallelIterator<Item = ([f64; 3], D)>,
-    ) {
+        kick: Kick,
+        outside: impl Fn(usize) -> ([f64; 3], D) + Sync,
+    ) -> ExactSum {
         let rule = SmoothingRule::new(self.case.sph.smoothing_length, self.case.dimension);
         let (table, reference_h) = (&self.contact, &self.reference_h);
+        let dt = kick.dt;
         let half = 0.5 * dt;
         let per_half = LoadStep::per_half(dt);
         let store = &mut self.store;
         (
-            &mut store.velocity,
-            &mut store.specific_energy,
-            &mut store.position,
-            &mut store.predicted_velocity,
-            &mut store.predicted_density,
-            &mut store.smoothing_length,
-            outside,
-            (
-                &store.acceleration,
-                &store.d_specific_energy_dt,
-                &store.velocity_gradient,
-                &store.density,
-                &store.body,
-            ),
+            store.velocity.par_chunks_mut(GRAIN),
+            store.specific_energy.par_chunks_mut(GRAIN),
+            store.position.par_chunks_mut(GRAIN),
+            store.predicted_velocity.par_chunks_mut(GRAIN),
+            store.predicted_density.par_chunks_mut(GRAIN),
+            store.smoothing_length.par_chunks_mut(GRAIN),
         )
             .into_par_iter()
-            .with_min_len(GRAIN)
-            .for_each(
-                |(v, e, x, v_p, rho_p, h, (o, drive), (a, de, l, &rho, &body))| {
-                    let mut total = add(a, &o);
-                    drive.steer(Goal::Middle, v, per_half, &mut total);
-                    *e += half * (de - 0.25 * dt * dot(a, &total));
-                    *v = add_scaled(v, half, &total);
-                    drive.set(Goal::Middle, v);
-                    for k in 0..3 {
-                        x[k] += dt * v[k];
+            .enumerate()
+            // same bits in any order: exact sums are integers
+            .fold(
+                ExactSum::default,
+                |mut work, (chunk, (v, e, x, v_p, rho_p, h))| {
+                    for k in 0..v.len() {
+                        let i = chunk * GRAIN + k;
+                        let (contact, drive) = outside(i);
+                        let a = &store.acceleration[i];
+                        let mut total = kick.total(a, &contact);
+                        if contact != [0.0; 3] {
+                            let mut mean = add_scaled(&v[k], 0.25 * dt, &total);
+                            drive.correct_mean(&v[k], &mut mean);
+                            work.add(half * store.mass[i] * dot(&contact, &mean));
+                        }
+                        drive.steer(Goal::Middle, &v[k], per_half, &mut total);
+                        e[k] += half * (store.d_specific_energy_dt[i] - 0.25 * dt * dot(a, &total));
+                        v[k] = add_scaled(&v[k], half, &total);
+                        drive.set(Goal::Middle, &mut v[k]);
+                        x[k] = add_scaled(&x[k], dt, &v[k]);
+                        v_p[k] = add_scaled(&v[k], half, &total);
+                        drive.set(Goal::End, &mut v_p[k]);
+                        let l = &store.velocity_gradient[i];
+                        let strain = half * (l[0] + l[4] + l[8]);
+                        rho_p[k] = store.density[i] * ((1.0 - strain) / (1.0 + strain));
+                        let body = store.body[i] as usize;
+                        let reference = 1.0 / table.inverse_density(body);
+                        h[k] = rule.length(reference_h[body], reference / rho_p[k]);
                     }
-                    *v_p = add_scaled(v, half, &total);
-                    drive.set(Goal::End, v_p);
-                    let strain = half * (l[0] + l[4] + l[8]);
-                    *rho_p = rho * ((1.0 - strain) / (1.0 + strain));
-                    let reference = 1.0 / table.inverse_density(body as usize);
-                    *h = rule.length(reference_h[body as usize], reference / *rho_p);
+                    work
                 },
-            );
+            )
+            // same bits in any order, as above
+            .reduce(ExactSum::default, merged)
     }
 
     /// Particles that crossed a symmetry plane change places with their images.
@@ -178,6 +197,7 @@ impl Simulation {
                 crossed.extend(indices.map(|(k, _)| chunk * GRAIN + k));
             });
         for &i in self.crossed.iter().flatten() {
+            self.sums.crossings += 1;
             let before = self.store.velocity[i];
             mirrors.fold(&mut self.store, i);
             let after = self.store.velocity[i];
@@ -196,73 +216,87 @@ impl Simulation {
         }
     }
 
-    /// Second half kick of a step `dt` (s); zero at the start of a case.
-    pub(super) fn kick(&mut self, dt: f64) {
-        self.half_kick(dt, Goal::End);
-        self.book_contact_work(dt, -0.25 * dt);
-        self.book_loads(dt, false);
-    }
-
-    /// [`Self::kick`] of the particles.
+    /// [`Self::kick`] of the particles. Gives the work of contact (J) and the smallest vote.
     fn kick_by<D: Drive>(
         &mut self,
-        dt: f64,
-        outside: impl IndexedParallelIterator<Item = ([f64; 3], D)>,
-    ) {
+        kick: Kick,
+        outside: impl Fn(usize) -> ([f64; 3], D) + Sync,
+    ) -> (ExactSum, Vote) {
+        let dt = kick.dt;
         let half = 0.5 * dt;
         let per_half = LoadStep::per_half(dt);
-        let owned = self.store.owned();
-        let store = &mut self.store;
-        (
-            &mut store.velocity,
-            &mut store.specific_energy,
-            &mut store.d_specific_energy_dt,
-            &store.acceleration,
-            outside,
-            &store.predicted_velocity[..owned],
+        let mut velocity = std::mem::take(&mut self.store.velocity);
+        let mut energy = std::mem::take(&mut self.store.specific_energy);
+        let mut rate = std::mem::take(&mut self.store.d_specific_energy_dt);
+        let (voter, store) = (self.voter(), &self.store);
+        let none = || (ExactSum::default(), voter.ballot());
+        let (work, ballot) = (
+            velocity.par_chunks_mut(GRAIN),
+            energy.par_chunks_mut(GRAIN),
+            rate.par_chunks_mut(GRAIN),
         )
             .into_par_iter()
-            .with_min_len(GRAIN)
-            .for_each(|(v, e, de, a, (o, drive), v_p)| {
-                let mut total = add(a, &o);
-                drive.steer(Goal::End, v, per_half, &mut total);
-                *v = add_scaled(v, half, &total);
-                drive.set(Goal::End, v);
-                let late = [v[0] - v_p[0], v[1] - v_p[1], v[2] - v_p[2]];
-                *de -= dot(a, &late);
-                *e += half * (*de + 0.25 * dt * dot(a, &total));
-            });
-    }
-
-    /// Books the work of contact in a half kick of a step `dt`, in which the mean velocity is
-    /// the velocity of a whole step plus `shift` (s) times the acceleration.
-    fn book_contact_work(&mut self, dt: f64, shift: f64) {
-        if !self.contact.is_active() {
-            return;
-        }
-        let (store, loads, gravity) = (&self.store, &self.loads, self.loads.gravity);
-        let work = (store.contact_acceleration.par_chunks(GRAIN).enumerate())
-            // same bits in any order: exact sums are integers
-            .fold(ExactSum::default, |mut work, (chunk, accelerations)| {
-                for (k, c) in accelerations.iter().enumerate() {
-                    if *c == [0.0; 3] {
-                        continue;
-                    }
+            .enumerate()
+            // same bits in any order: exact sums are integers, and the smallest vote is one
+            .fold(none, |(mut work, mut ballot), (chunk, (v, e, de))| {
+                for k in 0..v.len() {
                     let i = chunk * GRAIN + k;
-                    let total = add(&store.acceleration[i], &add(c, &gravity));
-                    let mut mean = add_scaled(&store.velocity[i], shift, &total);
-                    if let Some(&bits) = store.load.get(i) {
-                        loads.correct_mean(bits, &store.velocity[i], &mut mean);
+                    let (contact, drive) = outside(i);
+                    let a = &store.acceleration[i];
+                    let forces = kick.total(a, &contact);
+                    let mut total = forces;
+                    drive.steer(Goal::End, &v[k], per_half, &mut total);
+                    v[k] = add_scaled(&v[k], half, &total);
+                    drive.set(Goal::End, &mut v[k]);
+                    if contact != [0.0; 3] {
+                        let mut mean = add_scaled(&v[k], -0.25 * dt, &forces);
+                        drive.correct_mean(&v[k], &mut mean);
+                        work.add(half * store.mass[i] * dot(&contact, &mean));
                     }
-                    work.add(0.5 * dt * store.mass[i] * dot(c, &mean));
+                    let v_p = &store.predicted_velocity[i];
+                    let late = add_scaled(&v[k], -1.0, v_p);
+                    de[k] -= dot(a, &late);
+                    e[k] += half * (de[k] + 0.25 * dt * dot(a, &total));
+                    if !drive.is_rigid() {
+                        let moved = Moved {
+                            velocity: v[k],
+                            energy: e[k],
+                            contact,
+                        };
+                        voter.ask(i, &moved, &mut ballot);
+                    }
                 }
-                work
+                (work, ballot)
             })
             // same bits in any order, as above
-            .reduce(ExactSum::default, |mut all, part| {
-                all.merge(&part);
-                all
+            .reduce(none, |(work, ballot), (other, others)| {
+                (merged(work, other), ballot.min(others))
             });
-        self.sums.contact_work.merge(&work);
+        self.store.velocity = velocity;
+        self.store.specific_energy = energy;
+        self.store.d_specific_energy_dt = rate;
+        (work, ballot.vote())
     }
+}
+
+/// A half kick.
+#[derive(Debug, Clone, Copy)]
+struct Kick {
+    /// The whole step (s).
+    dt: f64,
+    gravity: [f64; 3],
+}
+
+impl Kick {
+    /// Acceleration (m/s²) by stress, contact and gravity.
+    #[inline(always)]
+    fn total(&self, stress: &[f64; 3], contact: &[f64; 3]) -> [f64; 3] {
+        add(stress, &add(contact, &self.gravity))
+    }
+}
+
+#[allow(clippy::needless_pass_by_value, reason = "the form of a reduction")]
+fn merged(mut all: ExactSum, part: ExactSum) -> ExactSum {
+    all.merge(&part);
+    all
 }

@@ -7,7 +7,7 @@
 //! has no mass of its own here: what holds it gives the reaction of contact, `J = −½Δt m a_c`.
 
 use super::simulation::Simulation;
-use super::surface_forces::SurfaceStep;
+use super::surface_motion::SurfaceStep;
 use crate::model::{Case, Loads, Motion};
 
 /// Which of the two prescribed velocities of a step.
@@ -55,6 +55,11 @@ pub(super) trait Drive: Copy + Send {
     fn steer(&self, goal: Goal, v: &[f64; 3], per_half: f64, total: &mut [f64; 3]);
     /// Sets what is prescribed of a velocity (m/s).
     fn set(&self, goal: Goal, v: &mut [f64; 3]);
+    /// Corrects the mean velocity (m/s) in a half kick, as forces make it, of a particle with the
+    /// velocity `v` (m/s) at the whole step that begins or ends it.
+    fn correct_mean(&self, v: &[f64; 3], mean: &mut [f64; 3]);
+    /// Whether the particle is part of a rigid body.
+    fn is_rigid(&self) -> bool;
 }
 
 /// No load anywhere.
@@ -66,6 +71,12 @@ impl Drive for Free {
     fn steer(&self, _: Goal, _: &[f64; 3], _: f64, _: &mut [f64; 3]) {}
     #[inline(always)]
     fn set(&self, _: Goal, _: &mut [f64; 3]) {}
+    #[inline(always)]
+    fn correct_mean(&self, _: &[f64; 3], _: &mut [f64; 3]) {}
+    #[inline(always)]
+    fn is_rigid(&self) -> bool {
+        false
+    }
 }
 
 impl Drive for Prescribed {
@@ -85,6 +96,20 @@ impl Drive for Prescribed {
                 v[a] = self.velocity(goal)[a];
             }
         }
+    }
+
+    #[inline(always)]
+    fn correct_mean(&self, v: &[f64; 3], mean: &mut [f64; 3]) {
+        for a in 0..3 {
+            if self.by[a].is_some() {
+                mean[a] = 0.5 * (v[a] + self.middle[a]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn is_rigid(&self) -> bool {
+        self.rigid
     }
 }
 
@@ -191,21 +216,6 @@ impl LoadStep {
         all
     }
 
-    /// Corrects the mean velocity (m/s) in a half kick, as forces make it, of a particle with these
-    /// bits and the velocity `v` (m/s) at the whole step that begins or ends it.
-    #[inline]
-    pub(super) fn correct_mean(&self, bits: u32, v: &[f64; 3], mean: &mut [f64; 3]) {
-        if bits == 0 {
-            return;
-        }
-        let prescribed = self.of(bits);
-        for a in 0..3 {
-            if prescribed.by[a].is_some() {
-                mean[a] = 0.5 * (v[a] + prescribed.middle[a]);
-            }
-        }
-    }
-
     /// Clears the components of a vector that are prescribed to a particle with these bits.
     #[inline]
     pub(super) fn clear_prescribed(&self, bits: u32, vector: &mut [f64; 3]) {
@@ -273,6 +283,7 @@ impl Simulation {
                 ledger.impulse[a] += impulse[a];
             }
             ledger.work += work;
+            ledger.heat += 0.5 * dt * ledger.heat_power;
             self.state.contact_work -= work;
         }
     }
@@ -294,6 +305,10 @@ impl Simulation {
         for (ledger, push) in ledgers.zip(&self.sums.pushes) {
             ledger.force = std::array::from_fn(|a| push[a].value());
             ledger.torque = push[3].value();
+        }
+        let ledgers = self.state.loads[driven..].iter_mut();
+        for (ledger, heat) in ledgers.zip(&self.sums.push_heat) {
+            ledger.heat_power = heat.value();
         }
         self.book_pushes(dt, false);
         let state = &mut self.state;

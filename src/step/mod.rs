@@ -1,11 +1,14 @@
 //! The loop, the integrator and the time-step votes.
 
 mod contact_phase;
+mod contact_sums;
+mod freeze;
 mod integrate;
 mod loads;
 mod material_update;
 mod normalised;
 mod options;
+mod parts;
 mod post_mortem;
 mod search;
 mod setup;
@@ -15,11 +18,14 @@ mod stress_fit;
 mod stress_points;
 mod sums;
 mod surface_forces;
+mod surface_friction;
+mod surface_motion;
 mod sweeps;
 mod timers;
 mod trouble;
 mod vote;
 
+pub use options::bytes_of_options;
 pub use post_mortem::PostMortem;
 pub use setup::SetupError;
 pub use simulation::{Simulation, StepError};

@@ -7,8 +7,8 @@ use super::search::GRAIN;
 use super::simulation::Simulation;
 use crate::contact::ContactTable;
 use crate::domain::Mirrors;
-use crate::model::{Case, SphForm, SphOptions};
-use crate::particles::{FieldUse, resize};
+use crate::model::{Case, SphForm, SphOptions, TroublePolicy};
+use crate::particles::{FieldUse, resize, with_use};
 use crate::sph::kernel::Kernel;
 use crate::sph::normalised::NormalisedRecord;
 use crate::sph::options::{
@@ -77,10 +77,20 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> FieldUse {
         (FieldUse::PENALTY, contact.has_penalty()),
         (FieldUse::LOADS, driven),
         (FieldUse::FRICTION, contact.has_friction()),
+        (FieldUse::SELF_CONTACT, case.self_contact.is_some()),
+        (
+            FieldUse::FOLDS,
+            case.self_contact.is_some_and(|s| s.folds.is_some()),
+        ),
+        (FieldUse::SURFACE_FRICTION, case.loads.has_friction()),
         (FieldUse::BALSARA, sph.balsara),
         (FieldUse::CONDUCTION, sph.conduction > 0.0),
         (FieldUse::XSPH, sph.xsph > 0.0),
         (FieldUse::NORMALISED, sph.form == SphForm::Normalised),
+        (
+            FieldUse::FREEZE,
+            case.trouble.policy == TroublePolicy::Freeze,
+        ),
         (
             FieldUse::STRESS_POINTS,
             sph.form == SphForm::StressPoints,
@@ -89,6 +99,28 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> FieldUse {
     .into_iter()
     .filter(|&(_, used)| !used)
     .fold(FieldUse::default(), |all, (fields, _)| all.with(fields))
+}
+
+/// Bytes that the options of a case add beyond contact without friction: to an owned particle, and
+/// to a halo particle with its messages.
+#[must_use]
+pub fn bytes_of_options(case: &Case) -> [usize; 2] {
+    let contact = ContactTable::new(case);
+    let unused = unused_fields(case, &contact).with(FieldUse::CONTACT);
+    let fields = || with_use(FieldUse::OPTIONAL).filter(|field| !field.uses.meets(unused));
+    let owned: usize = fields().map(|field| field.kind.bytes()).sum();
+    let halo = fields().filter(|field| field.uses.meets(FieldUse::ANY_HALO));
+    let halo: usize = halo.map(|field| field.kind.bytes()).sum();
+    let set = OptionPhase::new(case, &contact.kernel).set;
+    let mut record = 0;
+    if set & !NORMALISED != 0 {
+        record += size_of::<OptionRecord>();
+    }
+    if set & NORMALISED != 0 {
+        record += size_of::<NormalisedRecord>();
+    }
+    // In the store, and in a message on its way out and in.
+    [owned + record, 3 * halo + record]
 }
 
 impl Simulation {

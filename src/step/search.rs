@@ -49,6 +49,19 @@ impl Search {
         }
     }
 
+    /// Whether two images of a group are within each other's support.
+    pub(super) fn in_support(&self, group: usize, i: u32, j: u32) -> bool {
+        let [a, b] = [i, j].map(|place| &self.motion[place as usize].position);
+        let r = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+        let lengths = self.sequence.smoothing_lengths();
+        let h = |place: u32| {
+            let own = lengths.get(place as usize);
+            own.copied().unwrap_or(self.lengths[group].longest)
+        };
+        let range = (h(i) + h(j)).max(self.lengths[group].least);
+        r[0] * r[0] + r[1] * r[1] + r[2] * r[2] < range * range
+    }
+
     pub(super) fn memory(&self) -> usize {
         self.sequence.memory()
             + self.motion.capacity() * size_of::<MotionRecord>()
@@ -67,6 +80,11 @@ fn group_lengths(case: &Case, contact: &ContactTable) -> Vec<Lengths> {
             let longest = h().fold(0.0, f64::max);
             Lengths {
                 longest,
+                least: if case.self_contact.is_some() {
+                    2.0 * longest
+                } else {
+                    0.0
+                },
                 uniform: constant && h().all(|h| h.to_bits() == longest.to_bits()),
                 rigid: contact.rigid[group],
             }
@@ -131,6 +149,8 @@ impl Simulation {
             }
         }
         search.clusters.build(&search.sequence, &search.lengths);
+        self.part_neighbours();
+        let (store, search) = (&self.store, &mut self.search);
         if self.contact.has_pairs() {
             let images = search.sequence.images();
             search.foreign.build(

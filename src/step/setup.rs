@@ -7,6 +7,7 @@ use thiserror::Error;
 use super::contact_phase::ContactPhase;
 use super::loads::{Drive, Goal, LoadStep};
 use super::options::{OptionPhase, unused_fields};
+use super::parts::Parts;
 use super::search::Search;
 use super::simulation::{Simulation, StepError};
 use super::state::{LoadState, PairState, Reason, RunState, Totals, Worst};
@@ -81,7 +82,7 @@ impl Simulation {
         let mut simulation = Self::empty(case, comm, &boxes);
         simulation.store = store;
         let unused = unused_fields(&simulation.case, &simulation.contact);
-        simulation.store.drop_fields(unused);
+        simulation.part_frozen(comm, unused);
         let [pairs, loads] = [simulation.state.pairs.len(), simulation.state.loads.len()];
         if [state.pairs.len(), state.loads.len()] != [pairs, loads] {
             return Err(SetupError::Foreign("it has other pairs of bodies or loads"));
@@ -136,6 +137,7 @@ impl Simulation {
         store.drop_fields(unused_fields(&case, &contact));
         let loads = LoadStep::new(&case);
         Self {
+            frozen: store.clone(),
             store,
             state: fresh_state(pairs.len(), case.load_names().count()),
             timers: Timers::default(),
@@ -154,13 +156,21 @@ impl Simulation {
             options: OptionPhase::new(&case, &contact.kernel),
             stress_points: StressPoints::default(),
             contact_phase: ContactPhase::default(),
+            parts: Parts::new(&case),
             surface_forces: SurfaceForces::new(&case),
             sums: StepSums::new(
                 pairs,
                 enclosed_limit,
                 contact.has_friction(),
                 loads.driven(),
-                loads.surfaces.len(),
+                [
+                    loads.surfaces.len(),
+                    if case.loads.has_friction() {
+                        loads.surfaces.len()
+                    } else {
+                        0
+                    },
+                ],
             ),
             loads,
             scratch: Vec::new(),
@@ -224,6 +234,7 @@ impl Simulation {
                 // With stress points that is left to them.
                 store.specific_energy[i] = if stressed { 0.0 } else { energy };
                 store.smoothing_length[i] = body.smoothing_length;
+                Self::begin_parts(store, i, first_id);
                 if self.loads.drives() {
                     let bits = self.loads.bits(case, b, &site.position);
                     let prescribed = self.loads.of(bits);
@@ -288,13 +299,13 @@ impl Simulation {
         self.state.capped_reliefs = capped[0];
         self.restore_order();
         self.evaluate(comm, 0.0);
-        self.kick(0.0);
+        let vote = self.kick(0.0);
         self.book_step(comm, 0.0);
         self.state.initial = self.totals(comm);
         self.state.initial.contact_energy = self.state.contact_energy;
         self.state.worst = Worst::default();
         self.diagnose(comm);
-        self.vote(comm)?;
+        self.vote(comm, vote)?;
         Ok(())
     }
 }
@@ -326,6 +337,7 @@ fn fresh_state(pairs: usize, loads: usize) -> RunState {
         contact_work: 0.0,
         plane_force: [0.0; 3],
         plane_impulse: [0.0; 3],
+        plane_crossings: 0,
         pairs: vec![PairState::default(); pairs],
         loads: vec![LoadState::default(); loads],
         work_put_in: 0.0,

@@ -7,6 +7,7 @@ use thiserror::Error;
 use super::contact_phase::ContactPhase;
 use super::loads::LoadStep;
 use super::options::OptionPhase;
+use super::parts::Parts;
 use super::search::Search;
 use super::state::{Reason, RunState};
 use super::stress_points::StressPoints;
@@ -53,6 +54,8 @@ pub struct Simulation {
     pub case: Case,
     /// This rank's particles.
     pub store: ParticleStore,
+    /// Particles that this rank has frozen: they are in files, and in nothing else.
+    pub(super) frozen: ParticleStore,
     /// The scalar state, equal on all ranks.
     pub state: RunState,
     /// Seconds by phase.
@@ -79,6 +82,7 @@ pub struct Simulation {
     pub(super) options: OptionPhase,
     pub(super) stress_points: StressPoints,
     pub(super) contact_phase: ContactPhase,
+    pub(super) parts: Parts,
     pub(super) loads: LoadStep,
     pub(super) surface_forces: SurfaceForces,
     pub(super) sums: StepSums,
@@ -127,14 +131,14 @@ impl Simulation {
         self.migration.migrate(comm, &self.slabs, &mut self.store);
         self.timers.lap(Phase::Migrate);
         self.evaluate(comm, dt);
-        self.kick(dt);
+        let vote = self.kick(dt);
         self.timers.lap(Phase::Integrate);
         self.state.step += 1;
         self.state.time = end;
         (self.state.last_dt, self.state.last_reason) = (dt, reason);
         self.book_step(comm, dt);
         self.updates += self.store.owned() as u64;
-        self.vote(comm)?;
+        self.vote(comm, vote)?;
         self.timers.lap(Phase::Vote);
         Ok(())
     }
@@ -145,6 +149,7 @@ impl Simulation {
         self.exchange_motion(comm);
         self.timers.lap(Phase::HaloMotion);
         self.find_neighbours();
+        self.find_parts(comm);
         self.timers.lap(Phase::Neighbours);
         self.velocity_gradient_and_material(dt);
         self.prepare_options(dt);
@@ -221,11 +226,13 @@ impl Simulation {
         let crossed: usize = self.crossed.iter().map(Vec::capacity).sum();
         let words = 8 * (self.scratch.capacity() + crossed) + 4 * self.order.capacity();
         self.store.memory()
+            + self.frozen.memory()
             + self.search.memory()
             + self.sweeps.memory()
             + self.options.memory()
             + self.stress_points.memory()
             + self.contact_phase.memory()
+            + self.parts.memory()
             + self.loads.memory()
             + self.surface_forces.memory()
             + self.sums.memory()

@@ -74,6 +74,12 @@ pub struct LoadState {
     pub impulse: [f64; 3],
     /// Work done on the model so far (J).
     pub work: f64,
+    /// What friction and damping of a surface turn into heat now (W).
+    #[serde(default)]
+    pub heat_power: f64,
+    /// Its time integral (J).
+    #[serde(default)]
+    pub heat: f64,
 }
 
 /// Sums over all particles that are no part of a rigid body (SI).
@@ -130,6 +136,9 @@ pub struct RunState {
     pub plane_force: [f64; 3],
     /// Its time integral, particles that crossed a plane included (N s).
     pub plane_impulse: [f64; 3],
+    /// How often a particle has crossed a symmetry plane so far.
+    #[serde(default)]
+    pub plane_crossings: i64,
     /// Ledgers of the pairs of bodies in contact.
     pub pairs: Vec<PairState>,
     /// Ledgers of prescribed velocities, rigid bodies and rigid surfaces.
@@ -164,7 +173,8 @@ impl RunState {
     /// Heat by friction and damping of contact so far (J).
     #[must_use]
     pub fn contact_heat(&self) -> f64 {
-        self.pairs.iter().map(|pair| pair.heat).sum()
+        self.pairs.iter().map(|pair| pair.heat).sum::<f64>()
+            + self.loads.iter().map(|load| load.heat).sum::<f64>()
     }
 
     /// Energy that went with removed particles, that of contact included (J).

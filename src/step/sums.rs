@@ -2,12 +2,12 @@
 
 use rayon::prelude::*;
 
+use super::contact_sums::ContactSums;
 use super::search::GRAIN;
 use super::simulation::Simulation;
 use super::state::{PairState, Totals};
 use super::trouble::Removed;
 use crate::comm::Comm;
-use crate::contact::BodyReaction;
 use crate::diagnose::exact_sum::ExactSum;
 use crate::model::SphForm;
 use crate::particles::ParticleStore;
@@ -16,49 +16,24 @@ use crate::particles::ParticleStore;
 pub struct StepSums {
     /// How long a particle may be enclosed before it counts as interpenetrated (s).
     pub(super) enclosed_limit: f64,
-    /// Whether there is friction or damping, whose heat is summed.
-    friction: bool,
     pub(super) contact_work: ExactSum,
-    pub(super) contact_energy: ExactSum,
     pub(super) crossing_impulse: [ExactSum; 3],
-    plane_force: [ExactSum; 3],
+    /// Particles that crossed a symmetry plane in this step.
+    pub(super) crossings: i64,
+    /// What contact adds up.
+    pub(super) contact: ContactSums,
+    /// The same by thread, until they are joined.
+    pub(super) parts: Vec<ContactSums>,
     /// Impulse and work of prescribed velocities and of rigid bodies in this step.
     pub(super) loads: Vec<[ExactSum; 4]>,
     /// Force of each rigid surface, and its torque about the axis that it turns about.
     pub(super) pushes: Vec<[ExactSum; 4]>,
-    pair_bodies: Vec<[usize; 2]>,
-    pairs: Vec<PairSums>,
-    interpenetrated: i64,
+    /// Heat of each, if they have friction or damping.
+    pub(super) push_heat: Vec<ExactSum>,
     /// Particles whose gradient has no correction, in the normalised form.
     pub(super) uncorrected: i64,
-    closest: f64,
-    foreign_fraction: f64,
     limbs: Vec<i64>,
     extremes: Vec<u64>,
-}
-
-struct PairSums {
-    force: [ExactSum; 3],
-    energy: ExactSum,
-    heat: ExactSum,
-    touching: i64,
-    largest_excess: f64,
-    closest: f64,
-    contact_dt: f64,
-}
-
-impl Default for PairSums {
-    fn default() -> Self {
-        Self {
-            force: Default::default(),
-            energy: ExactSum::default(),
-            heat: ExactSum::default(),
-            touching: 0,
-            largest_excess: 0.0,
-            closest: f64::INFINITY,
-            contact_dt: f64::INFINITY,
-        }
-    }
 }
 
 impl StepSums {
@@ -67,49 +42,39 @@ impl StepSums {
         enclosed_limit: f64,
         friction: bool,
         loads: usize,
-        surfaces: usize,
+        [surfaces, resisting]: [usize; 2],
     ) -> Self {
+        let contact = ContactSums::new(pair_bodies, friction);
         Self {
             enclosed_limit,
-            friction,
             contact_work: ExactSum::default(),
-            contact_energy: ExactSum::default(),
             crossing_impulse: Default::default(),
-            plane_force: Default::default(),
+            crossings: 0,
+            parts: vec![contact.clone(); rayon::current_num_threads()],
+            contact,
             loads: (0..loads).map(|_| Default::default()).collect(),
             pushes: (0..surfaces).map(|_| Default::default()).collect(),
-            pairs: pair_bodies.iter().map(|_| PairSums::default()).collect(),
-            pair_bodies,
-            interpenetrated: 0,
+            push_heat: vec![ExactSum::default(); resisting],
             uncorrected: 0,
-            closest: f64::INFINITY,
-            foreign_fraction: 0.0,
             limbs: Vec::new(),
             extremes: Vec::new(),
         }
     }
 
     pub(super) fn memory(&self) -> usize {
-        size_of::<PairSums>() * self.pairs.capacity()
+        let parts = self.parts.iter().map(ContactSums::memory).sum::<usize>();
+        self.contact.memory()
+            + parts
             + 4 * size_of::<ExactSum>() * (self.loads.capacity() + self.pushes.capacity())
+            + size_of::<ExactSum>() * self.push_heat.capacity()
             + 8 * (self.limbs.capacity() + self.extremes.capacity())
     }
 
     /// Forgets what belongs to the last positions; work and impulses of the step stay.
     pub(super) fn clear_rates(&mut self) {
-        self.contact_energy = ExactSum::default();
-        self.plane_force = Default::default();
+        self.contact.clear();
         self.pushes.fill_with(Default::default);
-        self.pairs.fill_with(PairSums::default);
-        self.interpenetrated = 0;
-        self.closest = f64::INFINITY;
-        self.foreign_fraction = 0.0;
-    }
-
-    pub(super) fn add_plane_force(&mut self, force: &[f64; 3]) {
-        for a in 0..3 {
-            self.plane_force[a].add(force[a]);
-        }
+        self.push_heat.fill_with(ExactSum::default);
     }
 
     /// Books impulse (N s) along `axis` and work (J) of a load.
@@ -127,46 +92,14 @@ impl StepSums {
         push[3].add(torque);
     }
 
-    pub(super) fn note_particle(&mut self, inside: bool, closest: f64, fraction: f64) {
-        self.interpenetrated += i64::from(inside);
-        self.closest = self.closest.min(closest);
-        self.foreign_fraction = self.foreign_fraction.max(fraction);
-    }
-
-    /// Books what a body does to a particle of `body` with excess `excess` and contact step `dt`.
-    pub(super) fn note_pair(&mut self, body: usize, reaction: &BodyReaction, excess: f64, dt: f64) {
-        let bodies = [body.min(reaction.body), body.max(reaction.body)];
-        let Some(index) = self.pair_bodies.iter().position(|&pair| pair == bodies) else {
-            return;
-        };
-        let pair = &mut self.pairs[index];
-        if body == bodies[0] {
-            for a in 0..3 {
-                pair.force[a].add(reaction.force[a]);
-            }
-        }
-        pair.energy.add(reaction.energy);
-        if self.friction {
-            pair.heat.add(reaction.heat);
-        }
-        pair.touching += i64::from(excess > 0.0);
-        pair.largest_excess = pair.largest_excess.max(excess);
-        pair.closest = pair.closest.min(reaction.closest);
-        pair.contact_dt = pair.contact_dt.min(dt);
-    }
-
     fn exact(&mut self) -> impl Iterator<Item = &mut ExactSum> {
-        let friction = self.friction;
-        [&mut self.contact_work, &mut self.contact_energy]
+        [&mut self.contact_work]
             .into_iter()
             .chain(&mut self.crossing_impulse)
-            .chain(&mut self.plane_force)
             .chain(self.loads.iter_mut().flatten())
             .chain(self.pushes.iter_mut().flatten())
-            .chain(self.pairs.iter_mut().flat_map(move |pair| {
-                let heat = friction.then_some(&mut pair.heat);
-                pair.force.iter_mut().chain([&mut pair.energy]).chain(heat)
-            }))
+            .chain(&mut self.push_heat)
+            .chain(self.contact.exact())
     }
 
     /// Joins the sums of all ranks.
@@ -177,40 +110,23 @@ impl StepSums {
         let mut limbs = std::mem::take(&mut self.limbs);
         limbs.clear();
         gather_limbs(self.exact(), &mut limbs);
-        limbs.extend([self.interpenetrated, self.uncorrected]);
-        limbs.extend(self.pairs.iter().map(|pair| pair.touching));
+        limbs.extend([self.uncorrected, self.crossings]);
+        limbs.extend(self.contact.counts().map(|count| *count));
         comm.sum_i64(&mut limbs);
         let mut rest = scatter_limbs(self.exact(), &limbs).iter();
         let mut next = || rest.next().copied().unwrap_or(0);
-        self.interpenetrated = next();
         self.uncorrected = next();
-        for pair in &mut self.pairs {
-            pair.touching = next();
-        }
+        self.crossings = next();
+        self.contact.counts().for_each(|count| *count = next());
         self.limbs = limbs;
         self.reduce_extremes(comm);
     }
 
-    /// Positive doubles order as their bits do, and a largest value is the smallest complement.
     fn reduce_extremes(&mut self, comm: &Comm) {
         let mut bits = std::mem::take(&mut self.extremes);
-        bits.clear();
-        bits.extend([self.closest.to_bits(), !self.foreign_fraction.to_bits()]);
-        for pair in &self.pairs {
-            bits.extend([
-                pair.closest.to_bits(),
-                pair.contact_dt.to_bits(),
-                !pair.largest_excess.to_bits(),
-            ]);
-        }
+        self.contact.write_extremes(&mut bits);
         comm.min_u64(&mut bits);
-        self.closest = f64::from_bits(bits[0]);
-        self.foreign_fraction = f64::from_bits(!bits[1]);
-        for (pair, bits) in self.pairs.iter_mut().zip(bits[2..].chunks_exact(3)) {
-            pair.closest = f64::from_bits(bits[0]);
-            pair.contact_dt = f64::from_bits(bits[1]);
-            pair.largest_excess = f64::from_bits(!bits[2]);
-        }
+        self.contact.read_extremes(&bits);
         self.extremes = bits;
     }
 }
@@ -259,16 +175,17 @@ impl Simulation {
         }
         self.book_load_sums(dt);
         let (sums, state) = (&mut self.sums, &mut self.state);
-        state.contact_energy = sums.contact_energy.value();
+        state.contact_energy = sums.contact.energy.value();
         state.contact_work += sums.contact_work.value();
         sums.contact_work = ExactSum::default();
         for a in 0..3 {
-            state.plane_force[a] = sums.plane_force[a].value();
+            state.plane_force[a] = sums.contact.plane_force[a].value();
             state.plane_impulse[a] +=
                 0.5 * dt * state.plane_force[a] + sums.crossing_impulse[a].value();
             sums.crossing_impulse[a] = ExactSum::default();
         }
-        for (pair, sum) in state.pairs.iter_mut().zip(&sums.pairs) {
+        state.plane_crossings += std::mem::take(&mut sums.crossings);
+        for (pair, sum) in state.pairs.iter_mut().zip(&sums.contact.pairs) {
             let finite = |x: f64| x.is_finite().then_some(x);
             let force: [f64; 3] = std::array::from_fn(|a| sum.force[a].value());
             let heat_power = sum.heat.value();
@@ -284,14 +201,15 @@ impl Simulation {
                 contact_dt: finite(sum.contact_dt),
             };
         }
-        state.interpenetrated = sums.interpenetrated;
+        let contact = &sums.contact;
+        state.interpenetrated = contact.interpenetrated;
         state.uncorrected = sums.uncorrected;
         let worst = &mut state.worst;
-        worst.interpenetrated = worst.interpenetrated.max(sums.interpenetrated);
+        worst.interpenetrated = worst.interpenetrated.max(contact.interpenetrated);
         worst.uncorrected = worst.uncorrected.max(sums.uncorrected);
-        worst.foreign_fraction = worst.foreign_fraction.max(sums.foreign_fraction);
-        if sums.closest.is_finite() {
-            let closest = worst.closest.map_or(sums.closest, |c| c.min(sums.closest));
+        worst.foreign_fraction = worst.foreign_fraction.max(contact.foreign_fraction);
+        if contact.closest.is_finite() {
+            let closest = (worst.closest).map_or(contact.closest, |c| c.min(contact.closest));
             worst.closest = Some(closest);
         }
         self.book_defect();
@@ -300,10 +218,11 @@ impl Simulation {
     /// The contact defect, after the sums of a step.
     pub(super) fn book_defect(&mut self) {
         let state = &mut self.state;
+        let heat = state.contact_heat();
         let worst = &mut state.worst;
         let defect = state.contact_work + state.removed_contact_energy + state.contact_energy
             - state.initial.contact_energy
-            + state.pairs.iter().map(|pair| pair.heat).sum::<f64>();
+            + heat;
         worst.contact_deviation = worst.contact_deviation.max(defect.abs());
         let scale = state.initial.kinetic_energy.max(state.work_put_in);
         if scale > 0.0 {

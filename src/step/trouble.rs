@@ -1,6 +1,6 @@
 //! Numerical trouble: who is in it, and taking particles out with all that they carry booked.
 //!
-//! The check is part of the vote, which looks at each particle once a step anyway. What is no number
+//! The check is part of the vote, which the last kick of a step takes of each particle. What is no number
 //! can be neither booked nor kept from its neighbours, so it always ends the run; what is out of
 //! range but finite may be removed: the forces on the others are then summed anew where they stand,
 //! as at the start of a case, and the run goes on from there.
@@ -9,10 +9,10 @@ use serde::{Deserialize, Serialize};
 
 use super::simulation::{Simulation, StepError};
 use super::sums::{gather_limbs, scatter_limbs};
+use super::vote::{Moved, square};
 use crate::comm::Comm;
 use crate::diagnose::exact_sum::ExactSum;
-use crate::model::{Case, Trouble};
-use crate::particles::ParticleStore;
+use crate::model::{Case, Trouble, TroublePolicy};
 
 /// What is wrong with a particle, the worst first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,6 +72,8 @@ pub(super) struct Limits {
     pub step_min: f64,
     /// Smallest and largest density of each body (kg/m³).
     density: Vec<[f64; 2]>,
+    /// Densities that are in range for all bodies (kg/m³).
+    common_density: [f64; 2],
 }
 
 impl Limits {
@@ -81,24 +83,36 @@ impl Limits {
             let first = case.initial_density(body);
             [limits.density_min * first, limits.density_max * first]
         };
+        let density: Vec<[f64; 2]> = case.bodies.iter().map(range).collect();
+        let common = |[low, high]: [f64; 2], of: &[f64; 2]| [low.max(of[0]), high.min(of[1])];
         Self {
             speed2_max: limits.speed_max * limits.speed_max,
             energy_max: limits.energy_max,
             step_min: limits.step_min,
-            density: case.bodies.iter().map(range).collect(),
+            common_density: density.iter().fold([f64::MIN, f64::MAX], common),
+            density,
         }
     }
 
+    /// Whether a particle's numbers are numbers and in range whatever its body is. Where it says
+    /// no, [`Self::check`] knows.
+    #[inline(always)]
+    pub(super) fn surely_holds(&self, rho: f64, moved: &Moved) -> bool {
+        let [lower, upper] = self.common_density;
+        let heat = moved.energy.abs();
+        let speed2 = square(&moved.velocity);
+        let dense = (lower..=upper).contains(&rho);
+        dense & (heat <= self.energy_max.min(f64::MAX)) & (speed2 <= self.speed2_max.min(f64::MAX))
+    }
+
     /// What is out of range of a particle whose numbers are numbers.
-    #[inline]
-    pub(super) fn check(&self, store: &ParticleStore, i: usize) -> Option<TroubleKind> {
-        let [lower, upper] = self.density[store.body[i] as usize];
-        let (v, rho) = (&store.velocity[i], store.density[i]);
+    pub(super) fn check(&self, body: u32, rho: f64, moved: &Moved) -> Option<TroubleKind> {
+        let [lower, upper] = self.density[body as usize];
         if rho < lower || rho > upper {
             Some(TroubleKind::Density)
-        } else if store.specific_energy[i].abs() > self.energy_max {
+        } else if moved.energy.abs() > self.energy_max {
             Some(TroubleKind::Energy)
-        } else if v[0] * v[0] + v[1] * v[1] + v[2] * v[2] > self.speed2_max {
+        } else if square(&moved.velocity) > self.speed2_max {
             Some(TroubleKind::Speed)
         } else {
             None
@@ -150,9 +164,9 @@ pub struct PastVote {
 pub(super) const PAST_VOTES: usize = 16;
 
 impl Simulation {
-    /// Takes out all particles whose state is out of range, books them, and sums the forces on the
-    /// others anew. For a step that [`StepError::Trouble`] has ended and whose particles are all
-    /// finite. Collective. Gives the number of particles taken out on all ranks.
+    /// Takes out all particles whose state is out of range, books them (and keeps them for the files
+    /// if they are to be frozen), and sums the forces on the others anew. For a step that
+    /// [`StepError::Trouble`] has ended and whose particles are all finite. Collective. Gives the number of particles taken out on all ranks.
     ///
     /// # Errors
     /// The same on all ranks if there is trouble again, or nothing left.
@@ -166,6 +180,9 @@ impl Simulation {
         }
         let mut count = [leaving.len() as u64, self.store.owned() as u64];
         self.book_removal(comm, &leaving);
+        if self.case.trouble.policy == TroublePolicy::Freeze {
+            self.freeze(&leaving);
+        }
         self.store.remove(&mut leaving, &mut Vec::new());
         self.order = leaving;
         comm.sum_u64(&mut count);
@@ -182,9 +199,9 @@ impl Simulation {
         self.loads
             .prepare(&self.case, self.state.time, self.state.time);
         self.evaluate(comm, 0.0);
-        self.kick(0.0);
+        let vote = self.kick(0.0);
         self.removed_contact(comm, contact_energy);
-        self.vote(comm)?;
+        self.vote(comm, vote)?;
         Ok(count[0])
     }
 

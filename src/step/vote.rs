@@ -2,10 +2,6 @@
 //!
 //! A vote is (Δt, reason, id), compared in that order, so that ties agree on any ranks.
 
-use rayon::prelude::*;
-
-use super::loads::LoadStep;
-use super::search::GRAIN;
 use super::simulation::{Simulation, StepError};
 use super::state::Reason;
 use super::trouble::{Limits, PAST_VOTES, PastVote, TroubleKind};
@@ -20,17 +16,17 @@ const FARTHEST: f64 = 1e12;
 const SURFACE_CORRECTION: f64 = 2.0;
 
 /// A vote: bits of Δt (s; positive doubles order as their bits), reason, id.
-type Vote = (u64, u64, u64);
+pub(super) type Vote = (u64, u64, u64);
 
-const ABSTAIN: Vote = (u64::MAX, 0, 0);
+pub(super) const ABSTAIN: Vote = (u64::MAX, 0, 0);
 /// Reads as an error: no positive Δt has these bits.
 const ERROR: u64 = 0;
 
 impl Simulation {
-    /// Chooses the next Δt. Collective.
-    pub(super) fn vote(&mut self, comm: &Comm) -> Result<(), StepError> {
+    /// Chooses the next Δt, given this rank's vote. Collective.
+    pub(super) fn vote(&mut self, comm: &Comm, own: Vote) -> Result<(), StepError> {
         let mut words = std::mem::take(&mut self.scratch);
-        let (dt, reason, id) = self.local_vote();
+        let (dt, reason, id) = own;
         comm.all_gather_u64(&[dt, reason, id, self.wishes], &mut words);
         self.agreed_wishes = words
             .iter()
@@ -81,35 +77,33 @@ impl Simulation {
         }
     }
 
-    fn voter(&self) -> Voter<'_> {
+    pub(super) fn voter(&self) -> Voter<'_> {
         Voter {
             store: &self.store,
             case: &self.case,
             contact: self.contact.is_active(),
-            loads: &self.loads,
+            gravity: self.loads.gravity,
             limits: &self.limits,
         }
     }
 
     /// What is wrong with a particle of this rank, if anything is.
     pub(super) fn trouble_of(&self, i: usize) -> Option<TroubleKind> {
-        let (dt, kind, _) = self.voter().vote(i);
+        let store = &self.store;
+        if self.loads.drives() && self.loads.is_rigid(store.load[i]) {
+            return None;
+        }
+        let moved = Moved {
+            velocity: store.velocity[i],
+            energy: store.specific_energy[i],
+            contact: store
+                .contact_acceleration
+                .get(i)
+                .copied()
+                .unwrap_or_default(),
+        };
+        let (dt, kind, _) = self.voter().vote(i, &moved);
         (dt == ERROR).then(|| kind_of(kind))
-    }
-
-    fn local_vote(&self) -> Vote {
-        let owned = self.store.owned();
-        let voter = self.voter();
-        (0..owned.div_ceil(GRAIN))
-            .into_par_iter()
-            .map(|chunk| {
-                (chunk * GRAIN..((chunk + 1) * GRAIN).min(owned))
-                    .map(|i| voter.vote(i))
-                    .min()
-                    .unwrap_or(ABSTAIN)
-            })
-            .min()
-            .unwrap_or(ABSTAIN)
     }
 
     /// Describes the particle `id`, wherever it is; the same text on all ranks.
@@ -137,45 +131,136 @@ impl Simulation {
     }
 }
 
+pub(super) fn square(v: &[f64; 3]) -> f64 {
+    v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
+}
+
 fn kind_of(number: u64) -> TroubleKind {
     let last = TroubleKind::ALL.len() - 1;
     TroubleKind::ALL[usize::try_from(number).unwrap_or(0).min(last)]
 }
 
+/// What a kick has at hand of a particle: velocity (m/s), specific energy (J/kg), acceleration by
+/// contact (m/s²).
+pub(super) struct Moved {
+    pub velocity: [f64; 3],
+    pub energy: f64,
+    pub contact: [f64; 3],
+}
+
+/// The smallest vote so far, and what tells without roots and divisions that a particle neither
+/// undercuts it nor is in trouble.
+pub(super) struct Ballot {
+    best: Vote,
+    /// Steps beyond this one (s) do not matter, with room for rounding.
+    step: f64,
+    /// Its square and its fourth power, infinite where they cannot tell.
+    step2: f64,
+    step4: f64,
+}
+
+impl Ballot {
+    fn new(best: Vote, step_min: f64) -> Self {
+        let dt = match best {
+            ABSTAIN => f64::INFINITY,
+            (bits, ..) => f64::from_bits(bits),
+        };
+        let step = dt.max(step_min) * (1.0 + 1e-9);
+        let step2 = step * step;
+        let step4 = step2 * step2;
+        let tells = step == 0.0 || step4 >= f64::MIN_POSITIVE;
+        let [step2, step4] = [step2, step4].map(|power| if tells { power } else { f64::INFINITY });
+        Self {
+            best,
+            step,
+            step2,
+            step4,
+        }
+    }
+
+    pub(super) fn vote(&self) -> Vote {
+        self.best
+    }
+
+    /// The one with the smaller vote.
+    pub(super) fn min(self, other: Self) -> Self {
+        if other.best < self.best { other } else { self }
+    }
+}
+
 /// What a particle's vote depends on.
-struct Voter<'a> {
+pub(super) struct Voter<'a> {
     store: &'a ParticleStore,
     case: &'a Case,
     contact: bool,
-    loads: &'a LoadStep,
+    gravity: [f64; 3],
     limits: &'a Limits,
 }
 
 impl Voter<'_> {
+    /// Nobody has voted.
+    pub(super) fn ballot(&self) -> Ballot {
+        Ballot::new(ABSTAIN, self.limits.step_min)
+    }
+
+    /// Lets a particle vote.
+    #[inline(always)]
+    pub(super) fn ask(&self, i: usize, moved: &Moved, ballot: &mut Ballot) {
+        if !self.is_beyond(i, moved, ballot) {
+            let vote = self.vote(i, moved);
+            if vote < ballot.best {
+                *ballot = Ballot::new(vote, self.limits.step_min);
+            }
+        }
+    }
+
+    /// Whether a particle is sound and asks for more than the smallest step so far: the criteria of
+    /// [`Self::vote`], multiplied out. What is no number is beyond nothing.
+    #[inline(always)]
+    fn is_beyond(&self, i: usize, moved: &Moved, ballot: &Ballot) -> bool {
+        let (store, factors) = (self.store, &self.case.time_step);
+        let (h, signal) = (store.smoothing_length[i], self.signal(i));
+        let by_sound = signal >= 0.0 && factors.courant * h > ballot.step * signal;
+        let reach = factors.force * factors.force * h;
+        let a = self.acceleration(i, &moved.contact);
+        let by_force = reach * reach > ballot.step4 * square(&a);
+        let by_contact = !self.contact || {
+            let inertia = 4.0 * factors.contact * factors.contact * store.mass[i];
+            // Stress points have neither.
+            inertia >= ballot.step2 * store.contact_stiffness[i]
+        };
+        let inside = self.limits.surely_holds(store.density[i], moved);
+        let near = store.position[i].iter().all(|x| x.abs() < FARTHEST);
+        by_sound & by_force & by_contact & inside & near
+    }
+
+    /// Speed (m/s) of sound and viscosity for the step.
+    #[inline(always)]
+    fn signal(&self, i: usize) -> f64 {
+        let (store, sph) = (self.store, &self.case.sph);
+        let c = store.sound_speed[i];
+        let signal = c + 0.6 * (sph.alpha * c + sph.beta * store.approach_speed[i]);
+        let correction = store.correction_norm.get(i).or(store.fit_norm.get(i));
+        let correction = correction.copied().unwrap_or_default();
+        signal * (correction / SURFACE_CORRECTION).max(1.0)
+    }
+
+    #[inline(always)]
+    fn acceleration(&self, i: usize, contact: &[f64; 3]) -> [f64; 3] {
+        let a = &self.store.acceleration[i];
+        std::array::from_fn(|k| a[k] + self.gravity[k] + contact[k])
+    }
+
     /// Sound and viscosity (Monaghan 1989) `C h / (c + 0.6 (α c + β |μ|))`, acceleration
     /// `C_f √(h/|a|)`, contact `2 f √(m/k)`; none by particles of rigid bodies. A correction that
     /// enlarges gradients more than those of plain surfaces do raises frequencies as much.
-    fn vote(&self, i: usize) -> Vote {
-        if self.loads.drives() && self.loads.is_rigid(self.store.load[i]) {
-            return ABSTAIN;
-        }
+    #[cold]
+    #[inline(never)]
+    fn vote(&self, i: usize, moved: &Moved) -> Vote {
         let (store, case) = (self.store, self.case);
-        let (h, c) = (store.smoothing_length[i], store.sound_speed[i]);
-        let signal = c + 0.6 * (case.sph.alpha * c + case.sph.beta * store.approach_speed[i]);
-        let correction = store.correction_norm.get(i).or(store.fit_norm.get(i));
-        let correction = correction.copied().unwrap_or_default();
-        let signal = signal * (correction / SURFACE_CORRECTION).max(1.0);
-        let sound = case.time_step.courant * h / signal;
-        let mut total = store.acceleration[i];
-        for (total, gravity) in total.iter_mut().zip(self.loads.gravity) {
-            *total += gravity;
-        }
-        if self.contact {
-            for a in 0..3 {
-                total[a] += store.contact_acceleration[i][a];
-            }
-        }
-        let square = total[0] * total[0] + total[1] * total[1] + total[2] * total[2];
+        let h = store.smoothing_length[i];
+        let sound = case.time_step.courant * h / self.signal(i);
+        let square = square(&self.acceleration(i, &moved.contact));
         let force = case.time_step.force * (h / square.sqrt()).sqrt();
         let contact = if self.contact {
             2.0 * case.time_step.contact * (store.mass[i] / store.contact_stiffness[i]).sqrt()
@@ -186,13 +271,13 @@ impl Voter<'_> {
         let sane = sound > 0.0
             && !force.is_nan()
             && store.density[i].is_finite()
-            && store.specific_energy[i].is_finite()
-            && store.velocity[i].iter().all(|v| v.is_finite())
+            && moved.energy.is_finite()
+            && moved.velocity.iter().all(|v| v.is_finite())
             && store.position[i].iter().all(|x| x.abs() < FARTHEST);
         if !sane {
             return (ERROR, TroubleKind::NotFinite as u64, id);
         }
-        if let Some(kind) = self.limits.check(store, i) {
+        if let Some(kind) = self.limits.check(store.body[i], store.density[i], moved) {
             return (ERROR, kind as u64, id);
         }
         let (dt, reason) = [

@@ -186,6 +186,7 @@ impl Cloud {
                 let longest = all().fold(0.0, f64::max);
                 Lengths {
                     longest,
+                    least: 0.0,
                     uniform: all().all(|h| h == longest),
                     rigid: false,
                 }

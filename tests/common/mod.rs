@@ -41,6 +41,7 @@ pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
         bodies,
         contacts: Vec::new(),
         default_contact: ContactMode::Overlap(Overlap::default()),
+        self_contact: None,
         symmetry: Vec::new(),
         loads: Loads::default(),
         sph: SphOptions::default(),

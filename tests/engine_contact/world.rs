@@ -52,6 +52,8 @@ pub fn case_of(dimension: usize, bodies: Vec<Body>) -> Case {
 struct Pair {
     /// The smaller p-wave modulus (Pa).
     modulus: f64,
+    /// The harmonic mean of the moduli (Pa).
+    core_modulus: f64,
     h: f64,
     spacing: f64,
     r: f64,
@@ -230,6 +232,7 @@ impl World {
         let r = self.distance(i, j);
         Pair {
             modulus: modulus(a).min(modulus(b)),
+            core_modulus: 2.0 * modulus(a) * modulus(b) / (modulus(a) + modulus(b)),
             h,
             spacing: 0.5 * (a.lattice.spacing + b.lattice.spacing),
             r,
@@ -237,11 +240,11 @@ impl World {
         }
     }
 
-    /// `½ κ_c M V̄ ⟨1 − r/r_c⟩₊²`.
+    /// `½ κ_c M V̄ ⟨1 − r/r_c⟩₊²`, of bodies at rest.
     fn core_energy(&self, i: usize, j: usize, pair: &Pair, overlap: &Overlap) -> f64 {
         let depth = (1.0 - pair.r / (overlap.core_radius * pair.spacing)).max(0.0);
         let volume = 0.5 * (self.volume(i) + self.volume(j));
-        0.5 * overlap.core_stiffness * pair.modulus * volume * depth * depth
+        0.5 * overlap.core_stiffness * pair.core_modulus * volume * depth * depth
     }
 
     /// `V_i V_j K [(W/W(Δp))^n − floor]` within the range.

@@ -45,6 +45,7 @@ pub fn case() -> Case {
         bodies: vec![body("sphere", 2e-5), body("plate", 1e-5)],
         contacts: Vec::new(),
         default_contact: ContactMode::None,
+        self_contact: None,
         symmetry: vec![SymmetryPlane {
             axis: whipple::model::Axis::Y,
             position: 0.0,

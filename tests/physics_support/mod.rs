@@ -4,6 +4,7 @@
 pub mod bars;
 pub mod dam;
 pub mod impact;
+pub mod slope;
 pub mod steps;
 
 use std::path::Path;

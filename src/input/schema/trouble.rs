@@ -32,4 +32,6 @@ pub enum TroublePolicyName {
     Stop,
     /// It is taken out and booked.
     Remove,
+    /// The same, and it stays in the files, at rest where it was.
+    Freeze,
 }

@@ -3,7 +3,7 @@
 use toml::Spanned;
 
 use super::check::{Allowed, number};
-use crate::input::forms::FrictionParams;
+use crate::input::forms::{FrictionParams, SelfContactParams};
 use crate::input::schema::{
     BodyParams, ContactParams, DirectionName, ModeName, OverlapParams, PairParams, PenaltyLawName,
     PenaltyParams, PotentialParams, RangeName,
@@ -11,7 +11,7 @@ use crate::input::schema::{
 use crate::input::source::Complaint;
 use crate::model::{
     ContactDirection, ContactMode, ContactPair, Overlap, Penalty, PenaltyLaw, Potential,
-    PotentialRange, Resistance, SphForm,
+    PotentialRange, Resistance, SelfContact, SphForm,
 };
 
 /// Largest exponent of the contact potential: beyond it a power of the kernel ratio says no more
@@ -38,17 +38,24 @@ impl Choice {
                 resistance: self.resistance,
                 ..self.overlap
             }),
-            ModeName::Penalty => ContactMode::Penalty(self.penalty),
+            ModeName::Penalty => ContactMode::Penalty(Penalty {
+                resistance: self.resistance,
+                ..self.penalty
+            }),
         }
     }
 }
 
-/// The default mode and the pairs; a pair takes what it does not give from the default.
+/// The default mode, the pairs, and contact of bodies with themselves.
+type Contacts = (ContactMode, Vec<ContactPair>, Option<SelfContact>);
+
+/// The default mode and the pairs, and self-contact; a pair takes what it does not give from the default.
 pub fn contacts(
     params: &ContactParams,
     bodies: &[Spanned<BodyParams>],
     form: SphForm,
-) -> Result<(ContactMode, Vec<ContactPair>), Complaint> {
+    ratio: f64,
+) -> Result<Contacts, Complaint> {
     let default = Choice {
         mode: params.mode.unwrap_or(ModeName::Overlap),
         overlap: overlap(&params.overlap, Overlap::default(), form)?,
@@ -60,9 +67,13 @@ pub fn contacts(
         )?,
         penalty: penalty(&params.penalty, Penalty::default())?,
     };
+    let own = self_contact(params, ratio, default)?;
     let modes = params.pair.iter().map(|pair| pair.mode);
-    let used = |mode: Option<ModeName>| mode.unwrap_or(default.mode) == ModeName::Overlap;
-    if !modes.chain([None]).any(used) {
+    let used = |mode: Option<ModeName>| {
+        let mode = mode.unwrap_or(default.mode);
+        matches!(mode, ModeName::Overlap | ModeName::Penalty)
+    };
+    if own.is_none() && !modes.chain([None]).any(used) {
         refuse_resistance(params.friction.as_ref(), params.damping.as_ref())?;
     }
     let mut pairs: Vec<ContactPair> = Vec::new();
@@ -107,7 +118,52 @@ pub fn contacts(
             mode: choice.mode(),
         });
     }
-    Ok((default.mode(), pairs))
+    Ok((default.mode(), pairs, own))
+}
+
+/// Contact of bodies with themselves.
+fn self_contact(
+    params: &ContactParams,
+    ratio: f64,
+    default: Choice,
+) -> Result<Option<SelfContact>, Complaint> {
+    let Some(given) = &params.self_contact else {
+        return Ok(None);
+    };
+    let folds = match given.get_ref() {
+        SelfContactParams::Is(false) => return Ok(None),
+        SelfContactParams::Is(true) => None,
+        SelfContactParams::With(table) => table.folds.as_ref(),
+    };
+    let modes = params.pair.iter().map(|pair| pair.mode);
+    if modes
+        .chain([Some(default.mode)])
+        .any(|mode| mode == Some(ModeName::Kernel))
+    {
+        let title = "self-contact knows no bodies that are joined by `kernel` contact";
+        return Err(Complaint::new(given.span(), title)
+            .help("take another mode for all pairs, or leave `self_contact` out"));
+    }
+    // No pair that begins within the support may be a fold.
+    let least = 2.0 * ratio;
+    let folds = match folds {
+        None => None,
+        Some(folds) => {
+            let spacings = number(Some(folds), "folds", 0.0, Allowed::Positive)?;
+            if spacings < least {
+                let title = format!("`folds` must be at least {least:.2} spacings, the support");
+                return Err(Complaint::new(folds.span(), title).label("out of range"));
+            }
+            Some(spacings)
+        }
+    };
+    Ok(Some(SelfContact {
+        overlap: Overlap {
+            resistance: default.resistance,
+            ..default.overlap
+        },
+        folds,
+    }))
 }
 
 /// A rigid body has no stress that could join the sums of another, and no sums that could tell its
@@ -162,7 +218,7 @@ fn overlap(params: &OverlapParams, base: Overlap, form: SphForm) -> Result<Overl
     })
 }
 
-/// Only one mode knows friction and damping.
+/// Two modes know friction and damping.
 fn refuse_resistance(
     friction: Option<&Spanned<FrictionParams>>,
     damping: Option<&Spanned<f64>>,
@@ -174,13 +230,15 @@ fn refuse_resistance(
     match at.into_iter().flatten().next() {
         None => Ok(()),
         Some((key, at)) => {
-            let title = format!("`{key}` acts in no contact but that of mode `overlap`");
+            let title =
+                format!("`{key}` acts in no contact but that of the modes `overlap` and `penalty`");
             Err(Complaint::new(at, title).help("set `mode = \"overlap\"`, or leave it out"))
         }
     }
 }
 
-fn resistance(
+/// Friction and damping; what is not given is that of `base`.
+pub(super) fn resistance(
     friction: Option<&Spanned<FrictionParams>>,
     damping: Option<&Spanned<f64>>,
     base: Resistance,
@@ -250,6 +308,7 @@ fn penalty(params: &PenaltyParams, base: Penalty) -> Result<Penalty, Complaint> 
             Some(PenaltyLawName::Pinball) => PenaltyLaw::Pinball,
             None => base.law,
         },
+        resistance: base.resistance,
     })
 }
 

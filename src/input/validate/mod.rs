@@ -56,7 +56,8 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
     if bodies.iter().any(|body| body.material == materials.len()) {
         materials.push(bodies::no_material());
     }
-    let (default_contact, contacts) = contact::contacts(&params.contact, &params.body, sph.form)?;
+    let (default_contact, contacts, self_contact) =
+        contact::contacts(&params.contact, &params.body, sph.form, smoothing)?;
     let loads = loads::Reader {
         dimension,
         bodies: &bodies,
@@ -79,6 +80,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
         bodies,
         contacts,
         default_contact,
+        self_contact,
         symmetry,
         loads,
         sph,
@@ -104,6 +106,13 @@ fn check_moduli(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Compl
         let pushes = |b| match case.contact_between(a, b) {
             ContactMode::None | ContactMode::Kernel => false,
             ContactMode::Overlap(_) | ContactMode::Potential(_) | ContactMode::Penalty(_) => a != b,
+        };
+        let pushes = |b| {
+            if a == b {
+                case.self_contact.is_some()
+            } else {
+                pushes(b)
+            }
         };
         if material.p_wave_modulus() == 0.0 && (0..case.bodies.len()).any(pushes) {
             let title = format!(

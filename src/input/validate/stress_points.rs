@@ -51,5 +51,10 @@ pub fn check(case: &Case, at: Option<Range<usize>>) -> Result<(), Complaint> {
         );
         return refuse(title, "take \"overlap\" or \"potential\"");
     }
+    if case.self_contact.is_some() {
+        let title = "`self_contact` tells parts by the neighbours of particles in their body, which \
+                     stress points do without";
+        return refuse(title.to_owned(), "leave it out, or take another form");
+    }
     Ok(())
 }

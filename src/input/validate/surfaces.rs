@@ -7,6 +7,7 @@ use toml::Spanned;
 
 use super::axis;
 use super::check::{Allowed, Value, number};
+use super::contact::resistance;
 use super::loads::{Reader, given_name};
 use super::motion::{motion, rate};
 use super::shapes::wrong_length;
@@ -19,7 +20,7 @@ use crate::input::schema::{
 };
 use crate::input::source::Complaint;
 use crate::input::stl;
-use crate::model::{Mesh, Motion, RigidSurface, Spin, SurfaceFile, SurfaceShape};
+use crate::model::{Mesh, Motion, Resistance, RigidSurface, Spin, SurfaceFile, SurfaceShape};
 use crate::populate;
 
 /// Default stiffness of a rigid surface: that of the half spacing of material before it.
@@ -57,6 +58,11 @@ impl Reader<'_> {
             shape: SurfaceShape::Plane { normal, position },
             inside: false,
             stiffness: number(stiffness, "stiffness", STIFFNESS, Allowed::Positive)?,
+            resistance: resistance(
+                params.friction.as_ref(),
+                params.damping.as_ref(),
+                Resistance::default(),
+            )?,
             bodies: self.acts_on(params.bodies.as_deref())?,
             motion: given.map_or(Ok(Motion::default()), |m| motion(m, self.dimension))?,
             spin: None,
@@ -74,6 +80,11 @@ impl Reader<'_> {
             shape,
             inside: params.side == Some(SideName::Inside),
             stiffness: number(stiffness, "stiffness", STIFFNESS, Allowed::Positive)?,
+            resistance: resistance(
+                params.friction.as_ref(),
+                params.damping.as_ref(),
+                Resistance::default(),
+            )?,
             bodies: self.acts_on(params.bodies.as_deref())?,
             motion: given.map_or(Ok(Motion::default()), |m| motion(m, self.dimension))?,
             spin: spin.transpose()?,

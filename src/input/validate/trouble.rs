@@ -18,6 +18,7 @@ pub fn trouble(params: &TroubleParams, case: &Case) -> Result<Trouble, Complaint
         policy: match params.policy {
             None | Some(TroublePolicyName::Stop) => TroublePolicy::Stop,
             Some(TroublePolicyName::Remove) => TroublePolicy::Remove,
+            Some(TroublePolicyName::Freeze) => TroublePolicy::Freeze,
         },
         speed_max,
         energy_max: number(

@@ -8,6 +8,8 @@ use crate::material::{
 };
 
 const UINTAH: &str = "Steinberg-Guinan constants in Uintah, citing Steinberg, UCRL-MA-106439";
+const STEINBERG: &str =
+    "Steinberg, UCRL-MA-106439, as FronTier's table of equations of state quotes it";
 const KEPT: &str = "no hardening: the initial yield stress is kept";
 const SPHERAL: &str = "Steinberg-Guinan constants of 304 steel in Spheral's tests";
 const JOHNSON_COOK: &str = "Johnson & Cook (1983), Proc. 7th Int. Symp. Ballistics, 541, as other \
@@ -204,6 +206,17 @@ pub(super) const RECORDS: &[Record] = &[
             ("", JOHNSON_COOK),
         ],
     },
+    Record {
+        name: "tungsten",
+        title: "tungsten, constant yield stress",
+        make: || von_mises(&TUNGSTEN, 2.2e9, heat(129.0, 300.0, None)),
+        sources: &[
+            ("strength.von_mises.hardening_modulus", KEPT),
+            ("strength", UINTAH),
+            ("thermal.reference_temperature", ROOM),
+            ("", STEINBERG),
+        ],
+    },
 ];
 
 /// Density (kg/m³), shear modulus (Pa) and Hugoniot.
@@ -243,6 +256,12 @@ const STEEL_4340: Metal = Metal {
     density: 7830.0,
     shear_modulus: 77.5e9,
     hugoniot: [3574.0, 1.92, 1.69, 0.0],
+};
+
+const TUNGSTEN: Metal = Metal {
+    density: 19300.0,
+    shear_modulus: 160.0e9,
+    hugoniot: [4030.0, 1.237, 1.67, 0.38],
 };
 
 impl Metal {

@@ -68,6 +68,17 @@ fn place(x: &[f64; 3]) -> String {
 }
 
 impl Mesh {
+    /// Bytes that it takes.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        size_of_val(&self.corners[..])
+            + size_of_val(&self.triangles[..])
+            + size_of_val(&self.faces[..])
+            + size_of_val(&self.edges[..])
+            + size_of_val(&self.vertices[..])
+            + self.tree.memory()
+    }
+
     /// Joins triangles that share corners to the bit. Triangles with two equal corners are left
     /// out; a surface whose normals point inwards is turned.
     ///

@@ -34,6 +34,11 @@ pub struct Tree {
 }
 
 impl Tree {
+    /// Bytes that it takes.
+    pub fn memory(&self) -> usize {
+        size_of_val(&self.nodes[..]) + size_of_val(&self.order[..])
+    }
+
     /// A tree of boxes (m).
     pub fn new(boxes: &[([f64; 3], [f64; 3])]) -> Self {
         let mut tree = Self {

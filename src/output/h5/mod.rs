@@ -6,7 +6,7 @@ mod transfer;
 mod writer;
 
 pub use content::{Array, Content};
-pub use writer::Writer;
+pub use writer::{Writer, abandoned};
 
 use hdf5::Datatype;
 use hdf5::file::FileBuilder;

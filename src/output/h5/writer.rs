@@ -2,6 +2,7 @@
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use hdf5::plist::dataset_create::FillTime;
 use hdf5::types::{FixedAscii, TypeDescriptor};
@@ -217,20 +218,29 @@ impl<'a> Writer<'a> {
 }
 
 impl Drop for Writer<'_> {
-    /// Closes a file that met an error, on all ranks. HDF5 must still be able to write its
-    /// records: else it keeps a dangling handle and crashes when MPI ends. So the room of the
-    /// data is given back first, and that which was kept.
+    /// Leaves a file that met an error as it is, on all ranks. HDF5 may not be able to write its
+    /// records, and then crashes, at once or when MPI ends and with it HDF5: so nobody closes the
+    /// file, and the job must end without the end of MPI, see [`abandoned`].
     fn drop(&mut self) {
         let Some(file) = self.file.take() else { return };
         if self.comm.is_root() {
             let _ = files::remove(&room(&self.path));
-            if let Ok(raw) = std::fs::File::options().write(true).open(&self.path) {
-                let _ = raw.set_len(0);
-            }
         }
-        self.comm.barrier();
-        let _ = file.close();
+        if self.comm.raw().is_some() {
+            ABANDONED.store(true, Ordering::Relaxed);
+            std::mem::forget(file);
+        }
     }
+}
+
+/// Whether a file of several ranks was left open after an error.
+static ABANDONED: AtomicBool = AtomicBool::new(false);
+
+/// Whether this process has a file that it can neither write nor close: MPI must not be finalised,
+/// since HDF5 would try to.
+#[must_use]
+pub fn abandoned() -> bool {
+    ABANDONED.load(Ordering::Relaxed)
 }
 
 /// Bytes that HDF5's own records of one of our files need at most.
