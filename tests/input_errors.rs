@@ -766,3 +766,34 @@ fn a_missing_file_is_named() {
             .contains("cannot read the case no/such/case.toml")
     );
 }
+
+/// What stress points do not go with is refused where the form is asked for.
+#[test]
+fn stress_points_say_what_they_do_not_go_with() {
+    let form = "[sph]\nform = \"stress_points\"\n";
+    for (more, expected) in [
+        (
+            "artificial_stress = 0.3",
+            "`artificial_stress` could act in",
+        ),
+        ("balsara = true", "`balsara` could act in"),
+        ("conduction = 1.0", "`conduction` could act in"),
+        ("xsph = 0.5", "`xsph` could act in"),
+        ("[contact]\nmode = \"kernel\"", "contact of mode `kernel`"),
+        ("[contact]\nmode = \"penalty\"", "contact of mode `penalty`"),
+    ] {
+        let text = GOOD.replace("[run]", &format!("{form}{more}\n\n[run]"));
+        let message = message(&text, &[]);
+        assert!(message.contains(expected), "{message}");
+        assert!(message.contains("case.toml:6:8"), "{message}");
+    }
+    let text = GOOD.replace("[run]", &format!("{form}\n[run]"));
+    let hexagonal = text
+        .replace(
+            "material = \"metal\"",
+            "material = \"metal\"\nlattice = \"hexagonal\"",
+        )
+        .replace("[[symmetry]]\naxis = \"x\"\n", "");
+    let message = message(&hexagonal, &[]);
+    assert!(message.contains("that of `ball` is hexagonal"), "{message}");
+}

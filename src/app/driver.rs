@@ -70,7 +70,7 @@ impl<'a> Driver<'a> {
         simulation.poison = args.poison;
         // What set-up took is no part of a step.
         simulation.timers = Timers::default();
-        let quantities = snapshot::quantities(&simulation.case.output.fields)?;
+        let quantities = snapshot::quantities_of(&simulation.case)?;
         let mut tables = None;
         on_root(comm, || {
             let resume = restarted.is_some().then_some(&simulation.state);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::comm::Comm;
 use crate::contact::ContactTable;
-use crate::model::{Axis, Case, RigidSurface};
+use crate::model::{Axis, Case, RigidSurface, SphForm};
 use crate::populate::{self, Slab};
 use crate::step::bytes_of_options;
 
@@ -68,9 +68,14 @@ pub fn of_rank(case: &Case, ranks: usize) -> f64 {
 
 fn count(case: &Case, slab: Option<Slab>) -> u64 {
     let bodies = case.bodies.iter();
-    bodies
+    let particles: u64 = bodies
         .map(|body| populate::count(body, case.dimension, &case.symmetry, slab))
-        .sum()
+        .sum();
+    // As many stress points for each as there are axes, less some at surfaces.
+    match case.sph.form {
+        SphForm::StressPoints => particles * (1 + case.dimension as u64),
+        SphForm::Conventional | SphForm::Normalised => particles,
+    }
 }
 
 /// The axis of the slabs and the ends of the case on it (m).

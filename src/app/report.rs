@@ -58,7 +58,7 @@ fn columns(dimension: usize, list: &[(&str, &str)]) -> Vec<Column> {
         .collect()
 }
 
-/// Of the history; with a count of uncorrected gradients in the `normalised` form.
+/// Of the history; with a count of uncorrected gradients but in the conventional form.
 fn history_columns(case: &Case) -> Vec<Column> {
     let mut all = columns(
         case.dimension,
@@ -87,7 +87,7 @@ fn history_columns(case: &Case) -> Vec<Column> {
             ("interpenetrated", ""),
         ],
     );
-    if case.sph.form == SphForm::Normalised {
+    if case.sph.form != SphForm::Conventional {
         all.push(Column::new("uncorrected", ""));
     }
     all
@@ -240,7 +240,7 @@ impl Tables {
             Value::Real(state.contact_heat()),
             Value::Count(state.interpenetrated.unsigned_abs()),
         ];
-        if simulation.case.sph.form == SphForm::Normalised {
+        if simulation.case.sph.form != SphForm::Conventional {
             row.push(Value::Count(state.uncorrected.unsigned_abs()));
         }
         self.history.row(&row)?;
@@ -339,7 +339,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::V
     let cores = (comm.size() * threads) as f64;
     let rate = load.updates as f64 * 1e-6 / stepping.max(f64::MIN_POSITIVE) / cores;
     let contact = simulation.contact();
-    let normalised = simulation.case.sph.form == SphForm::Normalised;
+    let normalised = simulation.case.sph.form != SphForm::Conventional;
     // What the ranks have stepped since they started, if no particle was taken out.
     let steps = load.updates as f64 / (load.particles[0] as f64).max(1.0);
     let each = |sent: u64| sent as f64 / (steps.max(1.0) * comm.size() as f64);

@@ -2,7 +2,7 @@
 
 use super::penalty::Boundary;
 use crate::model::{
-    Body, Case, ContactDirection, ContactMode, PenaltyLaw, PotentialRange, Resistance,
+    Body, Case, ContactDirection, ContactMode, PenaltyLaw, PotentialRange, Resistance, SphForm,
 };
 use crate::neighbours::{ContactClass, ForeignTable};
 use crate::populate;
@@ -97,6 +97,9 @@ pub struct ContactTable {
     pub groups: Vec<usize>,
     /// Whether a group is a rigid body.
     pub rigid: Vec<bool>,
+    /// How many groups the bodies form. Those of their stress points, if any, come after them in
+    /// the same order.
+    pub body_groups: usize,
     /// Which algorithm handles a pair, and its range.
     pub foreign: ForeignTable,
     pairs: Vec<Pair>,
@@ -112,7 +115,11 @@ impl ContactTable {
         let kernel = Kernel::new(case.dimension);
         let n = case.bodies.len();
         let groups = join_groups(case);
-        let group_count = groups.iter().max().map_or(0, |&g| g + 1);
+        let body_groups = groups.iter().max().map_or(0, |&g| g + 1);
+        let group_count = match case.sph.form {
+            SphForm::StressPoints => 2 * body_groups,
+            SphForm::Conventional | SphForm::Normalised => body_groups,
+        };
         let mut foreign = ForeignTable {
             bodies: n,
             class: vec![ContactClass::None; n * n],
@@ -156,6 +163,7 @@ impl ContactTable {
             kernel,
             groups,
             rigid,
+            body_groups,
             foreign,
             pairs,
             inverse_densities,
@@ -184,10 +192,23 @@ impl ContactTable {
         &self.boundaries[body]
     }
 
-    /// Number of groups of bodies.
+    /// Number of groups, those of stress points included.
     #[must_use]
     pub fn group_count(&self) -> usize {
-        self.groups.iter().max().map_or(0, |&g| g + 1)
+        self.rigid.len()
+    }
+
+    /// Whether a group is one of stress points.
+    #[inline]
+    #[must_use]
+    pub fn is_of_stress_points(&self, group: usize) -> bool {
+        group >= self.body_groups
+    }
+
+    /// The bodies of a group.
+    pub fn members(&self, group: usize) -> impl Iterator<Item = usize> + Clone + '_ {
+        let group = group % self.body_groups;
+        (0..self.groups.len()).filter(move |&body| self.groups[body] == group)
     }
 
     /// Whether there is contact beyond the SPH sums: of pairs of bodies, or with rigid surfaces.

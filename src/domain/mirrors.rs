@@ -143,6 +143,7 @@ impl Mirrors {
             for field in [
                 &mut store.slip,
                 &mut store.slip_rate,
+                &mut store.drift_acceleration,
                 &mut store.surface_slip,
                 &mut store.surface_slip_rate,
             ] {
@@ -151,6 +152,9 @@ impl Mirrors {
                 }
             }
             store.deviatoric_stress[i] = Self::reflect_symmetric(&store.deviatoric_stress[i], code);
+            if let Some(stress) = store.specific_stress.get_mut(i) {
+                *stress = Self::reflect_symmetric(stress, code);
+            }
             store.velocity_gradient[i] = Self::reflect_tensor(&store.velocity_gradient[i], code);
         }
         code

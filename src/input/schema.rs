@@ -280,7 +280,7 @@ optional_tables! {
     /// `[sph]`
     SphParams {
         /// How gradients are taken.
-        form: Option<SphFormName>,
+        form: Option<Spanned<SphFormName>>,
         /// Smoothing length over particle spacing.
         smoothing: Option<Spanned<f64>>,
         /// Linear viscosity.
@@ -452,6 +452,8 @@ choices! {
         Conventional,
         /// By the corrected gradient.
         Normalised,
+        /// By linear fits at stress points.
+        StressPoints,
     }
     /// Smoothing length in the SPH sums.
     SmoothingName {

@@ -25,6 +25,8 @@ pub enum SphForm {
     Conventional,
     /// By the corrected gradient of the normalised kernel.
     Normalised,
+    /// By linear fits at stress points between the particles, which carry mass and velocity alone.
+    StressPoints,
 }
 
 /// Options of the SPH sums.

@@ -95,6 +95,8 @@ pub struct Lengths {
 /// Gathers the clusters of a chunk and lists their neighbours.
 struct Build<'a> {
     chunk: &'a mut Chunk,
+    /// Group of the neighbours.
+    sources: usize,
     sequence: &'a Sequence,
     lengths: Lengths,
 }
@@ -128,6 +130,7 @@ impl Vectorised for Build<'_> {
         }
         let mut lister = Lister {
             sequence,
+            sources: self.sources,
             longest,
             least,
             list: neighbours,
@@ -149,6 +152,7 @@ impl Vectorised for Build<'_> {
 /// Writes the lists of a chunk one after the other.
 struct Lister<'a> {
     sequence: &'a Sequence,
+    sources: usize,
     longest: f64,
     least: f64,
     list: &'a mut Vec<u32>,
@@ -171,17 +175,18 @@ impl Lister<'_> {
         };
         let far = (own + self.longest).max(self.least) * INFLATION;
         let (low, high) = (cluster.lower.map(V::splat), cluster.upper.map(V::splat));
-        let along = sequence.along(cluster.group);
+        let sources = self.sources;
+        let along = sequence.along(sources);
         let (from, to) = (cluster.lower[along] - far, cluster.upper[along] + far);
         let mut special = 0;
         sequence.columns_near(
-            cluster.group,
+            sources,
             &cluster.lower,
             &cluster.upper,
             far,
             |[a, b], column| {
                 let hint = &mut self.hints[(a & 7) << 3 | b & 7];
-                *hint = sequence.seek::<V>(cluster.group, &column, from, *hint);
+                *hint = sequence.seek::<V>(sources, &column, from, *hint);
                 let mut first = *hint;
                 for eight in sequence.eights(first..column.end) {
                     if eight.coordinates[along][0] > to {
@@ -292,6 +297,8 @@ pub(super) const INFLATION: f64 = 1.0 + 1e-9;
 pub struct ClusterLists {
     chunks: Vec<Chunk>,
     used: usize,
+    /// Where there are stress points, how many groups the bodies form.
+    body_groups: Option<usize>,
 }
 
 /// Images whose clusters one task handles: many enough that the tasks cost nothing, few enough
@@ -301,15 +308,31 @@ const PLACES_PER_CHUNK: usize = 512;
 pub const CHUNKS_AT_ONCE: usize = 4;
 
 impl ClusterLists {
+    /// Lists of neighbours of the own group; where there are stress points, which come in as many
+    /// groups after `body_groups` of bodies, those of the other set of the same bodies.
+    #[must_use]
+    pub fn new(body_groups: Option<usize>) -> Self {
+        Self {
+            body_groups,
+            ..Self::default()
+        }
+    }
+
     /// Groups this rank's own particles into clusters and lists the neighbours of each.
     /// `lengths` are the smoothing lengths of each group.
     pub fn build(&mut self, sequence: &Sequence, lengths: &[Lengths]) {
         let set = instructions();
         self.lay_out(sequence);
+        let sources_of = |group: usize| match self.body_groups {
+            None => group,
+            Some(count) if group < count => group + count,
+            Some(count) => group - count,
+        };
         let chunks = self.chunks[..self.used].par_iter_mut();
         chunks.with_max_len(CHUNKS_AT_ONCE).for_each(|chunk| {
             set.run(Build {
                 lengths: lengths[chunk.group],
+                sources: sources_of(chunk.group),
                 chunk,
                 sequence,
             });

@@ -7,7 +7,7 @@
 use std::path::Path;
 
 use crate::comm::Comm;
-use crate::model::Case;
+use crate::model::{Case, SphForm};
 use crate::particles::{
     FIELDS, FieldId, FieldInfo, FieldKind, FieldUse, ParticleStore, TEMPERATURE, VON_MISES_STRESS,
 };
@@ -67,6 +67,24 @@ impl Quantity {
             }
         }
     }
+}
+
+/// The quantities of a case: as [`quantities`], and what tells stress points from particles where
+/// there are any.
+///
+/// # Errors
+/// As [`quantities`].
+pub fn quantities_of(case: &Case) -> Result<Vec<Quantity>, OutputError> {
+    let mut names = case.output.fields.clone();
+    let role = "stress_mass".to_owned();
+    if case.sph.form == SphForm::StressPoints && !names.contains(&role) {
+        if names.is_empty() {
+            let chosen = quantities(&[])?;
+            names.extend(chosen.iter().map(|choice| choice.name().to_owned()));
+        }
+        names.push(role);
+    }
+    quantities(&names)
 }
 
 /// The quantities of these names, and always id and body; the field table's defaults for an

@@ -93,6 +93,8 @@ impl FieldUse {
     pub const HALO_PARTS: Self = Self(1 << 19);
     /// Held only where particles in trouble are frozen.
     pub const FREEZE: Self = Self(1 << 20);
+    /// Held only where stress points carry the stress.
+    pub const STRESS_POINTS: Self = Self(1 << 21);
     /// Held only where the case has use for it.
     pub const OPTIONAL: Self = Self::CONTACT
         .with(Self::BALSARA)
@@ -105,7 +107,8 @@ impl FieldUse {
         .with(Self::SURFACE_FRICTION)
         .with(Self::SELF_CONTACT)
         .with(Self::FOLDS)
-        .with(Self::FREEZE);
+        .with(Self::FREEZE)
+        .with(Self::STRESS_POINTS);
     /// In snapshots at all.
     pub const SNAPSHOT_OR_ON_DEMAND: Self = Self(32 | 64);
     /// What a rank sends with a particle that leaves it.
@@ -288,6 +291,12 @@ particle_fields! {
     load: Index, "", STATE | ON_DEMAND | LOADS;
     /// Whether it left the range of its state and stands still, outside of all sums (1).
     frozen: Index, "", STATE | ON_DEMAND | FREEZE;
+    /// Mass of the material whose stress a stress point carries; zero for velocity particles.
+    stress_mass: Scalar, "kg", STATE | HALO_MOTION | ON_DEMAND | STRESS_POINTS;
+    /// Acceleration of a stress point, which follows the velocity particles about it.
+    drift_acceleration: Vector, "m/s^2", STATE | ON_DEMAND | STRESS_POINTS;
+    /// Stress of a stress point, that of viscosity included, over its density.
+    specific_stress: Symmetric, "J/kg", STATE | ON_DEMAND | STRESS_POINTS;
     /// Velocity at the end of the step as predicted from the last accelerations.
     predicted_velocity: Vector, "m/s", MIGRATED | HALO_MOTION;
     /// Density at the end of the step as predicted from the last velocity gradient.
@@ -338,6 +347,17 @@ particle_fields! {
     gradient_shift: Vector, "1/m", HALO_STRESS | ON_DEMAND | NORMALISED;
     /// How much the correction enlarges gradients; 0 where it is ill-conditioned and left out.
     correction_norm: Scalar, "", ON_DEMAND | NORMALISED;
+    /// Velocity gradient at a stress point at the predicted velocities.
+    predicted_gradient: Tensor, "1/s", STRESS_POINTS;
+    /// How steep the gradients at a stress point are: 1.4 in a cubic lattice at h = 1.3 Δp.
+    fit_norm: Scalar, "", ON_DEMAND | STRESS_POINTS;
+    /// What a stress point takes over of the energy of velocity particles, over the sum of weights.
+    stress_heat: Scalar, "J", HALO_STRESS | STRESS_POINTS;
+    /// Force of a stress point on velocity particles by their distance from their weighted mean,
+    /// row-major.
+    stress_moment: Tensor, "N/m", HALO_STRESS | STRESS_POINTS;
+    /// Its product with the distance of that mean from the stress point.
+    stress_offset: Vector, "N", HALO_STRESS | STRESS_POINTS;
     /// Work of the last step, in neighbours of the pair sums, for the balance between ranks.
     work: Index, "", MIGRATED;
 }

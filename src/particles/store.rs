@@ -87,6 +87,14 @@ impl ParticleStore {
         self.capacity_bytes()
     }
 
+    /// The mass that a particle's specific energy belongs to (kg): also of stress points, which have
+    /// no mass that moves.
+    #[inline]
+    #[must_use]
+    pub fn thermal_mass(&self, i: usize) -> f64 {
+        self.mass[i] + self.stress_mass.get(i).copied().unwrap_or_default()
+    }
+
     /// Gives up the fields of `uses`, which a case has no use for.
     pub fn drop_fields(&mut self, uses: FieldUse) {
         for field in with_use(uses) {

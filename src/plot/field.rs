@@ -74,7 +74,38 @@ impl Shown {
             Self::Field(field) => field.values(snapshot, rows),
         }
     }
+
+    /// Which of some rows bear it: where there are stress points, these or the particles that have
+    /// mass; else all.
+    pub fn bearers(&self, snapshot: &Snapshot, rows: Range<usize>) -> Result<Vec<bool>, PlotError> {
+        if !has(snapshot, STRESS_MASS)? {
+            return Ok(vec![true; rows.len()]);
+        }
+        let of_points = match self {
+            Self::Body => false,
+            Self::Field(field) => OF_STRESS_POINTS.contains(&field.dataset.as_str()),
+        };
+        let masses = snapshot.file.scalar(STRESS_MASS, 0, rows)?;
+        let bears = |mass: f64| (mass > 0.0) == of_points;
+        Ok(masses.into_iter().map(bears).collect())
+    }
 }
+
+/// What tells stress points from particles.
+const STRESS_MASS: &str = "stress_mass";
+/// What stress points bear, where there are any.
+const OF_STRESS_POINTS: [&str; 10] = [
+    "density",
+    "pressure",
+    "deviatoric_stress",
+    "plastic_strain",
+    "specific_energy",
+    "sound_speed",
+    "velocity_gradient",
+    "von_mises_stress",
+    "temperature",
+    STRESS_MASS,
+];
 
 impl Field {
     fn values(&self, snapshot: &Snapshot, rows: Range<usize>) -> Result<Vec<f64>, PlotError> {

@@ -175,8 +175,10 @@ impl Line {
         for rows in snapshot.chunks() {
             let points = snapshot.file.points(rows.clone())?;
             let bodies = snapshot.body_of(rows.clone())?;
-            let values = shown.values(snapshot, rows)?;
-            for ((point, body), value) in points.into_iter().zip(bodies).zip(values) {
+            let values = shown.values(snapshot, rows.clone())?;
+            let bearers = shown.bearers(snapshot, rows)?;
+            let all = points.into_iter().zip(bodies).zip(values).zip(bearers);
+            for (((point, body), value), _) in all.filter(|(_, bears)| *bears) {
                 if let Some(at) = self.coordinate(&point, snapshot, body) {
                     dots.push((body, at, value));
                 }

@@ -126,8 +126,10 @@ impl Cut {
         for rows in snapshot.chunks() {
             let points = snapshot.file.points(rows.clone())?;
             let bodies = snapshot.body_of(rows.clone())?;
-            let values = self.shown.values(snapshot, rows)?;
-            for ((point, body), value) in points.into_iter().zip(bodies).zip(values) {
+            let values = self.shown.values(snapshot, rows.clone())?;
+            let bearers = self.shown.bearers(snapshot, rows)?;
+            let all = points.into_iter().zip(bodies).zip(values).zip(bearers);
+            for (((point, body), value), _) in all.filter(|(_, bears)| *bears) {
                 let spacing = snapshot.spacings[body];
                 self.reflect(&point, &snapshot.symmetry, &mut images);
                 let half = self.half_thickness(spacing, &snapshot.symmetry);

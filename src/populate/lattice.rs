@@ -214,6 +214,12 @@ impl Stack {
         ]
     }
 
+    /// Direction of one axis of the lattice.
+    pub fn direction(&self, axis: usize) -> [f64; 3] {
+        let [cos, sin] = self.turn;
+        [[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]][axis]
+    }
+
     pub fn index(&self, i: u64, j: u64, k: u64) -> u64 {
         i + self.counts[0] * (j + self.counts[1] * k)
     }

@@ -5,8 +5,10 @@
 
 mod lattice;
 mod row;
+mod stress_points;
 mod touch;
 
+pub use stress_points::{StressSite, stress_count, stress_index_end, stress_sites};
 pub use touch::{touching_distance, touching_value};
 
 use crate::model::{Axis, Body, RigidSurface, SurfaceShape, SymmetryPlane};

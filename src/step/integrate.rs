@@ -70,6 +70,7 @@ impl Simulation {
         self.store.resize_halo(0);
         self.half_kick(dt, Goal::Middle);
         self.drift_with_neighbours(dt);
+        self.drift_stress_points(dt);
         self.fold_at_planes();
     }
 

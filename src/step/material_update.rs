@@ -21,7 +21,7 @@ pub(super) struct MaterialUpdate<'a> {
     dt: f64,
     body: &'a [u32],
     /// Specific energy after the first half kick, and its last rate.
-    specific_energy: &'a [f64],
+    specific_energy: Scatter<'a, f64>,
     heating: &'a [f64],
     stresses: Scatter<'a, StressRecord>,
     density: Scatter<'a, f64>,
@@ -50,7 +50,7 @@ impl<'a> MaterialUpdate<'a> {
             rigid,
             dt,
             body: &store.body,
-            specific_energy: &store.specific_energy,
+            specific_energy: Scatter::new(&mut store.specific_energy),
             heating: &store.d_specific_energy_dt,
             stresses: Scatter::new(stresses),
             density: Scatter::new(&mut store.density),
@@ -68,13 +68,81 @@ impl<'a> MaterialUpdate<'a> {
     #[inline(always)]
     pub(super) fn apply(&self, cluster: &Cluster, gradient: &[F64x8; 9], neighbours: usize) {
         if self.rigid[cluster.group] {
-            self.store_rigid(cluster);
+            self.store_free(cluster, 0);
             return;
         }
+        let base = self.base(cluster);
+        let mut before = self.gather(&base);
+        for c in 0..9 {
+            for k in 0..LANES {
+                let mean = 0.5 * (before.velocity_gradient[c][k] + gradient[c].0[k]);
+                before.velocity_gradient[c][k] = mean;
+            }
+        }
+        self.advance(cluster, &base, before, gradient, neighbours);
+    }
+
+    /// The same of a cluster of stress points, whose velocity gradient in the middle of the step is
+    /// `mean`; `gradient` is what the next step is to know of it.
+    #[inline(always)]
+    pub(super) fn apply_mean(
+        &self,
+        cluster: &Cluster,
+        mean: &[F64x8; 9],
+        gradient: &[F64x8; 9],
+        neighbours: usize,
+    ) {
+        let base = self.base(cluster);
+        let mut before = self.gather(&base);
+        for c in 0..9 {
+            before.velocity_gradient[c] = mean[c].0;
+        }
+        self.advance(cluster, &base, before, gradient, neighbours);
+    }
+
+    /// Adds to the specific energy of particle `i` (J/kg).
+    #[inline(always)]
+    pub(super) fn heat(&self, i: usize, energy: f64) {
+        // SAFETY: particle `i` belongs to one cluster alone, and this thread has the cluster.
+        unsafe { *self.specific_energy.slot(i) += energy };
+    }
+
+    /// Rate of the specific energy of particle `i` at the beginning of the step (W/kg).
+    #[inline(always)]
+    pub(super) fn heating(&self, i: usize) -> f64 {
+        self.heating[i]
+    }
+
+    /// The velocity gradient that the last step has left of particle `i`.
+    #[inline(always)]
+    pub(super) fn last_gradient(&self, i: usize) -> [f64; 9] {
+        // SAFETY: particle `i` belongs to one cluster alone, and this thread has the cluster.
+        unsafe { *self.velocity_gradient.slot(i) }
+    }
+
+    #[inline(always)]
+    fn base(&self, cluster: &Cluster) -> [usize; LANES] {
+        let at = |k: usize| self.images[cluster.receivers[k] as usize].base();
+        [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)]
+    }
+
+    /// Advances what was gathered by the velocity gradients in it.
+    #[inline(always)]
+    fn advance(
+        &self,
+        cluster: &Cluster,
+        base: &[usize; LANES],
+        mut before: PointBatch,
+        gradient: &[F64x8; 9],
+        neighbours: usize,
+    ) {
+        let half = 0.5 * self.dt;
+        let [xx, _, _, _, yy, _, _, _, zz] = &before.velocity_gradient;
+        for k in 0..LANES {
+            let strain = half * (xx[k] + yy[k] + zz[k]);
+            before.density[k] *= (1.0 - strain) / (1.0 + strain);
+        }
         let places = &cluster.receivers;
-        let at = |k: usize| self.images[places[k] as usize].base();
-        let base = [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)];
-        let before = self.gather(&base, gradient);
         let material = |k: usize| self.material_of_body[self.body[base[k]] as usize];
         // Empty lanes cost as much as others.
         let work = neighbours * LANES / cluster.lanes;
@@ -105,24 +173,25 @@ impl<'a> MaterialUpdate<'a> {
         }
     }
 
-    /// Particles of a rigid body have no stress; nobody reads their records.
+    /// Particles of a rigid body, or beside stress points, have no stress; nobody reads their
+    /// records.
     #[cold]
-    fn store_rigid(&self, cluster: &Cluster) {
+    pub(super) fn store_free(&self, cluster: &Cluster, neighbours: usize) {
+        let work = OWN_WORK + u32::try_from(neighbours).unwrap_or(u32::MAX / 2);
         for &place in &cluster.receivers[..cluster.lanes] {
             let i = self.images[place as usize].base();
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
             unsafe {
                 *self.pressure.slot(i) = 0.0;
                 *self.sound_speed.slot(i) = 0.0;
-                *self.work.slot(i) = OWN_WORK;
+                *self.work.slot(i) = work;
             }
         }
     }
 
-    /// The state of a cluster's particles, with the density at the end of the step and the
-    /// velocity gradient in its middle.
+    /// The state of a cluster's particles, with the last velocity gradients.
     #[inline(always)]
-    fn gather(&self, base: &[usize; LANES], gradient: &[F64x8; 9]) -> PointBatch {
+    fn gather(&self, base: &[usize; LANES]) -> PointBatch {
         let mut batch = PointBatch {
             density: [0.0; LANES],
             specific_energy: [0.0; LANES],
@@ -135,8 +204,9 @@ impl<'a> MaterialUpdate<'a> {
         let half = 0.5 * self.dt;
         for (k, &i) in base.iter().enumerate() {
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
-            let (rho, l, s, plastic) = unsafe {
+            let (e, rho, l, s, plastic) = unsafe {
                 (
+                    &*self.specific_energy.slot(i),
                     &*self.density.slot(i),
                     &*self.velocity_gradient.slot(i),
                     &*self.deviatoric_stress.slot(i),
@@ -151,18 +221,7 @@ impl<'a> MaterialUpdate<'a> {
                 batch.deviatoric_stress[c][k] = s[c];
             }
             batch.plastic_strain[k] = *plastic;
-            batch.specific_energy[k] = self.specific_energy[i] + half * self.heating[i];
-        }
-        for c in 0..9 {
-            for k in 0..LANES {
-                let mean = 0.5 * (batch.velocity_gradient[c][k] + gradient[c].0[k]);
-                batch.velocity_gradient[c][k] = mean;
-            }
-        }
-        let [xx, _, _, _, yy, _, _, _, zz] = &batch.velocity_gradient;
-        for k in 0..LANES {
-            let strain = half * (xx[k] + yy[k] + zz[k]);
-            batch.density[k] *= (1.0 - strain) / (1.0 + strain);
+            batch.specific_energy[k] = *e + half * self.heating[i];
         }
         batch
     }

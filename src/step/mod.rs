@@ -14,6 +14,8 @@ mod search;
 mod setup;
 mod simulation;
 mod state;
+mod stress_fit;
+mod stress_points;
 mod sums;
 mod surface_forces;
 mod surface_friction;

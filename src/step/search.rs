@@ -36,13 +36,15 @@ impl Search {
             lengths,
             common_velocity: (0..contact.group_count())
                 .map(|group| {
-                    let first = contact.groups.iter().position(|&g| g == group);
+                    let first = contact.members(group).next();
                     first.map_or([0.0; 3], |body| case.bodies[body].velocity.into())
                 })
                 .collect(),
             sequence: Sequence::new(grids, uniform),
             motion: Vec::new(),
-            clusters: ClusterLists::default(),
+            clusters: ClusterLists::new(
+                (contact.group_count() > contact.body_groups).then_some(contact.body_groups),
+            ),
             foreign: ForeignLists::default(),
         }
     }
@@ -73,9 +75,8 @@ fn group_lengths(case: &Case, contact: &ContactTable) -> Vec<Lengths> {
     let constant = case.sph.smoothing_length == SmoothingLength::Constant;
     (0..contact.group_count())
         .map(|group| {
-            let members = case.bodies.iter().zip(&contact.groups);
-            let h = members.filter(|&(_, &g)| g == group);
-            let h = || h.clone().map(|(body, _)| body.smoothing_length);
+            let members = contact.members(group);
+            let h = || members.clone().map(|b| case.bodies[b].smoothing_length);
             let longest = h().fold(0.0, f64::max);
             Lengths {
                 longest,
@@ -100,7 +101,7 @@ pub(super) const GRAIN: usize = 1024;
 impl Simulation {
     pub(super) fn find_neighbours(&mut self) {
         let (store, mirrors) = (&self.store, self.halo.mirrors());
-        let groups = &self.contact.groups;
+        let (groups, body_groups) = (&self.contact.groups, self.contact.body_groups);
         let search = &mut self.search;
         let (owned, others) = (store.owned(), self.halo.others());
         let below = self.halo.below();
@@ -109,7 +110,10 @@ impl Simulation {
         let motion = Scatter::new(&mut search.motion);
         let facts = |image: Image| {
             let (base, code) = (image.base(), image.code());
-            let group = groups[store.body[base] as usize];
+            let mut group = groups[store.body[base] as usize];
+            if store.stress_mass.get(base).is_some_and(|&mass| mass > 0.0) {
+                group += body_groups;
+            }
             let velocity = || Mirrors::reflect_vector(&store.predicted_velocity[base], code);
             ImageFacts {
                 position: mirrors.reflect_position(&store.position[base], code),

@@ -11,6 +11,7 @@ use super::parts::Parts;
 use super::search::Search;
 use super::simulation::{Simulation, StepError};
 use super::state::{LoadState, PairState, Reason, RunState, Totals, Worst};
+use super::stress_points::StressPoints;
 use super::sums::StepSums;
 use super::surface_forces::SurfaceForces;
 use super::sweeps::Sweeps;
@@ -19,7 +20,7 @@ use super::trouble::{Limits, PAST_VOTES};
 use crate::comm::Comm;
 use crate::contact::ContactTable;
 use crate::domain::{Halo, Histogram, Migration, Mirrors, Paces, Slabs, balance};
-use crate::model::Case;
+use crate::model::{Case, SphForm};
 use crate::neighbours::{ColumnGrid, Image};
 use crate::particles::ParticleStore;
 use crate::populate::{self, Slab};
@@ -159,6 +160,7 @@ impl Simulation {
             search: Search::new(&case, &contact, grids),
             sweeps: Sweeps::new(&case, &contact.kernel),
             options: OptionPhase::new(&case, &contact.kernel),
+            stress_points: StressPoints::default(),
             contact_phase: ContactPhase::default(),
             parts: Parts::new(&case),
             surface_forces: SurfaceForces::new(&case),
@@ -206,7 +208,16 @@ impl Simulation {
             upper,
         };
         let case = &self.case;
-        let count = |body| populate::count(body, case.dimension, &case.symmetry, Some(slab));
+        let stressed = case.sph.form == SphForm::StressPoints;
+        let count = |body| {
+            let (dimension, planes) = (case.dimension, &case.symmetry);
+            let points = if stressed {
+                populate::stress_count(body, dimension, planes, Some(slab))
+            } else {
+                0
+            };
+            points + populate::count(body, dimension, planes, Some(slab))
+        };
         let total: u64 = case.bodies.iter().map(count).sum();
         limit_count(comm, total)?;
         self.store
@@ -227,7 +238,8 @@ impl Simulation {
                 store.predicted_velocity[i] = velocity;
                 store.density[i] = density;
                 store.predicted_density[i] = density;
-                store.specific_energy[i] = energy;
+                // With stress points that is left to them.
+                store.specific_energy[i] = if stressed { 0.0 } else { energy };
                 store.smoothing_length[i] = body.smoothing_length;
                 Self::begin_parts(store, i, first_id);
                 if self.loads.drives() {
@@ -244,8 +256,45 @@ impl Simulation {
                 .filter(|&id| id < 1 << 62)
                 .ok_or(SetupError::TooManySites)?;
         }
+        if stressed {
+            i = self.populate_stress_points(i, first_id, slab)?;
+        }
         debug_assert_eq!(i, self.store.owned());
         Ok(())
+    }
+
+    /// Creates the stress points of a slab from place `i` of the store and `first_id` on; gives the
+    /// place after the last.
+    fn populate_stress_points(
+        &mut self,
+        mut i: usize,
+        mut first_id: u64,
+        slab: Slab,
+    ) -> Result<usize, SetupError> {
+        let (case, store) = (&self.case, &mut self.store);
+        for (b, body) in case.bodies.iter().enumerate() {
+            let density = case.initial_density(body);
+            let mass = density * populate::particle_volume(body, case.dimension);
+            let velocity = body.velocity.into();
+            for site in populate::stress_sites(body, case.dimension, &case.symmetry, Some(slab)) {
+                store.id[i] = first_id + site.index;
+                store.body[i] = u32::try_from(b).unwrap_or(u32::MAX);
+                store.stress_mass[i] = mass * site.share;
+                store.position[i] = site.position;
+                store.velocity[i] = velocity;
+                store.predicted_velocity[i] = velocity;
+                store.density[i] = density;
+                store.predicted_density[i] = density;
+                store.specific_energy[i] = case.initial_energy(body);
+                store.smoothing_length[i] = body.smoothing_length;
+                i += 1;
+            }
+            first_id = first_id
+                .checked_add(populate::stress_index_end(body, case.dimension))
+                .filter(|&id| id < 1 << 62)
+                .ok_or(SetupError::TooManySites)?;
+        }
+        Ok(i)
     }
 
     /// First forces, sums and time step.
@@ -357,9 +406,9 @@ fn group_grids(
 ) -> Vec<ColumnGrid> {
     (0..contact.group_count())
         .map(|group| {
-            let members = || (0..case.bodies.len()).filter(|&b| contact.groups[b] == group);
-            let (lower, upper) = join(members().map(|b| boxes[b]));
-            let spacing = members()
+            let members = contact.members(group);
+            let (lower, upper) = join(members.clone().map(|b| boxes[b]));
+            let spacing = members
                 .map(|b| case.bodies[b].lattice.spacing)
                 .fold(0.0, f64::max);
             ColumnGrid::new(lower, upper, spacing, along)

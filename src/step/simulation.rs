@@ -10,6 +10,7 @@ use super::options::OptionPhase;
 use super::parts::Parts;
 use super::search::Search;
 use super::state::{Reason, RunState};
+use super::stress_points::StressPoints;
 use super::sums::StepSums;
 use super::surface_forces::SurfaceForces;
 use super::sweeps::Sweeps;
@@ -79,6 +80,7 @@ pub struct Simulation {
     pub(super) search: Search,
     pub(super) sweeps: Sweeps,
     pub(super) options: OptionPhase,
+    pub(super) stress_points: StressPoints,
     pub(super) contact_phase: ContactPhase,
     pub(super) parts: Parts,
     pub(super) loads: LoadStep,
@@ -231,6 +233,7 @@ impl Simulation {
             + self.search.memory()
             + self.sweeps.memory()
             + self.options.memory()
+            + self.stress_points.memory()
             + self.contact_phase.memory()
             + self.parts.memory()
             + self.loads.memory()

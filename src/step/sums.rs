@@ -9,8 +9,8 @@ use super::state::{PairState, Totals};
 use super::trouble::Removed;
 use crate::comm::Comm;
 use crate::diagnose::exact_sum::ExactSum;
+use crate::model::SphForm;
 use crate::particles::ParticleStore;
-use crate::sph::options::NORMALISED;
 
 /// Sums of one step, first of this rank, then (after [`StepSums::reduce`]) of all.
 pub struct StepSums {
@@ -169,8 +169,8 @@ impl Simulation {
     /// Joins the sums of all ranks into the state, after the second half of a step `dt` (s).
     pub(super) fn book_step(&mut self, comm: &Comm, dt: f64) {
         let mirrors = !self.halo.mirrors().is_empty();
-        let normalised = self.options.set & NORMALISED != 0;
-        if self.contact.is_active() || mirrors || self.loads.drives() || normalised {
+        let corrects = self.case.sph.form != SphForm::Conventional;
+        if self.contact.is_active() || mirrors || self.loads.drives() || corrects {
             self.sums.reduce(comm);
         }
         self.book_load_sums(dt);
@@ -314,7 +314,7 @@ impl TotalSums {
         let v2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
         let terms = [
             0.5 * m * v2,
-            m * store.specific_energy[i],
+            store.thermal_mass(i) * store.specific_energy[i],
             m * height,
             m,
             m * v[0],

@@ -210,7 +210,8 @@ impl View<'_> {
         let local = placed.local(x);
         let escape = surface::escape(placed.surface, &local, penalty.reach, penalty.limit())?;
         let gap = escape.foot.gap;
-        if gap >= penalty.h.max(penalty.reach) {
+        // Stress points have no mass and no contact.
+        if gap >= penalty.h.max(penalty.reach) || self.store.mass[i] == 0.0 {
             return None;
         }
         let volume = self.store.mass[i] * self.table.inverse_density(body);

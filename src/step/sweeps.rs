@@ -7,7 +7,7 @@ use super::normalised::{CorrectionFields, NormalisedChunk, StressPower};
 use super::search::GRAIN;
 use super::simulation::Simulation;
 use crate::domain::Mirrors;
-use crate::model::{Case, SmoothingLength};
+use crate::model::{Case, SmoothingLength, SphForm};
 use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Cluster, Image};
 use crate::particles::{ParticleStore, Scatter};
 use crate::sph::dispatch::{Vectorised, instructions};
@@ -19,9 +19,9 @@ use crate::sph::options::{ARTIFICIAL_STRESS, BALSARA, CONDUCTION, NORMALISED, Op
 
 /// Records of the second sweep and what mirrors exert, kept from step to step.
 pub struct Sweeps {
-    scale: Scale,
-    viscosity: Viscosity,
-    material_of_body: Vec<usize>,
+    pub(super) scale: Scale,
+    pub(super) viscosity: Viscosity,
+    pub(super) material_of_body: Vec<usize>,
     pub(super) stresses: Vec<StressRecord>,
     /// What mirror images exert, by chunk.
     pub(super) from_mirrors: Vec<FromMirrors>,
@@ -31,7 +31,7 @@ pub struct Sweeps {
 #[derive(Debug, Clone, Default)]
 pub(super) struct FromMirrors {
     /// The images among the neighbours of one cluster.
-    places: Vec<u32>,
+    pub(super) places: Vec<u32>,
     /// Forces on single particles (N).
     pub(super) forces: Vec<[f64; 3]>,
 }
@@ -44,7 +44,7 @@ impl FromMirrors {
 
 /// The pair scale of a case, chosen once.
 #[derive(Debug, Clone, Copy)]
-enum Scale {
+pub(super) enum Scale {
     Constant(ConstantScale),
     One(MeanScale<1>),
     Two(MeanScale<2>),
@@ -55,13 +55,14 @@ enum Scale {
 macro_rules! with_scale {
     ($scale:expr, $name:ident => $work:expr) => {
         match $scale {
-            Scale::Constant($name) => $work,
-            Scale::One($name) => $work,
-            Scale::Two($name) => $work,
-            Scale::Three($name) => $work,
+            $crate::step::sweeps::Scale::Constant($name) => $work,
+            $crate::step::sweeps::Scale::One($name) => $work,
+            $crate::step::sweeps::Scale::Two($name) => $work,
+            $crate::step::sweeps::Scale::Three($name) => $work,
         }
     };
 }
+pub(super) use with_scale;
 
 /// Calls `$work` with a set of options as a constant: no options, or those of solids (artificial
 /// stress and XSPH), of shocks (the Balsara switch and conduction), or all, whichever has all that
@@ -136,6 +137,9 @@ impl Simulation {
     /// First sweep: velocity gradient at the end of the step, density and stress from its mean
     /// with the gradient at the start.
     pub(super) fn velocity_gradient_and_material(&mut self, dt: f64) {
+        if self.case.sph.form == SphForm::StressPoints {
+            return self.strain_stress_points(dt);
+        }
         let set = instructions();
         let normalised = self.options.set & NORMALISED != 0;
         let fields = normalised.then(|| CorrectionFields::take(&mut self.store));
@@ -176,6 +180,9 @@ impl Simulation {
     pub(super) fn momentum_and_energy(&mut self, halo: bool) {
         if halo && self.store.halo() == 0 {
             return;
+        }
+        if self.case.sph.form == SphForm::StressPoints {
+            return self.pull_by_stress_points(halo);
         }
         self.fill_records(halo);
         self.fill_options(halo);

@@ -232,7 +232,7 @@ impl Simulation {
                 m * v[1],
                 m * v[2],
                 0.5 * m * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]),
-                m * store.specific_energy[i],
+                store.thermal_mass(i) * store.specific_energy[i],
                 -m * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]),
             ];
             for (sum, term) in sums[body].iter_mut().zip(terms) {

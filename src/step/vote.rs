@@ -243,7 +243,8 @@ impl Voter<'_> {
         let by_force = reach * reach > ballot.step4 * square(&a);
         let by_contact = !self.contact || {
             let inertia = 4.0 * factors.contact * factors.contact * store.mass[i];
-            inertia > ballot.step2 * store.contact_stiffness[i]
+            // Stress points have neither.
+            inertia >= ballot.step2 * store.contact_stiffness[i]
         };
         let inside = self.limits.surely_holds(store.density[i], moved);
         let near = store.position[i].iter().all(|x| x.abs() < FARTHEST);
@@ -260,7 +261,8 @@ impl Voter<'_> {
         let signal = c + 0.6 * (sph.alpha * c + sph.beta * approach);
         // Not `max`, which would hide what is no number.
         let signal = if approach > signal { approach } else { signal };
-        let correction = store.correction_norm.get(i).copied().unwrap_or_default();
+        let correction = store.correction_norm.get(i).or(store.fit_norm.get(i));
+        let correction = correction.copied().unwrap_or_default();
         signal * (correction / SURFACE_CORRECTION).max(1.0)
     }
 

@@ -144,9 +144,23 @@ pub fn loaded_normalised() -> Case {
     case
 }
 
-/// Without options of the SPH sums and with all, without loads and with all, in both forms,
+/// [`rubbing`] with stress points.
+pub fn stress_points() -> Case {
+    let mut case = rubbing();
+    case.sph.form = SphForm::StressPoints;
+    case
+}
+
+/// All loads with stress points.
+pub fn loaded_stress_points() -> Case {
+    let mut case = loaded();
+    case.sph.form = SphForm::StressPoints;
+    case
+}
+
+/// Without options of the SPH sums and with all, without loads and with all, in all forms,
 /// with friction.
-pub const CASES: [fn() -> Case; 8] = [
+pub const CASES: [fn() -> Case; 10] = [
     everything,
     every_option,
     loaded,
@@ -155,4 +169,6 @@ pub const CASES: [fn() -> Case; 8] = [
     rubbing,
     normalised,
     loaded_normalised,
+    stress_points,
+    loaded_stress_points,
 ];

@@ -9,6 +9,7 @@ mod materials;
 mod motion;
 mod shapes;
 mod strength;
+mod stress_points;
 mod surfaces;
 mod touch;
 mod trouble;
@@ -71,6 +72,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
         time_step.max = time_step.max.min(diffusion);
     }
     let fields = field_spans(&params.output);
+    let form = params.sph.form.as_ref().map(Spanned::span);
     let mut case = Case {
         title: params.title.unwrap_or_else(|| "untitled".to_owned()),
         dimension,
@@ -90,6 +92,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
         resolved: String::new(),
     };
     case.trouble = trouble::trouble(&params.trouble, &case)?;
+    stress_points::check(&case, form)?;
     check_moduli(&case, &params.body)?;
     check_overlaps(&case, &params.body)?;
     check_temperature(&case, &fields)?;
@@ -218,9 +221,10 @@ fn sph(params: &SphParams) -> Result<SphOptions, Complaint> {
         max: number(max, "smoothing_length_max", 2.0, Allowed::Within(1.0, 10.0))?,
     };
     Ok(SphOptions {
-        form: match params.form {
+        form: match params.form.as_ref().map(Spanned::get_ref) {
             None | Some(SphFormName::Conventional) => SphForm::Conventional,
             Some(SphFormName::Normalised) => SphForm::Normalised,
+            Some(SphFormName::StressPoints) => SphForm::StressPoints,
         },
         alpha: number(params.alpha.as_ref(), "alpha", 1.0, Allowed::NotNegative)?,
         beta: number(params.beta.as_ref(), "beta", 2.0, Allowed::NotNegative)?,

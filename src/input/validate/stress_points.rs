@@ -1,0 +1,60 @@
+//! What `form = "stress_points"` goes with.
+
+use std::ops::Range;
+
+use crate::input::source::Complaint;
+use crate::model::{Case, ContactMode, LatticeKind, SphForm};
+
+/// Stress points stand between the particles of cubic lattices, and have the sums of no pair of
+/// particles that the options of these could act in.
+pub fn check(case: &Case, at: Option<Range<usize>>) -> Result<(), Complaint> {
+    let Some(at) = at.filter(|_| case.sph.form == SphForm::StressPoints) else {
+        return Ok(());
+    };
+    let refuse = |title: String, help: &str| Err(Complaint::new(at.clone(), title).help(help));
+    let options = [
+        ("artificial_stress", case.sph.artificial_stress > 0.0),
+        ("balsara", case.sph.balsara),
+        ("conduction", case.sph.conduction > 0.0),
+        ("xsph", case.sph.xsph > 0.0),
+    ];
+    if let Some((key, _)) = options.into_iter().find(|&(_, wanted)| wanted) {
+        let title = format!("stress points have no pairs of particles that `{key}` could act in");
+        return refuse(
+            title,
+            "leave it out, or take \"conventional\" or \"normalised\"",
+        );
+    }
+    let mut bodies = case.bodies.iter();
+    if let Some(body) = bodies.find(|b| b.rigid.is_none() && b.lattice.kind != LatticeKind::Cubic) {
+        let title = format!(
+            "stress points stand between the particles of cubic lattices, and that of `{}` is \
+             hexagonal",
+            body.name
+        );
+        return refuse(
+            title,
+            "take a cubic lattice, which may be turned by an `angle`",
+        );
+    }
+    let n = case.bodies.len();
+    let mut modes = (0..n).flat_map(|a| (a + 1..n).map(move |b| case.contact_between(a, b)));
+    let unfit = modes.find_map(|mode| match mode {
+        ContactMode::Kernel => Some("kernel"),
+        ContactMode::Penalty(_) => Some("penalty"),
+        ContactMode::None | ContactMode::Overlap(_) | ContactMode::Potential(_) => None,
+    });
+    if let Some(mode) = unfit {
+        let title = format!(
+            "contact of mode `{mode}` needs sums over pairs of particles of a body, which stress \
+             points do without"
+        );
+        return refuse(title, "take \"overlap\" or \"potential\"");
+    }
+    if case.self_contact.is_some() {
+        let title = "`self_contact` tells parts by the neighbours of particles in their body, which \
+                     stress points do without";
+        return refuse(title.to_owned(), "leave it out, or take another form");
+    }
+    Ok(())
+}

@@ -1,0 +1,233 @@
+//! The first sweep of stress points: velocities and strain rates by fits, then the material.
+
+use std::sync::atomic::{AtomicI64, Ordering};
+
+use rayon::prelude::*;
+
+use super::material_update::MaterialUpdate;
+use super::simulation::Simulation;
+use super::sweeps::with_scale;
+use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Image};
+use crate::particles::{ParticleStore, Scatter};
+use crate::sph::dispatch::{Vectorised, instructions};
+use crate::sph::gradient::MotionRecord;
+use crate::sph::kernel::PairScale;
+use crate::sph::lanes::{F64x8, LANES, Lanes};
+use crate::sph::mid_step::{MidStep, mid_step};
+use crate::sph::normalised::stress_power;
+use crate::sph::stress_points::{Fit, Fitted, LinearFit};
+
+/// Fields of stress points, out of the store while the material is updated.
+struct Fields {
+    moment: Vec<[f64; 9]>,
+    offset: Vec<[f64; 3]>,
+    gradient: Vec<[f64; 9]>,
+    velocity: Vec<[f64; 3]>,
+    acceleration: Vec<[f64; 3]>,
+    heat: Vec<f64>,
+    norm: Vec<f64>,
+    specific_stress: Vec<[f64; 6]>,
+    mass: Vec<f64>,
+}
+
+impl Fields {
+    fn take(store: &mut ParticleStore) -> Self {
+        Self {
+            moment: std::mem::take(&mut store.stress_moment),
+            offset: std::mem::take(&mut store.stress_offset),
+            gradient: std::mem::take(&mut store.predicted_gradient),
+            velocity: std::mem::take(&mut store.velocity),
+            acceleration: std::mem::take(&mut store.drift_acceleration),
+            heat: std::mem::take(&mut store.stress_heat),
+            norm: std::mem::take(&mut store.fit_norm),
+            specific_stress: std::mem::take(&mut store.specific_stress),
+            mass: std::mem::take(&mut store.stress_mass),
+        }
+    }
+
+    fn give_back(self, store: &mut ParticleStore) {
+        store.stress_moment = self.moment;
+        store.stress_offset = self.offset;
+        store.predicted_gradient = self.gradient;
+        store.velocity = self.velocity;
+        store.drift_acceleration = self.acceleration;
+        store.stress_heat = self.heat;
+        store.fit_norm = self.norm;
+        store.specific_stress = self.specific_stress;
+        store.stress_mass = self.mass;
+    }
+
+    fn target(&mut self, dt: f64, last_dt: f64, gravity: [f64; 3]) -> FitTarget<'_> {
+        FitTarget {
+            moment: Scatter::new(&mut self.moment),
+            offset: Scatter::new(&mut self.offset),
+            gradient: Scatter::new(&mut self.gradient),
+            velocity: Scatter::new(&mut self.velocity),
+            acceleration: Scatter::new(&mut self.acceleration),
+            heat: Scatter::new(&mut self.heat),
+            norm: Scatter::new(&mut self.norm),
+            specific_stress: &self.specific_stress,
+            mass: &self.mass,
+            incomplete: AtomicI64::new(0),
+            dt,
+            last_dt,
+            gravity,
+        }
+    }
+}
+
+/// Where the first sweep writes what it finds at stress points: velocities, and the geometry of
+/// fits in place of the moments that follow from it.
+struct FitTarget<'a> {
+    moment: Scatter<'a, [f64; 9]>,
+    offset: Scatter<'a, [f64; 3]>,
+    gradient: Scatter<'a, [f64; 9]>,
+    velocity: Scatter<'a, [f64; 3]>,
+    acceleration: Scatter<'a, [f64; 3]>,
+    heat: Scatter<'a, f64>,
+    norm: Scatter<'a, f64>,
+    specific_stress: &'a [[f64; 6]],
+    mass: &'a [f64],
+    incomplete: AtomicI64,
+    dt: f64,
+    last_dt: f64,
+    gravity: [f64; 3],
+}
+
+impl FitTarget<'_> {
+    /// What of lane `k` belongs to particle `i`, whose velocity gradient was `last` (1/s); gives
+    /// those of this step's mid-step velocities.
+    #[inline(always)]
+    fn store(&self, i: usize, k: usize, fitted: &Fitted, last: &[f64; 9]) -> MidStep {
+        let mut predicted = [0.0; 9];
+        for c in 0..9 {
+            predicted[c] = fitted.gradient[c].0[k];
+        }
+        let fit = &fitted.fits[k];
+        if !fit.complete {
+            // same bits in any order: a count
+            self.incomplete.fetch_add(1, Ordering::Relaxed);
+        }
+        // SAFETY: particle `i` belongs to one cluster alone, and this thread has the cluster.
+        let (v, drift) = unsafe {
+            *self.moment.slot(i) = fit.inverse;
+            *self.offset.slot(i) = fit.offset;
+            *self.norm.slot(i) = fit.norm;
+            *self.gradient.slot(i) = predicted;
+            (self.velocity.slot(i), self.acceleration.slot(i))
+        };
+        for a in 0..3 {
+            // Half kicks know gravity alone, as long as the other half is to come.
+            let pull = 0.5 * self.dt * self.gravity[a];
+            let after = fitted.velocity[a].0[k];
+            if self.dt > 0.0 {
+                drift[a] = (after - (v[a] - pull)) / self.dt;
+            }
+            v[a] = after - pull;
+        }
+        mid_step(&predicted, last, self.dt, self.last_dt)
+    }
+
+    /// What stress point `i` has heated less (J/kg) in the kicks about the beginning of this step, by
+    /// `rate` (W/kg) at the predicted velocity, than at the mean of the mid-step velocities before
+    /// and after, whose gradients there were `last` and `next` (1/s).
+    #[inline(always)]
+    fn late_heat(&self, i: usize, fit: &Fit, rate: f64, last: &[f64; 9], next: &[f64; 9]) -> f64 {
+        let mut mean = [0.0; 9];
+        for c in 0..9 {
+            mean[c] = 0.5 * (last[c] + next[c]);
+        }
+        let power = stress_power(0.0, &self.specific_stress[i], &mean, 1.0);
+        let (mut late, mut heat) = (0.0, 0.0);
+        if self.dt > 0.0 && fit.weight > 0.0 {
+            late = 0.5 * (self.dt + self.last_dt) * (power - rate);
+            heat = self.mass[i] * late / fit.weight;
+        }
+        // SAFETY: particle `i` belongs to one cluster alone, and this thread has the cluster.
+        unsafe { *self.heat.slot(i) = heat };
+        late
+    }
+}
+
+/// The first sweep over one task's clusters.
+struct FitChunk<'a, S> {
+    chunk: &'a Chunk,
+    sources: &'a [MotionRecord],
+    lengths: &'a [f64],
+    scale: S,
+    dimension: usize,
+    body_groups: usize,
+    images: &'a [Image],
+    update: &'a MaterialUpdate<'a>,
+    target: &'a FitTarget<'a>,
+}
+
+impl<S: PairScale> Vectorised for FitChunk<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) {
+        for (cluster, neighbours, _) in self.chunk.iter() {
+            if cluster.group < self.body_groups {
+                self.update.store_free(cluster, neighbours.len());
+                continue;
+            }
+            let sums = LinearFit {
+                sources: self.sources,
+                lengths: self.lengths,
+                receivers: cluster.receivers,
+                neighbours,
+                scale: self.scale,
+                dimension: self.dimension,
+            };
+            let fitted = sums.run::<V>();
+            let none = [F64x8([0.0; LANES]); 9];
+            let (mut ends, mut means) = (none, none);
+            for k in 0..cluster.lanes {
+                let i = self.images[cluster.receivers[k] as usize].base();
+                let last = self.update.last_gradient(i);
+                let MidStep { start, mean, end } = self.target.store(i, k, &fitted, &last);
+                for c in 0..9 {
+                    (ends[c].0[k], means[c].0[k]) = (end[c], mean[c]);
+                }
+                let (fit, rate) = (&fitted.fits[k], self.update.heating(i));
+                let late = self.target.late_heat(i, fit, rate, &last, &start);
+                self.update.heat(i, late);
+            }
+            self.update
+                .apply_mean(cluster, &means, &ends, neighbours.len());
+        }
+    }
+}
+
+impl Simulation {
+    /// First sweep: velocities and strain rates at stress points, material and moments there.
+    pub(super) fn strain_stress_points(&mut self, dt: f64) {
+        let set = instructions();
+        let mut fields = Fields::take(&mut self.store);
+        let update = &MaterialUpdate::new(
+            &mut self.store,
+            &mut self.sweeps.stresses,
+            self.search.sequence.images(),
+            &self.case.materials,
+            &self.sweeps.material_of_body,
+            &self.contact.rigid,
+            dt,
+        );
+        let target = &fields.target(dt, self.state.last_dt, self.loads.gravity);
+        let sources = &self.search.motion[..];
+        let lengths = self.search.sequence.smoothing_lengths();
+        let images = self.search.sequence.images();
+        let (dimension, body_groups) = (self.case.dimension, self.contact.body_groups);
+        let chunks = self.search.clusters.chunks().par_iter();
+        let chunks = chunks.with_max_len(CHUNKS_AT_ONCE);
+        with_scale!(self.sweeps.scale, scale => chunks.for_each(|chunk| {
+            set.run(FitChunk {
+                chunk, sources, lengths, scale, dimension, body_groups, images, update, target,
+            });
+        }));
+        self.sums.uncorrected = target.incomplete.load(Ordering::Relaxed);
+        fields.give_back(&mut self.store);
+        self.find_moments();
+    }
+}
