@@ -56,6 +56,8 @@ shape.sphere = { centre = ["20 mm", "20 mm", "28 mm"], radius = "5 mm" }
 "#;
 
 /// Largest resident memory (bytes) of a command that must end well.
+#[allow(clippy::zombie_processes, reason = "wait4 waits for it")]
+#[allow(clippy::cast_precision_loss, reason = "far below 2^53")]
 fn peak(mut command: std::process::Command) -> f64 {
     let child = command.stdout(Stdio::null()).spawn().unwrap();
     let id = libc::pid_t::try_from(child.id()).unwrap();
