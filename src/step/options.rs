@@ -119,6 +119,7 @@ pub fn bytes_of_options(case: &Case) -> [usize; 2] {
     if set & NORMALISED != 0 {
         record += size_of::<NormalisedRecord>();
     }
+    record += super::parts::bytes_of_image(case);
     // In the store, and in a message on its way out and in.
     [owned + record, 3 * halo + record]
 }

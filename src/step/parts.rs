@@ -31,6 +31,20 @@ pub(super) struct Parts {
     labels: Vec<(u64, u32)>,
 }
 
+/// Bytes that self-contact takes for each image, beside fields and lists.
+pub(super) fn bytes_of_image(case: &Case) -> usize {
+    let Some(own) = &case.self_contact else {
+        return 0;
+    };
+    let union = size_of::<u32>() + size_of::<(u64, u32)>();
+    let places = if own.folds.is_some() {
+        size_of::<[f64; 3]>()
+    } else {
+        0
+    };
+    size_of::<Part>() + places + union
+}
+
 impl Parts {
     pub(super) fn new(case: &Case) -> Self {
         let folds = case.self_contact.as_ref().and_then(|s| s.folds);
