@@ -110,9 +110,10 @@ struct Run {
 fn load(name: &str, changes: &[&str]) -> Result<Case, String> {
     let inputs = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs");
     let folder = inputs.join(name).join("case.toml");
-    let path = match folder.exists() {
-        true => folder,
-        false => inputs.join(name).with_extension("toml"),
+    let path = if folder.exists() {
+        folder
+    } else {
+        inputs.join(name).with_extension("toml")
     };
     let changes: Vec<String> = changes.iter().map(ToString::to_string).collect();
     input::load(&path, &changes).map_err(|error| error.to_string())
@@ -241,12 +242,14 @@ fn wave(s: &Simulation, run: &Run) -> Option<f64> {
 }
 
 /// Final velocity of the aluminium bar beside the exact one of small strain, 386.1 m/s.
+#[allow(clippy::unnecessary_wraps, reason = "the form of a measure")]
 fn rebound(s: &Simulation, _: &Run) -> Option<f64> {
     let aluminium = (0..s.store.owned()).filter(|&i| s.store.body[i] == 1);
     Some(1e2 * (mean(aluminium.map(|i| s.store.velocity[i][0])) / 386.1 - 1.0))
 }
 
 /// Mean stress on the axis beside that of one dimension, .0733 Mbar.
+#[allow(clippy::unnecessary_wraps, reason = "the form of a measure")]
 fn plateau(_: &Simulation, run: &Run) -> Option<f64> {
     Some(1e2 * (mean(run.samples.iter().copied()) / 0.0733e11 - 1.0))
 }

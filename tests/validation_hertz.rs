@@ -85,8 +85,8 @@ fn width_and_pressure_of_a_line_contact() {
     }
 }
 
-/// Errors of the half width of a disc's contact with a plate and of its largest pressure, and of σ_x
-/// and σ_y at its centre, from 33 µs to the end.
+/// Errors of the half width of a disc's contact with a plate and of its largest pressure, and of `σ_x`
+/// and `σ_y` at its centre, from 33 µs to the end.
 fn disc(spacing: &str) -> [f64; 4] {
     let mut s = start(ready("hertz-disc", &[&format!("spacing=\"{spacing}\"")]));
     let mut contact = LineContact::default();

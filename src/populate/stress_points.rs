@@ -113,7 +113,7 @@ impl Grid {
         let beside = self.beside(site, side);
         let here = self.position(site);
         let (position, share) = match beside {
-            Beside::Particle if side % 2 == 0 => {
+            Beside::Particle if side.is_multiple_of(2) => {
                 let other = self.next(site, side)?;
                 let there = self.position(other);
                 let share = self.share(site, side) + self.share(other, side + 1);
@@ -157,7 +157,7 @@ impl Grid {
         let along = self.stack.direction(axis(side));
         for plane in &self.planes {
             let normal = plane.axis.index();
-            let down = if side % 2 == 0 {
+            let down = if side.is_multiple_of(2) {
                 -along[normal]
             } else {
                 along[normal]
@@ -174,7 +174,7 @@ impl Grid {
     fn next(&self, site: [u64; 3], side: usize) -> Option<[u64; 3]> {
         let mut next = site;
         let index = &mut next[axis(side)];
-        *index = if side % 2 == 0 {
+        *index = if side.is_multiple_of(2) {
             *index + 1
         } else {
             index.checked_sub(1)?

@@ -282,7 +282,7 @@ impl Sums {
         };
         for k in 0..LANES {
             let all = self.once.all.0[k];
-            if !(all > 0.0) {
+            if all <= 0.0 || all.is_nan() {
                 continue;
             }
             let per = 1.0 / all;

@@ -91,10 +91,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> FieldUse {
             FieldUse::FREEZE,
             case.trouble.policy == TroublePolicy::Freeze,
         ),
-        (
-            FieldUse::STRESS_POINTS,
-            sph.form == SphForm::StressPoints,
-        ),
+        (FieldUse::STRESS_POINTS, sph.form == SphForm::StressPoints),
     ]
     .into_iter()
     .filter(|&(_, used)| !used)
