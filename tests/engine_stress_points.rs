@@ -121,6 +121,8 @@ fn check_linear(comm: &Comm, dimension: usize, mirrors: &[Axis]) {
             velocity = velocity.max(error.norm() / (field.norm() * SPACING));
         }
     }
+    let steepest = s.store.fit_norm.iter().copied().fold(0.0, f64::max);
+    println!("steepest fit {steepest:.2}");
     assert_eq!(s.state.worst.uncorrected, 0);
     println!("{dimension}-D {mirrors:?}: gradients {gradient:e}, velocities {velocity:e}");
     assert!(gradient <= 1e-12, "{dimension}-D {mirrors:?}: {gradient:e}");

@@ -286,13 +286,13 @@ fn a_full_disk_is_an_error_on_every_rank() {
         on_ranks(name, 0, Path::new(""), fill_disk);
         return;
     }
-    // Where the room ends decides which call meets it; the files need 1 MB, and 4 MB is enough.
-    for kilobytes in [0, 100, 300, 900, 4096] {
+    // Where the room ends decides which call meets it; the files need 2 MB, and 8 MB is enough.
+    for kilobytes in [0, 100, 300, 900, 8192] {
         let ran = on_small_disk(4096 + (kilobytes << 10), |folder| {
             for ranks in [1, 3] {
                 let said = on_ranks(name, ranks, folder, fill_disk);
                 let errors = said.matches("verdict: cannot").count();
-                let enough = kilobytes == 4096;
+                let enough = kilobytes == 8192;
                 assert_eq!(errors, if enough { 0 } else { 2 }, "{kilobytes} kB: {said}");
             }
         });

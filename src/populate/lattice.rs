@@ -115,14 +115,14 @@ impl Stack {
                 }
                 // An even number of layers stands half a pitch off the centre; one more on each
                 // side has room for the shifts.
-                2 * as_count((turned_half(half, turn, a) / pitch[a]).ceil() + 1.0)
+                as_count((turned_half(half, turn, a) / pitch[a]).ceil() + 1.0).saturating_mul(2)
             };
         }
         if lattice.kind == LatticeKind::Rings {
             let rings = ((radius - hole_squared.max(0.0).sqrt()) / lattice.spacing).round();
             innermost = radius - (rings - 0.5) * lattice.spacing;
             counts[0] = quarter(radius - 0.5 * lattice.spacing, lattice.spacing);
-            counts[1] = 4 * as_count(rings);
+            counts[1] = as_count(rings).saturating_mul(4);
         }
         Self {
             kind: lattice.kind,

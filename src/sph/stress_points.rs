@@ -18,7 +18,7 @@ use super::momentum::Viscosity;
 use super::principal::tensile_part;
 
 /// Fits of a larger [`Fit::norm`] are those of particles nearly in a row, in a plane or at one place.
-const LARGEST_NORM: f64 = 6.0;
+const LARGEST_NORM: f64 = 12.0;
 /// Their `M` gets so much of `h² Σ w` along the diagonal, about a third of what it has in a lattice:
 /// gradients along the row or the plane become less, those across it vanish.
 const REGULAR: f64 = 0.05;

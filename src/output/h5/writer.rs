@@ -218,13 +218,16 @@ impl<'a> Writer<'a> {
 }
 
 impl Drop for Writer<'_> {
-    /// Leaves a file that met an error as it is, on all ranks. HDF5 may not be able to write its
-    /// records, and then crashes, at once or when MPI ends and with it HDF5: so nobody closes the
-    /// file, and the job must end without the end of MPI, see [`abandoned`].
+    /// Gives back the room of a file that met an error, but leaves it open on all ranks. HDF5 may not
+    /// be able to write its records, and then crashes, at once or when MPI ends and with it HDF5: so
+    /// nobody closes the file, and the job must end without the end of MPI, see [`abandoned`].
     fn drop(&mut self) {
         let Some(file) = self.file.take() else { return };
         if self.comm.is_root() {
             let _ = files::remove(&room(&self.path));
+            if let Ok(raw) = std::fs::File::options().write(true).open(&self.path) {
+                let _ = raw.set_len(0);
+            }
         }
         if self.comm.raw().is_some() {
             ABANDONED.store(true, Ordering::Relaxed);
