@@ -347,7 +347,7 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
     }
 }
 
-/// What the core of two bodies is as stiff as (Pa): `max(M, ¾ ρ v²)` with v (m/s) their speed against
+/// What the core of two bodies is as stiff as (Pa): `max(M, .85 ρ v²)` with v (m/s) their speed against
 /// each other at the start. M and ρ are harmonic means of moduli and densities, as the mass of two
 /// particles that meet head-on is; what is rigid counts as infinite.
 fn core_scale(case: &Case, bodies: [&Body; 2]) -> f64 {
@@ -358,5 +358,5 @@ fn core_scale(case: &Case, bodies: [&Body; 2]) -> f64 {
     let modulus = harmonic_mean(&|body| case.materials[body.material].p_wave_modulus());
     let density = harmonic_mean(&|body| case.initial_density(body));
     let speed = (bodies[0].velocity - bodies[1].velocity).norm_squared();
-    modulus.max(0.75 * density * speed)
+    modulus.max(0.85 * density * speed)
 }

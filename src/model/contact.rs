@@ -109,7 +109,7 @@ impl Default for Overlap {
     fn default() -> Self {
         Self {
             stiffness: 4.0,
-            core_stiffness: 3.0,
+            core_stiffness: 2.2,
             core_radius: 0.6,
             direction: ContactDirection::Pair,
             resistance: Resistance::default(),
