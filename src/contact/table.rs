@@ -19,7 +19,7 @@ pub struct Pair {
     pub modulus: f64,
     /// `overlap`: touching value C* of the receiver's body on the other.
     pub touching: f64,
-    /// `overlap`: `κ_c` times what [`core_scale`] says (Pa).
+    /// `overlap`: `κ_c` times the scale `max(M', .85 ρ' v²)` of the core (Pa).
     pub core_modulus: f64,
     /// `overlap`: radius of the core (m).
     pub core_radius: f64,
