@@ -1,5 +1,7 @@
 //! Velocity gradients of mid-step velocities, by which stress points strain.
 
+use super::matrix::{inverse, product};
+
 /// Velocity gradients of one mid-step velocity (1/s).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MidStep {
@@ -61,38 +63,4 @@ fn earlier(gradient: &[f64; 9], time: f64) -> [f64; 9] {
         way[4 * a] += 1.0;
     }
     product(gradient, &inverse(&way))
-}
-
-/// Product of two matrices, row-major.
-#[inline(always)]
-pub(super) fn product(a: &[f64; 9], b: &[f64; 9]) -> [f64; 9] {
-    let mut all = [0.0; 9];
-    for i in 0..3 {
-        for j in 0..3 {
-            all[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
-        }
-    }
-    all
-}
-
-/// Inverse of a matrix, row-major.
-#[inline(always)]
-fn inverse(m: &[f64; 9]) -> [f64; 9] {
-    let minor = |a: usize, b: usize, c: usize, d: usize| m[a] * m[d] - m[b] * m[c];
-    let mut all = [
-        minor(4, 5, 7, 8),
-        minor(2, 1, 8, 7),
-        minor(1, 2, 4, 5),
-        minor(5, 3, 8, 6),
-        minor(0, 2, 6, 8),
-        minor(2, 0, 5, 3),
-        minor(3, 4, 6, 7),
-        minor(1, 0, 7, 6),
-        minor(0, 1, 3, 4),
-    ];
-    let scale = 1.0 / (m[0] * all[0] + m[1] * all[3] + m[2] * all[6]);
-    for value in &mut all {
-        *value *= scale;
-    }
-    all
 }

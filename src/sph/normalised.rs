@@ -15,6 +15,7 @@ use super::gradient::{
 };
 use super::kernel::PairScale;
 use super::lanes::{F64x8, LANES, Lanes};
+use super::matrix::adjugate;
 use super::options::{NORMALISED, Options};
 
 /// Corrections that enlarge gradients more than so are left out: the particle has too few
@@ -71,21 +72,8 @@ impl Moments {
         for a in dimension..3 {
             m[4 * a] = 1.0;
         }
-        let minor = |a: usize, b: usize, c: usize, d: usize| m[a] * m[d] - m[b] * m[c];
-        let adjugate = [
-            minor(4, 5, 7, 8),
-            minor(2, 1, 8, 7),
-            minor(1, 2, 4, 5),
-            minor(5, 3, 8, 6),
-            minor(0, 2, 6, 8),
-            minor(2, 0, 5, 3),
-            minor(3, 4, 6, 7),
-            minor(1, 0, 7, 6),
-            minor(0, 1, 3, 4),
-        ];
-        let determinant = m[0] * adjugate[0] + m[1] * adjugate[3] + m[2] * adjugate[6];
+        let (mut matrix, determinant) = adjugate(&m);
         let inverse = 1.0 / determinant;
-        let mut matrix = adjugate;
         let mut square = 0.0;
         for a in 0..3 {
             for b in 0..3 {

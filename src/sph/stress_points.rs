@@ -13,7 +13,7 @@ use super::dispatch::Vectorised;
 use super::gradient::{MotionRecord, Separation, gather3, length, lengths, records};
 use super::kernel::{PairKernel, PairScale};
 use super::lanes::{F64x8, LANES, Lanes};
-use super::mid_step::product;
+use super::matrix::product;
 use super::momentum::Viscosity;
 use super::principal::tensile_part;
 
