@@ -4,6 +4,7 @@ mod physics_support;
 
 use physics_support::bars::{BAR_MATERIALS, STEEL_SPEED};
 use physics_support::{inline, run_to, run_with, sorted_by, start};
+use whipple::contact::ContactTable;
 use whipple::model::Case;
 use whipple::step::{Reason, Simulation};
 
@@ -457,5 +458,59 @@ point = [{}]
             .fold(0.0, f64::max);
         println!("{dimension}-D {lattice}: {fastest:e} m/s");
         assert!(fastest < 1e-6, "{fastest:e}");
+    }
+}
+
+/// The core of `overlap` is as stiff, κ_c max(M, .85 ρ v²), as the fastest meeting takes that tables of
+/// loads state: v is that of the tables up to `until`, and along free axes that of the start.
+#[test]
+fn the_core_knows_the_speeds_that_loads_prescribe() {
+    let core = |loads: &str| {
+        let text = format!(
+            r#"
+dimension = 2
+spacing = "1 mm"
+run.end_time = "1 us"
+material.a.library = "copper"
+[[body]]
+name = "flyer"
+material = "a"
+shape.box = {{ lower = [0, 0], upper = ["4 mm", "4 mm"] }}
+velocity = [0, "3 km/s"]
+[[body]]
+name = "target"
+material = "a"
+shape.box = {{ lower = ["5 mm", 0], upper = ["9 mm", "4 mm"] }}
+velocity = [0, "3 km/s"]
+{loads}"#
+        );
+        let case = inline(&text);
+        let table = ContactTable::new(&case);
+        let material = &case.materials[0];
+        assert_eq!(table.pair(0, 1).core_modulus, table.pair(1, 0).core_modulus);
+        // 2.2 is the default of κ_c.
+        let scale = table.pair(0, 1).core_modulus / 2.2;
+        (scale / (0.85 * material.reference_density)).sqrt()
+    };
+    let at_rest = core("");
+    assert!(at_rest < 6e3, "{at_rest}");
+    let load = |body: &str, v: &str, until: &str| {
+        format!(
+            "[[load]]\nbody = \"{body}\"\nvelocity = {{ x = {v}, times = [0, \"1 us\", \"2 us\"] }}\n\
+             {until}\n"
+        )
+    };
+    let ramp = r#"[0, "10 km/s", "1 km/s"]"#;
+    for (loads, speed) in [
+        (load("flyer", r#"[0, "1 km/s", "2 km/s"]"#, ""), at_rest),
+        (load("flyer", ramp, ""), 10e3),
+        (load("flyer", ramp, "until = \"0.8 us\""), 8e3),
+        (
+            load("flyer", ramp, "") + &load("target", r#"[0, 0, "-2 km/s"]"#, ""),
+            12e3,
+        ),
+    ] {
+        let found = core(&loads);
+        assert!((found / speed - 1.0).abs() < 1e-12, "{found} for {speed}");
     }
 }

@@ -337,7 +337,7 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
         ContactMode::Overlap(overlap) => {
             pair.modulus = overlap.stiffness * smaller;
             pair.touching = populate::touching_value(body_a, body_b, case.dimension);
-            pair.core_modulus = overlap.core_stiffness * core_scale(case, [body_a, body_b]);
+            pair.core_modulus = overlap.core_stiffness * core_scale(case, a, b);
             pair.core_radius = overlap.core_radius * spacing;
             pair.along_normal = overlap.direction == ContactDirection::Normal;
             pair.resistance =
@@ -347,16 +347,17 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
     }
 }
 
-/// What the core of two bodies is as stiff as (Pa): `max(M, .85 ρ v²)` with v (m/s) their speed against
-/// each other at the start. M and ρ are harmonic means of moduli and densities, as the mass of two
-/// particles that meet head-on is; what is rigid counts as infinite.
-fn core_scale(case: &Case, bodies: [&Body; 2]) -> f64 {
+/// What the core of two bodies is as stiff as (Pa): `max(M, .85 ρ v²)` with v (m/s) the largest speed
+/// against each other that the case states. M and ρ are harmonic means of moduli and densities, as
+/// the mass of two particles that meet head-on is; what is rigid counts as infinite.
+fn core_scale(case: &Case, a: usize, b: usize) -> f64 {
+    let bodies = [&case.bodies[a], &case.bodies[b]];
     let harmonic_mean = |value: &dyn Fn(&Body) -> f64| {
         let soft = bodies.iter().filter(|body| body.rigid.is_none());
         2.0 / soft.map(|body| 1.0 / value(body)).sum::<f64>()
     };
     let modulus = harmonic_mean(&|body| case.materials[body.material].p_wave_modulus());
     let density = harmonic_mean(&|body| case.initial_density(body));
-    let speed = (bodies[0].velocity - bodies[1].velocity).norm_squared();
-    modulus.max(0.85 * density * speed)
+    let speed = case.closing_speed(a, b);
+    modulus.max(0.85 * density * speed * speed)
 }

@@ -131,4 +131,39 @@ impl Case {
                 .fold(0.0, f64::max)
         }
     }
+
+    /// Largest speed of two bodies against each other (m/s) by the velocities at which they begin and
+    /// those that loads and rigid motions prescribe, at whatever times; of a body with itself zero.
+    #[must_use]
+    pub fn closing_speed(&self, a: usize, b: usize) -> f64 {
+        if a == b {
+            return 0.0;
+        }
+        let theirs = self.known_velocities(b);
+        let mine = self.known_velocities(a).into_iter();
+        mine.flat_map(|v| theirs.iter().map(move |other| (v - other).norm()))
+            .fold(0.0, f64::max)
+    }
+
+    /// The velocity at which a body begins and all corners of the tables that prescribe one (m/s).
+    fn known_velocities(&self, body: usize) -> Vec<Vec3> {
+        let first = self.bodies[body].velocity;
+        let loads = self.loads.velocities.iter().filter(|l| l.body == body);
+        let tables = loads.map(|load| (&load.motion, load.until));
+        let rigid = self.bodies[body].rigid.iter().map(|m| (m, f64::INFINITY));
+        let corners = tables.chain(rigid).flat_map(|(motion, until)| {
+            (0..motion.times.len()).map(move |k| {
+                let along = |axis: usize, values: &Vec<f64>| match motion.times[k] <= until {
+                    true => values[k],
+                    false => motion.velocity(axis, until),
+                };
+                let velocity = |axis: usize| {
+                    let values = motion.velocities[axis].as_ref();
+                    values.map_or(first[axis], |values| along(axis, values))
+                };
+                Vec3::from_fn(|axis, _| velocity(axis))
+            })
+        });
+        std::iter::once(first).chain(corners).collect()
+    }
 }
