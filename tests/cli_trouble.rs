@@ -6,7 +6,7 @@ mod cli_support;
 use std::path::Path;
 use std::process::Command;
 
-use cli_support::{assert_same, coarse_run, end, json, ranks, status};
+use cli_support::{WHIPPLE, assert_same, coarse_run, command, end, json, ranks, status};
 
 /// The shock compresses the metal by half: whatever is compressed by more than a quarter is out of
 /// range here, beside the faces of slabs and symmetry planes too.
@@ -146,6 +146,26 @@ fn frozen_in_last_snapshot(run: &Path) -> (usize, usize) {
     (frozen.len(), frozen.iter().filter(|&&f| f == 1).count())
 }
 
+/// What is frozen is in no picture, in no profile and in no front, but where just that is asked for.
+fn assert_same_pictures(removed: &Path, frozen: &Path, place: &Path) {
+    let draw = |run: &Path, what: &[&str]| {
+        let out = place.join("out.png");
+        let mut plot = command(WHIPPLE);
+        plot.arg("plot").arg(run).arg("--out").arg(&out).args(what);
+        end(&mut plot).with_code(0);
+        std::fs::read(&out).unwrap()
+    };
+    for what in [
+        &["--field", "pressure"][..],
+        &["--section", "z"],
+        &["--profile", "density", "--along", "z"],
+        &["--front", "sphere", "--along", "z"],
+    ] {
+        assert!(draw(removed, what) == draw(frozen, what), "{what:?}");
+    }
+    draw(frozen, &["--field", "frozen"]);
+}
+
 #[test]
 fn frozen_particles_stay_in_files_and_all_else_is_as_without_them() {
     let place = tempfile::tempdir().unwrap();
@@ -157,6 +177,7 @@ fn frozen_particles_stay_in_files_and_all_else_is_as_without_them() {
         let text = |run: &Path| std::fs::read(run.join(table)).unwrap();
         assert!(text(&removed) == text(&one), "{table} differs");
     }
+    assert_same_pictures(&removed, &one, place.path());
     let [removed, frozen] = [&removed, &one].map(|run| json(&run.join("summary.json")));
     assert_eq!(removed["removed_particles"], frozen["frozen_particles"]);
     assert_eq!(removed["particles"], frozen["particles"]);

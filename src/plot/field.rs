@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::PlotError;
-use super::snapshot::Snapshot;
+use super::snapshot::{FROZEN, Snapshot};
 
 /// Components of a vector, in the order of the file.
 const VECTOR: [&str; 3] = ["x", "y", "z"];
@@ -75,19 +75,23 @@ impl Shown {
         }
     }
 
-    /// Which of some rows bear it: where there are stress points, these or the particles that have
-    /// mass; else all.
+    /// Which of some rows bear it: none that is frozen, but in a picture of just that; where there
+    /// are stress points, these or the particles that have mass.
     pub fn bearers(&self, snapshot: &Snapshot, rows: Range<usize>) -> Result<Vec<bool>, PlotError> {
+        let active = match self {
+            Self::Field(field) if field.dataset == FROZEN => vec![true; rows.len()],
+            _ => snapshot.active(rows.clone())?,
+        };
         if !has(snapshot, STRESS_MASS)? {
-            return Ok(vec![true; rows.len()]);
+            return Ok(active);
         }
         let of_points = match self {
             Self::Body => false,
             Self::Field(field) => OF_STRESS_POINTS.contains(&field.dataset.as_str()),
         };
         let masses = snapshot.file.scalar(STRESS_MASS, 0, rows)?;
-        let bears = |mass: f64| (mass > 0.0) == of_points;
-        Ok(masses.into_iter().map(bears).collect())
+        let bears = |(mass, active): (f64, bool)| active && (mass > 0.0) == of_points;
+        Ok(masses.into_iter().zip(active).map(bears).collect())
     }
 }
 

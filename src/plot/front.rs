@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use super::PlotError;
+use super::field::Shown;
 use super::snapshot::Snapshot;
 use crate::diagnose::pieces;
 use crate::model::Axis;
@@ -28,8 +29,12 @@ pub fn front(snapshots: &[PathBuf], body: &str, axis: Axis) -> Result<String, Pl
         let mut points = Vec::new();
         for rows in snapshot.chunks() {
             let bodies = snapshot.body_of(rows.clone())?;
+            let bearers = Shown::Body.bearers(&snapshot, rows.clone())?;
             let all = snapshot.file.points(rows)?.into_iter().zip(bodies);
-            points.extend(all.filter(|(_, of)| *of == wanted).map(|(point, _)| point));
+            let wanted = all
+                .zip(bearers)
+                .filter(|((_, of), bears)| *bears && *of == wanted);
+            points.extend(wanted.map(|((point, _), _)| point));
         }
         let front = pieces::front(&points, axis.index(), snapshot.spacings[wanted]);
         if let Some(front) = front {

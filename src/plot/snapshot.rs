@@ -26,7 +26,12 @@ pub struct Snapshot {
     pub rigid: Vec<bool>,
     /// Planes of symmetry.
     pub symmetry: Vec<SymmetryPlane>,
+    /// Whether particles may be frozen.
+    freezes: bool,
 }
+
+/// The field that marks frozen particles.
+pub const FROZEN: &str = "frozen";
 
 impl Snapshot {
     /// Opens a snapshot and reads what it says of its case.
@@ -66,6 +71,7 @@ impl Snapshot {
             .collect::<Result<_, PlotError>>()?;
         Ok(Self {
             time: file.time()?,
+            freezes: file.names()?.iter().any(|name| name == FROZEN),
             file,
             title,
             bodies,
@@ -110,11 +116,23 @@ impl Snapshot {
         values.into_iter().map(index).collect()
     }
 
-    /// Smallest, largest and mean finite coordinate along each axis (m).
+    /// Which of some rows are part of the model still: those that are not frozen. A picture of a run
+    /// that freezes particles is that of one which removes them.
+    pub fn active(&self, rows: Range<usize>) -> Result<Vec<bool>, PlotError> {
+        if !self.freezes {
+            return Ok(vec![true; rows.len()]);
+        }
+        let frozen = self.file.scalar(FROZEN, 0, rows)?;
+        Ok(frozen.into_iter().map(|frozen| frozen == 0.0).collect())
+    }
+
+    /// Smallest, largest and mean finite coordinate of what is not frozen along each axis (m).
     pub fn extent(&self) -> Result<[Extent; 3], PlotError> {
         let mut extents = [Extent::default(); 3];
         for rows in self.chunks() {
-            for point in self.file.points(rows)? {
+            let active = self.active(rows.clone())?;
+            let points = self.file.points(rows)?.into_iter().zip(active);
+            for (point, _) in points.filter(|(_, active)| *active) {
                 for (extent, coordinate) in extents.iter_mut().zip(point) {
                     extent.add(coordinate);
                 }
