@@ -59,6 +59,22 @@ fn assert_same(a: &Path, b: &Path, what: &str) {
     assert!(text.contains("agree to the last bit"), "{what}:\n{text}");
 }
 
+/// Runs a case in legs on so many ranks each, with a stop at a time after each but the last, and
+/// compares it with an untouched run.
+fn assert_same_in_legs(case: &[&str], ranks: &[usize], stops: &[&str], one: &Path, out: &Path) {
+    run(ranks[0], 1, case, &["--until", stops[0]], out);
+    let path = out.to_str().expect("a plain path");
+    for (leg, &number) in ranks.iter().enumerate().skip(1) {
+        let threads = if number == 1 { "2" } else { "1" };
+        let mut again = vec!["restart", path, "--poison", "-t", threads];
+        if let Some(stop) = stops.get(leg) {
+            again.extend(["--until", stop]);
+        }
+        must(&whipple(number, &again), 0);
+    }
+    assert_same(one, out, &format!("in legs on {ranks:?} ranks"));
+}
+
 fn folder() -> (tempfile::TempDir, impl Fn(&str) -> PathBuf) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().to_owned();
@@ -136,12 +152,8 @@ fn stop_and_restart_on_other_ranks() {
     let (_keep, at) = folder();
     let (reference, stopped) = (at("reference"), at("stopped"));
     run(1, 2, QUARTER, &[], &reference);
-    run(3, 1, QUARTER, &["--until", "0.03us"], &stopped);
-    let path = stopped.to_str().expect("a plain path");
-    let stop_again = ["restart", path, "--until", "0.09us", "--poison", "-t", "2"];
-    must(&whipple(1, &stop_again), 0);
-    must(&whipple(4, &["restart", path, "--poison", "-t", "1"]), 0);
-    assert_same(&reference, &stopped, "restart on 1 and 4 ranks");
+    let stops = ["0.03us", "0.09us"];
+    assert_same_in_legs(QUARTER, &[3, 1, 4], &stops, &reference, &stopped);
 
     // From a checkpoint on the way into a folder of its own.
     let mut checkpoints: Vec<PathBuf> = std::fs::read_dir(reference.join("checkpoints"))
@@ -181,10 +193,7 @@ fn penalty_with_friction_on_any_ranks_and_through_a_restart() {
     run(1, 2, &case, &[], &one);
     run(3, 1, &case, &["--set", "domain.balance_every=7"], &three);
     assert_same(&one, &three, "three ranks");
-    run(2, 1, &case, &["--until", "0.03us"], &stopped);
-    let path = stopped.to_str().expect("a plain path");
-    must(&whipple(3, &["restart", path, "--poison", "-t", "1"]), 0);
-    assert_same(&one, &stopped, "restart on 3 ranks");
+    assert_same_in_legs(&case, &[2, 3], &["0.03us"], &one, &stopped);
     let history = std::fs::read_to_string(one.join("contacts.csv")).expect("the table");
     let last: Vec<&str> = history.lines().last().expect("a row").split(',').collect();
     assert!(last[10].parse::<f64>().expect("heat") > 0.0, "{last:?}");
@@ -202,12 +211,7 @@ fn self_contact_on_any_ranks_and_through_a_restart() {
         run(ranks, 1, &case, &["--set", &axis], &other);
         assert_same(&one, &other, &format!("{ranks} ranks, {axis}"));
     }
-    run(2, 1, &case, &["--until", "1.1ms"], &stopped);
-    let path = stopped.to_str().expect("a plain path");
-    let again = ["restart", path, "--until", "1.9ms", "--poison", "-t", "2"];
-    must(&whipple(1, &again), 0);
-    must(&whipple(3, &["restart", path, "--poison", "-t", "1"]), 0);
-    assert_same(&one, &stopped, "restart on 1 and 3 ranks");
+    assert_same_in_legs(&case, &[2, 1, 3], &["1.1ms", "1.9ms"], &one, &stopped);
     let contacts = std::fs::read_to_string(one.join("contacts.csv")).expect("the table");
     let last: Vec<&str> = contacts.lines().last().expect("a row").split(',').collect();
     assert_eq!(last[1..3], ["bar", "bar"]);
@@ -222,12 +226,7 @@ fn loads_and_rigid_bodies_on_any_ranks_and_through_a_restart() {
     run(1, 2, &case, &[], &one);
     run(3, 1, &case, &["--set", "domain.axis=y"], &three);
     assert_same(&one, &three, "three ranks");
-    run(2, 1, &case, &["--until", "0.35us"], &stopped);
-    let path = stopped.to_str().expect("a plain path");
-    let again = ["restart", path, "--until", "0.58us", "--poison", "-t", "2"];
-    must(&whipple(1, &again), 0);
-    must(&whipple(2, &["restart", path, "--poison", "-t", "1"]), 0);
-    assert_same(&one, &stopped, "restart on 1 and 2 ranks");
+    assert_same_in_legs(&case, &[2, 1, 2], &["0.35us", "0.58us"], &one, &stopped);
     let loads = std::fs::read_to_string(one.join("loads.csv")).expect("the table");
     for name in [
         "load-1", "corner", "floor", "punch", "plane-1", "hook", "pipe",
@@ -292,10 +291,7 @@ fn every_material() {
     run(1, 2, &case, &[], &one);
     run(3, 1, &case, &[], &three);
     assert_same(&one, &three, "three ranks");
-    run(2, 1, &case, &["--until", "0.7us"], &stopped);
-    let path = stopped.to_str().expect("a plain path");
-    must(&whipple(3, &["restart", path, "--poison", "-t", "1"]), 0);
-    assert_same(&one, &stopped, "restart on three ranks");
+    assert_same_in_legs(&case, &[2, 3], &["0.7us"], &one, &stopped);
 }
 
 /// A disc on a bar in two dimensions and a hammer on a rod in one, with all options of the sums and
@@ -389,10 +385,7 @@ fn one_and_two_dimensions_with_all_options() {
         }
         let stopped = at(&format!("{name} stopped"));
         let until = if name == "disc" { "0.5us" } else { "1.5us" };
-        run(2, 1, &case, &["--until", until], &stopped);
-        let path = stopped.to_str().expect("a plain path");
-        must(&whipple(1, &["restart", path, "--poison", "-t", "2"]), 0);
-        assert_same(&one, &stopped, "restart on one rank");
+        assert_same_in_legs(&case, &[2, 1], &[until], &one, &stopped);
     }
 }
 
