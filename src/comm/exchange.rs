@@ -182,22 +182,10 @@ impl Exchange {
         rank: c_int,
         tag: c_int,
     ) {
-        // SAFETY: a constant of the library.
-        let mut request = unsafe { ffi::RSMPI_REQUEST_NULL };
-        let count = c_int::try_from(bytes).expect("a piece fits an int");
-        // SAFETY: the caller keeps `to..to + bytes` alive and untouched until `wait`.
-        unsafe {
-            ffi::MPI_Irecv(
-                to,
-                count,
-                ffi::RSMPI_UINT8_T,
-                rank,
-                tag,
-                comm,
-                &raw mut request,
-            );
-        }
-        self.receives.push(request);
+        self.receives.push(begin(bytes, |count, request| {
+            // SAFETY: the caller keeps `to..to + bytes` alive and untouched until `wait`.
+            unsafe { ffi::MPI_Irecv(to, count, ffi::RSMPI_UINT8_T, rank, tag, comm, request) }
+        }));
     }
 
     unsafe fn send_piece(
@@ -208,25 +196,25 @@ impl Exchange {
         rank: c_int,
         tag: c_int,
     ) {
-        // SAFETY: a constant of the library.
-        let mut request = unsafe { ffi::RSMPI_REQUEST_NULL };
-        let count = c_int::try_from(bytes).expect("a piece fits an int");
-        // SAFETY: the caller keeps `from..from + bytes` alive and unchanged until `wait`.
-        unsafe {
-            ffi::MPI_Isend(
-                from,
-                count,
-                ffi::RSMPI_UINT8_T,
-                rank,
-                tag,
-                comm,
-                &raw mut request,
-            );
-        }
-        self.sends.push(request);
+        self.sends.push(begin(bytes, |count, request| {
+            // SAFETY: the caller keeps `from..from + bytes` alive and unchanged until `wait`.
+            unsafe { ffi::MPI_Isend(from, count, ffi::RSMPI_UINT8_T, rank, tag, comm, request) }
+        }));
         self.traffic.messages += 1;
         self.traffic.bytes += bytes as u64;
     }
+}
+
+/// Begins a message of so many bytes by a call that takes their count and sets the request.
+fn begin(
+    bytes: usize,
+    call: impl FnOnce(c_int, *mut ffi::MPI_Request) -> c_int,
+) -> ffi::MPI_Request {
+    // SAFETY: a constant of the library.
+    let mut request = unsafe { ffi::RSMPI_REQUEST_NULL };
+    let count = c_int::try_from(bytes).expect("a piece fits an int");
+    call(count, &raw mut request);
+    request
 }
 
 impl Drop for Exchange {
