@@ -15,6 +15,7 @@ use rayon::prelude::*;
 use super::loads::{Drive, Free, Goal, LoadStep};
 use super::search::GRAIN;
 use super::simulation::Simulation;
+use super::vector::dot;
 use super::vote::{ABSTAIN, Moved, Vote};
 use crate::diagnose::exact_sum::ExactSum;
 use crate::model::SmoothingLength;
@@ -46,10 +47,6 @@ impl SmoothingRule {
             }
         }
     }
-}
-
-fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 fn add(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {

@@ -1,5 +1,6 @@
 //! Where rigid surfaces stand in a step, and how they move.
 
+use super::vector::{cross, dot};
 use crate::model::RigidSurface;
 
 /// A rigid surface in one step.
@@ -62,18 +63,6 @@ fn rotation(axis: &[f64; 3], angle: f64) -> [[f64; 3]; 3] {
             same + s * skew[i][j] + (1.0 - c) * axis[i] * axis[j]
         })
     })
-}
-
-fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-pub(super) fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// A surface as it stands at the end of a step.

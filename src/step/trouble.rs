@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use super::simulation::{Simulation, StepError};
 use super::sums::{gather_limbs, scatter_limbs};
-use super::vote::{Moved, square};
+use super::vector::square;
+use super::vote::Moved;
 use crate::comm::Comm;
 use crate::diagnose::exact_sum::ExactSum;
 use crate::model::{Case, Trouble, TroublePolicy};

@@ -5,6 +5,7 @@
 use super::simulation::{Simulation, StepError};
 use super::state::Reason;
 use super::trouble::{Limits, PAST_VOTES, PastVote, TroubleKind};
+use super::vector::square;
 use crate::comm::Comm;
 use crate::model::Case;
 use crate::particles::ParticleStore;
@@ -133,10 +134,6 @@ impl Simulation {
             detail: String::from_utf8_lossy(&text).into_owned(),
         }
     }
-}
-
-pub(super) fn square(v: &[f64; 3]) -> f64 {
-    v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
 }
 
 fn kind_of(number: u64) -> TroubleKind {
