@@ -182,3 +182,21 @@ fn until_stops_at_its_time_and_is_no_failure() {
 
     assert_goes_on(&run, &reference(place.path()), 2);
 }
+
+/// A file `stop` from before a restart is of the earlier run; one that comes while it starts counts.
+#[test]
+fn a_stop_file_that_comes_while_a_run_starts_is_not_lost() {
+    let place = folder();
+    let run = place.path().join("run");
+    end(coarse_run(2, &run).args(["--until", "0.01us"])).with_code(0);
+    let file = std::fs::File::create(run.join("stop")).unwrap();
+    let soon = std::time::SystemTime::now() + Duration::from_mins(1);
+    file.set_modified(soon).unwrap();
+    // It is looked for each second.
+    let mut again = ranks(2);
+    again.env("WHIPPLE_TEST_FAULT", format!("pause:0:{PAUSE}"));
+    end(again.arg("restart").arg(&run)).with_code(75);
+    let (state, _, reason) = status(&run);
+    let file = "the file `stop` asked to stop";
+    assert_eq!((state.as_str(), reason.as_str()), ("stopped", file));
+}

@@ -73,6 +73,7 @@ impl<'a> Driver<'a> {
         let quantities = snapshot::quantities_of(&simulation.case)?;
         let mut tables = None;
         on_root(comm, || {
+            folder.forget_stop(launch.began)?;
             let resume = restarted.is_some().then_some(&simulation.state);
             tables = Some(Tables::open(folder, &simulation.case, resume)?);
             Ok(())

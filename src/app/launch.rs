@@ -1,7 +1,7 @@
 //! The ranks of a command: started together, and ended together with one message.
 
 use std::sync::atomic::Ordering;
-use std::time::Instant;
+use std::time::{Instant, SystemTime};
 
 use super::driver::STEP;
 use super::run::CommonArgs;
@@ -20,6 +20,8 @@ pub struct Launch<'a> {
     pub comm: &'a Comm,
     /// When the program started.
     pub start: Instant,
+    /// The same by the clock of files.
+    pub began: SystemTime,
     /// Signals that came since.
     pub signals: Signals,
 }
@@ -27,7 +29,7 @@ pub struct Launch<'a> {
 /// Starts MPI and the threads, and makes a panic on one rank end all ranks. Returns `work`'s exit
 /// code once MPI is finalised.
 pub fn with_ranks(args: &CommonArgs, work: impl FnOnce(&Launch) -> u8) -> u8 {
-    let start = Instant::now();
+    let (start, began) = (Instant::now(), SystemTime::now());
     let signals = Signals::watch();
     let Some((session, comm)) = Session::start() else {
         say::complain(
@@ -40,6 +42,7 @@ pub fn with_ranks(args: &CommonArgs, work: impl FnOnce(&Launch) -> u8) -> u8 {
     let code = work(&Launch {
         comm: &comm,
         start,
+        began,
         signals,
     });
     if abandoned() {

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +12,7 @@ use super::checkpoint::{self, step_of};
 use super::{OutputError, files, on_root, series, snapshot, write_atomically, write_json};
 
 /// Files that a run writes into its folder, beside two folders.
-const FILES: [&str; 10] = [
+const FILES: [&str; 9] = [
     "case.toml",
     "history.csv",
     "contacts.csv",
@@ -21,7 +22,6 @@ const FILES: [&str; 10] = [
     "log.txt",
     "status.json",
     "summary.json",
-    "stop",
 ];
 const SNAPSHOTS: &str = "snapshots";
 const CHECKPOINTS: &str = "checkpoints";
@@ -107,7 +107,7 @@ impl RunFolder {
 
     /// Goes on in the folder of an earlier run from a checkpoint of it: snapshots and
     /// checkpoints later than that are removed, for the new run writes them again; tables are
-    /// cut by [`super::Table::resume`]. A `stop` file goes too. Collective.
+    /// cut by [`super::Table::resume`]. Collective.
     ///
     /// # Errors
     /// [`OutputError::Io`], [`OutputError::Damaged`]; the same on every rank.
@@ -123,7 +123,6 @@ impl RunFolder {
             for path in [folder.snapshots(), folder.checkpoints()] {
                 fs::create_dir_all(&path).map_err(OutputError::io("create the folder", &path))?;
             }
-            files::remove(&folder.stop())?;
             for (other, path) in checkpoint::list(&folder.checkpoints())? {
                 if other > step {
                     files::remove(&path)?;
@@ -152,6 +151,20 @@ impl RunFolder {
         Self {
             path: path.to_owned(),
         }
+    }
+
+    /// Removes a file `stop` that asked an earlier run to stop: one from before `began`. One that has
+    /// come since, while this run was starting, stays and stops it. Rank 0's alone.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`].
+    pub fn forget_stop(&self, began: SystemTime) -> Result<(), OutputError> {
+        let path = self.stop();
+        let written = fs::metadata(&path).and_then(|meta| meta.modified());
+        if written.is_ok_and(|written| written < began) {
+            files::remove(&path)?;
+        }
+        Ok(())
     }
 
     /// Whether a folder holds a run.
@@ -399,6 +412,20 @@ mod tests {
     }
 
     #[test]
+    fn a_stop_file_is_that_of_an_earlier_run_or_of_this_one() {
+        let place = tempfile::tempdir().unwrap();
+        let run = RunFolder::at(place.path());
+        write(run.stop());
+        let second = std::time::Duration::from_secs(1);
+        let written = fs::metadata(run.stop()).unwrap().modified().unwrap();
+        run.forget_stop(written - second).unwrap();
+        assert!(run.stop().exists());
+        run.forget_stop(written + second).unwrap();
+        assert!(!run.stop().exists());
+        run.forget_stop(written).unwrap();
+    }
+
+    #[test]
     fn force_leaves_a_folder_alone_that_holds_no_run() {
         let place = tempfile::tempdir().unwrap();
         let case = place.path().join("case.toml");
@@ -422,7 +449,6 @@ mod tests {
                     .join(format!("step-{step:08}/manifest.json")),
             );
         }
-        write(run.stop());
         let run = RunFolder::resume(&comm, place.path(), "", 4, 4.0).unwrap();
         assert_eq!(
             run.snapshot_files().unwrap(),
@@ -431,7 +457,6 @@ mod tests {
         assert_eq!(series::read(&run.series()).unwrap().len(), 2);
         let newest = run.checkpoint_folders().unwrap().remove(0);
         assert!(newest.ends_with("step-00000004"));
-        assert!(!run.stop().exists());
         assert_eq!(
             RunFolder::of_checkpoint(&newest)
                 .unwrap()
