@@ -66,8 +66,9 @@ newest_checkpoint() {
 # Ranks that live, by their number in the list of mpirun's children.
 ranks_of() { pgrep -P "$1" -x whipple || true; }
 random_rank() { ranks_of "$job" | sort -n | sed -n "$(((RANDOM >> 5) % ranks + 1))p"; }
-send() { [ -z "$2" ] || kill -"$1" "$2" 2>/dev/null || true; }
+send() { [ -n "$2" ] && kill -"$1" "$2" 2>/dev/null; }
 
+# Fails where there is nothing to strike yet: no rank has been started, the run has no folder.
 strike() {
     case $1 in
         kill-rank) send KILL "$(random_rank)" ;;
@@ -76,7 +77,7 @@ strike() {
         usr1-mpirun) send USR1 "$job" ;;
         term-mpirun) send TERM "$job" ;;
         kill-mpirun) send KILL "$job" ;;
-        stop-file) touch "$run/stop" 2>/dev/null || true ;;
+        stop-file) touch "$run/stop" 2>/dev/null ;;
     esac
 }
 
@@ -122,9 +123,8 @@ leg() {
         sleep "$((wait_ms / 1000)).$(printf %03d $((wait_ms % 1000)))"
     fi
     children=$(ranks_of "$job")
-    # A leg that has ended before its fault is one without.
-    lives "$job" || fault=none
-    strike "$fault"
+    # A leg that has ended before its fault, or not begun, is one without.
+    lives "$job" && strike "$fault" || fault=none
     wait_for_all "$children"
     times[$fault]=$((${times[$fault]:-0} + 1))
     codes[$fault]="${codes[$fault]:-} $code"
