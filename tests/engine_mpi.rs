@@ -142,8 +142,14 @@ fn next_round(store: &mut ParticleStore, round: u64, random: &mut Random) {
 }
 
 fn migrate_any_distance(comm: &Comm) {
+    for round in [1 << 14, 7] {
+        migrate_in_rounds_of(comm, round);
+    }
+}
+
+fn migrate_in_rounds_of(comm: &Comm, most: usize) {
     let mut store = scattered(comm, 5);
-    let mut migration = Migration::default();
+    let mut migration = Migration::in_rounds_of(most);
     let mut random = Random::new(6);
     let mut own = Random::new(7 + comm.rank() as u64);
     let mut was_empty = false;

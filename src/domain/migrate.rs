@@ -4,9 +4,13 @@ use super::slabs::Decomposition;
 use crate::comm::{Comm, Exchange, Traffic};
 use crate::particles::{FieldUse, ParticleStore};
 
+/// Particles that a rank sends at most in one round: where a whole model moves, as in a restart, its
+/// messages must not take as much memory as the model itself.
+const ROUND: usize = 1 << 14;
+
 /// Buffers of migration, kept from step to step.
-#[derive(Default)]
 pub struct Migration {
+    round: usize,
     exchange: Exchange,
     leaving: Vec<Vec<u32>>,
     gone: Vec<u32>,
@@ -15,7 +19,27 @@ pub struct Migration {
     arrivals: Vec<u64>,
 }
 
+impl Default for Migration {
+    fn default() -> Self {
+        Self::in_rounds_of(ROUND)
+    }
+}
+
 impl Migration {
+    /// A rank sends at most so many particles (at least one) in one round.
+    #[must_use]
+    pub fn in_rounds_of(round: usize) -> Self {
+        Self {
+            round,
+            exchange: Exchange::default(),
+            leaving: Vec::new(),
+            gone: Vec::new(),
+            moves: Vec::new(),
+            counts: Vec::new(),
+            arrivals: Vec::new(),
+        }
+    }
+
     /// Sends every owned particle to the owner of its position. Drops the halo; the order of
     /// the store changes. Collective.
     pub fn migrate(&mut self, comm: &Comm, owners: &impl Decomposition, store: &mut ParticleStore) {
@@ -24,6 +48,24 @@ impl Migration {
             return;
         }
         self.leaving.resize(size, Vec::new());
+        self.find_leaving(rank, owners, store);
+        let leaving: usize = self.leaving.iter().map(Vec::len).sum();
+        let mut rounds = [leaving.div_ceil(self.round) as u64];
+        comm.max_u64(&mut rounds);
+        for round in 0..rounds[0] {
+            if round > 0 {
+                self.find_leaving(rank, owners, store);
+            }
+            self.limit_round(rank);
+            self.counts.clear();
+            self.counts
+                .extend(self.leaving.iter().map(|list| list.len() as u64));
+            comm.all_to_all_u64(&self.counts, &mut self.arrivals);
+            self.swap(comm, store);
+        }
+    }
+
+    fn find_leaving(&mut self, rank: usize, owners: &impl Decomposition, store: &ParticleStore) {
         self.leaving.iter_mut().for_each(Vec::clear);
         for (i, position) in store.position[..store.owned()].iter().enumerate() {
             let owner = owners.owner(position);
@@ -32,14 +74,16 @@ impl Migration {
                 self.leaving[owner].push(i as u32);
             }
         }
-        if !comm.any(self.leaving.iter().any(|list| !list.is_empty())) {
-            return;
+    }
+
+    /// Keeps what fits a round, the next rank's first, so that no rank is sent to by all at once.
+    fn limit_round(&mut self, rank: usize) {
+        let mut room = self.round;
+        let (before, after) = self.leaving.split_at_mut(rank);
+        for list in after.iter_mut().chain(before) {
+            list.truncate(room);
+            room -= list.len();
         }
-        self.counts.clear();
-        self.counts
-            .extend(self.leaving.iter().map(|list| list.len() as u64));
-        comm.all_to_all_u64(&self.counts, &mut self.arrivals);
-        self.swap(comm, store);
     }
 
     fn swap(&mut self, comm: &Comm, store: &mut ParticleStore) {

@@ -156,9 +156,10 @@ fn write_parts(
     on_root(comm, || write_json(&folder.join(MANIFEST), &manifest))
 }
 
-/// Reads a checkpoint: each rank gets an even share of the particles in id order into `store`;
-/// the caller moves them to their owners. Collective. Digests are checked before HDF5 sees the
-/// file.
+/// Reads a checkpoint: each rank gets an even share of the particles in id order into `store`, in
+/// the fields that the file holds and no others; the caller sizes what else its case uses
+/// ([`ParticleStore::resize_owned`]) and moves the particles to their owners. Collective. Digests
+/// are checked before HDF5 sees the file.
 ///
 /// # Errors
 /// The same on every rank: [`OutputError::Damaged`], [`OutputError::Format`],
@@ -182,7 +183,7 @@ pub fn read(
     let file = agree(comm, Content::open_shared(comm, &state))?;
     let fields = agree(comm, check_content(&file, &manifest))?;
     let block = Block::even(manifest.particles, comm.rank(), comm.size());
-    store.resize_owned(block.count);
+    store.resize_owned_in(&fields, block.count);
     for field in fields {
         let row = row_type(field.kind);
         let path = format!("{FIELDS}/{}", field.name);

@@ -136,6 +136,16 @@ impl ParticleStore {
         }
     }
 
+    /// Sets the number of owned particles and sizes `fields` alone, zero-filling new values; drops
+    /// the halo. [`Self::resize_owned`] sizes the others, before anything else is done with them.
+    pub fn resize_owned_in(&mut self, fields: &[&FieldInfo], owned: usize) {
+        self.owned = owned;
+        self.halo = 0;
+        for field in fields {
+            self.resize_field(field.id, owned);
+        }
+    }
+
     /// Appends the owned particles of another store, with zeros for what that does not hold; drops
     /// the halo.
     pub fn append(&mut self, other: &Self) {

@@ -31,7 +31,7 @@ impl Simulation {
     }
 
     /// Parts frozen particles from those that a checkpoint holds with them, whatever becomes of the
-    /// next ones, and gives up the fields `unused`. Collective.
+    /// next ones, gives up the fields `unused` and sizes all others. Collective.
     pub(super) fn part_frozen(&mut self, comm: &Comm, unused: FieldUse) {
         let marks = (0_u32..).zip(&self.store.frozen);
         let mut leaving: Vec<u32> = marks
@@ -44,11 +44,12 @@ impl Simulation {
         } else {
             unused
         };
+        self.store.drop_fields(unused);
+        self.store.resize_owned(self.store.owned());
         self.frozen = ParticleStore::default();
         self.frozen.drop_fields(unused);
         self.freeze(&leaving);
         self.store.remove(&mut leaving, &mut Vec::new());
-        self.store.drop_fields(unused);
     }
 
     /// Does something, such as writing files, while the store holds this rank's frozen particles
