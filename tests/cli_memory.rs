@@ -101,16 +101,22 @@ fn what_options_take_is_foretold() {
     ];
     let sets: [(&str, &[&str]); 2] = [("plain", plain), ("options", &[])];
     for (name, options) in sets {
+        let folder = place.path().join(name);
         let mut run = command(WHIPPLE);
         run.args(["run", case, "-t", "1", "--out"])
-            .arg(place.path().join(name))
+            .arg(&folder)
             .args(options);
-        let taken = peak(run) * 1e-6;
+        let mut restart = command(WHIPPLE);
+        restart.args(["restart", "-t", "1", "--set", "run.max_steps=10"]);
+        restart.arg(&folder);
         let foretold = foretold(case, options);
-        eprintln!("{name}: {foretold} MB foretold, {taken:.1} MB taken");
-        assert!(
-            (foretold / taken - 1.0).abs() < 0.15,
-            "{name}: {foretold} of {taken} MB"
-        );
+        for (what, command) in [("run", run), ("restart", restart)] {
+            let taken = peak(command) * 1e-6;
+            eprintln!("{name}, {what}: {foretold} MB foretold, {taken:.1} MB taken");
+            assert!(
+                (foretold / taken - 1.0).abs() < 0.15,
+                "{name}, {what}: {foretold} of {taken} MB"
+            );
+        }
     }
 }

@@ -6,7 +6,7 @@ mod cli_support;
 use std::path::Path;
 use std::process::Command;
 
-use cli_support::{WHIPPLE, assert_same, coarse_run, command, end, json, ranks, status};
+use cli_support::{WHIPPLE, assert_same, coarse_run, command, end, json, project, ranks, status};
 
 /// The shock compresses the metal by half: whatever is compressed by more than a quarter is out of
 /// range here, beside the faces of slabs and symmetry planes too.
@@ -144,6 +144,44 @@ fn frozen_in_last_snapshot(run: &Path) -> (usize, usize) {
         );
     }
     (frozen.len(), frozen.iter().filter(|&&f| f == 1).count())
+}
+
+/// Water without viscosity in steps at the bound of stability: the total energy stays, while motion
+/// takes all it wants from an internal energy below that of rest.
+#[test]
+fn energy_from_nowhere_stops_a_run_with_a_post_mortem() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("run");
+    let mut command = ranks(2);
+    command
+        .args(["run", &project("inputs/dam-break"), "--out"])
+        .arg(&run);
+    for set in [
+        "spacing=1cm",
+        "run.end_time=0.3s",
+        "sph.alpha=0",
+        "time_step.courant=1",
+        "time_step.contact=1",
+        "time_step.force=1",
+        "trouble.policy=remove",
+    ] {
+        command.args(["--set", set]);
+    }
+    let ended = end(&mut command).with_code(1);
+    let what = "is the fastest where the kinetic energy of all is beyond 1e1 times";
+    assert!(ended.stderr.contains(what), "{ended:#?}");
+    let (state, step, _) = status(&run);
+    assert_eq!(state, "failed");
+    let text = std::fs::read_to_string(run.join(format!("trouble/step-{step:08}.txt"))).unwrap();
+    assert!(text.contains(what) && text.contains("Neighbours"), "{text}");
+    // The water has fallen by 60 J at most.
+    let table = std::fs::read_to_string(run.join("history.csv")).unwrap();
+    let mut rows = table
+        .lines()
+        .rev()
+        .map(|row| row.split(',').nth(4).unwrap());
+    let kinetic: f64 = rows.next().unwrap().parse().unwrap();
+    assert!((100.0..1e4).contains(&kinetic), "{kinetic} J");
 }
 
 /// What is frozen is in no picture, in no profile and in no front, but where just that is asked for.

@@ -20,7 +20,7 @@ use crate::output::{
     series, write_json,
 };
 use crate::output::{checkpoint, post_mortem};
-use crate::step::{self, Simulation, StepError, Timers, TroubleKind};
+use crate::step::{self, Simulation, StepError, Timers};
 
 /// The step that this process is in, for the message of a panic.
 pub static STEP: AtomicU64 = AtomicU64::new(0);
@@ -148,6 +148,9 @@ impl<'a> Driver<'a> {
                 self.meet_trouble(comm, error)?;
             }
             self.write(comm, before).map_err(|e| e.to_string())?;
+            if let Err(error) = self.simulation.check_gain(comm) {
+                self.meet_trouble(comm, error)?;
+            }
             self.simulation.timers.lap(step::Phase::Output);
             if let Some(reason) = stop::reason(self.simulation.agreed_wishes)
                 && !self.simulation.is_finished()
@@ -183,7 +186,7 @@ impl<'a> Driver<'a> {
                 TroublePolicy::Remove => "removed",
                 TroublePolicy::Freeze => "froze",
             };
-            if kind == TroubleKind::NotFinite {
+            if kind.is_of_all() {
                 return Err(text);
             }
             match self.simulation.remove_troubled(comm) {

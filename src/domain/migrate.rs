@@ -4,9 +4,11 @@ use super::slabs::Decomposition;
 use crate::comm::{Comm, Exchange, Traffic};
 use crate::particles::{FieldUse, ParticleStore};
 
-/// Particles that a rank sends at most in one round: where a whole model moves, as in a restart, its
-/// messages must not take as much memory as the model itself.
-const ROUND: usize = 1 << 14;
+/// Particles that a rank may send in one round, or [`PART`] of its own if that is more: where a whole
+/// model moves, as in a restart, its messages must not take as much memory as the model itself.
+const ROUND: usize = 1 << 12;
+/// One part of so many.
+const PART: usize = 32;
 
 /// Buffers of migration, kept from step to step.
 pub struct Migration {
@@ -26,7 +28,7 @@ impl Default for Migration {
 }
 
 impl Migration {
-    /// A rank sends at most so many particles (at least one) in one round.
+    /// A rank may send so many particles (at least one) in one round, however few it has.
     #[must_use]
     pub fn in_rounds_of(round: usize) -> Self {
         Self {
@@ -50,13 +52,14 @@ impl Migration {
         self.leaving.resize(size, Vec::new());
         self.find_leaving(rank, owners, store);
         let leaving: usize = self.leaving.iter().map(Vec::len).sum();
-        let mut rounds = [leaving.div_ceil(self.round) as u64];
+        let most = self.round.max(store.owned() / PART);
+        let mut rounds = [leaving.div_ceil(most) as u64];
         comm.max_u64(&mut rounds);
         for round in 0..rounds[0] {
             if round > 0 {
                 self.find_leaving(rank, owners, store);
             }
-            self.limit_round(rank);
+            self.limit_round(rank, most);
             self.counts.clear();
             self.counts
                 .extend(self.leaving.iter().map(|list| list.len() as u64));
@@ -77,8 +80,7 @@ impl Migration {
     }
 
     /// Keeps what fits a round, the next rank's first, so that no rank is sent to by all at once.
-    fn limit_round(&mut self, rank: usize) {
-        let mut room = self.round;
+    fn limit_round(&mut self, rank: usize, mut room: usize) {
         let (before, after) = self.leaving.split_at_mut(rank);
         for list in after.iter_mut().chain(before) {
             list.truncate(room);

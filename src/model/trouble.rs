@@ -29,6 +29,8 @@ pub struct Trouble {
     pub density_max: f64,
     /// Smallest time step (s).
     pub step_min: f64,
+    /// Largest kinetic energy of the model over all energy that could drive it.
+    pub gain_max: f64,
 }
 
 impl Default for Trouble {
@@ -41,6 +43,7 @@ impl Default for Trouble {
             density_min: 0.0,
             density_max: f64::INFINITY,
             step_min: 0.0,
+            gain_max: f64::INFINITY,
         }
     }
 }
@@ -49,13 +52,15 @@ impl Default for Trouble {
 const SPEEDS: f64 = 20.0;
 /// Smallest step over the time in which the natural speed crosses the shortest smoothing length.
 const STEPS: f64 = 1e-6;
+/// Largest kinetic energy over what could drive it, which a sound run never reaches once.
+const GAIN: f64 = 10.0;
 
 impl Trouble {
     /// Ranges that no healthy run of a case leaves, however violent: they are made of its own
     /// velocities, sound speeds, energies and lengths.
     #[must_use]
     pub fn natural(case: &Case) -> Self {
-        let speed = natural_speed(case);
+        let speed = Self::natural_speed(case);
         let shortest = case.bodies.iter().map(|b| b.smoothing_length);
         let shortest = shortest.fold(f64::INFINITY, f64::min);
         let speed_max = if speed > 0.0 {
@@ -73,30 +78,32 @@ impl Trouble {
                 * (shortest / speed)
                     .min(case.time_step.max)
                     .min(case.run.end_time),
+            gain_max: GAIN,
         }
     }
-}
 
-/// Speeds that a case itself names, added up (m/s): of bodies, loads and surfaces, of a fall to the
-/// end, of sound, and of what the initial energy may drive.
-fn natural_speed(case: &Case) -> f64 {
-    let largest = |speeds: &mut dyn Iterator<Item = f64>| speeds.fold(0.0, f64::max);
-    let motions = (case.loads.velocities.iter().map(|load| &load.motion))
-        .chain(case.loads.surfaces.iter().map(|surface| &surface.motion))
-        .chain(case.bodies.iter().filter_map(|body| body.rigid.as_ref()));
-    let driven = largest(&mut motions.map(super::Motion::largest_speed));
-    let moving = largest(&mut case.bodies.iter().map(|body| body.velocity.norm()));
-    let sound = largest(&mut case.bodies.iter().map(|body| {
-        let material = &case.materials[body.material];
-        (material.p_wave_modulus() / material.reference_density).sqrt()
-    }));
-    let hot = largest(
-        &mut case
-            .bodies
-            .iter()
-            .map(|b| (2.0 * case.initial_energy(b).abs()).sqrt()),
-    );
-    let g = case.loads.gravity;
-    let gravity = (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]).sqrt();
-    driven + moving + sound + hot + gravity * case.run.end_time
+    /// Speeds that a case itself names, added up (m/s): of bodies, loads and surfaces, of a fall to the
+    /// end, of sound, and of what the initial energy may drive.
+    #[must_use]
+    pub fn natural_speed(case: &Case) -> f64 {
+        let largest = |speeds: &mut dyn Iterator<Item = f64>| speeds.fold(0.0, f64::max);
+        let motions = (case.loads.velocities.iter().map(|load| &load.motion))
+            .chain(case.loads.surfaces.iter().map(|surface| &surface.motion))
+            .chain(case.bodies.iter().filter_map(|body| body.rigid.as_ref()));
+        let driven = largest(&mut motions.map(crate::model::Motion::largest_speed));
+        let moving = largest(&mut case.bodies.iter().map(|body| body.velocity.norm()));
+        let sound = largest(&mut case.bodies.iter().map(|body| {
+            let material = &case.materials[body.material];
+            (material.p_wave_modulus() / material.reference_density).sqrt()
+        }));
+        let hot = largest(
+            &mut case
+                .bodies
+                .iter()
+                .map(|b| (2.0 * case.initial_energy(b).abs()).sqrt()),
+        );
+        let g = case.loads.gravity;
+        let gravity = (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]).sqrt();
+        driven + moving + sound + hot + gravity * case.run.end_time
+    }
 }

@@ -3,6 +3,7 @@
 mod contact_phase;
 mod contact_sums;
 mod freeze;
+mod gain;
 mod integrate;
 mod loads;
 mod material_update;

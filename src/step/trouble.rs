@@ -7,6 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::gain;
 use super::simulation::{Simulation, StepError};
 use super::sums::{gather_limbs, scatter_limbs};
 use super::vector::square;
@@ -28,10 +29,12 @@ pub enum TroubleKind {
     Speed,
     /// It asks for a time step below the floor.
     Step,
+    /// It is the fastest of a model whose kinetic energy has come from nowhere.
+    Gain,
 }
 
 impl TroubleKind {
-    /// All kinds, in the order of votes.
+    /// What a particle may vote for, in the order of votes.
     pub const ALL: [Self; 5] = [
         Self::NotFinite,
         Self::Density,
@@ -39,6 +42,13 @@ impl TroubleKind {
         Self::Speed,
         Self::Step,
     ];
+
+    /// Whether taking particles out is no cure: what is no number has reached its neighbours, and
+    /// energy that comes from nowhere is everybody's.
+    #[must_use]
+    pub fn is_of_all(self) -> bool {
+        matches!(self, Self::NotFinite | Self::Gain)
+    }
 
     /// What is wrong and which key says so.
     #[must_use]
@@ -62,6 +72,12 @@ impl TroubleKind {
                 "asks for a time step below {:e} s (trouble.step_min)",
                 limits.step_min
             ),
+            Self::Gain => format!(
+                "is the fastest where the kinetic energy of all is beyond {:e} times the energy that \
+                 there was or has been put in: the sums are not stable, more viscosity (sph.alpha) or \
+                 shorter steps (time_step) may help (trouble.gain_max)",
+                limits.gain_max
+            ),
         }
     }
 }
@@ -71,6 +87,8 @@ pub(super) struct Limits {
     speed2_max: f64,
     energy_max: f64,
     pub step_min: f64,
+    /// Energy at the start that no sum shows (J).
+    pub hidden_energy: f64,
     /// Smallest and largest density of each body (kg/m³).
     density: Vec<[f64; 2]>,
     /// Densities that are in range for all bodies (kg/m³).
@@ -90,6 +108,7 @@ impl Limits {
             speed2_max: limits.speed_max * limits.speed_max,
             energy_max: limits.energy_max,
             step_min: limits.step_min,
+            hidden_energy: gain::hidden_energy(case),
             common_density: density.iter().fold([f64::MIN, f64::MAX], common),
             density,
         }

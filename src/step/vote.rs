@@ -41,7 +41,7 @@ impl Simulation {
             .unwrap_or(ABSTAIN);
         self.scratch = words;
         if best.0 == ERROR {
-            return Err(self.trouble(comm, best.1, best.2));
+            return Err(self.trouble(comm, kind_of(best.1), best.2));
         }
         self.state.dt = f64::from_bits(best.0);
         self.state.dt_reason = Reason::ALL[usize::try_from(best.1)
@@ -112,7 +112,7 @@ impl Simulation {
     }
 
     /// Describes the particle `id`, wherever it is; the same text on all ranks.
-    fn trouble(&self, comm: &Comm, kind: u64, id: u64) -> StepError {
+    pub(super) fn trouble(&self, comm: &Comm, kind: TroubleKind, id: u64) -> StepError {
         let store = &self.store;
         let found = store.id[..store.owned()].iter().position(|&x| x == id);
         let describe = |i| describe(store, &self.case, i, comm.rank()).into_bytes();
@@ -125,7 +125,6 @@ impl Simulation {
         comm.min_u64(&mut owner);
         let mut text = mine;
         comm.broadcast_from(usize::try_from(owner[0]).unwrap_or(0), &mut text);
-        let kind = kind_of(kind);
         StepError::Trouble {
             step: self.state.step,
             id,

@@ -21,6 +21,8 @@ optional_tables! {
         density_max: Option<Spanned<f64>>,
         /// Smallest time step.
         step_min: Option<Placed<Time>>,
+        /// Largest kinetic energy over what there was and has been put in.
+        gain_max: Option<Spanned<f64>>,
     }
 }
 

@@ -45,5 +45,11 @@ pub fn trouble(params: &TroubleParams, case: &Case) -> Result<Trouble, Complaint
             natural.step_min,
             Allowed::NotNegative,
         )?,
+        gain_max: number(
+            params.gain_max.as_ref(),
+            "gain_max",
+            natural.gain_max,
+            Allowed::AboveOne,
+        )?,
     })
 }

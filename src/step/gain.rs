@@ -1,0 +1,78 @@
+//! Kinetic energy that comes from nowhere.
+//!
+//! The sums keep the total energy to rounding whatever happens, also where they are not stable: what
+//! goes mad then takes its kinetic energy from an internal energy that falls below all that there is
+//! to be had, without a limit. So the total does not tell; this does:
+//! `K ≤ G (K₀ + U₀ + Φ₀ + W + H)` with the energies at the start, the largest work W of loads or
+//! gravity so far, and H, what bodies hold that begin compressed or stretched. In a sound run K stays
+//! below the sum itself, but for heat of the reference state that an expansion may take.
+
+use super::simulation::{Simulation, StepError};
+use super::trouble::TroubleKind;
+use super::vector::square;
+use crate::comm::Comm;
+use crate::model::{Case, Trouble};
+use crate::populate;
+
+/// What is allowed to what is at rest, over `½ m U²` with the speed U that is natural to the case.
+const ROUNDING: f64 = 1e-9;
+
+/// `½ m c² (ρ/ρ₀ − 1)²` of all bodies, and what rounding may do (J).
+pub(super) fn hidden_energy(case: &Case) -> f64 {
+    let natural = Trouble::natural_speed(case);
+    let of_body = |body: &crate::model::Body| {
+        let material = &case.materials[body.material];
+        let (density, reference) = (case.initial_density(body), material.reference_density);
+        #[allow(clippy::cast_precision_loss, reason = "an estimate")]
+        let count = populate::count(body, case.dimension, &case.symmetry, None) as f64;
+        let mass = count * density * populate::particle_volume(body, case.dimension);
+        let strain = density / reference - 1.0;
+        let square = strain * strain * material.p_wave_modulus() / reference;
+        0.5 * mass * (square + ROUNDING * natural * natural)
+    };
+    let deforming = case.bodies.iter().filter(|body| body.rigid.is_none());
+    deforming.map(of_body).sum()
+}
+
+impl Simulation {
+    /// Whether the kinetic energy, as of the last [`Simulation::diagnose`], can have come from
+    /// anywhere. Collective.
+    ///
+    /// # Errors
+    /// The same on all ranks: [`StepError::Trouble`] of the fastest particle if it cannot.
+    pub fn check_gain(&self, comm: &Comm) -> Result<(), StepError> {
+        let (first, state) = (&self.state.initial, &self.state);
+        let there = first.kinetic_energy
+            + first.internal_energy.max(0.0)
+            + first.contact_energy.max(0.0)
+            + state.work_put_in
+            + self.limits.hidden_energy;
+        if state.totals.kinetic_energy <= self.case.trouble.gain_max * there {
+            return Ok(());
+        }
+        Err(self.trouble(comm, TroubleKind::Gain, self.fastest(comm)))
+    }
+
+    /// Identity of the fastest particle that nobody drives.
+    fn fastest(&self, comm: &Comm) -> u64 {
+        let store = &self.store;
+        let mut best = (u64::MAX, u64::MAX);
+        for i in 0..store.owned() {
+            if self.loads.drives() && self.loads.is_rigid(store.load[i]) {
+                continue;
+            }
+            // Positive doubles order as their bits, so that their complements order downwards.
+            let slowness = !square(&store.velocity[i]).to_bits();
+            best = best.min((slowness, store.id[i]));
+        }
+        let mut slowness = [best.0];
+        comm.min_u64(&mut slowness);
+        let mut id = [if best.0 == slowness[0] {
+            best.1
+        } else {
+            u64::MAX
+        }];
+        comm.min_u64(&mut id);
+        id[0]
+    }
+}
