@@ -223,7 +223,9 @@ impl<'a> Driver<'a> {
         if finished || snapshot_due {
             self.write_snapshot(comm)?;
         }
-        if checkpoint_due && !finished {
+        // A stop writes its own.
+        let stops = stop::reason(self.simulation.agreed_wishes).is_some();
+        if checkpoint_due && !finished && !stops {
             self.write_checkpoint(comm)?;
         }
         if snapshot_due || checkpoint_due {
