@@ -92,16 +92,13 @@ impl Trouble {
             .chain(case.bodies.iter().filter_map(|body| body.rigid.as_ref()));
         let driven = largest(&mut motions.map(crate::model::Motion::largest_speed));
         let moving = largest(&mut case.bodies.iter().map(|body| body.velocity.norm()));
-        let sound = largest(&mut case.bodies.iter().map(|body| {
+        // What is rigid has a material that carries nothing.
+        let deforming = || case.bodies.iter().filter(|body| body.rigid.is_none());
+        let sound = largest(&mut deforming().map(|body| {
             let material = &case.materials[body.material];
             (material.p_wave_modulus() / material.reference_density).sqrt()
         }));
-        let hot = largest(
-            &mut case
-                .bodies
-                .iter()
-                .map(|b| (2.0 * case.initial_energy(b).abs()).sqrt()),
-        );
+        let hot = largest(&mut deforming().map(|b| (2.0 * case.initial_energy(b).abs()).sqrt()));
         let g = case.loads.gravity;
         let gravity = (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]).sqrt();
         driven + moving + sound + hot + gravity * case.run.end_time
