@@ -3,9 +3,9 @@
 //! The outermost particles of a body and their normals are found after Randles & Libersky (1996):
 //! the corrected gradient of what the body fills, `b_i = B_i s_i` with `s_i = −Σ V_j ∇W_ij` and
 //! `B_i⁻¹ = −Σ V_j ∇W_ij ⊗ r_ij` over the own body, points out of it and is longest on its outermost
-//! layer. Boundary particles of two bodies push each other along the mean of their normals; at a
-//! corner, which has two normals, along that of the face it is pressed on. The laws are those of
-//! pinballs (Belytschko & Neal 1991).
+//! layer. Boundary particles of two bodies push each other along the mean of their normals; a corner,
+//! which has two, along that of the face it is pressed on, and two corners along the line between
+//! them, as pinballs do (Belytschko & Neal 1991), whose laws these are.
 
 use super::hold::{Bearing, Resisting};
 use super::{ContactView, Gap, Pair, Party, Reaction};
@@ -116,8 +116,12 @@ pub fn boundary(view: &ContactView, place: u32, own: &[u32]) -> [f64; 3] {
     }
 }
 
+fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
 fn length2(v: &[f64; 3]) -> f64 {
-    v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
+    dot(v, v)
 }
 
 /// `A⁻¹ v` of a symmetric positive matrix; `None` where that is as good as singular, as about a
@@ -135,19 +139,44 @@ fn solve(a: &[[f64; 3]; 3], v: &[f64; 3]) -> Option<[f64; 3]> {
     })
 }
 
-/// The direction from `j` to `i` that both normals give, if both are of the boundary. Of a corner
-/// and a face the face's normal holds.
-fn direction(view: &ContactView, i: &Party, j: &Party, code: u8) -> Option<[f64; 3]> {
+/// Directions from `j` to `i` in which the two press on each other, with their shares, which sum to
+/// one: the mean of both normals as they count, and the line between the two as far as no normal says
+/// how they lie, as of two corners or of faces that look the same way. `None` unless both are of the
+/// boundary.
+fn directions(
+    view: &ContactView,
+    [i, j]: [&Party; 2],
+    gap: &Gap,
+    code: u8,
+) -> Option<[(f64, [f64; 3]); 2]> {
     let here = view.store.boundary_normal[i.base];
     let there = Mirrors::reflect_vector(&view.store.boundary_normal[j.base], code);
     let (a, b) = (length2(&here).sqrt(), length2(&there).sqrt());
     if a == 0.0 || b == 0.0 {
         return None;
     }
-    let sum: [f64; 3] = std::array::from_fn(|k| there[k] - here[k]);
-    let length = length2(&sum).sqrt();
-    // Faces that look the same way do not press on each other.
-    (length > 0.25 * (a + b)).then(|| sum.map(|x| x / length))
+    // As long as they count: of a corner not at all.
+    let count = |length: f64| (length - CORNER).max(0.0) / ((1.0 - CORNER) * length);
+    let (of_i, of_j) = (count(a), count(b));
+    let normal: [f64; 3] = std::array::from_fn(|k| of_j * there[k] - of_i * here[k]);
+    let known = length2(&normal).sqrt();
+    let line = (1.0 - known).max(0.0);
+    let [normal, along] = [(normal, known), (gap.r, gap.distance)]
+        .map(|(v, length)| v.map(|x| x / length.max(f64::MIN_POSITIVE)));
+    Some([(1.0 - line, normal), (line, along)])
+}
+
+/// What a pair does to `i`.
+#[derive(Default)]
+struct Push {
+    /// Force (N).
+    force: [f64; 3],
+    /// Its length (N).
+    size: f64,
+    /// Half the energy of the pair (J).
+    energy: f64,
+    /// Stiffness for the time step (N/m).
+    stiffness: f64,
 }
 
 /// Adds the neighbours that friction and damping of `i` rest on: half of each push.
@@ -159,11 +188,10 @@ pub(super) fn bear(view: &ContactView, i: &Party, neighbours: &[u32], bearing: &
             continue;
         }
         let code = view.images[other as usize].code();
-        if let Some(normal) = direction(view, i, &j, code) {
-            let gap = Gap::between(i, &j);
-            let own = 0.5 * push(pair, i, &j, &gap, &normal, view)[0];
-            let force = normal.map(|n| own * n);
-            bearing.add(pair, [i, &j], own, &force);
+        let gap = Gap::between(i, &j);
+        if let Some(push) = push(view, pair, [i, &j], &gap, code) {
+            let force = push.force.map(|f| 0.5 * f);
+            bearing.add(pair, [i, &j], 0.5 * push.size, &force);
             for (facing, part) in bearing.facing.iter_mut().zip(force) {
                 *facing += part;
             }
@@ -186,16 +214,14 @@ pub fn react<const FRICTION: bool>(
         let gap = Gap::between(&i, &j);
         let pair = view.table.pair(i.body, j.body);
         let code = view.images[other as usize].code();
-        let push = direction(view, &i, &j, code)
-            .map(|normal| (normal, push(pair, &i, &j, &gap, &normal, view)));
-        let Some((normal, [push, mut energy, stiffness])) = push else {
+        let Some(push) = push(view, pair, [&i, &j], &gap, code) else {
             reaction.book(&j, &gap, pair, [0.0; 3], 0.0);
             continue;
         };
-        reaction.stiffness += stiffness;
-        let mut force = normal.map(|n| push * n);
+        reaction.stiffness += push.stiffness;
+        let (mut force, mut energy) = (push.force, push.energy);
         if let Some(at) = &mut resisting {
-            at.pair(view, [&i, &j], other, || [0.5 * push; 2]);
+            at.pair(view, [&i, &j], other, || [0.5 * push.size; 2]);
             for a in 0..3 {
                 force[a] += at.force[a];
             }
@@ -211,44 +237,49 @@ pub fn react<const FRICTION: bool>(
     }
 }
 
-/// Force along `normal` (N), half the energy of the pair (J) and stiffness for the time step (N/m):
-/// `p = Δp̄ − r·n`, `w = ⟨1 − t²/Δp̄²⟩₊²` over the offset t along the face,
-/// `F₂ = w κ M V̄/Δp̄ (p/Δp̄)^{3/2}`, and by the law of pinballs no more than
-/// `F₁ = w m_i m_j/(m_i + m_j) ṗ/Δt` while they approach and nothing while they part.
-fn push(
-    pair: &Pair,
-    i: &Party,
-    j: &Party,
-    gap: &Gap,
-    normal: &[f64; 3],
-    view: &ContactView,
-) -> [f64; 3] {
-    let dot = |v: &[f64; 3]| v[0] * normal[0] + v[1] * normal[1] + v[2] * normal[2];
-    let along = dot(&gap.r);
-    let aside = (gap.distance * gap.distance - along * along) / (pair.spacing * pair.spacing);
-    let depth = 1.0 - along / pair.spacing;
-    if aside >= 1.0 || depth <= 0.0 || depth >= 2.0 {
-        return [0.0; 3];
-    }
-    let weight = (1.0 - aside) * (1.0 - aside);
+/// Over the directions n of [`directions`] with shares s: `p = Δp̄ − r·n`,
+/// `w = s ⟨1 − t²/Δp̄²⟩₊²` over the offset t across n, `F₂ = w κ M V̄/Δp̄ (p/Δp̄)^{3/2}` along n; by the
+/// law of pinballs their sum is no more than `F₁ = Σw m_i m_j/(m_i + m_j) ṗ/Δt` while the two approach
+/// along it and nothing while they part. `None` if they do not press on each other.
+fn push(view: &ContactView, pair: &Pair, [i, j]: [&Party; 2], gap: &Gap, code: u8) -> Option<Push> {
     let volume = 0.5 * (i.volume + j.volume);
-    let strength = weight * pair.penalty * volume / pair.spacing;
-    let root = depth.sqrt();
-    let mut force = strength * depth * root;
-    let mut energy = 0.2 * strength * pair.spacing * depth * depth * root;
-    // Twice the slope of both, since both particles yield.
-    let stiffness = 2.0 * 1.5 * strength * root / pair.spacing;
+    let (mut push, mut weights) = (Push::default(), 0.0);
+    for (share, n) in directions(view, [i, j], gap, code)? {
+        let along = dot(&gap.r, &n);
+        let aside = (gap.distance * gap.distance - along * along) / (pair.spacing * pair.spacing);
+        let depth = 1.0 - along / pair.spacing;
+        if share == 0.0 || aside >= 1.0 || depth <= 0.0 || depth >= 2.0 {
+            continue;
+        }
+        let weight = share * (1.0 - aside) * (1.0 - aside);
+        weights += weight;
+        let strength = weight * pair.penalty * volume / pair.spacing;
+        let root = depth.sqrt();
+        for a in 0..3 {
+            push.force[a] += strength * depth * root * n[a];
+        }
+        push.energy += 0.2 * strength * pair.spacing * depth * depth * root;
+        // Twice the slope of both, since both particles yield.
+        push.stiffness += 2.0 * 1.5 * strength * root / pair.spacing;
+    }
+    push.size = length2(&push.force).sqrt();
+    if push.size == 0.0 {
+        return None;
+    }
     if pair.pinball {
         // It stores nothing: what it takes is lost.
-        energy = 0.0;
+        push.energy = 0.0;
+        if view.dt > 0.0 {
+            let (m_i, m_j) = (view.store.mass[i.base], view.store.mass[j.base]);
+            let v: [f64; 3] = std::array::from_fn(|a| i.velocity[a] - j.velocity[a]);
+            let rate = (-dot(&v, &push.force) / push.size).max(0.0);
+            let most = weights * (m_i * m_j / (m_i + m_j)) * rate / view.dt;
+            let part = (most / push.size).min(1.0);
+            push.force = push.force.map(|f| part * f);
+            push.size *= part;
+        }
     }
-    if pair.pinball && view.dt > 0.0 {
-        let (m_i, m_j) = (view.store.mass[i.base], view.store.mass[j.base]);
-        let v: [f64; 3] = std::array::from_fn(|a| i.velocity[a] - j.velocity[a]);
-        let rate = (-dot(&v)).max(0.0);
-        force = force.min(weight * (m_i * m_j / (m_i + m_j)) * rate / view.dt);
-    }
-    [force, energy, stiffness]
+    Some(push)
 }
 
 #[cfg(test)]

@@ -14,4 +14,5 @@ pub mod momentum;
 pub mod normalised;
 pub mod options;
 pub mod principal;
+mod separation;
 pub mod stress_points;

@@ -10,12 +10,13 @@
 //! Forces are the adjoint of `L_s`: `f_a = −Σ_s w Q_s (x_a − x̄_s)`, `Q = V_s σ_s M_s⁻¹`.
 
 use super::dispatch::Vectorised;
-use super::gradient::{MotionRecord, Separation, gather3, length, lengths, records};
+use super::gradient::{MotionRecord, gather3, length, lengths, records};
 use super::kernel::{PairKernel, PairScale};
 use super::lanes::{F64x8, LANES, Lanes};
 use super::matrix::product;
 use super::momentum::Viscosity;
 use super::principal::tensile_part;
+use super::separation::Separation;
 
 /// Fits of a larger [`Fit::norm`] are those of particles nearly in a row, in a plane or at one place.
 const LARGEST_NORM: f64 = 12.0;
