@@ -8,6 +8,7 @@ pub mod dispatch;
 pub mod gradient;
 pub mod kernel;
 pub mod lanes;
+pub mod linear_fit;
 mod matrix;
 pub mod mid_step;
 pub mod momentum;
