@@ -14,7 +14,7 @@ use super::matrix::product;
 /// two at 1.5 h do. Gradients along it fade out, as they would else end at once with the kernel.
 const FAINT: f64 = 1e-6;
 /// Fits of a larger [`Fit::norm`] are those of particles nearly in a row, in a plane or at one place.
-const STEEP: f64 = 4.0;
+const STEEP: f64 = 12.0;
 /// The steeper they are the more `M` gets along its diagonal, up to so much of `h² Σ w`, about a third
 /// of what it has in a lattice: gradients along the row or the plane become less, those across it
 /// vanish.
