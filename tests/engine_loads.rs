@@ -461,7 +461,7 @@ point = [{}]
     }
 }
 
-/// The core of `overlap` is as stiff, κ_c max(M, .85 ρ v²), as the fastest meeting takes that tables of
+/// The core of `overlap` is as stiff, `κ_c max(M, .85 ρ v²)`, as the fastest meeting takes that tables of
 /// loads state: v is that of the tables up to `until`, and along free axes that of the start.
 #[test]
 fn the_core_knows_the_speeds_that_loads_prescribe() {

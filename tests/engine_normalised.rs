@@ -9,16 +9,16 @@
 mod common;
 
 use common::cloud::{Cloud, Found, small as cloud};
+use common::linear_field::free_block;
 use common::outcome::{advance, start};
 use common::random::Random;
 use common::ranks::on_each;
-use common::{ball, body, case, make_elastic, planes};
+use common::{ball, body, case, make_elastic};
 use nalgebra::Matrix3;
 use whipple::comm::Comm;
 use whipple::domain::Mirrors;
-use whipple::material::{Eos, Linear, LinearForm, Strength};
 use whipple::model::{
-    Axis, Case, ContactDirection, ContactMode, Overlap, Potential, Shape, SphForm, Vec3,
+    Axis, ContactDirection, ContactMode, Overlap, Potential, Shape, SphForm, Vec3,
 };
 use whipple::neighbours::Chunk;
 use whipple::sph::dispatch::available;
@@ -358,44 +358,6 @@ fn forces_conserve_momentum_energy_and_angular_momentum() {
     }
 }
 
-/// A block without stress, whose particles stand apart from their lattice by up to .3 spacings and
-/// move as a linear field.
-fn block(dimension: usize, mirrors: &[Axis]) -> (Case, Matrix3<f64>) {
-    let upper = |a: usize| if a < dimension { 12e-4 } else { 0.0 };
-    let lower = if mirrors.is_empty() { 0.0 } else { -12e-4 };
-    let lower = |a: usize| if a < dimension { lower } else { 0.0 };
-    let shape = Shape::Box {
-        lower: Vec3::new(lower(0), lower(1), lower(2)),
-        upper: Vec3::new(upper(0), upper(1), upper(2)),
-    };
-    let mut case = case(
-        dimension,
-        vec![body("block", shape, 1e-4, Vec3::zeros())],
-        1.0,
-    );
-    make_elastic(&mut case);
-    case.materials[0].eos = Eos::Linear(Linear {
-        bulk_modulus: 1e-30,
-        form: LinearForm::Logarithmic,
-    });
-    case.materials[0].strength = Strength::None;
-    case.sph.form = SphForm::Normalised;
-    (case.sph.alpha, case.sph.beta) = (0.0, 0.0);
-    case.symmetry = planes(mirrors);
-    case.time_step.max = 4e-4;
-    case.domain.balance_every = 3;
-    let mut field = Matrix3::new(40.0, -90.0, 25.0, 70.0, -15.0, 30.0, -35.0, 10.0, 20.0);
-    for a in 0..3 {
-        for b in 0..3 {
-            let odd = |c: usize| mirrors.iter().any(|axis| axis.index() == c);
-            if a >= dimension || b >= dimension || (a != b && (odd(a) || odd(b))) {
-                field[(a, b)] = 0.0;
-            }
-        }
-    }
-    (case, field)
-}
-
 /// Moves the particles off their lattice, each by its id, and gives them the field's velocities.
 fn stir(simulation: &mut Simulation, field: &Matrix3<f64>) {
     let store = &mut simulation.store;
@@ -428,7 +390,7 @@ fn linear_fields_are_exact_at_free_surfaces() {
 }
 
 fn check_linear(comm: &Comm, dimension: usize, mirrors: &[Axis]) {
-    let (case, field) = block(dimension, mirrors);
+    let (case, field) = free_block(dimension, mirrors, SphForm::Normalised);
     let mut simulation = Simulation::start(case, comm).unwrap();
     assert_eq!(simulation.state.uncorrected, 0);
     stir(&mut simulation, &field);

@@ -2,13 +2,13 @@
 
 mod common;
 
+use common::linear_field::free_block;
 use common::outcome::{advance, start};
 use common::random::Random;
 use common::ranks::on_each;
 use common::{ball, body, case, make_elastic, planes, sphere_on_plate};
 use nalgebra::Matrix3;
 use whipple::comm::Comm;
-use whipple::material::{Eos, Linear, LinearForm, Strength};
 use whipple::model::{Axis, Case, Shape, SmoothingLength, SphForm, Vec3};
 use whipple::step::Simulation;
 
@@ -39,32 +39,6 @@ fn block(dimension: usize, lower: f64, counts: [f64; 3]) -> Case {
 
 fn is_point(s: &Simulation, i: usize) -> bool {
     s.store.stress_mass[i] > 0.0
-}
-
-/// A block without stress behind mirrors, and a linear field that these allow.
-fn free_block(dimension: usize, mirrors: &[Axis]) -> (Case, Matrix3<f64>) {
-    let lower = if mirrors.is_empty() { 0.0 } else { -12e-4 };
-    let count = if mirrors.is_empty() { 12.0 } else { 24.0 };
-    let mut case = block(dimension, lower, [count; 3]);
-    case.materials[0].eos = Eos::Linear(Linear {
-        bulk_modulus: 1e-30,
-        form: LinearForm::Logarithmic,
-    });
-    case.materials[0].strength = Strength::None;
-    (case.sph.alpha, case.sph.beta) = (0.0, 0.0);
-    case.symmetry = planes(mirrors);
-    case.time_step.max = 4e-4;
-    case.domain.balance_every = 3;
-    let mut field = Matrix3::new(40.0, -90.0, 25.0, 70.0, -15.0, 30.0, -35.0, 10.0, 20.0);
-    for a in 0..3 {
-        for b in 0..3 {
-            let odd = |c: usize| mirrors.iter().any(|axis| axis.index() == c);
-            if a >= dimension || b >= dimension || (a != b && (odd(a) || odd(b))) {
-                field[(a, b)] = 0.0;
-            }
-        }
-    }
-    (case, field)
 }
 
 /// Moves particles and stress points off their lattices, each by its id.
@@ -98,7 +72,7 @@ fn linear_fields_are_exact() {
 }
 
 fn check_linear(comm: &Comm, dimension: usize, mirrors: &[Axis]) {
-    let (case, field) = free_block(dimension, mirrors);
+    let (case, field) = free_block(dimension, mirrors, SphForm::StressPoints);
     let mut s = Simulation::start(case, comm).unwrap();
     assert_eq!(s.state.uncorrected, 0);
     stir(&mut s, 0.2 * SPACING);

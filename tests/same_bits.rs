@@ -200,6 +200,31 @@ fn penalty_with_friction_on_any_ranks_and_through_a_restart() {
 }
 
 #[test]
+fn stress_points_on_any_ranks_and_through_a_restart() {
+    let (_keep, at) = folder();
+    let case = [
+        "inputs/tension-strip",
+        "--set",
+        "run.end_time=100us",
+        "--set",
+        "output.snapshot_every=25us",
+    ];
+    let (one, stopped) = (at("one"), at("stopped"));
+    run(1, 2, &case, &[], &one);
+    for (ranks, axis) in [(2, "x"), (3, "x"), (3, "y")] {
+        let other = at(&format!("{ranks}{axis}"));
+        let axis = format!("domain.axis={axis}");
+        let more = ["--set", &axis, "--set", "domain.balance_every=7"];
+        run(ranks, 1, &case, &more, &other);
+        assert_same(&one, &other, &format!("{ranks} ranks, {axis}"));
+    }
+    run(2, 1, &case, &["--until", "40us"], &stopped);
+    let path = stopped.to_str().expect("a plain path");
+    must(&whipple(3, &["restart", path, "--poison", "-t", "1"]), 0);
+    assert_same(&one, &stopped, "restart on 3 ranks");
+}
+
+#[test]
 fn self_contact_on_any_ranks_and_through_a_restart() {
     let (_keep, at) = folder();
     let case = ["tests/common/torn.toml"];

@@ -305,12 +305,13 @@ fn finer_steps(s: &Simulation, run: &Run) -> Option<f64> {
 
 /// Velocity of the right ring as a whole beside that of one that a rigid plane throws back, as what
 /// meets its mirror image without friction is.
+#[allow(clippy::unnecessary_wraps, reason = "the form of a measure")]
 fn off_a_wall(s: &Simulation, _: &Run) -> Option<f64> {
     let changes = [
         RINGS,
         &[
             r#"body.left.shape={ box = { lower = ["-20 cm", 0], upper = ["-19 cm", "1 cm"] } }"#,
-            r#"body.left.velocity=[0, 0]"#,
+            "body.left.velocity=[0, 0]",
             r#"plane=[{ name = "wall", normal = "+x", bodies = ["right"] }]"#,
         ],
     ]

@@ -153,9 +153,12 @@ impl Case {
         let rigid = self.bodies[body].rigid.iter().map(|m| (m, f64::INFINITY));
         let corners = tables.chain(rigid).flat_map(|(motion, until)| {
             (0..motion.times.len()).map(move |k| {
-                let along = |axis: usize, values: &Vec<f64>| match motion.times[k] <= until {
-                    true => values[k],
-                    false => motion.velocity(axis, until),
+                let along = |axis: usize, values: &Vec<f64>| {
+                    if motion.times[k] <= until {
+                        values[k]
+                    } else {
+                        motion.velocity(axis, until)
+                    }
                 };
                 let velocity = |axis: usize| {
                     let values = motion.velocities[axis].as_ref();

@@ -3,7 +3,6 @@
 use super::dispatch::Vectorised;
 use super::kernel::PairScale;
 use super::lanes::{F64x8, LANES, Lanes};
-use super::separation::Separations;
 
 /// What a particle shows to its neighbours of its motion: one cache line.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -18,6 +17,10 @@ pub struct MotionRecord {
     /// Mass (kg).
     pub mass: f64,
 }
+
+/// Squares of distances are never smaller than this (m²), so that a particle meeting itself
+/// divides by something: it then adds an exact zero since its `r_ij` is zero.
+pub const SMALLEST_SQUARE: f64 = 1e-60;
 
 /// The receivers of one cluster with their neighbours; sums in the order of `neighbours`.
 pub struct VelocityGradient<'a, S> {
@@ -49,9 +52,16 @@ impl<S: PairScale> Vectorised for VelocityGradient<'_, S> {
         if count == 0 {
             return [F64x8([0.0; LANES]); 9];
         }
-        let mut separations = Separations::new(position, self.sources, self.neighbours);
+        let begin = |k: usize| {
+            let place = self.neighbours[k.min(count - 1)] as usize;
+            (place, &self.sources[place])
+        };
+        let mut following = begin(0);
+        let mut next = Separation::begin(&position, &following.1.position);
         for k in 0..count {
-            let (place, here, now) = separations.get(k);
+            let ((place, here), now) = (following, next);
+            following = begin(k + 1);
+            next = Separation::begin(&position, &following.1.position);
             let kernel = self
                 .scale
                 .kernel(now.distance, h_i, length::<S>(self.lengths, place));
@@ -106,4 +116,35 @@ pub(super) fn length<S: PairScale>(lengths: &[f64], place: usize) -> f64 {
 pub(super) fn lengths<V: Lanes, S: PairScale>(lengths: &[f64], places: &[u32; LANES]) -> V {
     let at = |k: usize| length::<S>(lengths, places[k] as usize);
     V::read(&[at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)])
+}
+
+/// Where eight receivers stand seen from one neighbour, with the distances. The sweeps
+/// begin the next neighbour before they finish the last: its root takes long.
+#[derive(Clone, Copy)]
+pub(super) struct Separation<V> {
+    /// `x_i − x_j` (m).
+    pub(super) r: [V; 3],
+    /// Its square (m²), not below [`SMALLEST_SQUARE`].
+    pub(super) square: V,
+    /// `r` (m).
+    pub(super) distance: V,
+    /// `1/r` (1/m).
+    pub(super) inverse: V,
+}
+
+impl<V: Lanes> Separation<V> {
+    #[inline(always)]
+    pub(super) fn begin(position: &[V; 3], source: &[f64; 3]) -> Self {
+        let along = |a: usize| position[a].sub(V::splat(source[a]));
+        let r = [along(0), along(1), along(2)];
+        let square = r[2].mul_add(r[2], r[1].mul_add(r[1], r[0].mul(r[0])));
+        let square = square.max(V::splat(SMALLEST_SQUARE));
+        let distance = square.sqrt();
+        Self {
+            r,
+            square,
+            distance,
+            inverse: V::splat(1.0).div(distance),
+        }
+    }
 }

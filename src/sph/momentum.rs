@@ -2,12 +2,11 @@
 //! viscosity (physics page, section 2).
 
 use super::dispatch::Vectorised;
-use super::gradient::{MotionRecord, gather, gather3, length, lengths, records};
+use super::gradient::{MotionRecord, Separation, gather, gather3, length, lengths, records};
 use super::kernel::PairScale;
 use super::lanes::{F64x8, LANES, Lanes};
 use super::normalised::NormalisedSums;
 use super::options::{BALSARA, CONDUCTION, NORMALISED, OptionSums, Options, SHAPED};
-use super::separation::Separations;
 
 /// What a particle shows to its neighbours of its stress: one cache line.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -136,11 +135,18 @@ impl<S: PairScale, const OPTIONS: u8> Vectorised for Momentum<'_, S, OPTIONS> {
         if count == 0 {
             return Forces::NONE;
         }
-        let mut separations = Separations::new(position, self.sources, self.neighbours);
+        let begin = |k: usize| {
+            let place = self.neighbours[k.min(count - 1)] as usize;
+            (place, &self.sources[place])
+        };
+        let mut following = begin(0);
+        let mut next = Separation::begin(&position, &following.1.position);
         for k in 0..count {
-            let (place, source, now) = separations.get(k);
+            let ((place, source), now) = (following, next);
             let state = &self.stresses[place];
             let option = self.options.record::<OPTIONS>(place);
+            following = begin(k + 1);
+            next = Separation::begin(&position, &following.1.position);
             let (r, square) = (now.r, now.square);
             let along = |a: usize| velocity[a].sub(V::splat(source.velocity[a]));
             let v = [along(0), along(1), along(2)];

@@ -10,12 +10,13 @@
 //! corrected velocity gradient; only the forces need the corrections of neighbours.
 
 use super::dispatch::Vectorised;
-use super::gradient::{MotionRecord, gather, gather3, length, lengths, records as motion_records};
+use super::gradient::{
+    MotionRecord, Separation, gather, gather3, length, lengths, records as motion_records,
+};
 use super::kernel::PairScale;
 use super::lanes::{F64x8, LANES, Lanes};
 use super::matrix::adjugate;
 use super::options::{NORMALISED, Options};
-use super::separation::{Separation, Separations};
 
 /// Corrections that enlarge gradients more than so are left out: the particle has too few
 /// neighbours, or they stand in a plane or a row. Corners of lattices have 2 to 3.
@@ -151,9 +152,16 @@ impl<S: PairScale> Vectorised for NormalisedGradient<'_, S> {
         if count == 0 {
             return Corrected::NONE;
         }
-        let mut separations = Separations::new(position, self.sources, self.neighbours);
+        let begin = |k: usize| {
+            let place = self.neighbours[k.min(count - 1)] as usize;
+            (place, &self.sources[place])
+        };
+        let mut following = begin(0);
+        let mut next = Separation::begin(&position, &following.1.position);
         for k in 0..count {
-            let (place, here, now) = separations.get(k);
+            let ((place, here), now) = (following, next);
+            following = begin(k + 1);
+            next = Separation::begin(&position, &following.1.position);
             let kernel = self
                 .scale
                 .kernel(now.distance, h_i, length::<S>(self.lengths, place));

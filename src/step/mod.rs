@@ -16,6 +16,7 @@ mod setup;
 mod simulation;
 mod state;
 mod stress_fit;
+mod stress_moments;
 mod stress_points;
 mod sums;
 mod surface_forces;

@@ -13,9 +13,9 @@ use crate::sph::dispatch::{Vectorised, instructions};
 use crate::sph::gradient::MotionRecord;
 use crate::sph::kernel::PairScale;
 use crate::sph::lanes::{F64x8, LANES, Lanes};
+use crate::sph::linear_fit::{Fit, Fitted, LinearFit};
 use crate::sph::mid_step::{MidStep, mid_step};
 use crate::sph::normalised::stress_power;
-use crate::sph::stress_points::{Fit, Fitted, LinearFit};
 
 /// Fields of stress points, out of the store while the material is updated.
 struct Fields {

@@ -1,5 +1,5 @@
-//! Stress points in the step: their moments, what they do to velocity particles in the second sweep,
-//! and how they follow those. Their first sweep stands in `stress_fit`.
+//! Stress points in the step: what they do to velocity particles in the second sweep, and how they
+//! follow those. Their first sweep stands in `stress_fit`, what comes between in `stress_moments`.
 
 use rayon::prelude::*;
 
@@ -13,14 +13,7 @@ use crate::sph::dispatch::{Vectorised, instructions};
 use crate::sph::gradient::MotionRecord;
 use crate::sph::kernel::PairScale;
 use crate::sph::lanes::Lanes;
-use crate::sph::momentum::Viscosity;
-use crate::sph::normalised::stress_power;
-use crate::sph::stress_points::{Pull, Pulled, StressPointRecord, moment, viscous_stress};
-
-/// The quadratic viscosity limits steps by three times the approach speed at a stress point: its
-/// rate is `4 (½ h)(α c + 2 β h E)/Δp²`, twice the mean by its slope, and grids alternate by
-/// `2/Δp`; pairs of the other forms reach farther.
-const APPROACH: f64 = 3.0;
+use crate::sph::stress_points::{Pull, Pulled, StressPointRecord};
 
 /// What stress points show to velocity particles, kept from step to step.
 #[derive(Debug, Default)]
@@ -144,43 +137,6 @@ impl<S: PairScale> PullChunk<'_, S> {
 }
 
 impl Simulation {
-    /// Moments of this rank's stress points from their stress, that of viscosity included, and
-    /// their power.
-    pub(super) fn find_moments(&mut self) {
-        let viscosity = self.sweeps.viscosity;
-        let store = &mut self.store;
-        let owned = store.owned();
-        let point = PointView {
-            stress_mass: &store.stress_mass,
-            predicted_density: &store.predicted_density,
-            density: &store.density,
-            pressure: &store.pressure,
-            deviatoric_stress: &store.deviatoric_stress,
-            predicted_gradient: &store.predicted_gradient,
-            sound_speed: &store.sound_speed,
-            smoothing_length: &store.smoothing_length,
-            viscosity,
-        };
-        (
-            &mut store.stress_moment[..owned],
-            &mut store.stress_offset[..owned],
-            &mut store.specific_stress,
-            &mut store.d_specific_energy_dt,
-            &mut store.approach_speed,
-            &mut store.fit_norm,
-        )
-            .into_par_iter()
-            .with_min_len(GRAIN)
-            .enumerate()
-            .for_each(|(i, (moment, offset, specific, power, approach, norm))| {
-                if point.stress_mass[i] > 0.0 {
-                    (*power, *approach) = point.stress(i, moment, offset, specific);
-                } else {
-                    (*moment, *offset, *norm) = ([0.0; 9], [0.0; 3], 0.0);
-                }
-            });
-    }
-
     /// Second sweep: what stress points do to the velocity particles of the clusters that have halo
     /// particles among their neighbours, or of those that have none.
     pub(super) fn pull_by_stress_points(&mut self, halo: bool) {
@@ -263,55 +219,5 @@ impl Simulation {
                 }
             }
         });
-    }
-}
-
-/// What the stress of a stress point depends on.
-struct PointView<'a> {
-    stress_mass: &'a [f64],
-    predicted_density: &'a [f64],
-    density: &'a [f64],
-    pressure: &'a [f64],
-    deviatoric_stress: &'a [[f64; 6]],
-    predicted_gradient: &'a [[f64; 9]],
-    sound_speed: &'a [f64],
-    smoothing_length: &'a [f64],
-    viscosity: Viscosity,
-}
-
-impl PointView<'_> {
-    /// Turns the geometry of the fit of point `i` into its moment; gives its power (W/kg) and the
-    /// approach speed for the time step (m/s).
-    #[inline]
-    fn stress(
-        &self,
-        i: usize,
-        inverse: &mut [f64; 9],
-        offset: &mut [f64; 3],
-        specific: &mut [f64; 6],
-    ) -> (f64, f64) {
-        let l = &self.predicted_gradient[i];
-        let (mut total, approach) = viscous_stress(
-            l,
-            self.density[i],
-            self.sound_speed[i],
-            self.smoothing_length[i],
-            &self.viscosity,
-        );
-        for c in 0..6 {
-            total[c] += self.deviatoric_stress[i][c];
-        }
-        let pressure = self.pressure[i];
-        let density = self.predicted_density[i];
-        let power = stress_power(pressure, &total, l, density);
-        for a in 0..3 {
-            total[a] -= pressure;
-        }
-        for c in 0..6 {
-            specific[c] = total[c] / density;
-        }
-        let volume = self.stress_mass[i] / density;
-        (*inverse, *offset) = moment(&total, volume, inverse, offset);
-        (power, APPROACH * approach)
     }
 }

@@ -9,6 +9,8 @@ use super::vector::square;
 use crate::comm::Comm;
 use crate::model::Case;
 use crate::particles::ParticleStore;
+use crate::sph::momentum::Viscosity;
+use crate::sph::stress_points;
 
 /// Largest coordinate that still counts as a position (m).
 const FARTHEST: f64 = 1e12;
@@ -257,8 +259,15 @@ impl Voter<'_> {
         let signal = c + 0.6 * (sph.alpha * c + sph.beta * approach);
         // Not `max`, which would hide what is no number.
         let signal = if approach > signal { approach } else { signal };
-        let correction = store.correction_norm.get(i).or(store.fit_norm.get(i));
-        let correction = correction.copied().unwrap_or_default();
+        if let Some(&norm) = store.fit_norm.get(i) {
+            let viscosity = Viscosity {
+                alpha: sph.alpha,
+                beta: sph.beta,
+            };
+            let stable = stress_points::signal(norm, c, approach, &viscosity, self.case.dimension);
+            return if stable > signal { stable } else { signal };
+        }
+        let correction = store.correction_norm.get(i).copied().unwrap_or_default();
         signal * (correction / SURFACE_CORRECTION).max(1.0)
     }
 
