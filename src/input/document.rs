@@ -33,7 +33,10 @@ pub fn read(
 /// The document as text, headed by the overrides in it.
 fn resolve(document: Spanned<DeTable<'_>>, overrides: &[String]) -> Result<String, Complaint> {
     let lines = overrides.iter().flat_map(|text| text.lines());
-    let head: Vec<String> = lines.map(|line| format!("#   --set {line}\n")).collect();
+    // Comments hold no control characters but tabs.
+    let bare = |c: char| c.is_control() && c != '\t';
+    let line = |line: &str| format!("#   --set {}\n", line.replace(bare, " "));
+    let head: Vec<String> = lines.map(line).collect();
     let table =
         toml::Table::deserialize(toml::Deserializer::from(document)).map_err(|e| translate(&e))?;
     let text = toml::to_string(&table).map_err(|e| Complaint::new(0..0, e.to_string()))?;
