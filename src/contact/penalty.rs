@@ -7,6 +7,7 @@
 //! which has two, along that of the face it is pressed on, and two corners along the line between
 //! them, as pinballs do (Belytschko & Neal 1991), whose laws these are.
 
+use super::friction::dot;
 use super::hold::{Bearing, Resisting};
 use super::{ContactView, Gap, Pair, Party, Reaction};
 use crate::domain::Mirrors;
@@ -114,10 +115,6 @@ pub fn boundary(view: &ContactView, place: u32, own: &[u32]) -> [f64; 3] {
     } else {
         [0.0; 3]
     }
-}
-
-fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 fn length2(v: &[f64; 3]) -> f64 {

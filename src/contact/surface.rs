@@ -7,6 +7,7 @@
 //! a corner that stands out there is one such place, in a corner of two or three walls one on each;
 //! a shallow valley counts once.
 
+use super::friction::dot;
 use crate::model::{Foot, RigidSurface};
 
 /// Places of a surface that a particle may be too near to at the same time.
@@ -35,10 +36,6 @@ pub struct Escape {
 struct Wall {
     normal: [f64; 3],
     depth: f64,
-}
-
-fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The way of a particle at `x` (m, in the frame of the surface) that is to keep `reach` (m);

@@ -151,8 +151,9 @@ pub fn viscous_stress(
     (stress, h * (square[0] + square[1] + square[2]).sqrt())
 }
 
-/// `h/Δt` (m/s) of the longest stable step where gradients have this [norm](super::linear_fit::Fit::norm), from the sound
-/// speed (m/s) and the approach speed `h ‖E‖` (m/s).
+/// `h/Δt` (m/s) of the longest stable step where gradients have this
+/// [norm](super::linear_fit::Fit::norm), from the sound speed (m/s) and the approach speed
+/// `h ‖E‖` (m/s).
 ///
 /// A lattice has waves of up to `ω = √(2/d) c √(Σ |G|²)`: a wave along one of its d axes strains the
 /// points on that axis alone, which have 1/d of the volume. In one dimension it is `2c/Δp`. Viscosity
