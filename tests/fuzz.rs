@@ -2,8 +2,8 @@
 //!
 //! What a message says, but for its names and numbers, tells how far a reader came; texts that
 //! reach a new message are changed further. `make test` makes a short run of this, `make fuzz` one
-//! of ten minutes each, which keeps new texts in `tests/fuzz/`. A text that panics is kept there
-//! too and tried first from then on.
+//! of ten minutes each, which keeps the shortest of its new texts in `tests/fuzz/`. A text that panics
+//! is kept there too and tried first from then on.
 
 #[path = "fuzz/checkpoints.rs"]
 mod checkpoints;

@@ -10,8 +10,10 @@ use whipple::input::{advice, approaches, parse, warnings};
 
 /// What stands between two texts in a file of texts.
 const BETWEEN: &str = "\n#%%%%\n";
-/// Longer texts are not kept.
+/// Longer texts are not changed further.
 const LONGEST: usize = 2000;
+/// A long run keeps so many of its new texts, the shortest.
+const MOST_KEPT: usize = 20;
 /// Cases with more particles are not looked at beyond their reading.
 const MOST_PARTICLES: u64 = 1_000_000;
 
@@ -230,10 +232,14 @@ fn no_text_makes_the_reader_panic() {
             panic!("this text, kept in tests/fuzz/panics.txt, with {overrides:?}:\n{text}");
         };
         if met.is_new(&message) && done > begun && text.len() < LONGEST && overrides.is_empty() {
-            if budget.keeps() {
-                keep("texts.txt", &text);
-            }
             seeds.push(text);
+        }
+    }
+    if budget.keeps() {
+        let new = &mut seeds[begun..];
+        new.sort_by_key(String::len);
+        for text in new.iter().take(MOST_KEPT) {
+            keep("texts.txt", text);
         }
     }
     eprintln!(
