@@ -48,6 +48,7 @@ pub(crate) struct Party {
 }
 
 impl ContactView<'_> {
+    #[inline(always)]
     fn party(&self, place: u32) -> Party {
         let image = self.images[place as usize];
         let base = image.base();
@@ -56,7 +57,7 @@ impl ContactView<'_> {
         Party {
             base,
             body,
-            volume: self.store.mass[base] * self.table.inverse_density(body),
+            volume: record.mass * self.table.inverse_density(body),
             mirrored: image.code() != 0,
             position: record.position,
             velocity: record.velocity,
@@ -133,21 +134,49 @@ impl Reaction {
     /// after [`Self::book`].
     fn book_heat(&mut self, body: usize, heat: f64) {
         self.heat += heat;
-        if let Some(entry) = self.by_body.iter_mut().find(|e| e.body == body) {
-            entry.heat += heat;
-        }
+        self.by(body).heat += heat;
     }
 
     /// Books what the pair with `other` at `gap` does: distance, approach, force and energy.
     fn book(&mut self, other: &Party, gap: &Gap, pair: &Pair, force: [f64; 3], energy: f64) {
-        let distance = gap.distance / pair.spacing;
+        self.meet(other, gap, pair);
+        self.press(other, force, energy);
+    }
+
+    /// Distance and approach of the pair with `other` at `gap`.
+    #[inline]
+    fn meet(&mut self, other: &Party, gap: &Gap, pair: &Pair) {
+        gap.raise_approach(pair.h, &mut self.approach);
+        let distance = gap.distance * pair.inverse_spacing;
         self.closest = self.closest.min(distance);
-        self.approach = self.approach.max(gap.approach(pair.h));
+        let body = self.by(other.body);
+        body.closest = body.closest.min(distance);
+    }
+
+    /// Force and energy of the pair with `other`.
+    #[inline]
+    fn press(&mut self, other: &Party, force: [f64; 3], energy: f64) {
         self.energy += energy;
-        let at = self.by_body.iter().position(|e| e.body == other.body);
+        for a in 0..3 {
+            self.force[a] += force[a];
+            if other.mirrored {
+                self.from_mirrors[a] += force[a];
+            }
+        }
+        let body = self.by(other.body);
+        body.energy += energy;
+        for a in 0..3 {
+            body.force[a] += force[a];
+        }
+    }
+
+    /// What is by one body, which few others are.
+    #[inline]
+    fn by(&mut self, body: usize) -> &mut BodyReaction {
+        let at = self.by_body.iter().position(|e| e.body == body);
         let at = at.unwrap_or_else(|| {
             self.by_body.push(BodyReaction {
-                body: other.body,
+                body,
                 force: [0.0; 3],
                 energy: 0.0,
                 heat: 0.0,
@@ -155,16 +184,7 @@ impl Reaction {
             });
             self.by_body.len() - 1
         });
-        let body = &mut self.by_body[at];
-        body.closest = body.closest.min(distance);
-        body.energy += energy;
-        for a in 0..3 {
-            self.force[a] += force[a];
-            body.force[a] += force[a];
-            if other.mirrored {
-                self.from_mirrors[a] += force[a];
-            }
-        }
+        &mut self.by_body[at]
     }
 }
 
@@ -179,6 +199,7 @@ struct Gap {
 }
 
 impl Gap {
+    #[inline(always)]
     fn between(i: &Party, j: &Party) -> Self {
         let r = [
             i.position[0] - j.position[0],
@@ -192,15 +213,21 @@ impl Gap {
         Self { r, distance, rate }
     }
 
-    /// The approach speed `|μ_ij|` of the viscosity, zero for receding pairs (m/s): foreign
-    /// pairs limit the time step as those inside a body do.
-    fn approach(&self, h: f64) -> f64 {
+    /// Raises `largest` to the approach speed `|μ_ij|` of the viscosity, zero for receding pairs
+    /// (m/s): foreign pairs limit the time step as those inside a body do.
+    fn raise_approach(&self, h: f64, largest: &mut f64) {
         let soft = self.distance * self.distance + 0.01 * (h * h);
-        (-h * self.rate / soft).max(0.0)
+        let steep = -h * self.rate;
+        if steep > *largest * soft {
+            *largest = steep / soft;
+        }
     }
 
     /// `magnitude` (N) along `r`: positive pushes i away from j.
     fn along(&self, magnitude: f64) -> [f64; 3] {
+        if magnitude == 0.0 {
+            return [0.0; 3];
+        }
         let scale = magnitude / self.distance;
         self.r.map(|x| x * scale)
     }

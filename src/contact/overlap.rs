@@ -48,12 +48,12 @@ pub fn fraction(view: &ContactView, place: u32, neighbours: &[u32], relief: f64)
         let j = view.party(other);
         let pair = view.table.pair(i.body, j.body);
         let gap = Gap::between(&i, &j);
-        let kernel = view.table.kernel.value(gap.distance, pair.h);
+        let kernel = pair.kernel.value(gap.distance);
         let share = j.volume * kernel;
         sum.fraction += share;
         sum.modulus += share * pair.modulus;
         sum.touching += share * pair.touching;
-        sum.slope -= j.volume * view.table.kernel.slope(gap.distance, pair.h);
+        sum.slope -= j.volume * pair.kernel.slope(gap.distance);
         sum.current += view.motion[other as usize].volume * kernel;
     }
     if sum.fraction > 0.0 {
@@ -64,13 +64,18 @@ pub fn fraction(view: &ContactView, place: u32, neighbours: &[u32], relief: f64)
     sum
 }
 
-/// The stored fraction of a particle, as its neighbours see it.
+/// The stored fraction of a particle, as its neighbours see it; nothing without excess.
+#[inline]
 fn stored(view: &ContactView, base: usize) -> Fraction {
+    let excess = view.store.contact_excess[base];
+    if excess == 0.0 {
+        return Fraction::default();
+    }
     Fraction {
+        excess,
         fraction: view.store.foreign_fraction[base],
         modulus: view.store.contact_modulus[base],
         touching: view.store.touching_value[base],
-        excess: view.store.contact_excess[base],
         slope: view.store.contact_slope[base],
         current: 0.0,
     }
@@ -82,15 +87,16 @@ fn slope_of_energy(i: &Fraction, pair: &Pair) -> f64 {
     if i.excess == 0.0 {
         return 0.0;
     }
-    i.modulus * i.excess * (1.0 - (pair.touching - i.touching) / i.fraction)
-        + 0.5 * (i.excess * i.excess) * (pair.modulus - i.modulus) / i.fraction
+    let stress = i.modulus * i.excess;
+    let steeper = 0.5 * (i.excess * i.excess) * (pair.modulus - i.modulus);
+    stress + (steeper - stress * (pair.touching - i.touching)) / i.fraction
 }
 
 /// The pair force of i's own energy, `o_ij = V_i V_j ⟨a_ij⟩₊ |∇W_ij|` and half of the core (N):
 /// what friction of the pair rests on from i's side.
 fn own_force(view: &ContactView, i: &Party, j: &Party, gap: &Gap, here: &Fraction) -> f64 {
     let pair = view.table.pair(i.body, j.body);
-    let slope = -view.table.kernel.slope(gap.distance, pair.h);
+    let slope = -pair.kernel.slope(gap.distance);
     let bulk = i.volume * j.volume * slope_of_energy(here, pair).max(0.0) * slope;
     let depth = (1.0 - gap.distance / pair.core_radius).max(0.0);
     let stress = pair.core_modulus * (0.5 * (i.volume + j.volume));
@@ -107,7 +113,7 @@ pub fn normal(view: &ContactView, place: u32, neighbours: &[u32], fraction: &Fra
         let j = view.party(other);
         let pair = view.table.pair(i.body, j.body);
         let gap = Gap::between(&i, &j);
-        let slope = -view.table.kernel.slope(gap.distance, pair.h);
+        let slope = -pair.kernel.slope(gap.distance);
         let along = gap.along(j.volume * slope);
         for a in 0..3 {
             sum[a] += along[a];
@@ -155,23 +161,24 @@ pub fn react<const FRICTION: bool>(
     for &other in neighbours {
         let j = view.party(other);
         let gap = Gap::between(&i, &j);
-        let (pair, back) = (
-            view.table.pair(i.body, j.body),
-            view.table.pair(j.body, i.body),
-        );
+        let pair = view.table.pair(i.body, j.body);
+        reaction.meet(&j, &gap, pair);
         let there = stored(view, j.base);
+        let pressed = here.excess > 0.0 || there.excess > 0.0;
+        if !FRICTION && !pressed && gap.distance >= pair.core_radius {
+            continue;
+        }
         let (mut force, mut core) = (0.0, 0.0);
         let mut energy = 0.0;
-        if here.excess > 0.0 || there.excess > 0.0 {
-            let kernel = &view.table.kernel;
-            let slope = -kernel.slope(gap.distance, pair.h);
+        if pressed {
+            let back = view.table.pair(j.body, i.body);
+            let slope = -pair.kernel.slope(gap.distance);
             let pressure = slope_of_energy(&here, pair) + slope_of_energy(&there, back);
             force += i.volume * j.volume * pressure * slope;
             reaction.stiffness += bulk_stiffness(view, &i, &j, &gap, &here, &there);
             if here.excess > 0.0 {
-                let share = j.volume * kernel.value(gap.distance, pair.h) * pair.modulus
-                    / (here.fraction * here.modulus);
-                energy += 0.5 * here.modulus * i.volume * (here.excess * here.excess) * share;
+                let share = j.volume * pair.kernel.value(gap.distance) * pair.modulus;
+                energy += 0.5 * i.volume * (here.excess * here.excess) * share / here.fraction;
             }
         }
         let depth = 1.0 - gap.distance / pair.core_radius;
@@ -200,7 +207,7 @@ pub fn react<const FRICTION: bool>(
             }
             energy += at.energy;
         }
-        reaction.book(&j, &gap, pair, force, energy);
+        reaction.press(&j, force, energy);
         if let Some(at) = &resisting {
             at.book_heat(j.body, reaction);
         }
@@ -221,9 +228,8 @@ fn bulk_stiffness(
     there: &Fraction,
 ) -> f64 {
     let pair = view.table.pair(i.body, j.body);
-    let kernel = &view.table.kernel;
-    let slope = -kernel.slope(gap.distance, pair.h);
-    let curvature = kernel.curvature(gap.distance, pair.h).abs();
+    let slope = -pair.kernel.slope(gap.distance);
+    let curvature = pair.kernel.curvature(gap.distance).abs();
     let active = |f: &Fraction| if f.excess > 0.0 { f.slope } else { 0.0 };
     let steep = (active(here) + active(there)) * slope;
     let bent = (here.excess + there.excess) * curvature;

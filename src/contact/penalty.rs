@@ -83,7 +83,6 @@ impl Boundary {
 pub fn boundary(view: &ContactView, place: u32, own: &[u32]) -> [f64; 3] {
     let i = view.party(place);
     let pair = view.table.pair(i.body, i.body);
-    let kernel = &view.table.kernel;
     let (mut outward, mut filled) = ([0.0; 3], 0.0);
     // B⁻¹; one on axes that the case does not have.
     let mut matrix = [[0.0; 3]; 3];
@@ -91,11 +90,11 @@ pub fn boundary(view: &ContactView, place: u32, own: &[u32]) -> [f64; 3] {
         let record = &view.motion[other as usize];
         let r: [f64; 3] = std::array::from_fn(|a| i.position[a] - record.position[a]);
         let distance = length2(&r).sqrt();
-        filled += record.volume * kernel.value(distance, pair.h);
+        filled += record.volume * pair.kernel.value(distance);
         if distance == 0.0 {
             continue;
         }
-        let pull = -record.volume * kernel.slope(distance, pair.h) / distance;
+        let pull = -record.volume * pair.kernel.slope(distance) / distance;
         for a in 0..3 {
             outward[a] += pull * r[a];
             for b in 0..3 {
@@ -103,7 +102,7 @@ pub fn boundary(view: &ContactView, place: u32, own: &[u32]) -> [f64; 3] {
             }
         }
     }
-    for a in kernel.dimension()..3 {
+    for a in view.table.kernel.dimension()..3 {
         matrix[a][a] = 1.0;
     }
     let corrected = solve(&matrix, &outward).unwrap_or(outward);

@@ -18,10 +18,10 @@ pub fn react(view: &ContactView, place: u32, neighbours: &[u32], reaction: &mut 
             reaction.book(&j, &gap, pair, [0.0; 3], 0.0);
             continue;
         }
-        let kernel = &view.table.kernel;
-        let ratio = kernel.value(gap.distance, pair.h) * pair.inverse_kernel;
-        let slope = -kernel.slope(gap.distance, pair.h) * pair.inverse_kernel;
-        let curvature = kernel.curvature(gap.distance, pair.h).abs() * pair.inverse_kernel;
+        let kernel = &pair.kernel;
+        let ratio = kernel.value(gap.distance) * pair.inverse_kernel;
+        let slope = -kernel.slope(gap.distance) * pair.inverse_kernel;
+        let curvature = kernel.curvature(gap.distance).abs() * pair.inverse_kernel;
         let strength = pair.potential * i.volume * j.volume;
         let n = f64::from(pair.exponent);
         let steeper = power(ratio, pair.exponent - 1);

@@ -6,15 +6,19 @@ use crate::model::{
 };
 use crate::neighbours::{ContactClass, ForeignTable};
 use crate::populate;
-use crate::sph::kernel::Kernel;
+use crate::sph::kernel::{FixedKernel, Kernel};
 
 /// Reference constants of an ordered pair of bodies (receiver, other).
 #[derive(Debug, Clone, Copy)]
 pub struct Pair {
     /// Mean smoothing length `h_ij` (m).
     pub h: f64,
+    /// The kernel of that length.
+    pub kernel: FixedKernel,
     /// Mean particle spacing (m).
     pub spacing: f64,
+    /// One over it (1/m).
+    pub inverse_spacing: f64,
     /// `overlap`: κ times the smaller p-wave modulus (Pa).
     pub modulus: f64,
     /// `overlap`: touching value C* of the receiver's body on the other.
@@ -288,7 +292,9 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
     let h = 0.5 * (body_a.smoothing_length + body_b.smoothing_length);
     let mut pair = Pair {
         h,
+        kernel: kernel.of_length(h),
         spacing,
+        inverse_spacing: 1.0 / spacing,
         modulus: 0.0,
         touching: 0.0,
         core_modulus: 0.0,
@@ -320,7 +326,7 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
             pair.potential = potential.stiffness * smaller / kernel.power(spacing);
             pair.along_normal = potential.direction == ContactDirection::Normal;
             pair.exponent = i32::try_from(potential.exponent).unwrap_or(i32::MAX);
-            pair.inverse_kernel = 1.0 / kernel.value(spacing, h);
+            pair.inverse_kernel = 1.0 / pair.kernel.value(spacing);
             (pair.range, pair.floor) = match potential.range {
                 PotentialRange::Support => (2.0 * h, 0.0),
                 PotentialRange::Spacing => (spacing, 1.0),

@@ -52,31 +52,80 @@ impl Kernel {
         }
     }
 
+    /// The kernel of one smoothing length `h` (m).
+    #[must_use]
+    pub fn of_length(&self, h: f64) -> FixedKernel {
+        let height = self.normalisation / self.power(h);
+        FixedKernel {
+            inverse_length: 1.0 / h,
+            height,
+            steepness: height / h,
+            bend: height / (h * h),
+        }
+    }
+
     /// `W(r, h)` (1/m^d).
     #[must_use]
     pub fn value(&self, r: f64, h: f64) -> f64 {
-        let q = r / h;
-        let a = (2.0 - q).max(0.0);
-        let b = (1.0 - q).max(0.0);
-        self.normalisation / self.power(h) * (0.25 * (a * a * a) - b * b * b)
+        self.of_length(h).value(r)
     }
 
     /// `W'(r, h) = dW/dr` (1/m^(d+1)); never positive.
     #[must_use]
     pub fn slope(&self, r: f64, h: f64) -> f64 {
-        let q = r / h;
-        let a = (2.0 - q).max(0.0);
-        let b = (1.0 - q).max(0.0);
-        self.normalisation / (self.power(h) * h) * (3.0 * (b * b) - 0.75 * (a * a))
+        self.of_length(h).slope(r)
     }
 
     /// `W''(r, h)` (1/m^(d+2)).
     #[must_use]
     pub fn curvature(&self, r: f64, h: f64) -> f64 {
-        let q = r / h;
-        let a = (2.0 - q).max(0.0);
-        let b = (1.0 - q).max(0.0);
-        self.normalisation / (self.power(h) * h * h) * (1.5 * a - 6.0 * b)
+        self.of_length(h).curvature(r)
+    }
+}
+
+/// The kernel of one smoothing length.
+#[derive(Debug, Clone, Copy)]
+pub struct FixedKernel {
+    /// `1/h` (1/m).
+    inverse_length: f64,
+    /// `σ_d/h^d` (1/m^d).
+    height: f64,
+    /// `σ_d/h^(d+1)` (1/m^(d+1)).
+    steepness: f64,
+    /// `σ_d/h^(d+2)` (1/m^(d+2)).
+    bend: f64,
+}
+
+impl FixedKernel {
+    /// `⟨2 − q⟩₊` and `⟨1 − q⟩₊`.
+    #[inline]
+    fn ramps(&self, r: f64) -> (f64, f64) {
+        let q = r * self.inverse_length;
+        ((2.0 - q).max(0.0), (1.0 - q).max(0.0))
+    }
+
+    /// `W(r)` (1/m^d).
+    #[inline]
+    #[must_use]
+    pub fn value(&self, r: f64) -> f64 {
+        let (a, b) = self.ramps(r);
+        self.height * (0.25 * (a * a * a) - b * b * b)
+    }
+
+    /// `W'(r)` (1/m^(d+1)); never positive.
+    #[inline]
+    #[must_use]
+    pub fn slope(&self, r: f64) -> f64 {
+        let (a, b) = self.ramps(r);
+        self.steepness * (3.0 * (b * b) - 0.75 * (a * a))
+    }
+
+    /// `W''(r)` (1/m^(d+2)).
+    #[inline]
+    #[must_use]
+    pub fn curvature(&self, r: f64) -> f64 {
+        let (a, b) = self.ramps(r);
+        self.bend * (1.5 * a - 6.0 * b)
     }
 }
 

@@ -20,7 +20,7 @@ pub struct ContactPhase {
 
 #[derive(Default)]
 struct Task {
-    fractions: Vec<(usize, Fraction)>,
+    fractions: Vec<Weighed>,
     normals: Vec<(usize, [f64; 3])>,
     holds: Vec<(usize, Hold)>,
     /// Of `penalty` contact, see [`penalty::boundary`].
@@ -29,6 +29,13 @@ struct Task {
     /// Receiving particle and its body, and what another body does to it.
     by_body: Vec<(usize, usize, BodyReaction)>,
     reaction: Reaction,
+}
+
+/// The foreign fraction of one particle, and for how long it has been enclosed after this step (s).
+struct Weighed {
+    base: usize,
+    fraction: Fraction,
+    enclosed: f64,
 }
 
 /// What contact does to one particle.
@@ -59,7 +66,7 @@ const ENCLOSED_FRACTION: f64 = 0.5;
 impl ContactPhase {
     pub(super) fn memory(&self) -> usize {
         let task = |task: &Task| {
-            size_of::<(usize, Fraction)>() * task.fractions.capacity()
+            size_of::<Weighed>() * task.fractions.capacity()
                 + size_of::<(usize, [f64; 3])>() * task.normals.capacity()
                 + size_of::<(usize, Hold)>() * task.holds.capacity()
                 + size_of::<(usize, [f64; 3])>() * task.boundary.capacity()
@@ -93,42 +100,36 @@ impl Simulation {
         if !self.contact.is_active() {
             return;
         }
-        self.run_fractions();
+        self.run_fractions(dt);
         self.find_boundaries();
         let store = &mut self.store;
+        // What else there is of a fraction nobody reads without excess.
         for field in [
             &mut store.foreign_fraction,
             &mut store.contact_excess,
-            &mut store.contact_modulus,
-            &mut store.touching_value,
-            &mut store.contact_slope,
+            &mut store.enclosed_time,
         ] {
             fill(field, 0.0);
         }
         fill(&mut store.contact_normal, [0.0; 3]);
-        let tasks = &mut self.contact_phase.tasks;
+        let tasks = &self.contact_phase.tasks;
         for &(i, normal) in tasks.iter().flat_map(|task| &task.normals) {
             store.contact_normal[i] = normal;
         }
-        for (i, fraction) in tasks.iter().flat_map(|task| &task.fractions) {
-            store.foreign_fraction[*i] = fraction.fraction;
-            store.contact_excess[*i] = fraction.excess;
-            store.contact_modulus[*i] = fraction.modulus;
-            store.touching_value[*i] = fraction.touching;
-            store.contact_slope[*i] = fraction.slope;
-        }
-        for (i, fraction) in tasks.iter_mut().flat_map(|task| &mut task.fractions) {
-            // From here on `current` holds the time enclosed.
-            fraction.current = if fraction.current > ENCLOSED_FRACTION {
-                store.enclosed_time[*i] + dt
-            } else {
-                0.0
-            };
-        }
-        fill(&mut store.enclosed_time, 0.0);
-        for (i, fraction) in tasks.iter().flat_map(|task| &task.fractions) {
-            store.enclosed_time[*i] = fraction.current;
-        }
+        let target = Fractions {
+            fraction: Scatter::new(&mut store.foreign_fraction),
+            excess: Scatter::new(&mut store.contact_excess),
+            modulus: Scatter::new(&mut store.contact_modulus),
+            touching: Scatter::new(&mut store.touching_value),
+            slope: Scatter::new(&mut store.contact_slope),
+            enclosed: Scatter::new(&mut store.enclosed_time),
+        };
+        let tasks = tasks.par_iter().with_max_len(CHUNKS_AT_ONCE);
+        tasks.for_each(|task| {
+            task.fractions
+                .iter()
+                .for_each(|weighed| target.store(weighed))
+        });
     }
 
     /// Friction and damping after a step of `dt` (s), of every particle in contact. Collective.
@@ -178,7 +179,8 @@ impl Simulation {
         }
     }
 
-    fn run_fractions(&mut self) {
+    /// Foreign fractions after a step of `dt` (s).
+    fn run_fractions(&mut self, dt: f64) {
         let friction = self.contact.has_friction();
         let chunks = self.search.foreign.chunks();
         self.contact_phase
@@ -197,11 +199,19 @@ impl Simulation {
                     let base = view.images[place as usize].base();
                     let relief = view.store.touch_relief[base];
                     let fraction = overlap::fraction(&view, place, neighbours, relief);
-                    task.fractions.push((base, fraction));
+                    let mut enclosed = 0.0;
+                    if fraction.current > ENCLOSED_FRACTION {
+                        enclosed = view.store.enclosed_time[base] + dt;
+                    }
                     if friction {
                         let normal = overlap::normal(&view, place, neighbours, &fraction);
                         task.normals.push((base, normal));
                     }
+                    task.fractions.push(Weighed {
+                        base,
+                        fraction,
+                        enclosed,
+                    });
                 }
             });
     }
@@ -231,11 +241,11 @@ impl Simulation {
         if !self.contact.is_active() {
             return 0;
         }
-        self.run_fractions();
+        self.run_fractions(0.0);
         let mut capped = 0;
-        for (i, fraction) in self.contact_phase.tasks.iter().flat_map(|t| &t.fractions) {
-            let (relief, was_capped) = overlap::relief(fraction);
-            self.store.touch_relief[*i] = relief;
+        for weighed in self.contact_phase.tasks.iter().flat_map(|t| &t.fractions) {
+            let (relief, was_capped) = overlap::relief(&weighed.fraction);
+            self.store.touch_relief[weighed.base] = relief;
             capped += i64::from(was_capped);
         }
         capped
@@ -309,6 +319,32 @@ impl Simulation {
         });
         for part in &sums.parts {
             sums.contact.merge(part);
+        }
+    }
+}
+
+/// Where foreign fractions go.
+struct Fractions<'a> {
+    fraction: Scatter<'a, f64>,
+    excess: Scatter<'a, f64>,
+    modulus: Scatter<'a, f64>,
+    touching: Scatter<'a, f64>,
+    slope: Scatter<'a, f64>,
+    enclosed: Scatter<'a, f64>,
+}
+
+impl Fractions<'_> {
+    #[inline]
+    fn store(&self, weighed: &Weighed) {
+        let (i, fraction) = (weighed.base, &weighed.fraction);
+        // SAFETY: a particle is receiver in one task, and each thread has its own tasks.
+        unsafe {
+            *self.fraction.slot(i) = fraction.fraction;
+            *self.excess.slot(i) = fraction.excess;
+            *self.modulus.slot(i) = fraction.modulus;
+            *self.touching.slot(i) = fraction.touching;
+            *self.slope.slot(i) = fraction.slope;
+            *self.enclosed.slot(i) = weighed.enclosed;
         }
     }
 }

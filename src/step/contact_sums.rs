@@ -102,8 +102,11 @@ impl ContactSums {
 
     #[inline]
     pub fn add_plane_force(&mut self, force: &[f64; 3]) {
-        for a in 0..3 {
-            self.plane_force[a].add(force[a]);
+        for (sum, &force) in self.plane_force.iter_mut().zip(force) {
+            // Most have none.
+            if force != 0.0 {
+                sum.add(force);
+            }
         }
     }
 
