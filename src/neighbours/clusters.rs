@@ -192,12 +192,7 @@ impl Lister<'_> {
                     if eight.coordinates[along][0] > to {
                         break;
                     }
-                    let gap = |a: usize| {
-                        let x = V::read(eight.coordinates[a]);
-                        low[a].sub(x).max(x.sub(high[a])).max(V::splat(0.0))
-                    };
-                    let [x, y, z] = [gap(0), gap(1), gap(2)];
-                    let square = z.mul_add(z, y.mul_add(y, x.mul(x)));
+                    let square = box_distance2::<V>(&low, &high, &eight.coordinates);
                     let range = if UNIFORM {
                         V::splat(far)
                     } else {
@@ -230,7 +225,7 @@ impl Lister<'_> {
 
 /// Writes `first + k` for each set bit k at `list[used..]`; returns the new end.
 #[inline(always)]
-fn push_places(list: &mut Vec<u32>, used: usize, first: usize, bits: u8) -> usize {
+pub(super) fn push_places(list: &mut Vec<u32>, used: usize, first: usize, bits: u8) -> usize {
     if list.len() < used + LANES {
         grow(list, used + LANES);
     }
@@ -382,13 +377,17 @@ impl ClusterLists {
     }
 }
 
-/// Square of the distance between a box and a point (m²).
-#[inline]
-pub(super) fn distance2(lower: &[f64; 3], upper: &[f64; 3], point: &[f64; 3]) -> f64 {
-    let mut sum = 0.0;
-    for a in 0..3 {
-        let gap = (lower[a] - point[a]).max(point[a] - upper[a]).max(0.0);
-        sum += gap * gap;
-    }
-    sum
+/// Squares of the distances between a box and eight points (m²).
+#[inline(always)]
+pub(super) fn box_distance2<V: Lanes>(
+    lower: &[V; 3],
+    upper: &[V; 3],
+    points: &[&[f64; LANES]; 3],
+) -> V {
+    let gap = |a: usize| {
+        let x = V::read(points[a]);
+        lower[a].sub(x).max(x.sub(upper[a])).max(V::splat(0.0))
+    };
+    let [x, y, z] = [gap(0), gap(1), gap(2)];
+    z.mul_add(z, y.mul_add(y, x.mul(x)))
 }

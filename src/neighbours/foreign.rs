@@ -3,11 +3,13 @@
 
 use rayon::prelude::*;
 
-use super::clusters::{CHUNKS_AT_ONCE, Chunk, Cluster, ClusterLists, INFLATION, distance2};
+use super::clusters::{
+    CHUNKS_AT_ONCE, Chunk, Cluster, ClusterLists, INFLATION, box_distance2, push_places,
+};
 use super::sequence::Sequence;
 use crate::sph::dispatch::{Vectorised, instructions};
 use crate::sph::gradient::MotionRecord;
-use crate::sph::lanes::Lanes;
+use crate::sph::lanes::{F64x8, LANES, Lanes};
 
 /// Which contact algorithm handles a pair of bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -95,7 +97,21 @@ pub struct ForeignChunk {
     pub potential: PairList,
     /// Pairs of [`ContactClass::Penalty`].
     pub penalty: PairList,
-    candidates: Vec<u32>,
+    candidates: Candidates,
+    strangers: Candidates,
+}
+
+/// What may be in range of a receiver, eight images at a time.
+#[derive(Debug, Clone, Default)]
+struct Candidates {
+    places: Vec<u32>,
+    /// How many of these there are.
+    used: usize,
+    bodies: Vec<usize>,
+    positions: Vec<[F64x8; 3]>,
+    /// Squared range (m²) of receivers of the body `reached_by`; zero where an eight is not full.
+    reach2: Vec<F64x8>,
+    reached_by: Option<usize>,
 }
 
 /// All foreign pairs of a rank. Buffers are kept from step to step.
@@ -146,7 +162,8 @@ impl ForeignLists {
         self.chunks
             .iter()
             .map(|chunk| {
-                4 * chunk.candidates.capacity()
+                chunk.candidates.memory()
+                    + chunk.strangers.memory()
                     + [&chunk.overlap, &chunk.potential, &chunk.penalty]
                         .map(PairList::memory)
                         .iter()
@@ -177,37 +194,53 @@ impl<B: Fn(u32) -> usize> Vectorised for Find<'_, B> {
         chunk.penalty.clear();
         let mut hints = [0; 64];
         let mut strangers = self.own.parted.strangers.iter().peekable();
+        let (mut near, mut apart) = (
+            std::mem::take(&mut chunk.candidates),
+            std::mem::take(&mut chunk.strangers),
+        );
         for (cluster, _, _) in self.own.iter() {
-            chunk.find_candidates::<V>(cluster, self.sequence, self.table, &mut hints);
-            if chunk.candidates.is_empty() && strangers.peek().is_none() {
+            near.find::<V>(cluster, self.sequence, self.table, &mut hints);
+            if near.used == 0 && strangers.peek().is_none() {
                 continue;
             }
-            let candidates = std::mem::take(&mut chunk.candidates);
+            near.look_up(self.sources, self.body_of);
             for &receiver in &cluster.receivers[..cluster.lanes] {
-                let parted = strangers.next_if(|(at, _)| *at == receiver);
-                for list in [parted.map_or(&[][..], |(_, list)| list), &candidates] {
-                    chunk.test_candidates(receiver, list, self.sources, self.table, self.body_of);
+                let here = Receiver {
+                    position: &self.sources[receiver as usize].position,
+                    body: (self.body_of)(receiver),
+                };
+                if let Some((_, list)) = strangers.next_if(|(at, _)| *at == receiver) {
+                    apart.take(list);
+                    apart.look_up(self.sources, self.body_of);
+                    chunk.add_near::<V>(&here, &mut apart, self.table);
                 }
+                chunk.add_near::<V>(&here, &mut near, self.table);
                 chunk.close(receiver);
             }
-            chunk.candidates = candidates;
         }
+        (chunk.candidates, chunk.strangers) = (near, apart);
     }
 }
 
-impl ForeignChunk {
+struct Receiver<'a> {
+    position: &'a [f64; 3],
+    body: usize,
+}
+
+impl Candidates {
     /// Lists what may be in range of any receiver of a cluster. `hints` are as in the lists of
     /// the own group.
     #[inline(always)]
-    fn find_candidates<V: Lanes>(
+    fn find<V: Lanes>(
         &mut self,
         cluster: &Cluster,
         sequence: &Sequence,
         table: &ForeignTable,
         hints: &mut [usize; 64],
     ) {
-        self.candidates.clear();
+        self.used = 0;
         let (lower, upper) = (&cluster.lower, &cluster.upper);
+        let (low, high) = (lower.map(V::splat), upper.map(V::splat));
         let groups = sequence.groups();
         for other in 0..groups {
             let range = table.group_range[cluster.group * groups + other] * INFLATION;
@@ -223,36 +256,101 @@ impl ForeignChunk {
                 }
                 let hint = &mut hints[(a & 7) << 3 | b & 7];
                 *hint = sequence.seek::<V>(other, &column, from, *hint);
-                for place in *hint..column.end {
-                    let point = std::array::from_fn(|a| sequence.coordinates(a, place)[0]);
-                    if point[along] > to {
+                let mut first = *hint;
+                for eight in sequence.eights(first..column.end) {
+                    if eight.coordinates[along][0] > to {
                         break;
                     }
-                    if distance2(lower, upper, &point) < range * range {
-                        #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
-                        self.candidates.push(place as u32);
+                    let square = box_distance2::<V>(&low, &high, &eight.coordinates);
+                    let mut bits = square.less_than(V::splat(range * range));
+                    let left = column.end - first;
+                    if left < LANES {
+                        bits &= (1 << left) - 1;
                     }
+                    self.used = push_places(&mut self.places, self.used, first, bits);
+                    first += LANES;
                 }
             });
         }
     }
 
-    fn test_candidates(
+    /// Takes a list.
+    fn take(&mut self, list: &[u32]) {
+        self.places.clear();
+        self.places.extend_from_slice(list);
+        self.used = list.len();
+    }
+
+    /// Positions and bodies of what is listed.
+    #[inline(always)]
+    fn look_up(&mut self, sources: &[MotionRecord], body_of: &impl Fn(u32) -> usize) {
+        let places = &self.places[..self.used];
+        self.bodies.clear();
+        self.bodies
+            .extend(places.iter().map(|&place| body_of(place)));
+        self.positions.clear();
+        self.positions.extend(places.chunks(LANES).map(|eight| {
+            let mut positions = [F64x8([0.0; LANES]); 3];
+            for (k, &place) in eight.iter().enumerate() {
+                let position = &sources[place as usize].position;
+                for a in 0..3 {
+                    positions[a].0[k] = position[a];
+                }
+            }
+            positions
+        }));
+        self.reached_by = None;
+    }
+
+    /// Ranges for receivers of `body`.
+    #[inline(always)]
+    fn reach(&mut self, body: usize, table: &ForeignTable) {
+        if self.reached_by == Some(body) {
+            return;
+        }
+        self.reached_by = Some(body);
+        let row = body * table.bodies;
+        self.reach2.clear();
+        self.reach2.extend(self.bodies.chunks(LANES).map(|eight| {
+            let mut reach2 = F64x8([0.0; LANES]);
+            for (reach2, other) in reach2.0.iter_mut().zip(eight) {
+                *reach2 = table.reach2[row + other];
+            }
+            reach2
+        }));
+    }
+
+    fn memory(&self) -> usize {
+        4 * self.places.capacity()
+            + 8 * self.bodies.capacity()
+            + size_of::<[F64x8; 3]>() * self.positions.capacity()
+            + size_of::<F64x8>() * self.reach2.capacity()
+    }
+}
+
+impl ForeignChunk {
+    /// Adds what is in range of a receiver to its lists.
+    #[inline(always)]
+    fn add_near<V: Lanes>(
         &mut self,
-        receiver: u32,
-        candidates: &[u32],
-        sources: &[MotionRecord],
+        receiver: &Receiver,
+        candidates: &mut Candidates,
         table: &ForeignTable,
-        body_of: &impl Fn(u32) -> usize,
     ) {
-        let here = &sources[receiver as usize].position;
-        let row = body_of(receiver) * table.bodies;
-        for &place in candidates {
-            let there = &sources[place as usize].position;
-            let r = [here[0] - there[0], here[1] - there[1], here[2] - there[2]];
-            let pair = row + body_of(place);
-            if r[0] * r[0] + r[1] * r[1] + r[2] * r[2] < table.reach2[pair] {
-                match table.class[pair] {
+        candidates.reach(receiver.body, table);
+        let classes = &table.class[receiver.body * table.bodies..];
+        let here = receiver.position.map(V::splat);
+        let eights = candidates.positions.iter().zip(&candidates.reach2);
+        for (n, (positions, reach2)) in eights.enumerate() {
+            let gap = |a: usize| here[a].sub(V::load(&positions[a]));
+            let [x, y, z] = [gap(0), gap(1), gap(2)];
+            let square = x.mul(x).add(y.mul(y)).add(z.mul(z));
+            let mut bits = square.less_than(V::load(reach2));
+            while bits != 0 {
+                let k = n * LANES + bits.trailing_zeros() as usize;
+                bits &= bits - 1;
+                let place = candidates.places[k];
+                match classes[candidates.bodies[k]] {
                     ContactClass::None => {}
                     ContactClass::Overlap => self.overlap.sources.push(place),
                     ContactClass::Potential => self.potential.sources.push(place),
