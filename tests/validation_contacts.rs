@@ -350,6 +350,7 @@ fn table(title: &str, runs: &BTreeMap<(usize, usize), Run>, cell: &dyn Fn(&Run, 
         let of = |column| {
             let run = &runs[&(row, column)];
             match &run.stopped {
+                Some(_) if run.steps == 0 => "refused".to_owned(),
                 Some(_) => "stopped".to_owned(),
                 None => cell(run, &runs[&(row, 0)]),
             }
