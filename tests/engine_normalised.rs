@@ -25,6 +25,7 @@ use whipple::sph::dispatch::available;
 use whipple::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use whipple::sph::lanes::LANES;
 use whipple::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
+use whipple::sph::neighbourhood::Neighbourhood;
 use whipple::sph::normalised::{
     Corrected, Correction, LARGEST_CORRECTION, NormalisedGradient, NormalisedRecord, stress_power,
 };
@@ -129,11 +130,13 @@ impl World {
                 .iter()
                 .map(|set| {
                     set.run(NormalisedGradient {
-                        sources: &self.found.motion,
-                        lengths: self.found.sequence.smoothing_lengths(),
-                        receivers: cluster.receivers,
-                        neighbours: list,
-                        scale,
+                        around: Neighbourhood {
+                            sources: &self.found.motion,
+                            lengths: self.found.sequence.smoothing_lengths(),
+                            receivers: cluster.receivers,
+                            neighbours: list,
+                            scale,
+                        },
                         dimension: self.cloud.dimension,
                     })
                 })
@@ -188,12 +191,14 @@ impl World {
         for (cluster, list, _) in chunks.iter().flat_map(Chunk::iter) {
             let sums = |set: whipple::sph::dispatch::Instructions| {
                 set.run(Momentum::<S, NORMALISED> {
-                    sources: &self.found.motion,
-                    lengths: self.found.sequence.smoothing_lengths(),
+                    around: Neighbourhood {
+                        sources: &self.found.motion,
+                        lengths: self.found.sequence.smoothing_lengths(),
+                        receivers: cluster.receivers,
+                        neighbours: list,
+                        scale,
+                    },
                     stresses: &stresses,
-                    receivers: cluster.receivers,
-                    neighbours: list,
-                    scale,
                     viscosity: Viscosity {
                         alpha: 0.0,
                         beta: 0.0,
@@ -454,18 +459,16 @@ fn flat_clouds_keep_the_plain_gradient() {
 /// Lanes of a cluster beyond its particles change nothing.
 #[test]
 fn receivers_without_neighbours_have_no_gradient() {
-    let sums = NormalisedGradient {
-        sources: &[],
-        lengths: &[],
-        receivers: [0; LANES],
-        neighbours: &[],
-        scale: ConstantScale::new(&Kernel::new(3), 1.0),
-        dimension: 3,
-    };
     let sources = [World::new(cloud(3, 1.0, 0, 58), 59).found.motion[0]];
     let none = available()[0].run(NormalisedGradient {
-        sources: &sources,
-        ..sums
+        around: Neighbourhood {
+            sources: &sources,
+            lengths: &[],
+            receivers: [0; LANES],
+            neighbours: &[],
+            scale: ConstantScale::new(&Kernel::new(3), 1.0),
+        },
+        dimension: 3,
     });
     assert_eq!(none.gradient, Corrected::NONE.gradient);
 }

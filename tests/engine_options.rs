@@ -8,10 +8,10 @@ use common::random::Random;
 use whipple::domain::Mirrors;
 use whipple::neighbours::Chunk;
 use whipple::sph::dispatch::{Instructions, available};
-use whipple::sph::gradient::MotionRecord;
 use whipple::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use whipple::sph::lanes::LANES;
 use whipple::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
+use whipple::sph::neighbourhood::{MotionRecord, Neighbourhood};
 use whipple::sph::options::{
     ARTIFICIAL_STRESS, BALSARA, CONDUCTION, OptionRecord, Options, RECORDED, XSPH, limiter,
     repulsion,
@@ -78,12 +78,14 @@ impl Records {
         scale: S,
     ) -> Forces {
         set.run(Momentum::<S, OPTIONS> {
-            sources: &self.motion,
-            lengths: &self.lengths,
+            around: Neighbourhood {
+                sources: &self.motion,
+                lengths: &self.lengths,
+                receivers,
+                neighbours,
+                scale,
+            },
             stresses: &self.stress,
-            receivers,
-            neighbours,
-            scale,
             viscosity: VISCOSITY,
             options: Options {
                 records: &self.options,

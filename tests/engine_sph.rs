@@ -12,10 +12,11 @@ use common::cloud::{Cloud, Found, small as cloud};
 use common::random::Random;
 use whipple::neighbours::Chunk;
 use whipple::sph::dispatch::{Instructions, available};
-use whipple::sph::gradient::{MotionRecord, VelocityGradient};
+use whipple::sph::gradient::VelocityGradient;
 use whipple::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use whipple::sph::lanes::{F64x8, LANES};
 use whipple::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
+use whipple::sph::neighbourhood::{MotionRecord, Neighbourhood};
 use whipple::sph::options::Options;
 
 const VISCOSITY: Viscosity = Viscosity {
@@ -154,11 +155,13 @@ fn gradient<S: PairScale>(
     scale: S,
 ) -> [F64x8; 9] {
     set.run(VelocityGradient {
-        sources,
-        lengths,
-        receivers,
-        neighbours,
-        scale,
+        around: Neighbourhood {
+            sources,
+            lengths,
+            receivers,
+            neighbours,
+            scale,
+        },
     })
 }
 
@@ -170,12 +173,14 @@ fn momentum<S: PairScale>(
     scale: S,
 ) -> Forces {
     set.run(Momentum::<S, 0> {
-        sources: &records.motion,
-        lengths: &records.lengths,
+        around: Neighbourhood {
+            sources: &records.motion,
+            lengths: &records.lengths,
+            receivers,
+            neighbours,
+            scale,
+        },
         stresses: &records.stress,
-        receivers,
-        neighbours,
-        scale,
         viscosity: VISCOSITY,
         options: Options::NONE,
     })

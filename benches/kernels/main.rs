@@ -18,6 +18,7 @@ use whipple::sph::gradient::VelocityGradient;
 use whipple::sph::kernel::{ConstantScale, Kernel};
 use whipple::sph::lanes::{LANES, Lanes};
 use whipple::sph::momentum::{Momentum, StressRecord, Viscosity};
+use whipple::sph::neighbourhood::Neighbourhood;
 use whipple::sph::options::Options;
 
 /// A group whose throughput counts so many elements.
@@ -43,11 +44,13 @@ fn velocity_gradient(criterion: &mut Criterion) {
             bencher.iter(|| {
                 scene.sweep(|receivers, neighbours| {
                     black_box(set.run(VelocityGradient {
-                        sources: &scene.motion,
-                        lengths: scene.sequence.smoothing_lengths(),
-                        receivers,
-                        neighbours,
-                        scale,
+                        around: Neighbourhood {
+                            sources: &scene.motion,
+                            lengths: scene.sequence.smoothing_lengths(),
+                            receivers,
+                            neighbours,
+                            scale,
+                        },
                     }));
                 });
             });
@@ -70,12 +73,14 @@ fn momentum(criterion: &mut Criterion) {
             bencher.iter(|| {
                 scene.sweep(|receivers, neighbours| {
                     black_box(set.run(Momentum::<_, 0> {
-                        sources: &scene.motion,
-                        lengths: scene.sequence.smoothing_lengths(),
+                        around: Neighbourhood {
+                            sources: &scene.motion,
+                            lengths: scene.sequence.smoothing_lengths(),
+                            receivers,
+                            neighbours,
+                            scale,
+                        },
                         stresses: &stresses,
-                        receivers,
-                        neighbours,
-                        scale,
                         viscosity,
                         options: Options::NONE,
                     }));

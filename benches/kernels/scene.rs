@@ -7,8 +7,8 @@ use whipple::neighbours::{
     Chunk, ClusterLists, ColumnGrid, ForeignLists, Image, ImageFacts, Lengths, Sequence,
 };
 use whipple::particles::ParticleStore;
-use whipple::sph::gradient::MotionRecord;
 use whipple::sph::lanes::LANES;
+use whipple::sph::neighbourhood::MotionRecord;
 
 /// Particles along an edge.
 const EDGE: u32 = 48;

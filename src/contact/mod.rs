@@ -17,7 +17,7 @@ pub use table::{ContactTable, Pair, PairResistance};
 use crate::domain::Mirrors;
 use crate::neighbours::Image;
 use crate::particles::ParticleStore;
-use crate::sph::gradient::MotionRecord;
+use crate::sph::neighbourhood::MotionRecord;
 
 /// What the contact sums read.
 #[derive(Clone, Copy)]

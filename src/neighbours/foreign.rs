@@ -8,8 +8,8 @@ use super::clusters::{
 };
 use super::sequence::Sequence;
 use crate::sph::dispatch::{Vectorised, instructions};
-use crate::sph::gradient::MotionRecord;
 use crate::sph::lanes::{F64x8, LANES, Lanes};
+use crate::sph::neighbourhood::MotionRecord;
 
 /// Which contact algorithm handles a pair of bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

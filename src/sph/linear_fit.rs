@@ -5,10 +5,10 @@
 //! `L_s = Σ w (v_a − v̄) ⊗ (x_a − x̄) M⁻¹`, `v_s = v̄ + L_s (x_s − x̄)`.
 
 use super::dispatch::Vectorised;
-use super::gradient::{MotionRecord, Separation, gather3, length, lengths, records};
 use super::kernel::{PairKernel, PairScale};
 use super::lanes::{F64x8, LANES, Lanes};
 use super::matrix::product;
+use super::neighbourhood::Neighbourhood;
 
 /// Particles that give `M` less than this along a direction, over h², are at the edge of the kernel:
 /// two at 1.5 h do. Gradients along it fade out, as they would else end at once with the kernel.
@@ -159,19 +159,10 @@ fn adjugate(m: &[f64; 6]) -> ([f64; 6], f64) {
     (a, determinant)
 }
 
-/// Eight stress points of one cluster with the velocity particles about them; sums in the order of
-/// `neighbours`.
+/// Eight stress points with the velocity particles about them.
 pub struct LinearFit<'a, S> {
-    /// All particles and images.
-    pub sources: &'a [MotionRecord],
-    /// Smoothing lengths (m) of these; empty where the scale is constant.
-    pub lengths: &'a [f64],
-    /// Stress points; unused lanes repeat a valid one.
-    pub receivers: [u32; LANES],
-    /// Velocity particles, in canonical order, those of all receivers together.
-    pub neighbours: &'a [u32],
-    /// Smoothing length of pairs.
-    pub scale: S,
+    /// The points and the particles.
+    pub around: Neighbourhood<'a, S>,
     /// Number of dimensions.
     pub dimension: usize,
 }
@@ -192,25 +183,18 @@ impl<S: PairScale> Vectorised for LinearFit<'_, S> {
 
     #[inline(always)]
     fn run<V: Lanes>(self) -> Fitted {
-        let receivers = records(self.sources, &self.receivers);
-        let position = gather3::<V, _>(&receivers, |record, a| record.position[a]);
-        let velocity = gather3::<V, _>(&receivers, |record, a| record.velocity[a]);
-        let h_i = lengths::<V, S>(self.lengths, &self.receivers);
+        let around = &self.around;
+        let (position, velocity) = around.motion::<V>();
         let zero = V::splat(0.0);
         // Σ w, Σ w y, Σ w y ⊗ y, Σ w u, Σ w u ⊗ y with y = x_a − x_s, u = v_a less the last v_s.
         // Of the first three also with w² in place of w.
         let (mut all, mut first, mut second) = (zero, [zero; 3], [zero; 6]);
         let (mut all2, mut first2, mut second2) = (zero, [zero; 3], [zero; 6]);
         let (mut drift, mut product) = ([zero; 3], [zero; 9]);
-        for &place in self.neighbours {
-            let place = place as usize;
-            let here = &self.sources[place];
-            let now = Separation::begin(&position, &here.position);
-            let kernel = self
-                .scale
-                .kernel(now.distance, h_i, length::<S>(self.lengths, place));
-            let w = weight(&self.scale, &kernel);
-            let r = now.r;
+        for pair in around.pairs(&position) {
+            let here = pair.source;
+            let w = weight(&around.scale, &pair.kernel);
+            let r = pair.gap.r;
             let wy = [
                 zero.sub(r[0].mul(w)),
                 zero.sub(r[1].mul(w)),
@@ -252,9 +236,9 @@ impl<S: PairScale> Vectorised for LinearFit<'_, S> {
             product: product.map(V::store),
         };
         let h = if S::VARIABLE {
-            h_i.store()
+            around.h::<V>().store()
         } else {
-            self.scale.kernel(zero, zero, 0.0).h.store()
+            around.scale.kernel(zero, zero, 0.0).h.store()
         };
         sums.fit(&velocity.map(V::store), &h, self.dimension)
     }

@@ -12,6 +12,7 @@ pub mod linear_fit;
 mod matrix;
 pub mod mid_step;
 pub mod momentum;
+pub mod neighbourhood;
 pub mod normalised;
 pub mod options;
 pub mod principal;

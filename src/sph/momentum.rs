@@ -2,9 +2,9 @@
 //! viscosity (physics page, section 2).
 
 use super::dispatch::Vectorised;
-use super::gradient::{MotionRecord, Separation, gather, gather3, length, lengths, records};
 use super::kernel::PairScale;
 use super::lanes::{F64x8, LANES, Lanes};
+use super::neighbourhood::{Neighbourhood, gather, gather3, records};
 use super::normalised::NormalisedSums;
 use super::options::{BALSARA, CONDUCTION, NORMALISED, OptionSums, Options, SHAPED};
 
@@ -58,21 +58,12 @@ pub struct Viscosity {
     pub beta: f64,
 }
 
-/// The receivers of one cluster with their neighbours; sums in the order of `neighbours`.
-/// `OPTIONS` is a set of the constants of [`super::options`].
+/// The sums over pairs. `OPTIONS` is a set of the constants of [`super::options`].
 pub struct Momentum<'a, S, const OPTIONS: u8> {
-    /// All particles and images.
-    pub sources: &'a [MotionRecord],
-    /// Their smoothing lengths (m); empty where the scale is constant.
-    pub lengths: &'a [f64],
-    /// Their stresses.
+    /// The receivers and their neighbours.
+    pub around: Neighbourhood<'a, S>,
+    /// Stresses of all particles and images.
     pub stresses: &'a [StressRecord],
-    /// Receivers; unused lanes repeat a valid one.
-    pub receivers: [u32; LANES],
-    /// Neighbours, in canonical order, those of all receivers together.
-    pub neighbours: &'a [u32],
-    /// Smoothing length of pairs.
-    pub scale: S,
     /// Artificial viscosity.
     pub viscosity: Viscosity,
     /// What the options in use need.
@@ -109,13 +100,15 @@ impl<S: PairScale, const OPTIONS: u8> Vectorised for Momentum<'_, S, OPTIONS> {
 
     #[inline(always)]
     fn run<V: Lanes>(self) -> Forces {
-        let receivers = records(self.sources, &self.receivers);
-        let position = gather3::<V, _>(&receivers, |record, a| record.position[a]);
-        let velocity = gather3::<V, _>(&receivers, |record, a| record.velocity[a]);
-        let stresses = records(self.stresses, &self.receivers);
+        let around = &self.around;
+        // A particle whose position is no number.
+        if around.neighbours.is_empty() {
+            return Forces::NONE;
+        }
+        let (position, velocity) = around.motion::<V>();
+        let stresses = records(self.stresses, &around.receivers);
         let normal = gather3::<V, _>(&stresses, |record, a| record.stress_over_density2[a]);
         let shear = gather3::<V, _>(&stresses, |record, a| record.stress_over_density2[3 + a]);
-        let h_i = lengths::<V, S>(self.lengths, &self.receivers);
         let rho_i = gather::<V, _>(&stresses, |record| record.density);
         let c_i = gather::<V, _>(&stresses, |record| record.sound_speed);
         let zero = V::splat(0.0);
@@ -124,35 +117,18 @@ impl<S: PairScale, const OPTIONS: u8> Vectorised for Momentum<'_, S, OPTIONS> {
             V::splat(2.0 * self.viscosity.beta),
         );
         let c_i = c_i.mul(alpha);
-        let mut options = OptionSums::<V, OPTIONS>::begin(&self.options, &self.receivers);
-        let mut corrected =
-            NormalisedSums::<V, OPTIONS>::begin(&self.options, &self.receivers, &receivers);
+        let mut options = OptionSums::<V, OPTIONS>::begin(&self.options, &around.receivers);
+        let mut corrected = NormalisedSums::<V, OPTIONS>::begin(&self.options, around);
         let mut acceleration = [zero; 3];
         let mut power = zero;
         let mut fastest = zero;
-        // A particle whose position is no number has no neighbours, not even itself.
-        let count = self.neighbours.len();
-        if count == 0 {
-            return Forces::NONE;
-        }
-        let begin = |k: usize| {
-            let place = self.neighbours[k.min(count - 1)] as usize;
-            (place, &self.sources[place])
-        };
-        let mut following = begin(0);
-        let mut next = Separation::begin(&position, &following.1.position);
-        for k in 0..count {
-            let ((place, source), now) = (following, next);
+        for pair in around.pairs(&position) {
+            let (place, source, now, kernel) = (pair.place, pair.source, &pair.gap, &pair.kernel);
             let state = &self.stresses[place];
             let option = self.options.record::<OPTIONS>(place);
-            following = begin(k + 1);
-            next = Separation::begin(&position, &following.1.position);
             let (r, square) = (now.r, now.square);
             let along = |a: usize| velocity[a].sub(V::splat(source.velocity[a]));
             let v = [along(0), along(1), along(2)];
-            let kernel = self
-                .scale
-                .kernel(now.distance, h_i, length::<S>(self.lengths, place));
             let h = kernel.h;
             let soft = h.mul(h).mul(V::splat(0.01)).add(square);
             let rho_sum = rho_i.add(V::splat(state.density));
@@ -180,11 +156,11 @@ impl<S: PairScale, const OPTIONS: u8> Vectorised for Momentum<'_, S, OPTIONS> {
                 [zero.sub(pi), zero.sub(pi), zero.sub(pi), zero, zero, zero]
             };
             if OPTIONS & SHAPED != 0 {
-                let shape = self.scale.shape(&kernel);
+                let shape = around.scale.shape(kernel);
                 options.repel(&mut stress, option, shape);
-                let w = self.scale.value(&kernel, shape);
+                let w = around.scale.value(kernel, shape);
                 let other = self.options.normalised::<OPTIONS>(place);
-                corrected.pull(other, &now, kernel.slope, w, source.volume);
+                corrected.pull(other, now, kernel.slope, w, source.volume);
                 let w = w.mul(V::splat(source.mass));
                 options.follow(&v, w.mul(inverse.mul(soft)));
             }

@@ -10,12 +10,10 @@
 //! corrected velocity gradient; only the forces need the corrections of neighbours.
 
 use super::dispatch::Vectorised;
-use super::gradient::{
-    MotionRecord, Separation, gather, gather3, length, lengths, records as motion_records,
-};
 use super::kernel::PairScale;
 use super::lanes::{F64x8, LANES, Lanes};
 use super::matrix::adjugate;
+use super::neighbourhood::{Neighbourhood, Separation, gather, gather3, records};
 use super::options::{NORMALISED, Options};
 
 /// Corrections that enlarge gradients more than so are left out: the particle has too few
@@ -97,18 +95,10 @@ impl Moments {
     }
 }
 
-/// The receivers of one cluster with their neighbours; sums in the order of `neighbours`.
+/// The sums over pairs.
 pub struct NormalisedGradient<'a, S> {
-    /// All particles and images.
-    pub sources: &'a [MotionRecord],
-    /// Smoothing lengths (m) of these; empty where the scale is constant.
-    pub lengths: &'a [f64],
-    /// Receivers; unused lanes repeat a valid one.
-    pub receivers: [u32; LANES],
-    /// Neighbours, in canonical order, those of all receivers together.
-    pub neighbours: &'a [u32],
-    /// Smoothing length of pairs.
-    pub scale: S,
+    /// The receivers and their neighbours.
+    pub around: Neighbourhood<'a, S>,
     /// Number of dimensions.
     pub dimension: usize,
 }
@@ -138,38 +128,24 @@ impl<S: PairScale> Vectorised for NormalisedGradient<'_, S> {
 
     #[inline(always)]
     fn run<V: Lanes>(self) -> Corrected {
-        let receivers = motion_records(self.sources, &self.receivers);
-        let position = gather3::<V, _>(&receivers, |record, a| record.position[a]);
-        let velocity = gather3::<V, _>(&receivers, |record, a| record.velocity[a]);
-        let h_i = lengths::<V, S>(self.lengths, &self.receivers);
+        let around = &self.around;
+        // A particle whose position is no number.
+        if around.neighbours.is_empty() {
+            return Corrected::NONE;
+        }
+        let (position, velocity) = around.motion::<V>();
         let zero = V::splat(0.0);
         // Σ V v_ji ⊗ ∇W, Σ V v_ji W, and with −x_ij in place of v_ji; Σ V ∇W, Σ V W.
         let (mut gradient, mut drift) = ([zero; 9], [zero; 3]);
         let (mut second, mut first) = ([zero; 6], [zero; 3]);
         let (mut slope, mut mass) = ([zero; 3], zero);
-        // A particle whose position is no number has no neighbours, not even itself.
-        let count = self.neighbours.len();
-        if count == 0 {
-            return Corrected::NONE;
-        }
-        let begin = |k: usize| {
-            let place = self.neighbours[k.min(count - 1)] as usize;
-            (place, &self.sources[place])
-        };
-        let mut following = begin(0);
-        let mut next = Separation::begin(&position, &following.1.position);
-        for k in 0..count {
-            let ((place, here), now) = (following, next);
-            following = begin(k + 1);
-            next = Separation::begin(&position, &following.1.position);
-            let kernel = self
-                .scale
-                .kernel(now.distance, h_i, length::<S>(self.lengths, place));
+        for pair in around.pairs(&position) {
+            let (here, kernel) = (pair.source, &pair.kernel);
             let volume = V::splat(here.volume);
-            let factor = now.inverse.mul(volume).mul(kernel.slope);
-            let share = self.scale.value(&kernel, self.scale.shape(&kernel));
+            let factor = pair.gap.inverse.mul(volume).mul(kernel.slope);
+            let share = around.scale.value(kernel, around.scale.shape(kernel));
             let share = share.mul(volume);
-            let r = now.r;
+            let r = pair.gap.r;
             let steep = [r[0].mul(factor), r[1].mul(factor), r[2].mul(factor)];
             for a in 0..3 {
                 let v_a = V::splat(here.velocity[a]).sub(velocity[a]);
@@ -301,11 +277,7 @@ pub(super) struct NormalisedSums<V, const OPTIONS: u8> {
 
 impl<V: Lanes, const OPTIONS: u8> NormalisedSums<V, OPTIONS> {
     #[inline(always)]
-    pub(super) fn begin(
-        options: &Options,
-        places: &[u32; LANES],
-        receivers: &[&MotionRecord; LANES],
-    ) -> Self {
+    pub(super) fn begin<S: PairScale>(options: &Options, around: &Neighbourhood<S>) -> Self {
         let zero = V::splat(0.0);
         if OPTIONS & NORMALISED == 0 {
             return Self {
@@ -315,13 +287,14 @@ impl<V: Lanes, const OPTIONS: u8> NormalisedSums<V, OPTIONS> {
                 sum: [zero; 3],
             };
         }
-        let all = motion_records(options.normalised, places);
+        let all = records(options.normalised, &around.receivers);
+        let motion = records(around.sources, &around.receivers);
         let row = |a: usize| gather3::<V, _>(&all, |record, b| record.stress[3 * a + b]);
         let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = [row(0), row(1), row(2)];
         Self {
             stress: [xx, xy, xz, yx, yy, yz, zx, zy, zz],
             shift: gather3(&all, |record, a| record.shift[a]),
-            specific_volume: gather(receivers, |record| record.volume / record.mass),
+            specific_volume: gather(&motion, |record| record.volume / record.mass),
             sum: [zero; 3],
         }
     }

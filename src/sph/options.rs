@@ -3,8 +3,8 @@
 //! A set of options is a constant of the sums' type, so that those of a case without options hold
 //! no trace of them.
 
-use super::gradient::{gather, gather3, records};
 use super::lanes::{LANES, Lanes};
+use super::neighbourhood::{gather, gather3, records};
 use super::normalised::NormalisedRecord;
 use super::principal::tensile_part;
 

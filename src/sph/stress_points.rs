@@ -5,11 +5,11 @@
 //! `Q = V_s σ_s M_s⁻¹`.
 
 use super::dispatch::Vectorised;
-use super::gradient::{MotionRecord, Separation, gather3, length, lengths, records};
 use super::kernel::PairScale;
-use super::lanes::{F64x8, LANES, Lanes};
+use super::lanes::{F64x8, Lanes};
 use super::linear_fit::{NORM, weight};
 use super::momentum::Viscosity;
+use super::neighbourhood::Neighbourhood;
 use super::principal::tensile_part;
 
 /// What a stress point shows to velocity particles.
@@ -49,21 +49,12 @@ pub fn moment(
     (moment, shift)
 }
 
-/// Eight velocity particles of one cluster with the stress points about them; sums in the order of
-/// `neighbours`.
+/// Eight velocity particles with the stress points about them.
 pub struct Pull<'a, S> {
-    /// All particles and images.
-    pub sources: &'a [MotionRecord],
-    /// Smoothing lengths (m) of these; empty where the scale is constant.
-    pub lengths: &'a [f64],
-    /// What those that are stress points show.
+    /// The particles and the points.
+    pub around: Neighbourhood<'a, S>,
+    /// What all particles and images that are stress points show.
     pub points: &'a [StressPointRecord],
-    /// Velocity particles; unused lanes repeat a valid one.
-    pub receivers: [u32; LANES],
-    /// Stress points, in canonical order, those of all receivers together.
-    pub neighbours: &'a [u32],
-    /// Smoothing length of pairs.
-    pub scale: S,
 }
 
 /// What [`Pull`] gives.
@@ -82,20 +73,14 @@ impl<S: PairScale> Vectorised for Pull<'_, S> {
 
     #[inline(always)]
     fn run<V: Lanes>(self) -> Pulled {
-        let receivers = records(self.sources, &self.receivers);
-        let position = gather3::<V, _>(&receivers, |record, a| record.position[a]);
-        let h_i = lengths::<V, S>(self.lengths, &self.receivers);
+        let around = &self.around;
+        let (position, _) = around.motion::<V>();
         let zero = V::splat(0.0);
         let (mut force, mut mass, mut heat, mut all) = ([zero; 3], zero, zero, zero);
-        for &place in self.neighbours {
-            let place = place as usize;
-            let (here, point) = (&self.sources[place], &self.points[place]);
-            let now = Separation::begin(&position, &here.position);
-            let kernel = self
-                .scale
-                .kernel(now.distance, h_i, length::<S>(self.lengths, place));
-            let w = weight(&self.scale, &kernel);
-            let r = now.r;
+        for pair in around.pairs(&position) {
+            let point = &self.points[pair.place];
+            let w = weight(&around.scale, &pair.kernel);
+            let r = pair.gap.r;
             for a in 0..3 {
                 let q = |c: usize| V::splat(point.moment[3 * a + c]);
                 let pull = r[0].mul_add(q(0), zero.sub(V::splat(point.offset[a])));

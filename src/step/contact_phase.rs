@@ -128,7 +128,7 @@ impl Simulation {
         tasks.for_each(|task| {
             task.fractions
                 .iter()
-                .for_each(|weighed| target.store(weighed))
+                .for_each(|weighed| target.store(weighed));
         });
     }
 

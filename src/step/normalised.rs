@@ -10,9 +10,9 @@ use crate::domain::Mirrors;
 use crate::neighbours::{Chunk, Image};
 use crate::particles::{ParticleStore, Scatter};
 use crate::sph::dispatch::Vectorised;
-use crate::sph::gradient::MotionRecord;
 use crate::sph::kernel::PairScale;
 use crate::sph::lanes::Lanes;
+use crate::sph::neighbourhood::{MotionRecord, Neighbourhood};
 use crate::sph::normalised::{Correction, NormalisedGradient, NormalisedRecord, stress_power};
 
 /// The fields that hold corrections, out of the store while the first sweep writes it.
@@ -86,11 +86,13 @@ impl<S: PairScale> Vectorised for NormalisedChunk<'_, S> {
     fn run<V: Lanes>(self) {
         for (cluster, neighbours, _) in self.chunk.iter() {
             let sums = NormalisedGradient {
-                sources: self.sources,
-                lengths: self.lengths,
-                receivers: cluster.receivers,
-                neighbours,
-                scale: self.scale,
+                around: Neighbourhood {
+                    sources: self.sources,
+                    lengths: self.lengths,
+                    receivers: cluster.receivers,
+                    neighbours,
+                    scale: self.scale,
+                },
                 dimension: self.dimension,
             };
             let corrected = sums.run::<V>();

@@ -10,7 +10,7 @@ use crate::neighbours::{
     ClusterLists, ColumnGrid, ForeignLists, Image, ImageFacts, Lengths, Sequence,
 };
 use crate::particles::{Scatter, resize};
-use crate::sph::gradient::MotionRecord;
+use crate::sph::neighbourhood::MotionRecord;
 
 /// The sequence of images, their motion records and the lists, kept from step to step.
 pub struct Search {

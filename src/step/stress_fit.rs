@@ -10,11 +10,11 @@ use super::sweeps::with_scale;
 use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Image};
 use crate::particles::{ParticleStore, Scatter};
 use crate::sph::dispatch::{Vectorised, instructions};
-use crate::sph::gradient::MotionRecord;
 use crate::sph::kernel::PairScale;
 use crate::sph::lanes::{F64x8, LANES, Lanes};
 use crate::sph::linear_fit::{Fit, Fitted, LinearFit};
 use crate::sph::mid_step::{MidStep, mid_step};
+use crate::sph::neighbourhood::{MotionRecord, Neighbourhood};
 use crate::sph::normalised::stress_power;
 
 /// Fields of stress points, out of the store while the material is updated.
@@ -173,11 +173,13 @@ impl<S: PairScale> Vectorised for FitChunk<'_, S> {
                 continue;
             }
             let sums = LinearFit {
-                sources: self.sources,
-                lengths: self.lengths,
-                receivers: cluster.receivers,
-                neighbours,
-                scale: self.scale,
+                around: Neighbourhood {
+                    sources: self.sources,
+                    lengths: self.lengths,
+                    receivers: cluster.receivers,
+                    neighbours,
+                    scale: self.scale,
+                },
                 dimension: self.dimension,
             };
             let fitted = sums.run::<V>();

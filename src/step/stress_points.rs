@@ -10,9 +10,9 @@ use crate::domain::Mirrors;
 use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Cluster, Image};
 use crate::particles::{Scatter, resize};
 use crate::sph::dispatch::{Vectorised, instructions};
-use crate::sph::gradient::MotionRecord;
 use crate::sph::kernel::PairScale;
 use crate::sph::lanes::Lanes;
+use crate::sph::neighbourhood::{MotionRecord, Neighbourhood};
 use crate::sph::stress_points::{Pull, Pulled, StressPointRecord};
 
 /// What stress points show to velocity particles, kept from step to step.
@@ -125,12 +125,14 @@ impl<S: PairScale> PullChunk<'_, S> {
         neighbours: &[u32],
     ) -> Pulled {
         let sums = Pull {
-            sources: sources.motion,
-            lengths: sources.lengths,
+            around: Neighbourhood {
+                sources: sources.motion,
+                lengths: sources.lengths,
+                receivers: cluster.receivers,
+                neighbours,
+                scale,
+            },
             points: sources.points,
-            receivers: cluster.receivers,
-            neighbours,
-            scale,
         };
         sums.run::<V>()
     }

@@ -11,10 +11,11 @@ use crate::model::{Case, SmoothingLength, SphForm};
 use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Cluster, Image};
 use crate::particles::{ParticleStore, Scatter};
 use crate::sph::dispatch::{Vectorised, instructions};
-use crate::sph::gradient::{MotionRecord, VelocityGradient};
+use crate::sph::gradient::VelocityGradient;
 use crate::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use crate::sph::lanes::{F64x8, LANES, Lanes};
 use crate::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
+use crate::sph::neighbourhood::{MotionRecord, Neighbourhood};
 use crate::sph::options::{ARTIFICIAL_STRESS, BALSARA, CONDUCTION, NORMALISED, Options, XSPH};
 
 /// Records of the second sweep and what mirrors exert, kept from step to step.
@@ -275,11 +276,13 @@ impl<S: PairScale> Vectorised for GradientChunk<'_, S> {
                 continue;
             }
             let gradient = VelocityGradient {
-                sources: self.sources,
-                lengths: self.lengths,
-                receivers: cluster.receivers,
-                neighbours,
-                scale: self.scale,
+                around: Neighbourhood {
+                    sources: self.sources,
+                    lengths: self.lengths,
+                    receivers: cluster.receivers,
+                    neighbours,
+                    scale: self.scale,
+                },
             };
             self.update
                 .apply(cluster, &gradient.run::<V>(), neighbours.len());
@@ -408,12 +411,14 @@ impl<S: PairScale, const OPTIONS: u8> MomentumChunk<'_, S, OPTIONS> {
         neighbours: &[u32],
     ) -> Forces {
         let sums = Momentum::<S, OPTIONS> {
-            sources: sources.motion,
-            lengths: sources.lengths,
+            around: Neighbourhood {
+                sources: sources.motion,
+                lengths: sources.lengths,
+                receivers: cluster.receivers,
+                neighbours,
+                scale,
+            },
             stresses: sources.stresses,
-            receivers: cluster.receivers,
-            neighbours,
-            scale,
             viscosity: sources.viscosity,
             options: sources.options,
         };

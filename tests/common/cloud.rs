@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use whipple::domain::Mirrors;
 use whipple::model::{Axis, SymmetryPlane};
 use whipple::neighbours::{ClusterLists, ColumnGrid, Image, ImageFacts, Lengths, Sequence};
-use whipple::sph::gradient::MotionRecord;
+use whipple::sph::neighbourhood::MotionRecord;
 
 use super::random::Random;
 

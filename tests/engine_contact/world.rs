@@ -7,8 +7,8 @@ use whipple::model::{Body, Case, ContactMode, Overlap, Potential, PotentialRange
 use whipple::neighbours::{ContactClass, Image};
 use whipple::particles::ParticleStore;
 use whipple::populate;
-use whipple::sph::gradient::MotionRecord;
 use whipple::sph::kernel::Kernel;
+use whipple::sph::neighbourhood::MotionRecord;
 
 use crate::common::{body, case};
 

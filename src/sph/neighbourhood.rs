@@ -1,0 +1,186 @@
+//! The receivers of one cluster with their neighbours: what all sums over pairs begin with.
+
+use super::kernel::{PairKernel, PairScale};
+use super::lanes::{LANES, Lanes};
+
+/// What a particle shows to its neighbours of its motion: one cache line.
+#[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C, align(64))]
+pub struct MotionRecord {
+    /// Position (m).
+    pub position: [f64; 3],
+    /// Velocity (m/s).
+    pub velocity: [f64; 3],
+    /// Volume m/ρ (m^d).
+    pub volume: f64,
+    /// Mass (kg).
+    pub mass: f64,
+}
+
+/// Squares of distances are never smaller than this (m²), so that a particle meeting itself
+/// divides by something: it then adds an exact zero since its `r_ij` is zero.
+pub const SMALLEST_SQUARE: f64 = 1e-60;
+
+/// The receivers of one cluster with their neighbours; sums go in the order of `neighbours`.
+#[derive(Debug, Clone, Copy)]
+pub struct Neighbourhood<'a, S> {
+    /// All particles and images.
+    pub sources: &'a [MotionRecord],
+    /// Smoothing lengths (m) of these; empty where the scale is constant.
+    pub lengths: &'a [f64],
+    /// Receivers; unused lanes repeat a valid one.
+    pub receivers: [u32; LANES],
+    /// Neighbours, in canonical order, those of all receivers together.
+    pub neighbours: &'a [u32],
+    /// Smoothing length of pairs.
+    pub scale: S,
+}
+
+impl<'a, S: PairScale> Neighbourhood<'a, S> {
+    /// Position (m) and velocity (m/s) of the receivers.
+    #[inline(always)]
+    pub(super) fn motion<V: Lanes>(&self) -> ([V; 3], [V; 3]) {
+        let receivers = records(self.sources, &self.receivers);
+        (
+            gather3(&receivers, |record, a| record.position[a]),
+            gather3(&receivers, |record, a| record.velocity[a]),
+        )
+    }
+
+    /// Smoothing lengths of the receivers (m), whatever if the scale is constant.
+    #[inline(always)]
+    pub(super) fn h<V: Lanes>(&self) -> V {
+        let at = |k: usize| length::<S>(self.lengths, self.receivers[k] as usize);
+        V::read(&[at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)])
+    }
+
+    /// The receivers, which stand at `position` (m), with one neighbour after the other. A particle
+    /// whose position is no number has none, not even itself.
+    #[inline(always)]
+    pub(super) fn pairs<V: Lanes>(&self, position: &[V; 3]) -> Pairs<'a, V, S> {
+        let first = self.neighbours.first().copied().unwrap_or_default();
+        let first = &self.sources[first as usize];
+        Pairs {
+            around: *self,
+            position: *position,
+            h: self.h(),
+            done: 0,
+            next: Separation::begin(position, &first.position),
+        }
+    }
+}
+
+/// Eight receivers and one neighbour.
+pub(super) struct Pair<'a, V> {
+    /// Place of the neighbour among the sources.
+    pub(super) place: usize,
+    /// The neighbour.
+    pub(super) source: &'a MotionRecord,
+    /// How they stand.
+    pub(super) gap: Separation<V>,
+    /// The kernel.
+    pub(super) kernel: PairKernel<V>,
+}
+
+/// Pairs of eight receivers, neighbour after neighbour. The next one is begun before the last is
+/// given: its root takes long.
+pub(super) struct Pairs<'a, V, S> {
+    around: Neighbourhood<'a, S>,
+    position: [V; 3],
+    h: V,
+    done: usize,
+    next: Separation<V>,
+}
+
+impl<'a, V: Lanes, S: PairScale> Iterator for Pairs<'a, V, S> {
+    type Item = Pair<'a, V>;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<Pair<'a, V>> {
+        let Neighbourhood {
+            sources,
+            lengths,
+            neighbours,
+            scale,
+            ..
+        } = self.around;
+        let count = neighbours.len();
+        if self.done == count {
+            return None;
+        }
+        let (place, gap) = (neighbours[self.done] as usize, self.next);
+        self.done += 1;
+        let following = neighbours[self.done.min(count - 1)] as usize;
+        self.next = Separation::begin(&self.position, &sources[following].position);
+        Some(Pair {
+            place,
+            source: &sources[place],
+            gap,
+            kernel: scale.kernel(gap.distance, self.h, length::<S>(lengths, place)),
+        })
+    }
+}
+
+/// The records of eight receivers. (Written out, since what array methods call may be compiled
+/// apart from the vector code.)
+#[inline(always)]
+pub(super) fn records<'a, R>(sources: &'a [R], places: &[u32; LANES]) -> [&'a R; LANES] {
+    let at = |k: usize| &sources[places[k] as usize];
+    [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)]
+}
+
+/// One number of each of eight records.
+#[inline(always)]
+pub(super) fn gather<V: Lanes, R>(records: &[&R; LANES], number: impl Fn(&R) -> f64) -> V {
+    let at = |k: usize| number(records[k]);
+    V::read(&[at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)])
+}
+
+/// Three numbers of each of eight records.
+#[inline(always)]
+pub(super) fn gather3<V: Lanes, R>(
+    records: &[&R; LANES],
+    number: impl Fn(&R, usize) -> f64,
+) -> [V; 3] {
+    [
+        gather(records, |record| number(record, 0)),
+        gather(records, |record| number(record, 1)),
+        gather(records, |record| number(record, 2)),
+    ]
+}
+
+/// Smoothing length of a neighbour (m), whatever if the scale is constant.
+#[inline(always)]
+fn length<S: PairScale>(lengths: &[f64], place: usize) -> f64 {
+    if S::VARIABLE { lengths[place] } else { 0.0 }
+}
+
+/// Where eight receivers stand seen from one neighbour, with the distances.
+#[derive(Clone, Copy)]
+pub(super) struct Separation<V> {
+    /// `x_i − x_j` (m).
+    pub(super) r: [V; 3],
+    /// Its square (m²), not below [`SMALLEST_SQUARE`].
+    pub(super) square: V,
+    /// `r` (m).
+    pub(super) distance: V,
+    /// `1/r` (1/m).
+    pub(super) inverse: V,
+}
+
+impl<V: Lanes> Separation<V> {
+    #[inline(always)]
+    fn begin(position: &[V; 3], source: &[f64; 3]) -> Self {
+        let along = |a: usize| position[a].sub(V::splat(source[a]));
+        let r = [along(0), along(1), along(2)];
+        let square = r[2].mul_add(r[2], r[1].mul_add(r[1], r[0].mul(r[0])));
+        let square = square.max(V::splat(SMALLEST_SQUARE));
+        let distance = square.sqrt();
+        Self {
+            r,
+            square,
+            distance,
+            inverse: V::splat(1.0).div(distance),
+        }
+    }
+}
