@@ -25,7 +25,7 @@ use whipple::sph::dispatch::available;
 use whipple::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use whipple::sph::lanes::LANES;
 use whipple::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
-use whipple::sph::neighbourhood::Neighbourhood;
+use whipple::sph::neighbourhood::Sources;
 use whipple::sph::normalised::{
     Corrected, Correction, LARGEST_CORRECTION, NormalisedGradient, NormalisedRecord, stress_power,
 };
@@ -130,13 +130,12 @@ impl World {
                 .iter()
                 .map(|set| {
                     set.run(NormalisedGradient {
-                        around: Neighbourhood {
-                            sources: &self.found.motion,
+                        around: Sources {
+                            records: &self.found.motion,
                             lengths: self.found.sequence.smoothing_lengths(),
-                            receivers: cluster.receivers,
-                            neighbours: list,
                             scale,
-                        },
+                        }
+                        .around(cluster.receivers, list),
                         dimension: self.cloud.dimension,
                     })
                 })
@@ -191,13 +190,12 @@ impl World {
         for (cluster, list, _) in chunks.iter().flat_map(Chunk::iter) {
             let sums = |set: whipple::sph::dispatch::Instructions| {
                 set.run(Momentum::<S, NORMALISED> {
-                    around: Neighbourhood {
-                        sources: &self.found.motion,
+                    around: Sources {
+                        records: &self.found.motion,
                         lengths: self.found.sequence.smoothing_lengths(),
-                        receivers: cluster.receivers,
-                        neighbours: list,
                         scale,
-                    },
+                    }
+                    .around(cluster.receivers, list),
                     stresses: &stresses,
                     viscosity: Viscosity {
                         alpha: 0.0,
@@ -461,13 +459,12 @@ fn flat_clouds_keep_the_plain_gradient() {
 fn receivers_without_neighbours_have_no_gradient() {
     let sources = [World::new(cloud(3, 1.0, 0, 58), 59).found.motion[0]];
     let none = available()[0].run(NormalisedGradient {
-        around: Neighbourhood {
-            sources: &sources,
+        around: Sources {
+            records: &sources,
             lengths: &[],
-            receivers: [0; LANES],
-            neighbours: &[],
             scale: ConstantScale::new(&Kernel::new(3), 1.0),
-        },
+        }
+        .around([0; LANES], &[]),
         dimension: 3,
     });
     assert_eq!(none.gradient, Corrected::NONE.gradient);

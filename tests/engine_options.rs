@@ -11,7 +11,7 @@ use whipple::sph::dispatch::{Instructions, available};
 use whipple::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use whipple::sph::lanes::LANES;
 use whipple::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
-use whipple::sph::neighbourhood::{MotionRecord, Neighbourhood};
+use whipple::sph::neighbourhood::{MotionRecord, Sources};
 use whipple::sph::options::{
     ARTIFICIAL_STRESS, BALSARA, CONDUCTION, OptionRecord, Options, RECORDED, XSPH, limiter,
     repulsion,
@@ -78,13 +78,12 @@ impl Records {
         scale: S,
     ) -> Forces {
         set.run(Momentum::<S, OPTIONS> {
-            around: Neighbourhood {
-                sources: &self.motion,
+            around: Sources {
+                records: &self.motion,
                 lengths: &self.lengths,
-                receivers,
-                neighbours,
                 scale,
-            },
+            }
+            .around(receivers, neighbours),
             stresses: &self.stress,
             viscosity: VISCOSITY,
             options: Options {

@@ -16,7 +16,7 @@ use whipple::sph::gradient::VelocityGradient;
 use whipple::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use whipple::sph::lanes::{F64x8, LANES};
 use whipple::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
-use whipple::sph::neighbourhood::{MotionRecord, Neighbourhood};
+use whipple::sph::neighbourhood::{MotionRecord, Sources};
 use whipple::sph::options::Options;
 
 const VISCOSITY: Viscosity = Viscosity {
@@ -155,13 +155,12 @@ fn gradient<S: PairScale>(
     scale: S,
 ) -> [F64x8; 9] {
     set.run(VelocityGradient {
-        around: Neighbourhood {
-            sources,
+        around: Sources {
+            records: sources,
             lengths,
-            receivers,
-            neighbours,
             scale,
-        },
+        }
+        .around(receivers, neighbours),
     })
 }
 
@@ -173,13 +172,12 @@ fn momentum<S: PairScale>(
     scale: S,
 ) -> Forces {
     set.run(Momentum::<S, 0> {
-        around: Neighbourhood {
-            sources: &records.motion,
+        around: Sources {
+            records: &records.motion,
             lengths: &records.lengths,
-            receivers,
-            neighbours,
             scale,
-        },
+        }
+        .around(receivers, neighbours),
         stresses: &records.stress,
         viscosity: VISCOSITY,
         options: Options::NONE,

@@ -18,7 +18,7 @@ use whipple::sph::gradient::VelocityGradient;
 use whipple::sph::kernel::{ConstantScale, Kernel};
 use whipple::sph::lanes::{LANES, Lanes};
 use whipple::sph::momentum::{Momentum, StressRecord, Viscosity};
-use whipple::sph::neighbourhood::Neighbourhood;
+use whipple::sph::neighbourhood::Sources;
 use whipple::sph::options::Options;
 
 /// A group whose throughput counts so many elements.
@@ -43,15 +43,16 @@ fn velocity_gradient(criterion: &mut Criterion) {
         group.bench_function(set.name(), |bencher| {
             bencher.iter(|| {
                 scene.sweep(|receivers, neighbours| {
-                    black_box(set.run(VelocityGradient {
-                        around: Neighbourhood {
-                            sources: &scene.motion,
-                            lengths: scene.sequence.smoothing_lengths(),
-                            receivers,
-                            neighbours,
-                            scale,
-                        },
-                    }));
+                    black_box(
+                        set.run(VelocityGradient {
+                            around: Sources {
+                                records: &scene.motion,
+                                lengths: scene.sequence.smoothing_lengths(),
+                                scale,
+                            }
+                            .around(receivers, neighbours),
+                        }),
+                    );
                 });
             });
         });
@@ -72,18 +73,19 @@ fn momentum(criterion: &mut Criterion) {
         group.bench_function(set.name(), |bencher| {
             bencher.iter(|| {
                 scene.sweep(|receivers, neighbours| {
-                    black_box(set.run(Momentum::<_, 0> {
-                        around: Neighbourhood {
-                            sources: &scene.motion,
-                            lengths: scene.sequence.smoothing_lengths(),
-                            receivers,
-                            neighbours,
-                            scale,
-                        },
-                        stresses: &stresses,
-                        viscosity,
-                        options: Options::NONE,
-                    }));
+                    black_box(
+                        set.run(Momentum::<_, 0> {
+                            around: Sources {
+                                records: &scene.motion,
+                                lengths: scene.sequence.smoothing_lengths(),
+                                scale,
+                            }
+                            .around(receivers, neighbours),
+                            stresses: &stresses,
+                            viscosity,
+                            options: Options::NONE,
+                        }),
+                    );
                 });
             });
         });

@@ -75,12 +75,6 @@ impl Kernel {
     pub fn slope(&self, r: f64, h: f64) -> f64 {
         self.of_length(h).slope(r)
     }
-
-    /// `W''(r, h)` (1/m^(d+2)).
-    #[must_use]
-    pub fn curvature(&self, r: f64, h: f64) -> f64 {
-        self.of_length(h).curvature(r)
-    }
 }
 
 /// The kernel of one smoothing length.
@@ -338,7 +332,7 @@ mod tests {
                 let curvature =
                     (kernel.slope(r + step, h) - kernel.slope(r - step, h)) / (2.0 * step);
                 assert!((slope - kernel.slope(r, h)).abs() < 1e-8);
-                assert!((curvature - kernel.curvature(r, h)).abs() < 1e-8);
+                assert!((curvature - kernel.of_length(h).curvature(r)).abs() < 1e-8);
             }
         }
     }

@@ -193,7 +193,7 @@ impl<S: PairScale> Vectorised for LinearFit<'_, S> {
         let (mut drift, mut product) = ([zero; 3], [zero; 9]);
         for pair in around.pairs(&position) {
             let here = pair.source;
-            let w = weight(&around.scale, &pair.kernel);
+            let w = weight(&around.sources.scale, &pair.kernel);
             let r = pair.gap.r;
             let wy = [
                 zero.sub(r[0].mul(w)),
@@ -238,7 +238,7 @@ impl<S: PairScale> Vectorised for LinearFit<'_, S> {
         let h = if S::VARIABLE {
             around.h::<V>().store()
         } else {
-            around.scale.kernel(zero, zero, 0.0).h.store()
+            around.sources.scale.kernel(zero, zero, 0.0).h.store()
         };
         sums.fit(&velocity.map(V::store), &h, self.dimension)
     }

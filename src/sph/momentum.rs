@@ -156,9 +156,9 @@ impl<S: PairScale, const OPTIONS: u8> Vectorised for Momentum<'_, S, OPTIONS> {
                 [zero.sub(pi), zero.sub(pi), zero.sub(pi), zero, zero, zero]
             };
             if OPTIONS & SHAPED != 0 {
-                let shape = around.scale.shape(kernel);
+                let shape = around.sources.scale.shape(kernel);
                 options.repel(&mut stress, option, shape);
-                let w = around.scale.value(kernel, shape);
+                let w = around.sources.scale.value(kernel, shape);
                 let other = self.options.normalised::<OPTIONS>(place);
                 corrected.pull(other, now, kernel.slope, w, source.volume);
                 let w = w.mul(V::splat(source.mass));

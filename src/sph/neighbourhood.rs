@@ -21,26 +21,44 @@ pub struct MotionRecord {
 /// divides by something: it then adds an exact zero since its `r_ij` is zero.
 pub const SMALLEST_SQUARE: f64 = 1e-60;
 
+/// What a sweep sees of all particles and images.
+#[derive(Debug, Clone, Copy)]
+pub struct Sources<'a, S> {
+    /// Their motion.
+    pub records: &'a [MotionRecord],
+    /// Their smoothing lengths (m); empty where the scale is constant.
+    pub lengths: &'a [f64],
+    /// Smoothing length of pairs.
+    pub scale: S,
+}
+
+impl<'a, S: PairScale> Sources<'a, S> {
+    /// Eight receivers, of which unused lanes repeat a valid one, with the neighbours of all of them
+    /// together, in canonical order.
+    #[inline(always)]
+    #[must_use]
+    pub fn around(self, receivers: [u32; LANES], neighbours: &'a [u32]) -> Neighbourhood<'a, S> {
+        Neighbourhood {
+            sources: self,
+            receivers,
+            neighbours,
+        }
+    }
+}
+
 /// The receivers of one cluster with their neighbours; sums go in the order of `neighbours`.
 #[derive(Debug, Clone, Copy)]
 pub struct Neighbourhood<'a, S> {
-    /// All particles and images.
-    pub sources: &'a [MotionRecord],
-    /// Smoothing lengths (m) of these; empty where the scale is constant.
-    pub lengths: &'a [f64],
-    /// Receivers; unused lanes repeat a valid one.
-    pub receivers: [u32; LANES],
-    /// Neighbours, in canonical order, those of all receivers together.
-    pub neighbours: &'a [u32],
-    /// Smoothing length of pairs.
-    pub scale: S,
+    pub(super) sources: Sources<'a, S>,
+    pub(super) receivers: [u32; LANES],
+    pub(super) neighbours: &'a [u32],
 }
 
 impl<'a, S: PairScale> Neighbourhood<'a, S> {
     /// Position (m) and velocity (m/s) of the receivers.
     #[inline(always)]
     pub(super) fn motion<V: Lanes>(&self) -> ([V; 3], [V; 3]) {
-        let receivers = records(self.sources, &self.receivers);
+        let receivers = records(self.sources.records, &self.receivers);
         (
             gather3(&receivers, |record, a| record.position[a]),
             gather3(&receivers, |record, a| record.velocity[a]),
@@ -50,7 +68,7 @@ impl<'a, S: PairScale> Neighbourhood<'a, S> {
     /// Smoothing lengths of the receivers (m), whatever if the scale is constant.
     #[inline(always)]
     pub(super) fn h<V: Lanes>(&self) -> V {
-        let at = |k: usize| length::<S>(self.lengths, self.receivers[k] as usize);
+        let at = |k: usize| length::<S>(self.sources.lengths, self.receivers[k] as usize);
         V::read(&[at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)])
     }
 
@@ -59,7 +77,7 @@ impl<'a, S: PairScale> Neighbourhood<'a, S> {
     #[inline(always)]
     pub(super) fn pairs<V: Lanes>(&self, position: &[V; 3]) -> Pairs<'a, V, S> {
         let first = self.neighbours.first().copied().unwrap_or_default();
-        let first = &self.sources[first as usize];
+        let first = &self.sources.records[first as usize];
         Pairs {
             around: *self,
             position: *position,
@@ -72,7 +90,7 @@ impl<'a, S: PairScale> Neighbourhood<'a, S> {
 
 /// Eight receivers and one neighbour.
 pub(super) struct Pair<'a, V> {
-    /// Place of the neighbour among the sources.
+    /// Place of the neighbour among all sources.
     pub(super) place: usize,
     /// The neighbour.
     pub(super) source: &'a MotionRecord,
@@ -97,13 +115,12 @@ impl<'a, V: Lanes, S: PairScale> Iterator for Pairs<'a, V, S> {
 
     #[inline(always)]
     fn next(&mut self) -> Option<Pair<'a, V>> {
-        let Neighbourhood {
-            sources,
+        let Sources {
+            records,
             lengths,
-            neighbours,
             scale,
-            ..
-        } = self.around;
+        } = self.around.sources;
+        let neighbours = self.around.neighbours;
         let count = neighbours.len();
         if self.done == count {
             return None;
@@ -111,10 +128,10 @@ impl<'a, V: Lanes, S: PairScale> Iterator for Pairs<'a, V, S> {
         let (place, gap) = (neighbours[self.done] as usize, self.next);
         self.done += 1;
         let following = neighbours[self.done.min(count - 1)] as usize;
-        self.next = Separation::begin(&self.position, &sources[following].position);
+        self.next = Separation::begin(&self.position, &records[following].position);
         Some(Pair {
             place,
-            source: &sources[place],
+            source: &records[place],
             gap,
             kernel: scale.kernel(gap.distance, self.h, length::<S>(lengths, place)),
         })

@@ -143,7 +143,10 @@ impl<S: PairScale> Vectorised for NormalisedGradient<'_, S> {
             let (here, kernel) = (pair.source, &pair.kernel);
             let volume = V::splat(here.volume);
             let factor = pair.gap.inverse.mul(volume).mul(kernel.slope);
-            let share = around.scale.value(kernel, around.scale.shape(kernel));
+            let share = around
+                .sources
+                .scale
+                .value(kernel, around.sources.scale.shape(kernel));
             let share = share.mul(volume);
             let r = pair.gap.r;
             let steep = [r[0].mul(factor), r[1].mul(factor), r[2].mul(factor)];
@@ -288,7 +291,7 @@ impl<V: Lanes, const OPTIONS: u8> NormalisedSums<V, OPTIONS> {
             };
         }
         let all = records(options.normalised, &around.receivers);
-        let motion = records(around.sources, &around.receivers);
+        let motion = records(around.sources.records, &around.receivers);
         let row = |a: usize| gather3::<V, _>(&all, |record, b| record.stress[3 * a + b]);
         let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = [row(0), row(1), row(2)];
         Self {

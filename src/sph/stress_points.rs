@@ -79,7 +79,7 @@ impl<S: PairScale> Vectorised for Pull<'_, S> {
         let (mut force, mut mass, mut heat, mut all) = ([zero; 3], zero, zero, zero);
         for pair in around.pairs(&position) {
             let point = &self.points[pair.place];
-            let w = weight(&around.scale, &pair.kernel);
+            let w = weight(&around.sources.scale, &pair.kernel);
             let r = pair.gap.r;
             for a in 0..3 {
                 let q = |c: usize| V::splat(point.moment[3 * a + c]);

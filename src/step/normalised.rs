@@ -12,7 +12,7 @@ use crate::particles::{ParticleStore, Scatter};
 use crate::sph::dispatch::Vectorised;
 use crate::sph::kernel::PairScale;
 use crate::sph::lanes::Lanes;
-use crate::sph::neighbourhood::{MotionRecord, Neighbourhood};
+use crate::sph::neighbourhood::Sources;
 use crate::sph::normalised::{Correction, NormalisedGradient, NormalisedRecord, stress_power};
 
 /// The fields that hold corrections, out of the store while the first sweep writes it.
@@ -70,9 +70,7 @@ impl CorrectionTarget<'_> {
 /// alike are zero too, but their corrections are of use.
 pub(super) struct NormalisedChunk<'a, S> {
     pub(super) chunk: &'a Chunk,
-    pub(super) sources: &'a [MotionRecord],
-    pub(super) lengths: &'a [f64],
-    pub(super) scale: S,
+    pub(super) motion: Sources<'a, S>,
     pub(super) dimension: usize,
     pub(super) images: &'a [Image],
     pub(super) update: &'a MaterialUpdate<'a>,
@@ -86,13 +84,7 @@ impl<S: PairScale> Vectorised for NormalisedChunk<'_, S> {
     fn run<V: Lanes>(self) {
         for (cluster, neighbours, _) in self.chunk.iter() {
             let sums = NormalisedGradient {
-                around: Neighbourhood {
-                    sources: self.sources,
-                    lengths: self.lengths,
-                    receivers: cluster.receivers,
-                    neighbours,
-                    scale: self.scale,
-                },
+                around: self.motion.around(cluster.receivers, neighbours),
                 dimension: self.dimension,
             };
             let corrected = sums.run::<V>();

@@ -10,7 +10,7 @@ use crate::neighbours::{
     ClusterLists, ColumnGrid, ForeignLists, Image, ImageFacts, Lengths, Sequence,
 };
 use crate::particles::{Scatter, resize};
-use crate::sph::neighbourhood::MotionRecord;
+use crate::sph::neighbourhood::{MotionRecord, Sources};
 
 /// The sequence of images, their motion records and the lists, kept from step to step.
 pub struct Search {
@@ -46,6 +46,15 @@ impl Search {
                 (contact.group_count() > contact.body_groups).then_some(contact.body_groups),
             ),
             foreign: ForeignLists::default(),
+        }
+    }
+
+    /// What the sums over pairs see of all particles and images.
+    pub(super) fn sources<S>(&self, scale: S) -> Sources<'_, S> {
+        Sources {
+            records: &self.motion,
+            lengths: self.sequence.smoothing_lengths(),
+            scale,
         }
     }
 

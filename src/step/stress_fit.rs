@@ -14,7 +14,7 @@ use crate::sph::kernel::PairScale;
 use crate::sph::lanes::{F64x8, LANES, Lanes};
 use crate::sph::linear_fit::{Fit, Fitted, LinearFit};
 use crate::sph::mid_step::{MidStep, mid_step};
-use crate::sph::neighbourhood::{MotionRecord, Neighbourhood};
+use crate::sph::neighbourhood::Sources;
 use crate::sph::normalised::stress_power;
 
 /// Fields of stress points, out of the store while the material is updated.
@@ -152,9 +152,7 @@ impl FitTarget<'_> {
 /// The first sweep over one task's clusters.
 struct FitChunk<'a, S> {
     chunk: &'a Chunk,
-    sources: &'a [MotionRecord],
-    lengths: &'a [f64],
-    scale: S,
+    motion: Sources<'a, S>,
     dimension: usize,
     body_groups: usize,
     images: &'a [Image],
@@ -173,13 +171,7 @@ impl<S: PairScale> Vectorised for FitChunk<'_, S> {
                 continue;
             }
             let sums = LinearFit {
-                around: Neighbourhood {
-                    sources: self.sources,
-                    lengths: self.lengths,
-                    receivers: cluster.receivers,
-                    neighbours,
-                    scale: self.scale,
-                },
+                around: self.motion.around(cluster.receivers, neighbours),
                 dimension: self.dimension,
             };
             let fitted = sums.run::<V>();
@@ -217,15 +209,15 @@ impl Simulation {
             dt,
         );
         let target = &fields.target(dt, self.state.last_dt, self.loads.gravity);
-        let sources = &self.search.motion[..];
-        let lengths = self.search.sequence.smoothing_lengths();
-        let images = self.search.sequence.images();
+        let search = &self.search;
+        let images = search.sequence.images();
         let (dimension, body_groups) = (self.case.dimension, self.contact.body_groups);
         let chunks = self.search.clusters.chunks().par_iter();
         let chunks = chunks.with_max_len(CHUNKS_AT_ONCE);
         with_scale!(self.sweeps.scale, scale => chunks.for_each(|chunk| {
+            let motion = search.sources(scale);
             set.run(FitChunk {
-                chunk, sources, lengths, scale, dimension, body_groups, images, update, target,
+                chunk, motion, dimension, body_groups, images, update, target,
             });
         }));
         self.sums.uncorrected = target.incomplete.load(Ordering::Relaxed);

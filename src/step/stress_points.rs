@@ -12,7 +12,7 @@ use crate::particles::{Scatter, resize};
 use crate::sph::dispatch::{Vectorised, instructions};
 use crate::sph::kernel::PairScale;
 use crate::sph::lanes::Lanes;
-use crate::sph::neighbourhood::{MotionRecord, Neighbourhood};
+use crate::sph::neighbourhood::Sources;
 use crate::sph::stress_points::{Pull, Pulled, StressPointRecord};
 
 /// What stress points show to velocity particles, kept from step to step.
@@ -30,8 +30,6 @@ impl StressPoints {
 /// What the second sweep reads.
 #[derive(Clone, Copy)]
 struct PullSources<'a> {
-    motion: &'a [MotionRecord],
-    lengths: &'a [f64],
     points: &'a [StressPointRecord],
     images: &'a [Image],
 }
@@ -74,8 +72,8 @@ struct PullChunk<'a, S> {
     /// Only clusters with halo particles among their neighbours, or only those without.
     halo: bool,
     body_groups: usize,
+    motion: Sources<'a, S>,
     sources: PullSources<'a>,
-    scale: S,
     target: &'a PullTarget<'a>,
     from_mirrors: &'a mut FromMirrors,
 }
@@ -90,7 +88,7 @@ impl<S: PairScale> Vectorised for PullChunk<'_, S> {
             if among.halo != self.halo || cluster.group >= self.body_groups {
                 continue;
             }
-            let pulled = Self::sum::<V>(&self.sources, self.scale, cluster, neighbours);
+            let pulled = Self::sum::<V>(self.motion, &self.sources, cluster, neighbours);
             self.target.store(cluster, &pulled);
             if !among.mirrors {
                 continue;
@@ -105,7 +103,7 @@ impl<S: PairScale> Vectorised for PullChunk<'_, S> {
                 if places.is_empty() {
                     continue;
                 }
-                let part = Self::sum::<V>(&self.sources, self.scale, cluster, places).force[axis];
+                let part = Self::sum::<V>(self.motion, &self.sources, cluster, places).force[axis];
                 for k in 0..cluster.lanes {
                     let mut force = [0.0; 3];
                     force[axis] = 2.0 * part.0[k];
@@ -119,19 +117,13 @@ impl<S: PairScale> Vectorised for PullChunk<'_, S> {
 impl<S: PairScale> PullChunk<'_, S> {
     #[inline(always)]
     fn sum<V: Lanes>(
+        motion: Sources<S>,
         sources: &PullSources,
-        scale: S,
         cluster: &Cluster,
         neighbours: &[u32],
     ) -> Pulled {
         let sums = Pull {
-            around: Neighbourhood {
-                sources: sources.motion,
-                lengths: sources.lengths,
-                receivers: cluster.receivers,
-                neighbours,
-                scale,
-            },
+            around: motion.around(cluster.receivers, neighbours),
             points: sources.points,
         };
         sums.run::<V>()
@@ -144,8 +136,9 @@ impl Simulation {
     pub(super) fn pull_by_stress_points(&mut self, halo: bool) {
         self.fill_stress_points(halo);
         let set = instructions();
-        let chunks = self.search.clusters.chunks();
-        let images = self.search.sequence.images();
+        let search = &self.search;
+        let chunks = search.clusters.chunks();
+        let images = search.sequence.images();
         let Sweeps {
             scale,
             from_mirrors,
@@ -163,8 +156,6 @@ impl Simulation {
             approach: Scatter::new(&mut store.approach_speed),
         };
         let sources = PullSources {
-            motion: &self.search.motion,
-            lengths: self.search.sequence.smoothing_lengths(),
             points: &self.stress_points.records,
             images,
         };
@@ -177,7 +168,8 @@ impl Simulation {
             if !halo {
                 from_mirrors.forces.clear();
             }
-            set.run(PullChunk { chunk, halo, body_groups, sources, scale, target, from_mirrors });
+            let motion = search.sources(scale);
+            set.run(PullChunk { chunk, halo, body_groups, motion, sources, target, from_mirrors });
         }));
     }
 

@@ -15,7 +15,7 @@ use crate::sph::gradient::VelocityGradient;
 use crate::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use crate::sph::lanes::{F64x8, LANES, Lanes};
 use crate::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
-use crate::sph::neighbourhood::{MotionRecord, Neighbourhood};
+use crate::sph::neighbourhood::Sources;
 use crate::sph::options::{ARTIFICIAL_STRESS, BALSARA, CONDUCTION, NORMALISED, Options, XSPH};
 
 /// Records of the second sweep and what mirrors exert, kept from step to step.
@@ -154,12 +154,11 @@ impl Simulation {
             &self.contact.rigid,
             dt,
         );
-        let sources = &self.search.motion[..];
-        let lengths = self.search.sequence.smoothing_lengths();
+        let search = &self.search;
         let chunks = chunks.par_iter().with_max_len(CHUNKS_AT_ONCE);
         let Some(mut fields) = fields else {
             with_scale!(self.sweeps.scale, scale => chunks.for_each(|chunk| {
-                set.run(GradientChunk { chunk, sources, lengths, scale, update });
+                set.run(GradientChunk { chunk, motion: search.sources(scale), update });
             }));
             return;
         };
@@ -167,8 +166,9 @@ impl Simulation {
         let images = self.search.sequence.images();
         let dimension = self.case.dimension;
         with_scale!(self.sweeps.scale, scale => chunks.for_each(|chunk| {
+            let motion = search.sources(scale);
             set.run(NormalisedChunk {
-                chunk, sources, lengths, scale, dimension, images, update, corrections,
+                chunk, motion, dimension, images, update, corrections,
             });
         }));
         fields.give_back(&mut self.store);
@@ -188,8 +188,9 @@ impl Simulation {
         self.fill_records(halo);
         self.fill_options(halo);
         let set = instructions();
-        let chunks = self.search.clusters.chunks();
-        let images = self.search.sequence.images();
+        let search = &self.search;
+        let chunks = search.clusters.chunks();
+        let images = search.sequence.images();
         let Sweeps {
             scale,
             viscosity,
@@ -200,10 +201,8 @@ impl Simulation {
         from_mirrors.resize_with(chunks.len(), FromMirrors::default);
         let target = &ForceTarget::new(&mut self.store, images);
         let sources = ForceSources {
-            motion: &self.search.motion,
-            lengths: self.search.sequence.smoothing_lengths(),
             stresses,
-            mirrored: self.search.sequence.mirrored(),
+            mirrored: search.sequence.mirrored(),
             viscosity: *viscosity,
             options: self.options.of_sums(),
         };
@@ -217,7 +216,7 @@ impl Simulation {
                 from_mirrors.forces.clear();
             }
             with_options!(options, OPTIONS => set.run(MomentumChunk::<_, OPTIONS> {
-                chunk, halo, sources, scale, target, from_mirrors,
+                chunk, halo, motion: search.sources(scale), sources, target, from_mirrors,
             }));
         }));
     }
@@ -257,9 +256,7 @@ impl Simulation {
 /// The first sweep over one task's clusters.
 struct GradientChunk<'a, S> {
     chunk: &'a Chunk,
-    sources: &'a [MotionRecord],
-    lengths: &'a [f64],
-    scale: S,
+    motion: Sources<'a, S>,
     update: &'a MaterialUpdate<'a>,
 }
 
@@ -276,13 +273,7 @@ impl<S: PairScale> Vectorised for GradientChunk<'_, S> {
                 continue;
             }
             let gradient = VelocityGradient {
-                around: Neighbourhood {
-                    sources: self.sources,
-                    lengths: self.lengths,
-                    receivers: cluster.receivers,
-                    neighbours,
-                    scale: self.scale,
-                },
+                around: self.motion.around(cluster.receivers, neighbours),
             };
             self.update
                 .apply(cluster, &gradient.run::<V>(), neighbours.len());
@@ -293,8 +284,6 @@ impl<S: PairScale> Vectorised for GradientChunk<'_, S> {
 /// What the second sweep reads.
 #[derive(Clone, Copy)]
 struct ForceSources<'a> {
-    motion: &'a [MotionRecord],
-    lengths: &'a [f64],
     stresses: &'a [StressRecord],
     mirrored: &'a [u8],
     viscosity: Viscosity,
@@ -358,8 +347,8 @@ struct MomentumChunk<'a, S, const OPTIONS: u8> {
     chunk: &'a Chunk,
     /// Only clusters with halo particles among their neighbours, or only those without.
     halo: bool,
+    motion: Sources<'a, S>,
     sources: ForceSources<'a>,
-    scale: S,
     target: &'a ForceTarget<'a>,
     from_mirrors: &'a mut FromMirrors,
 }
@@ -380,7 +369,7 @@ impl<S: PairScale, const OPTIONS: u8> Vectorised for MomentumChunk<'_, S, OPTION
             }
             target.store::<OPTIONS>(
                 cluster,
-                &Self::sum::<V>(&self.sources, self.scale, cluster, neighbours),
+                &Self::sum::<V>(self.motion, &self.sources, cluster, neighbours),
             );
             if !among.mirrors {
                 continue;
@@ -389,7 +378,7 @@ impl<S: PairScale, const OPTIONS: u8> Vectorised for MomentumChunk<'_, S, OPTION
             let is_image = |&j: &u32| self.sources.mirrored[j as usize] & 1 == 1;
             places.clear();
             places.extend(neighbours.iter().copied().filter(is_image));
-            let part = Self::sum::<V>(&self.sources, self.scale, cluster, places).acceleration;
+            let part = Self::sum::<V>(self.motion, &self.sources, cluster, places).acceleration;
             for k in 0..cluster.lanes {
                 let mass = target.mass[target.images[cluster.receivers[k] as usize].base()];
                 forces.push([
@@ -405,19 +394,13 @@ impl<S: PairScale, const OPTIONS: u8> Vectorised for MomentumChunk<'_, S, OPTION
 impl<S: PairScale, const OPTIONS: u8> MomentumChunk<'_, S, OPTIONS> {
     #[inline(always)]
     fn sum<V: Lanes>(
+        motion: Sources<S>,
         sources: &ForceSources,
-        scale: S,
         cluster: &Cluster,
         neighbours: &[u32],
     ) -> Forces {
         let sums = Momentum::<S, OPTIONS> {
-            around: Neighbourhood {
-                sources: sources.motion,
-                lengths: sources.lengths,
-                receivers: cluster.receivers,
-                neighbours,
-                scale,
-            },
+            around: motion.around(cluster.receivers, neighbours),
             stresses: sources.stresses,
             viscosity: sources.viscosity,
             options: sources.options,
