@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::gather::Gatherer;
 use super::parts::Parted;
-use super::sequence::{HALO, MIRROR, MOVING, Sequence};
+use super::sequence::{Eight, HALO, MIRROR, MOVING, Sequence};
 use crate::sph::dispatch::{Vectorised, instructions};
 use crate::sph::lanes::{LANES, Lanes};
 
@@ -165,50 +165,31 @@ struct Lister<'a> {
 impl Lister<'_> {
     #[inline(always)]
     fn list<V: Lanes, const UNIFORM: bool>(&mut self, cluster: &Cluster) -> Among {
-        let sequence = self.sequence;
+        let lengths = self.sequence.smoothing_lengths();
         let own = if UNIFORM {
             self.longest
         } else {
-            cluster.receivers.iter().fold(0.0, |h, &i| {
-                f64::max(h, sequence.smoothing_lengths()[i as usize])
-            })
+            let longer = |h, &i: &u32| f64::max(h, lengths[i as usize]);
+            cluster.receivers.iter().fold(0.0, longer)
         };
         let far = (own + self.longest).max(self.least) * INFLATION;
-        let (low, high) = (cluster.lower.map(V::splat), cluster.upper.map(V::splat));
-        let sources = self.sources;
-        let along = sequence.along(sources);
-        let (from, to) = (cluster.lower[along] - far, cluster.upper[along] + far);
         let mut special = 0;
-        sequence.columns_near(
-            sources,
-            &cluster.lower,
-            &cluster.upper,
+        near_box(
+            self.sequence,
+            self.sources,
+            (&cluster.lower, &cluster.upper),
             far,
-            |[a, b], column| {
-                let hint = &mut self.hints[(a & 7) << 3 | b & 7];
-                *hint = sequence.seek::<V>(sources, &column, from, *hint);
-                let mut first = *hint;
-                for eight in sequence.eights(first..column.end) {
-                    if eight.coordinates[along][0] > to {
-                        break;
-                    }
-                    let square = box_distance2::<V>(&low, &high, &eight.coordinates);
-                    let range = if UNIFORM {
-                        V::splat(far)
-                    } else {
-                        let other = V::read(eight.lengths);
-                        let both = other.add(V::splat(own)).max(V::splat(self.least));
-                        both.mul(V::splat(INFLATION))
-                    };
-                    let mut bits = square.less_than(range.mul(range));
-                    let left = column.end - first;
-                    if left < LANES {
-                        bits &= (1 << left) - 1;
-                    }
-                    special |= u64::from_le_bytes(*eight.special) & SPREAD[bits as usize];
-                    self.used = push_places(self.list, self.used, first, bits);
-                    first += LANES;
+            &mut self.hints,
+            |eight| {
+                if UNIFORM {
+                    return V::splat(far);
                 }
+                let both = V::read(eight.lengths).add(V::splat(own));
+                both.max(V::splat(self.least)).mul(V::splat(INFLATION))
+            },
+            |first, bits, eight| {
+                special |= u64::from_le_bytes(*eight.special) & SPREAD[bits as usize];
+                self.used = push_places(self.list, self.used, first, bits);
             },
         );
         // The flags of eight lanes into one byte.
@@ -377,17 +358,44 @@ impl ClusterLists {
     }
 }
 
-/// Squares of the distances between a box and eight points (m²).
+/// Calls `found` with each eight images of a group that stand by a box, the place of the first, and a bit
+/// for each of them that is nearer than `range` (m), which is nowhere more than `far`. `hints` are where the
+/// last box nearby began to read columns, by the last bits of their indices.
 #[inline(always)]
-pub(super) fn box_distance2<V: Lanes>(
-    lower: &[V; 3],
-    upper: &[V; 3],
-    points: &[&[f64; LANES]; 3],
-) -> V {
-    let gap = |a: usize| {
-        let x = V::read(points[a]);
-        lower[a].sub(x).max(x.sub(upper[a])).max(V::splat(0.0))
-    };
-    let [x, y, z] = [gap(0), gap(1), gap(2)];
-    z.mul_add(z, y.mul_add(y, x.mul(x)))
+pub(super) fn near_box<V: Lanes>(
+    sequence: &Sequence,
+    group: usize,
+    (lower, upper): (&[f64; 3], &[f64; 3]),
+    far: f64,
+    hints: &mut [usize; 64],
+    range: impl Fn(&Eight) -> V,
+    mut found: impl FnMut(usize, u8, &Eight),
+) {
+    let (low, high) = (lower.map(V::splat), upper.map(V::splat));
+    let along = sequence.along(group);
+    let (from, to) = (lower[along] - far, upper[along] + far);
+    sequence.columns_near(group, lower, upper, far, |[a, b], column| {
+        let hint = &mut hints[(a & 7) << 3 | b & 7];
+        *hint = sequence.seek::<V>(group, &column, from, *hint);
+        let mut first = *hint;
+        for eight in sequence.eights(first..column.end) {
+            if eight.coordinates[along][0] > to {
+                break;
+            }
+            let gap = |a: usize| {
+                let x = V::read(eight.coordinates[a]);
+                low[a].sub(x).max(x.sub(high[a])).max(V::splat(0.0))
+            };
+            let [x, y, z] = [gap(0), gap(1), gap(2)];
+            let square = z.mul_add(z, y.mul_add(y, x.mul(x)));
+            let range = range(&eight);
+            let mut bits = square.less_than(range.mul(range));
+            let left = column.end - first;
+            if left < LANES {
+                bits &= (1 << left) - 1;
+            }
+            found(first, bits, &eight);
+            first += LANES;
+        }
+    });
 }

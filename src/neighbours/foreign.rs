@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::clusters::{
-    CHUNKS_AT_ONCE, Chunk, Cluster, ClusterLists, INFLATION, box_distance2, push_places,
+    CHUNKS_AT_ONCE, Chunk, Cluster, ClusterLists, INFLATION, near_box, push_places,
 };
 use super::sequence::Sequence;
 use crate::sph::dispatch::{Vectorised, instructions};
@@ -239,38 +239,21 @@ impl Candidates {
         hints: &mut [usize; 64],
     ) {
         self.used = 0;
-        let (lower, upper) = (&cluster.lower, &cluster.upper);
-        let (low, high) = (lower.map(V::splat), upper.map(V::splat));
         let groups = sequence.groups();
         for other in 0..groups {
             let range = table.group_range[cluster.group * groups + other] * INFLATION;
             if range == 0.0 {
                 continue;
             }
-            let along = sequence.along(other);
-            let (from, to) = (lower[along] - range, upper[along] + range);
-            let position = |place: usize| sequence.coordinates(along, place)[0];
-            sequence.columns_near(other, lower, upper, range, |[a, b], column| {
-                if position(column.start) > to || position(column.end - 1) < from {
-                    return;
-                }
-                let hint = &mut hints[(a & 7) << 3 | b & 7];
-                *hint = sequence.seek::<V>(other, &column, from, *hint);
-                let mut first = *hint;
-                for eight in sequence.eights(first..column.end) {
-                    if eight.coordinates[along][0] > to {
-                        break;
-                    }
-                    let square = box_distance2::<V>(&low, &high, &eight.coordinates);
-                    let mut bits = square.less_than(V::splat(range * range));
-                    let left = column.end - first;
-                    if left < LANES {
-                        bits &= (1 << left) - 1;
-                    }
-                    self.used = push_places(&mut self.places, self.used, first, bits);
-                    first += LANES;
-                }
-            });
+            near_box(
+                sequence,
+                other,
+                (&cluster.lower, &cluster.upper),
+                range,
+                hints,
+                |_| V::splat(range),
+                |first, bits, _| self.used = push_places(&mut self.places, self.used, first, bits),
+            );
         }
     }
 
