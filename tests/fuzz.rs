@@ -1,16 +1,24 @@
-//! Random inputs and random checkpoints: whatever is wrong is told, nothing panics.
+//! Random inputs, checkpoints and snapshots: whatever is wrong is told, nothing panics, hangs or takes
+//! more memory than it should.
 //!
-//! What a message says, but for its names and numbers, tells how far a reader came; texts that
-//! reach a new message are changed further. `make test` makes a short run of this, `make fuzz` one
-//! of ten minutes each, which keeps the shortest of its new texts in `tests/fuzz/`. A text that panics
-//! is kept there too and tried first from then on.
+//! What a message says, but for its names and numbers, tells how far a reader came; what reaches a
+//! new message is changed further. `make test` makes a short run of this, `make fuzz` one of ten
+//! minutes each, which keeps the shortest of its new texts and files in `tests/fuzz/`, and
+//! `make fuzz-memory` lets valgrind watch the reading of files. What panics is kept there too and tried
+//! first from then on.
 
-#[path = "fuzz/checkpoints.rs"]
-mod checkpoints;
+#[path = "fuzz/changes.rs"]
+mod changes;
+#[path = "fuzz/files.rs"]
+mod files;
+#[path = "fuzz/guard.rs"]
+mod guard;
 #[path = "common/random.rs"]
 mod random;
 #[path = "fuzz/texts.rs"]
 mod texts;
+#[path = "fuzz/told.rs"]
+mod told;
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;

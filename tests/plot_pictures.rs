@@ -93,12 +93,12 @@ fn a_section_shows_one_layer() {
     let path = folder.path().join("state.vtkhdf");
     // Layers of different bodies, one spacing apart: any plane shows exactly one of them.
     let mut particles = Particles::default();
-    for layer in 0..2_u16 {
+    for layer in 0..2_u8 {
         for k in 0..10 {
             let at = |k: i32| (f64::from(k) + 0.5) * 1e-3;
             particles.points.push([at(k), at(i32::from(layer)), 0.0]);
             particles.points.push([at(k), at(i32::from(layer)), 1e-3]);
-            particles.body.extend([layer; 2]);
+            particles.body.extend([u32::from(layer); 2]);
         }
     }
     let case = Case {

@@ -68,7 +68,7 @@ fn bars(folder: &Path, name: &str, case: &str, times: &[f64]) -> PathBuf {
         particles
             .points
             .push([(f64::from(k) + 0.5) * 1e-4, 0.0, 0.0]);
-        particles.body.push(k / 40);
+        particles.body.push(u32::from(k / 40));
     }
     let about = Case {
         title: "Two bars".to_owned(),

@@ -9,9 +9,10 @@ use std::path::{Path, PathBuf};
 
 use super::EXIT_INPUT;
 use super::results::{Results, ResultsError};
-use crate::output::RunFolder;
+use super::say::{complain, one_line, say};
 use crate::output::checkpoint;
 use crate::output::h5::Content;
+use crate::output::{RunFolder, read_regular};
 
 /// Tell whether two results agree to the last bit
 ///
@@ -43,13 +44,13 @@ pub fn run(args: &CompareArgs) -> u8 {
     match compare(&args.a, &args.b) {
         Ok(report) => {
             for line in &report.lines {
-                println!("{line}");
+                say(&one_line(line));
             }
-            println!("{}", report.verdict());
+            say(&report.verdict());
             if report.agrees() { 0 } else { EXIT_DIFFERENT }
         }
         Err(error) => {
-            eprintln!("error: {error}");
+            complain(&format!("error: {error}"));
             EXIT_INPUT
         }
     }
@@ -187,7 +188,8 @@ fn name_of(path: &Path) -> String {
 }
 
 fn read(path: &Path) -> Result<String, ResultsError> {
-    std::fs::read_to_string(path).map_err(|error| ResultsError::Text {
+    let text = String::from_utf8(read_regular(path)?);
+    text.map_err(|error| ResultsError::Text {
         path: path.to_owned(),
         reason: error.to_string(),
     })

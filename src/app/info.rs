@@ -1,15 +1,15 @@
 //! `whipple info`: what is in a run, a snapshot or a checkpoint.
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
 use super::EXIT_INPUT;
 use super::results::{POINT_DATA, Results, ResultsError, component_names};
+use super::say::{complain, one_line, say};
 use crate::output::checkpoint::{self, FIELDS};
-use crate::output::h5::{Array, Content, Element};
-use crate::output::{Block, OutputError, RunFolder, series};
+use crate::output::h5::{Array, Content, Element, RowType};
+use crate::output::{Block, OutputError, RunFolder, read_small, series};
 
 /// Tell what is in a run folder, a snapshot or a checkpoint
 ///
@@ -34,11 +34,11 @@ const CHUNK: usize = 1 << 18;
 pub fn run(args: &InfoArgs) -> u8 {
     match describe(&args.path) {
         Ok(text) => {
-            print!("{text}");
+            say(text.trim_end());
             0
         }
         Err(error) => {
-            eprintln!("error: {error}");
+            complain(&format!("error: {error}"));
             EXIT_INPUT
         }
     }
@@ -62,8 +62,14 @@ pub fn describe(path: &Path) -> Result<String, ResultsError> {
 struct Text(String);
 
 impl Text {
+    fn line(&mut self, text: &str) {
+        self.0.push_str(&one_line(text));
+        self.0.push('\n');
+    }
+
     fn entry(&mut self, name: &str, value: impl std::fmt::Display) {
-        let _ = writeln!(self.0, "{:<36} {value}", name.replace('_', " "));
+        let name = name.replace('_', " ");
+        self.line(&format!("{name:<36} {value}"));
     }
 }
 
@@ -140,30 +146,35 @@ fn bodies(
 ) -> Result<(), ResultsError> {
     let path = format!("{group}/body");
     let array = file.array(&path)?;
-    let mut counts: Vec<u64> = vec![0; names.len()];
+    if array.row != RowType::single(Element::U32) {
+        let what = format!("{path} does not tell a body of each particle");
+        return Err(OutputError::damaged(file.path(), what).into());
+    }
+    let (mut counts, mut others) = (vec![0_u64; names.len()], 0_u64);
     for_chunks(file, &path, &array, |bytes| {
         for body in bytemuck::pod_collect_to_vec::<u8, u32>(bytes) {
-            let body = body as usize;
-            if counts.len() <= body {
-                counts.resize(body + 1, 0);
+            match counts.get_mut(body as usize) {
+                Some(count) => *count += 1,
+                None => others += 1,
             }
-            counts[body] += 1;
         }
     })?;
     text.entry("particles", array.rows);
-    for (body, count) in counts.into_iter().enumerate() {
-        let name = names.get(body).map_or("?", String::as_str);
+    for (body, (count, name)) in counts.into_iter().zip(names).enumerate() {
         text.entry(&format!("  body {body}"), format!("{count:<10} {name}"));
+    }
+    if others > 0 {
+        text.entry("  of other bodies", others);
     }
     Ok(())
 }
 
 fn heading(text: &mut Text) {
-    let line = format!(
-        "\n{:<28} {:<8} {:>13} {:>13}",
+    text.line("");
+    text.line(&format!(
+        "{:<28} {:<8} {:>13} {:>13}",
         "field", "unit", "min", "max"
-    );
-    let _ = writeln!(text.0, "{line}");
+    ));
 }
 
 /// A field's unit, and the range of each component.
@@ -173,7 +184,7 @@ fn field(file: &Content, path: &str, vtk: bool, text: &mut Text) -> Result<(), R
     let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; components];
     let mut odd = 0_u64;
     for_chunks(file, path, &array, |bytes| {
-        for (k, value) in numbers(array.row.element, bytes).into_iter().enumerate() {
+        for (k, value) in array.row.element.reals(bytes).into_iter().enumerate() {
             let [low, high] = &mut ranges[k % components];
             if value.is_finite() {
                 (*low, *high) = (low.min(value), high.max(value));
@@ -195,28 +206,12 @@ fn field(file: &Content, path: &str, vtk: bool, text: &mut Text) -> Result<(), R
             Element::F64 => format!("{low:>13.5e} {high:>13.5e}"),
             _ => format!("{low:>13} {high:>13}"),
         };
-        let _ = writeln!(text.0, "{name:<28} {unit:<8} {range}");
+        text.line(&format!("{name:<28} {unit:<8} {range}"));
     }
     if odd > 0 {
-        let _ = writeln!(text.0, "  {odd} of its values are not finite");
+        text.line(&format!("  {odd} of its values are not finite"));
     }
     Ok(())
-}
-
-#[allow(clippy::cast_precision_loss, reason = "for people")]
-fn numbers(element: Element, bytes: &[u8]) -> Vec<f64> {
-    match element {
-        Element::F64 => bytemuck::pod_collect_to_vec(bytes),
-        Element::U32 => {
-            let values = bytemuck::pod_collect_to_vec::<u8, u32>(bytes);
-            values.into_iter().map(f64::from).collect()
-        }
-        Element::U8 | Element::Text(_) => bytes.iter().map(|&byte| byte.into()).collect(),
-        Element::I64 | Element::U64 => {
-            let values = bytemuck::pod_collect_to_vec::<u8, u64>(bytes);
-            values.into_iter().map(|value| value as f64).collect()
-        }
-    }
 }
 
 fn for_chunks(
@@ -246,8 +241,8 @@ fn for_chunks(
 fn run_folder(folder: &RunFolder, text: &mut Text) -> Result<(), ResultsError> {
     let status = folder.status()?;
     text.entry("run", folder.path().display());
-    let input = std::fs::read_to_string(folder.case()).unwrap_or_default();
-    let input: toml::Table = input.parse().unwrap_or_default();
+    let input = read_small(&folder.case()).unwrap_or_default();
+    let input: toml::Table = toml::from_slice(&input).unwrap_or_default();
     if let Some(title) = input.get("title").and_then(toml::Value::as_str) {
         text.entry("title", title);
     }
@@ -275,15 +270,16 @@ fn run_folder(folder: &RunFolder, text: &mut Text) -> Result<(), ResultsError> {
 
 /// The figures of a finished run.
 fn summary(path: &Path, text: &mut Text) -> Result<(), ResultsError> {
-    let Ok(content) = std::fs::read(path) else {
+    if !path.exists() {
         text.entry("summary", "none yet");
         return Ok(());
-    };
+    }
+    let content = read_small(path)?;
     let figures: Value = serde_json::from_slice(&content).map_err(|error| ResultsError::Text {
         path: path.to_owned(),
         reason: error.to_string(),
     })?;
-    let _ = writeln!(text.0);
+    text.line("");
     for (name, figure) in figures.as_object().into_iter().flatten() {
         if ["title", "steps", "time"].contains(&name.as_str()) {
             continue;

@@ -84,7 +84,7 @@ pub fn main() -> ExitCode {
         Command::Check(args) => check::run(&args),
         Command::Plot(args) => plot::run(&args).map_or_else(
             |error| {
-                eprintln!("error: {error}");
+                say::complain(&format!("error: {error}"));
                 EXIT_INPUT
             },
             |()| 0,

@@ -138,7 +138,10 @@ fn resume(launch: &Launch, args: &RestartArgs, found: Found) -> u8 {
     if let Some(message) = args.common.shortage(comm, &case) {
         return complain(comm, &message);
     }
-    let Ok(state) = serde_json::from_str::<RunState>(&restored.state) else {
+    let state = serde_json::from_str::<RunState>(&restored.state).ok();
+    let at = |state: &RunState| (state.step, state.time.to_bits());
+    let same = |state: &RunState| at(state) == (restored.step, restored.time.to_bits());
+    let Some(state) = state.filter(same) else {
         let message = "the saved state is not one that this version of the program can read";
         return complain(comm, &format!("error: {}: {message}", checkpoint.display()));
     };

@@ -172,7 +172,7 @@ pub fn read(
     let path = folder.join(MANIFEST);
     let mut text = Vec::new();
     on_root(comm, || {
-        text = fs::read(&path).map_err(OutputError::io("read", &path))?;
+        text = files::read_small(&path)?;
         Ok(())
     })?;
     comm.broadcast(&mut text);
@@ -190,6 +190,7 @@ pub fn read(
         let bytes = &mut store.bytes_mut(field.id)[..block.count * row.bytes()];
         agree(comm, file.rows(&path, row, block, bytes))?;
     }
+    check_ids(comm, &state, &store.id)?;
     Ok(Restored {
         step: manifest.step,
         time: manifest.time,
@@ -205,7 +206,7 @@ pub fn read(
 /// [`OutputError::Io`], [`OutputError::Damaged`], [`OutputError::Format`].
 pub fn manifest(folder: &Path) -> Result<Manifest, OutputError> {
     let path = folder.join(MANIFEST);
-    let text = fs::read(&path).map_err(OutputError::io("read", &path))?;
+    let text = files::read_small(&path)?;
     parse_manifest(folder, &text)
 }
 
@@ -339,8 +340,36 @@ fn parse_manifest(folder: &Path, text: &[u8]) -> Result<Manifest, OutputError> {
             known: FORMAT,
         });
     }
-    serde_json::from_slice(text).map_err(broken)
+    let manifest = serde_json::from_slice(text).map_err(broken)?;
+    check_manifest(folder, manifest)
 }
+
+/// Refuses numbers that no checkpoint has, before anything is done with them.
+fn check_manifest(folder: &Path, manifest: Manifest) -> Result<Manifest, OutputError> {
+    let Manifest { size, block, .. } = manifest;
+    let blocks = size
+        .checked_div(block)
+        .map(|whole| whole + u64::from(size % block > 0));
+    let what = if blocks != Some(manifest.sha256.len() as u64) {
+        let n = manifest.sha256.len();
+        format!("{n} digests of blocks of {block} bytes for {size} bytes")
+    } else if manifest.particles > size / ID_BYTES {
+        format!("{} particles in {size} bytes", manifest.particles)
+    } else if manifest.ranks == 0 {
+        "0 ranks".to_owned()
+    } else if !(manifest.time >= 0.0) {
+        format!("a time of {:e} s", manifest.time)
+    } else {
+        return Ok(manifest);
+    };
+    Err(OutputError::damaged(
+        folder,
+        format!("{MANIFEST} tells of {what}; {OLDER}"),
+    ))
+}
+
+/// Bytes of a particle's id, the least that a checkpoint holds of it.
+const ID_BYTES: u64 = 8;
 
 const OLDER: &str = "restart from an older checkpoint";
 
@@ -406,6 +435,24 @@ fn check_content(
         Some(array) => damaged(format!("it has an unknown field {}; {OTHER}", array.name)),
         None => Ok(fields),
     }
+}
+
+/// Refuses rows that do not stand in the order of their ids, each rank having its block. Collective.
+fn check_ids(comm: &Comm, state: &Path, ids: &[u64]) -> Result<(), OutputError> {
+    // The last id before each rank's block, if any stands there.
+    let mut lasts = Vec::new();
+    let last = ids.last().copied();
+    comm.all_gather_u64(
+        &[u64::from(last.is_some()), last.unwrap_or_default()],
+        &mut lasts,
+    );
+    let (before, _) = lasts[..2 * comm.rank()].as_chunks::<2>();
+    let before = before.iter().rev().find(|[some, _]| *some == 1);
+    let begins = before.is_none_or(|[_, last]| ids.first().is_none_or(|first| last < first));
+    let sound = begins && ids.is_sorted_by(|a, b| a < b);
+    let what = "its particles do not stand in the order of their ids";
+    let wrong = || OutputError::damaged(state, format!("{what}; {OLDER}"));
+    agree(comm, sound.then_some(()).ok_or_else(wrong))
 }
 
 const OTHER: &str = "another program version wrote it";

@@ -45,6 +45,52 @@ pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), OutputError
     write_atomically(path, &text)
 }
 
+/// Bytes of one of our small files at most: the manifest of a checkpoint of 60 TB has so many.
+const SMALL: u64 = 64 << 20;
+
+/// The length of a file that anybody may have made and that can be opened; a pipe or a device, which
+/// would keep its reader for ever, is refused.
+///
+/// # Errors
+/// [`OutputError::Io`].
+pub(super) fn length_of_regular(action: &'static str, path: &Path) -> Result<u64, OutputError> {
+    let regular = |meta: &fs::Metadata| {
+        let what = "it is a folder, a pipe or a device";
+        let odd = std::io::Error::new(std::io::ErrorKind::InvalidInput, what);
+        if meta.is_file() {
+            Ok(meta.len())
+        } else {
+            Err(odd)
+        }
+    };
+    fs::metadata(path)
+        .and_then(|meta| regular(&meta))
+        .and_then(|length| File::open(path).map(|_| length))
+        .map_err(OutputError::io(action, path))
+}
+
+/// Reads a whole file that anybody may have made.
+///
+/// # Errors
+/// [`OutputError::Io`].
+pub fn read_regular(path: &Path) -> Result<Vec<u8>, OutputError> {
+    length_of_regular("read", path)?;
+    fs::read(path).map_err(OutputError::io("read", path))
+}
+
+/// Reads one of our small files, which anybody may have made.
+///
+/// # Errors
+/// [`OutputError::Io`], [`OutputError::Damaged`] if it is not small.
+pub fn read_small(path: &Path) -> Result<Vec<u8>, OutputError> {
+    let length = length_of_regular("read", path)?;
+    if length > SMALL {
+        let what = format!("it has {length} bytes, {SMALL} are possible");
+        return Err(OutputError::damaged(path, what));
+    }
+    read_regular(path)
+}
+
 /// Gives a finished file or folder its name, and makes that last.
 pub(super) fn publish(temporary: &Path, path: &Path) -> Result<(), OutputError> {
     fs::rename(temporary, path).map_err(OutputError::io("rename to", path))?;
@@ -103,5 +149,16 @@ mod tests {
                 .to_string()
                 .starts_with("cannot create /nowhere/at/all.partial: ")
         );
+    }
+    #[test]
+    fn pipes_and_what_is_too_long_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let refused = |path: &Path| read_small(path).unwrap_err().to_string();
+        assert!(refused(Path::new("/dev/zero")).contains("a device"));
+        assert!(refused(folder.path()).contains("a folder"));
+        let path = folder.path().join("manifest.json");
+        assert!(refused(&path).contains("No such file"));
+        File::create(&path).unwrap().set_len(1 << 40).unwrap();
+        assert!(refused(&path).contains("67108864 are possible"));
     }
 }

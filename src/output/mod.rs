@@ -20,7 +20,7 @@ pub mod snapshot;
 mod vote;
 
 pub use error::OutputError;
-pub use files::{write_atomically, write_json};
+pub use files::{read_regular, read_small, write_atomically, write_json};
 pub use history::{Column, Table, Value, unit_of_model};
 pub use log::Log;
 pub use rows::{Block, Rows};

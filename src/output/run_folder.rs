@@ -208,7 +208,7 @@ impl RunFolder {
     /// [`OutputError::Io`], [`OutputError::Damaged`].
     pub fn status(&self) -> Result<Status, OutputError> {
         let path = self.status_file();
-        let text = fs::read(&path).map_err(OutputError::io("read", &path))?;
+        let text = files::read_small(&path)?;
         serde_json::from_slice(&text).map_err(|e| OutputError::damaged(&path, e.to_string()))
     }
 

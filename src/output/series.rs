@@ -1,11 +1,10 @@
 //! The index of a run's snapshots, with which `ParaView` opens them as one animation.
 
-use std::fs;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::{OutputError, write_json};
+use super::{OutputError, read_small, write_json};
 
 /// A snapshot in the index.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -31,7 +30,7 @@ pub fn read(path: &Path) -> Result<Vec<Entry>, OutputError> {
     if !path.exists() {
         return Ok(Vec::new());
     }
-    let text = fs::read(path).map_err(OutputError::io("read", path))?;
+    let text = read_small(path)?;
     let index: Index = serde_json::from_slice(&text)
         .map_err(|e| OutputError::damaged(path, format!("it is no file series: {e}")))?;
     Ok(index.files)
@@ -89,7 +88,7 @@ mod tests {
             .map(|e| (e.name, e.time))
             .collect();
         assert_eq!(names, [("a".to_owned(), 0.0), ("b".to_owned(), 1.5e-9)]);
-        let text = fs::read_to_string(&path).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
         assert!(text.contains("\"file-series-version\": \"1.0\""), "{text}");
     }
 }

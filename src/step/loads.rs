@@ -156,6 +156,11 @@ impl LoadStep {
         !self.drives.is_empty()
     }
 
+    /// Whether bits name loads and rigid bodies of the case and no others.
+    pub(super) fn knows(&self, bits: u32) -> bool {
+        u64::from(bits) >> self.drives.len() == 0
+    }
+
     /// Number of ledgers before those of surfaces.
     pub(super) fn driven(&self) -> usize {
         self.drives.len()

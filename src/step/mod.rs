@@ -11,6 +11,7 @@ mod normalised;
 mod options;
 mod parts;
 mod post_mortem;
+mod restored;
 mod search;
 mod setup;
 mod simulation;

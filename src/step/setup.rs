@@ -80,22 +80,10 @@ impl Simulation {
     ) -> Result<Self, SetupError> {
         let boxes = body_boxes(&case).ok_or(SetupError::Empty)?;
         let mut simulation = Self::empty(case, comm, &boxes);
+        simulation.require_own(comm, &state, &store)?;
         simulation.store = store;
         let unused = unused_fields(&simulation.case, &simulation.contact);
         simulation.part_frozen(comm, unused);
-        let [pairs, loads] = [simulation.state.pairs.len(), simulation.state.loads.len()];
-        if [state.pairs.len(), state.loads.len()] != [pairs, loads] {
-            return Err(SetupError::Foreign("it has other pairs of bodies or loads"));
-        }
-        let bodies = simulation.case.bodies.len();
-        let of_no_body = simulation
-            .store
-            .body
-            .iter()
-            .any(|&body| body as usize >= bodies);
-        if comm.any(of_no_body) {
-            return Err(SetupError::Foreign("it has particles of another body"));
-        }
         simulation.state = state;
         simulation.slabs = balance(
             comm,

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
-use hdf5::types::{FixedAscii, FixedUnicode, VarLenUnicode};
+use hdf5::types::{FixedAscii, FixedUnicode};
 use whipple::app::plot::{self as command, PlotArgs};
 
 /// Particle spacing of the synthetic impact (m).
@@ -15,7 +15,7 @@ pub const SPACING: f64 = 2e-5;
 #[derive(Default)]
 pub struct Particles {
     pub points: Vec<[f64; 3]>,
-    pub body: Vec<u16>,
+    pub body: Vec<u32>,
 }
 
 /// What a snapshot says of its case.
@@ -54,7 +54,7 @@ pub fn impact(stage: f64) -> Particles {
                 if in_sphere || in_plate {
                     let point = deform([x, y, z], in_sphere, stage);
                     particles.points.push(point);
-                    particles.body.push(u16::from(in_plate));
+                    particles.body.push(u32::from(in_plate));
                 }
             }
         }
@@ -147,13 +147,7 @@ pub fn write(path: &Path, case: &Case, particles: &Particles, time: f64) {
     array(&field, "TimeValue", &[time], 1);
 
     let about = file.create_group("whipple").unwrap();
-    // The program's own writer uses UTF-8 of fixed length.
-    let title: FixedUnicode<128> = case.title.parse().unwrap();
-    let attribute = about
-        .new_attr::<FixedUnicode<128>>()
-        .create("title")
-        .unwrap();
-    attribute.write_scalar(&title).unwrap();
+    text(&about, "title", &case.title);
     text(
         &about,
         "bodies",
@@ -192,8 +186,9 @@ fn array(group: &hdf5::Group, name: &str, data: &[f64], width: usize) {
 }
 
 fn text(place: &hdf5::Location, name: &str, value: &str) {
-    let value: VarLenUnicode = value.parse().unwrap();
-    let attribute = place.new_attr::<VarLenUnicode>().create(name).unwrap();
+    // UTF-8 of fixed length, as the program's own writer makes it.
+    let value: FixedUnicode<256> = value.parse().unwrap();
+    let attribute = place.new_attr::<FixedUnicode<256>>().create(name).unwrap();
     attribute.write_scalar(&value).unwrap();
 }
 

@@ -139,7 +139,7 @@ struct Matching {
 impl Matching {
     /// Matches the ids of two files, each in ascending order.
     fn new(a: &Content, b: &Content, path: &str, found: &mut Found) -> Result<Self, ResultsError> {
-        let (mine, theirs) = (a.all::<u64>(path)?, b.all::<u64>(path)?);
+        let (mine, theirs) = (a.ids(path)?, b.ids(path)?);
         let mut stretches: Vec<Stretch> = Vec::new();
         let mut lone: [Vec<u64>; 2] = [Vec::new(), Vec::new()];
         let (mut row, mut other_row) = (0, 0);

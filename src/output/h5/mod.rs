@@ -1,6 +1,7 @@
 //! HDF5 files: written and read by all ranks together, or read by one process.
 
 mod content;
+mod gate;
 pub mod read;
 mod transfer;
 mod writer;
@@ -32,6 +33,41 @@ pub enum Element {
 }
 
 impl Element {
+    /// All that are numbers.
+    const NUMBERS: [Self; 5] = [Self::F64, Self::I64, Self::U64, Self::U32, Self::U8];
+
+    /// Its name in messages.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::F64 => "f64",
+            Self::I64 => "i64",
+            Self::U64 => "u64",
+            Self::U32 => "u32",
+            Self::U8 => "u8",
+            Self::Text(_) => "text",
+        }
+    }
+
+    /// Values in `bytes` as `f64`, those of integers rounded beyond 2⁵³; of text its bytes.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss, reason = "for pictures and for people")]
+    pub fn reals(self, bytes: &[u8]) -> Vec<f64> {
+        fn all<T: bytemuck::Pod>(bytes: &[u8], real: impl Fn(T) -> f64) -> Vec<f64> {
+            let values = bytes.chunks_exact(size_of::<T>());
+            values
+                .map(|value| real(bytemuck::pod_read_unaligned(value)))
+                .collect()
+        }
+        match self {
+            Self::F64 => all(bytes, |value: f64| value),
+            Self::I64 => all(bytes, |value: i64| value as f64),
+            Self::U64 => all(bytes, |value: u64| value as f64),
+            Self::U32 => all(bytes, |value: u32| value.into()),
+            Self::U8 | Self::Text(_) => all(bytes, |value: u8| value.into()),
+        }
+    }
+
     /// Bytes of one value.
     #[must_use]
     pub fn bytes(self) -> usize {
@@ -58,18 +94,23 @@ impl Element {
     fn datatype(self) -> hdf5::Result<Datatype> {
         Datatype::from_descriptor(&self.descriptor())
     }
-
-    /// The element that a file's type reads as.
-    fn of(datatype: &Datatype) -> hdf5::Result<Self> {
-        let descriptor = datatype.to_descriptor()?;
-        if let TypeDescriptor::FixedUnicode(bytes) = descriptor {
-            return Ok(Self::Text(bytes));
-        }
-        let numbers = [Self::F64, Self::I64, Self::U64, Self::U32, Self::U8];
-        let found = numbers.into_iter().find(|e| e.descriptor() == descriptor);
-        found.ok_or_else(|| format!("unexpected type {descriptor}").into())
-    }
 }
+
+/// A number that files hold.
+pub trait Number: bytemuck::Pod {
+    /// Its type.
+    const ELEMENT: Element;
+}
+
+macro_rules! numbers {
+    ($($element:ident: $type:ty),*) => {
+        $(impl Number for $type {
+            const ELEMENT: Element = Element::$element;
+        })*
+    };
+}
+
+numbers!(F64: f64, I64: i64, U64: u64, U32: u32, U8: u8);
 
 /// The type of a dataset's rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -127,9 +168,34 @@ fn access(comm: Option<&Comm>) -> FileBuilder {
 /// What HDF5 says, with advice where file systems without locks make it refuse.
 fn explain(error: &hdf5::Error) -> String {
     let text = error.to_string();
-    if text.contains("lock") {
+    if text.contains("unable to lock") {
         format!("{text} (this file system refuses locks: set HDF5_USE_FILE_LOCKING=FALSE)")
     } else {
         text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn advice_on_locks_is_for_locks() {
+        let said = |text: &str| explain(&hdf5::Error::from(text));
+        assert!(said("unable to lock file, errno = 37").contains("HDF5_USE_FILE_LOCKING"));
+        for other in [
+            "unable to read superblock",
+            "truncated file: eof = 9, sblock->base_addr = 0",
+        ] {
+            assert_eq!(said(other), other);
+        }
+    }
+
+    #[test]
+    fn integers_are_read_as_reals() {
+        let ids = [7_i64, -1];
+        assert_eq!(Element::I64.reals(bytemuck::cast_slice(&ids)), [7.0, -1.0]);
+        assert_eq!(Element::U32.reals(&[1, 0, 0, 0, 2, 1, 0, 0]), [1.0, 258.0]);
+        assert_eq!(Element::U8.reals(&[0, 255]), [0.0, 255.0]);
     }
 }

@@ -3,23 +3,17 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use hdf5::types::{FixedAscii, FixedUnicode, TypeDescriptor, VarLenAscii, VarLenUnicode};
-use hdf5::{Attribute, Dataset, Hyperslab, SliceOrIndex};
+use crate::output::{Block, OutputError};
 
-/// Largest string attribute that HDF5 stores with its object (bytes).
-const LONGEST_TEXT: usize = 64 * 1024;
+use super::explain;
+use super::gate::{self, Gate, Rows};
 
 /// Why a snapshot could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The file is missing, is not HDF5 or is damaged.
-    #[error("cannot open {} as an HDF5 file: {reason}", path.display())]
-    Open {
-        /// The file.
-        path: PathBuf,
-        /// What HDF5 or the system says.
-        reason: String,
-    },
+    #[error(transparent)]
+    Open(#[from] OutputError),
     /// HDF5, but without something that every snapshot has.
     #[error(
         "{} is not a whipple snapshot: {what} cannot be read ({reason}); give a file of the run's \
@@ -39,7 +33,7 @@ pub enum ReadError {
 /// An open snapshot. Rows are particles in the order of their ids.
 #[derive(Debug)]
 pub struct SnapshotFile {
-    file: hdf5::File,
+    gate: Gate,
     path: PathBuf,
     particles: usize,
 }
@@ -50,24 +44,17 @@ impl SnapshotFile {
     /// # Errors
     /// [`ReadError::Open`] if it is no HDF5 file, [`ReadError::Layout`] if it holds no points.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
-        let open = |reason: String| ReadError::Open {
-            path: path.to_owned(),
-            reason,
-        };
-        // The system's message ("permission denied") is clearer than HDF5's.
-        std::fs::File::open(path).map_err(|e| open(e.to_string()))?;
-        let file = hdf5::File::open(path).map_err(|e| open(e.to_string()))?;
         let mut snapshot = Self {
-            file,
+            gate: Gate::open(None, path)?,
             path: path.to_owned(),
             particles: 0,
         };
-        let shape = snapshot.dataset("/VTKHDF/Points")?.shape();
-        let [rows, 3] = shape[..] else {
-            let reason = format!("its shape is {shape:?}, not [particles, 3]");
+        let points = snapshot.rows("/VTKHDF/Points")?;
+        if points.row.components != 3 {
+            let reason = format!("it has {} components, not 3", points.row.components);
             return Err(snapshot.layout("/VTKHDF/Points", &reason));
-        };
-        snapshot.particles = rows;
+        }
+        snapshot.particles = points.count();
         Ok(snapshot)
     }
 
@@ -89,9 +76,7 @@ impl SnapshotFile {
     /// [`ReadError::Layout`] if the file has no time.
     pub fn time(&self) -> Result<f64, ReadError> {
         let name = "/VTKHDF/FieldData/TimeValue";
-        let values = self.dataset(name)?.read_raw::<f64>();
-        let values = values.map_err(|e| self.layout(name, &e))?;
-        let first = values.first().copied();
+        let first = self.read(name, 0..1)?.first().copied();
         first.ok_or_else(|| self.layout(name, &"it is empty"))
     }
 
@@ -111,10 +96,7 @@ impl SnapshotFile {
     /// [`ReadError::Layout`] if the file has no particle data.
     pub fn names(&self) -> Result<Vec<String>, ReadError> {
         let name = "/VTKHDF/PointData";
-        let group = self.file.group(name).map_err(|e| self.layout(name, &e))?;
-        let mut names = group.member_names().map_err(|e| self.layout(name, &e))?;
-        names.sort();
-        Ok(names)
+        self.told(name, self.gate.members(name))
     }
 
     /// Numbers for each particle in a field: 1, 3 (x, y, z) or 6 (xx, yy, zz, xy, yz, xz).
@@ -123,16 +105,13 @@ impl SnapshotFile {
     /// [`ReadError::Layout`] if there is no such field or its shape fits no particles.
     pub fn components(&self, field: &str) -> Result<usize, ReadError> {
         let name = field_path(field);
-        let shape = self.dataset(&name)?.shape();
-        match shape[..] {
-            [rows] if rows == self.particles => Ok(1),
-            [rows, width] if rows == self.particles => Ok(width),
-            _ => {
-                let n = self.particles;
-                let reason = format!("its shape {shape:?} does not fit {n} particles");
-                Err(self.layout(&name, &reason))
-            }
+        let rows = self.rows(&name)?;
+        if rows.count() == self.particles {
+            return Ok(rows.row.components);
         }
+        let (found, n) = (rows.count(), self.particles);
+        let reason = format!("its {found} rows do not fit {n} particles");
+        Err(self.layout(&name, &reason))
     }
 
     /// A field of a range of particles, row after row, `[rows × components]` in the field's unit;
@@ -172,8 +151,8 @@ impl SnapshotFile {
     /// [`ReadError::Layout`] if the field or the attribute is missing or no string.
     pub fn field_attribute(&self, field: &str, name: &str) -> Result<String, ReadError> {
         let path = field_path(field);
-        let attribute = self.dataset(&path)?.attr(name);
-        self.text(&format!("attribute {name} of {path}"), attribute)
+        let rows = self.rows(&path)?;
+        self.told(&format!("attribute {name} of {path}"), rows.note(name))
     }
 
     /// A string attribute of a group, such as `title` of `/whipple`.
@@ -181,33 +160,28 @@ impl SnapshotFile {
     /// # Errors
     /// [`ReadError::Layout`] if the group or the attribute is missing or no string.
     pub fn attribute(&self, group: &str, name: &str) -> Result<String, ReadError> {
-        let attribute = self.file.group(group).and_then(|g| g.attr(name));
-        self.text(&format!("attribute {name} of {group}"), attribute)
+        let text = self.gate.group(group).and_then(|g| gate::note(&g, name));
+        self.told(&format!("attribute {name} of {group}"), text)
     }
 
-    /// Rows of a dataset of one or two dimensions.
+    /// Some rows of a dataset, value after value.
     fn read(&self, name: &str, rows: Range<usize>) -> Result<Vec<f64>, ReadError> {
-        let dataset = self.dataset(name)?;
-        let flat = if dataset.ndim() == 1 {
-            let values = dataset.read_slice_1d(rows);
-            values.map(|array| array.into_raw_vec_and_offset().0)
-        } else {
-            let block = Hyperslab::from(vec![SliceOrIndex::from(rows), SliceOrIndex::from(..)]);
-            let values = dataset.read_slice_2d(block);
-            values.map(|array| array.into_raw_vec_and_offset().0)
+        let found = self.rows(name)?;
+        let block = Block {
+            total: found.rows,
+            first: rows.start as u64,
+            count: rows.len(),
         };
-        flat.map_err(|e| self.layout(name, &e))
+        let bytes = self.told(name, found.bytes(block))?;
+        Ok(found.row.element.reals(&bytes))
     }
 
-    fn dataset(&self, name: &str) -> Result<Dataset, ReadError> {
-        self.file.dataset(name).map_err(|e| self.layout(name, &e))
+    fn rows(&self, name: &str) -> Result<Rows, ReadError> {
+        self.told(name, self.gate.numbers(name))
     }
 
-    /// The text of an attribute, whichever of HDF5's string types it was written with.
-    fn text(&self, what: &str, attribute: hdf5::Result<Attribute>) -> Result<String, ReadError> {
-        attribute
-            .and_then(|a| read_text(&a))
-            .map_err(|e| self.layout(what, &e))
+    fn told<T>(&self, what: &str, result: hdf5::Result<T>) -> Result<T, ReadError> {
+        result.map_err(|e| self.layout(what, &explain(&e)))
     }
 
     fn layout(&self, what: &str, reason: &dyn ToString) -> ReadError {
@@ -221,18 +195,4 @@ impl SnapshotFile {
 
 fn field_path(field: &str) -> String {
     format!("/VTKHDF/PointData/{field}")
-}
-
-fn read_text(attribute: &Attribute) -> hdf5::Result<String> {
-    fn first<T: hdf5::H5Type + ToString>(attribute: &Attribute) -> hdf5::Result<String> {
-        let values = attribute.read_raw::<T>()?;
-        Ok(values.first().map(T::to_string).unwrap_or_default())
-    }
-    match attribute.dtype()?.to_descriptor()? {
-        TypeDescriptor::VarLenUnicode => first::<VarLenUnicode>(attribute),
-        TypeDescriptor::VarLenAscii => first::<VarLenAscii>(attribute),
-        TypeDescriptor::FixedUnicode(_) => first::<FixedUnicode<LONGEST_TEXT>>(attribute),
-        TypeDescriptor::FixedAscii(_) => first::<FixedAscii<LONGEST_TEXT>>(attribute),
-        other => Err(format!("it is no string but {other}").into()),
-    }
 }

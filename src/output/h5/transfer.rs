@@ -46,7 +46,7 @@ pub(super) fn write_rows(
     })
 }
 
-/// Reads a block of a dataset's rows into `bytes`.
+/// Reads a block of a dataset's rows into `bytes`, unconverted: `row` is what [`super::gate`] found.
 pub(super) fn read_rows(
     dataset: &Dataset,
     row: RowType,
@@ -58,7 +58,7 @@ pub(super) fn read_rows(
         block.count * row.bytes(),
         "rows of the wrong length"
     );
-    let datatype = row.element.datatype()?;
+    let datatype = dataset.dtype()?;
     in_pieces(dataset, row, block, |memory, file, start| {
         // SAFETY: the memory space has as many rows as lie in `bytes[start..]` or fewer.
         call(|| unsafe {

@@ -1,0 +1,86 @@
+//! What a saved state must hold before a step believes it: a file may come from anybody.
+
+use super::setup::SetupError;
+use super::simulation::Simulation;
+use super::state::RunState;
+use crate::comm::Comm;
+use crate::particles::{FieldInfo, FieldUse, ParticleStore};
+
+/// Largest count: beyond it one more may be lost in a sum, or run over.
+const MOST: u64 = 1 << 53;
+
+/// What a saved state may be wrong in, and whether it is.
+type Check<'a> = (&'static str, &'a dyn Fn() -> bool);
+
+impl Simulation {
+    /// Refuses a saved state, or any rank's share of its particles, that is none of this case.
+    /// Collective.
+    pub(super) fn require_own(
+        &self,
+        comm: &Comm,
+        state: &RunState,
+        store: &ParticleStore,
+    ) -> Result<(), SetupError> {
+        let (own, bodies) = (&self.state, self.case.bodies.len());
+        let ledgers = |state: &RunState| [state.pairs.len(), state.loads.len()];
+        let checks: [Check; 7] = [
+            ("it has other pairs of bodies or loads", &|| {
+                ledgers(state) != ledgers(own)
+            }),
+            ("it has particles removed from other bodies", &|| {
+                ![0, bodies].contains(&state.removed.len())
+            }),
+            ("its times are none", &|| {
+                !(state.dt > 0.0 && state.last_dt >= 0.0 && state.time >= 0.0)
+            }),
+            ("its counts are none", &|| {
+                counts(state).any(|count| count > MOST)
+            }),
+            ("it has particles of another body", &|| {
+                store.body.iter().any(|&body| body as usize >= bodies)
+            }),
+            ("it has particles under another load", &|| {
+                store.load.iter().any(|&bits| !self.loads.knows(bits))
+            }),
+            ("it has numbers that are not finite", &|| {
+                store.held(FieldUse::STATE).any(|f| !is_finite(store, f))
+            }),
+        ];
+        let wrong = checks.iter().position(|(_, wrong)| wrong());
+        let mut first = [wrong.unwrap_or(checks.len()) as u64];
+        comm.min_u64(&mut first);
+        let first = usize::try_from(first[0]).ok();
+        match first.and_then(|first| checks.get(first)) {
+            Some((what, _)) => Err(SetupError::Foreign(what)),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Whatever a state counts; what is negative is counted as very many.
+fn counts(state: &RunState) -> impl Iterator<Item = u64> {
+    let worst = &state.worst;
+    let now = [
+        state.plane_crossings,
+        state.capped_reliefs,
+        state.interpenetrated,
+        state.uncorrected,
+        worst.interpenetrated,
+        worst.uncorrected,
+    ];
+    let touching = state.pairs.iter().map(|pair| pair.touching);
+    let signed = now.into_iter().chain(touching);
+    let removed = state.removed.iter().map(|removed| removed.particles);
+    [state.step, worst.contact_limited_steps]
+        .into_iter()
+        .chain(signed.map(|count| u64::try_from(count).unwrap_or(u64::MAX)))
+        .chain(removed)
+}
+
+fn is_finite(store: &ParticleStore, field: &FieldInfo) -> bool {
+    if !field.kind.is_real() {
+        return true;
+    }
+    let values: &[f64] = bytemuck::cast_slice(store.bytes(field.id));
+    values.iter().all(|value| value.is_finite())
+}
