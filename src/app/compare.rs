@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use super::EXIT_INPUT;
 use super::results::{Results, ResultsError};
+use super::say::{complain, say};
 use crate::output::RunFolder;
 use crate::output::checkpoint;
 use crate::output::h5::Content;
@@ -43,13 +44,13 @@ pub fn run(args: &CompareArgs) -> u8 {
     match compare(&args.a, &args.b) {
         Ok(report) => {
             for line in &report.lines {
-                println!("{line}");
+                say(line);
             }
-            println!("{}", report.verdict());
+            say(&report.verdict());
             if report.agrees() { 0 } else { EXIT_DIFFERENT }
         }
         Err(error) => {
-            eprintln!("error: {error}");
+            complain(&format!("error: {error}"));
             EXIT_INPUT
         }
     }

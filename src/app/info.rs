@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use super::EXIT_INPUT;
 use super::results::{POINT_DATA, Results, ResultsError, component_names};
+use super::say::{complain, say};
 use crate::output::checkpoint::{self, FIELDS};
 use crate::output::h5::{Array, Content, Element};
 use crate::output::{Block, OutputError, RunFolder, series};
@@ -34,11 +35,11 @@ const CHUNK: usize = 1 << 18;
 pub fn run(args: &InfoArgs) -> u8 {
     match describe(&args.path) {
         Ok(text) => {
-            print!("{text}");
+            say(text.trim_end());
             0
         }
         Err(error) => {
-            eprintln!("error: {error}");
+            complain(&format!("error: {error}"));
             EXIT_INPUT
         }
     }

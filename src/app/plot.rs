@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::say::say;
 use crate::plot::{
     Along, Canvas, Columns, Pictures, PlotError, Points, ProfileRequest, Profiles, Request, Source,
     Tables, Wanted, choose, energies, front, parse_quantity, snapshots, title,
@@ -384,7 +385,7 @@ fn save(path: &Path, write: impl FnOnce(&Path) -> Result<(), PlotError>) -> Resu
         std::fs::create_dir_all(folder).map_err(|e| unsaved(path, &e))?;
     }
     write(path)?;
-    println!("wrote {}", path.display());
+    say(&format!("wrote {}", path.display()));
     Ok(())
 }
 
