@@ -14,7 +14,7 @@
 #
 #   jobs/chain.sh [-n RANKS] [-t THREADS] CASE RUN [options of whipple run, such as --walltime 1h]
 #   sbatch jobs/chain.sh CASE RUN …      each job is one leg and submits the next
-#   qsub -v WHIPPLE_ARGS="CASE RUN …" jobs/chain.sh
+#   qsub -v WHIPPLE_ARGS="CASE RUN …" jobs/chain.sh       or WHIPPLE_ARGS=@FILE, as for run.sh
 #
 # A leg ends softly when the scheduler's time is nearly up (USR1) or at --walltime; the chain then
 # goes on. Ctrl-C, TERM (scancel --batch --signal=TERM JOB) and a file RUN/stop end the leg softly
@@ -25,13 +25,19 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 [ -f "$root/jobs/run.sh" ] || root=${SLURM_SUBMIT_DIR:-${PBS_O_WORKDIR:-$PWD}}
 
-# shellcheck disable=SC2086
-[ $# -gt 0 ] || set -- ${WHIPPLE_ARGS:-}
+source "$root/jobs/arguments.sh"
+if [ $# = 0 ]; then
+    whipple_arguments
+    set -- "${words[@]}"
+fi
 arguments=("$@")
 launch=()
 while getopts n:t: option; do
     case $option in
-        n | t) launch+=("-$option" "$OPTARG") ;;
+        n | t)
+            whipple_count "$option" "$OPTARG"
+            launch+=("-$option" "$OPTARG")
+            ;;
         *) sed -n '/^#   jobs/s/^#  //p' "$root/jobs/chain.sh" >&2; exit 2 ;;
     esac
 done
@@ -124,7 +130,16 @@ while [ "$(status)" != finished ]; do
     if [ -n "${SLURM_JOB_ID:-}" ]; then
         exec sbatch "${same_job[@]}" "$root/jobs/chain.sh" "${arguments[@]}"
     elif [ -n "${PBS_JOBID:-}" ]; then
-        exec qsub -v WHIPPLE_ARGS="${arguments[*]}" "$root/jobs/chain.sh"
+        # Whatever they hold, they reach the next job as they are.
+        list=$(realpath "$run")/chain.arguments
+        case $list in
+            *[,\\\"\']*)
+                echo "PBS cannot pass the name $list, for its commas or quotes: the chain ends" >&2
+                exit 1
+                ;;
+        esac
+        printf '%s\n' "${arguments[@]}" >"$list"
+        exec qsub -v WHIPPLE_ARGS="@$list" "$root/jobs/chain.sh"
     fi
 done
 echo "$run is finished"

@@ -14,7 +14,7 @@
 #   jobs/run.sh [-n RANKS] [-t THREADS] CASE [options of whipple run]
 #   jobs/run.sh [-n RANKS] [-t THREADS] restart RUN [options of whipple restart]
 #   sbatch jobs/run.sh CASE …            ranks and threads are the allocation's
-#   qsub -v WHIPPLE_ARGS="CASE …" jobs/run.sh
+#   qsub -v WHIPPLE_ARGS="CASE …" jobs/run.sh       words without commas; else WHIPPLE_ARGS=@FILE
 #
 # On a workstation: two ranks, and the cores shared out among them as threads. Ctrl-C, TERM, or
 # the scheduler's USR1 stop the run softly: it writes a checkpoint and exits with 75, and
@@ -25,19 +25,23 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 [ -f "$root/jobs/env.sh" ] || root=${SLURM_SUBMIT_DIR:-${PBS_O_WORKDIR:-$PWD}}
 source "$root/jobs/env.sh"
+source "$root/jobs/arguments.sh"
 
 usage() { sed -n '/^#   jobs/s/^#  //p' "$root/jobs/run.sh" >&2; exit 2; }
 
 ranks='' threads=''
 # PBS passes no arguments, only variables.
-# shellcheck disable=SC2086
-[ $# -gt 0 ] || set -- ${WHIPPLE_ARGS:-}
+if [ $# = 0 ]; then
+    whipple_arguments
+    set -- "${words[@]}"
+fi
 while getopts n:t: option; do
     case $option in
         n) ranks=$OPTARG ;;
         t) threads=$OPTARG ;;
         *) usage ;;
     esac
+    whipple_count "$option" "$OPTARG"
 done
 shift $((OPTIND - 1))
 [ $# -gt 0 ] || usage

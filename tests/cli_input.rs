@@ -175,6 +175,66 @@ fn a_case_that_fits_no_memory_is_refused_before_it_takes_any() {
     assert!(!run.exists());
 }
 
+/// Whatever words, paths and names hold, a terminal shows it and does nothing else.
+#[test]
+fn no_control_character_reaches_the_terminal() {
+    let place = tempfile::tempdir().unwrap();
+    let escape = "\u{1b}[2J\u{1b}]0;x\u{7}\u{9b}1m\u{202e}";
+    let case = quarter_impact();
+    let at = |name: &str| place.path().join(name).to_str().unwrap().to_owned();
+    let nowhere = at(&format!("no{escape}where"));
+    fs::create_dir(at(&format!("folder{escape}"))).unwrap();
+    let sound = fs::read_to_string(project("inputs/quarter-impact/case.toml")).unwrap();
+    let wrong = at(&format!("folder{escape}/case.toml"));
+    fs::write(&wrong, sound.replace("\"aluminium\"", "\"tin\\u001b[31m\"")).unwrap();
+    let option = format!("--op{escape}tion");
+    let set = format!("spacing=1 m{escape}m");
+    let key = format!("spa{escape}cing=1 mm");
+    for arguments in [
+        &["check", &nowhere][..],
+        &["check", &wrong],
+        &["check", &case, &option],
+        &["check", &case, "--set", &set],
+        &["check", &case, "--set", &key],
+        &["info", &nowhere],
+        &["plot", &nowhere],
+        &["compare", &nowhere, &nowhere],
+        &["materials", &nowhere],
+    ] {
+        let ended = end(command(WHIPPLE).args(arguments)).with_code(2);
+        let all = ended.stdout + &ended.stderr;
+        assert!(!all.is_empty(), "{arguments:?}");
+        let hostile = |c: char| c != '\n' && (c.is_control() || c == '\u{202e}');
+        assert!(!all.contains(hostile), "{arguments:?}: {all:?}");
+    }
+}
+
+/// A thread is started for a case that can be run alone.
+#[test]
+fn the_case_is_read_before_threads_are_started() {
+    let many = ["-t", "60000"];
+    let said = complaint_alone(&[&["run", "nowhere.toml"][..], &many].concat());
+    assert!(said.starts_with("error: cannot read the case"), "{said}");
+    let case = quarter_impact();
+    let set = ["--set", "sph.alpha=-1"];
+    let said = complaint_alone(&[&["run", &case][..], &set, &many].concat());
+    assert!(said.starts_with("error: `alpha` must be"), "{said}");
+}
+
+#[test]
+fn more_threads_than_cores_are_told() {
+    let place = tempfile::tempdir().unwrap();
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut run = coarse_run(2, &place.path().join("run"));
+    let ended = end(run.args(["--until", "0us", "-t", &(cores + 1).to_string()])).with_code(0);
+    let warned = ended.complaints("warning: each rank has ");
+    assert_eq!(warned.len(), 1, "{ended:#?}");
+    let mut run = coarse_run(2, &place.path().join("shared"));
+    let ended = end(run.args(["--until", "0us", "-t", &cores.to_string()])).with_code(0);
+    let warned = ended.complaints(&format!("warning: 2 ranks with {cores} threads each share"));
+    assert_eq!(warned.len(), usize::from(cores > 1), "{ended:#?}");
+}
+
 /// Changes a byte in the middle of a file.
 fn damage(path: &Path) {
     let mut bytes = fs::read(path).unwrap();

@@ -47,10 +47,10 @@ fn check_says_what_a_case_costs() {
     let said = ended.stdout;
     let expected = "\
 Aluminium sphere at 7 km/s on an aluminium plate (3-D): sound
-  plate                  2828 particles of aluminium, spacing 0.0500 mm, h 0.0650 mm
-  sphere                  228 particles of aluminium, spacing 0.0500 mm, h 0.0650 mm
+  plate                  2828 particles of aluminium, spacing 0.05 mm, h 0.065 mm
+  sphere                  228 particles of aluminium, spacing 0.05 mm, h 0.065 mm
   all                    3056 particles, about 35 MB a rank on 1 rank
-  about 55 steps to 0.2000 us
+  about 55 steps to 0.2 us
 ";
     assert_eq!(said, expected);
 

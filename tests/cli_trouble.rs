@@ -168,7 +168,7 @@ fn energy_from_nowhere_stops_a_run_with_a_post_mortem() {
         command.args(["--set", set]);
     }
     let ended = end(&mut command).with_code(1);
-    let what = "is the fastest where the kinetic energy of all is beyond 1e1 times";
+    let what = "is the fastest where the kinetic energy of all is beyond 10 times";
     assert!(ended.stderr.contains(what), "{ended:#?}");
     let (state, step, _) = status(&run);
     assert_eq!(state, "failed");

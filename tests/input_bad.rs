@@ -250,7 +250,47 @@ fn a_file_that_is_no_text_is_told_before_it_is_read() {
         "{message}"
     );
     let message = refusal(Path::new("/dev/zero"));
-    assert!(message.contains("has no end"), "{message}");
+    assert!(message.contains("it is a device"), "{message}");
+    // Nobody writes to the pipe, so that a reader would wait for ever.
+    let pipe = place.path().join("pipe");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.unwrap().success());
+    let message = refusal(&pipe);
+    assert!(
+        message.contains("it is a pipe, not a regular file"),
+        "{message}"
+    );
+    // So it is for the files that a case names.
+    let surface = |file: &str| {
+        let text = SOUND.replace(
+            "shape.sphere = { centre = [\"99 mm\", \"99 mm\", \"99 mm\"], radius = \"1 mm\" }",
+            &format!("shape.stl = {{ file = \"{file}\", unit = \"1 mm\" }}"),
+        );
+        let case = place.path().join("case.toml");
+        parse(case.to_str().unwrap(), &text, &[])
+            .unwrap_err()
+            .to_string()
+    };
+    for (file, said) in [
+        (
+            "/dev/zero",
+            "cannot take the surface `/dev/zero`: it is a device",
+        ),
+        ("pipe", "cannot take the surface `pipe`: it is a pipe"),
+        (".", "cannot take the surface `.`: it is a folder"),
+    ] {
+        let message = surface(file);
+        assert!(message.contains(said), "{message}");
+        assert!(!message.contains("looked for at"), "{message}");
+    }
+    fs::write(place.path().join("punch.stl"), "").unwrap();
+    let message = surface("pinch.stl");
+    let there = format!(
+        "it is looked for at {}",
+        place.path().join("pinch.stl").display()
+    );
+    assert!(message.contains(&there), "{message}");
+    assert!(message.contains("did you mean `punch.stl`?"), "{message}");
 
     fs::write(&path, "").unwrap();
     let message = refusal(&path);

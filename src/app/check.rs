@@ -2,9 +2,11 @@
 
 use std::path::PathBuf;
 
+use super::say::{complain, say};
 use super::{EXIT_INPUT, memory};
 use crate::input;
 use crate::model::Case;
+use crate::model::readable::{short, shown};
 use crate::output::snapshot;
 use crate::populate;
 
@@ -36,17 +38,17 @@ pub fn run(args: &CheckArgs) -> u8 {
     let case = match input::load(&args.case, &args.set) {
         Ok(case) => case,
         Err(error) => {
-            eprintln!("{}", error.to_string().trim_end());
+            complain(&error.to_string());
             return EXIT_INPUT;
         }
     };
     if let Err(error) = snapshot::quantities(&case.output.fields) {
-        eprintln!("error: {error}");
+        complain(&format!("error: {error}"));
         return EXIT_INPUT;
     }
     let warnings = input::warnings(&case);
     for warning in warnings.into_iter().chain(input::advice(&case)) {
-        eprintln!("warning: {warning}");
+        complain(&format!("warning: {warning}"));
     }
     print_report(&case, args.ranks as usize);
     0
@@ -54,57 +56,37 @@ pub fn run(args: &CheckArgs) -> u8 {
 
 #[allow(clippy::cast_precision_loss, reason = "for people")]
 fn print_report(case: &Case, ranks: usize) {
-    println!("{} ({}-D): sound", case.title, case.dimension);
+    say(&format!("{} ({}-D): sound", case.title, case.dimension));
     let mut total = 0;
     for body in &case.bodies {
         let count = populate::count(body, case.dimension, &case.symmetry, None);
         total += count;
-        println!(
-            "  {:<16} {count:>10} particles of {}, spacing {:.4} mm, h {:.4} mm",
+        say(&format!(
+            "  {:<16} {count:>10} particles of {}, spacing {}, h {}",
             body.name,
             case.materials[body.material].name,
-            body.lattice.spacing * 1e3,
-            body.smoothing_length * 1e3,
-        );
+            case.length_unit.text(body.lattice.spacing),
+            case.length_unit.text(body.smoothing_length),
+        ));
     }
     let memory = memory::of_rank(case, ranks) * 1e-6;
     let plural = if ranks == 1 { "" } else { "s" };
-    println!(
+    say(&format!(
         "  {:<16} {total:>10} particles, about {memory:.0} MB a rank on {ranks} rank{plural}",
         "all"
-    );
+    ));
     for pair in input::approaches(case) {
         let [a, b] = pair.bodies.map(|body| case.bodies[body].name.as_str());
         if pair.time.is_finite() && pair.time > 0.0 {
-            println!(
-                "  {a} and {b} meet at {:.4} us, from {:.1} spacings apart",
-                pair.time * 1e6,
+            say(&format!(
+                "  {a} and {b} meet at {}, from {:.1} spacings apart",
+                shown(pair.time, "s"),
                 pair.gap
-            );
+            ));
         }
     }
-    if let Some(steps) = expected_steps(case) {
-        println!(
-            "  about {steps:.0} steps to {:.4} us",
-            case.run.end_time * 1e6
-        );
+    if let Some(step) = input::expected_step(case) {
+        let (steps, end) = (case.run.end_time / step, shown(case.run.end_time, "s"));
+        say(&format!("  about {} steps to {end}", short(steps.round())));
     }
-}
-
-/// Steps that the sound criterion asks for, with the sound speed of the undeformed materials and
-/// the approach speed of the impact; shocks take more, rarefaction less.
-fn expected_steps(case: &Case) -> Option<f64> {
-    let speed = case.impact_speed();
-    let dt = case
-        .bodies
-        .iter()
-        .filter(|body| body.rigid.is_none())
-        .map(|body| {
-            let material = &case.materials[body.material];
-            let c = (material.p_wave_modulus() / material.reference_density).sqrt();
-            let signal = c + 0.6 * (case.sph.alpha * c + case.sph.beta * 0.25 * speed);
-            case.time_step.courant * body.smoothing_length / signal
-        })
-        .fold(case.time_step.max, f64::min);
-    (dt.is_finite() && dt > 0.0 && case.run.end_time.is_finite()).then(|| case.run.end_time / dt)
 }

@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 
 use super::EXIT_INPUT;
 use super::results::{Results, ResultsError};
-use super::say::{complain, one_line, say};
+use super::say::{complain, say};
+use crate::model::readable::one_line;
 use crate::output::checkpoint;
 use crate::output::h5::Content;
 use crate::output::{RunFolder, read_regular};

@@ -6,7 +6,8 @@ use serde_json::Value;
 
 use super::EXIT_INPUT;
 use super::results::{POINT_DATA, Results, ResultsError, component_names};
-use super::say::{complain, one_line, say};
+use super::say::{complain, say};
+use crate::model::readable::one_line;
 use crate::output::checkpoint::{self, FIELDS};
 use crate::output::h5::{Array, Content, Element, RowType};
 use crate::output::{Block, OutputError, RunFolder, read_small, series};

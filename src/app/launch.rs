@@ -26,9 +26,16 @@ pub struct Launch<'a> {
     pub signals: Signals,
 }
 
-/// Starts MPI and the threads, and makes a panic on one rank end all ranks. Returns `work`'s exit
-/// code once MPI is finalised.
-pub fn with_ranks(args: &CommonArgs, work: impl FnOnce(&Launch) -> u8) -> u8 {
+impl Launch<'_> {
+    /// Starts the threads of this rank, once it is known that there is work for them.
+    pub fn start_threads(&self, args: &CommonArgs) {
+        start_threads(self.comm, args.threads.map(usize::from));
+    }
+}
+
+/// Starts MPI, and makes a panic on one rank end all ranks. Returns `work`'s exit code once MPI is
+/// finalised.
+pub fn with_ranks(work: impl FnOnce(&Launch) -> u8) -> u8 {
     let (start, began) = (Instant::now(), SystemTime::now());
     let signals = Signals::watch();
     let Some((session, comm)) = Session::start() else {
@@ -38,7 +45,6 @@ pub fn with_ranks(args: &CommonArgs, work: impl FnOnce(&Launch) -> u8) -> u8 {
         return EXIT_FAILED;
     };
     abort_on_panic(comm.rank());
-    start_threads(&comm, args.threads.map(usize::from));
     let code = work(&Launch {
         comm: &comm,
         start,
@@ -88,31 +94,59 @@ pub fn complain(comm: &Comm, message: &str) -> u8 {
 
 fn start_threads(comm: &Comm, wanted: Option<usize>) {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = wanted.unwrap_or_else(|| default_threads(comm, cores));
-    if comm.is_root() && threads > cores {
+    let ranks = ranks_here(comm);
+    let shared = (cores / ranks).max(1);
+    let threads = wanted
+        .or(number("RAYON_NUM_THREADS"))
+        .unwrap_or(shared)
+        .max(1);
+    if comm.is_root() && threads > shared {
+        crowd(threads, ranks, cores);
+    }
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .use_current_thread()
+        .build_global();
+    // Without a pool of its own rayon uses all cores, which is right, if not what was asked.
+    if let Err(cause) = pool {
+        let rank = comm.rank();
+        say::complain(&format!(
+            "warning: rank {rank} cannot start {threads} threads: {cause}"
+        ));
+    }
+}
+
+/// Warns of more threads than cores.
+fn crowd(threads: usize, ranks: usize, cores: usize) {
+    if threads > cores {
         say::complain(&format!(
             "warning: each rank has {threads} threads and may use {cores} of the cores; if the \
              machine has more, mpirun has bound the ranks: --bind-to none or --map-by \
              slot:PE={threads} frees them"
         ));
+    } else if cores == machine_cores() {
+        say::complain(&format!(
+            "warning: {ranks} ranks with {threads} threads each share the {cores} cores of the \
+             machine; more threads than cores only wait for each other"
+        ));
     }
-    // Without a pool of its own rayon uses all cores, which is right, if not what was asked.
-    let _ = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .use_current_thread()
-        .build_global();
 }
 
-/// Cores that this process may use over ranks of this machine, unless `RAYON_NUM_THREADS` says
-/// otherwise.
-fn default_threads(comm: &Comm, cores: usize) -> usize {
-    let number = |name| std::env::var(name).ok()?.parse::<usize>().ok();
-    number("RAYON_NUM_THREADS")
-        .unwrap_or_else(|| {
-            let local = number("OMPI_COMM_WORLD_LOCAL_SIZE").unwrap_or_else(|| comm.size());
-            cores / local.max(1)
-        })
-        .max(1)
+/// Cores of this machine; a rank that is bound may use fewer.
+fn machine_cores() -> usize {
+    // SAFETY: it takes and gives numbers alone.
+    let cores = unsafe { libc::sysconf(libc::_SC_NPROCESSORS_ONLN) };
+    usize::try_from(cores).unwrap_or(0)
+}
+
+/// Ranks of this job on this machine.
+fn ranks_here(comm: &Comm) -> usize {
+    let local = number("OMPI_COMM_WORLD_LOCAL_SIZE");
+    local.unwrap_or_else(|| comm.size()).max(1)
+}
+
+fn number(variable: &str) -> Option<usize> {
+    std::env::var(variable).ok()?.parse().ok()
 }
 
 /// A panic anywhere prints one line and ends all ranks: else it would unwind into `MPI_Finalize`,

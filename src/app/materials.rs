@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use serde_json::json;
 
 use super::EXIT_INPUT;
+use super::say::complain;
 use crate::material::{Constant, Material, Value, library};
 
 /// Print the material library: all names, or each number of one material with its source
@@ -46,7 +47,9 @@ pub fn run(args: &MaterialsArgs) -> u8 {
         return 0;
     }
     let names = library::names().join(", ");
-    eprintln!("error: unknown material `{name}`\n  = help: the library has {names}");
+    complain(&format!(
+        "error: unknown material `{name}`\n  = help: the library has {names}"
+    ));
     EXIT_INPUT
 }
 

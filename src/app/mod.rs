@@ -18,9 +18,12 @@ mod run;
 mod say;
 mod stop;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+
+use crate::model::readable::is_printable;
 
 /// The run failed.
 pub const EXIT_FAILED: u8 = 1;
@@ -69,9 +72,7 @@ pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
-            launch::once(|| {
-                let _ = error.print();
-            });
+            launch::once(|| tell(&error));
             return ExitCode::from(if error.use_stderr() { EXIT_INPUT } else { 0 });
         }
     };
@@ -95,6 +96,17 @@ pub fn main() -> ExitCode {
         Command::Bench(args) => bench::run(&args),
     };
     ExitCode::from(code)
+}
+
+/// Says what is wrong with the command line, or the help; in colours, unless the words that it
+/// repeats would do more than that to the terminal.
+fn tell(error: &clap::Error) {
+    let hostile = |word: OsString| !word.to_string_lossy().chars().all(is_printable);
+    if std::env::args_os().any(hostile) {
+        say::complain(&error.to_string());
+    } else {
+        let _ = error.print();
+    }
 }
 
 /// Lets a closed pipe (`whipple info … | head`) end the process quietly, as it ends other tools.

@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::say::one_line;
+use super::say::say;
+use crate::model::readable::one_line;
 use crate::plot::{
     Along, Canvas, Columns, Pictures, PlotError, Points, ProfileRequest, Profiles, Request, Source,
     Tables, Wanted, choose, energies, front, parse_quantity, snapshots, title,
@@ -385,7 +386,7 @@ fn save(path: &Path, write: impl FnOnce(&Path) -> Result<(), PlotError>) -> Resu
         std::fs::create_dir_all(folder).map_err(|e| unsaved(path, &e))?;
     }
     write(path)?;
-    println!("wrote {}", one_line(&path.display().to_string()));
+    say(&format!("wrote {}", one_line(&path.display().to_string())));
     Ok(())
 }
 

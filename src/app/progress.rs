@@ -1,12 +1,13 @@
 //! How far a run is: a bar on a terminal, now and then a line elsewhere.
 
+use std::fmt;
 use std::fs::File;
 use std::io::IsTerminal;
 use std::os::unix::process::parent_id;
 use std::time::{Duration, Instant};
 
 use console::Term;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use super::report::seconds;
 use super::say::say;
@@ -33,10 +34,15 @@ impl Progress {
     pub fn new(tells: bool, control: &RunControl) -> Self {
         let bar = tells.then(terminal).flatten().map(|target| {
             // Within 80 columns: a longer line would wrap and be drawn over and over.
-            let style = "{bar:30} {percent:>3} %  {msg}  {eta} left";
-            let style = ProgressStyle::with_template(style);
-            ProgressBar::with_draw_target(Some(TICKS), target)
-                .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+            let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}{left}");
+            let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+            ProgressBar::with_draw_target(Some(TICKS), target).with_style(style.with_key(
+                "left",
+                |state: &ProgressState, to: &mut dyn fmt::Write| {
+                    // Who writes to a line that is drawn anew cannot fail.
+                    let _ = to.write_str(&left(state.eta()));
+                },
+            ))
         });
         Self {
             tells,
@@ -83,12 +89,21 @@ impl Progress {
     }
 }
 
+/// The time that is left; nothing before the first steps have shown how fast they are.
+fn left(eta: Duration) -> String {
+    if eta.is_zero() {
+        String::new()
+    } else {
+        format!("  {:#} left", HumanDuration(eta))
+    }
+}
+
 fn line(state: &RunState) -> String {
     format!(
-        "step {}  t = {}  dt = {:.3e} s ({})",
+        "step {}  t = {}  dt = {} ({})",
         state.step,
         seconds(state.time),
-        state.last_dt,
+        seconds(state.last_dt),
         state.last_reason.name()
     )
 }
@@ -156,10 +171,16 @@ mod tests {
             assert_eq!(progress.show(&state(1, 0.0)), None);
             progress.last = Instant::now().checked_sub(LINE_EVERY).unwrap();
             let line = progress.show(&state(7, 1e-8));
-            let expected = "step 7  t = 0.0100 us  dt = 1.500e-9 s (force)";
+            let expected = "step 7  t = 10 ns  dt = 1.5 ns (force)";
             assert_eq!(line.as_deref(), tells.then_some(expected));
             assert_eq!(progress.show(&state(8, 2e-8)), None);
         }
+    }
+
+    #[test]
+    fn no_time_is_told_before_it_is_known() {
+        assert_eq!(left(Duration::ZERO), "");
+        assert_eq!(left(Duration::from_secs(90)), "  90s left");
     }
 
     #[test]

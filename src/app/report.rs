@@ -3,6 +3,7 @@
 use serde_json::json;
 
 use crate::comm::Comm;
+use crate::model::readable::shown;
 use crate::model::{Case, SphForm, TroublePolicy};
 use crate::output::{COMMIT, Column, OutputError, RunFolder, Table, VERSION, Value, unit_of_model};
 use crate::step::{PairState, RunState, Simulation};
@@ -406,7 +407,7 @@ fn object(
         .collect()
 }
 
-/// A time with the unit of impacts, for people.
+/// A time, for people.
 pub fn seconds(time: f64) -> String {
-    format!("{:.4} us", time * 1e6)
+    shown(time, "s")
 }

@@ -49,7 +49,7 @@ pub struct RestartArgs {
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &RestartArgs) -> u8 {
-    with_ranks(&args.common, |launch| {
+    with_ranks(|launch| {
         let comm = launch.comm;
         if let Err(error) = input::output_and_run_only(&args.set) {
             return complain(comm, &error.to_string());
@@ -171,6 +171,7 @@ fn go_on(
     found: Found,
     folder: &RunFolder,
 ) -> u8 {
+    launch.start_threads(&args.common);
     let comm = launch.comm;
     let (step, time) = (state.step, state.time);
     let passed = found.passed_over.iter();

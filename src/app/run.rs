@@ -82,7 +82,7 @@ impl CommonArgs {
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &RunArgs) -> u8 {
-    with_ranks(&args.common, |launch| {
+    with_ranks(|launch| {
         let comm = launch.comm;
         let (path, text) = match read_case(comm, &args.case) {
             Ok(found) => found,
@@ -107,6 +107,7 @@ pub fn run(args: &RunArgs) -> u8 {
 }
 
 fn start(launch: &Launch, args: &CommonArgs, case: Case, folder: &RunFolder) -> u8 {
+    launch.start_threads(args);
     let comm = launch.comm;
     let warnings = input::warnings(&case);
     let simulation = match Simulation::start(case, comm) {

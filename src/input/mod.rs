@@ -7,6 +7,7 @@
 mod document;
 mod file;
 mod forms;
+mod names;
 mod overlap;
 mod overrides;
 mod quantity;
@@ -22,8 +23,8 @@ use std::path::{Path, PathBuf};
 use crate::model::Case;
 use source::{Complaint, Sources};
 
-pub use file::text;
-pub use warnings::{Approach, advice, approaches, warnings};
+pub use file::{content, open_regular, text};
+pub use warnings::{Approach, advice, approaches, expected_step, warnings};
 
 /// Why a case cannot be read. `Display` is the whole message for the user, several lines long.
 #[derive(Debug, thiserror::Error)]
@@ -33,21 +34,8 @@ pub enum InputError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// What the system says, or that it is no regular file or too long.
         cause: std::io::Error,
-    },
-    /// The file is longer than any case.
-    #[error(
-        "error: the case {} has {size}, more than the {} MB that a case may have: is it a file of \
-         results?",
-        path.display(),
-        file::MOST_BYTES / 1_000_000
-    )]
-    TooLong {
-        /// The file.
-        path: PathBuf,
-        /// How much it has, in words.
-        size: String,
     },
     /// The file is no text.
     #[error(

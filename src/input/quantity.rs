@@ -5,7 +5,8 @@ use std::marker::PhantomData;
 
 use serde::de::{Deserialize, Deserializer, Error, Visitor};
 
-use super::units::{Powers, parse};
+use super::units::{Powers, parse, unit_of};
+use crate::model::readable::short;
 
 /// Names of dimensions, to say what was found where something else was expected.
 const NAMES: &[(Powers, &str)] = &[
@@ -29,6 +30,9 @@ const NAMES: &[(Powers, &str)] = &[
     ([2, 1, -2, 0, 0], "an energy"),
 ];
 
+/// A length cannot count more particle spacings.
+const MOST_SPACINGS: f64 = 1e12;
+
 /// A kind of quantity that an input key can ask for.
 pub trait Kind {
     /// Its dimension.
@@ -37,10 +41,13 @@ pub trait Kind {
     const NAME: &'static str;
     /// How to write one.
     const EXAMPLE: &'static str;
+    /// No value is as large, in SI units, and why: a slip in a number or in its unit is told before
+    /// it makes infinities.
+    const BEYOND: (f64, &'static str);
 }
 
 macro_rules! kinds {
-    ($($(#[$doc:meta])+ $kind:ident = $powers:expr, $name:literal, $example:literal;)+) => { $(
+    ($($(#[$doc:meta])+ $kind:ident = $powers:expr, $name:literal, $example:literal, $most:literal $why:literal;)+) => { $(
         $(#[$doc])+
         #[derive(Debug, Clone, Copy)]
         pub struct $kind;
@@ -48,41 +55,42 @@ macro_rules! kinds {
             const POWERS: Powers = $powers;
             const NAME: &'static str = $name;
             const EXAMPLE: &'static str = $example;
+            const BEYOND: (f64, &'static str) = ($most, $why);
         }
     )+ };
 }
 
 kinds! {
     /// Metres.
-    Length = [1, 0, 0, 0, 0], "a length", "0.02 mm";
+    Length = [1, 0, 0, 0, 0], "a length", "0.02 mm", 1e9 "farther than the Moon";
     /// Seconds.
-    Time = [0, 0, 1, 0, 0], "a time", "0.2 us";
+    Time = [0, 0, 1, 0, 0], "a time", "0.2 us", 1e10 "more than three centuries";
     /// Metres in a second.
-    Velocity = [1, 0, -1, 0, 0], "a velocity", "7 km/s";
+    Velocity = [1, 0, -1, 0, 0], "a velocity", "7 km/s", 299_792_458.0 "faster than light";
     /// Metres in a second squared.
-    Acceleration = [1, 0, -2, 0, 0], "an acceleration", "9.81 m/s^2";
+    Acceleration = [1, 0, -2, 0, 0], "an acceleration", "9.81 m/s^2", 1e13 "more than the gravity of a neutron star";
     /// Kilograms in a cubic metre.
-    Density = [-3, 1, 0, 0, 0], "a density", "2785 kg/m^3";
+    Density = [-3, 1, 0, 0, 0], "a density", "2785 kg/m^3", 1e6 "denser than anything on Earth: osmium has 22600 kg/m^3";
     /// Pascals: pressures, stresses and moduli.
-    Pressure = [-1, 1, -2, 0, 0], "a pressure or modulus", "0.26 GPa";
+    Pressure = [-1, 1, -2, 0, 0], "a pressure or modulus", "0.26 GPa", 1e17 "more than the pressure in the middle of the Sun";
     /// Radians.
-    Angle = [0, 0, 0, 0, 1], "an angle", "30 deg";
+    Angle = [0, 0, 0, 0, 1], "an angle", "30 deg", 1e6 "more turns than an angle keeps digits for";
     /// Radians in a second.
-    AngularRate = [0, 0, -1, 0, 1], "an angular rate", "100 rad/s";
+    AngularRate = [0, 0, -1, 0, 1], "an angular rate", "100 rad/s", 3e11 "so fast that a rim of a millimetre would outrun light";
     /// Kelvins.
-    Temperature = [0, 0, 0, 1, 0], "a temperature", "300 K";
+    Temperature = [0, 0, 0, 1, 0], "a temperature", "300 K", 1e9 "hotter than the middle of any star";
     /// Joules per kilogram.
-    SpecificEnergy = [2, 0, -2, 0, 0], "a specific energy", "2.5 MJ/kg";
+    SpecificEnergy = [2, 0, -2, 0, 0], "a specific energy", "2.5 MJ/kg", 9e16 "more than the energy of all its mass";
     /// Joules per kilogram and kelvin.
-    SpecificHeat = [2, 0, -2, -1, 0], "a specific heat", "896 J/(kg K)";
+    SpecificHeat = [2, 0, -2, -1, 0], "a specific heat", "896 J/(kg K)", 1e7 "far beyond that of any matter: hydrogen has 14300 J/(kg K)";
     /// Pascal seconds.
-    Viscosity = [-1, 1, -1, 0, 0], "a dynamic viscosity", "1 mPa s";
+    Viscosity = [-1, 1, -1, 0, 0], "a dynamic viscosity", "1 mPa s", 1e25 "stiffer than the mantle of the Earth";
     /// Per second.
-    Rate = [0, 0, -1, 0, 0], "a rate", "1/s";
+    Rate = [0, 0, -1, 0, 0], "a rate", "1/s", 1e18 "faster than atoms vibrate";
     /// Per pascal.
-    PerPressure = [1, -1, 2, 0, 0], "an inverse pressure", "6.52/Mbar";
+    PerPressure = [1, -1, 2, 0, 0], "an inverse pressure", "6.52/Mbar", 1.0 "that of matter that a pascal changes";
     /// Per kelvin.
-    PerTemperature = [0, 0, 0, -1, 0], "an inverse temperature", "6.16e-4/K";
+    PerTemperature = [0, 0, 0, -1, 0], "an inverse temperature", "6.16e-4/K", 10.0 "that of matter that a tenth of a kelvin melts";
 }
 
 /// A number in SI units that was written with a unit of the kind. Zero needs none.
@@ -90,6 +98,8 @@ kinds! {
 pub struct Quantity<K> {
     /// Value in SI units.
     pub si: f64,
+    /// One of the unit that it was written with, in SI units.
+    pub unit: f64,
     kind: PhantomData<K>,
 }
 
@@ -138,7 +148,7 @@ impl<'de> Deserialize<'de> for Extent {
                     .strip_suffix("spacings")
                     .or(text.strip_suffix("spacing"));
                 match number.map(|n| n.trim().parse::<f64>()) {
-                    Some(Ok(count)) if count.is_finite() => Ok(Self::Spacings(count)),
+                    Some(Ok(count)) if count.abs() < MOST_SPACINGS => Ok(Self::Spacings(count)),
                     _ => quantity::<Length>(text).map(|length| Self::Metres(length.si)),
                 }
             },
@@ -169,7 +179,8 @@ impl<T> Visitor<'_> for TextVisitor<T> {
         }
         let expected = (self.expected)();
         Err(E::custom(format!(
-            "expected {expected}, found the plain number {value}"
+            "expected {expected}, found the plain number {}",
+            short(value)
         )))
     }
 
@@ -192,8 +203,14 @@ fn quantity<K: Kind>(text: &str) -> Result<Quantity<K>, String> {
         let found = found.map_or("a quantity of another dimension", |(_, name)| name);
         return Err(format!("expected {}, found {found}", expected::<K>("")));
     }
+    let (most, why) = K::BEYOND;
+    if si.abs() >= most {
+        let text = text.trim();
+        return Err(format!("`{text}` is {why}; check the number and its unit"));
+    }
     Ok(Quantity {
         si,
+        unit: unit_of(text),
         kind: PhantomData,
     })
 }

@@ -49,7 +49,7 @@ tables! {
     /// The whole document.
     CaseParams {
         /// One line for reports and plots.
-        title: Option<String>,
+        title: Option<Spanned<String>>,
         /// 1, 2 or 3.
         dimension: Spanned<i64>,
         /// Particle spacing of every body that sets no own.
@@ -396,7 +396,7 @@ optional_tables! {
         /// Steps between rows of the histories.
         history_every: Option<Spanned<i64>>,
         /// Snapshot fields.
-        fields: Vec<Spanned<String>>,
+        fields: Option<Spanned<Vec<Spanned<String>>>>,
     }
 }
 

@@ -116,7 +116,7 @@ impl Sources {
 }
 
 /// The name closest to `word`, if one is near enough to be a slip of the finger.
-fn nearest<'a>(word: &str, names: &[&'a str]) -> Option<&'a str> {
+pub fn nearest<'a>(word: &str, names: &[&'a str]) -> Option<&'a str> {
     names
         .iter()
         .map(|name| (distance(word, name), *name))

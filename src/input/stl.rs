@@ -1,13 +1,16 @@
 //! Surfaces of triangles from STL files, binary or ASCII.
 
-use std::io::Cursor;
+use std::io::{self, Cursor};
 use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
+use super::file;
 use super::source::Complaint;
 use crate::model::{Loads, SurfaceFile};
 
+/// Longest file that is read as a surface (bytes): 20 million triangles of a binary file.
+const LONGEST: u64 = 1_000_000_000;
 /// Bytes of a binary file before its triangles, and of each of these.
 const HEAD: usize = 84;
 const TRIANGLE: usize = 50;
@@ -18,9 +21,14 @@ type Triangle = [[f64; 3]; 3];
 /// Reads the triangles of a file, in its own units.
 ///
 /// # Errors
-/// What is wrong, as the end of "cannot read `file`: …".
-pub fn read(path: &Path) -> Result<(Vec<Triangle>, SurfaceFile), String> {
-    let mut bytes = std::fs::read(path).map_err(|cause| cause.to_string())?;
+/// What is wrong, as the end of "cannot take the surface `file`: …"; of
+/// [`io::ErrorKind::NotFound`] if there is no such file.
+pub fn read(path: &Path) -> io::Result<(Vec<Triangle>, SurfaceFile)> {
+    let bytes = file::content(path, LONGEST, "a surface")?;
+    take_apart(bytes, path).map_err(io::Error::other)
+}
+
+fn take_apart(mut bytes: Vec<u8>, path: &Path) -> Result<(Vec<Triangle>, SurfaceFile), String> {
     let digest = Sha256::digest(&bytes);
     let file = SurfaceFile {
         path: absolute(path),
@@ -105,7 +113,8 @@ mod tests {
     fn triangles(bytes: &[u8]) -> Result<usize, String> {
         let file = tempfile::NamedTempFile::new().expect("a file");
         std::fs::write(file.path(), bytes).expect("written");
-        read(file.path()).map(|(soup, _)| soup.len())
+        let read = read(file.path()).map_err(|cause| cause.to_string());
+        read.map(|(soup, _)| soup.len())
     }
 
     fn binary(header: &[u8], count: u32) -> Vec<u8> {

@@ -75,6 +75,12 @@ pub fn parse(text: &str) -> Result<(f64, Powers), String> {
     }
 }
 
+/// One of the unit that a number is written with, in SI units.
+pub fn unit_of(text: &str) -> f64 {
+    let unit = split_number(text.trim()).map_or("", |(_, _, unit)| unit);
+    parse(&format!("1{unit}")).map_or(1.0, |(size, _)| size)
+}
+
 /// Mantissa, decimal exponent and what follows the number.
 fn split_number(text: &str) -> Option<(&str, i32, &str)> {
     let digits = |s: &str| s.bytes().take_while(u8::is_ascii_digit).count();

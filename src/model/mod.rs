@@ -10,6 +10,7 @@ mod control;
 mod distance;
 mod load;
 mod motion;
+pub mod readable;
 mod surface;
 mod trouble;
 
@@ -33,6 +34,7 @@ pub use surface::{
 pub use trouble::{Trouble, TroublePolicy};
 
 use crate::material::Material;
+use readable::Readable;
 
 /// A vector of three components (m, m/s, …).
 pub type Vec3 = nalgebra::Vector3<f64>;
@@ -42,6 +44,8 @@ pub type Vec3 = nalgebra::Vector3<f64>;
 pub struct Case {
     /// One line for reports and plots.
     pub title: String,
+    /// The unit of length that the input speaks in: that of its spacing.
+    pub length_unit: Readable,
     /// Number of space dimensions: 1 (uniaxial strain), 2 (plane strain) or 3.
     pub dimension: usize,
     /// Materials, in the order of the input.

@@ -2,12 +2,13 @@
 
 use std::ffi::OsString;
 use std::fs::{self, File};
-use std::io::Write;
+use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
 use super::OutputError;
+use crate::input;
 
 /// What unfinished files and folders end with.
 pub(super) const PARTIAL: &str = ".partial";
@@ -48,25 +49,16 @@ pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), OutputError
 /// Bytes of one of our small files at most: the manifest of a checkpoint of 60 TB has so many.
 const SMALL: u64 = 64 << 20;
 
-/// The length of a file that anybody may have made and that can be opened; a pipe or a device, which
-/// would keep its reader for ever, is refused.
+/// The length of a regular file that anybody may have made and that can be opened.
 ///
 /// # Errors
 /// [`OutputError::Io`].
 pub(super) fn length_of_regular(action: &'static str, path: &Path) -> Result<u64, OutputError> {
-    let regular = |meta: &fs::Metadata| {
-        let what = "it is a folder, a pipe or a device";
-        let odd = std::io::Error::new(std::io::ErrorKind::InvalidInput, what);
-        if meta.is_file() {
-            Ok(meta.len())
-        } else {
-            Err(odd)
-        }
-    };
-    fs::metadata(path)
-        .and_then(|meta| regular(&meta))
-        .and_then(|length| File::open(path).map(|_| length))
-        .map_err(OutputError::io(action, path))
+    let opened = input::open_regular(path);
+    opened.map_or_else(
+        |e| Err(OutputError::io(action, path)(e)),
+        |(_, length)| Ok(length),
+    )
 }
 
 /// Reads a whole file that anybody may have made.
@@ -74,21 +66,24 @@ pub(super) fn length_of_regular(action: &'static str, path: &Path) -> Result<u64
 /// # Errors
 /// [`OutputError::Io`].
 pub fn read_regular(path: &Path) -> Result<Vec<u8>, OutputError> {
-    length_of_regular("read", path)?;
-    fs::read(path).map_err(OutputError::io("read", path))
+    let content = input::open_regular(path).and_then(|(mut file, _)| {
+        let mut content = Vec::new();
+        file.read_to_end(&mut content).map(|_| content)
+    });
+    content.map_err(OutputError::io("read", path))
 }
 
 /// Reads one of our small files, which anybody may have made.
 ///
 /// # Errors
-/// [`OutputError::Io`], [`OutputError::Damaged`] if it is not small.
+/// [`OutputError::Io`], [`OutputError::Damaged`] if it is no regular file or not small.
 pub fn read_small(path: &Path) -> Result<Vec<u8>, OutputError> {
-    let length = length_of_regular("read", path)?;
-    if length > SMALL {
-        let what = format!("it has {length} bytes, {SMALL} are possible");
-        return Err(OutputError::damaged(path, what));
-    }
-    read_regular(path)
+    input::content(path, SMALL, "such a file").map_err(|error| match error.kind() {
+        ErrorKind::InvalidInput | ErrorKind::FileTooLarge => {
+            OutputError::damaged(path, error.to_string())
+        }
+        _ => OutputError::io("read", path)(error),
+    })
 }
 
 /// Gives a finished file or folder its name, and makes that last.
@@ -159,6 +154,6 @@ mod tests {
         let path = folder.path().join("manifest.json");
         assert!(refused(&path).contains("No such file"));
         File::create(&path).unwrap().set_len(1 << 40).unwrap();
-        assert!(refused(&path).contains("67108864 are possible"));
+        assert!(refused(&path).contains("67 MB that such a file may have"));
     }
 }

@@ -1,11 +1,12 @@
 //! Tables of a run: a row now and then, as comma-separated values.
 
-use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use super::{OutputError, write_atomically};
+use csv::ByteRecord;
+
+use super::{OutputError, sheet, write_atomically};
 
 /// One value of a row.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,7 +15,7 @@ pub enum Value<'a> {
     Real(f64),
     /// A count.
     Count(u64),
-    /// A word without commas, quotes or line ends.
+    /// A name or another word.
     Word(&'a str),
 }
 
@@ -63,7 +64,6 @@ pub struct Table {
     path: PathBuf,
     file: File,
     columns: usize,
-    line: String,
 }
 
 impl Table {
@@ -72,7 +72,7 @@ impl Table {
     /// # Errors
     /// [`OutputError::Io`].
     pub fn create(path: &Path, columns: &[Column]) -> Result<Self, OutputError> {
-        write_atomically(path, header(columns).as_bytes())?;
+        write_atomically(path, &header(columns))?;
         Self::append(path, columns.len())
     }
 
@@ -91,10 +91,9 @@ impl Table {
         if !path.exists() {
             return Self::create(path, columns);
         }
-        let text = fs::read(path).map_err(OutputError::io("read", path))?;
-        let text = String::from_utf8_lossy(&text);
+        let content = fs::read(path).map_err(OutputError::io("read", path))?;
         let header = header(columns);
-        let Some(rows) = text.strip_prefix(&header) else {
+        let Some(rows) = content.strip_prefix(&header[..]) else {
             let what = "its columns are not those that this run writes; move it away";
             return Err(OutputError::damaged(path, what));
         };
@@ -103,20 +102,15 @@ impl Table {
             return Err(OutputError::damaged(path, what));
         };
         let mut kept = header;
-        for (number, line) in rows.split_inclusive('\n').enumerate() {
-            if !line.ends_with('\n') {
-                break;
-            }
-            let value = line.trim_end().split(',').nth(key);
-            let Some(value) = value.and_then(|value| value.parse::<f64>().ok()) else {
-                let what = format!("row {} has no number in column {column}", number + 1);
-                return Err(OutputError::damaged(path, what));
-            };
-            if value <= last {
-                kept.push_str(line);
-            }
-        }
-        write_atomically(path, kept.as_bytes())?;
+        let rows_kept = keep(rows, columns.len(), key, last);
+        kept.extend(rows_kept.map_err(|number| {
+            let what = format!(
+                "row {number} has not {} values with a number in column {column}",
+                columns.len()
+            );
+            OutputError::damaged(path, what)
+        })?);
+        write_atomically(path, &kept)?;
         Self::append(path, columns.len())
     }
 
@@ -126,7 +120,6 @@ impl Table {
             path: path.to_owned(),
             file: file.map_err(OutputError::io("open", path))?,
             columns,
-            line: String::new(),
         })
     }
 
@@ -139,33 +132,55 @@ impl Table {
     /// If the row has not one value for each column.
     pub fn row(&mut self, values: &[Value]) -> Result<(), OutputError> {
         assert_eq!(values.len(), self.columns, "a row of the wrong length");
-        self.line.clear();
-        for (k, value) in values.iter().enumerate() {
-            let comma = if k == 0 { "" } else { "," };
-            let _ = match value {
-                // `Debug` uses an exponent where it is shorter; both round-trip.
-                Value::Real(number) => write!(self.line, "{comma}{number:?}"),
-                Value::Count(count) => write!(self.line, "{comma}{count}"),
-                Value::Word(word) => write!(self.line, "{comma}{word}"),
-            };
-        }
-        self.line.push('\n');
-        let written = self.file.write_all(self.line.as_bytes());
+        let line = sheet::line(values.iter().map(|value| match value {
+            // `Debug` uses an exponent where it is shorter; both round-trip.
+            Value::Real(number) => format!("{number:?}"),
+            Value::Count(count) => count.to_string(),
+            Value::Word(word) => (*word).to_owned(),
+        }));
+        let written = self.file.write_all(&line);
         written.map_err(OutputError::io("write", &self.path))
     }
 }
 
-fn header(columns: &[Column]) -> String {
-    let join = |part: fn(&Column) -> &str| columns.iter().map(part).collect::<Vec<_>>().join(",");
-    let unit = |c: &'_ Column| -> String {
-        if c.unit.is_empty() {
-            "-".to_owned()
-        } else {
-            c.unit.clone()
+/// The bytes of those `rows` whose number in column `key` is at most `last`, without a half-written
+/// row at the end; or the number of the first row that is wrong.
+fn keep(rows: &[u8], columns: usize, key: usize, last: f64) -> Result<Vec<u8>, usize> {
+    let mut kept = Vec::new();
+    let mut reader = sheet::rows(rows);
+    let mut record = ByteRecord::new();
+    let mut begin = 0;
+    for number in 1_usize.. {
+        if !reader.read_byte_record(&mut record).map_err(|_| number)? {
+            break;
         }
+        let end = usize::try_from(reader.position().byte()).unwrap_or(rows.len());
+        let is_last = end == rows.len();
+        let row = &rows[begin..end];
+        // A quote that is still open has swallowed the end of the line.
+        let closed = row.iter().filter(|byte| **byte == b'"').count() % 2 == 0;
+        let whole = record.len() == columns && row.ends_with(b"\n") && closed;
+        if is_last && !whole {
+            break;
+        }
+        let value = record.get(key).filter(|_| record.len() == columns);
+        let value = value.and_then(|value| std::str::from_utf8(value).ok()?.parse::<f64>().ok());
+        if value.ok_or(number)? <= last {
+            kept.extend_from_slice(row);
+        }
+        begin = end;
+    }
+    Ok(kept)
+}
+
+fn header(columns: &[Column]) -> Vec<u8> {
+    let unit = |c: &Column| match c.unit.as_str() {
+        "" => "-".to_owned(),
+        unit => unit.to_owned(),
     };
-    let units = columns.iter().map(unit).collect::<Vec<_>>().join(",");
-    format!("# units: {units}\n{}\n", join(|c| &c.name))
+    let mut lines = sheet::units_line(columns.iter().map(unit));
+    lines.extend(sheet::line(columns.iter().map(|c| &c.name)));
+    lines
 }
 
 #[cfg(test)]
@@ -226,6 +241,48 @@ mod tests {
         assert_eq!(text.lines().count(), 2 + 5);
         Table::resume(&path, &columns(), "time", 9.0).unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), text);
+    }
+
+    #[test]
+    fn names_with_commas_quotes_and_line_ends_stay_in_their_columns() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("contacts.csv");
+        let names = ["bumper, front", "a \"b\"", "two\nlines", "plain"];
+        let row = |step: u64, name| [Value::Count(step), Value::Real(0.5), Value::Word(name)];
+        let mut table = Table::create(&path, &columns()).unwrap();
+        for (step, name) in (0..).zip(names) {
+            table.row(&row(step, name)).unwrap();
+        }
+        drop(table);
+        let whole = fs::read_to_string(&path).unwrap();
+        let sheet = sheet::Sheet::parse(&whole).unwrap();
+        let read: Vec<&str> = sheet
+            .rows
+            .iter()
+            .map(|(_, cells)| cells[2].as_str())
+            .collect();
+        assert_eq!(read, names);
+        // Cut off anywhere in its last row, the table goes on as if that had never been begun.
+        let last = whole.find("3,0.5,plain").unwrap();
+        for cut in last..whole.len() {
+            fs::write(&path, &whole[..cut]).unwrap();
+            let mut table = Table::resume(&path, &columns(), "step", 9.0).unwrap();
+            table.row(&row(3, "plain")).unwrap();
+            assert_eq!(fs::read_to_string(&path).unwrap(), whole, "cut at {cut}");
+        }
+        Table::resume(&path, &columns(), "step", 2.0).unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), whole[..last]);
+        // A quote that is never closed hides all that follows.
+        fs::write(&path, format!("{}0,0.5,\"open\n", &whole[..last])).unwrap();
+        Table::resume(&path, &columns(), "step", 9.0).unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), whole[..last]);
+        // A row too short in the middle.
+        fs::write(&path, whole.replace("1,0.5,", "1,0.5\n")).unwrap();
+        let error = Table::resume(&path, &columns(), "step", 9.0).unwrap_err();
+        assert!(
+            error.to_string().contains("row 2 has not 3 values"),
+            "{error}"
+        );
     }
 
     #[test]

@@ -5,6 +5,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use crate::model::readable::printable;
+
 /// Lines of `log.txt`, each with the time since the start and the rank. Any rank may write; a
 /// line goes out in one call, to the end of the file, at once.
 #[derive(Debug)]
@@ -35,6 +37,7 @@ impl Log {
         }
         if let Some(file) = &mut self.file {
             let seconds = self.start.elapsed().as_secs_f64();
+            let text = printable(text);
             let line = format!("[{seconds:10.3} s] rank {}: {text}\n", self.rank);
             let _ = file.write_all(line.as_bytes());
         }

@@ -16,6 +16,7 @@ mod rows;
 mod run_folder;
 mod schedule;
 pub mod series;
+mod sheet;
 pub mod snapshot;
 mod vote;
 
@@ -26,6 +27,7 @@ pub use log::Log;
 pub use rows::{Block, Rows};
 pub use run_folder::{Phase, RunFolder, Status};
 pub use schedule::Schedule;
+pub use sheet::Sheet;
 pub use vote::{agree, on_root};
 
 /// The program's version.

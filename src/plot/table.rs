@@ -3,6 +3,11 @@
 use std::path::Path;
 
 use super::PlotError;
+use crate::input;
+use crate::output::Sheet;
+
+/// Longest file that is read as a table (bytes).
+const LONGEST: u64 = 4_000_000_000;
 
 /// A table in columns of numbers.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +26,9 @@ impl Table {
     /// # Errors
     /// [`PlotError::Table`] if the file cannot be read or is no table.
     pub fn read(path: &Path) -> Result<Self, PlotError> {
-        let text = std::fs::read_to_string(path).map_err(|e| wrong(path, e.to_string()))?;
+        let content = input::content(path, LONGEST, "a table");
+        let content = content.map_err(|e| wrong(path, e.to_string()))?;
+        let text = String::from_utf8(content).map_err(|e| wrong(path, e.to_string()))?;
         Self::parse(&text).map_err(|reason| wrong(path, reason))
     }
 
@@ -30,18 +37,7 @@ impl Table {
     /// # Errors
     /// What is wrong, and in which line.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let cells = |line: &str| -> Vec<String> {
-            line.split(',').map(|cell| cell.trim().to_owned()).collect()
-        };
-        let units = text.lines().find_map(|line| line.strip_prefix("# units:"));
-        let mut lines = (1..)
-            .zip(text.lines())
-            .filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
-        let (_, header) = lines.next().ok_or("it is empty")?;
-        let names = cells(header);
-        let mut units = units.map_or_else(Vec::new, cells);
-        units.resize(names.len(), String::new());
-        let rows: Vec<_> = lines.map(|(number, line)| (number, cells(line))).collect();
+        let Sheet { names, units, rows } = Sheet::parse(text)?;
         if rows.is_empty() {
             return Err("it has no rows yet".to_owned());
         }

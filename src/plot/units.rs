@@ -1,96 +1,8 @@
 //! Units as people read and type them, with the prefix that keeps numbers short.
 
 use super::PlotError;
-
-/// Prefixes in steps of a thousand, largest first.
-const PREFIXES: [(&str, f64); 9] = [
-    ("T", 1e12),
-    ("G", 1e9),
-    ("M", 1e6),
-    ("k", 1e3),
-    ("", 1.0),
-    ("m", 1e-3),
-    ("µ", 1e-6),
-    ("n", 1e-9),
-    ("p", 1e-12),
-];
-
-/// Units that take a prefix, as the first factor of the whole unit.
-const PREFIXABLE: [&str; 7] = ["Pa", "m", "s", "J", "N", "W", "Hz"];
-
-/// A unit chosen so that the numbers before it are short.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Readable {
-    /// SI value of one readable unit.
-    pub size: f64,
-    /// Its name; empty for a pure number.
-    pub name: String,
-}
-
-impl Readable {
-    /// The unit in which values up to `largest` (SI) are easy to read.
-    pub fn new(unit: &str, largest: f64) -> Self {
-        let unit = tidy(unit);
-        let head = unit.split(['/', '·', ' ']).next().unwrap_or_default();
-        if PREFIXABLE.contains(&head) {
-            return Self::prefixed(&unit, largest);
-        }
-        let power = power_of_thousand(largest);
-        let factor = match power {
-            0 => String::new(),
-            _ => format!("10{}", superscript(power)),
-        };
-        let name = match (factor.is_empty(), unit.is_empty()) {
-            (true, _) => unit,
-            (false, true) => factor,
-            (false, false) => format!("{factor} {unit}"),
-        };
-        Self {
-            size: 10_f64.powi(power),
-            name,
-        }
-    }
-
-    /// The largest prefix that leaves at least one unit, or a tenth for lengths and times, which
-    /// read well so: 0.2 µs, 0.6 mm.
-    fn prefixed(unit: &str, largest: f64) -> Self {
-        let (least, top) = match unit {
-            "s" => (0.1, 1.0),
-            "m" => (0.1, 1e3),
-            _ => (1.0, f64::INFINITY),
-        };
-        let fits = |prefix: &&(&str, f64)| prefix.1 <= top && largest >= least * prefix.1;
-        let (prefix, size) = PREFIXES.iter().find(fits).copied().unwrap_or(("", 1.0));
-        Self {
-            size,
-            name: format!("{prefix}{unit}"),
-        }
-    }
-
-    /// `"pressure (GPa)"`.
-    pub fn label(&self, quantity: &str) -> String {
-        if self.name.is_empty() {
-            quantity.to_owned()
-        } else {
-            format!("{quantity} ({})", self.name)
-        }
-    }
-
-    /// A value in SI as a number of this unit with a number of decimals.
-    pub fn number(&self, value: f64, decimals: usize) -> String {
-        fixed(value / self.size, decimals)
-    }
-}
-
-/// A number with a true minus sign, and no minus before zero.
-pub fn fixed(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$}");
-    match text.strip_prefix('-') {
-        Some(digits) if digits.bytes().all(|b| b == b'0' || b == b'.') => digits.to_owned(),
-        Some(digits) => format!("−{digits}"),
-        None => text,
-    }
-}
+use crate::model::readable::{PREFIXES, tidy};
+pub use crate::model::readable::{Readable, fixed, superscript};
 
 /// The number of decimals that shows about three digits of `largest`.
 pub fn decimals(largest: f64) -> usize {
@@ -219,68 +131,9 @@ fn in_unit(unit: &str) -> String {
     }
 }
 
-/// `"kg/m^3"` as `"kg/m³"`, `"1"` and `"-"` as nothing.
-fn tidy(unit: &str) -> String {
-    match unit.trim() {
-        "1" | "-" | "none" => String::new(),
-        unit => unit
-            .replace("^2", "²")
-            .replace("^3", "³")
-            .replace("**2", "²")
-            .replace("**3", "³")
-            .replace('*', "·"),
-    }
-}
-
-/// Exponent of the power of a thousand taken out of numbers that would be long: below 0.01 or
-/// from 100,000 on.
-fn power_of_thousand(largest: f64) -> i32 {
-    if !largest.is_finite() || largest == 0.0 || (1e-2..1e5).contains(&largest) {
-        return 0;
-    }
-    #[expect(clippy::cast_possible_truncation, reason = "within ±108")]
-    let power = (largest.log10() / 3.0).floor() as i32;
-    3 * power
-}
-
-/// A whole number in small raised digits.
-pub fn superscript(power: i32) -> String {
-    let digits = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    power
-        .to_string()
-        .bytes()
-        .map(|b| match b {
-            b'-' => '⁻',
-            digit => digits[usize::from(digit - b'0')],
-        })
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn name(unit: &str, largest: f64) -> String {
-        Readable::new(unit, largest).name
-    }
-
-    #[test]
-    fn picks_prefixes_that_keep_numbers_short() {
-        assert_eq!(name("Pa", 97.6e9), "GPa");
-        assert_eq!(name("Pa", 0.26e9), "MPa");
-        assert_eq!(name("m/s", 7000.0), "km/s");
-        assert_eq!(name("s", 0.2e-6), "µs");
-        assert_eq!(name("s", 1.0), "s");
-        assert_eq!(name("m", 1.5e-3), "mm");
-        assert_eq!(name("m", 0.584), "m");
-        assert_eq!(name("J/kg", 2.4e7), "MJ/kg");
-        assert_eq!(name("kg/m^3", 2785.0), "kg/m³");
-        assert_eq!(name("1", 0.3), "");
-        assert_eq!(name("1", 0.0), "");
-        assert_eq!(name("1/s", 3e7), "10⁶ 1/s");
-        assert_eq!(name("K", 9000.0), "K");
-        assert_eq!(name("Pa", 0.0), "Pa");
-    }
 
     #[test]
     fn reads_quantities_with_prefixes() {
@@ -307,11 +160,5 @@ mod tests {
         );
         assert!(parse_span("3:1 km/s", None, "m/s").is_err());
         assert!(parse_span("3 km/s", None, "m/s").is_err());
-    }
-
-    #[test]
-    fn numbers_carry_a_true_minus_sign() {
-        assert_eq!(fixed(-0.25, 2), "−0.25");
-        assert_eq!(fixed(-1e-9, 1), "0.0");
     }
 }

@@ -14,6 +14,7 @@ use super::vector::square;
 use super::vote::Moved;
 use crate::comm::Comm;
 use crate::diagnose::exact_sum::ExactSum;
+use crate::model::readable::{short, shown};
 use crate::model::{Case, Trouble, TroublePolicy};
 
 /// What is wrong with a particle, the worst first.
@@ -56,27 +57,28 @@ impl TroubleKind {
         match self {
             Self::NotFinite => "has a non-finite or absurd state".to_owned(),
             Self::Density => format!(
-                "has a density outside of {:e} to {:e} of that at the start \
+                "has a density outside of {} to {} of that at the start \
                  (trouble.density_min, density_max)",
-                limits.density_min, limits.density_max
+                short(limits.density_min),
+                short(limits.density_max)
             ),
             Self::Energy => format!(
-                "has a specific energy beyond {:e} J/kg (trouble.energy_max)",
-                limits.energy_max
+                "has a specific energy beyond {} (trouble.energy_max)",
+                shown(limits.energy_max, "J/kg")
             ),
             Self::Speed => format!(
-                "is faster than {:e} m/s (trouble.speed_max)",
-                limits.speed_max
+                "is faster than {} (trouble.speed_max)",
+                shown(limits.speed_max, "m/s")
             ),
             Self::Step => format!(
-                "asks for a time step below {:e} s (trouble.step_min)",
-                limits.step_min
+                "asks for a time step below {} (trouble.step_min)",
+                shown(limits.step_min, "s")
             ),
             Self::Gain => format!(
-                "is the fastest where the kinetic energy of all is beyond {:e} times the energy that \
+                "is the fastest where the kinetic energy of all is beyond {} times the energy that \
                  there was or has been put in: the sums are not stable, more viscosity (sph.alpha) or \
                  shorter steps (time_step) may help (trouble.gain_max)",
-                limits.gain_max
+                short(limits.gain_max)
             ),
         }
     }

@@ -8,6 +8,7 @@ use super::trouble::{Limits, PAST_VOTES, PastVote, TroubleKind};
 use super::vector::square;
 use crate::comm::Comm;
 use crate::model::Case;
+use crate::model::readable::{shown, shown_vector};
 use crate::particles::ParticleStore;
 use crate::sph::momentum::Viscosity;
 use crate::sph::stress_points;
@@ -323,21 +324,21 @@ impl Voter<'_> {
 
 fn describe(store: &ParticleStore, case: &Case, i: usize, rank: usize) -> String {
     format!(
-        "body `{}`, rank {rank}, position {:?} m, velocity {:?} m/s, density {} kg/m^3, \
-         specific energy {} J/kg, pressure {} Pa, sound speed {} m/s; nearest particles {}",
+        "body `{}`, rank {rank}, position {}, velocity {}, density {}, specific energy {}, \
+         pressure {}, sound speed {}; nearest particles {}",
         case.bodies[store.body[i] as usize].name,
-        store.position[i],
-        store.velocity[i],
-        store.density[i],
-        store.specific_energy[i],
-        store.pressure[i],
-        store.sound_speed[i],
-        nearest(store, i),
+        case.length_unit.vector(&store.position[i]),
+        shown_vector(&store.velocity[i], "m/s"),
+        shown(store.density[i], "kg/m^3"),
+        shown(store.specific_energy[i], "J/kg"),
+        shown(store.pressure[i], "Pa"),
+        shown(store.sound_speed[i], "m/s"),
+        nearest(store, case, i),
     )
 }
 
 /// The particles nearest to particle `i` of those that this rank holds: id, body, distance.
-fn nearest(store: &ParticleStore, i: usize) -> String {
+fn nearest(store: &ParticleStore, case: &Case, i: usize) -> String {
     let here = store.position[i];
     let distance = |there: &[f64; 3]| {
         let square: f64 = (0..3)
@@ -357,7 +358,10 @@ fn nearest(store: &ParticleStore, i: usize) -> String {
     let described: Vec<String> = others
         .iter()
         .take(3)
-        .map(|&(r, k)| format!("{} of body {} at {r:.4e} m", store.id[k], store.body[k]))
+        .map(|&(r, k)| {
+            let distance = case.length_unit.text(r);
+            format!("{} of body {} at {distance}", store.id[k], store.body[k])
+        })
         .collect();
     if described.is_empty() {
         "unknown".to_owned()

@@ -37,6 +37,7 @@ pub fn body(name: &str, shape: Shape, spacing: f64, velocity: Vec3) -> Body {
 pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
     Case {
         title: "test".into(),
+        length_unit: whipple::model::readable::Readable::length(1.0),
         dimension,
         materials: vec![library::find("aluminium-2024").expect("in the library")],
         bodies,

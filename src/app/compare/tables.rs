@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::super::results::ResultsError;
 use super::Report;
+use crate::output::Sheet;
 
 /// The tables of a run, but for what depends on clocks.
 pub fn names(folder: &Path) -> Result<BTreeSet<String>, ResultsError> {
@@ -22,15 +23,22 @@ pub fn names(folder: &Path) -> Result<BTreeSet<String>, ResultsError> {
     Ok(names.filter(is_table).collect())
 }
 
-struct Table<'a> {
-    columns: Vec<&'a str>,
-    rows: BTreeMap<String, Vec<&'a str>>,
+struct Table {
+    columns: Vec<String>,
+    rows: BTreeMap<String, Vec<String>>,
 }
 
 /// Compares the rows that both have: rows of the same step (of the same time where there is no
 /// step) and the same bodies.
 pub fn compare(name: &str, a: &str, b: &str, report: &mut Report) {
-    let (a, b) = (parse(a), parse(b));
+    let (a, b) = match (parse(a), parse(b)) {
+        (Ok(a), Ok(b)) => (a, b),
+        // A run that never wrote a row has its header still.
+        (Err(why), _) | (_, Err(why)) => {
+            report.book(name, "", &[format!("no table: {why}")]);
+            return;
+        }
+    };
     if a.columns != b.columns {
         report.book(name, "", &["the columns differ".to_owned()]);
         return;
@@ -47,7 +55,7 @@ pub fn compare(name: &str, a: &str, b: &str, report: &mut Report) {
             .map(|&key| (key, a.rows[key].get(k), b.rows[key].get(k)));
         let different: Vec<_> = pairs.filter(|(_, a, b)| a != b).collect();
         if let Some(&(key, a, b)) = different.first() {
-            let show = |value: Option<&&str>| value.map_or("nothing", |value| *value).to_owned();
+            let show = |value: Option<&String>| value.map_or("nothing", String::as_str).to_owned();
             let sizes = different.iter().map(|(_, a, b)| distance(*a, *b));
             let largest = sizes.fold(0.0, f64::max);
             differences.push(format!(
@@ -71,26 +79,25 @@ pub fn compare(name: &str, a: &str, b: &str, report: &mut Report) {
     }
 }
 
-fn distance(a: Option<&&str>, b: Option<&&str>) -> f64 {
-    let number = |value: Option<&&str>| value.and_then(|value| value.parse::<f64>().ok());
+fn distance(a: Option<&String>, b: Option<&String>) -> f64 {
+    let number = |value: Option<&String>| value.and_then(|value| value.parse::<f64>().ok());
     match (number(a), number(b)) {
         (Some(a), Some(b)) if (a - b).is_finite() => (a - b).abs(),
         _ => f64::INFINITY,
     }
 }
 
-fn parse(text: &str) -> Table<'_> {
-    let mut lines = text.lines().filter(|line| !line.starts_with('#'));
-    let columns: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
-    let main = if columns.contains(&"step") {
+fn parse(text: &str) -> Result<Table, String> {
+    let sheet = Sheet::parse(text)?;
+    let columns = sheet.names;
+    let main = if columns.iter().any(|column| column == "step") {
         "step"
     } else {
         "time"
     };
     let is_key = |column: &str| column == main || column.starts_with("body");
     let mut rows = BTreeMap::new();
-    for line in lines {
-        let values: Vec<&str> = line.split(',').collect();
+    for (_, values) in sheet.rows {
         let keys = columns
             .iter()
             .zip(&values)
@@ -104,7 +111,7 @@ fn parse(text: &str) -> Table<'_> {
             .collect();
         rows.insert(key.join(" "), values);
     }
-    Table { columns, rows }
+    Ok(Table { columns, rows })
 }
 
 #[cfg(test)]
@@ -139,6 +146,15 @@ mod tests {
         assert_eq!(found.different, 1);
         let expected = "  energy: 2 rows differ; first at step            9: 1.5 against 1.75; \
                         largest difference 2.5e-1";
+        assert_eq!(found.lines[1], expected);
+    }
+
+    #[test]
+    fn names_with_commas_stay_in_their_columns() {
+        let a = "# units: s,-,N\ntime,body_a,force\n0.0,\"bumper, front\",-6902\n0.0,rear,48\n";
+        let found = report(a, &a.replace("48", "47"));
+        let expected = "  force: 1 rows differ; first at time 0.0 body_a rear: 48 against 47; \
+                        largest difference 1e0";
         assert_eq!(found.lines[1], expected);
     }
 

@@ -7,6 +7,7 @@ use super::motion::motion;
 use super::shapes::Shapes;
 use super::touch;
 use crate::input::forms::LatticeParams;
+use crate::input::names;
 use crate::input::quantity::{Length, Velocity};
 use crate::input::schema::{BodyParams, LatticeName, Placed};
 use crate::input::source::Complaint;
@@ -16,8 +17,6 @@ use crate::populate;
 
 /// Bounding lattices beyond this are a slip in a unit rather than a body.
 const MOST_SITES: u64 = 100_000_000_000;
-/// Speed of light (m/s).
-const LIGHT: f64 = 299_792_458.0;
 /// Where the first layer above a symmetry plane may lie, in spacings, so that particles neither
 /// sit on their own mirror images nor leave a gap.
 const FIRST_LAYER: (f64, f64) = (0.25, 0.75);
@@ -85,6 +84,7 @@ impl Reader<'_> {
             let title = "a body's name must have a letter";
             return Err(Complaint::new(params.name.span(), title));
         }
+        names::check(&params.name, "body")?;
         let material = self.material(params, table)?;
         let Some(spacing) = params.spacing.as_ref().or(self.spacing) else {
             let title = format!("the body `{name}` has no `spacing`");
@@ -222,10 +222,6 @@ impl Reader<'_> {
         }
         for (component, value) in velocity.iter_mut().zip(params.get_ref()) {
             *component = value.get_ref().si();
-            if component.abs() >= LIGHT {
-                let title = "this velocity is faster than light";
-                return Err(Complaint::new(value.span(), title).help("check its unit"));
-            }
         }
         Ok(velocity)
     }

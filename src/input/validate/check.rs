@@ -6,6 +6,7 @@ use toml::Spanned;
 
 use crate::input::quantity::Quantity;
 use crate::input::source::Complaint;
+use crate::model::readable::short;
 
 /// Values that a key accepts.
 #[derive(Debug, Clone, Copy)]
@@ -57,19 +58,28 @@ fn out_of_range(at: Range<usize>, key: &str, allowed: &str) -> Complaint {
     Complaint::new(at, format!("`{key}` must be {allowed}")).label("out of range")
 }
 
+/// A number without a unit that is larger is a slip, and its powers would be infinite.
+const LARGEST: f64 = 1e9;
+
 /// A plain number or a quantity.
 pub trait Value: Copy {
+    /// No value is larger, in SI units; that of quantities is told as they are read.
+    const LARGEST: f64;
     /// The number, in SI units.
     fn si(self) -> f64;
 }
 
 impl Value for f64 {
+    const LARGEST: f64 = LARGEST;
+
     fn si(self) -> f64 {
         self
     }
 }
 
 impl<K> Value for Quantity<K> {
+    const LARGEST: f64 = f64::INFINITY;
+
     fn si(self) -> f64 {
         self.si
     }
@@ -84,6 +94,10 @@ pub fn number<V: Value>(
 ) -> Result<f64, Complaint> {
     match value {
         None => Ok(default),
+        Some(x) if x.get_ref().si().is_finite() && x.get_ref().si().abs() > V::LARGEST => {
+            let title = format!("`{key}` cannot be larger than {}", short(V::LARGEST));
+            Err(Complaint::new(x.span(), title).label("out of range"))
+        }
         Some(x) if allowed.has(x.get_ref().si()) => Ok(x.get_ref().si()),
         Some(x) => Err(out_of_range(x.span(), key, &allowed.words())),
     }

@@ -7,9 +7,11 @@ use toml::Spanned;
 use super::check::{Allowed, Value, number};
 use super::motion::motion;
 use super::shapes::wrong_length;
+use crate::input::names;
 use crate::input::quantity::Acceleration;
 use crate::input::schema::{CaseParams, LoadParams, Placed, SidesParams};
 use crate::input::source::Complaint;
+use crate::model::readable::Readable;
 use crate::model::{Axis, Body, Loads, SymmetryPlane, VelocityLoad};
 use crate::populate;
 
@@ -18,6 +20,8 @@ pub struct Reader<'a> {
     pub dimension: usize,
     pub bodies: &'a [Body],
     pub symmetry: &'a [SymmetryPlane],
+    /// The unit of length in messages.
+    pub length_unit: &'a Readable,
     /// Where the files that the case names stand.
     pub folder: &'a Path,
 }
@@ -51,14 +55,16 @@ impl Reader<'_> {
 
     /// Names are those of rows in one table, with rigid bodies.
     fn check_names(&self, params: &CaseParams) -> Result<(), Complaint> {
-        let names = || {
-            let loads = params.load.iter().map(|t| &t.get_ref().name);
-            let planes = params.plane.iter().map(|t| &t.get_ref().name);
-            let surfaces = params.surface.iter().map(|t| &t.get_ref().name);
-            loads.chain(planes).chain(surfaces).flatten()
+        let named = || {
+            let loads = params.load.iter().map(|t| ("load", &t.get_ref().name));
+            let planes = params.plane.iter().map(|t| ("plane", &t.get_ref().name));
+            let surfaces = (params.surface.iter()).map(|t| ("surface", &t.get_ref().name));
+            let all = loads.chain(planes).chain(surfaces);
+            all.filter_map(|(kind, name)| Some((kind, name.as_ref()?)))
         };
-        for (n, name) in names().enumerate() {
-            let mut before = names().take(n).map(Spanned::get_ref);
+        for (n, (kind, name)) in named().enumerate() {
+            names::check(name, kind)?;
+            let mut before = named().take(n).map(|(_, name)| name.get_ref());
             let mut bodies = self.bodies.iter().map(|body| &body.name);
             if before.any(|b| b == name.get_ref()) || bodies.any(|b| b == name.get_ref()) {
                 let title = format!("the name `{}` is taken already", name.get_ref());
@@ -129,10 +135,12 @@ impl Reader<'_> {
         let at = at.map_or(params.body.span(), Spanned::span);
         let title = format!("the region holds no particle of `{}`", body.name);
         let (lower, upper) = populate::bounds(body, self.dimension).unwrap_or_default();
-        let range =
-            |a: usize| format!("{}: {:e} to {:e} m", ["x", "y", "z"][a], lower[a], upper[a]);
-        let ranges: Vec<String> = (0..self.dimension).map(range).collect();
-        Err(Complaint::new(at, title).help(format!("its particles stand in {}", ranges.join(", "))))
+        let corner = |x: [f64; 3]| self.length_unit.vector(&x[..self.dimension]);
+        Err(Complaint::new(at, title).help(format!(
+            "its particles stand from {} to {}",
+            corner(lower),
+            corner(upper)
+        )))
     }
 
     fn sides(

@@ -8,6 +8,7 @@ use super::check::{Allowed, number, optional, required};
 use super::eos::eos;
 use super::strength::strength;
 use crate::input::forms::{Named, OrNone};
+use crate::input::names;
 use crate::input::schema::{MaterialParams, SpallParams, ThermalParams};
 use crate::input::source::Complaint;
 use crate::material::{Eos, Material, Spall, Thermal, ThermalConstants, library};
@@ -28,6 +29,7 @@ fn material(
     name: &Spanned<String>,
     table: &Spanned<MaterialParams>,
 ) -> Result<Material, Complaint> {
+    names::check(name, "material")?;
     let params = table.get_ref();
     let base = params.library.as_ref().map(|library| {
         library::find(library.get_ref()).ok_or_else(|| {

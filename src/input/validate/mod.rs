@@ -17,12 +17,14 @@ mod trouble;
 use std::ops::Range;
 use std::path::Path;
 
+use super::names;
 use super::overlap::overlap;
 use super::schema::{
     AxisName, BodyParams, CaseParams, DomainParams, OutputParams, RunParams, SmoothingName,
     SphFormName, SphParams, SymmetryParams, TimeStepParams,
 };
 use super::source::Complaint;
+use crate::model::readable::Readable;
 use crate::model::{
     Axis, Case, ContactMode, DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm,
     SphOptions, SymmetryPlane, TimeStepOptions, Trouble,
@@ -56,12 +58,14 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
     if bodies.iter().any(|body| body.material == materials.len()) {
         materials.push(bodies::no_material());
     }
+    let length_unit = length_unit(&params);
     let (default_contact, contacts, self_contact) =
         contact::contacts(&params.contact, &params.body, sph.form, smoothing)?;
     let loads = loads::Reader {
         dimension,
         bodies: &bodies,
         symmetry: &symmetry,
+        length_unit: &length_unit,
         folder,
     }
     .loads(&params)?;
@@ -74,7 +78,8 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
     let fields = field_spans(&params.output);
     let form = params.sph.form.as_ref().map(Spanned::span);
     let mut case = Case {
-        title: params.title.unwrap_or_else(|| "untitled".to_owned()),
+        title: names::title(params.title)?,
+        length_unit,
         dimension,
         materials,
         bodies,
@@ -136,13 +141,12 @@ fn check_overlaps(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Com
                 && bodies.iter().any(|body| body.rigid.is_none());
             let found = sees.then(|| overlap(case, a, b)).flatten();
             if let Some(found) = found.filter(|found| found.depth > MOST_OVERLAP) {
-                let at = found.at.map(|x| format!("{x:.4e}"));
                 let title = format!(
-                    "`{}` begins {:.1} spacings within `{}`, near [{}] m",
+                    "`{}` begins {:.1} spacings within `{}`, near {}",
                     bodies[1].name,
                     found.depth,
                     bodies[0].name,
-                    at[..case.dimension].join(", ")
+                    case.length_unit.vector(&found.at[..case.dimension])
                 );
                 return Err(Complaint::new(table.get_ref().shape.span(), title).help(
                     "move one of them, or let it `touch` the other; only bodies with contact of \
@@ -164,8 +168,16 @@ fn check_temperature(case: &Case, fields: &[(String, Range<usize>)]) -> Result<(
     }
 }
 
+/// The unit in which the spacing is given, of the case or of its first body.
+fn length_unit(params: &CaseParams) -> Readable {
+    let bodies = params.body.iter().map(|table| &table.get_ref().spacing);
+    let spacing = std::iter::once(&params.spacing).chain(bodies).flatten();
+    let size = spacing.map(|spacing| spacing.get_ref().unit).next();
+    Readable::length(size.unwrap_or(1.0))
+}
+
 fn field_spans(params: &OutputParams) -> Vec<(String, Range<usize>)> {
-    let spans = params.fields.iter();
+    let spans = params.fields.iter().flat_map(Spanned::get_ref);
     spans
         .map(|field| (field.get_ref().clone(), field.span()))
         .collect()
@@ -288,12 +300,21 @@ fn run(params: &RunParams) -> Result<RunControl, Complaint> {
 }
 
 fn output(params: OutputParams) -> Result<OutputOptions, Complaint> {
+    let fields = match params.fields {
+        Some(fields) if fields.get_ref().is_empty() => {
+            let title = "`fields` names no field";
+            let help =
+                "leave it out for the usual fields; id, body and position are always written";
+            return Err(Complaint::new(fields.span(), title).help(help));
+        }
+        fields => fields.map_or_else(Vec::new, Spanned::into_inner),
+    };
     let every = |value: Option<_>, key| {
         let checked = value.map(|v| number(Some(&v), key, 0.0, Allowed::Positive));
         checked.transpose()
     };
     let kept = whole(params.checkpoints_kept.as_ref(), "checkpoints_kept", 2, 1)?;
-    for (n, field) in params.fields.iter().enumerate() {
+    for (n, field) in fields.iter().enumerate() {
         if !snapshot_names().any(|name| name == field.get_ref()) {
             return Err(Complaint::unknown(
                 field.span(),
@@ -302,7 +323,7 @@ fn output(params: OutputParams) -> Result<OutputOptions, Complaint> {
                 snapshot_names(),
             ));
         }
-        if params.fields[..n].contains(field) {
+        if fields[..n].contains(field) {
             let title = format!("the field `{}` is listed twice", field.get_ref());
             return Err(Complaint::new(field.span(), title));
         }
@@ -316,6 +337,6 @@ fn output(params: OutputParams) -> Result<OutputOptions, Complaint> {
         checkpoint_every_wall: every(params.checkpoint_every_wall, "checkpoint_every_wall")?,
         checkpoints_kept: usize::try_from(kept).unwrap_or(usize::MAX),
         history_every: whole(params.history_every.as_ref(), "history_every", 10, 1)?,
-        fields: params.fields.into_iter().map(Spanned::into_inner).collect(),
+        fields: fields.into_iter().map(Spanned::into_inner).collect(),
     })
 }

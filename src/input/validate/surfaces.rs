@@ -1,6 +1,8 @@
 //! Rigid surfaces: planes, and the shapes of `[[surface]]`.
 
+use std::io;
 use std::ops::Range;
+use std::path::Path;
 use std::sync::Arc;
 
 use toml::Spanned;
@@ -18,7 +20,7 @@ use crate::input::schema::{
     AxisName, CaseParams, Placed, PlaneParams, RotationParams, SideName, StlParams,
     SurfaceCylinderParams, SurfaceParams, SurfaceShapeParams, SurfaceSphereParams,
 };
-use crate::input::source::Complaint;
+use crate::input::source::{Complaint, nearest};
 use crate::input::stl;
 use crate::model::{Mesh, Motion, Resistance, RigidSurface, Spin, SurfaceFile, SurfaceShape};
 use crate::populate;
@@ -214,7 +216,12 @@ impl Reader<'_> {
             Complaint::new(params.file.span(), title)
         };
         let (mut soup, file) = stl::read(&path).map_err(|cause| {
-            refuse(&cause).help(format!("the file should be {}", path.display()))
+            let complaint = refuse(&cause.to_string());
+            if cause.kind() == io::ErrorKind::NotFound {
+                missing_file(complaint, &path)
+            } else {
+                complaint
+            }
         })?;
         if let Some(known) = params
             .sha256
@@ -306,6 +313,24 @@ impl Reader<'_> {
             }
         }
         Ok(place)
+    }
+}
+
+/// Says where a file was looked for, and which other one there may be meant.
+fn missing_file(complaint: Complaint, path: &Path) -> Complaint {
+    let text =
+        |name: Option<&std::ffi::OsStr>| name.unwrap_or_default().to_string_lossy().into_owned();
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut there: Vec<String> = entries
+        .map(|entry| text(Some(&entry.file_name())))
+        .collect();
+    there.sort();
+    let there: Vec<&str> = there.iter().map(String::as_str).collect();
+    let complaint = complaint.help(format!("it is looked for at {}", path.display()));
+    match nearest(&text(path.file_name()), &there) {
+        Some(name) => complaint.label(format!("did you mean `{name}`?")),
+        None => complaint,
     }
 }
 

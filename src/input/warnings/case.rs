@@ -1,6 +1,7 @@
 //! Mistakes of physics that a case as a whole can have.
 
 use super::approach::{Approach, flies_straight};
+use crate::model::readable::shown;
 use crate::model::{Body, Case, ContactMode, Overlap, Penalty, Potential};
 
 /// Fewer particles than this across the thinnest part resolve no bending and no wave.
@@ -19,7 +20,7 @@ pub fn meetings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
             found.push(format!(
                 "`{a}` and `{b}` meet at {} and have contact of mode \"none\": they pass through \
                  each other",
-                microseconds(pair.time)
+                seconds(pair.time)
             ));
         }
     }
@@ -46,8 +47,8 @@ pub fn meetings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
             format!(
                 "nothing meets: `{a}` reaches `{b}`, {:.1} spacings away, at {}, after the end at {}",
                 pair.gap,
-                microseconds(pair.time),
-                microseconds(end)
+                seconds(pair.time),
+                seconds(end)
             )
         } else {
             "nothing meets: no body flies towards another".to_owned()
@@ -114,6 +115,6 @@ pub fn stiffness(case: &Case, found: &mut Vec<String>) {
     }
 }
 
-fn microseconds(time: f64) -> String {
-    format!("{:.4} us", time * 1e6)
+fn seconds(time: f64) -> String {
+    shown(time, "s")
 }

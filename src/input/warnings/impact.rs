@@ -3,6 +3,7 @@
 use super::approach::Approach;
 use crate::material::{Eos, Material};
 use crate::model::Case;
+use crate::model::readable::shown;
 
 /// A linear equation of state misses the stiffening of compressed matter, by a tenth of the
 /// pressure and more once the strain `u/c` of the shock is a tenth or so.
@@ -41,11 +42,11 @@ pub fn warnings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
             if let Some(what) = beyond(&material.eos, ratio) {
                 told[index] = true;
                 found.push(format!(
-                    "`{}` meets `{}` at {:.4} km/s, which drives `{}` to {ratio:.2} of its sound \
+                    "`{}` meets `{}` at {}, which drives `{}` to {ratio:.2} of its sound \
                      speed: {what}",
                     body.name,
                     partner.name,
-                    pair.speed * 1e-3,
+                    shown(pair.speed, "m/s"),
                     material.name
                 ));
             }

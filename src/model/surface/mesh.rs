@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use super::tree::Tree;
 use super::triangle::{Feature, closest_on_triangle};
 use super::{Foot, along, cross, dot, minus};
+use crate::model::readable::shown_vector;
 
 /// Why triangles make no closed surface.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -64,7 +65,7 @@ pub struct Mesh {
 type Edges = BTreeMap<(u32, u32), u32>;
 
 fn place(x: &[f64; 3]) -> String {
-    format!("({:e}, {:e}, {:e}) m", x[0], x[1], x[2])
+    shown_vector(x, "m")
 }
 
 impl Mesh {

@@ -1,0 +1,137 @@
+//! Comma-separated values: lines to write, and tables that were read.
+
+use csv::{Reader, ReaderBuilder, StringRecord, Trim, WriterBuilder};
+
+/// What a line with the units of the columns begins with.
+const UNITS: &str = "# units:";
+/// What lines of comments begin with.
+const COMMENT: u8 = b'#';
+
+/// Some values as one line with its end; those with commas, quotes or line ends are quoted.
+pub(super) fn line<T: AsRef<[u8]>>(values: impl IntoIterator<Item = T>) -> Vec<u8> {
+    let mut writer = WriterBuilder::new()
+        .comment(Some(COMMENT))
+        .from_writer(Vec::new());
+    let written = writer.write_record(values);
+    let line = written.map(|()| writer.into_inner());
+    line.expect("memory takes it").expect("memory takes it")
+}
+
+/// The line of units that a table begins with.
+pub(super) fn units_line<T: AsRef<[u8]>>(units: impl IntoIterator<Item = T>) -> Vec<u8> {
+    let mut text = format!("{UNITS} ").into_bytes();
+    text.extend(line(units));
+    text
+}
+
+/// Reads records that all have as many values as the header.
+pub(super) fn rows(content: &[u8]) -> Reader<&[u8]> {
+    ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .from_reader(content)
+}
+
+/// A table as it was read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Sheet {
+    /// Names of the columns.
+    pub names: Vec<String>,
+    /// SI units of the columns; empty for none or where the table does not say.
+    pub units: Vec<String>,
+    /// The number of the line that each row begins in, and its cells, without the blanks around
+    /// them; a row may be cut off.
+    pub rows: Vec<(usize, Vec<String>)>,
+}
+
+impl Sheet {
+    /// Takes a table apart: lines of `#` are comments, of which `# units: s,m,-` gives the units;
+    /// the first other line names the columns.
+    ///
+    /// # Errors
+    /// What is wrong.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let units = text.lines().find_map(|line| line.strip_prefix(UNITS));
+        let mut records = records(text)?.into_iter();
+        let (_, names) = records.next().ok_or("it is empty")?;
+        let units = units.map_or_else(|| Ok(Vec::new()), records_of_line)?;
+        let mut sheet = Self {
+            units,
+            rows: records.collect(),
+            names,
+        };
+        sheet.units.resize(sheet.names.len(), String::new());
+        Ok(sheet)
+    }
+}
+
+/// The only record of a line.
+fn records_of_line(line: &str) -> Result<Vec<String>, String> {
+    let first = records(line)?.into_iter().next();
+    Ok(first.map_or_else(Vec::new, |(_, cells)| cells))
+}
+
+/// Numbers of lines and cells of all that is no comment and not blank.
+fn records(text: &str) -> Result<Vec<(usize, Vec<String>)>, String> {
+    let mut reader = ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .comment(Some(COMMENT))
+        .trim(Trim::All)
+        .from_reader(text.as_bytes());
+    let mut found = Vec::new();
+    let mut record = StringRecord::new();
+    while (reader.read_record(&mut record)).map_err(|error| error.to_string())? {
+        if record.len() == 1 && record[0].is_empty() {
+            continue;
+        }
+        let number = record.position().map_or(0, |at| first_line(text, at));
+        found.push((number, record.iter().map(str::to_owned).collect()));
+    }
+    Ok(found)
+}
+
+/// The line in which the next record from a place on begins.
+fn first_line(text: &str, at: &csv::Position) -> usize {
+    let begin = usize::try_from(at.byte()).unwrap_or(usize::MAX);
+    let rest = text.get(begin..).unwrap_or_default();
+    let passed = |line: &&str| line.trim().is_empty() || line.as_bytes().starts_with(&[COMMENT]);
+    let lines = usize::try_from(at.line()).unwrap_or(usize::MAX);
+    lines + rest.lines().take_while(passed).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let values = [
+            "bumper, front",
+            "a \"b\"",
+            "two\nlines",
+            "# no comment",
+            "κ",
+            "",
+        ];
+        let mut text = units_line(["s", "kg/(m s)", "-", "-", "-", "-"]);
+        text.extend(line(["a", "b", "c", "d", "e", "f"]));
+        text.extend(line(values));
+        text.extend(line(["1", "2", "3", "4", "5", "6"]));
+        let sheet = Sheet::parse(std::str::from_utf8(&text).unwrap()).unwrap();
+        assert_eq!(sheet.units, ["s", "kg/(m s)", "-", "-", "-", "-"]);
+        assert_eq!(sheet.names, ["a", "b", "c", "d", "e", "f"]);
+        assert_eq!(sheet.rows[0], (3, values.map(str::to_owned).to_vec()));
+        assert_eq!(sheet.rows[1].0, 5);
+    }
+
+    #[test]
+    fn comments_and_blank_lines_count_as_lines() {
+        let text = "# measured\r\n\r\na, b\r\n# more\r\n\r\n 1 , \"2\" \r\n  \r\n3\r\n";
+        let sheet = Sheet::parse(text).unwrap();
+        let rows = [(6, vec!["1", "2"]), (8, vec!["3"])];
+        let rows = rows.map(|(line, cells)| (line, cells.into_iter().map(str::to_owned).collect()));
+        assert_eq!(sheet.rows, rows);
+        assert!(Sheet::parse("# only this\n").unwrap_err().contains("empty"));
+    }
+}

@@ -1,0 +1,178 @@
+//! The scripts in `jobs/`: what they make of their arguments, with stand-ins for `mpirun` and `qsub`.
+
+mod cli_support;
+
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use cli_support::{Ended, command, end, project};
+
+/// Prints its arguments, one a line, in place of starting anything.
+const MPIRUN: &str = "#!/bin/sh\nprintf '%s\\n' \"$@\"\n";
+
+/// Parts the variables of `-v` at commas, as PBS does, and runs the script as the job that they
+/// make: a copy in a folder of its own, in the user's home.
+const QSUB: &str = r#"#!/bin/bash
+[ "$1" = -v ] || exit 9
+IFS=, read -ra variables <<<"$2"
+cp "$3" "$SPOOL/job"
+cd "$HOME" && env "${variables[@]}" PBS_JOBID=7 PBS_O_WORKDIR="$OLDPWD" bash "$SPOOL/job"
+"#;
+
+struct Machine {
+    place: tempfile::TempDir,
+}
+
+impl Machine {
+    fn new() -> Self {
+        let place = tempfile::tempdir().unwrap();
+        for folder in ["bin", "spool", "home"] {
+            fs::create_dir(place.path().join(folder)).unwrap();
+        }
+        let machine = Self { place };
+        machine.program("mpirun", MPIRUN);
+        machine.program("qsub", QSUB);
+        machine
+    }
+
+    fn at(&self, path: &str) -> PathBuf {
+        self.place.path().join(path)
+    }
+
+    fn program(&self, name: &str, text: &str) {
+        let path = self.at("bin").join(name);
+        fs::write(&path, text).unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+    }
+
+    /// A command that finds the stand-ins, with the project as its folder.
+    fn command(&self, program: &str) -> Command {
+        let mut command = command(program);
+        let path = std::env::var("PATH").unwrap();
+        command.env("PATH", format!("{}:{path}", self.at("bin").display()));
+        command.env("SPOOL", self.at("spool"));
+        command.env("HOME", self.at("home"));
+        for name in ["WHIPPLE_ARGS", "SLURM_JOB_ID", "PBS_JOBID", "PBS_O_WORKDIR"] {
+            command.env_remove(name);
+        }
+        command.current_dir(project("."));
+        command
+    }
+
+    fn run(&self, arguments: &[&str]) -> Ended {
+        end(self.command(&project("jobs/run.sh")).args(arguments))
+    }
+
+    fn submit(&self, script: &str, arguments: &str) -> Ended {
+        let variable = format!("WHIPPLE_ARGS={arguments}");
+        end(self.command("qsub").args(["-v", &variable, script]))
+    }
+}
+
+/// What the program would be started with: all that follows it on the line of `mpirun`.
+fn started(ended: &Ended) -> Vec<&str> {
+    let words = ended
+        .stdout
+        .lines()
+        .skip_while(|word| !word.ends_with("whipple"));
+    words.skip(1).collect()
+}
+
+#[test]
+fn numbers_of_ranks_and_threads_are_numbers() {
+    let machine = Machine::new();
+    let refused = |arguments: &[&str], said: &str| {
+        for script in ["run.sh", "chain.sh"] {
+            let mut command = machine.command(&project(&format!("jobs/{script}")));
+            let ended = end(command.args(arguments).args(["case", "run"])).with_code(2);
+            assert_eq!(ended.stderr.trim_end(), said, "{script}");
+            assert_eq!(ended.stdout, "", "{script}");
+        }
+    };
+    let said = |option: &str, value: &str| {
+        format!("error: {option} takes a whole number from 1 on, not {value}")
+    };
+    for option in ["-n", "-t"] {
+        for value in ["0", "abc", "-1", "1.5", "2x", "99999999"] {
+            refused(&[option, value], &said(option, value));
+        }
+        refused(&[option, ""], &said(option, "''"));
+        refused(&[option, "a\u{1b}[2J"], &said(option, "$'a\\E[2J'"));
+    }
+    let ended = machine.run(&["-n", "3", "-t", "2", "case"]).with_code(0);
+    assert!(ended.stdout.starts_with("-n\n3\n"), "{ended:#?}");
+    assert_eq!(started(&ended), ["run", "case", "--threads", "2"]);
+}
+
+#[test]
+fn arguments_reach_a_job_of_pbs_as_they_are() {
+    let machine = Machine::new();
+    let simple = machine.submit(
+        "jobs/run.sh",
+        "-n 4 inputs/sod --out runs/* --set sph.alpha=1",
+    );
+    let words = [
+        "run",
+        "inputs/sod",
+        "--out",
+        "runs/*",
+        "--set",
+        "sph.alpha=1",
+    ];
+    assert_eq!(started(&simple.with_code(0))[..6], words);
+
+    let velocity = "body.sphere.velocity=[0, 0, \"-5 km/s\"]";
+    let arguments = [
+        "restart",
+        "runs/a b",
+        "--set",
+        velocity,
+        "--set",
+        "title=it's 'x'",
+    ];
+    fs::write(machine.at("arguments"), arguments.join("\n") + "\n").unwrap();
+    let file = format!("@{}", machine.at("arguments").display());
+    let ended = machine.submit("jobs/run.sh", &file).with_code(0);
+    assert_eq!(started(&ended)[..6], arguments);
+
+    let ended = machine.submit("jobs/run.sh", "@nowhere").with_code(2);
+    assert!(
+        ended.stderr.contains("names no file of arguments"),
+        "{ended:#?}"
+    );
+    assert_eq!(machine.submit("jobs/run.sh", "").with_code(2).stdout, "");
+}
+
+/// The first leg stops, and the chain submits the second with the arguments of the first.
+#[test]
+fn a_chain_of_jobs_of_pbs_keeps_its_arguments() {
+    let machine = Machine::new();
+    let run = machine.at("a run");
+    let leg = format!(
+        "#!/bin/bash\nprintf '%s\\n' \"$@\"\nrun='{}'\nif [ -e \"$run/status.json\" ]\n\
+         then echo '\"finished\"' >\"$run/status.json\"\n\
+         else mkdir -p \"$run/checkpoints/step-00000001\"; echo '\"stopped\"' >\"$run/status.json\"; exit 75\nfi\n",
+        run.display()
+    );
+    machine.program("mpirun", &leg);
+    let set = "output.fields=[\"pressure\", \"density\"]";
+    let arguments = ["inputs/sod", run.to_str().unwrap(), "--set", set];
+    fs::write(machine.at("arguments"), arguments.join("\n")).unwrap();
+    let file = format!("@{}", machine.at("arguments").display());
+    let ended = machine.submit("jobs/chain.sh", &file).with_code(0);
+    let legs: Vec<&str> = ended.stdout.lines().collect();
+    let has = |words: &[&str]| legs.windows(words.len()).any(|found| found == words);
+    assert!(
+        has(&["run", "inputs/sod", "--out", arguments[1], "--set", set]),
+        "{ended:#?}"
+    );
+    let again = format!("--set={set}");
+    assert!(has(&["restart", arguments[1], &again]), "{ended:#?}");
+    assert_eq!(
+        legs.last().copied(),
+        Some(&*format!("{} is finished", arguments[1]))
+    );
+    assert!(Path::new(&run).join("chain.arguments").is_file());
+}
