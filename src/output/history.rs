@@ -153,6 +153,15 @@ impl Table {
         let written = self.file.write_all(self.line.as_bytes());
         written.map_err(OutputError::io("write", &self.path))
     }
+
+    /// Brings the rows written so far to the disk.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`].
+    pub fn sync(&self) -> Result<(), OutputError> {
+        let synced = self.file.sync_all();
+        synced.map_err(OutputError::io("sync", &self.path))
+    }
 }
 
 fn header(columns: &[Column]) -> String {
