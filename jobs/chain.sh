@@ -67,9 +67,11 @@ fi
 
 # finished, stopped or failed; nothing before the first leg, and after the machine went down.
 status() { grep -oEsm1 '"(finished|stopped|failed)"' "$run/status.json" | tr -d '"' || true; }
-# By name, which is the step; one that is being written is called *.partial.
+# By name, which is the step; one that is being written is called *.partial, and the one of the same
+# step that it takes the place of *.old.
 newest_checkpoint() {
-    { compgen -G "$run/checkpoints/step-*[0-9]" || true; } | sort | tail -n 1
+    { compgen -G "$run/checkpoints/step-*[0-9]" || compgen -G "$run/checkpoints/step-*.old" || true; } |
+        grep -v '\.damaged' | sort | tail -n 1
 }
 
 # Of the options, those that a restart takes: what else was set is in the checkpoint.

@@ -73,10 +73,9 @@ impl<'a> Driver<'a> {
         let quantities = snapshot::quantities_of(&simulation.case)?;
         let mut tables = None;
         on_root(comm, || {
-            folder.forget_stop(launch.began)?;
             let resume = restarted.is_some().then_some(&simulation.state);
             tables = Some(Tables::open(folder, &simulation.case, resume)?);
-            Ok(())
+            folder.forget_stop(launch.began)
         })?;
         let stop = comm.is_root().then(|| folder.stop());
         let mut driver = Self {
@@ -273,6 +272,8 @@ impl<'a> Driver<'a> {
 
     fn write_checkpoint(&mut self, comm: &Comm) -> Result<(), OutputError> {
         let begun = Instant::now();
+        // Rows before this checkpoint are not written again once it is there.
+        on_root(comm, || self.tables.as_ref().map_or(Ok(()), Tables::sync))?;
         let folder = self.folder.checkpoints();
         let rows = &mut self.rows;
         let path = self.simulation.with_frozen(|simulation| {
@@ -287,6 +288,7 @@ impl<'a> Driver<'a> {
             let keep = simulation.case.output.checkpoints_kept;
             checkpoint::write(comm, &folder, &simulation.store, &meta, keep, rows)
         })?;
+        on_root(comm, || self.folder.forget_set_aside())?;
         self.watch.wrote_checkpoint(begun.elapsed());
         let text = format!("checkpoint {}", path.display());
         self.log(comm, &text);

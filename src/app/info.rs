@@ -10,7 +10,7 @@ use super::say::{complain, say};
 use crate::model::readable::one_line;
 use crate::output::checkpoint::{self, FIELDS};
 use crate::output::h5::{Array, Content, Element, RowType};
-use crate::output::{Block, OutputError, RunFolder, read_small, series};
+use crate::output::{Block, OutputError, Phase, Presence, RunFolder, read_small, series};
 
 /// Tell what is in a run folder, a snapshot or a checkpoint
 ///
@@ -250,7 +250,11 @@ fn run_folder(folder: &RunFolder, text: &mut Text) -> Result<(), ResultsError> {
     let reason = status
         .reason
         .map_or_else(String::new, |r| format!(" ({r})"));
-    text.entry("state", format!("{}{reason}", status.state.name()));
+    let state = match status.state {
+        Phase::Running => running(folder),
+        ended => format!("{}{reason}", ended.name()),
+    };
+    text.entry("state", state);
     text.entry("step", status.step);
     text.entry("time", seconds(status.time));
     let snapshots = series::read(&folder.series())?;
@@ -266,7 +270,28 @@ fn run_folder(folder: &RunFolder, text: &mut Text) -> Result<(), ResultsError> {
         format!(", the newest of step {step}")
     });
     text.entry("checkpoints", format!("{}{newest}", checkpoints.len()));
+    for path in checkpoint::list_damaged(&folder.checkpoints())? {
+        text.entry("passed over as damaged", path.display());
+    }
+    if let Some(path) = folder.set_aside_folder() {
+        let what = "until the next checkpoint: what came after the one restarted from";
+        text.entry("set aside", format!("{} ({what})", path.display()));
+    }
     summary(&folder.summary(), text)
+}
+
+/// What `running` in a status means: a run that is killed cannot change it.
+fn running(folder: &RunFolder) -> String {
+    match Presence::of(folder.path()) {
+        Presence::Held(Some(who)) => format!("running ({who})"),
+        Presence::Held(None) => "running".to_owned(),
+        Presence::Nobody(_) => {
+            "was running; killed or lost (no process holds the folder)".to_owned()
+        }
+        Presence::Unclear(who) => {
+            format!("running, or killed or lost ({who}, which cannot be seen from this host)")
+        }
+    }
 }
 
 /// The figures of a finished run.

@@ -92,6 +92,13 @@ pub fn complain(comm: &Comm, message: &str) -> u8 {
     EXIT_INPUT
 }
 
+/// Says why a run could not begin, once for all ranks; gives the exit code. Its folder is left as it
+/// was.
+pub fn give_up(comm: &Comm, message: &str) -> u8 {
+    complain(comm, &format!("error: {message}"));
+    EXIT_FAILED
+}
+
 fn start_threads(comm: &Comm, wanted: Option<usize>) {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let ranks = ranks_here(comm);

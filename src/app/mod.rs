@@ -15,6 +15,7 @@ mod report;
 mod restart;
 pub mod results;
 mod run;
+mod saved_case;
 mod say;
 mod stop;
 

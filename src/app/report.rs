@@ -278,6 +278,14 @@ impl Tables {
         self.write_performance(state.step, load, wall)
     }
 
+    /// Brings all rows written so far to the disk.
+    pub fn sync(&self) -> Result<(), OutputError> {
+        let always = [&self.history, &self.contacts, &self.performance];
+        let some = [&self.loads, &self.removed];
+        let mut all = always.into_iter().chain(some.into_iter().flatten());
+        all.try_for_each(Table::sync)
+    }
+
     fn write_pair(
         &mut self,
         time: f64,

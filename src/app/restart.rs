@@ -1,24 +1,26 @@
 //! `whipple restart`: go on from a checkpoint, on any number of ranks.
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use super::driver::{Driver, fail};
-use super::launch::{Launch, complain, with_ranks};
+use super::driver::Driver;
+use super::launch::{Launch, complain, give_up, with_ranks};
 use super::report::seconds;
 use super::run::CommonArgs;
+use super::saved_case::{self, Settled};
 use super::say::say;
 use crate::comm::Comm;
 use crate::input;
 use crate::model::Case;
 use crate::output::checkpoint::{self, MANIFEST, Restored};
-use crate::output::{OutputError, Phase, RunFolder, on_root, snapshot};
+use crate::output::{OutputError, Phase, RunFolder, RunLock, from_root, snapshot};
 use crate::particles::ParticleStore;
 use crate::step::{Reason, RunState, Simulation};
 
 /// Go on from a checkpoint, on any number of ranks
 ///
 /// Results go on as if there had been no stop, to the last bit. What the run had written after the
-/// checkpoint is dropped and written anew. Exit codes are those of `run`; with nothing left to do,
+/// checkpoint is written anew; it is set aside until there is a new checkpoint. Exit codes are those of `run`; with nothing left to do,
 /// it says so and exits with 0.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
@@ -39,6 +41,10 @@ pub struct RestartArgs {
     #[arg(short, long, value_name = "KEY=VALUE")]
     set: Vec<String>,
 
+    /// Go on with the run's case.toml where it was edited, in `run`, `output`, `domain` or `trouble`
+    #[arg(long)]
+    accept_case: bool,
+
     #[command(flatten)]
     common: CommonArgs,
 
@@ -54,128 +60,237 @@ pub fn run(args: &RestartArgs) -> u8 {
         if let Err(error) = input::output_and_run_only(&args.set) {
             return complain(comm, &error.to_string());
         }
-        match find(comm, &args.from).and_then(|found| read(comm, &args.from, found)) {
-            Ok(found) => resume(launch, args, found),
-            Err(error) => complain(comm, &format!("error: {error}")),
+        let refused = |error: OutputError| complain(comm, &format!("error: {error}"));
+        let named = match locate(comm, args) {
+            Ok(named) => named,
+            Err(error) => return refused(error),
+        };
+        // Held to the end: nobody else may change what is read.
+        let lock = match named.take(comm, args) {
+            Ok(lock) => lock,
+            Err(error) => return refused(error),
+        };
+        match find(comm, &named).map_err(|error| format!("error: {error}")) {
+            Ok(listed) => match read(comm, &args.from, named, listed) {
+                Ok(found) => resume(launch, args, found, lock.as_ref()),
+                Err(message) => complain(comm, &message),
+            },
+            Err(message) => complain(comm, &message),
         }
     })
 }
 
-/// A checkpoint that could be read, and why newer ones could not.
+/// What the command line names.
+struct Named {
+    /// One checkpoint, instead of the newest of the run.
+    checkpoint: Option<PathBuf>,
+    /// The run that the checkpoint stands in, if it stands in one.
+    run: Option<RunFolder>,
+    /// Where the run goes on: in that folder or in another.
+    folder: RunFolder,
+    own: bool,
+}
+
+/// What the command line names, as rank 0 sees it. Collective.
+fn locate(comm: &Comm, args: &RestartArgs) -> Result<Named, OutputError> {
+    let from = &args.from;
+    let outside = || OutputError::OutsideRun { path: from.clone() };
+    let (run, own) = from_root(comm, || {
+        let run = if RunFolder::is_run(from) {
+            Some(RunFolder::at(from))
+        } else if from.join(MANIFEST).is_file() {
+            RunFolder::of_checkpoint(from)
+        } else {
+            std::fs::metadata(from).map_err(OutputError::io("restart", from))?;
+            return Err(outside());
+        };
+        let place = |path: &Path| path.canonicalize().ok();
+        let run = run.map(|run| run.path().as_os_str().to_owned());
+        let own = run.as_ref().map(|run| {
+            let mut out = args.out.iter();
+            out.all(|out| place(out).is_some_and(|out| place(Path::new(run)) == Some(out)))
+        });
+        Ok((run, own.unwrap_or(false)))
+    })?;
+    let run = run.map(|path| RunFolder::at(Path::new(&path)));
+    let folder = match (&run, &args.out) {
+        (Some(run), _) if own => run.clone(),
+        (_, Some(out)) => RunFolder::at(out),
+        _ => return Err(outside()),
+    };
+    let whole = run.as_ref().is_some_and(|run| run.path() == from);
+    Ok(Named {
+        checkpoint: (!whole).then(|| from.clone()),
+        run,
+        folder,
+        own,
+    })
+}
+
+impl Named {
+    /// Takes the folder of the results. Collective.
+    fn take(&self, comm: &Comm, args: &RestartArgs) -> Result<Option<RunLock>, OutputError> {
+        let ignore = args.common.ignore_lock;
+        if self.own {
+            self.folder.take(comm, ignore)
+        } else {
+            self.folder.take_new(comm, args.force, ignore)
+        }
+    }
+}
+
+/// A checkpoint that is none, and why.
+#[derive(serde::Serialize, serde::Deserialize)]
+struct PassedOver {
+    path: OsString,
+    why: String,
+}
+
+/// The checkpoints that the user may mean, newest first, and those that lack a manifest, as rank 0
+/// sees them.
+fn find(comm: &Comm, named: &Named) -> Result<(Vec<OsString>, Vec<PassedOver>), OutputError> {
+    from_root(comm, || {
+        if let Some(checkpoint) = &named.checkpoint {
+            return Ok((vec![checkpoint.clone().into()], Vec::new()));
+        }
+        let Some(run) = &named.run else {
+            return Ok((Vec::new(), Vec::new()));
+        };
+        let all = run.checkpoint_folders()?;
+        let broken = checkpoint::list_broken(&run.checkpoints())?;
+        let tell = |path: PathBuf| PassedOver {
+            why: format!("{} has no {MANIFEST}", path.display()),
+            path: path.into(),
+        };
+        let all = all.into_iter().map(OsString::from).collect();
+        Ok((all, broken.into_iter().map(tell).collect()))
+    })
+}
+
+/// A checkpoint that could be read, where it goes on, and why newer ones were passed over.
 struct Found {
+    named: Named,
     checkpoint: PathBuf,
     store: ParticleStore,
     restored: Restored,
-    passed_over: Vec<String>,
+    passed_over: Vec<PassedOver>,
 }
 
-/// The checkpoints that the user may mean, newest first, found by rank 0 for all.
-fn find(comm: &Comm, from: &Path) -> Result<Vec<PathBuf>, OutputError> {
-    let mut found = Vec::new();
-    on_root(comm, || {
-        let paths = if RunFolder::is_run(from) {
-            RunFolder::at(from).checkpoint_folders()?
-        } else if from.join(MANIFEST).is_file() {
-            vec![from.to_owned()]
-        } else {
-            std::fs::metadata(from).map_err(OutputError::io("restart", from))?;
-            return Err(OutputError::OutsideRun {
-                path: from.to_owned(),
-            });
-        };
-        let names: Vec<_> = paths.iter().map(|path| path.to_string_lossy()).collect();
-        found = names.join("\0").into_bytes();
-        Ok(())
-    })?;
-    comm.broadcast(&mut found);
-    let names = String::from_utf8_lossy(&found).into_owned();
-    let names = names.split('\0').filter(|name| !name.is_empty());
-    Ok(names.map(PathBuf::from).collect())
-}
-
-/// Reads the newest checkpoint that is whole, unless that has another format. Collective.
-fn read(comm: &Comm, from: &Path, paths: Vec<PathBuf>) -> Result<Found, OutputError> {
-    let mut passed_over = Vec::new();
-    if comm.is_root() && RunFolder::is_run(from) {
-        let broken = checkpoint::list_broken(&RunFolder::at(from).checkpoints());
-        let tell = |path: PathBuf| format!("{} has no {MANIFEST}", path.display());
-        passed_over.extend(broken.unwrap_or_default().into_iter().map(tell));
-    }
-    for checkpoint in paths {
+/// Reads the newest checkpoint that is whole. Damaged ones are passed over; one that cannot be read
+/// now, or that another version wrote, is no reason to undo its work from an older one. Collective.
+///
+/// # Errors
+/// The whole message.
+fn read(
+    comm: &Comm,
+    from: &Path,
+    named: Named,
+    (paths, mut passed_over): (Vec<OsString>, Vec<PassedOver>),
+) -> Result<Found, String> {
+    for path in paths {
+        let checkpoint = PathBuf::from(&path);
         let mut store = ParticleStore::default();
-        match checkpoint::read(comm, &checkpoint, &mut store) {
+        let error = match checkpoint::read(comm, &checkpoint, &mut store) {
             Ok(restored) => {
                 return Ok(Found {
+                    named,
                     checkpoint,
                     store,
                     restored,
                     passed_over,
                 });
             }
-            // One of another program's format is no damage: older ones would undo its work.
-            Err(error @ OutputError::Format { .. }) => return Err(error),
-            Err(error) if checkpoint == from => return Err(error),
-            Err(error) => passed_over.push(error.to_string()),
+            Err(error) => error,
+        };
+        let mut why = error.to_string();
+        let damaged = comm.any(error.is_damage());
+        if named.checkpoint.is_some() {
+            return Err(format!("error: {why}"));
         }
+        if !damaged {
+            if !error.is_other_version() {
+                why += "; nothing is changed: restart when it can be read, or name an older \
+                        checkpoint";
+            }
+            return Err(format!("error: {why}"));
+        }
+        passed_over.push(PassedOver { path, why });
     }
-    Err(OutputError::NoCheckpoint {
+    let error = OutputError::NoCheckpoint {
         path: from.to_owned(),
-        passed_over,
-    })
+        passed_over: passed_over.into_iter().map(|passed| passed.why).collect(),
+    };
+    Err(format!("error: {error}"))
 }
 
-fn resume(launch: &Launch, args: &RestartArgs, found: Found) -> u8 {
+fn resume(launch: &Launch, args: &RestartArgs, found: Found, lock: Option<&RunLock>) -> u8 {
     let comm = launch.comm;
     let (checkpoint, restored) = (&found.checkpoint, &found.restored);
-    let name = format!("{}: the saved input", checkpoint.display());
-    let case = match input::parse(&name, &restored.input, &args.set) {
-        Ok(case) => case,
-        Err(error) => return complain(comm, &error.to_string()),
+    let place = checkpoint.display().to_string();
+    let own = Some(&found.named.folder).filter(|_| found.named.own);
+    let settled = saved_case::settle(
+        comm,
+        own,
+        &place,
+        &restored.input,
+        &args.set,
+        args.accept_case,
+    );
+    let settled = match settled {
+        Ok(settled) => settled,
+        Err(message) => return complain(comm, &message),
     };
+    let case = &settled.case;
     if let Err(error) = snapshot::quantities(&case.output.fields) {
         return complain(comm, &format!("error: {error}"));
     }
-    if let Some(message) = args.common.shortage(comm, &case) {
+    if let Some(message) = args.common.shortage(comm, case) {
         return complain(comm, &message);
     }
-    let state = serde_json::from_str::<RunState>(&restored.state).ok();
-    let at = |state: &RunState| (state.step, state.time.to_bits());
-    let same = |state: &RunState| at(state) == (restored.step, restored.time.to_bits());
-    let Some(state) = state.filter(same) else {
-        let message = "the saved state is not one that this version of the program can read";
-        return complain(comm, &format!("error: {}: {message}", checkpoint.display()));
+    let read = serde_json::from_str::<RunState>(&restored.state).map_err(|e| e.to_string());
+    let at = (restored.step, restored.time.to_bits());
+    let state = read.and_then(|state| match (state.step, state.time.to_bits()) == at {
+        true => Ok(state),
+        false => Err("it is of another step or time".to_owned()),
+    });
+    let state = match state {
+        Ok(state) => state,
+        Err(error) => {
+            let error = OutputError::OtherVersion {
+                path: checkpoint.clone(),
+                by: restored.by.clone(),
+                what: format!("its saved state cannot be read ({error})"),
+            };
+            return complain(comm, &format!("error: {error}"));
+        }
     };
     let closed = comm.any(comm.is_root() && is_closed(checkpoint));
-    if closed && let Some(reason) = nothing_to_do(&case, &state, args.common.until) {
+    if closed && let Some(reason) = nothing_to_do(case, &state, args.common.until) {
         if comm.is_root() {
-            say(&format!(
-                "nothing to do: {} is at {reason}",
-                checkpoint.display()
-            ));
+            say(&format!("nothing to do: {place} is at {reason}"));
         }
         comm.barrier();
         return 0;
     }
-    let folder = match make_folder(comm, args, checkpoint, &case.resolved, restored) {
-        Ok(folder) => folder,
-        Err(error) => return complain(comm, &format!("error: {error}")),
-    };
-    go_on(launch, args, case, state, found, &folder)
+    let mut warnings = settled.warnings.clone();
+    warnings.extend(lock.iter().flat_map(|lock| lock.warnings.iter().cloned()));
+    go_on(launch, args, settled, state, found, warnings)
 }
 
+/// The step in which nothing has been changed yet that cannot be put back.
 fn go_on(
     launch: &Launch,
     args: &RestartArgs,
-    case: Case,
+    settled: Settled,
     state: RunState,
     found: Found,
-    folder: &RunFolder,
+    mut warnings: Vec<String>,
 ) -> u8 {
     launch.start_threads(&args.common);
     let comm = launch.comm;
+    let folder = &found.named.folder;
+    warnings.extend(found.tell_passed_over());
     let (step, time) = (state.step, state.time);
-    let passed = found.passed_over.iter();
-    let mut warnings: Vec<String> = passed.map(|why| format!("passed over: {why}")).collect();
     if state.last_reason == Reason::End {
         warnings.push(format!(
             "step {step} was shortened to end at {}, so that a run with the later end from its \
@@ -183,20 +298,52 @@ fn go_on(
             seconds(time)
         ));
     }
-    let simulation = match Simulation::resume(case, comm, state, found.store) {
+    let resolved = settled.case.resolved.clone();
+    let simulation = match Simulation::resume(settled.case, comm, state, found.store) {
         Ok(simulation) => simulation,
-        Err(error) => return fail(comm, folder, &error.to_string(), step, time),
+        Err(error) => return give_up(comm, &error.to_string()),
     };
+    let begun = if found.named.own {
+        let resolved = settled.renew.then_some(&resolved[..]);
+        let passed = found.passed_over.iter().map(|passed| (&passed.path).into());
+        let passed: Vec<PathBuf> = passed.collect();
+        folder.resume(comm, resolved, step, time, &passed)
+    } else {
+        RunFolder::create(comm, folder.path(), &resolved, args.force).map(|_| None)
+    };
+    let aside = match begun {
+        Ok(aside) => aside,
+        Err(error) => return give_up(comm, &error.to_string()),
+    };
+    let checkpoint = Some(found.checkpoint.as_path());
     match Driver::begin(
         launch,
         &args.common,
         simulation,
         folder,
-        Some(&found.checkpoint),
+        checkpoint,
         &warnings,
     ) {
         Ok(driver) => driver.run(comm),
-        Err(error) => fail(comm, folder, &error.to_string(), step, time),
+        Err(error) => {
+            if let Some(aside) = aside {
+                aside.undo();
+            }
+            give_up(comm, &error.to_string())
+        }
+    }
+}
+
+impl Found {
+    /// What is said of the checkpoints that were passed over.
+    fn tell_passed_over(&self) -> impl Iterator<Item = String> {
+        let fate = if self.named.own {
+            "; it is set aside, its name now ends with .damaged"
+        } else {
+            ""
+        };
+        let passed = self.passed_over.iter();
+        passed.map(move |passed| format!("passed over: {}{fate}", passed.why))
     }
 }
 
@@ -223,27 +370,5 @@ fn nothing_to_do(case: &Case, state: &RunState, until: Option<f64>) -> Option<St
         Some(format!("{now}, not before the time of --until"))
     } else {
         None
-    }
-}
-
-/// The folder that the run goes on in: its own, or a new one.
-fn make_folder(
-    comm: &Comm,
-    args: &RestartArgs,
-    checkpoint: &Path,
-    resolved: &str,
-    restored: &Restored,
-) -> Result<RunFolder, OutputError> {
-    let own = RunFolder::of_checkpoint(checkpoint);
-    let place = own.as_ref().and_then(|run| run.path().canonicalize().ok());
-    let other = |out: &&PathBuf| place.is_none() || out.canonicalize().ok() != place;
-    match (args.out.as_ref().filter(other), own) {
-        (Some(out), _) => RunFolder::create(comm, out, resolved, args.force),
-        (None, Some(run)) => {
-            RunFolder::resume(comm, run.path(), resolved, restored.step, restored.time)
-        }
-        (None, None) => Err(OutputError::OutsideRun {
-            path: checkpoint.to_owned(),
-        }),
     }
 }

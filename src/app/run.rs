@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use super::driver::{Driver, fail};
-use super::launch::{Launch, complain, with_ranks};
+use super::launch::{Launch, complain, give_up, with_ranks};
 use super::memory;
 use super::stop::{parse_until, parse_walltime};
 use crate::comm::Comm;
 use crate::input;
 use crate::model::Case;
-use crate::output::{RunFolder, snapshot};
+use crate::output::{RunFolder, RunLock, snapshot};
 use crate::step::Simulation;
 
 /// Run a case from its start
@@ -67,6 +67,10 @@ pub struct CommonArgs {
     #[arg(long)]
     pub ignore_memory: bool,
 
+    /// Take the folder of the results even if another process seems to write into it
+    #[arg(long)]
+    pub ignore_lock: bool,
+
     /// Fill all that is not state with NaN between steps, to find what a checkpoint forgets
     #[arg(long, hide = true)]
     pub poison: bool,
@@ -99,24 +103,33 @@ pub fn run(args: &RunArgs) -> u8 {
             return complain(comm, &message);
         }
         let out = args.out.clone().unwrap_or_else(|| default_folder(&path));
-        match RunFolder::create(comm, &out, &case.resolved, args.force) {
-            Ok(folder) => start(launch, &args.common, case, &folder),
-            Err(error) => complain(comm, &format!("error: {error}")),
-        }
+        // Held to the end.
+        let lock = match RunFolder::at(&out).take_new(comm, args.force, args.common.ignore_lock) {
+            Ok(lock) => lock,
+            Err(error) => return complain(comm, &format!("error: {error}")),
+        };
+        start(launch, args, case, &out, lock.as_ref())
     })
 }
 
-fn start(launch: &Launch, args: &CommonArgs, case: Case, folder: &RunFolder) -> u8 {
-    launch.start_threads(args);
+/// Sets the case up, and only then clears the folder of an earlier run.
+fn start(launch: &Launch, args: &RunArgs, case: Case, out: &Path, lock: Option<&RunLock>) -> u8 {
+    launch.start_threads(&args.common);
     let comm = launch.comm;
-    let warnings = input::warnings(&case);
+    let mut warnings = input::warnings(&case);
+    warnings.extend(lock.iter().flat_map(|lock| lock.warnings.iter().cloned()));
+    let resolved = case.resolved.clone();
     let simulation = match Simulation::start(case, comm) {
         Ok(simulation) => simulation,
-        Err(error) => return fail(comm, folder, &error.to_string(), 0, 0.0),
+        Err(error) => return give_up(comm, &error.to_string()),
     };
-    match Driver::begin(launch, args, simulation, folder, None, &warnings) {
+    let folder = match RunFolder::create(comm, out, &resolved, args.force) {
+        Ok(folder) => folder,
+        Err(error) => return give_up(comm, &error.to_string()),
+    };
+    match Driver::begin(launch, &args.common, simulation, &folder, None, &warnings) {
         Ok(driver) => driver.run(comm),
-        Err(error) => fail(comm, folder, &error.to_string(), 0, 0.0),
+        Err(error) => fail(comm, &folder, &error.to_string(), 0, 0.0),
     }
 }
 

@@ -4,6 +4,7 @@
 //! document becomes typed tables (`schema`), and these become the [`Case`]
 //! (`validate`). The first thing that is wrong ends the reading with one message.
 
+mod difference;
 mod document;
 mod file;
 mod forms;
@@ -23,6 +24,7 @@ use std::path::{Path, PathBuf};
 use crate::model::Case;
 use source::{Complaint, Sources};
 
+pub use difference::{Difference, differences};
 pub use file::{content, open_regular, text};
 pub use warnings::{Approach, advice, approaches, expected_step, warnings};
 

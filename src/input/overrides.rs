@@ -13,7 +13,7 @@ use toml::de::{DeArray, DeTable, DeValue};
 use super::source::Complaint;
 
 /// Sections that do not touch the state of a run, so that a restart may change them.
-const RESTARTABLE: [&str; 4] = ["run", "output", "domain", "trouble"];
+pub(super) const RESTARTABLE: [&str; 4] = ["run", "output", "domain", "trouble"];
 
 type Key<'t> = Spanned<Cow<'t, str>>;
 type Value<'t> = Spanned<DeValue<'t>>;

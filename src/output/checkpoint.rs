@@ -2,9 +2,12 @@
 //!
 //! `step-NNNNNNNN/` holds `state.h5` (each state field in id order, the caller's own state and
 //! the resolved input as text) and `manifest.json` (sizes and digests). It is written under
-//! another name and renamed at the end. Any number of ranks may read it.
+//! another name and renamed at the end; an older one of the same step is called `.old` meanwhile, and
+//! counts as long as there is no other. Any number of ranks may read it.
 
+use std::collections::BTreeMap;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -13,7 +16,9 @@ use crate::comm::Comm;
 use crate::particles::{FieldInfo, FieldKind, FieldUse, ParticleStore, with_use};
 
 use super::h5::{Content, Element, RowType, Writer};
-use super::{Block, COMMIT, OutputError, Rows, VERSION, agree, digest, files, on_root, write_json};
+use super::{
+    Block, COMMIT, OutputError, Rows, VERSION, agree, digest, files, from_root, on_root, write_json,
+};
 
 /// Number of the format; a reader takes its own only.
 pub const FORMAT: u64 = 1;
@@ -21,6 +26,10 @@ pub const FORMAT: u64 = 1;
 const STATE: &str = "state.h5";
 /// The file that makes a folder a checkpoint.
 pub const MANIFEST: &str = "manifest.json";
+/// What a checkpoint ends with while a new one of its step takes its name.
+const OLD: &str = ".old";
+/// What a checkpoint ends with that a restart has passed over as damaged.
+pub(super) const DAMAGED: &str = ".damaged";
 /// Group of the fields in the state file.
 pub const FIELDS: &str = "/fields";
 
@@ -62,6 +71,13 @@ pub struct Manifest {
     pub sha256: Vec<String>,
 }
 
+impl Manifest {
+    /// Version and commit of the program that wrote it.
+    fn by(&self) -> String {
+        format!("{} ({})", self.version, self.commit)
+    }
+}
+
 /// What [`read`] gives beside the particles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Restored {
@@ -75,6 +91,8 @@ pub struct Restored {
     pub input: String,
     /// Particles of all ranks.
     pub particles: u64,
+    /// Version and commit of the program that wrote it.
+    pub by: String,
 }
 
 /// Writes a checkpoint into `folder` and then removes all but the newest `keep` up to it.
@@ -139,8 +157,7 @@ fn write_parts(
     }
     file.close()?;
 
-    let size = size_of(&state);
-    let size = agree(comm, size)?;
+    let size = size_of(comm, &state)?;
     let manifest = Manifest {
         format: FORMAT,
         version: VERSION.to_owned(),
@@ -159,24 +176,18 @@ fn write_parts(
 /// Reads a checkpoint: each rank gets an even share of the particles in id order into `store`, in
 /// the fields that the file holds and no others; the caller sizes what else its case uses
 /// ([`ParticleStore::resize_owned`]) and moves the particles to their owners. Collective. Digests
-/// are checked before HDF5 sees the file.
+/// are checked before HDF5 sees the file, so that what HDF5 meets afterwards is no damage.
 ///
 /// # Errors
-/// The same on every rank: [`OutputError::Damaged`], [`OutputError::Format`],
-/// [`OutputError::Io`], [`OutputError::Hdf5`].
+/// The same text on every rank: [`OutputError::Damaged`] if it is not what was written,
+/// [`OutputError::Format`] or [`OutputError::OtherVersion`] if another version wrote it,
+/// [`OutputError::Io`] or [`OutputError::Hdf5`] if it cannot be read now.
 pub fn read(
     comm: &Comm,
     folder: &Path,
     store: &mut ParticleStore,
 ) -> Result<Restored, OutputError> {
-    let path = folder.join(MANIFEST);
-    let mut text = Vec::new();
-    on_root(comm, || {
-        text = files::read_small(&path)?;
-        Ok(())
-    })?;
-    comm.broadcast(&mut text);
-    let manifest = parse_manifest(folder, &text)?;
+    let manifest = from_root(comm, || manifest(folder))?;
     let state = folder.join(STATE);
     verify(comm, &state, &manifest)?;
 
@@ -197,6 +208,7 @@ pub fn read(
         state: agree(comm, file.text("/state"))?,
         input: agree(comm, file.text("/input"))?,
         particles: manifest.particles,
+        by: manifest.by(),
     })
 }
 
@@ -230,10 +242,8 @@ pub fn state_file(folder: &Path) -> PathBuf {
 /// [`OutputError::Io`].
 pub fn list_broken(folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
     let mut found = Vec::new();
-    let entries = fs::read_dir(folder).map_err(OutputError::io("list", folder))?;
-    for entry in entries {
-        let path = entry.map_err(OutputError::io("list", folder))?.path();
-        if step_of(&path, "").is_some() && !path.join(MANIFEST).exists() {
+    for path in files::names_in(folder)? {
+        if step_of(&path, "").is_some() && !is_whole(&path)? {
             found.push(path);
         }
     }
@@ -242,26 +252,52 @@ pub fn list_broken(folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
     Ok(found)
 }
 
+/// Checkpoints that restarts have passed over as damaged, in the order of names.
+///
+/// # Errors
+/// [`OutputError::Io`].
+pub fn list_damaged(folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
+    let mut found = files::names_in(folder)?;
+    found.retain(|path| is_damaged(path));
+    found.sort();
+    Ok(found)
+}
+
+/// Whether a name is that of a checkpoint passed over: its step, `.damaged` and maybe a number.
+pub(super) fn is_damaged(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let step = name.rsplit_once(DAMAGED).map(|(step, _)| Path::new(step));
+    step.is_some_and(|step| {
+        ["", OLD]
+            .iter()
+            .any(|ending| step_of(step, ending).is_some())
+    })
+}
+
 /// The whole checkpoints in a folder with their steps, oldest first.
 ///
 /// # Errors
 /// [`OutputError::Io`].
 pub fn list(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputError> {
-    let mut found = Vec::new();
-    if !folder.exists() {
-        return Ok(found);
-    }
-    let entries = fs::read_dir(folder).map_err(OutputError::io("list", folder))?;
-    for entry in entries {
-        let path = entry.map_err(OutputError::io("list", folder))?.path();
-        if let Some(step) = step_of(&path, "")
-            && path.join(MANIFEST).exists()
-        {
-            found.push((step, path));
+    let names = files::names_in(folder)?;
+    let mut found = BTreeMap::new();
+    for ending in ["", OLD] {
+        for path in &names {
+            if let Some(step) = step_of(path, ending)
+                && is_whole(path)?
+            {
+                found.entry(step).or_insert_with(|| path.clone());
+            }
         }
     }
-    found.sort();
-    Ok(found)
+    Ok(found.into_iter().collect())
+}
+
+/// Whether a folder has a manifest, which is written last.
+fn is_whole(path: &Path) -> Result<bool, OutputError> {
+    let manifest = path.join(MANIFEST);
+    let there = manifest.try_exists();
+    there.map_err(OutputError::io("read", &manifest))
 }
 
 fn folder_name(step: u64) -> String {
@@ -287,22 +323,43 @@ pub(super) fn row_type(kind: FieldKind) -> RowType {
     }
 }
 
-fn size_of(path: &Path) -> Result<u64, OutputError> {
-    let meta = fs::metadata(path).map_err(OutputError::io("read", path))?;
-    Ok(meta.len())
+/// The size of a state file as rank 0 sees it. Collective.
+fn size_of(comm: &Comm, path: &Path) -> Result<u64, OutputError> {
+    from_root(comm, || match fs::metadata(path) {
+        Ok(meta) => Ok(meta.len()),
+        Err(error) if error.kind() == ErrorKind::NotFound => Err(OutputError::damaged(
+            path,
+            format!("it is missing; {OLDER}"),
+        )),
+        Err(error) => Err(OutputError::io("read", path)(error)),
+    })
 }
 
 /// Gives a finished checkpoint its name; an older one of the same step goes once it has.
 fn replace(temporary: &Path, path: &Path) -> Result<(), OutputError> {
     files::sync_folder(temporary)?;
     let mut old = path.as_os_str().to_owned();
-    old.push(".old.partial");
+    old.push(OLD);
     let old = PathBuf::from(old);
-    if path.exists() {
+    if is_whole(path)? {
+        discard(&old)?;
         fs::rename(path, &old).map_err(OutputError::io("rename", path))?;
+    } else {
+        files::remove(path)?;
     }
     files::publish(temporary, path)?;
-    files::remove(&old)
+    discard(&old)
+}
+
+/// Removes a checkpoint, if it exists; cut short it leaves nothing that looks like one.
+pub(super) fn discard(path: &Path) -> Result<(), OutputError> {
+    let temporary = files::partial(path);
+    files::remove(&temporary)?;
+    match fs::rename(path, &temporary) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(OutputError::io("rename", path)(error)),
+        Ok(()) => files::remove(&temporary),
+    }
 }
 
 /// Removes all but the newest `keep` checkpoints up to `step`, and what a crash left half done.
@@ -311,14 +368,16 @@ fn prune(folder: &Path, step: u64, keep: usize) -> Result<(), OutputError> {
     old.retain(|&(other, _)| other < step);
     let spare = (old.len() + 1).saturating_sub(keep.max(1));
     for (_, path) in &old[..spare.min(old.len())] {
-        files::remove(path)?;
+        discard(path)?;
     }
-    let entries = fs::read_dir(folder).map_err(OutputError::io("list", folder))?;
-    for entry in entries.flatten() {
-        let name = entry.file_name();
-        let name = name.to_string_lossy();
+    for path in files::names_in(folder)? {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
         if name.starts_with("step-") && name.ends_with(files::PARTIAL) {
-            files::remove(&entry.path())?;
+            files::remove(&path)?;
+        }
+        // Its successor has its name.
+        if step_of(&path, OLD).is_some() && is_whole(&path.with_extension(""))? {
+            discard(&path)?;
         }
     }
     Ok(())
@@ -330,7 +389,15 @@ fn parse_manifest(folder: &Path, text: &[u8]) -> Result<Manifest, OutputError> {
         format: u64,
     }
     let broken = |e: serde_json::Error| {
-        OutputError::damaged(folder, format!("{MANIFEST} cannot be read ({e}); {OLDER}"))
+        let what = format!("{MANIFEST} cannot be read ({e})");
+        if !e.is_data() {
+            return OutputError::damaged(folder, format!("{what}; {OLDER}"));
+        }
+        OutputError::OtherVersion {
+            path: folder.to_owned(),
+            by: "of another version".to_owned(),
+            what,
+        }
     };
     let head: Head = serde_json::from_slice(text).map_err(broken)?;
     if head.format != FORMAT {
@@ -375,7 +442,7 @@ const OLDER: &str = "restart from an older checkpoint";
 
 /// Compares size and digests with the manifest. Collective.
 fn verify(comm: &Comm, state: &Path, manifest: &Manifest) -> Result<(), OutputError> {
-    let size = agree(comm, size_of(state))?;
+    let size = size_of(comm, state)?;
     if size != manifest.size {
         let what = format!("it has {size} bytes instead of {}; {OLDER}", manifest.size);
         return Err(OutputError::damaged(state, what));
@@ -404,14 +471,19 @@ fn check_content(
     file: &Content,
     manifest: &Manifest,
 ) -> Result<Vec<&'static FieldInfo>, OutputError> {
-    let damaged = |what: String| Err(OutputError::damaged(file.path(), what));
+    let other = |what: String| {
+        Err(OutputError::OtherVersion {
+            path: file.path().to_owned(),
+            by: manifest.by(),
+            what,
+        })
+    };
     let step: u64 = file.number("/", "step")?;
     let time: f64 = file.number("/", "time")?;
     if step != manifest.step || time.to_bits() != manifest.time.to_bits() {
-        return damaged(format!(
-            "it is of step {step}, {MANIFEST} of step {}",
-            manifest.step
-        ));
+        let known = manifest.step;
+        let what = format!("it is of step {step}, {MANIFEST} of step {known}; {OLDER}");
+        return Err(OutputError::damaged(file.path(), what));
     }
     let arrays = file.arrays(FIELDS)?;
     let mut fields = Vec::new();
@@ -420,19 +492,16 @@ fn check_content(
             if field.uses.meets(FieldUse::OPTIONAL) {
                 continue;
             }
-            return damaged(format!("it lacks the field {}; {OTHER}", field.name));
+            return other(format!("it lacks the field {}", field.name));
         };
         if array.row != row_type(field.kind) || array.rows != manifest.particles {
-            return damaged(format!(
-                "the field {} has another shape; {OTHER}",
-                field.name
-            ));
+            return other(format!("the field {} has another shape", field.name));
         }
         fields.push(field);
     }
     let known = |name: &str| with_use(FieldUse::STATE).any(|f: &FieldInfo| f.name == name);
     match arrays.iter().find(|array| !known(&array.name)) {
-        Some(array) => damaged(format!("it has an unknown field {}; {OTHER}", array.name)),
+        Some(array) => other(format!("it has an unknown field {}", array.name)),
         None => Ok(fields),
     }
 }
@@ -454,5 +523,3 @@ fn check_ids(comm: &Comm, state: &Path, ids: &[u64]) -> Result<(), OutputError> 
     let wrong = || OutputError::damaged(state, format!("{what}; {OLDER}"));
     agree(comm, sound.then_some(()).ok_or_else(wrong))
 }
-
-const OTHER: &str = "another program version wrote it";

@@ -91,6 +91,48 @@ pub enum OutputError {
         /// The format number read here.
         known: u64,
     },
+    /// A checkpoint with what this program does not know, or without what it needs.
+    #[error(
+        "the checkpoint {} was written by whipple {by}, and this is {}: {what}; restart it with the \
+         program that wrote it",
+        path.display(),
+        super::VERSION
+    )]
+    OtherVersion {
+        /// The checkpoint or its file.
+        path: PathBuf,
+        /// Version and commit that wrote it.
+        by: String,
+        /// What is different.
+        what: String,
+    },
+    /// A run goes on in the folder.
+    #[error(
+        "the folder {} is in use by {who}: wait for its end, stop it (`touch {}`), or choose another \
+         folder with --out; --ignore-lock takes the folder all the same",
+        path.display(),
+        path.join("stop").display()
+    )]
+    Held {
+        /// The folder.
+        path: PathBuf,
+        /// Who has it.
+        who: String,
+    },
+    /// A run on another host has not closed the folder.
+    #[error(
+        "the folder {} was not closed by {who}, and whether that still runs cannot be told from \
+         {here}: look there; if it does not, --ignore-lock takes the folder",
+        path.display()
+    )]
+    Unclear {
+        /// The folder.
+        path: PathBuf,
+        /// Who had it.
+        who: String,
+        /// This host.
+        here: String,
+    },
     /// A snapshot field that does not exist.
     #[error("there is no snapshot field `{name}`; choose from {allowed}")]
     UnknownField {
@@ -129,6 +171,19 @@ impl OutputError {
         }
     }
 
+    /// Whether a file is not what was written, as against one that cannot be read now or that
+    /// another version wrote. Of the rank that met the error: others hear only its text.
+    #[must_use]
+    pub fn is_damage(&self) -> bool {
+        matches!(self, Self::Damaged { .. })
+    }
+
+    /// Whether another version of the program wrote it.
+    #[must_use]
+    pub fn is_other_version(&self) -> bool {
+        matches!(self, Self::Format { .. } | Self::OtherVersion { .. })
+    }
+
     /// Whether a different command line would have avoided it.
     #[must_use]
     pub fn is_users(&self) -> bool {
@@ -138,6 +193,8 @@ impl OutputError {
                 | Self::NotARun { .. }
                 | Self::NoCheckpoint { .. }
                 | Self::OutsideRun { .. }
+                | Self::Held { .. }
+                | Self::Unclear { .. }
                 | Self::UnknownField { .. }
         )
     }

@@ -116,9 +116,22 @@ pub(super) fn remove(path: &Path) -> Result<(), OutputError> {
     let result = match fs::symlink_metadata(path) {
         Ok(meta) if meta.is_dir() => fs::remove_dir_all(path),
         Ok(_) => fs::remove_file(path),
-        Err(_) => Ok(()),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(error),
     };
     result.map_err(OutputError::io("remove", path))
+}
+
+/// Paths of all files and folders in a folder; none if there is no such folder.
+pub(super) fn names_in(folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
+    let entries = match fs::read_dir(folder) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        entries => entries.map_err(OutputError::io("list", folder))?,
+    };
+    entries
+        .map(|entry| entry.map(|entry| entry.path()))
+        .collect::<Result<_, _>>()
+        .map_err(OutputError::io("list", folder))
 }
 
 #[cfg(test)]

@@ -141,6 +141,15 @@ impl Table {
         let written = self.file.write_all(&line);
         written.map_err(OutputError::io("write", &self.path))
     }
+
+    /// Brings the rows written so far to the disk.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`].
+    pub fn sync(&self) -> Result<(), OutputError> {
+        let synced = self.file.sync_all();
+        synced.map_err(OutputError::io("sync", &self.path))
+    }
 }
 
 /// The bytes of those `rows` whose number in column `key` is at most `last`, without a half-written

@@ -4,18 +4,21 @@
 //! before anybody goes on ([`agree`]), so that callers leave together. Rows stand in the order of
 //! particle ids ([`Rows`]), whatever the ranks. [`h5`] is the only room that names HDF5.
 
+mod begin;
 pub mod checkpoint;
 mod digest;
 mod error;
 mod files;
 pub mod h5;
 mod history;
+mod lock;
 mod log;
 pub mod post_mortem;
 mod rows;
 mod run_folder;
 mod schedule;
 pub mod series;
+mod set_aside;
 mod sheet;
 pub mod snapshot;
 mod vote;
@@ -23,12 +26,14 @@ mod vote;
 pub use error::OutputError;
 pub use files::{read_regular, read_small, write_atomically, write_json};
 pub use history::{Column, Table, Value, unit_of_model};
+pub use lock::{Holder, Presence, RunLock};
 pub use log::Log;
 pub use rows::{Block, Rows};
 pub use run_folder::{Phase, RunFolder, Status};
 pub use schedule::Schedule;
+pub use set_aside::SetAside;
 pub use sheet::Sheet;
-pub use vote::{agree, on_root};
+pub use vote::{agree, from_root, on_root};
 
 /// The program's version.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -6,26 +6,15 @@ use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
 
-use crate::comm::Comm;
-
 use super::checkpoint::{self, step_of};
-use super::{OutputError, files, on_root, series, snapshot, write_atomically, write_json};
+use super::files::names_in;
+use super::{OutputError, files, snapshot, write_json};
 
-/// Files that a run writes into its folder, beside two folders.
-const FILES: [&str; 9] = [
-    "case.toml",
-    "history.csv",
-    "contacts.csv",
-    "loads.csv",
-    "removed.csv",
-    "performance.csv",
-    "log.txt",
-    "status.json",
-    "summary.json",
-];
+pub(super) const STATUS: &str = "status.json";
 const SNAPSHOTS: &str = "snapshots";
 const CHECKPOINTS: &str = "checkpoints";
-const TROUBLE: &str = "trouble";
+pub(super) const TROUBLE: &str = "trouble";
+pub(super) const SNAPSHOT_ENDING: &str = ".vtkhdf";
 
 /// Where a run stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -71,80 +60,10 @@ pub struct Status {
 /// The folder of a run and the names of what is in it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RunFolder {
-    path: PathBuf,
+    pub(super) path: PathBuf,
 }
 
 impl RunFolder {
-    /// Makes the folder of a new run, with its resolved input. A folder with something in it is
-    /// refused, unless `force` is given and it holds a run: then that run's files go, and
-    /// nothing else. Collective.
-    ///
-    /// # Errors
-    /// [`OutputError::FolderInUse`], [`OutputError::NotARun`], [`OutputError::Io`]; the same on
-    /// every rank.
-    pub fn create(
-        comm: &Comm,
-        path: &Path,
-        resolved: &str,
-        force: bool,
-    ) -> Result<Self, OutputError> {
-        let folder = Self::at(path);
-        on_root(comm, || {
-            folder.make_room(force)?;
-            for path in [folder.snapshots(), folder.checkpoints()] {
-                fs::create_dir_all(&path).map_err(OutputError::io("create the folder", &path))?;
-            }
-            folder.write_status(&Status {
-                state: Phase::Running,
-                step: 0,
-                time: 0.0,
-                reason: None,
-            })?;
-            write_atomically(&folder.case(), resolved.as_bytes())
-        })?;
-        Ok(folder)
-    }
-
-    /// Goes on in the folder of an earlier run from a checkpoint of it: snapshots and
-    /// checkpoints later than that are removed, for the new run writes them again; tables are
-    /// cut by [`super::Table::resume`]. Collective.
-    ///
-    /// # Errors
-    /// [`OutputError::Io`], [`OutputError::Damaged`]; the same on every rank.
-    pub fn resume(
-        comm: &Comm,
-        path: &Path,
-        resolved: &str,
-        step: u64,
-        time: f64,
-    ) -> Result<Self, OutputError> {
-        let folder = Self::at(path);
-        on_root(comm, || {
-            for path in [folder.snapshots(), folder.checkpoints()] {
-                fs::create_dir_all(&path).map_err(OutputError::io("create the folder", &path))?;
-            }
-            for (other, path) in checkpoint::list(&folder.checkpoints())? {
-                if other > step {
-                    files::remove(&path)?;
-                }
-            }
-            series::keep_until(&folder.series(), time)?;
-            for path in folder.snapshot_files()? {
-                if step_of(&path, SNAPSHOT_ENDING).is_some_and(|other| other > step) {
-                    files::remove(&path)?;
-                }
-            }
-            folder.write_status(&Status {
-                state: Phase::Running,
-                step,
-                time,
-                reason: None,
-            })?;
-            write_atomically(&folder.case(), resolved.as_bytes())
-        })?;
-        Ok(folder)
-    }
-
     /// Names the folder of a run, whether it exists or not.
     #[must_use]
     pub fn at(path: &Path) -> Self {
@@ -170,7 +89,7 @@ impl RunFolder {
     /// Whether a folder holds a run.
     #[must_use]
     pub fn is_run(path: &Path) -> bool {
-        path.join("status.json").is_file()
+        path.join(STATUS).is_file()
     }
 
     /// The run that a checkpoint stands in, if it stands in one.
@@ -265,7 +184,7 @@ impl RunFolder {
     /// The status file.
     #[must_use]
     pub fn status_file(&self) -> PathBuf {
-        self.path.join("status.json")
+        self.path.join(STATUS)
     }
 
     /// The figures of a finished run; see [`write_json`].
@@ -323,93 +242,11 @@ impl RunFolder {
         found.sort_by_key(|path| step_of(path, SNAPSHOT_ENDING));
         Ok(found)
     }
-
-    /// Sees to it that the folder exists and holds no run.
-    fn make_room(&self, force: bool) -> Result<(), OutputError> {
-        fs::create_dir_all(&self.path).map_err(OutputError::io("create the folder", &self.path))?;
-        if names_in(&self.path)?.is_empty() {
-            return Ok(());
-        }
-        let path = self.path.clone();
-        if !force {
-            return Err(OutputError::FolderInUse { path });
-        }
-        if !Self::is_run(&path) {
-            return Err(OutputError::NotARun { path });
-        }
-        for folder in [self.snapshots(), self.checkpoints()] {
-            for path in names_in(&folder)? {
-                if is_ours(&path) {
-                    files::remove(&path)?;
-                }
-            }
-        }
-        files::remove(&path.join(TROUBLE))?;
-        // The status goes last, so that a clearing that was cut short can be taken up again.
-        for name in FILES.iter().filter(|&&name| name != "status.json") {
-            files::remove(&path.join(name))?;
-            files::remove(&files::partial(&path.join(name)))?;
-        }
-        files::remove(&self.status_file())
-    }
-}
-
-const SNAPSHOT_ENDING: &str = ".vtkhdf";
-
-/// Whether a run wrote this into its folder of snapshots or checkpoints.
-fn is_ours(path: &Path) -> bool {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let name = name.trim_end_matches(files::PARTIAL);
-    let name = Path::new(name.strip_suffix(".old").unwrap_or(name));
-    step_of(name, SNAPSHOT_ENDING).is_some()
-        || step_of(name, "").is_some()
-        || name.extension().is_some_and(|e| e == "series")
-}
-
-/// Paths of all files and folders in a folder; none if there is no such folder.
-fn names_in(folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
-    if !folder.exists() {
-        return Ok(Vec::new());
-    }
-    let entries = fs::read_dir(folder).map_err(OutputError::io("list", folder))?;
-    entries
-        .map(|entry| entry.map(|entry| entry.path()))
-        .collect::<Result<_, _>>()
-        .map_err(OutputError::io("list", folder))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn write(path: PathBuf) {
-        fs::create_dir_all(path.parent().unwrap()).unwrap();
-        fs::write(path, "x").unwrap();
-    }
-
-    #[test]
-    fn a_used_folder_is_refused_and_force_clears_only_a_run() {
-        let comm = Comm::solo();
-        let place = tempfile::tempdir().unwrap();
-        let path = place.path().join("deep/run");
-        let run = RunFolder::create(&comm, &path, "title = 1", false).unwrap();
-        assert_eq!(run.status().unwrap().state, Phase::Running);
-        let refused = RunFolder::create(&comm, &path, "", false).unwrap_err();
-        assert!(refused.is_users() && refused.to_string().contains("--force"));
-
-        write(run.snapshot(3));
-        write(run.series());
-        write(run.checkpoints().join("step-00000003/manifest.json"));
-        write(run.checkpoints().join("step-00000004.partial/state.h5"));
-        write(run.snapshots().join("my picture.png"));
-        write(path.join("notes.txt"));
-        RunFolder::create(&comm, &path, "title = 2", true).unwrap();
-        let left = names_in(&run.snapshots()).unwrap();
-        assert_eq!(left, [run.snapshots().join("my picture.png")]);
-        assert!(names_in(&run.checkpoints()).unwrap().is_empty());
-        assert!(path.join("notes.txt").exists());
-        assert_eq!(fs::read_to_string(run.case()).unwrap(), "title = 2");
-    }
 
     #[test]
     fn a_stop_file_is_that_of_an_earlier_run_or_of_this_one() {
@@ -423,47 +260,5 @@ mod tests {
         run.forget_stop(written + second).unwrap();
         assert!(!run.stop().exists());
         run.forget_stop(written).unwrap();
-    }
-
-    #[test]
-    fn force_leaves_a_folder_alone_that_holds_no_run() {
-        let place = tempfile::tempdir().unwrap();
-        let case = place.path().join("case.toml");
-        write(case.clone());
-        let refused = RunFolder::create(&Comm::solo(), place.path(), "", true).unwrap_err();
-        assert!(matches!(refused, OutputError::NotARun { .. }));
-        assert_eq!(fs::read_to_string(case).unwrap(), "x");
-    }
-
-    #[test]
-    fn a_restart_drops_what_came_after_its_checkpoint() {
-        let comm = Comm::solo();
-        let place = tempfile::tempdir().unwrap();
-        let run = RunFolder::create(&comm, place.path(), "", false).unwrap();
-        for step in [2, 4, 6] {
-            write(run.snapshot(step));
-            let time = f64::from(u32::try_from(step).unwrap());
-            series::add(&run.series(), &RunFolder::snapshot_name(step), time).unwrap();
-            write(
-                run.checkpoints()
-                    .join(format!("step-{step:08}/manifest.json")),
-            );
-        }
-        let run = RunFolder::resume(&comm, place.path(), "", 4, 4.0).unwrap();
-        assert_eq!(
-            run.snapshot_files().unwrap(),
-            [run.snapshot(2), run.snapshot(4)]
-        );
-        assert_eq!(series::read(&run.series()).unwrap().len(), 2);
-        let newest = run.checkpoint_folders().unwrap().remove(0);
-        assert!(newest.ends_with("step-00000004"));
-        assert_eq!(
-            RunFolder::of_checkpoint(&newest)
-                .unwrap()
-                .status()
-                .unwrap()
-                .step,
-            4
-        );
     }
 }

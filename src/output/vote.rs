@@ -1,5 +1,8 @@
 //! One verdict for all ranks.
 
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
 use crate::comm::{Comm, Exchange};
 
 use super::OutputError;
@@ -50,4 +53,25 @@ pub fn on_root(
     task: impl FnOnce() -> Result<(), OutputError>,
 ) -> Result<(), OutputError> {
     agree(comm, if comm.is_root() { task() } else { Ok(()) })
+}
+
+/// Lets rank 0 find something out and tells it to every rank: what steers collective calls must not
+/// be what each rank sees of a file system by itself. Collective.
+///
+/// # Errors
+/// What `task` returns, with the same text on every rank.
+///
+/// # Panics
+/// If what is found is no plain data.
+pub fn from_root<T: Serialize + DeserializeOwned>(
+    comm: &Comm,
+    task: impl FnOnce() -> Result<T, OutputError>,
+) -> Result<T, OutputError> {
+    let mut found = Vec::new();
+    on_root(comm, || {
+        found = serde_json::to_vec(&task()?).expect("plain data");
+        Ok(())
+    })?;
+    comm.broadcast(&mut found);
+    Ok(serde_json::from_slice(&found).expect("what rank 0 has written"))
 }

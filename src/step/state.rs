@@ -42,6 +42,7 @@ impl Reason {
 
 /// Ledger of one pair of bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct PairState {
     /// Force of the second body on the first now (N).
     pub force: [f64; 3],
@@ -67,6 +68,7 @@ pub struct PairState {
 
 /// Ledger of what acts from outside: a prescribed velocity, a rigid body, a rigid surface.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct LoadState {
     /// Force on the model (N): the mean of the last step, of surfaces that of now.
     pub force: [f64; 3],
@@ -87,6 +89,7 @@ pub struct LoadState {
 
 /// Sums over all particles that are no part of a rigid body (SI).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Totals {
     /// `Σ ½ m v²` (J).
     pub kinetic_energy: f64,
@@ -114,6 +117,7 @@ impl Totals {
 
 /// The scalar state of a run; equal on all ranks, saved with each checkpoint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct RunState {
     /// Steps done.
     pub step: u64,
@@ -195,6 +199,7 @@ impl RunState {
 
 /// Largest deviations over a run.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Worst {
     /// |total energy − first value − work of loads| (J).
     pub energy_deviation: f64,

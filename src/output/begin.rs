@@ -1,0 +1,372 @@
+//! How a run takes its folder: as a new one, or to go on in it. Nothing of an earlier run is lost
+//! before the new one stands.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::comm::Comm;
+
+use super::checkpoint::{self, step_of};
+use super::files::names_in;
+use super::lock::{LOCK, RunLock};
+use super::run_folder::{SNAPSHOT_ENDING, STATUS, TROUBLE};
+use super::set_aside::{self, SET_ASIDE, SetAside};
+use super::{OutputError, Phase, RunFolder, Status, files, on_root, series, write_atomically};
+
+/// Files that a run writes into its folder, beside two folders.
+const FILES: [&str; 9] = [
+    "case.toml",
+    "history.csv",
+    "contacts.csv",
+    "loads.csv",
+    "removed.csv",
+    "performance.csv",
+    "log.txt",
+    STATUS,
+    "summary.json",
+];
+/// Files that a restart changes before it has a checkpoint.
+const CHANGED: [&str; 7] = [
+    "history.csv",
+    "contacts.csv",
+    "loads.csv",
+    "removed.csv",
+    "performance.csv",
+    "case.toml",
+    STATUS,
+];
+
+impl RunFolder {
+    /// Takes the folder of a new run, and makes it if need be; nothing in it changes. A folder with
+    /// something in it is refused, unless `force` is given and it holds a run. One that a run has open
+    /// is refused unless `ignore` is given. The lock is rank 0's. Collective.
+    ///
+    /// # Errors
+    /// [`OutputError::FolderInUse`], [`OutputError::NotARun`], [`OutputError::Held`],
+    /// [`OutputError::Unclear`], [`OutputError::Io`]; the same on every rank.
+    pub fn take_new(
+        &self,
+        comm: &Comm,
+        force: bool,
+        ignore: bool,
+    ) -> Result<Option<RunLock>, OutputError> {
+        let mut lock = None;
+        on_root(comm, || {
+            let path = &self.path;
+            fs::create_dir_all(path).map_err(OutputError::io("create the folder", path))?;
+            if self.is_empty()? || Self::is_run(path) {
+                lock = Some(RunLock::take(path, ignore)?);
+            }
+            // Another run may have begun and ended here before the lock was taken.
+            self.refuse(force)
+        })?;
+        Ok(lock)
+    }
+
+    /// Takes the folder of a run to go on in it; nothing in it changes. The lock is rank 0's.
+    /// Collective.
+    ///
+    /// # Errors
+    /// [`OutputError::Held`], [`OutputError::Unclear`], [`OutputError::Io`]; the same on every rank.
+    pub fn take(&self, comm: &Comm, ignore: bool) -> Result<Option<RunLock>, OutputError> {
+        let mut lock = None;
+        on_root(comm, || {
+            lock = Some(RunLock::take(&self.path, ignore)?);
+            Ok(())
+        })?;
+        Ok(lock)
+    }
+
+    /// Makes the folder of a new run, with its resolved input. A folder with something in it is
+    /// refused, unless `force` is given and it holds a run: then that run's files go, and
+    /// nothing else. Collective.
+    ///
+    /// # Errors
+    /// [`OutputError::FolderInUse`], [`OutputError::NotARun`], [`OutputError::Io`]; the same on
+    /// every rank.
+    pub fn create(
+        comm: &Comm,
+        path: &Path,
+        resolved: &str,
+        force: bool,
+    ) -> Result<Self, OutputError> {
+        let folder = Self::at(path);
+        on_root(comm, || {
+            fs::create_dir_all(path).map_err(OutputError::io("create the folder", path))?;
+            folder.refuse(force)?;
+            folder.clear()?;
+            folder.make_folders()?;
+            files::sync_folder(path.parent().unwrap_or(path))?;
+            folder.begin(0, 0.0, Some(resolved))
+        })?;
+        Ok(folder)
+    }
+
+    /// Goes on in the folder of an earlier run from a checkpoint of it, with a resolved input unless
+    /// the one there stays. Checkpoints that were passed
+    /// over as damaged get another name. What the run had written later is set aside until
+    /// [`Self::forget_set_aside`], for the new run writes it again; copies of the tables go there too,
+    /// which [`super::Table::resume`] cuts. Collective.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`], [`OutputError::Damaged`]; the same on every rank. The folder is then as
+    /// it was.
+    pub fn resume(
+        &self,
+        comm: &Comm,
+        resolved: Option<&str>,
+        step: u64,
+        time: f64,
+        passed_over: &[PathBuf],
+    ) -> Result<Option<SetAside>, OutputError> {
+        let mut aside = None;
+        on_root(comm, || {
+            self.make_folders()?;
+            let mut place = SetAside::new(&self.path)?;
+            let moved = self
+                .set_aside(&mut place, step, time, passed_over)
+                .and_then(|()| self.begin(step, time, resolved));
+            if let Err(error) = moved {
+                place.undo();
+                return Err(error);
+            }
+            aside = Some(place);
+            Ok(())
+        })?;
+        Ok(aside)
+    }
+
+    /// Checkpoints first, the newest first of all, so that at any time the newest one that is left
+    /// has all its rows and snapshots.
+    fn set_aside(
+        &self,
+        place: &mut SetAside,
+        step: u64,
+        time: f64,
+        passed_over: &[PathBuf],
+    ) -> Result<(), OutputError> {
+        for path in passed_over {
+            place.rename_as(path, checkpoint::DAMAGED)?;
+        }
+        let checkpoints = checkpoint::list(&self.checkpoints())?;
+        for (_, path) in checkpoints.iter().rev().filter(|(other, _)| *other > step) {
+            place.take(path)?;
+        }
+        files::sync_folder(&self.checkpoints())?;
+        for name in CHANGED {
+            place.copy(&self.path.join(name))?;
+        }
+        place.copy(&self.series())?;
+        series::keep_until(&self.series(), time)?;
+        for path in self.snapshot_files()? {
+            if step_of(&path, SNAPSHOT_ENDING).is_some_and(|other| other > step) {
+                place.take(&path)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Removes what a restart has set aside, if there is anything: the run has a checkpoint of its
+    /// own. Rank 0's alone.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`].
+    pub fn forget_set_aside(&self) -> Result<(), OutputError> {
+        set_aside::forget(&self.path)
+    }
+
+    /// What restarts have set aside, if there is anything.
+    #[must_use]
+    pub fn set_aside_folder(&self) -> Option<PathBuf> {
+        Some(self.path.join(SET_ASIDE)).filter(|path| path.exists())
+    }
+
+    /// Says that a run goes on from here.
+    fn begin(&self, step: u64, time: f64, resolved: Option<&str>) -> Result<(), OutputError> {
+        self.write_status(&Status {
+            state: Phase::Running,
+            step,
+            time,
+            reason: None,
+        })?;
+        resolved.map_or(Ok(()), |text| {
+            write_atomically(&self.case(), text.as_bytes())
+        })
+    }
+
+    fn make_folders(&self) -> Result<(), OutputError> {
+        for path in [self.snapshots(), self.checkpoints()] {
+            fs::create_dir_all(&path).map_err(OutputError::io("create the folder", &path))?;
+        }
+        Ok(())
+    }
+
+    /// Refuses a folder with something in it, unless it is a run and `force` is given.
+    fn refuse(&self, force: bool) -> Result<(), OutputError> {
+        let path = self.path.clone();
+        if self.is_empty()? {
+            Ok(())
+        } else if !force {
+            Err(OutputError::FolderInUse { path })
+        } else if Self::is_run(&path) {
+            Ok(())
+        } else {
+            Err(OutputError::NotARun { path })
+        }
+    }
+
+    /// Whether there is nothing in it but a lock.
+    fn is_empty(&self) -> Result<bool, OutputError> {
+        let names = names_in(&self.path)?;
+        Ok(names.iter().all(|path| path.ends_with(LOCK)))
+    }
+
+    /// Removes what a run has written, at once: who gives `--force` asks for it. Checkpoints go
+    /// first, each at a stroke and the newest first, so that a restart after a clearing that was cut
+    /// short finds whole ones or none; the status stays until a new one takes its place, so that
+    /// the folder remains one that `--force` clears.
+    fn clear(&self) -> Result<(), OutputError> {
+        for (_, path) in checkpoint::list(&self.checkpoints())?.iter().rev() {
+            checkpoint::discard(path)?;
+        }
+        for folder in [self.checkpoints(), self.snapshots()] {
+            for path in names_in(&folder)? {
+                if is_ours(&path) {
+                    files::remove(&path)?;
+                }
+            }
+        }
+        files::remove(&self.path.join(TROUBLE))?;
+        self.forget_set_aside()?;
+        for name in FILES {
+            if name != STATUS {
+                files::remove(&self.path.join(name))?;
+            }
+            files::remove(&files::partial(&self.path.join(name)))?;
+        }
+        Ok(())
+    }
+}
+
+/// Whether a run wrote this into its folder of snapshots or checkpoints.
+fn is_ours(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let name = name.trim_end_matches(files::PARTIAL);
+    let name = Path::new(name.strip_suffix(".old").unwrap_or(name));
+    step_of(name, SNAPSHOT_ENDING).is_some()
+        || step_of(name, "").is_some()
+        || checkpoint::is_damaged(name)
+        || name.extension().is_some_and(|e| e == "series")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn write(path: PathBuf) {
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, "x").unwrap();
+    }
+
+    #[test]
+    fn a_used_folder_is_refused_and_force_clears_only_a_run() {
+        let comm = Comm::solo();
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("deep/run");
+        let run = RunFolder::create(&comm, &path, "title = 1", false).unwrap();
+        assert_eq!(run.status().unwrap().state, Phase::Running);
+        let refused = RunFolder::create(&comm, &path, "", false).unwrap_err();
+        assert!(refused.is_users() && refused.to_string().contains("--force"));
+
+        write(run.snapshot(3));
+        write(run.series());
+        write(run.checkpoints().join("step-00000003/manifest.json"));
+        write(run.checkpoints().join("step-00000004.partial/state.h5"));
+        write(run.snapshots().join("my picture.png"));
+        write(path.join("notes.txt"));
+        RunFolder::create(&comm, &path, "title = 2", true).unwrap();
+        let left = names_in(&run.snapshots()).unwrap();
+        assert_eq!(left, [run.snapshots().join("my picture.png")]);
+        assert!(names_in(&run.checkpoints()).unwrap().is_empty());
+        assert!(path.join("notes.txt").exists());
+        assert_eq!(fs::read_to_string(run.case()).unwrap(), "title = 2");
+    }
+
+    #[test]
+    fn force_leaves_a_folder_alone_that_holds_no_run() {
+        let place = tempfile::tempdir().unwrap();
+        let case = place.path().join("case.toml");
+        write(case.clone());
+        let refused = RunFolder::create(&Comm::solo(), place.path(), "", true).unwrap_err();
+        assert!(matches!(refused, OutputError::NotARun { .. }));
+        assert_eq!(fs::read_to_string(case).unwrap(), "x");
+    }
+
+    #[test]
+    fn a_restart_sets_aside_what_came_after_its_checkpoint() {
+        let comm = Comm::solo();
+        let place = tempfile::tempdir().unwrap();
+        let run = RunFolder::create(&comm, place.path(), "", false).unwrap();
+        for step in [2, 4, 6] {
+            write(run.snapshot(step));
+            let time = f64::from(u32::try_from(step).unwrap());
+            series::add(&run.series(), &RunFolder::snapshot_name(step), time).unwrap();
+            write(
+                run.checkpoints()
+                    .join(format!("step-{step:08}/manifest.json")),
+            );
+        }
+        write(run.history());
+        let names = |run: &RunFolder| {
+            let checkpoints = run.checkpoint_folders().unwrap();
+            (run.snapshot_files().unwrap(), checkpoints)
+        };
+        let before = names(&run);
+        let resume = |passed_over: &[PathBuf]| {
+            let aside = run.resume(&comm, Some("edited"), 4, 4.0, passed_over);
+            aside.unwrap().unwrap()
+        };
+        // A restart that could not begin leaves the folder as it was.
+        let aside = resume(&[]);
+        fs::remove_file(run.history()).unwrap();
+        aside.undo();
+        assert_eq!(names(&run), before);
+        assert_eq!(series::read(&run.series()).unwrap().len(), 3);
+        assert_eq!(run.status().unwrap().step, 0);
+        assert_eq!(fs::read_to_string(run.case()).unwrap(), "");
+        assert_eq!(fs::read_to_string(run.history()).unwrap(), "x");
+        assert_eq!(run.set_aside_folder(), None);
+
+        let damaged = run.checkpoints().join("step-00000006");
+        drop(resume(&[damaged.clone()]));
+        let [there] = &checkpoint::list_damaged(&run.checkpoints()).unwrap()[..] else {
+            panic!()
+        };
+        assert!(there.ends_with("step-00000006.damaged") && !damaged.exists());
+        let aside = run.set_aside_folder().unwrap().join("1");
+        assert!(aside.join("snapshots/step-00000006.vtkhdf").exists());
+        assert!(aside.join("history.csv").exists());
+        // One more that makes no checkpoint overwrites nothing.
+        write(run.snapshot(6));
+        drop(resume(&[]));
+        let again = run.set_aside_folder().unwrap().join("2");
+        assert!(aside.exists() && again.join("snapshots/step-00000006.vtkhdf").exists());
+        run.forget_set_aside().unwrap();
+        assert_eq!(run.set_aside_folder(), None);
+        assert_eq!(
+            run.snapshot_files().unwrap(),
+            [run.snapshot(2), run.snapshot(4)]
+        );
+        assert_eq!(series::read(&run.series()).unwrap().len(), 2);
+        let newest = run.checkpoint_folders().unwrap().remove(0);
+        assert!(newest.ends_with("step-00000004"));
+        assert_eq!(
+            RunFolder::of_checkpoint(&newest)
+                .unwrap()
+                .status()
+                .unwrap()
+                .step,
+            4
+        );
+    }
+}

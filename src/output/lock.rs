@@ -1,0 +1,349 @@
+//! The lock of a run's folder, so that no second run writes into it.
+//!
+//! Rank 0 holds an advisory lock on the file `lock` for as long as the run lives; the system drops it
+//! when the process ends, in whatever way. The file says who holds it: a run that ends in good order
+//! removes it, and one that was killed leaves it behind. Where a file system has no locks, or keeps
+//! them on each host for itself, what the file says is all there is.
+
+use std::fs::{self, File, TryLockError};
+use std::io::{self, Read as _, Write as _};
+use std::os::unix::fs::MetadataExt as _;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use indicatif::HumanDuration;
+use serde::{Deserialize, Serialize};
+
+use super::{OutputError, files};
+
+/// Name of the lock's file in a run's folder.
+pub(super) const LOCK: &str = "lock";
+
+/// How often a lock is tried for: `info` holds it for a moment.
+const TRIES: u32 = 5;
+const PAUSE: Duration = Duration::from_millis(20);
+
+/// Who has a folder open: the content of its `lock`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Holder {
+    /// Host of rank 0.
+    pub host: String,
+    /// Process id of rank 0.
+    pub process: u32,
+    /// The batch job that it is part of, where a scheduler started it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub job: Option<String>,
+    /// When it opened the folder (seconds since 1970, UTC).
+    pub started: u64,
+}
+
+impl Holder {
+    /// This process.
+    fn here() -> Self {
+        let since = SystemTime::now().duration_since(UNIX_EPOCH);
+        Self {
+            host: host(),
+            process: std::process::id(),
+            job: ["SLURM_JOB_ID", "PBS_JOBID"]
+                .iter()
+                .find_map(|name| std::env::var(name).ok()),
+            started: since.map_or(0, |since| since.as_secs()),
+        }
+    }
+
+    /// Whether a process with its id lives, if that can be told from `here`.
+    fn lives(&self, here: &Self) -> Option<bool> {
+        let id = i32::try_from(self.process).ok()?;
+        // SAFETY: the signal 0 is none; the system only says whether it could be sent.
+        let there = || unsafe { libc::kill(id, 0) } == 0
+            || io::Error::last_os_error().raw_os_error() == Some(libc::EPERM);
+        if self.host == here.host {
+            Some(there())
+        } else if self.job.is_some() && self.job == here.job {
+            // A job that its scheduler has begun anew: it ended the first one before.
+            Some(false)
+        } else {
+            None
+        }
+    }
+}
+
+impl std::fmt::Display for Holder {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "process {} on {}", self.process, self.host)?;
+        if let Some(job) = &self.job {
+            write!(f, " (job {job})")?;
+        }
+        let began = UNIX_EPOCH + Duration::from_secs(self.started);
+        match began.elapsed() {
+            Ok(ago) => write!(f, ", begun {} ago", HumanDuration(ago)),
+            Err(_) => Ok(()),
+        }
+    }
+}
+
+/// Whether a run has a folder open.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Presence {
+    /// Nobody has; the last one that had, if it did not close it.
+    Nobody(Option<Holder>),
+    /// A run has, and this one if the file says so.
+    Held(Option<Holder>),
+    /// One on another host had, and may have.
+    Unclear(Holder),
+}
+
+impl Presence {
+    /// Whether a run has the folder of a run open, as far as can be told from this host.
+    #[must_use]
+    pub fn of(folder: &Path) -> Self {
+        let Ok(mut file) = File::open(folder.join(LOCK)) else {
+            return Self::Nobody(None);
+        };
+        let verdict = file.try_lock_shared();
+        judge(verdict.as_ref().err(), read(&mut file), &Holder::here())
+    }
+}
+
+/// What the attempt to lock a file and its content say.
+fn judge(refused: Option<&TryLockError>, holder: Option<Holder>, here: &Holder) -> Presence {
+    let lives = holder.as_ref().and_then(|holder| holder.lives(here));
+    match (refused, holder) {
+        (Some(TryLockError::WouldBlock), holder) => Presence::Held(holder),
+        (_, None) => Presence::Nobody(None),
+        // Some file systems keep the locks of each host for themselves.
+        (_, Some(holder)) if lives.is_none() => Presence::Unclear(holder),
+        (Some(TryLockError::Error(_)), Some(holder)) if lives == Some(true) => {
+            Presence::Held(Some(holder))
+        }
+        (_, holder) => Presence::Nobody(holder),
+    }
+}
+
+/// A folder held by this process, until it is dropped.
+#[derive(Debug)]
+pub struct RunLock {
+    path: PathBuf,
+    file: File,
+    /// What the user should know of it.
+    pub warnings: Vec<String>,
+}
+
+impl RunLock {
+    /// Takes the folder of a run, or says who has it; `ignore` takes it all the same. By one process.
+    ///
+    /// # Errors
+    /// [`OutputError::Held`], [`OutputError::Unclear`], [`OutputError::Io`].
+    pub fn take(folder: &Path, ignore: bool) -> Result<Self, OutputError> {
+        let path = folder.join(LOCK);
+        let (mut file, verdict) = open(&path).map_err(OutputError::io("open", &path))?;
+        let here = Holder::here();
+        let mut warnings = Vec::new();
+        if let Err(TryLockError::Error(error)) = &verdict {
+            warnings.push(format!(
+                "{} cannot be locked ({error}): a second run in this folder may not be noticed",
+                path.display()
+            ));
+        }
+        let presence = judge(verdict.as_ref().err(), read(&mut file), &here);
+        let told = |who: &Option<Holder>| {
+            let nameless = "a process that has not said its name".to_owned();
+            who.as_ref().map_or(nameless, ToString::to_string)
+        };
+        match presence {
+            Presence::Nobody(None) => {}
+            Presence::Nobody(before) => warnings.push(format!(
+                "the run before ({}) did not close the folder: it was killed or lost",
+                told(&before)
+            )),
+            Presence::Held(who) if !ignore => {
+                return Err(OutputError::Held {
+                    path: folder.to_owned(),
+                    who: told(&who),
+                });
+            }
+            Presence::Unclear(who) if !ignore => {
+                return Err(OutputError::Unclear {
+                    path: folder.to_owned(),
+                    who: who.to_string(),
+                    here: here.host,
+                });
+            }
+            Presence::Held(who) => {
+                warnings.push(format!("the lock of {} is ignored", told(&who)));
+                // That lock stays with the old file.
+                file = replace(&path).map_err(OutputError::io("replace", &path))?;
+            }
+            Presence::Unclear(who) => warnings.push(format!("the lock of {who} is ignored")),
+        }
+        sign(&mut file, &here).map_err(OutputError::io("write", &path))?;
+        Ok(Self {
+            path,
+            file,
+            warnings,
+        })
+    }
+}
+
+impl Drop for RunLock {
+    /// Removes the file, if it is still this process's, and with it the lock.
+    fn drop(&mut self) {
+        if is_at(&self.file, &self.path) {
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
+/// Opens the file and tries to lock it.
+fn open(path: &Path) -> io::Result<(File, Result<(), TryLockError>)> {
+    let mut tries = 0;
+    loop {
+        let mut options = File::options();
+        let file = options.read(true).write(true).create(true).open(path)?;
+        let verdict = file.try_lock();
+        tries += 1;
+        // One that has just been removed is nobody's any more.
+        let again = matches!(verdict, Err(TryLockError::WouldBlock)) || !is_at(&file, path);
+        if !again || tries == TRIES {
+            return Ok((file, verdict));
+        }
+        std::thread::sleep(PAUSE);
+    }
+}
+
+/// A new, locked file in the place of another.
+fn replace(path: &Path) -> io::Result<File> {
+    let temporary = files::partial(path);
+    let file = File::create(&temporary)?;
+    let _ = file.try_lock();
+    fs::rename(&temporary, path)?;
+    Ok(file)
+}
+
+fn is_at(file: &File, path: &Path) -> bool {
+    let ours = file.metadata().map(|meta| (meta.dev(), meta.ino()));
+    let there = fs::metadata(path).map(|meta| (meta.dev(), meta.ino()));
+    matches!((ours, there), (Ok(ours), Ok(there)) if ours == there)
+}
+
+fn read(file: &mut File) -> Option<Holder> {
+    let mut text = Vec::new();
+    file.take(1 << 12).read_to_end(&mut text).ok()?;
+    serde_json::from_slice(&text).ok()
+}
+
+fn sign(file: &mut File, holder: &Holder) -> io::Result<()> {
+    let mut text = serde_json::to_vec_pretty(holder)?;
+    text.push(b'\n');
+    file.set_len(0)?;
+    io::Seek::rewind(file)?;
+    file.write_all(&text)?;
+    file.sync_all()
+}
+
+fn host() -> String {
+    let mut name = [0_u8; 256];
+    // SAFETY: the buffer is as long as it says; the last byte stays zero.
+    let code = unsafe { libc::gethostname(name.as_mut_ptr().cast(), name.len() - 1) };
+    let end = name.iter().position(|&byte| byte == 0).unwrap_or(0);
+    let name = String::from_utf8_lossy(&name[..end]);
+    if code == 0 && !name.is_empty() {
+        name.into_owned()
+    } else {
+        "an unknown host".to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn holder(host: &str, process: u32) -> Holder {
+        Holder {
+            host: host.to_owned(),
+            process,
+            job: None,
+            started: 0,
+        }
+    }
+
+    #[test]
+    fn a_second_run_is_refused_and_a_closed_folder_is_free() {
+        let folder = tempfile::tempdir().unwrap();
+        let first = RunLock::take(folder.path(), false).unwrap();
+        assert!(first.warnings.is_empty());
+        let error = RunLock::take(folder.path(), false).unwrap_err();
+        let mine = format!("process {}", std::process::id());
+        assert!(error.is_users() && error.to_string().contains(&mine));
+        assert!(matches!(
+            Presence::of(folder.path()),
+            Presence::Held(Some(_))
+        ));
+
+        let second = RunLock::take(folder.path(), true).unwrap();
+        assert!(second.warnings[0].contains("is ignored"));
+        // The first one's end leaves the second one's lock alone.
+        drop(first);
+        assert!(RunLock::take(folder.path(), false).is_err());
+        drop(second);
+        assert_eq!(Presence::of(folder.path()), Presence::Nobody(None));
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        assert!(
+            RunLock::take(folder.path(), false)
+                .unwrap()
+                .warnings
+                .is_empty()
+        );
+    }
+
+    #[test]
+    fn a_lock_that_was_left_behind_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let leave = |holder: &Holder| {
+            fs::write(
+                folder.path().join(LOCK),
+                serde_json::to_vec(holder).unwrap(),
+            )
+            .unwrap();
+        };
+        leave(&holder(&host(), 1));
+        assert!(matches!(
+            Presence::of(folder.path()),
+            Presence::Nobody(Some(_))
+        ));
+        let lock = RunLock::take(folder.path(), false).unwrap();
+        assert!(lock.warnings[0].contains("killed or lost"));
+        drop(lock);
+
+        leave(&holder("elsewhere", 1));
+        assert!(matches!(Presence::of(folder.path()), Presence::Unclear(_)));
+        let error = RunLock::take(folder.path(), false).unwrap_err();
+        assert!(error.to_string().contains("--ignore-lock"), "{error}");
+        let lock = RunLock::take(folder.path(), true).unwrap();
+        assert!(lock.warnings[0].contains("elsewhere"));
+    }
+
+    /// Where a file system has no locks, the process id decides.
+    #[test]
+    fn without_locks_the_file_decides() {
+        let here = holder("a", 1);
+        let refused = TryLockError::Error(io::ErrorKind::Unsupported.into());
+        let tell = |holder: Option<Holder>| judge(Some(&refused), holder, &here);
+        let (me, gone) = (holder("a", std::process::id()), holder("a", 0x7fff_fff0));
+        assert_eq!(tell(None), Presence::Nobody(None));
+        assert_eq!(tell(Some(me.clone())), Presence::Held(Some(me)));
+        assert_eq!(tell(Some(gone.clone())), Presence::Nobody(Some(gone)));
+        let other = holder("b", 1);
+        assert_eq!(tell(Some(other.clone())), Presence::Unclear(other));
+
+        // A batch job that was begun anew on another host.
+        let mut again = holder("b", 1);
+        again.job = Some("7".to_owned());
+        let mut here = here;
+        here.job = again.job.clone();
+        assert_eq!(
+            judge(None, Some(again.clone()), &here),
+            Presence::Nobody(Some(again))
+        );
+    }
+}
