@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::{EXIT_INPUT, memory};
+use crate::comm::Comm;
 use crate::input;
 use crate::model::Case;
 use crate::output::snapshot;
@@ -67,10 +68,10 @@ fn print_report(case: &Case, ranks: usize) {
             body.smoothing_length * 1e3,
         );
     }
-    let memory = memory::of_rank(case, ranks) * 1e-6;
+    let memory = memory::in_words(memory::of_rank(case, &Comm::solo(), ranks));
     let plural = if ranks == 1 { "" } else { "s" };
     println!(
-        "  {:<16} {total:>10} particles, about {memory:.0} MB a rank on {ranks} rank{plural}",
+        "  {:<16} {total:>10} particles, about {memory} a rank on {ranks} rank{plural}",
         "all"
     );
     for pair in input::approaches(case) {

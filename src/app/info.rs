@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::EXIT_INPUT;
+use super::memory::in_words;
 use super::results::{POINT_DATA, Results, ResultsError, component_names};
 use crate::output::checkpoint::{self, FIELDS};
 use crate::output::h5::{Array, Content, Element};
@@ -119,7 +120,8 @@ fn checkpoint_state(file: &Content, text: &mut Text) -> Result<(), ResultsError>
                 format!("{version} ({commit}), format {}", manifest.format),
             );
             text.entry("ranks", manifest.ranks);
-            text.entry("size", format!("{} bytes", manifest.size));
+            #[allow(clippy::cast_precision_loss, reason = "for people")]
+            text.entry("size", in_words(manifest.size as f64));
         }
         Err(error) => text.entry("not restartable", error),
     }
