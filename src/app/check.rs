@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::say::{complain, say};
 use super::{EXIT_INPUT, memory};
+use crate::comm::Comm;
 use crate::input;
 use crate::model::Case;
 use crate::model::readable::{short, shown};
@@ -69,10 +70,10 @@ fn print_report(case: &Case, ranks: usize) {
             case.length_unit.text(body.smoothing_length),
         ));
     }
-    let memory = memory::of_rank(case, ranks) * 1e-6;
+    let memory = memory::in_words(memory::of_rank(case, &Comm::solo(), ranks));
     let plural = if ranks == 1 { "" } else { "s" };
     say(&format!(
-        "  {:<16} {total:>10} particles, about {memory:.0} MB a rank on {ranks} rank{plural}",
+        "  {:<16} {total:>10} particles, about {memory} a rank on {ranks} rank{plural}",
         "all"
     ));
     for pair in input::approaches(case) {

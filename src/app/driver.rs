@@ -31,6 +31,8 @@ pub struct Driver<'a> {
     folder: &'a RunFolder,
     until: Option<f64>,
     start: Instant,
+    /// Seconds from the start of MPI to the first step, but for what is written before it.
+    set_up: f64,
     watch: Watch,
     fault: Option<Fault>,
     quantities: Vec<Quantity>,
@@ -67,6 +69,7 @@ impl<'a> Driver<'a> {
         warnings: &[String],
     ) -> Result<Self, OutputError> {
         let comm = launch.comm;
+        let set_up = launch.ready.elapsed().as_secs_f64();
         simulation.poison = args.poison;
         // What set-up took is no part of a step.
         simulation.timers = Timers::default();
@@ -81,6 +84,7 @@ impl<'a> Driver<'a> {
         let mut driver = Self {
             until: args.until,
             start: launch.start,
+            set_up,
             watch: Watch::new(launch.signals.clone(), stop, launch.start, args.walltime),
             fault: Fault::of_rank(comm.rank()),
             quantities,
@@ -301,7 +305,7 @@ impl<'a> Driver<'a> {
         let folder = self.folder;
         let closed = self.write_checkpoint(comm).and_then(|()| {
             let wall = self.start.elapsed().as_secs_f64();
-            let summary = summary(comm, &self.simulation, wall);
+            let summary = summary(comm, &self.simulation, [wall, self.set_up]);
             on_root(comm, || {
                 write_json(&folder.summary(), &summary)?;
                 self.write_status(phase, reason)
@@ -356,6 +360,7 @@ impl<'a> Driver<'a> {
         );
         self.log.line(&format!("whipple {VERSION} ({COMMIT})"));
         self.log.line(&text);
+        self.log.line(&format!("set up in {:.3} s", self.set_up));
         say(&text);
         for warning in warnings {
             let text = format!("warning: {warning}");

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::EXIT_INPUT;
+use super::memory::in_words;
 use super::results::{POINT_DATA, Results, ResultsError, component_names};
 use super::say::{complain, say};
 use crate::model::readable::one_line;
@@ -126,7 +127,8 @@ fn checkpoint_state(file: &Content, text: &mut Text) -> Result<(), ResultsError>
                 format!("{version} ({commit}), format {}", manifest.format),
             );
             text.entry("ranks", manifest.ranks);
-            text.entry("size", format!("{} bytes", manifest.size));
+            #[allow(clippy::cast_precision_loss, reason = "for people")]
+            text.entry("size", in_words(manifest.size as f64));
         }
         Err(error) => text.entry("not restartable", error),
     }

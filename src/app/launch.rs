@@ -20,6 +20,8 @@ pub struct Launch<'a> {
     pub comm: &'a Comm,
     /// When the program started.
     pub start: Instant,
+    /// When MPI and the threads had started.
+    pub ready: Instant,
     /// The same by the clock of files.
     pub began: SystemTime,
     /// Signals that came since.
@@ -48,6 +50,7 @@ pub fn with_ranks(work: impl FnOnce(&Launch) -> u8) -> u8 {
     let code = work(&Launch {
         comm: &comm,
         start,
+        ready: Instant::now(),
         began,
         signals,
     });

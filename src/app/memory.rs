@@ -4,8 +4,9 @@ use std::path::Path;
 
 use crate::comm::Comm;
 use crate::contact::ContactTable;
-use crate::model::{Axis, Case, RigidSurface, SphForm};
-use crate::populate::{self, Slab};
+use crate::domain::{Histogram, Outset};
+use crate::model::{Case, RigidSurface, SphForm};
+use crate::populate;
 use crate::step::bytes_of_options;
 
 /// What a process takes with MPI and HDF5 before it has a particle (bytes). This and the figures
@@ -22,101 +23,73 @@ const HALO: f64 = 1200.0;
 const SPARE: f64 = 1.06;
 /// By how much a rank's share may rise as work is balanced.
 const UNEVEN: f64 = 1.05;
-/// Halvings of the case's length that find a face between slabs.
-const HALVINGS: usize = 40;
 
-/// Bytes that the largest of so many ranks takes at its peak.
+/// Bytes that the largest of so many ranks takes at its peak. The processes of `comm`, which need not
+/// be those ranks, share the work. Collective; the same on all of them.
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
-pub fn of_rank(case: &Case, ranks: usize) -> f64 {
+pub fn of_rank(case: &Case, comm: &Comm, ranks: usize) -> f64 {
     let contact = ContactTable::new(case).is_active();
     let [owned_options, halo_options] = bytes_of_options(case).map(|bytes| SPARE * bytes as f64);
     let owned = OWNED + if contact { CONTACT } else { 0.0 } + owned_options;
-    let particles = count(case, None) as f64;
+    // As many stress points for each particle as there are axes, less some at surfaces.
+    let points = match case.sph.form {
+        SphForm::StressPoints => (1 + case.dimension) as f64,
+        SphForm::Conventional | SphForm::Normalised => 1.0,
+    };
     let surfaces = case.loads.surfaces.iter().map(RigidSurface::memory);
     let process = PROCESS + surfaces.sum::<usize>() as f64;
     if ranks < 2 {
-        return process + particles * owned;
+        let count = |body| populate::count(body, case.dimension, &case.symmetry, None);
+        let particles: u64 = case.bodies.iter().map(count).sum();
+        return process + points * particles as f64 * owned;
     }
-    let Some((axis, ends)) = longest(case) else {
+    let Some(fullest) = fullest(case, comm, ranks) else {
         return process;
     };
-    let faces: Vec<f64> = (1..ranks)
-        .map(|k| face(case, axis, ends, particles * k as f64 / ranks as f64))
-        .collect();
+    process + points * (fullest.owned * owned + fullest.halo * (HALO + halo_options))
+}
+
+/// The most particles that a rank has at the start.
+struct Fullest {
+    owned: f64,
+    halo: f64,
+}
+
+/// Of so many ranks, from one count of all particles along the axis of the slabs. `None` for a case
+/// without particles. Collective.
+#[allow(clippy::cast_precision_loss, reason = "an estimate")]
+fn fullest(case: &Case, comm: &Comm, ranks: usize) -> Option<Fullest> {
+    let mut histogram = Histogram::default();
+    Outset::new(case)?.count(case, comm, ranks, &mut histogram);
+    histogram.sum(comm);
+    let count = histogram.cumulate();
+    let even = count.total() as f64 / ranks as f64;
+    let face = |k: usize| count.plane(even * k as f64);
     // Half of the sum of two supports is what reaches across a face.
     let reach = case.bodies.iter().map(|body| 2.0 * body.smoothing_length);
     let reach = reach.fold(0.0, f64::max);
-    let beyond = |face: f64, side: f64| {
-        let (lower, upper) = (face.min(face + side), face.max(face + side));
-        let slab = Slab { axis, lower, upper };
-        count(case, Some(slab)) as f64
-    };
-    let halo = (0..ranks).map(|rank| {
-        let below = rank
-            .checked_sub(1)
-            .map_or(0.0, |k| beyond(faces[k], -reach));
-        below + faces.get(rank).map_or(0.0, |&face| beyond(face, reach))
-    });
+    let mut most = [0, 0];
+    for rank in 0..ranks {
+        let [lower, upper] = [face(rank), face(rank + 1)];
+        let mut halo = 0;
+        if rank > 0 {
+            halo += count.below(lower, 0.0) - count.below(lower, -reach);
+        }
+        if rank + 1 < ranks {
+            halo += count.below(upper, reach) - count.below(upper, 0.0);
+        }
+        let owned = count.below(upper, 0.0) - count.below(lower, 0.0);
+        most = [most[0].max(owned), most[1].max(halo)];
+    }
     let uneven = if case.domain.balance_every == 0 {
         1.0
     } else {
         UNEVEN
     };
-    let share = particles / ranks as f64 * uneven;
-    process + share * owned + halo.fold(0.0, f64::max) * (HALO + halo_options)
-}
-
-fn count(case: &Case, slab: Option<Slab>) -> u64 {
-    let bodies = case.bodies.iter();
-    let particles: u64 = bodies
-        .map(|body| populate::count(body, case.dimension, &case.symmetry, slab))
-        .sum();
-    // As many stress points for each as there are axes, less some at surfaces.
-    match case.sph.form {
-        SphForm::StressPoints => particles * (1 + case.dimension as u64),
-        SphForm::Conventional | SphForm::Normalised => particles,
-    }
-}
-
-/// The axis of the slabs and the ends of the case on it (m).
-fn longest(case: &Case) -> Option<(usize, [f64; 2])> {
-    let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
-    for body in &case.bodies {
-        let (lower, upper) = populate::bounds(body, case.dimension)?;
-        for axis in 0..case.dimension {
-            ends[axis][0] = ends[axis][0].min(lower[axis]);
-            ends[axis][1] = ends[axis][1].max(upper[axis]);
-        }
-    }
-    for plane in &case.symmetry {
-        let lower = &mut ends[plane.axis.index()][0];
-        *lower = lower.max(plane.position);
-    }
-    let length = |axis: &usize| ends[*axis][1] - ends[*axis][0];
-    let longest = (0..case.dimension)
-        .rev()
-        .max_by(|a, b| length(a).total_cmp(&length(b)))?;
-    let axis = case.domain.axis.map_or(longest, Axis::index);
-    Some((axis, ends[axis]))
-}
-
-/// Where on an axis so many particles stand below (m).
-#[allow(clippy::cast_precision_loss, reason = "an estimate")]
-fn face(case: &Case, axis: usize, [mut lower, mut upper]: [f64; 2], below: f64) -> f64 {
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (lower + upper);
-        let slab = Slab {
-            axis,
-            lower: f64::NEG_INFINITY,
-            upper: middle,
-        };
-        if (count(case, Some(slab)) as f64) < below {
-            lower = middle;
-        } else {
-            upper = middle;
-        }
-    }
-    upper
+    Some(Fullest {
+        owned: (even * uneven).max(most[0] as f64),
+        halo: most[1] as f64,
+    })
 }
 
 /// Why the ranks have not the memory that they will take, if they have not. Collective; the same on
@@ -131,16 +104,29 @@ pub fn shortage(comm: &Comm, case: &Case) -> Option<String> {
     let local = local_ranks(comm.size()) as u64;
     let mut share = [free(Path::new("/")).map_or(u64::MAX, |bytes| bytes / local)];
     comm.min_u64(&mut share);
-    let wanted = of_rank(case, comm.size());
+    let wanted = of_rank(case, comm, comm.size());
     let [share] = share;
     (wanted > share as f64).then(|| {
-        let (wanted, there) = (wanted * 1e-9, share as f64 * 1e-9);
+        let (wanted, there) = (in_words(wanted), in_words(share as f64));
         format!(
-            "a rank takes about {wanted:.2} GB, and {there:.2} GB of memory are free for each rank \
-             of a machine; take more machines or a coarser spacing, or --ignore-memory to start all \
+            "a rank takes about {wanted}, and {there} of memory are free for each rank of a \
+             machine; take more machines or a coarser spacing, or --ignore-memory to start all \
              the same"
         )
     })
+}
+
+/// A number of bytes with three digits or so and a unit.
+pub fn in_words(bytes: f64) -> String {
+    let (value, unit) = match bytes {
+        b if b < 999.5 => return format!("{b:.0} bytes"),
+        b if b < 999.5e3 => (b * 1e-3, "kB"),
+        b if b < 999.5e6 => (b * 1e-6, "MB"),
+        b if b < 999.5e9 => (b * 1e-9, "GB"),
+        b => (b * 1e-12, "TB"),
+    };
+    let digits = usize::from(value < 9.95);
+    format!("{value:.digits$} {unit}")
 }
 
 /// Ranks on this machine.
@@ -216,6 +202,84 @@ fn left(folder: &Path, [limit, used, files]: [&str; 3]) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::input;
+    use crate::populate::visits;
+
+    fn quarter(spacing: &str) -> Case {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/quarter-impact");
+        input::load(&path, &[format!("spacing={spacing}")]).unwrap()
+    }
+
+    /// Rows are looked at once, for any number of ranks, and they are many fewer than particles.
+    #[test]
+    fn what_is_foretold_costs_the_same_for_any_ranks() {
+        let solo = Comm::solo();
+        let case = quarter("0.005mm");
+        let visits_of = |ranks| visits::of(|| of_rank(&case, &solo, ranks));
+        let few = visits_of(2);
+        assert_eq!(few, visits_of(10_000));
+        assert!(few < 100_000, "{few} rows");
+        // All that `check` does, with eight times as many particles each time.
+        let all_of = |spacing| {
+            visits::of(|| {
+                let case = quarter(spacing);
+                let told = (input::warnings(&case), input::approaches(&case));
+                (told, of_rank(&case, &solo, 64))
+            })
+        };
+        let visits = ["0.01mm", "0.005mm", "0.0025mm"].map(all_of);
+        assert!(visits.is_sorted_by(|a, b| *b < 5 * a), "{visits:?}");
+    }
+
+    /// Slabs and halos are those of a walk along the sites.
+    #[test]
+    fn the_fullest_rank_is_that_of_a_walk() {
+        let case = quarter("0.02mm");
+        let mut x: Vec<f64> = Vec::new();
+        for body in &case.bodies {
+            let sites = populate::sites(body, 3, &case.symmetry, None);
+            x.extend(sites.map(|site| site.position[0]));
+        }
+        x.sort_by(f64::total_cmp);
+        let fullest = fullest(&case, &Comm::solo(), 4).unwrap();
+        let reach = 2.6 * 0.02e-3;
+        let within = |lower: f64, upper: f64| {
+            let slab = |x: &&f64| lower <= **x && **x < upper;
+            x.iter().filter(slab).count() as f64
+        };
+        // Just above the layer that completes the share.
+        let face = |k: usize| x[(x.len() * k).div_ceil(4) - 1] + 1e-9;
+        let halo = [
+            within(face(1), face(1) + reach),
+            within(face(1) - reach, face(1)) + within(face(2), face(2) + reach),
+            within(face(2) - reach, face(2)) + within(face(3), face(3) + reach),
+            within(face(3) - reach, face(3)),
+        ];
+        assert_eq!(fullest.halo, halo.into_iter().fold(0.0, f64::max));
+        let even = x.len() as f64 / 4.0;
+        assert_eq!(fullest.owned, 1.05 * even);
+    }
+
+    #[test]
+    fn bytes_have_a_unit_that_suits_them() {
+        let sizes = [
+            0.0, 999.0, 999.9, 51_234.0, 5e6, 64.4e6, 999.6e6, 1.25e9, 12e9, 2.5e13,
+        ];
+        let words = sizes.map(in_words);
+        let expected = [
+            "0 bytes",
+            "999 bytes",
+            "1.0 kB",
+            "51 kB",
+            "5.0 MB",
+            "64 MB",
+            "1.0 GB",
+            "1.2 GB",
+            "12 GB",
+            "25 TB",
+        ];
+        assert_eq!(words, expected);
+    }
 
     #[test]
     fn the_tightest_limit_counts() {

@@ -332,9 +332,11 @@ impl Tables {
 }
 
 /// `summary.json`: what the run has come to, and how fast this process has stepped (with the
-/// mean seconds of all ranks by phase). Collective.
+/// mean seconds of all ranks by phase). The seconds are those since the start of the program, and of
+/// them those from the start of MPI to the first step. Collective.
 #[allow(clippy::cast_precision_loss, reason = "for people")]
-pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::Value {
+pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde_json::Value {
+    let [wall, set_up] = seconds;
     let load = load(comm, simulation);
     let state = &simulation.state;
     let worst = &state.worst;
@@ -366,6 +368,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, wall: f64) -> serde_json::V
         "steps": state.step,
         "time": state.time,
         "wall_seconds": wall,
+        "set_up_seconds": set_up,
         "million_updates_per_second_per_core": rate,
         "bytes_per_particle": memory as f64 / (load.particles[0] as f64).max(1.0),
         "messages_per_rank_and_step": each(load.messages),

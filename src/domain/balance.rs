@@ -48,9 +48,29 @@ impl Histogram {
         8 * self.counts.capacity()
     }
 
-    /// Faces that split the work of all ranks by their shares.
-    pub fn split(&mut self, comm: &Comm, paces: &Paces) -> Vec<f64> {
+    /// The work of all ranks. Collective.
+    pub fn sum(&mut self, comm: &Comm) {
         comm.sum_u64(&mut self.counts);
+    }
+
+    /// How much lies below each plane.
+    #[must_use]
+    pub fn cumulate(&self) -> Cumulative {
+        let mut sum = 0;
+        let mut below = vec![0];
+        below.extend(self.counts.iter().map(|count| {
+            sum += count;
+            sum
+        }));
+        Cumulative {
+            width: self.width,
+            below,
+        }
+    }
+
+    /// Faces that split the work of all ranks by their shares. Collective.
+    pub fn split(&mut self, comm: &Comm, paces: &Paces) -> Vec<f64> {
+        self.sum(comm);
         let ranks = comm.size();
         let total: u64 = self.counts.iter().sum();
         let mut faces = Vec::with_capacity(ranks - 1);
@@ -85,6 +105,45 @@ impl Histogram {
     }
 }
 
+/// What a [`Histogram`] has below each of its planes, which are numbered from its lower end.
+#[derive(Debug, Clone)]
+pub struct Cumulative {
+    width: f64,
+    below: Vec<u64>,
+}
+
+impl Cumulative {
+    /// All that was counted.
+    #[must_use]
+    pub fn total(&self) -> u64 {
+        self.below.last().copied().unwrap_or(0)
+    }
+
+    /// The lowest plane with at least so much below it, or the last one.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss, reason = "counts stay far below 2^52")]
+    pub fn plane(&self, count: f64) -> usize {
+        let plane = self.below.partition_point(|&below| (below as f64) < count);
+        plane.min(self.below.len() - 1)
+    }
+
+    /// What lies below the last plane that is not farther than `way` (m, signed) from another.
+    #[must_use]
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_possible_wrap,
+        clippy::cast_sign_loss,
+        reason = "few planes"
+    )]
+    pub fn below(&self, plane: usize, way: f64) -> u64 {
+        // Rounding must not lose a plane that is just there.
+        let planes = (way / self.width + 1e-6).floor() as i64;
+        let last = self.below.len() as i64 - 1;
+        let there = planes.saturating_add(plane as i64).clamp(0, last);
+        self.below[there as usize]
+    }
+}
+
 /// New slabs along the same axis for owned particles at `positions` with counted `work`, of which
 /// each rank gets its share by `paces`.
 /// Particles whose work is unknown count as one.
@@ -116,6 +175,25 @@ pub fn balance(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_lies_below_a_plane_is_all_that_was_added_there() {
+        let mut histogram = Histogram::default();
+        histogram.reset(0.0, 2048.0, 1);
+        for (x, count) in [(0.5, 3), (7.0, 2), (7.5, 1), (2048.0, 4)] {
+            histogram.add(x, count);
+        }
+        let cumulative = histogram.cumulate();
+        assert_eq!(cumulative.total(), 10);
+        let below = [(0, 0.0), (1, 0.0), (7, 0.0), (8, 0.0), (5, 2.9), (8, -0.1)];
+        let found = below.map(|(plane, way)| cumulative.below(plane, way));
+        assert_eq!(found, [0, 3, 3, 6, 3, 3]);
+        assert_eq!(cumulative.below(9, f64::INFINITY), 10);
+        assert_eq!(
+            [0.0, 3.0, 3.5, 9.0, 99.0].map(|n| cumulative.plane(n)),
+            [0, 1, 8, 2048, 2048]
+        );
+    }
 
     #[test]
     fn one_rank_has_no_faces_and_all_work_in_one_place_is_legal() {

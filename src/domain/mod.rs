@@ -4,12 +4,14 @@ mod balance;
 mod halo;
 mod migrate;
 mod mirrors;
+mod outset;
 mod pace;
 mod slabs;
 
-pub use balance::{Histogram, balance};
+pub use balance::{Cumulative, Histogram, balance};
 pub use halo::Halo;
 pub use migrate::Migration;
 pub use mirrors::Mirrors;
+pub use outset::Outset;
 pub use pace::Paces;
 pub use slabs::{Decomposition, Slabs};

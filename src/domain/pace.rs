@@ -11,6 +11,8 @@ use crate::comm::Comm;
 pub struct Paces {
     /// Of the whole, by rank; empty before the first measurement, when all are equal.
     shares: Vec<f64>,
+    /// Sum of the shares up to and with each rank's.
+    sums: Vec<f64>,
     /// At the last call.
     busy: Option<f64>,
     scratch: Vec<u64>,
@@ -54,22 +56,27 @@ impl Paces {
             let wanted = (measured(2 * r) / total).clamp(even / WIDEST, even * WIDEST);
             *share += FOLLOWED * (wanted - *share);
         }
+        self.sums.clear();
+        let mut sum = 0.0;
+        self.sums.extend(self.shares.iter().map(|share| {
+            sum += share;
+            sum
+        }));
     }
 
     /// The part of all work that ranks up to and with `rank` are to have, of `ranks`.
     #[allow(clippy::cast_precision_loss, reason = "few ranks")]
     pub(super) fn up_to(&self, rank: usize, ranks: usize) -> f64 {
-        if self.shares.len() != ranks {
+        if self.sums.len() != ranks {
             return (rank + 1) as f64 / ranks as f64;
         }
-        let sum = |to: usize| self.shares[..to].iter().fold(0.0, |sum, share| sum + share);
-        sum(rank + 1) / sum(ranks)
+        self.sums[rank] / self.sums[ranks - 1]
     }
 
     /// Bytes allocated.
     #[must_use]
     pub fn memory(&self) -> usize {
-        8 * (self.shares.capacity() + self.scratch.capacity())
+        8 * (self.shares.capacity() + self.sums.capacity() + self.scratch.capacity())
     }
 }
 

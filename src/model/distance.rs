@@ -43,6 +43,29 @@ impl Shape {
         }
     }
 
+    /// What [`Self::distance`] (m) is at least in the box between two corners (m).
+    #[must_use]
+    pub fn least_distance(&self, lower: &[f64; 3], upper: &[f64; 3], dimension: usize) -> f64 {
+        let middle = match self {
+            Self::Box { lower, upper } => (lower + upper) * 0.5,
+            Self::Sphere { centre, .. }
+            | Self::Shell { centre, .. }
+            | Self::Cylinder { centre, .. } => *centre,
+        };
+        // The distance from what is solid grows along each axis away from the middle.
+        let nearest = Vec3::from_fn(|a, _| middle[a].clamp(lower[a], upper[a]));
+        let Self::Shell {
+            radius,
+            inner_radius,
+            ..
+        } = self
+        else {
+            return self.distance(&nearest, dimension);
+        };
+        let farthest = Vec3::from_fn(|a, _| (middle[a] - lower[a]).max(upper[a] - middle[a]));
+        ((nearest - middle).norm() - radius).max(inner_radius - farthest.norm())
+    }
+
     /// Extent of the thinnest part (m).
     #[must_use]
     pub fn thickness(&self, dimension: usize) -> f64 {

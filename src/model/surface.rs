@@ -263,6 +263,30 @@ impl RigidSurface {
         }
     }
 
+    /// What [`Self::gap`] (m) is at least in the box between two corners (m).
+    #[must_use]
+    pub fn least_gap(&self, lower: &[f64; 3], upper: &[f64; 3], limit: f64) -> f64 {
+        if let SurfaceShape::Plane { normal, .. } = &self.shape {
+            let towards = |a: usize| {
+                let up = (normal[a] > 0.0) != self.inside;
+                if up { lower[a] } else { upper[a] }
+            };
+            return self.gap(&std::array::from_fn(towards), limit);
+        }
+        let (own_lower, own_upper) = self.bounds();
+        let far =
+            (0..3).any(|a| upper[a] < own_lower[a] - limit || lower[a] > own_upper[a] + limit);
+        if far && !self.inside {
+            return f64::INFINITY;
+        }
+        let middle: [f64; 3] = std::array::from_fn(|a| 0.5 * (lower[a] + upper[a]));
+        let half: [f64; 3] = std::array::from_fn(|a| 0.5 * (upper[a] - lower[a]));
+        // The distance changes by no more than the way.
+        self.foot(&middle, f64::INFINITY)
+            .map_or(f64::INFINITY, |foot| foot.gap)
+            - dot(&half, &half).sqrt()
+    }
+
     /// Distance of a place (m) from the surface at time zero, positive on the side that it keeps;
     /// infinite where it is surely more than `limit` (m).
     #[must_use]

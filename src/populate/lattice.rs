@@ -13,6 +13,9 @@ const ROW: f64 = 0.866_025_403_784_438_6;
 /// √(2/3): distance of close-packed layers, in nearest distances.
 const LAYER: f64 = 0.816_496_580_927_726;
 
+/// More than sites of alternate rows and layers stand aside from each other, in spacings.
+const MOST_ASIDE: f64 = 0.65;
+
 /// Sites this close to a face, relative to the body's half width, count as outside: whether a
 /// lattice point on a face belongs to the body must not hang on rounding, or halves would differ.
 const FACE: f64 = 1.0 - 1e-9;
@@ -162,6 +165,96 @@ impl Stack {
             sin * across + cos * up,
             along(k, 2),
         ]
+    }
+
+    /// How many kinds of layers follow each other in turn: layers of one kind have their sites at the
+    /// same x and y, to the bit.
+    pub fn layer_kinds(&self) -> u64 {
+        match (self.kind, self.dimension) {
+            (LatticeKind::Hexagonal, 3) => 2,
+            _ => 1,
+        }
+    }
+
+    /// Whether the shape cuts the same out of all layers of a kind.
+    pub fn has_layers_alike(&self) -> bool {
+        self.inside.round[2] == 0.0
+    }
+
+    /// Whether rows are along x, so that y is the same to the bit all along one.
+    pub fn is_along_x(&self) -> bool {
+        !self.has_rings() && self.turn[1] == 0.0
+    }
+
+    /// By how much row `j` of layer `k` is shifted along itself (m).
+    pub fn shift(&self, j: u64, k: u64) -> f64 {
+        shifts(self.kind, self.dimension, j, k)[0] * self.spacing
+    }
+
+    /// Box around the sites of a block of indices `first..end` (m).
+    pub fn block(&self, first: [u64; 3], end: [u64; 3]) -> ([f64; 3], [f64; 3]) {
+        let [i, j, k] = [0, 1, 2].map(|a| [first[a], end[a] - 1]);
+        let mut lower = [f64::INFINITY; 3];
+        let mut upper = [f64::NEG_INFINITY; 3];
+        let mut take = |p: [f64; 3]| {
+            for a in 0..3 {
+                lower[a] = lower[a].min(p[a]);
+                upper[a] = upper[a].max(p[a]);
+            }
+        };
+        for k in k {
+            for j in j {
+                take(self.position(i[0], j, k));
+                take(self.position(i[1].min(self.sites(j) - 1), j, k));
+            }
+        }
+        let is_one_row = j[0] == j[1];
+        let aside = if self.has_rings() && !is_one_row {
+            // Rings may go all around the centre.
+            let radius = self.innermost + (j[1] / 4) as f64 * self.spacing;
+            for a in 0..2 {
+                lower[a] = self.centre[a] - radius;
+                upper[a] = self.centre[a] + radius;
+            }
+            0.0
+        } else if self.kind == LatticeKind::Hexagonal && !(is_one_row && k[0] == k[1]) {
+            MOST_ASIDE * self.spacing
+        } else {
+            0.0
+        };
+        for a in 0..self.dimension.min(2) {
+            lower[a] -= aside;
+            upper[a] += aside;
+        }
+        (lower, upper)
+    }
+
+    /// Whether a box (m) may hold sites of the body.
+    pub fn may_hold(&self, lower: &[f64; 3], upper: &[f64; 3]) -> bool {
+        let [nearest, farthest] = [0, 1].map(|far| {
+            std::array::from_fn(|a| {
+                let [l, u] = [lower[a] - self.centre[a], upper[a] - self.centre[a]];
+                if far == 1 {
+                    l.abs().max(u.abs())
+                } else {
+                    l.max(-u).max(0.0)
+                }
+            })
+        });
+        // Rounding may put a site half a bit outside.
+        let inward = |o: [f64; 3]| o.map(|x| x - 1e-9 * self.spacing);
+        let outward = |o: [f64; 3]| o.map(|x| x + 1e-9 * self.spacing);
+        self.has_rings()
+            || (self.inside.contains(inward(nearest)) && !self.inside.hollows(outward(farthest)))
+    }
+
+    /// Whether a site of the lattice, by its indices, belongs to the body.
+    pub fn holds(&self, [i, j, k]: [u64; 3]) -> bool {
+        if self.has_rings() {
+            return i < self.sites(j);
+        }
+        let offset = self.offset(i, j, k);
+        self.inside.contains(offset) && !self.inside.hollows(offset)
     }
 
     /// Whether rows are quarters of rings: whole rows belong to the body.

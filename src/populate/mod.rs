@@ -3,20 +3,47 @@
 //! Nothing here depends on ranks: each rank asks for the sites of its own slab, and the union over
 //! any slabs is the whole body with the same bits and the same indices.
 
+mod extremes;
 mod lattice;
 mod row;
+mod search;
 mod stress_points;
+mod tally;
 mod touch;
 
+pub use search::{Wanted, search};
 pub use stress_points::{StressSite, stress_count, stress_index_end, stress_sites};
+pub use tally::{Share, tally};
 pub use touch::{touching_distance, touching_value};
 
-use crate::model::{Axis, Body, RigidSurface, SurfaceShape, SymmetryPlane};
+use crate::model::{Axis, Body, RigidSurface, SymmetryPlane};
 use lattice::Stack;
-use row::Row;
+use row::cuts;
 
 #[cfg(test)]
 mod tests;
+
+/// How much of lattices a thread has looked at, for tests of what may not grow.
+#[cfg(test)]
+pub(crate) mod visits {
+    use std::cell::Cell;
+
+    thread_local! {
+        static VISITS: Cell<u64> = const { Cell::new(0) };
+    }
+
+    /// Books one more row, or block of sites.
+    pub fn add() {
+        VISITS.set(VISITS.get() + 1);
+    }
+
+    /// Rows and blocks visited by some work.
+    pub fn of<T>(work: impl FnOnce() -> T) -> u64 {
+        let before = VISITS.get();
+        let _ = work();
+        VISITS.get() - before
+    }
+}
 
 /// One place of a particle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,7 +76,7 @@ pub fn sites(
     slab: Option<Slab>,
 ) -> impl Iterator<Item = Site> + use<> {
     let stack = Stack::new(body, dimension);
-    row::rows(stack, symmetry, slab).flat_map(move |row| {
+    row::rows(stack, cuts(symmetry, slab)).flat_map(move |row| {
         row.range().map(move |i| Site {
             position: stack.position(i, row.j, row.k),
             index: stack.index(i, row.j, row.k),
@@ -57,24 +84,16 @@ pub fn sites(
     })
 }
 
-/// How many [`sites`] there are, without visiting each.
+/// How many [`sites`] there are, without visiting each, and of layers that are alike only one.
 #[must_use]
 pub fn count(body: &Body, dimension: usize, symmetry: &[SymmetryPlane], slab: Option<Slab>) -> u64 {
-    row::rows(Stack::new(body, dimension), symmetry, slab)
-        .map(|row| row.end - row.first)
-        .sum()
-}
-
-/// The ends (m) of all lattice rows above the symmetry planes: the outermost particles, as seen
-/// along the rows.
-pub fn row_ends(
-    body: &Body,
-    dimension: usize,
-    symmetry: &[SymmetryPlane],
-) -> impl Iterator<Item = [f64; 3]> + use<> {
-    let stack = Stack::new(body, dimension);
-    row::rows(stack, symmetry, None)
-        .flat_map(move |row| [row.first, row.end - 1].map(|i| stack.position(i, row.j, row.k)))
+    let (stack, cuts) = (Stack::new(body, dimension), cuts(symmetry, slab));
+    let of_layer = |k| -> u64 {
+        let rows = row::rows_of_layer(&stack, &cuts, k);
+        rows.map(|row| row.end - row.first).sum()
+    };
+    let layers = tally::LikeLayers::of(&stack, &cuts);
+    layers.map(|like| like.count() * of_layer(like.first)).sum()
 }
 
 /// Smallest and largest coordinates (m) of the sites of a whole body, or `None` if it has none.
@@ -82,20 +101,17 @@ pub fn row_ends(
 /// These are the extreme layers of particles, which lie half a spacing or so inside the shape.
 #[must_use]
 pub fn bounds(body: &Body, dimension: usize) -> Option<([f64; 3], [f64; 3])> {
-    let stack = Stack::new(body, dimension);
-    let mut found = None;
-    for Row { j, k, first, end } in row::rows(stack, &[], None) {
-        // Coordinates are monotone along a row, so its ends suffice.
-        for i in [first, end - 1] {
-            let p = stack.position(i, j, k);
-            let (lower, upper) = found.get_or_insert((p, p));
-            for axis in 0..3 {
-                lower[axis] = f64::min(lower[axis], p[axis]);
-                upper[axis] = f64::max(upper[axis], p[axis]);
-            }
-        }
-    }
-    found
+    extremes::extremes(&Stack::new(body, dimension), &[])
+}
+
+/// [`bounds`] of the [`sites`] above all symmetry planes.
+#[must_use]
+pub fn bounds_above(
+    body: &Body,
+    dimension: usize,
+    symmetry: &[SymmetryPlane],
+) -> Option<([f64; 3], [f64; 3])> {
+    extremes::extremes(&Stack::new(body, dimension), &cuts(symmetry, None))
 }
 
 /// Smallest coordinate on an axis (m) of the [`sites`] above all symmetry planes, or `None` if
@@ -107,15 +123,12 @@ pub fn first_layer(
     symmetry: &[SymmetryPlane],
     axis: Axis,
 ) -> Option<f64> {
-    let stack = Stack::new(body, dimension);
-    row::rows(stack, symmetry, None)
-        .flat_map(|row| [row.first, row.end - 1].map(|i| stack.position(i, row.j, row.k)))
-        .map(|position| position[axis.index()])
-        .min_by(f64::total_cmp)
+    let (lower, _) = bounds_above(body, dimension, symmetry)?;
+    Some(lower[axis.index()])
 }
 
 /// Smallest distance (m) of the [`sites`] above all symmetry planes from a rigid surface, negative
-/// behind it; may be infinite where none is within a spacing.
+/// behind it; infinite where none is within a spacing.
 #[must_use]
 pub fn smallest_gap(
     body: &Body,
@@ -123,22 +136,18 @@ pub fn smallest_gap(
     symmetry: &[SymmetryPlane],
     surface: &RigidSurface,
 ) -> f64 {
-    let stack = Stack::new(body, dimension);
-    // Along a row the distance from a plane is monotone, so its ends suffice.
-    let is_plane = matches!(surface.shape, SurfaceShape::Plane { .. });
-    let ends_suffice = is_plane && !stack.has_rings();
-    row::rows(stack, symmetry, None)
-        .flat_map(|row| {
-            let stride = if ends_suffice {
-                (row.end - row.first - 1).max(1)
-            } else {
-                1
-            };
-            let sites = (row.first..row.end).step_by(usize::try_from(stride).unwrap_or(usize::MAX));
-            sites.map(move |i| stack.position(i, row.j, row.k))
-        })
-        .map(|position| surface.gap(&position, body.lattice.spacing))
-        .fold(f64::INFINITY, f64::min)
+    let wanted = Wanted {
+        most: 1,
+        limit: body.lattice.spacing,
+        any: false,
+    };
+    let found = search(
+        (body, dimension, symmetry),
+        wanted,
+        |lower, upper| surface.least_gap(lower, upper, body.lattice.spacing),
+        |x| surface.gap(x, body.lattice.spacing),
+    );
+    found.first().map_or(f64::INFINITY, |(gap, _)| *gap)
 }
 
 /// Volume of one particle of the body, Δp^d (m³; m² or m in two or one dimensions), so that its

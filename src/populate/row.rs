@@ -24,61 +24,121 @@ impl Row {
     }
 }
 
-/// All non-empty runs of a body above the symmetry planes and in the slab, in lattice order.
-pub(super) fn rows(
-    stack: Stack,
-    symmetry: &[SymmetryPlane],
-    slab: Option<Slab>,
-) -> impl Iterator<Item = Row> + use<> {
-    let planes = symmetry.to_vec();
-    let [_, rows, layers] = stack.counts;
-    let layer_slab = slab.filter(|slab| slab.axis == 2);
-    let above = stack;
-    (0..layers)
-        .filter(move |&k| {
-            layer_slab.is_none_or(|slab| {
-                let z = above.position(0, 0, k)[2];
-                slab.lower <= z && z < slab.upper
-            })
-        })
+/// The part of an axis that a symmetry plane or a slab leaves.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cut {
+    axis: usize,
+    /// Smallest coordinate (m), excluded above a symmetry plane.
+    lower: f64,
+    is_plane: bool,
+    /// Largest coordinate, excluded (m).
+    upper: f64,
+}
+
+/// What all symmetry planes and a slab leave.
+pub(super) fn cuts(symmetry: &[SymmetryPlane], slab: Option<Slab>) -> Vec<Cut> {
+    let planes = symmetry.iter().map(|plane| Cut {
+        axis: plane.axis.index(),
+        lower: plane.position,
+        is_plane: true,
+        upper: f64::INFINITY,
+    });
+    let slab = slab.map(|slab| Cut {
+        axis: slab.axis,
+        lower: slab.lower,
+        is_plane: false,
+        upper: slab.upper,
+    });
+    planes.chain(slab).collect()
+}
+
+impl Cut {
+    fn is_below(&self, x: f64) -> bool {
+        x < self.lower || (self.is_plane && x == self.lower)
+    }
+
+    fn is_above(&self, x: f64) -> bool {
+        x >= self.upper
+    }
+
+    /// Whether a position (m) is left.
+    pub fn keeps(&self, position: &[f64; 3]) -> bool {
+        let x = position[self.axis];
+        !self.is_below(x) && !self.is_above(x)
+    }
+
+    /// Whether nothing of a box (m) is left.
+    pub fn drops(&self, lower: &[f64; 3], upper: &[f64; 3]) -> bool {
+        self.is_below(upper[self.axis]) || self.is_above(lower[self.axis])
+    }
+}
+
+/// All non-empty runs of a body that the cuts leave, in lattice order.
+pub(super) fn rows(stack: Stack, cuts: Vec<Cut>) -> impl Iterator<Item = Row> + use<> {
+    let rows = stack.counts[1];
+    layers(&stack, &cuts)
         .flat_map(move |k| (0..rows).map(move |j| (j, k)))
-        .flat_map(move |(j, k)| shape_runs(&stack, j, k))
-        .filter_map(move |mut row| {
-            for plane in &planes {
-                row.drop_below(&stack, plane.axis.index(), |x| x <= plane.position);
-            }
-            if let Some(slab) = slab {
-                row.drop_below(&stack, slab.axis, |x| x < slab.lower);
-                row.drop_above(&stack, slab.axis, |x| x >= slab.upper);
-            }
-            (row.first < row.end).then_some(row)
-        })
+        .flat_map(move |(j, k)| runs(&stack, &cuts, j, k))
+        .filter(|row| row.first < row.end)
+}
+
+/// The non-empty runs of one layer.
+pub(super) fn rows_of_layer(
+    stack: &Stack,
+    cuts: &[Cut],
+    k: u64,
+) -> impl DoubleEndedIterator<Item = Row> {
+    (0..stack.counts[1])
+        .flat_map(move |j| runs(stack, cuts, j, k))
+        .filter(|row| row.first < row.end)
+}
+
+/// The layers that the cuts along z leave.
+pub(super) fn layers(stack: &Stack, cuts: &[Cut]) -> Range<u64> {
+    let z = |k| stack.position(0, 0, k)[2];
+    let along = cuts.iter().filter(|cut| cut.axis == 2);
+    along.fold(0..stack.counts[2], |layers, cut| {
+        let first = partition(layers.clone(), |k| cut.is_below(z(k)));
+        first..partition(first..layers.end, |k| !cut.is_above(z(k)))
+    })
+}
+
+/// What shape and cuts leave of row `j` in layer `k`, before and behind a hole; both may be empty.
+pub(super) fn runs(stack: &Stack, cuts: &[Cut], j: u64, k: u64) -> [Row; 2] {
+    let (step, start) = (stack.step(j), stack.position(0, j, k));
+    // Along a row that is normal to an axis the coordinate is the same to the bit.
+    let is_across = |cut: &&Cut| step[cut.axis] == 0.0;
+    if cuts.iter().filter(is_across).any(|cut| !cut.keeps(&start)) {
+        let (first, end) = (0, 0);
+        return [Row { j, k, first, end }; 2];
+    }
+    let mut runs = shape_runs(stack, j, k);
+    for cut in cuts.iter().filter(|cut| !is_across(cut)) {
+        for run in &mut runs {
+            run.cut(stack, cut);
+        }
+    }
+    runs
 }
 
 impl Row {
-    /// Drops the sites whose coordinate is too small.
-    fn drop_below(&mut self, stack: &Stack, axis: usize, too_small: impl Fn(f64) -> bool) {
-        let at = |i| stack.position(i, self.j, self.k)[axis];
-        if stack.step(self.j)[axis] >= 0.0 {
-            self.first = partition(self.range(), |i| too_small(at(i)));
+    /// Drops the sites that a cut does not leave.
+    fn cut(&mut self, stack: &Stack, cut: &Cut) {
+        let at = |i| stack.position(i, self.j, self.k)[cut.axis];
+        if stack.step(self.j)[cut.axis] > 0.0 {
+            self.first = partition(self.range(), |i| cut.is_below(at(i)));
+            self.end = partition(self.range(), |i| !cut.is_above(at(i)));
         } else {
-            self.end = partition(self.range(), |i| !too_small(at(i)));
-        }
-    }
-
-    /// Drops the sites whose coordinate is too large.
-    fn drop_above(&mut self, stack: &Stack, axis: usize, too_large: impl Fn(f64) -> bool) {
-        let at = |i| stack.position(i, self.j, self.k)[axis];
-        if stack.step(self.j)[axis] >= 0.0 {
-            self.end = partition(self.range(), |i| !too_large(at(i)));
-        } else {
-            self.first = partition(self.range(), |i| too_large(at(i)));
+            self.first = partition(self.range(), |i| cut.is_above(at(i)));
+            self.end = partition(self.range(), |i| !cut.is_below(at(i)));
         }
     }
 }
 
 /// The runs of a whole row that lie in the shape, before and behind its hole.
 fn shape_runs(stack: &Stack, j: u64, k: u64) -> [Row; 2] {
+    #[cfg(test)]
+    super::visits::add();
     let inside = &stack.inside;
     let row = |first, end| Row { j, k, first, end };
     if stack.has_rings() {

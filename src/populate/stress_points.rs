@@ -63,7 +63,7 @@ pub fn stress_sites(
             slab.lower <= x && x < slab.upper
         })
     };
-    row::rows(grid.stack, symmetry, wide)
+    row::rows(grid.stack, row::cuts(symmetry, wide))
         .flat_map(|row| row.range().map(move |i| [i, row.j, row.k]))
         .flat_map(move |site| {
             let sides = 2 * dimension;
@@ -183,17 +183,13 @@ impl Grid {
     }
 
     fn holds(&self, site: [u64; 3]) -> bool {
-        let [i, j, k] = site;
         let stack = &self.stack;
         if (0..3).any(|a| site[a] >= stack.counts[a]) {
             return false;
         }
-        let offset = stack.offset(i, j, k);
         let x = self.position(site);
         let above = |plane: &SymmetryPlane| x[plane.axis.index()] > plane.position;
-        stack.inside.contains(offset)
-            && !stack.inside.hollows(offset)
-            && self.planes.iter().all(above)
+        stack.holds(site) && self.planes.iter().all(above)
     }
 
     fn position(&self, [i, j, k]: [u64; 3]) -> [f64; 3] {

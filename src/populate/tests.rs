@@ -7,6 +7,8 @@ use proptest::prelude::*;
 use super::*;
 use crate::model::{Lattice, LatticeKind, Shape, Vec3};
 
+mod counts;
+
 fn body(shape: Shape, kind: LatticeKind, spacing: f64, angle: f64) -> Body {
     Body {
         name: "body".to_owned(),

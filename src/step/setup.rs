@@ -19,7 +19,7 @@ use super::timers::Timers;
 use super::trouble::{Limits, PAST_VOTES};
 use crate::comm::Comm;
 use crate::contact::ContactTable;
-use crate::domain::{Halo, Histogram, Migration, Mirrors, Paces, Slabs, balance};
+use crate::domain::{Halo, Histogram, Migration, Mirrors, Outset, Paces, Slabs, balance};
 use crate::model::{Case, SphForm};
 use crate::neighbours::{ColumnGrid, Image};
 use crate::particles::ParticleStore;
@@ -50,9 +50,6 @@ pub enum SetupError {
     Step(#[from] StepError),
 }
 
-/// Box of all sites above the symmetry planes, by body.
-type Boxes = Vec<([f64; 3], [f64; 3])>;
-
 impl Simulation {
     /// Fills the bodies of a case, each rank its own slab, and evaluates the first forces.
     /// Collective.
@@ -60,9 +57,9 @@ impl Simulation {
     /// # Errors
     /// The same on all ranks if the case has no particles or too many, or blows up at once.
     pub fn start(case: Case, comm: &Comm) -> Result<Self, SetupError> {
-        let boxes = body_boxes(&case).ok_or(SetupError::Empty)?;
-        let mut simulation = Self::empty(case, comm, &boxes);
-        simulation.populate(comm, &boxes)?;
+        let outset = Outset::new(&case).ok_or(SetupError::Empty)?;
+        let mut simulation = Self::empty(case, comm, &outset);
+        simulation.populate(comm, &outset)?;
         simulation.begin(comm)?;
         Ok(simulation)
     }
@@ -78,8 +75,8 @@ impl Simulation {
         state: RunState,
         store: ParticleStore,
     ) -> Result<Self, SetupError> {
-        let boxes = body_boxes(&case).ok_or(SetupError::Empty)?;
-        let mut simulation = Self::empty(case, comm, &boxes);
+        let outset = Outset::new(&case).ok_or(SetupError::Empty)?;
+        let mut simulation = Self::empty(case, comm, &outset);
         simulation.require_own(comm, &state, &store)?;
         simulation.store = store;
         let unused = unused_fields(&simulation.case, &simulation.contact);
@@ -104,11 +101,10 @@ impl Simulation {
     }
 
     /// Everything but particles.
-    fn empty(case: Case, comm: &Comm, boxes: &Boxes) -> Self {
+    fn empty(case: Case, comm: &Comm, outset: &Outset) -> Self {
         let contact = ContactTable::new(&case);
-        let longest = longest_axis(boxes);
-        let axis = case.domain.axis.map_or(longest, crate::model::Axis::index);
-        let grids = group_grids(&case, &contact, boxes, longest);
+        let axis = outset.axis;
+        let grids = group_grids(&case, &contact, outset);
         let pairs = contact.active_pairs();
         let speed = case.impact_speed();
         let spacing = case
@@ -181,14 +177,8 @@ impl Simulation {
     }
 
     /// Creates the particles of this rank's slab, and no others.
-    fn populate(&mut self, comm: &Comm, boxes: &Boxes) -> Result<(), SetupError> {
-        self.slabs = first_slabs(
-            &self.case,
-            comm,
-            boxes,
-            self.slabs.axis,
-            &mut self.histogram,
-        );
+    fn populate(&mut self, comm: &Comm, outset: &Outset) -> Result<(), SetupError> {
+        self.slabs = outset.slabs(&self.case, comm, &mut self.histogram);
         let (lower, upper) = self.slabs.range(comm.rank());
         let slab = Slab {
             axis: self.slabs.axis,
@@ -346,94 +336,16 @@ fn fresh_state(pairs: usize, loads: usize) -> RunState {
     }
 }
 
-/// Boxes of the bodies' sites (m), cut at the symmetry planes; `None` if there are no sites.
-fn body_boxes(case: &Case) -> Option<Boxes> {
-    let boxes: Boxes = case
-        .bodies
-        .iter()
-        .filter_map(|body| populate::bounds(body, case.dimension))
-        .map(|(mut lower, upper)| {
-            for plane in &case.symmetry {
-                let a = plane.axis.index();
-                lower[a] = lower[a].max(plane.position);
-            }
-            (lower, upper)
-        })
-        .collect();
-    (boxes.len() == case.bodies.len() && !boxes.is_empty()).then_some(boxes)
-}
-
-fn join(boxes: impl IntoIterator<Item = ([f64; 3], [f64; 3])>) -> ([f64; 3], [f64; 3]) {
-    let mut all = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for (lower, upper) in boxes {
-        for a in 0..3 {
-            all.0[a] = all.0[a].min(lower[a]);
-            all.1[a] = all.1[a].max(upper[a]);
-        }
-    }
-    all
-}
-
-fn longest_axis(boxes: &Boxes) -> usize {
-    let (lower, upper) = join(boxes.iter().copied());
-    (1..3).fold(0, |best, a| {
-        if upper[a] - lower[a] > upper[best] - lower[best] {
-            a
-        } else {
-            best
-        }
-    })
-}
-
 /// The column grid of each group of bodies: a function of the case alone.
-fn group_grids(
-    case: &Case,
-    contact: &ContactTable,
-    boxes: &Boxes,
-    along: usize,
-) -> Vec<ColumnGrid> {
+fn group_grids(case: &Case, contact: &ContactTable, outset: &Outset) -> Vec<ColumnGrid> {
     (0..contact.group_count())
         .map(|group| {
             let members = contact.members(group);
-            let (lower, upper) = join(members.clone().map(|b| boxes[b]));
+            let (lower, upper) = Outset::join(members.clone().map(|b| outset.boxes[b]));
             let spacing = members
                 .map(|b| case.bodies[b].lattice.spacing)
                 .fold(0.0, f64::max);
-            ColumnGrid::new(lower, upper, spacing, along)
+            ColumnGrid::new(lower, upper, spacing, outset.longest)
         })
         .collect()
-}
-
-/// Slabs with an even number of sites. Every rank counts the sites of an even share of space
-/// without creating them.
-fn first_slabs(
-    case: &Case,
-    comm: &Comm,
-    boxes: &Boxes,
-    axis: usize,
-    histogram: &mut Histogram,
-) -> Slabs {
-    if comm.size() == 1 {
-        return Slabs::new(axis, Vec::new());
-    }
-    let (lower, upper) = join(boxes.iter().copied());
-    let (lower, upper) = (lower[axis], upper[axis]);
-    histogram.reset(lower, upper, comm.size());
-    #[allow(clippy::cast_precision_loss, reason = "few ranks")]
-    let cut = |rank: usize| match rank {
-        0 => f64::NEG_INFINITY,
-        r if r == comm.size() => f64::INFINITY,
-        r => lower + (upper - lower) * (r as f64 / comm.size() as f64),
-    };
-    let share = Slab {
-        axis,
-        lower: cut(comm.rank()),
-        upper: cut(comm.rank() + 1),
-    };
-    for body in &case.bodies {
-        for site in populate::sites(body, case.dimension, &case.symmetry, Some(share)) {
-            histogram.add(site.position[axis], 1);
-        }
-    }
-    Slabs::new(axis, histogram.split(comm, &Paces::default()))
 }

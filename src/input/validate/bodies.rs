@@ -254,7 +254,7 @@ impl Reader<'_> {
             let title = format!("the body `{}` is too thin for a single particle", body.name);
             return Err(complain(title).help("make its spacing finer"));
         }
-        if populate::count(body, self.dimension, symmetry, None) == 0 {
+        if populate::bounds_above(body, self.dimension, symmetry).is_none() {
             let title = format!(
                 "the body `{}` has no particle above the symmetry planes",
                 body.name

@@ -13,7 +13,7 @@ use crate::input::schema::{CaseParams, LoadParams, Placed, SidesParams};
 use crate::input::source::Complaint;
 use crate::model::readable::Readable;
 use crate::model::{Axis, Body, Loads, SymmetryPlane, VelocityLoad};
-use crate::populate;
+use crate::populate::{self, Wanted};
 
 /// What loads are read with.
 pub struct Reader<'a> {
@@ -127,8 +127,7 @@ impl Reader<'_> {
             motion: motion(&params.velocity, self.dimension)?,
             until: number(until, "until", f64::INFINITY, Allowed::Positive)?,
         };
-        let mut sites = populate::sites(body, self.dimension, self.symmetry, None);
-        if sites.any(|site| load.contains(&site.position)) {
+        if self.holds_any(&load, body) {
             return Ok(load);
         }
         let at = params.below.as_ref().or(params.above.as_ref());
@@ -141,6 +140,25 @@ impl Reader<'_> {
             corner(lower),
             corner(upper)
         )))
+    }
+
+    /// Whether a load drives any particle of its body.
+    fn holds_any(&self, load: &VelocityLoad, body: &Body) -> bool {
+        // Nought in the region and infinite beyond.
+        let value = |is_within: bool| if is_within { 0.0 } else { f64::INFINITY };
+        let found = populate::search(
+            (body, self.dimension, self.symmetry),
+            Wanted {
+                most: 1,
+                limit: 1.0,
+                any: true,
+            },
+            |lower, upper| {
+                value((0..3).all(|a| load.above[a] <= upper[a] && lower[a] <= load.below[a]))
+            },
+            |x| value(load.contains(x)),
+        );
+        !found.is_empty()
     }
 
     fn sides(

@@ -1,13 +1,11 @@
 //! When bodies meet, as far as their initial velocities tell.
 
 use crate::model::{Body, Case, Vec3};
-use crate::populate;
+use crate::populate::{self, Wanted, search};
 
 /// Bodies closer than this many spacings touch.
 const TOUCH: f64 = 0.1;
-/// Most points of a surface that are followed.
-const MOST_POINTS: usize = 200_000;
-/// Most steps of a point to the other surface; each goes as far as no surface can be.
+/// Most steps of a body towards another; each goes as far as nothing can be in the way.
 const MOST_STEPS: usize = 200;
 
 /// Two bodies, of which one at least deforms.
@@ -51,56 +49,88 @@ fn approach(case: &Case, a: usize, b: usize) -> Option<Approach> {
         return None;
     }
     let velocity = first.velocity - second.velocity;
-    let there = from_points(case, first, second, velocity);
-    let back = from_points(case, second, first, -velocity);
     let spacing = 0.5 * (first.lattice.spacing + second.lattice.spacing);
+    let [(gap, time), (gap_back, time_back)] =
+        [(first, second, velocity), (second, first, -velocity)]
+            .map(|(body, target, velocity)| towards(case, body, target, velocity));
     Some(Approach {
         bodies: [a, b],
-        gap: there.0.min(back.0) / spacing,
+        gap: gap.min(gap_back) / spacing,
         speed: velocity.norm(),
-        time: there.1.min(back.1),
+        time: time.min(time_back),
     })
 }
 
-/// The smallest distance (m) of the outermost particles of `body` from where they touch `target`,
-/// and the first time (s) at which one does, moving at `velocity` (m/s).
-fn from_points(case: &Case, body: &Body, target: &Body, velocity: Vec3) -> (f64, f64) {
-    let points = || populate::row_ends(body, case.dimension, &case.symmetry);
-    let stride = points().count().div_ceil(MOST_POINTS).max(1);
+/// The smallest distance (m) of the particles of `body` from where they touch `target`, and the first
+/// time (s) at which one does, moving at `velocity` (m/s); infinite if never.
+fn towards(case: &Case, body: &Body, target: &Body, velocity: Vec3) -> (f64, f64) {
     let spacing = body.lattice.spacing;
-    let distance = |p: &Vec3| target.shape.distance(p, case.dimension) - 0.5 * spacing;
-    let speed = velocity.norm();
-    let (mut gap, mut time) = (f64::INFINITY, f64::INFINITY);
-    for point in points().step_by(stride).map(Vec3::from) {
-        let start = distance(&point);
-        gap = gap.min(start);
-        time = time.min(hit(distance, point, start, velocity, TOUCH * spacing, time));
-    }
-    let resting = speed == 0.0 && gap > TOUCH * spacing;
-    (gap, if resting { f64::INFINITY } else { time })
-}
-
-/// When a point at distance `start` comes closer than `near` (m); infinite if not before `until`.
-fn hit(
-    distance: impl Fn(&Vec3) -> f64,
-    point: Vec3,
-    start: f64,
-    velocity: Vec3,
-    near: f64,
-    until: f64,
-) -> f64 {
-    let speed = velocity.norm();
+    let near = TOUCH * spacing;
+    let start = nearest(case, body, target, Vec3::zeros());
     let (mut time, mut left) = (0.0, start);
+    let end = last_meeting(case, [body, target], velocity);
     for _ in 0..MOST_STEPS {
         if left <= near {
-            return time;
+            return (start, time);
         }
-        let next = time + left / speed;
-        if !(next < until && next.is_finite()) {
+        time += left / velocity.norm();
+        if !(time <= end && time.is_finite()) {
             break;
         }
-        time = next;
-        left = distance(&(point + velocity * time));
+        left = nearest(case, body, target, velocity * time);
     }
-    f64::INFINITY
+    (start, f64::INFINITY)
+}
+
+/// The smallest distance (m) of the particles of `body`, all moved by `way` (m), from where they touch
+/// `target`.
+fn nearest(case: &Case, body: &Body, target: &Body, way: Vec3) -> f64 {
+    let (shape, dimension) = (&target.shape, case.dimension);
+    let moved = |x: &[f64; 3]| Vec3::from(*x) + way;
+    let found = search(
+        (body, dimension, &case.symmetry),
+        Wanted {
+            most: 1,
+            limit: f64::INFINITY,
+            any: false,
+        },
+        |lower, upper| shape.least_distance(&moved(lower).into(), &moved(upper).into(), dimension),
+        |x| shape.distance(&moved(x), dimension),
+    );
+    let nearest = found
+        .first()
+        .map_or(f64::INFINITY, |(distance, _)| *distance);
+    nearest - 0.5 * body.lattice.spacing
+}
+
+/// Until when (s) the boxes of two bodies, of which the first one moves at `velocity` (m/s), are
+/// within some spacings of each other; negative infinity if they never are.
+fn last_meeting(case: &Case, bodies: [&Body; 2], velocity: Vec3) -> f64 {
+    // Shapes reach a little beyond their particles.
+    let spacing = 2.0 * (bodies[0].lattice.spacing + bodies[1].lattice.spacing);
+    let boxes = bodies.map(|body| populate::bounds(body, case.dimension));
+    let [Some((lower, upper)), Some((other_lower, other_upper))] = boxes else {
+        return f64::NEG_INFINITY;
+    };
+    let mut window = [0.0, f64::INFINITY];
+    for a in 0..case.dimension {
+        let room = [
+            other_lower[a] - upper[a] - spacing,
+            other_upper[a] - lower[a] + spacing,
+        ];
+        if velocity[a] == 0.0 {
+            if room[0] > 0.0 || room[1] < 0.0 {
+                return f64::NEG_INFINITY;
+            }
+            continue;
+        }
+        let times = room.map(|room| room / velocity[a]);
+        window[0] = f64::max(window[0], times[0].min(times[1]));
+        window[1] = f64::min(window[1], times[0].max(times[1]));
+    }
+    if window[0] <= window[1] {
+        window[1]
+    } else {
+        f64::NEG_INFINITY
+    }
 }
