@@ -243,7 +243,9 @@ impl<'a> Driver<'a> {
         on_root(comm, || match &mut self.tables {
             Some(tables) => tables.write(&self.simulation, &load, wall),
             None => Ok(()),
-        })
+        })?;
+        self.simulation.begin_interval();
+        Ok(())
     }
 
     fn write_snapshot(&mut self, comm: &Comm) -> Result<(), OutputError> {
@@ -274,6 +276,7 @@ impl<'a> Driver<'a> {
     fn write_checkpoint(&mut self, comm: &Comm) -> Result<(), OutputError> {
         let begun = Instant::now();
         let folder = self.folder.checkpoints();
+        self.simulation.join_extremes(comm);
         let rows = &mut self.rows;
         let path = self.simulation.with_frozen(|simulation| {
             let state = &simulation.state;

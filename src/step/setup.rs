@@ -121,7 +121,6 @@ impl Simulation {
         let longest = longest_axis(boxes);
         let axis = case.domain.axis.map_or(longest, crate::model::Axis::index);
         let grids = group_grids(&case, &contact, boxes, longest);
-        let pairs = contact.active_pairs();
         let speed = case.impact_speed();
         let spacing = case
             .bodies
@@ -145,7 +144,7 @@ impl Simulation {
         Self {
             frozen: store.clone(),
             store,
-            state: fresh_state(pairs.len(), case.load_names().count()),
+            state: fresh_state(contact.active_pairs().len(), case.load_names().count()),
             timers: Timers::default(),
             poison: false,
             spare_calm: true,
@@ -165,9 +164,8 @@ impl Simulation {
             parts: Parts::new(&case),
             surface_forces: SurfaceForces::new(&case),
             sums: StepSums::new(
-                pairs,
+                &contact,
                 enclosed_limit,
-                contact.has_friction(),
                 loads.driven(),
                 [
                     loads.surfaces.len(),
@@ -312,6 +310,7 @@ impl Simulation {
         self.state.initial.contact_energy = self.state.contact_energy;
         self.state.worst = Worst::default();
         self.diagnose(comm);
+        self.state.worst.nearest = None;
         self.vote(comm, vote)?;
         Ok(())
     }
