@@ -246,7 +246,9 @@ impl<'a> Driver<'a> {
         on_root(comm, || match &mut self.tables {
             Some(tables) => tables.write(&self.simulation, &load, wall),
             None => Ok(()),
-        })
+        })?;
+        self.simulation.begin_interval();
+        Ok(())
     }
 
     fn write_snapshot(&mut self, comm: &Comm) -> Result<(), OutputError> {
@@ -279,6 +281,7 @@ impl<'a> Driver<'a> {
         // Rows before this checkpoint are not written again once it is there.
         on_root(comm, || self.tables.as_ref().map_or(Ok(()), Tables::sync))?;
         let folder = self.folder.checkpoints();
+        self.simulation.join_extremes(comm);
         let rows = &mut self.rows;
         let path = self.simulation.with_frozen(|simulation| {
             let state = &simulation.state;

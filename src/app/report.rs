@@ -109,9 +109,12 @@ fn contact_columns(dimension: usize) -> Vec<Column> {
             ("impulse_z", "N s"),
             ("contact_energy", "J"),
             ("heat", "J"),
+            ("peak_force", "N"),
             ("touching", ""),
             ("largest_excess", ""),
             ("closest_pair", "spacings"),
+            ("closest_a", ""),
+            ("closest_b", ""),
             ("contact_dt", "s"),
         ],
     )
@@ -294,6 +297,10 @@ impl Tables {
     ) -> Result<(), OutputError> {
         let [fx, fy, fz] = pair.force.map(Value::Real);
         let [ix, iy, iz] = pair.impulse.map(Value::Real);
+        let (extremes, closest) = (&pair.extremes, pair.extremes.closest);
+        let [id_a, id_b] = closest.map_or([Value::Word(""); 2], |closest| {
+            closest.particles.map(Value::Count)
+        });
         self.contacts.row(&[
             Value::Real(time),
             Value::Word(names[0]),
@@ -306,10 +313,13 @@ impl Tables {
             iz,
             Value::Real(pair.energy),
             Value::Real(pair.heat),
+            Value::Real(extremes.peak_force),
             Value::Count(pair.touching.unsigned_abs()),
-            Value::Real(pair.largest_excess),
-            Value::Real(pair.closest.unwrap_or(f64::INFINITY)),
-            Value::Real(pair.contact_dt.unwrap_or(f64::INFINITY)),
+            Value::Real(extremes.largest_excess),
+            Value::Real(closest.map_or(f64::INFINITY, |closest| closest.distance)),
+            id_a,
+            id_b,
+            Value::Real(extremes.contact_dt.unwrap_or(f64::INFINITY)),
         ])
     }
 
@@ -350,6 +360,10 @@ pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde
     let cores = (comm.size() * threads) as f64;
     let rate = load.updates as f64 * 1e-6 / stepping.max(f64::MIN_POSITIVE) / cores;
     let contact = simulation.contact();
+    let nearest = worst.nearest.map(|pair| {
+        let names = pair.bodies.map(|b| &simulation.case.bodies[b].name);
+        json!({ "bodies": names, "ids": pair.particles })
+    });
     let normalised = simulation.case.sph.form != SphForm::Conventional;
     // What the ranks have stepped since they started, if no particle was taken out.
     let steps = load.updates as f64 / (load.particles[0] as f64).max(1.0);
@@ -379,6 +393,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde
         "momentum_error": object(["x", "y", "z"].into_iter().zip(worst.momentum_error)),
         "interpenetrated_particles": contact.has_pairs().then_some(worst.interpenetrated),
         "closest_foreign_pair": worst.closest,
+        "closest_foreign_particles": nearest,
         "largest_foreign_fraction": contact.has_overlap().then_some(worst.foreign_fraction),
         "plane_crossings": (!simulation.case.symmetry.is_empty()).then_some(state.plane_crossings),
         "capped_reliefs": state.capped_reliefs,

@@ -116,6 +116,8 @@ pub struct BodyReaction {
     pub heat: f64,
     /// Smallest distance to a particle of that body in mean spacings.
     pub closest: f64,
+    /// Index of that particle in the store.
+    pub nearest: usize,
 }
 
 impl Reaction {
@@ -150,7 +152,9 @@ impl Reaction {
         let distance = gap.distance * pair.inverse_spacing;
         self.closest = self.closest.min(distance);
         let body = self.by(other.body);
-        body.closest = body.closest.min(distance);
+        if distance < body.closest {
+            (body.closest, body.nearest) = (distance, other.base);
+        }
     }
 
     /// Force and energy of the pair with `other`.
@@ -181,6 +185,7 @@ impl Reaction {
                 energy: 0.0,
                 heat: 0.0,
                 closest: f64::INFINITY,
+                nearest: 0,
             });
             self.by_body.len() - 1
         });

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::contact_sums::ContactSums;
+use super::contact_sums::{ContactSums, Met};
 use super::search::{GRAIN, Search};
 use super::simulation::Simulation;
 use crate::comm::Comm;
@@ -301,6 +301,8 @@ impl Simulation {
             heating: Scatter::new(&mut store.d_specific_energy_dt),
             approach: Scatter::new(&mut store.approach_speed),
             work: Scatter::new(&mut store.work),
+            id: &store.id,
+            bodies: self.case.bodies.len(),
             mass: &store.mass,
             enclosed_time: &store.enclosed_time,
             foreign_fraction: &store.foreign_fraction,
@@ -357,6 +359,9 @@ struct Books<'a> {
     heating: Scatter<'a, f64>,
     approach: Scatter<'a, f64>,
     work: Scatter<'a, u32>,
+    id: &'a [u64],
+    /// How many there are.
+    bodies: usize,
     mass: &'a [f64],
     enclosed_time: &'a [f64],
     foreign_fraction: &'a [f64],
@@ -387,7 +392,13 @@ impl Books<'_> {
             } else {
                 f64::INFINITY
             };
-            sums.note_pair(*body, reaction, self.excess[*i], dt);
+            let met = Met {
+                body: *body,
+                excess: self.excess[*i],
+                dt,
+                particles: [self.id[*i], self.id[reaction.nearest]],
+            };
+            sums.note_pair(self.bodies, &met, reaction);
         }
     }
 

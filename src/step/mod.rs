@@ -33,6 +33,8 @@ pub use options::bytes_of_options;
 pub use post_mortem::PostMortem;
 pub use setup::SetupError;
 pub use simulation::{Simulation, StepError};
-pub use state::{LoadState, PairState, Reason, RunState, Totals, Worst};
+pub use state::{
+    Closest, LoadState, NearestPair, PairExtremes, PairState, Reason, RunState, Totals, Worst,
+};
 pub use timers::{Phase, Timers};
 pub use trouble::{PastVote, Removed, TroubleKind};

@@ -105,7 +105,6 @@ impl Simulation {
         let contact = ContactTable::new(&case);
         let axis = outset.axis;
         let grids = group_grids(&case, &contact, outset);
-        let pairs = contact.active_pairs();
         let speed = case.impact_speed();
         let spacing = case
             .bodies
@@ -129,7 +128,7 @@ impl Simulation {
         Self {
             frozen: store.clone(),
             store,
-            state: fresh_state(pairs.len(), case.load_names().count()),
+            state: fresh_state(contact.active_pairs().len(), case.load_names().count()),
             timers: Timers::default(),
             poison: false,
             spare_calm: true,
@@ -149,9 +148,8 @@ impl Simulation {
             parts: Parts::new(&case),
             surface_forces: SurfaceForces::new(&case),
             sums: StepSums::new(
-                pairs,
+                &contact,
                 enclosed_limit,
-                contact.has_friction(),
                 loads.driven(),
                 [
                     loads.surfaces.len(),
@@ -290,6 +288,7 @@ impl Simulation {
         self.state.initial.contact_energy = self.state.contact_energy;
         self.state.worst = Worst::default();
         self.diagnose(comm);
+        self.state.worst.nearest = None;
         self.vote(comm, vote)?;
         Ok(())
     }

@@ -2,7 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::contact_sums::{PairSums, least};
 use super::trouble::Removed;
+use super::vector::norm;
 
 /// What limited a time step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -58,12 +60,96 @@ pub struct PairState {
     pub heat: f64,
     /// Particles with excess now.
     pub touching: i64,
-    /// Largest excess now.
+    /// What they have come to since the last row of tables.
+    #[serde(default)]
+    pub extremes: PairExtremes,
+}
+
+/// What a pair of bodies has come to in an interval of steps.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct PairExtremes {
+    /// Largest magnitude of the force between the two (N).
+    pub peak_force: f64,
+    /// Largest excess.
     pub largest_excess: f64,
-    /// Smallest distance between the two now, in mean spacings; absent when none is in reach.
-    pub closest: Option<f64>,
-    /// The contact criterion now (s); absent without contact force.
+    /// The nearest two particles; absent when none was in reach.
+    pub closest: Option<Closest>,
+    /// The smallest contact criterion (s); absent without contact force.
     pub contact_dt: Option<f64>,
+}
+
+impl PairExtremes {
+    /// Takes those of another interval, or of other particles, in.
+    pub(super) fn join(&mut self, other: &Self) {
+        self.peak_force = self.peak_force.max(other.peak_force);
+        self.largest_excess = self.largest_excess.max(other.largest_excess);
+        self.closest = match (self.closest, other.closest) {
+            (Some(a), Some(b)) => Some(a.min(b)),
+            (a, b) => a.or(b),
+        };
+        self.contact_dt = least(self.contact_dt, other.contact_dt);
+    }
+}
+
+/// Two particles of two bodies that are near each other, or one and the other's mirror image.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Closest {
+    /// Their distance in mean spacings.
+    pub distance: f64,
+    /// Their identities, in the order of the bodies.
+    pub particles: [u64; 2],
+}
+
+impl Closest {
+    /// The nearer two; the smaller identities of two that are as near.
+    fn min(self, other: Self) -> Self {
+        let order = |c: &Self| (c.distance.to_bits(), c.particles);
+        if order(&other) < order(&self) {
+            other
+        } else {
+            self
+        }
+    }
+}
+
+/// The nearest two particles of any two bodies.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct NearestPair {
+    /// Their distance in mean spacings.
+    pub distance: f64,
+    /// Their bodies.
+    pub bodies: [usize; 2],
+    /// Their identities.
+    pub particles: [u64; 2],
+}
+
+impl NearestPair {
+    /// The nearer two, with any order where they are as near.
+    pub(super) fn min(self, other: Self) -> Self {
+        let order = |c: &Self| (c.distance.to_bits(), c.bodies, c.particles);
+        if order(&other) < order(&self) {
+            other
+        } else {
+            self
+        }
+    }
+}
+
+impl PairState {
+    /// Takes the sums of a step of which dt (s) is left to book; none if there are none.
+    pub(super) fn book(&mut self, sums: Option<&PairSums>, dt: f64) {
+        let force = sums.map_or([0.0; 3], |s| std::array::from_fn(|a| s.force[a].value()));
+        let heat_power = sums.map_or(0.0, |s| s.heat.value());
+        self.force = force;
+        for (impulse, force) in self.impulse.iter_mut().zip(force) {
+            *impulse += 0.5 * dt * force;
+        }
+        self.energy = sums.map_or(0.0, |s| s.energy.value());
+        self.heat_power = heat_power;
+        self.heat += 0.5 * dt * heat_power;
+        self.touching = sums.map_or(0, |s| s.touching);
+        self.extremes.peak_force = self.extremes.peak_force.max(norm(&force));
+    }
 }
 
 /// Ledger of what acts from outside: a prescribed velocity, a rigid body, a rigid surface.
@@ -156,7 +242,7 @@ pub struct RunState {
     pub momentum_put_in: f64,
     /// Particles whose relief was capped at the start.
     pub capped_reliefs: i64,
-    /// Interpenetrated particles now.
+    /// The most interpenetrated particles in a step since the last row of tables.
     pub interpenetrated: i64,
     /// Particles whose gradient has no correction now, in the normalised form.
     pub uncorrected: i64,
@@ -219,6 +305,9 @@ pub struct Worst {
     pub uncorrected: i64,
     /// Smallest foreign distance in mean spacings.
     pub closest: Option<f64>,
+    /// Whose it is, as of the last diagnosis or checkpoint.
+    #[serde(default)]
+    pub nearest: Option<NearestPair>,
     /// Largest foreign fraction.
     pub foreign_fraction: f64,
     /// Steps that the contact criterion limited.

@@ -2,12 +2,13 @@
 
 use rayon::prelude::*;
 
-use super::contact_sums::ContactSums;
+use super::contact_sums::{ContactSums, Meetings, least, pair_key};
 use super::search::GRAIN;
 use super::simulation::Simulation;
-use super::state::{PairState, Totals};
+use super::state::{Closest, NearestPair, PairExtremes, Totals};
 use super::trouble::Removed;
 use crate::comm::Comm;
+use crate::contact::ContactTable;
 use crate::diagnose::exact_sum::ExactSum;
 use crate::model::SphForm;
 use crate::particles::ParticleStore;
@@ -24,6 +25,11 @@ pub struct StepSums {
     pub(super) contact: ContactSums,
     /// The same by thread, until they are joined.
     pub(super) parts: Vec<ContactSums>,
+    pub(super) meetings: Meetings,
+    /// The case's pairs of bodies with contact, in the order of [`super::RunState::pairs`].
+    pair_keys: Vec<usize>,
+    /// Whether there is friction or damping between bodies, whose heat is summed.
+    friction: bool,
     /// Impulse and work of prescribed velocities and of rigid bodies in this step.
     pub(super) loads: Vec<[ExactSum; 4]>,
     /// Force of each rigid surface, and its torque about the axis that it turns about.
@@ -33,31 +39,34 @@ pub struct StepSums {
     /// Particles whose gradient has no correction, in the normalised form.
     pub(super) uncorrected: i64,
     limbs: Vec<i64>,
-    extremes: Vec<u64>,
+    words: Vec<u64>,
 }
 
 impl StepSums {
     pub(super) fn new(
-        pair_bodies: Vec<[usize; 2]>,
+        contact: &ContactTable,
         enclosed_limit: f64,
-        friction: bool,
         loads: usize,
         [surfaces, resisting]: [usize; 2],
     ) -> Self {
-        let contact = ContactSums::new(pair_bodies, friction);
+        let bodies = contact.foreign.bodies;
+        let pairs = contact.active_pairs().into_iter();
         Self {
+            pair_keys: pairs.map(|[a, b]| pair_key(bodies, a, b)).collect(),
+            friction: contact.has_friction(),
+            meetings: Meetings::default(),
             enclosed_limit,
             contact_work: ExactSum::default(),
             crossing_impulse: Default::default(),
             crossings: 0,
-            parts: vec![contact.clone(); rayon::current_num_threads()],
-            contact,
+            parts: vec![ContactSums::default(); rayon::current_num_threads()],
+            contact: ContactSums::default(),
             loads: (0..loads).map(|_| Default::default()).collect(),
             pushes: (0..surfaces).map(|_| Default::default()).collect(),
             push_heat: vec![ExactSum::default(); resisting],
             uncorrected: 0,
             limbs: Vec::new(),
-            extremes: Vec::new(),
+            words: Vec::new(),
         }
     }
 
@@ -65,9 +74,11 @@ impl StepSums {
         let parts = self.parts.iter().map(ContactSums::memory).sum::<usize>();
         self.contact.memory()
             + parts
+            + self.meetings.memory()
+            + size_of::<usize>() * self.pair_keys.capacity()
             + 4 * size_of::<ExactSum>() * (self.loads.capacity() + self.pushes.capacity())
             + size_of::<ExactSum>() * self.push_heat.capacity()
-            + 8 * (self.limbs.capacity() + self.extremes.capacity())
+            + 8 * (self.limbs.capacity() + self.words.capacity())
     }
 
     /// Forgets what belongs to the last positions; work and impulses of the step stay.
@@ -99,35 +110,59 @@ impl StepSums {
             .chain(self.loads.iter_mut().flatten())
             .chain(self.pushes.iter_mut().flatten())
             .chain(&mut self.push_heat)
-            .chain(self.contact.exact())
+            .chain([&mut self.contact.energy])
+            .chain(&mut self.contact.plane_force)
     }
 
     /// Joins the sums of all ranks.
     fn reduce(&mut self, comm: &Comm) {
+        let news = self.meetings.news(&self.contact.pairs);
         if comm.size() == 1 {
+            if news > 0 {
+                let (friction, book) = (self.friction, &mut self.contact.pairs);
+                self.meetings.admit(comm, book, friction);
+            }
+            self.meetings.note(&self.contact.pairs);
             return;
         }
         let mut limbs = std::mem::take(&mut self.limbs);
         limbs.clear();
         gather_limbs(self.exact(), &mut limbs);
         limbs.extend([self.uncorrected, self.crossings]);
-        limbs.extend(self.contact.counts().map(|count| *count));
+        limbs.extend([
+            self.contact.interpenetrated,
+            i64::try_from(news).unwrap_or(1),
+        ]);
+        let (friction, book) = (self.friction, &mut self.contact.pairs);
+        self.meetings.gather(book, friction, &mut limbs);
         comm.sum_i64(&mut limbs);
-        let mut rest = scatter_limbs(self.exact(), &limbs).iter();
-        let mut next = || rest.next().copied().unwrap_or(0);
-        self.uncorrected = next();
-        self.crossings = next();
-        self.contact.counts().for_each(|count| *count = next());
+        let rest = scatter_limbs(self.exact(), &limbs);
+        let (counts, rest) = rest.split_at(4);
+        [self.uncorrected, self.crossings] = [counts[0], counts[1]];
+        self.contact.interpenetrated = counts[2];
+        let book = &mut self.contact.pairs;
+        self.meetings.scatter(book, friction, rest);
+        if counts[3] > 0 {
+            self.meetings.admit(comm, book, friction);
+        }
+        self.meetings.note(book);
         self.limbs = limbs;
         self.reduce_extremes(comm);
     }
 
+    /// Words whose smallest over the ranks are all ranks' extremes: positive doubles order as their
+    /// bits do, and a largest value is the smallest complement.
     fn reduce_extremes(&mut self, comm: &Comm) {
-        let mut bits = std::mem::take(&mut self.extremes);
-        self.contact.write_extremes(&mut bits);
-        comm.min_u64(&mut bits);
-        self.contact.read_extremes(&bits);
-        self.extremes = bits;
+        let contact = &mut self.contact;
+        self.words.clear();
+        self.words.extend([
+            contact.closest.map_or(u64::MAX, f64::to_bits),
+            !contact.foreign_fraction.to_bits(),
+        ]);
+        comm.min_u64(&mut self.words);
+        let [closest, fraction] = [self.words[0], !self.words[1]];
+        contact.closest = (closest != u64::MAX).then(|| f64::from_bits(closest));
+        contact.foreign_fraction = f64::from_bits(fraction);
     }
 }
 
@@ -185,34 +220,52 @@ impl Simulation {
             sums.crossing_impulse[a] = ExactSum::default();
         }
         state.plane_crossings += std::mem::take(&mut sums.crossings);
-        for (pair, sum) in state.pairs.iter_mut().zip(&sums.contact.pairs) {
-            let finite = |x: f64| x.is_finite().then_some(x);
-            let force: [f64; 3] = std::array::from_fn(|a| sum.force[a].value());
-            let heat_power = sum.heat.value();
-            *pair = PairState {
-                force,
-                impulse: std::array::from_fn(|a| pair.impulse[a] + 0.5 * dt * force[a]),
-                energy: sum.energy.value(),
-                heat_power,
-                heat: pair.heat + 0.5 * dt * heat_power,
-                touching: sum.touching,
-                largest_excess: sum.largest_excess,
-                closest: finite(sum.closest),
-                contact_dt: finite(sum.contact_dt),
-            };
+        for (pair, &key) in state.pairs.iter_mut().zip(&sums.pair_keys) {
+            pair.book(sums.contact.pairs.get(key), dt);
         }
         let contact = &sums.contact;
-        state.interpenetrated = contact.interpenetrated;
+        state.interpenetrated = state.interpenetrated.max(contact.interpenetrated);
         state.uncorrected = sums.uncorrected;
         let worst = &mut state.worst;
         worst.interpenetrated = worst.interpenetrated.max(contact.interpenetrated);
         worst.uncorrected = worst.uncorrected.max(sums.uncorrected);
         worst.foreign_fraction = worst.foreign_fraction.max(contact.foreign_fraction);
-        if contact.closest.is_finite() {
-            let closest = (worst.closest).map_or(contact.closest, |c| c.min(contact.closest));
-            worst.closest = Some(closest);
-        }
+        worst.closest = least(worst.closest, contact.closest);
         self.book_defect();
+    }
+
+    /// Joins what the pairs of bodies have come to since the last time on all ranks into the state:
+    /// before rows and checkpoints. Collective.
+    pub fn join_extremes(&mut self, comm: &Comm) {
+        let (sums, bodies) = (&mut self.sums, self.case.bodies.len());
+        for (key, extremes) in sums.meetings.join(comm) {
+            let Ok(at) = sums.pair_keys.binary_search(&key) else {
+                continue;
+            };
+            self.state.pairs[at].extremes.join(&extremes);
+            let Some(Closest {
+                distance,
+                particles,
+            }) = extremes.closest
+            else {
+                continue;
+            };
+            let nearest = NearestPair {
+                distance,
+                bodies: [key / bodies, key % bodies],
+                particles,
+            };
+            let worst = &mut self.state.worst.nearest;
+            *worst = Some(worst.map_or(nearest, |worst| worst.min(nearest)));
+        }
+    }
+
+    /// Begins the next interval between rows of tables: extremes are of what comes from now on.
+    pub fn begin_interval(&mut self) {
+        self.state.interpenetrated = 0;
+        for pair in &mut self.state.pairs {
+            pair.extremes = PairExtremes::default();
+        }
     }
 
     /// The contact defect, after the sums of a step.
@@ -230,9 +283,10 @@ impl Simulation {
         }
     }
 
-    /// Sums over all particles, into the state, with the errors that follow from them.
-    /// Collective.
+    /// Sums over all particles, into the state, with the errors that follow from them, and the
+    /// extremes since the last row. Collective.
     pub fn diagnose(&mut self, comm: &Comm) {
+        self.join_extremes(comm);
         let totals = self.totals(comm);
         let gravity = self.loads.gravity;
         let state = &mut self.state;

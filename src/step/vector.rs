@@ -10,6 +10,10 @@ pub(super) fn square(v: &[f64; 3]) -> f64 {
     dot(v, v)
 }
 
+pub(super) fn norm(v: &[f64; 3]) -> f64 {
+    square(v).sqrt()
+}
+
 pub(super) fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     [
         a[1] * b[2] - a[2] * b[1],
