@@ -185,6 +185,16 @@ impl SnapshotFile {
         self.text(&format!("attribute {name} of {group}"), attribute)
     }
 
+    /// A whole number that is an attribute of a group, such as `dimension` of `/whipple`.
+    ///
+    /// # Errors
+    /// [`ReadError::Layout`] if the group or the attribute is missing or no number.
+    pub fn number(&self, group: &str, name: &str) -> Result<u64, ReadError> {
+        let attribute = self.file.group(group).and_then(|g| g.attr(name));
+        let number = attribute.and_then(|a| a.read_scalar::<u64>());
+        number.map_err(|e| self.layout(&format!("attribute {name} of {group}"), &e))
+    }
+
     /// Rows of a dataset of one or two dimensions.
     fn read(&self, name: &str, rows: Range<usize>) -> Result<Vec<f64>, ReadError> {
         let dataset = self.dataset(name)?;
