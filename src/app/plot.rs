@@ -11,8 +11,8 @@ use crate::plot::{
 
 /// Draw sections of snapshots, profiles along a line, energies or tables as PNG pictures
 ///
-/// Particles of one layer about a plane are drawn to scale as discs of the particle spacing,
-/// coloured by body or by a field. A run's last snapshot is drawn unless others are asked for.
+/// A section shows the matter that a plane cuts, coloured by body or by a field, with the bodies'
+/// outlines. A run's last snapshot is drawn unless others are asked for.
 /// With --profile the particles of one row along a line are drawn as dots over their coordinate.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = "Examples:
@@ -47,11 +47,17 @@ pub struct PlotArgs {
     pub field: Option<String>,
 
     /// Plane of the section, as in y=0.1mm; with the axis alone its plane of symmetry or the
-    /// middle [default: z of a flat model, else a plane of symmetry, else the middle of y]
-    #[arg(short, long, value_name = "AXIS=POSITION")]
+    /// middle [default: z of a flat model, else a plane along the impact, through the body that
+    /// moves most against the rest: a plane of symmetry if one cuts it, else its middle]
+    #[arg(short, long, value_name = "AXIS=POSITION", allow_hyphen_values = true)]
     pub section: Option<String>,
 
-    /// Thickness of the slice about the plane, or of a profile's line, as in 0.1mm [default: one
+    /// How a section is drawn: "cut" shows matter, "particles" those of a slice as discs of the
+    /// particle spacing [default: cut; with --thickness particles]
+    #[arg(long = "as", value_name = "cut|particles", value_parser = ["cut", "particles"])]
+    pub drawn_as: Option<String>,
+
+    /// Thickness of a slice of particles, or of a profile's line, as in 0.1mm [default: one
     /// particle spacing, two on a plane of symmetry: one layer of a cubic lattice; of a line one
     /// and a half, for the rows beside it]
     #[arg(long, value_name = "LENGTH")]
@@ -112,14 +118,14 @@ pub struct PlotArgs {
 
     /// Draw the run's energies against time instead
     #[arg(long, conflicts_with_all = [
-        "which", "field", "section", "thickness", "no_mirror", "panels", "range", "view", "with",
+        "which", "field", "section", "drawn_as", "thickness", "no_mirror", "panels", "range", "view", "with",
     ])]
     pub history: bool,
 
     /// Draw a field along a line instead: FIELD or FIELD.COMPONENT, as for --field; stress.xx … are
     /// made from pressure and deviatoric stress
     #[arg(long, value_name = "FIELD", group = "line", conflicts_with_all = [
-        "field", "section", "no_mirror", "panels", "history",
+        "field", "section", "drawn_as", "no_mirror", "panels", "history",
     ])]
     pub profile: Option<String>,
 
@@ -143,14 +149,14 @@ pub struct PlotArgs {
 
     /// Draw columns of a table (of a run: history.csv) against another: X:Y or X:Y,Y2
     #[arg(long, value_name = "X:Y", conflicts_with_all = [
-        "which", "field", "section", "thickness", "no_mirror", "panels", "history", "profile",
+        "which", "field", "section", "drawn_as", "thickness", "no_mirror", "panels", "history", "profile",
     ])]
     pub xy: Option<String>,
 
     /// Draw how far a body reaches along an axis over time, and write it as a table: the largest
     /// coordinate of its largest piece, of particles within one and a half spacings
     #[arg(long, value_name = "BODY", group = "line", conflicts_with_all = [
-        "which", "field", "section", "thickness", "no_mirror", "panels", "history", "profile", "xy",
+        "which", "field", "section", "drawn_as", "thickness", "no_mirror", "panels", "history", "profile", "xy",
     ])]
     pub front: Option<String>,
 
@@ -194,6 +200,7 @@ fn draw_sections(args: &PlotArgs) -> Result<(), PlotError> {
     let request = Request {
         field: args.field.clone(),
         section: args.section.clone(),
+        drawn_as: args.drawn_as.clone(),
         thickness: args.thickness.clone(),
         mirror: !args.no_mirror,
         range: args.range.clone(),

@@ -333,6 +333,9 @@ fn write_meta(comm: &Comm, file: &Writer, meta: &Meta) -> Result<(), OutputError
     file.note(group, "title", &case.title)?;
     file.note(group, "bodies", &serde_json::json!(names).to_string())?;
     file.note(group, "spacings", &serde_json::json!(spacings).to_string())?;
+    let densities = case.bodies.iter().map(|b| case.initial_density(b));
+    let densities = serde_json::json!(densities.collect::<Vec<f64>>());
+    file.note(group, "densities", &densities.to_string())?;
     let rigid: Vec<bool> = case.bodies.iter().map(|b| b.rigid.is_some()).collect();
     file.note(group, "rigid", &serde_json::json!(rigid).to_string())?;
     file.note(group, "symmetry", &serde_json::json!(planes).to_string())?;

@@ -16,7 +16,7 @@ pub type Rgb = [u8; 3];
 pub const INK: Rgb = [32, 32, 32];
 
 /// Colour of the paper.
-const PAPER: Rgb = [255, 255, 255];
+pub const PAPER: Rgb = [255, 255, 255];
 
 /// A rectangle of the picture (pixels).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,9 +56,23 @@ impl Canvas {
     /// # Errors
     /// [`PlotError::Size`] if it cannot be held.
     pub fn new(width: u32, height: u32) -> Result<Self, PlotError> {
+        Self::fits(width, height)?;
         let mut pixmap = Pixmap::new(width, height).ok_or(PlotError::Size { width, height })?;
         pixmap.fill(Color::WHITE);
         Ok(Self { pixmap })
+    }
+
+    /// Whether paper of a size in pixels can be held: no more than 2³¹ bytes of it.
+    ///
+    /// # Errors
+    /// [`PlotError::Size`] if not.
+    pub fn fits(width: u32, height: u32) -> Result<(), PlotError> {
+        let pixels = u64::from(width) * u64::from(height);
+        if pixels > 0 && pixels <= 1 << 29 {
+            Ok(())
+        } else {
+            Err(PlotError::Size { width, height })
+        }
     }
 
     /// A filled disc with smooth edges, cut at the borders of `clip`.
@@ -102,6 +116,26 @@ impl Canvas {
         if let Some(rect) = Rect::from_xywh(frame.left, frame.top, frame.width, frame.height) {
             self.pixmap
                 .fill_rect(rect, &paint(colour), Transform::identity(), None);
+        }
+    }
+
+    /// The pixels of a frame, row by row; those beyond the picture are left out.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "frames are whole pixels, and a float cast saturates"
+    )]
+    pub fn image(&mut self, frame: &Frame, colours: &[Rgb]) {
+        let columns = self.pixmap.width() as usize;
+        let (left, width) = (frame.left as usize, frame.width as usize);
+        let room = columns.saturating_sub(left).min(width);
+        let rows = self.pixmap.pixels_mut().chunks_mut(columns);
+        let rows = rows.skip(frame.top as usize);
+        for (row, colours) in rows.zip(colours.chunks(width.max(1))) {
+            for (pixel, &[r, g, b]) in row[left.min(columns)..].iter_mut().zip(&colours[..room]) {
+                let opaque = PremultipliedColorU8::from_rgba(r, g, b, 255);
+                *pixel = opaque.expect("an opaque colour is premultiplied");
+            }
         }
     }
 

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::PlotError;
 use super::snapshot::{FROZEN, Snapshot};
+use crate::model::Axis;
 
 /// Components of a vector, in the order of the file.
 const VECTOR: [&str; 3] = ["x", "y", "z"];
@@ -27,6 +28,8 @@ pub enum Shown {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Field {
     dataset: String,
+    /// Numbers of the dataset for each particle.
+    components: usize,
     pick: Pick,
     /// For the colour bar: `"velocity x"`.
     pub label: String,
@@ -50,11 +53,11 @@ impl Shown {
         match name {
             "body" => Ok(Self::Body),
             // A run may write the stress, or only what follows from it.
-            "von_mises" if !has(snapshot, "deviatoric_stress")? => {
+            "von_mises" if !snapshot.has("deviatoric_stress")? => {
                 find(snapshot, "von_mises_stress", None).map(Self::Field)
             }
             "von_mises" => find(snapshot, "deviatoric_stress", Some("von_mises")).map(Self::Field),
-            _ if name.strip_prefix("stress.").is_some() && !has(snapshot, "stress")? => {
+            _ if name.strip_prefix("stress.").is_some() && !snapshot.has("stress")? => {
                 stress(snapshot, name).map(Self::Field)
             }
             _ => {
@@ -82,7 +85,7 @@ impl Shown {
             Self::Field(field) if field.dataset == FROZEN => vec![true; rows.len()],
             _ => snapshot.active(rows.clone())?,
         };
-        if !has(snapshot, STRESS_MASS)? {
+        if !snapshot.has(STRESS_MASS)? {
             return Ok(active);
         }
         let of_points = match self {
@@ -112,6 +115,22 @@ const OF_STRESS_POINTS: [&str; 10] = [
 ];
 
 impl Field {
+    /// Whether its value changes sign in a mirror normal to an axis.
+    pub fn flips(&self, axis: Axis) -> bool {
+        let letter = axis.name();
+        let name = match self.pick {
+            Pick::Component(k) => match self.components {
+                3 => VECTOR[k],
+                6 => SYMMETRIC[k],
+                9 => TENSOR[k],
+                _ => "",
+            },
+            Pick::Stress(k) => SYMMETRIC[k],
+            Pick::Magnitude | Pick::VonMises => "",
+        };
+        name.matches(letter).count() == 1
+    }
+
     fn values(&self, snapshot: &Snapshot, rows: Range<usize>) -> Result<Vec<f64>, PlotError> {
         match self.pick {
             Pick::Component(k) => Ok(snapshot.file.scalar(&self.dataset, k, rows)?),
@@ -135,11 +154,6 @@ impl Field {
             }
         }
     }
-}
-
-fn has(snapshot: &Snapshot, dataset: &str) -> Result<bool, PlotError> {
-    let names = snapshot.file.names()?;
-    Ok(names.iter().any(|name| name == dataset))
 }
 
 fn find(snapshot: &Snapshot, dataset: &str, part: Option<&str>) -> Result<Field, PlotError> {
@@ -182,6 +196,7 @@ fn find(snapshot: &Snapshot, dataset: &str, part: Option<&str>) -> Result<Field,
     })?;
     Ok(Field {
         dataset: dataset.to_owned(),
+        components: width,
         pick,
         label,
         unit: snapshot.file.field_attribute(dataset, "unit")?,

@@ -4,9 +4,11 @@ use super::PlotError;
 use super::axes::{Axes, Entry, Header, Mark, Style};
 use super::bar::ColourBar;
 use super::canvas::{Align, Canvas, Frame, Rgb};
+use super::cells::Sample;
 use super::colour;
 use super::layout::{Layout, View, pixels};
-use super::section::{Disc, Section};
+use super::raster::Raster;
+use super::section::{DrawnAs, Section};
 
 /// Default width of a picture of one panel (pixels), at which [`Style::unit`] is 1.
 pub const WIDTH: u32 = 1200;
@@ -36,8 +38,8 @@ pub struct Figure<'a> {
     pub headings: Vec<String>,
     /// Names of the axes to the right and upwards.
     pub axes: [&'static str; 2],
-    /// Diameter of the discs of each body (m).
-    pub spacings: &'a [f64],
+    /// How particles are drawn.
+    pub drawn_as: DrawnAs,
     /// What colours mean.
     pub colours: &'a Colours,
     /// What part of the plane is drawn.
@@ -54,15 +56,22 @@ impl Figure<'_> {
     pub fn draw(&self) -> Result<Canvas, PlotError> {
         let count = self.sections.len();
         let style = Style::new(self.width, if count > 1 { PANELS_WIDTH } else { WIDTH });
-        let header = self.header();
-        let top = header.draw(None, style, self.width as f32);
         let has_bar = matches!(self.colours, Colours::Bar(_));
-        let layout = Layout::new(style, self.width, top, count, self.view, has_bar);
+        let layout = Layout::new(style, self.width, count, self.view, has_bar);
+        // What is too large is refused before it is drawn.
+        Canvas::fits(self.width, whole(layout.height))?;
+        let rasters = self.rasters(&layout);
+        let header = self.header(&self.seen(&layout, &rasters));
+        let layout = layout.below(header.draw(None, style, self.width as f32));
 
         let mut canvas = Canvas::new(self.width, whole(layout.height))?;
         header.draw(Some(&mut canvas), style, self.width as f32);
         for (k, section) in self.sections.iter().enumerate() {
-            self.draw_panel(&mut canvas, &layout, k, section);
+            match rasters.get(k) {
+                Some(raster) => canvas.image(&layout.frames[k], &raster.pixels),
+                None => self.draw_particles(&mut canvas, &layout, k, section),
+            }
+            self.draw_axes(&mut canvas, &layout, k);
         }
         if let Colours::Bar(bar) = self.colours {
             let (last_of_row, last) = (layout.frames[layout.columns - 1], layout.frames[count - 1]);
@@ -72,19 +81,45 @@ impl Figure<'_> {
         Ok(canvas)
     }
 
-    fn header(&self) -> Header<'_> {
+    /// The panels of cuts; none of particles.
+    fn rasters(&self, layout: &Layout) -> Vec<Raster> {
+        let panels = self.sections.iter().zip(&layout.frames);
+        let raster = |(section, frame): (&Section, &Frame)| {
+            let line = 1.2 * layout.style.unit;
+            Raster::new(&section.cells, layout.view, frame, line, |sample| {
+                self.colour(sample)
+            })
+        };
+        match self.drawn_as {
+            DrawnAs::Cut => panels.map(raster).collect(),
+            DrawnAs::Particles => Vec::new(),
+        }
+    }
+
+    /// Numbers of the bodies that are in the picture.
+    fn seen(&self, layout: &Layout, rasters: &[Raster]) -> Vec<usize> {
+        let mut seen: Vec<usize> = match self.drawn_as {
+            DrawnAs::Cut => rasters.iter().flat_map(|r| &r.seen).copied().collect(),
+            DrawnAs::Particles => {
+                let cells = self.sections.iter().flat_map(|s| &s.cells);
+                let shown = cells.filter(|c| layout.view.shows(c.at, 0.5 * c.size));
+                shown.map(|cell| cell.body).collect()
+            }
+        };
+        seen.sort_unstable();
+        seen.dedup();
+        seen
+    }
+
+    fn header(&self, seen: &[usize]) -> Header<'_> {
         let legend = match self.colours {
             Colours::Bodies(names) => {
-                let entry = |(name, colour): (&String, Rgb)| Entry {
-                    name: name.clone(),
-                    colour,
+                let entry = |&body: &usize| Entry {
+                    name: names[body].clone(),
+                    colour: colour::body(body),
                     mark: Mark::Dots,
                 };
-                names
-                    .iter()
-                    .zip((0..).map(colour::body))
-                    .map(entry)
-                    .collect()
+                seen.iter().map(entry).collect()
             }
             Colours::Bar(_) => Vec::new(),
         };
@@ -95,19 +130,27 @@ impl Figure<'_> {
         }
     }
 
-    fn draw_panel(&self, canvas: &mut Canvas, layout: &Layout, k: usize, section: &Section) {
-        let (style, view, frame) = (layout.style, &layout.view, layout.frames[k]);
+    fn draw_particles(&self, canvas: &mut Canvas, layout: &Layout, k: usize, section: &Section) {
+        let (view, frame) = (&layout.view, layout.frames[k]);
         let metres = Axes {
             frame,
             x: view.x,
             y: view.y,
         };
         let scale = f64::from(frame.width) / view.width();
-        for disc in &section.discs {
-            let radius = pixels(0.5 * self.spacings[disc.body] * scale);
-            let at = metres.at(disc.at[0], disc.at[1]);
-            draw_particle(canvas, at, radius, self.colour(disc), &frame);
+        for cell in &section.cells {
+            let radius = pixels(0.5 * cell.size * scale);
+            let at = metres.at(cell.at[0], cell.at[1]);
+            let sample = Sample {
+                body: cell.body,
+                value: cell.value,
+            };
+            draw_particle(canvas, at, radius, self.colour(&sample), &frame);
         }
+    }
+
+    fn draw_axes(&self, canvas: &mut Canvas, layout: &Layout, k: usize) {
+        let (style, view, frame) = (layout.style, &layout.view, layout.frames[k]);
         let [x, y] = view.in_unit(&layout.unit);
         let axes = Axes { frame, x, y };
         let [right, up] = self.axes.map(|name| layout.unit.label(name));
@@ -128,10 +171,10 @@ impl Figure<'_> {
         }
     }
 
-    fn colour(&self, disc: &Disc) -> Rgb {
+    fn colour(&self, sample: &Sample) -> Rgb {
         match self.colours {
-            Colours::Bodies(_) => colour::body(disc.body),
-            Colours::Bar(bar) => disc.value.map_or(colour::RIGID, |v| bar.scale.colour(v)),
+            Colours::Bodies(_) => colour::body(sample.body),
+            Colours::Bar(bar) => sample.value.map_or(colour::RIGID, |v| bar.scale.colour(v)),
         }
     }
 }

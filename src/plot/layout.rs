@@ -17,13 +17,14 @@ pub struct View {
 }
 
 impl View {
-    /// All discs of some sections with a small border.
-    pub fn around(sections: &[Section], spacings: &[f64]) -> Self {
+    /// All of some sections with a small border.
+    pub fn around(sections: &[Section]) -> Self {
         let none = [f64::INFINITY, f64::NEG_INFINITY];
         let mut reach = [none; 2];
-        for disc in sections.iter().flat_map(|s| &s.discs) {
-            let radius = 0.5 * spacings[disc.body];
-            for (span, at) in reach.iter_mut().zip(disc.at) {
+        let cells = sections.iter().flat_map(|s| &s.cells);
+        for cell in cells.filter(|cell| cell.is_cut()) {
+            let radius = 0.5 * cell.size;
+            for (span, at) in reach.iter_mut().zip(cell.at) {
                 *span = [span[0].min(at - radius), span[1].max(at + radius)];
             }
         }
@@ -31,6 +32,12 @@ impl View {
         let border = 0.03 * longest;
         let [x, y] = reach.map(|span| [span[0] - border, span[1] + border]);
         Self { x, y }
+    }
+
+    /// Whether a disc reaches into it.
+    pub fn shows(&self, at: [f64; 2], radius: f64) -> bool {
+        let within = |at: f64, span: [f64; 2]| at + radius > span[0] && at - radius < span[1];
+        within(at[0], self.x) && within(at[1], self.y)
     }
 
     pub fn width(&self) -> f64 {
@@ -84,15 +91,8 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Lays out `count` panels of equal scale in a width, below `top`.
-    pub fn new(
-        style: Style,
-        width: u32,
-        top: f32,
-        count: usize,
-        view: View,
-        has_bar: bool,
-    ) -> Self {
+    /// Lays out `count` panels of equal scale in a width, from the top of the picture.
+    pub fn new(style: Style, width: u32, count: usize, view: View, has_bar: bool) -> Self {
         let view = view.at_least(0.45, 0.2);
         let unit = Readable::new("m", view.reach());
         let bar = if has_bar { ColourBar::room(style) } else { 0.0 };
@@ -114,12 +114,12 @@ impl Layout {
         let left = beside + (0.5 * (width as f32 - used)).max(style.margin());
         let frame = |k: usize| Frame {
             left: (left + (k % columns) as f32 * pitch[0]).round(),
-            top: (top + heading + (k / columns) as f32 * pitch[1]).round(),
+            top: (heading + (k / columns) as f32 * pitch[1]).round(),
             width: panel[0],
             height: panel[1],
         };
         let frames: Vec<Frame> = (0..count).map(frame).collect();
-        let bottom = frames.last().map_or(top, Frame::bottom);
+        let bottom = frames.last().map_or(0.0, Frame::bottom);
         Self {
             style,
             height: bottom + style.below() + 0.5 * style.margin(),
@@ -130,6 +130,16 @@ impl Layout {
             y_ticks,
             frames,
         }
+    }
+
+    /// The same below a header of a height.
+    pub fn below(mut self, top: f32) -> Self {
+        let top = top.round();
+        for frame in &mut self.frames {
+            frame.top += top;
+        }
+        self.height += top;
+        self
     }
 }
 
@@ -183,7 +193,7 @@ mod tests {
             y: [0.0, height],
         };
         let style = Style::new(pixels, if count > 1 { 1800 } else { 1200 });
-        Layout::new(style, pixels, 100.0, count, view, true)
+        Layout::new(style, pixels, count, view, true)
     }
 
     #[test]

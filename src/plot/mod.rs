@@ -14,6 +14,7 @@
 mod axes;
 mod bar;
 mod canvas;
+mod cells;
 mod chart;
 mod colour;
 mod error;
@@ -25,7 +26,9 @@ mod front;
 mod history;
 mod layout;
 mod pictures;
+mod plane;
 mod profile;
+mod raster;
 mod section;
 mod snapshot;
 mod source;

@@ -5,15 +5,17 @@ use std::path::{Path, PathBuf};
 use super::PlotError;
 use super::bar::ColourBar;
 use super::canvas::Canvas;
+use super::cells::Cell;
 use super::colour::Scale;
 use super::field::Shown;
 use super::figure::{Colours, Figure, PANELS_WIDTH, WIDTH};
 use super::layout::View;
-use super::section::{Cut, Plane, Section};
+use super::plane::Plane;
+use super::section::{Cut, DrawnAs, Section};
 use super::snapshot::Snapshot;
 use super::source::Source;
 use super::units::{self, Readable};
-use crate::model::{Axis, SymmetryPlane};
+use crate::model::Axis;
 
 /// What to draw, as typed.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -22,7 +24,9 @@ pub struct Request {
     pub field: Option<String>,
     /// `AXIS=POSITION` or `AXIS`; the best plane if absent.
     pub section: Option<String>,
-    /// Thickness of the slice; one spacing if absent.
+    /// `cut` or `particles`; if absent a cut, or particles if there is a thickness.
+    pub drawn_as: Option<String>,
+    /// Thickness of the slice of particles; one spacing if absent.
     pub thickness: Option<String>,
     /// Whether to reflect at planes of symmetry.
     pub mirror: bool,
@@ -38,7 +42,6 @@ pub struct Pictures {
     title: String,
     /// Names of the runs that the snapshots belong to, if there are several.
     names: Option<Vec<String>>,
-    spacings: Vec<f64>,
     cut: Cut,
     where_text: String,
     sections: Vec<Section>,
@@ -65,6 +68,7 @@ impl Pictures {
                 Some(text) => Plane::parse(text, &first)?,
                 None => Plane::best(&first)?,
             },
+            drawn_as: drawn_as(request)?,
             thickness,
             mirror: request.mirror,
             shown: Shown::find(&first, request.field.as_deref().unwrap_or("body"))?,
@@ -79,16 +83,20 @@ impl Pictures {
         let view = request.view.as_deref().map(parse_view).transpose()?;
 
         let mut sections = Vec::with_capacity(paths.len());
+        let mut bodies = Vec::new();
         for path in &paths {
-            sections.push(cut.take(&Snapshot::open(path)?)?);
+            let snapshot = Snapshot::open(path)?;
+            let numbers = numbers(&snapshot.bodies, &mut bodies);
+            sections.push(cut.take(&snapshot, &numbers)?);
         }
-        if sections.iter().all(|section| section.discs.is_empty()) {
+        let mut cells = sections.iter().flat_map(|section| &section.cells);
+        if !cells.any(Cell::is_cut) {
             return Err(cut.miss(&first));
         }
         Ok(Self {
-            where_text: where_text(&cut, &first)?,
-            colours: colours(&cut.shown, &first.bodies, &sections, range),
-            view: view.unwrap_or_else(|| View::around(&sections, &first.spacings)),
+            where_text: where_text(&cut, &first),
+            colours: colours(&cut.shown, bodies, &sections, range),
+            view: view.unwrap_or_else(|| View::around(&sections)),
             names: (sources.len() > 1).then(|| {
                 let names = sources
                     .iter()
@@ -96,7 +104,6 @@ impl Pictures {
                 names.flatten().collect()
             }),
             title: first.title,
-            spacings: first.spacings,
             cut,
             sections,
         })
@@ -153,7 +160,7 @@ impl Pictures {
             sections,
             headings,
             axes: self.cut.plane.picture_axes().map(Axis::name),
-            spacings: &self.spacings,
+            drawn_as: self.cut.drawn_as,
             colours: &self.colours,
             view: self.view,
             width,
@@ -197,44 +204,69 @@ fn parse_view(text: &str) -> Result<View, PlotError> {
 
 /// `"y = 0.1 mm"`, in a unit that suits the position and the particle spacing.
 pub fn place(axis: &str, position: f64, spacing: f64) -> String {
-    let unit = Readable::new("m", position.abs().max(spacing));
-    let number = unit.number(position, 3);
+    format!("{axis} = {}", quantity(position, spacing))
+}
+
+/// A length with a unit that suits it and the particle spacing.
+fn quantity(length: f64, spacing: f64) -> String {
+    let unit = Readable::new("m", length.abs().max(spacing));
+    let number = unit.number(length, 3);
     let number = number.trim_end_matches('0').trim_end_matches('.');
     if number == "0" {
-        format!("{axis} = 0")
+        number.to_owned()
     } else {
-        format!("{axis} = {number} {}", unit.name)
+        format!("{number} {}", unit.name)
     }
 }
 
-/// `"section y = 0 mm, mirrored at x = 0 mm"`; a flat model has no section.
-fn where_text(cut: &Cut, snapshot: &Snapshot) -> Result<String, PlotError> {
-    let at = |axis: &str, position: f64| place(axis, position, snapshot.finest());
-    let section = at(cut.plane.axis.name(), cut.plane.position);
-    let seen = |p: &&SymmetryPlane| cut.mirror && p.axis != cut.plane.axis;
-    let planes = snapshot.symmetry.iter().filter(seen);
-    let planes: Vec<String> = planes.map(|p| at(p.axis.name(), p.position)).collect();
-    let depth = snapshot.extent()?[cut.plane.axis.index()];
-    let section = Some(format!("section {section}")).filter(|_| depth.highest > depth.lowest);
-    let mirrored = (!planes.is_empty()).then(|| format!("mirrored at {}", planes.join(" and ")));
-    let texts: Vec<String> = section.into_iter().chain(mirrored).collect();
-    Ok(texts.join(",  "))
+/// Where a section is taken, in units that suit the positions and the particle spacing.
+fn where_text(cut: &Cut, snapshot: &Snapshot) -> String {
+    let place = |axis: Axis, position: f64| place(axis.name(), position, snapshot.finest());
+    let length = |length: f64| quantity(length, snapshot.finest());
+    cut.caption(snapshot, place, length)
+}
+
+/// What `--as` says, and without it what `--thickness` asks for.
+fn drawn_as(request: &Request) -> Result<DrawnAs, PlotError> {
+    match (request.drawn_as.as_deref(), &request.thickness) {
+        (None | Some("cut"), None) => Ok(DrawnAs::Cut),
+        (None | Some("particles"), _) => Ok(DrawnAs::Particles),
+        (Some("cut"), Some(_)) => Err(PlotError::Options(
+            "a cut has no thickness: leave --thickness out, or draw the slice --as particles",
+        )),
+        (Some(other), _) => Err(PlotError::Quantity {
+            text: other.to_owned(),
+            expected: "cut or particles".to_owned(),
+        }),
+    }
+}
+
+/// The numbers in the picture of a snapshot's bodies: those of the same name, of which `known` takes
+/// up new ones.
+fn numbers(bodies: &[String], known: &mut Vec<String>) -> Vec<usize> {
+    let number = |name: &String| {
+        known.iter().position(|n| n == name).unwrap_or_else(|| {
+            known.push(name.clone());
+            known.len() - 1
+        })
+    };
+    bodies.iter().map(number).collect()
 }
 
 fn colours(
     shown: &Shown,
-    bodies: &[String],
+    bodies: Vec<String>,
     sections: &[Section],
     range: Option<[f64; 2]>,
 ) -> Colours {
     match shown {
-        Shown::Body => Colours::Bodies(bodies.to_vec()),
+        Shown::Body => Colours::Bodies(bodies),
         Shown::Field(field) => {
             let values = || {
-                sections
-                    .iter()
-                    .flat_map(|s| &s.discs)
-                    .filter_map(|disc| disc.value)
+                let cells = sections.iter().flat_map(|s| &s.cells);
+                cells
+                    .filter(|cell| cell.is_cut())
+                    .filter_map(|cell| cell.value)
             };
             let scale = Scale::new(values(), range);
             let unit = Readable::new(&field.unit, scale.high.abs().max(scale.low.abs()));

@@ -24,6 +24,7 @@ pub struct Case {
     pub bodies: Vec<String>,
     pub spacings: Vec<f64>,
     pub symmetry: Vec<(char, f64)>,
+    pub dimension: u64,
 }
 
 impl Case {
@@ -34,6 +35,7 @@ impl Case {
             bodies: vec!["sphere".to_owned(), "plate".to_owned()],
             spacings: vec![SPACING; 2],
             symmetry: vec![('x', 0.0), ('y', 0.0)],
+            dimension: 3,
         }
     }
 }
@@ -158,6 +160,8 @@ pub fn write(path: &Path, case: &Case, particles: &Particles, time: f64) {
         "spacings",
         &serde_json::to_string(&case.spacings).unwrap(),
     );
+    let dimension = about.new_attr::<u64>().create("dimension").unwrap();
+    dimension.write_scalar(&case.dimension).unwrap();
     text(
         &about,
         "rigid",

@@ -164,6 +164,15 @@ impl SnapshotFile {
         self.told(&format!("attribute {name} of {group}"), text)
     }
 
+    /// A whole number that is an attribute of a group, such as `dimension` of `/whipple`.
+    ///
+    /// # Errors
+    /// [`ReadError::Layout`] if the group or the attribute is missing or no number.
+    pub fn number(&self, group: &str, name: &str) -> Result<u64, ReadError> {
+        let number = self.gate.group(group).and_then(|g| gate::number(&g, name));
+        self.told(&format!("attribute {name} of {group}"), number)
+    }
+
     /// Some rows of a dataset, value after value.
     fn read(&self, name: &str, rows: Range<usize>) -> Result<Vec<f64>, ReadError> {
         let found = self.rows(name)?;
