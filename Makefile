@@ -4,7 +4,7 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help deps test-deps release impact test run-tests check validation fuzz soak pictures contact-lab bench bench-kernels docs clean
+.PHONY: help deps test-deps release impact test run-tests check validation fuzz fuzz-memory soak pictures contact-lab bench bench-kernels docs clean
 
 # The environment of every build and launch: Open MPI's settings, HDF5_DIR.
 ENV := source jobs/env.sh;
@@ -28,8 +28,13 @@ check: test-deps
 	$(ENV) RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps
 	$(MAKE) run-tests
 
-fuzz: test-deps ## Read random inputs and checkpoints for ten minutes each; new ones stay in tests/fuzz/
+fuzz: test-deps ## Read random inputs and files of results for ten minutes each; new ones stay in tests/fuzz/
 	$(ENV) WHIPPLE_FUZZ_SECONDS=600 cargo test --locked --test fuzz -- --nocapture --test-threads=1
+
+fuzz-memory: test-deps ## Read random files of results under valgrind for SECONDS=600
+	$(ENV) WHIPPLE_FUZZ_SECONDS=$(or $(SECONDS),600) \
+	    CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUNNER="valgrind --quiet --error-exitcode=9 --suppressions=$(CURDIR)/tests/fuzz/valgrind.supp" \
+	    cargo test --locked --test fuzz files -- --nocapture --test-threads=1
 
 soak: release ## Kill, stop and restart a run at random for MINUTES=30, with SEED=1; the bits must stay
 	tests/soak.sh -m $(or $(MINUTES),30) -s $(or $(SEED),1)

@@ -145,11 +145,17 @@ impl Kind {
 }
 
 impl Shape {
-    fn extents(&self) -> Extents {
+    /// As HDF5's bindings take it, which multiply the dimensions.
+    fn extents(&self) -> hdf5::Result<Extents> {
         match self {
-            Self::Null => Extents::Null,
-            Self::Scalar => Extents::Scalar,
-            Self::Of(dimensions) => Extents::from(dimensions.clone()),
+            Self::Null => Ok(Extents::Null),
+            Self::Scalar => Ok(Extents::Scalar),
+            Self::Of(dimensions) => {
+                let mut all = dimensions.iter();
+                let values = all.try_fold(1_usize, |n, &d| n.checked_mul(d));
+                values.ok_or("too many values")?;
+                Ok(Extents::from(dimensions.clone()))
+            }
         }
     }
 
@@ -284,7 +290,7 @@ fn attribute(
     let object = object(file, at)?;
     let _ = object.delete_attr(name);
     let builder = object.new_attr_builder().empty_as(&kind.descriptor());
-    let attribute = builder.shape(shape.extents()).create(name)?;
+    let attribute = builder.shape(shape.extents()?).create(name)?;
     let datatype = attribute.dtype()?;
     if kind.is_loose() {
         return Ok(());
@@ -317,7 +323,7 @@ fn dataset(file: &File, at: &str, kind: Kind, shape: &Shape, store: Store) -> hd
     let mut builder = file
         .new_dataset_builder()
         .empty_as(&descriptor)
-        .shape(shape.extents());
+        .shape(shape.extents()?);
     // In small pieces, so that none exists that is not written.
     let piece = match shape {
         Shape::Of(dimensions) => dimensions.iter().map(|n| (*n).clamp(1, 64)).collect(),
@@ -330,7 +336,7 @@ fn dataset(file: &File, at: &str, kind: Kind, shape: &Shape, store: Store) -> hd
         Store::Packed => builder = builder.chunk(&piece[..]).deflate(9),
         Store::External => builder = builder.external("manifest.json", 0, 1 << 40),
         Store::Virtual => {
-            let all = shape.extents();
+            let all = shape.extents()?;
             builder = builder.virtual_map("other.h5", at, all.clone(), .., all, ..);
         }
     }

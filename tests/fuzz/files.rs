@@ -391,7 +391,7 @@ fn draw(path: &Path) -> Result<(), String> {
         "plot",
         text,
         "--width",
-        "200",
+        "400",
         "--out",
         picture.to_str().unwrap(),
     ];
