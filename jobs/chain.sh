@@ -71,7 +71,7 @@ status() { grep -oEsm1 '"(finished|stopped|failed)"' "$run/status.json" | tr -d 
 # step that it takes the place of *.old.
 newest_checkpoint() {
     { compgen -G "$run/checkpoints/step-*[0-9]" || compgen -G "$run/checkpoints/step-*.old" || true; } |
-        grep -v '\.damaged' | sort | tail -n 1
+        sed '/damaged/d' | sort | tail -n 1
 }
 
 # Of the options, those that a restart takes: what else was set is in the checkpoint.

@@ -6,7 +6,7 @@ mod cli_support;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use cli_support::{assert_same, coarse_run, end, json, ranks, status};
+use cli_support::{WHIPPLE, assert_same, coarse_run, command, end, json, ranks, status};
 
 fn copy(from: &Path, to: &Path) {
     let copied = Command::new("cp").arg("-r").arg(from).arg(to).status();
@@ -50,6 +50,13 @@ fn damaged_checkpoints_are_passed_over_with_the_reason() {
         assert!(line.contains(why), "{line}");
     }
     assert_same(&run, &whole);
+    // They are still there under another name, which `info` tells.
+    let told = end(command(WHIPPLE).arg("info").arg(&run)).with_code(0);
+    for path in [flipped, unlisted, truncated] {
+        let name = format!("{}.damaged", path.display());
+        assert!(Path::new(&name).join("state.h5").is_file(), "{name}");
+        assert!(told.stdout.contains(&name), "{told:#?}");
+    }
 
     // With none left it says why of each.
     for path in checkpoints(&run) {

@@ -163,7 +163,27 @@ fn fields_that_the_program_does_not_share_are_told() {
         sign(&path);
         let text = refusal(&path);
         assert!(text.contains(message), "{text}");
+        assert!(
+            text.contains("restart it with the program that wrote it"),
+            "{text}"
+        );
     }
+}
+
+/// The older one of a step has another name while the new one takes its own.
+#[test]
+fn a_checkpoint_that_is_being_replaced_is_still_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = write(folder.path(), 3, 1);
+    let old = folder.path().join("step-00000003.old");
+    fs::rename(&path, &old).unwrap();
+    let list = || checkpoint::list(folder.path()).unwrap();
+    assert_eq!(list(), [(3, old.clone())]);
+    let mut store = ParticleStore::default();
+    assert!(checkpoint::read(&Comm::solo(), &old, &mut store).is_ok());
+    write(folder.path(), 3, 1);
+    assert_eq!(list(), [(3, path)]);
+    assert!(!old.exists());
 }
 
 #[test]

@@ -95,9 +95,11 @@ impl RunFolder {
             fs::create_dir_all(path).map_err(OutputError::io("create the folder", path))?;
             folder.refuse(force)?;
             folder.clear()?;
+            // The status first, by which the folder is a run that --force clears.
+            folder.begin(0, 0.0, Some(resolved))?;
             folder.make_folders()?;
-            files::sync_folder(path.parent().unwrap_or(path))?;
-            folder.begin(0, 0.0, Some(resolved))
+            files::sync_folder(path)?;
+            files::sync_folder(path.parent().unwrap_or(path))
         })?;
         Ok(folder)
     }
@@ -215,10 +217,15 @@ impl RunFolder {
         }
     }
 
-    /// Whether there is nothing in it but a lock.
+    /// Whether there is nothing in it but a lock, or what a run has left that was killed at its very
+    /// beginning.
     fn is_empty(&self) -> Result<bool, OutputError> {
         let names = names_in(&self.path)?;
-        Ok(names.iter().all(|path| path.ends_with(LOCK)))
+        let unfinished = [LOCK, STATUS].map(|name| files::partial(Path::new(name)));
+        let is_nothing = |path: &PathBuf| {
+            path.ends_with(LOCK) || unfinished.iter().any(|name| path.ends_with(name))
+        };
+        Ok(names.iter().all(is_nothing))
     }
 
     /// Removes what a run has written, at once: who gives `--force` asks for it. Checkpoints go

@@ -144,6 +144,7 @@ impl Limits {
 
 /// What removed particles took with them, of one body.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Removed {
     /// How many.
     pub particles: u64,

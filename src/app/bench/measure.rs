@@ -9,7 +9,7 @@ use super::memory::Resident;
 use super::neighbours;
 use super::report::Row;
 use crate::comm::Comm;
-use crate::output::{Rows, checkpoint};
+use crate::output::{Rows, checkpoint, from_root};
 use crate::particles::ParticleStore;
 use crate::step::{Phase, Simulation};
 
@@ -103,12 +103,15 @@ fn stepped(comm: &Comm, bench: &BenchCase) -> Result<Simulation, String> {
 
 fn resumed(comm: &Comm, bench: &BenchCase, folder: &Path) -> Result<Simulation, String> {
     let case = bench.read().map_err(|e| e.to_string())?;
-    let list = checkpoint::list(folder).map_err(|e| e.to_string())?;
-    let (_, newest) = list
-        .last()
-        .ok_or_else(|| format!("{} has no state", folder.display()))?;
+    let newest = from_root(comm, || {
+        let last = checkpoint::list(folder)?.pop();
+        Ok(last.map(|(_, path)| path.into_os_string()))
+    });
+    let newest = newest.map_err(|e| e.to_string())?;
+    let newest = newest.ok_or_else(|| format!("{} has no state", folder.display()))?;
     let mut store = ParticleStore::default();
-    let saved = checkpoint::read(comm, newest, &mut store).map_err(|e| e.to_string())?;
+    let saved = checkpoint::read(comm, Path::new(&newest), &mut store);
+    let saved = saved.map_err(|e| e.to_string())?;
     let state = serde_json::from_str(&saved.state).map_err(|e| e.to_string())?;
     Simulation::resume(case, comm, state, store).map_err(|e| e.to_string())
 }
