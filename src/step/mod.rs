@@ -2,6 +2,7 @@
 
 mod contact_phase;
 mod contact_sums;
+mod flight;
 mod freeze;
 mod gain;
 mod integrate;
@@ -14,6 +15,7 @@ mod post_mortem;
 mod search;
 mod setup;
 mod simulation;
+mod span;
 mod state;
 mod stress_fit;
 mod stress_moments;
