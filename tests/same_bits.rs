@@ -243,6 +243,61 @@ fn self_contact_on_any_ranks_and_through_a_restart() {
     assert!(last[10].parse::<f64>().expect("heat") > 0.0, "{last:?}");
 }
 
+/// The columns of a table by name.
+fn column(table: &str, name: &str) -> Vec<String> {
+    let mut rows = table.lines().filter(|line| !line.starts_with('#'));
+    let names: Vec<&str> = rows.next().expect("names").split(',').collect();
+    let at = names.iter().position(|n| *n == name).expect("a column");
+    rows.map(|row| row.split(',').nth(at).expect("a cell").to_owned())
+        .collect()
+}
+
+/// Steps that flight limits, bodies that first meet on some rank, and extremes between rows, which
+/// stops come between: the smallest of all rows is that of all steps.
+#[test]
+fn flights_and_extremes_on_any_ranks_and_through_a_restart() {
+    let (_keep, at) = folder();
+    let case = ["tests/common/flight.toml"];
+    let (one, stopped) = (at("one"), at("stopped"));
+    run(1, 2, &case, &[], &one);
+    for (ranks, axis) in [(2, "x"), (3, "y")] {
+        let other = at(&format!("{ranks}{axis}"));
+        let axis = format!("domain.axis={axis}");
+        run(ranks, 1, &case, &["--set", &axis], &other);
+        assert_same(&one, &other, &format!("{ranks} ranks, {axis}"));
+    }
+    assert_same_in_legs(&case, &[2, 1, 3], &["0.33ms", "1.27ms"], &one, &stopped);
+    let read = |name: &str| std::fs::read_to_string(one.join(name)).expect("the file");
+    let every = at("every");
+    run(1, 1, &case, &["--set", "output.history_every=1"], &every);
+    let history = std::fs::read_to_string(every.join("history.csv")).expect("the table");
+    assert!(
+        column(&history, "dt_reason")
+            .iter()
+            .any(|reason| reason == "flight")
+    );
+    let contacts = read("contacts.csv");
+    let [distances, a, b, bodies] =
+        ["closest_pair", "closest_a", "closest_b", "body_b"].map(|name| column(&contacts, name));
+    // The first rows are of the start.
+    let row = (3..distances.len())
+        .min_by(|&i, &j| {
+            let number = |k: usize| distances[k].parse::<f64>().expect("a number");
+            number(i).total_cmp(&number(j))
+        })
+        .expect("rows");
+    let summary: serde_json::Value =
+        serde_json::from_str(&read("summary.json")).expect("it is JSON");
+    assert_eq!(
+        Some(distances[row].parse().expect("a number")),
+        summary["closest_foreign_pair"].as_f64()
+    );
+    let nearest = &summary["closest_foreign_particles"];
+    assert_eq!(nearest["ids"][0].to_string(), a[row]);
+    assert_eq!(nearest["ids"][1].to_string(), b[row]);
+    assert_eq!(nearest["bodies"][1], bodies[row]);
+}
+
 #[test]
 fn loads_and_rigid_bodies_on_any_ranks_and_through_a_restart() {
     let (_keep, at) = folder();

@@ -33,6 +33,12 @@ impl Mirrors {
         self.planes.iter().all(Option::is_none)
     }
 
+    /// The codes of all images of a particle, itself left out.
+    pub fn codes(&self) -> impl Iterator<Item = u8> {
+        let mask = (0..3).filter(|&axis| self.planes[axis].is_some());
+        codes(mask.fold(0, |mask, axis| mask | 1 << axis), false)
+    }
+
     /// Bits of the planes that a particle at `position` (m) stands within `reach` (m) of. Its
     /// images are those of all nonzero subsets of these bits.
     #[inline]

@@ -116,24 +116,18 @@ impl Case {
             .unwrap_or_else(|| eos.reference_energy(density))
     }
 
-    /// Largest difference of initial velocity between two bodies, or the largest speed of a
-    /// single body, in m/s: the "impact speed" of the interpenetration measure.
+    /// The "impact speed" (m/s) of the interpenetration measure: the largest [`Self::closing_speed`]
+    /// of two bodies, or the largest speed of a single one if there is none.
     #[must_use]
     pub fn impact_speed(&self) -> f64 {
-        let mut speed: f64 = 0.0;
-        for (a, body) in self.bodies.iter().enumerate() {
-            for other in &self.bodies[a + 1..] {
-                speed = speed.max((body.velocity - other.velocity).norm());
-            }
-        }
+        let bodies = 0..self.bodies.len();
+        let pairs = bodies.clone().flat_map(|a| (0..a).map(move |b| [a, b]));
+        let speed = pairs.fold(0.0, |most: f64, [a, b]| most.max(self.closing_speed(a, b)));
         if speed > 0.0 {
-            speed
-        } else {
-            self.bodies
-                .iter()
-                .map(|b| b.velocity.norm())
-                .fold(0.0, f64::max)
+            return speed;
         }
+        let velocities = bodies.flat_map(|body| self.known_velocities(body));
+        velocities.fold(0.0, |most, velocity| most.max(velocity.norm()))
     }
 
     /// Largest speed of two bodies against each other (m/s) by the velocities at which they begin and

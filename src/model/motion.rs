@@ -78,6 +78,22 @@ impl Motion {
         base + moved / (to - from)
     }
 
+    /// Smallest and largest velocity along an axis (m/s) from time `from` to `to` (s), if it is
+    /// prescribed.
+    #[must_use]
+    pub fn range(&self, axis: usize, from: f64, to: f64) -> Option<[f64; 2]> {
+        let values = self.velocities[axis].as_ref()?;
+        let entries = self.times.iter().zip(values);
+        let within = entries.filter(|(time, _)| (from..=to).contains(*time));
+        let ends = [from, to].map(|t| self.velocity(axis, t));
+        let all = within.map(|(_, &value)| value).chain(ends);
+        Some(
+            all.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], v| {
+                [least.min(v), most.max(v)]
+            }),
+        )
+    }
+
     /// The value at `t` on the line between entries `segment − 1` and `segment`.
     fn on_segment(&self, values: &[f64], segment: usize, t: f64) -> f64 {
         let last = values.len() - 1;
@@ -121,6 +137,16 @@ mod tests {
         same(ends.mean(0, 0.3, 1.7), 0.1);
         same(ends.velocity(1, 0.5), 0.0);
         assert!(!ends.has(1));
+    }
+
+    #[test]
+    fn ranges_hold_all_that_comes_between() {
+        let motion = table(&[(1.0, 2.0), (3.0, 4.0), (3.0, 8.0), (4.0, 8.0), (4.0, 0.0)]);
+        assert_eq!(motion.range(0, 0.0, 2.0), Some([2.0, 3.0]));
+        assert_eq!(motion.range(0, 2.5, 3.5), Some([3.5, 8.0]));
+        assert_eq!(motion.range(0, 3.9, 4.0), Some([0.0, 8.0]));
+        assert_eq!(motion.range(0, 5.0, f64::INFINITY), Some([0.0, 0.0]));
+        assert_eq!(motion.range(1, 0.0, 9.0), None);
     }
 
     #[test]

@@ -15,6 +15,7 @@ use rayon::prelude::*;
 use super::loads::{Drive, Free, Goal, LoadStep};
 use super::search::GRAIN;
 use super::simulation::Simulation;
+use super::span::Span;
 use super::vector::dot;
 use super::vote::{ABSTAIN, Moved, Vote};
 use crate::diagnose::exact_sum::ExactSum;
@@ -65,7 +66,7 @@ impl Simulation {
         self.book_loads(dt, true);
         self.book_plane_force(dt);
         self.store.resize_halo(0);
-        self.half_kick(dt, Goal::Middle);
+        let _ = self.half_kick(dt, Goal::Middle);
         self.drift_with_neighbours(dt);
         self.drift_stress_points(dt);
         self.fold_at_planes();
@@ -75,20 +76,21 @@ impl Simulation {
     /// the next one, taken while each particle is at hand.
     #[must_use]
     pub(super) fn kick(&mut self, dt: f64) -> Vote {
-        let vote = self.half_kick(dt, Goal::End);
+        let (vote, span) = self.half_kick(dt, Goal::End);
+        self.sums.span = span;
         self.book_loads(dt, false);
         vote
     }
 
     /// One of the two half kicks of the particles, with all that acts on them beside stress, and
-    /// the work of contact in it. Only the second one votes.
-    fn half_kick(&mut self, dt: f64, goal: Goal) -> Vote {
+    /// the work of contact in it. Only the second one votes, and looks where particles are.
+    fn half_kick(&mut self, dt: f64, goal: Goal) -> (Vote, Span) {
         let contact = std::mem::take(&mut self.store.contact_acceleration);
         let bits = std::mem::take(&mut self.store.load);
         let loads = std::mem::take(&mut self.loads);
         let gravity = loads.gravity;
         let kick = Kick { dt, gravity };
-        let (work, vote) = if loads.drives() {
+        let (work, vote, span) = if loads.drives() {
             self.half_kick_by(kick, goal, |i| {
                 (
                     contact.get(i).copied().unwrap_or_default(),
@@ -103,7 +105,7 @@ impl Simulation {
         self.sums.contact_work.merge(&work);
         (self.loads, self.store.load) = (loads, bits);
         self.store.contact_acceleration = contact;
-        vote
+        (vote, span)
     }
 
     /// [`Self::half_kick`], given the acceleration by contact (m/s²) and the loads of a particle.
@@ -112,9 +114,9 @@ impl Simulation {
         kick: Kick,
         goal: Goal,
         outside: impl Fn(usize) -> ([f64; 3], D) + Sync,
-    ) -> (ExactSum, Vote) {
+    ) -> (ExactSum, Vote, Span) {
         match goal {
-            Goal::Middle => (self.kick_and_drift_by(kick, outside), ABSTAIN),
+            Goal::Middle => (self.kick_and_drift_by(kick, outside), ABSTAIN, Span::NONE),
             Goal::End => self.kick_by(kick, outside),
         }
     }
@@ -213,12 +215,13 @@ impl Simulation {
         }
     }
 
-    /// [`Self::kick`] of the particles. Gives the work of contact (J) and the smallest vote.
+    /// [`Self::kick`] of the particles. Gives the work of contact (J), the smallest vote, and what the
+    /// particles span.
     fn kick_by<D: Drive>(
         &mut self,
         kick: Kick,
         outside: impl Fn(usize) -> ([f64; 3], D) + Sync,
-    ) -> (ExactSum, Vote) {
+    ) -> (ExactSum, Vote, Span) {
         let dt = kick.dt;
         let half = 0.5 * dt;
         let per_half = LoadStep::per_half(dt);
@@ -226,53 +229,58 @@ impl Simulation {
         let mut energy = std::mem::take(&mut self.store.specific_energy);
         let mut rate = std::mem::take(&mut self.store.d_specific_energy_dt);
         let (voter, store) = (self.voter(), &self.store);
-        let none = || (ExactSum::default(), voter.ballot());
-        let (work, ballot) = (
+        let none = || (ExactSum::default(), voter.ballot(), Span::NONE);
+        let (work, ballot, span) = (
             velocity.par_chunks_mut(GRAIN),
             energy.par_chunks_mut(GRAIN),
             rate.par_chunks_mut(GRAIN),
         )
             .into_par_iter()
             .enumerate()
-            // same bits in any order: exact sums are integers, and the smallest vote is one
-            .fold(none, |(mut work, mut ballot), (chunk, (v, e, de))| {
-                for k in 0..v.len() {
-                    let i = chunk * GRAIN + k;
-                    let (contact, drive) = outside(i);
-                    let a = &store.acceleration[i];
-                    let forces = kick.total(a, &contact);
-                    let mut total = forces;
-                    drive.steer(Goal::End, &v[k], per_half, &mut total);
-                    v[k] = add_scaled(&v[k], half, &total);
-                    drive.set(Goal::End, &mut v[k]);
-                    if contact != [0.0; 3] {
-                        let mut mean = add_scaled(&v[k], -0.25 * dt, &forces);
-                        drive.correct_mean(&v[k], &mut mean);
-                        work.add(half * store.mass[i] * dot(&contact, &mean));
+            // same bits in any order: exact sums are integers, and smallest numbers are one
+            .fold(
+                none,
+                |(mut work, mut ballot, mut span), (chunk, (v, e, de))| {
+                    for k in 0..v.len() {
+                        let i = chunk * GRAIN + k;
+                        let (contact, drive) = outside(i);
+                        let a = &store.acceleration[i];
+                        let forces = kick.total(a, &contact);
+                        let mut total = forces;
+                        drive.steer(Goal::End, &v[k], per_half, &mut total);
+                        v[k] = add_scaled(&v[k], half, &total);
+                        drive.set(Goal::End, &mut v[k]);
+                        span.add(&store.position[i], &v[k]);
+                        if contact != [0.0; 3] {
+                            let mut mean = add_scaled(&v[k], -0.25 * dt, &forces);
+                            drive.correct_mean(&v[k], &mut mean);
+                            work.add(half * store.mass[i] * dot(&contact, &mean));
+                        }
+                        let v_p = &store.predicted_velocity[i];
+                        let late = add_scaled(&v[k], -1.0, v_p);
+                        de[k] -= dot(a, &late);
+                        e[k] += half * (de[k] + 0.25 * dt * dot(a, &total));
+                        if !drive.is_rigid() {
+                            let moved = Moved {
+                                velocity: v[k],
+                                energy: e[k],
+                                contact,
+                            };
+                            voter.ask(i, &moved, &mut ballot);
+                        }
                     }
-                    let v_p = &store.predicted_velocity[i];
-                    let late = add_scaled(&v[k], -1.0, v_p);
-                    de[k] -= dot(a, &late);
-                    e[k] += half * (de[k] + 0.25 * dt * dot(a, &total));
-                    if !drive.is_rigid() {
-                        let moved = Moved {
-                            velocity: v[k],
-                            energy: e[k],
-                            contact,
-                        };
-                        voter.ask(i, &moved, &mut ballot);
-                    }
-                }
-                (work, ballot)
-            })
+                    (work, ballot, span)
+                },
+            )
             // same bits in any order, as above
-            .reduce(none, |(work, ballot), (other, others)| {
-                (merged(work, other), ballot.min(others))
+            .reduce(none, |(work, ballot, mut span), (other, others, beyond)| {
+                span.join(&beyond);
+                (merged(work, other), ballot.min(others), span)
             });
         self.store.velocity = velocity;
         self.store.specific_energy = energy;
         self.store.d_specific_energy_dt = rate;
-        (work, ballot.vote())
+        (work, ballot.vote(), span)
     }
 }
 

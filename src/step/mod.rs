@@ -2,6 +2,7 @@
 
 mod contact_phase;
 mod contact_sums;
+mod flight;
 mod freeze;
 mod gain;
 mod integrate;
@@ -15,6 +16,7 @@ mod restored;
 mod search;
 mod setup;
 mod simulation;
+mod span;
 mod state;
 mod stress_fit;
 mod stress_moments;

@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use thiserror::Error;
 
 use super::contact_phase::ContactPhase;
+use super::flight::Flight;
 use super::loads::{Drive, Goal, LoadStep};
 use super::options::{OptionPhase, unused_fields};
 use super::parts::Parts;
@@ -116,12 +117,6 @@ impl Simulation {
         } else {
             f64::INFINITY
         };
-        let shortest = case.bodies.iter().map(|b| b.smoothing_length);
-        let longest_flight = if contact.has_pairs() && speed > 0.0 {
-            shortest.fold(f64::INFINITY, f64::min) / speed
-        } else {
-            f64::INFINITY
-        };
         let mut store = ParticleStore::default();
         store.drop_fields(unused_fields(&case, &contact));
         let loads = LoadStep::new(&case);
@@ -167,7 +162,7 @@ impl Simulation {
             crossed: Vec::new(),
             reference_h: case.bodies.iter().map(|b| b.smoothing_length).collect(),
             limits: Limits::new(&case),
-            longest_flight,
+            flight: Flight::new(&contact),
             votes: VecDeque::with_capacity(PAST_VOTES),
             contact,
             case,

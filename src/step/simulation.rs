@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use thiserror::Error;
 
 use super::contact_phase::ContactPhase;
+use super::flight::Flight;
 use super::loads::LoadStep;
 use super::options::OptionPhase;
 use super::parts::Parts;
@@ -94,9 +95,7 @@ pub struct Simulation {
     pub(super) crossed: Vec<Vec<usize>>,
     pub(super) reference_h: Vec<f64>,
     pub(super) limits: Limits,
-    /// The time (s) in which bodies fly a smoothing length towards each other: in longer steps they
-    /// could pass each other before either is in the other's support.
-    pub(super) longest_flight: f64,
+    pub(super) flight: Flight,
     /// The last votes, for post-mortems.
     pub(super) votes: VecDeque<PastVote>,
 }
@@ -239,6 +238,7 @@ impl Simulation {
             + self.loads.memory()
             + self.surface_forces.memory()
             + self.sums.memory()
+            + self.flight.memory()
             + self.halo.memory()
             + self.migration.memory()
             + self.histogram.memory()

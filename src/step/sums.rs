@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::contact_sums::{ContactSums, Meetings, least, pair_key};
 use super::search::GRAIN;
 use super::simulation::Simulation;
+use super::span::Span;
 use super::state::{Closest, NearestPair, PairExtremes, Totals};
 use super::trouble::Removed;
 use crate::comm::Comm;
@@ -38,6 +39,8 @@ pub struct StepSums {
     pub(super) push_heat: Vec<ExactSum>,
     /// Particles whose gradient has no correction, in the normalised form.
     pub(super) uncorrected: i64,
+    /// Where all particles are and how they move, after the step.
+    pub(super) span: Span,
     limbs: Vec<i64>,
     words: Vec<u64>,
 }
@@ -65,6 +68,7 @@ impl StepSums {
             pushes: (0..surfaces).map(|_| Default::default()).collect(),
             push_heat: vec![ExactSum::default(); resisting],
             uncorrected: 0,
+            span: Span::NONE,
             limbs: Vec::new(),
             words: Vec::new(),
         }
@@ -159,10 +163,12 @@ impl StepSums {
             contact.closest.map_or(u64::MAX, f64::to_bits),
             !contact.foreign_fraction.to_bits(),
         ]);
+        self.span.write(&mut self.words);
         comm.min_u64(&mut self.words);
         let [closest, fraction] = [self.words[0], !self.words[1]];
         contact.closest = (closest != u64::MAX).then(|| f64::from_bits(closest));
         contact.foreign_fraction = f64::from_bits(fraction);
+        self.span = Span::read(&self.words[2..]);
     }
 }
 

@@ -1,7 +1,8 @@
 //! Where rigid surfaces stand in a step, and how they move.
 
-use super::vector::{cross, dot};
-use crate::model::RigidSurface;
+use super::span::Span;
+use super::vector::{cross, dot, norm};
+use crate::model::{RigidSurface, SurfaceShape};
 
 /// A rigid surface in one step.
 #[derive(Debug, Clone, Copy, Default)]
@@ -109,6 +110,25 @@ impl Placed<'_> {
         };
         let around = cross(&spin.axis, &self.arm(x));
         std::array::from_fn(|a| velocity[a] + turn.rate[2] * around[a])
+    }
+
+    /// Largest speed (m/s) at which particles and the surface come nearer from time `from`, now, to
+    /// `to` (s), or somewhat more.
+    pub(super) fn closing_speed(&self, particles: &Span, from: f64, to: f64) -> f64 {
+        let motion = &self.surface.motion;
+        let ground = std::array::from_fn(|a| motion.range(a, from, to).unwrap_or_default());
+        let Some(spin) = &self.surface.spin else {
+            return match &self.surface.shape {
+                SurfaceShape::Plane { normal, .. } => particles.onto_plane(normal, &ground),
+                _ => norm(&particles.against(&ground)),
+            };
+        };
+        let speed = norm(&particles.against(&ground));
+        let [least, most] = spin.rate.range(0, from, to).unwrap_or_default();
+        let centre = std::array::from_fn(|a| spin.point[a] + self.step.shift[a]);
+        // As far from the axis as they are or get.
+        let arm = particles.farthest_from(&centre, &spin.axis) + speed * (to - from);
+        speed + least.abs().max(most.abs()) * arm
     }
 
     /// Torque of a force (N) at `x` about the axis of rotation (N m); zero without one.

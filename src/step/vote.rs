@@ -57,8 +57,9 @@ impl Simulation {
             self.state.dt = self.case.time_step.max;
             self.state.dt_reason = Reason::Maximum;
         }
-        if self.longest_flight < self.state.dt {
-            self.state.dt = self.longest_flight;
+        let flight = self.longest_flight(comm, self.state.dt);
+        if flight < self.state.dt {
+            self.state.dt = flight;
             self.state.dt_reason = Reason::Flight;
         }
         if self.votes.len() == PAST_VOTES {
