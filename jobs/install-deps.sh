@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what the build needs beside Rust and a C compiler: Open MPI, parallel HDF5, libclang
-# (for the bindings) and, with --tests, Python's venv. Silent and quick when all of it is there.
+# (for the bindings) and, with --tests, Python's venv and OpenGL without a display. Silent and quick
+# when all of it is there.
 #
 #   jobs/install-deps.sh [--tests]
 #
@@ -27,6 +28,12 @@ have_libclang() {
         compgen -G "$(llvm-config --libdir 2>/dev/null || echo /nowhere)/libclang*.so*" >/dev/null
 }
 
+# What VTK draws with where there is no display; only the tests of Python clients need it.
+have_opengl() {
+    [ "${WHIPPLE_SKIP_CLIENTS:-}" = 1 ] ||
+        python3 -c 'import ctypes; ctypes.CDLL("libEGL.so.1")' 2>/dev/null
+}
+
 # What lacks, one line each.
 lacking() {
     command -v cc >/dev/null || echo "a C compiler (cc)"
@@ -36,6 +43,8 @@ lacking() {
     have_libclang || echo "libclang (LIBCLANG_PATH may name its folder)"
     [ -z "$want_tests" ] || python3 -c 'import venv, ensurepip' 2>/dev/null ||
         echo "Python 3 with venv (for the tests)"
+    [ -z "$want_tests" ] || have_opengl ||
+        echo "OpenGL without a display, libEGL (for the tests)"
 }
 
 mapfile -t missing < <(lacking)
@@ -49,7 +58,7 @@ echo "whipple needs, and this machine lacks:"
 printf '  %s\n' "${missing[@]}"
 
 packages=(build-essential openmpi-bin libopenmpi-dev libhdf5-openmpi-dev libclang-dev pkg-config)
-[ -z "$want_tests" ] || packages+=(python3-venv)
+[ -z "$want_tests" ] || packages+=(python3-venv libegl1 libgl1-mesa-dri)
 install=(install -y --no-install-recommends "${packages[@]}")
 
 on_cluster=

@@ -1,5 +1,5 @@
 //! Snapshots opened by the programs that our users have: h5py, VTK's own reader, `PyVista`, and
-//! Debian's older VTK where it is installed.
+//! Debian's older VTK where it is installed; and the recipes of the book.
 //!
 //! `make test` makes the Python environment. `WHIPPLE_SKIP_CLIENTS=1` leaves these tests out.
 
@@ -27,6 +27,16 @@ fn root() -> &'static Path {
 
 /// Runs a script of `tests/clients/` and returns what it printed.
 fn script(python: &Path, name: &str, arguments: &[&Path]) -> Result<String, String> {
+    script_in(Path::new("."), python, name, arguments)
+}
+
+/// The same in a folder.
+fn script_in(
+    folder: &Path,
+    python: &Path,
+    name: &str,
+    arguments: &[&Path],
+) -> Result<String, String> {
     let Output {
         status,
         stdout,
@@ -34,6 +44,7 @@ fn script(python: &Path, name: &str, arguments: &[&Path]) -> Result<String, Stri
     } = Command::new(python)
         .arg(root().join("tests/clients").join(name))
         .args(arguments)
+        .current_dir(folder)
         .output()
         .expect("python starts");
     if status.success() {
@@ -67,6 +78,28 @@ fn opens_everywhere(python: &Path, snapshot: &Path) -> String {
         .unwrap_or_else(|error| panic!("{}:\n{error}", snapshot.display()))
 }
 
+/// Runs a case of `inputs/` on some ranks into a folder.
+fn simulate(ranks: &str, case: &str, options: &[&str], out: &Path) {
+    let program = env!("CARGO_BIN_EXE_whipple");
+    let output = Command::new("timeout")
+        .args(["120", "mpirun", "-n", ranks, program, "run"])
+        .arg(root().join("inputs").join(case))
+        .args(options)
+        .args(["--threads", "1", "--out"])
+        .arg(out)
+        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
+        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
+        .env("OMPI_MCA_hwloc_base_binding_policy", "none")
+        .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
+        .env("PRTE_MCA_hwloc_default_binding_policy", "none")
+        .env("PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe")
+        .env("OMPI_MCA_mpi_yield_when_idle", "1")
+        .output()
+        .expect("mpirun starts");
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{}\n{errors}", output.status);
+}
+
 #[test]
 fn every_client_opens_the_form_that_we_document() {
     let Some(python) = python() else { return };
@@ -88,29 +121,7 @@ fn every_client_opens_the_snapshots_of_a_run_on_two_ranks() {
     let Some(python) = python() else { return };
     let folder = tempfile::tempdir().expect("a temporary folder");
     let run = folder.path().join("run");
-    let output = Command::new("timeout")
-        .args([
-            "120",
-            "mpirun",
-            "-n",
-            "2",
-            env!("CARGO_BIN_EXE_whipple"),
-            "run",
-        ])
-        .arg(root().join("inputs/elastic-impact"))
-        .args(["--until", "0.06us", "--threads", "1", "--out"])
-        .arg(&run)
-        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
-        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
-        .env("OMPI_MCA_hwloc_base_binding_policy", "none")
-        .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
-        .env("PRTE_MCA_hwloc_default_binding_policy", "none")
-        .env("PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe")
-        .env("OMPI_MCA_mpi_yield_when_idle", "1")
-        .output()
-        .expect("mpirun starts");
-    let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{}\n{errors}", output.status);
+    simulate("2", "elastic-impact", &["--until", "0.06us"], &run);
 
     let mut snapshots: Vec<PathBuf> = std::fs::read_dir(run.join("snapshots"))
         .expect("the run has snapshots")
@@ -126,6 +137,37 @@ fn every_client_opens_the_snapshots_of_a_run_on_two_ranks() {
     for snapshot in snapshots {
         eprintln!("{}", opens_everywhere(&python, &snapshot));
     }
+}
+
+#[test]
+fn the_recipes_of_the_book_draw_something() {
+    let Some(python) = python() else { return };
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let run = folder.path().join("runs/quarter-impact");
+    let options = ["--set", "spacing=0.05 mm", "--until", "0.04us"];
+    simulate("1", "quarter-impact", &options, &run);
+
+    let book = root().join("docs/src");
+    let drawn = script_in(folder.path(), &python, "recipes.py", &[&book])
+        .unwrap_or_else(|error| panic!("{error}"));
+
+    eprintln!("{drawn}");
+    assert!(
+        drawn.contains("guide/first-run.md") && drawn.contains("% drawn"),
+        "{drawn}"
+    );
+}
+
+#[test]
+fn an_empty_window_is_noticed() {
+    let Some(python) = python() else { return };
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let page = "```python\nimport pyvista\nplotter = pyvista.Plotter()\nplotter.show()\n```\n";
+    std::fs::write(folder.path().join("page.md"), page).expect("a page is written");
+
+    let error = script(&python, "recipes.py", &[folder.path()]).unwrap_err();
+
+    assert!(error.contains("page.md:2: an empty window"), "{error}");
 }
 
 #[test]

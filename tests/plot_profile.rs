@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use tiny_skia::Pixmap;
 use whipple::exact::finite_strain::Medium;
 use whipple::material::LinearForm;
-use whipple::plot::{Along, Mark, ProfileRequest, Profiles, Source};
+use whipple::plot::{Along, Columns, Mark, ProfileRequest, Profiles, Source, Tables};
 
 mod plot_fixture;
 use plot_fixture::{Case, Particles, plot, write};
@@ -432,20 +432,39 @@ fn tables_are_drawn_with_measured_points() {
 fn a_front_is_a_table_and_a_picture() {
     let folder = tempfile::tempdir().unwrap();
     let run = bars(folder.path(), "bars", BARS, &[0.0, 0.5]);
-    plot(&run, "--front right").unwrap();
-    let table = std::fs::read_to_string(run.join("pictures/front-right.csv")).unwrap();
-    let lines: Vec<&str> = table.lines().collect();
-    assert_eq!(lines[..2], ["# units: s,m", "time,front"]);
-    assert_eq!(lines.len(), 4, "{table}");
-    let [time, front] = lines[3]
-        .split(',')
-        .map(|cell| cell.parse::<f64>().unwrap())
-        .collect::<Vec<_>>()[..]
-    else {
-        panic!("{table}");
-    };
-    assert!((time - 0.5e-6).abs() < 1e-15 && (front - 8e-3).abs() < 1e-12);
-    assert!(run.join("pictures/front-right.png").exists());
+    // Along the axis and against it: the outer end, and the one that was at 4 mm.
+    let ends = [("x", "x", 8e-3), ("-x", "minus-x", 4e-3)];
+    for (along, name, end) in ends {
+        plot(&run, &format!("--front right --along {along}")).unwrap();
+        let table = run.join(format!("pictures/front-right-{name}.csv"));
+        let table = std::fs::read_to_string(table).unwrap();
+        let lines: Vec<&str> = table.lines().collect();
+        let head = format!("time,front_{}", name.replace('-', "_"));
+        assert_eq!(lines[..2], ["# units: s,m", &head]);
+        assert_eq!(lines.len(), 4, "{table}");
+        let [time, front] = lines[3]
+            .split(',')
+            .map(|cell| cell.parse::<f64>().unwrap())
+            .collect::<Vec<_>>()[..]
+        else {
+            panic!("{table}");
+        };
+        assert!(
+            (time - 0.5e-6).abs() < 1e-15 && (front - end).abs() < 1e-12,
+            "{front}"
+        );
+        assert!(
+            run.join(format!("pictures/front-right-{name}.png"))
+                .exists()
+        );
+    }
+    let measured = folder.path().join("measured.csv");
+    std::fs::write(&measured, "# units: s,m\ntime,front\n1e-7,8e-3\n").unwrap();
+    plot(
+        &run,
+        &format!("--front right --points {}", measured.display()),
+    )
+    .unwrap();
     let unknown = plot(&run, "--front middle").unwrap_err();
     assert!(unknown.contains("left, right"), "{unknown}");
     assert!(
@@ -453,4 +472,70 @@ fn a_front_is_a_table_and_a_picture() {
             .unwrap_err()
             .contains("x, y or z")
     );
+}
+
+#[test]
+fn forces_are_drawn_for_each_pair_or_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("contacts.csv");
+    let mut rows =
+        String::from("# units: s,-,-,N,N,N\ntime,body_a,body_b,force_x,force_y,force_z\n");
+    for k in 0..=20 {
+        let t = f64::from(k) * 1e-7;
+        // One pair presses, one pulls half as much, one does not meet.
+        rows += &format!("{t:e},bumper,sphere,0,0,{}\n", -6000.0 * t / 2e-6);
+        rows += &format!("{t:e},wall,sphere,{},0,0\n", 3000.0 * t / 2e-6);
+        rows += &format!("{t:e},bumper,wall,0,0,0\n");
+    }
+    std::fs::write(&path, rows).unwrap();
+    let chart = |pair: Option<[&str; 2]>, y: &str| {
+        let tables = Tables {
+            title: String::new(),
+            tables: vec![("contacts".to_owned(), path.clone())],
+            columns: Columns::parse(&format!("time:{y}")).unwrap(),
+            pair: pair.map(|names| names.map(str::to_owned)),
+            label: None,
+            points: Vec::new(),
+            spans: [None, None],
+            logarithmic: [false; 2],
+        };
+        tables.chart().unwrap()
+    };
+    let all = chart(None, "force");
+    let names: Vec<&str> = all.curves.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["bumper – sphere", "wall – sphere", "bumper – wall"]);
+    assert_eq!(all.curves[0].points[20], [2e-6, 6000.0]);
+    assert_eq!(all.curves[1].points[20], [2e-6, 3000.0]);
+    assert!(all.curves.iter().all(|curve| curve.points.len() == 21));
+    assert_eq!(all.y.unit, "N");
+    let one = chart(Some(["sphere", "bumper"]), "force_x,force_z");
+    assert_eq!(one.subtitle, "bumper – sphere");
+    let names: Vec<&str> = one.curves.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["force x", "force z"]);
+    assert_eq!(one.curves[1].points[20], [2e-6, -6000.0]);
+
+    plot(&path, "").unwrap();
+    plot(&path, "--pair bumper,sphere").unwrap();
+    plot(folder.path(), "--pair wall,sphere --xy time:force").unwrap();
+    for name in [
+        "xy-time-force.png",
+        "xy-time-force_x-force_y-force_z-bumper-sphere.png",
+        "pictures/xy-time-force-wall-sphere.png",
+    ] {
+        assert!(folder.path().join(name).is_file(), "{name}");
+    }
+    let complaint = plot(&path, "--pair bumper,plate").unwrap_err();
+    assert!(
+        complaint.contains("bumper – sphere, wall – sphere, bumper – wall"),
+        "{complaint}"
+    );
+    assert!(
+        plot(&path, "--pair bumper")
+            .unwrap_err()
+            .contains("two bodies")
+    );
+    let other = folder.path().join("other.csv");
+    std::fs::write(&other, "a,b\n1,2\n").unwrap();
+    assert!(plot(&other, "").unwrap_err().contains("--xy"));
+    assert!(plot(&other, "--pair a,b").unwrap_err().contains("no pairs"));
 }

@@ -1,13 +1,15 @@
 //! `whipple plot`: pictures from a snapshot or a run folder.
 
+mod curves;
+mod out;
+
 use std::path::{Path, PathBuf};
 
-use super::say::say;
-use crate::model::readable::one_line;
 use crate::plot::{
-    Along, Canvas, Columns, Pictures, PlotError, Points, ProfileRequest, Profiles, Request, Source,
-    Tables, Wanted, choose, energies, front, parse_quantity, snapshots, title,
+    Along, Pictures, PlotError, ProfileRequest, Profiles, Request, Source, Wanted, choose,
+    parse_quantity, snapshots,
 };
+use out::{is_png, target, write};
 
 /// Draw sections of snapshots, profiles along a line, energies or tables as PNG pictures
 ///
@@ -25,6 +27,8 @@ use crate::plot::{
   whipple plot runs/bars --profile stress.xx --at 0.48us --exact
   whipple plot runs/bars --profile velocity.x --with runs/bars-kernel
   whipple plot runs/dam --front water --points martin-moyce.csv
+  whipple plot runs/impact --front plate --along -z
+  whipple plot runs/impact/contacts.csv --pair plate,sphere
   whipple plot errors.csv --xy spacing:error --log xy")]
 #[expect(
     clippy::struct_excessive_bools,
@@ -32,12 +36,12 @@ use crate::plot::{
     reason = "each is a switch of the command line; the comments are its help"
 )]
 pub struct PlotArgs {
-    /// Snapshot file (.vtkhdf), run folder, or table (.csv) for --history and --xy
+    /// Snapshot file (.vtkhdf), run folder, or table (.csv) for --history, --xy and --pair
     #[arg(value_name = "FILE_OR_RUN")]
     pub source: PathBuf,
 
-    /// Picture to write if the name ends in .png, else the folder to write into [default: beside
-    /// the snapshot, or RUN/pictures]
+    /// Picture to write if the name ends in .png, else the folder to write into (with / at its end
+    /// if it has an ending of letters) [default: beside the snapshot, or RUN/pictures]
     #[arg(short, long, value_name = "PNG_OR_FOLDER")]
     pub out: Option<PathBuf>,
 
@@ -129,8 +133,15 @@ pub struct PlotArgs {
     ])]
     pub profile: Option<String>,
 
-    /// Axis of the profile's line, or r for the distance from a point; axis of the front
-    #[arg(long, value_name = "x|y|z|r", requires = "line", default_value = "x")]
+    /// Axis of the profile's line, or r for the distance from a point; axis of the front, or -x, -y,
+    /// -z for the one against it
+    #[arg(
+        long,
+        value_name = "x|y|z|r",
+        requires = "line",
+        default_value = "x",
+        allow_hyphen_values = true
+    )]
     pub along: String,
 
     /// Where the profile's line crosses the other axes, or the point, as in y=0,z=0.1mm [default:
@@ -147,14 +158,24 @@ pub struct PlotArgs {
     #[arg(long, requires = "profile")]
     pub exact: bool,
 
-    /// Draw columns of a table (of a run: history.csv) against another: X:Y or X:Y,Y2
+    /// Draw columns of a table (of a run: history.csv) against another: X:Y or X:Y,Y2; "force" is the
+    /// magnitude of force_x, force_y, force_z. Pairs of bodies, loads and bodies are lines of their
+    /// own [default of contacts.csv: time:force]
     #[arg(long, value_name = "X:Y", conflicts_with_all = [
         "which", "field", "section", "drawn_as", "thickness", "no_mirror", "panels", "history", "profile",
     ])]
     pub xy: Option<String>,
 
+    /// Draw the forces of one pair of bodies of contacts.csv, or what --xy says: those on the first
+    /// that the table names
+    #[arg(long, value_name = "BODY,BODY", conflicts_with_all = [
+        "which", "field", "section", "drawn_as", "thickness", "no_mirror", "panels", "history", "profile", "front",
+    ])]
+    pub pair: Option<String>,
+
     /// Draw how far a body reaches along an axis over time, and write it as a table: the largest
-    /// coordinate of its largest piece, of particles within one and a half spacings
+    /// coordinate of its largest piece, of particles within one and a half spacings; against the
+    /// axis the smallest
     #[arg(long, value_name = "BODY", group = "line", conflicts_with_all = [
         "which", "field", "section", "drawn_as", "thickness", "no_mirror", "panels", "history", "profile", "xy",
     ])]
@@ -175,12 +196,13 @@ pub struct PlotArgs {
 /// # Errors
 /// [`PlotError`] if an input cannot be read, a request cannot be met or a picture not written.
 pub fn run(args: &PlotArgs) -> Result<(), PlotError> {
+    out::check(args)?;
     if args.history {
-        draw_history(args)
-    } else if let Some(columns) = &args.xy {
-        draw_tables(args, columns)
+        curves::draw_history(args)
     } else if let Some(body) = &args.front {
-        draw_front(args, body)
+        curves::draw_front(args, body)
+    } else if let Some(columns) = curves::columns(args)? {
+        curves::draw_tables(args, &columns)
     } else if !args.points.is_empty() {
         Err(PlotError::Options("--points belong to --xy or --front"))
     } else if let Some(field) = &args.profile {
@@ -242,59 +264,6 @@ fn draw_profile(args: &PlotArgs, field: &str) -> Result<(), PlotError> {
     write(&canvas, &target(args, &format!("profile-{field}.png")))
 }
 
-fn draw_history(args: &PlotArgs) -> Result<(), PlotError> {
-    let chart = energies(&table(&args.source), &title_of(&args.source))?;
-    write(&chart.draw(args.width)?, &target(args, "history.png"))
-}
-
-/// Writes the table of each run beside the picture, or into the run's pictures.
-fn draw_front(args: &PlotArgs, body: &str) -> Result<(), PlotError> {
-    let Along::Line(axis) = Along::parse(&args.along)? else {
-        return Err(PlotError::Options("a front runs along x, y or z"));
-    };
-    let mut tables = Vec::new();
-    for place in places(args) {
-        let found: Vec<_> = snapshots(place)?.into_iter().map(|found| found.1).collect();
-        let path = place.join(format!("pictures/front-{body}.csv"));
-        save(&path, |path| {
-            let text = front(&found, body, axis)?;
-            std::fs::write(path, text).map_err(|e| unsaved(path, &e))
-        })?;
-        tables.push((name(place), path));
-    }
-    let columns = Columns {
-        x: "time".to_owned(),
-        y: vec!["front".to_owned()],
-    };
-    draw_curves(args, tables, columns, &format!("front-{body}.png"))
-}
-
-fn draw_tables(args: &PlotArgs, columns: &str) -> Result<(), PlotError> {
-    let tables = places(args).map(|place| (name(place), table(place)));
-    let picture = format!("xy-{}.png", columns.replace([':', ','], "-"));
-    draw_curves(args, tables.collect(), Columns::parse(columns)?, &picture)
-}
-
-fn draw_curves(
-    args: &PlotArgs,
-    tables: Vec<(String, PathBuf)>,
-    columns: Columns,
-    picture: &str,
-) -> Result<(), PlotError> {
-    let log = args.log.as_deref().unwrap_or_default();
-    let points = args.points.iter().map(|text| Points::parse(text));
-    let tables = Tables {
-        title: title_of(&args.source),
-        tables,
-        columns,
-        points: points.collect::<Result<_, _>>()?,
-        spans: [args.view.clone(), args.range.clone()],
-        logarithmic: ['x', 'y'].map(|axis| log.contains(axis)),
-    };
-    let canvas = tables.chart()?.draw(args.width)?;
-    write(&canvas, &target(args, picture))
-}
-
 /// What is drawn: the source, and what goes with it.
 fn places(args: &PlotArgs) -> impl Iterator<Item = &PathBuf> {
     [&args.source].into_iter().chain(&args.with)
@@ -322,15 +291,6 @@ fn sources(args: &PlotArgs) -> Result<Vec<Source>, PlotError> {
     places(args).map(source).collect()
 }
 
-/// The table of a run, or a table itself.
-fn table(place: &Path) -> PathBuf {
-    if place.is_dir() {
-        place.join("history.csv")
-    } else {
-        place.to_owned()
-    }
-}
-
 /// What a run or file is called in a legend.
 fn name(place: &Path) -> String {
     let name = if place.is_dir() {
@@ -342,12 +302,6 @@ fn name(place: &Path) -> String {
         || place.display().to_string(),
         |name| name.to_string_lossy().into_owned(),
     )
-}
-
-/// The title of a run as its snapshots know it; a table, or a run without any, goes by its path.
-fn title_of(place: &Path) -> String {
-    let known = snapshots(place).and_then(|found| title(&found[0].1));
-    known.unwrap_or_else(|_| place.display().to_string())
 }
 
 fn wanted(args: &PlotArgs) -> Result<Wanted, PlotError> {
@@ -362,44 +316,5 @@ fn wanted(args: &PlotArgs) -> Result<Wanted, PlotError> {
         Ok(Wanted::Three)
     } else {
         Ok(Wanted::Last)
-    }
-}
-
-/// The path of a picture that is called `name` unless `--out` calls it otherwise.
-fn target(args: &PlotArgs, name: &str) -> PathBuf {
-    match &args.out {
-        Some(out) if is_png(out) => out.clone(),
-        Some(out) => out.join(name),
-        None if args.source.is_dir() => args.source.join("pictures").join(name),
-        None => args.source.with_file_name(name),
-    }
-}
-
-fn is_png(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("png"))
-}
-
-fn write(canvas: &Canvas, path: &Path) -> Result<(), PlotError> {
-    save(path, |path| canvas.save(path))
-}
-
-/// Writes a file, whose folder is made if it lacks, and says so.
-fn save(path: &Path, write: impl FnOnce(&Path) -> Result<(), PlotError>) -> Result<(), PlotError> {
-    if let Some(folder) = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty())
-    {
-        std::fs::create_dir_all(folder).map_err(|e| unsaved(path, &e))?;
-    }
-    write(path)?;
-    say(&format!("wrote {}", one_line(&path.display().to_string())));
-    Ok(())
-}
-
-fn unsaved(path: &Path, error: &std::io::Error) -> PlotError {
-    PlotError::Save {
-        path: path.to_owned(),
-        reason: error.to_string(),
     }
 }

@@ -125,6 +125,22 @@ pub enum PlotError {
         /// Pixels.
         height: u32,
     },
+    /// The picture's name has an ending that is none of ours.
+    #[error(
+        "cannot write {}: {} give a name that ends in .png, or a folder with / at its end",
+        path.display(),
+        if ending.eq_ignore_ascii_case("svg") {
+            "SVG is not written yet, PNG is:".to_owned()
+        } else {
+            format!("pictures are PNG files, not .{ending}:")
+        }
+    )]
+    Ending {
+        /// As asked for.
+        path: PathBuf,
+        /// What follows its last dot.
+        ending: String,
+    },
     /// The picture could not be written.
     #[error("cannot write {}: {reason}", path.display())]
     Save {

@@ -85,7 +85,7 @@ impl Figure<'_> {
     fn rasters(&self, layout: &Layout) -> Vec<Raster> {
         let panels = self.sections.iter().zip(&layout.frames);
         let raster = |(section, frame): (&Section, &Frame)| {
-            let line = 1.2 * layout.style.unit;
+            let line = 0.8 * layout.style.unit;
             Raster::new(&section.cells, layout.view, frame, line, |sample| {
                 self.colour(sample)
             })

@@ -109,6 +109,12 @@ impl Pictures {
         })
     }
 
+    /// Where the sections are taken, as their pictures say it; nothing for flat models.
+    #[must_use]
+    pub fn place(&self) -> &str {
+        &self.where_text
+    }
+
     /// The picture of one snapshot, by its place among the paths, of a width in pixels.
     ///
     /// # Errors

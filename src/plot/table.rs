@@ -58,6 +58,30 @@ impl Table {
         self.rows.iter().map(value).collect()
     }
 
+    /// The text of a column.
+    ///
+    /// # Errors
+    /// What is wrong, and in which line.
+    pub fn texts(&self, name: &str) -> Result<Vec<&str>, String> {
+        let at = self.place(name)?;
+        let mut texts = Vec::with_capacity(self.rows.len());
+        for (number, row) in &self.rows {
+            let cell = row.get(at).ok_or(format!("line {number} is cut off"))?;
+            texts.push(cell.as_str());
+        }
+        Ok(texts)
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether there is a column of this name.
+    pub fn has(&self, name: &str) -> bool {
+        self.names.iter().any(|n| n == name)
+    }
+
     /// The SI unit of a column; empty for none.
     ///
     /// # Errors

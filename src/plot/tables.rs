@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::axes::Mark;
 use super::chart::{Chart, Curve, Quantity};
 use super::colour;
+use super::series::{self, Series, series};
 use super::table::{Table, wrong};
 use super::{PlotError, units};
 
@@ -77,6 +78,10 @@ pub struct Tables {
     pub tables: Vec<(String, PathBuf)>,
     /// What is drawn against what.
     pub columns: Columns,
+    /// The pair of bodies whose rows are drawn; all pairs if absent.
+    pub pair: Option<[String; 2]>,
+    /// What the upward axis is called, if not by its columns.
+    pub label: Option<String>,
     /// Measured points.
     pub points: Vec<Points>,
     /// `LOW:HIGH` of the axes, right and up; all values if absent.
@@ -87,34 +92,41 @@ pub struct Tables {
 }
 
 impl Tables {
-    /// Draws curves through the rows of each table and rings for measured points.
+    /// Draws curves through the rows of each table, one for each series of it, and rings for measured
+    /// points.
     ///
     /// # Errors
-    /// [`PlotError::Table`] if a table or a column cannot be read.
+    /// [`PlotError::Table`] if a table or a column cannot be read, or has no such pair.
     pub fn chart(&self) -> Result<Chart, PlotError> {
         let mut chart = Chart {
             title: self.title.clone(),
             ..Chart::default()
         };
-        let several = [self.tables.len() > 1, self.columns.y.len() > 1];
-        for (name, path) in &self.tables {
-            for y in &self.columns.y {
-                let name = match several {
-                    [false, false] if self.points.is_empty() => String::new(),
-                    [false, _] => words(y),
-                    [true, false] => name.clone(),
-                    [true, true] => format!("{name}: {}", words(y)),
-                };
-                let colour = colour::body(chart.curves.len());
-                let points = self.read(&mut chart, path, &self.columns.x, y)?;
-                chart.curves.push(Curve {
-                    name,
-                    colour,
-                    mark: Mark::Line,
-                    points,
-                });
+        for (k, (name, path)) in self.tables.iter().enumerate() {
+            let failed = |reason: String| wrong(path, reason);
+            let table = Table::read(path)?;
+            if k == 0 {
+                self.name_axes(&mut chart, &table, path)?;
+            }
+            let drawn: Vec<&str> = self.drawn().collect();
+            let all = series(&table, &drawn, self.pair.as_ref()).map_err(failed)?;
+            if let (Some(_), [pair]) = (&self.pair, &all[..]) {
+                chart.subtitle.clone_from(&pair.name);
+            }
+            for series in all {
+                for y in &self.columns.y {
+                    let points = points(&table, &series, [&self.columns.x, y]).map_err(failed)?;
+                    chart.curves.push(Curve {
+                        name: self.name(name, &series, y),
+                        colour: colour::body(chart.curves.len()),
+                        mark: Mark::Line,
+                        points,
+                    });
+                }
             }
         }
+        keep_what_is_seen(&mut chart.curves);
+        let curves = chart.curves.len();
         if self.logarithmic.contains(&true) {
             let marked = |curve: &Curve| Curve {
                 mark: Mark::Rings,
@@ -124,63 +136,91 @@ impl Tables {
             let marks: Vec<Curve> = chart.curves.iter().map(marked).collect();
             chart.curves.extend(marks);
         }
-        for (k, points) in self.points.iter().enumerate() {
-            let columns = points.columns.as_ref().unwrap_or(&self.columns);
-            let stem = points.path.file_stem().unwrap_or_default();
-            let places = self.read(&mut chart, &points.path, &columns.x, &columns.y[0])?;
+        for (k, measured) in self.points.iter().enumerate() {
+            let columns = measured.columns.as_ref().unwrap_or(&self.columns);
+            let stem = measured.path.file_stem().unwrap_or_default();
+            let table = Table::read(&measured.path)?;
+            let all = Series {
+                name: String::new(),
+                rows: (0..table.len()).collect(),
+            };
+            let places = points(&table, &all, [&columns.x, &columns.y[0]]);
             chart.curves.push(Curve {
                 name: words(&stem.to_string_lossy()),
-                colour: colour::body(self.tables.len() * self.columns.y.len() + k),
+                colour: colour::body(curves + k),
                 mark: Mark::Rings,
-                points: places,
+                points: places.map_err(|reason| wrong(&measured.path, reason))?,
             });
         }
         Ok(chart)
     }
 
-    /// Reads two columns; the first table read gives the axes.
-    fn read(
-        &self,
-        chart: &mut Chart,
-        path: &Path,
-        x: &str,
-        y: &str,
-    ) -> Result<Vec<[f64; 2]>, PlotError> {
-        let table = Table::read(path)?;
-        let failed = |reason: String| wrong(path, reason);
-        let [xs, ys] = [
-            table.column(x).map_err(failed)?,
-            table.column(y).map_err(failed)?,
-        ];
-        if chart.curves.is_empty() {
-            let axis = |name: &str, k: usize| -> Result<Quantity, PlotError> {
-                let unit = table.unit(name).map_err(failed)?;
-                let span = self.spans[k].as_deref();
-                Ok(Quantity {
-                    label: words(name),
-                    unit: unit.to_owned(),
-                    logarithmic: self.logarithmic[k],
-                    from_zero: !self.logarithmic[k],
-                    room: true,
-                    span: span
-                        .map(|text| units::parse_span(text, None, unit))
-                        .transpose()?,
-                })
-            };
-            (chart.x, chart.y) = (axis(x, 0)?, axis(y, 1)?);
-            if let [_, _, ..] = self.columns.y[..] {
-                chart.y.label = self
-                    .columns
-                    .y
-                    .iter()
-                    .map(|y| words(y))
-                    .collect::<Vec<_>>()
-                    .join(", ");
-            }
+    /// Names of the columns that are drawn.
+    fn drawn(&self) -> impl Iterator<Item = &str> {
+        [&self.columns.x]
+            .into_iter()
+            .chain(&self.columns.y)
+            .map(String::as_str)
+    }
+
+    /// What a curve is called: the parts of its name that tell it from the others.
+    fn name(&self, table: &str, series: &Series, y: &str) -> String {
+        let mut parts = Vec::new();
+        if self.tables.len() > 1 {
+            parts.push(table.to_owned());
         }
-        Ok(xs.into_iter().zip(ys).map(|(x, y)| [x, y]).collect())
+        if self.pair.is_none() && !series.name.is_empty() {
+            parts.push(series.name.clone());
+        }
+        if self.columns.y.len() > 1 || (parts.is_empty() && !self.points.is_empty()) {
+            parts.push(words(y));
+        }
+        parts.join(": ")
+    }
+
+    /// The axes, by the columns of the first table.
+    fn name_axes(&self, chart: &mut Chart, table: &Table, path: &Path) -> Result<(), PlotError> {
+        let axis = |name: &str, k: usize| -> Result<Quantity, PlotError> {
+            let unit = series::unit(table, name).map_err(|reason| wrong(path, reason))?;
+            let span = self.spans[k].as_deref();
+            Ok(Quantity {
+                label: words(name),
+                logarithmic: self.logarithmic[k],
+                from_zero: !self.logarithmic[k],
+                room: true,
+                span: span
+                    .map(|text| units::parse_span(text, None, &unit))
+                    .transpose()?,
+                unit,
+            })
+        };
+        (chart.x, chart.y) = (axis(&self.columns.x, 0)?, axis(&self.columns.y[0], 1)?);
+        let names: Vec<String> = self.columns.y.iter().map(|y| words(y)).collect();
+        chart.y.label = self.label.clone().unwrap_or(names.join(", "));
+        Ok(())
     }
 }
+
+/// Two columns of a series.
+fn points(table: &Table, series: &Series, [x, y]: [&str; 2]) -> Result<Vec<[f64; 2]>, String> {
+    let (xs, ys) = (series::numbers(table, x)?, series::numbers(table, y)?);
+    Ok(series.rows.iter().map(|&row| [xs[row], ys[row]]).collect())
+}
+
+/// Of many curves those that are zero throughout are left out, as pairs of bodies that never meet;
+/// the others keep their colours in order.
+fn keep_what_is_seen(curves: &mut Vec<Curve>) {
+    let flat = |curve: &Curve| curve.points.iter().all(|point| point[1] == 0.0);
+    if curves.len() > MANY && !curves.iter().all(flat) {
+        curves.retain(|curve| !flat(curve));
+        for (k, curve) in curves.iter_mut().enumerate() {
+            curve.colour = colour::body(k);
+        }
+    }
+}
+
+/// As many curves as have colours of their own.
+const MANY: usize = 7;
 
 /// A column's name as people write it.
 fn words(name: &str) -> String {

@@ -25,6 +25,8 @@ pub struct Case {
     pub spacings: Vec<f64>,
     pub symmetry: Vec<(char, f64)>,
     pub dimension: u64,
+    /// Initial densities (kg/m³); snapshots of older versions do not say them.
+    pub densities: Option<Vec<f64>>,
 }
 
 impl Case {
@@ -36,6 +38,7 @@ impl Case {
             spacings: vec![SPACING; 2],
             symmetry: vec![('x', 0.0), ('y', 0.0)],
             dimension: 3,
+            densities: None,
         }
     }
 }
@@ -160,6 +163,13 @@ pub fn write(path: &Path, case: &Case, particles: &Particles, time: f64) {
         "spacings",
         &serde_json::to_string(&case.spacings).unwrap(),
     );
+    if let Some(densities) = &case.densities {
+        text(
+            &about,
+            "densities",
+            &serde_json::to_string(densities).unwrap(),
+        );
+    }
     let dimension = about.new_attr::<u64>().create("dimension").unwrap();
     dimension.write_scalar(&case.dimension).unwrap();
     text(

@@ -1,0 +1,140 @@
+//! Curves of tables: energies, columns, forces between bodies, fronts.
+
+use std::path::{Path, PathBuf};
+
+use crate::plot::{
+    Columns, Direction, PlotError, Points, Tables, energies, front, parse_pair, snapshots, title,
+};
+
+use super::out::{save, target, unsaved, write};
+use super::{PlotArgs, name, places};
+
+/// What `--xy` is of a table that knows what to draw, or with `--pair`.
+///
+/// # Errors
+/// [`PlotError::Options`] for a table of which nothing is known.
+pub fn columns(args: &PlotArgs) -> Result<Option<String>, PlotError> {
+    let table = |wanted: &str| args.source.file_name().is_some_and(|name| name == wanted);
+    let columns = match (&args.xy, &args.pair) {
+        (Some(columns), _) => columns,
+        (None, Some(_)) => "time:force_x,force_y,force_z",
+        (None, None) if table(CONTACTS) => "time:force",
+        (None, None) if args.source.extension().is_some_and(|e| e == "csv") => {
+            return Err(PlotError::Options(
+                "of a table say which columns to draw, as in --xy time:force_x",
+            ));
+        }
+        (None, None) => return Ok(None),
+    };
+    Ok(Some(columns.to_owned()))
+}
+
+/// The table of a run that tells its pairs of bodies apart.
+const CONTACTS: &str = "contacts.csv";
+
+/// The table of a run that its energies are in.
+const HISTORY: &str = "history.csv";
+
+pub fn draw_history(args: &PlotArgs) -> Result<(), PlotError> {
+    let chart = energies(&table(&args.source, HISTORY), &title_of(&args.source))?;
+    write(&chart.draw(args.width)?, &target(args, "history.png"))
+}
+
+/// Writes the table of each run beside the picture, or into the run's pictures.
+pub fn draw_front(args: &PlotArgs, body: &str) -> Result<(), PlotError> {
+    let direction = Direction::parse(&args.along)?;
+    let stem = format!("front-{body}-{}", direction.name().replace('_', "-"));
+    let mut tables = Vec::new();
+    for place in places(args) {
+        let found: Vec<_> = snapshots(place)?.into_iter().map(|found| found.1).collect();
+        let path = place.join(format!("pictures/{stem}.csv"));
+        save(&path, |path| {
+            let text = front(&found, body, direction)?;
+            std::fs::write(path, text).map_err(|e| unsaved(path, &e))
+        })?;
+        tables.push((name(place), path));
+    }
+    let mut chart = tables_of(
+        args,
+        tables,
+        Columns {
+            x: "time".to_owned(),
+            y: vec![format!("front_{}", direction.name())],
+        },
+    )?;
+    chart.label = Some(format!("front of {body} along {}", direction.sign()));
+    for points in &mut chart.points {
+        // Measured fronts need not know which way they are compared with.
+        points.columns.get_or_insert_with(|| Columns {
+            x: "time".to_owned(),
+            y: vec!["front".to_owned()],
+        });
+    }
+    draw(args, &chart, &format!("{stem}.png"))
+}
+
+pub fn draw_tables(args: &PlotArgs, columns: &str) -> Result<(), PlotError> {
+    let of_run = if args.pair.is_some() {
+        CONTACTS
+    } else {
+        HISTORY
+    };
+    let tables = places(args).map(|place| (name(place), table(place, of_run)));
+    let mut picture = format!("xy-{}", columns.replace([':', ','], "-"));
+    if let Some(pair) = &args.pair {
+        picture = format!("{picture}-{}", pair.replace(',', "-"));
+    }
+    let chart = tables_of(args, tables.collect(), Columns::parse(columns)?)?;
+    draw(args, &chart, &format!("{picture}.png"))
+}
+
+fn tables_of(
+    args: &PlotArgs,
+    tables: Vec<(String, PathBuf)>,
+    columns: Columns,
+) -> Result<Tables, PlotError> {
+    let log = args.log.as_deref().unwrap_or_default();
+    let points = args.points.iter().map(|text| Points::parse(text));
+    let pair = |text: &String| {
+        parse_pair(text).ok_or(PlotError::Options(
+            "a pair is the names of two bodies, as in --pair plate,sphere",
+        ))
+    };
+    Ok(Tables {
+        title: title_of(&args.source),
+        tables,
+        columns,
+        pair: args.pair.as_ref().map(pair).transpose()?,
+        label: None,
+        points: points.collect::<Result<_, _>>()?,
+        spans: [args.view.clone(), args.range.clone()],
+        logarithmic: ['x', 'y'].map(|axis| log.contains(axis)),
+    })
+}
+
+fn draw(args: &PlotArgs, tables: &Tables, picture: &str) -> Result<(), PlotError> {
+    let canvas = tables.chart()?.draw(args.width)?;
+    write(&canvas, &target(args, picture))
+}
+
+/// A table of a run, or a table itself.
+fn table(place: &Path, of_run: &str) -> PathBuf {
+    if place.is_dir() {
+        place.join(of_run)
+    } else {
+        place.to_owned()
+    }
+}
+
+/// The title of a run as its snapshots know it, also for a table in its folder; without any snapshot
+/// a place goes by its path.
+fn title_of(place: &Path) -> String {
+    let folder = if place.is_dir() {
+        Some(place)
+    } else {
+        place.parent()
+    };
+    let known = folder.and_then(|folder| snapshots(folder).ok());
+    let known = known.and_then(|found| title(&found[0].1).ok());
+    known.unwrap_or_else(|| place.display().to_string())
+}
