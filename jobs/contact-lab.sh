@@ -87,7 +87,10 @@ geometries() {
     try 'sheet on edge' "body.above.$(box -10 0 10 1)" "body.below.$(box -1 -10 2 0)"
     try 'finer on coarser' 'body.above.spacing="0.05 mm"'
     try 'coarser on finer' 'body.below.spacing="0.05 mm"'
-    try 'on dense' body.below.material=dense
+    # Seven times as dense and as stiff at the same speed of sound: no metal, but the ratio of tungsten
+    # to aluminium.
+    try 'on dense' 'material.dense={ library = "aluminium-2024", density = "19.3 g/cm^3" }' \
+        body.below.material=dense
     try '11.7 km/s' 'body.above.velocity=[0, "-11.7 km/s"]'
     for angle in 15 30 45; do
         try "lattice at $angle°" "body.above.lattice={ kind = \"cubic\", angle = \"$angle deg\" }" "$on"
@@ -104,6 +107,7 @@ solids() {
     local mode_is=contact.mode=$1 name=$1
     try() { local what=$1; shift; measure "$name: $what, solid" contact-lab/solid.toml "$mode_is" "$@"; }
     local one plate='body.below.lattice={ kind = "cubic", angle = "45 deg" }'
+    local tungsten='material.tungsten={ library = "tungsten" }'
     one() { solid above "$1" "$2" 0 "$(plus "$1" 1)" "$(plus "$2" 1)" 1; }
     try 'one particle on a particle' "$(one 0 0)"
     try 'one particle on a pore' "$(one 0.5 0.5)"
@@ -120,10 +124,11 @@ solids() {
     try 'sphere, 30°' 'body.above.velocity=["3.5 km/s", 0, "-6.062 km/s"]'
     try 'sphere, 60°' 'body.above.velocity=["6.062 km/s", 0, "-3.5 km/s"]'
     try 'sphere on a lattice at 45°' "$plate" 'body.above.touch={ body = "below", direction = "-z" }'
-    try 'sphere on tungsten' body.below.material=tungsten
-    try 'one particle on tungsten' body.below.material=tungsten "$(one 0 0)"
-    try 'one on one of tungsten' body.below.material=tungsten "$(one 0 0)" "$(solid below 0 0 -1 1 1 0)"
-    try 'tungsten on aluminium' body.above.material=tungsten
+    try 'sphere on tungsten' "$tungsten" body.below.material=tungsten
+    try 'one particle on tungsten' "$tungsten" body.below.material=tungsten "$(one 0 0)"
+    try 'one on one of tungsten' "$tungsten" body.below.material=tungsten "$(one 0 0)" \
+        "$(solid below 0 0 -1 1 1 0)"
+    try 'tungsten on aluminium' "$tungsten" body.above.material=tungsten
     try 'copper on copper' 'material.aluminium={ library = "copper" }'
     try 'one on one of copper' 'material.aluminium={ library = "copper" }' "$(one 0 0)" \
         "$(solid below 0 0 -1 1 1 0)"

@@ -229,10 +229,6 @@ fn more_threads_than_cores_are_told() {
     let ended = end(run.args(["--until", "0us", "-t", &(cores + 1).to_string()])).with_code(0);
     let warned = ended.complaints("warning: each rank has ");
     assert_eq!(warned.len(), 1, "{ended:#?}");
-    let mut run = coarse_run(2, &place.path().join("shared"));
-    let ended = end(run.args(["--until", "0us", "-t", &cores.to_string()])).with_code(0);
-    let warned = ended.complaints(&format!("warning: 2 ranks with {cores} threads each share"));
-    assert_eq!(warned.len(), usize::from(cores > 1), "{ended:#?}");
 }
 
 /// Changes a byte in the middle of a file.

@@ -167,13 +167,15 @@ fn options_of_the_sums() {
 
 #[test]
 fn the_resolved_text_gives_the_same_case() {
-    let sets: [&[&str]; 4] = [
+    let sets: [&[&str]; 5] = [
         &[],
-        &["#\ntitle = -0.0\n# u = \r, 97.6 GPa"],
+        // Of several lines, as no title can be.
+        &["#\ntitle = -0.0 # u = , 97.6 GPa"],
+        &["title = \"\"\"\r\n97.6 GPa\"\"\""],
         &["spacing=0.025 mm", "symmetry=[]", "contact.mode=kernel"],
         &[
             "body.sphere.shape={box={size=[\"2 spacing\",\"4 spacing\",\"3 spacing\"]}}",
-            "title=\"a\\nb\"",
+            "title=\"a \\\"b\\\" κ\"",
         ],
     ];
     for set in sets {

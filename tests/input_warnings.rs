@@ -213,7 +213,7 @@ fn values_that_no_run_has_a_use_for_are_told() {
     assert_told(&["spacing=\"100 um\""], &[]);
     let long = told(&["run.end_time=\"1e5 s\""]);
     assert!(
-        long.len() == 1 && long[0].starts_with("`end_time` is 1e5 s, "),
+        long.len() == 1 && long[0].starts_with("`end_time` is 100000 s, "),
         "{long:?}"
     );
     assert_told(&["run.end_time=\"1e5 s\"", "run.max_steps=100"], &[]);

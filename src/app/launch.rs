@@ -104,14 +104,13 @@ pub fn give_up(comm: &Comm, message: &str) -> u8 {
 
 fn start_threads(comm: &Comm, wanted: Option<usize>) {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let ranks = ranks_here(comm);
-    let shared = (cores / ranks).max(1);
-    let threads = wanted
-        .or(number("RAYON_NUM_THREADS"))
-        .unwrap_or(shared)
-        .max(1);
-    if comm.is_root() && threads > shared {
-        crowd(threads, ranks, cores);
+    let threads = wanted.unwrap_or_else(|| default_threads(comm, cores));
+    if comm.is_root() && threads > cores {
+        say::complain(&format!(
+            "warning: each rank has {threads} threads and may use {cores} of the cores; if the \
+             machine has more, mpirun has bound the ranks: --bind-to none or --map-by \
+             slot:PE={threads} frees them"
+        ));
     }
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
@@ -126,37 +125,16 @@ fn start_threads(comm: &Comm, wanted: Option<usize>) {
     }
 }
 
-/// Warns of more threads than cores.
-fn crowd(threads: usize, ranks: usize, cores: usize) {
-    if threads > cores {
-        say::complain(&format!(
-            "warning: each rank has {threads} threads and may use {cores} of the cores; if the \
-             machine has more, mpirun has bound the ranks: --bind-to none or --map-by \
-             slot:PE={threads} frees them"
-        ));
-    } else if cores == machine_cores() {
-        say::complain(&format!(
-            "warning: {ranks} ranks with {threads} threads each share the {cores} cores of the \
-             machine; more threads than cores only wait for each other"
-        ));
-    }
-}
-
-/// Cores of this machine; a rank that is bound may use fewer.
-fn machine_cores() -> usize {
-    // SAFETY: it takes and gives numbers alone.
-    let cores = unsafe { libc::sysconf(libc::_SC_NPROCESSORS_ONLN) };
-    usize::try_from(cores).unwrap_or(0)
-}
-
-/// Ranks of this job on this machine.
-fn ranks_here(comm: &Comm) -> usize {
-    let local = number("OMPI_COMM_WORLD_LOCAL_SIZE");
-    local.unwrap_or_else(|| comm.size()).max(1)
-}
-
-fn number(variable: &str) -> Option<usize> {
-    std::env::var(variable).ok()?.parse().ok()
+/// Cores that this process may use over ranks of this machine, unless `RAYON_NUM_THREADS` says
+/// otherwise.
+fn default_threads(comm: &Comm, cores: usize) -> usize {
+    let number = |name| std::env::var(name).ok()?.parse::<usize>().ok();
+    number("RAYON_NUM_THREADS")
+        .unwrap_or_else(|| {
+            let local = number("OMPI_COMM_WORLD_LOCAL_SIZE").unwrap_or_else(|| comm.size());
+            cores / local.max(1)
+        })
+        .max(1)
 }
 
 /// A panic anywhere prints one line and ends all ranks: else it would unwind into `MPI_Finalize`,

@@ -9,6 +9,7 @@ use toml::de::{DeTable, Error};
 use super::overrides::Override;
 use super::schema::CaseParams;
 use super::source::Complaint;
+use crate::model::readable::short;
 
 /// Reads the document with its overrides, which begin at `places` in the address space. Returns
 /// the tables and the resolved text, from which the same tables can be read without overrides.
@@ -69,6 +70,8 @@ fn translate(error: &Error) -> Complaint {
             .unwrap_or((types, "another"));
         let [found, expected] = [plain_type(found), plain_type(expected)];
         if let Some(number) = found.strip_suffix(" as i128") {
+            let digits = number.trim_matches(|c: char| !c.is_ascii_digit() && c != '-');
+            let number = digits.parse().map_or_else(|_| number.to_owned(), short);
             let title = format!("expected {expected}, found {number}, which is too large");
             return Complaint::new(span, title);
         }

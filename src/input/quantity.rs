@@ -149,6 +149,9 @@ impl<'de> Deserialize<'de> for Extent {
                     .or(text.strip_suffix("spacing"));
                 match number.map(|n| n.trim().parse::<f64>()) {
                     Some(Ok(count)) if count.abs() < MOST_SPACINGS => Ok(Self::Spacings(count)),
+                    Some(Ok(count)) if count.is_finite() => Err(format!(
+                        "`{text}` is more than any body has; check the number"
+                    )),
                     _ => quantity::<Length>(text).map(|length| Self::Metres(length.si)),
                 }
             },

@@ -48,7 +48,7 @@ macro_rules! from_table {
 tables! {
     /// The whole document.
     CaseParams {
-        /// One line for reports and plots.
+        /// One line for reports and plots, without control characters.
         title: Option<Spanned<String>>,
         /// 1, 2 or 3.
         dimension: Spanned<i64>,
@@ -65,7 +65,7 @@ tables! {
         /// Distribution over ranks.
         #[serde(default)]
         domain: DomainParams,
-        /// Materials by name.
+        /// Materials by name, as of a body.
         #[serde(default)]
         material: Named<MaterialParams>,
         /// Bodies.
@@ -106,7 +106,7 @@ tables! {
 
     /// `[[body]]`
     BodyParams {
-        /// Unique name.
+        /// Unique name, of letters, digits, spaces and `-_.+()`.
         name: Spanned<String>,
         /// Name of a material; only a rigid body needs none.
         material: Option<Spanned<String>>,
@@ -132,7 +132,7 @@ tables! {
 
     /// `[[load]]`
     LoadParams {
-        /// Name in reports.
+        /// Name in reports, as of a body.
         name: Option<Spanned<String>>,
         /// Name of a body.
         body: Spanned<String>,
@@ -395,7 +395,7 @@ optional_tables! {
         checkpoints_kept: Option<Spanned<i64>>,
         /// Steps between rows of the histories.
         history_every: Option<Spanned<i64>>,
-        /// Snapshot fields.
+        /// Snapshot fields, at least one.
         fields: Option<Spanned<Vec<Spanned<String>>>>,
     }
 }

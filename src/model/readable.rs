@@ -18,8 +18,8 @@ pub const PREFIXES: [(&str, f64); 9] = [
 /// Units that take a prefix, as the first factor of the whole unit.
 const PREFIXABLE: [&str; 7] = ["Pa", "m", "s", "J", "N", "W", "Hz"];
 
-/// Longest plain number; longer ones have an exponent.
-const LONGEST: usize = 10;
+/// Longest plain number without its sign; longer ones have an exponent.
+const LONGEST: usize = 8;
 
 /// A unit chosen so that the numbers before it are short.
 #[derive(Debug, Clone, PartialEq)]
@@ -156,7 +156,7 @@ pub fn short(number: f64) -> String {
     let rounded: f64 = format!("{number:.4e}").parse().unwrap_or(number);
     // No minus before zero.
     let plain = format!("{}", rounded + 0.0);
-    if plain.len() <= LONGEST {
+    if plain.trim_start_matches('-').len() <= LONGEST {
         plain
     } else {
         format!("{rounded:e}")
@@ -307,7 +307,8 @@ mod tests {
             "[0, -1e-12, -7] km/s"
         );
         assert_eq!(short(1e39), "1e39");
-        assert_eq!(short(123_456_789.0), "123460000");
+        assert_eq!(short(123_456_789.0), "1.2346e8");
+        assert_eq!(short(-0.012_345_6), "-0.012346");
         assert_eq!(short(-0.0), "0");
     }
 

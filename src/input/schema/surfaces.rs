@@ -10,7 +10,7 @@ use crate::input::quantity::{Angle, AngularRate, Length, Time};
 tables! {
     /// `[[plane]]`
     PlaneParams {
-        /// Name in reports.
+        /// Name in reports, as of a body.
         name: Option<Spanned<String>>,
         /// To the side that the plane keeps.
         normal: Spanned<NormalParams>,
@@ -30,7 +30,7 @@ tables! {
 
     /// `[[surface]]`
     SurfaceParams {
-        /// Name in reports.
+        /// Name in reports, as of a body.
         name: Option<Spanned<String>>,
         /// Geometry.
         shape: Spanned<SurfaceShapeParams>,

@@ -70,7 +70,9 @@ fn pairs(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
     for (a, body) in case.bodies.iter().enumerate() {
         for (b, other) in case.bodies.iter().enumerate().skip(a + 1) {
             let rigid = body.rigid.is_some() && other.rigid.is_some();
-            if rigid || matches!(case.contact_between(a, b), ContactMode::None) {
+            // Bodies joined by the kernel are one continuum.
+            let mode = case.contact_between(a, b);
+            if rigid || matches!(mode, ContactMode::None | ContactMode::Kernel) {
                 continue;
             }
             let approach = approaches.iter().find(|pair| pair.bodies == [a, b]);
