@@ -6,6 +6,7 @@ use crate::comm::Comm;
 use crate::contact::ContactTable;
 use crate::model::{Axis, Case, RigidSurface, SphForm};
 use crate::populate::{self, Slab};
+use crate::sph::kernel::SUPPORT;
 use crate::step::bytes_of_options;
 
 /// What a process takes with MPI and HDF5 before it has a particle (bytes). This and the figures
@@ -44,7 +45,10 @@ pub fn of_rank(case: &Case, ranks: usize) -> f64 {
         .map(|k| face(case, axis, ends, particles * k as f64 / ranks as f64))
         .collect();
     // Half of the sum of two supports is what reaches across a face.
-    let reach = case.bodies.iter().map(|body| 2.0 * body.smoothing_length);
+    let reach = case
+        .bodies
+        .iter()
+        .map(|body| SUPPORT * body.smoothing_length);
     let reach = reach.fold(0.0, f64::max);
     let beyond = |face: f64, side: f64| {
         let (lower, upper) = (face.min(face + side), face.max(face + side));
