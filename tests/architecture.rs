@@ -272,6 +272,26 @@ fn threads_never_meet_mpi() {
     assert_silent(&complaints);
 }
 
+/// So that waiting never counts as a rank's work, see `comm/waiting.rs`.
+#[test]
+fn calls_of_mpi_that_wait_are_timed() {
+    let mut complaints = String::new();
+    let comm = sources();
+    for source in comm.iter().filter(|source| source.room == "comm") {
+        let lines: Vec<&str> = source.text.lines().collect();
+        for (n, line) in lines.iter().enumerate() {
+            let waits = ["_into(", "MPI_Wait", ".barrier()"];
+            let timed = lines[n.saturating_sub(1)..=n]
+                .iter()
+                .any(|line| line.contains("waiting("));
+            if waits.iter().any(|call| line.contains(call)) && !timed {
+                complain(&mut complaints, source, n + 1, "waits outside of `waiting`");
+            }
+        }
+    }
+    assert_silent(&complaints);
+}
+
 #[test]
 fn physics_has_no_unordered_maps_clocks_or_host_mathematics() {
     let mut complaints = String::new();

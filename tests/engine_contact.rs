@@ -17,6 +17,7 @@ use whipple::model::{
     Case, ContactMode, ContactPair, LatticeKind, Overlap, Potential, PotentialRange,
 };
 use whipple::neighbours::ContactClass;
+use whipple::sph::kernel::Kernel;
 use world::{Lists, SPACING, World, case_of, some_body};
 
 /// Two or three interlocking random clouds of the bodies, about one spacing apart.
@@ -163,6 +164,51 @@ fn potential_forces_are_the_gradient_of_the_energy() {
             let mut world = World::new(case, &particles);
             check_gradient(&mut world);
             check_pairs(&mut world, ContactClass::Potential);
+        }
+    }
+}
+
+/// With the range "spacing" force and energy of a pair set in at zero at the mean spacing, and grow
+/// as it comes nearer: round-off in the place of bodies in touch is nothing.
+#[test]
+fn a_potential_of_the_spacing_sets_in_without_a_jump() {
+    for (dimension, exponent) in [(1, 2), (1, 4), (2, 3), (3, 2), (3, 4), (3, 9)] {
+        let bodies = vec![some_body(0, SPACING, 1.3), some_body(1, 0.8 * SPACING, 1.1)];
+        let mut case = case_of(dimension, bodies);
+        case.default_contact = ContactMode::Potential(Potential {
+            exponent,
+            range: PotentialRange::Spacing,
+            ..Potential::default()
+        });
+        let modulus = case.materials[0].p_wave_modulus();
+        let side = 0.9 * SPACING;
+        let area = Kernel::new(dimension).power(side) / side;
+        // Over the force of a spacing's face under the modulus.
+        let at = |spacings: f64| {
+            let particles = [(0, [0.0; 3]), (1, [spacings * side, 0.0, 0.0])];
+            let mut world = World::new(case.clone(), &particles);
+            let lists = world.lists();
+            let [first, second]: [f64; 2] =
+                [0, 1].map(|i| world.reactions(&lists)[i].force[0] / (modulus * area));
+            assert_eq!(first, -second);
+            (second, world.energy() / (modulus * area * side))
+        };
+        assert_eq!(at(1.0 + 1e-12), (0.0, 0.0));
+        let touch = at(1.0 - 1e-12);
+        assert!(
+            (0.0..1e-8).contains(&touch.0) && touch.1.abs() < 1e-12,
+            "{touch:?}"
+        );
+        let mut before = touch;
+        for n in 1..16 {
+            let nearer = at(1.0 - 0.05 * f64::from(n));
+            assert!(nearer.1 > before.1, "energy falls at {n}: {nearer:?}");
+            // Beyond, the slope of the kernel falls off towards its middle.
+            if n < 6 {
+                assert!(nearer.0 > before.0, "force falls at {n}: {nearer:?}");
+            }
+            assert!(nearer.0 > 0.0, "attracts at {n}: {nearer:?}");
+            before = nearer;
         }
     }
 }

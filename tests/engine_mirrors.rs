@@ -11,9 +11,12 @@ mod common;
 use std::collections::BTreeMap;
 
 use common::outcome::{advance, start};
+use common::sentinel::mix;
 use common::{SPACING, ball, case, make_elastic, planes};
 use whipple::comm::Comm;
-use whipple::model::{Axis, ContactMode, Overlap, Potential, SmoothingLength};
+use whipple::domain::Mirrors;
+use whipple::model::{Axis, ContactMode, Overlap, Potential, SmoothingLength, SymmetryPlane};
+use whipple::particles::{FIELDS, FieldInfo, FieldUse, ParticleStore};
 use whipple::step::Simulation;
 
 /// Largest differences of position (in spacings) and velocity (relative to `speed`) between the
@@ -79,6 +82,61 @@ fn mirrored_models_equal_the_whole() {
         assert!(error.abs() < 1e-12 * energies[1]);
         let momentum = reduced.state.worst.momentum_error;
         assert!(momentum.iter().all(|&e| e < 1e-12), "{momentum:?}");
+    }
+}
+
+/// What a field holds behind planes x = 1 and z = −2, by its number of components.
+fn image(field: &FieldInfo, value: &[f64]) -> Vec<f64> {
+    let sign = [-1.0, 1.0, -1.0];
+    let twice = [2.0, 0.0, -4.0];
+    let pairs = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+    let of = |k: usize| match value.len() {
+        1 => value[0],
+        3 if field.name.contains("position") => twice[k] + sign[k] * value[k],
+        3 => sign[k] * value[k],
+        6 => sign[pairs[k].0] * sign[pairs[k].1] * value[k],
+        _ => sign[k / 3] * sign[k % 3] * value[k],
+    };
+    (0..value.len()).map(of).collect()
+}
+
+/// All that a particle may take to another rank is mirrored when it crosses planes, whichever field it
+/// is; nothing else of it is touched, and nobody else.
+#[test]
+fn every_field_is_folded() {
+    let planes = [(Axis::X, 1.0), (Axis::Z, -2.0)];
+    let planes = planes.map(|(axis, position)| SymmetryPlane { axis, position });
+    let mirrors = Mirrors::new(&planes);
+    let mut store = ParticleStore::default();
+    store.resize_owned(3);
+    for (row, field) in (0_u64..).zip(FIELDS) {
+        for (word, number) in (0_u64..).zip(store.bytes_mut(field.id).chunks_mut(8)) {
+            let bits = mix(row << 32 | word) % 1_000_000;
+            #[allow(clippy::cast_precision_loss, reason = "six digits")]
+            let value = if field.kind.is_real() {
+                (bits as f64 + 0.5).to_bits()
+            } else {
+                bits
+            };
+            number.copy_from_slice(&value.to_ne_bytes()[..number.len()]);
+        }
+    }
+    store.position[1] = [0.25, 7.0, -5.0];
+    let before = store.clone();
+    assert_eq!(mirrors.fold(&mut store, 1), 0b101);
+    for field in FIELDS {
+        let size = field.kind.bytes();
+        let part = |store: &ParticleStore, slot: usize| {
+            store.bytes(field.id)[slot * size..(slot + 1) * size].to_vec()
+        };
+        for slot in 0..3 {
+            let mut expected = part(&before, slot);
+            if slot == 1 && field.kind.is_real() && field.uses.meets(FieldUse::LEAVING) {
+                let value: Vec<f64> = bytemuck::pod_collect_to_vec(&expected);
+                expected = bytemuck::pod_collect_to_vec(&image(field, &value));
+            }
+            assert_eq!(part(&store, slot), expected, "{} of {slot}", field.name);
+        }
     }
 }
 

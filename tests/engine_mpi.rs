@@ -4,17 +4,19 @@
 mod common;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::thread;
+use std::time::{Duration, Instant};
 
-use common::outcome::{CASES, Outcome};
+use common::outcome::{CASES, Outcome, rubbing};
 use common::random::Random;
 use common::ranks::on_each;
 use common::sentinel::{id, mix, sentinel};
-use whipple::comm::{Comm, Exchange};
+use whipple::comm::{Comm, Exchange, waited};
 use whipple::domain::{Decomposition, Halo, Histogram, Migration, Mirrors, Paces, Slabs, balance};
-use whipple::model::{Axis, SymmetryPlane};
+use whipple::model::{Axis, Overlap, SelfContact, SymmetryPlane};
 use whipple::neighbours::Image;
 use whipple::particles::{FIELDS, FieldInfo, FieldUse, ParticleStore, SCRATCH_WORDS};
-use whipple::step::Simulation;
+use whipple::step::{Simulation, Timers};
 
 /// Particles of the tests, spread over a box of this many units.
 const TOTAL: u64 = 400;
@@ -473,6 +475,88 @@ fn balance_evens_out_the_work() {
 #[test]
 fn slower_ranks_get_less_work() {
     on_each("slower_ranks_get_less_work", &[1, 2, 3], balance_paces);
+}
+
+/// What all ranks but the last wait in for it.
+const CALLS: &[(&str, fn(&Comm))] = &[
+    ("barrier", Comm::barrier),
+    ("sum", |comm| comm.sum_u64(&mut [1])),
+    ("any", |comm| assert!(!comm.any(false))),
+    ("gather", |comm| comm.all_gather_u64(&[1], &mut Vec::new())),
+    ("all to all", |comm| {
+        comm.all_to_all_u64(&vec![1; comm.size()], &mut Vec::new());
+    }),
+    ("broadcast", |comm| {
+        comm.broadcast_from(comm.size() - 1, &mut vec![1]);
+    }),
+    ("messages", |comm| {
+        let mut exchange = Exchange::default();
+        exchange.set_peers((0..comm.size()).filter(|&rank| rank != comm.rank()));
+        for k in 0..exchange.peers() {
+            exchange.outgoing(k).push(1);
+        }
+        exchange.post_sizes(comm);
+        exchange.post(comm);
+        exchange.wait();
+    }),
+];
+
+/// The time in a call that waits is told apart from all other time, whatever the call.
+fn wait_for_the_last(comm: &Comm) {
+    let late = Duration::from_millis(40);
+    for (name, call) in CALLS {
+        let [mut all, mut told] = [Duration::ZERO; 2];
+        for _ in 0..4 {
+            comm.barrier();
+            if comm.rank() + 1 == comm.size() {
+                let before = waited();
+                thread::sleep(late);
+                assert_eq!(waited(), before, "sleep is no waiting for others");
+                call(comm);
+            } else {
+                let (start, before) = (Instant::now(), waited());
+                call(comm);
+                told += waited() - before;
+                all += start.elapsed();
+            }
+        }
+        if comm.rank() + 1 < comm.size() {
+            assert!(told <= all && told > all / 2, "{name}: {told:?} of {all:?}");
+            assert!(all > late, "{name}: nobody was late");
+        }
+    }
+}
+
+/// Whatever phase of the step ranks wait in, friction and the search for parts among them: all time
+/// in which a rank does not wait is its work, and no other.
+fn waiting_is_no_work(comm: &Comm) {
+    let mut case = rubbing();
+    case.self_contact = Some(SelfContact {
+        overlap: Overlap::default(),
+        folds: None,
+    });
+    let mut simulation = Simulation::start(case, comm).unwrap();
+    simulation.timers = Timers::default();
+    let before = waited();
+    for _ in 0..12 {
+        simulation.advance(comm).unwrap();
+    }
+    let waited = (waited() - before).as_secs_f64();
+    let all: f64 = simulation.timers.report().map(|(_, seconds)| seconds).sum();
+    let busy = simulation.timers.busy();
+    // A little time passes between steps, in which nobody waits.
+    assert!(waited > 0.0);
+    assert!((all - waited - busy).abs() < 1e-9, "{all} {waited} {busy}");
+}
+
+#[test]
+fn calls_that_wait_are_measured() {
+    on_each("calls_that_wait_are_measured", &[2, 3], wait_for_the_last);
+}
+
+#[test]
+fn waiting_in_a_phase_is_no_work() {
+    on_each("waiting_in_a_phase_is_no_work", &[2, 3], waiting_is_no_work);
 }
 
 /// Steps of cases with all there is: every rank holds what one rank alone

@@ -99,7 +99,7 @@ fn overrides_reach_every_place() {
             "body.0.spacing=0.02 mm",
             "body.sphere.lattice={kind=\"hexagonal\", angle=\"90 deg\"}",
             "contact.mode=potential",
-            "contact.potential.exponent=1",
+            "contact.potential.exponent=3",
             "contact.pair=[{bodies=[\"sphere\",\"plate\"], potential.range=\"spacing\"}]",
             "sph.smoothing_length=variable",
             "sph.smoothing_length_max=1.5",
@@ -122,7 +122,7 @@ fn overrides_reach_every_place() {
     };
     assert_eq!(
         (potential.exponent, potential.range),
-        (1, PotentialRange::Spacing)
+        (3, PotentialRange::Spacing)
     );
     let SmoothingLength::Variable { min, max } = case.sph.smoothing_length else {
         panic!("variable")

@@ -2,7 +2,11 @@
 
 use std::path::Path;
 
-use whipple::input::{load, parse};
+use whipple::comm::Comm;
+use whipple::input::{load, parse, warnings};
+use whipple::model::Case;
+use whipple::populate::{bounds, smallest_gap};
+use whipple::step::Simulation;
 
 const GOOD: &str = r#"dimension = 3
 spacing = "1 mm"
@@ -161,4 +165,119 @@ fn the_resolved_case_finds_its_files() {
         assert_eq!(again.resolved, case.resolved);
         assert!(case.resolved.contains("sha256"));
     }
+}
+
+/// A body on one plane or more, to be completed.
+fn on_planes(dimension: usize, body: &str, rest: &str) -> Case {
+    let text = format!(
+        "dimension = {dimension}\nspacing = \"0.3 mm\"\nrun.end_time = \"1 us\"\n\
+         material.metal.library = \"copper\"\n[[body]]\nname = \"rod\"\nmaterial = \"metal\"\n\
+         {body}\n{rest}"
+    );
+    parse("case.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// How far the first body begins from each plane, in spacings.
+fn gaps(case: &Case) -> Vec<f64> {
+    let body = &case.bodies[0];
+    let gap = |plane| smallest_gap(body, case.dimension, &case.symmetry, plane);
+    let planes = case.loads.surfaces.iter();
+    planes
+        .map(|plane| gap(plane) / body.lattice.spacing)
+        .collect()
+}
+
+/// What no force is on, and what is told of it: nothing of planes.
+fn assert_in_touch(case: Case, name: &str) {
+    for gap in gaps(&case) {
+        assert!((gap - 0.5).abs() < 2e-9, "{name}: {gap}");
+    }
+    let told = warnings(&case);
+    assert!(told.iter().all(|line| !line.contains("pushes")), "{told:?}");
+    let mut simulation = Simulation::start(case, &Comm::solo()).unwrap();
+    let still = |s: &Simulation| s.store.contact_acceleration.iter().all(|a| *a == [0.0; 3]);
+    assert!(still(&simulation), "{name}");
+    assert_eq!(simulation.state.contact_energy.to_bits(), 0, "{name}");
+    // No gap either: the first step leads into the plane.
+    for (v, x) in simulation
+        .store
+        .velocity
+        .iter_mut()
+        .zip(&simulation.store.position)
+    {
+        *v = x.map(|x| -1e6 * x);
+    }
+    simulation.advance(&Comm::solo()).unwrap();
+    assert!(!still(&simulation), "{name}");
+}
+
+const FLOOR: &str = "[[plane]]\nnormal = \"+z\"";
+const WALLS: &str = "[[plane]]\nnormal = \"+x\"\n[[plane]]\nnormal = \"+y\"";
+
+/// A body whose shape rests on planes begins in touch with them, whatever its lattice leaves between
+/// its outermost layer and its shape.
+#[test]
+fn bodies_that_rest_on_planes_begin_in_touch() {
+    let rod = |lattice: &str, length: f64| {
+        let middle = 0.5 * length;
+        format!(
+            "lattice = {lattice}\nshape.cylinder = {{ radius = \"1 mm\", length = \"{length} mm\", \
+             centre = [0, 0, \"{middle} mm\"] }}"
+        )
+    };
+    for length in [3.0, 3.24, 3.3, 3.5] {
+        for lattice in ["\"cubic\"", "\"hexagonal\"", "\"rings\""] {
+            let name = format!("{lattice}, {length} mm");
+            assert_in_touch(on_planes(3, &rod(lattice, length), FLOOR), &name);
+        }
+    }
+    let turned = "lattice = { kind = \"hexagonal\", angle = \"20 deg\" }\n\
+                  shape.box = { lower = [0, 0], upper = [\"3 mm\", \"2 mm\"] }";
+    assert_in_touch(on_planes(2, turned, WALLS), "a turned lattice in a corner");
+    let disc = |lattice: &str| {
+        let height = "\"1.4142135623730951 mm\"";
+        format!(
+            "lattice = {lattice}\nshape.sphere = {{ radius = \"1 mm\", centre = [0, {height}] }}"
+        )
+    };
+    let slope = "[[plane]]\nnormal = [1, 1]";
+    assert_in_touch(on_planes(2, &disc("\"rings\""), slope), "rings on a slope");
+    assert_in_touch(on_planes(2, &disc("\"cubic\""), slope), "a disc on a slope");
+}
+
+/// What stays where it is: between two plates, cut by a symmetry plane, off the plane; and a body that
+/// touches another one moves with that.
+#[test]
+fn bodies_on_planes_move_no_further_than_into_touch() {
+    let block = "lattice = \"hexagonal\"\n\
+                 shape.box = { lower = [0, 0, 0], upper = [\"2 mm\", \"2 mm\", \"3.3 mm\"] }";
+    let plates = format!("{FLOOR}\n[[plane]]\nnormal = \"-z\"\npoint = [0, 0, \"3.3 mm\"]");
+    let [lower, upper] = gaps(&on_planes(3, block, &plates))[..] else {
+        panic!("two plates")
+    };
+    assert!(
+        (lower - upper).abs() < 1e-9 && (lower - 0.5).abs() > 0.01,
+        "{lower} {upper}"
+    );
+
+    let cut = "lattice = \"hexagonal\"\n\
+               shape.box = { lower = [\"-1 mm\", 0], upper = [\"1 mm\", \"2 mm\"] }";
+    let slope = "[[symmetry]]\naxis = \"x\"\n[[plane]]\nnormal = \"-x\"\npoint = [\"1 mm\", 0]";
+    let free = gaps(&on_planes(2, cut, slope))[0];
+    assert!((free - 0.5).abs() > 0.01, "{free}");
+
+    let above = block.replace("0, 0, 0]", "0, 0, \"0.01 mm\"]");
+    let apart = gaps(&on_planes(3, &above, FLOOR))[0];
+    assert!((apart - 0.5).abs() > 0.01, "{apart}");
+
+    let second = format!(
+        "[[body]]\nname = \"lid\"\nmaterial = \"metal\"\n\
+         shape.box = {{ size = [\"2 mm\", \"2 mm\", \"2 mm\"] }}\n\
+         touch = {{ body = \"rod\", direction = \"-z\" }}\n{FLOOR}\nbodies = [\"rod\"]"
+    );
+    let case = on_planes(3, block, &second);
+    let [rod, lid] = [0, 1].map(|body| bounds(&case.bodies[body], 3).unwrap());
+    let gap = (lid.0[2] - rod.1[2]) / case.bodies[0].lattice.spacing;
+    assert!((gap - 1.0).abs() < 1e-9, "{gap}");
+    assert_in_touch(case, "two bodies");
 }

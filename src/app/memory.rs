@@ -7,6 +7,7 @@ use crate::contact::ContactTable;
 use crate::domain::{Histogram, Outset};
 use crate::model::{Case, RigidSurface, SphForm};
 use crate::populate;
+use crate::sph::kernel::SUPPORT;
 use crate::step::bytes_of_options;
 
 /// What a process takes with MPI and HDF5 before it has a particle (bytes). This and the figures
@@ -66,7 +67,10 @@ fn fullest(case: &Case, comm: &Comm, ranks: usize) -> Option<Fullest> {
     let even = count.total() as f64 / ranks as f64;
     let face = |k: usize| count.plane(even * k as f64);
     // Half of the sum of two supports is what reaches across a face.
-    let reach = case.bodies.iter().map(|body| 2.0 * body.smoothing_length);
+    let reach = case
+        .bodies
+        .iter()
+        .map(|body| SUPPORT * body.smoothing_length);
     let reach = reach.fold(0.0, f64::max);
     let mut most = [0, 0];
     for rank in 0..ranks {

@@ -5,6 +5,7 @@ use std::ffi::{c_int, c_void};
 use mpi::ffi;
 
 use super::Comm;
+use super::waiting::waiting;
 
 /// Largest piece of a message: counts are `i32`.
 const PIECE: usize = 1 << 30;
@@ -233,8 +234,8 @@ fn wait_all(requests: &mut Vec<ffi::MPI_Request>) {
     }
     let count = c_int::try_from(requests.len()).expect("requests fit an int");
     // SAFETY: the requests are live.
-    unsafe {
+    waiting(|| unsafe {
         ffi::MPI_Waitall(count, requests.as_mut_ptr(), ffi::RSMPI_STATUSES_IGNORE);
-    }
+    });
     requests.clear();
 }

@@ -4,8 +4,10 @@
 //! world ([`Comm::solo`]) is a single rank that never touches MPI, for tests and library use.
 
 mod exchange;
+mod waiting;
 
 pub use exchange::{Exchange, Traffic};
+pub use waiting::waited;
 
 use std::cell::RefCell;
 
@@ -13,6 +15,7 @@ use mpi::collective::SystemOperation;
 use mpi::ffi;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{AsRaw, Communicator, CommunicatorCollectives, Root};
+use waiting::waiting;
 
 /// The communicator handle that parallel HDF5 takes.
 pub type RawComm = ffi::MPI_Comm;
@@ -91,7 +94,7 @@ impl Comm {
     /// Waits for all ranks.
     pub fn barrier(&self) {
         if let Some(world) = &self.world {
-            world.barrier();
+            waiting(|| world.barrier());
         }
     }
 
@@ -143,7 +146,7 @@ impl Comm {
     pub fn all_gather_u64(&self, values: &[u64], all: &mut Vec<u64>) {
         all.resize(values.len() * self.size(), 0);
         match &self.world {
-            Some(world) => world.all_gather_into(values, all.as_mut_slice()),
+            Some(world) => waiting(|| world.all_gather_into(values, all.as_mut_slice())),
             None => all.copy_from_slice(values),
         }
     }
@@ -152,7 +155,7 @@ impl Comm {
     pub fn all_to_all_u64(&self, sends: &[u64], receives: &mut Vec<u64>) {
         receives.resize(self.size(), 0);
         match &self.world {
-            Some(world) => world.all_to_all_into(sends, receives.as_mut_slice()),
+            Some(world) => waiting(|| world.all_to_all_into(sends, receives.as_mut_slice())),
             None => receives.copy_from_slice(sends),
         }
     }
@@ -170,10 +173,10 @@ impl Comm {
         if let Some(world) = &self.world {
             let root = world.process_at_rank(i32::try_from(from).expect("a rank fits an int"));
             let mut length = [bytes.len() as u64];
-            root.broadcast_into(&mut length);
+            waiting(|| root.broadcast_into(&mut length));
             bytes.resize(usize::try_from(length[0]).unwrap_or(0), 0);
             for piece in bytes.chunks_mut(1 << 30) {
-                root.broadcast_into(piece);
+                waiting(|| root.broadcast_into(piece));
             }
         }
     }
@@ -201,7 +204,7 @@ impl Comm {
             }
             let mine: &mut [T] = bytemuck::cast_slice_mut(&mut scratch[..words]);
             mine.copy_from_slice(values);
-            world.all_reduce_into(&*mine, values, operation);
+            waiting(|| world.all_reduce_into(&*mine, values, operation));
         }
     }
 }

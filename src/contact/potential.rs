@@ -2,8 +2,9 @@
 //!
 //! `φ_i = Σ_j V_j K (W_ij/W(Δp̄))^n` (V 21) and
 //! `f_i = −Σ_j V_i V_j K n W_ij^{n−1}/W(Δp̄)^n ∇_i W_ij` (V 24 read as −∇φ); the energy of all
-//! pairs is `½ Σ V_i φ_i`. With the range "spacing" the potential is measured from its value at
-//! the mean spacing, where the force sets in.
+//! pairs is `½ Σ V_i φ_i`. With the range "spacing" the force of a pair at the mean spacing is taken
+//! off, `W_ij^{n−1} − W(Δp̄)^{n−1}` in place of `W_ij^{n−1}`, so that it sets in at zero there (theory
+//! page "Contact").
 
 use super::{ContactView, Gap, Reaction};
 
@@ -14,10 +15,6 @@ pub fn react(view: &ContactView, place: u32, neighbours: &[u32], reaction: &mut 
         let j = view.party(other);
         let gap = Gap::between(&i, &j);
         let pair = view.table.pair(i.body, j.body);
-        if gap.distance >= pair.range {
-            reaction.book(&j, &gap, pair, [0.0; 3], 0.0);
-            continue;
-        }
         let kernel = &pair.kernel;
         let ratio = kernel.value(gap.distance) * pair.inverse_kernel;
         let slope = -kernel.slope(gap.distance) * pair.inverse_kernel;
@@ -25,12 +22,21 @@ pub fn react(view: &ContactView, place: u32, neighbours: &[u32], reaction: &mut 
         let strength = pair.potential * i.volume * j.volume;
         let n = f64::from(pair.exponent);
         let steeper = power(ratio, pair.exponent - 1);
-        let energy = 0.5 * strength * (ratio * steeper - pair.floor);
-        let force = strength * n * steeper * slope;
+        // With either range: the step must be short enough before the force sets in.
         reaction.stiffness += 2.0
             * strength
             * n
             * ((n - 1.0) * power(ratio, pair.exponent - 2) * (slope * slope) + steeper * curvature);
+        let floor = pair.floor;
+        let (energy, force) = if ratio > floor {
+            let rise = ratio * steeper - floor * (1.0 + n * (ratio - floor));
+            (
+                0.5 * strength * rise,
+                strength * n * (steeper - floor) * slope,
+            )
+        } else {
+            (0.0, 0.0)
+        };
         let force = if pair.along_normal {
             gap.along_normal(force, view.normal(place, other))
         } else {

@@ -6,7 +6,7 @@ use crate::model::{
 };
 use crate::neighbours::{ContactClass, ForeignTable};
 use crate::populate;
-use crate::sph::kernel::{FixedKernel, Kernel};
+use crate::sph::kernel::{FixedKernel, Kernel, SUPPORT};
 
 /// Reference constants of an ordered pair of bodies (receiver, other).
 #[derive(Debug, Clone, Copy)]
@@ -35,9 +35,8 @@ pub struct Pair {
     pub potential: f64,
     /// `potential`: exponent n.
     pub exponent: i32,
-    /// `potential`: largest distance (m).
-    pub range: f64,
-    /// `potential`: what (W/W(Δp̄))^n is at that distance.
+    /// `potential`: W/W(Δp̄) at which the force sets in, 1 where the range is the mean spacing and 0
+    /// where it is the support.
     pub floor: f64,
     /// `potential`: 1/W(Δp̄) (m^d).
     pub inverse_kernel: f64,
@@ -135,15 +134,15 @@ impl ContactTable {
             for b in 0..n {
                 let (class, pair) = make_pair(case, &kernel, a, b);
                 pairs.push(pair);
+                let range = SUPPORT * pair.h;
                 if a == b && class != ContactClass::None {
                     // Found among the own neighbours, not as of another group.
                     foreign.class[a * n + a] = class;
-                    foreign.reach2[a * n + a] = 4.0 * pair.h * pair.h;
+                    foreign.reach2[a * n + a] = range * range;
                 }
                 if groups[a] == groups[b] || class == ContactClass::None {
                     continue;
                 }
-                let range = 2.0 * pair.h;
                 foreign.class[a * n + b] = class;
                 foreign.reach2[a * n + b] = range * range;
                 let slot = &mut foreign.group_range[groups[a] * group_count + groups[b]];
@@ -303,7 +302,6 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
         resistance: PairResistance::default(),
         potential: 0.0,
         exponent: 1,
-        range: 0.0,
         floor: 0.0,
         inverse_kernel: 0.0,
         penalty: 0.0,
@@ -327,9 +325,9 @@ fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass,
             pair.along_normal = potential.direction == ContactDirection::Normal;
             pair.exponent = i32::try_from(potential.exponent).unwrap_or(i32::MAX);
             pair.inverse_kernel = 1.0 / pair.kernel.value(spacing);
-            (pair.range, pair.floor) = match potential.range {
-                PotentialRange::Support => (2.0 * h, 0.0),
-                PotentialRange::Spacing => (spacing, 1.0),
+            pair.floor = match potential.range {
+                PotentialRange::Support => 0.0,
+                PotentialRange::Spacing => 1.0,
             };
             (ContactClass::Potential, pair)
         }

@@ -1,7 +1,7 @@
 //! Symmetry planes: mirror images of particles behind them, and particles that cross them.
 
 use crate::model::SymmetryPlane;
-use crate::particles::ParticleStore;
+use crate::particles::{FieldKind, FieldUse, ParticleStore};
 
 /// The symmetry planes of a case, at most one for each axis. An image has a code: bit a is set
 /// if it stands behind the plane normal to axis a.
@@ -136,35 +136,37 @@ impl Mirrors {
     }
 
     /// Exchanges an owned particle that has crossed a plane with its image, which has crossed
-    /// the other way: both are the same material. Returns the code, 0 for a particle that stays.
+    /// the other way: both are the same material. All that a particle takes along when it changes
+    /// ranks, as it may next, is mirrored as the table of fields says. Returns the code, 0 for a
+    /// particle that stays.
     pub fn fold(&self, store: &mut ParticleStore, i: usize) -> u8 {
         let code = self.beyond(&store.position[i]);
         if code != 0 {
-            store.position[i] = self.reflect_position(&store.position[i], code);
-            store.velocity[i] = Self::reflect_vector(&store.velocity[i], code);
-            if let Some(start) = store.reference_position.get_mut(i) {
-                *start = self.reflect_position(start, code);
+            for field in store.held(FieldUse::LEAVING) {
+                let size = field.kind.bytes();
+                let value = &mut store.bytes_mut(field.id)[i * size..(i + 1) * size];
+                self.reflect(field.kind, value, code);
             }
-            store.predicted_velocity[i] = Self::reflect_vector(&store.predicted_velocity[i], code);
-            for field in [
-                &mut store.slip,
-                &mut store.slip_rate,
-                &mut store.drift_acceleration,
-                &mut store.surface_slip,
-                &mut store.surface_slip_rate,
-            ] {
-                if let Some(slip) = field.get_mut(i) {
-                    *slip = Self::reflect_vector(slip, code);
-                }
-            }
-            store.deviatoric_stress[i] = Self::reflect_symmetric(&store.deviatoric_stress[i], code);
-            if let Some(stress) = store.specific_stress.get_mut(i) {
-                *stress = Self::reflect_symmetric(stress, code);
-            }
-            store.velocity_gradient[i] = Self::reflect_tensor(&store.velocity_gradient[i], code);
         }
         code
     }
+
+    /// Puts the image under a code in the place of what one particle holds in a field of a kind.
+    fn reflect(&self, kind: FieldKind, value: &mut [u8], code: u8) {
+        match kind {
+            FieldKind::Scalar | FieldKind::Id | FieldKind::Index => {}
+            FieldKind::Position => replace(value, |x| self.reflect_position(x, code)),
+            FieldKind::Vector => replace(value, |v| Self::reflect_vector(v, code)),
+            FieldKind::Symmetric => replace(value, |t| Self::reflect_symmetric(t, code)),
+            FieldKind::Tensor => replace(value, |t| Self::reflect_tensor(t, code)),
+        }
+    }
+}
+
+/// Replaces the value that the bytes are.
+fn replace<T: bytemuck::Pod>(value: &mut [u8], image: impl FnOnce(&T) -> T) {
+    let value: &mut T = bytemuck::from_bytes_mut(value);
+    *value = image(value);
 }
 
 /// All nonzero subsets of the bits of `mask`, and zero first if `own`.

@@ -368,7 +368,7 @@ optional_tables! {
         /// Exponent n.
         exponent: Option<Spanned<i64>>,
         /// Range of the force.
-        range: Option<RangeName>,
+        range: Option<Spanned<RangeName>>,
         /// Along what it acts.
         direction: Option<Spanned<DirectionName>>,
     }

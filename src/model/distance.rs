@@ -1,4 +1,4 @@
-//! How far a point is from a shape.
+//! How far a point is from a shape, and how far a shape reaches.
 
 use super::{Shape, Vec3};
 
@@ -64,6 +64,30 @@ impl Shape {
         };
         let farthest = Vec3::from_fn(|a, _| (middle[a] - lower[a]).max(upper[a] - middle[a]));
         ((nearest - middle).norm() - radius).max(inner_radius - farthest.norm())
+    }
+
+    /// Smallest `n·x` (m) of the shape, for a unit vector n along axes of the dimension.
+    #[must_use]
+    pub fn lowest(&self, normal: &Vec3) -> f64 {
+        match self {
+            Self::Box { lower, upper } => (0..3)
+                .filter(|&a| normal[a] != 0.0)
+                .map(|a| normal[a] * if normal[a] > 0.0 { lower[a] } else { upper[a] })
+                .fold(0.0, |sum, part| sum + part),
+            Self::Sphere { centre, radius } | Self::Shell { centre, radius, .. } => {
+                normal.dot(centre) - radius
+            }
+            Self::Cylinder {
+                centre,
+                axis,
+                radius,
+                length,
+            } => {
+                let along = normal[axis.index()].abs();
+                let across = (1.0 - along * along).max(0.0).sqrt();
+                normal.dot(centre) - 0.5 * length * along - radius * across
+            }
+        }
     }
 
     /// Extent of the thinnest part (m).
@@ -135,5 +159,16 @@ mod tests {
         );
         let thick = [&cube, &ball, &shell, &rod].map(|shape| shape.thickness(3));
         assert_eq!(thick, [2.0, 2.0, 1.0, 2.0]);
+        let slope = Vec3::new(0.0, 0.6, -0.8);
+        let low = [&cube, &ball, &shell, &rod].map(|shape| shape.lowest(&slope));
+        assert_eq!(
+            low,
+            [
+                -1.6,
+                -1.0,
+                -3.0,
+                -0.5 * 4.0 * 0.8 - (1.0_f64 - 0.8 * 0.8).sqrt()
+            ]
+        );
     }
 }

@@ -1,20 +1,23 @@
 //! The table of particle fields: each is declared once, here, with its type, unit, meaning and
-//! uses. Storage, sort, migration, halo exchange, checkpoints and snapshots walk this table.
+//! uses. Storage, sort, migration, halo exchange, symmetry planes, checkpoints and snapshots walk
+//! this table.
 
-/// What one particle holds in a field.
+/// What one particle holds in a field; it says what becomes of it behind a symmetry plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FieldKind {
-    /// One `f64`.
+    /// One `f64`, the same in a mirror.
     Scalar,
-    /// Three `f64`: x, y, z.
+    /// A place, three `f64`: x, y, z. Its image is as far behind the plane.
+    Position,
+    /// Three `f64`: x, y, z. In a mirror the component normal to the plane changes its sign.
     Vector,
-    /// Six `f64`: xx, yy, zz, xy, xz, yz.
+    /// Six `f64`: xx, yy, zz, xy, xz, yz. Components with one index normal to the plane change sign.
     Symmetric,
-    /// Nine `f64`, row-major.
+    /// Nine `f64`, row-major, mirrored like a symmetric one.
     Tensor,
-    /// One `u64`.
+    /// One `u64`, the same in a mirror.
     Id,
-    /// One `u32`.
+    /// One `u32`, the same in a mirror.
     Index,
 }
 
@@ -24,7 +27,7 @@ impl FieldKind {
     pub const fn components(self) -> usize {
         match self {
             Self::Scalar | Self::Id | Self::Index => 1,
-            Self::Vector => 3,
+            Self::Position | Self::Vector => 3,
             Self::Symmetric => 6,
             Self::Tensor => 9,
         }
@@ -95,6 +98,8 @@ impl FieldUse {
     pub const FREEZE: Self = Self(1 << 20);
     /// Held only where stress points carry the stress.
     pub const STRESS_POINTS: Self = Self(1 << 21);
+    /// Kept of a frozen particle; all else of it is zero.
+    pub const REMAINS: Self = Self(1 << 22);
     /// Held only where the case has use for it.
     pub const OPTIONAL: Self = Self::CONTACT
         .with(Self::BALSARA)
@@ -159,6 +164,9 @@ pub struct FieldInfo {
 macro_rules! kind_type {
     (Scalar) => {
         f64
+    };
+    (Position) => {
+        [f64; 3]
     };
     (Vector) => {
         [f64; 3]
@@ -240,23 +248,23 @@ macro_rules! particle_fields {
 
 particle_fields! {
     /// Identity: body index and lattice site; the same for any ranks.
-    id: Id, "", STATE | HALO_MOTION | SNAPSHOT;
+    id: Id, "", STATE | HALO_MOTION | SNAPSHOT | REMAINS;
     /// Index of the body in the input.
-    body: Index, "", STATE | HALO_MOTION | SNAPSHOT;
+    body: Index, "", STATE | HALO_MOTION | SNAPSHOT | REMAINS;
     /// Mass.
-    mass: Scalar, "kg", STATE | HALO_MOTION | ON_DEMAND;
+    mass: Scalar, "kg", STATE | HALO_MOTION | ON_DEMAND | REMAINS;
     /// Position.
-    position: Vector, "m", STATE | HALO_MOTION;
+    position: Position, "m", STATE | HALO_MOTION | REMAINS;
     /// Velocity.
     velocity: Vector, "m/s", STATE | SNAPSHOT;
     /// Density.
-    density: Scalar, "kg/m^3", STATE | HALO_STRESS | SNAPSHOT;
+    density: Scalar, "kg/m^3", STATE | HALO_STRESS | SNAPSHOT | REMAINS;
     /// Specific internal energy.
-    specific_energy: Scalar, "J/kg", STATE | SNAPSHOT;
+    specific_energy: Scalar, "J/kg", STATE | SNAPSHOT | REMAINS;
     /// Deviatoric stress, tension positive.
     deviatoric_stress: Symmetric, "Pa", STATE | HALO_STRESS | SNAPSHOT;
     /// Equivalent plastic strain.
-    plastic_strain: Scalar, "", STATE | SNAPSHOT;
+    plastic_strain: Scalar, "", STATE | SNAPSHOT | REMAINS;
     /// Velocity gradient, row i column j is the derivative of velocity i along j.
     velocity_gradient: Tensor, "1/s", STATE | ON_DEMAND;
     /// Acceleration by stress and viscosity.
@@ -286,7 +294,7 @@ particle_fields! {
     /// Symmetry planes that the part reaches across: a set of bits.
     part_planes: Index, "", STATE | HALO_MOTION | HALO_PARTS | SELF_CONTACT;
     /// Position at the start.
-    reference_position: Vector, "m", STATE | HALO_MOTION | FOLDS;
+    reference_position: Position, "m", STATE | HALO_MOTION | FOLDS;
     /// Which loads and rigid bodies prescribe its velocity: a set of bits, in the input's order.
     load: Index, "", STATE | ON_DEMAND | LOADS;
     /// Whether it left the range of its state and stands still, outside of all sums (1).
@@ -360,4 +368,42 @@ particle_fields! {
     stress_offset: Vector, "N", HALO_STRESS | STRESS_POINTS;
     /// Work of the last step, in neighbours of the pair sums, for the balance between ranks.
     work: Index, "", MIGRATED;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(which: impl Fn(&FieldInfo) -> bool) -> Vec<&'static str> {
+        let rows = FIELDS.iter().filter(|field| which(field));
+        rows.map(|field| field.name).collect()
+    }
+
+    /// A place is no vector: one that is declared as such would be mirrored about the origin.
+    #[test]
+    fn places_are_declared_as_such() {
+        let places = names(|field| field.name.contains("position"));
+        assert_eq!(places, names(|field| field.kind == FieldKind::Position));
+        assert_eq!(places, ["position", "reference_position"]);
+    }
+
+    /// What stays of a frozen particle is held in every case that may freeze one.
+    #[test]
+    fn remains_are_in_every_store() {
+        let remains = names(|field| field.uses.meets(FieldUse::REMAINS));
+        assert_eq!(
+            remains,
+            [
+                "id",
+                "body",
+                "mass",
+                "position",
+                "density",
+                "specific_energy",
+                "plastic_strain"
+            ]
+        );
+        let optional = names(|field| field.uses.meets(FieldUse::OPTIONAL));
+        assert!(remains.iter().all(|name| !optional.contains(name)));
+    }
 }

@@ -6,6 +6,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::model::{Lattice, LatticeKind, Shape, Vec3};
+use crate::sph::kernel::Kernel;
 
 mod counts;
 
@@ -403,10 +404,10 @@ fn touching_values_agree_with_real_bodies() {
                 .unwrap();
             let mut particle = middle;
             particle[normal] += 1.0;
-            let h = wall.smoothing_length;
+            let kernel = Kernel::new(dimension).of_length(wall.smoothing_length);
             let sum: f64 = sites(&wall, dimension, &[], None)
                 .map(|s| (Vec3::from(s.position) - particle).norm())
-                .map(|r| touch::kernel(r, h, dimension))
+                .map(|r| kernel.value(r))
                 .sum();
             assert!((sum - touching_value(&wall, &wall, dimension)).abs() < 1e-12);
         }

@@ -3,6 +3,7 @@
 use super::bounds;
 use super::lattice::{pitches, shifts};
 use crate::model::{Axis, Body, LatticeKind};
+use crate::sph::kernel::{Kernel, SUPPORT};
 
 /// How far `body` has to move along `axis` (m, signed) to come into touch with `other`, when it
 /// moves towards larger (`forward`) or smaller coordinates: the outermost particle layers of the
@@ -49,7 +50,7 @@ fn half_space_fraction(kind: LatticeKind, spacing: f64, dimension: usize, gap: f
     let normal = dimension - 1;
     let reach = |a: usize| {
         #[allow(clippy::cast_possible_truncation)] // a few layers
-        let layers = (2.0 * h / pitch[a]).ceil() as i64 + 2;
+        let layers = (SUPPORT * h / pitch[a]).ceil() as i64 + 2;
         layers
     };
     let range = |a: usize| match a.cmp(&normal) {
@@ -58,6 +59,7 @@ fn half_space_fraction(kind: LatticeKind, spacing: f64, dimension: usize, gap: f
         std::cmp::Ordering::Greater => 0..=0,
     };
     let first = shifts(kind, dimension, 0, 0);
+    let kernel = Kernel::new(dimension).of_length(h);
     let mut sum = 0.0;
     for k in range(2) {
         for j in range(1) {
@@ -72,27 +74,9 @@ fn half_space_fraction(kind: LatticeKind, spacing: f64, dimension: usize, gap: f
                 r[0] += (shift[0] - first[0]) * spacing;
                 r[1] += (shift[1] - first[1]) * spacing;
                 r[normal] += gap;
-                sum += kernel(
-                    (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]).sqrt(),
-                    h,
-                    dimension,
-                );
+                sum += kernel.value((r[0] * r[0] + r[1] * r[1] + r[2] * r[2]).sqrt());
             }
         }
     }
     sum * (0..dimension).fold(1.0, |v, _| v * spacing)
-}
-
-/// Cubic B-spline of support 2h at distance `r` (m), normalised for the dimension (1/m^d).
-pub(super) fn kernel(r: f64, h: f64, dimension: usize) -> f64 {
-    use std::f64::consts::PI;
-    let norm = match dimension {
-        1 => 2.0 / (3.0 * h),
-        2 => 10.0 / (7.0 * PI * h * h),
-        _ => 1.0 / (PI * h * h * h),
-    };
-    let q = r / h;
-    let far = (2.0 - q).max(0.0);
-    let near = (1.0 - q).max(0.0);
-    norm * (0.25 * far * far * far - near * near * near)
 }

@@ -4,6 +4,9 @@ use std::f64::consts::PI;
 
 use super::lanes::Lanes;
 
+/// Support over smoothing length: no pair farther apart than this many `h_ij` sees each other.
+pub const SUPPORT: f64 = 2.0;
+
 /// The kernel of a number of dimensions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Kernel {
@@ -319,6 +322,16 @@ mod tests {
                 })
                 .sum();
             assert!((sum - 1.0).abs() < 1e-7, "{d}: {sum}");
+        }
+    }
+
+    #[test]
+    fn ends_at_its_support() {
+        for d in 1..=3 {
+            let kernel = Kernel::new(d).of_length(0.5);
+            let [inside, end] = [0.999, 1.0].map(|part| part * SUPPORT * 0.5);
+            assert!(kernel.value(inside) > 0.0 && kernel.slope(inside) < 0.0);
+            assert_eq!([kernel.value(end), kernel.slope(end)], [0.0; 2]);
         }
     }
 

@@ -3,9 +3,8 @@
 //! Were a particle to stay in the sums at rest, it would push others without being pushed: momentum
 //! and energy would be lost in each step, and its state, which is out of range, would go on to act.
 //! So it takes part in nothing, the rest of the run is that of a removal to the last bit, and what
-//! it carried is booked in the same way. What is left of it in files is where it was and of what:
-//! identity, body, mass, position, density, specific energy and plastic strain. All else of it,
-//! velocity and stress among it, is zero.
+//! it carried is booked in the same way. What is left of it in files is where it was and of what,
+//! the fields with [`FieldUse::REMAINS`]. All else of it, velocity and stress among it, is zero.
 
 use super::simulation::Simulation;
 use crate::comm::Comm;
@@ -14,19 +13,14 @@ use crate::particles::{FieldUse, ParticleStore};
 impl Simulation {
     /// Keeps the owned particles `indices` for the files.
     pub(super) fn freeze(&mut self, indices: &[u32]) {
-        let (store, frozen) = (&self.store, &mut self.frozen);
+        let mut remains = Vec::new();
+        self.store.pack(FieldUse::REMAINS, indices, &mut remains);
+        let (frozen, count) = (&mut self.frozen, indices.len());
         let first = frozen.owned();
-        frozen.resize_owned(first + indices.len());
-        for (slot, &i) in (first..).zip(indices) {
-            let i = i as usize;
-            frozen.id[slot] = store.id[i];
-            frozen.body[slot] = store.body[i];
-            frozen.mass[slot] = store.mass[i];
-            frozen.position[slot] = store.position[i];
-            frozen.density[slot] = store.density[i];
-            frozen.specific_energy[slot] = store.specific_energy[i];
-            frozen.plastic_strain[slot] = store.plastic_strain[i];
-            frozen.frozen[slot] = 1;
+        frozen.resize_owned(first + count);
+        frozen.unpack(FieldUse::REMAINS, first, count, &remains);
+        for mark in &mut frozen.frozen[first..] {
+            *mark = 1;
         }
     }
 

@@ -1,6 +1,8 @@
 //! Wall time by phase of the step.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
+
+use crate::comm;
 
 macro_rules! phases {
     ($( $(#[doc = $doc:literal])+ $name:ident = $text:literal, )+) => {
@@ -46,14 +48,19 @@ phases! {
 #[derive(Debug, Clone)]
 pub struct Timers {
     seconds: [f64; Phase::ALL.len()],
+    busy: f64,
     last: Instant,
+    /// What this rank had waited for others by then.
+    waited: Duration,
 }
 
 impl Default for Timers {
     fn default() -> Self {
         Self {
             seconds: [0.0; Phase::ALL.len()],
+            busy: 0.0,
             last: Instant::now(),
+            waited: comm::waited(),
         }
     }
 }
@@ -61,31 +68,26 @@ impl Default for Timers {
 impl Timers {
     /// Starts the next phase without booking the time since the last.
     pub fn skip(&mut self) {
-        self.last = Instant::now();
+        (self.last, self.waited) = (Instant::now(), comm::waited());
     }
 
     /// Books the time since the last call to `phase`.
     pub fn lap(&mut self, phase: Phase) {
-        let now = Instant::now();
-        self.seconds[phase as usize] += (now - self.last).as_secs_f64();
-        self.last = now;
+        let (last, waited) = (self.last, self.waited);
+        self.skip();
+        let seconds = (self.last - last).as_secs_f64();
+        self.seconds[phase as usize] += seconds;
+        // How long files take says nothing of the particles, and HDF5 waits for others by itself.
+        if phase != Phase::Output {
+            self.busy += seconds - (self.waited - waited).as_secs_f64();
+        }
     }
 
-    /// Seconds of this rank's own work, without the phases in which it waits for others.
+    /// Seconds of this rank's own work on its particles: all phases but the output, without the
+    /// time that calls in them waited for other ranks.
     #[must_use]
     pub fn busy(&self) -> f64 {
-        use Phase::{ContactForces, ContactFractions, Integrate, Material, Momentum, Neighbours};
-        [
-            Integrate,
-            Neighbours,
-            Material,
-            ContactFractions,
-            Momentum,
-            ContactForces,
-        ]
-        .map(|phase| self.seconds[phase as usize])
-        .iter()
-        .sum()
+        self.busy
     }
 
     /// Name and seconds of each phase.

@@ -247,20 +247,19 @@ impl World {
         0.5 * overlap.core_stiffness * pair.core_modulus * volume * depth * depth
     }
 
-    /// `V_i V_j K [(W/W(Δp))^n − floor]` within the range.
+    /// `V_i V_j K wⁿ` with `w = W/W(Δp)` in the support; closer than the spacing
+    /// `V_i V_j K [wⁿ − 1 − n (w − 1)]`.
     fn potential_energy(&self, i: usize, j: usize, pair: &Pair, potential: &Potential) -> f64 {
-        let (range, floor) = match potential.range {
-            PotentialRange::Support => (2.0 * pair.h, 0.0),
-            PotentialRange::Spacing => (pair.spacing, 1.0),
-        };
-        if pair.r >= range {
-            return 0.0;
-        }
         let kernel = Kernel::new(self.case.dimension);
         let ratio = pair.kernel / kernel.value(pair.spacing, pair.h);
         let steep = ratio.powi(i32::try_from(potential.exponent).unwrap());
+        let steep = match potential.range {
+            PotentialRange::Support => steep,
+            PotentialRange::Spacing if pair.r >= pair.spacing => return 0.0,
+            PotentialRange::Spacing => steep - 1.0 - f64::from(potential.exponent) * (ratio - 1.0),
+        };
         let k = potential.stiffness * pair.modulus / kernel.power(pair.spacing);
-        self.volume(i) * self.volume(j) * k * (steep - floor)
+        self.volume(i) * self.volume(j) * k * steep
     }
 
     pub fn shift(&mut self, i: usize, axis: usize, by: f64) {

@@ -287,16 +287,34 @@ fn potential(
     form: SphForm,
 ) -> Result<Potential, Complaint> {
     let stiffness = params.stiffness.as_ref();
-    Ok(Potential {
+    let potential = Potential {
         stiffness: number(stiffness, "stiffness", base.stiffness, Allowed::Positive)?,
         exponent: exponent(params.exponent.as_ref(), base.exponent)?,
-        range: match params.range {
+        range: match params.range.as_ref().map(Spanned::get_ref) {
             Some(RangeName::Support) => PotentialRange::Support,
             Some(RangeName::Spacing) => PotentialRange::Spacing,
             None => base.range,
         },
         direction: direction(params.direction.as_ref(), base.direction, form)?,
-    })
+    };
+    check_range(params, &potential)?;
+    Ok(potential)
+}
+
+/// The force that sets in at the spacing is that of the exponent less that of an exponent of one.
+fn check_range(params: &PotentialParams, potential: &Potential) -> Result<(), Complaint> {
+    if potential.range == PotentialRange::Support || potential.exponent > 1 {
+        return Ok(());
+    }
+    let spans = [
+        params.exponent.as_ref().map(Spanned::span),
+        params.range.as_ref().map(Spanned::span),
+    ];
+    // One of the two is new: the combination was refused where it was inherited from.
+    let at = spans.into_iter().flatten().next().unwrap_or_default();
+    let title = "a potential of `range = \"spacing\"` needs an `exponent` of 2 or more";
+    let help = "with 1 its force would begin with a jump: take \"support\", or a larger exponent";
+    Err(Complaint::new(at, title).help(help))
 }
 
 fn penalty(params: &PenaltyParams, base: Penalty) -> Result<Penalty, Complaint> {

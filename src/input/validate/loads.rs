@@ -12,7 +12,7 @@ use crate::input::quantity::Acceleration;
 use crate::input::schema::{CaseParams, LoadParams, Placed, SidesParams};
 use crate::input::source::Complaint;
 use crate::model::readable::Readable;
-use crate::model::{Axis, Body, Loads, SymmetryPlane, VelocityLoad};
+use crate::model::{Axis, Body, Loads, RigidSurface, SymmetryPlane, VelocityLoad};
 use crate::populate::{self, Wanted};
 
 /// What loads are read with.
@@ -27,8 +27,12 @@ pub struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// All loads of a case.
-    pub fn loads(&self, params: &CaseParams) -> Result<Loads, Complaint> {
+    /// All loads of a case that has these `surfaces`.
+    pub fn loads(
+        &self,
+        params: &CaseParams,
+        surfaces: Vec<RigidSurface>,
+    ) -> Result<Loads, Complaint> {
         let velocities: Result<Vec<VelocityLoad>, _> = params
             .load
             .iter()
@@ -46,10 +50,11 @@ impl Reader<'_> {
             return Err(Complaint::new(table.span(), title));
         }
         self.check_names(params)?;
+        self.check_starts(params, &surfaces)?;
         Ok(Loads {
             gravity: self.gravity(params.gravity.as_ref())?,
             velocities: velocities?,
-            surfaces: self.surfaces(params)?,
+            surfaces,
         })
     }
 

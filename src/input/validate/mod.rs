@@ -48,7 +48,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
         1.3,
         Allowed::Within(0.6, 3.0),
     )?;
-    let bodies = bodies::Reader {
+    let mut bodies = bodies::Reader {
         dimension,
         spacing: params.spacing.as_ref(),
         materials: &names,
@@ -61,6 +61,14 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
     let length_unit = length_unit(&params);
     let (default_contact, contacts, self_contact) =
         contact::contacts(&params.contact, &params.body, sph.form, smoothing)?;
+    let surfaces = loads::Reader {
+        dimension,
+        bodies: &bodies,
+        symmetry: &symmetry,
+        folder,
+    }
+    .surfaces(&params)?;
+    touch::lay_on_planes(&params.body, &mut bodies, &surfaces, &symmetry, dimension)?;
     let loads = loads::Reader {
         dimension,
         bodies: &bodies,
@@ -68,7 +76,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
         length_unit: &length_unit,
         folder,
     }
-    .loads(&params)?;
+    .loads(&params, surfaces)?;
     let mut time_step = time_step(&params.time_step)?;
     for body in &bodies {
         let shortest = body.smoothing_length * smallest_smoothing(&sph);

@@ -32,21 +32,27 @@ const STIFFNESS: f64 = 2.0;
 type Place = Spanned<Vec<Placed<Length>>>;
 
 impl Reader<'_> {
-    /// The planes and the other surfaces of a case.
+    /// The planes and the other surfaces of a case, wherever its bodies stand.
     pub fn surfaces(&self, params: &CaseParams) -> Result<Vec<RigidSurface>, Complaint> {
         let planes = params.plane.iter().enumerate();
-        let mut all = Vec::new();
-        for (n, table) in planes {
-            let (surface, table) = (self.plane(table.get_ref(), n + 1)?, table.get_ref());
-            self.check_start(&surface, &table.normal.span())?;
-            all.push(surface);
+        let planes = planes.map(|(n, table)| self.plane(table.get_ref(), n + 1));
+        let others = params.surface.iter().enumerate();
+        let others = others.map(|(n, table)| self.surface(table.get_ref(), n + 1));
+        planes.chain(others).collect()
+    }
+
+    /// No body may begin behind one of the [`Self::surfaces`].
+    pub fn check_starts(
+        &self,
+        params: &CaseParams,
+        surfaces: &[RigidSurface],
+    ) -> Result<(), Complaint> {
+        let planes = params.plane.iter().map(|t| t.get_ref().normal.span());
+        let others = params.surface.iter().map(|t| t.get_ref().shape.span());
+        for (surface, at) in surfaces.iter().zip(planes.chain(others)) {
+            self.check_start(surface, &at)?;
         }
-        for (n, table) in params.surface.iter().enumerate() {
-            let (surface, table) = (self.surface(table.get_ref(), n + 1)?, table.get_ref());
-            self.check_start(&surface, &table.shape.span())?;
-            all.push(surface);
-        }
-        Ok(all)
+        Ok(())
     }
 
     fn plane(&self, params: &PlaneParams, number_of: usize) -> Result<RigidSurface, Complaint> {

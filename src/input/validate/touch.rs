@@ -1,4 +1,5 @@
-//! `touch`: bodies moved until their outermost layers are one mean spacing apart.
+//! `touch`: bodies moved until their outermost layers are one mean spacing apart, and bodies laid on
+//! rigid planes, half a spacing from them.
 
 use std::ops::Range;
 
@@ -6,8 +7,14 @@ use toml::Spanned;
 
 use crate::input::schema::{BodyParams, Direction, TouchParams};
 use crate::input::source::Complaint;
-use crate::model::{Axis, Body, Shape};
+use crate::model::{Axis, Body, RigidSurface, Shape, SurfaceShape, SymmetryPlane, Vec3};
 use crate::populate;
+
+/// A shape as near to a plane as this rests on it (spacings).
+const RESTING: f64 = 1e-3;
+/// What rounding does to places (spacings): bodies do not move for it, and begin as much farther from
+/// a plane than where it pushes.
+const ROUNDING: f64 = 1e-9;
 
 /// Moves all bodies that touch others; a body moves after the one that it touches.
 pub fn resolve(
@@ -54,6 +61,69 @@ pub fn resolve(
         waiting = later;
     }
     Ok(())
+}
+
+/// Moves bodies whose shapes rest on rigid planes until their outermost particles are where the planes
+/// begin to push, and then all that touch others. A lattice need not fill its shape, and stands in
+/// its middle; the layers of a close-packed one are not a spacing apart either.
+pub fn lay_on_planes(
+    params: &[Spanned<BodyParams>],
+    bodies: &mut [Body],
+    planes: &[RigidSurface],
+    symmetry: &[SymmetryPlane],
+    dimension: usize,
+) -> Result<(), Complaint> {
+    let mut moved = false;
+    for (index, table) in params.iter().enumerate() {
+        if table.get_ref().touch.is_some() {
+            continue;
+        }
+        let body = &mut bodies[index];
+        let acting = planes.iter().filter(|plane| plane.bodies[index]);
+        let way = way_to_planes(body, acting, symmetry, dimension);
+        for axis in [Axis::X, Axis::Y, Axis::Z] {
+            let distance = way[axis.index()];
+            if distance.abs() > ROUNDING * body.lattice.spacing {
+                translate(&mut body.shape, axis, distance);
+                moved = true;
+            }
+        }
+    }
+    if moved {
+        resolve(params, bodies, dimension)?;
+    }
+    Ok(())
+}
+
+/// The way (m) of a body into touch with the planes that its shape rests on. Zero if there are none, if
+/// no way leads to all of them, as between two plates, or if it led across a symmetry plane.
+fn way_to_planes<'a>(
+    body: &Body,
+    surfaces: impl Iterator<Item = &'a RigidSurface>,
+    symmetry: &[SymmetryPlane],
+    dimension: usize,
+) -> Vec3 {
+    let spacing = body.lattice.spacing;
+    let mut ways = Vec::new();
+    for surface in surfaces {
+        let SurfaceShape::Plane { normal, position } = surface.shape else {
+            continue;
+        };
+        let normal = Vec3::from(normal);
+        if (body.shape.lowest(&normal) - position).abs() <= RESTING * spacing {
+            let gap = populate::smallest_gap(body, dimension, symmetry, surface);
+            ways.push((normal, (0.5 + ROUNDING) * spacing - gap));
+        }
+    }
+    let all = ways.iter().map(|(normal, way)| *way * normal);
+    let whole = all.fold(Vec3::zeros(), |sum, way| sum + way);
+    let reaches = |(normal, way): &(Vec3, f64)| (whole.dot(normal) - way).abs() < RESTING * spacing;
+    let crosses = |plane: &SymmetryPlane| whole[plane.axis.index()] != 0.0;
+    if ways.iter().all(reaches) && !symmetry.iter().any(crosses) {
+        whole
+    } else {
+        Vec3::zeros()
+    }
 }
 
 /// The axis that a word at `at` names, and whether it points to larger coordinates.
