@@ -65,6 +65,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
         dimension,
         bodies: &bodies,
         symmetry: &symmetry,
+        length_unit: &length_unit,
         folder,
     }
     .surfaces(&params)?;
