@@ -32,8 +32,10 @@ fuzz: test-deps ## Read random inputs and files of results for ten minutes each;
 	$(ENV) WHIPPLE_FUZZ_SECONDS=600 cargo test --locked --test fuzz -- --nocapture --test-threads=1
 
 fuzz-memory: test-deps ## Read random files of results under valgrind for SECONDS=600
-	$(ENV) WHIPPLE_FUZZ_SECONDS=$(or $(SECONDS),600) \
-	    CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUNNER="valgrind --quiet --error-exitcode=9 --suppressions=$(CURDIR)/tests/fuzz/valgrind.supp" \
+	@command -v valgrind >/dev/null || { echo "fuzz-memory needs valgrind: apt install valgrind" >&2; exit 2; }
+	$(ENV) host=$$(rustc -vV | sed -n 's/^host: //p' | tr a-z- A-Z_); \
+	env WHIPPLE_FUZZ_SECONDS=$(or $(SECONDS),600) \
+	    "CARGO_TARGET_$${host}_RUNNER=valgrind --quiet --error-exitcode=9 --suppressions=$(CURDIR)/tests/fuzz/valgrind.supp" \
 	    cargo test --locked --test fuzz files -- --nocapture --test-threads=1
 
 soak: release ## Kill, stop and restart a run at random for MINUTES=30, with SEED=1; the bits must stay

@@ -424,7 +424,7 @@ fn check_manifest(folder: &Path, manifest: Manifest) -> Result<Manifest, OutputE
         format!("{} particles in {size} bytes", manifest.particles)
     } else if manifest.ranks == 0 {
         "0 ranks".to_owned()
-    } else if !(manifest.time >= 0.0) {
+    } else if !manifest.time.is_finite() || manifest.time < 0.0 {
         format!("a time of {:e} s", manifest.time)
     } else {
         return Ok(manifest);

@@ -116,7 +116,6 @@ impl Kind {
     fn descriptor(self) -> TypeDescriptor {
         let number = TypeDescriptor::Float(FloatSize::U8);
         match self {
-            Self::F64 => number,
             Self::I64 => TypeDescriptor::Integer(IntSize::U8),
             Self::U64 => TypeDescriptor::Unsigned(IntSize::U8),
             Self::U32 => TypeDescriptor::Unsigned(IntSize::U4),
@@ -129,7 +128,7 @@ impl Kind {
             Self::LooseText => TypeDescriptor::VarLenUnicode,
             Self::LooseList => TypeDescriptor::VarLenArray(Box::new(number)),
             Self::Array(length) => TypeDescriptor::FixedArray(Box::new(number), length),
-            Self::Record(0) => number,
+            Self::F64 | Self::Record(0) => number,
             Self::Record(depth) => {
                 let ty = Self::Record(depth - 1).descriptor();
                 let field = CompoundField::new("x", ty, 0, 0);
@@ -289,7 +288,7 @@ fn attribute(
 ) -> hdf5::Result<()> {
     let object = object(file, at)?;
     let _ = object.delete_attr(name);
-    let builder = object.new_attr_builder().empty_as(&kind.descriptor());
+    let builder = object.new_attr_builder().empty_as(kind.descriptor());
     let attribute = builder.shape(shape.extents()?).create(name)?;
     let datatype = attribute.dtype()?;
     if kind.is_loose() {

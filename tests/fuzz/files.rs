@@ -180,12 +180,11 @@ impl Bench {
         };
         let mut pick = |list: &[&str]| list[random.below(list.len())].to_owned();
         let (group, text) = (pick(groups), pick(texts));
-        let note = match random.below(2) {
-            0 => (at.clone(), "unit".to_owned()),
-            _ => {
-                let (at, name) = notes[random.below(notes.len())];
-                (at.to_owned(), name.to_owned())
-            }
+        let note = if random.below(2) == 0 {
+            (at.clone(), "unit".to_owned())
+        } else {
+            let (at, name) = notes[random.below(notes.len())];
+            (at.to_owned(), name.to_owned())
         };
         match random.below(20) {
             0..=2 => Change::Note(note.0, note.1, kind(random), self.shape(random)),
@@ -383,7 +382,7 @@ struct Cli {
     args: PlotArgs,
 }
 
-/// Draws a snapshot.
+/// Draws a snapshot by body.
 fn draw(path: &Path) -> Result<(), String> {
     let text = path.to_str().unwrap();
     let picture = path.with_extension("png");

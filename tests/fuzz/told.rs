@@ -262,3 +262,56 @@ fn a_file_that_ends_early_is_no_matter_of_locks() {
     assert!(told.contains("a pipe or a device"), "{told}");
     fs::remove_file(path).unwrap();
 }
+
+/// The program itself, without MPI's launcher: what it says on its error stream.
+fn program(arguments: &[&str]) -> (Option<i32>, String) {
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_whipple"))
+        .args(arguments)
+        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
+        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    (output.status.code(), said)
+}
+
+#[test]
+fn the_program_ends_with_one_message() {
+    let bench = Bench::new();
+    let unit = name("/fields/mass");
+    for change in [
+        Change::Note(unit, name("unit"), Kind::Text(8), of(&[4096])),
+        Change::Data(name("/state"), Kind::Text(8), of(&[4096, 0]), Store::Plain),
+        Change::Data(
+            name("/fields/id"),
+            Kind::F64,
+            of(&[0, 1 << 61]),
+            Store::Plain,
+        ),
+    ] {
+        said(&bench, Which::Checkpoint, change.clone());
+        let folder = bench.changed("");
+        let folder = folder.to_str().unwrap().trim_end_matches('/');
+        let out = bench.changed("run");
+        let restart = [
+            "restart",
+            folder,
+            "--out",
+            out.to_str().unwrap(),
+            "--threads=1",
+        ];
+        let commands: [&[&str]; 3] = [&["info", folder], &["compare", folder, folder], &restart];
+        for arguments in commands {
+            let (code, told) = program(arguments);
+            if arguments[0] == "info" && code == Some(0) {
+                // It does not read the run's own state.
+                assert!(matches!(&change, Change::Data(at, ..) if at == "/state"));
+                continue;
+            }
+            assert_eq!(code, Some(2), "{change:?} {arguments:?}: {told}");
+            assert!(told.starts_with("error: cannot read "), "{told}");
+            assert_eq!(told.lines().count(), 1, "{told}");
+        }
+        assert!(!out.exists(), "nothing is begun");
+    }
+}

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::comm::Comm;
 use crate::output::{Block, OutputError};
 
-use super::gate::{self, Gate, Rows};
+use super::gate::{self, Found, Gate};
 use super::{Element, Number, RowType, explain};
 
 /// A dataset of a file.
@@ -19,6 +19,8 @@ pub struct Array {
     pub rows: u64,
     /// SI unit; empty for none.
     pub unit: String,
+    /// One sentence.
+    pub description: String,
 }
 
 /// A file open for reading.
@@ -75,7 +77,7 @@ impl Content {
         names.iter().map(array).collect()
     }
 
-    /// The type, size and unit of a dataset of numbers.
+    /// The type, size and notes of a dataset of numbers.
     ///
     /// # Errors
     /// [`OutputError::Hdf5`] if there is none, or if it is not one as the program writes.
@@ -85,7 +87,11 @@ impl Content {
             name: path.rsplit('/').next().unwrap_or(path).to_owned(),
             row: rows.row,
             rows: rows.rows,
-            unit: self.told(&format!("the unit of {path}"), rows.unit())?,
+            unit: self.told(&format!("the unit of {path}"), rows.note_if_any(c"unit"))?,
+            description: self.told(
+                &format!("the description of {path}"),
+                rows.note_if_any(c"description"),
+            )?,
         })
     }
 
@@ -164,12 +170,12 @@ impl Content {
         self.told(name, number)
     }
 
-    fn numbers(&self, path: &str) -> Result<Rows, OutputError> {
+    fn numbers(&self, path: &str) -> Result<Found, OutputError> {
         self.told(path, self.gate.numbers(path))
     }
 
     /// All values of a dataset whose rows are single values as wide as `T`.
-    fn values<T: bytemuck::Pod>(&self, path: &str, rows: &Rows) -> Result<Vec<T>, OutputError> {
+    fn values<T: bytemuck::Pod>(&self, path: &str, rows: &Found) -> Result<Vec<T>, OutputError> {
         let block = Block::even(rows.rows, 0, 1);
         let mut values = vec![T::zeroed(); block.count];
         let read = rows.read(block, bytemuck::cast_slice_mut(&mut values));

@@ -7,7 +7,7 @@
 //! attributes of one value. Type, shape and place are compared with the length of the file before
 //! memory is taken.
 
-use std::ffi::{CString, c_int};
+use std::ffi::{CStr, CString, c_int};
 use std::path::Path;
 
 use hdf5::{Dataset, Dataspace, Datatype, File, Group, Location};
@@ -95,7 +95,7 @@ impl Gate {
     }
 
     /// A dataset of numbers: of rank 1, or of rank 2 with the components of a field.
-    pub fn numbers(&self, path: &str) -> hdf5::Result<Rows> {
+    pub fn numbers(&self, path: &str) -> hdf5::Result<Found> {
         let dataset = self.dataset(path)?;
         let (rows, components) = match dataset.shape()[..] {
             [rows] => (rows, 1),
@@ -154,7 +154,7 @@ impl Gate {
     }
 
     /// The rows, if they lie within the file.
-    fn within(&self, dataset: Dataset, row: RowType, rows: usize) -> hdf5::Result<Rows> {
+    fn within(&self, dataset: Dataset, row: RowType, rows: usize) -> hdf5::Result<Found> {
         let rows = rows as u64;
         let length = rows.checked_mul(row.bytes() as u64);
         let end = length.and_then(|length| match dataset.offset() {
@@ -165,18 +165,18 @@ impl Gate {
         if end.is_none_or(|end| end > self.bytes) {
             return Err(format!("{rows} rows are more than the file holds").into());
         }
-        Ok(Rows { dataset, row, rows })
+        Ok(Found { dataset, row, rows })
     }
 }
 
 /// A dataset that lies within its file.
-pub(super) struct Rows {
+pub(super) struct Found {
     dataset: Dataset,
     pub row: RowType,
     pub rows: u64,
 }
 
-impl Rows {
+impl Found {
     /// Number of rows, which fit an address since they fit the file.
     pub fn count(&self) -> usize {
         usize::try_from(self.rows).unwrap_or(usize::MAX)
@@ -204,12 +204,12 @@ impl Rows {
         Ok(())
     }
 
-    /// The unit attached to it; empty where there is none.
-    pub fn unit(&self) -> hdf5::Result<String> {
+    /// A text attached to it; empty where there is none.
+    pub fn note_if_any(&self, name: &CStr) -> hdf5::Result<String> {
         // SAFETY: the dataset is open, and the name ends with a zero.
-        let there = hdf5::sync::sync(|| unsafe { H5Aexists(self.dataset.id(), c"unit".as_ptr()) });
+        let there = hdf5::sync::sync(|| unsafe { H5Aexists(self.dataset.id(), name.as_ptr()) });
         if there > 0 {
-            note(&self.dataset, "unit")
+            self.note(&name.to_string_lossy())
         } else {
             Ok(String::new())
         }

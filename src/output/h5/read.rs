@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::output::{Block, OutputError};
 
 use super::explain;
-use super::gate::{self, Gate, Rows};
+use super::gate::{self, Found, Gate};
 
 /// Why a snapshot could not be read.
 #[derive(Debug, thiserror::Error)]
@@ -185,7 +185,7 @@ impl SnapshotFile {
         Ok(found.row.element.reals(&bytes))
     }
 
-    fn rows(&self, name: &str) -> Result<Rows, ReadError> {
+    fn rows(&self, name: &str) -> Result<Found, ReadError> {
         self.told(name, self.gate.numbers(name))
     }
 
