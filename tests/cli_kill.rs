@@ -16,6 +16,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use cli_support::{WHIPPLE, assert_same, command, end};
@@ -48,7 +49,7 @@ shape.box = { lower = ["-0.5 mm", "0.5 mm"], upper = ["0.5 mm", "1 mm"] }
 "#;
 
 /// Time for the samples of `make test`, all scenarios together.
-const SHORT: Duration = Duration::from_secs(36);
+const SHORT: Duration = Duration::from_secs(28);
 
 struct Place {
     folder: tempfile::TempDir,
@@ -152,14 +153,15 @@ fn points(calls: &[Call], all: bool) -> Vec<usize> {
     order
 }
 
-/// Kills a command at its calls, and lets `recover` go on from each; gives points tried and all.
+/// Kills a command at its calls, and lets `recover` go on from each, on all cores; says how many points
+/// were tried.
 fn kill_at_each(
     name: &str,
     time: Option<Duration>,
-    prepare: impl Fn(&Path),
-    work: impl Fn(&Path) -> Command,
+    prepare: impl Fn(&Path) + Sync,
+    work: impl Fn(&Path) -> Command + Sync,
     place: &Place,
-    recover: impl Fn(&Path, &[Call], &str),
+    recover: impl Fn(&Path, &[Call], &str) + Sync,
 ) {
     let whole = place.path(&format!("{name}-whole"));
     prepare(&whole);
@@ -169,12 +171,7 @@ fn kill_at_each(
     };
     assert_eq!(traced.code, Some(0), "{name}");
     assert_synced(&traced.calls);
-    let started = Instant::now();
-    let mut tried = 0;
-    for n in points(&traced.calls, time.is_none()) {
-        if time.is_some_and(|time| started.elapsed() > time) {
-            break;
-        }
+    let try_point = |n: usize| {
         let run = place.path(&format!("{name}-{n}"));
         prepare(&run);
         let killed = trace(&mut work(&run), &run, Some(n)).unwrap();
@@ -185,9 +182,23 @@ fn kill_at_each(
             assert_eq!(killed.code, Some(0), "{name} {n}");
         }
         fs::remove_dir_all(&run).unwrap();
-        tried += 1;
-    }
-    eprintln!("{name}: {tried} of {} kill points", traced.calls.len());
+    };
+    let order = points(&traced.calls, time.is_none());
+    let (started, next, tried) = (Instant::now(), AtomicUsize::new(0), AtomicUsize::new(0));
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                while time.is_none_or(|time| started.elapsed() < time)
+                    && let Some(&n) = order.get(next.fetch_add(1, Ordering::Relaxed))
+                {
+                    try_point(n);
+                    tried.fetch_add(1, Ordering::Relaxed);
+                }
+            });
+        }
+    });
+    eprintln!("{name}: {tried:?} of {} kill points", order.len());
 }
 
 fn kill_points(time: Option<Duration>) {

@@ -70,11 +70,9 @@ pub fn run(args: &RestartArgs) -> u8 {
             Ok(lock) => lock,
             Err(error) => return refused(error),
         };
-        match find(comm, &named).map_err(|error| format!("error: {error}")) {
-            Ok(listed) => match read(comm, &args.from, named, listed) {
-                Ok(found) => resume(launch, args, found, lock.as_ref()),
-                Err(message) => complain(comm, &message),
-            },
+        let listed = find(comm, &named).map_err(|error| refusal(&error));
+        match listed.and_then(|listed| read(comm, &args.from, named, listed)) {
+            Ok(found) => resume(launch, args, found, lock.as_ref()),
             Err(message) => complain(comm, &message),
         }
     })
@@ -202,18 +200,11 @@ fn read(
             }
             Err(error) => error,
         };
-        let mut why = error.to_string();
         let damaged = comm.any(error.is_damage());
-        if named.checkpoint.is_some() {
-            return Err(format!("error: {why}"));
+        if !damaged || named.checkpoint.is_some() {
+            return Err(refusal(&error));
         }
-        if !damaged {
-            if !error.is_other_version() {
-                why += "; nothing is changed: restart when it can be read, or name an older \
-                        checkpoint";
-            }
-            return Err(format!("error: {why}"));
-        }
+        let why = error.to_string();
         passed_over.push(PassedOver { path, why });
     }
     let error = OutputError::NoCheckpoint {
@@ -221,6 +212,17 @@ fn read(
         passed_over: passed_over.into_iter().map(|passed| passed.why).collect(),
     };
     Err(format!("error: {error}"))
+}
+
+/// What is said of an error that ends the command.
+fn refusal(error: &OutputError) -> String {
+    let told = error.is_damage() || error.is_other_version();
+    let hint = if told {
+        ""
+    } else {
+        "; nothing is changed: restart when it can be read, or name an older checkpoint"
+    };
+    format!("error: {error}{hint}")
 }
 
 fn resume(launch: &Launch, args: &RestartArgs, found: Found, lock: Option<&RunLock>) -> u8 {

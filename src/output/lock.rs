@@ -19,9 +19,10 @@ use super::{OutputError, files};
 /// Name of the lock's file in a run's folder.
 pub(super) const LOCK: &str = "lock";
 
-/// How often a lock is tried for: `info` holds it for a moment.
-const TRIES: u32 = 5;
-const PAUSE: Duration = Duration::from_millis(20);
+/// How often a lock is tried for: `info` holds it for a moment, and `mpirun` may end before a rank that
+/// it has killed.
+const TRIES: u32 = 20;
+const PAUSE: Duration = Duration::from_millis(50);
 
 /// Who has a folder open: the content of its `lock`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
