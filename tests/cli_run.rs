@@ -59,6 +59,13 @@ fn a_summary_has_the_figures_of_the_run() {
         0.0 < stepping && stepping < number("wall_seconds"),
         "{summary:#}"
     );
+    let set_up = number("set_up_seconds");
+    assert!(
+        0.0 < set_up && set_up + stepping < number("wall_seconds"),
+        "{summary:#}"
+    );
+    let log = std::fs::read_to_string(run.join("log.txt")).unwrap();
+    assert!(log.contains(&format!("set up in {set_up:.3} s")), "{log}");
     #[allow(clippy::cast_precision_loss, reason = "small")]
     let updates = 3056e-6 * steps as f64;
     let rate = updates / stepping / 4.0;

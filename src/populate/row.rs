@@ -232,6 +232,13 @@ impl Line<'_> {
 /// First index of a range at which `before` is false; `before` is true up to there.
 fn partition(range: Range<u64>, before: impl Fn(u64) -> bool) -> u64 {
     let Range { mut start, mut end } = range;
+    // Most cuts leave all of a range, or none.
+    if start >= end || !before(start) {
+        return start;
+    }
+    if before(end - 1) {
+        return end;
+    }
     while start < end {
         let middle = start + (end - start) / 2;
         if before(middle) {

@@ -8,12 +8,16 @@ const TOUCH: f64 = 0.1;
 /// Most steps of a body towards another; each goes as far as nothing can be in the way.
 const MOST_STEPS: usize = 200;
 
+/// Smallest and largest coordinates (m) of a body's particles.
+type Ends = ([f64; 3], [f64; 3]);
+
 /// Two bodies, of which one at least deforms.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Approach {
     /// Their indices.
     pub bodies: [usize; 2],
-    /// Room between them at the start, beyond that of bodies in touch, in mean spacings.
+    /// Room between them at the start, beyond that of bodies in touch, in mean spacings; may be
+    /// infinite if they never come near.
     pub gap: f64,
     /// Their relative speed (m/s).
     pub speed: f64,
@@ -25,9 +29,13 @@ pub struct Approach {
 #[must_use]
 pub fn approaches(case: &Case) -> Vec<Approach> {
     let mut found = Vec::new();
+    let bodies = case.bodies.iter();
+    let boxes: Vec<_> = bodies
+        .map(|body| populate::bounds(body, case.dimension))
+        .collect();
     for a in 0..case.bodies.len() {
         for b in a + 1..case.bodies.len() {
-            found.extend(approach(case, a, b));
+            found.extend(approach(case, &boxes, [a, b]));
         }
     }
     found
@@ -42,7 +50,7 @@ pub fn flies_straight(case: &Case, body: usize) -> bool {
     !(driven || table || falls)
 }
 
-fn approach(case: &Case, a: usize, b: usize) -> Option<Approach> {
+fn approach(case: &Case, boxes: &[Option<Ends>], [a, b]: [usize; 2]) -> Option<Approach> {
     let [first, second] = [&case.bodies[a], &case.bodies[b]];
     let both_rigid = first.rigid.is_some() && second.rigid.is_some();
     if both_rigid || !flies_straight(case, a) || !flies_straight(case, b) {
@@ -50,31 +58,36 @@ fn approach(case: &Case, a: usize, b: usize) -> Option<Approach> {
     }
     let velocity = first.velocity - second.velocity;
     let spacing = 0.5 * (first.lattice.spacing + second.lattice.spacing);
-    let [(gap, time), (gap_back, time_back)] =
-        [(first, second, velocity), (second, first, -velocity)]
-            .map(|(body, target, velocity)| towards(case, body, target, velocity));
-    Some(Approach {
+    // Shapes reach a little beyond their particles.
+    let until = last_meeting([boxes[a]?, boxes[b]?], velocity, 4.0 * spacing);
+    let mut found = Approach {
         bodies: [a, b],
-        gap: gap.min(gap_back) / spacing,
+        gap: f64::INFINITY,
         speed: velocity.norm(),
-        time: time.min(time_back),
-    })
+        time: f64::INFINITY,
+    };
+    if until >= 0.0 {
+        for (body, target, velocity) in [(first, second, velocity), (second, first, -velocity)] {
+            let (gap, time) = towards(case, [body, target], velocity, until);
+            found.gap = found.gap.min(gap / spacing);
+            found.time = found.time.min(time);
+        }
+    }
+    Some(found)
 }
 
-/// The smallest distance (m) of the particles of `body` from where they touch `target`, and the first
-/// time (s) at which one does, moving at `velocity` (m/s); infinite if never.
-fn towards(case: &Case, body: &Body, target: &Body, velocity: Vec3) -> (f64, f64) {
-    let spacing = body.lattice.spacing;
-    let near = TOUCH * spacing;
+/// The smallest distance (m) of the particles of a body from where they touch another, and the first
+/// time (s) at which one does, moving at `velocity` (m/s); infinite if not `until` then (s).
+fn towards(case: &Case, [body, target]: [&Body; 2], velocity: Vec3, until: f64) -> (f64, f64) {
+    let near = TOUCH * body.lattice.spacing;
     let start = nearest(case, body, target, Vec3::zeros());
     let (mut time, mut left) = (0.0, start);
-    let end = last_meeting(case, [body, target], velocity);
     for _ in 0..MOST_STEPS {
         if left <= near {
             return (start, time);
         }
         time += left / velocity.norm();
-        if !(time <= end && time.is_finite()) {
+        if !(time <= until && time.is_finite()) {
             break;
         }
         left = nearest(case, body, target, velocity * time);
@@ -103,20 +116,15 @@ fn nearest(case: &Case, body: &Body, target: &Body, way: Vec3) -> f64 {
     nearest - 0.5 * body.lattice.spacing
 }
 
-/// Until when (s) the boxes of two bodies, of which the first one moves at `velocity` (m/s), are
-/// within some spacings of each other; negative infinity if they never are.
-fn last_meeting(case: &Case, bodies: [&Body; 2], velocity: Vec3) -> f64 {
-    // Shapes reach a little beyond their particles.
-    let spacing = 2.0 * (bodies[0].lattice.spacing + bodies[1].lattice.spacing);
-    let boxes = bodies.map(|body| populate::bounds(body, case.dimension));
-    let [Some((lower, upper)), Some((other_lower, other_upper))] = boxes else {
-        return f64::NEG_INFINITY;
-    };
+/// Until when (s) two boxes, of which the first one moves at `velocity` (m/s), are no farther apart
+/// than `near` (m) along any axis; negative if they never are.
+fn last_meeting(boxes: [Ends; 2], velocity: Vec3, near: f64) -> f64 {
+    let [(lower, upper), (other_lower, other_upper)] = boxes;
     let mut window = [0.0, f64::INFINITY];
-    for a in 0..case.dimension {
+    for a in 0..3 {
         let room = [
-            other_lower[a] - upper[a] - spacing,
-            other_upper[a] - lower[a] + spacing,
+            other_lower[a] - upper[a] - near,
+            other_upper[a] - lower[a] + near,
         ];
         if velocity[a] == 0.0 {
             if room[0] > 0.0 || room[1] < 0.0 {

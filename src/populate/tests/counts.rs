@@ -124,10 +124,11 @@ proptest! {
         (dimension, body) in any_body(),
         planes in any_planes(),
         point in prop::array::uniform3(-2.0..2.0f64),
-        target in 0_usize..3,
+        target in 0_usize..4,
         limit in 0.05..2.0f64,
     ) {
-        let target = [ball(0.4), plate(Axis::Y), shell(1.1, 0.2)][target].clone();
+        let box_ = block([-0.3, -0.2, -0.4], [0.3, 0.5, 0.1]);
+        let target = [ball(0.4), plate(Axis::Y), shell(1.1, 0.2), box_][target].clone();
         let moved = |x: &[f64; 3]| Vec3::from(*x) + Vec3::from(point);
         let value = |x: &[f64; 3]| target.distance(&moved(x), dimension);
         let bound = |l: &[f64; 3], u: &[f64; 3]| {
