@@ -75,6 +75,8 @@ fn bars(folder: &Path, name: &str, case: &str, times: &[f64]) -> PathBuf {
         bodies: vec!["left".to_owned(), "right".to_owned()],
         spacings: vec![1e-4; 2],
         symmetry: Vec::new(),
+        dimension: 1,
+        densities: None,
     };
     for (k, time) in times.iter().enumerate() {
         let path = run.join(format!("snapshots/{k:06}.vtkhdf"));
@@ -359,6 +361,8 @@ fn a_row_of_a_solid_stays_one_row() {
         bodies: vec!["block".to_owned()],
         spacings: vec![1e-3],
         symmetry: Vec::new(),
+        dimension: 3,
+        densities: None,
     };
     write(&path, &about, &particles, 0.0);
     let count = |through: Option<&str>| {
@@ -440,7 +444,7 @@ fn a_front_is_a_table_and_a_picture() {
         let table = std::fs::read_to_string(table).unwrap();
         let lines: Vec<&str> = table.lines().collect();
         let head = format!("time,front_{}", name.replace('-', "_"));
-        assert_eq!(lines[..2], ["# units: s,m", &head]);
+        assert_eq!(lines[..2], ["# units: s,m", head.as_str()]);
         assert_eq!(lines.len(), 4, "{table}");
         let [time, front] = lines[3]
             .split(',')
@@ -483,9 +487,10 @@ fn forces_are_drawn_for_each_pair_or_one() {
     for k in 0..=20 {
         let t = f64::from(k) * 1e-7;
         // One pair presses, one pulls half as much, one does not meet.
-        rows += &format!("{t:e},bumper,sphere,0,0,{}\n", -6000.0 * t / 2e-6);
-        rows += &format!("{t:e},wall,sphere,{},0,0\n", 3000.0 * t / 2e-6);
-        rows += &format!("{t:e},bumper,wall,0,0,0\n");
+        let (push, pull) = (-6000.0 * t / 2e-6, 3000.0 * t / 2e-6);
+        writeln!(rows, "{t:e},bumper,sphere,0,0,{push}").unwrap();
+        writeln!(rows, "{t:e},wall,sphere,{pull},0,0").unwrap();
+        writeln!(rows, "{t:e},bumper,wall,0,0,0").unwrap();
     }
     std::fs::write(&path, rows).unwrap();
     let chart = |pair: Option<[&str; 2]>, y: &str| {

@@ -8,7 +8,7 @@ use super::canvas::{Frame, PAPER, Rgb};
 use super::cells::{Cell, Sample, Tiles};
 use super::layout::View;
 
-/// Samples of a pixel along either axis.
+/// Samples along either axis of a pixel at an edge: an odd number, so that one is in the middle.
 const FINE: usize = 3;
 
 /// Rows of pixels that one task draws.
@@ -30,7 +30,7 @@ pub struct Raster {
 struct Panel<'a, C> {
     tiles: Tiles<'a>,
     view: View,
-    /// Samples in a row, and rows of samples.
+    /// Pixels in a row, and rows of pixels.
     size: [usize; 2],
     /// How far an outline reaches beyond a body (samples).
     line: usize,
@@ -51,7 +51,7 @@ impl Raster {
         let panel = Panel {
             tiles: Tiles::new(cells, view, view.width() / columns.max(1) as f64),
             view,
-            size: [FINE * columns, FINE * rows],
+            size: [columns, rows],
             line: whole(line * FINE as f32).max(1),
             colour,
         };
@@ -74,64 +74,83 @@ impl Raster {
 }
 
 impl<C: Fn(&Sample) -> Rgb> Panel<'_, C> {
-    /// The pixels of some rows, and the bodies in them.
+    /// The pixels of some rows, and the bodies in them. One sample does for a pixel far from edges.
     fn band(&self, rows: Range<usize>) -> (Vec<Rgb>, Vec<usize>) {
         let [columns, height] = self.size;
-        // The rows beside the band may hold what a line is drawn about.
-        let first = (FINE * rows.start).saturating_sub(self.line);
-        let end = height.min(FINE * rows.end + self.line);
-        let samples: Vec<Option<Sample>> = (first..end)
+        let margin = self.line.div_ceil(FINE);
+        let first = rows.start.saturating_sub(margin);
+        let end = height.min(rows.end + margin);
+        let middles: Vec<Option<Sample>> = (first..end)
             .flat_map(|y| (0..columns).map(move |x| (x, y)))
-            .map(|(x, y)| self.tiles.sample(self.place(x, y)))
+            .map(|(x, y)| self.sample(FINE * x + FINE / 2, FINE * y + FINE / 2))
             .collect();
-        let mut seen: Vec<usize> = samples.iter().flatten().map(|s| s.body).collect();
+        let mut seen: Vec<usize> = middles.iter().flatten().map(|s| s.body).collect();
         seen.sort_unstable();
         seen.dedup();
-        let at = |x: usize, y: usize| samples[(y - first) * columns + x];
-        let colour = |x: usize, y: usize| {
-            let own = at(x, y);
-            let steps = [
-                x.saturating_sub(self.line),
-                (x + self.line).min(columns - 1),
-            ];
-            let rows = [
-                y.saturating_sub(self.line).max(first),
-                (y + self.line).min(end - 1),
-            ];
-            let beside = steps
-                .map(|x| at(x, y))
-                .into_iter()
-                .chain(rows.map(|y| at(x, y)));
-            let body = own.map(|s| s.body);
-            if beside.flatten().any(|other| Some(other.body) != body) {
-                OUTLINE
-            } else {
-                own.map_or(PAPER, |sample| (self.colour)(&sample))
-            }
+        let middle = |x: usize, y: usize| middles[(y - first) * columns + x];
+        let even = |x: usize, y: usize| {
+            let own = middle(x, y).map(|s| s.body);
+            let xs = x.saturating_sub(margin)..columns.min(x + margin + 1);
+            let mut ys = y.saturating_sub(margin).max(first)..end.min(y + margin + 1);
+            ys.all(|y| xs.clone().all(|x| middle(x, y).map(|s| s.body) == own))
         };
-        let mut pixels = Vec::with_capacity(rows.len() * columns / FINE);
-        for row in rows {
-            for column in 0..columns / FINE {
-                let mut sum = [0; 3];
-                for k in 0..FINE * FINE {
-                    let fine = colour(FINE * column + k % FINE, FINE * row + k / FINE);
-                    for (sum, part) in sum.iter_mut().zip(fine) {
-                        *sum += usize::from(part);
-                    }
-                }
-                pixels.push(sum.map(mean));
+        let mut pixels = Vec::with_capacity(rows.len() * columns);
+        for y in rows {
+            for x in 0..columns {
+                pixels.push(if even(x, y) {
+                    self.colour(middle(x, y))
+                } else {
+                    self.edge(x, y)
+                });
             }
         }
         (pixels, seen)
     }
 
-    /// The place in the plane of a sample, counted from the upper left corner (m).
-    fn place(&self, x: usize, y: usize) -> [f64; 2] {
-        let share = |k: usize, count: usize| (k as f64 + 0.5) / count as f64;
-        [
+    /// A pixel near the edge of a body, with what is there of the line about it.
+    fn edge(&self, x: usize, y: usize) -> Rgb {
+        let wide = FINE + 2 * self.line;
+        let shifted = |k: usize, pixel: usize, count: usize| {
+            (FINE * pixel + k)
+                .saturating_sub(self.line)
+                .min(FINE * count - 1)
+        };
+        let samples: Vec<Option<Sample>> = (0..wide * wide)
+            .map(|k| {
+                let column = shifted(k % wide, x, self.size[0]);
+                self.sample(column, shifted(k / wide, y, self.size[1]))
+            })
+            .collect();
+        let mut sum = [0; 3];
+        for k in 0..FINE * FINE {
+            let middle = (self.line + k / FINE) * wide + self.line + k % FINE;
+            let body = samples[middle].map(|s| s.body);
+            let along = [middle - self.line, middle + self.line];
+            let across = [middle - self.line * wide, middle + self.line * wide];
+            let mut beside = along.into_iter().chain(across).filter_map(|k| samples[k]);
+            let fine = if beside.any(|other| Some(other.body) != body) {
+                OUTLINE
+            } else {
+                self.colour(samples[middle])
+            };
+            for (sum, part) in sum.iter_mut().zip(fine) {
+                *sum += usize::from(part);
+            }
+        }
+        sum.map(mean)
+    }
+
+    fn colour(&self, sample: Option<Sample>) -> Rgb {
+        sample.map_or(PAPER, |sample| (self.colour)(&sample))
+    }
+
+    /// What is at a fine sample, counted from the upper left corner.
+    fn sample(&self, x: usize, y: usize) -> Option<Sample> {
+        let share = |k: usize, count: usize| (k as f64 + 0.5) / (FINE * count) as f64;
+        self.tiles.sample([
             self.view.x[0] + self.view.width() * share(x, self.size[0]),
             self.view.y[1] - self.view.height() * share(y, self.size[1]),
-        ]
+        ])
     }
 }
 

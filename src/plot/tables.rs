@@ -105,11 +105,11 @@ impl Tables {
         for (k, (name, path)) in self.tables.iter().enumerate() {
             let failed = |reason: String| wrong(path, reason);
             let table = Table::read(path)?;
+            let drawn: Vec<&str> = self.drawn().collect();
+            let all = series(&table, &drawn, self.pair.as_ref()).map_err(failed)?;
             if k == 0 {
                 self.name_axes(&mut chart, &table, path)?;
             }
-            let drawn: Vec<&str> = self.drawn().collect();
-            let all = series(&table, &drawn, self.pair.as_ref()).map_err(failed)?;
             if let (Some(_), [pair]) = (&self.pair, &all[..]) {
                 chart.subtitle.clone_from(&pair.name);
             }
