@@ -3,8 +3,8 @@
 
 # whipple_arguments: sets `words` to those of $WHIPPLE_ARGS, which stands in for arguments under PBS.
 # Words are parted by blanks and taken as they stand: no quotes, no patterns. PBS itself parts the
-# variables of `qsub -v` at commas, so that words with commas or blanks come from a file with one
-# argument a line, as WHIPPLE_ARGS=@FILE.
+# variables of `qsub -v` at commas, so words with commas or blanks come from a file with one argument
+# a line, as WHIPPLE_ARGS=@FILE.
 whipple_arguments() {
     words=()
     # PBS starts jobs in the user's home.
