@@ -2,7 +2,7 @@
 
 mod physics_support;
 
-use physics_support::{inline, run_with, start};
+use physics_support::{inline, ready, run_with, start};
 use whipple::comm::Comm;
 use whipple::step::Simulation;
 
@@ -166,4 +166,42 @@ fn every_pair_force_is_repulsive() {
     assert_eq!(worst.interpenetrated, 0);
     assert!(worst.momentum_error.iter().all(|&e| e < 1e-12));
     assert!(worst.contact_defect < 0.001);
+}
+
+/// `potential` of the range "spacing": bodies laid in touch begin without force and energy, however the
+/// round-off of their places falls, and part with the energy that they had.
+#[test]
+fn a_potential_of_the_spacing_begins_at_rest_and_keeps_energy() {
+    let mode = ["contact.mode=potential", "contact.potential.range=spacing"];
+    let soft = "contact.potential.stiffness=0.03";
+    for (name, spacing, most) in [
+        ("bar-impact", "0.008 cm", 0.001),
+        ("block-impact", "0.04 cm", 0.005),
+        ("elastic-impact", "0.2 mm", 0.002),
+    ] {
+        let spacing = format!("spacing={spacing}");
+        let still = |case| {
+            let s = start(case);
+            let kinetic = s.state.initial.kinetic_energy;
+            assert!(s.state.contact_energy.abs() < 1e-12 * kinetic, "{name}");
+            let force = |a: &[f64; 3]| a.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            let contact = s.store.contact_acceleration.iter().map(force);
+            // That of one spacing within a body under a billionth of its modulus.
+            let case = &s.case;
+            let body = &case.bodies[0];
+            let material = &case.materials[body.material];
+            let unit =
+                material.p_wave_modulus() / (case.initial_density(body) * body.lattice.spacing);
+            let strongest = contact.fold(0.0, f64::max) / unit;
+            assert!(strongest < 1e-9, "{name}: {strongest:e}");
+            s
+        };
+        still(ready(name, &[mode[0], mode[1], &spacing]));
+        let mut s = still(ready(name, &[mode[0], mode[1], soft, &spacing]));
+        run_with(&mut s, f64::INFINITY, |_| {});
+        let worst = &s.state.worst;
+        println!("{name}: {} steps, {worst:?}", s.state.step);
+        assert_eq!(worst.interpenetrated, 0, "{name}");
+        assert!(worst.energy_error < most, "{name}: {}", worst.energy_error);
+    }
 }
