@@ -255,7 +255,7 @@ fn a_line_is_drawn_about_bodies() {
     let picture = picture(&path, "--section y=0");
     let [left, right, ..] = bounds(&picture, FIRST);
     let [.., bottom] = bounds(&picture, SECOND);
-    let middle = (left + right) / 2;
+    let middle = u32::midpoint(left, right);
     let dark = |y: &u32| picture.pixel(middle, *y).unwrap().red() < 140;
     let line = (bottom..bottom + 4)
         .filter(dark)

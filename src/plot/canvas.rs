@@ -132,9 +132,8 @@ impl Canvas {
         let rows = self.pixmap.pixels_mut().chunks_mut(columns);
         let rows = rows.skip(frame.top as usize);
         for (row, colours) in rows.zip(colours.chunks(width.max(1))) {
-            for (pixel, &[r, g, b]) in row[left.min(columns)..].iter_mut().zip(&colours[..room]) {
-                let opaque = PremultipliedColorU8::from_rgba(r, g, b, 255);
-                *pixel = opaque.expect("an opaque colour is premultiplied");
+            for (pixel, &colour) in row[left.min(columns)..].iter_mut().zip(&colours[..room]) {
+                *pixel = opaque(colour);
             }
         }
     }
@@ -305,13 +304,17 @@ fn paint(colour: Rgb) -> Paint<'static> {
 fn blend(pixel: &mut PremultipliedColorU8, colour: Rgb, cover: f32) {
     let mix =
         |old: u8, new: u8| (f32::from(old) * (1.0 - cover) + f32::from(new) * cover).round() as u8;
-    let mixed = PremultipliedColorU8::from_rgba(
+    *pixel = opaque([
         mix(pixel.red(), colour[0]),
         mix(pixel.green(), colour[1]),
         mix(pixel.blue(), colour[2]),
-        255,
-    );
-    *pixel = mixed.expect("an opaque colour is premultiplied");
+    ]);
+}
+
+/// A colour as a pixel holds it.
+fn opaque([red, green, blue]: Rgb) -> PremultipliedColorU8 {
+    PremultipliedColorU8::from_rgba(red, green, blue, 255)
+        .expect("an opaque colour is premultiplied")
 }
 
 #[cfg(test)]

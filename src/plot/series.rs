@@ -81,8 +81,8 @@ pub fn parse_pair(text: &str) -> Option<[String; 2]> {
     (!a.is_empty() && !b.is_empty()).then_some([a, b])
 }
 
-/// A column of numbers; where there is none of this name but NAME_x, NAME_y and NAME_z, the magnitude
-/// of that vector.
+/// A column of numbers; where there is none of this name but three that end in `_x`, `_y` and `_z`,
+/// the magnitude of that vector.
 ///
 /// # Errors
 /// What is wrong, and in which line.
