@@ -9,12 +9,15 @@ const COMMENT: u8 = b'#';
 
 /// Some values as one line with its end; those with commas, quotes or line ends are quoted.
 pub(super) fn line<T: AsRef<[u8]>>(values: impl IntoIterator<Item = T>) -> Vec<u8> {
+    let mut line = Vec::new();
     let mut writer = WriterBuilder::new()
         .comment(Some(COMMENT))
-        .from_writer(Vec::new());
+        .from_writer(&mut line);
     let written = writer.write_record(values);
-    let line = written.map(|()| writer.into_inner());
-    line.expect("memory takes it").expect("memory takes it")
+    let written = written.and_then(|()| Ok(writer.flush()?));
+    written.expect("memory takes it");
+    drop(writer);
+    line
 }
 
 /// The line of units that a table begins with.

@@ -40,6 +40,7 @@ pub fn case() -> Case {
     };
     Case {
         title: "Sphere on plate, ⌀ 0.6 mm".to_owned(),
+        length_unit: whipple::model::readable::Readable::length(1.0),
         dimension: 3,
         materials: Vec::new(),
         bodies: vec![body("sphere", 2e-5), body("plate", 1e-5)],
