@@ -121,7 +121,7 @@ fn what_cannot_be_read_now_or_is_of_another_version_ends_a_restart() {
     assert_refused(&run, &[], 1, &["its columns are not those"]);
     fs::write(&history, table).unwrap();
     let fields = "output.fields=[\"nonsense\"]";
-    assert_refused(&run, &["--set", fields], 2, &["no snapshot field"]);
+    assert_refused(&run, &["--set", fields], 2, &["unknown field `nonsense`"]);
     restart(&run, &[]).with_code(0);
 }
 

@@ -54,12 +54,8 @@ impl Holder {
 
     /// Whether a process with its id lives, if that can be told from `here`.
     fn lives(&self, here: &Self) -> Option<bool> {
-        let id = i32::try_from(self.process).ok()?;
-        // SAFETY: the signal 0 is none; the system only says whether it could be sent.
-        let there = || unsafe { libc::kill(id, 0) } == 0
-            || io::Error::last_os_error().raw_os_error() == Some(libc::EPERM);
         if self.host == here.host {
-            Some(there())
+            Some(is_there(self.process))
         } else if self.job.is_some() && self.job == here.job {
             // A job that its scheduler has begun anew: it ended the first one before.
             Some(false)
@@ -67,6 +63,16 @@ impl Holder {
             None
         }
     }
+}
+
+/// Whether this host has a process of this id.
+fn is_there(process: u32) -> bool {
+    let Ok(id) = i32::try_from(process) else {
+        return false;
+    };
+    // SAFETY: the signal 0 is none; the system only says whether it could be sent.
+    let sent = unsafe { libc::kill(id, 0) } == 0;
+    sent || io::Error::last_os_error().raw_os_error() == Some(libc::EPERM)
 }
 
 impl std::fmt::Display for Holder {

@@ -252,7 +252,7 @@ mod tests {
     fn a_stop_file_is_that_of_an_earlier_run_or_of_this_one() {
         let place = tempfile::tempdir().unwrap();
         let run = RunFolder::at(place.path());
-        write(run.stop());
+        fs::write(run.stop(), "").unwrap();
         let second = std::time::Duration::from_secs(1);
         let written = fs::metadata(run.stop()).unwrap().modified().unwrap();
         run.forget_stop(written - second).unwrap();

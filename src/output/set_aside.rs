@@ -30,7 +30,7 @@ impl SetAside {
     /// [`OutputError::Io`].
     pub(super) fn new(run: &Path) -> Result<Self, OutputError> {
         let all = run.join(SET_ASIDE);
-        let folder = (1..)
+        let folder = (1..=u32::MAX)
             .map(|n| all.join(n.to_string()))
             .find(|path| !path.exists())
             .unwrap_or_default();
@@ -65,7 +65,7 @@ impl SetAside {
             }
             PathBuf::from(name)
         };
-        let place = (1..).map(named).find(|path| !path.exists());
+        let place = (1..=u32::MAX).map(named).find(|path| !path.exists());
         self.rename(path, place.unwrap_or_default())
     }
 
