@@ -169,7 +169,8 @@ fn a_log_tells_the_story_of_a_run() {
         .collect();
     assert!(told[0].starts_with("whipple 0."), "{log}");
     assert!(told[1].starts_with(&begin), "{log}");
-    assert!(told[2].ends_with("snapshots/step-00000000.vtkhdf"), "{log}");
+    assert!(told[2].starts_with("set up in "), "{log}");
+    assert!(told[3].ends_with("snapshots/step-00000000.vtkhdf"), "{log}");
     assert!(
         told.iter().any(|line| line.starts_with("checkpoint ")),
         "{log}"

@@ -228,11 +228,14 @@ mod tests {
             visits::of(|| {
                 let case = quarter(spacing);
                 let told = (input::warnings(&case), input::approaches(&case));
-                (told, of_rank(&case, &solo, 64))
+                (told, of_rank(&case, &solo, 10_000))
             })
         };
         let visits = ["0.01mm", "0.005mm", "0.0025mm"].map(all_of);
         assert!(visits.is_sorted_by(|a, b| *b < 5 * a), "{visits:?}");
+        // A billion particles.
+        let most = all_of("0.00073mm");
+        assert!(most < 2_000_000, "{most} rows");
     }
 
     /// Slabs and halos are those of a walk along the sites.
