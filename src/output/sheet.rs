@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn comments_and_blank_lines_count_as_lines() {
-        let text = "# measured\r\n\r\na, b\r\n# more\r\n\r\n 1 , \"2\" \r\n  \r\n3\r\n";
+        let text = "# measured\r\n\r\na, b\r\n# more\r\n\r\n 1 ,\"2\"\r\n  \r\n3\r\n";
         let sheet = Sheet::parse(text).unwrap();
         let rows = [(6, vec!["1", "2"]), (8, vec!["3"])];
         let rows = rows.map(|(line, cells)| (line, cells.into_iter().map(str::to_owned).collect()));
