@@ -156,10 +156,7 @@ fn fast_surfaces_are_seen() {
 /// Two bodies in touch, one of which has lost a particle that is at `z` spacings and flies with
 /// `speed` (m/s) along z: whether flight limits one of the next steps.
 fn is_limited(z: f64, speed: f64) -> bool {
-    let bodies = vec![
-        ball("target", 0.0, 3.0, 0.0),
-        ball("other", 6.0, 3.0, 0.0),
-    ];
+    let bodies = vec![ball("target", 0.0, 3.0, 0.0), ball("other", 6.0, 3.0, 0.0)];
     let mut s = start(soft(bodies));
     let of_target = s.store.body.iter().position(|&body| body == 0);
     let i = of_target.expect("a particle");
