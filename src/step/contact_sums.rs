@@ -216,14 +216,12 @@ pub(super) fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
 pub(super) struct Meetings {
     /// By [`pair_key`], in that order.
     pairs: Vec<(usize, PairExtremes)>,
-    limbs: Vec<i64>,
     words: Vec<u64>,
 }
 
 impl Meetings {
     pub fn memory(&self) -> usize {
-        size_of::<(usize, PairExtremes)>() * self.pairs.capacity()
-            + 8 * (self.limbs.capacity() + self.words.capacity())
+        size_of::<(usize, PairExtremes)>() * self.pairs.capacity() + 8 * self.words.capacity()
     }
 
     fn keys(&self) -> impl Iterator<Item = usize> {

@@ -78,7 +78,8 @@ impl Flight {
             + size_of::<[Option<[f64; 2]>; 3]>() * self.prescribed.capacity()
     }
 
-    /// Joins `sets` spans over all particles and ranks, to which `book` adds a particle. Collective.
+    /// Joins `sets` spans over all particles and ranks, to which `book` adds a particle, into the first
+    /// of `parts`. Collective.
     fn join(
         &mut self,
         comm: &Comm,
@@ -110,11 +111,6 @@ impl Flight {
         for (span, words) in all[0].iter_mut().zip(self.words.chunks_exact(Span::WORDS)) {
             *span = Span::read(words);
         }
-    }
-
-    /// The spans of [`Self::join`].
-    fn joined(&self) -> &[Span] {
-        &self.parts[0]
     }
 
     /// Keeps the meetings that limit a step `dt` (s); gives the longest step that they allow.
@@ -227,25 +223,7 @@ impl Simulation {
             }
         });
         flight.sides.resize_with(bodies, Vec::new);
-        let mut meetings = std::mem::take(&mut flight.meetings);
-        meetings.clear();
-        let spans = flight.joined();
-        for a in 0..bodies {
-            for b in a + 1..bodies {
-                if self.contact.foreign.class[a * bodies + b] == ContactClass::None {
-                    continue;
-                }
-                let meet = |code| Meeting {
-                    bodies: [a, b],
-                    code,
-                    h: self.contact.pair(a, b).h,
-                    spans: [spans[a], spans[b]],
-                };
-                let all = std::iter::once(0).chain(mirrors.codes()).map(meet);
-                meetings.extend(all.filter(|meeting| meeting.longest_step(&mirrors) < dt));
-            }
-        }
-        flight.meetings = meetings;
+        self.pair_bodies(flight, dt);
         let mut longest = flight.sift(&mirrors, dt);
         for _ in 0..ROUNDS {
             if flight.meetings.is_empty() {
@@ -276,6 +254,28 @@ impl Simulation {
         }
         flight.prescribed = prescribed;
         longest
+    }
+
+    /// Lists the bodies that limit a step `dt` (s), given what each of them spans.
+    fn pair_bodies(&self, flight: &mut Flight, dt: f64) {
+        let (mirrors, bodies) = (*self.halo.mirrors(), self.case.bodies.len());
+        let (spans, meetings) = (&flight.parts[0], &mut flight.meetings);
+        meetings.clear();
+        for a in 0..bodies {
+            for b in a + 1..bodies {
+                if self.contact.foreign.class[a * bodies + b] == ContactClass::None {
+                    continue;
+                }
+                let meet = |code| Meeting {
+                    bodies: [a, b],
+                    code,
+                    h: self.contact.pair(a, b).h,
+                    spans: [spans[a], spans[b]],
+                };
+                let all = std::iter::once(0).chain(mirrors.codes()).map(meet);
+                meetings.extend(all.filter(|meeting| meeting.longest_step(&mirrors) < dt));
+            }
+        }
     }
 
     /// The same of this rank's particles that fly towards rigid surfaces.

@@ -66,7 +66,7 @@ impl Simulation {
         self.book_loads(dt, true);
         self.book_plane_force(dt);
         self.store.resize_halo(0);
-        let _ = self.half_kick(dt, Goal::Middle);
+        self.half_kick(dt, Goal::Middle);
         self.drift_with_neighbours(dt);
         self.drift_stress_points(dt);
         self.fold_at_planes();

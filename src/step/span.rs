@@ -49,8 +49,12 @@ impl Span {
     }
 
     pub fn join(&mut self, other: &Self) {
-        self.add(&other.lower, &other.slowest);
-        self.add(&other.upper, &other.fastest);
+        for a in 0..3 {
+            self.lower[a] = self.lower[a].min(other.lower[a]);
+            self.upper[a] = self.upper[a].max(other.upper[a]);
+            self.slowest[a] = self.slowest[a].min(other.slowest[a]);
+            self.fastest[a] = self.fastest[a].max(other.fastest[a]);
+        }
     }
 
     /// Takes in that velocities along an axis may be anything in a range (m/s).
@@ -61,6 +65,9 @@ impl Span {
 
     /// Its image behind planes.
     pub fn reflected(&self, mirrors: &Mirrors, code: u8) -> Self {
+        if self.is_empty() {
+            return *self;
+        }
         let at = |x: &[f64; 3]| mirrors.reflect_position(x, code);
         let flying = |v: &[f64; 3]| Mirrors::reflect_vector(v, code);
         let mut image = Self::NONE;
@@ -217,5 +224,9 @@ mod tests {
         let mut none = Vec::new();
         Span::NONE.write(&mut none);
         assert!(Span::read(&none).is_empty());
+        both.join(&Span::NONE);
+        assert_eq!(Span::read(&least), both);
+        let mirrors = Mirrors::default();
+        assert!(Span::NONE.reflected(&mirrors, 1).is_empty());
     }
 }
