@@ -240,6 +240,7 @@ mod tests {
 
     /// Slabs and halos are those of a walk along the sites.
     #[test]
+    #[allow(clippy::cast_precision_loss, reason = "counts of thousands")]
     fn the_fullest_rank_is_that_of_a_walk() {
         let case = quarter("0.02mm");
         let mut x: Vec<f64> = Vec::new();

@@ -192,6 +192,7 @@ impl Stack {
     }
 
     /// Box around the sites of a block of indices `first..end` (m).
+    #[allow(clippy::cast_precision_loss)] // as above
     pub fn block(&self, first: [u64; 3], end: [u64; 3]) -> ([f64; 3], [f64; 3]) {
         let [i, j, k] = [0, 1, 2].map(|a| [first[a], end[a] - 1]);
         let mut lower = [f64::INFINITY; 3];

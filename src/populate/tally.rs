@@ -110,14 +110,14 @@ pub fn tally(
             }
         }
         if !is_along_x {
-            columns
-                .iter_mut()
-                .for_each(|c| c.tell(&stack, axis, &mut add));
+            for columns in &mut columns {
+                columns.tell(&stack, axis, &mut add);
+            }
         }
     }
-    columns
-        .iter_mut()
-        .for_each(|c| c.tell(&stack, axis, &mut add));
+    for columns in &mut columns {
+        columns.tell(&stack, axis, &mut add);
+    }
 }
 
 /// Sites by their index in rows that have the same coordinates.
