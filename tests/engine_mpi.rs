@@ -516,7 +516,7 @@ fn wait_for_the_last(comm: &Comm) {
             } else {
                 let (start, before) = (Instant::now(), waited());
                 call(comm);
-                told += waited() - before;
+                told += waited().saturating_sub(before);
                 all += start.elapsed();
             }
         }
@@ -541,7 +541,7 @@ fn waiting_is_no_work(comm: &Comm) {
     for _ in 0..12 {
         simulation.advance(comm).unwrap();
     }
-    let waited = (waited() - before).as_secs_f64();
+    let waited = waited().saturating_sub(before).as_secs_f64();
     let all: f64 = simulation.timers.report().map(|(_, seconds)| seconds).sum();
     let busy = simulation.timers.busy();
     // A little time passes between steps, in which nobody waits.
