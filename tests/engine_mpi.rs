@@ -477,8 +477,11 @@ fn slower_ranks_get_less_work() {
     on_each("slower_ranks_get_less_work", &[1, 2, 3], balance_paces);
 }
 
+/// Its name and a call of all ranks.
+type Call = (&'static str, fn(&Comm));
+
 /// What all ranks but the last wait in for it.
-const CALLS: &[(&str, fn(&Comm))] = &[
+const CALLS: &[Call] = &[
     ("barrier", Comm::barrier),
     ("sum", |comm| comm.sum_u64(&mut [1])),
     ("any", |comm| assert!(!comm.any(false))),
