@@ -477,8 +477,11 @@ fn slower_ranks_get_less_work() {
     on_each("slower_ranks_get_less_work", &[1, 2, 3], balance_paces);
 }
 
+/// Its name and a call of all ranks.
+type Call = (&'static str, fn(&Comm));
+
 /// What all ranks but the last wait in for it.
-const CALLS: &[(&str, fn(&Comm))] = &[
+const CALLS: &[Call] = &[
     ("barrier", Comm::barrier),
     ("sum", |comm| comm.sum_u64(&mut [1])),
     ("any", |comm| assert!(!comm.any(false))),
@@ -516,7 +519,7 @@ fn wait_for_the_last(comm: &Comm) {
             } else {
                 let (start, before) = (Instant::now(), waited());
                 call(comm);
-                told += waited() - before;
+                told += waited().saturating_sub(before);
                 all += start.elapsed();
             }
         }
@@ -541,7 +544,7 @@ fn waiting_is_no_work(comm: &Comm) {
     for _ in 0..12 {
         simulation.advance(comm).unwrap();
     }
-    let waited = (waited() - before).as_secs_f64();
+    let waited = waited().saturating_sub(before).as_secs_f64();
     let all: f64 = simulation.timers.report().map(|(_, seconds)| seconds).sum();
     let busy = simulation.timers.busy();
     // A little time passes between steps, in which nobody waits.

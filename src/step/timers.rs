@@ -79,7 +79,7 @@ impl Timers {
         self.seconds[phase as usize] += seconds;
         // How long files take says nothing of the particles, and HDF5 waits for others by itself.
         if phase != Phase::Output {
-            self.busy += seconds - (self.waited - waited).as_secs_f64();
+            self.busy += seconds - self.waited.saturating_sub(waited).as_secs_f64();
         }
     }
 
