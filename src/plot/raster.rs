@@ -77,7 +77,8 @@ impl<C: Fn(&Sample) -> Rgb> Panel<'_, C> {
     /// The pixels of some rows, and the bodies in them. One sample does for a pixel far from edges.
     fn band(&self, rows: Range<usize>) -> (Vec<Rgb>, Vec<usize>) {
         let [columns, height] = self.size;
-        let margin = self.line.div_ceil(FINE);
+        // A sample of the line about a pixel may lie in the one beside that of its middle.
+        let margin = (self.line + FINE / 2).div_ceil(FINE);
         let first = rows.start.saturating_sub(margin);
         let end = height.min(rows.end + margin);
         let middles: Vec<Option<Sample>> = (first..end)
