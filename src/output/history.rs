@@ -152,32 +152,33 @@ impl Table {
     }
 }
 
-/// The bytes of those `rows` whose number in column `key` is at most `last`, without a half-written
-/// row at the end; or the number of the first row that is wrong.
+/// The bytes of those `rows` whose number in column `key` is at most `last`; or the number of the first
+/// row that is wrong and has one of those after it. What is wrong at the end was half written, or is
+/// what a power cut leaves.
 fn keep(rows: &[u8], columns: usize, key: usize, last: f64) -> Result<Vec<u8>, usize> {
     let mut kept = Vec::new();
     let mut reader = sheet::rows(rows);
     let mut record = ByteRecord::new();
-    let mut begin = 0;
+    let (mut begin, mut wrong) = (0, None);
     for number in 1_usize.. {
         if !reader.read_byte_record(&mut record).map_err(|_| number)? {
             break;
         }
         let end = usize::try_from(reader.position().byte()).unwrap_or(rows.len());
-        let is_last = end == rows.len();
         let row = &rows[begin..end];
+        begin = end;
         // A quote that is still open has swallowed the end of the line.
         let closed = (row.iter()).fold(true, |closed, byte| closed ^ (*byte == b'"'));
         let whole = record.len() == columns && row.ends_with(b"\n") && closed;
-        if is_last && !whole {
-            break;
+        let value = record.get(key).filter(|_| whole);
+        match value.and_then(|value| std::str::from_utf8(value).ok()?.parse::<f64>().ok()) {
+            None => wrong = wrong.or(Some(number)),
+            Some(value) if value > last => {}
+            Some(_) => match wrong {
+                Some(number) => return Err(number),
+                None => kept.extend_from_slice(row),
+            },
         }
-        let value = record.get(key).filter(|_| record.len() == columns);
-        let value = value.and_then(|value| std::str::from_utf8(value).ok()?.parse::<f64>().ok());
-        if value.ok_or(number)? <= last {
-            kept.extend_from_slice(row);
-        }
-        begin = end;
     }
     Ok(kept)
 }
@@ -292,6 +293,10 @@ mod tests {
             error.to_string().contains("row 2 has not 3 values"),
             "{error}"
         );
+        // What a power cut leaves after the last row that is kept.
+        fs::write(&path, format!("{whole}\0\0\0\n4,0.5\n")).unwrap();
+        Table::resume(&path, &columns(), "step", 3.0).unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), whole);
     }
 
     #[test]
