@@ -1,6 +1,6 @@
 //! The scalar state of a run: what a step reads before it writes it, beside the particles.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::contact_sums::{PairSums, least};
 use super::trouble::Removed;
@@ -209,7 +209,8 @@ pub struct RunState {
     pub step: u64,
     /// Time (s).
     pub time: f64,
-    /// The next time step by vote (s); the end of the case may clip it.
+    /// The next time step by vote (s), infinite where nobody votes; the end of the case may clip it.
+    #[serde(deserialize_with = "step_or_none")]
     pub dt: f64,
     /// What limits it.
     pub dt_reason: Reason,
@@ -254,6 +255,11 @@ pub struct RunState {
     pub removed_contact_energy: f64,
     /// Largest values over the run.
     pub worst: Worst,
+}
+
+/// Reads an infinite step, for which JSON has `null` alone.
+fn step_or_none<'a, D: Deserializer<'a>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or(f64::INFINITY))
 }
 
 impl RunState {
@@ -312,4 +318,23 @@ pub struct Worst {
     pub foreign_fraction: f64,
     /// Steps that the contact criterion limited.
     pub contact_limited_steps: u64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_that_nobody_limits_is_read_again() {
+        #[derive(Serialize, Deserialize)]
+        struct Step {
+            #[serde(deserialize_with = "step_or_none")]
+            dt: f64,
+        }
+        for dt in [f64::INFINITY, 1.0 / 3.0] {
+            let text = serde_json::to_string(&Step { dt }).unwrap();
+            let read: Step = serde_json::from_str(&text).unwrap();
+            assert_eq!(read.dt.to_bits(), dt.to_bits());
+        }
+    }
 }
