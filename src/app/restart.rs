@@ -54,7 +54,12 @@ pub fn run(args: &RestartArgs) -> u8 {
         if let Err(error) = input::output_and_run_only(&args.set) {
             return complain(comm, &error.to_string());
         }
-        match find(comm, &args.from).and_then(|found| read(comm, &args.from, found)) {
+        let found = find(comm, &args.from).and_then(|found| {
+            // The store of particles has work for them as soon as a checkpoint is read.
+            launch.start_threads(&args.common);
+            read(comm, &args.from, found)
+        });
+        match found {
             Ok(found) => resume(launch, args, found),
             Err(error) => complain(comm, &format!("error: {error}")),
         }
@@ -168,7 +173,6 @@ fn go_on(
     found: Found,
     folder: &RunFolder,
 ) -> u8 {
-    launch.start_threads(&args.common);
     let comm = launch.comm;
     let (step, time) = (state.step, state.time);
     let passed = found.passed_over.iter();
