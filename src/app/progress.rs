@@ -180,7 +180,7 @@ mod tests {
     #[test]
     fn no_time_is_told_before_it_is_known() {
         assert_eq!(left(Duration::ZERO), "");
-        assert_eq!(left(Duration::from_secs(90)), "  90s left");
+        assert_eq!(left(Duration::from_secs(30)), "  30s left");
     }
 
     #[test]

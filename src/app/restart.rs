@@ -71,7 +71,12 @@ pub fn run(args: &RestartArgs) -> u8 {
             Err(error) => return refused(error),
         };
         let listed = find(comm, &named).map_err(|error| refusal(&error));
-        match listed.and_then(|listed| read(comm, &args.from, named, listed)) {
+        let found = listed.and_then(|listed| {
+            // The store of particles has work for them as soon as a checkpoint is read.
+            launch.start_threads(&args.common);
+            read(comm, &args.from, named, listed)
+        });
+        match found {
             Ok(found) => resume(launch, args, found, lock.as_ref()),
             Err(message) => complain(comm, &message),
         }
@@ -288,7 +293,6 @@ fn go_on(
     found: Found,
     mut warnings: Vec<String>,
 ) -> u8 {
-    launch.start_threads(&args.common);
     let comm = launch.comm;
     let folder = &found.named.folder;
     warnings.extend(found.tell_passed_over());
