@@ -54,7 +54,7 @@ fn bounds(picture: &Pixmap, colour: [u8; 3]) -> [u32; 4] {
 }
 
 /// Particles of one body.
-fn body(number: u16, points: impl IntoIterator<Item = [f64; 3]>) -> Particles {
+fn body(number: u32, points: impl IntoIterator<Item = [f64; 3]>) -> Particles {
     let points: Vec<_> = points.into_iter().collect();
     Particles {
         body: vec![number; points.len()],

@@ -256,9 +256,12 @@ fn resume(launch: &Launch, args: &RestartArgs, found: Found, lock: Option<&RunLo
     }
     let read = serde_json::from_str::<RunState>(&restored.state).map_err(|e| e.to_string());
     let at = (restored.step, restored.time.to_bits());
-    let state = read.and_then(|state| match (state.step, state.time.to_bits()) == at {
-        true => Ok(state),
-        false => Err("it is of another step or time".to_owned()),
+    let state = read.and_then(|state| {
+        if (state.step, state.time.to_bits()) == at {
+            Ok(state)
+        } else {
+            Err("it is of another step or time".to_owned())
+        }
     });
     let state = match state {
         Ok(state) => state,

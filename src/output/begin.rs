@@ -345,7 +345,7 @@ mod tests {
         assert_eq!(run.set_aside_folder(), None);
 
         let damaged = run.checkpoints().join("step-00000006");
-        drop(resume(&[damaged.clone()]));
+        drop(resume(std::slice::from_ref(&damaged)));
         let [there] = &checkpoint::list_damaged(&run.checkpoints()).unwrap()[..] else {
             panic!()
         };

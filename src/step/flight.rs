@@ -146,7 +146,9 @@ impl Flyers<'_> {
             let ranges = &self.prescribed[bits.trailing_zeros() as usize];
             bits &= bits - 1;
             for (a, range) in ranges.iter().enumerate() {
-                range.iter().for_each(|&range| point.widen(a, range));
+                if let Some(range) = *range {
+                    point.widen(a, range);
+                }
             }
         }
         point
@@ -178,7 +180,9 @@ impl Simulation {
         flight.prescribed.extend(prescribed(&self.case, from, to));
         for ranges in &flight.prescribed {
             for (a, range) in ranges.iter().enumerate() {
-                range.iter().for_each(|&range| all.widen(a, range));
+                if let Some(range) = *range {
+                    all.widen(a, range);
+                }
             }
         }
         let mirrors = *self.halo.mirrors();
