@@ -228,8 +228,13 @@ impl Meetings {
         self.pairs.iter().map(|pair| pair.0)
     }
 
+    /// Where a pair stands, or would.
+    fn place(&self, key: usize) -> Result<usize, usize> {
+        self.pairs.binary_search_by_key(&key, |pair| pair.0)
+    }
+
     fn has(&self, key: usize) -> bool {
-        self.pairs.binary_search_by_key(&key, |pair| pair.0).is_ok()
+        self.place(key).is_ok()
     }
 
     /// How many pairs have met on this rank of which not all ranks know.
@@ -278,10 +283,12 @@ impl Meetings {
         self.pairs.sort_unstable_by_key(|pair| pair.0);
     }
 
-    /// Keeps the extremes of a step.
+    /// Keeps the extremes of a step. Not all that have met need be near each other now.
     pub fn note(&mut self, book: &PairBook) {
-        for ((_, extremes), (_, sums)) in self.pairs.iter_mut().zip(book.iter()) {
-            extremes.join(&sums.extremes);
+        for (key, sums) in book.iter() {
+            if let Ok(at) = self.place(key) {
+                self.pairs[at].1.join(&sums.extremes);
+            }
         }
     }
 
