@@ -103,8 +103,8 @@ impl Case {
     /// Initial density of a body (kg/m³).
     #[must_use]
     pub fn initial_density(&self, body: &Body) -> f64 {
-        let reference = self.materials[body.material].reference_density;
-        body.density.unwrap_or(reference)
+        let reference = || self.materials[body.material].reference_density;
+        body.density.unwrap_or_else(reference)
     }
 
     /// Initial specific energy of a body (J/kg).

@@ -53,9 +53,11 @@ impl RunFolder {
         let mut lock = None;
         on_root(comm, || {
             let path = &self.path;
+            let new = !path.exists();
             fs::create_dir_all(path).map_err(OutputError::io("create the folder", path))?;
             if self.is_empty()? || Self::is_run(path) {
-                lock = Some(RunLock::take(path, ignore)?);
+                let taken = RunLock::take(path, ignore)?;
+                lock = Some(if new { taken.of_new_folder() } else { taken });
             }
             // Another run may have begun and ended here before the lock was taken.
             self.refuse(force)

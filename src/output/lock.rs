@@ -132,6 +132,8 @@ fn judge(refused: Option<&TryLockError>, holder: Option<Holder>, here: &Holder) 
 pub struct RunLock {
     path: PathBuf,
     file: File,
+    /// Whether the folder goes as well if nothing is in it.
+    of_new: bool,
     /// What the user should know of it.
     pub warnings: Vec<String>,
 }
@@ -187,16 +189,28 @@ impl RunLock {
         Ok(Self {
             path,
             file,
+            of_new: false,
             warnings,
         })
+    }
+
+    /// The same lock of a folder that was made for it.
+    pub(super) fn of_new_folder(mut self) -> Self {
+        self.of_new = true;
+        self
     }
 }
 
 impl Drop for RunLock {
-    /// Removes the file, if it is still this process's, and with it the lock.
+    /// Removes the file, if it is still this process's, and with it the lock; and a folder that was
+    /// made for a run which then did not begin.
     fn drop(&mut self) {
         if is_at(&self.file, &self.path) {
             let _ = fs::remove_file(&self.path);
+            if let Some(folder) = self.path.parent().filter(|_| self.of_new) {
+                // Refused where something is in it.
+                let _ = fs::remove_dir(folder);
+            }
         }
     }
 }

@@ -32,7 +32,7 @@ pub fn case() -> Case {
             spacing,
             angle: 0.0,
         },
-        density: None,
+        density: Some(2785.0),
         specific_energy: None,
         velocity: Vec3::zeros(),
         rigid: None,
