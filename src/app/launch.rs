@@ -20,7 +20,7 @@ pub struct Launch<'a> {
     pub comm: &'a Comm,
     /// When the program started.
     pub start: Instant,
-    /// When MPI and the threads had started.
+    /// When MPI had started.
     pub ready: Instant,
     /// The same by the clock of files.
     pub began: SystemTime,
