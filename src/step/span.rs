@@ -40,11 +40,14 @@ impl Span {
     /// Takes a particle in.
     #[inline(always)]
     pub fn add(&mut self, x: &[f64; 3], v: &[f64; 3]) {
+        // Plain comparisons are one instruction each; `min` and `max` look for what is no number.
+        let least = |least: f64, x: f64| if x < least { x } else { least };
+        let most = |most: f64, x: f64| if x > most { x } else { most };
         for a in 0..3 {
-            self.lower[a] = self.lower[a].min(x[a]);
-            self.upper[a] = self.upper[a].max(x[a]);
-            self.slowest[a] = self.slowest[a].min(v[a]);
-            self.fastest[a] = self.fastest[a].max(v[a]);
+            self.lower[a] = least(self.lower[a], x[a]);
+            self.upper[a] = most(self.upper[a], x[a]);
+            self.slowest[a] = least(self.slowest[a], v[a]);
+            self.fastest[a] = most(self.fastest[a], v[a]);
         }
     }
 
