@@ -58,16 +58,30 @@ impl Outset {
         all
     }
 
+    /// Particles of each body. The processes of `comm` share the lattice rows among them.
+    /// Collective.
+    #[must_use]
+    pub fn counts(case: &Case, comm: &Comm) -> Vec<u64> {
+        let share = share_of(comm);
+        let (dimension, planes) = (case.dimension, &case.symmetry);
+        let of_body = |body| {
+            let mut particles = 0;
+            // Along z, layers that are alike are counted at once.
+            populate::tally(body, dimension, planes, 2, share, |_, n| particles += n);
+            particles
+        };
+        let mut counts: Vec<u64> = case.bodies.iter().map(of_body).collect();
+        comm.sum_u64(&mut counts);
+        counts
+    }
+
     /// Counts the particles between planes that are fine enough for slabs of so many ranks. The
     /// processes of `comm` share the lattice rows among them and count their own; what they have is
     /// still to be summed.
     pub fn count(&self, case: &Case, comm: &Comm, ranks: usize, histogram: &mut Histogram) {
         let (lower, upper) = Self::join(self.boxes.iter().copied());
         histogram.reset(lower[self.axis], upper[self.axis], ranks);
-        let share = Share {
-            part: comm.rank(),
-            parts: comm.size(),
-        };
+        let share = share_of(comm);
         let (dimension, planes) = (case.dimension, &case.symmetry);
         for body in &case.bodies {
             populate::tally(body, dimension, planes, self.axis, share, |x, count| {
@@ -83,5 +97,13 @@ impl Outset {
         }
         self.count(case, comm, comm.size(), histogram);
         Slabs::new(self.axis, histogram.split(comm, &Paces::default()))
+    }
+}
+
+/// The lattice rows that a process counts.
+fn share_of(comm: &Comm) -> Share {
+    Share {
+        part: comm.rank(),
+        parts: comm.size(),
     }
 }

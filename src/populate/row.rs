@@ -125,13 +125,27 @@ impl Row {
     /// Drops the sites that a cut does not leave.
     fn cut(&mut self, stack: &Stack, cut: &Cut) {
         let at = |i| stack.position(i, self.j, self.k)[cut.axis];
-        if stack.step(self.j)[cut.axis] > 0.0 {
-            self.first = partition(self.range(), |i| cut.is_below(at(i)));
-            self.end = partition(self.range(), |i| !cut.is_above(at(i)));
+        let step = stack.step(self.j)[cut.axis];
+        // Rings are cut at angles, whose steps are not lengths.
+        let index = |bound: f64| {
+            if stack.has_rings() {
+                f64::NAN
+            } else {
+                (bound - at(0)) / step
+            }
+        };
+        let (first, last) = if step > 0.0 {
+            (index(cut.lower), index(cut.upper))
         } else {
-            self.first = partition(self.range(), |i| cut.is_above(at(i)));
-            self.end = partition(self.range(), |i| !cut.is_below(at(i)));
-        }
+            (index(cut.upper), index(cut.lower))
+        };
+        let (left, right) = if step > 0.0 {
+            (Cut::is_below as fn(&Cut, f64) -> bool, Cut::is_above as _)
+        } else {
+            (Cut::is_above as _, Cut::is_below as fn(&Cut, f64) -> bool)
+        };
+        self.first = partition_near(first, self.range(), |i| left(cut, at(i)));
+        self.end = partition_near(last, self.range(), |i| !right(cut, at(i)));
     }
 }
 
@@ -226,6 +240,25 @@ impl Line<'_> {
             end -= 1;
         }
         first..end
+    }
+}
+
+/// [`partition`] where a formula says nearly where that index is, or nothing.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a float cast saturates
+fn partition_near(guess: f64, range: Range<u64>, before: impl Fn(u64) -> bool) -> u64 {
+    let Range { start, end } = range;
+    if guess.is_nan() || start >= end {
+        return partition(range, before);
+    }
+    let guess = guess as u64;
+    let low = guess.saturating_sub(1).clamp(start, end);
+    let high = guess.saturating_add(3).clamp(start, end);
+    let is_in_front = low == start || before(low - 1);
+    let is_behind = high == end || !before(high);
+    if is_in_front && is_behind {
+        (low..high).find(|&i| !before(i)).unwrap_or(high)
+    } else {
+        partition(range, before)
     }
 }
 

@@ -11,26 +11,28 @@ use super::simulation::{Simulation, StepError};
 use super::trouble::TroubleKind;
 use super::vector::square;
 use crate::comm::Comm;
-use crate::model::{Case, Trouble};
+use crate::domain::Outset;
+use crate::model::{Body, Case, Trouble};
 use crate::populate;
 
 /// What is allowed to what is at rest, over `½ m U²` with the speed U that is natural to the case.
 const ROUNDING: f64 = 1e-9;
 
-/// `½ m c² (ρ/ρ₀ − 1)²` of all bodies, and what rounding may do (J).
-pub(super) fn hidden_energy(case: &Case) -> f64 {
+/// `½ m c² (ρ/ρ₀ − 1)²` of all bodies, and what rounding may do (J). Collective.
+pub(super) fn hidden_energy(case: &Case, comm: &Comm) -> f64 {
     let natural = Trouble::natural_speed(case);
-    let of_body = |body: &crate::model::Body| {
+    let of_body = |(body, count): (&Body, &u64)| {
         let material = &case.materials[body.material];
         let (density, reference) = (case.initial_density(body), material.reference_density);
         #[allow(clippy::cast_precision_loss, reason = "an estimate")]
-        let count = populate::count(body, case.dimension, &case.symmetry, None) as f64;
-        let mass = count * density * populate::particle_volume(body, case.dimension);
+        let mass = *count as f64 * density * populate::particle_volume(body, case.dimension);
         let strain = density / reference - 1.0;
         let square = strain * strain * material.p_wave_modulus() / reference;
         0.5 * mass * (square + ROUNDING * natural * natural)
     };
-    let deforming = case.bodies.iter().filter(|body| body.rigid.is_none());
+    let counts = Outset::counts(case, comm);
+    let bodies = case.bodies.iter().zip(&counts);
+    let deforming = bodies.filter(|(body, _)| body.rigid.is_none());
     deforming.map(of_body).sum()
 }
 

@@ -161,7 +161,7 @@ impl Simulation {
             unordered: true,
             crossed: Vec::new(),
             reference_h: case.bodies.iter().map(|b| b.smoothing_length).collect(),
-            limits: Limits::new(&case),
+            limits: Limits::new(&case, comm),
             flight: Flight::new(&contact),
             votes: VecDeque::with_capacity(PAST_VOTES),
             contact,

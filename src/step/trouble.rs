@@ -98,7 +98,8 @@ pub(super) struct Limits {
 }
 
 impl Limits {
-    pub(super) fn new(case: &Case) -> Self {
+    /// Of a case. Collective.
+    pub(super) fn new(case: &Case, comm: &Comm) -> Self {
         let limits = &case.trouble;
         let range = |body| {
             let first = case.initial_density(body);
@@ -110,7 +111,7 @@ impl Limits {
             speed2_max: limits.speed_max * limits.speed_max,
             energy_max: limits.energy_max,
             step_min: limits.step_min,
-            hidden_energy: gain::hidden_energy(case),
+            hidden_energy: gain::hidden_energy(case, comm),
             common_density: density.iter().fold([f64::MIN, f64::MAX], common),
             density,
         }
