@@ -9,6 +9,8 @@ pub mod input;
 pub mod model;
 pub mod populate;
 
+pub mod numerics;
+
 pub mod material;
 pub mod particles;
 

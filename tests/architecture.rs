@@ -19,6 +19,7 @@ const ROOMS: &[&str] = &[
     "input",
     "model",
     "populate",
+    "numerics",
     "material",
     "particles",
     "comm",
@@ -63,6 +64,26 @@ const WALLS: &[(&str, &[&str])] = &[
         ],
     ),
     ("populate", &["comm", "output", "input", "step"]),
+    (
+        "numerics",
+        &[
+            "input",
+            "model",
+            "populate",
+            "material",
+            "particles",
+            "comm",
+            "domain",
+            "neighbours",
+            "contact",
+            "sph",
+            "step",
+            "diagnose",
+            "output",
+            "exact",
+            "plot",
+        ],
+    ),
     (
         "material",
         &[
@@ -129,6 +150,7 @@ const CALLERS_OF_COMM: &[&str] = &["app", "domain", "step", "output", "diagnose"
 
 /// Rooms whose results must have the same bits on any ranks, threads and hosts.
 const PHYSICS: &[&str] = &[
+    "numerics",
     "populate",
     "material",
     "particles",
@@ -143,6 +165,7 @@ const PHYSICS: &[&str] = &[
 
 /// Physics rooms that have no business with clocks at all (`step` times its phases).
 const TIMELESS: &[&str] = &[
+    "numerics",
     "populate",
     "material",
     "particles",

@@ -13,8 +13,8 @@ use common::random::Random;
 use whipple::comm::Comm;
 use whipple::input;
 use whipple::model::Case;
+use whipple::numerics::dispatch::available;
 use whipple::particles::SCRATCH_WORDS;
-use whipple::sph::dispatch::available;
 use whipple::step::Simulation;
 
 const STEPS: usize = 40;

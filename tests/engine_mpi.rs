@@ -14,8 +14,7 @@ use common::sentinel::{id, mix, sentinel};
 use whipple::comm::{Comm, Exchange, waited};
 use whipple::domain::{Decomposition, Halo, Histogram, Migration, Mirrors, Paces, Slabs, balance};
 use whipple::model::{Axis, Overlap, SelfContact, SymmetryPlane};
-use whipple::neighbours::Image;
-use whipple::particles::{FIELDS, FieldInfo, FieldUse, ParticleStore, SCRATCH_WORDS};
+use whipple::particles::{FIELDS, FieldInfo, FieldUse, Image, ParticleStore, SCRATCH_WORDS};
 use whipple::step::{Simulation, Timers};
 
 /// Particles of the tests, spread over a box of this many units.

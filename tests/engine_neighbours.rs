@@ -7,9 +7,8 @@ use std::collections::BTreeMap;
 use common::cloud::{Cloud, Found, Recipe};
 use common::random::Random;
 use proptest::prelude::*;
-use whipple::neighbours::{
-    Chunk, ContactClass, ForeignLists, ForeignTable, Image, PairList, oracle,
-};
+use whipple::neighbours::{Chunk, ContactClass, ForeignLists, ForeignTable, PairList, oracle};
+use whipple::particles::Image;
 
 fn recipe() -> impl Strategy<Value = Recipe> {
     (1_usize..=3)

@@ -21,9 +21,9 @@ use whipple::model::{
     Axis, ContactDirection, ContactMode, Overlap, Potential, Shape, SphForm, Vec3,
 };
 use whipple::neighbours::Chunk;
-use whipple::sph::dispatch::available;
+use whipple::numerics::dispatch::available;
+use whipple::numerics::lanes::LANES;
 use whipple::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
-use whipple::sph::lanes::LANES;
 use whipple::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
 use whipple::sph::neighbourhood::Sources;
 use whipple::sph::normalised::{
@@ -157,7 +157,7 @@ impl World {
                 own[images[place as usize].base()] = corrected.corrections[k];
             }
         });
-        let reflected = |image: &whipple::neighbours::Image| {
+        let reflected = |image: &whipple::particles::Image| {
             let c = &own[image.base()];
             Correction {
                 matrix: Mirrors::reflect_tensor(&c.matrix, image.code()),
@@ -188,7 +188,7 @@ impl World {
             .unzip();
         let chunks = self.found.clusters.chunks();
         for (cluster, list, _) in chunks.iter().flat_map(Chunk::iter) {
-            let sums = |set: whipple::sph::dispatch::Instructions| {
+            let sums = |set: whipple::numerics::dispatch::Instructions| {
                 set.run(Momentum::<S, NORMALISED> {
                     around: Sources {
                         records: &self.found.motion,

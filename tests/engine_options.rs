@@ -7,9 +7,9 @@ use common::cloud::{Cloud, Found, small as cloud};
 use common::random::Random;
 use whipple::domain::Mirrors;
 use whipple::neighbours::Chunk;
-use whipple::sph::dispatch::{Instructions, available};
+use whipple::numerics::dispatch::{Instructions, available};
+use whipple::numerics::lanes::LANES;
 use whipple::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
-use whipple::sph::lanes::LANES;
 use whipple::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
 use whipple::sph::neighbourhood::{MotionRecord, Sources};
 use whipple::sph::options::{

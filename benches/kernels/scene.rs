@@ -4,10 +4,10 @@ use whipple::contact::{ContactTable, ContactView};
 use whipple::input;
 use whipple::model::Case;
 use whipple::neighbours::{
-    Chunk, ClusterLists, ColumnGrid, ForeignLists, Image, ImageFacts, Lengths, Sequence,
+    Chunk, ClusterLists, ColumnGrid, ForeignLists, ImageFacts, Lengths, Sequence,
 };
-use whipple::particles::ParticleStore;
-use whipple::sph::lanes::LANES;
+use whipple::numerics::lanes::LANES;
+use whipple::particles::{Image, ParticleStore};
 use whipple::sph::neighbourhood::MotionRecord;
 
 /// Particles along an edge.

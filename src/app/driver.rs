@@ -359,7 +359,7 @@ impl<'a> Driver<'a> {
             counts[0],
             counted(comm.size(), "rank"),
             counted(rayon::current_num_threads(), "thread"),
-            crate::sph::dispatch::instructions().name(),
+            crate::numerics::dispatch::instructions().name(),
         );
         self.log.line(&format!("whipple {VERSION} ({COMMIT})"));
         self.log.line(&text);

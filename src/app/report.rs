@@ -374,7 +374,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde
         "commit": COMMIT,
         "ranks": comm.size(),
         "threads": threads,
-        "instructions": crate::sph::dispatch::instructions().name(),
+        "instructions": crate::numerics::dispatch::instructions().name(),
         "particles": load.particles[0],
         "removed_particles": taken_out - frozen,
         "frozen_particles": frozen,

@@ -7,6 +7,8 @@
 //! power `½ k (ξ_n + ξ_{n+1})·s/Δt` becomes heat, so that work, energy of the spring and heat
 //! balance exactly in each step.
 
+use crate::numerics::vector::dot;
+
 /// Coefficients of one particle.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Law {
@@ -42,10 +44,6 @@ pub struct Grip {
     pub power: f64,
     /// What the spring holds (J).
     pub energy: f64,
-}
-
-pub(super) fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The part of `v` that is normal to the unit vector `n`.

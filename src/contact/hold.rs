@@ -2,9 +2,10 @@
 //! `o_ij` of the pair forces and is borne by its neighbours with the shares of that (theory page
 //! "Contact").
 
-use super::friction::{Grip, Law, Memory, dot};
+use super::friction::{Grip, Law, Memory};
 use super::{ContactView, Pair, Party, Reaction, overlap, penalty};
 use crate::domain::Mirrors;
+use crate::numerics::vector::dot;
 
 /// Friction and damping that rest on one receiver.
 #[derive(Debug, Clone, Copy, Default)]

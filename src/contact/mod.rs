@@ -15,8 +15,7 @@ mod table;
 pub use table::{ContactTable, Pair, PairResistance};
 
 use crate::domain::Mirrors;
-use crate::neighbours::Image;
-use crate::particles::ParticleStore;
+use crate::particles::{Image, ParticleStore};
 use crate::sph::neighbourhood::MotionRecord;
 
 /// What the contact sums read.

@@ -7,10 +7,10 @@
 //! which has two, along that of the face it is pressed on, and two corners along the line between
 //! them, as pinballs do (Belytschko & Neal 1991), whose laws these are.
 
-use super::friction::dot;
 use super::hold::{Bearing, Resisting};
 use super::{ContactView, Gap, Pair, Party, Reaction};
 use crate::domain::Mirrors;
+use crate::numerics::vector::{dot, square};
 use crate::sph::kernel::Kernel;
 
 /// Weight of a corner's normal beside that of a face.
@@ -89,7 +89,7 @@ pub fn boundary(view: &ContactView, place: u32, own: &[u32]) -> [f64; 3] {
     for &other in own {
         let record = &view.motion[other as usize];
         let r: [f64; 3] = std::array::from_fn(|a| i.position[a] - record.position[a]);
-        let distance = length2(&r).sqrt();
+        let distance = square(&r).sqrt();
         filled += record.volume * pair.kernel.value(distance);
         if distance == 0.0 {
             continue;
@@ -106,7 +106,7 @@ pub fn boundary(view: &ContactView, place: u32, own: &[u32]) -> [f64; 3] {
         matrix[a][a] = 1.0;
     }
     let corrected = solve(&matrix, &outward).unwrap_or(outward);
-    let length = length2(&corrected).sqrt();
+    let length = square(&corrected).sqrt();
     let known = view.table.boundary(i.body);
     if length * pair.spacing > known.outer {
         let scale = known.weight(filled) / length;
@@ -114,10 +114,6 @@ pub fn boundary(view: &ContactView, place: u32, own: &[u32]) -> [f64; 3] {
     } else {
         [0.0; 3]
     }
-}
-
-fn length2(v: &[f64; 3]) -> f64 {
-    dot(v, v)
 }
 
 /// `A⁻¹ v` of a symmetric positive matrix; `None` where that is as good as singular, as about a
@@ -147,7 +143,7 @@ fn directions(
 ) -> Option<[(f64, [f64; 3]); 2]> {
     let here = view.store.boundary_normal[i.base];
     let there = Mirrors::reflect_vector(&view.store.boundary_normal[j.base], code);
-    let (a, b) = (length2(&here).sqrt(), length2(&there).sqrt());
+    let (a, b) = (square(&here).sqrt(), square(&there).sqrt());
     if a == 0.0 || b == 0.0 {
         return None;
     }
@@ -155,7 +151,7 @@ fn directions(
     let count = |length: f64| (length - CORNER).max(0.0) / ((1.0 - CORNER) * length);
     let (of_i, of_j) = (count(a), count(b));
     let normal: [f64; 3] = std::array::from_fn(|k| of_j * there[k] - of_i * here[k]);
-    let known = length2(&normal).sqrt();
+    let known = square(&normal).sqrt();
     let line = (1.0 - known).max(0.0);
     let [normal, along] = [(normal, known), (gap.r, gap.distance)]
         .map(|(v, length)| v.map(|x| x / length.max(f64::MIN_POSITIVE)));
@@ -258,7 +254,7 @@ fn push(view: &ContactView, pair: &Pair, [i, j]: [&Party; 2], gap: &Gap, code: u
         // Twice the slope of both, since both particles yield.
         push.stiffness += 2.0 * 1.5 * strength * root / pair.spacing;
     }
-    push.size = length2(&push.force).sqrt();
+    push.size = square(&push.force).sqrt();
     if push.size == 0.0 {
         return None;
     }

@@ -7,8 +7,8 @@
 //! a corner that stands out there is one such place, in a corner of two or three walls one on each;
 //! a shallow valley counts once.
 
-use super::friction::dot;
 use crate::model::{Foot, RigidSurface};
+use crate::numerics::vector::dot;
 
 /// Places of a surface that a particle may be too near to at the same time.
 const MOST: usize = 4;

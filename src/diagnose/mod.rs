@@ -1,5 +1,4 @@
 //! Conserved sums and measures of what an impact leaves behind.
 
-pub mod exact_sum;
 pub mod hole;
 pub mod pieces;

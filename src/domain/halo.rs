@@ -5,8 +5,7 @@ use rayon::prelude::*;
 
 use super::mirrors::{Mirrors, codes};
 use crate::comm::{Comm, Exchange, Traffic};
-use crate::neighbours::Image;
-use crate::particles::{FieldUse, ParticleStore};
+use crate::particles::{FieldUse, Image, ParticleStore};
 
 /// What a rank tells all others before the exchange.
 #[derive(Debug, Clone, Copy)]

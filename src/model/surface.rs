@@ -15,6 +15,7 @@ pub use mesh::{Mesh, MeshError};
 pub use triangle::{Feature, closest_on_triangle};
 
 use super::{Motion, Resistance};
+use crate::numerics::vector::{dot, minus};
 
 /// A rigid surface, which pushes particles that come nearer than half a spacing to its kept side.
 #[derive(Debug, Clone, PartialEq)]
@@ -118,22 +119,6 @@ impl Foot {
             gap: -self.gap,
         }
     }
-}
-
-fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn minus(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }
 
 impl SurfaceShape {

@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use super::gather::Gatherer;
 use super::parts::Parted;
 use super::sequence::{Eight, HALO, MIRROR, MOVING, Sequence};
-use crate::sph::dispatch::{Vectorised, instructions};
-use crate::sph::lanes::{LANES, Lanes};
+use crate::numerics::dispatch::{Vectorised, instructions};
+use crate::numerics::lanes::{LANES, Lanes};
 
 /// Up to eight owned particles of one group that stand side by side.
 #[derive(Debug, Clone, Copy)]

@@ -7,8 +7,8 @@ use super::clusters::{
     CHUNKS_AT_ONCE, Chunk, Cluster, ClusterLists, INFLATION, near_box, push_places,
 };
 use super::sequence::Sequence;
-use crate::sph::dispatch::{Vectorised, instructions};
-use crate::sph::lanes::{F64x8, LANES, Lanes};
+use crate::numerics::dispatch::{Vectorised, instructions};
+use crate::numerics::lanes::{F64x8, LANES, Lanes};
 use crate::sph::neighbourhood::MotionRecord;
 
 /// Which contact algorithm handles a pair of bodies.

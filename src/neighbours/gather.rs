@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use super::clusters::Cluster;
 use super::sequence::{IMAGE, Sequence};
-use crate::sph::lanes::LANES;
+use crate::numerics::lanes::LANES;
 
 /// Gathers the clusters of one task; the buffer is kept from step to step.
 #[derive(Debug, Clone, Default)]

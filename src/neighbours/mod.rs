@@ -14,4 +14,4 @@ pub use clusters::{Among, CHUNKS_AT_ONCE, Chunk, Cluster, ClusterLists, Lengths}
 pub use columns::ColumnGrid;
 pub use foreign::{ContactClass, ForeignChunk, ForeignLists, ForeignTable, PairList};
 pub use parts::{Kin, Part};
-pub use sequence::{Image, ImageFacts, Sequence};
+pub use sequence::{ImageFacts, Sequence};

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::clusters::{Among, CHUNKS_AT_ONCE, Chunk, Cluster, ClusterLists};
 use super::foreign::PairList;
-use crate::sph::lanes::LANES;
+use crate::numerics::lanes::LANES;
 
 /// The part of a body that an image belongs to.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]

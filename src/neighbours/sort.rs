@@ -7,8 +7,8 @@ use std::cmp::Ordering;
 
 use rayon::prelude::*;
 
-use super::sequence::{Group, HALO, Image, ImageFacts, MIRROR, MOVING};
-use crate::particles::Scatter;
+use super::sequence::{Group, HALO, ImageFacts, MIRROR, MOVING};
+use crate::particles::{Image, Scatter};
 
 /// What an image is sorted by inside its column.
 #[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]

@@ -1,9 +1,9 @@
 //! Velocity gradient `L_i = −Σ_j V_j v_ij ⊗ ∇W_ij` (physics page, section 2).
 
-use super::dispatch::Vectorised;
 use super::kernel::PairScale;
-use super::lanes::{F64x8, Lanes};
 use super::neighbourhood::Neighbourhood;
+use crate::numerics::dispatch::Vectorised;
+use crate::numerics::lanes::{F64x8, Lanes};
 
 /// The sum over pairs.
 pub struct VelocityGradient<'a, S> {

@@ -4,11 +4,11 @@
 //!
 //! `L_s = Σ w (v_a − v̄) ⊗ (x_a − x̄) M⁻¹`, `v_s = v̄ + L_s (x_s − x̄)`.
 
-use super::dispatch::Vectorised;
 use super::kernel::{PairKernel, PairScale};
-use super::lanes::{F64x8, LANES, Lanes};
-use super::matrix::product;
 use super::neighbourhood::Neighbourhood;
+use crate::numerics::dispatch::Vectorised;
+use crate::numerics::lanes::{F64x8, LANES, Lanes};
+use crate::numerics::matrix::product;
 
 /// Particles that give `M` less than this along a direction, over h², are at the edge of the kernel:
 /// two at 1.5 h do. Gradients along it fade out, as they would else end at once with the kernel.

@@ -1,6 +1,6 @@
 //! Velocity gradients of mid-step velocities, by which stress points strain.
 
-use super::matrix::{inverse, product};
+use crate::numerics::matrix::{inverse, product};
 
 /// Velocity gradients of one mid-step velocity (1/s).
 #[derive(Debug, Clone, Copy, PartialEq)]

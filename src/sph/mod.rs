@@ -4,12 +4,9 @@
 //! eight receivers stand in the lanes of a vector, so no sum ever crosses lanes and a lane
 //! outside the support adds an exact zero.
 
-pub mod dispatch;
 pub mod gradient;
 pub mod kernel;
-pub mod lanes;
 pub mod linear_fit;
-mod matrix;
 pub mod mid_step;
 pub mod momentum;
 pub mod neighbourhood;

@@ -1,7 +1,7 @@
 //! The receivers of one cluster with their neighbours: what all sums over pairs begin with.
 
 use super::kernel::{PairKernel, PairScale};
-use super::lanes::{LANES, Lanes};
+use crate::numerics::lanes::{LANES, Lanes};
 
 /// What a particle shows to its neighbours of its motion: one cache line.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]

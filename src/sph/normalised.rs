@@ -9,12 +9,12 @@
 //! the factor `1/s` drops out. All of it is linear in sums over pairs, so one sweep makes the
 //! corrected velocity gradient; only the forces need the corrections of neighbours.
 
-use super::dispatch::Vectorised;
 use super::kernel::PairScale;
-use super::lanes::{F64x8, LANES, Lanes};
-use super::matrix::adjugate;
 use super::neighbourhood::{Neighbourhood, Separation, gather, gather3, records};
 use super::options::{NORMALISED, Options};
+use crate::numerics::dispatch::Vectorised;
+use crate::numerics::lanes::{F64x8, LANES, Lanes};
+use crate::numerics::matrix::adjugate;
 
 /// Corrections that enlarge gradients more than so are left out: the particle has too few
 /// neighbours, or they stand in a plane or a row. Corners of lattices have 2 to 3.

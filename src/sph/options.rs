@@ -3,10 +3,10 @@
 //! A set of options is a constant of the sums' type, so that those of a case without options hold
 //! no trace of them.
 
-use super::lanes::{LANES, Lanes};
 use super::neighbourhood::{gather, gather3, records};
 use super::normalised::NormalisedRecord;
 use super::principal::tensile_part;
+use crate::numerics::lanes::{LANES, Lanes};
 
 /// Artificial stress (Monaghan 2000; Gray, Monaghan & Swift 2001).
 pub const ARTIFICIAL_STRESS: u8 = 1;

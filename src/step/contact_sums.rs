@@ -4,7 +4,7 @@ use super::state::{Closest, PairExtremes};
 use super::sums::{gather_limbs, scatter_limbs};
 use crate::comm::Comm;
 use crate::contact::BodyReaction;
-use crate::diagnose::exact_sum::ExactSum;
+use crate::numerics::exact_sum::ExactSum;
 
 /// Number of an unordered pair of bodies among all of `bodies`: these order as `[a, b]`, `a ≤ b`, do.
 pub(super) fn pair_key(bodies: usize, a: usize, b: usize) -> usize {

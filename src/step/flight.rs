@@ -10,12 +10,12 @@ use rayon::prelude::*;
 use super::simulation::Simulation;
 use super::span::Span;
 use super::surface_motion::Placed;
-use super::vector::norm;
 use crate::comm::Comm;
 use crate::contact::ContactTable;
 use crate::domain::Mirrors;
 use crate::model::{Case, RigidSurface};
 use crate::neighbours::ContactClass;
+use crate::numerics::vector::norm;
 use crate::particles::ParticleStore;
 
 /// How often those that can meet are looked for among those that could before.

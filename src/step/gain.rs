@@ -9,10 +9,10 @@
 
 use super::simulation::{Simulation, StepError};
 use super::trouble::TroubleKind;
-use super::vector::square;
 use crate::comm::Comm;
 use crate::domain::Outset;
 use crate::model::{Body, Case, Trouble};
+use crate::numerics::vector::square;
 use crate::populate;
 
 /// What is allowed to what is at rest, over `½ m U²` with the speed U that is natural to the case.

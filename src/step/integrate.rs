@@ -16,10 +16,10 @@ use super::loads::{Drive, Free, Goal, LoadStep};
 use super::search::GRAIN;
 use super::simulation::Simulation;
 use super::span::Span;
-use super::vector::dot;
 use super::vote::{ABSTAIN, Moved, Vote};
-use crate::diagnose::exact_sum::ExactSum;
 use crate::model::SmoothingLength;
+use crate::numerics::exact_sum::ExactSum;
+use crate::numerics::vector::dot;
 
 /// Smoothing length of a particle from its predicted density (physics page, section 1).
 #[derive(Debug, Clone, Copy)]

@@ -1,9 +1,9 @@
 //! The material's answer to the velocity gradient, cluster by cluster inside the first sweep.
 
 use crate::material::{LANES, Material, PointBatch};
-use crate::neighbours::{Cluster, Image};
-use crate::particles::{ParticleStore, Scatter};
-use crate::sph::lanes::F64x8;
+use crate::neighbours::Cluster;
+use crate::numerics::lanes::F64x8;
+use crate::particles::{Image, ParticleStore, Scatter};
 use crate::sph::momentum::StressRecord;
 
 /// Work for a particle apart from its neighbours, in neighbours of the pair sums: sort, list,

@@ -28,7 +28,6 @@ mod surface_motion;
 mod sweeps;
 mod timers;
 mod trouble;
-mod vector;
 mod vote;
 
 pub use options::bytes_of_options;

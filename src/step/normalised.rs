@@ -7,11 +7,11 @@ use super::material_update::MaterialUpdate;
 use super::search::GRAIN;
 use super::simulation::Simulation;
 use crate::domain::Mirrors;
-use crate::neighbours::{Chunk, Image};
-use crate::particles::{ParticleStore, Scatter};
-use crate::sph::dispatch::Vectorised;
+use crate::neighbours::Chunk;
+use crate::numerics::dispatch::Vectorised;
+use crate::numerics::lanes::Lanes;
+use crate::particles::{Image, ParticleStore, Scatter};
 use crate::sph::kernel::PairScale;
-use crate::sph::lanes::Lanes;
 use crate::sph::neighbourhood::Sources;
 use crate::sph::normalised::{Correction, NormalisedGradient, NormalisedRecord, stress_power};
 

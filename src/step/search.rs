@@ -6,10 +6,8 @@ use super::simulation::Simulation;
 use crate::contact::ContactTable;
 use crate::domain::Mirrors;
 use crate::model::{Case, SmoothingLength};
-use crate::neighbours::{
-    ClusterLists, ColumnGrid, ForeignLists, Image, ImageFacts, Lengths, Sequence,
-};
-use crate::particles::{Scatter, resize};
+use crate::neighbours::{ClusterLists, ColumnGrid, ForeignLists, ImageFacts, Lengths, Sequence};
+use crate::particles::{Image, Scatter, resize};
 use crate::sph::neighbourhood::{MotionRecord, Sources};
 
 /// The sequence of images, their motion records and the lists, kept from step to step.

@@ -22,8 +22,8 @@ use crate::comm::Comm;
 use crate::contact::ContactTable;
 use crate::domain::{Halo, Histogram, Migration, Mirrors, Outset, Paces, Slabs, balance};
 use crate::model::{Case, SphForm};
-use crate::neighbours::{ColumnGrid, Image};
-use crate::particles::ParticleStore;
+use crate::neighbours::ColumnGrid;
+use crate::particles::{Image, ParticleStore};
 use crate::populate::{self, Slab};
 
 /// Why a case cannot start; the same on all ranks.

@@ -1,8 +1,8 @@
 //! Where some particles are and how they move, in twelve numbers, and how long a step two such sets
 //! allow.
 
-use super::vector::norm;
 use crate::domain::Mirrors;
+use crate::numerics::vector::norm;
 
 /// Smallest and largest coordinates (m) and velocities (m/s) of some particles.
 #[derive(Debug, Clone, Copy, PartialEq)]

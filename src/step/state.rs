@@ -4,7 +4,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::contact_sums::{PairSums, least};
 use super::trouble::Removed;
-use super::vector::norm;
+use crate::numerics::vector::norm;
 
 /// What limited a time step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

@@ -7,11 +7,11 @@ use super::search::GRAIN;
 use super::simulation::Simulation;
 use super::sweeps::{FromMirrors, Sweeps, with_scale};
 use crate::domain::Mirrors;
-use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Cluster, Image};
-use crate::particles::{Scatter, resize};
-use crate::sph::dispatch::{Vectorised, instructions};
+use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Cluster};
+use crate::numerics::dispatch::{Vectorised, instructions};
+use crate::numerics::lanes::Lanes;
+use crate::particles::{Image, Scatter, resize};
 use crate::sph::kernel::PairScale;
-use crate::sph::lanes::Lanes;
 use crate::sph::neighbourhood::Sources;
 use crate::sph::stress_points::{Pull, Pulled, StressPointRecord};
 

@@ -10,8 +10,8 @@ use super::state::{Closest, NearestPair, PairExtremes, Totals};
 use super::trouble::Removed;
 use crate::comm::Comm;
 use crate::contact::ContactTable;
-use crate::diagnose::exact_sum::ExactSum;
 use crate::model::SphForm;
+use crate::numerics::exact_sum::ExactSum;
 use crate::particles::ParticleStore;
 
 /// Sums of one step, first of this rank, then (after [`StepSums::reduce`]) of all.

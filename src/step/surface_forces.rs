@@ -7,9 +7,9 @@ use super::search::GRAIN;
 use super::simulation::Simulation;
 use super::surface_friction::{Resisting, SurfaceHold};
 use super::surface_motion::{Placed, SurfaceStep};
-use super::vector::dot;
 use crate::contact::{ContactTable, surface};
 use crate::model::{Body, Case, RigidSurface};
+use crate::numerics::vector::dot;
 use crate::particles::ParticleStore;
 
 /// What a surface does to one particle.

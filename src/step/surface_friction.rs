@@ -3,6 +3,7 @@
 
 use super::surface_forces::{Push, View};
 use crate::contact::friction::{Law, Memory};
+use crate::numerics::vector::norm;
 use crate::particles::ParticleStore;
 
 /// What friction and damping do to one particle, beside their part of its [`Push`]es.
@@ -41,10 +42,6 @@ fn memory(store: &ParticleStore, i: usize) -> Memory {
     }
 }
 
-fn length(v: &[f64; 3]) -> f64 {
-    (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
-}
-
 impl View<'_> {
     /// Adds friction and damping of particle `i` after a step `dt` (s) to what surfaces do to it.
     ///
@@ -57,7 +54,7 @@ impl View<'_> {
         let of = |push: &Push| {
             let penalty = self.penalties[push.surface][body].as_ref();
             let resisting = penalty.map(|p| p.resisting).filter(Resisting::is_any)?;
-            let press = length(&push.force);
+            let press = norm(&push.force);
             (press > 0.0).then_some((resisting, press))
         };
         let (mut load, mut resultant, mut ground) = (0.0, [0.0; 3], [0.0; 3]);
@@ -81,7 +78,7 @@ impl View<'_> {
         let Some(first) = first else {
             return self.release(i, &before, dt);
         };
-        let size = length(&resultant);
+        let size = norm(&resultant);
         let normal = if size > 0.0 {
             resultant.map(|f| f / size)
         } else {

@@ -1,8 +1,8 @@
 //! Where rigid surfaces stand in a step, and how they move.
 
 use super::span::Span;
-use super::vector::{cross, dot, norm};
 use crate::model::{RigidSurface, SurfaceShape};
+use crate::numerics::vector::{cross, dot, norm};
 
 /// A rigid surface in one step.
 #[derive(Debug, Clone, Copy, Default)]

@@ -10,12 +10,12 @@ use serde::{Deserialize, Serialize};
 use super::gain;
 use super::simulation::{Simulation, StepError};
 use super::sums::{gather_limbs, scatter_limbs};
-use super::vector::square;
 use super::vote::Moved;
 use crate::comm::Comm;
-use crate::diagnose::exact_sum::ExactSum;
 use crate::model::readable::{short, shown};
 use crate::model::{Case, Trouble, TroublePolicy};
+use crate::numerics::exact_sum::ExactSum;
+use crate::numerics::vector::square;
 
 /// What is wrong with a particle, the worst first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -5,10 +5,10 @@
 use super::simulation::{Simulation, StepError};
 use super::state::Reason;
 use super::trouble::{Limits, PAST_VOTES, PastVote, TroubleKind};
-use super::vector::square;
 use crate::comm::Comm;
 use crate::model::Case;
 use crate::model::readable::{shown, shown_vector};
+use crate::numerics::vector::square;
 use crate::particles::ParticleStore;
 use crate::sph::momentum::Viscosity;
 use crate::sph::stress_points;

@@ -4,8 +4,8 @@
 use whipple::contact::{ContactTable, ContactView, Reaction, overlap, potential};
 use whipple::material::library;
 use whipple::model::{Body, Case, ContactMode, Overlap, Potential, PotentialRange, Shape, Vec3};
-use whipple::neighbours::{ContactClass, Image};
-use whipple::particles::ParticleStore;
+use whipple::neighbours::ContactClass;
+use whipple::particles::{Image, ParticleStore};
 use whipple::populate;
 use whipple::sph::kernel::Kernel;
 use whipple::sph::neighbourhood::MotionRecord;

@@ -21,7 +21,7 @@ impl Machine {
         Self {
             processor: processor().unwrap_or_else(|| "unknown".to_owned()),
             cores: cores(),
-            instructions: crate::sph::dispatch::instructions().name().to_owned(),
+            instructions: crate::numerics::dispatch::instructions().name().to_owned(),
             system: format!("{}, {}", std::env::consts::OS, std::env::consts::ARCH),
         }
     }

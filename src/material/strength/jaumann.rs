@@ -14,6 +14,7 @@
 //! rotation come together.
 
 use crate::material::{LANES, Lanes, PointBatch};
+use crate::numerics::vector::dot;
 
 /// Advances the deviatoric stress by `dt` (s) with shear moduli `g` (Pa).
 #[inline(always)]
@@ -93,19 +94,14 @@ fn conjugate(q: &[f64; 9], s: &[f64; 6]) -> [f64; 6] {
     let [xx, yy, zz, xy, xz, yz] = *s;
     let columns = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
     let q_row = |i: usize| [q[3 * i], q[3 * i + 1], q[3 * i + 2]];
-    let product_row = |i: usize| columns.map(|column| dot(q_row(i), column));
+    let product_row = |i: usize| columns.map(|column| dot(&q_row(i), &column));
     let (qs_x, qs_y, qs_z) = (product_row(0), product_row(1), product_row(2));
     [
-        dot(qs_x, q_row(0)),
-        dot(qs_y, q_row(1)),
-        dot(qs_z, q_row(2)),
-        dot(qs_x, q_row(1)),
-        dot(qs_x, q_row(2)),
-        dot(qs_y, q_row(2)),
+        dot(&qs_x, &q_row(0)),
+        dot(&qs_y, &q_row(1)),
+        dot(&qs_z, &q_row(2)),
+        dot(&qs_x, &q_row(1)),
+        dot(&qs_x, &q_row(2)),
+        dot(&qs_y, &q_row(2)),
     ]
-}
-
-#[inline(always)]
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

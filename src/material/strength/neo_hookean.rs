@@ -16,6 +16,7 @@
 //! stress: the law has a potential, which the Jaumann rate has not.
 
 use crate::material::{LANES, Lanes, PointBatch};
+use crate::numerics::vector::dot;
 
 /// Newton iterations for β, the same for all states; ten suffice for a stretch of six.
 const ITERATIONS: usize = 16;
@@ -123,25 +124,24 @@ fn push(f: &[f64; 9], b: &[f64; 6]) -> [f64; 6] {
     let row = |i: usize| [f[3 * i], f[3 * i + 1], f[3 * i + 2]];
     let product = |i: usize| {
         let r = row(i);
-        [dot(r, columns[0]), dot(r, columns[1]), dot(r, columns[2])]
+        [
+            dot(&r, &columns[0]),
+            dot(&r, &columns[1]),
+            dot(&r, &columns[2]),
+        ]
     };
     let (px, py, pz) = (product(0), product(1), product(2));
     let mut pushed = [
-        dot(px, row(0)),
-        dot(py, row(1)),
-        dot(pz, row(2)),
-        dot(px, row(1)),
-        dot(px, row(2)),
-        dot(py, row(2)),
+        dot(&px, &row(0)),
+        dot(&py, &row(1)),
+        dot(&pz, &row(2)),
+        dot(&px, &row(1)),
+        dot(&px, &row(2)),
+        dot(&py, &row(2)),
     ];
     let scale = 1.0 / libm::cbrt(determinant(&pushed));
     for component in &mut pushed {
         *component *= scale;
     }
     pushed
-}
-
-#[inline(always)]
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

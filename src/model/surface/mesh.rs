@@ -8,8 +8,9 @@ use std::collections::BTreeMap;
 
 use super::tree::Tree;
 use super::triangle::{Feature, closest_on_triangle};
-use super::{Foot, along, cross, dot, minus};
+use super::{Foot, along};
 use crate::model::readable::shown_vector;
+use crate::numerics::vector::{cross, dot, minus};
 
 /// Why triangles make no closed surface.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -2,7 +2,8 @@
 
 /// Product of two matrices.
 #[inline(always)]
-pub(super) fn product(a: &[f64; 9], b: &[f64; 9]) -> [f64; 9] {
+#[must_use]
+pub fn product(a: &[f64; 9], b: &[f64; 9]) -> [f64; 9] {
     let mut all = [0.0; 9];
     for i in 0..3 {
         for j in 0..3 {
@@ -14,7 +15,8 @@ pub(super) fn product(a: &[f64; 9], b: &[f64; 9]) -> [f64; 9] {
 
 /// Adjugate of a matrix and its determinant.
 #[inline(always)]
-pub(super) fn adjugate(m: &[f64; 9]) -> ([f64; 9], f64) {
+#[must_use]
+pub fn adjugate(m: &[f64; 9]) -> ([f64; 9], f64) {
     let minor = |a: usize, b: usize, c: usize, d: usize| m[a] * m[d] - m[b] * m[c];
     let all = [
         minor(4, 5, 7, 8),
@@ -33,7 +35,8 @@ pub(super) fn adjugate(m: &[f64; 9]) -> ([f64; 9], f64) {
 
 /// Inverse of a matrix.
 #[inline(always)]
-pub(super) fn inverse(m: &[f64; 9]) -> [f64; 9] {
+#[must_use]
+pub fn inverse(m: &[f64; 9]) -> [f64; 9] {
     let (mut all, determinant) = adjugate(m);
     let scale = 1.0 / determinant;
     for value in &mut all {

@@ -1,0 +1,7 @@
+//! The numerical base: what knows nothing of particles, and gives the same bits on any machine.
+
+pub mod dispatch;
+pub mod exact_sum;
+pub mod lanes;
+pub mod matrix;
+pub mod vector;
