@@ -19,6 +19,7 @@ pub mod domain;
 pub mod neighbours;
 
 pub mod contact;
+pub mod loads;
 pub mod sph;
 pub mod step;
 

@@ -64,7 +64,7 @@ fn sparing_what_is_calm_changes_no_bit() {
     ] {
         let [spared, whole] = [true, false].map(|spare| {
             let mut simulation = Simulation::start(case(), &Comm::solo()).unwrap();
-            simulation.spare_calm = spare;
+            simulation.lists.spare_quiescent = spare;
             advance(&mut simulation, 25);
             simulation
         });

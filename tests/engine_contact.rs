@@ -17,7 +17,7 @@ use whipple::model::{
     Case, ContactMode, ContactPair, LatticeKind, Overlap, Potential, PotentialRange,
 };
 use whipple::neighbours::ContactClass;
-use whipple::sph::kernel::Kernel;
+use whipple::numerics::kernel::Kernel;
 use world::{Lists, SPACING, World, case_of, some_body};
 
 /// Two or three interlocking random clouds of the bodies, about one spacing apart.
@@ -293,7 +293,7 @@ fn members_of_a_group_have_no_contact_apart_from_the_sums() {
         });
     }
     let table = ContactTable::new(&case);
-    assert_eq!(table.groups, [0, 0, 0, 1]);
+    assert_eq!(table.groups.of_body, [0, 0, 0, 1]);
     assert_eq!(table.active_pairs(), [[0, 3], [1, 3], [2, 3]]);
     assert_eq!(table.foreign.group_range[0], 0.0);
     assert!(table.foreign.group_range[1] > 0.0);

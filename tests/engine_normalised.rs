@@ -22,8 +22,8 @@ use whipple::model::{
 };
 use whipple::neighbours::Chunk;
 use whipple::numerics::dispatch::available;
+use whipple::numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use whipple::numerics::lanes::LANES;
-use whipple::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use whipple::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
 use whipple::sph::neighbourhood::Sources;
 use whipple::sph::normalised::{

@@ -8,8 +8,8 @@ use common::random::Random;
 use whipple::domain::Mirrors;
 use whipple::neighbours::Chunk;
 use whipple::numerics::dispatch::{Instructions, available};
+use whipple::numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use whipple::numerics::lanes::LANES;
-use whipple::sph::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use whipple::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
 use whipple::sph::neighbourhood::{MotionRecord, Sources};
 use whipple::sph::options::{

@@ -3,12 +3,12 @@
 use whipple::contact::{ContactTable, ContactView};
 use whipple::input;
 use whipple::model::Case;
+use whipple::neighbours::MotionRecord;
 use whipple::neighbours::{
     Chunk, ClusterLists, ColumnGrid, ForeignLists, ImageFacts, Lengths, Sequence,
 };
 use whipple::numerics::lanes::LANES;
 use whipple::particles::{Image, ParticleStore};
-use whipple::sph::neighbourhood::MotionRecord;
 
 /// Particles along an edge.
 const EDGE: u32 = 48;

@@ -142,7 +142,7 @@ impl<'a> Driver<'a> {
                 return Ok(End::Until);
             }
             STEP.store(self.simulation.state.step + 1, Ordering::Relaxed);
-            self.simulation.wishes = self.watch.wishes();
+            self.simulation.votes.wishes = self.watch.wishes();
             if let Some(fault) = self.fault {
                 fault.strike(&mut self.simulation, &self.folder.checkpoints());
             }
@@ -155,7 +155,7 @@ impl<'a> Driver<'a> {
                 self.meet_trouble(comm, error)?;
             }
             self.simulation.timers.lap(step::Phase::Output);
-            if let Some(reason) = stop::reason(self.simulation.agreed_wishes)
+            if let Some(reason) = stop::reason(self.simulation.votes.agreed_wishes)
                 && !self.simulation.is_finished()
             {
                 return Ok(End::Stopped(reason));
@@ -218,7 +218,7 @@ impl<'a> Driver<'a> {
             || output
                 .checkpoint_every_steps
                 .is_some_and(|n| step.is_multiple_of(n))
-            || stop::wants_checkpoint(self.simulation.agreed_wishes);
+            || stop::wants_checkpoint(self.simulation.votes.agreed_wishes);
         if finished || step.is_multiple_of(output.history_every.max(1)) {
             self.simulation.diagnose(comm);
             self.write_row(comm)?;
@@ -227,7 +227,7 @@ impl<'a> Driver<'a> {
             self.write_snapshot(comm)?;
         }
         // A stop writes its own.
-        let stops = stop::reason(self.simulation.agreed_wishes).is_some();
+        let stops = stop::reason(self.simulation.votes.agreed_wishes).is_some();
         if checkpoint_due && !finished && !stops {
             self.write_checkpoint(comm)?;
         }
@@ -247,7 +247,7 @@ impl<'a> Driver<'a> {
             Some(tables) => tables.write(&self.simulation, &load, wall),
             None => Ok(()),
         })?;
-        self.simulation.begin_interval();
+        self.simulation.state.begin_interval();
         Ok(())
     }
 

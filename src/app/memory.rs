@@ -6,8 +6,8 @@ use crate::comm::Comm;
 use crate::contact::ContactTable;
 use crate::domain::{Histogram, Outset};
 use crate::model::{Case, RigidSurface, SphForm};
+use crate::numerics::kernel::SUPPORT;
 use crate::populate;
-use crate::sph::kernel::SUPPORT;
 use crate::step::bytes_of_options;
 
 /// What a process takes with MPI and HDF5 before it has a particle (bytes). This and the figures

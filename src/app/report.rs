@@ -37,7 +37,14 @@ pub fn load(comm: &Comm, simulation: &Simulation) -> Load {
         .sum();
     let (messages, bytes) = simulation.traffic();
     let empty = u64::from(particles == 0);
-    let mut sums = [particles, work, messages, bytes, simulation.updates, empty];
+    let mut sums = [
+        particles,
+        work,
+        messages,
+        bytes,
+        simulation.timers.updates,
+        empty,
+    ];
     comm.sum_u64(&mut sums);
     let mut most = [particles, work];
     comm.max_u64(&mut most);

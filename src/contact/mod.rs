@@ -4,19 +4,27 @@
 //! only, so that its energy is a function of positions alone and its forces are that function's
 //! exact gradient (physics page, section 5).
 
+mod connectivity;
 pub mod friction;
 pub mod hold;
 pub mod overlap;
 pub mod penalty;
+mod phase;
 pub mod potential;
-pub mod surface;
+mod sums;
+mod surfaces;
 mod table;
 
+pub use connectivity::Connectivity;
+pub use phase::Contact;
+pub use sums::{Closest, PairExtremes};
+pub(crate) use sums::{ContactSums, PairBook, PairSums, least, pair_key};
+pub(crate) use surfaces::SurfaceForces;
 pub use table::{ContactTable, Pair, PairResistance};
 
 use crate::domain::Mirrors;
+use crate::neighbours::{Lists, MotionRecord};
 use crate::particles::{Image, ParticleStore};
-use crate::sph::neighbourhood::MotionRecord;
 
 /// What the contact sums read.
 #[derive(Clone, Copy)]
@@ -44,6 +52,22 @@ pub(crate) struct Party {
     mirrored: bool,
     position: [f64; 3],
     velocity: [f64; 3],
+}
+
+/// Elements that a task handles at least.
+const GRAIN: usize = 1024;
+
+impl<'a> ContactView<'a> {
+    /// After a step of `dt` (s).
+    fn new(store: &'a ParticleStore, lists: &'a Lists, table: &'a ContactTable, dt: f64) -> Self {
+        Self {
+            images: lists.images(),
+            motion: lists.motion(),
+            store,
+            table,
+            dt,
+        }
+    }
 }
 
 impl ContactView<'_> {

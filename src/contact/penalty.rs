@@ -10,8 +10,8 @@
 use super::hold::{Bearing, Resisting};
 use super::{ContactView, Gap, Pair, Party, Reaction};
 use crate::domain::Mirrors;
+use crate::numerics::kernel::Kernel;
 use crate::numerics::vector::{dot, square};
-use crate::sph::kernel::Kernel;
 
 /// Weight of a corner's normal beside that of a face.
 const CORNER: f64 = 1e-3;

@@ -2,11 +2,11 @@
 
 use super::penalty::Boundary;
 use crate::model::{
-    Body, Case, ContactDirection, ContactMode, PenaltyLaw, PotentialRange, Resistance, SphForm,
+    Body, Case, ContactDirection, ContactMode, PenaltyLaw, PotentialRange, Resistance,
 };
-use crate::neighbours::{ContactClass, ForeignTable};
+use crate::neighbours::{ContactClass, ForeignTable, Groups};
+use crate::numerics::kernel::{FixedKernel, Kernel, SUPPORT};
 use crate::populate;
-use crate::sph::kernel::{FixedKernel, Kernel, SUPPORT};
 
 /// Reference constants of an ordered pair of bodies (receiver, other).
 #[derive(Debug, Clone, Copy)]
@@ -96,13 +96,8 @@ impl PairResistance {
 pub struct ContactTable {
     /// The kernel that contact weights with.
     pub kernel: Kernel,
-    /// Group of each body: bodies joined by `kernel` contact form one.
-    pub groups: Vec<usize>,
-    /// Whether a group is a rigid body.
-    pub rigid: Vec<bool>,
-    /// How many groups the bodies form. Those of their stress points, if any, come after them in
-    /// the same order.
-    pub body_groups: usize,
+    /// Groups of bodies, which see each other in the SPH sums and have no other contact.
+    pub groups: Groups,
     /// Which algorithm handles a pair, and its range.
     pub foreign: ForeignTable,
     pairs: Vec<Pair>,
@@ -117,12 +112,8 @@ impl ContactTable {
     pub fn new(case: &Case) -> Self {
         let kernel = Kernel::new(case.dimension);
         let n = case.bodies.len();
-        let groups = join_groups(case);
-        let body_groups = groups.iter().max().map_or(0, |&g| g + 1);
-        let group_count = match case.sph.form {
-            SphForm::StressPoints => 2 * body_groups,
-            SphForm::Conventional | SphForm::Normalised => body_groups,
-        };
+        let groups = Groups::new(case);
+        let group_count = groups.count();
         let mut foreign = ForeignTable {
             bodies: n,
             class: vec![ContactClass::None; n * n],
@@ -140,18 +131,15 @@ impl ContactTable {
                     foreign.class[a * n + a] = class;
                     foreign.reach2[a * n + a] = range * range;
                 }
-                if groups[a] == groups[b] || class == ContactClass::None {
+                if groups.of_body[a] == groups.of_body[b] || class == ContactClass::None {
                     continue;
                 }
                 foreign.class[a * n + b] = class;
                 foreign.reach2[a * n + b] = range * range;
-                let slot = &mut foreign.group_range[groups[a] * group_count + groups[b]];
+                let slot =
+                    &mut foreign.group_range[groups.of_body[a] * group_count + groups.of_body[b]];
                 *slot = slot.max(range);
             }
-        }
-        let mut rigid = vec![false; group_count];
-        for (body, &group) in case.bodies.iter().zip(&groups) {
-            rigid[group] |= body.rigid.is_some();
         }
         let inverse_densities = case
             .bodies
@@ -165,8 +153,6 @@ impl ContactTable {
             boundaries: boundaries.collect(),
             kernel,
             groups,
-            rigid,
-            body_groups,
             foreign,
             pairs,
             inverse_densities,
@@ -193,25 +179,6 @@ impl ContactTable {
     #[must_use]
     pub fn boundary(&self, body: usize) -> &Boundary {
         &self.boundaries[body]
-    }
-
-    /// Number of groups, those of stress points included.
-    #[must_use]
-    pub fn group_count(&self) -> usize {
-        self.rigid.len()
-    }
-
-    /// Whether a group is one of stress points.
-    #[inline]
-    #[must_use]
-    pub fn is_of_stress_points(&self, group: usize) -> bool {
-        group >= self.body_groups
-    }
-
-    /// The bodies of a group.
-    pub fn members(&self, group: usize) -> impl Iterator<Item = usize> + Clone + '_ {
-        let group = group % self.body_groups;
-        (0..self.groups.len()).filter(move |&body| self.groups[body] == group)
     }
 
     /// Whether there is contact beyond the SPH sums: of pairs of bodies, or with rigid surfaces.
@@ -255,32 +222,6 @@ impl ContactTable {
             .filter(|&[a, b]| self.foreign.class[a * n + b] != ContactClass::None)
             .collect()
     }
-}
-
-/// Numbers the groups of bodies that `kernel` contact joins, in the order of their first body.
-/// Members of one group see each other in the SPH sums and nowhere else.
-fn join_groups(case: &Case) -> Vec<usize> {
-    let n = case.bodies.len();
-    let mut leader: Vec<usize> = (0..n).collect();
-    for a in 0..n {
-        for b in a + 1..n {
-            if matches!(case.contact_between(a, b), ContactMode::Kernel) {
-                let (keep, drop) = (leader[a].min(leader[b]), leader[a].max(leader[b]));
-                for entry in &mut leader {
-                    if *entry == drop {
-                        *entry = keep;
-                    }
-                }
-            }
-        }
-    }
-    let mut leaders: Vec<usize> = leader.clone();
-    leaders.sort_unstable();
-    leaders.dedup();
-    leader
-        .iter()
-        .map(|l| leaders.iter().position(|x| x == l).expect("its own leader"))
-        .collect()
 }
 
 fn make_pair(case: &Case, kernel: &Kernel, a: usize, b: usize) -> (ContactClass, Pair) {

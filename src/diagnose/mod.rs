@@ -1,4 +1,20 @@
-//! Conserved sums and measures of what an impact leaves behind.
+//! Conserved sums and ledgers of a run, what tells that it goes wrong, and measures of what an impact
+//! leaves behind.
 
 pub mod hole;
+mod instability;
+mod ledger;
+mod limits;
+mod meetings;
 pub mod pieces;
+mod post_mortem;
+mod step_sums;
+mod totals;
+
+pub(crate) use instability::{fastest, is_explained};
+pub use ledger::{LoadState, NearestPair, PairState, Reason, Removed, RunState, Totals, Worst};
+pub use limits::TroubleKind;
+pub(crate) use limits::{Limits, Moved};
+pub(crate) use post_mortem::PAST_VOTES;
+pub use post_mortem::{PastVote, PostMortem};
+pub(crate) use step_sums::{Booked, StepSums};

@@ -158,6 +158,23 @@ impl Halo {
         }
     }
 
+    /// [`Self::post_motion`] and [`Self::finish_motion`]. Collective.
+    pub fn exchange_motion(
+        &mut self,
+        comm: &Comm,
+        store: &mut ParticleStore,
+        reach: impl Fn(&ParticleStore, usize) -> f64 + Sync,
+    ) {
+        self.post_motion(comm, store, reach);
+        self.finish_motion(store);
+    }
+
+    /// [`Self::post`] and [`Self::finish`]. Collective.
+    pub fn exchange(&mut self, comm: &Comm, store: &mut ParticleStore, uses: FieldUse) {
+        self.post(comm, store, uses);
+        self.finish(store, uses);
+    }
+
     /// Starts to send the fields of `uses` of the same particles.
     pub fn post(&mut self, comm: &Comm, store: &ParticleStore, uses: FieldUse) {
         let size = store.bytes_per_particle(uses);

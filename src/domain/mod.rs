@@ -6,7 +6,9 @@ mod migrate;
 mod mirrors;
 mod outset;
 mod pace;
+mod partition;
 mod slabs;
+mod span;
 
 pub use balance::{Cumulative, Histogram, balance};
 pub use halo::Halo;
@@ -14,4 +16,6 @@ pub use migrate::Migration;
 pub use mirrors::Mirrors;
 pub use outset::Outset;
 pub use pace::Paces;
+pub use partition::Partition;
 pub use slabs::{Decomposition, Slabs};
+pub(crate) use span::Span;

@@ -6,10 +6,10 @@ use rayon::prelude::*;
 use super::clusters::{
     CHUNKS_AT_ONCE, Chunk, Cluster, ClusterLists, INFLATION, near_box, push_places,
 };
+use super::motion::MotionRecord;
 use super::sequence::Sequence;
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
-use crate::sph::neighbourhood::MotionRecord;
 
 /// Which contact algorithm handles a pair of bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Brute-force neighbours: slow and obvious, beside the fast search.
 
+use super::motion::MotionRecord;
 use super::sequence::Sequence;
-use crate::sph::neighbourhood::MotionRecord;
 
 /// Places of all images of the receiver's group with `r < h_i + h_j`, in canonical order.
 ///

@@ -237,3 +237,24 @@ fn split(position: usize) -> (usize, usize) {
     let width = DIGIT_BITS as usize;
     (position / width, position % width)
 }
+
+/// Appends the limbs of sums, normalised.
+pub fn gather_limbs<'a>(sums: impl Iterator<Item = &'a mut ExactSum>, limbs: &mut Vec<i64>) {
+    for sum in sums {
+        sum.normalise();
+        limbs.extend_from_slice(sum.limbs());
+    }
+}
+
+/// Gives the sums their limbs back; returns what is left of `limbs`.
+pub fn scatter_limbs<'a, 'b>(
+    sums: impl Iterator<Item = &'a mut ExactSum>,
+    mut limbs: &'b [i64],
+) -> &'b [i64] {
+    for sum in sums {
+        let (own, rest) = limbs.split_at(sum.limbs().len());
+        sum.limbs_mut().copy_from_slice(own);
+        limbs = rest;
+    }
+    limbs
+}

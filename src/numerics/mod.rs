@@ -2,6 +2,7 @@
 
 pub mod dispatch;
 pub mod exact_sum;
+pub mod kernel;
 pub mod lanes;
 pub mod matrix;
 pub mod vector;

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::model::{Lattice, LatticeKind, Shape, Vec3};
-use crate::sph::kernel::Kernel;
+use crate::numerics::kernel::Kernel;
 
 mod counts;
 

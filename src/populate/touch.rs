@@ -3,7 +3,7 @@
 use super::bounds;
 use super::lattice::{pitches, shifts};
 use crate::model::{Axis, Body, LatticeKind};
-use crate::sph::kernel::{Kernel, SUPPORT};
+use crate::numerics::kernel::{Kernel, SUPPORT};
 
 /// How far `body` has to move along `axis` (m, signed) to come into touch with `other`, when it
 /// moves towards larger (`forward`) or smaller coordinates: the outermost particle layers of the

@@ -1,8 +1,8 @@
 //! Velocity gradient `L_i = −Σ_j V_j v_ij ⊗ ∇W_ij` (physics page, section 2).
 
-use super::kernel::PairScale;
 use super::neighbourhood::Neighbourhood;
 use crate::numerics::dispatch::Vectorised;
+use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::{F64x8, Lanes};
 
 /// The sum over pairs.

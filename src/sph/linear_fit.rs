@@ -4,9 +4,9 @@
 //!
 //! `L_s = Σ w (v_a − v̄) ⊗ (x_a − x̄) M⁻¹`, `v_s = v̄ + L_s (x_s − x̄)`.
 
-use super::kernel::{PairKernel, PairScale};
 use super::neighbourhood::Neighbourhood;
 use crate::numerics::dispatch::Vectorised;
+use crate::numerics::kernel::{PairKernel, PairScale};
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
 use crate::numerics::matrix::product;
 

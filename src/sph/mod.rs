@@ -1,16 +1,33 @@
-//! The pair sums of smoothed particle hydrodynamics: slices in, slices out.
+//! The pair sums of smoothed particle hydrodynamics: sums over slices at the bottom, formulations that
+//! run them over the particles of a rank above.
 //!
 //! A *cluster* of eight receivers meets its neighbours one by one in one canonical order; the
 //! eight receivers stand in the lanes of a vector, so no sum ever crosses lanes and a lane
 //! outside the support adds an exact zero.
 
+mod formulation;
 pub mod gradient;
-pub mod kernel;
 pub mod linear_fit;
+mod material_update;
 pub mod mid_step;
 pub mod momentum;
 pub mod neighbourhood;
 pub mod normalised;
 pub mod options;
+mod phase;
 pub mod principal;
+mod signal;
+mod smoothing;
 pub mod stress_points;
+mod sums;
+mod terms;
+
+pub use formulation::{Conventional, Normalised, StressPoints};
+pub use phase::Sph;
+pub(crate) use phase::with_formulation;
+pub use signal::{SignalSpeed, Signals};
+pub use smoothing::Smoothing;
+pub use sums::{Side, Step};
+
+/// Elements that a task handles at least.
+const GRAIN: usize = 1024;

@@ -1,11 +1,11 @@
 //! Conservative momentum equation with its compatible energy equation and Monaghan–Gingold
 //! viscosity (physics page, section 2).
 
-use super::kernel::PairScale;
 use super::neighbourhood::{Neighbourhood, gather, gather3, records};
 use super::normalised::NormalisedSums;
 use super::options::{BALSARA, CONDUCTION, NORMALISED, OptionSums, Options, SHAPED};
 use crate::numerics::dispatch::Vectorised;
+use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
 
 /// What a particle shows to its neighbours of its stress: one cache line.

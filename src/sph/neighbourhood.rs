@@ -1,21 +1,8 @@
 //! The receivers of one cluster with their neighbours: what all sums over pairs begin with.
 
-use super::kernel::{PairKernel, PairScale};
+use crate::neighbours::MotionRecord;
+use crate::numerics::kernel::{PairKernel, PairScale};
 use crate::numerics::lanes::{LANES, Lanes};
-
-/// What a particle shows to its neighbours of its motion: one cache line.
-#[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C, align(64))]
-pub struct MotionRecord {
-    /// Position (m).
-    pub position: [f64; 3],
-    /// Velocity (m/s).
-    pub velocity: [f64; 3],
-    /// Volume m/ρ (m^d).
-    pub volume: f64,
-    /// Mass (kg).
-    pub mass: f64,
-}
 
 /// Squares of distances are never smaller than this (m²), so that a particle meeting itself
 /// divides by something: it then adds an exact zero since its `r_ij` is zero.

@@ -9,10 +9,10 @@
 //! the factor `1/s` drops out. All of it is linear in sums over pairs, so one sweep makes the
 //! corrected velocity gradient; only the forces need the corrections of neighbours.
 
-use super::kernel::PairScale;
 use super::neighbourhood::{Neighbourhood, Separation, gather, gather3, records};
 use super::options::{NORMALISED, Options};
 use crate::numerics::dispatch::Vectorised;
+use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
 use crate::numerics::matrix::adjugate;
 

@@ -4,12 +4,12 @@
 //! Forces are the adjoint of the gradients of [`super::linear_fit`]: `f_a = −Σ_s w Q_s (x_a − x̄_s)`,
 //! `Q = V_s σ_s M_s⁻¹`.
 
-use super::kernel::PairScale;
 use super::linear_fit::{NORM, weight};
 use super::momentum::Viscosity;
 use super::neighbourhood::Neighbourhood;
 use super::principal::tensile_part;
 use crate::numerics::dispatch::Vectorised;
+use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::{F64x8, Lanes};
 
 /// What a stress point shows to velocity particles.

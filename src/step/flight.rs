@@ -7,12 +7,10 @@
 
 use rayon::prelude::*;
 
-use super::simulation::Simulation;
-use super::span::Span;
-use super::surface_motion::Placed;
 use crate::comm::Comm;
 use crate::contact::ContactTable;
-use crate::domain::Mirrors;
+use crate::domain::{Mirrors, Span};
+use crate::loads::{Loads, Placed};
 use crate::model::{Case, RigidSurface};
 use crate::neighbours::ContactClass;
 use crate::numerics::vector::norm;
@@ -26,14 +24,32 @@ const ROUNDS: usize = 4;
 pub(super) struct Flight {
     /// Shortest mean smoothing length of two bodies with contact (m), infinite without.
     shortest: f64,
+    search: Search,
+    /// Velocities that loads may prescribe in the step (m/s), by ledger and axis.
+    prescribed: Vec<[Option<[f64; 2]>; 3]>,
+}
+
+/// Whatever is about particles that fly.
+#[derive(Clone, Copy)]
+pub(super) struct Sky<'a> {
+    pub case: &'a Case,
+    pub particles: &'a ParticleStore,
+    pub table: &'a ContactTable,
+    pub loads: &'a Loads,
+    pub mirrors: &'a Mirrors,
+    /// Now (s).
+    pub time: f64,
+}
+
+/// The search for bodies that meet.
+#[derive(Debug, Default)]
+struct Search {
     /// By set of particles and thread.
     parts: Vec<Vec<Span>>,
     meetings: Vec<Meeting>,
     /// By body, which sides of meetings are its own.
     sides: Vec<Vec<usize>>,
     words: Vec<u64>,
-    /// Velocities that loads may prescribe in the step (m/s), by ledger and axis.
-    prescribed: Vec<[Option<[f64; 2]>; 3]>,
 }
 
 /// Two bodies, the second one's image behind planes, and what of them can meet.
@@ -69,13 +85,64 @@ impl Flight {
     }
 
     pub fn memory(&self) -> usize {
+        self.search.memory() + size_of::<[Option<[f64; 2]>; 3]>() * self.prescribed.capacity()
+    }
+
+    /// The longest step, of no more than `dt` (s), in which nothing flies through anything else unseen,
+    /// given what all particles span. Collective.
+    pub fn longest_step(&mut self, comm: &Comm, sky: &Sky, span: &Span, dt: f64) -> f64 {
+        let mut all = *span;
+        let from = sky.time;
+        let to = sky.case.run.end_time.min(from + dt);
+        if all.is_empty() || !sky.table.is_active() || to.is_infinite() {
+            return dt;
+        }
+        self.prescribed.clear();
+        self.prescribed.extend(prescribed(sky.case, from, to));
+        for ranges in &self.prescribed {
+            for (a, range) in ranges.iter().enumerate() {
+                if let Some(range) = *range {
+                    all.widen(a, range);
+                }
+            }
+        }
+        let mut images = all;
+        for code in sky.mirrors.codes() {
+            images.join(&all.reflected(sky.mirrors, code));
+        }
+        let flyers = Flyers {
+            store: sky.particles,
+            prescribed: &self.prescribed,
+        };
+        let mut longest = dt;
+        if norm(&images.against(&images.velocities())) * dt > self.shortest {
+            longest = self.search.of_bodies(comm, sky, &flyers, dt);
+        }
+        let near = |surface: &RigidSurface, placed: &Placed| {
+            let speed = placed.closing_speed(&all, from, to);
+            let bodies = sky.case.bodies.iter().zip(&surface.bodies);
+            let h = bodies
+                .filter(|(_, acts)| **acts)
+                .map(|(body, _)| body.smoothing_length);
+            2.0 * speed * dt > h.fold(f64::INFINITY, f64::min)
+        };
+        let surfaces = sky.case.loads.surfaces.iter().zip(&sky.loads.surfaces);
+        let mut placed = surfaces.map(|(surface, step)| Placed { surface, step });
+        if placed.any(|placed| near(placed.surface, &placed)) {
+            longest = comm.min_f64(to_surfaces(sky, &flyers, longest));
+        }
+        longest
+    }
+}
+
+impl Search {
+    fn memory(&self) -> usize {
         let parts = self.parts.iter().map(Vec::capacity).sum::<usize>();
         let sides = self.sides.iter().map(Vec::capacity).sum::<usize>();
         size_of::<Span>() * parts
             + size_of::<Meeting>() * self.meetings.capacity()
             + size_of::<usize>() * sides
             + size_of::<u64>() * self.words.capacity()
-            + size_of::<[Option<[f64; 2]>; 3]>() * self.prescribed.capacity()
     }
 
     /// Joins `sets` spans over all particles and ranks, to which `book` adds a particle, into the first
@@ -129,6 +196,76 @@ impl Flight {
         }
         longest
     }
+
+    /// The longest step, of no more than `dt` (s), of bodies that fly towards each other. Collective.
+    fn of_bodies(&mut self, comm: &Comm, sky: &Sky, flyers: &Flyers, dt: f64) -> f64 {
+        let (particles, bodies) = (sky.particles, sky.case.bodies.len());
+        let mirrors = sky.mirrors;
+        self.join(comm, bodies, particles.owned(), |i, spans, _, _| {
+            // Stress points meet nothing.
+            if particles.mass[i] > 0.0 {
+                spans[particles.body[i] as usize].join(&flyers.point(i));
+            }
+        });
+        self.sides.resize_with(bodies, Vec::new);
+        self.pair(sky, dt);
+        let mut longest = self.sift(mirrors, dt);
+        for _ in 0..ROUNDS {
+            if self.meetings.is_empty() {
+                break;
+            }
+            let sets = 2 * self.meetings.len();
+            self.join(
+                comm,
+                sets,
+                particles.owned(),
+                |i, spans, meetings, sides| {
+                    let sides = &sides[particles.body[i] as usize];
+                    if sides.is_empty() || particles.mass[i] == 0.0 {
+                        return;
+                    }
+                    let point = flyers.point(i);
+                    for &side in sides {
+                        if meetings[side / 2].concerns(mirrors, side % 2, &point, dt) {
+                            spans[side].join(&point);
+                        }
+                    }
+                },
+            );
+            let (spans, meetings) = (&self.parts[0], &mut self.meetings);
+            for (meeting, spans) in meetings.iter_mut().zip(spans.chunks_exact(2)) {
+                meeting.spans = [spans[0], spans[1]];
+            }
+            let before = longest;
+            longest = self.sift(mirrors, dt);
+            if longest <= before {
+                break;
+            }
+        }
+        longest
+    }
+
+    /// Lists the bodies that limit a step `dt` (s), given what each of them spans.
+    fn pair(&mut self, sky: &Sky, dt: f64) {
+        let (mirrors, bodies) = (sky.mirrors, sky.case.bodies.len());
+        let (spans, meetings) = (&self.parts[0], &mut self.meetings);
+        meetings.clear();
+        for a in 0..bodies {
+            for b in a + 1..bodies {
+                if sky.table.foreign.class[a * bodies + b] == ContactClass::None {
+                    continue;
+                }
+                let meet = |code| Meeting {
+                    bodies: [a, b],
+                    code,
+                    h: sky.table.pair(a, b).h,
+                    spans: [spans[a], spans[b]],
+                };
+                let all = std::iter::once(0).chain(mirrors.codes()).map(meet);
+                meetings.extend(all.filter(|meeting| meeting.longest_step(mirrors) < dt));
+            }
+        }
+    }
 }
 
 /// What tells the velocities of a particle in the next step.
@@ -165,152 +302,30 @@ fn prescribed(case: &Case, from: f64, to: f64) -> impl Iterator<Item = [Option<[
     })
 }
 
-impl Simulation {
-    /// The longest step, of no more than `dt` (s), in which nothing flies through anything else
-    /// unseen. Collective.
-    pub(super) fn longest_flight(&mut self, comm: &Comm, dt: f64) -> f64 {
-        let mut all = self.sums.span;
-        let from = self.state.time;
-        let to = self.case.run.end_time.min(from + dt);
-        if all.is_empty() || !self.contact.is_active() || to.is_infinite() {
-            return dt;
-        }
-        let mut flight = std::mem::take(&mut self.flight);
-        flight.prescribed.clear();
-        flight.prescribed.extend(prescribed(&self.case, from, to));
-        for ranges in &flight.prescribed {
-            for (a, range) in ranges.iter().enumerate() {
-                if let Some(range) = *range {
-                    all.widen(a, range);
-                }
+/// The longest step, of no more than `dt` (s), of this rank's particles that fly towards rigid surfaces.
+fn to_surfaces(sky: &Sky, flyers: &Flyers, dt: f64) -> f64 {
+    let (from, to) = (sky.time, sky.time + dt);
+    let (particles, case) = (sky.particles, sky.case);
+    let surfaces = case.loads.surfaces.iter().zip(&sky.loads.surfaces);
+    surfaces.fold(dt, |longest, (surface, step)| {
+        let placed = Placed { surface, step };
+        let step = |i: usize| {
+            let body = particles.body[i] as usize;
+            if !surface.bodies[body] || particles.mass[i] == 0.0 {
+                return longest;
             }
-        }
-        let mirrors = *self.halo.mirrors();
-        let mut images = all;
-        for code in mirrors.codes() {
-            images.join(&all.reflected(&mirrors, code));
-        }
-        let mut longest = dt;
-        if norm(&images.against(&images.velocities())) * dt > flight.shortest {
-            longest = self.flight_of_bodies(comm, &mut flight, dt);
-        }
-        let near = |surface: &RigidSurface, placed: &Placed| {
-            let speed = placed.closing_speed(&all, from, to);
-            let bodies = self.case.bodies.iter().zip(&surface.bodies);
-            let h = bodies
-                .filter(|(_, acts)| **acts)
-                .map(|(body, _)| body.smoothing_length);
-            2.0 * speed * dt > h.fold(f64::INFINITY, f64::min)
+            let h = case.bodies[body].smoothing_length;
+            let (x, point) = (&particles.position[i], flyers.point(i));
+            let speed = placed.closing_speed(&point, from, to);
+            let local = placed.local(x);
+            // What is nearer than h has been seen.
+            match surface.foot(&local, 0.5 * h + speed * longest) {
+                Some(foot) if foot.gap >= h => (foot.gap - 0.5 * h) / speed,
+                _ => longest,
+            }
         };
-        let surfaces = self.case.loads.surfaces.iter().zip(&self.loads.surfaces);
-        let mut placed = surfaces.map(|(surface, step)| Placed { surface, step });
-        if placed.any(|placed| near(placed.surface, &placed)) {
-            longest = comm.min_f64(self.flight_to_surfaces(&flight, longest));
-        }
-        self.flight = flight;
-        longest
-    }
-
-    /// The same of bodies that fly towards each other. Collective.
-    fn flight_of_bodies(&self, comm: &Comm, flight: &mut Flight, dt: f64) -> f64 {
-        let (store, bodies) = (&self.store, self.case.bodies.len());
-        let prescribed = std::mem::take(&mut flight.prescribed);
-        let flyers = Flyers {
-            store,
-            prescribed: &prescribed,
-        };
-        let mirrors = *self.halo.mirrors();
-        flight.join(comm, bodies, store.owned(), |i, spans, _, _| {
-            // Stress points meet nothing.
-            if store.mass[i] > 0.0 {
-                spans[store.body[i] as usize].join(&flyers.point(i));
-            }
-        });
-        flight.sides.resize_with(bodies, Vec::new);
-        self.pair_bodies(flight, dt);
-        let mut longest = flight.sift(&mirrors, dt);
-        for _ in 0..ROUNDS {
-            if flight.meetings.is_empty() {
-                break;
-            }
-            let sets = 2 * flight.meetings.len();
-            flight.join(comm, sets, store.owned(), |i, spans, meetings, sides| {
-                let sides = &sides[store.body[i] as usize];
-                if sides.is_empty() || store.mass[i] == 0.0 {
-                    return;
-                }
-                let point = flyers.point(i);
-                for &side in sides {
-                    if meetings[side / 2].concerns(&mirrors, side % 2, &point, dt) {
-                        spans[side].join(&point);
-                    }
-                }
-            });
-            let (spans, meetings) = (&flight.parts[0], &mut flight.meetings);
-            for (meeting, spans) in meetings.iter_mut().zip(spans.chunks_exact(2)) {
-                meeting.spans = [spans[0], spans[1]];
-            }
-            let before = longest;
-            longest = flight.sift(&mirrors, dt);
-            if longest <= before {
-                break;
-            }
-        }
-        flight.prescribed = prescribed;
-        longest
-    }
-
-    /// Lists the bodies that limit a step `dt` (s), given what each of them spans.
-    fn pair_bodies(&self, flight: &mut Flight, dt: f64) {
-        let (mirrors, bodies) = (*self.halo.mirrors(), self.case.bodies.len());
-        let (spans, meetings) = (&flight.parts[0], &mut flight.meetings);
-        meetings.clear();
-        for a in 0..bodies {
-            for b in a + 1..bodies {
-                if self.contact.foreign.class[a * bodies + b] == ContactClass::None {
-                    continue;
-                }
-                let meet = |code| Meeting {
-                    bodies: [a, b],
-                    code,
-                    h: self.contact.pair(a, b).h,
-                    spans: [spans[a], spans[b]],
-                };
-                let all = std::iter::once(0).chain(mirrors.codes()).map(meet);
-                meetings.extend(all.filter(|meeting| meeting.longest_step(&mirrors) < dt));
-            }
-        }
-    }
-
-    /// The same of this rank's particles that fly towards rigid surfaces.
-    fn flight_to_surfaces(&self, flight: &Flight, dt: f64) -> f64 {
-        let (from, to) = (self.state.time, self.state.time + dt);
-        let flyers = Flyers {
-            store: &self.store,
-            prescribed: &flight.prescribed,
-        };
-        let (store, case) = (&self.store, &self.case);
-        let surfaces = case.loads.surfaces.iter().zip(&self.loads.surfaces);
-        surfaces.fold(dt, |longest, (surface, step)| {
-            let placed = Placed { surface, step };
-            let step = |i: usize| {
-                let body = store.body[i] as usize;
-                if !surface.bodies[body] || store.mass[i] == 0.0 {
-                    return longest;
-                }
-                let h = case.bodies[body].smoothing_length;
-                let (x, point) = (&store.position[i], flyers.point(i));
-                let speed = placed.closing_speed(&point, from, to);
-                let local = placed.local(x);
-                // What is nearer than h has been seen.
-                match surface.foot(&local, 0.5 * h + speed * longest) {
-                    Some(foot) if foot.gap >= h => (foot.gap - 0.5 * h) / speed,
-                    _ => longest,
-                }
-            };
-            let owned = (0..store.owned()).into_par_iter();
-            // same bits in any order: a smallest number
-            owned.map(step).reduce(|| longest, f64::min)
-        })
-    }
+        let owned = (0..particles.owned()).into_par_iter();
+        // same bits in any order: a smallest number
+        owned.map(step).reduce(|| longest, f64::min)
+    })
 }

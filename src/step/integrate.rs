@@ -12,43 +12,17 @@
 
 use rayon::prelude::*;
 
-use super::loads::{Drive, Free, Goal, LoadStep};
-use super::search::GRAIN;
-use super::simulation::Simulation;
-use super::span::Span;
-use super::vote::{ABSTAIN, Moved, Vote};
-use crate::model::SmoothingLength;
+use super::vote::{Ballot, Vote, Voter, vote_fields};
+use crate::diagnose::Moved;
+use crate::domain::Span;
+use crate::loads::{Drive, Free, Goal, Loads};
 use crate::numerics::exact_sum::ExactSum;
 use crate::numerics::vector::dot;
+use crate::particles::ParticleStore;
+use crate::sph::{SignalSpeed, Smoothing};
 
-/// Smoothing length of a particle from its predicted density (physics page, section 1).
-#[derive(Debug, Clone, Copy)]
-pub(super) struct SmoothingRule {
-    rule: SmoothingLength,
-    dimension: usize,
-}
-
-impl SmoothingRule {
-    pub(super) fn new(rule: SmoothingLength, dimension: usize) -> Self {
-        Self { rule, dimension }
-    }
-
-    /// `h` (m) from `h_0` (m) and `ρ_0/ρ`.
-    #[inline]
-    pub(super) fn length(&self, reference: f64, expansion: f64) -> f64 {
-        match self.rule {
-            SmoothingLength::Constant => reference,
-            SmoothingLength::Variable { min, max } => {
-                let ratio = match self.dimension {
-                    1 => expansion,
-                    2 => expansion.sqrt(),
-                    _ => libm::cbrt(expansion),
-                };
-                reference * ratio.clamp(min, max)
-            }
-        }
-    }
-}
+/// Elements that a task handles at least.
+const GRAIN: usize = 1024;
 
 fn add(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|k| a[k] + b[k])
@@ -58,88 +32,112 @@ fn add_scaled(v: &[f64; 3], factor: f64, a: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|k| v[k] + factor * a[k])
 }
 
-impl Simulation {
-    /// First half kick and drift of a step `dt` (s) that ends at time `end` (s), and the
-    /// predictions for its end.
-    pub(super) fn kick_and_drift(&mut self, dt: f64, end: f64) {
-        self.loads.prepare(&self.case, self.state.time, end);
-        self.book_loads(dt, true);
-        self.book_plane_force(dt);
-        self.store.resize_halo(0);
-        self.half_kick(dt, Goal::Middle);
-        self.drift_with_neighbours(dt);
-        self.drift_stress_points(dt);
-        self.fold_at_planes();
-    }
+/// A half kick.
+#[derive(Debug, Clone, Copy)]
+struct Kick {
+    /// The whole step (s).
+    dt: f64,
+    gravity: [f64; 3],
+}
 
-    /// Second half kick of a step `dt` (s), zero at the start of a case. Gives this rank's vote on
-    /// the next one, taken while each particle is at hand.
-    #[must_use]
-    pub(super) fn kick(&mut self, dt: f64) -> Vote {
-        let (vote, span) = self.half_kick(dt, Goal::End);
-        self.sums.span = span;
-        self.book_loads(dt, false);
-        vote
+impl Kick {
+    /// Acceleration (m/s²) by stress, contact and gravity.
+    #[inline(always)]
+    fn total(&self, stress: &[f64; 3], contact: &[f64; 3]) -> [f64; 3] {
+        add(stress, &add(contact, &self.gravity))
     }
+}
 
-    /// One of the two half kicks of the particles, with all that acts on them beside stress, and
-    /// the work of contact in it. Only the second one votes, and looks where particles are.
-    fn half_kick(&mut self, dt: f64, goal: Goal) -> (Vote, Span) {
-        let contact = std::mem::take(&mut self.store.contact_acceleration);
-        let bits = std::mem::take(&mut self.store.load);
-        let loads = std::mem::take(&mut self.loads);
-        let gravity = loads.gravity;
-        let kick = Kick { dt, gravity };
-        let (work, vote, span) = if loads.drives() {
-            self.half_kick_by(kick, goal, |i| {
-                (
-                    contact.get(i).copied().unwrap_or_default(),
-                    loads.of(bits[i]),
-                )
-            })
-        } else if self.contact.is_active() {
-            self.half_kick_by(kick, goal, |i| (contact[i], Free))
+/// Calls `$work` with what tells the acceleration by contact (m/s²) and the loads of a particle: a type
+/// of its own where there are none.
+macro_rules! with_outside {
+    ($loads:expr, $particles:expr, $name:ident => $work:expr) => {{
+        let (contact, bits) = (&$particles.contact_acceleration, &$particles.load);
+        if $loads.drives() {
+            let $name = |i: usize| {
+                let contact = contact.get(i).copied().unwrap_or_default();
+                (contact, $loads.of(bits[i]))
+            };
+            $work
+        } else if !contact.is_empty() {
+            let $name = |i: usize| (contact[i], Free);
+            $work
         } else {
-            self.half_kick_by(kick, goal, |_| ([0.0; 3], Free))
-        };
-        self.sums.contact_work.merge(&work);
-        (self.loads, self.store.load) = (loads, bits);
-        self.store.contact_acceleration = contact;
-        (vote, span)
-    }
-
-    /// [`Self::half_kick`], given the acceleration by contact (m/s²) and the loads of a particle.
-    fn half_kick_by<D: Drive>(
-        &mut self,
-        kick: Kick,
-        goal: Goal,
-        outside: impl Fn(usize) -> ([f64; 3], D) + Sync,
-    ) -> (ExactSum, Vote, Span) {
-        match goal {
-            Goal::Middle => (self.kick_and_drift_by(kick, outside), ABSTAIN, Span::NONE),
-            Goal::End => self.kick_by(kick, outside),
+            let $name = |_: usize| ([0.0; 3], Free);
+            $work
         }
-    }
+    }};
+}
 
-    /// [`Self::kick_and_drift`] of the particles. Gives the work of contact (J).
-    fn kick_and_drift_by<D: Drive>(
-        &mut self,
+/// What the first half kick and the drift write.
+struct Drifting<'a> {
+    velocity: &'a mut [[f64; 3]],
+    specific_energy: &'a mut [f64],
+    position: &'a mut [[f64; 3]],
+    predicted_velocity: &'a mut [[f64; 3]],
+    predicted_density: &'a mut [f64],
+    smoothing_length: &'a mut [f64],
+}
+
+/// What they read.
+struct Rates<'a> {
+    mass: &'a [f64],
+    density: &'a [f64],
+    body: &'a [u32],
+    acceleration: &'a [[f64; 3]],
+    heating: &'a [f64],
+    velocity_gradient: &'a [[f64; 9]],
+}
+
+/// First half kick and drift of a step `dt` (s), and the predictions for its end. Gives the work of
+/// contact (J).
+pub(super) fn kick_and_drift(
+    particles: &mut ParticleStore,
+    loads: &Loads,
+    smoothing: &Smoothing,
+    dt: f64,
+) -> ExactSum {
+    let kick = Kick {
+        dt,
+        gravity: loads.gravity,
+    };
+    let drifting = Drifting {
+        velocity: &mut particles.velocity,
+        specific_energy: &mut particles.specific_energy,
+        position: &mut particles.position,
+        predicted_velocity: &mut particles.predicted_velocity,
+        predicted_density: &mut particles.predicted_density,
+        smoothing_length: &mut particles.smoothing_length,
+    };
+    let rates = Rates {
+        mass: &particles.mass,
+        density: &particles.density,
+        body: &particles.body,
+        acceleration: &particles.acceleration,
+        heating: &particles.d_specific_energy_dt,
+        velocity_gradient: &particles.velocity_gradient,
+    };
+    with_outside!(loads, particles, outside => drifting.advance(kick, &rates, smoothing, outside))
+}
+
+impl Drifting<'_> {
+    fn advance<D: Drive>(
+        self,
         kick: Kick,
+        rates: &Rates,
+        smoothing: &Smoothing,
         outside: impl Fn(usize) -> ([f64; 3], D) + Sync,
     ) -> ExactSum {
-        let rule = SmoothingRule::new(self.case.sph.smoothing_length, self.case.dimension);
-        let (table, reference_h) = (&self.contact, &self.reference_h);
         let dt = kick.dt;
         let half = 0.5 * dt;
-        let per_half = LoadStep::per_half(dt);
-        let store = &mut self.store;
+        let per_half = Loads::per_half(dt);
         (
-            store.velocity.par_chunks_mut(GRAIN),
-            store.specific_energy.par_chunks_mut(GRAIN),
-            store.position.par_chunks_mut(GRAIN),
-            store.predicted_velocity.par_chunks_mut(GRAIN),
-            store.predicted_density.par_chunks_mut(GRAIN),
-            store.smoothing_length.par_chunks_mut(GRAIN),
+            self.velocity.par_chunks_mut(GRAIN),
+            self.specific_energy.par_chunks_mut(GRAIN),
+            self.position.par_chunks_mut(GRAIN),
+            self.predicted_velocity.par_chunks_mut(GRAIN),
+            self.predicted_density.par_chunks_mut(GRAIN),
+            self.smoothing_length.par_chunks_mut(GRAIN),
         )
             .into_par_iter()
             .enumerate()
@@ -150,26 +148,24 @@ impl Simulation {
                     for k in 0..v.len() {
                         let i = chunk * GRAIN + k;
                         let (contact, drive) = outside(i);
-                        let a = &store.acceleration[i];
+                        let a = &rates.acceleration[i];
                         let mut total = kick.total(a, &contact);
                         if contact != [0.0; 3] {
                             let mut mean = add_scaled(&v[k], 0.25 * dt, &total);
                             drive.correct_mean(&v[k], &mut mean);
-                            work.add(half * store.mass[i] * dot(&contact, &mean));
+                            work.add(half * rates.mass[i] * dot(&contact, &mean));
                         }
                         drive.steer(Goal::Middle, &v[k], per_half, &mut total);
-                        e[k] += half * (store.d_specific_energy_dt[i] - 0.25 * dt * dot(a, &total));
+                        e[k] += half * (rates.heating[i] - 0.25 * dt * dot(a, &total));
                         v[k] = add_scaled(&v[k], half, &total);
                         drive.set(Goal::Middle, &mut v[k]);
                         x[k] = add_scaled(&x[k], dt, &v[k]);
                         v_p[k] = add_scaled(&v[k], half, &total);
                         drive.set(Goal::End, &mut v_p[k]);
-                        let l = &store.velocity_gradient[i];
+                        let l = &rates.velocity_gradient[i];
                         let strain = half * (l[0] + l[4] + l[8]);
-                        rho_p[k] = store.density[i] * ((1.0 - strain) / (1.0 + strain));
-                        let body = store.body[i] as usize;
-                        let reference = 1.0 / table.inverse_density(body);
-                        h[k] = rule.length(reference_h[body], reference / rho_p[k]);
+                        rho_p[k] = rates.density[i] * ((1.0 - strain) / (1.0 + strain));
+                        h[k] = smoothing.length(rates.body[i] as usize, rho_p[k]);
                     }
                     work
                 },
@@ -177,63 +173,66 @@ impl Simulation {
             // same bits in any order, as above
             .reduce(ExactSum::default, merged)
     }
+}
 
-    /// Particles that crossed a symmetry plane change places with their images.
-    fn fold_at_planes(&mut self) {
-        let mirrors = *self.halo.mirrors();
-        if mirrors.is_empty() {
-            return;
-        }
-        let positions = self.store.position.par_chunks(GRAIN);
-        self.crossed.resize(positions.len(), Vec::new());
-        (&mut self.crossed, positions)
-            .into_par_iter()
-            .enumerate()
-            .for_each(|(chunk, (crossed, positions))| {
-                let beyond = |(_, x): &(usize, &[f64; 3])| mirrors.beyond(x) != 0;
-                let indices = positions.iter().enumerate().filter(beyond);
-                crossed.clear();
-                crossed.extend(indices.map(|(k, _)| chunk * GRAIN + k));
-            });
-        for &i in self.crossed.iter().flatten() {
-            self.sums.crossings += 1;
-            let before = self.store.velocity[i];
-            mirrors.fold(&mut self.store, i);
-            let after = self.store.velocity[i];
-            if self
-                .store
-                .load
-                .get(i)
-                .is_some_and(|&bits| self.loads.is_rigid(bits))
-            {
-                continue;
-            }
-            let mass = self.store.mass[i];
-            for a in 0..3 {
-                self.sums.crossing_impulse[a].add(mass * (after[a] - before[a]));
-            }
-        }
-    }
+/// What the second half kick gives.
+pub(super) struct Kicked {
+    /// Work of contact (J).
+    pub work: ExactSum,
+    /// This rank's vote on the next step, taken while each particle is at hand.
+    pub vote: Vote,
+    /// Where particles are and how they move.
+    pub span: Span,
+}
 
-    /// [`Self::kick`] of the particles. Gives the work of contact (J), the smallest vote, and what the
-    /// particles span.
-    fn kick_by<D: Drive>(
-        &mut self,
+/// Second half kick of a step `dt` (s), zero at the start of a case. What `voter` makes of the fields of
+/// votes lets particles vote.
+pub(super) fn kick<'a, F: SignalSpeed>(
+    particles: &'a mut ParticleStore,
+    loads: &Loads,
+    voter: impl FnOnce(super::vote::VoteFields<'a>) -> Voter<'a, F>,
+    dt: f64,
+) -> Kicked {
+    let kick = Kick {
+        dt,
+        gravity: loads.gravity,
+    };
+    let voter = voter(vote_fields!(particles));
+    let predicted_velocity = &particles.predicted_velocity;
+    let kicking = Kicking {
+        velocity: &mut particles.velocity,
+        specific_energy: &mut particles.specific_energy,
+        heating: &mut particles.d_specific_energy_dt,
+    };
+    with_outside!(loads, particles, outside => {
+        kicking.finish(kick, &voter, predicted_velocity, outside)
+    })
+}
+
+/// What the second half kick writes.
+struct Kicking<'a> {
+    velocity: &'a mut [[f64; 3]],
+    specific_energy: &'a mut [f64],
+    heating: &'a mut [f64],
+}
+
+impl Kicking<'_> {
+    fn finish<D: Drive, F: SignalSpeed>(
+        self,
         kick: Kick,
+        voter: &Voter<F>,
+        predicted_velocity: &[[f64; 3]],
         outside: impl Fn(usize) -> ([f64; 3], D) + Sync,
-    ) -> (ExactSum, Vote, Span) {
+    ) -> Kicked {
         let dt = kick.dt;
         let half = 0.5 * dt;
-        let per_half = LoadStep::per_half(dt);
-        let mut velocity = std::mem::take(&mut self.store.velocity);
-        let mut energy = std::mem::take(&mut self.store.specific_energy);
-        let mut rate = std::mem::take(&mut self.store.d_specific_energy_dt);
-        let (voter, store) = (self.voter(), &self.store);
+        let per_half = Loads::per_half(dt);
+        let fields = &voter.fields;
         let none = || (ExactSum::default(), voter.ballot(), Span::NONE);
         let (work, ballot, span) = (
-            velocity.par_chunks_mut(GRAIN),
-            energy.par_chunks_mut(GRAIN),
-            rate.par_chunks_mut(GRAIN),
+            self.velocity.par_chunks_mut(GRAIN),
+            self.specific_energy.par_chunks_mut(GRAIN),
+            self.heating.par_chunks_mut(GRAIN),
         )
             .into_par_iter()
             .enumerate()
@@ -244,19 +243,19 @@ impl Simulation {
                     for k in 0..v.len() {
                         let i = chunk * GRAIN + k;
                         let (contact, drive) = outside(i);
-                        let a = &store.acceleration[i];
+                        let a = &fields.acceleration[i];
                         let forces = kick.total(a, &contact);
                         let mut total = forces;
                         drive.steer(Goal::End, &v[k], per_half, &mut total);
                         v[k] = add_scaled(&v[k], half, &total);
                         drive.set(Goal::End, &mut v[k]);
-                        span.add(&store.position[i], &v[k]);
+                        span.add(&fields.position[i], &v[k]);
                         if contact != [0.0; 3] {
                             let mut mean = add_scaled(&v[k], -0.25 * dt, &forces);
                             drive.correct_mean(&v[k], &mut mean);
-                            work.add(half * store.mass[i] * dot(&contact, &mean));
+                            work.add(half * fields.mass[i] * dot(&contact, &mean));
                         }
-                        let v_p = &store.predicted_velocity[i];
+                        let v_p = &predicted_velocity[i];
                         let late = add_scaled(&v[k], -1.0, v_p);
                         de[k] -= dot(a, &late);
                         e[k] += half * (de[k] + 0.25 * dt * dot(a, &total));
@@ -275,28 +274,13 @@ impl Simulation {
             // same bits in any order, as above
             .reduce(none, |(work, ballot, mut span), (other, others, beyond)| {
                 span.join(&beyond);
-                (merged(work, other), ballot.min(others), span)
+                (merged(work, other), Ballot::min(ballot, others), span)
             });
-        self.store.velocity = velocity;
-        self.store.specific_energy = energy;
-        self.store.d_specific_energy_dt = rate;
-        (work, ballot.vote(), span)
-    }
-}
-
-/// A half kick.
-#[derive(Debug, Clone, Copy)]
-struct Kick {
-    /// The whole step (s).
-    dt: f64,
-    gravity: [f64; 3],
-}
-
-impl Kick {
-    /// Acceleration (m/s²) by stress, contact and gravity.
-    #[inline(always)]
-    fn total(&self, stress: &[f64; 3], contact: &[f64; 3]) -> [f64; 3] {
-        add(stress, &add(contact, &self.gravity))
+        Kicked {
+            work,
+            vote: ballot.vote(),
+            span,
+        }
     }
 }
 

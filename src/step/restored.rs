@@ -2,8 +2,8 @@
 
 use super::setup::SetupError;
 use super::simulation::Simulation;
-use super::state::RunState;
 use crate::comm::Comm;
+use crate::diagnose::RunState;
 use crate::particles::{FieldInfo, FieldUse, ParticleStore};
 
 /// Largest count: beyond it one more may be lost in a sum, or run over.
@@ -12,48 +12,46 @@ const MOST: u64 = 1 << 53;
 /// What a saved state may be wrong in, and whether it is.
 type Check<'a> = (&'static str, &'a dyn Fn() -> bool);
 
-impl Simulation {
-    /// Refuses a saved state, or any rank's share of its particles, that is none of this case.
-    /// Collective.
-    pub(super) fn require_own(
-        &self,
-        comm: &Comm,
-        state: &RunState,
-        store: &ParticleStore,
-    ) -> Result<(), SetupError> {
-        let (own, bodies) = (&self.state, self.case.bodies.len());
-        let ledgers = |state: &RunState| [state.pairs.len(), state.loads.len()];
-        let checks: [Check; 7] = [
-            ("it has other pairs of bodies or loads", &|| {
-                ledgers(state) != ledgers(own)
-            }),
-            ("it has particles removed from other bodies", &|| {
-                ![0, bodies].contains(&state.removed.len())
-            }),
-            ("its times are none", &|| {
-                !(state.dt > 0.0 && state.last_dt >= 0.0 && state.time >= 0.0)
-            }),
-            ("its counts are none", &|| {
-                counts(state).any(|count| count > MOST)
-            }),
-            ("it has particles of another body", &|| {
-                store.body.iter().any(|&body| body as usize >= bodies)
-            }),
-            ("it has particles under another load", &|| {
-                store.load.iter().any(|&bits| !self.loads.knows(bits))
-            }),
-            ("it has numbers that are not finite", &|| {
-                store.held(FieldUse::STATE).any(|f| !is_finite(store, f))
-            }),
-        ];
-        let wrong = checks.iter().position(|(_, wrong)| wrong());
-        let mut first = [wrong.unwrap_or(checks.len()) as u64];
-        comm.min_u64(&mut first);
-        let first = usize::try_from(first[0]).ok();
-        match first.and_then(|first| checks.get(first)) {
-            Some((what, _)) => Err(SetupError::Foreign(what)),
-            None => Ok(()),
-        }
+/// Refuses a saved state, or any rank's share of its particles, that is none of this case.
+/// Collective.
+pub(super) fn require_own(
+    comm: &Comm,
+    simulation: &Simulation,
+    state: &RunState,
+    store: &ParticleStore,
+) -> Result<(), SetupError> {
+    let (own, bodies) = (&simulation.state, simulation.case.bodies.len());
+    let ledgers = |state: &RunState| [state.pairs.len(), state.loads.len()];
+    let checks: [Check; 7] = [
+        ("it has other pairs of bodies or loads", &|| {
+            ledgers(state) != ledgers(own)
+        }),
+        ("it has particles removed from other bodies", &|| {
+            ![0, bodies].contains(&state.removed.len())
+        }),
+        ("its times are none", &|| {
+            !(state.dt > 0.0 && state.last_dt >= 0.0 && state.time >= 0.0)
+        }),
+        ("its counts are none", &|| {
+            counts(state).any(|count| count > MOST)
+        }),
+        ("it has particles of another body", &|| {
+            store.body.iter().any(|&body| body as usize >= bodies)
+        }),
+        ("it has particles under another load", &|| {
+            store.load.iter().any(|&bits| !simulation.loads.knows(bits))
+        }),
+        ("it has numbers that are not finite", &|| {
+            store.held(FieldUse::STATE).any(|f| !is_finite(store, f))
+        }),
+    ];
+    let wrong = checks.iter().position(|(_, wrong)| wrong());
+    let mut first = [wrong.unwrap_or(checks.len()) as u64];
+    comm.min_u64(&mut first);
+    let first = usize::try_from(first[0]).ok();
+    match first.and_then(|first| checks.get(first)) {
+        Some((what, _)) => Err(SetupError::Foreign(what)),
+        None => Ok(()),
     }
 }
 

@@ -1,30 +1,23 @@
 //! From a case to the particles of this rank at time zero, or from saved particles to a run.
 
-use std::collections::VecDeque;
-
 use thiserror::Error;
 
-use super::contact_phase::ContactPhase;
-use super::flight::Flight;
-use super::loads::{Drive, Goal, LoadStep};
-use super::options::{OptionPhase, unused_fields};
-use super::parts::Parts;
-use super::search::Search;
+use super::fields::unused_fields;
+use super::removal::Frozen;
+use super::restored::require_own;
 use super::simulation::{Simulation, StepError};
-use super::state::{LoadState, PairState, Reason, RunState, Totals, Worst};
-use super::stress_points::StressPoints;
-use super::sums::StepSums;
-use super::surface_forces::SurfaceForces;
-use super::sweeps::Sweeps;
 use super::timers::Timers;
-use super::trouble::{Limits, PAST_VOTES};
+use super::vote::Votes;
 use crate::comm::Comm;
-use crate::contact::ContactTable;
-use crate::domain::{Halo, Histogram, Migration, Mirrors, Outset, Paces, Slabs, balance};
+use crate::contact::{Connectivity, Contact};
+use crate::diagnose::{LoadState, PairState, Reason, RunState, StepSums, Totals, Worst};
+use crate::domain::{Halo, Mirrors, Outset, Partition};
+use crate::loads::{Drive, Goal, Loads};
 use crate::model::{Case, SphForm};
-use crate::neighbours::ColumnGrid;
+use crate::neighbours::Lists;
 use crate::particles::{Image, ParticleStore};
 use crate::populate::{self, Slab};
+use crate::sph::Sph;
 
 /// Why a case cannot start; the same on all ranks.
 #[derive(Debug, Clone, Error)]
@@ -59,8 +52,9 @@ impl Simulation {
     /// The same on all ranks if the case has no particles or too many, or blows up at once.
     pub fn start(case: Case, comm: &Comm) -> Result<Self, SetupError> {
         let outset = Outset::new(&case).ok_or(SetupError::Empty)?;
-        let mut simulation = Self::empty(case, comm, &outset);
-        simulation.populate(comm, &outset)?;
+        let partition = Partition::new(&case, comm, &outset);
+        let mut simulation = Self::empty(case, comm, &outset, partition);
+        simulation.populate(comm)?;
         simulation.begin(comm)?;
         Ok(simulation)
     }
@@ -77,104 +71,48 @@ impl Simulation {
         store: ParticleStore,
     ) -> Result<Self, SetupError> {
         let outset = Outset::new(&case).ok_or(SetupError::Empty)?;
-        let mut simulation = Self::empty(case, comm, &outset);
-        simulation.require_own(comm, &state, &store)?;
+        let partition = Partition::none(&case, comm, &outset);
+        let mut simulation = Self::empty(case, comm, &outset, partition);
+        require_own(comm, &simulation, &state, &store)?;
         simulation.store = store;
-        let unused = unused_fields(&simulation.case, &simulation.contact);
-        simulation.part_frozen(comm, unused);
+        let unused = unused_fields(&simulation.case, &simulation.contact.table);
+        simulation.frozen = Frozen::part(comm, &mut simulation.store, unused);
         simulation.state = state;
-        simulation.slabs = balance(
-            comm,
-            &simulation.slabs,
-            &simulation.store.position[..simulation.store.owned()],
-            &simulation.store.work,
-            &mut simulation.histogram,
-            &simulation.paces,
-        );
-        let slabs = simulation.slabs.clone();
-        simulation
-            .migration
-            .migrate(comm, &slabs, &mut simulation.store);
-        // Its buffers have carried whole shares of the model; never again so much.
-        simulation.migration = Migration::default();
+        simulation.partition.deal(comm, &mut simulation.store);
         limit_count(comm, simulation.store.owned() as u64)?;
         Ok(simulation)
     }
 
-    /// Everything but particles.
-    fn empty(case: Case, comm: &Comm, outset: &Outset) -> Self {
-        let contact = ContactTable::new(&case);
-        let axis = outset.axis;
-        let grids = group_grids(&case, &contact, outset);
-        let speed = case.impact_speed();
-        let spacing = case
-            .bodies
-            .iter()
-            .map(|b| b.lattice.spacing)
-            .fold(0.0, f64::max);
-        let enclosed_limit = if speed > 0.0 {
-            2.0 * spacing / speed
-        } else {
-            f64::INFINITY
-        };
+    /// Everything but particles, with slabs for them.
+    fn empty(case: Case, comm: &Comm, outset: &Outset, partition: Partition) -> Self {
+        let contact = Contact::new(&case);
+        let table = &contact.table;
         let mut store = ParticleStore::default();
-        store.drop_fields(unused_fields(&case, &contact));
-        let loads = LoadStep::new(&case);
+        store.drop_fields(unused_fields(&case, table));
         Self {
-            frozen: store.clone(),
+            frozen: Frozen::like(&store),
             store,
-            state: fresh_state(contact.active_pairs().len(), case.load_names().count()),
+            state: fresh_state(table.active_pairs().len(), case.load_names().count()),
             timers: Timers::default(),
             poison: false,
-            spare_calm: true,
-            wishes: 0,
-            agreed_wishes: 0,
-            updates: 0,
-            slabs: Slabs::new(axis, vec![f64::INFINITY; comm.size() - 1]),
-            histogram: Histogram::default(),
-            paces: Paces::default(),
-            migration: Migration::default(),
-            halo: Halo::new(axis, Mirrors::new(&case.symmetry)),
-            search: Search::new(&case, &contact, grids),
-            sweeps: Sweeps::new(&case, &contact.kernel),
-            options: OptionPhase::new(&case, &contact.kernel),
-            stress_points: StressPoints::default(),
-            contact_phase: ContactPhase::default(),
-            parts: Parts::new(&case),
-            surface_forces: SurfaceForces::new(&case),
-            sums: StepSums::new(
-                &contact,
-                enclosed_limit,
-                loads.driven(),
-                [
-                    loads.surfaces.len(),
-                    if case.loads.has_friction() {
-                        loads.surfaces.len()
-                    } else {
-                        0
-                    },
-                ],
-            ),
-            loads,
-            scratch: Vec::new(),
-            order: Vec::new(),
-            unordered: true,
-            crossed: Vec::new(),
-            reference_h: case.bodies.iter().map(|b| b.smoothing_length).collect(),
-            limits: Limits::new(&case, comm),
-            flight: Flight::new(&contact),
-            votes: VecDeque::with_capacity(PAST_VOTES),
+            votes: Votes::new(&case, table, comm),
+            lists: Lists::new(&case, table.groups.clone(), outset),
+            partition,
+            halo: Halo::new(outset.axis, Mirrors::new(&case.symmetry)),
+            sph: Sph::new(&case),
+            loads: Loads::new(&case),
+            sums: StepSums::new(table),
             contact,
             case,
         }
     }
 
     /// Creates the particles of this rank's slab, and no others.
-    fn populate(&mut self, comm: &Comm, outset: &Outset) -> Result<(), SetupError> {
-        self.slabs = outset.slabs(&self.case, comm, &mut self.histogram);
-        let (lower, upper) = self.slabs.range(comm.rank());
+    fn populate(&mut self, comm: &Comm) -> Result<(), SetupError> {
+        let slabs = self.partition.slabs();
+        let (lower, upper) = slabs.range(comm.rank());
         let slab = Slab {
-            axis: self.slabs.axis,
+            axis: slabs.axis,
             lower,
             upper,
         };
@@ -212,7 +150,7 @@ impl Simulation {
                 // With stress points that is left to them.
                 store.specific_energy[i] = if stressed { 0.0 } else { energy };
                 store.smoothing_length[i] = body.smoothing_length;
-                Self::begin_parts(store, i, first_id);
+                Connectivity::begin(store, i, first_id);
                 if self.loads.drives() {
                     let bits = self.loads.bits(case, b, &site.position);
                     let prescribed = self.loads.of(bits);
@@ -272,10 +210,11 @@ impl Simulation {
     fn begin(&mut self, comm: &Comm) -> Result<(), SetupError> {
         // The first pass finds the foreign fractions that contact is to forgive, and the work.
         self.evaluate(comm, 0.0);
-        let mut capped = [self.set_touch_relief()];
+        let mut capped = [self.contact.set_touch_relief(&mut self.store, &self.lists)];
         comm.sum_i64(&mut capped);
         self.state.capped_reliefs = capped[0];
-        self.restore_order();
+        let scratch = self.sph.scratch(self.store.owned());
+        self.lists.restore_order(&mut self.store, scratch);
         self.evaluate(comm, 0.0);
         let vote = self.kick(0.0);
         self.book_step(comm, 0.0);
@@ -328,18 +267,4 @@ fn fresh_state(pairs: usize, loads: usize) -> RunState {
         removed_contact_energy: 0.0,
         worst: Worst::default(),
     }
-}
-
-/// The column grid of each group of bodies: a function of the case alone.
-fn group_grids(case: &Case, contact: &ContactTable, outset: &Outset) -> Vec<ColumnGrid> {
-    (0..contact.group_count())
-        .map(|group| {
-            let members = contact.members(group);
-            let (lower, upper) = Outset::join(members.clone().map(|b| outset.boxes[b]));
-            let spacing = members
-                .map(|b| case.bodies[b].lattice.spacing)
-                .fold(0.0, f64::max);
-            ColumnGrid::new(lower, upper, spacing, outset.longest)
-        })
-        .collect()
 }

@@ -1,28 +1,24 @@
 //! The simulation: everything a rank holds, and one step of it.
 
-use std::collections::VecDeque;
-
 use thiserror::Error;
 
-use super::contact_phase::ContactPhase;
-use super::flight::Flight;
-use super::loads::LoadStep;
-use super::options::OptionPhase;
-use super::parts::Parts;
-use super::search::Search;
-use super::state::{Reason, RunState};
-use super::stress_points::StressPoints;
-use super::sums::StepSums;
-use super::surface_forces::SurfaceForces;
-use super::sweeps::Sweeps;
+use super::flight::Sky;
+use super::integrate;
+use super::removal::{self, Frozen};
 use super::timers::{Phase, Timers};
-use super::trouble::{Limits, PastVote, TroubleKind};
+use super::vote::{self, Vote, Voter, Votes, vote_fields};
 use crate::comm::Comm;
-use crate::contact::ContactTable;
-use crate::domain::{Halo, Histogram, Migration, Paces, Slabs, balance};
-use crate::model::Case;
-use crate::neighbours::Chunk;
+use crate::contact::{Connectivity, Contact, ContactTable};
+use crate::diagnose::{
+    Booked, Moved, PostMortem, Reason, RunState, StepSums, Totals, TroubleKind, fastest,
+    is_explained,
+};
+use crate::domain::{Halo, Partition, Slabs};
+use crate::loads::Loads;
+use crate::model::{Case, SphForm, TroublePolicy};
+use crate::neighbours::Lists;
 use crate::particles::{FieldUse, ParticleStore};
+use crate::sph::{Side, Sph, Step, with_formulation};
 
 /// Why a step failed; the same on all ranks.
 #[derive(Debug, Clone, Error)]
@@ -55,61 +51,31 @@ pub struct Simulation {
     pub case: Case,
     /// This rank's particles.
     pub store: ParticleStore,
-    /// Particles that this rank has frozen: they are in files, and in nothing else.
-    pub(super) frozen: ParticleStore,
+    pub(super) frozen: Frozen,
     /// The scalar state, equal on all ranks.
     pub state: RunState,
-    /// Seconds by phase.
+    /// Seconds by phase, and what was done in them.
     pub timers: Timers,
     /// Fill everything that is not state with NaN between steps: for tests.
     pub poison: bool,
-    /// Spare the sums of what moves alike without stress; off to test that no bit changes, and to
-    /// time the sums.
-    pub spare_calm: bool,
-    /// What this rank wishes (a set of bits): all ranks' wishes are joined by the next step's vote.
-    pub wishes: u64,
-    /// The joined wishes of all ranks as of the last vote.
-    pub agreed_wishes: u64,
-    /// Particle updates that this rank has made.
-    pub updates: u64,
-    pub(super) contact: ContactTable,
-    pub(super) slabs: Slabs,
-    pub(super) histogram: Histogram,
-    pub(super) paces: Paces,
-    pub(super) migration: Migration,
+    /// Votes on steps and wishes.
+    pub votes: Votes,
+    /// Sorted images and neighbours.
+    pub lists: Lists,
+    pub(super) partition: Partition,
     pub(super) halo: Halo,
-    pub(super) search: Search,
-    pub(super) sweeps: Sweeps,
-    pub(super) options: OptionPhase,
-    pub(super) stress_points: StressPoints,
-    pub(super) contact_phase: ContactPhase,
-    pub(super) parts: Parts,
-    pub(super) loads: LoadStep,
-    pub(super) surface_forces: SurfaceForces,
+    pub(super) sph: Sph,
+    pub(super) contact: Contact,
+    pub(super) loads: Loads,
     pub(super) sums: StepSums,
-    pub(super) scratch: Vec<u64>,
-    pub(super) order: Vec<u32>,
-    /// The store has not been in canonical order yet.
-    pub(super) unordered: bool,
-    /// Particles that have crossed a symmetry plane, by task.
-    pub(super) crossed: Vec<Vec<usize>>,
-    pub(super) reference_h: Vec<f64>,
-    pub(super) limits: Limits,
-    pub(super) flight: Flight,
-    /// The last votes, for post-mortems.
-    pub(super) votes: VecDeque<PastVote>,
 }
 
 impl Simulation {
     /// Whether the case has reached its end.
     #[must_use]
     pub fn is_finished(&self) -> bool {
-        self.state.time >= self.case.run.end_time
-            || self
-                .case
-                .run
-                .max_steps
-                .is_some_and(|n| self.state.step >= n)
+        let run = &self.case.run;
+        self.state.time >= run.end_time || run.max_steps.is_some_and(|n| self.state.step >= n)
     }
 
     /// One step of kick–drift–kick. Collective.
@@ -121,16 +87,16 @@ impl Simulation {
         if self.poison {
             self.store.poison();
         }
-        self.timers.skip();
         let end = match reason {
             Reason::End => self.case.run.end_time,
             _ => self.state.time + dt,
         };
+        self.timers.skip();
         self.kick_and_drift(dt, end);
         self.timers.lap(Phase::Integrate);
-        self.balance_work(comm);
+        self.balance(comm);
         self.timers.lap(Phase::Balance);
-        self.migration.migrate(comm, &self.slabs, &mut self.store);
+        self.partition.migrate(comm, &mut self.store);
         self.timers.lap(Phase::Migrate);
         self.evaluate(comm, dt);
         let vote = self.kick(dt);
@@ -139,126 +105,333 @@ impl Simulation {
         self.state.time = end;
         (self.state.last_dt, self.state.last_reason) = (dt, reason);
         self.book_step(comm, dt);
-        self.updates += self.store.owned() as u64;
+        self.timers.updates += self.store.owned() as u64;
         self.vote(comm, vote)?;
         self.timers.lap(Phase::Vote);
         Ok(())
     }
 
+    /// The step to do now and what limits it: the vote, unless the case ends before.
+    fn next_step(&self) -> (f64, Reason) {
+        let left = self.case.run.end_time - self.state.time;
+        if left <= self.state.dt {
+            (left, Reason::End)
+        } else {
+            (self.state.dt, self.state.dt_reason)
+        }
+    }
+
+    /// First half kick and drift of a step `dt` (s) that ends at time `end` (s).
+    fn kick_and_drift(&mut self, dt: f64, end: f64) {
+        let Self {
+            case,
+            store: particles,
+            state,
+            halo,
+            sph,
+            loads,
+            sums,
+            ..
+        } = self;
+        loads.prepare(case, state.time, end);
+        loads.book(particles, dt, true);
+        state.book_first_half(loads, dt);
+        particles.resize_halo(0);
+        let work = integrate::kick_and_drift(particles, loads, &sph.smoothing, dt);
+        sums.contact_work.merge(&work);
+        sph.drift(particles, loads, dt);
+        sums.cross_planes(particles, halo.mirrors(), loads);
+    }
+
+    /// Every few steps gives each rank its share of the work, and particles in memory the order of the
+    /// last search.
+    fn balance(&mut self, comm: &Comm) {
+        let Self {
+            store: particles,
+            state,
+            timers,
+            lists,
+            sph,
+            partition,
+            ..
+        } = self;
+        if lists.is_order_due {
+            let scratch = sph.scratch(particles.owned());
+            lists.is_order_due = !lists.restore_order(particles, scratch);
+        }
+        if partition.is_due(state.step) {
+            // After the next search, when those that change ranks now have found their place.
+            lists.is_order_due = true;
+            partition.balance(comm, particles, timers.busy());
+        }
+    }
+
     /// Stress, accelerations and rates at the current positions, from the predicted velocities,
     /// densities and energies.
     pub(super) fn evaluate(&mut self, comm: &Comm, dt: f64) {
-        self.exchange_motion(comm);
-        self.timers.lap(Phase::HaloMotion);
-        self.find_neighbours();
-        self.find_parts(comm);
-        self.timers.lap(Phase::Neighbours);
-        self.velocity_gradient_and_material(dt);
-        self.prepare_options(dt);
-        self.timers.lap(Phase::Material);
-        self.contact_fractions(dt);
-        self.timers.lap(Phase::ContactFractions);
-        self.post_stress(comm);
-        self.timers.lap(Phase::HaloStress);
-        self.momentum_and_energy(false);
-        self.timers.lap(Phase::Momentum);
-        self.finish_stress();
-        self.timers.lap(Phase::HaloStress);
-        self.momentum_and_energy(true);
-        self.timers.lap(Phase::Momentum);
-        self.hold_by_friction(comm, dt);
-        self.contact_forces(dt);
-        self.timers.lap(Phase::ContactForces);
-    }
-
-    fn balance_work(&mut self, comm: &Comm) {
-        let every = self.case.domain.balance_every;
-        if self.unordered {
-            self.unordered = !self.restore_order();
-        }
-        if every == 0 || !self.state.step.is_multiple_of(every) {
-            return;
-        }
-        // After the next search, when those that change ranks now have found their place.
-        self.unordered = true;
-        if comm.size() > 1 {
-            let positions = &self.store.position[..self.store.owned()];
-            let work = &self.store.work;
-            let counted = work.iter().map(|&w| u64::from(w)).sum();
-            self.paces.measure(comm, counted, self.timers.busy());
-            self.slabs = balance(
-                comm,
-                &self.slabs,
-                positions,
-                work,
-                &mut self.histogram,
-                &self.paces,
-            );
-        }
-    }
-
-    fn exchange_motion(&mut self, comm: &Comm) {
-        let reference_h = &self.reference_h;
-        self.halo.post_motion(comm, &mut self.store, |store, i| {
-            store.smoothing_length[i].max(reference_h[store.body[i] as usize])
+        let Self {
+            store: particles,
+            state,
+            timers,
+            lists,
+            halo,
+            sph,
+            contact,
+            loads,
+            ..
+        } = self;
+        halo.exchange_motion(comm, particles, |particles, i| {
+            sph.smoothing.reach(particles, i)
         });
-        self.halo.finish_motion(&mut self.store);
-    }
-
-    fn stress_uses(&self) -> FieldUse {
-        if self.contact.has_pairs() {
-            FieldUse::HALO_FORCES
-        } else {
-            FieldUse::HALO_STRESS
+        timers.lap(Phase::HaloMotion);
+        let images = particles.owned() + halo.others().len();
+        lists.build(particles, halo, sph.scratch(images));
+        contact
+            .connectivity
+            .separate(particles, lists, halo.mirrors());
+        if contact.table.has_pairs() {
+            lists.build_foreign(particles, &contact.table.foreign);
         }
+        timers.lap(Phase::Neighbours);
+        if contact.connectivity.is_due(state.step) {
+            contact.connectivity.join(lists, particles);
+            Connectivity::begin_labels(particles);
+            while comm.any(contact.connectivity.spread_labels(particles)) {
+                halo.exchange(comm, particles, FieldUse::HALO_PARTS);
+            }
+            timers.lap(Phase::Neighbours);
+        }
+        let step = Step {
+            dt,
+            last_dt: state.last_dt,
+            gravity: loads.gravity,
+        };
+        sph.rates(particles, lists, &step);
+        timers.lap(Phase::Material);
+        contact.measure(particles, lists, dt);
+        timers.lap(Phase::ContactFractions);
+        let uses = contact.halo_of_forces();
+        halo.post(comm, particles, uses);
+        timers.lap(Phase::HaloStress);
+        sph.forces(particles, lists, Side::Inner);
+        timers.lap(Phase::Momentum);
+        halo.finish(particles, uses);
+        timers.lap(Phase::HaloStress);
+        sph.forces(particles, lists, Side::Outer);
+        timers.lap(Phase::Momentum);
+        if contact.table.has_friction() {
+            contact.hold(particles, lists, dt);
+            timers.lap(Phase::ContactForces);
+            halo.exchange(comm, particles, FieldUse::HALO_FRICTION);
+            timers.lap(Phase::HaloStress);
+        }
+        contact.forces(particles, lists, loads, dt);
+        contact.sums.add_plane_forces(sph.forces_of_mirrors());
+        timers.lap(Phase::ContactForces);
     }
 
-    fn post_stress(&mut self, comm: &Comm) {
-        self.halo.post(comm, &self.store, self.stress_uses());
+    /// Second half kick of a step `dt` (s), zero at the start of a case. Gives this rank's vote on
+    /// the next one.
+    pub(super) fn kick(&mut self, dt: f64) -> Vote {
+        let Self {
+            case,
+            store: particles,
+            votes,
+            sph,
+            loads,
+            sums,
+            ..
+        } = self;
+        let rules = (case.time_step, loads.gravity);
+        let kicked = with_formulation!(case.sph.form, Form => {
+            let voter = |fields| Voter::<Form>::new(fields, sph, &votes.limits, rules);
+            integrate::kick(particles, loads, voter, dt)
+        });
+        sums.contact_work.merge(&kicked.work);
+        sums.span = kicked.span;
+        loads.book(particles, dt, false);
+        kicked.vote
     }
 
-    fn finish_stress(&mut self) {
-        let uses = self.stress_uses();
-        self.halo.finish(&mut self.store, uses);
+    /// Joins the sums of all ranks into the state, after the second half of a step `dt` (s). Collective.
+    pub(super) fn book_step(&mut self, comm: &Comm, dt: f64) {
+        let corrects = self.case.sph.form != SphForm::Conventional;
+        let mirrors = !self.halo.mirrors().is_empty();
+        let sums_any = self.contact.table.is_active() || mirrors || self.loads.drives() || corrects;
+        let mut booked = Booked {
+            uncorrected: self.sph.uncorrected(),
+            contact: &mut self.contact,
+            loads: &mut self.loads,
+        };
+        if sums_any {
+            self.sums.reduce(comm, &mut booked);
+        }
+        self.sums.book(&mut self.state, &mut booked, dt);
+    }
+
+    /// Chooses the next Δt, given this rank's vote. Collective.
+    pub(super) fn vote(&mut self, comm: &Comm, own: Vote) -> Result<(), StepError> {
+        let sky = Sky {
+            case: &self.case,
+            particles: &self.store,
+            table: &self.contact.table,
+            loads: &self.loads,
+            mirrors: self.halo.mirrors(),
+            time: self.state.time,
+        };
+        let chosen = self.votes.choose(comm, own, &sky, &self.sums.span);
+        let (dt, reason) = chosen.map_err(|(kind, id)| self.trouble(comm, kind, id))?;
+        (self.state.dt, self.state.dt_reason) = (dt, reason);
+        self.votes.keep(&self.state);
+        let limited = reason == Reason::Contact;
+        self.state.worst.contact_limited_steps += u64::from(limited);
+        Ok(())
+    }
+
+    /// Describes the particle `id`, wherever it is; the same text on all ranks. Collective.
+    fn trouble(&self, comm: &Comm, kind: TroubleKind, id: u64) -> StepError {
+        vote::trouble(comm, &self.case, &self.store, (self.state.step, kind, id))
+    }
+
+    /// Sums over all particles, into the state, with the errors that follow from them, and the
+    /// extremes since the last row. Collective.
+    pub fn diagnose(&mut self, comm: &Comm) {
+        self.join_extremes(comm);
+        let totals = self.totals(comm);
+        self.state.book_totals(totals, self.loads.gravity);
+    }
+
+    pub(super) fn totals(&self, comm: &Comm) -> Totals {
+        Totals::of(&self.store, &self.loads, self.state.contact_energy, comm)
+    }
+
+    /// Joins what the pairs of bodies have come to since the last time on all ranks into the state:
+    /// before rows and checkpoints. Collective.
+    pub fn join_extremes(&mut self, comm: &Comm) {
+        self.sums.join_extremes(comm, &mut self.state);
+    }
+
+    /// Whether the kinetic energy, as of the last [`Simulation::diagnose`], can have come from
+    /// anywhere. Collective.
+    ///
+    /// # Errors
+    /// The same on all ranks: [`StepError::Trouble`] of the fastest particle if it cannot.
+    pub fn check_gain(&self, comm: &Comm) -> Result<(), StepError> {
+        let hidden = self.votes.limits.hidden_energy;
+        if is_explained(&self.state, hidden, self.case.trouble.gain_max) {
+            return Ok(());
+        }
+        let id = fastest(comm, &self.store, &self.loads);
+        Err(self.trouble(comm, TroubleKind::Gain, id))
+    }
+
+    /// What is about the particle `id`, on the rank `rank` that owns it; nothing on others.
+    #[must_use]
+    pub fn post_mortem(&self, id: u64, rank: usize) -> Option<PostMortem> {
+        let reach = 4.0 * self.sph.smoothing.longest();
+        let votes = self.votes.past();
+        PostMortem::of((id, rank), &self.store, reach, &self.state, votes)
+    }
+
+    /// Takes out all particles whose state is out of range, books them (and keeps them for the files
+    /// if they are to be frozen), and sums the forces on the others anew. For a step that
+    /// [`StepError::Trouble`] has ended and whose particles are all finite. Collective. Gives the number
+    /// of particles taken out on all ranks.
+    ///
+    /// # Errors
+    /// The same on all ranks if there is trouble again, or nothing left.
+    pub fn remove_troubled(&mut self, comm: &Comm) -> Result<u64, StepError> {
+        let mut leaving = self.troubled();
+        let mut count = [leaving.len() as u64, self.store.owned() as u64];
+        let counted = (&self.store, self.case.bodies.len());
+        removal::book(comm, &mut self.state, counted, &self.loads, &leaving);
+        if self.case.trouble.policy == TroublePolicy::Freeze {
+            self.frozen.freeze(&self.store, &leaving);
+        }
+        self.store.remove(&mut leaving, &mut Vec::new());
+        comm.sum_u64(&mut count);
+        if count[0] == count[1] {
+            return Err(StepError::NothingLeft {
+                step: self.state.step,
+            });
+        }
+        let contact_energy = self.state.contact_energy;
+        let owned = self.store.owned();
+        let store = &mut self.store;
+        store.predicted_velocity[..owned].copy_from_slice(&store.velocity[..owned]);
+        store.predicted_density[..owned].copy_from_slice(&store.density[..owned]);
+        self.loads
+            .prepare(&self.case, self.state.time, self.state.time);
+        self.evaluate(comm, 0.0);
+        let vote = self.kick(0.0);
+        // The sums of a step of no length have no work in them. Its defect is taken with what has
+        // been lost, so the loss must be known first.
+        let worst = self.state.worst;
+        self.book_step(comm, 0.0);
+        self.state.removed_contact_energy += contact_energy - self.state.contact_energy;
+        self.state.worst = worst;
+        self.state.book_defect();
+        self.vote(comm, vote)?;
+        Ok(count[0])
+    }
+
+    /// Owned particles whose state is out of range.
+    fn troubled(&self) -> Vec<u32> {
+        let (store, loads) = (&self.store, &self.loads);
+        let rules = (self.case.time_step, loads.gravity);
+        let limits = &self.votes.limits;
+        let is_free = |&i: &usize| !(loads.drives() && loads.is_rigid(store.load[i]));
+        let owned = (0..store.owned()).filter(is_free);
+        with_formulation!(self.case.sph.form, Form => {
+            let voter = Voter::<Form>::new(vote_fields!(store), &self.sph, limits, rules);
+            let is_troubled = |&i: &usize| {
+                let contact = store.contact_acceleration.get(i);
+                let moved = Moved {
+                    velocity: store.velocity[i],
+                    energy: store.specific_energy[i],
+                    contact: contact.copied().unwrap_or_default(),
+                };
+                voter.trouble(i, &moved).is_some()
+            };
+            let troubled = owned.filter(is_troubled);
+            troubled.map(|i| u32::try_from(i).unwrap_or(u32::MAX)).collect()
+        })
+    }
+
+    /// Does something, such as writing files, while the store holds this rank's frozen particles
+    /// too, in place of the halo.
+    pub fn with_frozen<T>(&mut self, task: impl FnOnce(&Self) -> T) -> T {
+        self.frozen.append_to(&mut self.store);
+        let result = task(self);
+        self.frozen.take_from(&mut self.store);
+        result
+    }
+
+    /// Particles that this rank has frozen.
+    #[must_use]
+    pub fn frozen(&self) -> usize {
+        self.frozen.count()
     }
 
     /// Bytes that this rank holds in particle arrays, lists and buffers.
     #[must_use]
     pub fn memory(&self) -> usize {
-        let crossed: usize = self.crossed.iter().map(Vec::capacity).sum();
-        let words = 8 * (self.scratch.capacity() + crossed) + 4 * self.order.capacity();
         self.store.memory()
             + self.frozen.memory()
-            + self.search.memory()
-            + self.sweeps.memory()
-            + self.options.memory()
-            + self.stress_points.memory()
-            + self.contact_phase.memory()
-            + self.parts.memory()
+            + self.lists.memory()
+            + self.sph.memory()
+            + self.contact.memory()
             + self.loads.memory()
-            + self.surface_forces.memory()
             + self.sums.memory()
-            + self.flight.memory()
+            + self.votes.memory()
             + self.halo.memory()
-            + self.migration.memory()
-            + self.histogram.memory()
-            + self.paces.memory()
-            + words
-    }
-
-    /// Neighbours in the lists of the last search, summed over this rank's particles.
-    #[must_use]
-    pub fn list_entries(&self) -> u64 {
-        let clusters = self.search.clusters.chunks().iter().flat_map(Chunk::iter);
-        clusters
-            .map(|(cluster, list, _)| (cluster.lanes * list.len()) as u64)
-            .sum()
+            + self.partition.memory()
     }
 
     /// Messages and bytes that this rank has sent.
     #[must_use]
     pub fn traffic(&self) -> (u64, u64) {
-        let (halo, migration) = (self.halo.traffic(), self.migration.traffic());
+        let (halo, migration) = (self.halo.traffic(), self.partition.traffic());
         (
             halo.messages + migration.messages,
             halo.bytes + migration.bytes,
@@ -268,12 +441,12 @@ impl Simulation {
     /// The faces between slabs (m) and their axis.
     #[must_use]
     pub fn slabs(&self) -> &Slabs {
-        &self.slabs
+        self.partition.slabs()
     }
 
     /// The contact table.
     #[must_use]
     pub fn contact(&self) -> &ContactTable {
-        &self.contact
+        &self.contact.table
     }
 }

@@ -48,6 +48,8 @@ phases! {
 #[derive(Debug, Clone)]
 pub struct Timers {
     seconds: [f64; Phase::ALL.len()],
+    /// Particle updates that this rank has made.
+    pub updates: u64,
     busy: f64,
     last: Instant,
     /// What this rank had waited for others by then.
@@ -58,6 +60,7 @@ impl Default for Timers {
     fn default() -> Self {
         Self {
             seconds: [0.0; Phase::ALL.len()],
+            updates: 0,
             busy: 0.0,
             last: Instant::now(),
             waited: comm::waited(),

@@ -2,22 +2,23 @@
 //!
 //! A vote is (Δt, reason, id), compared in that order, so that ties agree on any ranks.
 
-use super::simulation::{Simulation, StepError};
-use super::state::Reason;
-use super::trouble::{Limits, PAST_VOTES, PastVote, TroubleKind};
+use std::collections::VecDeque;
+use std::marker::PhantomData;
+
+use super::flight::{Flight, Sky};
+use super::simulation::StepError;
 use crate::comm::Comm;
-use crate::model::Case;
+use crate::contact::ContactTable;
+use crate::diagnose::{Limits, Moved, PAST_VOTES, PastVote, Reason, RunState, TroubleKind};
+use crate::domain::Span;
 use crate::model::readable::{shown, shown_vector};
+use crate::model::{Case, TimeStepOptions};
 use crate::numerics::vector::square;
 use crate::particles::ParticleStore;
-use crate::sph::momentum::Viscosity;
-use crate::sph::stress_points;
+use crate::sph::{SignalSpeed, Signals, Sph};
 
 /// Largest coordinate that still counts as a position (m).
 const FARTHEST: f64 = 1e12;
-
-/// How much corrections enlarge gradients at surfaces of lattices, which steps need not heed.
-const SURFACE_CORRECTION: f64 = 2.0;
 
 /// A vote: bits of Δt (s; positive doubles order as their bits), reason, id.
 pub(super) type Vote = (u64, u64, u64);
@@ -26,12 +27,49 @@ pub(super) const ABSTAIN: Vote = (u64::MAX, 0, 0);
 /// Reads as an error: no positive Δt has these bits.
 const ERROR: u64 = 0;
 
-impl Simulation {
-    /// Chooses the next Δt, given this rank's vote. Collective.
-    pub(super) fn vote(&mut self, comm: &Comm, own: Vote) -> Result<(), StepError> {
-        let mut words = std::mem::take(&mut self.scratch);
-        let (dt, reason, id) = own;
-        comm.all_gather_u64(&[dt, reason, id, self.wishes], &mut words);
+/// Votes on steps, and what a run remembers of them.
+pub struct Votes {
+    /// What this rank wishes (a set of bits): all ranks' wishes are joined by the next step's vote.
+    pub wishes: u64,
+    /// The joined wishes of all ranks as of the last vote.
+    pub agreed_wishes: u64,
+    pub(super) limits: Limits,
+    flight: Flight,
+    /// Largest step (s).
+    longest: f64,
+    /// Who had the last vote.
+    id: u64,
+    /// The last votes, for post-mortems.
+    past: VecDeque<PastVote>,
+    words: Vec<u64>,
+}
+
+impl Votes {
+    /// Of a case. Collective.
+    pub(super) fn new(case: &Case, table: &ContactTable, comm: &Comm) -> Self {
+        Self {
+            wishes: 0,
+            agreed_wishes: 0,
+            limits: Limits::new(case, comm),
+            flight: Flight::new(table),
+            longest: case.time_step.max,
+            id: 0,
+            past: VecDeque::with_capacity(PAST_VOTES),
+            words: Vec::new(),
+        }
+    }
+
+    /// The next step (s) and its reason, given this rank's vote and what all particles span; or who is in
+    /// trouble. Collective.
+    pub(super) fn choose(
+        &mut self,
+        comm: &Comm,
+        (dt, reason, id): Vote,
+        sky: &Sky,
+        span: &Span,
+    ) -> Result<(f64, Reason), (TroubleKind, u64)> {
+        let words = &mut self.words;
+        comm.all_gather_u64(&[dt, reason, id, self.wishes], words);
         self.agreed_wishes = words
             .iter()
             .skip(3)
@@ -42,114 +80,84 @@ impl Simulation {
             .map(|word| (word[0], word[1], word[2]))
             .min()
             .unwrap_or(ABSTAIN);
-        self.scratch = words;
-        if best.0 == ERROR {
-            return Err(self.trouble(comm, kind_of(best.1), best.2));
+        let (dt, reason, id) = best;
+        if dt == ERROR {
+            return Err((kind_of(reason), id));
         }
-        self.state.dt = f64::from_bits(best.0);
-        self.state.dt_reason = Reason::ALL[usize::try_from(best.1)
-            .unwrap_or(0)
-            .min(Reason::ALL.len() - 1)];
-        if best.0 == ABSTAIN.0 {
-            self.state.dt = f64::INFINITY;
-        }
-        if self.case.time_step.max < self.state.dt {
-            self.state.dt = self.case.time_step.max;
-            self.state.dt_reason = Reason::Maximum;
-        }
-        let flight = self.longest_flight(comm, self.state.dt);
-        if flight < self.state.dt {
-            self.state.dt = flight;
-            self.state.dt_reason = Reason::Flight;
-        }
-        if self.votes.len() == PAST_VOTES {
-            self.votes.pop_front();
-        }
-        self.votes.push_back(PastVote {
-            step: self.state.step,
-            dt: self.state.dt,
-            reason: self.state.dt_reason.name(),
-            id: best.2,
-        });
-        let contact = self.state.dt_reason == Reason::Contact;
-        self.state.worst.contact_limited_steps += u64::from(contact);
-        Ok(())
-    }
-
-    /// The step to do now and what limits it: the vote, unless the case ends before.
-    pub(super) fn next_step(&self) -> (f64, Reason) {
-        let left = self.case.run.end_time - self.state.time;
-        if left <= self.state.dt {
-            (left, Reason::End)
+        self.id = id;
+        let last = Reason::ALL.len() - 1;
+        let mut reason = Reason::ALL[usize::try_from(reason).unwrap_or(0).min(last)];
+        let mut dt = if dt == ABSTAIN.0 {
+            f64::INFINITY
         } else {
-            (self.state.dt, self.state.dt_reason)
-        }
-    }
-
-    pub(super) fn voter(&self) -> Voter<'_> {
-        Voter {
-            store: &self.store,
-            case: &self.case,
-            contact: self.contact.is_active(),
-            gravity: self.loads.gravity,
-            limits: &self.limits,
-        }
-    }
-
-    /// What is wrong with a particle of this rank, if anything is.
-    pub(super) fn trouble_of(&self, i: usize) -> Option<TroubleKind> {
-        let store = &self.store;
-        if self.loads.drives() && self.loads.is_rigid(store.load[i]) {
-            return None;
-        }
-        let moved = Moved {
-            velocity: store.velocity[i],
-            energy: store.specific_energy[i],
-            contact: store
-                .contact_acceleration
-                .get(i)
-                .copied()
-                .unwrap_or_default(),
+            f64::from_bits(dt)
         };
-        let (dt, kind, _) = self.voter().vote(i, &moved);
-        (dt == ERROR).then(|| kind_of(kind))
+        if self.longest < dt {
+            (dt, reason) = (self.longest, Reason::Maximum);
+        }
+        let flight = self.flight.longest_step(comm, sky, span, dt);
+        if flight < dt {
+            (dt, reason) = (flight, Reason::Flight);
+        }
+        Ok((dt, reason))
     }
 
-    /// Describes the particle `id`, wherever it is; the same text on all ranks.
-    pub(super) fn trouble(&self, comm: &Comm, kind: TroubleKind, id: u64) -> StepError {
-        let store = &self.store;
-        let found = store.id[..store.owned()].iter().position(|&x| x == id);
-        let describe = |i| describe(store, &self.case, i, comm.rank()).into_bytes();
-        let mine = found.map_or_else(Vec::new, describe);
-        let mut owner = [if mine.is_empty() {
-            u64::MAX
-        } else {
-            comm.rank() as u64
-        }];
-        comm.min_u64(&mut owner);
-        let mut text = mine;
-        comm.broadcast_from(usize::try_from(owner[0]).unwrap_or(0), &mut text);
-        StepError::Trouble {
-            step: self.state.step,
-            id,
-            kind,
-            what: kind.describe(&self.case.trouble),
-            detail: String::from_utf8_lossy(&text).into_owned(),
+    /// Remembers the last vote, of which the state knows the rest.
+    pub(super) fn keep(&mut self, state: &RunState) {
+        if self.past.len() == PAST_VOTES {
+            self.past.pop_front();
         }
+        self.past.push_back(PastVote {
+            step: state.step,
+            dt: state.dt,
+            reason: state.dt_reason.name(),
+            id: self.id,
+        });
+    }
+
+    /// The last votes, oldest first.
+    pub(super) fn past(&self) -> &VecDeque<PastVote> {
+        &self.past
+    }
+
+    pub(super) fn memory(&self) -> usize {
+        self.flight.memory() + 8 * self.words.capacity()
+    }
+}
+
+/// Describes the particle `id`, wherever it is, as of kind of trouble; the same text on all ranks.
+/// Collective.
+pub(super) fn trouble(
+    comm: &Comm,
+    case: &Case,
+    particles: &ParticleStore,
+    (step, kind, id): (u64, TroubleKind, u64),
+) -> StepError {
+    let found = particles.id[..particles.owned()]
+        .iter()
+        .position(|&x| x == id);
+    let describe = |i| describe(particles, case, i, comm.rank()).into_bytes();
+    let mine = found.map_or_else(Vec::new, describe);
+    let mut owner = [if mine.is_empty() {
+        u64::MAX
+    } else {
+        comm.rank() as u64
+    }];
+    comm.min_u64(&mut owner);
+    let mut text = mine;
+    comm.broadcast_from(usize::try_from(owner[0]).unwrap_or(0), &mut text);
+    StepError::Trouble {
+        step,
+        id,
+        kind,
+        what: kind.describe(&case.trouble),
+        detail: String::from_utf8_lossy(&text).into_owned(),
     }
 }
 
 fn kind_of(number: u64) -> TroubleKind {
     let last = TroubleKind::ALL.len() - 1;
     TroubleKind::ALL[usize::try_from(number).unwrap_or(0).min(last)]
-}
-
-/// What a kick has at hand of a particle: velocity (m/s), specific energy (J/kg), acceleration by
-/// contact (m/s²).
-pub(super) struct Moved {
-    pub velocity: [f64; 3],
-    pub energy: f64,
-    pub contact: [f64; 3],
 }
 
 /// The smallest vote so far, and what tells without roots and divisions that a particle neither
@@ -202,16 +210,79 @@ impl Ballot {
     }
 }
 
-/// What a particle's vote depends on.
-pub(super) struct Voter<'a> {
-    store: &'a ParticleStore,
-    case: &'a Case,
+/// Fields that votes follow from.
+pub(super) struct VoteFields<'a> {
+    pub id: &'a [u64],
+    pub body: &'a [u32],
+    pub mass: &'a [f64],
+    pub density: &'a [f64],
+    pub position: &'a [[f64; 3]],
+    pub smoothing_length: &'a [f64],
+    pub acceleration: &'a [[f64; 3]],
+    pub contact_stiffness: &'a [f64],
+    pub sound_speed: &'a [f64],
+    pub approach_speed: &'a [f64],
+    pub correction_norm: &'a [f64],
+    pub fit_norm: &'a [f64],
+}
+
+/// Borrows [`VoteFields`] of a fields.
+macro_rules! vote_fields {
+    ($particles:expr) => {
+        $crate::step::vote::VoteFields {
+            id: &$particles.id,
+            body: &$particles.body,
+            mass: &$particles.mass,
+            density: &$particles.density,
+            position: &$particles.position,
+            smoothing_length: &$particles.smoothing_length,
+            acceleration: &$particles.acceleration,
+            contact_stiffness: &$particles.contact_stiffness,
+            sound_speed: &$particles.sound_speed,
+            approach_speed: &$particles.approach_speed,
+            correction_norm: &$particles.correction_norm,
+            fit_norm: &$particles.fit_norm,
+        }
+    };
+}
+pub(super) use vote_fields;
+
+/// What a particle's vote depends on, in the formulation `F`.
+pub(super) struct Voter<'a, F> {
+    pub fields: VoteFields<'a>,
+    signals: Signals<'a>,
+    factors: TimeStepOptions,
     contact: bool,
     gravity: [f64; 3],
     limits: &'a Limits,
+    formulation: PhantomData<F>,
 }
 
-impl Voter<'_> {
+impl<'a, F: SignalSpeed> Voter<'a, F> {
+    pub(super) fn new(
+        fields: VoteFields<'a>,
+        sph: &Sph,
+        limits: &'a Limits,
+        (factors, gravity): (TimeStepOptions, [f64; 3]),
+    ) -> Self {
+        let speeds = [fields.sound_speed, fields.approach_speed];
+        Self {
+            signals: sph.signals(speeds, [fields.correction_norm, fields.fit_norm]),
+            contact: !fields.contact_stiffness.is_empty(),
+            fields,
+            factors,
+            gravity,
+            limits,
+            formulation: PhantomData,
+        }
+    }
+
+    /// What is wrong with a particle, if anything is.
+    pub(super) fn trouble(&self, i: usize, moved: &Moved) -> Option<TroubleKind> {
+        let (dt, kind, _) = self.vote(i, moved);
+        (dt == ERROR).then(|| kind_of(kind))
+    }
+
     /// Nobody has voted.
     pub(super) fn ballot(&self) -> Ballot {
         Ballot::new(ABSTAIN, self.limits.step_min, None)
@@ -224,7 +295,8 @@ impl Voter<'_> {
             let vote = self.vote(i, moved);
             if vote < ballot.best {
                 let by_sound = vote.1 == Reason::Sound as u64 && vote.0 != ERROR;
-                let by_sound = by_sound.then(|| [self.store.smoothing_length[i], self.signal(i)]);
+                let by_sound =
+                    by_sound.then(|| [self.fields.smoothing_length[i], self.signals.of::<F>(i)]);
                 *ballot = Ballot::new(vote, self.limits.step_min, by_sound);
             }
         }
@@ -234,48 +306,26 @@ impl Voter<'_> {
     /// [`Self::vote`], multiplied out. What is no number is beyond nothing.
     #[inline(always)]
     fn is_beyond(&self, i: usize, moved: &Moved, ballot: &Ballot) -> bool {
-        let (store, factors) = (self.store, &self.case.time_step);
-        let (h, signal) = (store.smoothing_length[i], self.signal(i));
+        let (fields, factors) = (&self.fields, &self.factors);
+        let (h, signal) = (fields.smoothing_length[i], self.signals.of::<F>(i));
         let by_sound = (signal >= 0.0 && factors.courant * h > ballot.step * signal)
-            || (ballot.is_matched(h, signal) && store.id[i] > ballot.best.2);
+            || (ballot.is_matched(h, signal) && fields.id[i] > ballot.best.2);
         let reach = factors.force * factors.force * h;
         let a = self.acceleration(i, &moved.contact);
         let by_force = reach * reach > ballot.step4 * square(&a);
         let by_contact = !self.contact || {
-            let inertia = 4.0 * factors.contact * factors.contact * store.mass[i];
+            let inertia = 4.0 * factors.contact * factors.contact * fields.mass[i];
             // Stress points have neither.
-            inertia >= ballot.step2 * store.contact_stiffness[i]
+            inertia >= ballot.step2 * fields.contact_stiffness[i]
         };
-        let inside = self.limits.surely_holds(store.density[i], moved);
-        let near = store.position[i].iter().all(|x| x.abs() < FARTHEST);
+        let inside = self.limits.surely_holds(fields.density[i], moved);
+        let near = fields.position[i].iter().all(|x| x.abs() < FARTHEST);
         by_sound & by_force & by_contact & inside & near
-    }
-
-    /// Speed (m/s) of sound and viscosity for the step: no less than that of the approach, however
-    /// little viscosity there is.
-    #[inline(always)]
-    fn signal(&self, i: usize) -> f64 {
-        let (store, sph) = (self.store, &self.case.sph);
-        let c = store.sound_speed[i];
-        let approach = store.approach_speed[i];
-        let signal = c + 0.6 * (sph.alpha * c + sph.beta * approach);
-        // Not `max`, which would hide what is no number.
-        let signal = if approach > signal { approach } else { signal };
-        if let Some(&norm) = store.fit_norm.get(i) {
-            let viscosity = Viscosity {
-                alpha: sph.alpha,
-                beta: sph.beta,
-            };
-            let stable = stress_points::signal(norm, c, approach, &viscosity, self.case.dimension);
-            return if stable > signal { stable } else { signal };
-        }
-        let correction = store.correction_norm.get(i).copied().unwrap_or_default();
-        signal * (correction / SURFACE_CORRECTION).max(1.0)
     }
 
     #[inline(always)]
     fn acceleration(&self, i: usize, contact: &[f64; 3]) -> [f64; 3] {
-        let a = &self.store.acceleration[i];
+        let a = &self.fields.acceleration[i];
         std::array::from_fn(|k| a[k] + self.gravity[k] + contact[k])
     }
 
@@ -285,27 +335,27 @@ impl Voter<'_> {
     #[cold]
     #[inline(never)]
     fn vote(&self, i: usize, moved: &Moved) -> Vote {
-        let (store, case) = (self.store, self.case);
-        let h = store.smoothing_length[i];
-        let sound = case.time_step.courant * h / self.signal(i);
+        let (fields, factors) = (&self.fields, &self.factors);
+        let h = fields.smoothing_length[i];
+        let sound = factors.courant * h / self.signals.of::<F>(i);
         let square = square(&self.acceleration(i, &moved.contact));
-        let force = case.time_step.force * (h / square.sqrt()).sqrt();
+        let force = factors.force * (h / square.sqrt()).sqrt();
         let contact = if self.contact {
-            2.0 * case.time_step.contact * (store.mass[i] / store.contact_stiffness[i]).sqrt()
+            2.0 * factors.contact * (fields.mass[i] / fields.contact_stiffness[i]).sqrt()
         } else {
             f64::INFINITY
         };
-        let id = store.id[i];
+        let id = fields.id[i];
         let sane = sound > 0.0
             && !force.is_nan()
-            && store.density[i].is_finite()
+            && fields.density[i].is_finite()
             && moved.energy.is_finite()
             && moved.velocity.iter().all(|v| v.is_finite())
-            && store.position[i].iter().all(|x| x.abs() < FARTHEST);
+            && fields.position[i].iter().all(|x| x.abs() < FARTHEST);
         if !sane {
             return (ERROR, TroubleKind::NotFinite as u64, id);
         }
-        if let Some(kind) = self.limits.check(store.body[i], store.density[i], moved) {
+        if let Some(kind) = self.limits.check(fields.body[i], fields.density[i], moved) {
             return (ERROR, kind as u64, id);
         }
         let (dt, reason) = [

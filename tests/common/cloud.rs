@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use whipple::domain::Mirrors;
 use whipple::model::{Axis, SymmetryPlane};
+use whipple::neighbours::MotionRecord;
 use whipple::neighbours::{ClusterLists, ColumnGrid, ImageFacts, Lengths, Sequence};
 use whipple::particles::Image;
-use whipple::sph::neighbourhood::MotionRecord;
 
 use super::random::Random;
 

@@ -5,10 +5,10 @@ use whipple::contact::{ContactTable, ContactView, Reaction, overlap, potential};
 use whipple::material::library;
 use whipple::model::{Body, Case, ContactMode, Overlap, Potential, PotentialRange, Shape, Vec3};
 use whipple::neighbours::ContactClass;
+use whipple::neighbours::MotionRecord;
+use whipple::numerics::kernel::Kernel;
 use whipple::particles::{Image, ParticleStore};
 use whipple::populate;
-use whipple::sph::kernel::Kernel;
-use whipple::sph::neighbourhood::MotionRecord;
 
 use crate::common::{body, case};
 

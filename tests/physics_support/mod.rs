@@ -12,7 +12,7 @@ use std::path::Path;
 use whipple::comm::Comm;
 use whipple::input;
 use whipple::model::Case;
-use whipple::sph::kernel::Kernel;
+use whipple::numerics::kernel::Kernel;
 use whipple::step::Simulation;
 
 /// The case `inputs/<name>/case.toml` with overrides.

@@ -51,7 +51,7 @@ pub fn measure(
         None => stepped(comm, bench)?,
     };
     // Every sum is made, also those of a block at rest, which are zero.
-    simulation.spare_calm = false;
+    simulation.lists.spare_quiescent = false;
     for _ in 0..WARM_UP {
         step(comm, &mut simulation)?;
     }
@@ -133,7 +133,7 @@ impl Counts {
     fn of(comm: &Comm, simulation: &Simulation) -> Self {
         let (messages, bytes) = simulation.traffic();
         let seconds = simulation.timers.report();
-        let mut sums = vec![simulation.updates, messages, bytes];
+        let mut sums = vec![simulation.timers.updates, messages, bytes];
         sums.extend(seconds.map(|(_, seconds)| (seconds * 1e9) as u64));
         comm.sum_u64(&mut sums);
         Self {

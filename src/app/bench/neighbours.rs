@@ -25,7 +25,7 @@ pub fn true_mean(comm: &Comm, simulation: &Simulation) -> f64 {
 /// Mean length of the list that a particle's cluster walks. Collective.
 #[allow(clippy::cast_precision_loss, reason = "a mean")]
 pub fn list_mean(comm: &Comm, simulation: &Simulation) -> f64 {
-    let mut sums = [simulation.list_entries(), simulation.store.owned() as u64];
+    let mut sums = [simulation.lists.entries(), simulation.store.owned() as u64];
     comm.sum_u64(&mut sums);
     sums[0] as f64 / (sums[1] as f64).max(1.0)
 }
@@ -44,7 +44,7 @@ fn sampled(comm: &Comm, simulation: &Simulation) -> Vec<u64> {
         if store.id[i].wrapping_mul(0x9e37_79b9_7f4a_7c15) <= limit {
             words.extend(store.position[i].map(f64::to_bits));
             words.push(store.smoothing_length[i].to_bits());
-            words.push(simulation.contact().groups[store.body[i] as usize] as u64);
+            words.push(simulation.contact().groups.of_body[store.body[i] as usize] as u64);
             words.push(store.id[i]);
         }
     }
@@ -72,7 +72,7 @@ fn count(simulation: &Simulation, words: &[u64]) -> u64 {
     }
     let mut count = 0;
     for i in 0..store.owned() {
-        if simulation.contact().groups[store.body[i] as usize] as u64 != group {
+        if simulation.contact().groups.of_body[store.body[i] as usize] as u64 != group {
             continue;
         }
         let reach = h + store.smoothing_length[i];

@@ -1,12 +1,12 @@
 //! Where rigid surfaces stand in a step, and how they move.
 
-use super::span::Span;
+use crate::domain::Span;
 use crate::model::{RigidSurface, SurfaceShape};
 use crate::numerics::vector::{cross, dot, norm};
 
 /// A rigid surface in one step.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct SurfaceStep {
+pub(crate) struct SurfaceStep {
     /// How far it has moved since time zero at the end of the step (m).
     shift: [f64; 3],
     /// Velocities at the beginning, in the middle and at the end (m/s).
@@ -25,7 +25,7 @@ struct Turn {
 
 impl SurfaceStep {
     /// The step from time `from` to `to` (s).
-    pub(super) fn new(surface: &RigidSurface, from: f64, to: f64) -> Self {
+    pub(crate) fn new(surface: &RigidSurface, from: f64, to: f64) -> Self {
         let motion = &surface.motion;
         let mean = |from, to| std::array::from_fn(|a| motion.mean(a, from, to));
         Self {
@@ -42,7 +42,7 @@ impl SurfaceStep {
     }
 
     /// Mean velocity (m/s) and rate (rad/s) in the first or the second half of the step.
-    pub(super) fn in_half(&self, first: bool) -> ([f64; 3], f64) {
+    pub(crate) fn in_half(&self, first: bool) -> ([f64; 3], f64) {
         let end = if first { 0 } else { 2 };
         let [middle, end_velocity] = [self.velocity[1], self.velocity[end]];
         let rate = self.turn.map_or(0.0, |t| 0.5 * (t.rate[1] + t.rate[end]));
@@ -68,7 +68,7 @@ fn rotation(axis: &[f64; 3], angle: f64) -> [[f64; 3]; 3] {
 
 /// A surface as it stands at the end of a step.
 #[derive(Clone, Copy)]
-pub(super) struct Placed<'a> {
+pub(crate) struct Placed<'a> {
     pub surface: &'a RigidSurface,
     pub step: &'a SurfaceStep,
 }
@@ -85,7 +85,7 @@ impl Placed<'_> {
     }
 
     /// A place (m) in the frame of the surface, where it stood at time zero.
-    pub(super) fn local(&self, x: &[f64; 3]) -> [f64; 3] {
+    pub(crate) fn local(&self, x: &[f64; 3]) -> [f64; 3] {
         let (Some(turn), Some(spin)) = (&self.step.turn, &self.surface.spin) else {
             return std::array::from_fn(|a| x[a] - self.step.shift[a]);
         };
@@ -96,14 +96,14 @@ impl Placed<'_> {
     }
 
     /// A vector of the surface's frame in space.
-    pub(super) fn outward(&self, v: [f64; 3]) -> [f64; 3] {
+    pub(crate) fn outward(&self, v: [f64; 3]) -> [f64; 3] {
         self.step
             .turn
             .map_or(v, |turn| turn.rotation.map(|row| dot(&row, &v)))
     }
 
     /// Velocity of what turns with the surface at `x` (m/s), at the end of the step.
-    pub(super) fn velocity(&self, x: &[f64; 3]) -> [f64; 3] {
+    pub(crate) fn velocity(&self, x: &[f64; 3]) -> [f64; 3] {
         let velocity = self.step.velocity[2];
         let (Some(turn), Some(spin)) = (&self.step.turn, &self.surface.spin) else {
             return velocity;
@@ -114,7 +114,7 @@ impl Placed<'_> {
 
     /// Largest speed (m/s) at which particles and the surface come nearer from time `from`, now, to
     /// `to` (s), or somewhat more.
-    pub(super) fn closing_speed(&self, particles: &Span, from: f64, to: f64) -> f64 {
+    pub(crate) fn closing_speed(&self, particles: &Span, from: f64, to: f64) -> f64 {
         let motion = &self.surface.motion;
         let ground = std::array::from_fn(|a| motion.range(a, from, to).unwrap_or_default());
         let Some(spin) = &self.surface.spin else {
@@ -132,7 +132,7 @@ impl Placed<'_> {
     }
 
     /// Torque of a force (N) at `x` about the axis of rotation (N m); zero without one.
-    pub(super) fn torque(&self, x: &[f64; 3], force: &[f64; 3]) -> f64 {
+    pub(crate) fn torque(&self, x: &[f64; 3], force: &[f64; 3]) -> f64 {
         let spin = self.surface.spin.as_ref();
         spin.map_or(0.0, |spin| dot(&spin.axis, &cross(&self.arm(x), force)))
     }

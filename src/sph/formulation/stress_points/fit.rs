@@ -4,77 +4,17 @@ use std::sync::atomic::{AtomicI64, Ordering};
 
 use rayon::prelude::*;
 
-use super::material_update::MaterialUpdate;
-use super::simulation::Simulation;
-use super::sweeps::with_scale;
-use crate::neighbours::{CHUNKS_AT_ONCE, Chunk};
+use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Lists};
 use crate::numerics::dispatch::{Vectorised, instructions};
+use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
 use crate::particles::{Image, ParticleStore, Scatter};
-use crate::sph::kernel::PairScale;
 use crate::sph::linear_fit::{Fit, Fitted, LinearFit};
+use crate::sph::material_update::{MaterialUpdate, point_fields};
 use crate::sph::mid_step::{MidStep, mid_step};
 use crate::sph::neighbourhood::Sources;
 use crate::sph::normalised::stress_power;
-
-/// Fields of stress points, out of the store while the material is updated.
-struct Fields {
-    moment: Vec<[f64; 9]>,
-    offset: Vec<[f64; 3]>,
-    gradient: Vec<[f64; 9]>,
-    velocity: Vec<[f64; 3]>,
-    acceleration: Vec<[f64; 3]>,
-    heat: Vec<f64>,
-    norm: Vec<f64>,
-    specific_stress: Vec<[f64; 6]>,
-    mass: Vec<f64>,
-}
-
-impl Fields {
-    fn take(store: &mut ParticleStore) -> Self {
-        Self {
-            moment: std::mem::take(&mut store.stress_moment),
-            offset: std::mem::take(&mut store.stress_offset),
-            gradient: std::mem::take(&mut store.predicted_gradient),
-            velocity: std::mem::take(&mut store.velocity),
-            acceleration: std::mem::take(&mut store.drift_acceleration),
-            heat: std::mem::take(&mut store.stress_heat),
-            norm: std::mem::take(&mut store.fit_norm),
-            specific_stress: std::mem::take(&mut store.specific_stress),
-            mass: std::mem::take(&mut store.stress_mass),
-        }
-    }
-
-    fn give_back(self, store: &mut ParticleStore) {
-        store.stress_moment = self.moment;
-        store.stress_offset = self.offset;
-        store.predicted_gradient = self.gradient;
-        store.velocity = self.velocity;
-        store.drift_acceleration = self.acceleration;
-        store.stress_heat = self.heat;
-        store.fit_norm = self.norm;
-        store.specific_stress = self.specific_stress;
-        store.stress_mass = self.mass;
-    }
-
-    fn target(&mut self, dt: f64, last_dt: f64, gravity: [f64; 3]) -> FitTarget<'_> {
-        FitTarget {
-            moment: Scatter::new(&mut self.moment),
-            offset: Scatter::new(&mut self.offset),
-            gradient: Scatter::new(&mut self.gradient),
-            velocity: Scatter::new(&mut self.velocity),
-            acceleration: Scatter::new(&mut self.acceleration),
-            heat: Scatter::new(&mut self.heat),
-            norm: Scatter::new(&mut self.norm),
-            specific_stress: &self.specific_stress,
-            mass: &self.mass,
-            incomplete: AtomicI64::new(0),
-            dt,
-            last_dt,
-            gravity,
-        }
-    }
-}
+use crate::sph::sums::{Step, Sums, sources, with_scale};
 
 /// Where the first sweep writes what it finds at stress points: velocities, and the geometry of
 /// fits in place of the moments that follow from it.
@@ -89,9 +29,7 @@ struct FitTarget<'a> {
     specific_stress: &'a [[f64; 6]],
     mass: &'a [f64],
     incomplete: AtomicI64,
-    dt: f64,
-    last_dt: f64,
-    gravity: [f64; 3],
+    step: &'a Step,
 }
 
 impl FitTarget<'_> {
@@ -118,14 +56,14 @@ impl FitTarget<'_> {
         };
         for a in 0..3 {
             // Half kicks know gravity alone, as long as the other half is to come.
-            let pull = 0.5 * self.dt * self.gravity[a];
+            let pull = 0.5 * self.step.dt * self.step.gravity[a];
             let after = fitted.velocity[a].0[k];
-            if self.dt > 0.0 {
-                drift[a] = (after - (v[a] - pull)) / self.dt;
+            if self.step.dt > 0.0 {
+                drift[a] = (after - (v[a] - pull)) / self.step.dt;
             }
             v[a] = after - pull;
         }
-        mid_step(&predicted, last, self.dt, self.last_dt)
+        mid_step(&predicted, last, self.step.dt, self.step.last_dt)
     }
 
     /// What stress point `i` has heated less (J/kg) in the kicks about the beginning of this step, by
@@ -139,8 +77,8 @@ impl FitTarget<'_> {
         }
         let power = stress_power(0.0, &self.specific_stress[i], &mean, 1.0);
         let (mut late, mut heat) = (0.0, 0.0);
-        if self.dt > 0.0 && fit.weight > 0.0 {
-            late = 0.5 * (self.dt + self.last_dt) * (power - rate);
+        if self.step.dt > 0.0 && fit.weight > 0.0 {
+            late = 0.5 * (self.step.dt + self.step.last_dt) * (power - rate);
             heat = self.mass[i] * late / fit.weight;
         }
         // SAFETY: particle `i` belongs to one cluster alone, and this thread has the cluster.
@@ -194,34 +132,37 @@ impl<S: PairScale> Vectorised for FitChunk<'_, S> {
     }
 }
 
-impl Simulation {
-    /// First sweep: velocities and strain rates at stress points, material and moments there.
-    pub(super) fn strain_stress_points(&mut self, dt: f64) {
-        let set = instructions();
-        let mut fields = Fields::take(&mut self.store);
-        let update = &MaterialUpdate::new(
-            &mut self.store,
-            &mut self.sweeps.stresses,
-            self.search.sequence.images(),
-            &self.case.materials,
-            &self.sweeps.material_of_body,
-            &self.contact.rigid,
-            dt,
-        );
-        let target = &fields.target(dt, self.state.last_dt, self.loads.gravity);
-        let search = &self.search;
-        let images = search.sequence.images();
-        let (dimension, body_groups) = (self.case.dimension, self.contact.body_groups);
-        let chunks = self.search.clusters.chunks().par_iter();
-        let chunks = chunks.with_max_len(CHUNKS_AT_ONCE);
-        with_scale!(self.sweeps.scale, scale => chunks.for_each(|chunk| {
-            let motion = search.sources(scale);
-            set.run(FitChunk {
-                chunk, motion, dimension, body_groups, images, update, target,
-            });
-        }));
-        self.sums.uncorrected = target.incomplete.load(Ordering::Relaxed);
-        fields.give_back(&mut self.store);
-        self.find_moments();
-    }
+/// First sweep: velocities and strain rates at stress points, and the material there. Gives the number
+/// of fits without enough neighbours.
+pub(super) fn strain(
+    sums: &mut Sums,
+    particles: &mut ParticleStore,
+    lists: &Lists,
+    step: &Step,
+) -> i64 {
+    let set = instructions();
+    let (scale, dimension) = (sums.scale, sums.dimension);
+    let (images, body_groups) = (lists.images(), lists.groups.of_bodies);
+    let target = &FitTarget {
+        moment: Scatter::new(&mut particles.stress_moment),
+        offset: Scatter::new(&mut particles.stress_offset),
+        gradient: Scatter::new(&mut particles.predicted_gradient),
+        velocity: Scatter::new(&mut particles.velocity),
+        acceleration: Scatter::new(&mut particles.drift_acceleration),
+        heat: Scatter::new(&mut particles.stress_heat),
+        norm: Scatter::new(&mut particles.fit_norm),
+        specific_stress: &particles.specific_stress,
+        mass: &particles.stress_mass,
+        incomplete: AtomicI64::new(0),
+        step,
+    };
+    let update = &MaterialUpdate::new(point_fields!(particles), sums, lists, step.dt);
+    let chunks = lists.chunks().par_iter().with_max_len(CHUNKS_AT_ONCE);
+    with_scale!(scale, scale => chunks.for_each(|chunk| {
+        let motion = sources(lists, scale);
+        set.run(FitChunk {
+            chunk, motion, dimension, body_groups, images, update, target,
+        });
+    }));
+    target.incomplete.load(Ordering::Relaxed)
 }

@@ -1,12 +1,12 @@
 //! Where some particles are and how they move, in twelve numbers, and how long a step two such sets
 //! allow.
 
-use crate::domain::Mirrors;
+use super::Mirrors;
 use crate::numerics::vector::norm;
 
 /// Smallest and largest coordinates (m) and velocities (m/s) of some particles.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Span {
+pub(crate) struct Span {
     lower: [f64; 3],
     upper: [f64; 3],
     slowest: [f64; 3],

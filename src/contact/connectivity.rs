@@ -2,13 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::search::{GRAIN, Search};
-use super::simulation::Simulation;
-use crate::comm::Comm;
-use crate::domain::{Halo, Mirrors};
+use super::GRAIN;
+use crate::domain::Mirrors;
 use crate::model::Case;
-use crate::neighbours::{Kin, Part};
-use crate::particles::{FieldUse, ParticleStore, resize};
+use crate::neighbours::{Kin, Lists, Part};
+use crate::particles::{ParticleStore, resize};
 
 /// Steps between two looks at what is still connected.
 const EVERY: u64 = 10;
@@ -18,9 +16,9 @@ const ALL_PLANES: u32 = 7;
 /// Parts of the images, and the union of what is connected, kept from step to step; empty without
 /// self-contact.
 #[derive(Debug, Default)]
-pub(super) struct Parts {
+pub struct Connectivity {
     /// Whether there is self-contact.
-    pub(super) active: bool,
+    is_active: bool,
     /// 1 over the distance of folds (1/m), by body; empty without.
     per_fold: Vec<f64>,
     of_images: Vec<Part>,
@@ -31,32 +29,33 @@ pub(super) struct Parts {
     labels: Vec<(u64, u32)>,
 }
 
-/// Bytes that self-contact takes for each image, beside fields and lists.
-pub(super) fn bytes_of_image(case: &Case) -> usize {
-    let Some(own) = &case.self_contact else {
-        return 0;
-    };
-    let union = size_of::<u32>() + size_of::<(u64, u32)>();
-    let places = if own.folds.is_some() {
-        size_of::<[f64; 3]>()
-    } else {
-        0
-    };
-    size_of::<Part>() + places + union
-}
+impl Connectivity {
+    /// Bytes that self-contact takes for each image, beside fields and lists.
+    #[must_use]
+    pub fn bytes_of_image(case: &Case) -> usize {
+        let Some(own) = &case.self_contact else {
+            return 0;
+        };
+        let union = size_of::<u32>() + size_of::<(u64, u32)>();
+        let places = if own.folds.is_some() {
+            size_of::<[f64; 3]>()
+        } else {
+            0
+        };
+        size_of::<Part>() + places + union
+    }
 
-impl Parts {
-    pub(super) fn new(case: &Case) -> Self {
+    pub(crate) fn new(case: &Case) -> Self {
         let folds = case.self_contact.as_ref().and_then(|s| s.folds);
         let bodies = case.bodies.iter().map(|body| body.lattice.spacing);
         Self {
-            active: case.self_contact.is_some(),
+            is_active: case.self_contact.is_some(),
             per_fold: folds.map_or(Vec::new(), |f| bodies.map(|dp| 1.0 / (f * dp)).collect()),
             ..Self::default()
         }
     }
 
-    pub(super) fn memory(&self) -> usize {
+    pub(crate) fn memory(&self) -> usize {
         size_of::<Part>() * self.of_images.capacity()
             + size_of::<[f64; 3]>() * self.references.capacity()
             + 4 * self.parents.capacity()
@@ -64,8 +63,8 @@ impl Parts {
     }
 
     /// Reads what the images show.
-    fn show(&mut self, search: &Search, store: &ParticleStore, mirrors: &Mirrors) {
-        let images = search.sequence.images();
+    fn show(&mut self, lists: &Lists, store: &ParticleStore, mirrors: &Mirrors) {
+        let images = lists.images();
         resize(&mut self.of_images, images.len());
         let parts = self.of_images.par_iter_mut().with_min_len(GRAIN);
         parts.zip(images).for_each(|(part, image)| {
@@ -103,16 +102,17 @@ impl Parts {
     }
 
     /// Joins what has a particle of this rank within the support of another.
-    fn join(&mut self, search: &Search, particles: usize) {
+    pub(crate) fn join(&mut self, lists: &Lists, particles: &ParticleStore) {
+        let particles = particles.owned() + particles.halo();
         self.parents.clear();
         self.parents
             .extend(0..u32::try_from(particles).unwrap_or(u32::MAX));
         self.labels.clear();
         self.labels.resize(particles, (u64::MAX, 0));
-        let images = search.sequence.images();
+        let images = lists.images();
         #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
         let base = |place: u32| images[place as usize].base() as u32;
-        for chunk in search.clusters.chunks() {
+        for chunk in lists.chunks() {
             for (cluster, neighbours, _) in chunk.iter() {
                 for &i in &cluster.receivers[..cluster.lanes] {
                     let mut here = self.root(base(i));
@@ -120,7 +120,7 @@ impl Parts {
                         let code = images[j as usize].code();
                         let there = base(j);
                         if (self.parents[there as usize] == here && code == 0)
-                            || !search.in_support(cluster.group, i, j)
+                            || !lists.in_support(cluster.group, i, j)
                         {
                             continue;
                         }
@@ -138,70 +138,65 @@ impl Parts {
         }
     }
 
-    /// Labels of all ranks' particles. Collective.
-    fn label(&mut self, comm: &Comm, halo: &mut Halo, store: &mut ParticleStore) {
-        let owned = store.owned();
-        let particles = store.part.len();
-        store.part.copy_from_slice(&store.id[..particles]);
+    /// Begins the labels of fragments, after [`Self::join`]: what has come apart are particles of one
+    /// fragment that no chain of neighbours connects. These are out of each other's support, so that no
+    /// force changes by it.
+    pub(crate) fn begin_labels(particles: &mut ParticleStore) {
+        let count = particles.part.len();
+        particles.part.copy_from_slice(&particles.id[..count]);
         // Roots know what their own pairs have found.
-        store.part_planes.fill(0);
-        loop {
-            for i in 0..particles {
-                let root = self.root(u32::try_from(i).unwrap_or(u32::MAX)) as usize;
-                let label = &mut self.labels[root];
-                label.0 = label.0.min(store.part[i]);
-                label.1 |= store.part_planes[i];
-            }
-            let mut changed = false;
-            for i in 0..owned {
-                let root = self.root(u32::try_from(i).unwrap_or(u32::MAX)) as usize;
-                let label = self.labels[root];
-                changed |= (store.part[i], store.part_planes[i]) != label;
-                (store.part[i], store.part_planes[i]) = label;
-            }
-            if !comm.any(changed) {
-                return;
-            }
-            halo.post(comm, store, FieldUse::HALO_PARTS);
-            halo.finish(store, FieldUse::HALO_PARTS);
-        }
+        particles.part_planes.fill(0);
     }
-}
 
-impl Simulation {
-    /// A body begins as one part.
-    pub(super) fn begin_parts(store: &mut ParticleStore, i: usize, label: u64) {
-        if let Some(part) = store.part.get_mut(i) {
-            *part = label;
-            store.part_planes[i] = ALL_PLANES;
+    /// Spreads labels over what is connected on this rank; whether any has changed, so that halo
+    /// particles must hear and labels be spread again.
+    pub(crate) fn spread_labels(&mut self, particles: &mut ParticleStore) -> bool {
+        for i in 0..particles.part.len() {
+            let root = self.root(u32::try_from(i).unwrap_or(u32::MAX)) as usize;
+            let label = &mut self.labels[root];
+            label.0 = label.0.min(particles.part[i]);
+            label.1 |= particles.part_planes[i];
         }
-        if let Some(start) = store.reference_position.get_mut(i) {
-            *start = store.position[i];
+        let mut changed = false;
+        for i in 0..particles.owned() {
+            let root = self.root(u32::try_from(i).unwrap_or(u32::MAX)) as usize;
+            let label = self.labels[root];
+            changed |= (particles.part[i], particles.part_planes[i]) != label;
+            (particles.part[i], particles.part_planes[i]) = label;
+        }
+        changed
+    }
+
+    /// A body begins as one fragment.
+    pub(crate) fn begin(particles: &mut ParticleStore, i: usize, label: u64) {
+        if let Some(part) = particles.part.get_mut(i) {
+            *part = label;
+            particles.part_planes[i] = ALL_PLANES;
+        }
+        if let Some(start) = particles.reference_position.get_mut(i) {
+            *start = particles.position[i];
         }
     }
 
     /// Takes strangers out of the own lists, before foreign ones are built.
-    pub(super) fn part_neighbours(&mut self) {
-        if !self.parts.active {
+    pub(crate) fn separate(
+        &mut self,
+        particles: &ParticleStore,
+        lists: &mut Lists,
+        mirrors: &Mirrors,
+    ) {
+        if !self.is_active {
             return;
         }
-        let (parts, search) = (&mut self.parts, &mut self.search);
-        parts.show(search, &self.store, self.halo.mirrors());
-        search.clusters.part(&Kin {
-            parts: &parts.of_images,
-            references: &parts.references,
+        self.show(lists, particles, mirrors);
+        lists.separate(&Kin {
+            parts: &self.of_images,
+            references: &self.references,
         });
     }
 
-    /// Finds out, every few steps, what has come apart: particles of one part that no chain of
-    /// neighbours connects. These are out of each other's support, so that no force changes by it.
-    /// Collective.
-    pub(super) fn find_parts(&mut self, comm: &Comm) {
-        if !self.parts.active || !self.state.step.is_multiple_of(EVERY) {
-            return;
-        }
-        let particles = self.store.owned() + self.store.halo();
-        self.parts.join(&self.search, particles);
-        self.parts.label(comm, &mut self.halo, &mut self.store);
+    /// Whether fragments are to be told at a step.
+    pub(crate) fn is_due(&self, step: u64) -> bool {
+        self.is_active && step.is_multiple_of(EVERY)
     }
 }

@@ -7,19 +7,20 @@
 //! gravity so far, and H, what bodies hold that begin compressed or stretched. In a sound run K stays
 //! below the sum itself, but for heat of the reference state that an expansion may take.
 
-use super::simulation::{Simulation, StepError};
-use super::trouble::TroubleKind;
+use super::ledger::RunState;
 use crate::comm::Comm;
 use crate::domain::Outset;
+use crate::loads::Loads;
 use crate::model::{Body, Case, Trouble};
 use crate::numerics::vector::square;
+use crate::particles::ParticleStore;
 use crate::populate;
 
 /// What is allowed to what is at rest, over `½ m U²` with the speed U that is natural to the case.
 const ROUNDING: f64 = 1e-9;
 
 /// `½ m c² (ρ/ρ₀ − 1)²` of all bodies, and what rounding may do (J). Collective.
-pub(super) fn hidden_energy(case: &Case, comm: &Comm) -> f64 {
+pub(crate) fn hidden_energy(case: &Case, comm: &Comm) -> f64 {
     let natural = Trouble::natural_speed(case);
     let of_body = |(body, count): (&Body, &u64)| {
         let material = &case.materials[body.material];
@@ -36,45 +37,36 @@ pub(super) fn hidden_energy(case: &Case, comm: &Comm) -> f64 {
     deforming.map(of_body).sum()
 }
 
-impl Simulation {
-    /// Whether the kinetic energy, as of the last [`Simulation::diagnose`], can have come from
-    /// anywhere. Collective.
-    ///
-    /// # Errors
-    /// The same on all ranks: [`StepError::Trouble`] of the fastest particle if it cannot.
-    pub fn check_gain(&self, comm: &Comm) -> Result<(), StepError> {
-        let (first, state) = (&self.state.initial, &self.state);
-        let there = first.kinetic_energy
-            + first.internal_energy.max(0.0)
-            + first.contact_energy.max(0.0)
-            + state.work_put_in
-            + self.limits.hidden_energy;
-        if state.totals.kinetic_energy <= self.case.trouble.gain_max * there {
-            return Ok(());
-        }
-        Err(self.trouble(comm, TroubleKind::Gain, self.fastest(comm)))
-    }
+/// Whether the kinetic energy, as of the last totals, can have come from what there was, what has been
+/// put in and the `hidden` energy (J), or from `most` times that.
+pub(crate) fn is_explained(state: &RunState, hidden: f64, most: f64) -> bool {
+    let first = &state.initial;
+    let there = first.kinetic_energy
+        + first.internal_energy.max(0.0)
+        + first.contact_energy.max(0.0)
+        + state.work_put_in
+        + hidden;
+    state.totals.kinetic_energy <= most * there
+}
 
-    /// Identity of the fastest particle that nobody drives.
-    fn fastest(&self, comm: &Comm) -> u64 {
-        let store = &self.store;
-        let mut best = (u64::MAX, u64::MAX);
-        for i in 0..store.owned() {
-            if self.loads.drives() && self.loads.is_rigid(store.load[i]) {
-                continue;
-            }
-            // Positive doubles order as their bits, so that their complements order downwards.
-            let slowness = !square(&store.velocity[i]).to_bits();
-            best = best.min((slowness, store.id[i]));
+/// Identity of the fastest particle that nobody drives. Collective.
+pub(crate) fn fastest(comm: &Comm, particles: &ParticleStore, loads: &Loads) -> u64 {
+    let mut best = (u64::MAX, u64::MAX);
+    for i in 0..particles.owned() {
+        if loads.drives() && loads.is_rigid(particles.load[i]) {
+            continue;
         }
-        let mut slowness = [best.0];
-        comm.min_u64(&mut slowness);
-        let mut id = [if best.0 == slowness[0] {
-            best.1
-        } else {
-            u64::MAX
-        }];
-        comm.min_u64(&mut id);
-        id[0]
+        // Positive doubles order as their bits, so that their complements order downwards.
+        let slowness = !square(&particles.velocity[i]).to_bits();
+        best = best.min((slowness, particles.id[i]));
     }
+    let mut slowness = [best.0];
+    comm.min_u64(&mut slowness);
+    let mut id = [if best.0 == slowness[0] {
+        best.1
+    } else {
+        u64::MAX
+    }];
+    comm.min_u64(&mut id);
+    id[0]
 }

@@ -1,14 +1,17 @@
 //! Rigid surfaces in the step: a penalty on particles nearer than half a spacing, see
-//! [`crate::contact::surface`], and what rests on it.
+//! [`escape`], and what rests on it.
 
 use rayon::prelude::*;
 
-use super::search::GRAIN;
-use super::simulation::Simulation;
-use super::surface_friction::{Resisting, SurfaceHold};
-use super::surface_motion::{Placed, SurfaceStep};
-use crate::contact::{ContactTable, surface};
+mod escape;
+mod friction;
+
+use friction::{Resisting, SurfaceHold};
+
+use super::{ContactTable, GRAIN};
+use crate::loads::{Loads, Placed, SurfaceStep};
 use crate::model::{Body, Case, RigidSurface};
+use crate::numerics::exact_sum::ExactSum;
 use crate::numerics::vector::dot;
 use crate::particles::ParticleStore;
 
@@ -31,7 +34,7 @@ pub(super) struct Push {
 
 /// Constants of a surface and a body that it acts on.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Penalty {
+struct Penalty {
     /// Stiffness over volume, `κ M/Δp²` (Pa/m²).
     stiffness: f64,
     /// Where it begins, ½Δp (m).
@@ -42,12 +45,16 @@ pub(super) struct Penalty {
 
 /// The surfaces of a case and what they do, kept from step to step.
 #[derive(Debug, Default)]
-pub(super) struct SurfaceForces {
+pub(crate) struct SurfaceForces {
     /// By surface and body; absent where a surface does not act.
     penalties: Vec<Vec<Option<Penalty>>>,
     /// By body: stiffness over volume of the spring that sticks (Pa/m²).
     sticks: Vec<f64>,
-    friction: bool,
+    surfaces: Vec<RigidSurface>,
+    /// Force of each surface, and its torque about the axis that it turns about.
+    pub(crate) sums: Vec<[ExactSum; 4]>,
+    /// Heat of each, if any has friction or damping.
+    pub(crate) heat: Vec<ExactSum>,
     /// By task.
     pushes: Vec<Vec<Push>>,
     /// The same of friction and damping; empty without.
@@ -66,7 +73,18 @@ impl SurfaceForces {
         Self {
             penalties: penalties.collect(),
             sticks: sticks.collect(),
-            friction: case.loads.has_friction(),
+            surfaces: case.loads.surfaces.clone(),
+            sums: case
+                .loads
+                .surfaces
+                .iter()
+                .map(|_| Default::default())
+                .collect(),
+            heat: if case.loads.has_friction() {
+                vec![ExactSum::default(); case.loads.surfaces.len()]
+            } else {
+                Vec::new()
+            },
             pushes: Vec::new(),
             holds: Vec::new(),
         }
@@ -80,6 +98,8 @@ impl SurfaceForces {
             + pushes * size_of::<Push>()
             + holds * size_of::<SurfaceHold>()
             + size_of::<f64>() * self.sticks.capacity()
+            + 4 * size_of::<ExactSum>() * self.sums.capacity()
+            + size_of::<ExactSum>() * self.heat.capacity()
     }
 }
 
@@ -122,52 +142,70 @@ impl Penalty {
     }
 }
 
-impl Simulation {
-    /// Adds what the rigid surfaces do after a step `dt` (s) to the forces of contact.
-    pub(super) fn surface_forces(&mut self, dt: f64) {
-        if self.loads.surfaces.is_empty() {
+impl SurfaceForces {
+    /// Adds what the rigid surfaces do after a step `dt` (s) to the forces of contact, and their energy
+    /// to `energy`.
+    pub(super) fn act(
+        &mut self,
+        particles: &mut ParticleStore,
+        table: &ContactTable,
+        loads: &Loads,
+        dt: f64,
+        energy: &mut ExactSum,
+    ) {
+        self.sums.fill_with(Default::default);
+        self.heat.fill_with(ExactSum::default);
+        if self.surfaces.is_empty() {
             return;
         }
-        self.find_pushes(dt);
-        let (store, sums) = (&mut self.store, &mut self.sums);
-        for push in self.surface_forces.pushes.iter().flatten() {
+        self.find_pushes(particles, table, loads, dt);
+        for push in self.pushes.iter().flatten() {
             let i = push.particle;
-            let per_mass = 1.0 / store.mass[i];
+            let per_mass = 1.0 / particles.mass[i];
             for a in 0..3 {
-                store.contact_acceleration[i][a] += push.force[a] * per_mass;
+                particles.contact_acceleration[i][a] += push.force[a] * per_mass;
             }
-            store.contact_energy[i] += push.energy;
-            store.contact_stiffness[i] += push.stiffness;
-            store.approach_speed[i] = store.approach_speed[i].max(push.approach);
-            sums.contact.energy.add(push.energy);
-            sums.add_push(push.surface, &push.force, push.torque);
-            if let Some(heat) = sums.push_heat.get_mut(push.surface) {
+            particles.contact_energy[i] += push.energy;
+            particles.contact_stiffness[i] += push.stiffness;
+            particles.approach_speed[i] = particles.approach_speed[i].max(push.approach);
+            energy.add(push.energy);
+            let sums = &mut self.sums[push.surface];
+            for a in 0..3 {
+                sums[a].add(push.force[a]);
+            }
+            sums[3].add(push.torque);
+            if let Some(heat) = self.heat.get_mut(push.surface) {
                 heat.add(push.heat);
             }
         }
-        SurfaceHold::clear(store);
-        for hold in self.surface_forces.holds.iter().flatten() {
-            hold.store(store);
+        SurfaceHold::clear(particles);
+        for hold in self.holds.iter().flatten() {
+            hold.store(particles);
         }
     }
 
     /// The particles near surfaces, chunk after chunk.
-    fn find_pushes(&mut self, dt: f64) {
-        let owned = self.store.owned();
-        let mut forces = std::mem::take(&mut self.surface_forces);
+    fn find_pushes(
+        &mut self,
+        particles: &ParticleStore,
+        table: &ContactTable,
+        loads: &Loads,
+        dt: f64,
+    ) {
+        let owned = particles.owned();
         let chunks = owned.div_ceil(GRAIN);
-        forces.pushes.resize(chunks, Vec::new());
-        forces.holds.resize(chunks, Vec::new());
+        self.pushes.resize(chunks, Vec::new());
+        self.holds.resize(chunks, Vec::new());
         let view = View {
-            store: &self.store,
-            table: &self.contact,
-            surfaces: &self.case.loads.surfaces,
-            steps: &self.loads.surfaces,
-            penalties: &forces.penalties,
-            sticks: &forces.sticks,
+            store: particles,
+            table,
+            surfaces: &self.surfaces,
+            steps: &loads.surfaces,
+            penalties: &self.penalties,
+            sticks: &self.sticks,
         };
-        let friction = forces.friction;
-        let chunks = forces.pushes.par_iter_mut().zip(&mut forces.holds);
+        let friction = !self.heat.is_empty();
+        let chunks = self.pushes.par_iter_mut().zip(&mut self.holds);
         chunks.enumerate().for_each(|(chunk, (pushes, holds))| {
             pushes.clear();
             holds.clear();
@@ -179,17 +217,16 @@ impl Simulation {
                 }
             }
         });
-        self.surface_forces = forces;
     }
 }
 
 /// What a push depends on.
-pub(super) struct View<'a> {
+struct View<'a> {
     pub store: &'a ParticleStore,
     pub table: &'a ContactTable,
     surfaces: &'a [RigidSurface],
     steps: &'a [SurfaceStep],
-    pub penalties: &'a [Vec<Option<Penalty>>],
+    penalties: &'a [Vec<Option<Penalty>>],
     pub sticks: &'a [f64],
 }
 
@@ -209,7 +246,7 @@ impl View<'_> {
         let placed = self.placed(n);
         let x = &self.store.position[i];
         let local = placed.local(x);
-        let escape = surface::escape(placed.surface, &local, penalty.reach, penalty.limit())?;
+        let escape = escape::escape(placed.surface, &local, penalty.reach, penalty.limit())?;
         let gap = escape.foot.gap;
         // Stress points have no mass and no contact.
         if gap >= penalty.h.max(penalty.reach) || self.store.mass[i] == 0.0 {

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::contact_sums::{PairSums, least};
-use super::trouble::Removed;
+use crate::contact::{PairExtremes, PairSums, SurfaceForces};
+use crate::loads::Loads;
 use crate::numerics::vector::norm;
 
 /// What limited a time step.
@@ -65,53 +65,6 @@ pub struct PairState {
     pub extremes: PairExtremes,
 }
 
-/// What a pair of bodies has come to in an interval of steps.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct PairExtremes {
-    /// Largest magnitude of the force between the two (N).
-    pub peak_force: f64,
-    /// Largest excess.
-    pub largest_excess: f64,
-    /// The nearest two particles; absent when none was in reach.
-    pub closest: Option<Closest>,
-    /// The smallest contact criterion (s); absent without contact force.
-    pub contact_dt: Option<f64>,
-}
-
-impl PairExtremes {
-    /// Takes those of another interval, or of other particles, in.
-    pub(super) fn join(&mut self, other: &Self) {
-        self.peak_force = self.peak_force.max(other.peak_force);
-        self.largest_excess = self.largest_excess.max(other.largest_excess);
-        self.closest = match (self.closest, other.closest) {
-            (Some(a), Some(b)) => Some(a.min(b)),
-            (a, b) => a.or(b),
-        };
-        self.contact_dt = least(self.contact_dt, other.contact_dt);
-    }
-}
-
-/// Two particles of two bodies that are near each other, or one and the other's mirror image.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Closest {
-    /// Their distance in mean spacings.
-    pub distance: f64,
-    /// Their identities, in the order of the bodies.
-    pub particles: [u64; 2],
-}
-
-impl Closest {
-    /// The nearer two; the smaller identities of two that are as near.
-    fn min(self, other: Self) -> Self {
-        let order = |c: &Self| (c.distance.to_bits(), c.particles);
-        if order(&other) < order(&self) {
-            other
-        } else {
-            self
-        }
-    }
-}
-
 /// The nearest two particles of any two bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct NearestPair {
@@ -171,6 +124,34 @@ pub struct LoadState {
     /// Its time integral (J).
     #[serde(default)]
     pub heat: f64,
+}
+
+/// What removed particles took with them, of one body.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Removed {
+    /// How many.
+    pub particles: u64,
+    /// `Σ m` (kg).
+    pub mass: f64,
+    /// `Σ m v` (kg m/s).
+    pub momentum: [f64; 3],
+    /// `Σ ½ m v²` (J).
+    pub kinetic_energy: f64,
+    /// `Σ m e` (J).
+    pub internal_energy: f64,
+    /// `−Σ m g·x` (J).
+    pub gravity_energy: f64,
+    /// `Σ m t` with the time of removal (kg s): how long gravity has pulled.
+    pub mass_time: f64,
+}
+
+impl Removed {
+    /// All energy of the particles (J); that of contact is booked for the whole model.
+    #[must_use]
+    pub fn energy(&self) -> f64 {
+        self.kinetic_energy + self.internal_energy + self.gravity_energy
+    }
 }
 
 /// Sums over all particles that are no part of a rigid body (SI).
@@ -286,6 +267,76 @@ impl RunState {
     #[must_use]
     pub fn load_impulse(&self) -> [f64; 3] {
         std::array::from_fn(|a| self.loads.iter().map(|load| load.impulse[a]).sum())
+    }
+}
+
+impl RunState {
+    /// Impulse of symmetry planes, rigid surfaces and pairs in the first half of a step `dt` (s).
+    pub(crate) fn book_first_half(&mut self, loads: &Loads, dt: f64) {
+        self.book_surfaces(loads, dt, true);
+        for a in 0..3 {
+            self.plane_impulse[a] += 0.5 * dt * self.plane_force[a];
+        }
+        for pair in &mut self.pairs {
+            for a in 0..3 {
+                pair.impulse[a] += 0.5 * dt * pair.force[a];
+            }
+            pair.heat += 0.5 * dt * pair.heat_power;
+        }
+    }
+
+    /// Impulse and work of the rigid surfaces in a half of a step `dt` (s). The work is also what
+    /// contact takes from the surfaces.
+    fn book_surfaces(&mut self, loads: &Loads, dt: f64, first: bool) {
+        let ledgers = &mut self.loads[loads.driven()..];
+        for (ledger, step) in ledgers.iter_mut().zip(&loads.surfaces) {
+            let impulse = ledger.force.map(|f| 0.5 * dt * f);
+            let (velocity, rate) = step.in_half(first);
+            let work = impulse[0] * velocity[0]
+                + impulse[1] * velocity[1]
+                + impulse[2] * velocity[2]
+                + 0.5 * dt * ledger.torque * rate;
+            for a in 0..3 {
+                ledger.impulse[a] += impulse[a];
+            }
+            ledger.work += work;
+            ledger.heat += 0.5 * dt * ledger.heat_power;
+            self.contact_work -= work;
+        }
+    }
+
+    /// Impulses and work of loads, after the second half of a step `dt` (s); forgets their sums.
+    pub(super) fn book_loads(&mut self, loads: &mut Loads, surfaces: &SurfaceForces, dt: f64) {
+        let driven = loads.driven();
+        let per_step = if dt > 0.0 { 1.0 / dt } else { 0.0 };
+        for (ledger, sums) in self.loads.iter_mut().zip(&mut loads.sums) {
+            for a in 0..3 {
+                let impulse = sums[a].value();
+                ledger.force[a] = impulse * per_step;
+                ledger.impulse[a] += impulse;
+            }
+            ledger.work += sums[3].value();
+            *sums = Default::default();
+        }
+        let ledgers = self.loads[driven..].iter_mut();
+        for (ledger, push) in ledgers.zip(&surfaces.sums) {
+            ledger.force = std::array::from_fn(|a| push[a].value());
+            ledger.torque = push[3].value();
+        }
+        let ledgers = self.loads[driven..].iter_mut();
+        for (ledger, heat) in ledgers.zip(&surfaces.heat) {
+            ledger.heat_power = heat.value();
+        }
+        self.book_surfaces(loads, dt, false);
+        self.work_put_in = self.work_put_in.max(self.load_work().abs());
+    }
+
+    /// Begins the next interval between rows of tables: extremes are of what comes from now on.
+    pub fn begin_interval(&mut self) {
+        self.interpenetrated = 0;
+        for pair in &mut self.pairs {
+            pair.extremes = PairExtremes::default();
+        }
     }
 }
 

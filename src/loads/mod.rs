@@ -6,13 +6,17 @@
 //! `J · ½(v_from + v_to)`, which balances the energy of the half kick to round-off. A rigid body
 //! has no mass of its own here: what holds it gives the reaction of contact, `J = −½Δt m a_c`.
 
-use super::simulation::Simulation;
-use super::surface_motion::SurfaceStep;
-use crate::model::{Case, Loads, Motion};
+mod surface_motion;
+
+pub(crate) use surface_motion::{Placed, SurfaceStep};
+
+use crate::model::{self, Case, Motion};
+use crate::numerics::exact_sum::ExactSum;
+use crate::particles::ParticleStore;
 
 /// Which of the two prescribed velocities of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Goal {
+pub(crate) enum Goal {
     /// That after the first half kick.
     Middle,
     /// That after the second.
@@ -21,7 +25,7 @@ pub(super) enum Goal {
 
 /// What is prescribed of the velocity of a particle in one step.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Prescribed {
+pub(crate) struct Prescribed {
     /// The ledger of who prescribes each component, if anybody does.
     by: [Option<u8>; 3],
     middle: [f64; 3],
@@ -49,7 +53,7 @@ impl Prescribed {
 }
 
 /// What moves a particle beside forces.
-pub(super) trait Drive: Copy + Send {
+pub(crate) trait Drive: Copy + Send {
     /// Replaces what forces do (`total`, m/s²) by what takes the velocity `v` (m/s) to the goal
     /// in a half kick, of which there are `per_half` in a second.
     fn steer(&self, goal: Goal, v: &[f64; 3], per_half: f64, total: &mut [f64; 3]);
@@ -64,7 +68,7 @@ pub(super) trait Drive: Copy + Send {
 
 /// No load anywhere.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Free;
+pub(crate) struct Free;
 
 impl Drive for Free {
     #[inline(always)]
@@ -115,7 +119,7 @@ impl Drive for Prescribed {
 
 /// What the loads of a case prescribe in the current step.
 #[derive(Debug, Default)]
-pub(super) struct LoadStep {
+pub struct Loads {
     /// By bit of [`crate::particles::ParticleStore::load`]: prescribed velocities, then rigid
     /// bodies. Ledgers have the same order, then come those of the surfaces.
     drives: Vec<Prescribed>,
@@ -123,17 +127,23 @@ pub(super) struct LoadStep {
     rigid_bodies: Vec<usize>,
     velocities: usize,
     rigid_bits: u32,
-    pub surfaces: Vec<SurfaceStep>,
+    pub(crate) surfaces: Vec<SurfaceStep>,
+    /// Acceleration (m/s²).
     pub gravity: [f64; 3],
+    /// Impulse and work of prescribed velocities and of rigid bodies in this step, by ledger.
+    pub(crate) sums: Vec<[ExactSum; 4]>,
 }
 
-impl LoadStep {
-    pub(super) fn new(case: &Case) -> Self {
+impl Loads {
+    pub(crate) fn new(case: &Case) -> Self {
         let rigid = |&b: &usize| case.bodies[b].rigid.is_some();
         let rigid_bodies: Vec<usize> = (0..case.bodies.len()).filter(rigid).collect();
         let velocities = case.loads.velocities.len();
         let drives = velocities + rigid_bodies.len();
-        assert!(drives <= Loads::MOST, "too many loads and rigid bodies");
+        assert!(
+            drives <= model::Loads::MOST,
+            "too many loads and rigid bodies"
+        );
         let mut step = Self {
             drives: vec![Prescribed::default(); drives],
             rigid_bits: (0..drives).fold(0, |bits, k| bits | u32::from(k >= velocities) << k),
@@ -141,39 +151,40 @@ impl LoadStep {
             velocities,
             surfaces: vec![SurfaceStep::default(); case.loads.surfaces.len()],
             gravity: case.loads.gravity,
+            sums: (0..drives).map(|_| Default::default()).collect(),
         };
         step.prepare(case, 0.0, 0.0);
         step
     }
 
     /// Half kicks in a second of steps `dt` (s); zero at the start of a case.
-    pub(super) fn per_half(dt: f64) -> f64 {
+    pub(crate) fn per_half(dt: f64) -> f64 {
         if dt > 0.0 { 2.0 / dt } else { 0.0 }
     }
 
     /// Whether velocities of any particle are prescribed.
-    pub(super) fn drives(&self) -> bool {
+    pub(crate) fn drives(&self) -> bool {
         !self.drives.is_empty()
     }
 
     /// Whether bits name loads and rigid bodies of the case and no others.
-    pub(super) fn knows(&self, bits: u32) -> bool {
+    pub(crate) fn knows(&self, bits: u32) -> bool {
         u64::from(bits) >> self.drives.len() == 0
     }
 
     /// Number of ledgers before those of surfaces.
-    pub(super) fn driven(&self) -> usize {
+    pub(crate) fn driven(&self) -> usize {
         self.drives.len()
     }
 
     /// Whether a particle with these bits is part of a rigid body.
     #[inline]
-    pub(super) fn is_rigid(&self, bits: u32) -> bool {
+    pub(crate) fn is_rigid(&self, bits: u32) -> bool {
         bits & self.rigid_bits != 0
     }
 
     /// Works out the step from time `from` to `to` (s).
-    pub(super) fn prepare(&mut self, case: &Case, from: f64, to: f64) {
+    pub(crate) fn prepare(&mut self, case: &Case, from: f64, to: f64) {
         let middle = from + 0.5 * (to - from);
         for (k, load) in case.loads.velocities.iter().enumerate() {
             self.drives[k] = if middle < load.until {
@@ -194,7 +205,7 @@ impl LoadStep {
     }
 
     /// The bits of a particle of `body` that begins at `position` (m).
-    pub(super) fn bits(&self, case: &Case, body: usize, position: &[f64; 3]) -> u32 {
+    pub(crate) fn bits(&self, case: &Case, body: usize, position: &[f64; 3]) -> u32 {
         let loads = case.loads.velocities.iter();
         let held = loads.map(|load| load.body == body && load.contains(position));
         let rigid = self.rigid_bodies.iter().map(|&rigid| rigid == body);
@@ -203,7 +214,7 @@ impl LoadStep {
 
     /// What is prescribed to a particle with these bits; on each axis the last load holds.
     #[inline]
-    pub(super) fn of(&self, bits: u32) -> Prescribed {
+    pub(crate) fn of(&self, bits: u32) -> Prescribed {
         let mut all = Prescribed::default();
         let mut rest = bits;
         while rest != 0 {
@@ -223,7 +234,7 @@ impl LoadStep {
 
     /// Clears the components of a vector that are prescribed to a particle with these bits.
     #[inline]
-    pub(super) fn clear_prescribed(&self, bits: u32, vector: &mut [f64; 3]) {
+    pub(crate) fn clear_prescribed(&self, bits: u32, vector: &mut [f64; 3]) {
         let prescribed = self.of(bits);
         for a in 0..3 {
             if prescribed.by[a].is_some() {
@@ -232,30 +243,28 @@ impl LoadStep {
         }
     }
 
-    pub(super) fn memory(&self) -> usize {
+    pub(crate) fn memory(&self) -> usize {
         size_of::<Prescribed>() * self.drives.capacity()
             + size_of::<SurfaceStep>() * self.surfaces.capacity()
             + size_of::<usize>() * self.rigid_bodies.capacity()
+            + 4 * size_of::<ExactSum>() * self.sums.capacity()
     }
-}
 
-impl Simulation {
     /// Books impulse and work of loads and of what holds rigid bodies in a half kick of a step
     /// `dt` (s): before the first one, or after the second.
-    pub(super) fn book_loads(&mut self, dt: f64, first: bool) {
-        let (store, loads, gravity) = (&self.store, &self.loads, self.loads.gravity);
+    pub(crate) fn book(&mut self, particles: &ParticleStore, dt: f64, first: bool) {
         let half = 0.5 * dt;
-        for (i, &bits) in store.load.iter().enumerate() {
+        for (i, &bits) in particles.load.iter().enumerate() {
             if bits == 0 {
                 continue;
             }
-            let contact = store.contact_acceleration.get(i);
-            if loads.is_rigid(bits) && contact.is_none_or(|c| *c == [0.0; 3]) {
+            let contact = particles.contact_acceleration.get(i);
+            if self.is_rigid(bits) && contact.is_none_or(|c| *c == [0.0; 3]) {
                 continue;
             }
             let contact = contact.copied().unwrap_or_default();
-            let prescribed = loads.of(bits);
-            let (mass, v) = (store.mass[i], &store.velocity[i]);
+            let prescribed = self.of(bits);
+            let (mass, v) = (particles.mass[i], &particles.velocity[i]);
             for a in 0..3 {
                 let Some(by) = prescribed.by[a] else { continue };
                 let middle = prescribed.middle[a];
@@ -263,60 +272,14 @@ impl Simulation {
                 let impulse = if prescribed.rigid {
                     -mass * (half * contact[a])
                 } else {
-                    let forces = store.acceleration[i][a] + (contact[a] + gravity[a]);
+                    let forces = particles.acceleration[i][a] + (contact[a] + self.gravity[a]);
                     mass * (change - half * forces)
                 };
                 let work = impulse * (0.5 * (v[a] + middle));
-                self.sums.add_load(by.into(), a, impulse, work);
+                let sums = &mut self.sums[usize::from(by)];
+                sums[a].add(impulse);
+                sums[3].add(work);
             }
         }
-    }
-
-    /// Impulse and work of the rigid surfaces in a half of a step `dt` (s). The work is also what
-    /// contact takes from the surfaces.
-    pub(super) fn book_pushes(&mut self, dt: f64, first: bool) {
-        let driven = self.loads.driven();
-        let ledgers = &mut self.state.loads[driven..];
-        for (ledger, step) in ledgers.iter_mut().zip(&self.loads.surfaces) {
-            let impulse = ledger.force.map(|f| 0.5 * dt * f);
-            let (velocity, rate) = step.in_half(first);
-            let work = impulse[0] * velocity[0]
-                + impulse[1] * velocity[1]
-                + impulse[2] * velocity[2]
-                + 0.5 * dt * ledger.torque * rate;
-            for a in 0..3 {
-                ledger.impulse[a] += impulse[a];
-            }
-            ledger.work += work;
-            ledger.heat += 0.5 * dt * ledger.heat_power;
-            self.state.contact_work -= work;
-        }
-    }
-
-    /// Impulses and work of loads, after the second half of a step `dt` (s).
-    pub(super) fn book_load_sums(&mut self, dt: f64) {
-        let driven = self.loads.driven();
-        let per_step = if dt > 0.0 { 1.0 / dt } else { 0.0 };
-        for (ledger, sums) in self.state.loads.iter_mut().zip(&mut self.sums.loads) {
-            for a in 0..3 {
-                let impulse = sums[a].value();
-                ledger.force[a] = impulse * per_step;
-                ledger.impulse[a] += impulse;
-            }
-            ledger.work += sums[3].value();
-            *sums = Default::default();
-        }
-        let ledgers = self.state.loads[driven..].iter_mut();
-        for (ledger, push) in ledgers.zip(&self.sums.pushes) {
-            ledger.force = std::array::from_fn(|a| push[a].value());
-            ledger.torque = push[3].value();
-        }
-        let ledgers = self.state.loads[driven..].iter_mut();
-        for (ledger, heat) in ledgers.zip(&self.sums.push_heat) {
-            ledger.heat_power = heat.value();
-        }
-        self.book_pushes(dt, false);
-        let state = &mut self.state;
-        state.work_put_in = state.work_put_in.max(state.load_work().abs());
     }
 }

@@ -2,22 +2,18 @@
 
 use rayon::prelude::*;
 
-use super::contact_sums::{ContactSums, Met};
-use super::search::{GRAIN, Search};
-use super::simulation::Simulation;
-use crate::comm::Comm;
-use crate::contact::hold::{self, Hold};
-use crate::contact::overlap::{self, Fraction};
-use crate::contact::{BodyReaction, ContactTable, ContactView, Reaction, penalty, potential};
-use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, ForeignChunk};
+use super::connectivity::Connectivity;
+use super::hold::{self, Hold};
+use super::overlap::{self, Fraction};
+use super::sums::{ContactSums, Met};
+use super::surfaces::SurfaceForces;
+use super::{BodyReaction, ContactTable, ContactView, GRAIN, Reaction, penalty, potential};
+use crate::loads::Loads;
+use crate::model::Case;
+use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, ForeignChunk, Lists};
 use crate::particles::{FieldUse, ParticleStore, Scatter};
 
-/// Results of each task before they go into the store, kept from step to step.
-#[derive(Default)]
-pub struct ContactPhase {
-    tasks: Vec<Task>,
-}
-
+/// Results of a task before they go into the store, kept from step to step.
 #[derive(Default)]
 struct Task {
     fractions: Vec<Weighed>,
@@ -63,68 +59,100 @@ const INTERPENETRATION_DISTANCE: f64 = 0.28;
 /// A particle whose foreign fraction with current volumes exceeds this is enclosed.
 const ENCLOSED_FRACTION: f64 = 0.5;
 
-impl ContactPhase {
-    pub(super) fn memory(&self) -> usize {
-        let task = |task: &Task| {
-            size_of::<Weighed>() * task.fractions.capacity()
-                + size_of::<(usize, [f64; 3])>() * task.normals.capacity()
-                + size_of::<(usize, Hold)>() * task.holds.capacity()
-                + size_of::<(usize, [f64; 3])>() * task.boundary.capacity()
-                + size_of::<Booked>() * task.reactions.capacity()
-                + size_of::<(usize, usize, BodyReaction)>() * task.by_body.capacity()
-                + size_of::<BodyReaction>() * task.reaction.by_body.capacity()
-        };
-        size_of::<Task>() * self.tasks.capacity() + self.tasks.iter().map(task).sum::<usize>()
-    }
+/// Contact of a case, with what it keeps from step to step.
+pub struct Contact {
+    /// Parameters of all pairs of bodies.
+    pub table: ContactTable,
+    /// The fragments that bodies come apart into.
+    pub(crate) connectivity: Connectivity,
+    pub(crate) surfaces: SurfaceForces,
+    /// What contact adds up: on this rank, then on all.
+    pub(crate) sums: ContactSums,
+    /// The same by thread, until they are joined.
+    parts: Vec<ContactSums>,
+    tasks: Vec<Task>,
+    bodies: usize,
+    /// How long a particle may be enclosed before it counts as interpenetrated (s).
+    enclosed_limit: f64,
+    /// Safety factor of the contact step.
+    safety: f64,
 }
 
-/// What the contact sums read after a step of `dt` (s).
-fn view<'a>(
-    search: &'a Search,
-    store: &'a ParticleStore,
-    table: &'a ContactTable,
-    dt: f64,
-) -> ContactView<'a> {
-    ContactView {
-        images: search.sequence.images(),
-        motion: &search.motion,
-        store,
-        table,
-        dt,
+impl Contact {
+    /// Of a case.
+    #[must_use]
+    pub fn new(case: &Case) -> Self {
+        let speed = case.impact_speed();
+        let spacings = case.bodies.iter().map(|b| b.lattice.spacing);
+        Self {
+            table: ContactTable::new(case),
+            connectivity: Connectivity::new(case),
+            surfaces: SurfaceForces::new(case),
+            sums: ContactSums::default(),
+            parts: vec![ContactSums::default(); rayon::current_num_threads()],
+            tasks: Vec::new(),
+            bodies: case.bodies.len(),
+            enclosed_limit: if speed > 0.0 {
+                2.0 * spacings.fold(0.0, f64::max) / speed
+            } else {
+                f64::INFINITY
+            },
+            safety: case.time_step.contact,
+        }
     }
-}
 
-impl Simulation {
-    /// Foreign fraction, excess and their weights of every particle with foreign neighbours.
-    pub(super) fn contact_fractions(&mut self, dt: f64) {
-        if !self.contact.is_active() {
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        let tasks = self.tasks.iter().map(Task::memory).sum::<usize>();
+        let parts = self.parts.iter().map(ContactSums::memory).sum::<usize>();
+        self.connectivity.memory()
+            + self.surfaces.memory()
+            + self.sums.memory()
+            + parts
+            + size_of::<Task>() * self.tasks.capacity()
+            + tasks
+    }
+
+    /// What halo particles need before the forces of stress and contact.
+    #[must_use]
+    pub fn halo_of_forces(&self) -> FieldUse {
+        if self.table.has_pairs() {
+            FieldUse::HALO_FORCES
+        } else {
+            FieldUse::HALO_STRESS
+        }
+    }
+
+    /// Foreign fraction, excess and their weights of every particle with foreign neighbours, and the
+    /// normals of boundary particles, after a step `dt` (s).
+    pub fn measure(&mut self, particles: &mut ParticleStore, lists: &Lists, dt: f64) {
+        if !self.table.is_active() {
             return;
         }
-        self.run_fractions(dt);
-        self.find_boundaries();
-        let store = &mut self.store;
+        self.weigh(particles, lists, dt);
+        self.find_boundaries(particles, lists);
         // What else there is of a fraction nobody reads without excess.
         for field in [
-            &mut store.foreign_fraction,
-            &mut store.contact_excess,
-            &mut store.enclosed_time,
+            &mut particles.foreign_fraction,
+            &mut particles.contact_excess,
+            &mut particles.enclosed_time,
         ] {
             fill(field, 0.0);
         }
-        fill(&mut store.contact_normal, [0.0; 3]);
-        let tasks = &self.contact_phase.tasks;
-        for &(i, normal) in tasks.iter().flat_map(|task| &task.normals) {
-            store.contact_normal[i] = normal;
+        fill(&mut particles.contact_normal, [0.0; 3]);
+        for &(i, normal) in self.tasks.iter().flat_map(|task| &task.normals) {
+            particles.contact_normal[i] = normal;
         }
         let target = Fractions {
-            fraction: Scatter::new(&mut store.foreign_fraction),
-            excess: Scatter::new(&mut store.contact_excess),
-            modulus: Scatter::new(&mut store.contact_modulus),
-            touching: Scatter::new(&mut store.touching_value),
-            slope: Scatter::new(&mut store.contact_slope),
-            enclosed: Scatter::new(&mut store.enclosed_time),
+            fraction: Scatter::new(&mut particles.foreign_fraction),
+            excess: Scatter::new(&mut particles.contact_excess),
+            modulus: Scatter::new(&mut particles.contact_modulus),
+            touching: Scatter::new(&mut particles.touching_value),
+            slope: Scatter::new(&mut particles.contact_slope),
+            enclosed: Scatter::new(&mut particles.enclosed_time),
         };
-        let tasks = tasks.par_iter().with_max_len(CHUNKS_AT_ONCE);
+        let tasks = self.tasks.par_iter().with_max_len(CHUNKS_AT_ONCE);
         tasks.for_each(|task| {
             task.fractions
                 .iter()
@@ -132,151 +160,108 @@ impl Simulation {
         });
     }
 
-    /// Friction and damping after a step of `dt` (s), of every particle in contact. Collective.
-    pub(super) fn hold_by_friction(&mut self, comm: &Comm, dt: f64) {
-        if !self.contact.has_friction() {
-            return;
-        }
-        let view = view(&self.search, &self.store, &self.contact, dt);
-        self.contact_phase
-            .tasks
-            .par_iter_mut()
-            .zip(self.search.foreign.chunks())
-            .zip(self.search.clusters.chunks())
-            .with_max_len(CHUNKS_AT_ONCE)
-            .for_each(|((task, foreign), own)| task.hold(&view, foreign, own));
-        self.store_holds();
-        self.halo.post(comm, &self.store, FieldUse::HALO_FRICTION);
-        self.halo.finish(&mut self.store, FieldUse::HALO_FRICTION);
-    }
-
-    /// What friction remembers, and what it does to each pair.
-    fn store_holds(&mut self) {
-        let store = &mut self.store;
-        for field in [
-            &mut store.slip,
-            &mut store.slip_rate,
-            &mut store.friction_force,
-        ] {
-            fill(field, [0.0; 3]);
-        }
-        fill(&mut store.sliding, 0);
-        for field in [
-            &mut store.friction_load,
-            &mut store.friction_power,
-            &mut store.friction_energy,
-        ] {
-            fill(field, 0.0);
-        }
-        for &(i, Hold { load, grip }) in self.contact_phase.tasks.iter().flat_map(|t| &t.holds) {
-            store.slip[i] = grip.memory.slip;
-            store.slip_rate[i] = grip.memory.rate;
-            store.sliding[i] = u32::from(grip.memory.sliding);
-            store.friction_force[i] = grip.force;
-            store.friction_load[i] = load;
-            store.friction_power[i] = grip.power;
-            store.friction_energy[i] = grip.energy;
-        }
-    }
-
     /// Foreign fractions after a step of `dt` (s).
-    fn run_fractions(&mut self, dt: f64) {
-        let friction = self.contact.has_friction();
-        let chunks = self.search.foreign.chunks();
-        self.contact_phase
-            .tasks
-            .resize_with(chunks.len(), Task::default);
-        let view = view(&self.search, &self.store, &self.contact, 0.0);
-        self.contact_phase
-            .tasks
+    fn weigh(&mut self, particles: &ParticleStore, lists: &Lists, dt: f64) {
+        let friction = self.table.has_friction();
+        let chunks = lists.foreign();
+        self.tasks.resize_with(chunks.len(), Task::default);
+        let view = ContactView::new(particles, lists, &self.table, 0.0);
+        self.tasks
             .par_iter_mut()
             .zip(chunks)
             .with_max_len(CHUNKS_AT_ONCE)
-            .for_each(|(task, chunk)| {
-                task.fractions.clear();
-                task.normals.clear();
-                for (place, neighbours) in chunk.overlap.iter() {
-                    let base = view.images[place as usize].base();
-                    let relief = view.store.touch_relief[base];
-                    let fraction = overlap::fraction(&view, place, neighbours, relief);
-                    let mut enclosed = 0.0;
-                    if fraction.current > ENCLOSED_FRACTION {
-                        enclosed = view.store.enclosed_time[base] + dt;
-                    }
-                    if friction {
-                        let normal = overlap::normal(&view, place, neighbours, &fraction);
-                        task.normals.push((base, normal));
-                    }
-                    task.fractions.push(Weighed {
-                        base,
-                        fraction,
-                        enclosed,
-                    });
-                }
-            });
+            .for_each(|(task, chunk)| task.weigh(&view, chunk, friction, dt));
     }
 
     /// Normals of the boundary particles that `penalty` contact may press on.
-    fn find_boundaries(&mut self) {
-        if !self.contact.has_penalty() {
+    fn find_boundaries(&mut self, particles: &mut ParticleStore, lists: &Lists) {
+        if !self.table.has_penalty() {
             return;
         }
-        let view = view(&self.search, &self.store, &self.contact, 0.0);
-        self.contact_phase
-            .tasks
+        let view = ContactView::new(particles, lists, &self.table, 0.0);
+        self.tasks
             .par_iter_mut()
-            .zip(self.search.foreign.chunks())
-            .zip(self.search.clusters.chunks())
+            .zip(lists.foreign())
+            .zip(lists.chunks())
             .with_max_len(CHUNKS_AT_ONCE)
             .for_each(|((task, foreign), own)| task.find_boundaries(&view, foreign, own));
-        fill(&mut self.store.boundary_normal, [0.0; 3]);
-        for (i, normal) in self.contact_phase.tasks.iter().flat_map(|t| &t.boundary) {
-            self.store.boundary_normal[*i] = *normal;
+        fill(&mut particles.boundary_normal, [0.0; 3]);
+        for (i, normal) in self.tasks.iter().flat_map(|t| &t.boundary) {
+            particles.boundary_normal[*i] = *normal;
+        }
+    }
+
+    /// Friction and damping after a step of `dt` (s), of every particle in contact: halo particles must
+    /// hear before the forces.
+    pub fn hold(&mut self, particles: &mut ParticleStore, lists: &Lists, dt: f64) {
+        let view = ContactView::new(particles, lists, &self.table, dt);
+        self.tasks
+            .par_iter_mut()
+            .zip(lists.foreign())
+            .zip(lists.chunks())
+            .with_max_len(CHUNKS_AT_ONCE)
+            .for_each(|((task, foreign), own)| task.hold(&view, foreign, own));
+        for field in [
+            &mut particles.slip,
+            &mut particles.slip_rate,
+            &mut particles.friction_force,
+        ] {
+            fill(field, [0.0; 3]);
+        }
+        fill(&mut particles.sliding, 0);
+        for field in [
+            &mut particles.friction_load,
+            &mut particles.friction_power,
+            &mut particles.friction_energy,
+        ] {
+            fill(field, 0.0);
+        }
+        for &(i, Hold { load, grip }) in self.tasks.iter().flat_map(|t| &t.holds) {
+            particles.slip[i] = grip.memory.slip;
+            particles.slip_rate[i] = grip.memory.rate;
+            particles.sliding[i] = u32::from(grip.memory.sliding);
+            particles.friction_force[i] = grip.force;
+            particles.friction_load[i] = load;
+            particles.friction_power[i] = grip.power;
+            particles.friction_energy[i] = grip.energy;
         }
     }
 
     /// Gives every particle the relief that makes it start free of force; returns how many had
     /// to be capped on this rank. For the start of a case, before the first forces.
-    pub(super) fn set_touch_relief(&mut self) -> i64 {
-        if !self.contact.is_active() {
+    pub fn set_touch_relief(&mut self, particles: &mut ParticleStore, lists: &Lists) -> i64 {
+        if !self.table.is_active() {
             return 0;
         }
-        self.run_fractions(0.0);
+        self.weigh(particles, lists, 0.0);
         let mut capped = 0;
-        for weighed in self.contact_phase.tasks.iter().flat_map(|t| &t.fractions) {
+        for weighed in self.tasks.iter().flat_map(|t| &t.fractions) {
             let (relief, was_capped) = overlap::relief(&weighed.fraction);
-            self.store.touch_relief[weighed.base] = relief;
+            particles.touch_relief[weighed.base] = relief;
             capped += i64::from(was_capped);
         }
         capped
     }
 
     /// Contact forces after a step `dt` (s), the energy of contact, and what the time step must know
-    /// of both.
-    pub(super) fn contact_forces(&mut self, dt: f64) {
-        self.sums.clear_rates();
-        if self.contact.is_active() {
-            self.run_reactions(dt);
-            self.store_reactions();
-            self.surface_forces(dt);
+    /// of both; into [`Self::sums`] go those of this rank.
+    pub fn forces(&mut self, particles: &mut ParticleStore, lists: &Lists, loads: &Loads, dt: f64) {
+        self.sums.clear();
+        if !self.table.is_active() {
+            return;
         }
-        for force in self
-            .sweeps
-            .from_mirrors
-            .iter()
-            .flat_map(|part| &part.forces)
-        {
-            self.sums.contact.add_plane_force(force);
-        }
+        self.react(particles, lists, dt);
+        self.book(particles);
+        let (table, energy) = (&self.table, &mut self.sums.energy);
+        self.surfaces.act(particles, table, loads, dt, energy);
     }
 
-    fn run_reactions(&mut self, dt: f64) {
-        let friction = self.contact.has_friction();
-        let view = view(&self.search, &self.store, &self.contact, dt);
-        self.contact_phase
-            .tasks
+    fn react(&mut self, particles: &ParticleStore, lists: &Lists, dt: f64) {
+        let friction = self.table.has_friction();
+        let view = ContactView::new(particles, lists, &self.table, dt);
+        self.tasks
             .par_iter_mut()
-            .zip(self.search.foreign.chunks())
+            .zip(lists.foreign())
             .with_max_len(CHUNKS_AT_ONCE)
             .for_each(|(task, chunk)| {
                 if friction {
@@ -289,38 +274,37 @@ impl Simulation {
 
     /// What contact does to each particle, and the sums of it. Each thread takes every so manieth
     /// task, since those that have contact stand together.
-    fn store_reactions(&mut self) {
-        let (store, sums) = (&mut self.store, &mut self.sums);
-        fill(&mut store.contact_acceleration, [0.0; 3]);
-        fill(&mut store.contact_energy, 0.0);
-        fill(&mut store.contact_stiffness, 0.0);
+    fn book(&mut self, particles: &mut ParticleStore) {
+        fill(&mut particles.contact_acceleration, [0.0; 3]);
+        fill(&mut particles.contact_energy, 0.0);
+        fill(&mut particles.contact_stiffness, 0.0);
         let books = Books {
-            acceleration: Scatter::new(&mut store.contact_acceleration),
-            energy: Scatter::new(&mut store.contact_energy),
-            stiffness: Scatter::new(&mut store.contact_stiffness),
-            heating: Scatter::new(&mut store.d_specific_energy_dt),
-            approach: Scatter::new(&mut store.approach_speed),
-            work: Scatter::new(&mut store.work),
-            id: &store.id,
-            bodies: self.case.bodies.len(),
-            mass: &store.mass,
-            enclosed_time: &store.enclosed_time,
-            foreign_fraction: &store.foreign_fraction,
-            excess: &store.contact_excess,
-            enclosed_limit: sums.enclosed_limit,
-            safety: self.case.time_step.contact,
-            friction: self.contact.has_friction(),
+            acceleration: Scatter::new(&mut particles.contact_acceleration),
+            energy: Scatter::new(&mut particles.contact_energy),
+            stiffness: Scatter::new(&mut particles.contact_stiffness),
+            heating: Scatter::new(&mut particles.d_specific_energy_dt),
+            approach: Scatter::new(&mut particles.approach_speed),
+            work: Scatter::new(&mut particles.work),
+            id: &particles.id,
+            bodies: self.bodies,
+            mass: &particles.mass,
+            enclosed_time: &particles.enclosed_time,
+            foreign_fraction: &particles.foreign_fraction,
+            excess: &particles.contact_excess,
+            enclosed_limit: self.enclosed_limit,
+            safety: self.safety,
+            friction: self.table.has_friction(),
         };
-        let (tasks, threads) = (&self.contact_phase.tasks, sums.parts.len());
-        let parts = sums.parts.par_iter_mut().enumerate();
+        let (tasks, threads) = (&self.tasks, self.parts.len());
+        let parts = self.parts.par_iter_mut().enumerate();
         parts.with_max_len(1).for_each(|(thread, part)| {
             part.clear();
             for task in tasks.iter().skip(thread).step_by(threads) {
                 books.book(task, part);
             }
         });
-        for part in &sums.parts {
-            sums.contact.merge(part);
+        for part in &self.parts {
+            self.sums.merge(part);
         }
     }
 }
@@ -442,6 +426,40 @@ fn fill<T: Copy + Send + Sync>(values: &mut [T], value: T) {
 }
 
 impl Task {
+    fn memory(&self) -> usize {
+        size_of::<Weighed>() * self.fractions.capacity()
+            + size_of::<(usize, [f64; 3])>() * self.normals.capacity()
+            + size_of::<(usize, Hold)>() * self.holds.capacity()
+            + size_of::<(usize, [f64; 3])>() * self.boundary.capacity()
+            + size_of::<Booked>() * self.reactions.capacity()
+            + size_of::<(usize, usize, BodyReaction)>() * self.by_body.capacity()
+            + size_of::<BodyReaction>() * self.reaction.by_body.capacity()
+    }
+
+    /// Foreign fractions of one chunk's receivers after a step of `dt` (s).
+    fn weigh(&mut self, view: &ContactView, chunk: &ForeignChunk, friction: bool, dt: f64) {
+        self.fractions.clear();
+        self.normals.clear();
+        for (place, neighbours) in chunk.overlap.iter() {
+            let base = view.images[place as usize].base();
+            let relief = view.store.touch_relief[base];
+            let fraction = overlap::fraction(view, place, neighbours, relief);
+            let mut enclosed = 0.0;
+            if fraction.current > ENCLOSED_FRACTION {
+                enclosed = view.store.enclosed_time[base] + dt;
+            }
+            if friction {
+                let normal = overlap::normal(view, place, neighbours, &fraction);
+                self.normals.push((base, normal));
+            }
+            self.fractions.push(Weighed {
+                base,
+                fraction,
+                enclosed,
+            });
+        }
+    }
+
     /// Receivers of both lists stand in the same order.
     fn find_boundaries(&mut self, view: &ContactView, foreign: &ForeignChunk, own: &Chunk) {
         self.boundary.clear();

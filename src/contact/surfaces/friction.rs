@@ -1,7 +1,7 @@
 //! Friction and damping on rigid surfaces: one law for each particle, which rests on all that it
 //! touches (theory page "Loads").
 
-use super::surface_forces::{Push, View};
+use super::{Push, View};
 use crate::contact::friction::{Law, Memory};
 use crate::numerics::vector::norm;
 use crate::particles::ParticleStore;

@@ -3,49 +3,45 @@
 
 use rayon::prelude::*;
 
-use super::search::GRAIN;
-use super::simulation::Simulation;
+use crate::particles::ParticleStore;
+use crate::sph::GRAIN;
 use crate::sph::momentum::Viscosity;
 use crate::sph::normalised::stress_power;
 use crate::sph::stress_points::{moment, viscous_stress};
 
-impl Simulation {
-    /// Moments of this rank's stress points from their stress, that of viscosity included, and
-    /// their power.
-    pub(super) fn find_moments(&mut self) {
-        let viscosity = self.sweeps.viscosity;
-        let store = &mut self.store;
-        let owned = store.owned();
-        let point = PointView {
-            stress_mass: &store.stress_mass,
-            predicted_density: &store.predicted_density,
-            density: &store.density,
-            pressure: &store.pressure,
-            deviatoric_stress: &store.deviatoric_stress,
-            predicted_gradient: &store.predicted_gradient,
-            sound_speed: &store.sound_speed,
-            smoothing_length: &store.smoothing_length,
-            viscosity,
-        };
-        (
-            &mut store.stress_moment[..owned],
-            &mut store.stress_offset[..owned],
-            &mut store.specific_stress,
-            &mut store.d_specific_energy_dt,
-            &mut store.approach_speed,
-            &mut store.fit_norm,
-        )
-            .into_par_iter()
-            .with_min_len(GRAIN)
-            .enumerate()
-            .for_each(|(i, (moment, offset, specific, power, approach, norm))| {
-                if point.stress_mass[i] > 0.0 {
-                    (*power, *approach) = point.stress(i, moment, offset, specific);
-                } else {
-                    (*moment, *offset, *norm) = ([0.0; 9], [0.0; 3], 0.0);
-                }
-            });
-    }
+/// Moments of this rank's stress points from their stress, that of viscosity included, and their
+/// power.
+pub(super) fn find_moments(viscosity: Viscosity, particles: &mut ParticleStore) {
+    let owned = particles.owned();
+    let point = PointView {
+        stress_mass: &particles.stress_mass,
+        predicted_density: &particles.predicted_density,
+        density: &particles.density,
+        pressure: &particles.pressure,
+        deviatoric_stress: &particles.deviatoric_stress,
+        predicted_gradient: &particles.predicted_gradient,
+        sound_speed: &particles.sound_speed,
+        smoothing_length: &particles.smoothing_length,
+        viscosity,
+    };
+    (
+        &mut particles.stress_moment[..owned],
+        &mut particles.stress_offset[..owned],
+        &mut particles.specific_stress,
+        &mut particles.d_specific_energy_dt,
+        &mut particles.approach_speed,
+        &mut particles.fit_norm,
+    )
+        .into_par_iter()
+        .with_min_len(GRAIN)
+        .enumerate()
+        .for_each(|(i, (moment, offset, specific, power, approach, norm))| {
+            if point.stress_mass[i] > 0.0 {
+                (*power, *approach) = point.stress(i, moment, offset, specific);
+            } else {
+                (*moment, *offset, *norm) = ([0.0; 9], [0.0; 3], 0.0);
+            }
+        });
 }
 
 /// What the stress of a stress point depends on.

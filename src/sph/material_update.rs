@@ -1,9 +1,10 @@
 //! The material's answer to the velocity gradient, cluster by cluster inside the first sweep.
 
+use super::sums::Sums;
 use crate::material::{LANES, Material, PointBatch};
-use crate::neighbours::Cluster;
+use crate::neighbours::{Cluster, Lists};
 use crate::numerics::lanes::F64x8;
-use crate::particles::{Image, ParticleStore, Scatter};
+use crate::particles::{Image, Scatter};
 use crate::sph::momentum::StressRecord;
 
 /// Work for a particle apart from its neighbours, in neighbours of the pair sums: sort, list,
@@ -33,33 +34,76 @@ pub(super) struct MaterialUpdate<'a> {
     work: Scatter<'a, u32>,
 }
 
+/// The fields that the update reads and writes, borrowed one by one so that a formulation may write
+/// others meanwhile.
+pub(super) struct PointFields<'a> {
+    pub body: &'a [u32],
+    pub specific_energy: &'a mut [f64],
+    pub heating: &'a [f64],
+    pub density: &'a mut [f64],
+    pub velocity_gradient: &'a mut [[f64; 9]],
+    pub deviatoric_stress: &'a mut [[f64; 6]],
+    pub plastic_strain: &'a mut [f64],
+    pub pressure: &'a mut [f64],
+    pub sound_speed: &'a mut [f64],
+    pub work: &'a mut [u32],
+}
+
+/// Borrows [`PointFields`] of a store.
+macro_rules! point_fields {
+    ($particles:expr) => {
+        $crate::sph::material_update::PointFields {
+            body: &$particles.body,
+            specific_energy: &mut $particles.specific_energy,
+            heating: &$particles.d_specific_energy_dt,
+            density: &mut $particles.density,
+            velocity_gradient: &mut $particles.velocity_gradient,
+            deviatoric_stress: &mut $particles.deviatoric_stress,
+            plastic_strain: &mut $particles.plastic_strain,
+            pressure: &mut $particles.pressure,
+            sound_speed: &mut $particles.sound_speed,
+            work: &mut $particles.work,
+        }
+    };
+}
+pub(super) use point_fields;
+
 impl<'a> MaterialUpdate<'a> {
     pub(super) fn new(
-        store: &'a mut ParticleStore,
-        stresses: &'a mut [StressRecord],
-        images: &'a [Image],
-        materials: &'a [Material],
-        material_of_body: &'a [usize],
-        rigid: &'a [bool],
+        fields: PointFields<'a>,
+        sums: &'a mut Sums,
+        lists: &'a Lists,
         dt: f64,
     ) -> Self {
+        let PointFields {
+            body,
+            specific_energy,
+            heating,
+            density,
+            velocity_gradient,
+            deviatoric_stress,
+            plastic_strain,
+            pressure,
+            sound_speed,
+            work,
+        } = fields;
         Self {
-            images,
-            materials,
-            material_of_body,
-            rigid,
+            images: lists.images(),
+            materials: &sums.materials,
+            material_of_body: &sums.material_of_body,
+            rigid: &lists.groups.rigid,
             dt,
-            body: &store.body,
-            specific_energy: Scatter::new(&mut store.specific_energy),
-            heating: &store.d_specific_energy_dt,
-            stresses: Scatter::new(stresses),
-            density: Scatter::new(&mut store.density),
-            velocity_gradient: Scatter::new(&mut store.velocity_gradient),
-            deviatoric_stress: Scatter::new(&mut store.deviatoric_stress),
-            plastic_strain: Scatter::new(&mut store.plastic_strain),
-            pressure: Scatter::new(&mut store.pressure),
-            sound_speed: Scatter::new(&mut store.sound_speed),
-            work: Scatter::new(&mut store.work),
+            body,
+            specific_energy: Scatter::new(specific_energy),
+            heating,
+            stresses: Scatter::new(&mut sums.stresses),
+            density: Scatter::new(density),
+            velocity_gradient: Scatter::new(velocity_gradient),
+            deviatoric_stress: Scatter::new(deviatoric_stress),
+            plastic_strain: Scatter::new(plastic_strain),
+            pressure: Scatter::new(pressure),
+            sound_speed: Scatter::new(sound_speed),
+            work: Scatter::new(work),
         }
     }
 

@@ -1,19 +1,65 @@
 //! What contact adds up: exact sums, counts and extremes, of pairs of bodies and of all.
 
-use super::state::{Closest, PairExtremes};
-use super::sums::{gather_limbs, scatter_limbs};
-use crate::comm::Comm;
-use crate::contact::BodyReaction;
-use crate::numerics::exact_sum::ExactSum;
+use serde::{Deserialize, Serialize};
+
+use super::BodyReaction;
+use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
+
+/// What a pair of bodies has come to in an interval of steps.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct PairExtremes {
+    /// Largest magnitude of the force between the two (N).
+    pub peak_force: f64,
+    /// Largest excess.
+    pub largest_excess: f64,
+    /// The nearest two particles; absent when none was in reach.
+    pub closest: Option<Closest>,
+    /// The smallest contact criterion (s); absent without contact force.
+    pub contact_dt: Option<f64>,
+}
+
+impl PairExtremes {
+    /// Takes those of another interval, or of other particles, in.
+    pub(crate) fn join(&mut self, other: &Self) {
+        self.peak_force = self.peak_force.max(other.peak_force);
+        self.largest_excess = self.largest_excess.max(other.largest_excess);
+        self.closest = match (self.closest, other.closest) {
+            (Some(a), Some(b)) => Some(a.min(b)),
+            (a, b) => a.or(b),
+        };
+        self.contact_dt = least(self.contact_dt, other.contact_dt);
+    }
+}
+
+/// Two particles of two bodies that are near each other, or one and the other's mirror image.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Closest {
+    /// Their distance in mean spacings.
+    pub distance: f64,
+    /// Their identities, in the order of the bodies.
+    pub particles: [u64; 2],
+}
+
+impl Closest {
+    /// The nearer two; the smaller identities of two that are as near.
+    fn min(self, other: Self) -> Self {
+        let order = |c: &Self| (c.distance.to_bits(), c.particles);
+        if order(&other) < order(&self) {
+            other
+        } else {
+            self
+        }
+    }
+}
 
 /// Number of an unordered pair of bodies among all of `bodies`: these order as `[a, b]`, `a ≤ b`, do.
-pub(super) fn pair_key(bodies: usize, a: usize, b: usize) -> usize {
+pub(crate) fn pair_key(bodies: usize, a: usize, b: usize) -> usize {
     a.min(b) * bodies + a.max(b)
 }
 
 /// Sums of contact over some particles.
 #[derive(Debug, Clone, Default)]
-pub(super) struct ContactSums {
+pub(crate) struct ContactSums {
     pub energy: ExactSum,
     /// Force of symmetry planes, by stress and by contact.
     pub plane_force: [ExactSum; 3],
@@ -25,7 +71,7 @@ pub(super) struct ContactSums {
 
 /// Sums of those pairs of bodies that have any, by [`pair_key`]. What is let go of is kept for reuse.
 #[derive(Debug, Clone, Default)]
-pub(super) struct PairBook {
+pub(crate) struct PairBook {
     /// Keys in their order, and where their sums are.
     places: Vec<(usize, usize)>,
     sums: Vec<PairSums>,
@@ -33,7 +79,7 @@ pub(super) struct PairBook {
 
 /// Sums of a pair of bodies.
 #[derive(Debug, Clone, Default)]
-pub(super) struct PairSums {
+pub(crate) struct PairSums {
     pub force: [ExactSum; 3],
     pub energy: ExactSum,
     pub heat: ExactSum,
@@ -59,13 +105,13 @@ impl PairSums {
         self.force.iter_mut().chain([&mut self.energy]).chain(heat)
     }
 
-    fn gather(&mut self, friction: bool, limbs: &mut Vec<i64>) {
+    pub(crate) fn gather(&mut self, friction: bool, limbs: &mut Vec<i64>) {
         gather_limbs(self.exact(friction), limbs);
         limbs.push(self.touching);
     }
 
     /// Takes what [`Self::gather`] wrote; returns what is left.
-    fn scatter<'a>(&mut self, friction: bool, limbs: &'a [i64]) -> &'a [i64] {
+    pub(crate) fn scatter<'a>(&mut self, friction: bool, limbs: &'a [i64]) -> &'a [i64] {
         let rest = scatter_limbs(self.exact(friction), limbs);
         let (touching, rest) = rest.split_at(1);
         self.touching = touching[0];
@@ -140,6 +186,11 @@ impl ContactSums {
         self.foreign_fraction = self.foreign_fraction.max(other.foreign_fraction);
     }
 
+    /// Adds forces (N) of images behind symmetry planes.
+    pub fn add_plane_forces<'a>(&mut self, forces: impl Iterator<Item = &'a [f64; 3]>) {
+        forces.for_each(|force| self.add_plane_force(force));
+    }
+
     #[inline]
     pub fn add_plane_force(&mut self, force: &[f64; 3]) {
         for (sum, &force) in self.plane_force.iter_mut().zip(force) {
@@ -192,7 +243,7 @@ impl ContactSums {
 }
 
 /// A particle that meets another body.
-pub(super) struct Met {
+pub(crate) struct Met {
     pub body: usize,
     /// Its excess.
     pub excess: f64,
@@ -203,138 +254,9 @@ pub(super) struct Met {
 }
 
 /// The smaller one of those there are.
-pub(super) fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
+pub(crate) fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     match (a, b) {
         (Some(a), Some(b)) => Some(a.min(b)),
         (a, b) => a.or(b),
-    }
-}
-
-/// Which pairs of bodies have met since the process started, agreed by all ranks, and what each has
-/// come to on this rank since the extremes of all were last joined.
-#[derive(Debug, Default)]
-pub(super) struct Meetings {
-    /// By [`pair_key`], in that order.
-    pairs: Vec<(usize, PairExtremes)>,
-    words: Vec<u64>,
-}
-
-impl Meetings {
-    pub fn memory(&self) -> usize {
-        size_of::<(usize, PairExtremes)>() * self.pairs.capacity() + 8 * self.words.capacity()
-    }
-
-    fn keys(&self) -> impl Iterator<Item = usize> {
-        self.pairs.iter().map(|pair| pair.0)
-    }
-
-    /// Where a pair stands, or would.
-    fn place(&self, key: usize) -> Result<usize, usize> {
-        self.pairs.binary_search_by_key(&key, |pair| pair.0)
-    }
-
-    fn has(&self, key: usize) -> bool {
-        self.place(key).is_ok()
-    }
-
-    /// How many pairs have met on this rank of which not all ranks know.
-    pub fn news(&self, book: &PairBook) -> usize {
-        book.iter().filter(|&(key, _)| !self.has(key)).count()
-    }
-
-    /// Adds the sums of all pairs that all ranks know to what ranks join.
-    pub fn gather(&self, book: &mut PairBook, friction: bool, limbs: &mut Vec<i64>) {
-        self.keys()
-            .for_each(|key| book.entry(key).gather(friction, limbs));
-    }
-
-    /// Takes what the ranks have joined; returns what is left of `limbs`.
-    pub fn scatter<'a>(&self, book: &mut PairBook, friction: bool, limbs: &'a [i64]) -> &'a [i64] {
-        self.keys()
-            .fold(limbs, |rest, key| book.entry(key).scatter(friction, rest))
-    }
-
-    /// Lets all ranks know the pairs that met in this step on any of them, and joins their sums.
-    /// Collective.
-    pub fn admit(&mut self, comm: &Comm, book: &mut PairBook, friction: bool) {
-        let new = book
-            .iter()
-            .map(|(key, _)| key)
-            .filter(|&key| !self.has(key));
-        let mut new: Vec<u64> = new.map(|key| key as u64).collect();
-        let mut most = [new.len() as u64];
-        comm.max_u64(&mut most);
-        new.resize(usize::try_from(most[0]).unwrap_or(0), u64::MAX);
-        let mut all = Vec::new();
-        comm.all_gather_u64(&new, &mut all);
-        all.retain(|&key| key != u64::MAX);
-        all.sort_unstable();
-        all.dedup();
-        let met = |&key: &u64| (usize::try_from(key).unwrap_or(0), PairExtremes::default());
-        let mut new = Self {
-            pairs: all.iter().map(met).collect(),
-            ..Self::default()
-        };
-        let mut limbs = Vec::new();
-        new.gather(book, friction, &mut limbs);
-        comm.sum_i64(&mut limbs);
-        new.scatter(book, friction, &limbs);
-        self.pairs.append(&mut new.pairs);
-        self.pairs.sort_unstable_by_key(|pair| pair.0);
-    }
-
-    /// Keeps the extremes of a step. Not all that have met need be near each other now.
-    pub fn note(&mut self, book: &PairBook) {
-        for (key, sums) in book.iter() {
-            if let Ok(at) = self.place(key) {
-                self.pairs[at].1.join(&sums.extremes);
-            }
-        }
-    }
-
-    /// The extremes of all ranks since they were last joined, by key. Collective.
-    pub fn join(&mut self, comm: &Comm) -> impl Iterator<Item = (usize, PairExtremes)> {
-        let mut words = std::mem::take(&mut self.words);
-        let bits = |value: Option<f64>| value.map_or(u64::MAX, f64::to_bits);
-        let value = |bits: u64| (bits != u64::MAX).then(|| f64::from_bits(bits));
-        words.clear();
-        for (_, pair) in &self.pairs {
-            words.extend([
-                bits(pair.closest.map(|closest| closest.distance)),
-                bits(pair.contact_dt),
-                !pair.largest_excess.to_bits(),
-            ]);
-        }
-        comm.min_u64(&mut words);
-        for ((_, pair), words) in self.pairs.iter_mut().zip(words.chunks_exact(3)) {
-            let distance = value(words[0]);
-            pair.closest = (pair.closest).filter(|own| Some(own.distance) == distance);
-            (pair.contact_dt, pair.largest_excess) = (value(words[1]), f64::from_bits(!words[2]));
-            // Whoever has no such pair takes one that is larger than any.
-            let unknown = distance.map(|distance| Closest {
-                distance,
-                particles: [u64::MAX; 2],
-            });
-            pair.closest = pair.closest.or(unknown);
-        }
-        // The smallest identity in the first body, then in the second among its partners.
-        for k in 0..2 {
-            words.clear();
-            let pairs = self.pairs.iter().map(|(_, pair)| pair.closest);
-            words.extend(pairs.map(|closest| closest.map_or(u64::MAX, |c| c.particles[k])));
-            comm.min_u64(&mut words);
-            for ((_, pair), &id) in self.pairs.iter_mut().zip(&words) {
-                if let Some(closest) = &mut pair.closest {
-                    if k == 0 && closest.particles[0] != id {
-                        closest.particles[1] = u64::MAX;
-                    }
-                    closest.particles[k] = id;
-                }
-            }
-        }
-        self.words = words;
-        self.pairs
-            .iter_mut()
-            .map(|(key, pair)| (*key, std::mem::take(pair)))
     }
 }

@@ -1,0 +1,82 @@
+//! What is about a particle in trouble: its neighbours on this rank, and the last votes.
+
+use std::collections::VecDeque;
+
+use super::ledger::RunState;
+use crate::numerics::vector::{minus, norm};
+use crate::particles::ParticleStore;
+
+/// Neighbours told of.
+const NEIGHBOURS: usize = 60;
+
+/// A particle and what is about it, as the rank that owns it sees them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PostMortem {
+    /// Steps done.
+    pub step: u64,
+    /// Time (s).
+    pub time: f64,
+    /// Identity of the particle.
+    pub id: u64,
+    /// The rank that owns it.
+    pub rank: usize,
+    /// The particle itself, then those nearest to it, by index into the store (halo particles come
+    /// after owned ones).
+    pub members: Vec<u32>,
+    /// Their distances from it (m); not a number if its place is none.
+    pub distances: Vec<f64>,
+    /// The last votes, oldest first.
+    pub votes: Vec<PastVote>,
+}
+
+/// A step's vote, for post-mortems.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PastVote {
+    /// Steps done.
+    pub step: u64,
+    /// Step chosen (s).
+    pub dt: f64,
+    /// What limits it.
+    pub reason: &'static str,
+    /// Who asks for it.
+    pub id: u64,
+}
+
+/// Votes kept for post-mortems.
+pub(crate) const PAST_VOTES: usize = 16;
+
+impl PostMortem {
+    /// What is about the particle `id`, on the rank `rank` that owns it; nothing on others. `reach` (m) is
+    /// how far neighbours are looked for.
+    pub(crate) fn of(
+        (id, rank): (u64, usize),
+        particles: &ParticleStore,
+        reach: f64,
+        state: &RunState,
+        votes: &VecDeque<PastVote>,
+    ) -> Option<Self> {
+        let owned = &particles.id[..particles.owned()];
+        let i = owned.iter().position(|&x| x == id)?;
+        let here = particles.position[i];
+        let distance = |there: &[f64; 3]| norm(&minus(&here, there));
+        let all = (0_u32..).zip(particles.position.iter().map(distance));
+        let mut others: Vec<(u32, f64)> = all
+            .filter(|&(k, r)| k as usize != i && r <= reach)
+            .collect();
+        let order = |k: u32| particles.id[k as usize];
+        others.sort_by(|a, b| a.1.total_cmp(&b.1).then(order(a.0).cmp(&order(b.0))));
+        others.truncate(NEIGHBOURS);
+        let (members, distances) = std::iter::once((u32::try_from(i).unwrap_or(0), 0.0))
+            .chain(others)
+            .unzip();
+        Some(Self {
+            step: state.step,
+            time: state.time,
+            id,
+            rank,
+            members,
+            distances,
+            votes: votes.iter().copied().collect(),
+        })
+    }
+}

@@ -1,0 +1,137 @@
+//! Conserved sums over all particles, and the errors that follow from them.
+
+use rayon::prelude::*;
+
+use super::ledger::{Removed, RunState, Totals};
+use crate::comm::Comm;
+use crate::loads::Loads;
+use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
+use crate::particles::ParticleStore;
+
+/// Particles that a task adds up at least.
+const GRAIN: usize = 1024;
+
+impl Totals {
+    /// Of the particles of all ranks that are no part of a rigid body, with the energy of contact (J).
+    /// Collective.
+    pub(crate) fn of(
+        particles: &ParticleStore,
+        loads: &Loads,
+        contact_energy: f64,
+        comm: &Comm,
+    ) -> Self {
+        let owned = particles.owned();
+        let mut sums = (0..owned.div_ceil(GRAIN))
+            .into_par_iter()
+            // same bits in any order: exact sums are integers
+            .fold(TotalSums::default, |mut sums, chunk| {
+                for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(owned) {
+                    if loads.drives() && loads.is_rigid(particles.load[i]) {
+                        continue;
+                    }
+                    sums.add(particles, i, &loads.gravity);
+                }
+                sums
+            })
+            // same bits in any order, as above
+            .reduce(TotalSums::default, TotalSums::merge)
+            .0;
+        let mut limbs = Vec::new();
+        gather_limbs(sums.iter_mut(), &mut limbs);
+        comm.sum_i64(&mut limbs);
+        scatter_limbs(sums.iter_mut(), &limbs);
+        let [kinetic, internal, gravity, mass, x, y, z, scale] = sums.map(|sum| sum.value());
+        Self {
+            kinetic_energy: kinetic,
+            internal_energy: internal,
+            contact_energy,
+            gravity_energy: gravity,
+            mass,
+            momentum: [x, y, z],
+            momentum_scale: scale,
+        }
+    }
+}
+
+impl RunState {
+    /// Takes sums over all particles, under gravity (m/s²), with the errors that follow from them.
+    pub(crate) fn book_totals(&mut self, totals: Totals, gravity: [f64; 3]) {
+        self.totals = totals;
+        let (work, impulse) = (self.load_work(), self.load_impulse());
+        let fallen = totals.gravity_energy - self.initial.gravity_energy;
+        self.work_put_in = self.work_put_in.max(work.abs()).max(fallen.abs());
+        let removed = self.removed_energy();
+        let worst = &mut self.worst;
+        let error = totals.energy() + removed - self.initial.energy() - work;
+        worst.energy_deviation = worst.energy_deviation.max(error.abs());
+        let scale = self.initial.kinetic_energy.max(self.work_put_in);
+        if scale > 0.0 {
+            worst.energy_error = worst.energy_deviation / scale;
+            worst.contact_defect = worst.contact_deviation / scale;
+        }
+        for a in 0..3 {
+            let removed = |part: fn(&Removed) -> f64| self.removed.iter().map(part).sum::<f64>();
+            let mass_time = totals.mass * self.time + removed(|r| r.mass_time);
+            let falling = mass_time * gravity[a];
+            let outside = impulse[a] + falling;
+            let taken: f64 = self.removed.iter().map(|r| r.momentum[a]).sum();
+            let gained = totals.momentum[a] + taken - self.initial.momentum[a];
+            let error = gained - self.plane_impulse[a] - outside;
+            worst.momentum_deviation[a] = worst.momentum_deviation[a].max(error.abs());
+            for put in [impulse[a], falling] {
+                self.momentum_put_in = self.momentum_put_in.max(put.abs());
+            }
+        }
+        let scale = self.initial.momentum_scale.max(self.momentum_put_in);
+        if scale > 0.0 {
+            worst.momentum_error = worst.momentum_deviation.map(|error| error / scale);
+        }
+    }
+
+    /// The contact defect, after the sums of a step.
+    pub(crate) fn book_defect(&mut self) {
+        let heat = self.contact_heat();
+        let worst = &mut self.worst;
+        let defect = self.contact_work + self.removed_contact_energy + self.contact_energy
+            - self.initial.contact_energy
+            + heat;
+        worst.contact_deviation = worst.contact_deviation.max(defect.abs());
+        let scale = self.initial.kinetic_energy.max(self.work_put_in);
+        if scale > 0.0 {
+            worst.contact_defect = worst.contact_deviation / scale;
+        }
+    }
+}
+
+/// Kinetic, internal and gravity's energy, mass, momentum, and the sum of its magnitudes.
+#[derive(Default)]
+struct TotalSums([ExactSum; 8]);
+
+impl TotalSums {
+    fn add(&mut self, store: &ParticleStore, i: usize, gravity: &[f64; 3]) {
+        let (m, v, x) = (store.mass[i], &store.velocity[i], &store.position[i]);
+        let height = -(gravity[0] * x[0] + gravity[1] * x[1] + gravity[2] * x[2]);
+        let v2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+        let terms = [
+            0.5 * m * v2,
+            store.thermal_mass(i) * store.specific_energy[i],
+            m * height,
+            m,
+            m * v[0],
+            m * v[1],
+            m * v[2],
+            m * v2.sqrt(),
+        ];
+        for (sum, term) in self.0.iter_mut().zip(terms) {
+            sum.add(term);
+        }
+    }
+
+    #[allow(clippy::needless_pass_by_value, reason = "the form of a reduction")]
+    fn merge(mut self, other: Self) -> Self {
+        for (sum, other) in self.0.iter_mut().zip(&other.0) {
+            sum.merge(other);
+        }
+        self
+    }
+}

@@ -1,0 +1,105 @@
+//! Who owns which particles, kept even while they move.
+
+use super::balance::{Histogram, balance};
+use super::migrate::Migration;
+use super::outset::Outset;
+use super::pace::Paces;
+use super::slabs::Slabs;
+use crate::comm::{Comm, Traffic};
+use crate::model::Case;
+use crate::particles::ParticleStore;
+
+/// The slabs of a run, and what their balance and the moves between them need.
+pub struct Partition {
+    slabs: Slabs,
+    histogram: Histogram,
+    paces: Paces,
+    migration: Migration,
+    /// Steps between two balances; zero for none.
+    every: u64,
+}
+
+impl Partition {
+    /// Slabs with an even number of particles, of which none is created. Collective.
+    #[must_use]
+    pub fn new(case: &Case, comm: &Comm, outset: &Outset) -> Self {
+        let mut histogram = Histogram::default();
+        Self {
+            slabs: outset.slabs(case, comm, &mut histogram),
+            histogram,
+            ..Self::none(case, comm, outset)
+        }
+    }
+
+    /// All particles on the first rank, until they are [dealt](Self::deal).
+    #[must_use]
+    pub fn none(case: &Case, comm: &Comm, outset: &Outset) -> Self {
+        Self {
+            slabs: Slabs::new(outset.axis, vec![f64::INFINITY; comm.size() - 1]),
+            histogram: Histogram::default(),
+            paces: Paces::default(),
+            migration: Migration::default(),
+            every: case.domain.balance_every,
+        }
+    }
+
+    /// The slabs.
+    #[must_use]
+    pub fn slabs(&self) -> &Slabs {
+        &self.slabs
+    }
+
+    /// Whether slabs are balanced at a step.
+    #[must_use]
+    pub fn is_due(&self, step: u64) -> bool {
+        self.every != 0 && step.is_multiple_of(self.every)
+    }
+
+    /// Moves faces so that each rank gets its share of work, given the seconds that this rank has
+    /// worked. Collective.
+    pub fn balance(&mut self, comm: &Comm, particles: &ParticleStore, busy: f64) {
+        if comm.size() == 1 {
+            return;
+        }
+        let counted = particles.work.iter().map(|&w| u64::from(w)).sum();
+        self.paces.measure(comm, counted, busy);
+        self.cut(comm, particles);
+    }
+
+    /// Deals any shares of all particles to the ranks. Collective.
+    pub fn deal(&mut self, comm: &Comm, particles: &mut ParticleStore) {
+        self.cut(comm, particles);
+        self.migrate(comm, particles);
+        // Its buffers have carried whole shares of the model; never again so much.
+        self.migration = Migration::default();
+    }
+
+    fn cut(&mut self, comm: &Comm, particles: &ParticleStore) {
+        self.slabs = balance(
+            comm,
+            &self.slabs,
+            &particles.position[..particles.owned()],
+            &particles.work,
+            &mut self.histogram,
+            &self.paces,
+        );
+    }
+
+    /// Sends every particle to the rank whose slab it is in. Drops the halo; the order of the store
+    /// changes. Collective.
+    pub fn migrate(&mut self, comm: &Comm, particles: &mut ParticleStore) {
+        self.migration.migrate(comm, &self.slabs, particles);
+    }
+
+    /// Messages and bytes sent so far.
+    #[must_use]
+    pub fn traffic(&self) -> Traffic {
+        self.migration.traffic()
+    }
+
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.migration.memory() + self.histogram.memory() + self.paces.memory()
+    }
+}

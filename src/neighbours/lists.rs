@@ -1,0 +1,275 @@
+//! From owned and halo particles to sorted images, their records and neighbour lists.
+
+use rayon::prelude::*;
+
+use super::clusters::{Chunk, ClusterLists, Lengths};
+use super::columns::ColumnGrid;
+use super::foreign::{ForeignChunk, ForeignLists, ForeignTable};
+use super::groups::Groups;
+use super::motion::MotionRecord;
+use super::parts::Kin;
+use super::sequence::{ImageFacts, Sequence};
+use crate::domain::{Halo, Mirrors, Outset};
+use crate::model::{Case, SmoothingLength};
+use crate::particles::{Image, ParticleStore, Scatter, resize};
+
+/// The sequence of images, their motion records and the lists, kept from step to step.
+pub struct Lists {
+    /// The groups of bodies.
+    pub groups: Groups,
+    /// Spare the sums of what moves alike without stress; off to test that no bit changes, and to
+    /// time the sums.
+    pub spare_quiescent: bool,
+    /// Whether the store is to be put in order.
+    pub(crate) is_order_due: bool,
+    sequence: Sequence,
+    motion: Vec<MotionRecord>,
+    clusters: ClusterLists,
+    foreign: ForeignLists,
+    /// Smoothing lengths of each group.
+    lengths: Vec<Lengths>,
+    /// Whether smoothing lengths change.
+    is_variable: bool,
+    /// Velocity of each group's first body at the start (m/s): where all move so and there is no
+    /// stress, sums are zero to the bit and need not be made.
+    common_velocity: Vec<[f64; 3]>,
+    order: Vec<u32>,
+}
+
+/// The store is put in order if more than one particle in so many does not follow the one before.
+const ASTRAY: usize = 256;
+
+impl Lists {
+    /// Empty lists of a case.
+    ///
+    /// # Panics
+    /// If the case has no bodies.
+    #[must_use]
+    pub fn new(case: &Case, groups: Groups, outset: &Outset) -> Self {
+        let lengths = group_lengths(case, &groups);
+        let (first, rest) = lengths.split_first().expect("a case has bodies");
+        let same =
+            |group: &Lengths| group.uniform && group.longest.to_bits() == first.longest.to_bits();
+        let uniform = first.uniform && rest.iter().all(same);
+        let common_velocity = |group| {
+            let first = groups.members(group).next();
+            first.map_or([0.0; 3], |body| case.bodies[body].velocity.into())
+        };
+        Self {
+            spare_quiescent: true,
+            is_order_due: true,
+            common_velocity: (0..groups.count()).map(common_velocity).collect(),
+            sequence: Sequence::new(group_grids(case, &groups, outset), uniform),
+            motion: Vec::new(),
+            clusters: ClusterLists::new(
+                (groups.count() > groups.of_bodies).then_some(groups.of_bodies),
+            ),
+            foreign: ForeignLists::default(),
+            is_variable: case.sph.smoothing_length != SmoothingLength::Constant,
+            order: Vec::new(),
+            lengths,
+            groups,
+        }
+    }
+
+    /// The images in canonical order.
+    #[must_use]
+    pub fn images(&self) -> &[Image] {
+        self.sequence.images()
+    }
+
+    /// The order of images.
+    #[must_use]
+    pub fn sequence(&self) -> &Sequence {
+        &self.sequence
+    }
+
+    /// What each image shows of its motion.
+    #[must_use]
+    pub fn motion(&self) -> &[MotionRecord] {
+        &self.motion
+    }
+
+    /// Clusters of receivers with the neighbours of their own group.
+    #[must_use]
+    pub fn chunks(&self) -> &[Chunk] {
+        self.clusters.chunks()
+    }
+
+    /// Receivers with their foreign neighbours, as the tasks of [`Self::chunks`] have them.
+    #[must_use]
+    pub fn foreign(&self) -> &[ForeignChunk] {
+        self.foreign.chunks()
+    }
+
+    /// Whether two images of a group are within each other's support.
+    #[must_use]
+    pub fn in_support(&self, group: usize, i: u32, j: u32) -> bool {
+        let [a, b] = [i, j].map(|place| &self.motion[place as usize].position);
+        let r = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+        let lengths = self.sequence.smoothing_lengths();
+        let h = |place: u32| {
+            let own = lengths.get(place as usize);
+            own.copied().unwrap_or(self.lengths[group].longest)
+        };
+        let range = (h(i) + h(j)).max(self.lengths[group].least);
+        r[0] * r[0] + r[1] * r[1] + r[2] * r[2] < range * range
+    }
+
+    /// Neighbours in the lists, summed over this rank's particles.
+    #[must_use]
+    pub fn entries(&self) -> u64 {
+        let clusters = self.chunks().iter().flat_map(Chunk::iter);
+        clusters
+            .map(|(cluster, list, _)| (cluster.lanes * list.len()) as u64)
+            .sum()
+    }
+
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.sequence.memory()
+            + self.motion.capacity() * size_of::<MotionRecord>()
+            + self.clusters.memory()
+            + self.foreign.memory()
+            + 4 * self.order.capacity()
+    }
+
+    /// Sorts all particles and images and lists the neighbours of each in its own group. `scratch` is
+    /// memory to work in, see [`Sequence::build`].
+    pub fn build<R: bytemuck::Pod>(
+        &mut self,
+        particles: &ParticleStore,
+        halo: &Halo,
+        scratch: &mut [R],
+    ) {
+        let (owned, others) = (particles.owned(), halo.others());
+        let (mirrors, groups) = (halo.mirrors(), &self.groups);
+        let (spare, common) = (self.spare_quiescent, &self.common_velocity);
+        resize(&mut self.motion, owned + others.len());
+        let motion = Scatter::new(&mut self.motion);
+        let facts = |image: Image| {
+            let (base, code) = (image.base(), image.code());
+            let mut group = groups.of_body[particles.body[base] as usize];
+            let stress_mass = particles.stress_mass.get(base);
+            if stress_mass.is_some_and(|&mass| mass > 0.0) {
+                group += groups.of_bodies;
+            }
+            let velocity = || Mirrors::reflect_vector(&particles.predicted_velocity[base], code);
+            ImageFacts {
+                position: mirrors.reflect_position(&particles.position[base], code),
+                id: particles.id[base],
+                group,
+                smoothing_length: particles.smoothing_length[base],
+                moving: !spare || velocity() != common[group],
+            }
+        };
+        let scratch = bytemuck::cast_slice_mut(scratch);
+        let sequence = &mut self.sequence;
+        sequence.build(
+            scratch,
+            owned,
+            (others, halo.below()),
+            facts,
+            |place, image| {
+                let (base, code) = (image.base(), image.code());
+                let record = MotionRecord {
+                    position: mirrors.reflect_position(&particles.position[base], code),
+                    velocity: Mirrors::reflect_vector(&particles.predicted_velocity[base], code),
+                    volume: particles.mass[base] / particles.predicted_density[base],
+                    mass: particles.mass[base],
+                };
+                // SAFETY: each place is emitted once.
+                unsafe { *motion.slot(place) = record };
+            },
+        );
+        if self.is_variable {
+            for (group, lengths) in self.lengths.iter_mut().enumerate() {
+                lengths.longest = self.sequence.smoothing_lengths()[self.sequence.group(group)]
+                    .par_iter()
+                    .copied()
+                    // same bits in any order: a largest number
+                    .reduce(|| 0.0, f64::max);
+            }
+        }
+        self.clusters.build(&self.sequence, &self.lengths);
+    }
+
+    /// Takes those of another fragment out of the lists of the own group, before
+    /// [`Self::build_foreign`] takes them in.
+    pub fn separate(&mut self, kin: &Kin) {
+        self.clusters.part(kin);
+    }
+
+    /// Lists the neighbours of other groups that contact knows, after [`Self::build`].
+    pub fn build_foreign(&mut self, particles: &ParticleStore, table: &ForeignTable) {
+        let images = self.sequence.images();
+        self.foreign.build(
+            &self.clusters,
+            &self.sequence,
+            &self.motion,
+            table,
+            |place| particles.body[images[place as usize].base()] as usize,
+        );
+    }
+
+    /// Puts the store into the canonical order of the last search, so that memory follows space,
+    /// unless it nearly is. Results do not depend on it. Returns whether there was such a search.
+    /// `scratch` is memory to work in.
+    pub fn restore_order<R: bytemuck::Pod>(
+        &mut self,
+        particles: &mut ParticleStore,
+        scratch: &mut [R],
+    ) -> bool {
+        let owned = particles.owned();
+        self.order.clear();
+        for image in self.sequence.images() {
+            if image.code() == 0 && image.base() < owned {
+                #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
+                self.order.push(image.base() as u32);
+            }
+        }
+        let known = self.order.len() == owned;
+        let astray = self.order.windows(2).filter(|pair| pair[1] != pair[0] + 1);
+        if known && astray.count() > owned / ASTRAY {
+            particles.keep(&self.order, bytemuck::cast_slice_mut(scratch));
+        }
+        known
+    }
+}
+
+/// The groups' smoothing lengths where these are constant.
+fn group_lengths(case: &Case, groups: &Groups) -> Vec<Lengths> {
+    let constant = case.sph.smoothing_length == SmoothingLength::Constant;
+    (0..groups.count())
+        .map(|group| {
+            let members = groups.members(group);
+            let h = || members.clone().map(|b| case.bodies[b].smoothing_length);
+            let longest = h().fold(0.0, f64::max);
+            Lengths {
+                longest,
+                least: if case.self_contact.is_some() {
+                    2.0 * longest
+                } else {
+                    0.0
+                },
+                uniform: constant && h().all(|h| h.to_bits() == longest.to_bits()),
+                rigid: groups.rigid[group],
+            }
+        })
+        .collect()
+}
+
+/// The column grid of each group of bodies: a function of the case alone.
+fn group_grids(case: &Case, groups: &Groups, outset: &Outset) -> Vec<ColumnGrid> {
+    (0..groups.count())
+        .map(|group| {
+            let members = groups.members(group);
+            let (lower, upper) = Outset::join(members.clone().map(|b| outset.boxes[b]));
+            let spacing = members
+                .map(|b| case.bodies[b].lattice.spacing)
+                .fold(0.0, f64::max);
+            ColumnGrid::new(lower, upper, spacing, outset.longest)
+        })
+        .collect()
+}

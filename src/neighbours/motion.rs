@@ -1,0 +1,15 @@
+//! What the search and the sums over pairs read of each image.
+
+/// What a particle shows to its neighbours of its motion: one cache line.
+#[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C, align(64))]
+pub struct MotionRecord {
+    /// Position (m).
+    pub position: [f64; 3],
+    /// Velocity (m/s).
+    pub velocity: [f64; 3],
+    /// Volume m/ρ (m^d).
+    pub volume: f64,
+    /// Mass (kg).
+    pub mass: f64,
+}

@@ -1,0 +1,222 @@
+//! The second sweep of the formulations whose stress stands at the particles: accelerations by
+//! stress and viscosity, and the power they put into heat.
+
+use rayon::prelude::*;
+
+use super::normalised::StressPower;
+use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Cluster, Lists};
+use crate::numerics::dispatch::{Vectorised, instructions};
+use crate::numerics::kernel::PairScale;
+use crate::numerics::lanes::Lanes;
+use crate::particles::{Image, ParticleStore, Scatter};
+use crate::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
+use crate::sph::neighbourhood::Sources;
+use crate::sph::normalised::NormalisedRecord;
+use crate::sph::options::{ARTIFICIAL_STRESS, BALSARA, CONDUCTION, NORMALISED, Options, XSPH};
+use crate::sph::sums::{FromMirrors, Side, Sums, sources, with_scale};
+
+/// Calls `$work` with a set of options as a constant: no options, or those of solids (artificial
+/// stress and XSPH), of shocks (the Balsara switch and conduction), or all, whichever has all that
+/// are wanted. The others then have neutral data. The normalised form has none or all.
+macro_rules! with_options {
+    ($wanted:expr, $name:ident => $work:expr) => {
+        match $wanted {
+            0 => {
+                const $name: u8 = 0;
+                $work
+            }
+            set if set & !SOLIDS == 0 => {
+                const $name: u8 = SOLIDS;
+                $work
+            }
+            set if set & !SHOCKS == 0 => {
+                const $name: u8 = SHOCKS;
+                $work
+            }
+            set if set & NORMALISED == 0 => {
+                const $name: u8 = SOLIDS | SHOCKS;
+                $work
+            }
+            NORMALISED => {
+                const $name: u8 = NORMALISED;
+                $work
+            }
+            _ => {
+                const $name: u8 = NORMALISED | SOLIDS | SHOCKS;
+                $work
+            }
+        }
+    };
+}
+
+const SOLIDS: u8 = ARTIFICIAL_STRESS | XSPH;
+const SHOCKS: u8 = BALSARA | CONDUCTION;
+
+/// The sweep over the clusters of a side with a set of options, after stresses and terms have been
+/// shown; `normalised` holds the stresses along corrected gradients, if any.
+pub(super) fn accelerate(
+    sums: &mut Sums,
+    (set, normalised): (u8, &[NormalisedRecord]),
+    particles: &mut ParticleStore,
+    lists: &Lists,
+    side: Side,
+) {
+    let instructions = instructions();
+    let chunks = lists.chunks();
+    let images = lists.images();
+    let Sums {
+        scale,
+        viscosity,
+        terms,
+        stresses,
+        from_mirrors,
+        ..
+    } = sums;
+    from_mirrors.resize_with(chunks.len(), FromMirrors::default);
+    let target = &ForceTarget::new(particles, images);
+    let shown = ForceSources {
+        stresses,
+        mirrored: lists.sequence().mirrored(),
+        viscosity: *viscosity,
+        options: terms.of_sums(normalised),
+    };
+    with_scale!(*scale, scale => chunks
+    .par_iter()
+    .zip(from_mirrors)
+    .with_max_len(CHUNKS_AT_ONCE)
+    .for_each(|(chunk, from_mirrors)| {
+        if side == Side::Inner {
+            from_mirrors.forces.clear();
+        }
+        with_options!(set, OPTIONS => instructions.run(MomentumChunk::<_, OPTIONS> {
+            chunk, side, motion: sources(lists, scale), sources: shown, target, from_mirrors,
+        }));
+    }));
+}
+
+/// What the second sweep reads.
+#[derive(Clone, Copy)]
+struct ForceSources<'a> {
+    stresses: &'a [StressRecord],
+    mirrored: &'a [u8],
+    viscosity: Viscosity,
+    options: Options<'a>,
+}
+
+/// Where the second sweep writes.
+struct ForceTarget<'a> {
+    images: &'a [Image],
+    mass: &'a [f64],
+    acceleration: Scatter<'a, [f64; 3]>,
+    power: Scatter<'a, f64>,
+    approach: Scatter<'a, f64>,
+    correction: Option<Scatter<'a, [f64; 3]>>,
+    stress_power: StressPower<'a>,
+}
+
+impl<'a> ForceTarget<'a> {
+    fn new(store: &'a mut ParticleStore, images: &'a [Image]) -> Self {
+        let correction = &mut store.velocity_correction;
+        Self {
+            images,
+            mass: &store.mass,
+            acceleration: Scatter::new(&mut store.acceleration),
+            power: Scatter::new(&mut store.d_specific_energy_dt),
+            approach: Scatter::new(&mut store.approach_speed),
+            correction: (!correction.is_empty()).then(|| Scatter::new(correction)),
+            stress_power: StressPower::new(
+                &store.pressure,
+                &store.deviatoric_stress,
+                &store.velocity_gradient,
+                &store.predicted_density,
+            ),
+        }
+    }
+
+    #[inline(always)]
+    fn store<const OPTIONS: u8>(&self, cluster: &Cluster, forces: &Forces) {
+        for k in 0..cluster.lanes {
+            let i = self.images[cluster.receivers[k] as usize].base();
+            // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
+            unsafe {
+                *self.acceleration.slot(i) = std::array::from_fn(|a| forces.acceleration[a].0[k]);
+                *self.power.slot(i) = forces.power.0[k];
+                *self.approach.slot(i) = forces.approach.0[k];
+                if OPTIONS & NORMALISED != 0 {
+                    *self.power.slot(i) += self.stress_power.of(i);
+                }
+                if OPTIONS & XSPH != 0
+                    && let Some(correction) = &self.correction
+                {
+                    *correction.slot(i) = std::array::from_fn(|a| forces.correction[a].0[k]);
+                }
+            }
+        }
+    }
+}
+
+/// The second sweep over one task's clusters, with a set of options.
+struct MomentumChunk<'a, S, const OPTIONS: u8> {
+    chunk: &'a Chunk,
+    side: Side,
+    motion: Sources<'a, S>,
+    sources: ForceSources<'a>,
+    target: &'a ForceTarget<'a>,
+    from_mirrors: &'a mut FromMirrors,
+}
+
+impl<S: PairScale, const OPTIONS: u8> Vectorised for MomentumChunk<'_, S, OPTIONS> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) {
+        let target = self.target;
+        let side = self.side;
+        let all = self.chunk.iter();
+        for (cluster, neighbours, among) in all.filter(|(_, _, among)| side.takes(among.halo)) {
+            let free = |&j: &u32| self.sources.stresses[j as usize].is_free();
+            if !among.moving && neighbours.iter().all(free) {
+                target.store::<OPTIONS>(cluster, &Forces::NONE);
+                continue;
+            }
+            target.store::<OPTIONS>(
+                cluster,
+                &Self::sum::<V>(self.motion, &self.sources, cluster, neighbours),
+            );
+            if !among.mirrors {
+                continue;
+            }
+            let FromMirrors { places, forces } = &mut *self.from_mirrors;
+            let is_image = |&j: &u32| self.sources.mirrored[j as usize] & 1 == 1;
+            places.clear();
+            places.extend(neighbours.iter().copied().filter(is_image));
+            let part = Self::sum::<V>(self.motion, &self.sources, cluster, places).acceleration;
+            for k in 0..cluster.lanes {
+                let mass = target.mass[target.images[cluster.receivers[k] as usize].base()];
+                forces.push([
+                    mass * part[0].0[k],
+                    mass * part[1].0[k],
+                    mass * part[2].0[k],
+                ]);
+            }
+        }
+    }
+}
+
+impl<S: PairScale, const OPTIONS: u8> MomentumChunk<'_, S, OPTIONS> {
+    #[inline(always)]
+    fn sum<V: Lanes>(
+        motion: Sources<S>,
+        sources: &ForceSources,
+        cluster: &Cluster,
+        neighbours: &[u32],
+    ) -> Forces {
+        let sums = Momentum::<S, OPTIONS> {
+            around: motion.around(cluster.receivers, neighbours),
+            stresses: sources.stresses,
+            viscosity: sources.viscosity,
+            options: sources.options,
+        };
+        sums.run::<V>()
+    }
+}

@@ -1,0 +1,149 @@
+//! The SPH sums of a step.
+
+use super::formulation::{Conventional, Formulation, Normalised, StressPoints};
+use super::normalised::NormalisedRecord;
+use super::signal::Signals;
+use super::smoothing::Smoothing;
+use super::sums::{Side, Step, Sums};
+use super::terms;
+use crate::loads::Loads;
+use crate::model::{Case, SphForm};
+use crate::neighbours::Lists;
+use crate::numerics::kernel::Kernel;
+use crate::particles::ParticleStore;
+
+/// The SPH sums of a case, with what they keep from step to step.
+pub struct Sph {
+    /// Smoothing lengths.
+    pub smoothing: Smoothing,
+    form: Form,
+    sums: Sums,
+}
+
+enum Form {
+    Conventional(Conventional),
+    Normalised(Normalised),
+    StressPoints(StressPoints),
+}
+
+/// Calls `$work` with the formulation of a case as a concrete type.
+macro_rules! with_form {
+    ($form:expr, $name:ident => $work:expr) => {
+        match $form {
+            Form::Conventional($name) => $work,
+            Form::Normalised($name) => $work,
+            Form::StressPoints($name) => $work,
+        }
+    };
+}
+
+/// Calls `$work` with the formulation of a form ([`SphForm`]) as a type of this name.
+macro_rules! with_formulation {
+    ($form:expr, $name:ident => $work:expr) => {
+        match $form {
+            $crate::model::SphForm::Conventional => {
+                type $name = $crate::sph::Conventional;
+                $work
+            }
+            $crate::model::SphForm::Normalised => {
+                type $name = $crate::sph::Normalised;
+                $work
+            }
+            $crate::model::SphForm::StressPoints => {
+                type $name = $crate::sph::StressPoints;
+                $work
+            }
+        }
+    };
+}
+pub(crate) use with_formulation;
+
+impl Sph {
+    /// Of a case.
+    #[must_use]
+    pub fn new(case: &Case) -> Self {
+        Self {
+            smoothing: Smoothing::new(case),
+            form: match case.sph.form {
+                SphForm::Conventional => Form::Conventional(Conventional),
+                SphForm::Normalised => Form::Normalised(Normalised::default()),
+                SphForm::StressPoints => Form::StressPoints(StressPoints::default()),
+            },
+            sums: Sums::new(case, &Kernel::new(case.dimension)),
+        }
+    }
+
+    /// Bytes of what each particle and image shows to others for pair terms and corrections.
+    #[must_use]
+    pub fn bytes_of_records(case: &Case) -> usize {
+        let corrected = match case.sph.form {
+            SphForm::Normalised => size_of::<NormalisedRecord>(),
+            SphForm::Conventional | SphForm::StressPoints => 0,
+        };
+        terms::bytes_of_records(&case.sph) + corrected
+    }
+
+    /// Memory for so many images that is free until [`Self::rates`].
+    pub fn scratch(&mut self, images: usize) -> &mut [impl bytemuck::Pod + use<>] {
+        self.sums.scratch(images)
+    }
+
+    /// The first sweep: velocity gradient at the end of the step, density and stress from its mean
+    /// with the gradient at the start, of owned particles; and what they show for pair terms.
+    pub fn rates(&mut self, particles: &mut ParticleStore, lists: &Lists, step: &Step) {
+        let sums = &mut self.sums;
+        with_form!(&mut self.form, form => form.rates(sums, particles, lists, step));
+        sums.terms.prepare(particles, step.dt);
+    }
+
+    /// The second sweep: accelerations by stress and viscosity, and the power they put into heat, of the
+    /// receivers of a side.
+    pub fn forces(&mut self, particles: &mut ParticleStore, lists: &Lists, side: Side) {
+        if side == Side::Outer && particles.halo() == 0 {
+            return;
+        }
+        let sums = &mut self.sums;
+        with_form!(&mut self.form, form => form.forces(sums, particles, lists, side));
+    }
+
+    /// The drift of a step `dt` (s) beyond that by velocities.
+    pub fn drift(&self, particles: &mut ParticleStore, loads: &Loads, dt: f64) {
+        self.sums.terms.drift(particles, loads, dt);
+        with_form!(&self.form, form => form.drift(particles, dt, &loads.gravity));
+    }
+
+    /// Forces (N) of images behind symmetry planes on single particles in the last second sweep.
+    pub fn forces_of_mirrors(&self) -> impl Iterator<Item = &[f64; 3]> {
+        let chunks = self.sums.from_mirrors.iter();
+        chunks.flat_map(|chunk| &chunk.forces)
+    }
+
+    /// Particles of this rank whose gradient had no correction in the last first sweep.
+    #[must_use]
+    pub fn uncorrected(&self) -> i64 {
+        self.sums.uncorrected
+    }
+
+    /// What signal speeds follow from.
+    #[must_use]
+    pub fn signals<'a>(
+        &self,
+        [sound_speed, approach_speed]: [&'a [f64]; 2],
+        [correction_norm, fit_norm]: [&'a [f64]; 2],
+    ) -> Signals<'a> {
+        Signals {
+            viscosity: self.sums.viscosity,
+            dimension: self.sums.dimension,
+            sound_speed,
+            approach_speed,
+            correction_norm,
+            fit_norm,
+        }
+    }
+
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.sums.memory() + with_form!(&self.form, form => form.memory())
+    }
+}

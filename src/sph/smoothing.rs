@@ -1,0 +1,62 @@
+//! Smoothing lengths.
+
+use crate::model::{Case, SmoothingLength};
+use crate::particles::ParticleStore;
+
+/// How smoothing lengths follow densities (physics page, section 1).
+#[derive(Debug, Clone)]
+pub struct Smoothing {
+    rule: SmoothingLength,
+    dimension: usize,
+    /// Length of each body at the start (m).
+    reference: Vec<f64>,
+    /// 1/ρ of each body at the start (m³/kg).
+    inverse_density: Vec<f64>,
+}
+
+impl Smoothing {
+    /// Of a case.
+    #[must_use]
+    pub fn new(case: &Case) -> Self {
+        let inverse_density = |body| 1.0 / case.initial_density(body);
+        Self {
+            rule: case.sph.smoothing_length,
+            dimension: case.dimension,
+            reference: case.bodies.iter().map(|b| b.smoothing_length).collect(),
+            inverse_density: case.bodies.iter().map(inverse_density).collect(),
+        }
+    }
+
+    /// The length (m) of a particle of `body` at a density (kg/m³).
+    #[inline]
+    #[must_use]
+    pub fn length(&self, body: usize, density: f64) -> f64 {
+        let reference = self.reference[body];
+        match self.rule {
+            SmoothingLength::Constant => reference,
+            SmoothingLength::Variable { min, max } => {
+                let expansion = 1.0 / self.inverse_density[body] / density;
+                let ratio = match self.dimension {
+                    1 => expansion,
+                    2 => expansion.sqrt(),
+                    _ => libm::cbrt(expansion),
+                };
+                reference * ratio.clamp(min, max)
+            }
+        }
+    }
+
+    /// How far (m) particle `i` acts at most over twice: sums take its length, contact that at the
+    /// start.
+    #[inline]
+    #[must_use]
+    pub fn reach(&self, particles: &ParticleStore, i: usize) -> f64 {
+        particles.smoothing_length[i].max(self.reference[particles.body[i] as usize])
+    }
+
+    /// The longest length at the start (m).
+    #[must_use]
+    pub fn longest(&self) -> f64 {
+        self.reference.iter().copied().fold(0.0, f64::max)
+    }
+}

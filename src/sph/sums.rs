@@ -1,0 +1,179 @@
+//! What the formulations share: the pair scale, records of stress, and what they are given.
+
+use rayon::prelude::*;
+
+use super::GRAIN;
+use super::momentum::{StressRecord, Viscosity};
+use super::neighbourhood::Sources;
+use super::terms::Terms;
+use crate::domain::Mirrors;
+use crate::material::Material;
+use crate::model::{Case, SmoothingLength};
+use crate::neighbours::Lists;
+use crate::numerics::kernel::{ConstantScale, Kernel, MeanScale};
+use crate::numerics::lanes::LANES;
+use crate::particles::{ParticleStore, resize};
+
+/// What a formulation finds beside particles and lists, kept from step to step.
+pub(super) struct Sums {
+    pub dimension: usize,
+    pub scale: Scale,
+    pub viscosity: Viscosity,
+    pub terms: Terms,
+    pub materials: Vec<Material>,
+    pub material_of_body: Vec<usize>,
+    /// Records of the second sweep.
+    pub stresses: Vec<StressRecord>,
+    /// What mirror images exert, by chunk.
+    pub from_mirrors: Vec<FromMirrors>,
+    /// Particles of this rank whose gradient has no correction.
+    pub uncorrected: i64,
+}
+
+/// A step as the sums know it.
+#[derive(Debug, Clone, Copy)]
+pub struct Step {
+    /// Its length (s); zero at the start of a case.
+    pub dt: f64,
+    /// That of the step before (s).
+    pub last_dt: f64,
+    /// Gravity (m/s²).
+    pub gravity: [f64; 3],
+}
+
+/// Which clusters of receivers a sweep takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Those without halo particles among their neighbours, which need not wait for messages.
+    Inner,
+    /// Those with some.
+    Outer,
+}
+
+impl Side {
+    /// Whether a cluster with or without halo particles among its neighbours is of this side.
+    #[inline(always)]
+    pub(super) fn takes(self, halo: bool) -> bool {
+        halo == (self == Self::Outer)
+    }
+}
+
+/// What the images behind symmetry planes exert on the particles of a chunk.
+#[derive(Debug, Clone, Default)]
+pub(super) struct FromMirrors {
+    /// The images among the neighbours of one cluster.
+    pub(super) places: Vec<u32>,
+    /// Forces on single particles (N).
+    pub(super) forces: Vec<[f64; 3]>,
+}
+
+impl FromMirrors {
+    fn memory(&self) -> usize {
+        4 * self.places.capacity() + size_of::<[f64; 3]>() * self.forces.capacity()
+    }
+}
+
+/// The pair scale of a case, chosen once.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Scale {
+    Constant(ConstantScale),
+    One(MeanScale<1>),
+    Two(MeanScale<2>),
+    Three(MeanScale<3>),
+}
+
+/// Calls `$work` with the scale of a case as a concrete type.
+macro_rules! with_scale {
+    ($scale:expr, $name:ident => $work:expr) => {
+        match $scale {
+            $crate::sph::sums::Scale::Constant($name) => $work,
+            $crate::sph::sums::Scale::One($name) => $work,
+            $crate::sph::sums::Scale::Two($name) => $work,
+            $crate::sph::sums::Scale::Three($name) => $work,
+        }
+    };
+}
+pub(super) use with_scale;
+
+impl Sums {
+    pub fn new(case: &Case, kernel: &Kernel) -> Self {
+        let h = case.bodies.first().map_or(1.0, |b| b.smoothing_length);
+        let equal = case
+            .bodies
+            .iter()
+            .all(|b| b.smoothing_length.to_bits() == h.to_bits());
+        let constant = case.sph.smoothing_length == SmoothingLength::Constant && equal;
+        let scale = match case.dimension {
+            _ if constant => Scale::Constant(ConstantScale::new(kernel, h)),
+            1 => Scale::One(MeanScale::new(kernel)),
+            2 => Scale::Two(MeanScale::new(kernel)),
+            _ => Scale::Three(MeanScale::new(kernel)),
+        };
+        Self {
+            dimension: case.dimension,
+            scale,
+            viscosity: Viscosity {
+                alpha: case.sph.alpha,
+                beta: case.sph.beta,
+            },
+            terms: Terms::new(case, kernel),
+            materials: case.materials.clone(),
+            material_of_body: case.bodies.iter().map(|b| b.material).collect(),
+            stresses: Vec::new(),
+            from_mirrors: Vec::new(),
+            uncorrected: 0,
+        }
+    }
+
+    pub fn memory(&self) -> usize {
+        let mirrors: usize = self.from_mirrors.iter().map(FromMirrors::memory).sum();
+        self.stresses.capacity() * size_of::<StressRecord>() + mirrors + self.terms.memory()
+    }
+
+    /// Memory for so many images until their stresses are known.
+    pub fn scratch(&mut self, images: usize) -> &mut [StressRecord] {
+        if self.stresses.len() < images {
+            resize(&mut self.stresses, images);
+        }
+        &mut self.stresses
+    }
+
+    /// Stresses of halo particles and their images, or of the images of this rank's particles,
+    /// whose own stresses the first sweep has written.
+    pub fn fill_stresses(&mut self, particles: &ParticleStore, lists: &Lists, side: Side) {
+        let owned = particles.owned();
+        let sequence = lists.sequence();
+        if sequence.images().len() == owned {
+            return;
+        }
+        let stresses = self.stresses.par_chunks_mut(LANES);
+        let images = sequence.images().par_chunks(LANES).enumerate();
+        let others = stresses.zip(images).with_min_len(GRAIN);
+        others
+            .filter(|(_, (eight, _))| sequence.any_images(LANES * eight))
+            .flat_map_iter(|(records, (_, images))| records.iter_mut().zip(images))
+            .for_each(|(record, image)| {
+                let (base, code) = (image.base(), image.code());
+                let of_halo = base >= owned;
+                if !side.takes(of_halo) || (!of_halo && code == 0) {
+                    return;
+                }
+                let stress = Mirrors::reflect_symmetric(&particles.deviatoric_stress[base], code);
+                *record = StressRecord::new(
+                    particles.pressure[base],
+                    &stress,
+                    particles.density[base],
+                    particles.sound_speed[base],
+                );
+            });
+    }
+}
+
+/// What a sweep over pairs sees of all particles and images.
+pub(super) fn sources<S>(lists: &Lists, scale: S) -> Sources<'_, S> {
+    Sources {
+        records: lists.motion(),
+        lengths: lists.sequence().smoothing_lengths(),
+        scale,
+    }
+}

@@ -1,0 +1,138 @@
+//! Particles out of range are taken out of a run with all that they carry booked, and frozen ones are
+//! out of all sums like removed ones, kept for the files.
+//!
+//! Were a particle to stay in the sums at rest, it would push others without being pushed: momentum
+//! and energy would be lost in each step, and its state, which is out of range, would go on to act.
+//! So it takes part in nothing, the rest of the run is that of a removal to the last bit, and what
+//! it carried is booked in the same way. What is left of it in files is where it was and of what,
+//! the fields with [`FieldUse::REMAINS`]. All else of it, velocity and stress among it, is zero.
+
+use crate::comm::Comm;
+use crate::diagnose::{Removed, RunState};
+use crate::loads::Loads;
+use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
+use crate::particles::{FieldUse, ParticleStore};
+
+/// Particles that this rank has frozen: they are in files, and in nothing else.
+#[derive(Debug, Default)]
+pub(super) struct Frozen(ParticleStore);
+
+impl Frozen {
+    /// None, in a store like that of a case.
+    pub(super) fn like(particles: &ParticleStore) -> Self {
+        Self(particles.clone())
+    }
+
+    /// How many there are.
+    pub(super) fn count(&self) -> usize {
+        self.0.owned()
+    }
+
+    pub(super) fn memory(&self) -> usize {
+        self.0.memory()
+    }
+
+    /// Keeps the owned particles `indices` for the files.
+    pub(super) fn freeze(&mut self, particles: &ParticleStore, indices: &[u32]) {
+        let mut remains = Vec::new();
+        particles.pack(FieldUse::REMAINS, indices, &mut remains);
+        let (frozen, count) = (&mut self.0, indices.len());
+        let first = frozen.owned();
+        frozen.resize_owned(first + count);
+        frozen.unpack(FieldUse::REMAINS, first, count, &remains);
+        for mark in &mut frozen.frozen[first..] {
+            *mark = 1;
+        }
+    }
+
+    /// Parts frozen particles from those that a checkpoint holds with them, whatever becomes of the
+    /// next ones, gives up the fields `unused` and sizes all others. Collective.
+    pub(super) fn part(comm: &Comm, particles: &mut ParticleStore, unused: FieldUse) -> Self {
+        let marks = (0_u32..).zip(&particles.frozen);
+        let mut leaving: Vec<u32> = marks
+            .filter(|&(_, &frozen)| frozen != 0)
+            .map(|(i, _)| i)
+            .collect();
+        let any = comm.any(!leaving.is_empty());
+        let unused = if any {
+            unused.without(FieldUse::FREEZE)
+        } else {
+            unused
+        };
+        particles.drop_fields(unused);
+        particles.resize_owned(particles.owned());
+        let mut frozen = Self::default();
+        frozen.0.drop_fields(unused);
+        frozen.freeze(particles, &leaving);
+        particles.remove(&mut leaving, &mut Vec::new());
+        frozen
+    }
+
+    /// Appends them to owned particles, in place of the halo.
+    pub(super) fn append_to(&self, particles: &mut ParticleStore) {
+        if self.count() > 0 {
+            particles.append(&self.0);
+        }
+    }
+
+    /// Takes back what [`Self::append_to`] appended.
+    pub(super) fn take_from(&self, particles: &mut ParticleStore) {
+        if self.count() > 0 {
+            particles.resize_owned(particles.owned() - self.count());
+        }
+    }
+}
+
+/// Books what the owned particles `leaving` take with them, of so many bodies. Collective.
+pub(super) fn book(
+    comm: &Comm,
+    state: &mut RunState,
+    (particles, bodies): (&ParticleStore, usize),
+    loads: &Loads,
+    leaving: &[u32],
+) {
+    let mut sums: Vec<[ExactSum; 7]> = (0..bodies).map(|_| Default::default()).collect();
+    let mut counts = vec![0_u64; bodies];
+    let g = loads.gravity;
+    for &i in leaving {
+        let i = i as usize;
+        let (m, v, x) = (
+            particles.mass[i],
+            &particles.velocity[i],
+            &particles.position[i],
+        );
+        let body = particles.body[i] as usize;
+        counts[body] += 1;
+        let terms = [
+            m,
+            m * v[0],
+            m * v[1],
+            m * v[2],
+            0.5 * m * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]),
+            particles.thermal_mass(i) * particles.specific_energy[i],
+            -m * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]),
+        ];
+        for (sum, term) in sums[body].iter_mut().zip(terms) {
+            sum.add(term);
+        }
+    }
+    let mut limbs = Vec::new();
+    gather_limbs(sums.iter_mut().flatten(), &mut limbs);
+    comm.sum_i64(&mut limbs);
+    scatter_limbs(sums.iter_mut().flatten(), &limbs);
+    comm.sum_u64(&mut counts);
+    let time = state.time;
+    state.removed.resize(bodies, Removed::default());
+    for ((booked, sums), count) in state.removed.iter_mut().zip(&sums).zip(counts) {
+        let [mass, x, y, z, kinetic, internal, gravity] = std::array::from_fn(|k| sums[k].value());
+        booked.particles += count;
+        booked.mass += mass;
+        for (total, part) in booked.momentum.iter_mut().zip([x, y, z]) {
+            *total += part;
+        }
+        booked.kinetic_energy += kinetic;
+        booked.internal_energy += internal;
+        booked.gravity_energy += gravity;
+        booked.mass_time += mass * time;
+    }
+}
