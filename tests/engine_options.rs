@@ -7,11 +7,12 @@ use common::cloud::{Cloud, Found, small as cloud};
 use common::random::Random;
 use whipple::domain::Mirrors;
 use whipple::neighbours::Chunk;
+use whipple::neighbours::MotionRecord;
 use whipple::numerics::dispatch::{Instructions, available};
 use whipple::numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use whipple::numerics::lanes::LANES;
 use whipple::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
-use whipple::sph::neighbourhood::{MotionRecord, Sources};
+use whipple::sph::neighbourhood::Sources;
 use whipple::sph::options::{
     ARTIFICIAL_STRESS, BALSARA, CONDUCTION, OptionRecord, Options, RECORDED, XSPH, limiter,
     repulsion,

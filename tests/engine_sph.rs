@@ -11,12 +11,13 @@ mod common;
 use common::cloud::{Cloud, Found, small as cloud};
 use common::random::Random;
 use whipple::neighbours::Chunk;
+use whipple::neighbours::MotionRecord;
 use whipple::numerics::dispatch::{Instructions, available};
 use whipple::numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use whipple::numerics::lanes::{F64x8, LANES};
 use whipple::sph::gradient::VelocityGradient;
 use whipple::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
-use whipple::sph::neighbourhood::{MotionRecord, Sources};
+use whipple::sph::neighbourhood::Sources;
 use whipple::sph::options::Options;
 
 const VISCOSITY: Viscosity = Viscosity {
