@@ -9,11 +9,9 @@ fn batch(density: f64, specific_energy: f64) -> PointBatch {
     PointBatch {
         density: [density; LANES],
         specific_energy: [specific_energy; LANES],
-        velocity_gradient: [[0.0; LANES]; 9],
-        deviatoric_stress: [[0.0; LANES]; 6],
-        plastic_strain: [0.0; LANES],
         pressure: [f64::NAN; LANES],
         sound_speed: [f64::NAN; LANES],
+        ..PointBatch::ZERO
     }
 }
 

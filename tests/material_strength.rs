@@ -39,12 +39,8 @@ fn batch(stress: &Matrix3<f64>) -> PointBatch {
     let components = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
     PointBatch {
         density: [2785.0; LANES],
-        specific_energy: [0.0; LANES],
-        velocity_gradient: [[0.0; LANES]; 9],
         deviatoric_stress: components.map(|ij| [stress[ij]; LANES]),
-        plastic_strain: [0.0; LANES],
-        pressure: [0.0; LANES],
-        sound_speed: [0.0; LANES],
+        ..PointBatch::ZERO
     }
 }
 

@@ -7,48 +7,25 @@
 pub mod constants;
 pub mod eos;
 pub mod library;
+mod point;
 pub mod spall;
 pub mod strength;
 pub mod thermal;
 
 pub use constants::{Constant, Value};
 pub use eos::{Eos, IdealGas, Linear, LinearForm, MieGruneisen, Tait, Tillotson};
+pub use point::{LANES, Lanes, PointBatch, PointField};
+pub(crate) use point::{point_fields, point_lanes};
 pub use spall::Spall;
 pub use strength::{
     Elastic, JohnsonCook, NeoHookean, SteinbergGuinan, Strength, Viscous, VonMises,
 };
 pub use thermal::{Thermal, ThermalConstants};
 
-/// Points advanced together; a batch lane is one point.
-pub const LANES: usize = 8;
-
-/// One value for each point of a batch.
-pub type Lanes = [f64; LANES];
-
 /// Smallest square of the bulk sound speed, as a fraction of its reference value K/ρ₀: expanded
 /// and hot states where the equation of state gives less (or no real sound speed) keep a tenth
 /// of the reference speed.
 pub const SOUND_SPEED_SQUARED_FLOOR: f64 = 0.01;
-
-/// The state of [`LANES`] points before and after an update. Unused lanes repeat a valid point.
-#[derive(Debug, Clone, Copy)]
-#[repr(align(64))]
-pub struct PointBatch {
-    /// Density at the end of the step (kg/m³), in.
-    pub density: Lanes,
-    /// Specific internal energy at the end of the step (J/kg), in.
-    pub specific_energy: Lanes,
-    /// Velocity gradient at the middle of the step, row-major `L_ij = ∂v_i/∂x_j` (1/s), in.
-    pub velocity_gradient: [Lanes; 9],
-    /// Deviatoric stress `xx yy zz xy xz yz`, tension positive (Pa), in and out.
-    pub deviatoric_stress: [Lanes; 6],
-    /// Equivalent plastic strain, in and out.
-    pub plastic_strain: Lanes,
-    /// Pressure, compression positive (Pa), out.
-    pub pressure: Lanes,
-    /// Longitudinal sound speed (m/s), out.
-    pub sound_speed: Lanes,
-}
 
 /// A material: equation of state, strength, spall and heat.
 #[derive(Debug, Clone, PartialEq)]

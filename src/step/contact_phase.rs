@@ -10,7 +10,7 @@ use crate::contact::hold::{self, Hold};
 use crate::contact::overlap::{self, Fraction};
 use crate::contact::{BodyReaction, ContactTable, ContactView, Reaction, penalty, potential};
 use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, ForeignChunk};
-use crate::particles::{FieldUse, ParticleStore, Scatter};
+use crate::particles::{HaloPhase, ParticleStore, Scatter};
 
 /// Results of each task before they go into the store, kept from step to step.
 #[derive(Default)]
@@ -146,8 +146,8 @@ impl Simulation {
             .with_max_len(CHUNKS_AT_ONCE)
             .for_each(|((task, foreign), own)| task.hold(&view, foreign, own));
         self.store_holds();
-        self.halo.post(comm, &self.store, FieldUse::HALO_FRICTION);
-        self.halo.finish(&mut self.store, FieldUse::HALO_FRICTION);
+        self.halo.post(comm, &self.store, HaloPhase::FRICTION);
+        self.halo.finish(&mut self.store, HaloPhase::FRICTION);
     }
 
     /// What friction remembers, and what it does to each pair.

@@ -4,21 +4,21 @@
 //! and energy would be lost in each step, and its state, which is out of range, would go on to act.
 //! So it takes part in nothing, the rest of the run is that of a removal to the last bit, and what
 //! it carried is booked in the same way. What is left of it in files is where it was and of what,
-//! the fields with [`FieldUse::REMAINS`]. All else of it, velocity and stress among it, is zero.
+//! the fields that are [`FieldInfo::kept`]. All else of it, velocity and stress among it, is zero.
 
 use super::simulation::Simulation;
 use crate::comm::Comm;
-use crate::particles::{FieldUse, ParticleStore};
+use crate::particles::{FieldInfo, Owner, ParticleStore};
 
 impl Simulation {
     /// Keeps the owned particles `indices` for the files.
     pub(super) fn freeze(&mut self, indices: &[u32]) {
         let mut remains = Vec::new();
-        self.store.pack(FieldUse::REMAINS, indices, &mut remains);
+        self.store.pack(FieldInfo::is_kept, indices, &mut remains);
         let (frozen, count) = (&mut self.frozen, indices.len());
         let first = frozen.owned();
         frozen.resize_owned(first + count);
-        frozen.unpack(FieldUse::REMAINS, first, count, &remains);
+        frozen.unpack(FieldInfo::is_kept, first, count, &remains);
         for mark in &mut frozen.frozen[first..] {
             *mark = 1;
         }
@@ -26,18 +26,14 @@ impl Simulation {
 
     /// Parts frozen particles from those that a checkpoint holds with them, whatever becomes of the
     /// next ones, gives up the fields `unused` and sizes all others. Collective.
-    pub(super) fn part_frozen(&mut self, comm: &Comm, unused: FieldUse) {
+    pub(super) fn part_frozen(&mut self, comm: &Comm, unused: Owner) {
         let marks = (0_u32..).zip(&self.store.frozen);
         let mut leaving: Vec<u32> = marks
             .filter(|&(_, &frozen)| frozen != 0)
             .map(|(i, _)| i)
             .collect();
         let any = comm.any(!leaving.is_empty());
-        let unused = if any {
-            unused.without(FieldUse::FREEZE)
-        } else {
-            unused
-        };
+        let unused = if any { unused - Owner::FREEZE } else { unused };
         self.store.drop_fields(unused);
         self.store.resize_owned(self.store.owned());
         self.frozen = ParticleStore::default();

@@ -8,7 +8,7 @@ use crate::comm::Comm;
 use crate::domain::{Halo, Mirrors};
 use crate::model::Case;
 use crate::neighbours::{Kin, Part};
-use crate::particles::{FieldUse, ParticleStore, resize};
+use crate::particles::{HaloPhase, ParticleStore, resize};
 
 /// Steps between two looks at what is still connected.
 const EVERY: u64 = 10;
@@ -162,8 +162,8 @@ impl Parts {
             if !comm.any(changed) {
                 return;
             }
-            halo.post(comm, store, FieldUse::HALO_PARTS);
-            halo.finish(store, FieldUse::HALO_PARTS);
+            halo.post(comm, store, HaloPhase::PARTS);
+            halo.finish(store, HaloPhase::PARTS);
         }
     }
 }

@@ -22,7 +22,7 @@ use crate::contact::ContactTable;
 use crate::domain::{Halo, Histogram, Migration, Paces, Slabs, balance};
 use crate::model::Case;
 use crate::neighbours::Chunk;
-use crate::particles::{FieldUse, ParticleStore};
+use crate::particles::{HaloPhase, ParticleStore};
 
 /// Why a step failed; the same on all ranks.
 #[derive(Debug, Clone, Error)]
@@ -205,21 +205,21 @@ impl Simulation {
         self.halo.finish_motion(&mut self.store);
     }
 
-    fn stress_uses(&self) -> FieldUse {
+    fn stress_phase(&self) -> HaloPhase {
         if self.contact.has_pairs() {
-            FieldUse::HALO_FORCES
+            HaloPhase::FORCES
         } else {
-            FieldUse::HALO_STRESS
+            HaloPhase::STRESS
         }
     }
 
     fn post_stress(&mut self, comm: &Comm) {
-        self.halo.post(comm, &self.store, self.stress_uses());
+        self.halo.post(comm, &self.store, self.stress_phase());
     }
 
     fn finish_stress(&mut self) {
-        let uses = self.stress_uses();
-        self.halo.finish(&mut self.store, uses);
+        let phase = self.stress_phase();
+        self.halo.finish(&mut self.store, phase);
     }
 
     /// Bytes that this rank holds in particle arrays, lists and buffers.
