@@ -4,7 +4,7 @@
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use whipple::material::{
-    Elastic, Eos, LANES, Linear, LinearForm, Material, PointBatch, Strength, VonMises,
+    Elastic, Eos, Failure, LANES, Linear, LinearForm, Material, PointBatch, Strength, VonMises,
 };
 
 const G: f64 = 28.6e9;
@@ -18,7 +18,7 @@ fn material(strength: Strength) -> Material {
             form: LinearForm::Logarithmic,
         }),
         strength,
-        spall: None,
+        failure: Failure::NONE,
         thermal: None,
     }
 }

@@ -1,10 +1,31 @@
-//! The material point: the numbers that one holds, eight points at a time.
+//! The material point: its state, and the laws that act on it, in two tables.
+//!
+//! A law is a file that implements [`Law`]; its row here gives it a name and a key of the input,
+//! its rows in `input/schema/materials.rs` its constants.
 
-/// Points advanced together; a batch lane is one point.
-pub const LANES: usize = 8;
+mod batch;
+mod elastic;
+mod jaumann;
+mod johnson_cook;
+mod law;
+mod neo_hookean;
+mod radial_return;
+mod spall;
+mod steinberg_guinan;
+mod viscous;
+mod von_mises;
 
-/// One value for each point of a batch.
-pub type Lanes = [f64; LANES];
+pub(crate) use batch::point_lanes;
+pub use batch::{LANES, Lanes, PointBatch, PointField};
+pub use elastic::Elastic;
+pub use johnson_cook::JohnsonCook;
+pub use law::{Conditions, Constants, Contradiction, Law};
+use law::{failure_laws, strength_laws};
+pub use neo_hookean::NeoHookean;
+pub use spall::Spall;
+pub use steinberg_guinan::SteinbergGuinan;
+pub use viscous::Viscous;
+pub use von_mises::VonMises;
 
 /// Passes the fields of a material point to the macro `$then`: name, kind and role of each. `Given`
 /// is taken from the particle, `State` is taken and written back, and `Answer` is written back.
@@ -30,82 +51,24 @@ macro_rules! point_fields {
 }
 pub(crate) use point_fields;
 
-/// What a batch holds of a field.
-macro_rules! point_lanes {
-    (Scalar) => {
-        $crate::material::Lanes
-    };
-    (Symmetric) => {
-        [$crate::material::Lanes; 6]
-    };
-    (Tensor) => {
-        [$crate::material::Lanes; 9]
-    };
-}
-pub(crate) use point_lanes;
-
-macro_rules! point_batch {
-    ($( $(#[doc = $doc:literal])+ $name:ident: $kind:ident, $role:ident; )+) => {
-        /// The state of [`LANES`] points before and after an update. Unused lanes repeat a valid
-        /// point.
-        #[derive(Debug, Clone, Copy)]
-        #[repr(align(64))]
-        pub struct PointBatch {
-            $( $(#[doc = $doc])+ pub $name: point_lanes!($kind), )+
-        }
-
-        impl PointBatch {
-            /// All numbers zero.
-            pub const ZERO: Self = Self { $( $name: <point_lanes!($kind)>::ZERO, )+ };
-        }
-    };
-}
-point_fields!(point_batch);
-
-/// The values of a batch in one field, one lane of them at a time.
-pub trait PointField {
-    /// What one point holds.
-    type Value;
-    /// Zeros.
-    const ZERO: Self;
-    /// The value of lane `k`.
-    fn lane(&self, k: usize) -> Self::Value;
-    /// Sets that of lane `k`.
-    fn set_lane(&mut self, k: usize, value: &Self::Value);
+// The key below `strength` in the input, and the law. A material has one of them.
+strength_laws! {
+    /// Newtonian fluid.
+    viscous: Viscous;
+    /// Linear elastic (hypoelastic with the Jaumann rate), without bound.
+    elastic: Elastic;
+    /// Neo-Hookean rubber (hyperelastic), without bound.
+    neo_hookean: NeoHookean;
+    /// Elastic–plastic with a von Mises yield stress and linear hardening.
+    von_mises: VonMises;
+    /// Elastic–plastic with the flow stress of Johnson and Cook.
+    johnson_cook: JohnsonCook;
+    /// Elastic–plastic with the moduli of Steinberg and Guinan.
+    steinberg_guinan: SteinbergGuinan;
 }
 
-impl PointField for Lanes {
-    type Value = f64;
-    const ZERO: Self = [0.0; LANES];
-
-    #[inline(always)]
-    fn lane(&self, k: usize) -> f64 {
-        self[k]
-    }
-
-    #[inline(always)]
-    fn set_lane(&mut self, k: usize, value: &f64) {
-        self[k] = *value;
-    }
-}
-
-impl<const N: usize> PointField for [Lanes; N] {
-    type Value = [f64; N];
-    const ZERO: Self = [[0.0; LANES]; N];
-
-    #[inline(always)]
-    fn lane(&self, k: usize) -> [f64; N] {
-        let mut value = [0.0; N];
-        for c in 0..N {
-            value[c] = self[c][k];
-        }
-        value
-    }
-
-    #[inline(always)]
-    fn set_lane(&mut self, k: usize, value: &[f64; N]) {
-        for c in 0..N {
-            self[c][k] = value[c];
-        }
-    }
+// The key in the input, and the law. A material may have all of them; they act in this order.
+failure_laws! {
+    /// Largest tension.
+    spall: Spall;
 }

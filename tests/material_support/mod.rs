@@ -2,8 +2,8 @@
 
 use nalgebra::Matrix3;
 use whipple::material::{
-    Eos, IdealGas, LANES, Linear, LinearForm, Material, MieGruneisen, PointBatch, Strength, Tait,
-    Tillotson,
+    Eos, Failure, IdealGas, LANES, Linear, LinearForm, Material, MieGruneisen, PointBatch,
+    Strength, Tait, Tillotson,
 };
 
 /// A material at rest, without spall or heat.
@@ -14,7 +14,7 @@ pub fn material(reference_density: f64, eos: Eos, strength: Strength) -> Materia
         reference_density,
         eos,
         strength,
-        spall: None,
+        failure: Failure::NONE,
         thermal: None,
     }
 }
