@@ -16,7 +16,7 @@ use common::{SPACING, ball, case, make_elastic, planes};
 use whipple::comm::Comm;
 use whipple::domain::Mirrors;
 use whipple::model::{Axis, ContactMode, Overlap, Potential, SmoothingLength, SymmetryPlane};
-use whipple::particles::{FIELDS, FieldInfo, FieldUse, ParticleStore};
+use whipple::particles::{FIELDS, FieldInfo, ParticleStore};
 use whipple::step::Simulation;
 
 /// Largest differences of position (in spacings) and velocity (relative to `speed`) between the
@@ -131,7 +131,7 @@ fn every_field_is_folded() {
         };
         for slot in 0..3 {
             let mut expected = part(&before, slot);
-            if slot == 1 && field.kind.is_real() && field.uses.meets(FieldUse::LEAVING) {
+            if slot == 1 && field.kind.is_real() && field.leaves() {
                 let value: Vec<f64> = bytemuck::pod_collect_to_vec(&expected);
                 expected = bytemuck::pod_collect_to_vec(&image(field, &value));
             }

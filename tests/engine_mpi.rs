@@ -14,7 +14,9 @@ use common::sentinel::{id, mix, sentinel};
 use whipple::comm::{Comm, Exchange, waited};
 use whipple::domain::{Decomposition, Halo, Histogram, Migration, Mirrors, Paces, Slabs, balance};
 use whipple::model::{Axis, Overlap, SelfContact, SymmetryPlane};
-use whipple::particles::{FIELDS, FieldInfo, FieldUse, Image, ParticleStore, SCRATCH_WORDS};
+use whipple::particles::{
+    FIELDS, FieldInfo, HaloPhase, Image, ParticleStore, SCRATCH_WORDS, Select,
+};
 use whipple::step::{Simulation, Timers};
 
 /// Particles of the tests, spread over a box of this many units.
@@ -60,10 +62,10 @@ fn set(
     }
 }
 
-/// Asserts that slot `slot` holds particle k in all fields with any of `uses`.
-fn assert_holds(store: &ParticleStore, slot: usize, k: u64, round: u64, uses: FieldUse) {
+/// Asserts that slot `slot` holds particle k in all fields that `which` takes.
+fn assert_holds(store: &ParticleStore, slot: usize, k: u64, round: u64, which: impl Select) {
     for (row, field) in FIELDS.iter().enumerate() {
-        if field.uses.meets(uses) {
+        if which.takes(field) {
             assert!(
                 value(store, field, slot) == expected(k, row, round),
                 "{} of particle {k} in slot {slot}",
@@ -117,7 +119,7 @@ fn check_owners(comm: &Comm, slabs: &Slabs, store: &ParticleStore, round: u64) {
     for slot in 0..store.owned() {
         let k = numbers[&store.id[slot]];
         assert_eq!(slabs.owner(&position(k, round)), comm.rank());
-        assert_holds(store, slot, k, round, FieldUse::LEAVING);
+        assert_holds(store, slot, k, round, FieldInfo::leaves);
     }
     let mine: BTreeSet<u64> = store.id[..store.owned()].iter().copied().collect();
     assert_eq!(mine.len(), store.owned());
@@ -135,9 +137,9 @@ fn next_round(store: &mut ParticleStore, round: u64, random: &mut Random) {
     for slot in 0..store.owned() {
         let k = numbers[&store.id[slot]];
         // Fields that need not travel get their values again; all others had better be right.
-        assert_holds(store, slot, k, round - 1, FieldUse::LEAVING);
+        assert_holds(store, slot, k, round - 1, FieldInfo::leaves);
         set(store, slot, k, round, |field| {
-            field.name == "position" || !field.uses.meets(FieldUse::LEAVING)
+            field.name == "position" || !field.leaves()
         });
     }
 }
@@ -239,7 +241,7 @@ fn check_halo(
     assert!(comm.size() > 1 || store.halo() == 0);
     for slot in 0..store.owned() + store.halo() {
         let k = numbers[&store.id[slot]];
-        assert_holds(store, slot, k, round, FieldUse::HALO_MOTION);
+        assert_holds(store, slot, k, round, HaloPhase::MOTION);
     }
 }
 
@@ -277,16 +279,16 @@ fn exchange_halos(comm: &Comm) {
                 halo.finish_motion(&mut store);
                 let needed = needed(comm, &slabs, &mirrors, round, reach);
                 check_halo(comm, &store, &halo, &needed, round);
-                for uses in [FieldUse::HALO_STRESS, FieldUse::HALO_FORCES] {
-                    halo.post(comm, &store, uses);
-                    halo.finish(&mut store, uses);
+                for phase in [HaloPhase::STRESS, HaloPhase::FORCES] {
+                    halo.post(comm, &store, phase);
+                    halo.finish(&mut store, phase);
                     for slot in 0..store.owned() + store.halo() {
-                        assert_holds(&store, slot, numbers[&store.id[slot]], round, uses);
+                        assert_holds(&store, slot, numbers[&store.id[slot]], round, phase);
                     }
                 }
                 for slot in 0..store.owned() {
                     let k = numbers[&store.id[slot]];
-                    assert_holds(&store, slot, k, round, FieldUse::LEAVING);
+                    assert_holds(&store, slot, k, round, FieldInfo::leaves);
                 }
                 farther |= (store.owned()..store.owned() + store.halo())
                     .any(|slot| slabs.owner(&store.position[slot]).abs_diff(comm.rank()) > 1);

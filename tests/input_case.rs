@@ -45,7 +45,7 @@ fn the_main_job() {
     assert!((above - below - 2e-5).abs() < 1e-18);
     let material = &case.materials[0];
     assert_eq!(
-        material.spall.unwrap().pressure.to_bits(),
+        material.failure.spall.unwrap().pressure.to_bits(),
         (-1.2e9f64).to_bits()
     );
     let Strength::VonMises(strength) = &material.strength else {
@@ -79,7 +79,7 @@ fn the_small_cases() {
     let flyer = ready("flyer-plate", &[]);
     assert_eq!((flyer.dimension, particles(&flyer)), (1, vec![200, 200]));
     assert_eq!(flyer.materials[0].strength, Strength::None);
-    assert_eq!(flyer.materials[0].spall, None);
+    assert_eq!(flyer.materials[0].failure.spall, None);
     let elastic = ready("elastic-impact", &[]);
     assert_eq!(particles(&elastic), [2400, 552]);
     for case in [flyer, elastic] {
@@ -133,7 +133,7 @@ fn overrides_reach_every_place() {
     );
     assert!(case.symmetry.is_empty());
     assert_eq!(case.materials[0].strength, Strength::None);
-    assert_eq!(case.materials[0].spall, None);
+    assert_eq!(case.materials[0].failure.spall, None);
     assert_eq!(
         case.materials[0].reference_density.to_bits(),
         2800f64.to_bits()

@@ -1,7 +1,8 @@
 //! Equations of state: thermodynamic identity, join of the branches, strong compression.
 
 use whipple::material::{
-    Eos, LANES, Linear, LinearForm, Material, MieGruneisen, PointBatch, Spall, Strength, library,
+    Eos, Failure, LANES, Linear, LinearForm, Material, MieGruneisen, PointBatch, Spall, Strength,
+    library,
 };
 
 /// A batch of one state in all lanes, at rest and without stress.
@@ -9,11 +10,9 @@ fn batch(density: f64, specific_energy: f64) -> PointBatch {
     PointBatch {
         density: [density; LANES],
         specific_energy: [specific_energy; LANES],
-        velocity_gradient: [[0.0; LANES]; 9],
-        deviatoric_stress: [[0.0; LANES]; 6],
-        plastic_strain: [0.0; LANES],
         pressure: [f64::NAN; LANES],
         sound_speed: [f64::NAN; LANES],
+        ..PointBatch::ZERO
     }
 }
 
@@ -23,7 +22,7 @@ fn fluid(reference_density: f64, eos: Eos) -> Material {
         reference_density,
         eos,
         strength: Strength::None,
-        spall: None,
+        failure: Failure::NONE,
         thermal: None,
     }
 }
@@ -150,7 +149,7 @@ fn expansion_keeps_a_real_sound_speed() {
     material.strength = Strength::None;
     let floor = 0.1 * 5328.0;
     for spall in [None, Some(Spall { pressure: -1.2e9 })] {
-        material.spall = spall;
+        material.failure.spall = spall;
         for ratio in [1e-3, 0.05, 0.3, 0.6, 0.9] {
             for energy in [0.0, 1e6, 1e7] {
                 let (p, c) = state(&material, 2785.0 * ratio, energy);
@@ -177,7 +176,7 @@ fn linear_forms_are_what_they_say() {
 #[test]
 fn spall_limits_tension_only() {
     let mut material = library::find("aluminium-6061").unwrap();
-    material.spall = Some(Spall { pressure: -1.2e9 });
+    material.failure.spall = Some(Spall { pressure: -1.2e9 });
     let (p, _) = state(&material, 2703.0 * 0.95, 0.0);
     assert_eq!(p.to_bits(), (-1.2e9_f64).to_bits());
     let (p, _) = state(&material, 2703.0 * 0.999, 0.0);
@@ -187,7 +186,7 @@ fn spall_limits_tension_only() {
 #[test]
 fn not_a_number_stays_one_and_stays_in_its_lane() {
     let mut material = library::find("aluminium-2024").unwrap();
-    material.spall = Some(Spall { pressure: -1.2e9 });
+    material.failure.spall = Some(Spall { pressure: -1.2e9 });
     let mut points = batch(2785.0, 0.0);
     points.density[2] = f64::NAN;
     points.specific_energy[5] = f64::NAN;

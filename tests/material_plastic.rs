@@ -268,7 +268,7 @@ fn without_heat_or_with_no_time_nothing_softens_or_moves() {
 #[test]
 fn spalled_metal_keeps_the_temperature_of_its_matter() {
     let mut metal = metal(Strength::JohnsonCook(JC));
-    metal.spall = Some(Spall { pressure: -1.2e9 });
+    metal.failure.spall = Some(Spall { pressure: -1.2e9 });
     // Warm metal that opens at constant energy: the voids hold none of it.
     let at = |ratio: f64| metal.temperature(RHO * ratio, 1e5).unwrap();
     let first = at(0.97);

@@ -4,7 +4,7 @@
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use whipple::material::{
-    Elastic, Eos, LANES, Linear, LinearForm, Material, PointBatch, Strength, VonMises,
+    Elastic, Eos, Failure, LANES, Linear, LinearForm, Material, PointBatch, Strength, VonMises,
 };
 
 const G: f64 = 28.6e9;
@@ -18,7 +18,7 @@ fn material(strength: Strength) -> Material {
             form: LinearForm::Logarithmic,
         }),
         strength,
-        spall: None,
+        failure: Failure::NONE,
         thermal: None,
     }
 }
@@ -39,12 +39,8 @@ fn batch(stress: &Matrix3<f64>) -> PointBatch {
     let components = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
     PointBatch {
         density: [2785.0; LANES],
-        specific_energy: [0.0; LANES],
-        velocity_gradient: [[0.0; LANES]; 9],
         deviatoric_stress: components.map(|ij| [stress[ij]; LANES]),
-        plastic_strain: [0.0; LANES],
-        pressure: [0.0; LANES],
-        sound_speed: [0.0; LANES],
+        ..PointBatch::ZERO
     }
 }
 

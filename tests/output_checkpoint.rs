@@ -10,7 +10,7 @@ use output_support::{case, particles};
 use whipple::comm::Comm;
 use whipple::output::h5::{Element, RowType, Writer};
 use whipple::output::{Block, OutputError, Rows, checkpoint, write_json};
-use whipple::particles::{FieldKind, FieldUse, ParticleStore, with_use};
+use whipple::particles::{FieldKind, Life, ParticleStore, rows};
 
 fn write(folder: &Path, step: u64, keep: usize) -> PathBuf {
     let (comm, case) = (Comm::solo(), case());
@@ -81,7 +81,7 @@ fn a_bit_flipped_anywhere_is_told_before_hdf5_sees_it() {
     places.extend([8, 13, whole.len() - 1]);
     // A particle's value of each field, wherever it stands in the file.
     let store = particles(&Comm::solo(), 40);
-    for field in store.held(FieldUse::STATE) {
+    for field in store.held(Life::State) {
         let bytes = &store.bytes(field.id)[..field.kind.bytes()];
         let found = whole
             .windows(bytes.len())
@@ -141,7 +141,7 @@ fn fields_that_the_program_does_not_share_are_told() {
             file.rows(&path, row, Block::even(40, 0, 1), &bytes)
                 .unwrap();
         };
-        for field in with_use(FieldUse::STATE).filter(|field| field.name != skip) {
+        for field in rows(Life::State).filter(|field| field.name != skip) {
             let element = match field.kind {
                 FieldKind::Id => Element::U64,
                 FieldKind::Index => Element::U32,

@@ -10,7 +10,7 @@ use output_support::{case, id, is_rank, meta, on_ranks, particles, sentinel, sor
 use whipple::comm::Comm;
 use whipple::output::h5::{Content, Element, RowType};
 use whipple::output::{Block, OutputError, Rows, checkpoint, snapshot};
-use whipple::particles::{FIELDS, FieldUse, ParticleStore, with_use};
+use whipple::particles::{FIELDS, Life, ParticleStore, rows};
 
 /// None, fewer than ranks, uneven, and enough for many rows to travel.
 const TOTALS: [u64; 4] = [0, 1, 7, 1000];
@@ -76,8 +76,7 @@ fn check_snapshot(path: &Path, total: u64) {
             let bytes = read_all(&file, &path, array.row, total);
             assert!(bytes == expected(row, total, true), "{path} of {total}");
         } else {
-            let uses = field.uses;
-            assert!(!uses.meets(FieldUse::SNAPSHOT) && !uses.meets(FieldUse::ON_DEMAND));
+            assert!(!field.is_shown());
         }
     }
     let case = case();
@@ -117,7 +116,7 @@ fn check_restored(comm: &Comm, folder: &Path, total: u64) {
     let block = Block::even(total, comm.rank(), comm.size());
     assert_eq!(store.owned(), block.count);
     for (row, field) in FIELDS.iter().enumerate() {
-        if field.uses.meets(FieldUse::STATE) {
+        if field.life == Life::State {
             let all = expected(row, total, false);
             let start = usize::try_from(block.first).unwrap() * field.kind.bytes();
             let here = &all[start..start + block.count * field.kind.bytes()];
@@ -302,6 +301,6 @@ fn a_full_disk_is_an_error_on_every_rank() {
 
 #[test]
 fn the_state_is_what_the_table_says() {
-    assert!(with_use(FieldUse::STATE).count() > 10);
+    assert!(rows(Life::State).count() > 10);
     assert_eq!(Element::Text(3).bytes(), 3);
 }

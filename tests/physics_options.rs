@@ -78,7 +78,7 @@ fn artificial_stress_keeps_particles_apart_in_tension() {
 fn heating(l: [f64; 4], balsara: bool) -> f64 {
     let mut case = rectangle(16.0, 16.0);
     case.materials[0].strength = Strength::None;
-    case.materials[0].spall = None;
+    case.materials[0].failure.spall = None;
     case.sph.balsara = balsara;
     // So short that there is no pressure yet.
     case.time_step.max = 1e-13;
@@ -122,7 +122,7 @@ fn make_gas(case: &mut Case) {
         b: 2.0 / 3.0,
     });
     material.strength = Strength::None;
-    material.spall = None;
+    material.failure.spall = None;
 }
 
 fn gas(velocity: f64) -> Case {

@@ -11,7 +11,7 @@ use super::{BodyReaction, ContactTable, ContactView, GRAIN, Reaction, penalty, p
 use crate::loads::Loads;
 use crate::model::Case;
 use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, ForeignChunk, Lists};
-use crate::particles::{FieldUse, ParticleStore, Scatter};
+use crate::particles::{HaloPhase, ParticleStore, Scatter};
 
 /// Results of a task before they go into the store, kept from step to step.
 #[derive(Default)]
@@ -116,11 +116,11 @@ impl Contact {
 
     /// What halo particles need before the forces of stress and contact.
     #[must_use]
-    pub fn halo_of_forces(&self) -> FieldUse {
+    pub fn halo_of_forces(&self) -> HaloPhase {
         if self.table.has_pairs() {
-            FieldUse::HALO_FORCES
+            HaloPhase::FORCES
         } else {
-            FieldUse::HALO_STRESS
+            HaloPhase::STRESS
         }
     }
 

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::mirrors::{Mirrors, codes};
 use crate::comm::{Comm, Exchange, Traffic};
-use crate::particles::{FieldUse, Image, ParticleStore};
+use crate::particles::{HaloPhase, Image, ParticleStore};
 
 /// What a rank tells all others before the exchange.
 #[derive(Debug, Clone, Copy)]
@@ -102,7 +102,7 @@ impl Halo {
         }
     }
 
-    /// Decides who needs whom and starts to send [`FieldUse::HALO_MOTION`]. A pair of particles
+    /// Decides who needs whom and starts to send [`HaloPhase::MOTION`]. A pair of particles
     /// interacts within the sum of their `reach` (m). Collective.
     pub fn post_motion(
         &mut self,
@@ -119,7 +119,7 @@ impl Halo {
             let (particles, codes) = &self.sends[k];
             let message = self.exchange.outgoing(k);
             message.extend_from_slice(codes);
-            store.pack(FieldUse::HALO_MOTION, particles, message);
+            store.pack(HaloPhase::MOTION, particles, message);
         }
         self.exchange.post_sizes(comm);
         self.exchange.post(comm);
@@ -129,7 +129,7 @@ impl Halo {
     /// their images behind planes.
     pub fn finish_motion(&mut self, store: &mut ParticleStore) {
         self.exchange.wait();
-        let size = 1 + store.bytes_per_particle(FieldUse::HALO_MOTION);
+        let size = 1 + store.bytes_per_particle(HaloPhase::MOTION);
         self.received.clear();
         for k in 0..self.exchange.peers() {
             self.received.push(self.exchange.incoming(k).len() / size);
@@ -144,7 +144,7 @@ impl Halo {
                 self.below = self.others.len();
             }
             let (needs, fields) = self.exchange.incoming(k).split_at(count);
-            store.unpack(FieldUse::HALO_MOTION, first, count, fields);
+            store.unpack(HaloPhase::MOTION, first, count, fields);
             for (i, &need) in needs.iter().enumerate() {
                 for code in (0..8).filter(|code| need >> code & 1 == 1) {
                     self.others.push(Image::new(first + i, code));
@@ -170,29 +170,29 @@ impl Halo {
     }
 
     /// [`Self::post`] and [`Self::finish`]. Collective.
-    pub fn exchange(&mut self, comm: &Comm, store: &mut ParticleStore, uses: FieldUse) {
-        self.post(comm, store, uses);
-        self.finish(store, uses);
+    pub fn exchange(&mut self, comm: &Comm, store: &mut ParticleStore, phase: HaloPhase) {
+        self.post(comm, store, phase);
+        self.finish(store, phase);
     }
 
-    /// Starts to send the fields of `uses` of the same particles.
-    pub fn post(&mut self, comm: &Comm, store: &ParticleStore, uses: FieldUse) {
-        let size = store.bytes_per_particle(uses);
+    /// Starts to send the fields of `phase` of the same particles.
+    pub fn post(&mut self, comm: &Comm, store: &ParticleStore, phase: HaloPhase) {
+        let size = store.bytes_per_particle(phase);
         for k in 0..self.exchange.peers() {
             let message = self.exchange.outgoing(k);
             message.clear();
-            store.pack(uses, &self.sends[k].0, message);
+            store.pack(phase, &self.sends[k].0, message);
             self.exchange.expect(k, self.received[k] * size);
         }
         self.exchange.post(comm);
     }
 
     /// Receives what [`Self::post`] of the others sent.
-    pub fn finish(&mut self, store: &mut ParticleStore, uses: FieldUse) {
+    pub fn finish(&mut self, store: &mut ParticleStore, phase: HaloPhase) {
         self.exchange.wait();
         let mut first = store.owned();
         for (k, &count) in self.received.iter().enumerate() {
-            store.unpack(uses, first, count, self.exchange.incoming(k));
+            store.unpack(phase, first, count, self.exchange.incoming(k));
             first += count;
         }
     }

@@ -2,7 +2,7 @@
 
 use super::slabs::Decomposition;
 use crate::comm::{Comm, Exchange, Traffic};
-use crate::particles::{FieldUse, ParticleStore};
+use crate::particles::{FieldInfo, ParticleStore};
 
 /// Particles that a rank may send in one round, or [`PART`] of its own if that is more: where a whole
 /// model moves, as in a restart, its messages must not take as much memory as the model itself.
@@ -91,12 +91,12 @@ impl Migration {
     fn swap(&mut self, comm: &Comm, store: &mut ParticleStore) {
         let peers = (0..comm.size()).filter(|&r| self.counts[r] > 0 || self.arrivals[r] > 0);
         self.exchange.set_peers(peers);
-        let size = store.bytes_per_particle(FieldUse::LEAVING);
+        let size = store.bytes_per_particle(FieldInfo::leaves);
         let mut arriving = 0;
         for k in 0..self.exchange.peers() {
             let peer = self.exchange.rank(k);
             store.pack(
-                FieldUse::LEAVING,
+                FieldInfo::leaves,
                 &self.leaving[peer],
                 self.exchange.outgoing(k),
             );
@@ -114,7 +114,7 @@ impl Migration {
         for k in 0..self.exchange.peers() {
             let bytes = self.exchange.incoming(k);
             let count = bytes.len() / size;
-            store.unpack(FieldUse::LEAVING, first, count, bytes);
+            store.unpack(FieldInfo::leaves, first, count, bytes);
             first += count;
         }
     }

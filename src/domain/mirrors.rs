@@ -1,7 +1,7 @@
 //! Symmetry planes: mirror images of particles behind them, and particles that cross them.
 
 use crate::model::SymmetryPlane;
-use crate::particles::{FieldKind, FieldUse, ParticleStore};
+use crate::particles::{FieldInfo, Mirror, ParticleStore};
 
 /// The symmetry planes of a case, at most one for each axis. An image has a code: bit a is set
 /// if it stands behind the plane normal to axis a.
@@ -142,23 +142,23 @@ impl Mirrors {
     pub fn fold(&self, store: &mut ParticleStore, i: usize) -> u8 {
         let code = self.beyond(&store.position[i]);
         if code != 0 {
-            for field in store.held(FieldUse::LEAVING) {
+            for field in store.held(FieldInfo::leaves) {
                 let size = field.kind.bytes();
                 let value = &mut store.bytes_mut(field.id)[i * size..(i + 1) * size];
-                self.reflect(field.kind, value, code);
+                self.reflect(field.mirror, value, code);
             }
         }
         code
     }
 
-    /// Puts the image under a code in the place of what one particle holds in a field of a kind.
-    fn reflect(&self, kind: FieldKind, value: &mut [u8], code: u8) {
-        match kind {
-            FieldKind::Scalar | FieldKind::Id | FieldKind::Index => {}
-            FieldKind::Position => replace(value, |x| self.reflect_position(x, code)),
-            FieldKind::Vector => replace(value, |v| Self::reflect_vector(v, code)),
-            FieldKind::Symmetric => replace(value, |t| Self::reflect_symmetric(t, code)),
-            FieldKind::Tensor => replace(value, |t| Self::reflect_tensor(t, code)),
+    /// Puts the image under a code in the place of what one particle holds in a field.
+    fn reflect(&self, rule: Mirror, value: &mut [u8], code: u8) {
+        match rule {
+            Mirror::Same => {}
+            Mirror::Place => replace(value, |x| self.reflect_position(x, code)),
+            Mirror::Vector => replace(value, |v| Self::reflect_vector(v, code)),
+            Mirror::Symmetric => replace(value, |t| Self::reflect_symmetric(t, code)),
+            Mirror::Tensor => replace(value, |t| Self::reflect_tensor(t, code)),
         }
     }
 }

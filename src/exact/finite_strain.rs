@@ -72,7 +72,7 @@ impl Medium {
             return None;
         };
         let elastic = matches!(material.strength, Strength::None | Strength::Elastic(_));
-        (elastic && material.spall.is_none()).then_some(Self {
+        (elastic && material.failure.is_none()).then_some(Self {
             reference_density: material.reference_density,
             bulk_modulus: eos.bulk_modulus,
             shear_modulus: material.strength.shear_modulus(),

@@ -1,7 +1,7 @@
 //! The constants of a material by the names that the input gives them.
 
 use super::eos::{Eos, LinearForm};
-use super::strength::Strength;
+use super::point::Constants;
 use super::{Material, ThermalConstants};
 
 /// One constant.
@@ -26,9 +26,6 @@ const PRESSURE: &str = "Pa";
 const ENERGY: &str = "J/kg";
 const PLAIN: &str = "";
 
-/// Values with their keys and units.
-type Rows = Vec<(&'static str, f64, &'static str)>;
-
 impl Material {
     /// All constants of the material, each at a key of the input.
     #[must_use]
@@ -43,12 +40,12 @@ impl Material {
             };
             list.push(word("eos.linear.form", form));
         }
-        match strength(&self.strength) {
+        match self.strength.constants() {
             None => list.push(word("strength", "none")),
-            Some((law, rows)) => list.extend(group(law, rows)),
+            Some((law, rows)) => list.extend(group(&format!("strength.{law}"), rows)),
         }
-        if let Some(spall) = self.spall {
-            list.push(number("spall.pressure", spall.pressure, PRESSURE));
+        for (law, rows) in self.failure.constants() {
+            list.extend(group(law, rows));
         }
         if let Some(thermal) = &self.thermal {
             list.extend(group("thermal", heat(thermal.constants())));
@@ -71,12 +68,12 @@ fn word(key: &str, word: &'static str) -> Constant {
     }
 }
 
-fn group(law: &str, rows: Rows) -> impl Iterator<Item = Constant> {
+fn group(law: &str, rows: Constants) -> impl Iterator<Item = Constant> {
     rows.into_iter()
         .map(move |(key, value, unit)| number(&format!("{law}.{key}"), value, unit))
 }
 
-fn eos(eos: &Eos) -> (&'static str, Rows) {
+fn eos(eos: &Eos) -> (&'static str, Constants) {
     match eos {
         Eos::Linear(law) => (
             "eos.linear",
@@ -122,61 +119,7 @@ fn eos(eos: &Eos) -> (&'static str, Rows) {
     }
 }
 
-fn strength(strength: &Strength) -> Option<(&'static str, Rows)> {
-    let shear = ("shear_modulus", strength.shear_modulus(), PRESSURE);
-    let law = match strength {
-        Strength::None => return None,
-        Strength::Viscous(law) => (
-            "strength.viscous",
-            vec![("viscosity", law.viscosity, "Pa s")],
-        ),
-        Strength::Elastic(_) => ("strength.elastic", vec![shear]),
-        Strength::NeoHookean(_) => ("strength.neo_hookean", vec![shear]),
-        Strength::VonMises(law) => (
-            "strength.von_mises",
-            vec![
-                shear,
-                ("yield_stress", law.yield_stress, PRESSURE),
-                ("hardening_modulus", law.hardening_modulus, PRESSURE),
-            ],
-        ),
-        Strength::JohnsonCook(law) => (
-            "strength.johnson_cook",
-            vec![
-                shear,
-                ("a", law.a, PRESSURE),
-                ("b", law.b, PRESSURE),
-                ("n", law.n, PLAIN),
-                ("c", law.c, PLAIN),
-                ("m", law.m, PLAIN),
-                ("reference_rate", law.reference_rate, "1/s"),
-            ],
-        ),
-        Strength::SteinbergGuinan(law) => (
-            "strength.steinberg_guinan",
-            vec![
-                shear,
-                ("yield_stress", law.yield_stress, PRESSURE),
-                ("max_yield_stress", law.max_yield_stress, PRESSURE),
-                ("beta", law.beta, PLAIN),
-                ("n", law.n, PLAIN),
-                ("initial_strain", law.initial_strain, PLAIN),
-                ("pressure_coefficient", law.pressure_coefficient, "1/Pa"),
-                (
-                    "temperature_coefficient",
-                    law.temperature_coefficient,
-                    "1/K",
-                ),
-                ("melting_temperature", law.melting_temperature, "K"),
-                ("gamma0", law.gamma0, PLAIN),
-                ("a", law.a, PLAIN),
-            ],
-        ),
-    };
-    Some(law)
-}
-
-fn heat(constants: &ThermalConstants) -> Rows {
+fn heat(constants: &ThermalConstants) -> Constants {
     let mut rows = vec![
         ("specific_heat", constants.specific_heat, "J/(kg K)"),
         (

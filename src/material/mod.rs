@@ -1,56 +1,27 @@
-//! Physics at one point: equation of state, strength, spall. Knows neither particles nor MPI.
+//! Physics at one point: equation of state, strength, failure. Knows neither particles nor MPI.
 //!
-//! A [`Material`] advances eight points at a time ([`PointBatch`]); the choice of its parts is
-//! made once for each batch, never for each point. Stress is positive in tension, pressure in
+//! A [`Material`] advances eight points at a time ([`PointBatch`]); the choice of its laws is
+//! made once for each batch, never for each point. They act in the order that [`Law`] states. Stress is positive in tension, pressure in
 //! compression: `σ = −p I + S`. A NaN in a point's state gives NaN at that point, no panic.
 
 pub mod constants;
 pub mod eos;
 pub mod library;
-pub mod spall;
-pub mod strength;
+mod point;
 pub mod thermal;
 
 pub use constants::{Constant, Value};
 pub use eos::{Eos, IdealGas, Linear, LinearForm, MieGruneisen, Tait, Tillotson};
-pub use spall::Spall;
-pub use strength::{
-    Elastic, JohnsonCook, NeoHookean, SteinbergGuinan, Strength, Viscous, VonMises,
-};
+pub use point::*;
+pub(crate) use point::{point_fields, point_lanes};
 pub use thermal::{Thermal, ThermalConstants};
-
-/// Points advanced together; a batch lane is one point.
-pub const LANES: usize = 8;
-
-/// One value for each point of a batch.
-pub type Lanes = [f64; LANES];
 
 /// Smallest square of the bulk sound speed, as a fraction of its reference value K/ρ₀: expanded
 /// and hot states where the equation of state gives less (or no real sound speed) keep a tenth
 /// of the reference speed.
 pub const SOUND_SPEED_SQUARED_FLOOR: f64 = 0.01;
 
-/// The state of [`LANES`] points before and after an update. Unused lanes repeat a valid point.
-#[derive(Debug, Clone, Copy)]
-#[repr(align(64))]
-pub struct PointBatch {
-    /// Density at the end of the step (kg/m³), in.
-    pub density: Lanes,
-    /// Specific internal energy at the end of the step (J/kg), in.
-    pub specific_energy: Lanes,
-    /// Velocity gradient at the middle of the step, row-major `L_ij = ∂v_i/∂x_j` (1/s), in.
-    pub velocity_gradient: [Lanes; 9],
-    /// Deviatoric stress `xx yy zz xy xz yz`, tension positive (Pa), in and out.
-    pub deviatoric_stress: [Lanes; 6],
-    /// Equivalent plastic strain, in and out.
-    pub plastic_strain: Lanes,
-    /// Pressure, compression positive (Pa), out.
-    pub pressure: Lanes,
-    /// Longitudinal sound speed (m/s), out.
-    pub sound_speed: Lanes,
-}
-
-/// A material: equation of state, strength, spall and heat.
+/// A material: equation of state, strength, failure and heat.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// Name for reports.
@@ -61,8 +32,8 @@ pub struct Material {
     pub eos: Eos,
     /// Resistance to shear.
     pub strength: Strength,
-    /// Largest tension, if the material has one.
-    pub spall: Option<Spall>,
+    /// Largest tension and damage, if the material has them.
+    pub failure: Failure,
     /// Temperature as a function of density and specific energy; without it, strength stays that
     /// of the reference temperature.
     pub thermal: Option<Thermal>,
@@ -81,9 +52,11 @@ impl Material {
     /// viscosity.
     #[must_use]
     pub fn diffusion_time(&self, h: f64) -> f64 {
-        match self.strength {
-            Strength::Viscous(law) => 0.125 * h * h * self.reference_density / law.viscosity,
-            _ => f64::INFINITY,
+        let viscosity = self.strength.viscosity();
+        if viscosity > 0.0 {
+            0.125 * h * h * self.reference_density / viscosity
+        } else {
+            f64::INFINITY
         }
     }
 
@@ -95,10 +68,14 @@ impl Material {
         let at = self
             .eos
             .at(self.reference_density, density, specific_energy);
-        let limited = self
-            .spall
-            .map_or(at.pressure, |spall| at_least(at.pressure, spall.pressure));
-        let matter = density + thermal::opening(limited - at.pressure, at.dp_drho);
+        let mut point = PointBatch {
+            density: [density; LANES],
+            specific_energy: [specific_energy; LANES],
+            pressure: [at.pressure; LANES],
+            ..PointBatch::ZERO
+        };
+        self.failure.limit_tension(&mut point);
+        let matter = density + thermal::opening(point.pressure[0] - at.pressure, at.dp_drho);
         Some(thermal.temperature(matter, specific_energy))
     }
 
@@ -109,68 +86,47 @@ impl Material {
     /// of it.
     #[inline(always)]
     pub fn update(&self, batch: &mut PointBatch, dt: f64) {
-        match &self.strength {
-            Strength::None => batch.deviatoric_stress = [[0.0; LANES]; 6],
-            Strength::Viscous(law) => law.update(batch),
-            Strength::Elastic(law) => law.update(batch, dt),
-            Strength::VonMises(law) => law.update(batch, dt),
-            _ => return self.update_from_state(batch, dt),
+        if self.strength.follows_state() || self.failure.follows_state() {
+            self.update_from_state(batch, dt);
+        } else {
+            self.compose::<false>(batch, dt);
         }
-        let response = self.respond(batch);
-        self.set_sound_speed(batch, &response, &[self.strength.shear_modulus(); LANES]);
     }
 
-    /// [`Self::update`] where the stress follows density or temperature. A function of its own:
-    /// inside the other, these laws slow down those that have no need of them.
+    /// [`Self::update`] with laws that follow the state. A function of its own: inside the other,
+    /// these laws slow down those that have no need of them.
     #[inline(never)]
     fn update_from_state(&self, batch: &mut PointBatch, dt: f64) {
-        let rho0 = self.reference_density;
-        let response = self.respond(batch);
-        let mut shear_modulus = [self.strength.shear_modulus(); LANES];
-        match &self.strength {
-            Strength::NeoHookean(law) => shear_modulus = law.update(batch, dt, rho0),
-            Strength::JohnsonCook(law) if dt != 0.0 => {
-                let (temperature, constants) = self.temperatures(batch, &response);
-                law.update(batch, dt, &temperature, &constants);
-            }
-            Strength::SteinbergGuinan(law) => {
-                let (temperature, constants) = self.temperatures(batch, &response);
-                let reference = constants.reference_temperature;
-                shear_modulus = law.update(batch, dt, rho0, &temperature, reference);
-            }
-            _ => {}
-        }
-        self.set_sound_speed(batch, &response, &shear_modulus);
+        self.compose::<true>(batch, dt);
     }
 
-    /// Sets the pressures of a batch and gives the whole answer of the equation of state.
+    /// All laws in their order; without `ALL`, only those that do not follow the state.
     #[inline(always)]
-    fn respond(&self, batch: &mut PointBatch) -> eos::Response {
-        let response = self.eos.response(
-            self.reference_density,
-            &batch.density,
-            &batch.specific_energy,
-        );
-        batch.pressure = match self.spall {
-            Some(spall) => spall.limit(&response.pressure),
-            None => response.pressure,
-        };
-        response
+    fn compose<const ALL: bool>(&self, batch: &mut PointBatch, dt: f64) {
+        let rho0 = self.reference_density;
+        let response = self
+            .eos
+            .response(rho0, &batch.density, &batch.specific_energy);
+        batch.pressure = response.pressure;
+        self.failure.limit_tension(batch);
+        let mut now = Conditions::new(dt, rho0, self.strength.shear_modulus());
+        if ALL && self.strength.needs_temperature() {
+            self.set_temperatures(batch, &response, &mut now);
+        }
+        self.strength.act::<ALL>(batch, &mut now, &self.failure);
+        if ALL {
+            self.failure.fail(batch, &now);
+        }
+        self.set_sound_speed(batch, &response, &now.shear_modulus);
     }
 
-    /// Temperatures (K) of a batch after the spall cut-off, and the constants they are judged by.
-    fn temperatures(
-        &self,
-        batch: &PointBatch,
-        response: &eos::Response,
-    ) -> (Lanes, ThermalConstants) {
-        let Some(thermal) = &self.thermal else {
-            let constants = ThermalConstants::ISOTHERMAL;
-            return ([constants.reference_temperature; LANES], constants);
-        };
-        let (rho, e) = (&batch.density, &batch.specific_energy);
-        let temperature = thermal.temperatures(rho, e, &batch.pressure, response);
-        (temperature, *thermal.constants())
+    /// Temperatures (K) of a batch after the largest tension, and the constants they are judged by.
+    fn set_temperatures(&self, batch: &PointBatch, response: &eos::Response, now: &mut Conditions) {
+        if let Some(thermal) = &self.thermal {
+            let (rho, e) = (&batch.density, &batch.specific_energy);
+            now.temperature = thermal.temperatures(rho, e, &batch.pressure, response);
+            now.thermal = *thermal.constants();
+        }
     }
 
     /// Longitudinal sound speed, `c² = ∂p/∂ρ|ₛ + 4G/(3ρ)`, where by the first law

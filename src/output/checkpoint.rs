@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::comm::Comm;
-use crate::particles::{FieldInfo, FieldKind, FieldUse, ParticleStore, with_use};
+use crate::particles::{FieldInfo, FieldKind, Life, ParticleStore, rows};
 
 use super::h5::{Content, Element, RowType, Writer};
 use super::{
@@ -142,7 +142,7 @@ fn write_parts(
     file.text("/state", meta.state)?;
     file.text("/input", meta.input)?;
     file.group(FIELDS)?;
-    for field in store.held(FieldUse::STATE) {
+    for field in store.held(Life::State) {
         let row = row_type(field.kind);
         let path = format!("{FIELDS}/{}", field.name);
         let block = rows.block();
@@ -487,9 +487,9 @@ fn check_content(
     }
     let arrays = file.arrays(FIELDS)?;
     let mut fields = Vec::new();
-    for field in with_use(FieldUse::STATE) {
+    for field in rows(Life::State) {
         let Some(array) = arrays.iter().find(|array| array.name == field.name) else {
-            if field.uses.meets(FieldUse::OPTIONAL) {
+            if field.is_optional() {
                 continue;
             }
             return other(format!("it lacks the field {}", field.name));
@@ -499,7 +499,7 @@ fn check_content(
         }
         fields.push(field);
     }
-    let known = |name: &str| with_use(FieldUse::STATE).any(|f: &FieldInfo| f.name == name);
+    let known = |name: &str| rows(Life::State).any(|f: &FieldInfo| f.name == name);
     match arrays.iter().find(|array| !known(&array.name)) {
         Some(array) => other(format!("it has an unknown field {}", array.name)),
         None => Ok(fields),

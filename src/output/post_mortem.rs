@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::comm::Comm;
 use crate::model::Case;
-use crate::particles::{FieldInfo, FieldKind, FieldUse, ParticleStore};
+use crate::particles::{FieldInfo, FieldKind, HaloPhase, ParticleStore, Select};
 use crate::step::PostMortem;
 
 use super::checkpoint::row_type;
@@ -35,19 +35,9 @@ pub fn write(
     file.number("/", "rank", &(about.rank as u64))?;
     file.text("/what", what)?;
     file.text("/input", &case.resolved)?;
-    for (group, members, uses) in [
-        ("/particle", &about.members[..1], FieldUse::ALL),
-        ("/neighbours", &about.members[1..], FieldUse::ANY_HALO),
-    ] {
-        file.group(group)?;
-        let block = Block::even(members.len() as u64, 0, 1);
-        for field in store.held(uses) {
-            let row = row_type(field.kind);
-            let path = format!("{group}/{}", field.name);
-            file.rows(&path, row, block, &gather(store, field, members))?;
-            file.note(&path, "unit", field.unit)?;
-        }
-    }
+    let (particle, neighbours) = about.members.split_at(1);
+    write_fields(&file, "/particle", store, particle, FieldInfo::any)?;
+    write_fields(&file, "/neighbours", store, neighbours, HaloPhase::all())?;
     let block = Block::even(about.distances.len() as u64 - 1, 0, 1);
     let bytes = bytemuck::cast_slice(&about.distances[1..]);
     file.rows(
@@ -57,6 +47,25 @@ pub fn write(
         bytes,
     )?;
     file.close()
+}
+
+/// Fields of some particles, in a group of their own.
+fn write_fields(
+    file: &Writer,
+    group: &str,
+    store: &ParticleStore,
+    members: &[u32],
+    which: impl Select,
+) -> Result<(), OutputError> {
+    file.group(group)?;
+    let block = Block::even(members.len() as u64, 0, 1);
+    for field in store.held(which) {
+        let row = row_type(field.kind);
+        let path = format!("{group}/{}", field.name);
+        file.rows(&path, row, block, &gather(store, field, members))?;
+        file.note(&path, "unit", field.unit)?;
+    }
+    Ok(())
 }
 
 /// A field's bytes of some particles; zeros where a particle does not have it now.
@@ -87,7 +96,7 @@ fn text(what: &str, case: &Case, store: &ParticleStore, about: &PostMortem) -> S
         about.step,
         about.time
     );
-    for field in store.held(FieldUse::ALL) {
+    for field in store.held(FieldInfo::any) {
         let bytes = gather(store, field, &[particle]);
         let values = match field.kind {
             FieldKind::Id => {

@@ -9,7 +9,8 @@ use std::path::Path;
 use crate::comm::Comm;
 use crate::model::{Case, SphForm};
 use crate::particles::{
-    FIELDS, FieldId, FieldInfo, FieldKind, FieldUse, ParticleStore, TEMPERATURE, VON_MISES_STRESS,
+    FIELDS, FieldId, FieldInfo, FieldKind, Output, Owner, ParticleStore, TEMPERATURE,
+    VON_MISES_STRESS,
 };
 
 use super::h5::{Element, RowType, Writer};
@@ -93,11 +94,10 @@ pub fn quantities_of(case: &Case) -> Result<Vec<Quantity>, OutputError> {
 /// # Errors
 /// [`OutputError::UnknownField`] names all choices.
 pub fn quantities(names: &[String]) -> Result<Vec<Quantity>, OutputError> {
-    let allowed = FieldUse::SNAPSHOT;
     let mut chosen: Vec<Quantity> = Vec::new();
     let mut choices: Vec<Quantity> = FIELDS
         .iter()
-        .filter(|f| f.uses.meets(allowed) || f.uses.meets(FieldUse::ON_DEMAND))
+        .filter(|field| field.is_shown())
         .map(Quantity::Field)
         .collect();
     choices.extend([Quantity::VonMisesStress, Quantity::Temperature]);
@@ -112,7 +112,8 @@ pub fn quantities(names: &[String]) -> Result<Vec<Quantity>, OutputError> {
         }
     }
     for choice in choices {
-        let by_default = matches!(choice, Quantity::Field(field) if field.uses.meets(allowed));
+        let by_default =
+            matches!(choice, Quantity::Field(field) if field.output == Output::Default);
         let wanted = if names.is_empty() {
             by_default
         } else {
@@ -186,7 +187,7 @@ fn write_file(
 /// The quantities chosen, and which particles are frozen where any may be.
 fn with_frozen(store: &ParticleStore, chosen: &[Quantity]) -> impl Iterator<Item = Quantity> {
     let name = |quantity: &Quantity| quantity.name();
-    let missing = store.held(FieldUse::FREEZE).map(Quantity::Field);
+    let missing = store.held(Owner::FREEZE).map(Quantity::Field);
     let missing = missing.filter(move |field| !chosen.iter().any(|q| name(q) == name(field)));
     chosen.iter().copied().chain(missing)
 }

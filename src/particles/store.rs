@@ -4,7 +4,8 @@ use std::borrow::Cow;
 
 use rayon::prelude::*;
 
-use super::fields::{FIELDS, FieldInfo, FieldUse, ParticleStore};
+use super::columns::{FieldInfo, HaloPhase, Life, Owner, Select};
+use super::fields::{FIELDS, ParticleStore};
 
 /// Words of scratch memory for each particle when a store is reordered: so much of a particle's
 /// element moves at once.
@@ -95,24 +96,25 @@ impl ParticleStore {
         self.mass[i] + self.stress_mass.get(i).copied().unwrap_or_default()
     }
 
-    /// Gives up the fields of `uses`, which a case has no use for.
-    pub fn drop_fields(&mut self, uses: FieldUse) {
-        for field in with_use(uses) {
+    /// Gives up the fields that only the options `unused` of a case have use for.
+    pub fn drop_fields(&mut self, unused: Owner) {
+        self.unused |= unused;
+        let unused = self.unused;
+        for field in rows(unused).filter(|field| !field.is_held_without(unused)) {
             self.free_field(field.id);
         }
-        self.dropped = self.dropped.with(uses);
     }
 
-    /// Rows of the table that this store holds, with any of the given uses.
-    pub fn held(&self, uses: FieldUse) -> impl Iterator<Item = &'static FieldInfo> + use<> {
-        let dropped = self.dropped;
-        with_use(uses).filter(move |field| !field.uses.meets(dropped))
+    /// Rows of the table that this store holds and `which` takes.
+    pub fn held<S: Select>(&self, which: S) -> impl Iterator<Item = &'static FieldInfo> + use<S> {
+        let unused = self.unused;
+        rows(which).filter(move |field| field.is_held_without(unused))
     }
 
-    /// Bytes that a particle's fields of `uses` take in a message.
+    /// Bytes that a particle's fields of `which` take in a message.
     #[must_use]
-    pub fn bytes_per_particle(&self, uses: FieldUse) -> usize {
-        self.held(uses).map(|field| field.kind.bytes()).sum()
+    pub fn bytes_per_particle(&self, which: impl Select) -> usize {
+        self.held(which).map(|field| field.kind.bytes()).sum()
     }
 
     /// A field's values as bytes, zeros for a field that is not held.
@@ -131,7 +133,7 @@ impl ParticleStore {
     pub fn resize_owned(&mut self, owned: usize) {
         self.owned = owned;
         self.halo = 0;
-        for field in self.held(FieldUse::ALL) {
+        for field in self.held(FieldInfo::any) {
             self.resize_field(field.id, owned);
         }
     }
@@ -151,7 +153,7 @@ impl ParticleStore {
     pub fn append(&mut self, other: &Self) {
         let first = self.owned;
         self.resize_owned(first + other.owned);
-        for field in self.held(FieldUse::ALL) {
+        for field in self.held(FieldInfo::any) {
             let size = field.kind.bytes();
             let bytes = &mut self.bytes_mut(field.id)[first * size..];
             bytes.copy_from_slice(&other.bytes_or_zeros(field)[..other.owned * size]);
@@ -161,7 +163,7 @@ impl ParticleStore {
     /// Sets the number of halo particles.
     pub fn resize_halo(&mut self, halo: usize) {
         self.halo = halo;
-        for field in self.held(FieldUse::ANY_HALO) {
+        for field in self.held(HaloPhase::all()) {
             self.resize_field(field.id, self.owned + halo);
         }
     }
@@ -177,7 +179,7 @@ impl ParticleStore {
             "too little scratch"
         );
         self.resize_halo(0);
-        for field in self.held(FieldUse::ALL) {
+        for field in self.held(FieldInfo::any) {
             self.gather_field(field.id, order, scratch);
         }
         self.resize_owned(order.len());
@@ -195,7 +197,7 @@ impl ParticleStore {
         let staying = (left_u32..owned).filter(|i| gone.binary_search(i).is_err());
         moves.clear();
         moves.extend(holes.iter().copied().zip(staying));
-        for field in self.held(FieldUse::ALL) {
+        for field in self.held(FieldInfo::any) {
             let size = field.kind.bytes();
             let bytes = self.bytes_mut(field.id);
             for &(to, from) in moves.iter() {
@@ -206,9 +208,9 @@ impl ParticleStore {
         self.resize_owned(left);
     }
 
-    /// Appends to `buffer` the fields used for `uses` of the particles `indices`, field by field.
-    pub fn pack(&self, uses: FieldUse, indices: &[u32], buffer: &mut Vec<u8>) {
-        for field in self.held(uses) {
+    /// Appends to `buffer` the fields of `which` of the particles `indices`, field by field.
+    pub fn pack(&self, which: impl Select, indices: &[u32], buffer: &mut Vec<u8>) {
+        for field in self.held(which) {
             let size = field.kind.bytes();
             let bytes = self.bytes(field.id);
             buffer.reserve(indices.len() * size);
@@ -223,9 +225,9 @@ impl ParticleStore {
     ///
     /// # Panics
     /// If `bytes` is not exactly `count` particles of those fields.
-    pub fn unpack(&mut self, uses: FieldUse, first: usize, count: usize, bytes: &[u8]) {
+    pub fn unpack(&mut self, which: impl Select, first: usize, count: usize, bytes: &[u8]) {
         let mut at = 0;
-        for field in self.held(uses) {
+        for field in self.held(which) {
             let size = field.kind.bytes();
             self.bytes_mut(field.id)[first * size..(first + count) * size]
                 .copy_from_slice(&bytes[at..at + count * size]);
@@ -238,21 +240,21 @@ impl ParticleStore {
     /// step which reads it before it writes it shows. For tests and debugging.
     pub fn poison(&mut self) {
         for field in FIELDS {
-            if !field.uses.meets(FieldUse::STATE) {
+            if field.life != Life::State {
                 self.bytes_mut(field.id).fill(0xff);
             }
         }
     }
 }
 
-/// Rows of the table with any of the given uses.
-pub fn with_use(uses: FieldUse) -> impl Iterator<Item = &'static FieldInfo> {
-    FIELDS.iter().filter(move |field| field.uses.meets(uses))
+/// Rows of the table that `which` takes.
+pub fn rows<S: Select>(which: S) -> impl Iterator<Item = &'static FieldInfo> + use<S> {
+    FIELDS.iter().filter(move |field| which.takes(field))
 }
 
 /// Names that a snapshot can be asked for: fields of the table and what is derived from them.
 pub fn snapshot_names() -> impl Iterator<Item = &'static str> {
-    with_use(FieldUse::SNAPSHOT_OR_ON_DEMAND)
+    rows(FieldInfo::is_shown)
         .map(|field| field.name)
         .chain([VON_MISES_STRESS, TEMPERATURE])
 }
@@ -331,21 +333,16 @@ mod tests {
 
     #[test]
     fn a_store_has_no_trace_of_what_it_dropped() {
-        for uses in [
-            FieldUse::CONTACT,
-            FieldUse::LOADS,
-            FieldUse::XSPH,
-            FieldUse::OPTIONAL,
-        ] {
+        for unused in [Owner::CONTACT, Owner::LOADS, Owner::XSPH, Owner::all()] {
             let mut store = sentinel(4);
-            let message = store.bytes_per_particle(FieldUse::LEAVING);
-            store.drop_fields(FieldUse::BALSARA);
-            store.drop_fields(uses);
+            let message = store.bytes_per_particle(FieldInfo::leaves);
+            store.drop_fields(Owner::BALSARA);
+            store.drop_fields(unused);
             store.resize_owned(6);
             store.resize_halo(3);
             store.keep(&[2, 0], &mut [0; 2 * SCRATCH_WORDS]);
-            assert!(store.bytes_per_particle(FieldUse::LEAVING) < message);
-            for field in with_use(uses.with(FieldUse::BALSARA)) {
+            assert!(store.bytes_per_particle(FieldInfo::leaves) < message);
+            for field in rows(unused | Owner::BALSARA) {
                 assert!(store.bytes(field.id).is_empty(), "{}", field.name);
                 let zeros = store.bytes_or_zeros(field);
                 assert_eq!(*zeros, vec![0; 2 * field.kind.bytes()]);
@@ -354,32 +351,32 @@ mod tests {
     }
 
     #[test]
-    fn messages_carry_every_field_of_their_use() {
+    fn messages_carry_every_field_of_their_phase() {
+        assert_carried(FieldInfo::leaves);
+        for phase in HaloPhase::all() {
+            assert_carried(phase);
+        }
+    }
+
+    fn assert_carried(which: impl Select) {
         let source = sentinel(7);
-        for uses in [
-            FieldUse::LEAVING,
-            FieldUse::HALO_MOTION,
-            FieldUse::HALO_STRESS,
-            FieldUse::HALO_CONTACT,
-        ] {
-            let indices = [6, 2, 5];
-            let mut message = Vec::new();
-            source.pack(uses, &indices, &mut message);
-            assert_eq!(message.len(), 3 * source.bytes_per_particle(uses));
-            let mut target = ParticleStore::default();
-            target.resize_owned(5);
-            target.unpack(uses, 1, 3, &message);
-            for field in with_use(uses) {
-                let size = field.kind.bytes();
-                for (k, &old) in indices.iter().enumerate() {
-                    let old = old as usize;
-                    assert_eq!(
-                        target.bytes(field.id)[(1 + k) * size..(2 + k) * size],
-                        source.bytes(field.id)[old * size..(old + 1) * size],
-                        "{}",
-                        field.name
-                    );
-                }
+        let indices = [6, 2, 5];
+        let mut message = Vec::new();
+        source.pack(which, &indices, &mut message);
+        assert_eq!(message.len(), 3 * source.bytes_per_particle(which));
+        let mut target = ParticleStore::default();
+        target.resize_owned(5);
+        target.unpack(which, 1, 3, &message);
+        for field in rows(which) {
+            let size = field.kind.bytes();
+            for (k, &old) in indices.iter().enumerate() {
+                let old = old as usize;
+                assert_eq!(
+                    target.bytes(field.id)[(1 + k) * size..(2 + k) * size],
+                    source.bytes(field.id)[old * size..(old + 1) * size],
+                    "{}",
+                    field.name
+                );
             }
         }
     }

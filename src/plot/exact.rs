@@ -156,7 +156,7 @@ fn gas(part: &Part) -> Option<(f64, Gas)> {
         return None;
     };
     let inviscid = matches!(part.material.strength, Strength::None);
-    let ideal = eos.stiffening_pressure == 0.0 && part.material.spall.is_none();
+    let ideal = eos.stiffening_pressure == 0.0 && part.material.failure.is_none();
     let gas = Gas {
         density: part.density,
         velocity: part.body.velocity.x,
@@ -302,7 +302,7 @@ fn steps(load: &VelocityLoad) -> Result<Vec<(f64, Option<f64>)>, String> {
 }
 
 fn plate(part: &Part) -> Result<Plate, String> {
-    let fluid = matches!(part.material.strength, Strength::None) && part.material.spall.is_none();
+    let fluid = matches!(part.material.strength, Strength::None) && part.material.failure.is_none();
     let medium = Medium::of(part.material).filter(|_| fluid);
     let unknown = || {
         format!(

@@ -4,7 +4,7 @@ use super::sums::Sums;
 use crate::material::{LANES, Material, PointBatch};
 use crate::neighbours::{Cluster, Lists};
 use crate::numerics::lanes::F64x8;
-use crate::particles::{Image, Scatter};
+use crate::particles::{Image, MaterialPoints, Scatter};
 use crate::sph::momentum::StressRecord;
 
 /// Work for a particle apart from its neighbours, in neighbours of the pair sums: sort, list,
@@ -20,90 +20,26 @@ pub(super) struct MaterialUpdate<'a> {
     /// By group: whether it is a rigid body.
     rigid: &'a [bool],
     dt: f64,
-    body: &'a [u32],
-    /// Specific energy after the first half kick, and its last rate.
-    specific_energy: Scatter<'a, f64>,
-    heating: &'a [f64],
+    /// Specific energies are those after the first half kick.
+    points: MaterialPoints<'a>,
     stresses: Scatter<'a, StressRecord>,
-    density: Scatter<'a, f64>,
-    velocity_gradient: Scatter<'a, [f64; 9]>,
-    deviatoric_stress: Scatter<'a, [f64; 6]>,
-    plastic_strain: Scatter<'a, f64>,
-    pressure: Scatter<'a, f64>,
-    sound_speed: Scatter<'a, f64>,
-    work: Scatter<'a, u32>,
 }
-
-/// The fields that the update reads and writes, borrowed one by one so that a formulation may write
-/// others meanwhile.
-pub(super) struct PointFields<'a> {
-    pub body: &'a [u32],
-    pub specific_energy: &'a mut [f64],
-    pub heating: &'a [f64],
-    pub density: &'a mut [f64],
-    pub velocity_gradient: &'a mut [[f64; 9]],
-    pub deviatoric_stress: &'a mut [[f64; 6]],
-    pub plastic_strain: &'a mut [f64],
-    pub pressure: &'a mut [f64],
-    pub sound_speed: &'a mut [f64],
-    pub work: &'a mut [u32],
-}
-
-/// Borrows [`PointFields`] of a store.
-macro_rules! point_fields {
-    ($particles:expr) => {
-        $crate::sph::material_update::PointFields {
-            body: &$particles.body,
-            specific_energy: &mut $particles.specific_energy,
-            heating: &$particles.d_specific_energy_dt,
-            density: &mut $particles.density,
-            velocity_gradient: &mut $particles.velocity_gradient,
-            deviatoric_stress: &mut $particles.deviatoric_stress,
-            plastic_strain: &mut $particles.plastic_strain,
-            pressure: &mut $particles.pressure,
-            sound_speed: &mut $particles.sound_speed,
-            work: &mut $particles.work,
-        }
-    };
-}
-pub(super) use point_fields;
 
 impl<'a> MaterialUpdate<'a> {
     pub(super) fn new(
-        fields: PointFields<'a>,
+        points: MaterialPoints<'a>,
         sums: &'a mut Sums,
         lists: &'a Lists,
         dt: f64,
     ) -> Self {
-        let PointFields {
-            body,
-            specific_energy,
-            heating,
-            density,
-            velocity_gradient,
-            deviatoric_stress,
-            plastic_strain,
-            pressure,
-            sound_speed,
-            work,
-        } = fields;
         Self {
             images: lists.images(),
             materials: &sums.materials,
             material_of_body: &sums.material_of_body,
             rigid: &lists.groups.rigid,
             dt,
-            body,
-            specific_energy: Scatter::new(specific_energy),
-            heating,
+            points,
             stresses: Scatter::new(&mut sums.stresses),
-            density: Scatter::new(density),
-            velocity_gradient: Scatter::new(velocity_gradient),
-            deviatoric_stress: Scatter::new(deviatoric_stress),
-            plastic_strain: Scatter::new(plastic_strain),
-            pressure: Scatter::new(pressure),
-            sound_speed: Scatter::new(sound_speed),
-            work: Scatter::new(work),
         }
     }
 
@@ -148,20 +84,20 @@ impl<'a> MaterialUpdate<'a> {
     #[inline(always)]
     pub(super) fn heat(&self, i: usize, energy: f64) {
         // SAFETY: particle `i` belongs to one cluster alone, and this thread has the cluster.
-        unsafe { *self.specific_energy.slot(i) += energy };
+        unsafe { *self.points.specific_energy.slot(i) += energy };
     }
 
     /// Rate of the specific energy of particle `i` at the beginning of the step (W/kg).
     #[inline(always)]
     pub(super) fn heating(&self, i: usize) -> f64 {
-        self.heating[i]
+        self.points.heating[i]
     }
 
     /// The velocity gradient that the last step has left of particle `i`.
     #[inline(always)]
     pub(super) fn last_gradient(&self, i: usize) -> [f64; 9] {
         // SAFETY: particle `i` belongs to one cluster alone, and this thread has the cluster.
-        unsafe { *self.velocity_gradient.slot(i) }
+        unsafe { *self.points.velocity_gradient.slot(i) }
     }
 
     #[inline(always)]
@@ -187,7 +123,7 @@ impl<'a> MaterialUpdate<'a> {
             before.density[k] *= (1.0 - strain) / (1.0 + strain);
         }
         let places = &cluster.receivers;
-        let material = |k: usize| self.material_of_body[self.body[base[k]] as usize];
+        let material = |k: usize| self.material_of_body[self.points.body[base[k]] as usize];
         // Empty lanes cost as much as others.
         let work = neighbours * LANES / cluster.lanes;
         let work = OWN_WORK + u32::try_from(work).unwrap_or(u32::MAX / 2);
@@ -226,9 +162,9 @@ impl<'a> MaterialUpdate<'a> {
             let i = self.images[place as usize].base();
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
             unsafe {
-                *self.pressure.slot(i) = 0.0;
-                *self.sound_speed.slot(i) = 0.0;
-                *self.work.slot(i) = work;
+                *self.points.pressure.slot(i) = 0.0;
+                *self.points.sound_speed.slot(i) = 0.0;
+                *self.points.work.slot(i) = work;
             }
         }
     }
@@ -236,36 +172,11 @@ impl<'a> MaterialUpdate<'a> {
     /// The state of a cluster's particles, with the last velocity gradients.
     #[inline(always)]
     fn gather(&self, base: &[usize; LANES]) -> PointBatch {
-        let mut batch = PointBatch {
-            density: [0.0; LANES],
-            specific_energy: [0.0; LANES],
-            velocity_gradient: [[0.0; LANES]; 9],
-            deviatoric_stress: [[0.0; LANES]; 6],
-            plastic_strain: [0.0; LANES],
-            pressure: [0.0; LANES],
-            sound_speed: [0.0; LANES],
-        };
+        // SAFETY: these particles belong to this cluster alone, and this thread has the cluster.
+        let mut batch = unsafe { self.points.gather(base) };
         let half = 0.5 * self.dt;
         for (k, &i) in base.iter().enumerate() {
-            // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
-            let (e, rho, l, s, plastic) = unsafe {
-                (
-                    &*self.specific_energy.slot(i),
-                    &*self.density.slot(i),
-                    &*self.velocity_gradient.slot(i),
-                    &*self.deviatoric_stress.slot(i),
-                    &*self.plastic_strain.slot(i),
-                )
-            };
-            batch.density[k] = *rho;
-            for c in 0..9 {
-                batch.velocity_gradient[c][k] = l[c];
-            }
-            for c in 0..6 {
-                batch.deviatoric_stress[c][k] = s[c];
-            }
-            batch.plastic_strain[k] = *plastic;
-            batch.specific_energy[k] = *e + half * self.heating[i];
+            batch.specific_energy[k] += half * self.points.heating[i];
         }
         batch
     }
@@ -274,19 +185,12 @@ impl<'a> MaterialUpdate<'a> {
     fn store(&self, i: usize, k: usize, batch: &PointBatch, gradient: &[F64x8; 9], work: u32) {
         // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
         unsafe {
-            *self.density.slot(i) = batch.density[k];
-            let l = self.velocity_gradient.slot(i);
+            self.points.store(i, k, batch);
+            let l = self.points.velocity_gradient.slot(i);
             for c in 0..9 {
                 l[c] = gradient[c].0[k];
             }
-            let s = self.deviatoric_stress.slot(i);
-            for c in 0..6 {
-                s[c] = batch.deviatoric_stress[c][k];
-            }
-            *self.plastic_strain.slot(i) = batch.plastic_strain[k];
-            *self.pressure.slot(i) = batch.pressure[k];
-            *self.sound_speed.slot(i) = batch.sound_speed[k];
-            *self.work.slot(i) = work;
+            *self.points.work.slot(i) = work;
         }
     }
 }

@@ -5,13 +5,13 @@
 //! and energy would be lost in each step, and its state, which is out of range, would go on to act.
 //! So it takes part in nothing, the rest of the run is that of a removal to the last bit, and what
 //! it carried is booked in the same way. What is left of it in files is where it was and of what,
-//! the fields with [`FieldUse::REMAINS`]. All else of it, velocity and stress among it, is zero.
+//! the fields that are [`FieldInfo::kept`]. All else of it, velocity and stress among it, is zero.
 
 use crate::comm::Comm;
 use crate::diagnose::{Removed, RunState};
 use crate::loads::Loads;
 use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
-use crate::particles::{FieldUse, ParticleStore};
+use crate::particles::{FieldInfo, Owner, ParticleStore};
 
 /// Particles that this rank has frozen: they are in files, and in nothing else.
 #[derive(Debug, Default)]
@@ -35,11 +35,11 @@ impl Frozen {
     /// Keeps the owned particles `indices` for the files.
     pub(super) fn freeze(&mut self, particles: &ParticleStore, indices: &[u32]) {
         let mut remains = Vec::new();
-        particles.pack(FieldUse::REMAINS, indices, &mut remains);
+        particles.pack(FieldInfo::is_kept, indices, &mut remains);
         let (frozen, count) = (&mut self.0, indices.len());
         let first = frozen.owned();
         frozen.resize_owned(first + count);
-        frozen.unpack(FieldUse::REMAINS, first, count, &remains);
+        frozen.unpack(FieldInfo::is_kept, first, count, &remains);
         for mark in &mut frozen.frozen[first..] {
             *mark = 1;
         }
@@ -47,18 +47,14 @@ impl Frozen {
 
     /// Parts frozen particles from those that a checkpoint holds with them, whatever becomes of the
     /// next ones, gives up the fields `unused` and sizes all others. Collective.
-    pub(super) fn part(comm: &Comm, particles: &mut ParticleStore, unused: FieldUse) -> Self {
+    pub(super) fn part(comm: &Comm, particles: &mut ParticleStore, unused: Owner) -> Self {
         let marks = (0_u32..).zip(&particles.frozen);
         let mut leaving: Vec<u32> = marks
             .filter(|&(_, &frozen)| frozen != 0)
             .map(|(i, _)| i)
             .collect();
         let any = comm.any(!leaving.is_empty());
-        let unused = if any {
-            unused.without(FieldUse::FREEZE)
-        } else {
-            unused
-        };
+        let unused = if any { unused - Owner::FREEZE } else { unused };
         particles.drop_fields(unused);
         particles.resize_owned(particles.owned());
         let mut frozen = Self::default();

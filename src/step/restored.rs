@@ -4,7 +4,7 @@ use super::setup::SetupError;
 use super::simulation::Simulation;
 use crate::comm::Comm;
 use crate::diagnose::RunState;
-use crate::particles::{FieldInfo, FieldUse, ParticleStore};
+use crate::particles::{FieldInfo, Life, ParticleStore};
 
 /// Largest count: beyond it one more may be lost in a sum, or run over.
 const MOST: u64 = 1 << 53;
@@ -42,7 +42,7 @@ pub(super) fn require_own(
             store.load.iter().any(|&bits| !simulation.loads.knows(bits))
         }),
         ("it has numbers that are not finite", &|| {
-            store.held(FieldUse::STATE).any(|f| !is_finite(store, f))
+            store.held(Life::State).any(|f| !is_finite(store, f))
         }),
     ];
     let wrong = checks.iter().position(|(_, wrong)| wrong());

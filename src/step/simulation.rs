@@ -17,7 +17,7 @@ use crate::domain::{Halo, Partition, Slabs};
 use crate::loads::Loads;
 use crate::model::{Case, SphForm, TroublePolicy};
 use crate::neighbours::Lists;
-use crate::particles::{FieldUse, ParticleStore};
+use crate::particles::{HaloPhase, ParticleStore};
 use crate::sph::{Side, Sph, Step, with_formulation};
 
 /// Why a step failed; the same on all ranks.
@@ -197,7 +197,7 @@ impl Simulation {
             contact.connectivity.join(lists, particles);
             Connectivity::begin_labels(particles);
             while comm.any(contact.connectivity.spread_labels(particles)) {
-                halo.exchange(comm, particles, FieldUse::HALO_PARTS);
+                halo.exchange(comm, particles, HaloPhase::PARTS);
             }
             timers.lap(Phase::Neighbours);
         }
@@ -210,19 +210,19 @@ impl Simulation {
         timers.lap(Phase::Material);
         contact.measure(particles, lists, dt);
         timers.lap(Phase::ContactFractions);
-        let uses = contact.halo_of_forces();
-        halo.post(comm, particles, uses);
+        let phase = contact.halo_of_forces();
+        halo.post(comm, particles, phase);
         timers.lap(Phase::HaloStress);
         sph.forces(particles, lists, Side::Inner);
         timers.lap(Phase::Momentum);
-        halo.finish(particles, uses);
+        halo.finish(particles, phase);
         timers.lap(Phase::HaloStress);
         sph.forces(particles, lists, Side::Outer);
         timers.lap(Phase::Momentum);
         if contact.table.has_friction() {
             contact.hold(particles, lists, dt);
             timers.lap(Phase::ContactForces);
-            halo.exchange(comm, particles, FieldUse::HALO_FRICTION);
+            halo.exchange(comm, particles, HaloPhase::FRICTION);
             timers.lap(Phase::HaloStress);
         }
         contact.forces(particles, lists, loads, dt);

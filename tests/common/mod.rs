@@ -137,5 +137,5 @@ pub fn make_elastic(case: &mut Case) {
     case.materials[0].strength = Strength::Elastic(Elastic {
         shear_modulus: 28.6e9,
     });
-    case.materials[0].spall = None;
+    case.materials[0].failure.spall = None;
 }

@@ -7,7 +7,7 @@ use whipple::comm::Comm;
 use whipple::model::{
     Case, ContactDirection, ContactMode, Overlap, Resistance, SmoothingLength, SphForm,
 };
-use whipple::particles::{FieldUse, with_use};
+use whipple::particles::{FieldInfo, Life, rows as fields};
 use whipple::step::Simulation;
 
 use super::sphere_on_plate;
@@ -32,12 +32,11 @@ pub fn rows(simulation: &Simulation) -> BTreeMap<u64, Vec<u8>> {
     for slot in 0..store.owned() {
         let row: &mut Vec<u8> = rows.entry(store.id[slot]).or_default();
         assert!(row.is_empty(), "an id twice");
-        for uses in [FieldUse::STATE, FieldUse::SNAPSHOT, FieldUse::ON_DEMAND] {
-            for field in with_use(uses) {
-                let size = field.kind.bytes();
-                let bytes = store.bytes_or_zeros(field);
-                row.extend_from_slice(&bytes[slot * size..(slot + 1) * size]);
-            }
+        let seen = |field: &FieldInfo| field.life == Life::State || field.is_shown();
+        for field in fields(seen) {
+            let size = field.kind.bytes();
+            let bytes = store.bytes_or_zeros(field);
+            row.extend_from_slice(&bytes[slot * size..(slot + 1) * size]);
         }
     }
     rows

@@ -2,8 +2,8 @@
 
 use nalgebra::Matrix3;
 use whipple::material::{
-    Eos, IdealGas, LANES, Linear, LinearForm, Material, MieGruneisen, PointBatch, Strength, Tait,
-    Tillotson,
+    Eos, Failure, IdealGas, LANES, Linear, LinearForm, Material, MieGruneisen, PointBatch,
+    Strength, Tait, Tillotson,
 };
 
 /// A material at rest, without spall or heat.
@@ -14,7 +14,7 @@ pub fn material(reference_density: f64, eos: Eos, strength: Strength) -> Materia
         reference_density,
         eos,
         strength,
-        spall: None,
+        failure: Failure::NONE,
         thermal: None,
     }
 }
@@ -83,11 +83,9 @@ pub fn batch(density: f64, specific_energy: f64) -> PointBatch {
     PointBatch {
         density: [density; LANES],
         specific_energy: [specific_energy; LANES],
-        velocity_gradient: [[0.0; LANES]; 9],
-        deviatoric_stress: [[0.0; LANES]; 6],
-        plastic_strain: [0.0; LANES],
         pressure: [f64::NAN; LANES],
         sound_speed: [f64::NAN; LANES],
+        ..PointBatch::ZERO
     }
 }
 

@@ -107,100 +107,6 @@ optional_tables! {
         reference_pressure: Option<Placed<Pressure>>,
     }
 
-    /// `strength`: exactly one of these.
-    StrengthParams {
-        /// Newtonian fluid.
-        viscous: Option<ViscousParams>,
-        /// Linear elastic.
-        elastic: Option<ElasticParams>,
-        /// Rubber.
-        neo_hookean: Option<NeoHookeanParams>,
-        /// Elastic–plastic.
-        von_mises: Option<VonMisesParams>,
-        /// Johnson and Cook.
-        johnson_cook: Option<JohnsonCookParams>,
-        /// Steinberg and Guinan.
-        steinberg_guinan: Option<SteinbergGuinanParams>,
-    }
-
-    /// `strength.viscous`
-    ViscousParams {
-        /// Dynamic viscosity.
-        viscosity: Option<Placed<Viscosity>>,
-    }
-
-    /// `strength.neo_hookean`
-    NeoHookeanParams {
-        /// Shear modulus.
-        shear_modulus: Option<Placed<Pressure>>,
-    }
-
-    /// `strength.johnson_cook`
-    JohnsonCookParams {
-        /// Shear modulus.
-        shear_modulus: Option<Placed<Pressure>>,
-        /// Yield stress.
-        a: Option<Placed<Pressure>>,
-        /// Hardening coefficient.
-        b: Option<Placed<Pressure>>,
-        /// Hardening exponent.
-        n: Option<Spanned<f64>>,
-        /// Rate coefficient.
-        c: Option<Spanned<f64>>,
-        /// Exponent of thermal softening.
-        m: Option<Spanned<f64>>,
-        /// Reference strain rate.
-        reference_rate: Option<Placed<Rate>>,
-    }
-
-    /// `strength.steinberg_guinan`
-    SteinbergGuinanParams {
-        /// Shear modulus.
-        shear_modulus: Option<Placed<Pressure>>,
-        /// Yield stress.
-        yield_stress: Option<Placed<Pressure>>,
-        /// Largest yield stress by hardening.
-        max_yield_stress: Option<Placed<Pressure>>,
-        /// Hardening coefficient.
-        beta: Option<Spanned<f64>>,
-        /// Hardening exponent.
-        n: Option<Spanned<f64>>,
-        /// Initial plastic strain.
-        initial_strain: Option<Spanned<f64>>,
-        /// G′p/G₀.
-        pressure_coefficient: Option<Placed<PerPressure>>,
-        /// −G′T/G₀.
-        temperature_coefficient: Option<Placed<PerTemperature>>,
-        /// Melting temperature of the fit.
-        melting_temperature: Option<Placed<Temperature>>,
-        /// Grüneisen parameter in the melting law.
-        gamma0: Option<Spanned<f64>>,
-        /// Its volume correction.
-        a: Option<Spanned<f64>>,
-    }
-
-    /// `strength.elastic`
-    ElasticParams {
-        /// Shear modulus.
-        shear_modulus: Option<Placed<Pressure>>,
-    }
-
-    /// `strength.von_mises`
-    VonMisesParams {
-        /// Shear modulus.
-        shear_modulus: Option<Placed<Pressure>>,
-        /// Yield stress.
-        yield_stress: Option<Placed<Pressure>>,
-        /// Hardening modulus.
-        hardening_modulus: Option<Placed<Pressure>>,
-    }
-
-    /// `spall`
-    SpallParams {
-        /// Lowest pressure.
-        pressure: Option<Placed<Pressure>>,
-    }
-
     /// `thermal`
     ThermalParams {
         /// Specific heat.
@@ -211,3 +117,119 @@ optional_tables! {
         melting_temperature: Option<Placed<Temperature>>,
     }
 }
+
+/// Passes the laws of strength to the macro `$then`: key, table, the law that it makes, and keys and
+/// values of its constants, with their range and what they are if neither the table nor the library
+/// says. A shear modulus may be that of the library's law, whichever that is.
+macro_rules! strength_laws {
+    ($then:ident) => {
+        $then! {
+            /// `strength.viscous`: Newtonian fluid.
+            viscous: ViscousParams => Viscous {
+                /// Dynamic viscosity.
+                viscosity: Placed<Viscosity>, Positive;
+            }
+            /// `strength.elastic`: linear elastic.
+            elastic: ElasticParams => Elastic {
+                /// Shear modulus.
+                shear_modulus: Placed<Pressure>, Positive;
+            }
+            /// `strength.neo_hookean`: rubber.
+            neo_hookean: NeoHookeanParams => NeoHookean {
+                /// Shear modulus.
+                shear_modulus: Placed<Pressure>, Positive;
+            }
+            /// `strength.von_mises`: elastic–plastic.
+            von_mises: VonMisesParams => VonMises {
+                /// Shear modulus.
+                shear_modulus: Placed<Pressure>, Positive;
+                /// Yield stress.
+                yield_stress: Placed<Pressure>, NotNegative;
+                /// Hardening modulus.
+                hardening_modulus: Placed<Pressure>, NotNegative, or 0.0;
+            }
+            /// `strength.johnson_cook`: Johnson and Cook.
+            johnson_cook: JohnsonCookParams => JohnsonCook {
+                /// Shear modulus.
+                shear_modulus: Placed<Pressure>, Positive;
+                /// Yield stress.
+                a: Placed<Pressure>, NotNegative;
+                /// Hardening coefficient.
+                b: Placed<Pressure>, NotNegative;
+                /// Hardening exponent.
+                n: Spanned<f64>, UpToOne;
+                /// Rate coefficient.
+                c: Spanned<f64>, NotNegative;
+                /// Exponent of thermal softening.
+                m: Spanned<f64>, Positive;
+                /// Reference strain rate.
+                reference_rate: Placed<Rate>, Positive, or 1.0;
+            }
+            /// `strength.steinberg_guinan`: Steinberg and Guinan.
+            steinberg_guinan: SteinbergGuinanParams => SteinbergGuinan {
+                /// Shear modulus.
+                shear_modulus: Placed<Pressure>, Positive;
+                /// Yield stress.
+                yield_stress: Placed<Pressure>, NotNegative;
+                /// Largest yield stress by hardening.
+                max_yield_stress: Placed<Pressure>, NotNegative;
+                /// Hardening coefficient.
+                beta: Spanned<f64>, NotNegative;
+                /// Hardening exponent.
+                n: Spanned<f64>, UpToOne;
+                /// Initial plastic strain.
+                initial_strain: Spanned<f64>, NotNegative, or 0.0;
+                /// G′p/G₀.
+                pressure_coefficient: Placed<PerPressure>, NotNegative;
+                /// −G′T/G₀.
+                temperature_coefficient: Placed<PerTemperature>, NotNegative;
+                /// Melting temperature of the fit.
+                melting_temperature: Placed<Temperature>, Positive;
+                /// Grüneisen parameter in the melting law.
+                gamma0: Spanned<f64>, NotNegative;
+                /// Its volume correction.
+                a: Spanned<f64>, NotNegative;
+            }
+        }
+    };
+}
+pub(in crate::input) use strength_laws;
+
+/// Passes the laws of failure to the macro `$then`, in the same form; each is a key of
+/// [`MaterialParams`].
+macro_rules! failure_laws {
+    ($then:ident) => {
+        $then! {
+            /// `spall`: largest tension.
+            spall: SpallParams => Spall {
+                /// Lowest pressure.
+                pressure: Placed<Pressure>, NotPositive;
+            }
+        }
+    };
+}
+pub(in crate::input) use failure_laws;
+
+macro_rules! law_tables {
+    ($(
+        $(#[$doc:meta])+ $law:ident: $table:ident => $made:ident {
+            $( $(#[$key_doc:meta])+ $key:ident: $value:ty, $allowed:ident $(, or $default:literal)?; )+
+        }
+    )+) => {
+        optional_tables! {
+            $( $(#[$doc])+ $table { $( $(#[$key_doc])+ $key: Option<$value>, )+ } )+
+        }
+    };
+}
+strength_laws!(law_tables);
+failure_laws!(law_tables);
+
+macro_rules! strength_table {
+    ($( $(#[$doc:meta])+ $law:ident: $table:ident => $made:ident { $($keys:tt)+ } )+) => {
+        optional_tables! {
+            /// `strength`: exactly one of these.
+            StrengthParams { $( $(#[$doc])+ $law: Option<$table>, )+ }
+        }
+    };
+}
+strength_laws!(strength_table);

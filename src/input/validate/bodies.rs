@@ -11,7 +11,7 @@ use crate::input::names;
 use crate::input::quantity::{Length, Velocity};
 use crate::input::schema::{BodyParams, LatticeName, Placed};
 use crate::input::source::Complaint;
-use crate::material::{Eos, Linear, LinearForm, Material, Strength};
+use crate::material::{Eos, Failure, Linear, LinearForm, Material, Strength};
 use crate::model::{Axis, Body, Lattice, LatticeKind, Motion, Shape, SymmetryPlane, Vec3};
 use crate::populate;
 
@@ -32,7 +32,7 @@ pub fn no_material() -> Material {
             form: LinearForm::Logarithmic,
         }),
         strength: Strength::None,
-        spall: None,
+        failure: Failure::NONE,
         thermal: None,
     }
 }

@@ -6,12 +6,12 @@ use toml::Spanned;
 
 use super::check::{Allowed, number, optional, required};
 use super::eos::eos;
-use super::strength::strength;
-use crate::input::forms::{Named, OrNone};
+use super::strength::{failure, strength};
+use crate::input::forms::Named;
 use crate::input::names;
-use crate::input::schema::{MaterialParams, SpallParams, ThermalParams};
+use crate::input::schema::{MaterialParams, ThermalParams};
 use crate::input::source::Complaint;
-use crate::material::{Eos, Material, Spall, Thermal, ThermalConstants, library};
+use crate::material::{Eos, Material, Thermal, ThermalConstants, library};
 
 /// Temperature of the reference state (K) where none is given.
 const ROOM: f64 = 300.0;
@@ -72,10 +72,7 @@ fn material(
         reference_density,
         eos,
         strength,
-        spall: match &params.spall {
-            Some(table) => spall(table)?,
-            None => base.and_then(|b| b.spall),
-        },
+        failure: failure(params, base.map(|b| &b.failure))?,
         thermal,
     };
     match (&params.strength, missing_heat(&material)) {
@@ -148,15 +145,4 @@ fn thermal(
         }
     };
     Ok(constants.map(|constants| Thermal::new(constants, reference_density, eos)))
-}
-
-fn spall(table: &Spanned<OrNone<SpallParams>>) -> Result<Option<Spall>, Complaint> {
-    let OrNone::Table(params) = table.get_ref() else {
-        return Ok(None);
-    };
-    let value = params.pressure.as_ref();
-    let at = table.span();
-    Ok(Some(Spall {
-        pressure: required(value, "pressure", None, Allowed::NotPositive, &at)?,
-    }))
 }

@@ -8,7 +8,7 @@ mod impact;
 mod metals;
 mod paper;
 
-use super::{Eos, Material, Strength, Thermal, ThermalConstants};
+use super::{Eos, Failure, Material, Strength, Thermal, ThermalConstants};
 
 /// One material of the library.
 struct Record {
@@ -61,7 +61,7 @@ pub fn find(name: &str) -> Option<Material> {
             thermal: parts.thermal.map(heat),
             eos: parts.eos,
             strength: parts.strength,
-            spall: None,
+            failure: Failure::NONE,
         }
     })
 }

@@ -8,9 +8,9 @@ use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Lists};
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
-use crate::particles::ParticleStore;
+use crate::particles::{ParticleStore, material_points};
 use crate::sph::gradient::VelocityGradient;
-use crate::sph::material_update::{MaterialUpdate, point_fields};
+use crate::sph::material_update::MaterialUpdate;
 use crate::sph::neighbourhood::Sources;
 use crate::sph::signal::{SignalSpeed, Signals};
 use crate::sph::sums::{Side, Step, Sums, sources, with_scale};
@@ -29,7 +29,7 @@ impl Formulation for Conventional {
     ) {
         let set = instructions();
         let scale = sums.scale;
-        let update = &MaterialUpdate::new(point_fields!(particles), sums, lists, step.dt);
+        let update = &MaterialUpdate::new(material_points!(particles), sums, lists, step.dt);
         let chunks = lists.chunks().par_iter().with_max_len(CHUNKS_AT_ONCE);
         with_scale!(scale, scale => chunks.for_each(|chunk| {
             set.run(GradientChunk { chunk, motion: sources(lists, scale), update });

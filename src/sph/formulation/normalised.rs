@@ -10,9 +10,9 @@ use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Lists};
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::Lanes;
-use crate::particles::{Image, ParticleStore, Scatter, resize};
+use crate::particles::{Image, ParticleStore, Scatter, resize, material_points};
 use crate::sph::GRAIN;
-use crate::sph::material_update::{MaterialUpdate, point_fields};
+use crate::sph::material_update::MaterialUpdate;
 use crate::sph::neighbourhood::Sources;
 use crate::sph::normalised::{Correction, NormalisedGradient, NormalisedRecord, stress_power};
 use crate::sph::options::NORMALISED;
@@ -43,7 +43,7 @@ impl Formulation for Normalised {
             shift: Scatter::new(&mut particles.gradient_shift),
             norm: Scatter::new(&mut particles.correction_norm),
         };
-        let update = &MaterialUpdate::new(point_fields!(particles), sums, lists, step.dt);
+        let update = &MaterialUpdate::new(material_points!(particles), sums, lists, step.dt);
         let chunks = lists.chunks().par_iter().with_max_len(CHUNKS_AT_ONCE);
         with_scale!(scale, scale => chunks.for_each(|chunk| {
             let motion = sources(lists, scale);

@@ -13,14 +13,18 @@
 //! before the rotation and half after it, which makes the step second order where strain and
 //! rotation come together.
 
-use crate::material::{LANES, Lanes, PointBatch};
+use super::{Conditions, LANES, PointBatch};
 use crate::numerics::vector::dot;
 
-/// Advances the deviatoric stress by `dt` (s) with shear moduli `g` (Pa).
+/// Hypoelasticity: advances the deviatoric stress of a batch by the step with its shear moduli.
 #[inline(always)]
-pub(super) fn advance(batch: &mut PointBatch, g: &Lanes, dt: f64) {
-    let l = &batch.velocity_gradient;
-    let s = &batch.deviatoric_stress;
+pub(super) fn deform(point: &mut PointBatch, now: &Conditions) {
+    let (g, dt) = (&now.shear_modulus, now.dt);
+    if dt == 0.0 {
+        return;
+    }
+    let l = &point.velocity_gradient;
+    let s = &point.deviatoric_stress;
     let mut new = [[0.0; LANES]; 6];
     for k in 0..LANES {
         let l_k = [
@@ -35,10 +39,10 @@ pub(super) fn advance(batch: &mut PointBatch, g: &Lanes, dt: f64) {
         new[4][k] = xz;
         new[5][k] = yz;
     }
-    batch.deviatoric_stress = new;
+    point.deviatoric_stress = new;
 }
 
-/// One point of [`advance`]: `l` row-major (1/s), `s` as `xx yy zz xy xz yz` (Pa).
+/// One point of [`deform`]: `l` row-major (1/s), `s` as `xx yy zz xy xz yz` (Pa).
 #[inline(always)]
 fn advance_point(l: &[f64; 9], s: &[f64; 6], g_dt: f64, dt: f64) -> [f64; 6] {
     let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = *l;

@@ -15,8 +15,8 @@
 //!
 //! `T_m0` is a constant of the fit, above the melting point at zero pressure.
 
-use super::{jaumann, radial_return};
-use crate::material::{LANES, Lanes, PointBatch, at_least, at_most};
+use super::{Conditions, Constants, Contradiction, LANES, Law, PointBatch, jaumann, radial_return};
+use crate::material::{at_least, at_most};
 
 /// Elastic–plastic with a shear modulus and a yield stress that follow pressure and temperature.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,59 +79,79 @@ impl SteinbergGuinan {
             [at_most(y, self.max_yield_stress), 0.0]
         }
     }
+}
 
-    /// Advances stress and plastic strain of a batch by `dt` (s); gives the shear moduli (Pa).
+impl Law for SteinbergGuinan {
+    const STATE: &'static [&'static str] = &["deviatoric_stress", "plastic_strain"];
+    const NEEDS_TEMPERATURE: bool = true;
+    const FOLLOWS_STATE: bool = true;
+
+    fn constants(&self) -> Constants {
+        vec![
+            ("shear_modulus", self.shear_modulus, "Pa"),
+            ("yield_stress", self.yield_stress, "Pa"),
+            ("max_yield_stress", self.max_yield_stress, "Pa"),
+            ("beta", self.beta, ""),
+            ("n", self.n, ""),
+            ("initial_strain", self.initial_strain, ""),
+            ("pressure_coefficient", self.pressure_coefficient, "1/Pa"),
+            (
+                "temperature_coefficient",
+                self.temperature_coefficient,
+                "1/K",
+            ),
+            ("melting_temperature", self.melting_temperature, "K"),
+            ("gamma0", self.gamma0, ""),
+            ("a", self.a, ""),
+        ]
+    }
+
+    fn contradiction(&self) -> Option<Contradiction> {
+        (self.max_yield_stress < self.yield_stress).then_some(Contradiction {
+            keys: &["max_yield_stress", "yield_stress"],
+            title: "`max_yield_stress` must not be below `yield_stress`",
+        })
+    }
+
+    fn shear_modulus(&self) -> f64 {
+        self.shear_modulus
+    }
+
+    /// Moduli, and the flow stress with them.
+    #[inline(never)]
+    fn soften(&self, point: &PointBatch, now: &mut Conditions) {
+        let reference = now.thermal.reference_temperature;
+        for k in 0..LANES {
+            let eta = point.density[k] / now.reference_density;
+            let g = self.stiffening(point.pressure[k], eta, now.temperature[k], reference);
+            now.softening[k] = g;
+            now.shear_modulus[k] = self.shear_modulus * g;
+        }
+    }
+
     #[inline(always)]
-    pub(in crate::material) fn update(
-        &self,
-        batch: &mut PointBatch,
-        dt: f64,
-        rho0: f64,
-        temperature: &Lanes,
-        reference_temperature: f64,
-    ) -> Lanes {
-        let g = self.stiffenings(batch, rho0, temperature, reference_temperature);
-        let mut modulus = [0.0; LANES];
-        for k in 0..LANES {
-            modulus[k] = self.shear_modulus * g[k];
-        }
-        if dt != 0.0 {
-            jaumann::advance(batch, &modulus, dt);
-            self.return_to_yield(batch, &g);
-        }
-        modulus
+    fn deform(&self, point: &mut PointBatch, now: &mut Conditions) {
+        jaumann::deform(point, now);
     }
 
+    /// Radial return, lane by lane: not for vectors, so it stays out of their loops.
     #[inline(never)]
-    fn stiffenings(
-        &self,
-        batch: &PointBatch,
-        rho0: f64,
-        temperature: &Lanes,
-        reference_temperature: f64,
-    ) -> Lanes {
-        let mut g = [0.0; LANES];
-        for k in 0..LANES {
-            let (eta, t) = (batch.density[k] / rho0, temperature[k]);
-            g[k] = self.stiffening(batch.pressure[k], eta, t, reference_temperature);
+    fn flow(&self, point: &mut PointBatch, now: &Conditions) {
+        if now.dt == 0.0 {
+            return;
         }
-        g
-    }
-
-    /// Radial return of a batch, lane by lane: not for vectors, so it stays out of their loops.
-    #[inline(never)]
-    fn return_to_yield(&self, batch: &mut PointBatch, g: &Lanes) {
         for k in 0..LANES {
-            if g[k] == 0.0 {
+            if now.shear_modulus[k] == 0.0 {
                 // Molten: no stress, and no measure of strain.
-                for component in &mut batch.deviatoric_stress {
+                for component in &mut point.deviatoric_stress {
                     component[k] = 0.0;
                 }
                 continue;
             }
-            let before = batch.plastic_strain[k];
-            radial_return::return_lane(batch, k, self.shear_modulus * g[k], |increment| {
-                self.hardened(before + increment).map(|y| y * g[k])
+            let before = point.plastic_strain[k];
+            radial_return::return_lane(point, k, now.shear_modulus[k], |increment| {
+                self.hardened(before + increment)
+                    .map(|y| y * now.softening[k])
             });
         }
     }

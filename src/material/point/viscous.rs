@@ -2,7 +2,7 @@
 //!
 //! L is that of the middle of the step, so that the stress lags half a step behind.
 
-use crate::material::{LANES, PointBatch};
+use super::{Conditions, Constants, LANES, Law, PointBatch};
 
 /// A Newtonian fluid.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,13 +11,23 @@ pub struct Viscous {
     pub viscosity: f64,
 }
 
-impl Viscous {
-    /// Sets the stress of a batch.
+impl Law for Viscous {
+    const STATE: &'static [&'static str] = &["deviatoric_stress"];
+
+    fn constants(&self) -> Constants {
+        vec![("viscosity", self.viscosity, "Pa s")]
+    }
+
+    fn viscosity(&self) -> f64 {
+        self.viscosity
+    }
+
+    /// Sets the stress, which is no state: also with a step of zero.
     #[inline(always)]
-    pub(in crate::material) fn update(self, batch: &mut PointBatch) {
+    fn deform(&self, point: &mut PointBatch, _now: &mut Conditions) {
         let two_eta = 2.0 * self.viscosity;
-        let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = &batch.velocity_gradient;
-        let s = &mut batch.deviatoric_stress;
+        let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = &point.velocity_gradient;
+        let s = &mut point.deviatoric_stress;
         for k in 0..LANES {
             let third = (xx[k] + yy[k] + zz[k]) * (1.0 / 3.0);
             s[0][k] = two_eta * (xx[k] - third);

@@ -5,8 +5,7 @@
 //! hardened yield surface exactly. Source: Wilkins (1964), *Calculation of elastic-plastic flow*,
 //! UCRL-7322; with hardening Simo & Hughes (1998), *Computational Inelasticity*, box 3.1.
 
-use super::jaumann;
-use crate::material::{LANES, PointBatch};
+use super::{Conditions, Constants, LANES, Law, PointBatch, jaumann};
 
 /// Elastic–plastic: elastic inside the von Mises cylinder, whose radius may grow with plastic
 /// strain.
@@ -20,27 +19,41 @@ pub struct VonMises {
     pub hardening_modulus: f64,
 }
 
-impl VonMises {
-    /// Advances stress and plastic strain of a batch by `dt` (s).
-    #[inline(always)]
-    pub(in crate::material) fn update(&self, batch: &mut PointBatch, dt: f64) {
-        if dt != 0.0 {
-            jaumann::advance(batch, &[self.shear_modulus; LANES], dt);
-            self.return_to_yield(batch);
-        }
+impl Law for VonMises {
+    const STATE: &'static [&'static str] = &["deviatoric_stress", "plastic_strain"];
+
+    fn constants(&self) -> Constants {
+        vec![
+            ("shear_modulus", self.shear_modulus, "Pa"),
+            ("yield_stress", self.yield_stress, "Pa"),
+            ("hardening_modulus", self.hardening_modulus, "Pa"),
+        ]
     }
 
-    /// Radial return of a batch.
+    fn shear_modulus(&self) -> f64 {
+        self.shear_modulus
+    }
+
     #[inline(always)]
-    fn return_to_yield(&self, batch: &mut PointBatch) {
+    fn deform(&self, point: &mut PointBatch, now: &mut Conditions) {
+        jaumann::deform(point, now);
+    }
+
+    /// Radial return.
+    #[inline(always)]
+    fn flow(&self, point: &mut PointBatch, now: &Conditions) {
+        if now.dt == 0.0 {
+            return;
+        }
         let three_g = 3.0 * self.shear_modulus;
-        let stiffness = three_g + self.hardening_modulus;
-        let s = &mut batch.deviatoric_stress;
+        let s = &mut point.deviatoric_stress;
         for k in 0..LANES {
             let diagonal = s[0][k] * s[0][k] + s[1][k] * s[1][k] + s[2][k] * s[2][k];
             let shear = s[3][k] * s[3][k] + s[4][k] * s[4][k] + s[5][k] * s[5][k];
             let q = (1.5 * (diagonal + 2.0 * shear)).sqrt();
-            let excess = q - (self.yield_stress + self.hardening_modulus * batch.plastic_strain[k]);
+            let (soft, before) = (now.softening[k], point.plastic_strain[k]);
+            let excess = q - soft * (self.yield_stress + self.hardening_modulus * before);
+            let stiffness = three_g + soft * self.hardening_modulus;
             let yields = excess > 0.0;
             let strain = if yields { excess / stiffness } else { 0.0 };
             let divisor = if yields { q } else { 1.0 };
@@ -48,7 +61,7 @@ impl VonMises {
             for component in s.iter_mut() {
                 component[k] *= scale;
             }
-            batch.plastic_strain[k] += strain;
+            point.plastic_strain[k] += strain;
         }
     }
 }

@@ -12,8 +12,8 @@
 //! Rates below the reference rate count as that rate, T* stays between 0 and 1 (molten: Y = 0). ε
 //! and ε̇ are those of the end of the step: the return solves for both at once.
 
-use super::{jaumann, radial_return};
-use crate::material::{LANES, Lanes, PointBatch, ThermalConstants};
+use super::{Conditions, Constants, LANES, Law, PointBatch, jaumann, radial_return};
+use crate::material::ThermalConstants;
 
 /// Elastic–plastic with strain hardening, strain rate hardening and thermal softening.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,7 +45,7 @@ impl JohnsonCook {
         thermal: &ThermalConstants,
     ) -> f64 {
         let softening = self.softening(temperature, thermal);
-        self.flow(strain, rate, softening)[0]
+        self.hardened(strain, rate, softening)[0]
     }
 
     /// `1 − T*^m`.
@@ -63,7 +63,7 @@ impl JohnsonCook {
 
     /// Y (Pa), and its derivatives by the strain (Pa) and by the logarithm of the rate (Pa).
     #[inline(always)]
-    fn flow(&self, strain: f64, rate: f64, softening: f64) -> [f64; 3] {
+    fn hardened(&self, strain: f64, rate: f64, softening: f64) -> [f64; 3] {
         let power = if strain > 0.0 {
             self.b * libm::pow(strain, self.n)
         } else {
@@ -78,35 +78,54 @@ impl JohnsonCook {
             [hard, slope, 0.0]
         }
     }
+}
 
-    /// Advances stress and plastic strain of a batch at these temperatures (K) by `dt` (s).
-    #[inline(always)]
-    pub(in crate::material) fn update(
-        &self,
-        batch: &mut PointBatch,
-        dt: f64,
-        temperature: &Lanes,
-        thermal: &ThermalConstants,
-    ) {
-        jaumann::advance(batch, &[self.shear_modulus; LANES], dt);
-        self.return_to_yield(batch, dt, temperature, thermal);
+impl Law for JohnsonCook {
+    const STATE: &'static [&'static str] = &["deviatoric_stress", "plastic_strain"];
+    const NEEDS_TEMPERATURE: bool = true;
+    const NEEDS_MELTING: bool = true;
+    const FOLLOWS_STATE: bool = true;
+
+    fn constants(&self) -> Constants {
+        vec![
+            ("shear_modulus", self.shear_modulus, "Pa"),
+            ("a", self.a, "Pa"),
+            ("b", self.b, "Pa"),
+            ("n", self.n, ""),
+            ("c", self.c, ""),
+            ("m", self.m, ""),
+            ("reference_rate", self.reference_rate, "1/s"),
+        ]
     }
 
-    /// Radial return of a batch, lane by lane: not for vectors, so it stays out of their loops.
+    fn shear_modulus(&self) -> f64 {
+        self.shear_modulus
+    }
+
+    /// Thermal softening, lane by lane.
     #[inline(never)]
-    fn return_to_yield(
-        &self,
-        batch: &mut PointBatch,
-        dt: f64,
-        temperature: &Lanes,
-        thermal: &ThermalConstants,
-    ) {
+    fn soften(&self, _point: &PointBatch, now: &mut Conditions) {
         for k in 0..LANES {
-            let before = batch.plastic_strain[k];
-            let softening = self.softening(temperature[k], thermal);
-            radial_return::return_lane(batch, k, self.shear_modulus, |increment| {
+            now.softening[k] = self.softening(now.temperature[k], &now.thermal);
+        }
+    }
+
+    #[inline(always)]
+    fn deform(&self, point: &mut PointBatch, now: &mut Conditions) {
+        jaumann::deform(point, now);
+    }
+
+    /// Radial return, lane by lane: not for vectors, so it stays out of their loops.
+    #[inline(never)]
+    fn flow(&self, point: &mut PointBatch, now: &Conditions) {
+        if now.dt == 0.0 {
+            return;
+        }
+        for k in 0..LANES {
+            let before = point.plastic_strain[k];
+            radial_return::return_lane(point, k, self.shear_modulus, |increment| {
                 let [y, by_strain, by_log] =
-                    self.flow(before + increment, increment / dt, softening);
+                    self.hardened(before + increment, increment / now.dt, now.softening[k]);
                 [y, by_strain + by_log / increment]
             });
         }

@@ -15,7 +15,7 @@
 //! size turns b̄ by a rotation), then reads S off again. A closed cycle of strain returns to no
 //! stress: the law has a potential, which the Jaumann rate has not.
 
-use crate::material::{LANES, Lanes, PointBatch};
+use super::{Conditions, Constants, LANES, Lanes, Law, PointBatch};
 use crate::numerics::vector::dot;
 
 /// Newton iterations for β, the same for all states; ten suffice for a stretch of six.
@@ -28,20 +28,29 @@ pub struct NeoHookean {
     pub shear_modulus: f64,
 }
 
-impl NeoHookean {
-    /// Advances the stress of a batch by `dt` (s); gives moduli whose 4/3 (Pa) is the shear part of
-    /// the fastest wave's.
+impl Law for NeoHookean {
+    const STATE: &'static [&'static str] = &["deviatoric_stress"];
+    const FOLLOWS_STATE: bool = true;
+
+    fn constants(&self) -> Constants {
+        vec![("shear_modulus", self.shear_modulus, "Pa")]
+    }
+
+    fn shear_modulus(&self) -> f64 {
+        self.shear_modulus
+    }
+
+    /// Advances the stress, and sets moduli whose 4/3 (Pa) is the shear part of the fastest wave's.
     ///
     /// The part of a wave along the principal direction of eigenvalue λ of b̄ is
     /// `(G/J) (5 tr b̄ − 3 λ)/9`; 1 in the place of λ bounds it within G/(3 J).
     #[inline(always)]
-    pub(in crate::material) fn update(self, batch: &mut PointBatch, dt: f64, rho0: f64) -> Lanes {
-        let g = self.shear_modulus;
-        let mut modulus = [0.0; LANES];
+    fn deform(&self, point: &mut PointBatch, now: &mut Conditions) {
+        let (g, dt) = (self.shear_modulus, now.dt);
         for k in 0..LANES {
-            let l: [f64; 9] = lane(&batch.velocity_gradient, k);
-            let s: [f64; 6] = lane(&batch.deviatoric_stress, k);
-            let volume = rho0 / batch.density[k];
+            let l: [f64; 9] = lane(&point.velocity_gradient, k);
+            let s: [f64; 6] = lane(&point.deviatoric_stress, k);
+            let volume = now.reference_density / point.density[k];
             let strain = 0.5 * dt * (l[0] + l[4] + l[8]);
             let before = volume * (1.0 - strain) / (1.0 + strain);
             let mut b = unimodular(&s, before / g);
@@ -50,12 +59,11 @@ impl NeoHookean {
                 let pressure = (b[0] + b[1] + b[2]) * (1.0 / 3.0);
                 for c in 0..6 {
                     let isotropic = if c < 3 { pressure } else { 0.0 };
-                    batch.deviatoric_stress[c][k] = (b[c] - isotropic) * (g / volume);
+                    point.deviatoric_stress[c][k] = (b[c] - isotropic) * (g / volume);
                 }
             }
-            modulus[k] = (5.0 * (b[0] + b[1] + b[2]) - 3.0) * (g / volume) * (1.0 / 12.0);
+            now.shear_modulus[k] = (5.0 * (b[0] + b[1] + b[2]) - 3.0) * (g / volume) * (1.0 / 12.0);
         }
-        modulus
     }
 }
 

@@ -5,7 +5,7 @@
 //! 1998, chapter 3). Y never falls with Δ, so that there is one root between zero and
 //! `(q − Y(0))/3G`.
 
-use crate::material::PointBatch;
+use super::PointBatch;
 
 /// Most evaluations of the flow stress; Newton's rule takes two to five, and one more where
 /// hardening begins with an infinite slope.

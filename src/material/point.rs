@@ -1,0 +1,75 @@
+//! The material point: its state, and the laws that act on it, in two tables.
+//!
+//! A law is a file that implements [`Law`]; its row here gives it a name and a key of the input,
+//! its rows in `input/schema/materials.rs` its constants.
+
+mod batch;
+mod elastic;
+mod jaumann;
+mod johnson_cook;
+mod law;
+mod neo_hookean;
+mod radial_return;
+mod spall;
+mod steinberg_guinan;
+mod viscous;
+mod von_mises;
+
+pub(crate) use batch::point_lanes;
+pub use batch::{LANES, Lanes, PointBatch, PointField};
+pub use elastic::Elastic;
+pub use johnson_cook::JohnsonCook;
+pub use law::{Conditions, Constants, Contradiction, Law};
+use law::{failure_laws, strength_laws};
+pub use neo_hookean::NeoHookean;
+pub use spall::Spall;
+pub use steinberg_guinan::SteinbergGuinan;
+pub use viscous::Viscous;
+pub use von_mises::VonMises;
+
+/// Passes the fields of a material point to the macro `$then`, after `$more`: name, kind and role of each. `Given`
+/// is taken from the particle, `State` is taken and written back, and `Answer` is written back.
+macro_rules! point_fields {
+    ($then:ident $($more:tt)*) => {
+        $then! {
+            $($more)*
+            /// Density at the end of the step (kg/m³).
+            density: Scalar, State;
+            /// Specific internal energy at the end of the step (J/kg).
+            specific_energy: Scalar, Given;
+            /// Velocity gradient at the middle of the step, row-major `L_ij = ∂v_i/∂x_j` (1/s).
+            velocity_gradient: Tensor, Given;
+            /// Deviatoric stress `xx yy zz xy xz yz`, tension positive (Pa).
+            deviatoric_stress: Symmetric, State;
+            /// Equivalent plastic strain.
+            plastic_strain: Scalar, State;
+            /// Pressure, compression positive (Pa).
+            pressure: Scalar, Answer;
+            /// Longitudinal sound speed (m/s).
+            sound_speed: Scalar, Answer;
+        }
+    };
+}
+pub(crate) use point_fields;
+
+// The key below `strength` in the input, and the law. A material has one of them.
+strength_laws! {
+    /// Newtonian fluid.
+    viscous: Viscous;
+    /// Linear elastic (hypoelastic with the Jaumann rate), without bound.
+    elastic: Elastic;
+    /// Neo-Hookean rubber (hyperelastic), without bound.
+    neo_hookean: NeoHookean;
+    /// Elastic–plastic with a von Mises yield stress and linear hardening.
+    von_mises: VonMises;
+    /// Elastic–plastic with the flow stress of Johnson and Cook.
+    johnson_cook: JohnsonCook;
+    /// Elastic–plastic with the moduli of Steinberg and Guinan.
+    steinberg_guinan: SteinbergGuinan;
+}
+
+// The key in the input, and the law. A material may have all of them; they act in this order.
+failure_laws! {
+    /// Largest tension.
+    spall: Spall;
+}

@@ -1,0 +1,89 @@
+//! The numbers that material points hold, eight points at a time.
+
+use super::point_fields;
+
+/// Points advanced together; a batch lane is one point.
+pub const LANES: usize = 8;
+
+/// One value for each point of a batch.
+pub type Lanes = [f64; LANES];
+
+/// What a batch holds of a field.
+macro_rules! point_lanes {
+    (Scalar) => {
+        $crate::material::Lanes
+    };
+    (Symmetric) => {
+        [$crate::material::Lanes; 6]
+    };
+    (Tensor) => {
+        [$crate::material::Lanes; 9]
+    };
+}
+pub(crate) use point_lanes;
+
+macro_rules! point_batch {
+    ($( $(#[doc = $doc:literal])+ $name:ident: $kind:ident, $role:ident; )+) => {
+        /// The state of [`LANES`] points before and after an update. Unused lanes repeat a valid
+        /// point.
+        #[derive(Debug, Clone, Copy)]
+        #[repr(align(64))]
+        pub struct PointBatch {
+            $( $(#[doc = $doc])+ pub $name: point_lanes!($kind), )+
+        }
+
+        impl PointBatch {
+            /// All numbers zero.
+            pub const ZERO: Self = Self { $( $name: <point_lanes!($kind)>::ZERO, )+ };
+        }
+    };
+}
+point_fields!(point_batch);
+
+/// The values of a batch in one field, one lane of them at a time.
+pub trait PointField {
+    /// What one point holds.
+    type Value;
+    /// Zeros.
+    const ZERO: Self;
+    /// The value of lane `k`.
+    fn lane(&self, k: usize) -> Self::Value;
+    /// Sets that of lane `k`.
+    fn set_lane(&mut self, k: usize, value: &Self::Value);
+}
+
+impl PointField for Lanes {
+    type Value = f64;
+    const ZERO: Self = [0.0; LANES];
+
+    #[inline(always)]
+    fn lane(&self, k: usize) -> f64 {
+        self[k]
+    }
+
+    #[inline(always)]
+    fn set_lane(&mut self, k: usize, value: &f64) {
+        self[k] = *value;
+    }
+}
+
+impl<const N: usize> PointField for [Lanes; N] {
+    type Value = [f64; N];
+    const ZERO: Self = [[0.0; LANES]; N];
+
+    #[inline(always)]
+    fn lane(&self, k: usize) -> [f64; N] {
+        let mut value = [0.0; N];
+        for c in 0..N {
+            value[c] = self[c][k];
+        }
+        value
+    }
+
+    #[inline(always)]
+    fn set_lane(&mut self, k: usize, value: &[f64; N]) {
+        for c in 0..N {
+            self[c][k] = value[c];
+        }
+    }
+}

@@ -1,0 +1,321 @@
+//! What a law of the material point is, and how those of a material act together.
+
+use super::{LANES, Lanes, PointBatch};
+use crate::material::ThermalConstants;
+
+/// Constants of a law by their keys in the input: value and SI unit (empty for a pure number).
+pub type Constants = Vec<(&'static str, f64, &'static str)>;
+
+/// Constants that cannot go together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Contradiction {
+    /// Keys at fault, the first one first.
+    pub keys: &'static [&'static str],
+    /// What is wrong with them.
+    pub title: &'static str,
+}
+
+/// One law of the material point: elasticity, yield, softening or failure, or several of them.
+///
+/// In an update each law acts in the stages that it implements. First the equation of state sets
+/// the pressure; then, each for all laws of the material, strength before failure:
+///
+/// 1. [`Law::limit_tension`], the largest tension,
+/// 2. [`Law::soften`], moduli and softening at the pressure, temperature and damage of the point,
+/// 3. [`Law::deform`], the stress of elastic deformation or of viscosity,
+/// 4. [`Law::flow`], return to the yield surface,
+/// 5. [`Law::fail`], damage.
+///
+/// At last the sound speed follows. With a step of zero no stage may change the state.
+pub trait Law {
+    /// Fields of the point that the law changes.
+    const STATE: &'static [&'static str];
+    /// Whether the law follows the temperature.
+    const NEEDS_TEMPERATURE: bool = false;
+    /// Whether the law needs the melting temperature of the thermal constants.
+    const NEEDS_MELTING: bool = false;
+    /// Whether what the law does follows density, temperature or damage. Such laws act in a function
+    /// of their own: inside that of the others they slow down those that have no need of them.
+    const FOLLOWS_STATE: bool = false;
+
+    /// Its constants, in the order of the input.
+    fn constants(&self) -> Constants;
+
+    /// What is wrong with constants that are each within their range.
+    fn contradiction(&self) -> Option<Contradiction> {
+        None
+    }
+
+    /// Elastic shear modulus G of the reference state (Pa); zero for a fluid.
+    fn shear_modulus(&self) -> f64 {
+        0.0
+    }
+
+    /// Dynamic viscosity (Pa s).
+    fn viscosity(&self) -> f64 {
+        0.0
+    }
+
+    /// Bounds the pressure.
+    #[inline(always)]
+    fn limit_tension(&self, _point: &mut PointBatch) {}
+
+    /// Sets moduli and softening.
+    #[inline(always)]
+    fn soften(&self, _point: &PointBatch, _now: &mut Conditions) {}
+
+    /// Advances the stress as if nothing yielded.
+    #[inline(always)]
+    fn deform(&self, _point: &mut PointBatch, _now: &mut Conditions) {}
+
+    /// Returns the stress to the yield surface.
+    #[inline(always)]
+    fn flow(&self, _point: &mut PointBatch, _now: &Conditions) {}
+
+    /// Advances damage.
+    #[inline(always)]
+    fn fail(&self, _point: &mut PointBatch, _now: &Conditions) {}
+}
+
+/// What the laws of an update have in common and tell each other.
+#[derive(Debug, Clone, Copy)]
+pub struct Conditions {
+    /// Step (s).
+    pub dt: f64,
+    /// Reference density ρ₀ (kg/m³).
+    pub reference_density: f64,
+    /// Temperatures (K), where a law follows them; those of the reference state without heat.
+    pub temperature: Lanes,
+    /// What temperatures are judged by.
+    pub thermal: ThermalConstants,
+    /// Shear moduli (Pa): at first those of the reference state.
+    pub shear_modulus: Lanes,
+    /// What is left of the flow stress: at first 1, all of it.
+    pub softening: Lanes,
+}
+
+impl Conditions {
+    /// Those of the reference state.
+    #[inline(always)]
+    pub(in crate::material) fn new(dt: f64, reference_density: f64, shear_modulus: f64) -> Self {
+        let thermal = ThermalConstants::ISOTHERMAL;
+        Self {
+            dt,
+            reference_density,
+            temperature: [thermal.reference_temperature; LANES],
+            thermal,
+            shear_modulus: [shear_modulus; LANES],
+            softening: [1.0; LANES],
+        }
+    }
+}
+
+/// Makes [`Strength`](super::Strength) of its table.
+macro_rules! strength_laws {
+    ($( $(#[doc = $doc:literal])+ $key:ident: $law:ident; )+) => {
+        /// The resistance of a material to shear.
+        #[derive(Debug, Clone, PartialEq)]
+        pub enum Strength {
+            /// No shear stress: a fluid.
+            None,
+            $( $(#[doc = $doc])+ $law($law), )+
+        }
+
+        impl Strength {
+            /// Elastic shear modulus G of the reference state (Pa); zero for a fluid.
+            #[inline(always)]
+            #[must_use]
+            pub fn shear_modulus(&self) -> f64 {
+                match self {
+                    Self::None => 0.0,
+                    $( Self::$law(law) => law.shear_modulus(), )+
+                }
+            }
+
+            /// Dynamic viscosity (Pa s); zero for all but a viscous fluid.
+            #[must_use]
+            pub fn viscosity(&self) -> f64 {
+                match self {
+                    Self::None => 0.0,
+                    $( Self::$law(law) => law.viscosity(), )+
+                }
+            }
+
+            /// Whether the law follows the temperature.
+            #[must_use]
+            pub fn needs_temperature(&self) -> bool {
+                match self {
+                    Self::None => false,
+                    $( Self::$law(_) => $law::NEEDS_TEMPERATURE, )+
+                }
+            }
+
+            /// Whether the law needs the melting temperature of the thermal constants.
+            #[must_use]
+            pub fn needs_melting(&self) -> bool {
+                match self {
+                    Self::None => false,
+                    $( Self::$law(_) => $law::NEEDS_MELTING, )+
+                }
+            }
+
+            /// Fields of the point that the law changes.
+            #[must_use]
+            pub fn state(&self) -> &'static [&'static str] {
+                match self {
+                    Self::None => &["deviatoric_stress"],
+                    $( Self::$law(_) => $law::STATE, )+
+                }
+            }
+
+            /// Key of the law in the input and its constants; nothing for a fluid.
+            #[must_use]
+            pub fn constants(&self) -> Option<(&'static str, Constants)> {
+                match self {
+                    Self::None => None,
+                    $( Self::$law(law) => Some((stringify!($key), law.constants())), )+
+                }
+            }
+
+            #[inline(always)]
+            pub(in crate::material) fn follows_state(&self) -> bool {
+                match self {
+                    Self::None => false,
+                    $( Self::$law(_) => $law::FOLLOWS_STATE, )+
+                }
+            }
+
+            /// Stages 2 to 4 of the law, and the second of `failure`. Without `ALL`, only of laws
+            /// that do not follow the state.
+            #[inline(always)]
+            pub(in crate::material) fn act<const ALL: bool>(
+                &self,
+                point: &mut PointBatch,
+                now: &mut Conditions,
+                failure: &Failure,
+            ) {
+                match self {
+                    Self::None => point.deviatoric_stress = [[0.0; LANES]; 6],
+                    $( Self::$law(law) if ALL || !$law::FOLLOWS_STATE => {
+                        law.soften(point, now);
+                        if ALL {
+                            failure.soften(point, now);
+                        }
+                        law.deform(point, now);
+                        law.flow(point, now);
+                    } )+
+                    #[allow(unreachable_patterns, reason = "if no law follows the state")]
+                    _ => {}
+                }
+            }
+        }
+    };
+}
+pub(super) use strength_laws;
+
+/// Makes [`Failure`](super::Failure) of its table.
+macro_rules! failure_laws {
+    ($( $(#[doc = $doc:literal])+ $key:ident: $law:ident; )+) => {
+        /// How a material fails.
+        #[derive(Debug, Clone, Copy, Default, PartialEq)]
+        pub struct Failure {
+            $( $(#[doc = $doc])+ pub $key: Option<$law>, )+
+        }
+
+        impl Failure {
+            /// Never.
+            pub const NONE: Self = Self { $( $key: None, )+ };
+
+            /// Whether the material never fails.
+            #[must_use]
+            pub fn is_none(&self) -> bool {
+                true $( && self.$key.is_none() )+
+            }
+
+            /// Fields of the point that the laws change.
+            pub fn state(&self) -> impl Iterator<Item = &'static str> {
+                let laws = [$( self.$key.as_ref().map_or(&[][..], |_| $law::STATE), )+];
+                laws.into_iter().flatten().copied()
+            }
+
+            /// Keys of the laws in the input and their constants.
+            #[must_use]
+            pub fn constants(&self) -> Vec<(&'static str, Constants)> {
+                let laws = [$( self.$key.map(|law| (stringify!($key), law.constants())), )+];
+                laws.into_iter().flatten().collect()
+            }
+
+            #[inline(always)]
+            pub(in crate::material) fn follows_state(&self) -> bool {
+                false $( || $law::FOLLOWS_STATE && self.$key.is_some() )+
+            }
+
+            /// Stage 1.
+            #[inline(always)]
+            pub(in crate::material) fn limit_tension(&self, point: &mut PointBatch) {
+                $( if let Some(law) = &self.$key {
+                    law.limit_tension(point);
+                } )+
+            }
+
+            /// Stage 2.
+            #[inline(always)]
+            fn soften(&self, point: &PointBatch, now: &mut Conditions) {
+                $( if let Some(law) = &self.$key {
+                    law.soften(point, now);
+                } )+
+            }
+
+            /// Stage 5.
+            #[inline(always)]
+            pub(in crate::material) fn fail(&self, point: &mut PointBatch, now: &Conditions) {
+                $( if let Some(law) = &self.$key {
+                    law.fail(point, now);
+                } )+
+            }
+        }
+    };
+}
+pub(super) use failure_laws;
+
+#[cfg(test)]
+mod tests {
+    use crate::material::point::point_fields;
+    use crate::material::{LANES, PointBatch, Spall, library};
+
+    macro_rules! values {
+        ($( $(#[doc = $doc:literal])+ $name:ident: $kind:ident, $role:ident; )+) => {
+            /// Names, roles and exact values of all fields.
+            fn values(point: &PointBatch) -> Vec<(&'static str, &'static str, String)> {
+                vec![$( (stringify!($name), stringify!($role), format!("{:?}", point.$name)), )+]
+            }
+        };
+    }
+    point_fields!(values);
+
+    /// The laws of each material of the library change the state that they name, and no other.
+    #[test]
+    fn laws_change_the_state_that_they_name() {
+        for name in library::names() {
+            let mut material = library::find(name).unwrap();
+            material.failure.spall = Some(Spall { pressure: -1e6 });
+            let ramp = |c: u8, middle: f64| f64::from(c) - middle;
+            let mut point = PointBatch {
+                density: [0.99 * material.reference_density; LANES],
+                velocity_gradient: [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|c| [1e4 * ramp(c, 3.5); LANES]),
+                deviatoric_stress: [0, 1, 2, 3, 4, 5].map(|c| [1e5 * ramp(c, 1.5); LANES]),
+                plastic_strain: [0.01; LANES],
+                ..PointBatch::ZERO
+            };
+            let before = values(&point);
+            material.update(&mut point, 1e-5);
+            let after = values(&point);
+            let changed = before.iter().zip(&after).filter(|(a, b)| a != b);
+            let changed = changed.filter(|((_, role, _), _)| *role != "Answer");
+            let changed: Vec<&str> = changed.map(|((name, _, _), _)| *name).collect();
+            let mut named = material.strength.state().to_vec();
+            named.extend(material.failure.state());
+            assert_eq!(changed, named, "{name}");
+        }
+    }
+}

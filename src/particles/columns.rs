@@ -1,0 +1,283 @@
+//! The columns of the table of fields, and how a walk chooses rows by them.
+
+use bitflags::bitflags;
+
+use super::fields::FieldId;
+
+/// What one particle holds in a field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FieldKind {
+    /// One `f64`.
+    Scalar,
+    /// Three `f64`: x, y, z.
+    Vector,
+    /// Six `f64`: xx, yy, zz, xy, xz, yz.
+    Symmetric,
+    /// Nine `f64`, row-major.
+    Tensor,
+    /// One `u64`.
+    Id,
+    /// One `u32`.
+    Index,
+}
+
+impl FieldKind {
+    /// Numbers per particle.
+    #[must_use]
+    pub const fn components(self) -> usize {
+        match self {
+            Self::Scalar | Self::Id | Self::Index => 1,
+            Self::Vector => 3,
+            Self::Symmetric => 6,
+            Self::Tensor => 9,
+        }
+    }
+
+    /// Bytes per particle.
+    #[must_use]
+    pub const fn bytes(self) -> usize {
+        match self {
+            Self::Index => 4,
+            _ => 8 * self.components(),
+        }
+    }
+
+    /// Whether the numbers are `f64`.
+    #[must_use]
+    pub const fn is_real(self) -> bool {
+        !matches!(self, Self::Id | Self::Index)
+    }
+
+    /// The mirror rule of a row that says nothing else.
+    pub(super) const fn mirror(self) -> Mirror {
+        match self {
+            Self::Scalar | Self::Id | Self::Index => Mirror::Same,
+            Self::Vector => Mirror::Vector,
+            Self::Symmetric => Mirror::Symmetric,
+            Self::Tensor => Mirror::Tensor,
+        }
+    }
+}
+
+/// What becomes of a value behind a symmetry plane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mirror {
+    /// It stays.
+    Same,
+    /// A place: its image is as far behind the plane.
+    Place,
+    /// The component normal to the plane changes its sign.
+    Vector,
+    /// Components with one index normal to the plane change their sign.
+    Symmetric,
+    /// The same of a tensor of nine components.
+    Tensor,
+}
+
+/// From when to when a value lives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Life {
+    /// A step reads it before it writes it: in checkpoints, and moved between ranks.
+    State,
+    /// Alive while particles change ranks within a step: moved between ranks.
+    Migrated,
+    /// Written by a step before it is read.
+    Scratch,
+}
+
+/// What snapshots do with a field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Output {
+    /// In snapshots by default.
+    Default,
+    /// In snapshots if `output.fields` names it.
+    OnDemand,
+    /// In no snapshot.
+    Never,
+}
+
+bitflags! {
+    /// The messages in which halo particles get a field: a set.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub struct HaloPhase: u8 {
+        /// Before the neighbour search and the velocity gradient.
+        const MOTION = 1;
+        /// Before the forces.
+        const STRESS = 1 << 1;
+        /// Before the contact forces.
+        const CONTACT = 1 << 2;
+        /// Before the contact forces, if these have friction.
+        const FRICTION = 1 << 3;
+        /// When parts are told.
+        const PARTS = 1 << 4;
+        /// Whatever is needed before forces of stress and contact, in one message.
+        const FORCES = Self::STRESS.bits() | Self::CONTACT.bits();
+    }
+
+    /// The options of a case that have use for a field: a set, empty for a field of every case.
+    #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+    pub struct Owner: u16 {
+        /// Contact beyond the SPH sums.
+        const CONTACT = 1;
+        /// The Balsara switch.
+        const BALSARA = 1 << 1;
+        /// Artificial conduction.
+        const CONDUCTION = 1 << 2;
+        /// XSPH.
+        const XSPH = 1 << 3;
+        /// Loads or rigid bodies that prescribe velocities.
+        const LOADS = 1 << 4;
+        /// Friction or damping between bodies in contact.
+        const FRICTION = 1 << 5;
+        /// The normalised form of the sums.
+        const NORMALISED = 1 << 6;
+        /// `penalty` contact.
+        const PENALTY = 1 << 7;
+        /// Friction or damping of rigid surfaces.
+        const SURFACE_FRICTION = 1 << 8;
+        /// Self-contact.
+        const SELF_CONTACT = 1 << 9;
+        /// Self-contact of folds.
+        const FOLDS = 1 << 10;
+        /// Freezing of particles in trouble.
+        const FREEZE = 1 << 11;
+        /// Stress points, which carry the stress.
+        const STRESS_POINTS = 1 << 12;
+    }
+}
+
+/// One row of the table.
+#[derive(Debug, Clone, Copy)]
+pub struct FieldInfo {
+    /// Which field.
+    pub id: FieldId,
+    /// Its name in the store, in files and on the command line.
+    pub name: &'static str,
+    /// Type.
+    pub kind: FieldKind,
+    /// What becomes of it behind a symmetry plane.
+    pub mirror: Mirror,
+    /// SI unit; empty for none.
+    pub unit: &'static str,
+    /// One sentence for users.
+    pub description: &'static str,
+    /// From when to when its values live.
+    pub life: Life,
+    /// When halo particles get it.
+    pub halo: HaloPhase,
+    /// What snapshots do with it.
+    pub output: Output,
+    /// Options that have use for it; empty for a field of every case.
+    pub owner: Owner,
+    /// Whether a frozen particle keeps it; all else of that is zero.
+    pub kept: bool,
+}
+
+impl FieldInfo {
+    /// Whether a particle takes it along to another rank.
+    #[must_use]
+    pub const fn leaves(&self) -> bool {
+        !matches!(self.life, Life::Scratch)
+    }
+
+    /// Whether a frozen particle keeps it.
+    #[must_use]
+    pub const fn is_kept(&self) -> bool {
+        self.kept
+    }
+
+    /// Whether it is in snapshots, by default or on demand.
+    #[must_use]
+    pub const fn is_shown(&self) -> bool {
+        !matches!(self.output, Output::Never)
+    }
+
+    /// Whether only some cases have use for it.
+    #[must_use]
+    pub const fn is_optional(&self) -> bool {
+        !self.owner.is_empty()
+    }
+
+    /// Whether a case without the options `unused` has use for it.
+    #[must_use]
+    pub const fn is_held_without(&self, unused: Owner) -> bool {
+        self.owner.is_empty() || !unused.contains(self.owner)
+    }
+
+    /// Every field.
+    #[must_use]
+    pub const fn any(&self) -> bool {
+        true
+    }
+
+    /// Refuses, as the table is compiled, columns that contradict each other.
+    pub(super) const fn check(&self) {
+        assert!(
+            self.mirror as u8 == self.kind.mirror() as u8
+                || matches!(self.mirror, Mirror::Same)
+                || matches!((self.mirror, self.kind), (Mirror::Place, FieldKind::Vector)),
+            "a mirror rule of another kind"
+        );
+        assert!(
+            !self.kept || matches!(self.life, Life::State) && self.owner.is_empty(),
+            "what a frozen particle keeps is state in every case"
+        );
+        assert!(
+            !self.halo.intersects(HaloPhase::CONTACT)
+                || Owner::CONTACT
+                    .union(Owner::FRICTION)
+                    .union(Owner::PENALTY)
+                    .contains(self.owner)
+                    && !self.owner.is_empty(),
+            "the contact message is sent only where there is contact"
+        );
+        assert!(
+            !self.halo.intersects(HaloPhase::FRICTION)
+                || self.owner.bits() == Owner::FRICTION.bits(),
+            "the message of friction is sent only where there is friction"
+        );
+        assert!(
+            !self.halo.intersects(HaloPhase::PARTS)
+                || self.owner.bits() == Owner::SELF_CONTACT.bits()
+                    && self.halo.contains(HaloPhase::MOTION),
+            "parts are told again only with self-contact, to particles that know them"
+        );
+    }
+}
+
+/// Which rows of the table a walk takes: a value of a column, a set of which a row has any, or
+/// a question to the row ([`FieldInfo::leaves`]).
+pub trait Select: Copy {
+    /// Whether the walk takes this row.
+    fn takes(self, field: &FieldInfo) -> bool;
+}
+
+impl Select for Life {
+    fn takes(self, field: &FieldInfo) -> bool {
+        field.life == self
+    }
+}
+
+impl Select for Output {
+    fn takes(self, field: &FieldInfo) -> bool {
+        field.output == self
+    }
+}
+
+impl Select for HaloPhase {
+    fn takes(self, field: &FieldInfo) -> bool {
+        field.halo.intersects(self)
+    }
+}
+
+impl Select for Owner {
+    fn takes(self, field: &FieldInfo) -> bool {
+        field.owner.intersects(self)
+    }
+}
+
+impl<Q: Fn(&FieldInfo) -> bool + Copy> Select for Q {
+    fn takes(self, field: &FieldInfo) -> bool {
+        self(field)
+    }
+}
