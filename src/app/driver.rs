@@ -4,7 +4,6 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-use super::fault::Fault;
 use super::launch::Launch;
 use super::progress::Progress;
 use super::report::{self, Tables, seconds, summary};
@@ -34,7 +33,6 @@ pub struct Driver<'a> {
     /// Seconds from the start of MPI to the first step, but for what is written before it.
     set_up: f64,
     watch: Watch,
-    fault: Option<Fault>,
     quantities: Vec<Quantity>,
     rows: Rows,
     tables: Option<Tables>,
@@ -86,7 +84,6 @@ impl<'a> Driver<'a> {
             start: launch.start,
             set_up,
             watch: Watch::new(launch.signals.clone(), stop, launch.start, args.walltime),
-            fault: Fault::of_rank(comm.rank()),
             quantities,
             rows: Rows::default(),
             tables,
@@ -143,9 +140,12 @@ impl<'a> Driver<'a> {
             }
             STEP.store(self.simulation.state.step + 1, Ordering::Relaxed);
             self.simulation.wishes = self.watch.wishes();
-            if let Some(fault) = self.fault {
-                fault.strike(&mut self.simulation, &self.folder.checkpoints());
-            }
+            #[cfg(feature = "fault-injection")]
+            super::fault::strike(
+                comm.rank(),
+                &mut self.simulation,
+                &self.folder.checkpoints(),
+            );
             let before = self.simulation.state.time;
             if let Err(error) = self.simulation.advance(comm) {
                 self.meet_trouble(comm, error)?;

@@ -4,6 +4,7 @@ mod bench;
 mod check;
 pub mod compare;
 mod driver;
+#[cfg(feature = "fault-injection")]
 mod fault;
 pub mod info;
 mod launch;
