@@ -9,7 +9,7 @@ SHELL := bash
 # The environment of every build and launch: Open MPI's settings, HDF5_DIR.
 ENV := source jobs/env.sh;
 VENV := target/venv
-# Tests put faults into the program (src/app/fault.rs); `make release` builds what users get, without.
+# Tests put faults into the program (src/run/fault.rs); `make release` builds what users get, without.
 TESTED := --locked --features fault-injection
 
 help: ## Say what each target does

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs the tests and ends with what ran: with cargo-nextest where it is installed, else with
 # plain cargo and a summary of our own. `make test` calls it in the environment of jobs/env.sh. The
-# feature lets tests put faults into the program (src/app/fault.rs), which a user's has not.
+# feature lets tests put faults into the program (src/run/fault.rs), which a user's has not.
 #
 #   jobs/cargo-test.sh [--ignored]      --ignored: only the slow tests
 set -euo pipefail

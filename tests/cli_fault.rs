@@ -49,7 +49,7 @@ fn a_panic_on_one_rank_ends_all() {
         let ended = end(command.args(["--threads", threads]));
         assert_eq!(ended.code, Some(101), "{ended:#?}");
         let line = only_line(&ended);
-        let begin = format!("error: rank {rank}, step 20: a panic on purpose (src/app/fault.rs:");
+        let begin = format!("error: rank {rank}, step 20: a panic on purpose (src/run/fault.rs:");
         assert!(line.starts_with(&begin), "{line}");
         assert_eq!(ended.stdout.lines().count(), 1, "{ended:#?}");
         // A crash has no time to write a status; what a chain reads is that nothing is finished.

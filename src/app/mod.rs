@@ -3,22 +3,12 @@
 mod bench;
 mod check;
 pub mod compare;
-mod driver;
-#[cfg(feature = "fault-injection")]
-mod fault;
 pub mod info;
-mod launch;
 mod materials;
-mod memory;
 pub mod plot;
-mod progress;
-mod report;
 mod restart;
 pub mod results;
 mod run;
-mod saved_case;
-mod say;
-mod stop;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -26,15 +16,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use crate::model::readable::is_printable;
-
-/// The run failed.
-pub const EXIT_FAILED: u8 = 1;
-/// The case, an option or a file that the user named is wrong.
-pub const EXIT_INPUT: u8 = 2;
-/// The run was asked to stop and has written a checkpoint.
-pub const EXIT_STOPPED: u8 = 75;
-/// A second Ctrl-C ended the process, as shells tell it.
-const EXIT_INTERRUPTED: i32 = 130;
+use crate::run::exit::EXIT_INPUT;
+use crate::run::{launch, say};
 
 /// MPI-parallel smoothed particle hydrodynamics for large 3-D impacts of solids
 #[derive(Debug, Parser)]

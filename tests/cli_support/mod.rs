@@ -59,7 +59,7 @@ pub fn command(program: &str) -> Command {
     command
 }
 
-/// Lets a rank of a command meet a fault, see `src/app/fault.rs`.
+/// Lets a rank of a command meet a fault, see `src/run/fault.rs`.
 #[track_caller]
 pub fn strike<'a>(command: &'a mut Command, fault: &str) -> &'a mut Command {
     let built = cfg!(feature = "fault-injection");
