@@ -31,6 +31,9 @@ use crate::run::{launch, say};
   whipple plot runs/quarter --panels
   mpirun -n 4 whipple restart runs/quarter --set run.end_time=0.3us
 
+For work on the program itself: `whipple compare` tells whether two results agree to the last bit,
+`whipple bench` measures how fast it steps on this machine.
+
 `whipple COMMAND --help` says more. Only `run`, `restart` and `bench` use MPI. Exit codes: 0 done, 1 failed
 (or `compare` found differences), 2 wrong input, 75 stopped softly with a checkpoint."
 )]
@@ -47,7 +50,9 @@ enum Command {
     Plot(Box<plot::PlotArgs>),
     Info(info::InfoArgs),
     Materials(materials::MaterialsArgs),
+    #[command(hide = true)]
     Compare(compare::CompareArgs),
+    #[command(hide = true)]
     Bench(bench::BenchArgs),
 }
 
