@@ -5,9 +5,12 @@
 //! developer guide in `docs/` says what each may know. SI units everywhere inside the program.
 
 pub mod app;
+pub mod run;
+
 pub mod input;
 pub mod model;
 pub mod populate;
+pub mod preflight;
 
 pub mod numerics;
 

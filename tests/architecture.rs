@@ -16,8 +16,10 @@ use source::{Source, sources, src};
 /// Every room, in the order in which data flows.
 const ROOMS: &[&str] = &[
     "app",
+    "run",
     "input",
     "model",
+    "preflight",
     "populate",
     "numerics",
     "material",
@@ -34,20 +36,73 @@ const ROOMS: &[&str] = &[
     "plot",
 ];
 
-/// What a part of `src/` may not name: rooms of this crate (`comm`), or a place in one
-/// (`output::h5`). `app` is on top and stands in every row by itself.
+/// The rooms on top, and who may name them.
+const ON_TOP: &[(&str, &[&str])] = &[
+    ("app", &[]),
+    ("run", &["app"]),
+    ("preflight", &["app", "run"]),
+];
+
+/// Folders whose files may start, go on with and step a simulation.
+const CALLERS_OF_LOOP: &[&str] = &["step/", "run/", "app/bench/"];
+
+/// What a part of `src/` may not name, beside the rooms [`ON_TOP`]: rooms of this crate (`comm`), or a
+/// place in one (`output::h5`).
 const WALLS: &[(&str, &[&str])] = &[
+    (
+        "app",
+        &[
+            "domain",
+            "neighbours",
+            "contact",
+            "sph",
+            "diagnose",
+            "exact",
+        ],
+    ),
+    (
+        "run",
+        &[
+            "populate",
+            "material",
+            "domain",
+            "neighbours",
+            "contact",
+            "sph",
+            "diagnose",
+            "exact",
+            "plot",
+        ],
+    ),
+    (
+        "preflight",
+        &[
+            "input",
+            "numerics",
+            "particles",
+            "neighbours",
+            "diagnose",
+            "output",
+            "exact",
+            "plot",
+        ],
+    ),
     (
         // But for the names of snapshot fields, which it checks.
         "input",
         &[
             "particles::ParticleStore",
+            "numerics",
             "comm",
             "domain",
+            "neighbours",
             "sph",
             "contact",
             "step",
+            "diagnose",
             "output",
+            "exact",
+            "plot",
         ],
     ),
     (
@@ -146,7 +201,16 @@ const ENTRUSTED: &[(&str, &str)] = &[
 ];
 
 /// The only rooms that call `comm`, from the main thread.
-const CALLERS_OF_COMM: &[&str] = &["app", "domain", "step", "output", "diagnose", "comm"];
+const CALLERS_OF_COMM: &[&str] = &[
+    "app",
+    "run",
+    "preflight",
+    "domain",
+    "step",
+    "output",
+    "diagnose",
+    "comm",
+];
 
 /// Rooms whose results must have the same bits on any ranks, threads and hosts.
 const PHYSICS: &[&str] = &[
@@ -218,12 +282,20 @@ fn lib_rs_lists_every_room() {
 fn no_room_names_what_it_may_not_know() {
     let mut complaints = String::new();
     for source in sources() {
-        let Some((_, forbidden)) = WALLS.iter().find(|(room, _)| *room == source.room) else {
+        let room = source.room.as_str();
+        let Some((_, forbidden)) = WALLS.iter().find(|(of, _)| *of == room) else {
             continue;
         };
+        let top = ON_TOP.iter();
+        let above = top.filter(|(top, knowers)| *top != room && !knowers.contains(&room));
+        let walls: Vec<&str> = forbidden
+            .iter()
+            .copied()
+            .chain(above.map(|(top, _)| *top))
+            .collect();
         for path in source.paths() {
             let named = path.named();
-            for wall in forbidden.iter().chain(&["app"]) {
+            for wall in &walls {
                 if named == *wall || named.starts_with(&format!("{wall}::")) {
                     complain(
                         &mut complaints,
@@ -267,6 +339,23 @@ fn only_the_rooms_of_the_main_thread_call_comm() {
         }
         for path in source.paths().iter().filter(|path| path.names_room("comm")) {
             complain(&mut complaints, &source, path.line, "names comm");
+        }
+    }
+    assert_silent(&complaints);
+}
+
+#[test]
+fn only_run_and_the_bench_call_the_loop() {
+    let mut complaints = String::new();
+    for source in sources() {
+        let is_caller = |place: &&str| source.name.starts_with(*place);
+        if CALLERS_OF_LOOP.iter().any(is_caller) {
+            continue;
+        }
+        for path in source.paths() {
+            if path.named().starts_with("step::Simulation") {
+                complain(&mut complaints, &source, path.line, "names the simulation");
+            }
         }
     }
     assert_silent(&complaints);

@@ -6,14 +6,14 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
-use cli_support::{Ended, assert_same, coarse_run, end, ranks, signal, start, status};
+use cli_support::{Ended, assert_same, coarse_run, end, ranks, signal, start, status, strike};
 
 /// A run takes a second or so, and mpirun gives ranks that do not end by themselves two more.
 const SECONDS: Duration = Duration::from_secs(40);
 
 fn faulty_run(number: usize, folder: &Path, fault: &str) -> Command {
     let mut command = coarse_run(number, folder);
-    command.env("WHIPPLE_TEST_FAULT", fault);
+    strike(&mut command, fault);
     command
 }
 
@@ -33,6 +33,10 @@ fn only_line(ended: &Ended) -> &str {
 }
 
 #[test]
+#[cfg_attr(
+    not(feature = "fault-injection"),
+    ignore = "needs --features fault-injection"
+)]
 fn a_panic_on_one_rank_ends_all() {
     let place = tempfile::tempdir().unwrap();
     for (fault, threads, number, rank) in [
@@ -45,7 +49,7 @@ fn a_panic_on_one_rank_ends_all() {
         let ended = end(command.args(["--threads", threads]));
         assert_eq!(ended.code, Some(101), "{ended:#?}");
         let line = only_line(&ended);
-        let begin = format!("error: rank {rank}, step 20: a panic on purpose (src/app/fault.rs:");
+        let begin = format!("error: rank {rank}, step 20: a panic on purpose (src/run/fault.rs:");
         assert!(line.starts_with(&begin), "{line}");
         assert_eq!(ended.stdout.lines().count(), 1, "{ended:#?}");
         // A crash has no time to write a status; what a chain reads is that nothing is finished.
@@ -54,6 +58,10 @@ fn a_panic_on_one_rank_ends_all() {
 }
 
 #[test]
+#[cfg_attr(
+    not(feature = "fault-injection"),
+    ignore = "needs --features fault-injection"
+)]
 fn an_error_on_one_rank_is_that_of_all() {
     let place = tempfile::tempdir().unwrap();
     let run = place.path().join("run");
@@ -81,6 +89,10 @@ fn an_error_on_one_rank_is_that_of_all() {
 }
 
 #[test]
+#[cfg_attr(
+    not(feature = "fault-injection"),
+    ignore = "needs --features fault-injection"
+)]
 fn a_killed_rank_ends_all() {
     let place = tempfile::tempdir().unwrap();
     let run = place.path().join("run");
@@ -95,6 +107,10 @@ fn a_killed_rank_ends_all() {
 
 /// In a step and while a checkpoint is written; the restart ends in the same bits.
 #[test]
+#[cfg_attr(
+    not(feature = "fault-injection"),
+    ignore = "needs --features fault-injection"
+)]
 fn a_rank_killed_anywhere_costs_what_came_after_the_last_checkpoint() {
     let place = tempfile::tempdir().unwrap();
     let reference = place.path().join("reference");
@@ -120,6 +136,10 @@ fn a_rank_killed_anywhere_costs_what_came_after_the_last_checkpoint() {
 
 /// A limit on the size of files in one rank is a disk that is full for that rank alone.
 #[test]
+#[cfg_attr(
+    not(feature = "fault-injection"),
+    ignore = "needs --features fault-injection"
+)]
 fn a_disk_full_for_one_rank_ends_all_with_one_message() {
     let place = tempfile::tempdir().unwrap();
     for rank in [0, 1] {

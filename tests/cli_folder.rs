@@ -10,7 +10,7 @@ use std::process::Command;
 
 use cli_support::{
     Ended, WHIPPLE, assert_same, coarse_run, command, end, quarter_impact, ranks, signal, start,
-    status,
+    status, strike,
 };
 
 fn info(run: &Path) -> String {
@@ -126,11 +126,15 @@ fn what_cannot_be_read_now_or_is_of_another_version_ends_a_restart() {
 }
 
 #[test]
+#[cfg_attr(
+    not(feature = "fault-injection"),
+    ignore = "needs --features fault-injection"
+)]
 fn a_folder_belongs_to_one_run_at_a_time() {
     let place = tempfile::tempdir().unwrap();
     let run = place.path().join("run");
     let mut first = coarse_run(2, &run);
-    first.env("WHIPPLE_TEST_FAULT", "pause:0:30");
+    strike(&mut first, "pause:0:30");
     let running = start(first.args(["--set", "output.checkpoint_every_steps=10"]));
     running.until_step(&run, 29);
     let holders = running.rank_ids();
@@ -155,6 +159,10 @@ fn a_folder_belongs_to_one_run_at_a_time() {
 }
 
 #[test]
+#[cfg_attr(
+    not(feature = "fault-injection"),
+    ignore = "needs --features fault-injection"
+)]
 fn a_killed_run_is_told_from_one_that_runs() {
     let place = tempfile::tempdir().unwrap();
     let run = place.path().join("run");
@@ -163,10 +171,7 @@ fn a_killed_run_is_told_from_one_that_runs() {
         .args(["run", &quarter_impact()])
         .args(cli_support::COARSE);
     alone.args(["--set", "output.checkpoint_every_steps=10"]);
-    alone
-        .arg("--out")
-        .arg(&run)
-        .env("WHIPPLE_TEST_FAULT", "pause:0:30");
+    strike(alone.arg("--out").arg(&run), "pause:0:30");
     let running = start(&mut alone);
     running.until_step(&run, 29);
     signal("KILL", running.id());

@@ -141,6 +141,18 @@ fn ranks_without_particles_are_counted() {
     assert!(empty.iter().all(|&n| (1.0..=6.0).contains(&n)), "{empty:?}");
 }
 
+/// What tests ask for by the environment, the program that users build does not have.
+#[cfg(not(feature = "fault-injection"))]
+#[test]
+fn a_users_program_has_no_faults_on_purpose() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("run");
+    end(coarse_run(1, &run).env("WHIPPLE_TEST_FAULT", "panic:0:5")).with_code(0);
+    let program = fs::read(WHIPPLE).unwrap();
+    let name = b"WHIPPLE_TEST_FAULT";
+    assert!(!program.windows(name.len()).any(|bytes| bytes == name));
+}
+
 #[test]
 fn a_log_tells_the_story_of_a_run() {
     let place = tempfile::tempdir().unwrap();

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use cli_support::{assert_same, command, end, project, quarter_impact, ranks, status};
+use cli_support::{assert_same, command, end, project, quarter_impact, ranks, status, strike};
 
 /// Longer than anything here takes on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(200);
@@ -117,7 +117,7 @@ impl Cluster {
     /// Submits the chain of a run, with a pause before a step; gives the number of the job.
     fn submit(&self, run: &Path, pause: u64) -> String {
         let mut sbatch = self.command("sbatch");
-        sbatch.env("WHIPPLE_TEST_FAULT", format!("pause:0:{pause}"));
+        strike(&mut sbatch, &format!("pause:0:{pause}"));
         sbatch.args(["--parsable", "--time=10", "--cpus-per-task=1"]);
         // As a user calls it: the shell's folder is the project's.
         sbatch.current_dir(project("."));
@@ -169,6 +169,10 @@ impl Drop for Cluster {
 }
 
 #[test]
+#[cfg_attr(
+    not(feature = "fault-injection"),
+    ignore = "needs --features fault-injection"
+)]
 fn a_chain_of_jobs_goes_on_until_the_end_with_the_bits_of_one_run() {
     let place = tempfile::tempdir().unwrap();
     let Some(cluster) = Cluster::start(&place.path().join("slurm")) else {

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use cli_support::{
     COARSE, Ended, Running, WHIPPLE, assert_same, coarse_run, command, end, project,
-    quarter_impact, ranks, signal, start, status,
+    quarter_impact, ranks, signal, start, status, strike,
 };
 
 /// The step before which rank 0 pauses, so that there is time to stop it.
@@ -21,7 +21,7 @@ fn folder() -> tempfile::TempDir {
 
 /// Starts a command that pauses on its way, and asks it to stop while it does.
 fn stopped(command: &mut Command, run: &Path, ask: impl FnOnce(&Running)) -> Ended {
-    command.env("WHIPPLE_TEST_FAULT", format!("pause:0:{PAUSE}"));
+    strike(command, &format!("pause:0:{PAUSE}"));
     let running = start(command);
     running.until_step(run, PAUSE - 1);
     ask(&running);
@@ -65,6 +65,10 @@ fn reference(place: &Path) -> PathBuf {
 }
 
 #[test]
+#[cfg_attr(
+    not(feature = "fault-injection"),
+    ignore = "needs --features fault-injection"
+)]
 fn signals_stop_softly() {
     let place = folder();
     let reference = reference(place.path());
@@ -90,6 +94,10 @@ fn signals_stop_softly() {
 }
 
 #[test]
+#[cfg_attr(
+    not(feature = "fault-injection"),
+    ignore = "needs --features fault-injection"
+)]
 fn ctrl_c_stops_a_lone_rank_softly_and_a_second_one_at_once() {
     let place = folder();
     let alone = |run: &Path| {
@@ -113,6 +121,10 @@ fn ctrl_c_stops_a_lone_rank_softly_and_a_second_one_at_once() {
 }
 
 #[test]
+#[cfg_attr(
+    not(feature = "fault-injection"),
+    ignore = "needs --features fault-injection"
+)]
 fn a_file_and_the_clock_stop_softly() {
     let place = folder();
     let reference = reference(place.path());
@@ -127,7 +139,7 @@ fn a_file_and_the_clock_stop_softly() {
     // The clock runs from the program's start, so on a busy machine it may stop before the pause.
     let run = place.path().join("clock");
     let mut command = coarse_run(1, &run);
-    command.env("WHIPPLE_TEST_FAULT", format!("pause:0:{PAUSE}"));
+    strike(&mut command, &format!("pause:0:{PAUSE}"));
     end(command.args(["--walltime", "1.2s"])).with_code(75);
     let (state, step, reason) = status(&run);
     assert_eq!(
@@ -139,6 +151,10 @@ fn a_file_and_the_clock_stop_softly() {
 }
 
 #[test]
+#[cfg_attr(
+    not(feature = "fault-injection"),
+    ignore = "needs --features fault-injection"
+)]
 fn the_launch_script_turns_signals_into_soft_stops() {
     let place = folder();
     for name in ["TERM", "INT", "USR1"] {
@@ -185,6 +201,10 @@ fn until_stops_at_its_time_and_is_no_failure() {
 
 /// A file `stop` from before a restart is of the earlier run; one that comes while it starts counts.
 #[test]
+#[cfg_attr(
+    not(feature = "fault-injection"),
+    ignore = "needs --features fault-injection"
+)]
 fn a_stop_file_that_comes_while_a_run_starts_is_not_lost() {
     let place = folder();
     let run = place.path().join("run");
@@ -194,7 +214,7 @@ fn a_stop_file_that_comes_while_a_run_starts_is_not_lost() {
     file.set_modified(soon).unwrap();
     // It is looked for each second.
     let mut again = ranks(2);
-    again.env("WHIPPLE_TEST_FAULT", format!("pause:0:{PAUSE}"));
+    strike(&mut again, &format!("pause:0:{PAUSE}"));
     end(again.arg("restart").arg(&run)).with_code(75);
     let (state, _, reason) = status(&run);
     let file = "the file `stop` asked to stop";

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use whipple::input::{load, output_and_run_only, parse, warnings};
+use whipple::input::{load, output_and_run_only, parse};
 use whipple::material::{Strength, library};
 use whipple::model::{Axis, Case, ContactMode, PotentialRange, Shape, SmoothingLength};
 use whipple::populate;

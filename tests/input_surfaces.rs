@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use whipple::comm::Comm;
-use whipple::input::{load, parse, warnings};
+use whipple::input::{load, parse};
 use whipple::model::Case;
 use whipple::populate::{bounds, smallest_gap};
 use whipple::step::Simulation;

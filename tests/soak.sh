@@ -22,6 +22,8 @@ while getopts m:s: option; do
 done
 RANDOM=$seed
 program=${WHIPPLE_PROGRAM:-$root/target/release/whipple}
+# A user's program does not know this; it would end each first leg.
+export WHIPPLE_TEST_FAULT=panic:0:5
 place=$(mktemp -d)
 trap 'rm -rf "$place"' EXIT
 

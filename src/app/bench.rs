@@ -13,9 +13,10 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 
-use super::{EXIT_FAILED, EXIT_INPUT, launch, say};
 use crate::comm::{Comm, Session};
 use crate::output::on_root;
+use crate::run::exit::{EXIT_FAILED, EXIT_INPUT};
+use crate::run::{launch, say};
 use cases::{BenchCase, CASES};
 use report::{Report, Row};
 

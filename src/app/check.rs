@@ -2,14 +2,15 @@
 
 use std::path::PathBuf;
 
-use super::say::{complain, say};
-use super::{EXIT_INPUT, memory};
 use crate::comm::Comm;
 use crate::input;
 use crate::model::Case;
 use crate::model::readable::{short, shown};
 use crate::output::snapshot;
 use crate::populate;
+use crate::preflight::{self, memory};
+use crate::run::exit::EXIT_INPUT;
+use crate::run::say::{complain, say};
 
 /// Check a case without running it: particles by body, memory, expected steps
 ///
@@ -47,8 +48,8 @@ pub fn run(args: &CheckArgs) -> u8 {
         complain(&format!("error: {error}"));
         return EXIT_INPUT;
     }
-    let warnings = input::warnings(&case);
-    for warning in warnings.into_iter().chain(input::advice(&case)) {
+    let warnings = preflight::warnings(&case);
+    for warning in warnings.into_iter().chain(preflight::advice(&case)) {
         complain(&format!("warning: {warning}"));
     }
     print_report(&case, args.ranks as usize);
@@ -76,7 +77,7 @@ fn print_report(case: &Case, ranks: usize) {
         "  {:<16} {total:>10} particles, about {memory} a rank on {ranks} rank{plural}",
         "all"
     ));
-    for pair in input::approaches(case) {
+    for pair in preflight::approaches(case) {
         let [a, b] = pair.bodies.map(|body| case.bodies[body].name.as_str());
         if pair.time.is_finite() && pair.time > 0.0 {
             say(&format!(
@@ -86,7 +87,7 @@ fn print_report(case: &Case, ranks: usize) {
             ));
         }
     }
-    if let Some(step) = input::expected_step(case) {
+    if let Some(step) = preflight::expected_step(case) {
         let (steps, end) = (case.run.end_time / step, shown(case.run.end_time, "s"));
         say(&format!("  about {} steps to {end}", short(steps.round())));
     }

@@ -7,13 +7,13 @@ mod text;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use super::EXIT_INPUT;
 use super::results::{Results, ResultsError};
-use super::say::{complain, say};
 use crate::model::readable::one_line;
 use crate::output::checkpoint;
 use crate::output::h5::Content;
 use crate::output::{RunFolder, read_regular};
+use crate::run::exit::EXIT_INPUT;
+use crate::run::say::{complain, say};
 
 /// Tell whether two results agree to the last bit
 ///

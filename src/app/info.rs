@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::EXIT_INPUT;
-use super::memory::in_words;
 use super::results::{POINT_DATA, Results, ResultsError, component_names};
-use super::say::{complain, say};
 use crate::model::readable::one_line;
 use crate::output::checkpoint::{self, FIELDS};
 use crate::output::h5::{Array, Content, Element, RowType};
 use crate::output::{Block, OutputError, Phase, Presence, RunFolder, read_small, series};
+use crate::preflight::memory::in_words;
+use crate::run::exit::EXIT_INPUT;
+use crate::run::say::{complain, say, seconds};
 
 /// Tell what is in a run folder, a snapshot or a checkpoint
 ///
@@ -340,8 +340,4 @@ fn short(value: &Value) -> String {
         Value::Null => "-".to_owned(),
         other => other.to_string(),
     }
-}
-
-fn seconds(time: f64) -> String {
-    super::report::seconds(time)
 }

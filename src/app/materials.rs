@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 use serde_json::json;
 
-use super::EXIT_INPUT;
-use super::say::complain;
 use crate::material::{Constant, Material, Value, library};
+use crate::run::exit::EXIT_INPUT;
+use crate::run::say::complain;
 
 /// Print the material library: all names, or each number of one material with its source
 ///

@@ -3,21 +3,12 @@
 mod bench;
 mod check;
 pub mod compare;
-mod driver;
-mod fault;
 pub mod info;
-mod launch;
 mod materials;
-mod memory;
 pub mod plot;
-mod progress;
-mod report;
 mod restart;
 pub mod results;
 mod run;
-mod saved_case;
-mod say;
-mod stop;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -25,15 +16,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use crate::model::readable::is_printable;
-
-/// The run failed.
-pub const EXIT_FAILED: u8 = 1;
-/// The case, an option or a file that the user named is wrong.
-pub const EXIT_INPUT: u8 = 2;
-/// The run was asked to stop and has written a checkpoint.
-pub const EXIT_STOPPED: u8 = 75;
-/// A second Ctrl-C ended the process, as shells tell it.
-const EXIT_INTERRUPTED: i32 = 130;
+use crate::run::exit::EXIT_INPUT;
+use crate::run::{launch, say};
 
 /// MPI-parallel smoothed particle hydrodynamics for large 3-D impacts of solids
 #[derive(Debug, Parser)]
@@ -46,6 +30,9 @@ const EXIT_INTERRUPTED: i32 = 130;
   whipple info runs/quarter
   whipple plot runs/quarter --panels
   mpirun -n 4 whipple restart runs/quarter --set run.end_time=0.3us
+
+For work on the program itself: `whipple compare` tells whether two results agree to the last bit,
+`whipple bench` measures how fast it steps on this machine.
 
 `whipple COMMAND --help` says more. Only `run`, `restart` and `bench` use MPI. Exit codes: 0 done, 1 failed
 (or `compare` found differences), 2 wrong input, 75 stopped softly with a checkpoint."
@@ -63,7 +50,9 @@ enum Command {
     Plot(Box<plot::PlotArgs>),
     Info(info::InfoArgs),
     Materials(materials::MaterialsArgs),
+    #[command(hide = true)]
     Compare(compare::CompareArgs),
+    #[command(hide = true)]
     Bench(bench::BenchArgs),
 }
 

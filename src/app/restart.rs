@@ -3,19 +3,16 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use super::driver::Driver;
-use super::launch::{Launch, complain, give_up, with_ranks};
-use super::report::seconds;
-use super::run::CommonArgs;
-use super::saved_case::{self, Settled};
-use super::say::say;
 use crate::comm::Comm;
 use crate::input;
-use crate::model::Case;
 use crate::output::checkpoint::{self, MANIFEST, Restored};
 use crate::output::{OutputError, Phase, RunFolder, RunLock, from_root, snapshot};
 use crate::particles::ParticleStore;
-use crate::step::{Reason, RunState, Simulation};
+use crate::run::CommonArgs;
+use crate::run::launch::{Launch, complain, with_ranks};
+use crate::run::resume::{Origin, go_on, nothing_to_do, state_of};
+use crate::run::saved_case;
+use crate::run::say::say;
 
 /// Go on from a checkpoint, on any number of ranks
 ///
@@ -73,7 +70,7 @@ pub fn run(args: &RestartArgs) -> u8 {
         let listed = find(comm, &named).map_err(|error| refusal(&error));
         let found = listed.and_then(|listed| {
             // The store of particles has work for them as soon as a checkpoint is read.
-            launch.start_threads(&args.common);
+            launch.start_threads(args.common.threads);
             read(comm, &args.from, named, listed)
         });
         match found {
@@ -254,16 +251,7 @@ fn resume(launch: &Launch, args: &RestartArgs, found: Found, lock: Option<&RunLo
     if let Some(message) = args.common.shortage(comm, case) {
         return complain(comm, &message);
     }
-    let read = serde_json::from_str::<RunState>(&restored.state).map_err(|e| e.to_string());
-    let at = (restored.step, restored.time.to_bits());
-    let state = read.and_then(|state| {
-        if (state.step, state.time.to_bits()) == at {
-            Ok(state)
-        } else {
-            Err("it is of another step or time".to_owned())
-        }
-    });
-    let state = match state {
+    let state = match state_of(restored) {
         Ok(state) => state,
         Err(error) => {
             let error = OutputError::OtherVersion {
@@ -284,63 +272,24 @@ fn resume(launch: &Launch, args: &RestartArgs, found: Found, lock: Option<&RunLo
     }
     let mut warnings = settled.warnings.clone();
     warnings.extend(lock.iter().flat_map(|lock| lock.warnings.iter().cloned()));
-    go_on(launch, args, settled, state, found, warnings)
-}
-
-/// The step in which nothing has been changed yet that cannot be put back.
-fn go_on(
-    launch: &Launch,
-    args: &RestartArgs,
-    settled: Settled,
-    state: RunState,
-    found: Found,
-    mut warnings: Vec<String>,
-) -> u8 {
-    let comm = launch.comm;
-    let folder = &found.named.folder;
     warnings.extend(found.tell_passed_over());
-    let (step, time) = (state.step, state.time);
-    if state.last_reason == Reason::End {
-        warnings.push(format!(
-            "step {step} was shortened to end at {}, so that a run with the later end from its \
-             start would differ in the last digits",
-            seconds(time)
-        ));
-    }
-    let resolved = settled.case.resolved.clone();
-    let simulation = match Simulation::resume(settled.case, comm, state, found.store) {
-        Ok(simulation) => simulation,
-        Err(error) => return give_up(comm, &error.to_string()),
+    let passed = found.passed_over.iter().map(|passed| (&passed.path).into());
+    let origin = Origin {
+        passed_over: passed.collect(),
+        checkpoint: found.checkpoint,
+        store: found.store,
+        folder: found.named.folder,
+        own: found.named.own,
     };
-    let begun = if found.named.own {
-        let resolved = settled.renew.then_some(&resolved[..]);
-        let passed = found.passed_over.iter().map(|passed| (&passed.path).into());
-        let passed: Vec<PathBuf> = passed.collect();
-        folder.resume(comm, resolved, step, time, &passed)
-    } else {
-        RunFolder::create(comm, folder.path(), &resolved, args.force).map(|_| None)
-    };
-    let aside = match begun {
-        Ok(aside) => aside,
-        Err(error) => return give_up(comm, &error.to_string()),
-    };
-    let checkpoint = Some(found.checkpoint.as_path());
-    match Driver::begin(
+    go_on(
         launch,
         &args.common,
-        simulation,
-        folder,
-        checkpoint,
-        &warnings,
-    ) {
-        Ok(driver) => driver.run(comm),
-        Err(error) => {
-            if let Some(aside) = aside {
-                aside.undo();
-            }
-            give_up(comm, &error.to_string())
-        }
-    }
+        settled,
+        state,
+        origin,
+        args.force,
+        warnings,
+    )
 }
 
 impl Found {
@@ -360,24 +309,4 @@ impl Found {
 fn is_closed(checkpoint: &Path) -> bool {
     let status = RunFolder::of_checkpoint(checkpoint).and_then(|run| run.status().ok());
     status.is_some_and(|status| matches!(status.state, Phase::Finished | Phase::Stopped))
-}
-
-/// Where a run stands that has no step left to do.
-fn nothing_to_do(case: &Case, state: &RunState, until: Option<f64>) -> Option<String> {
-    let (step, time) = (state.step, state.time);
-    let (control, now) = (&case.run, seconds(time));
-    if time >= control.end_time {
-        let end = seconds(control.end_time);
-        Some(format!(
-            "{now} and the case ends at {end}; --set run.end_time=TIME moves the end"
-        ))
-    } else if control.max_steps.is_some_and(|most| step >= most) {
-        Some(format!(
-            "step {step}, the last of run.max_steps; --set run.max_steps=N allows more"
-        ))
-    } else if until.is_some_and(|until| time >= until) {
-        Some(format!("{now}, not before the time of --until"))
-    } else {
-        None
-    }
 }

@@ -1,17 +1,13 @@
 //! `whipple run`: a case from its start.
 
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
-use super::driver::{Driver, fail};
-use super::launch::{Launch, complain, give_up, with_ranks};
-use super::memory;
-use super::stop::{parse_until, parse_walltime};
 use crate::comm::Comm;
 use crate::input;
-use crate::model::Case;
-use crate::output::{RunFolder, RunLock, snapshot};
-use crate::step::Simulation;
+use crate::output::{RunFolder, snapshot};
+use crate::run::CommonArgs;
+use crate::run::launch::{complain, with_ranks};
+use crate::run::start::start;
 
 /// Run a case from its start
 ///
@@ -48,42 +44,6 @@ pub struct RunArgs {
     force: bool,
 }
 
-/// Options that `run` and `restart` share.
-#[derive(Debug, Clone, clap::Args)]
-pub struct CommonArgs {
-    /// Stop with a checkpoint at the first step at or after this time of the case, as in 0.1us
-    #[arg(short, long, value_name = "TIME", value_parser = parse_until)]
-    pub until: Option<f64>,
-
-    /// Stop with a checkpoint after this much time of the clock, as in 90s, 2h or 1:30:00
-    #[arg(short, long, value_name = "TIME", value_parser = parse_walltime)]
-    pub walltime: Option<Duration>,
-
-    /// Threads of each rank [default: the cores shared out among the machine's ranks]
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
-
-    /// Start even if the memory that the ranks will take is more than there is
-    #[arg(long)]
-    pub ignore_memory: bool,
-
-    /// Take the folder of the results even if another process seems to write into it
-    #[arg(long)]
-    pub ignore_lock: bool,
-
-    /// Fill all that is not state with NaN between steps, to find what a checkpoint forgets
-    #[arg(long, hide = true)]
-    pub poison: bool,
-}
-
-impl CommonArgs {
-    /// Why there is not enough memory for a case, unless the user will not hear of it. Collective.
-    pub fn shortage(&self, comm: &Comm, case: &Case) -> Option<String> {
-        let shortage = (!self.ignore_memory).then(|| memory::shortage(comm, case));
-        shortage.flatten().map(|why| format!("error: {why}"))
-    }
-}
-
 /// Runs the command; returns the exit code.
 pub fn run(args: &RunArgs) -> u8 {
     with_ranks(|launch| {
@@ -108,29 +68,9 @@ pub fn run(args: &RunArgs) -> u8 {
             Ok(lock) => lock,
             Err(error) => return complain(comm, &format!("error: {error}")),
         };
-        start(launch, args, case, &out, lock.as_ref())
+        let warnings = lock.iter().flat_map(|lock| lock.warnings.iter().cloned());
+        start(launch, &args.common, case, &out, args.force, warnings)
     })
-}
-
-/// Sets the case up, and only then clears the folder of an earlier run.
-fn start(launch: &Launch, args: &RunArgs, case: Case, out: &Path, lock: Option<&RunLock>) -> u8 {
-    launch.start_threads(&args.common);
-    let comm = launch.comm;
-    let mut warnings = input::warnings(&case);
-    warnings.extend(lock.iter().flat_map(|lock| lock.warnings.iter().cloned()));
-    let resolved = case.resolved.clone();
-    let simulation = match Simulation::start(case, comm) {
-        Ok(simulation) => simulation,
-        Err(error) => return give_up(comm, &error.to_string()),
-    };
-    let folder = match RunFolder::create(comm, out, &resolved, args.force) {
-        Ok(folder) => folder,
-        Err(error) => return give_up(comm, &error.to_string()),
-    };
-    match Driver::begin(launch, &args.common, simulation, &folder, None, &warnings) {
-        Ok(driver) => driver.run(comm),
-        Err(error) => fail(comm, &folder, &error.to_string(), 0, 0.0),
-    }
 }
 
 /// The case file and its text, read by rank 0 for all.

@@ -9,7 +9,6 @@ mod document;
 mod file;
 mod forms;
 mod names;
-mod overlap;
 mod overrides;
 mod quantity;
 mod schema;
@@ -17,7 +16,6 @@ mod source;
 mod stl;
 mod units;
 mod validate;
-mod warnings;
 
 use std::path::{Path, PathBuf};
 
@@ -26,7 +24,6 @@ use source::{Complaint, Sources};
 
 pub use difference::{Difference, differences};
 pub use file::{content, open_regular, text};
-pub use warnings::{Approach, advice, approaches, expected_step, warnings};
 
 /// Why a case cannot be read. `Display` is the whole message for the user, several lines long.
 #[derive(Debug, thiserror::Error)]

@@ -4,6 +4,7 @@ use std::fmt;
 use std::marker::PhantomData;
 
 use serde::de::{Deserialize, Deserializer, Error, Visitor};
+use toml::Spanned;
 
 use super::units::{Powers, parse, unit_of};
 use crate::model::readable::short;
@@ -92,6 +93,9 @@ kinds! {
     /// Per kelvin.
     PerTemperature = [0, 0, 0, -1, 0], "an inverse temperature", "6.16e-4/K", 10.0 "that of matter that a tenth of a kelvin melts";
 }
+
+/// A quantity with its place in the text.
+pub type Placed<K> = Spanned<Quantity<K>>;
 
 /// A number in SI units that was written with a unit of the kind. Zero needs none.
 #[derive(Debug)]

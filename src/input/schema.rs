@@ -6,44 +6,26 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::forms::{FrictionParams, LatticeParams, Named, OneOrMany, SelfContactParams};
+use super::forms::{Named, OneOrMany};
 use super::quantity::{
-    Acceleration, Angle, Density, Extent, Length, Quantity, SpecificEnergy, Time, Velocity,
+    Acceleration, Density, Extent, Length, Placed, SpecificEnergy, Time, Velocity,
 };
 
-/// A quantity with its place in the text.
-pub type Placed<K> = Spanned<Quantity<K>>;
+#[macro_use]
+mod declare;
+mod choices;
+mod materials;
+mod short;
+mod surfaces;
+mod trouble;
+pub use choices::*;
+pub use materials::*;
+pub use short::*;
+pub use surfaces::*;
+pub use trouble::*;
+
 /// A vector of lengths.
 pub type Point = Spanned<Vec<Spanned<Extent>>>;
-
-/// Declares tables whose keys are all optional unless said, and closed to others.
-macro_rules! tables {
-    ($($(#[$doc:meta])+ $table:ident { $($(#[$key_doc:meta])+ $key:ident: $value:ty,)* })+) => { $(
-        $(#[$doc])+
-        #[derive(Debug, Deserialize)]
-        #[serde(deny_unknown_fields, remote = "Self")]
-        pub struct $table { $($(#[$key_doc])+ pub $key: $value,)* }
-        from_table!($table);
-    )+ };
-}
-
-/// Reads a struct from a table alone: serde would take an array of its values too, in the order of
-/// the declaration. What is derived is an inherent function, by `remote = "Self"`.
-macro_rules! from_table {
-    ($table:ident) => {
-        impl crate::input::forms::Table for $table {
-            fn from_map<'de, A: serde::de::MapAccess<'de>>(map: A) -> Result<Self, A::Error> {
-                Self::deserialize(serde::de::value::MapAccessDeserializer::new(map))
-            }
-        }
-
-        impl<'de> Deserialize<'de> for $table {
-            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                crate::input::forms::table(deserializer)
-            }
-        }
-    };
-}
 
 tables! {
     /// The whole document.
@@ -212,14 +194,6 @@ tables! {
         length: Spanned<Extent>,
     }
 
-    /// `lattice` as a table.
-    LatticeTable {
-        /// Kind of stacking.
-        kind: Spanned<LatticeName>,
-        /// Turn about z.
-        angle: Option<Placed<Angle>>,
-    }
-
     /// `touch`
     TouchParams {
         /// The body to touch.
@@ -257,24 +231,6 @@ tables! {
         penalty: PenaltyParams,
     }
 }
-
-/// Declares tables that may be left out altogether.
-macro_rules! optional_tables {
-    ($($(#[$doc:meta])+ $table:ident { $($(#[$key_doc:meta])+ $key:ident: $value:ty,)* })+) => { $(
-        $(#[$doc])+
-        #[derive(Debug, Default, Deserialize)]
-        #[serde(default, deny_unknown_fields, remote = "Self")]
-        pub struct $table { $($(#[$key_doc])+ pub $key: $value,)* }
-        from_table!($table);
-    )+ };
-}
-
-mod materials;
-mod surfaces;
-mod trouble;
-pub use materials::*;
-pub use surfaces::*;
-pub use trouble::*;
 
 optional_tables! {
     /// `[sph]`
@@ -343,12 +299,6 @@ optional_tables! {
         pair: Vec<PairParams>,
     }
 
-    /// `contact.self_contact` as a table.
-    SelfContactTable {
-        /// Spacings between the beginnings of particles that can fold onto each other.
-        folds: Option<Spanned<f64>>,
-    }
-
     /// `contact.overlap`
     OverlapParams {
         /// Stiffness κ.
@@ -398,132 +348,4 @@ optional_tables! {
         /// Snapshot fields, at least one.
         fields: Option<Spanned<Vec<Spanned<String>>>>,
     }
-}
-
-tables! {
-    /// `friction` as a table.
-    FrictionTable {
-        /// Of faces that stick.
-        r#static: Spanned<f64>,
-        /// Of faces that slide.
-        kinetic: Spanned<f64>,
-    }
-}
-
-/// Declares words to choose from.
-macro_rules! choices {
-    ($($(#[$doc:meta])+ $choice:ident { $($(#[$word_doc:meta])+ $word:ident,)+ })+) => { $(
-        $(#[$doc])+
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-        #[serde(rename_all = "snake_case")]
-        pub enum $choice { $($(#[$word_doc])+ $word,)+ }
-    )+ };
-}
-
-choices! {
-    /// A coordinate axis.
-    AxisName {
-        /// First.
-        X,
-        /// Second.
-        Y,
-        /// Third.
-        Z,
-    }
-    /// Side of a surface.
-    SideName {
-        /// Outside, as of a punch.
-        Outside,
-        /// Inside, as of a container.
-        Inside,
-    }
-    /// Kind of lattice.
-    LatticeName {
-        /// Simple cubic.
-        Cubic,
-        /// Hexagonal close-packed.
-        Hexagonal,
-        /// Concentric rings.
-        Rings,
-    }
-    /// How the SPH sums take gradients.
-    SphFormName {
-        /// By the kernel's gradient.
-        Conventional,
-        /// By the corrected gradient.
-        Normalised,
-        /// By linear fits at stress points.
-        StressPoints,
-    }
-    /// Smoothing length in the SPH sums.
-    SmoothingName {
-        /// h = h₀.
-        Constant,
-        /// h follows the density.
-        Variable,
-    }
-    /// Along what contact forces act.
-    DirectionName {
-        /// The line between particles.
-        Pair,
-        /// The normal of the surfaces.
-        Normal,
-    }
-    /// Contact mode.
-    ModeName {
-        /// Nothing.
-        None,
-        /// One continuum.
-        Kernel,
-        /// Contact potential.
-        Potential,
-        /// Overlap energy.
-        Overlap,
-        /// Penalty between boundary particles.
-        Penalty,
-    }
-    /// Law of the penalty force.
-    PenaltyLawName {
-        /// Depth to the power 3/2.
-        Hertz,
-        /// No more than what stops the approach in one step.
-        Pinball,
-    }
-    /// Range of the contact potential.
-    RangeName {
-        /// 2h.
-        Support,
-        /// Mean spacing.
-        Spacing,
-    }
-    /// Form of the linear equation of state.
-    FormName {
-        /// ln(ρ/ρ₀).
-        Logarithmic,
-        /// ρ/ρ₀ − 1.
-        DensityRatio,
-    }
-}
-
-/// A signed axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-pub enum Direction {
-    /// Towards larger x.
-    #[serde(rename = "+x")]
-    PlusX,
-    /// Towards smaller x.
-    #[serde(rename = "-x")]
-    MinusX,
-    /// Towards larger y.
-    #[serde(rename = "+y")]
-    PlusY,
-    /// Towards smaller y.
-    #[serde(rename = "-y")]
-    MinusY,
-    /// Towards larger z.
-    #[serde(rename = "+z")]
-    PlusZ,
-    /// Towards smaller z.
-    #[serde(rename = "-z")]
-    MinusZ,
 }

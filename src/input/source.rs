@@ -117,36 +117,13 @@ impl Sources {
 
 /// The name closest to `word`, if one is near enough to be a slip of the finger.
 pub fn nearest<'a>(word: &str, names: &[&'a str]) -> Option<&'a str> {
+    let word = word.to_lowercase();
     names
         .iter()
-        .map(|name| (distance(word, name), *name))
+        .map(|name| (strsim::osa_distance(&word, &name.to_lowercase()), *name))
         .filter(|(d, name)| *d <= name.chars().count().div_ceil(3))
         .min_by_key(|(d, _)| *d)
         .map(|(_, name)| name)
-}
-
-/// Optimal string alignment distance: insertions, deletions, changes and swaps of neighbours.
-fn distance(a: &str, b: &str) -> usize {
-    let a: Vec<char> = a.to_lowercase().chars().collect();
-    let b: Vec<char> = b.to_lowercase().chars().collect();
-    let mut table = vec![vec![0; b.len() + 1]; a.len() + 1];
-    for i in 0..=a.len() {
-        for j in 0..=b.len() {
-            table[i][j] = if i == 0 || j == 0 {
-                i + j
-            } else {
-                let change = usize::from(a[i - 1] != b[j - 1]);
-                let mut best = (table[i - 1][j] + 1)
-                    .min(table[i][j - 1] + 1)
-                    .min(table[i - 1][j - 1] + change);
-                if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                    best = best.min(table[i - 2][j - 2] + 1);
-                }
-                best
-            };
-        }
-    }
-    table[a.len()][b.len()]
 }
 
 #[cfg(test)]

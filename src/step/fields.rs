@@ -24,10 +24,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
         (Owner::CONDUCTION, sph.conduction > 0.0),
         (Owner::XSPH, sph.xsph > 0.0),
         (Owner::NORMALISED, sph.form == SphForm::Normalised),
-        (
-            Owner::FREEZE,
-            case.trouble.policy == TroublePolicy::Freeze,
-        ),
+        (Owner::FREEZE, case.trouble.policy == TroublePolicy::Freeze),
         (Owner::STRESS_POINTS, sph.form == SphForm::StressPoints),
     ]
     .into_iter()

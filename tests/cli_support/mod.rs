@@ -59,6 +59,17 @@ pub fn command(program: &str) -> Command {
     command
 }
 
+/// Lets a rank of a command meet a fault, see `src/run/fault.rs`.
+#[track_caller]
+pub fn strike<'a>(command: &'a mut Command, fault: &str) -> &'a mut Command {
+    let built = cfg!(feature = "fault-injection");
+    assert!(
+        built,
+        "the program is built without --features fault-injection"
+    );
+    command.env("WHIPPLE_TEST_FAULT", fault)
+}
+
 /// The program on so many ranks.
 pub fn ranks(number: usize) -> Command {
     let mut command = command("mpirun");

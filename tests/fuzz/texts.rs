@@ -6,7 +6,8 @@ use std::path::Path;
 
 use crate::random::Random;
 use crate::{Budget, Met, folder, random};
-use whipple::input::{advice, approaches, parse, warnings};
+use whipple::input::parse;
+use whipple::preflight::{advice, approaches, warnings};
 
 /// What stands between two texts in a file of texts.
 const BETWEEN: &str = "\n#%%%%\n";

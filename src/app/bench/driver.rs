@@ -12,8 +12,8 @@ use super::BenchArgs;
 use super::cases::BenchCase;
 use super::machine::cores;
 use super::report::{Report, Row};
-use crate::app::say::{complain, say};
-use crate::app::{EXIT_FAILED, EXIT_INTERRUPTED};
+use crate::run::exit::{EXIT_FAILED, EXIT_INTERRUPTED};
+use crate::run::say::{complain, say};
 
 /// Ranks and the threads of each; the first is what the others are compared with.
 type Configuration = (usize, usize);

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::cases::BenchCase;
 use super::machine::Machine;
-use crate::app::say::say;
 use crate::output::{COMMIT, OutputError, VERSION, write_json};
+use crate::run::say::say;
 use crate::step::Phase;
 
 /// What one case does on one configuration of ranks and threads.

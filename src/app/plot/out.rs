@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use super::PlotArgs;
-use crate::app::say::say;
 use crate::model::readable::one_line;
 use crate::plot::{Canvas, PlotError};
+use crate::run::say::say;
 
 /// Refuses a name that is neither that of a PNG picture nor of a folder, before anything is drawn.
 ///

@@ -3,10 +3,10 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{FormName, Placed};
+use super::choices::FormName;
 use crate::input::forms::OrNone;
 use crate::input::quantity::{
-    Density, PerPressure, PerTemperature, Pressure, Rate, SpecificEnergy, SpecificHeat,
+    Density, PerPressure, PerTemperature, Placed, Pressure, Rate, SpecificEnergy, SpecificHeat,
     Temperature, Velocity, Viscosity,
 };
 

@@ -3,9 +3,11 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{AxisName, MotionParams, Placed, SideName};
-use crate::input::forms::{FrictionParams, NormalParams, OneOrMany};
-use crate::input::quantity::{Angle, AngularRate, Length, Time};
+use super::MotionParams;
+use super::choices::{AxisName, SideName};
+use super::short::{FrictionParams, NormalParams};
+use crate::input::forms::OneOrMany;
+use crate::input::quantity::{Angle, AngularRate, Length, Placed, Time};
 
 tables! {
     /// `[[plane]]`

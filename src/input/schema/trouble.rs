@@ -3,8 +3,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::Placed;
-use crate::input::quantity::{SpecificEnergy, Time, Velocity};
+use crate::input::quantity::{Placed, SpecificEnergy, Time, Velocity};
 
 optional_tables! {
     /// `[trouble]`

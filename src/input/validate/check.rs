@@ -1,4 +1,4 @@
-//! Ranges of single values.
+//! Ranges of single values, and tables that must hold one of several.
 
 use std::ops::Range;
 
@@ -144,4 +144,9 @@ pub fn whole(
         Ok(n) if n >= least => Ok(n),
         _ => Err(out_of_range(value.span(), key, &format!("{least} or more"))),
     }
+}
+
+/// Says that a table must have exactly one of several others.
+pub fn exactly_one(at: Range<usize>, table: &str, choices: &str) -> Complaint {
+    Complaint::new(at, format!("`{table}` must have exactly one of {choices}"))
 }

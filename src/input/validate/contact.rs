@@ -3,10 +3,9 @@
 use toml::Spanned;
 
 use super::check::{Allowed, number};
-use crate::input::forms::{FrictionParams, SelfContactParams};
 use crate::input::schema::{
-    BodyParams, ContactParams, DirectionName, ModeName, OverlapParams, PairParams, PenaltyLawName,
-    PenaltyParams, PotentialParams, RangeName,
+    BodyParams, ContactParams, DirectionName, FrictionParams, ModeName, OverlapParams, PairParams,
+    PenaltyLawName, PenaltyParams, PotentialParams, RangeName, SelfContactParams,
 };
 use crate::input::source::Complaint;
 use crate::model::{

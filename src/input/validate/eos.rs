@@ -4,8 +4,7 @@ use std::ops::Range;
 
 use toml::Spanned;
 
-use super::check::{Allowed, number, required};
-use super::materials::exactly_one;
+use super::check::{Allowed, exactly_one, number, required};
 use crate::input::schema::{
     EosParams, FormName, IdealGasParams, LinearParams, MieGruneisenParams, TaitParams,
     TillotsonParams,

@@ -99,11 +99,6 @@ fn heat_complaint(at: Range<usize>, key: &str) -> Complaint {
     Complaint::new(at, title)
 }
 
-/// Says that a table must have exactly one of several others.
-pub fn exactly_one(at: Range<usize>, table: &str, choices: &str) -> Complaint {
-    Complaint::new(at, format!("`{table}` must have exactly one of {choices}"))
-}
-
 /// Thermal constants, with the cold curve of this material's own equation of state.
 fn thermal(
     table: Option<&Spanned<ThermalParams>>,

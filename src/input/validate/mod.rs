@@ -18,7 +18,6 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::names;
-use super::overlap::overlap;
 use super::schema::{
     AxisName, BodyParams, CaseParams, DomainParams, OutputParams, RunParams, SmoothingName,
     SphFormName, SphParams, SymmetryParams, TimeStepParams,
@@ -30,6 +29,7 @@ use crate::model::{
     SphOptions, SymmetryPlane, TimeStepOptions, Trouble,
 };
 use crate::particles::{TEMPERATURE, snapshot_names};
+use crate::populate::overlap;
 use check::{Allowed, number, whole};
 use toml::Spanned;
 

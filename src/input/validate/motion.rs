@@ -4,8 +4,8 @@ use toml::Spanned;
 
 use super::check::Value;
 use crate::input::forms::OneOrMany;
-use crate::input::quantity::Time;
-use crate::input::schema::{MotionParams, Placed, RotationParams};
+use crate::input::quantity::{Placed, Time};
+use crate::input::schema::{MotionParams, RotationParams};
 use crate::input::source::Complaint;
 use crate::model::{Axis, Motion};
 

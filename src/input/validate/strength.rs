@@ -2,8 +2,7 @@
 
 use toml::Spanned;
 
-use super::check::{Allowed, number, required};
-use super::materials::exactly_one;
+use super::check::{Allowed, exactly_one, number, required};
 use crate::input::forms::OrNone;
 use crate::input::schema::{MaterialParams, StrengthParams, failure_laws, strength_laws};
 use crate::input::source::Complaint;

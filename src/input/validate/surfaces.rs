@@ -14,10 +14,9 @@ use super::loads::{Reader, given_name};
 use super::motion::{motion, rate};
 use super::shapes::wrong_length;
 use super::touch::direction;
-use crate::input::forms::NormalParams;
-use crate::input::quantity::Length;
+use crate::input::quantity::{Length, Placed};
 use crate::input::schema::{
-    AxisName, CaseParams, Placed, PlaneParams, RotationParams, SideName, StlParams,
+    AxisName, CaseParams, NormalParams, PlaneParams, RotationParams, SideName, StlParams,
     SurfaceCylinderParams, SurfaceParams, SurfaceShapeParams, SurfaceSphereParams,
 };
 use crate::input::source::{Complaint, nearest};

@@ -10,7 +10,7 @@ use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Lists};
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::Lanes;
-use crate::particles::{Image, ParticleStore, Scatter, resize, material_points};
+use crate::particles::{Image, ParticleStore, Scatter, material_points, resize};
 use crate::sph::GRAIN;
 use crate::sph::material_update::MaterialUpdate;
 use crate::sph::neighbourhood::Sources;

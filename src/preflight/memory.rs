@@ -208,6 +208,7 @@ mod tests {
     use super::*;
     use crate::input;
     use crate::populate::visits;
+    use crate::preflight::{approaches, warnings};
 
     fn quarter(spacing: &str) -> Case {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/quarter-impact");
@@ -227,7 +228,7 @@ mod tests {
         let all_of = |spacing| {
             visits::of(|| {
                 let case = quarter(spacing);
-                let told = (input::warnings(&case), input::approaches(&case));
+                let told = (warnings(&case), approaches(&case));
                 (told, of_rank(&case, &solo, 10_000))
             })
         };

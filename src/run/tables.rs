@@ -1,11 +1,8 @@
-//! The tables of a run and its summary.
-
-use serde_json::json;
+//! The tables of a run.
 
 use crate::comm::Comm;
-use crate::model::readable::shown;
 use crate::model::{Case, SphForm, TroublePolicy};
-use crate::output::{COMMIT, Column, OutputError, RunFolder, Table, VERSION, Value, unit_of_model};
+use crate::output::{Column, OutputError, RunFolder, Table, Value, unit_of_model};
 use crate::step::{PairState, RunState, Simulation};
 
 /// The tables of a run, written by rank 0.
@@ -20,12 +17,16 @@ pub struct Tables {
 /// How evenly the ranks are loaded, and what they have sent.
 pub struct Load {
     ranks: usize,
-    particles: [u64; 2],
+    /// Of all ranks, and of the one with the most.
+    pub particles: [u64; 2],
     work: [u64; 2],
     empty_ranks: u64,
-    messages: u64,
-    bytes: u64,
-    updates: u64,
+    /// Sent so far.
+    pub messages: u64,
+    /// Sent so far.
+    pub bytes: u64,
+    /// Of particles, since the start of the process.
+    pub updates: u64,
 }
 
 /// The load of all ranks. Collective.
@@ -346,101 +347,4 @@ impl Tables {
             Value::Real(load.bytes as f64 * 1e-6),
         ])
     }
-}
-
-/// `summary.json`: what the run has come to, and how fast this process has stepped (with the
-/// mean seconds of all ranks by phase). The seconds are those since the start of the program, and of
-/// them those from the start of MPI to the first step. Collective.
-#[allow(clippy::cast_precision_loss, reason = "for people")]
-pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde_json::Value {
-    let [wall, set_up] = seconds;
-    let load = load(comm, simulation);
-    let state = &simulation.state;
-    let worst = &state.worst;
-    let phases = mean_seconds(comm, simulation.timers.report());
-    let stepping: f64 = phases.iter().map(|(_, seconds)| seconds).sum();
-    let mut counts = [simulation.memory() as u64, simulation.frozen() as u64];
-    comm.sum_u64(&mut counts);
-    let [memory, frozen] = counts;
-    let taken_out: u64 = state.removed.iter().map(|r| r.particles).sum();
-    let threads = rayon::current_num_threads();
-    let cores = (comm.size() * threads) as f64;
-    let rate = load.updates as f64 * 1e-6 / stepping.max(f64::MIN_POSITIVE) / cores;
-    let contact = simulation.contact();
-    let nearest = worst.nearest.map(|pair| {
-        let names = pair.bodies.map(|b| &simulation.case.bodies[b].name);
-        json!({ "bodies": names, "ids": pair.particles })
-    });
-    let normalised = simulation.case.sph.form != SphForm::Conventional;
-    // What the ranks have stepped since they started, if no particle was taken out.
-    let steps = load.updates as f64 / (load.particles[0] as f64).max(1.0);
-    let each = |sent: u64| sent as f64 / (steps.max(1.0) * comm.size() as f64);
-    json!({
-        "title": simulation.case.title,
-        "version": VERSION,
-        "commit": COMMIT,
-        "ranks": comm.size(),
-        "threads": threads,
-        "instructions": crate::numerics::dispatch::instructions().name(),
-        "particles": load.particles[0],
-        "removed_particles": taken_out - frozen,
-        "frozen_particles": frozen,
-        "removed_energy": state.removed_energy(),
-        "steps": state.step,
-        "time": state.time,
-        "wall_seconds": wall,
-        "set_up_seconds": set_up,
-        "million_updates_per_second_per_core": rate,
-        "bytes_per_particle": memory as f64 / (load.particles[0] as f64).max(1.0),
-        "messages_per_rank_and_step": each(load.messages),
-        "bytes_sent_per_rank_and_step": each(load.bytes),
-        "seconds_by_phase": object(phases),
-        "energy_error_max": worst.energy_error,
-        "contact_defect": worst.contact_defect,
-        "momentum_error": object(["x", "y", "z"].into_iter().zip(worst.momentum_error)),
-        "interpenetrated_particles": contact.has_pairs().then_some(worst.interpenetrated),
-        "closest_foreign_pair": worst.closest,
-        "closest_foreign_particles": nearest,
-        "largest_foreign_fraction": contact.has_overlap().then_some(worst.foreign_fraction),
-        "plane_crossings": (!simulation.case.symmetry.is_empty()).then_some(state.plane_crossings),
-        "capped_reliefs": state.capped_reliefs,
-        "uncorrected_gradients": normalised.then_some(worst.uncorrected),
-        "contact_limited_steps": worst.contact_limited_steps,
-    })
-}
-
-/// Means over ranks of seconds with names.
-#[allow(
-    clippy::cast_precision_loss,
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "nanoseconds of a run, which are positive, fit well"
-)]
-fn mean_seconds(
-    comm: &Comm,
-    seconds: impl Iterator<Item = (&'static str, f64)>,
-) -> Vec<(&'static str, f64)> {
-    let (names, mut nanoseconds): (Vec<_>, Vec<u64>) = seconds
-        .map(|(name, seconds)| (name, (seconds * 1e9) as u64))
-        .unzip();
-    comm.sum_u64(&mut nanoseconds);
-    let mean = |&sum: &u64| sum as f64 * 1e-9 / comm.size() as f64;
-    names
-        .into_iter()
-        .zip(nanoseconds.iter().map(mean))
-        .collect()
-}
-
-fn object(
-    entries: impl IntoIterator<Item = (&'static str, f64)>,
-) -> serde_json::Map<String, serde_json::Value> {
-    entries
-        .into_iter()
-        .map(|(name, value)| (name.to_owned(), json!(value)))
-        .collect()
-}
-
-/// A time, for people.
-pub fn seconds(time: f64) -> String {
-    shown(time, "s")
 }

@@ -1,7 +1,7 @@
 //! How far two bodies begin within each other.
 
+use super::{Wanted, search};
 use crate::model::{Body, Case, Vec3};
-use crate::populate::{Wanted, search};
 
 /// Bodies in touch have their outermost particles a mean spacing apart, somewhat less where curved
 /// faces follow a lattice; closer ones overlap (spacings).
@@ -22,6 +22,7 @@ pub struct Overlap {
 ///
 /// A face lies half a spacing before its outermost particles. Shapes give the depth and particles
 /// confirm it, since a curved shape is not filled to its edge.
+#[must_use]
 pub fn overlap(case: &Case, a: usize, b: usize) -> Option<Overlap> {
     let [a, b] = [&case.bodies[a], &case.bodies[b]];
     let either = [deepest(case, a, b), deepest(case, b, a)];

@@ -1,18 +1,20 @@
 //! The ranks of a command: started together, and ended together with one message.
 
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Instant, SystemTime};
 
-use super::driver::STEP;
-use super::run::CommonArgs;
+use super::exit::{EXIT_FAILED, EXIT_INPUT};
 use super::say;
 use super::stop::Signals;
-use super::{EXIT_FAILED, EXIT_INPUT};
 use crate::comm::{Comm, Session, abort_job};
 use crate::output::h5::abandoned;
+use crate::output::{Phase, RunFolder, Status};
 
 /// Exit code of a program that panicked.
 const EXIT_PANIC: i32 = 101;
+
+/// The step that this process is in, for the message of a panic.
+pub static STEP: AtomicU64 = AtomicU64::new(0);
 
 /// What a command needs to know of its start.
 pub struct Launch<'a> {
@@ -30,8 +32,8 @@ pub struct Launch<'a> {
 
 impl Launch<'_> {
     /// Starts the threads of this rank, once it is known that there is work for them.
-    pub fn start_threads(&self, args: &CommonArgs) {
-        start_threads(self.comm, args.threads.map(usize::from));
+    pub fn start_threads(&self, wanted: Option<u16>) {
+        start_threads(self.comm, wanted.map(usize::from));
     }
 }
 
@@ -99,6 +101,23 @@ pub fn complain(comm: &Comm, message: &str) -> u8 {
 /// was.
 pub fn give_up(comm: &Comm, message: &str) -> u8 {
     complain(comm, &format!("error: {message}"));
+    EXIT_FAILED
+}
+
+/// Says once for all ranks why a run failed at a step and a time (s), and writes it into its
+/// folder; gives the exit code.
+pub fn fail(comm: &Comm, folder: &RunFolder, message: &str, step: u64, time: f64) -> u8 {
+    if comm.is_root() {
+        say::complain(&format!("error: {message}"));
+        // The message above is what counts; the folder may be what failed.
+        let _ = folder.write_status(&Status {
+            state: Phase::Failed,
+            step,
+            time,
+            reason: Some(message.to_owned()),
+        });
+    }
+    comm.barrier();
     EXIT_FAILED
 }
 

@@ -1,17 +1,17 @@
 //! The run loop: steps, and what is written between them.
 
 use std::path::Path;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use super::fault::Fault;
-use super::launch::Launch;
+use super::exit::EXIT_STOPPED;
+use super::launch::{Launch, STEP, fail};
+use super::options::CommonArgs;
 use super::progress::Progress;
-use super::report::{self, Tables, seconds, summary};
-use super::run::CommonArgs;
-use super::say::{complain, say};
+use super::say::{complain, say, seconds};
 use super::stop::{self, Watch};
-use super::{EXIT_FAILED, EXIT_STOPPED};
+use super::summary::summary;
+use super::tables::{self, Tables};
 use crate::comm::Comm;
 use crate::model::TroublePolicy;
 use crate::output::snapshot::{self, Quantity};
@@ -22,9 +22,6 @@ use crate::output::{
 use crate::output::{checkpoint, post_mortem};
 use crate::step::{self, Simulation, StepError, Timers};
 
-/// The step that this process is in, for the message of a panic.
-pub static STEP: AtomicU64 = AtomicU64::new(0);
-
 /// One rank's part of a run in its folder.
 pub struct Driver<'a> {
     simulation: Simulation,
@@ -34,7 +31,6 @@ pub struct Driver<'a> {
     /// Seconds from the start of MPI to the first step, but for what is written before it.
     set_up: f64,
     watch: Watch,
-    fault: Option<Fault>,
     quantities: Vec<Quantity>,
     rows: Rows,
     tables: Option<Tables>,
@@ -86,7 +82,6 @@ impl<'a> Driver<'a> {
             start: launch.start,
             set_up,
             watch: Watch::new(launch.signals.clone(), stop, launch.start, args.walltime),
-            fault: Fault::of_rank(comm.rank()),
             quantities,
             rows: Rows::default(),
             tables,
@@ -143,9 +138,12 @@ impl<'a> Driver<'a> {
             }
             STEP.store(self.simulation.state.step + 1, Ordering::Relaxed);
             self.simulation.votes.wishes = self.watch.wishes();
-            if let Some(fault) = self.fault {
-                fault.strike(&mut self.simulation, &self.folder.checkpoints());
-            }
+            #[cfg(feature = "fault-injection")]
+            super::fault::strike(
+                comm.rank(),
+                &mut self.simulation,
+                &self.folder.checkpoints(),
+            );
             let before = self.simulation.state.time;
             if let Err(error) = self.simulation.advance(comm) {
                 self.meet_trouble(comm, error)?;
@@ -241,7 +239,7 @@ impl<'a> Driver<'a> {
     }
 
     fn write_row(&mut self, comm: &Comm) -> Result<(), OutputError> {
-        let load = report::load(comm, &self.simulation);
+        let load = tables::load(comm, &self.simulation);
         let wall = self.start.elapsed().as_secs_f64();
         on_root(comm, || match &mut self.tables {
             Some(tables) => tables.write(&self.simulation, &load, wall),
@@ -377,23 +375,6 @@ impl<'a> Driver<'a> {
             self.log.line(text);
         }
     }
-}
-
-/// Says once for all ranks why a run failed at a step and a time (s), and writes it into its
-/// folder; gives the exit code.
-pub fn fail(comm: &Comm, folder: &RunFolder, message: &str, step: u64, time: f64) -> u8 {
-    if comm.is_root() {
-        complain(&format!("error: {message}"));
-        // The message above is what counts; the folder may be what failed.
-        let _ = folder.write_status(&Status {
-            state: Phase::Failed,
-            step,
-            time,
-            reason: Some(message.to_owned()),
-        });
-    }
-    comm.barrier();
-    EXIT_FAILED
 }
 
 fn counted(number: usize, thing: &str) -> String {

@@ -1,4 +1,5 @@
-//! Faults on purpose, to test that one rank's trouble ends all ranks.
+//! Faults on purpose, to test that one rank's trouble ends all ranks: only in builds with the feature
+//! `fault-injection`.
 //!
 //! `WHIPPLE_TEST_FAULT=KIND:RANK:STEP` lets that rank meet the trouble before that step. KIND is
 //! `panic` (on the main thread), `task` (a panic on another thread, where there is one), `nan`
@@ -25,25 +26,25 @@ enum Kind {
 /// How long a pause takes: the file `stop` is looked for once a second.
 const PAUSE: Duration = Duration::from_millis(1500);
 
-/// The fault of this rank, if it is to have one.
+/// The fault of one rank.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Fault {
+struct Fault {
     kind: Kind,
     step: u64,
 }
 
-impl Fault {
-    /// Reads the environment; anything but a fault of this rank means none.
-    pub fn of_rank(rank: usize) -> Option<Self> {
-        parse(&std::env::var("WHIPPLE_TEST_FAULT").ok()?, rank)
+/// Makes the trouble that the environment asks for, if it is of this rank and of the step that is next.
+pub fn strike(rank: usize, simulation: &mut Simulation, checkpoints: &Path) {
+    let asked = std::env::var("WHIPPLE_TEST_FAULT").ok();
+    let fault = asked.and_then(|text| parse(&text, rank));
+    if let Some(fault) = fault.filter(|fault| simulation.state.step + 1 == fault.step) {
+        fault.strike(simulation, checkpoints);
     }
+}
 
-    /// Makes the trouble if it is time for it.
+impl Fault {
     #[expect(clippy::manual_assert, reason = "nothing is asserted")]
-    pub fn strike(self, simulation: &mut Simulation, checkpoints: &Path) {
-        if simulation.state.step + 1 != self.step {
-            return;
-        }
+    fn strike(self, simulation: &mut Simulation, checkpoints: &Path) {
         match self.kind {
             Kind::Panic => panic!("a panic on purpose"),
             Kind::Task => {

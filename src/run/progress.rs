@@ -9,8 +9,7 @@ use std::time::{Duration, Instant};
 use console::Term;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-use super::report::seconds;
-use super::say::say;
+use super::say::{say, seconds};
 use crate::model::RunControl;
 use crate::step::RunState;
 

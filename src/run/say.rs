@@ -4,7 +4,7 @@
 
 use std::io::Write;
 
-use crate::model::readable::printable;
+use crate::model::readable::{printable, shown};
 
 /// A line of output.
 pub fn say(line: &str) {
@@ -16,4 +16,10 @@ pub fn say(line: &str) {
 /// A complaint or a warning, which may have several lines.
 pub fn complain(text: &str) {
     let _ = std::io::stderr().write_all(format!("{}\n", printable(text.trim_end())).as_bytes());
+}
+
+/// A time (s), for people.
+#[must_use]
+pub fn seconds(time: f64) -> String {
+    shown(time, "s")
 }

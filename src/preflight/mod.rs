@@ -1,16 +1,16 @@
-//! What is allowed but looks like a mistake.
+//! Before a run: what of a valid case looks like a mistake of physics, and what memory it takes.
 
 mod approach;
 mod case;
 mod impact;
+pub mod memory;
 mod sense;
 
 pub use approach::{Approach, approaches};
 pub use sense::expected_step;
 
-use super::overlap::overlap;
 use crate::model::{Body, Case, ContactMode};
-use crate::populate;
+use crate::populate::{self, overlap};
 
 /// Overlaps below this are within the rounding of curved faces to a lattice (spacings).
 const SHALLOW: f64 = 0.2;
