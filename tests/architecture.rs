@@ -200,7 +200,6 @@ const LONG_FILES: &[(&str, &str)] = &[
     ("exact/bars.rs", BEING_SPLIT),
     ("input/schema.rs", BEING_SPLIT),
     ("model/surface/mesh.rs", BEING_SPLIT),
-    ("neighbours/clusters.rs", BEING_SPLIT),
     ("output/checkpoint.rs", BEING_SPLIT),
     ("particles/fields.rs", BEING_SPLIT),
     ("step/contact_phase.rs", BEING_SPLIT),
@@ -250,19 +249,6 @@ const CIRCLES: &[(&[&str], &str)] = &[
             "input/validate/materials.rs",
             "input/validate/strength.rs",
         ],
-        BEING_SPLIT,
-    ),
-    (
-        &[
-            "neighbours/clusters.rs",
-            "neighbours/foreign.rs",
-            "neighbours/gather.rs",
-            "neighbours/parts.rs",
-        ],
-        BEING_SPLIT,
-    ),
-    (
-        &["neighbours/sequence.rs", "neighbours/sort.rs"],
         BEING_SPLIT,
     ),
     (&["particles/fields.rs", "particles/store.rs"], BEING_SPLIT),

@@ -1,17 +1,25 @@
 //! Neighbour search: images sorted into thin columns, lists for clusters of eight receivers
 //! (own group) and for single receivers (foreign bodies), and a brute-force oracle.
 
+mod cluster;
 mod clusters;
 mod columns;
+mod facts;
 mod foreign;
 mod gather;
+mod group;
+mod near;
 pub mod oracle;
+mod pairs;
 mod parts;
 mod sequence;
 mod sort;
 
-pub use clusters::{Among, CHUNKS_AT_ONCE, Chunk, Cluster, ClusterLists, Lengths};
+pub use cluster::{Among, Cluster};
+pub use clusters::{CHUNKS_AT_ONCE, Chunk, ClusterLists, Lengths};
 pub use columns::ColumnGrid;
-pub use foreign::{ContactClass, ForeignChunk, ForeignLists, ForeignTable, PairList};
+pub use facts::ImageFacts;
+pub use foreign::{ContactClass, ForeignChunk, ForeignLists, ForeignTable};
+pub use pairs::PairList;
 pub use parts::{Kin, Part};
-pub use sequence::{ImageFacts, Sequence};
+pub use sequence::Sequence;
