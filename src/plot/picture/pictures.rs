@@ -1,21 +1,23 @@
 //! From a request to pictures: sections of some snapshots with one plane, view and colours.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use super::PlotError;
 use super::bar::ColourBar;
-use super::canvas::Canvas;
 use super::cells::Cell;
-use super::colour::Scale;
-use super::field::Shown;
-use super::figure::{Colours, Figure, PANELS_WIDTH, WIDTH};
-use super::layout::View;
-use super::plane::Plane;
-use super::section::{Cut, DrawnAs, Section};
-use super::snapshot::Snapshot;
-use super::source::Source;
-use super::units::{self, Readable};
+use super::figure::{Colours, Figure};
+use super::section::{self, Cut, DrawnAs, Section};
+use super::view::View;
 use crate::model::Axis;
+use crate::plot::PlotError;
+use crate::plot::canvas::Canvas;
+use crate::plot::colour::Scale;
+use crate::plot::snapshots::field::Shown;
+use crate::plot::snapshots::plane::Plane;
+use crate::plot::snapshots::slice::{place, quantity, thickness};
+use crate::plot::snapshots::snapshot::Snapshot;
+use crate::plot::snapshots::source::Source;
+use crate::plot::style::{PANELS_WIDTH, WIDTH};
+use crate::plot::units::{self, Readable};
 
 /// What to draw, as typed.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -96,7 +98,7 @@ impl Pictures {
         Ok(Self {
             where_text: where_text(&cut, &first),
             colours: colours(&cut.shown, bodies, &sections, range),
-            view: view.unwrap_or_else(|| View::around(&sections)),
+            view: view.unwrap_or_else(|| section::view(&sections)),
             names: (sources.len() > 1).then(|| {
                 let names = sources
                     .iter()
@@ -174,27 +176,6 @@ impl Pictures {
     }
 }
 
-/// Title of the case that wrote a snapshot.
-///
-/// # Errors
-/// [`PlotError::Read`] if the snapshot cannot be read.
-pub fn title(path: &Path) -> Result<String, PlotError> {
-    Ok(Snapshot::open(path)?.title)
-}
-
-/// Reads the thickness of a slice (m).
-pub fn thickness(text: &str) -> Result<f64, PlotError> {
-    let value = units::parse(text, "m")?;
-    if value > 0.0 {
-        Ok(value)
-    } else {
-        Err(PlotError::Quantity {
-            text: text.to_owned(),
-            expected: "a thickness above zero, as in 0.1mm".to_owned(),
-        })
-    }
-}
-
 /// Reads `LEFT:RIGHT,BOTTOM:TOP`; numbers without a unit take the last one's.
 fn parse_view(text: &str) -> Result<View, PlotError> {
     let (x, y) = text.split_once(',').ok_or_else(|| PlotError::Quantity {
@@ -206,23 +187,6 @@ fn parse_view(text: &str) -> Result<View, PlotError> {
         x: units::parse_span(x, Some(unit), "m")?,
         y: units::parse_span(y, None, "m")?,
     })
-}
-
-/// `"y = 0.1 mm"`, in a unit that suits the position and the particle spacing.
-pub fn place(axis: &str, position: f64, spacing: f64) -> String {
-    format!("{axis} = {}", quantity(position, spacing))
-}
-
-/// A length with a unit that suits it and the particle spacing.
-fn quantity(length: f64, spacing: f64) -> String {
-    let unit = Readable::new("m", length.abs().max(spacing));
-    let number = unit.number(length, 3);
-    let number = number.trim_end_matches('0').trim_end_matches('.');
-    if number == "0" {
-        number.to_owned()
-    } else {
-        format!("{number} {}", unit.name)
-    }
 }
 
 /// Where a section is taken, in units that suit the positions and the particle spacing.

@@ -3,11 +3,11 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use super::PlotError;
 use super::field::Shown;
 use super::snapshot::Snapshot;
 use crate::diagnose::pieces;
 use crate::model::Axis;
+use crate::plot::PlotError;
 
 /// A direction along an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

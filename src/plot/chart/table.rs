@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use super::PlotError;
 use crate::input;
 use crate::output::Sheet;
+use crate::plot::PlotError;
 
 /// Longest file that is read as a table (bytes).
 const LONGEST: u64 = 4_000_000_000;

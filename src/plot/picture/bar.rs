@@ -1,11 +1,12 @@
 //! The colour bar beside a picture.
 
-use super::axes::{Axes, Style};
-use super::canvas::{Align, Canvas, Frame, INK};
-use super::colour::Scale;
-use super::font;
-use super::ticks::{Ticks, nice_step};
-use super::units::Readable;
+use crate::plot::axes::Axes;
+use crate::plot::canvas::{Align, Canvas, Frame, INK};
+use crate::plot::colour::Scale;
+use crate::plot::font;
+use crate::plot::style::Style;
+use crate::plot::ticks::{Ticks, nice_step};
+use crate::plot::units::Readable;
 
 /// What colours of a field mean.
 #[derive(Debug, Clone)]

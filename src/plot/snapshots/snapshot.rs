@@ -3,10 +3,10 @@
 use std::ops::Range;
 use std::path::Path;
 
-use super::PlotError;
-use super::plane::Mover;
+use super::extent::{Extent, Mover};
 use crate::model::{Axis, SymmetryPlane};
 use crate::output::h5::read::SnapshotFile;
+use crate::plot::PlotError;
 
 /// Particles read at a time, so that a large snapshot never stands whole in memory.
 const CHUNK: usize = 1 << 20;
@@ -245,44 +245,12 @@ impl Snapshot {
     }
 }
 
-/// Where particles lie along an axis.
-#[derive(Debug, Clone, Copy)]
-pub struct Extent {
-    pub lowest: f64,
-    pub highest: f64,
-    sum: f64,
-    count: f64,
-}
-
-impl Default for Extent {
-    fn default() -> Self {
-        Self {
-            lowest: f64::INFINITY,
-            highest: f64::NEG_INFINITY,
-            sum: 0.0,
-            count: 0.0,
-        }
-    }
-}
-
-impl Extent {
-    fn add(&mut self, coordinate: f64) {
-        if coordinate.is_finite() {
-            self.lowest = self.lowest.min(coordinate);
-            self.highest = self.highest.max(coordinate);
-            self.sum += coordinate;
-            self.count += 1.0;
-        }
-    }
-
-    /// Mean coordinate (m); 0 without particles.
-    pub fn mean(&self) -> f64 {
-        if self.count > 0.0 {
-            self.sum / self.count
-        } else {
-            0.0
-        }
-    }
+/// Title of the case that wrote a snapshot.
+///
+/// # Errors
+/// [`PlotError::Read`] if the snapshot cannot be read.
+pub fn title(path: &Path) -> Result<String, PlotError> {
+    Ok(Snapshot::open(path)?.title)
 }
 
 /// A JSON attribute of the group `/whipple`.

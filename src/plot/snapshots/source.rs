@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::PlotError;
 use crate::output::h5::read::SnapshotFile;
+use crate::plot::PlotError;
 
 /// Which snapshots of a run are wanted.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,7 +5,6 @@
 
 use std::path::Path;
 
-use super::PlotError;
 use crate::exact::bars::{Bar, Row, Waves};
 use crate::exact::elastic::End;
 use crate::exact::hugoniot::Medium;
@@ -15,6 +14,7 @@ use crate::exact::{Profile, Sample, finite_strain};
 use crate::input;
 use crate::material::{Eos, Material, Strength};
 use crate::model::{Body, Case, ContactMode, Motion, Shape, VelocityLoad};
+use crate::plot::PlotError;
 
 /// What has an answer.
 const KNOWN: &str = "an exact answer is known for one-dimensional runs of linear elastic bars \

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use super::PlotError;
-use super::axes::Mark;
-use super::canvas::Rgb;
-use super::chart::{Chart, Curve, Quantity};
+use super::curves::{Chart, Curve, Quantity};
 use super::table::{Table, wrong};
+use crate::plot::PlotError;
+use crate::plot::canvas::Rgb;
+use crate::plot::header::Mark;
 
 /// Columns that are drawn, their names in the legend and their colours.
 const CURVES: [(&str, &str, Rgb); 4] = [

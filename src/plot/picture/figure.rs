@@ -1,20 +1,17 @@
 //! A picture of one or several sections: panels to scale, axes, legend or colour bar.
 
-use super::PlotError;
-use super::axes::{Axes, Entry, Header, Mark, Style};
 use super::bar::ColourBar;
-use super::canvas::{Align, Canvas, Frame, Rgb};
 use super::cells::Sample;
-use super::colour;
-use super::layout::{Layout, View, pixels};
+use super::layout::{Layout, pixels};
 use super::raster::Raster;
 use super::section::{DrawnAs, Section};
-
-/// Default width of a picture of one panel (pixels), at which [`Style::unit`] is 1.
-pub const WIDTH: u32 = 1200;
-
-/// Default width of a picture of several panels (pixels).
-pub const PANELS_WIDTH: u32 = 1800;
+use super::view::View;
+use crate::plot::PlotError;
+use crate::plot::axes::Axes;
+use crate::plot::canvas::{Align, Canvas, Frame, Rgb};
+use crate::plot::colour;
+use crate::plot::header::{Entry, Header, Mark};
+use crate::plot::style::{PANELS_WIDTH, Style, WIDTH, whole};
 
 /// What colours mean.
 #[derive(Debug, Clone)]
@@ -188,14 +185,4 @@ fn draw_particle(canvas: &mut Canvas, at: (f32, f32), radius: f32, colour: Rgb, 
         canvas.disc(at, radius, colour.map(|c| c / 4 * 3), clip);
         canvas.disc(at, radius - rim, colour, clip);
     }
-}
-
-/// A height as a number of pixels.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a float cast saturates; the canvas refuses what it cannot hold"
-)]
-pub fn whole(height: f32) -> u32 {
-    height.ceil() as u32
 }

@@ -1,9 +1,10 @@
 //! The plane of a section, and which one shows a model best.
 
-use super::PlotError;
-use super::snapshot::{Extent, Snapshot};
-use super::units;
+use super::extent::{Extent, Mover};
+use super::snapshot::Snapshot;
 use crate::model::{Axis, SymmetryPlane};
+use crate::plot::PlotError;
+use crate::plot::units;
 
 /// Speeds below this share of the largest are those of round-off.
 const AT_REST: f64 = 1e-6;
@@ -104,17 +105,6 @@ impl Plane {
             position: plane.map_or(middle, |plane| plane.position),
         }
     }
-}
-
-/// What a body is and does, as far as the choice of a plane needs it.
-#[derive(Debug, Clone, Default)]
-pub struct Mover {
-    /// Where its particles lie.
-    pub extents: [Extent; 3],
-    /// Its mass at the start of the run (kg).
-    pub mass: f64,
-    /// Mean velocity (m/s).
-    pub velocity: [f64; 3],
 }
 
 /// The body that moves most against the mean of all, and the axis along which it does so: upwards

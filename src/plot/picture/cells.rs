@@ -15,7 +15,7 @@
 //! Bodies are told apart: the one with the largest sum fills the place, so that the line between two
 //! bodies in touch is smooth, and a gap between them is not filled by both together.
 
-use super::layout::View;
+use super::view::View;
 
 /// How far a particle's weight reaches, in its own sizes.
 pub const REACH: f64 = std::f64::consts::SQRT_2;

@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::axes::Mark;
-use super::chart::{Chart, Curve, Quantity};
-use super::colour;
+use super::curves::{Chart, Curve, Quantity};
 use super::series::{self, Series, series};
 use super::table::{Table, wrong};
-use super::{PlotError, units};
+use crate::plot::PlotError;
+use crate::plot::colour;
+use crate::plot::header::Mark;
+use crate::plot::units;
 
 /// What is drawn against what.
 #[derive(Debug, Clone, PartialEq, Eq)]

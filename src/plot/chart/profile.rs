@@ -2,17 +2,19 @@
 
 use std::path::Path;
 
-use super::axes::Mark;
-use super::canvas::INK;
-use super::chart::{Chart, Curve, Quantity};
+use super::curves::{Chart, Curve, Quantity};
 use super::exact::{self, Exact};
-use super::field::{Field, Shown};
-use super::plane::Plane;
-use super::section::slice;
-use super::snapshot::Snapshot;
-use super::source::Source;
-use super::{PlotError, colour, pictures, units};
 use crate::model::Axis;
+use crate::plot::PlotError;
+use crate::plot::canvas::INK;
+use crate::plot::colour;
+use crate::plot::header::Mark;
+use crate::plot::snapshots::field::{Field, Shown};
+use crate::plot::snapshots::plane::Plane;
+use crate::plot::snapshots::slice::{self, slice};
+use crate::plot::snapshots::snapshot::Snapshot;
+use crate::plot::snapshots::source::Source;
+use crate::plot::units;
 
 /// About how many of many curves have a name in the legend.
 const NAMED: usize = 10;
@@ -164,7 +166,7 @@ impl Line {
             thickness: request
                 .thickness
                 .as_deref()
-                .map(pictures::thickness)
+                .map(slice::thickness)
                 .transpose()?,
         })
     }
@@ -241,7 +243,7 @@ impl Line {
         };
         let place = |axis: &Axis| {
             let position = self.through[axis.index()];
-            pictures::place(axis.name(), position, snapshot.finest())
+            slice::place(axis.name(), position, snapshot.finest())
         };
         let places: Vec<String> = Axis::ALL.iter().filter(thick).map(place).collect();
         let along = match self.along {

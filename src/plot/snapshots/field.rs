@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::PlotError;
 use super::snapshot::{FROZEN, Snapshot};
 use crate::model::Axis;
+use crate::plot::PlotError;
 
 /// Components of a vector, in the order of the file.
 const VECTOR: [&str; 3] = ["x", "y", "z"];

@@ -1,11 +1,12 @@
 //! A chart: curves and dots over two axes, linear or logarithmic.
 
-use super::PlotError;
-use super::axes::{Axes, Entry, Header, Mark, Style};
-use super::canvas::{Canvas, Frame, INK, Rgb};
-use super::figure::{WIDTH, whole};
-use super::ticks::{Ticks, nice_step};
-use super::units::Readable;
+use crate::plot::PlotError;
+use crate::plot::axes::Axes;
+use crate::plot::canvas::{Canvas, Frame, INK, Rgb};
+use crate::plot::header::{Entry, Header, Mark};
+use crate::plot::style::{Style, WIDTH, whole};
+use crate::plot::ticks::{Ticks, nice_step};
+use crate::plot::units::Readable;
 
 /// An axis of a chart.
 #[derive(Debug, Clone, Default, PartialEq)]

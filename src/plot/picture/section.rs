@@ -2,17 +2,15 @@
 
 use std::ops::Range;
 
-use super::PlotError;
 use super::cells::{Cell, REACH};
-use super::field::Shown;
-use super::plane::Plane;
-use super::snapshot::{LARGEST, Snapshot};
-use super::units::Readable;
+use super::view::View;
 use crate::model::{Axis, SymmetryPlane};
-
-/// Shift of the slice's faces in spacings: far above the round-off of positions, far below what
-/// the eye sees.
-const NUDGE: f64 = 1e-6;
+use crate::plot::PlotError;
+use crate::plot::snapshots::field::Shown;
+use crate::plot::snapshots::plane::Plane;
+use crate::plot::snapshots::slice::{NUDGE, slice};
+use crate::plot::snapshots::snapshot::{LARGEST, Snapshot};
+use crate::plot::units::Readable;
 
 /// How the particles of a section are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -252,11 +250,21 @@ impl Cut {
     }
 }
 
-/// Whether a slice of a half thickness holds a distance from its middle: −half < d ≤ half but
-/// for round-off, so that a lattice shows exactly one layer.
-pub fn slice(distance: f64, half: f64, spacing: f64) -> bool {
-    let nudge = NUDGE * spacing;
-    distance > nudge - half && distance <= half + nudge
+/// A view of all of some sections with a small border.
+pub fn view(sections: &[Section]) -> View {
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    let mut reach = [none; 2];
+    let cells = sections.iter().flat_map(|s| &s.cells);
+    for cell in cells.filter(|cell| cell.is_cut()) {
+        let radius = 0.5 * cell.size;
+        for (span, at) in reach.iter_mut().zip(cell.at) {
+            *span = [span[0].min(at - radius), span[1].max(at + radius)];
+        }
+    }
+    let longest = reach.iter().map(|s| s[1] - s[0]).fold(0.0, f64::max);
+    let border = 0.03 * longest;
+    let [x, y] = reach.map(|span| [span[0] - border, span[1] + border]);
+    View { x, y }
 }
 
 #[cfg(test)]

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::canvas::{Frame, PAPER, Rgb};
 use super::cells::{Cell, Sample, Tiles};
-use super::layout::View;
+use super::view::View;
+use crate::plot::canvas::{Frame, PAPER, Rgb};
 
 /// Samples along either axis of a pixel at an edge: an odd number, so that one is in the middle.
 const FINE: usize = 3;
