@@ -197,10 +197,7 @@ const LONGEST: usize = 400;
 const LONG_FILES: &[(&str, &str)] = &[
     ("app/driver.rs", BEING_SPLIT),
     ("app/report.rs", BEING_SPLIT),
-    ("exact/bars.rs", BEING_SPLIT),
     ("input/schema.rs", BEING_SPLIT),
-    ("model/surface/mesh.rs", BEING_SPLIT),
-    ("output/checkpoint.rs", BEING_SPLIT),
     ("particles/fields.rs", BEING_SPLIT),
     ("step/contact_phase.rs", BEING_SPLIT),
     ("step/sweeps.rs", BEING_SPLIT),
@@ -217,8 +214,6 @@ const LONG_FUNCTIONS: &[(&str, &str, &str)] = &[
     ("contact/table.rs", "make_pair", BEING_SPLIT),
     ("input/validate/contact.rs", "contacts", BEING_SPLIT),
     ("input/validate/mod.rs", "case", BEING_SPLIT),
-    ("output/post_mortem.rs", "text", BEING_SPLIT),
-    ("populate/search.rs", "search", BEING_SPLIT),
     ("sph/momentum.rs", "run", BEING_SPLIT),
     ("step/integrate.rs", "kick_by", BEING_SPLIT),
     ("step/search.rs", "find_neighbours", BEING_SPLIT),
@@ -252,11 +247,6 @@ const CIRCLES: &[(&[&str], &str)] = &[
         BEING_SPLIT,
     ),
     (&["particles/fields.rs", "particles/store.rs"], BEING_SPLIT),
-    (
-        &["plot/cells.rs", "plot/layout.rs", "plot/section.rs"],
-        BEING_SPLIT,
-    ),
-    (&["plot/plane.rs", "plot/snapshot.rs"], BEING_SPLIT),
     (&["sph/normalised.rs", "sph/options.rs"], BEING_SPLIT),
     (
         &[
