@@ -298,91 +298,72 @@ fn lib_rs_lists_every_room() {
 
 #[test]
 fn no_room_names_what_it_may_not_know() {
-    let mut complaints = String::new();
-    for source in sources() {
+    for_each_source(|source, complain| {
         let Some((_, forbidden)) = WALLS.iter().find(|(room, _)| *room == source.room) else {
-            continue;
+            return;
         };
         for path in source.paths() {
             let named = path.named();
             for wall in forbidden.iter().chain(&["app"]) {
                 if named == *wall || named.starts_with(&format!("{wall}::")) {
-                    complain(
-                        &mut complaints,
-                        &source,
-                        path.line,
-                        &format!("names {named}"),
-                    );
+                    complain(path.line, &format!("names {named}"));
                 }
             }
         }
-    }
-    assert_silent(&complaints);
+    });
 }
 
 #[test]
 fn only_comm_names_mpi_and_only_output_h5_names_hdf5() {
-    let mut complaints = String::new();
-    for source in sources() {
+    for_each_source(|source, complain| {
         for path in source.paths() {
             for (name, place) in ENTRUSTED {
                 if path.is_of_crate(name) && !source.name.starts_with(place) {
-                    complain(
-                        &mut complaints,
-                        &source,
-                        path.line,
-                        &format!("names the crate {name}"),
-                    );
+                    complain(path.line, &format!("names the crate {name}"));
                 }
             }
         }
-    }
-    assert_silent(&complaints);
+    });
 }
 
 #[test]
 fn only_the_rooms_of_the_main_thread_call_comm() {
-    let mut complaints = String::new();
-    for source in sources() {
+    for_each_source(|source, complain| {
         if CALLERS_OF_COMM.contains(&source.room.as_str()) {
-            continue;
+            return;
         }
         for path in source.paths().iter().filter(|path| path.names_room("comm")) {
-            complain(&mut complaints, &source, path.line, "names comm");
+            complain(path.line, "names comm");
         }
-    }
-    assert_silent(&complaints);
+    });
 }
 
 #[test]
 fn threads_never_meet_mpi() {
-    let mut complaints = String::new();
-    for source in sources() {
+    for_each_source(|source, complain| {
         for path in source.paths() {
             if source.room == "comm" && path.is_of_crate("rayon") {
-                complain(&mut complaints, &source, path.line, "names rayon");
+                complain(path.line, "names rayon");
             }
         }
         for (line, name) in source.methods() {
             if name == "install" {
                 complain(
-                    &mut complaints,
-                    &source,
                     line,
                     "moves work off the main thread; build the pool with use_current_thread",
                 );
             }
         }
-    }
-    assert_silent(&complaints);
+    });
 }
 
 /// So that waiting never counts as a rank's work, see `comm/waiting.rs`.
 #[test]
 fn calls_of_mpi_that_wait_are_timed() {
-    let mut complaints = String::new();
-    let comm = sources();
-    for source in comm.iter().filter(|source| source.room == "comm") {
+    for_each_source(|source, complain| {
+        if source.room != "comm" {
+            return;
+        }
         let lines: Vec<&str> = source.text.lines().collect();
         for (n, line) in lines.iter().enumerate() {
             let waits = ["_into(", "MPI_Wait", ".barrier()"];
@@ -390,32 +371,25 @@ fn calls_of_mpi_that_wait_are_timed() {
                 .iter()
                 .any(|line| line.contains("waiting("));
             if waits.iter().any(|call| line.contains(call)) && !timed {
-                complain(&mut complaints, source, n + 1, "waits outside of `waiting`");
+                complain(n + 1, "waits outside of `waiting`");
             }
         }
-    }
-    assert_silent(&complaints);
+    });
 }
 
 #[test]
 fn physics_has_no_unordered_maps_clocks_or_host_mathematics() {
-    let mut complaints = String::new();
-    for source in sources() {
+    for_each_source(|source, complain| {
         if !PHYSICS.contains(&source.room.as_str()) {
-            continue;
+            return;
         }
         for token in &source.tokens {
             let unordered = ["HashMap", "HashSet"].contains(&token.text.as_str());
             let clock = ["Instant", "SystemTime"].contains(&token.text.as_str());
             if unordered {
-                complain(
-                    &mut complaints,
-                    &source,
-                    token.line,
-                    "HashMap has no order: use BTreeMap",
-                );
+                complain(token.line, "HashMap has no order: use BTreeMap");
             } else if clock && TIMELESS.contains(&source.room.as_str()) {
-                complain(&mut complaints, &source, token.line, "reads a clock");
+                complain(token.line, "reads a clock");
             }
         }
         for (line, name) in source
@@ -424,63 +398,54 @@ fn physics_has_no_unordered_maps_clocks_or_host_mathematics() {
             .chain(source.functions_of_f64())
         {
             if HOST_MATHEMATICS.contains(&name) {
-                let what = format!("{name} has the host's bits: use the libm crate");
-                complain(&mut complaints, &source, line, &what);
+                complain(
+                    line,
+                    &format!("{name} has the host's bits: use the libm crate"),
+                );
             }
         }
-    }
-    assert_silent(&complaints);
+    });
 }
 
 #[test]
 fn no_sum_depends_on_threads() {
-    let mut complaints = String::new();
-    for source in sources() {
-        if PHYSICS.contains(&source.room.as_str()) {
-            for (line, what) in source.parallel_reductions() {
-                if !source.says(line, ANY_ORDER) {
-                    let what = format!("{what}; if it has the {ANY_ORDER}, say why in a comment");
-                    complain(&mut complaints, &source, line, &what);
-                }
+    for_each_source(|source, complain| {
+        if !PHYSICS.contains(&source.room.as_str()) {
+            return;
+        }
+        for (line, what) in source.parallel_reductions() {
+            if !source.says(line, ANY_ORDER) {
+                let why = format!("{what}; if it has the {ANY_ORDER}, say why in a comment");
+                complain(line, &why);
             }
         }
-    }
-    assert_silent(&complaints);
+    });
 }
 
 #[test]
 fn files_are_short_or_have_a_reason() {
-    let mut complaints = String::new();
-    for source in sources() {
+    for_each_source(|source, complain| {
         let lines = source.text.lines().count();
         let excused = LONG_FILES.iter().any(|(name, _)| *name == source.name);
         if lines > LONGEST && !excused {
-            complain(
-                &mut complaints,
-                &source,
-                lines,
-                "is too long: split it, or give the reason",
-            );
+            complain(lines, "is too long: split it, or give the reason");
         }
-    }
-    assert_silent(&complaints);
+    });
 }
 
 #[test]
 fn functions_are_short_or_have_a_reason() {
-    let mut complaints = String::new();
-    for source in sources() {
+    for_each_source(|source, complain| {
         for (name, line, lines) in source.functions() {
             let excused = LONG_FUNCTIONS
                 .iter()
                 .any(|(file, function, _)| *file == source.name && *function == name);
             if lines > LONGEST_FUNCTION && !excused {
                 let what = format!("{name} has {lines} lines: split it, or give the reason");
-                complain(&mut complaints, &source, line, &what);
+                complain(line, &what);
             }
         }
-    }
-    assert_silent(&complaints);
+    });
 }
 
 /// Two files that import each other are one file in two places, and neither can be read first.
@@ -510,8 +475,15 @@ fn no_files_import_each_other_in_a_circle() {
     assert_silent(&complaints);
 }
 
-fn complain(complaints: &mut String, source: &Source, line: usize, what: &str) {
-    writeln!(complaints, "  src/{}:{line} {what}", source.name).expect("a string takes text");
+/// Lets a rule complain of each file with a line and what is wrong there, and fails with all of it.
+fn for_each_source(rule: impl Fn(&Source, &mut dyn FnMut(usize, &str))) {
+    let mut complaints = String::new();
+    for source in sources() {
+        rule(&source, &mut |line, what| {
+            writeln!(complaints, "  src/{}:{line} {what}", source.name).unwrap();
+        });
+    }
+    assert_silent(&complaints);
 }
 
 fn assert_silent(complaints: &str) {

@@ -1,5 +1,5 @@
 //! Neighbour search: images sorted into thin columns, lists for clusters of eight receivers
-//! (own group) and for single receivers (foreign bodies), and a brute-force oracle.
+//! (own group) and for single receivers (foreign bodies).
 
 mod cluster;
 mod clusters;
@@ -9,7 +9,6 @@ mod foreign;
 mod gather;
 mod group;
 mod near;
-pub mod oracle;
 mod pairs;
 mod parts;
 mod sequence;

@@ -8,7 +8,9 @@ use super::manifest::{FORMAT, MANIFEST, Manifest};
 use super::state_file::{FIELDS, row_type, size_of, state_file};
 use crate::comm::Comm;
 use crate::output::h5::Writer;
-use crate::output::{COMMIT, OutputError, Rows, VERSION, digest, files, on_root, write_json};
+use crate::output::{
+    COMMIT, OutputError, Rows, VERSION, digest, files, on_root, settle, write_json,
+};
 use crate::particles::{FieldUse, ParticleStore};
 
 /// What a checkpoint says beside the particles.
@@ -44,15 +46,11 @@ pub fn write(
         fs::create_dir_all(&temporary).map_err(OutputError::io("create the folder", &temporary))
     })?;
     let written = write_parts(comm, &temporary, store, meta, rows);
-    on_root(comm, || {
-        if written.is_ok() {
-            return replace(&temporary, &path).and_then(|()| prune(folder, meta.step, keep));
-        }
-        // What went wrong is told below; half a checkpoint only takes room.
-        let _ = files::remove(&temporary);
-        Ok(())
+    settle(comm, written, &temporary, || {
+        replace(&temporary, &path)?;
+        prune(folder, meta.step, keep)
     })?;
-    written.map(|()| path)
+    Ok(path)
 }
 
 fn write_parts(
