@@ -19,7 +19,6 @@
 
 mod strand;
 
-use super::elastic::End;
 use super::finite_strain::Medium;
 use super::{Profile, bisect};
 use strand::{SPECK, STRETCHES, State, Strand, Wave};
@@ -38,6 +37,16 @@ pub struct Bar {
     pub length: f64,
     /// Velocity (m/s).
     pub velocity: f64,
+}
+
+/// What holds an outer end of the row.
+#[derive(Debug, Clone, PartialEq)]
+pub enum End {
+    /// No stress.
+    Free,
+    /// A velocity (m/s), or none where it is free, from each time (s) on, first time first; free
+    /// before.
+    Moved(Vec<(f64, Option<f64>)>),
 }
 
 /// Bars from left to right in frictionless contact without tension, with gaps or without.

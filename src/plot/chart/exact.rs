@@ -5,8 +5,7 @@
 
 use std::path::Path;
 
-use crate::exact::bars::{Bar, Row, Waves};
-use crate::exact::elastic::End;
+use crate::exact::bars::{Bar, End, Row, Waves};
 use crate::exact::hugoniot::Medium;
 use crate::exact::plates::{self, Plate};
 use crate::exact::riemann::{Gas, Riemann};

@@ -21,6 +21,8 @@
 
 mod solver;
 
+pub use whipple::exact::bars::End;
+
 use super::steps::Steps;
 use solver::Solver;
 
@@ -61,16 +63,6 @@ impl Bar {
     pub fn transit(&self) -> f64 {
         self.length / self.wave_speed()
     }
-}
-
-/// What holds an outer end of the row.
-#[derive(Debug, Clone, PartialEq)]
-pub enum End {
-    /// No stress.
-    Free,
-    /// A velocity (m/s), or none where it is free, from each time (s) on, first time first; free
-    /// before.
-    Moved(Vec<(f64, Option<f64>)>),
 }
 
 /// How neighbouring bars meet.

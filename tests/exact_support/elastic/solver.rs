@@ -1,7 +1,7 @@
 //! From event to event: what arrives at an end, and how it answers.
 
+use super::super::steps::Steps;
 use super::{Bar, End, Joint, Link, ROUND_OFF, Row, Waves};
-use crate::exact::steps::Steps;
 
 /// Goes from event to event.
 pub(super) struct Solver<'a> {
