@@ -5,9 +5,9 @@
 
 mod exact_support;
 
+use exact_support::elastic::{Bar, End, Joint, Row, Waves};
 use exact_support::{ALUMINIUM, STEEL, medium};
 use proptest::prelude::*;
-use whipple::exact::elastic::{Bar, End, Joint, Row, Waves};
 use whipple::exact::finite_strain::impact;
 use whipple::material::LinearForm;
 

@@ -1,6 +1,9 @@
 //! The Riemann problem and Noh's implosion against published values and the jump conditions.
 
-use whipple::exact::noh::Noh;
+#[path = "exact_support/noh.rs"]
+mod noh;
+
+use noh::Noh;
 use whipple::exact::riemann::{Gas, Riemann};
 
 fn gas(density: f64, velocity: f64, pressure: f64) -> Gas {

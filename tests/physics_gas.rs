@@ -4,10 +4,12 @@
 //! h and the density by continuity leave behind a shock is an error that does not fall with the
 //! spacing: see the validation page of the book.
 
+#[path = "exact_support/noh.rs"]
+mod noh;
 mod physics_support;
 
+use noh::Noh;
 use physics_support::{median, ready, run_to, start};
-use whipple::exact::noh::Noh;
 use whipple::exact::riemann::{Gas, Riemann};
 use whipple::step::Simulation;
 

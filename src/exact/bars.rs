@@ -17,16 +17,14 @@
 //! their collisions are exact, fans to the size of their steps. Source of the method: Dafermos
 //! (1972), J. Math. Anal. Appl. 38, 33.
 
-use super::elastic::End;
+mod strand;
+
 use super::finite_strain::Medium;
-use super::{Profile, Sample, bisect};
+use super::{Profile, bisect};
+use strand::{SPECK, STRETCHES, State, Strand, Wave};
 
 /// Steps of velocity in the largest difference of velocities there is.
 const STEPS: f64 = 64.0;
-/// Changes of stretch below this are none.
-const SPECK: f64 = 1e-9;
-/// Stretches between which all states lie.
-const STRETCHES: [f64; 2] = [1e-3, 1e3];
 
 /// A bar at the start, without stress.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,6 +39,16 @@ pub struct Bar {
     pub velocity: f64,
 }
 
+/// What holds an outer end of the row.
+#[derive(Debug, Clone, PartialEq)]
+pub enum End {
+    /// No stress.
+    Free,
+    /// A velocity (m/s), or none where it is free, from each time (s) on, first time first; free
+    /// before.
+    Moved(Vec<(f64, Option<f64>)>),
+}
+
 /// Bars from left to right in frictionless contact without tension, with gaps or without.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
@@ -48,34 +56,6 @@ pub struct Row {
     pub bars: Vec<Bar>,
     /// What holds the outer ends, left and right.
     pub ends: [End; 2],
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct State {
-    velocity: f64,
-    stretch: f64,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Front {
-    /// Distance from the left end in reference coordinates (m).
-    at: f64,
-    /// Speed in reference coordinates, to the right positive (m/s).
-    speed: f64,
-    /// A step of a fan, no shock.
-    fan: bool,
-}
-
-/// A bar on the way.
-#[derive(Debug, Clone)]
-struct Strand {
-    medium: Medium,
-    length: f64,
-    /// Where the left end is now (m).
-    left: f64,
-    fronts: Vec<Front>,
-    /// One more than fronts.
-    states: Vec<State>,
 }
 
 /// What happens next.
@@ -343,129 +323,6 @@ impl Waves {
             self.gaps[joint] = Some(0.0);
             self.strands[joint].send(1, 1.0, self.step);
             self.strands[joint + 1].send(0, 1.0, self.step);
-        }
-    }
-}
-
-/// A shock, or the steps of a fan, from the state it runs into.
-struct Wave {
-    fronts: Vec<Front>,
-    /// Behind each front.
-    states: Vec<State>,
-}
-
-impl Wave {
-    /// The wave into a state that leaves a stretch; `side` is 1 if it runs to the left, else −1.
-    fn new(medium: &Medium, ahead: State, stretch: f64, side: f64, step: f64, at: f64) -> Self {
-        let mut wave = Self {
-            fronts: Vec::new(),
-            states: Vec::new(),
-        };
-        let change = stretch - ahead.stretch;
-        if change.abs() < SPECK {
-            return wave;
-        }
-        let gain = medium.change(stretch, ahead.stretch);
-        let fan = change > 0.0;
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a small count"
-        )]
-        let steps = if fan {
-            (gain / step).round().max(1.0) as u32
-        } else {
-            1
-        };
-        let mut last = ahead.stretch;
-        for k in 1..=steps {
-            let next = ahead.stretch + change * f64::from(k) / f64::from(steps);
-            wave.fronts.push(Front {
-                at,
-                speed: -side * medium.front_speed(last, next),
-                fan,
-            });
-            wave.states.push(State {
-                velocity: ahead.velocity + side * medium.change(next, ahead.stretch),
-                stretch: next,
-            });
-            last = next;
-        }
-        wave
-    }
-}
-
-impl Strand {
-    /// The state at the left (0) or right (1) end.
-    fn outer(&self, end: usize) -> State {
-        self.states[if end == 0 { 0 } else { self.states.len() - 1 }]
-    }
-
-    /// The stretch behind a wave from an end that moves at a velocity (m/s).
-    fn stretch_at(&self, end: usize, velocity: f64) -> f64 {
-        let state = self.outer(end);
-        let gain = (velocity - state.velocity) * if end == 0 { -1.0 } else { 1.0 };
-        bisect(STRETCHES[0], STRETCHES[1], |stretch| {
-            self.medium.change(stretch, state.stretch) - gain
-        })
-    }
-
-    /// Sends a wave from an end that leaves a stretch.
-    fn send(&mut self, end: usize, stretch: f64, step: f64) {
-        let ahead = self.outer(end);
-        if end == 0 {
-            let wave = Wave::new(&self.medium, ahead, stretch, -1.0, step, 0.0);
-            self.fronts.splice(0..0, wave.fronts.into_iter().rev());
-            self.states.splice(0..0, wave.states.into_iter().rev());
-        } else {
-            let wave = Wave::new(&self.medium, ahead, stretch, 1.0, step, self.length);
-            self.fronts.extend(wave.fronts);
-            self.states.extend(wave.states);
-        }
-    }
-
-    /// The states and their ends in reference coordinates (m).
-    fn pieces(&self) -> impl Iterator<Item = (State, [f64; 2])> {
-        let place = |k: usize| self.fronts.get(k).map_or(self.length, |front| front.at);
-        let from = move |k: usize| if k == 0 { 0.0 } else { place(k - 1) };
-        let states = self.states.iter().enumerate();
-        states.map(move |(k, state)| (*state, [from(k), place(k)]))
-    }
-
-    /// Both ends of each state, and the middle of each step of a fan.
-    fn samples(&self) -> Vec<Sample> {
-        let in_fan = |k: usize| self.fronts.get(k).is_some_and(|front| front.fan);
-        let mut samples = Vec::new();
-        let mut left = self.left;
-        for (k, (state, ends)) in self.pieces().enumerate() {
-            let width = (ends[1] - ends[0]) * state.stretch;
-            let sample = self.sample(state);
-            let step = k > 0 && in_fan(k - 1) && in_fan(k);
-            if step && width < self.widest_step() {
-                samples.push(sample.at(left + 0.5 * width));
-            } else {
-                samples.extend([sample.at(left), sample.at(left + width)]);
-            }
-            left += width;
-        }
-        samples
-    }
-
-    /// States between steps of fans that are wider are plateaus (m).
-    fn widest_step(&self) -> f64 {
-        0.01 * self.length
-    }
-
-    fn sample(&self, state: State) -> Sample {
-        let medium = &self.medium;
-        let pressure = medium.pressure(state.stretch);
-        Sample {
-            position: 0.0,
-            velocity: state.velocity,
-            density: medium.reference_density / state.stretch,
-            pressure,
-            deviatoric_stress: medium.stress(state.stretch) + pressure,
-            specific_energy: medium.strain_energy(state.stretch),
         }
     }
 }

@@ -4,13 +4,10 @@
 //! and checks the engine from outside.
 
 pub mod bars;
-pub mod elastic;
 pub mod finite_strain;
 pub mod hugoniot;
-pub mod noh;
 pub mod plates;
 pub mod riemann;
-mod steps;
 
 /// Halvings of a bracket: more than a double can resolve.
 const BISECTIONS: usize = 200;

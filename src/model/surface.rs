@@ -5,13 +5,15 @@
 //! surface, and on which side of it is a point. Shapes are given where they stand at time zero; a
 //! surface moves as a whole, so that points are taken into its frame and the shape never changes.
 
+mod closed;
 mod mesh;
 mod tree;
 mod triangle;
 
 use std::sync::Arc;
 
-pub use mesh::{Mesh, MeshError};
+pub use closed::MeshError;
+pub use mesh::Mesh;
 pub use triangle::{Feature, closest_on_triangle};
 
 use super::{Motion, Resistance};

@@ -4,37 +4,15 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::cluster::{Among, Cluster, Lists};
+use super::facts::{HALO, MIRROR, MOVING};
 use super::gather::Gatherer;
-use super::parts::Parted;
-use super::sequence::{Eight, HALO, MIRROR, MOVING, Sequence};
+use super::near::{INFLATION, near_box, push_places};
+use super::pairs::PairList;
+use super::parts::{Kin, Parted};
+use super::sequence::Sequence;
 use crate::numerics::dispatch::{Vectorised, instructions};
-use crate::numerics::lanes::{LANES, Lanes};
-
-/// Up to eight owned particles of one group that stand side by side.
-#[derive(Debug, Clone, Copy)]
-pub struct Cluster {
-    /// Places in the sequence, ascending; unused lanes repeat the last valid one.
-    pub receivers: [u32; LANES],
-    /// Valid lanes.
-    pub lanes: usize,
-    /// Group of bodies.
-    pub group: usize,
-    /// Box around the receivers (m).
-    pub lower: [f64; 3],
-    /// Upper end of the box (m).
-    pub upper: [f64; 3],
-}
-
-/// What is among the neighbours of a cluster.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Among {
-    /// Images behind symmetry planes.
-    pub mirrors: bool,
-    /// Particles of other ranks.
-    pub halo: bool,
-    /// Anything that is not at the group's common velocity.
-    pub moving: bool,
-}
+use crate::numerics::lanes::Lanes;
 
 /// Clusters and neighbour lists of one task.
 #[derive(Debug, Clone, Default)]
@@ -43,39 +21,20 @@ pub struct Chunk {
     /// The part of the sequence whose particles are receivers here.
     places: Range<usize>,
     gatherer: Gatherer,
-    clusters: Vec<Cluster>,
-    /// End of each cluster's neighbours in `neighbours`, and what is among them.
-    ends: Vec<(u32, Among)>,
-    /// The lists one after the other, and unused space.
-    neighbours: Vec<u32>,
+    lists: Lists,
     /// What [`ClusterLists::part`] has taken out of them; empty without self-contact.
-    pub(super) parted: Parted,
+    parted: Parted,
 }
 
 impl Chunk {
-    /// Exchanges the lists for others.
-    pub(super) fn swap(
-        &mut self,
-        clusters: &mut Vec<Cluster>,
-        ends: &mut Vec<(u32, Among)>,
-        neighbours: &mut Vec<u32>,
-    ) {
-        std::mem::swap(&mut self.clusters, clusters);
-        std::mem::swap(&mut self.ends, ends);
-        std::mem::swap(&mut self.neighbours, neighbours);
-    }
-
     /// The clusters, each with its neighbours in canonical order and what is among those.
     pub fn iter(&self) -> impl Iterator<Item = (&Cluster, &[u32], Among)> {
-        self.clusters.iter().enumerate().map(|(k, cluster)| {
-            let start = if k == 0 { 0 } else { self.ends[k - 1].0 };
-            let (end, among) = self.ends[k];
-            (
-                cluster,
-                &self.neighbours[start as usize..end as usize],
-                among,
-            )
-        })
+        self.lists.iter()
+    }
+
+    /// Receivers whose strangers [`ClusterLists::part`] has taken out of the lists, with these.
+    pub(super) fn strangers(&self) -> &PairList {
+        &self.parted.strangers
     }
 }
 
@@ -110,9 +69,12 @@ impl Vectorised for Build<'_> {
             group,
             places,
             gatherer,
-            clusters,
-            ends,
-            neighbours,
+            lists:
+                Lists {
+                    clusters,
+                    ends,
+                    neighbours,
+                },
             parted: _,
         } = self.chunk;
         let (sequence, lengths) = (self.sequence, self.lengths);
@@ -204,49 +166,6 @@ impl Lister<'_> {
     }
 }
 
-/// Writes `first + k` for each set bit k at `list[used..]`; returns the new end.
-#[inline(always)]
-pub(super) fn push_places(list: &mut Vec<u32>, used: usize, first: usize, bits: u8) -> usize {
-    if list.len() < used + LANES {
-        grow(list, used + LANES);
-    }
-    let offsets = OFFSETS[bits as usize];
-    #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
-    let first = first as u32;
-    let mut places = [first; LANES];
-    for k in 0..LANES {
-        places[k] += u32::from(offsets[k]);
-    }
-    list[used..used + LANES].copy_from_slice(&places);
-    used + bits.count_ones() as usize
-}
-
-/// Lists fill most of a rank's memory beside the particles: they grow by a quarter only.
-#[cold]
-fn grow(list: &mut Vec<u32>, length: usize) {
-    let wanted = (length + length / 4).max(1 << 12);
-    list.reserve_exact(wanted - list.len());
-    list.resize(wanted, 0);
-}
-
-/// For each set of bits, its members in ascending order, and whatever.
-static OFFSETS: [[u8; LANES]; 256] = {
-    let mut table = [[0; LANES]; 256];
-    let mut bits = 0;
-    while bits < 256 {
-        let (mut k, mut next) = (0, 0);
-        while k < 8 {
-            if bits >> k & 1 == 1 {
-                table[bits][next] = k;
-                next += 1;
-            }
-            k += 1;
-        }
-        bits += 1;
-    }
-    table
-};
-
 /// For each set of bits, a full byte for each member.
 static SPREAD: [u64; 256] = {
     let mut table = [0; 256];
@@ -263,10 +182,6 @@ static SPREAD: [u64; 256] = {
     }
     table
 };
-
-/// Box tests reach this much farther than the kernel, so that rounding
-/// never drops a pair with a contribution.
-pub(super) const INFLATION: f64 = 1.0 + 1e-9;
 
 /// All clusters of a rank with their lists. Buffers are kept from step to step.
 #[derive(Debug, Clone, Default)]
@@ -315,6 +230,14 @@ impl ClusterLists {
         });
     }
 
+    /// Takes strangers out of the lists. They become foreign neighbours.
+    pub fn part(&mut self, kin: &Kin) {
+        let chunks = self.chunks[..self.used].par_iter_mut();
+        chunks
+            .with_max_len(CHUNKS_AT_ONCE)
+            .for_each(|chunk| chunk.parted.part(kin, &mut chunk.lists));
+    }
+
     /// The tasks, for parallel iteration.
     #[must_use]
     pub fn chunks(&self) -> &[Chunk] {
@@ -328,17 +251,11 @@ impl ClusterLists {
             .iter()
             .map(|chunk| {
                 size_of::<Chunk>()
-                    + 4 * chunk.neighbours.capacity()
-                    + 8 * chunk.ends.capacity()
-                    + size_of::<Cluster>() * chunk.clusters.capacity()
+                    + chunk.lists.memory()
                     + chunk.gatherer.memory()
                     + chunk.parted.memory()
             })
             .sum()
-    }
-
-    pub(super) fn chunks_mut(&mut self) -> &mut [Chunk] {
-        &mut self.chunks[..self.used]
     }
 
     fn lay_out(&mut self, sequence: &Sequence) {
@@ -356,46 +273,4 @@ impl ClusterLists {
             }
         }
     }
-}
-
-/// Calls `found` with each eight images of a group that stand by a box, the place of the first, and a bit
-/// for each of them that is nearer than `range` (m), which is nowhere more than `far`. `hints` are where the
-/// last box nearby began to read columns, by the last bits of their indices.
-#[inline(always)]
-pub(super) fn near_box<V: Lanes>(
-    sequence: &Sequence,
-    group: usize,
-    (lower, upper): (&[f64; 3], &[f64; 3]),
-    far: f64,
-    hints: &mut [usize; 64],
-    range: impl Fn(&Eight) -> V,
-    mut found: impl FnMut(usize, u8, &Eight),
-) {
-    let (low, high) = (lower.map(V::splat), upper.map(V::splat));
-    let along = sequence.along(group);
-    let (from, to) = (lower[along] - far, upper[along] + far);
-    sequence.columns_near(group, lower, upper, far, |[a, b], column| {
-        let hint = &mut hints[(a & 7) << 3 | b & 7];
-        *hint = sequence.seek::<V>(group, &column, from, *hint);
-        let mut first = *hint;
-        for eight in sequence.eights(first..column.end) {
-            if eight.coordinates[along][0] > to {
-                break;
-            }
-            let gap = |a: usize| {
-                let x = V::read(eight.coordinates[a]);
-                low[a].sub(x).max(x.sub(high[a])).max(V::splat(0.0))
-            };
-            let [x, y, z] = [gap(0), gap(1), gap(2)];
-            let square = z.mul_add(z, y.mul_add(y, x.mul(x)));
-            let range = range(&eight);
-            let mut bits = square.less_than(range.mul(range));
-            let left = column.end - first;
-            if left < LANES {
-                bits &= (1 << left) - 1;
-            }
-            found(first, bits, &eight);
-            first += LANES;
-        }
-    });
 }

@@ -3,10 +3,11 @@
 
 use rayon::prelude::*;
 
-use super::clusters::{
-    CHUNKS_AT_ONCE, Chunk, Cluster, ClusterLists, INFLATION, near_box, push_places,
-};
+use super::cluster::Cluster;
+use super::clusters::{CHUNKS_AT_ONCE, Chunk, ClusterLists};
 use super::motion::MotionRecord;
+use super::near::{INFLATION, near_box, push_places};
+use super::pairs::PairList;
 use super::sequence::Sequence;
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
@@ -36,56 +37,6 @@ pub struct ForeignTable {
     /// `range[g * groups + o]`: largest range (m) between bodies of the groups g and o; zero
     /// where these have no contact.
     pub group_range: Vec<f64>,
-}
-
-/// Receivers with their foreign neighbours.
-#[derive(Debug, Clone, Default)]
-pub struct PairList {
-    /// Place of each receiver in the sequence and the end of its neighbours.
-    receivers: Vec<(u32, u32)>,
-    sources: Vec<u32>,
-}
-
-impl PairList {
-    /// Receivers that have neighbours, with those, in canonical order.
-    pub fn iter(&self) -> impl Iterator<Item = (u32, &[u32])> {
-        let mut start = 0;
-        self.receivers.iter().map(move |&(receiver, end)| {
-            let neighbours = &self.sources[start..end as usize];
-            start = end as usize;
-            (receiver, neighbours)
-        })
-    }
-
-    /// Whether no receiver has a neighbour.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.receivers.is_empty()
-    }
-
-    pub(super) fn clear(&mut self) {
-        self.receivers.clear();
-        self.sources.clear();
-    }
-
-    /// Adds a receiver, if it has neighbours.
-    pub(super) fn add(&mut self, receiver: u32, neighbours: impl Iterator<Item = u32>) {
-        self.sources.extend(neighbours);
-        self.close(receiver);
-    }
-
-    pub(super) fn memory(&self) -> usize {
-        8 * self.receivers.capacity() + 4 * self.sources.capacity()
-    }
-
-    fn close(&mut self, receiver: u32) {
-        let end = self.sources.len();
-        let start = self.receivers.last().map_or(0, |&(_, end)| end as usize);
-        if end > start {
-            #[allow(clippy::cast_possible_truncation, reason = "one task's pairs fit u32")]
-            self.receivers.push((receiver, end as u32));
-        }
-    }
 }
 
 /// The foreign pairs of one task, one list for each algorithm.
@@ -193,7 +144,7 @@ impl<B: Fn(u32) -> usize> Vectorised for Find<'_, B> {
         chunk.potential.clear();
         chunk.penalty.clear();
         let mut hints = [0; 64];
-        let mut strangers = self.own.parted.strangers.iter().peekable();
+        let mut strangers = self.own.strangers().iter().peekable();
         let (mut near, mut apart) = (
             std::mem::take(&mut chunk.candidates),
             std::mem::take(&mut chunk.strangers),

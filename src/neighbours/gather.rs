@@ -4,8 +4,9 @@
 use std::f64::consts::PI;
 use std::ops::Range;
 
-use super::clusters::Cluster;
-use super::sequence::{IMAGE, Sequence};
+use super::cluster::Cluster;
+use super::facts::IMAGE;
+use super::sequence::Sequence;
 use crate::numerics::lanes::LANES;
 
 /// Gathers the clusters of one task; the buffer is kept from step to step.
@@ -159,12 +160,6 @@ impl<'a> Growing<'a> {
             take(&self.cluster);
             self.cluster.lanes = 0;
         }
-    }
-}
-
-impl Cluster {
-    fn valid(&self) -> &[u32] {
-        &self.receivers[..self.lanes]
     }
 }
 

@@ -4,11 +4,12 @@ use rayon::prelude::*;
 
 use super::clusters::{Chunk, ClusterLists, Lengths};
 use super::columns::ColumnGrid;
+use super::facts::ImageFacts;
 use super::foreign::{ForeignChunk, ForeignLists, ForeignTable};
 use super::groups::Groups;
 use super::motion::MotionRecord;
 use super::parts::Kin;
-use super::sequence::{ImageFacts, Sequence};
+use super::sequence::Sequence;
 use crate::domain::{Halo, Mirrors, Outset};
 use crate::model::{Case, SmoothingLength};
 use crate::particles::{Image, ParticleStore, Scatter, resize};

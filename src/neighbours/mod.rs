@@ -1,23 +1,30 @@
 //! Neighbour search: images sorted into thin columns, lists for clusters of eight receivers
-//! (own group) and for single receivers (foreign bodies), and a brute-force oracle.
+//! (own group) and for single receivers (foreign bodies).
 
+mod cluster;
 mod clusters;
 mod columns;
+mod facts;
 mod foreign;
 mod gather;
+mod group;
 mod groups;
 mod lists;
 mod motion;
-pub mod oracle;
+mod near;
+mod pairs;
 mod parts;
 mod sequence;
 mod sort;
 
-pub use clusters::{Among, CHUNKS_AT_ONCE, Chunk, Cluster, ClusterLists, Lengths};
+pub use cluster::{Among, Cluster};
+pub use clusters::{CHUNKS_AT_ONCE, Chunk, ClusterLists, Lengths};
 pub use columns::ColumnGrid;
-pub use foreign::{ContactClass, ForeignChunk, ForeignLists, ForeignTable, PairList};
+pub use facts::ImageFacts;
+pub use foreign::{ContactClass, ForeignChunk, ForeignLists, ForeignTable};
 pub use groups::Groups;
 pub use lists::Lists;
 pub use motion::MotionRecord;
+pub use pairs::PairList;
 pub use parts::{Kin, Part};
-pub use sequence::{ImageFacts, Sequence};
+pub use sequence::Sequence;

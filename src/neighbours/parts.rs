@@ -1,10 +1,8 @@
 //! Own neighbours that are none: particles of another part of the same body leave the lists of the
 //! SPH sums and become foreign ones. Lists whose particles are all of one part stay as they are.
 
-use rayon::prelude::*;
-
-use super::clusters::{Among, CHUNKS_AT_ONCE, Chunk, Cluster, ClusterLists};
-use super::foreign::PairList;
+use super::cluster::{Among, Cluster, Lists};
+use super::pairs::PairList;
 use crate::numerics::lanes::LANES;
 
 /// The part of a body that an image belongs to.
@@ -68,17 +66,33 @@ impl Kin<'_> {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Parted {
     pub(super) strangers: PairList,
-    clusters: Vec<Cluster>,
-    ends: Vec<(u32, Among)>,
-    neighbours: Vec<u32>,
+    lists: Lists,
 }
 
 impl Parted {
     pub(super) fn memory(&self) -> usize {
-        self.strangers.memory()
-            + size_of::<Cluster>() * self.clusters.capacity()
-            + size_of::<(u32, Among)>() * self.ends.capacity()
-            + 4 * self.neighbours.capacity()
+        self.strangers.memory() + self.lists.memory()
+    }
+
+    /// Takes strangers out of `lists`.
+    pub(super) fn part(&mut self, kin: &Kin, lists: &mut Lists) {
+        self.strangers.clear();
+        let whole = |(cluster, list, _): (&Cluster, &[u32], Among)| {
+            list.is_empty() || kin.one(cluster, list)
+        };
+        if lists.iter().all(whole) {
+            return;
+        }
+        self.lists.clear();
+        for (cluster, list, among) in lists.iter() {
+            if whole((cluster, list, among)) {
+                self.lists.neighbours.extend_from_slice(list);
+                self.lists.push(*cluster, among);
+            } else {
+                self.split(kin, cluster, list, among);
+            }
+        }
+        std::mem::swap(&mut self.lists, lists);
     }
 
     /// Takes over what of `cluster` belongs together with all its neighbours, in the order of its
@@ -100,57 +114,12 @@ impl Parted {
                 }
             }
             let own = |&&j: &&u32| kin.own(receivers[lead], j);
-            self.neighbours.extend(neighbours.iter().filter(own));
+            self.lists.neighbours.extend(neighbours.iter().filter(own));
             for &receiver in &part.receivers[..part.lanes] {
                 let others = neighbours.iter().filter(|j| !own(j));
                 self.strangers.add(receiver, others.copied());
             }
-            self.push(part, among);
+            self.lists.push(part, among);
         }
-    }
-
-    fn push(&mut self, cluster: Cluster, among: Among) {
-        self.clusters.push(cluster);
-        #[allow(clippy::cast_possible_truncation, reason = "a chunk's lists fit u32")]
-        self.ends.push((self.neighbours.len() as u32, among));
-    }
-}
-
-impl Chunk {
-    fn part(&mut self, kin: &Kin) {
-        let mut parted = std::mem::take(&mut self.parted);
-        parted.strangers.clear();
-        let whole = |(cluster, list, _): (&Cluster, &[u32], Among)| {
-            list.is_empty() || kin.one(cluster, list)
-        };
-        if !self.iter().all(whole) {
-            parted.clusters.clear();
-            parted.ends.clear();
-            parted.neighbours.clear();
-            for (cluster, list, among) in self.iter() {
-                if whole((cluster, list, among)) {
-                    parted.neighbours.extend_from_slice(list);
-                    parted.push(*cluster, among);
-                } else {
-                    parted.split(kin, cluster, list, among);
-                }
-            }
-            self.swap(
-                &mut parted.clusters,
-                &mut parted.ends,
-                &mut parted.neighbours,
-            );
-        }
-        self.parted = parted;
-    }
-}
-
-impl ClusterLists {
-    /// Takes strangers out of the lists. They become foreign neighbours.
-    pub fn part(&mut self, kin: &Kin) {
-        let chunks = self.chunks_mut().par_iter_mut();
-        chunks
-            .with_max_len(CHUNKS_AT_ONCE)
-            .for_each(|chunk| chunk.part(kin));
     }
 }

@@ -7,39 +7,11 @@
 use std::ops::Range;
 
 use super::columns::ColumnGrid;
+use super::facts::{IMAGE, ImageFacts};
+use super::group::Group;
 use super::sort::{SCRATCH_WORDS, Sorter, Targets, Walls};
 use crate::numerics::lanes::{LANES, Lanes};
 use crate::particles::{Image, Scatter, resize};
-
-/// One group's part of the sequence: its columns among those that this rank meets.
-#[derive(Debug, Clone)]
-pub(super) struct Group {
-    pub(super) grid: ColumnGrid,
-    /// Box around all images (m); empty if there are none.
-    pub(super) lower: [f64; 3],
-    pub(super) upper: [f64; 3],
-    /// First column across and number of columns across of the window in use.
-    pub(super) first: [u32; 2],
-    pub(super) size: [usize; 2],
-    /// The window's columns in `Sequence::starts`.
-    pub(super) columns: Range<usize>,
-    pub(super) images: Range<usize>,
-}
-
-/// What the sequence needs to know of one image.
-#[derive(Debug, Clone, Copy)]
-pub struct ImageFacts {
-    /// Its own position (m), mirrored where it is an image.
-    pub position: [f64; 3],
-    /// Identity of the particle.
-    pub id: u64,
-    /// Group of bodies.
-    pub group: usize,
-    /// Smoothing length (m).
-    pub smoothing_length: f64,
-    /// Whether its velocity is another than the one common to its group at rest in itself.
-    pub moving: bool,
-}
 
 /// The sorted images. Buffers are kept from step to step.
 #[derive(Debug, Clone, Default)]
@@ -49,7 +21,7 @@ pub struct Sequence {
     starts: Vec<u32>,
     walls: Vec<Walls>,
     images: Vec<Image>,
-    /// Sets of [`MIRROR`], [`HALO`] and [`MOVING`].
+    /// Sets of `MIRROR`, `HALO` and `MOVING`.
     special: Vec<u8>,
     /// Coordinates and smoothing lengths (m) in order, for vectors that read past the end.
     coordinates: [Vec<f64>; 3],
@@ -64,18 +36,9 @@ pub(super) struct Eight<'a> {
     pub(super) coordinates: [&'a [f64; LANES]; 3],
     /// Smoothing lengths (m), whatever if they are uniform.
     pub(super) lengths: &'a [f64; LANES],
-    /// Sets of [`MIRROR`], [`HALO`] and [`MOVING`].
+    /// Sets of `MIRROR`, `HALO` and `MOVING`.
     pub(super) special: &'a [u8; LANES],
 }
-
-/// Behind a symmetry plane.
-pub(super) const MIRROR: u8 = 1;
-/// Of another rank.
-pub(super) const HALO: u8 = 2;
-/// Not at the group's common velocity.
-pub(super) const MOVING: u8 = 4;
-/// Everything but particles of this rank themselves.
-pub(super) const IMAGE: u8 = MIRROR | HALO;
 
 impl Sequence {
     /// Empty sequence with one grid for each group. If the smoothing lengths inside each group
@@ -347,17 +310,5 @@ impl Sequence {
     #[inline(always)]
     pub(super) fn along(&self, group: usize) -> usize {
         self.groups[group].grid.along
-    }
-}
-
-impl Group {
-    /// Place of a column of the grid among all columns of the sequence.
-    #[inline(always)]
-    pub(super) fn place(&self, column: [u32; 2]) -> usize {
-        let index = |k: usize| {
-            let last = self.size[k].saturating_sub(1);
-            (column[k].saturating_sub(self.first[k]) as usize).min(last)
-        };
-        self.columns.start + index(0) * self.size[1] + index(1)
     }
 }

@@ -7,7 +7,8 @@ use std::cmp::Ordering;
 
 use rayon::prelude::*;
 
-use super::sequence::{Group, HALO, ImageFacts, MIRROR, MOVING};
+use super::facts::{HALO, ImageFacts, MIRROR, MOVING};
+use super::group::{Group, lay_out};
 use crate::particles::{Image, Scatter};
 
 /// What an image is sorted by inside its column.
@@ -271,25 +272,6 @@ fn split(scratch: &mut [u64], count: usize) -> (&mut [Entry], &mut [Column]) {
         bytemuck::cast_slice_mut(entries),
         bytemuck::cast_slice_mut(columns),
     )
-}
-
-/// Windows of columns by group; returns the number of columns of all.
-fn lay_out(groups: &mut [Group]) -> usize {
-    let mut columns = 0;
-    for group in groups {
-        (group.first, group.size) = ([0; 2], [1; 2]);
-        if group.lower[0] <= group.upper[0] {
-            for k in 0..2 {
-                let axis = group.grid.across[k];
-                let last = group.grid.index(k, group.upper[axis]);
-                group.first[k] = group.grid.index(k, group.lower[axis]);
-                group.size[k] = (last - group.first[k]) as usize + 1;
-            }
-        }
-        group.columns = columns..columns + group.size[0] * group.size[1];
-        columns = group.columns.end;
-    }
-    columns
 }
 
 /// Arrays in the order of the sequence; each place is written once.

@@ -33,6 +33,7 @@ pub use run_folder::{Phase, RunFolder, Status};
 pub use schedule::Schedule;
 pub use set_aside::SetAside;
 pub use sheet::Sheet;
+use vote::settle;
 pub use vote::{agree, from_root, on_root};
 
 /// The program's version.

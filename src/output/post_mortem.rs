@@ -83,19 +83,27 @@ fn gather(store: &ParticleStore, field: &FieldInfo, members: &[u32]) -> Vec<u8> 
 }
 
 fn text(what: &str, case: &Case, store: &ParticleStore, about: &PostMortem) -> String {
-    let name = |i: u32| case.bodies[store.body[i as usize] as usize].name.as_str();
     let particle = about.members[0];
-    let spacing = case.bodies[store.body[particle as usize] as usize]
-        .lattice
-        .spacing;
+    let body = &case.bodies[store.body[particle as usize] as usize].name;
     let mut text = format!(
-        "Particle {} of body `{}`, on rank {}, after step {} at {:e} s:\n{what}\n\n",
-        about.id,
-        name(particle),
-        about.rank,
-        about.step,
-        about.time
+        "Particle {} of body `{body}`, on rank {}, after step {} at {:e} s:\n{what}\n\n",
+        about.id, about.rank, about.step, about.time
     );
+    tell_fields(&mut text, store, particle);
+    tell_neighbours(&mut text, case, store, about);
+    text.push_str("\nThe last votes (step, next time step in s, its reason, particle):\n");
+    for vote in &about.votes {
+        let _ = writeln!(
+            text,
+            "{} {:e} {} {}",
+            vote.step, vote.dt, vote.reason, vote.id
+        );
+    }
+    text
+}
+
+/// A line for each field of a particle.
+fn tell_fields(text: &mut String, store: &ParticleStore, particle: u32) {
     for field in store.held(FieldInfo::any) {
         let bytes = gather(store, field, &[particle]);
         let values = match field.kind {
@@ -118,6 +126,12 @@ fn text(what: &str, case: &Case, store: &ParticleStore, about: &PostMortem) -> S
             field.unit
         );
     }
+}
+
+/// A line for each neighbour: those of the particle's own body, then others.
+fn tell_neighbours(text: &mut String, case: &Case, store: &ParticleStore, about: &PostMortem) {
+    let own = store.body[about.members[0] as usize];
+    let spacing = case.bodies[own as usize].lattice.spacing;
     for (title, other) in [
         ("Neighbours of its own body", false),
         ("Contact partners", true),
@@ -128,12 +142,12 @@ fn text(what: &str, case: &Case, store: &ParticleStore, about: &PostMortem) -> S
         );
         for (&i, r) in about.members.iter().zip(&about.distances).skip(1) {
             let k = i as usize;
-            if (store.body[k] != store.body[particle as usize]) == other {
+            if (store.body[k] != own) == other {
                 let _ = writeln!(
                     text,
                     "{} {} {:.4} {:e} {:?} {}",
                     store.id[k],
-                    name(i),
+                    case.bodies[store.body[k] as usize].name,
                     r / spacing,
                     store.predicted_density[k],
                     store.predicted_velocity[k],
@@ -142,13 +156,4 @@ fn text(what: &str, case: &Case, store: &ParticleStore, about: &PostMortem) -> S
             }
         }
     }
-    text.push_str("\nThe last votes (step, next time step in s, its reason, particle):\n");
-    for vote in &about.votes {
-        let _ = writeln!(
-            text,
-            "{} {:e} {} {}",
-            vote.step, vote.dt, vote.reason, vote.id
-        );
-    }
-    text
 }

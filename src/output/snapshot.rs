@@ -14,7 +14,7 @@ use crate::particles::{
 };
 
 use super::h5::{Element, RowType, Writer};
-use super::{COMMIT, OutputError, Rows, VERSION, files, on_root, unit_of_model};
+use super::{COMMIT, OutputError, Rows, VERSION, files, settle, unit_of_model};
 
 /// Extension of snapshot files.
 pub const EXTENSION: &str = "vtkhdf";
@@ -155,15 +155,9 @@ pub fn write(
 ) -> Result<(), OutputError> {
     let temporary = files::partial(path);
     let written = write_file(comm, &temporary, store, meta, quantities, rows);
-    on_root(comm, || {
-        if written.is_ok() {
-            return files::publish(&temporary, path);
-        }
-        // What went wrong is told below; half a file only takes room.
-        let _ = files::remove(&temporary);
-        Ok(())
-    })?;
-    written
+    settle(comm, written, &temporary, || {
+        files::publish(&temporary, path)
+    })
 }
 
 fn write_file(

@@ -1,11 +1,13 @@
 //! One verdict for all ranks.
 
+use std::path::Path;
+
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::comm::{Comm, Exchange};
 
-use super::OutputError;
+use super::{OutputError, files};
 
 /// Gives every rank an error with the same text if any rank has one: that of the lowest such
 /// rank. Collective.
@@ -53,6 +55,28 @@ pub fn on_root(
     task: impl FnOnce() -> Result<(), OutputError>,
 ) -> Result<(), OutputError> {
     agree(comm, if comm.is_root() { task() } else { Ok(()) })
+}
+
+/// Ends what all ranks have `written` under a temporary name: rank 0 publishes it if it is whole, else
+/// takes it away. Collective.
+///
+/// # Errors
+/// That of writing or of publishing, with the same text on every rank.
+pub(super) fn settle(
+    comm: &Comm,
+    written: Result<(), OutputError>,
+    temporary: &Path,
+    publish: impl FnOnce() -> Result<(), OutputError>,
+) -> Result<(), OutputError> {
+    on_root(comm, || {
+        if written.is_ok() {
+            return publish();
+        }
+        // What went wrong is told below; half of it only takes room.
+        let _ = files::remove(temporary);
+        Ok(())
+    })?;
+    written
 }
 
 /// Lets rank 0 find something out and tells it to every rank: what steers collective calls must not

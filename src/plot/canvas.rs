@@ -7,7 +7,8 @@ use tiny_skia::{
     Stroke, Transform,
 };
 
-use super::{PlotError, font};
+use super::PlotError;
+use super::font;
 
 /// A colour: red, green, blue.
 pub type Rgb = [u8; 3];

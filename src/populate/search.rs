@@ -49,6 +49,15 @@ impl PartialEq for Block {
 impl Eq for Block {}
 
 impl Block {
+    /// All of a lattice, if it has any sites.
+    fn whole(stack: &Stack) -> Option<Self> {
+        stack.counts.iter().all(|&n| n > 0).then_some(Self {
+            bound: f64::NEG_INFINITY,
+            first: [0; 3],
+            end: stack.counts,
+        })
+    }
+
     fn is_site(&self) -> bool {
         (0..3).all(|a| self.end[a] - self.first[a] == 1)
     }
@@ -87,15 +96,7 @@ pub fn search(
 ) -> Vec<(f64, [f64; 3])> {
     let (stack, cuts) = (Stack::new(body, dimension), cuts(symmetry, None));
     let mut found: Vec<(f64, [f64; 3])> = Vec::new();
-    let mut waiting = BinaryHeap::new();
-    let whole = Block {
-        bound: f64::NEG_INFINITY,
-        first: [0; 3],
-        end: stack.counts,
-    };
-    if stack.counts.iter().all(|&n| n > 0) {
-        waiting.push(whole);
-    }
+    let mut waiting: BinaryHeap<Block> = Block::whole(&stack).into_iter().collect();
     while let Some(block) = waiting.pop() {
         #[cfg(test)]
         super::visits::add();

@@ -39,6 +39,10 @@ pub struct Source {
 pub struct Reference {
     pub segments: Vec<String>,
     pub line: usize,
+    /// What a `use` calls it in this file; empty for a path elsewhere.
+    pub alias: String,
+    /// Whether it stands in a `pub use`, of any visibility.
+    pub passed_on: bool,
 }
 
 impl Reference {
@@ -66,7 +70,7 @@ impl Source {
         Self::new(&name.to_string_lossy(), text)
     }
 
-    fn new(name: &str, text: String) -> Self {
+    pub fn new(name: &str, text: String) -> Self {
         let room = name.split_once('/').map_or("", |(room, _)| room).to_owned();
         let tokens = without_unit_tests(&tokens(&text));
         Self {
@@ -78,7 +82,7 @@ impl Source {
     }
 
     /// The modules that lead to this file: `["output", "h5"]` for `output/h5/mod.rs`.
-    fn module(&self) -> Vec<String> {
+    pub fn module(&self) -> Vec<String> {
         let stem = self.name.trim_end_matches(".rs");
         let mut module: Vec<String> = stem.split('/').map(str::to_owned).collect();
         if ["mod", "lib", "main"].contains(&module.last().map_or("", String::as_str)) {
@@ -93,7 +97,12 @@ impl Source {
         let mut at = 0;
         while at < self.tokens.len() {
             if self.text_at(at) == "use" {
+                let first = found.len();
+                let passed_on = at > 0 && ["pub", ")"].contains(&self.text_at(at - 1));
                 at = self.use_tree(at + 1, &[], &mut found);
+                for reference in &mut found[first..] {
+                    reference.passed_on = passed_on;
+                }
             } else if is_name(self.text_at(at)) {
                 let line = self.tokens[at].line;
                 let mut segments = vec![self.text_at(at).to_owned()];
@@ -104,7 +113,12 @@ impl Source {
                     at += 2;
                 }
                 if begins && segments.len() > 1 {
-                    found.push(Reference { segments, line });
+                    found.push(Reference {
+                        segments,
+                        line,
+                        alias: String::new(),
+                        passed_on: false,
+                    });
                 }
             } else {
                 at += 1;
@@ -126,6 +140,7 @@ impl Source {
     /// that ends it.
     fn use_tree(&self, mut at: usize, prefix: &[String], found: &mut Vec<Reference>) -> usize {
         let mut segments = prefix.to_vec();
+        let mut alias = None;
         let line = self.tokens.get(at).map_or(0, |token| token.line);
         loop {
             match self.text_at(at) {
@@ -136,14 +151,23 @@ impl Source {
                     }
                     return at + 1;
                 }
-                "as" => at += 1,
+                "as" => {
+                    at += 1;
+                    alias = Some(self.text_at(at).to_owned());
+                }
                 "," | "}" | ";" | "" => break,
                 name => segments.push(name.to_owned()),
             }
             at += 1;
         }
         if segments.len() > prefix.len() {
-            found.push(Reference { segments, line });
+            let last = segments.iter().rev().find(|segment| *segment != "self");
+            found.push(Reference {
+                alias: alias.or(last.cloned()).unwrap_or_default(),
+                segments,
+                line,
+                passed_on: false,
+            });
         }
         at
     }
@@ -162,6 +186,41 @@ impl Source {
             let tail = segments.split_off(count);
             *segments = [vec!["crate".to_owned()], module, tail].concat();
         }
+    }
+
+    /// Every function with a body: its name, its first line and how many lines it has.
+    pub fn functions(&self) -> Vec<(&str, usize, usize)> {
+        let begins = |at: &usize| self.text_at(*at) == "fn" && is_name(self.text_at(at + 1));
+        let starts = (0..self.tokens.len()).filter(begins);
+        starts
+            .filter_map(|start| {
+                let (mut depth, mut brackets) = (0_i32, 0_i32);
+                for token in &self.tokens[start..] {
+                    match token.text.as_str() {
+                        "{" => depth += 1,
+                        "}" => depth -= 1,
+                        "(" | "[" => brackets += 1,
+                        ")" | "]" => brackets -= 1,
+                        // Declared only, as in a trait; not the `;` of `[u8; 4]`.
+                        ";" if depth == 0 && brackets == 0 => return None,
+                        _ => continue,
+                    }
+                    if depth == 0 && token.text == "}" {
+                        let first = self.tokens[start].line;
+                        return Some((self.text_at(start + 1), first, token.line - first + 1));
+                    }
+                }
+                None
+            })
+            .collect()
+    }
+
+    /// How often a name stands in the file.
+    pub fn count(&self, name: &str) -> usize {
+        self.tokens
+            .iter()
+            .filter(|token| token.text == name)
+            .count()
     }
 
     /// Names called as methods, `.name(` or `.name::<T>(`.

@@ -1,4 +1,10 @@
-//! The paper's metals for tests of exact answers. Units: cm, µs, g/cm³, Mbar.
+//! The paper's metals for tests of exact answers, and elastic bars of small strain to compare with.
+//! Units: cm, µs, g/cm³, Mbar.
+
+#[allow(dead_code, reason = "not every test file needs all")]
+pub mod elastic;
+#[allow(dead_code, reason = "not every test file needs all")]
+mod steps;
 
 use whipple::exact::finite_strain::Medium;
 use whipple::material::LinearForm;

@@ -6,46 +6,11 @@
 
 use std::collections::BTreeMap;
 
+use super::closed::{MeshError, check_closed, edges, is_convex, place};
 use super::tree::Tree;
 use super::triangle::{Feature, closest_on_triangle};
 use super::{Foot, along};
-use crate::model::readable::shown_vector;
 use crate::numerics::vector::{cross, dot, minus};
-
-/// Why triangles make no closed surface.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum MeshError {
-    /// There are none.
-    #[error("it has no triangles")]
-    Empty,
-    /// A triangle whose corners lie on a line.
-    #[error("triangle {triangle} has no area: its corners lie on a line near {place}")]
-    Flat {
-        /// Number of the triangle, from one.
-        triangle: usize,
-        /// Its first corner.
-        place: String,
-    },
-    /// Edges with a triangle on one side only.
-    #[error("it is not closed: {edges} edges have no second triangle, one of them near {place}")]
-    Open {
-        /// Number of such edges.
-        edges: usize,
-        /// One end of the first of them.
-        place: String,
-    },
-    /// Two triangles run along an edge in the same direction.
-    #[error(
-        "its triangles are not turned alike, or more than two meet in an edge, as near {place}"
-    )]
-    Tangled {
-        /// One end of such an edge.
-        place: String,
-    },
-    /// The triangles enclose nothing.
-    #[error("it encloses no volume")]
-    NoVolume,
-}
 
 /// A closed surface of triangles, turned so that their normals point outwards.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,13 +25,6 @@ pub struct Mesh {
     vertices: Vec<[f64; 3]>,
     tree: Tree,
     convex: bool,
-}
-
-/// By the two ends of a directed edge: the triangle that it belongs to.
-type Edges = BTreeMap<(u32, u32), u32>;
-
-fn place(x: &[f64; 3]) -> String {
-    shown_vector(x, "m")
 }
 
 impl Mesh {
@@ -268,73 +226,6 @@ fn angle(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3]) -> f64 {
     let (ab, ac) = (minus(b, a), minus(c, a));
     let across = cross(&ab, &ac);
     libm::atan2(dot(&across, &across).sqrt(), dot(&ab, &ac))
-}
-
-fn edges(triangles: &[[u32; 3]]) -> Edges {
-    let mut edges = Edges::new();
-    for (n, t) in (0..).zip(triangles) {
-        for k in 0..3 {
-            edges.insert((t[k], t[(k + 1) % 3]), n);
-        }
-    }
-    edges
-}
-
-/// Every directed edge stands once, and once in the other direction.
-fn check_closed(corners: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
-    let edges = edges(triangles);
-    let open = |&(a, b): &(u32, u32)| !edges.contains_key(&(b, a));
-    let first = edges.keys().copied().find(open);
-    if let Some((a, _)) = first {
-        return Err(MeshError::Open {
-            edges: edges.keys().filter(|edge| open(edge)).count(),
-            place: place(&corners[a as usize]),
-        });
-    }
-    if edges.len() < 3 * triangles.len() {
-        let mut seen = std::collections::BTreeSet::new();
-        for t in triangles {
-            for k in 0..3 {
-                if !seen.insert((t[k], t[(k + 1) % 3])) {
-                    let place = place(&corners[t[k] as usize]);
-                    return Err(MeshError::Tangled { place });
-                }
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Whether a closed surface is in one piece and no edge of it is a valley.
-fn is_convex(
-    corners: &[[f64; 3]],
-    triangles: &[[u32; 3]],
-    faces: &[[f64; 3]],
-    edges: &Edges,
-) -> bool {
-    let mut reached = vec![false; triangles.len()];
-    let mut open = vec![0_usize];
-    reached[0] = true;
-    while let Some(n) = open.pop() {
-        let t = &triangles[n];
-        for k in 0..3 {
-            let other = edges[&(t[(k + 1) % 3], t[k])] as usize;
-            let base = &corners[t[k] as usize];
-            let rises = triangles[other].iter().any(|&c| {
-                let r = minus(&corners[c as usize], base);
-                // Files hold six digits or so.
-                dot(&r, &faces[n]) > 1e-6 * dot(&r, &r).sqrt()
-            });
-            if rises {
-                return false;
-            }
-            if !reached[other] {
-                reached[other] = true;
-                open.push(other);
-            }
-        }
-    }
-    reached.iter().all(|&r| r)
 }
 
 #[cfg(test)]

@@ -1,0 +1,25 @@
+//! What the sequence knows of an image.
+
+/// What the sequence needs to know of one image.
+#[derive(Debug, Clone, Copy)]
+pub struct ImageFacts {
+    /// Its own position (m), mirrored where it is an image.
+    pub position: [f64; 3],
+    /// Identity of the particle.
+    pub id: u64,
+    /// Group of bodies.
+    pub group: usize,
+    /// Smoothing length (m).
+    pub smoothing_length: f64,
+    /// Whether its velocity is another than the one common to its group at rest in itself.
+    pub moving: bool,
+}
+
+/// Behind a symmetry plane.
+pub(super) const MIRROR: u8 = 1;
+/// Of another rank.
+pub(super) const HALO: u8 = 2;
+/// Not at the group's common velocity.
+pub(super) const MOVING: u8 = 4;
+/// Everything but particles of this rank themselves.
+pub(super) const IMAGE: u8 = MIRROR | HALO;

@@ -1,0 +1,20 @@
+//! Checkpoints: the whole state of a run, bit for bit, in a folder that is whole or absent.
+//!
+//! `step-NNNNNNNN/` holds `state.h5` (each state field in id order, the caller's own state and
+//! the resolved input as text) and `manifest.json` (sizes and digests). It is written under
+//! another name and renamed at the end; an older one of the same step is called `.old` meanwhile, and
+//! counts as long as there is no other. Any number of ranks may read it.
+
+mod folder;
+mod manifest;
+mod read;
+mod state_file;
+mod write;
+
+pub(super) use folder::{DAMAGED, discard, is_damaged, step_of};
+pub use folder::{list, list_broken, list_damaged};
+pub use manifest::{FORMAT, MANIFEST, Manifest, manifest};
+pub use read::{Restored, input, read};
+pub(super) use state_file::row_type;
+pub use state_file::{FIELDS, state_file};
+pub use write::{Meta, write};

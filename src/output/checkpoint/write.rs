@@ -1,0 +1,101 @@
+//! Writing a checkpoint.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::folder::{folder_name, prune, replace};
+use super::manifest::{FORMAT, MANIFEST, Manifest};
+use super::state_file::{FIELDS, row_type, size_of, state_file};
+use crate::comm::Comm;
+use crate::output::h5::Writer;
+use crate::output::{
+    COMMIT, OutputError, Rows, VERSION, digest, files, on_root, settle, write_json,
+};
+use crate::particles::{Life, ParticleStore};
+
+/// What a checkpoint says beside the particles.
+#[derive(Debug, Clone, Copy)]
+pub struct Meta<'a> {
+    /// Step number.
+    pub step: u64,
+    /// Time (s).
+    pub time: f64,
+    /// The run's own state, as JSON of the caller's making.
+    pub state: &'a str,
+    /// The resolved input.
+    pub input: &'a str,
+}
+
+/// Writes a checkpoint into `folder` and then removes all but the newest `keep` up to it.
+/// Collective. Gives the checkpoint's path.
+///
+/// # Errors
+/// The same on every rank; older checkpoints are then all still there.
+pub fn write(
+    comm: &Comm,
+    folder: &Path,
+    store: &ParticleStore,
+    meta: &Meta,
+    keep: usize,
+    rows: &mut Rows,
+) -> Result<PathBuf, OutputError> {
+    let path = folder.join(folder_name(meta.step));
+    let temporary = files::partial(&path);
+    on_root(comm, || {
+        files::remove(&temporary)?;
+        fs::create_dir_all(&temporary).map_err(OutputError::io("create the folder", &temporary))
+    })?;
+    let written = write_parts(comm, &temporary, store, meta, rows);
+    settle(comm, written, &temporary, || {
+        replace(&temporary, &path)?;
+        prune(folder, meta.step, keep)
+    })?;
+    Ok(path)
+}
+
+fn write_parts(
+    comm: &Comm,
+    folder: &Path,
+    store: &ParticleStore,
+    meta: &Meta,
+    rows: &mut Rows,
+) -> Result<(), OutputError> {
+    let state = state_file(folder);
+    rows.plan(comm, &store.id[..store.owned()])?;
+    let file = Writer::create(comm, &state)?;
+    file.number("/", "format", &FORMAT)?;
+    file.number("/", "step", &meta.step)?;
+    file.number("/", "time", &meta.time)?;
+    file.text("/state", meta.state)?;
+    file.text("/input", meta.input)?;
+    file.group(FIELDS)?;
+    for field in store.held(Life::State) {
+        let row = row_type(field.kind);
+        let path = format!("{FIELDS}/{}", field.name);
+        let block = rows.block();
+        let bytes = rows.collect(
+            comm,
+            &store.bytes(field.id)[..row.bytes() * store.owned()],
+            row.bytes(),
+        );
+        file.rows(&path, row, block, bytes)?;
+        file.note(&path, "unit", field.unit)?;
+        file.note(&path, "description", field.description)?;
+    }
+    file.close()?;
+
+    let size = size_of(comm, &state)?;
+    let manifest = Manifest {
+        format: FORMAT,
+        version: VERSION.to_owned(),
+        commit: COMMIT.to_owned(),
+        step: meta.step,
+        time: meta.time,
+        particles: rows.block().total,
+        ranks: comm.size(),
+        size,
+        block: digest::BLOCK,
+        sha256: digest::of_file(comm, &state, size)?,
+    };
+    on_root(comm, || write_json(&folder.join(MANIFEST), &manifest))
+}

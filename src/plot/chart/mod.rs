@@ -1,0 +1,9 @@
+//! Charts: curves over common axes, from tables and from snapshots along a line.
+
+pub mod curves;
+pub mod exact;
+pub mod history;
+pub mod profile;
+pub mod series;
+pub mod table;
+pub mod tables;

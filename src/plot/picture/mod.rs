@@ -1,0 +1,10 @@
+//! Pictures: sections of models, to scale.
+
+pub mod bar;
+pub mod cells;
+pub mod figure;
+pub mod layout;
+pub mod pictures;
+pub mod raster;
+pub mod section;
+pub mod view;

@@ -1,0 +1,51 @@
+//! What part of its plane a picture shows.
+
+use crate::plot::units::Readable;
+
+/// A part of the section's plane (m).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// Left and right.
+    pub x: [f64; 2],
+    /// Bottom and top.
+    pub y: [f64; 2],
+}
+
+impl View {
+    /// Whether a disc reaches into it.
+    pub fn shows(&self, at: [f64; 2], radius: f64) -> bool {
+        let within = |at: f64, span: [f64; 2]| at + radius > span[0] && at - radius < span[1];
+        within(at[0], self.x) && within(at[1], self.y)
+    }
+
+    pub fn width(&self) -> f64 {
+        self.x[1] - self.x[0]
+    }
+
+    pub fn height(&self) -> f64 {
+        self.y[1] - self.y[0]
+    }
+
+    /// The view widened about its middle until neither side is a thin strip.
+    pub fn at_least(self, narrowest: f64, flattest: f64) -> Self {
+        let grow = |span: [f64; 2], least: f64| {
+            let more = 0.5 * (least - (span[1] - span[0])).max(0.0);
+            [span[0] - more, span[1] + more]
+        };
+        Self {
+            x: grow(self.x, narrowest * self.height()),
+            y: grow(self.y, flattest * self.width()),
+        }
+    }
+
+    /// Ends of both axes in a unit.
+    pub fn in_unit(&self, unit: &Readable) -> [[f64; 2]; 2] {
+        [self.x, self.y].map(|span| span.map(|v| v / unit.size))
+    }
+
+    /// Largest distance from the origin along either axis (m).
+    pub fn reach(&self) -> f64 {
+        let ends = self.x.into_iter().chain(self.y);
+        ends.fold(0.0, |reach, end| end.abs().max(reach))
+    }
+}

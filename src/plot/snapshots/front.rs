@@ -1,0 +1,117 @@
+//! The front of a body over time: how far the largest piece of it reaches along an axis.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use super::field::Shown;
+use super::snapshot::Snapshot;
+use crate::diagnose::pieces;
+use crate::model::Axis;
+use crate::plot::PlotError;
+
+/// A direction along an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Direction {
+    /// The axis.
+    pub axis: Axis,
+    /// Whether against it, towards its smaller coordinates.
+    pub backwards: bool,
+}
+
+impl Direction {
+    /// Reads `x`, `+x`, `-x` and so on.
+    ///
+    /// # Errors
+    /// [`PlotError::Quantity`] for anything else.
+    pub fn parse(text: &str) -> Result<Self, PlotError> {
+        let name = text.trim_start_matches(['+', '-']);
+        let axis = Axis::ALL.into_iter().find(|axis| axis.name() == name);
+        match axis {
+            Some(axis) if text.len() <= 2 => Ok(Self {
+                axis,
+                backwards: text.starts_with('-'),
+            }),
+            _ => Err(PlotError::Quantity {
+                text: text.to_owned(),
+                expected: "x, y or z for a front, or against them -x, -y or -z".to_owned(),
+            }),
+        }
+    }
+
+    /// `x`, or `minus_x` against it: for names of files and columns.
+    #[must_use]
+    pub fn name(self) -> String {
+        let against = if self.backwards { "minus_" } else { "" };
+        format!("{against}{}", self.axis.name())
+    }
+
+    /// `+x` or `−x`.
+    #[must_use]
+    pub fn sign(self) -> String {
+        let sign = if self.backwards { '−' } else { '+' };
+        format!("{sign}{}", self.axis.name())
+    }
+}
+
+/// The front of a body in some snapshots, as a table: `time,front_x`, or `front_minus_x` against the
+/// axis.
+///
+/// Each row is a time (s) and the largest coordinate (m) of the body's largest connected piece
+/// ([`pieces::front`]); against the axis the smallest.
+///
+/// # Errors
+/// [`PlotError::Body`] if there is no such body, [`PlotError::Read`] if a snapshot cannot be read.
+pub fn front(snapshots: &[PathBuf], body: &str, direction: Direction) -> Result<String, PlotError> {
+    let mut table = format!("# units: s,m\ntime,front_{}\n", direction.name());
+    let sign = if direction.backwards { -1.0 } else { 1.0 };
+    let axis = direction.axis.index();
+    for path in snapshots {
+        let snapshot = Snapshot::open(path)?;
+        let Some(wanted) = snapshot.bodies.iter().position(|name| name == body) else {
+            return Err(PlotError::Body {
+                name: body.to_owned(),
+                known: snapshot.bodies,
+            });
+        };
+        let mut points = Vec::new();
+        for rows in snapshot.chunks() {
+            let bodies = snapshot.body_of(rows.clone())?;
+            let bearers = Shown::Body.bearers(&snapshot, rows.clone())?;
+            let all = snapshot.file.points(rows)?.into_iter().zip(bodies);
+            let wanted = all
+                .zip(bearers)
+                .filter(|((_, of), bears)| *bears && *of == wanted);
+            points.extend(wanted.map(|((mut point, _), _)| {
+                point[axis] *= sign;
+                point
+            }));
+        }
+        let front = pieces::front(&points, axis, snapshot.spacings[wanted]);
+        if let Some(front) = front {
+            let _ = writeln!(table, "{:?},{:?}", snapshot.time, sign * front);
+        }
+    }
+    Ok(table)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_are_read_and_named() {
+        let names = |text: &str| Direction::parse(text).map(|d| (d.name(), d.sign()));
+        let pair = |a: &str, b: &str| (a.to_owned(), b.to_owned());
+        assert_eq!(names("x").unwrap(), pair("x", "+x"));
+        assert_eq!(names("+y").unwrap(), pair("y", "+y"));
+        assert_eq!(names("-z").unwrap(), pair("minus_z", "−z"));
+        for wrong in ["r", "--z", "", "-", "xx"] {
+            assert!(
+                names(wrong)
+                    .unwrap_err()
+                    .to_string()
+                    .contains("-x, -y or -z")
+            );
+        }
+    }
+}
