@@ -6,6 +6,7 @@ use whipple::input::{load, output_and_run_only, parse};
 use whipple::material::{Strength, library};
 use whipple::model::{Axis, Case, ContactMode, PotentialRange, Shape, SmoothingLength};
 use whipple::populate;
+use whipple::preflight::warnings;
 
 fn ready(name: &str, overrides: &[&str]) -> Case {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("inputs/{name}/case.toml"));

@@ -6,6 +6,7 @@ use whipple::comm::Comm;
 use whipple::input::{load, parse};
 use whipple::model::Case;
 use whipple::populate::{bounds, smallest_gap};
+use whipple::preflight::warnings;
 use whipple::step::Simulation;
 
 const GOOD: &str = r#"dimension = 3

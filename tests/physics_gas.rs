@@ -4,6 +4,10 @@
 //! h and the density by continuity leave behind a shock is an error that does not fall with the
 //! spacing: see the validation page of the book.
 
+#[allow(
+    dead_code,
+    reason = "its profile is for the tests of the answer itself"
+)]
 #[path = "exact_support/noh.rs"]
 mod noh;
 mod physics_support;

@@ -3,7 +3,7 @@
 mod approach;
 mod case;
 mod impact;
-pub mod memory;
+pub(crate) mod memory;
 mod sense;
 
 pub use approach::{Approach, approaches};

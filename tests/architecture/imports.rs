@@ -38,11 +38,9 @@ pub fn imports(sources: &[Source]) -> Imports {
 
 /// Where the children of a file stand.
 fn folder(source: &Source) -> String {
-    source
-        .module()
-        .iter()
-        .map(|name| format!("{name}/"))
-        .collect()
+    let module = source.module();
+    let ends = if module.is_empty() { "" } else { "/" };
+    format!("{}{ends}", module.join("/"))
 }
 
 /// The path from the crate's root, or nothing for one that leads elsewhere.
