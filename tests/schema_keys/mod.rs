@@ -39,11 +39,27 @@ pub fn keys() -> Vec<Key> {
     found
 }
 
-/// Reads declarations such as `Table { key: Type, }`, one key a line.
+/// Reads declarations such as `Table { key: Type, }`, one key a line, and those of laws, `law: Table =>
+/// Law { key: Type, Range; }`.
 fn read_tables(source: &str, tables: &mut BTreeMap<String, Vec<(String, String)>>) {
     let mut table = None;
+    let mut strength = false;
+    let is_word = |text: &str| text.chars().all(|c| c.is_alphanumeric() || c == '_');
     for line in source.lines().map(str::trim) {
-        if let Some(name) = line.strip_suffix(" {")
+        if line.starts_with("macro_rules! ") {
+            strength = line.contains(" strength_laws ");
+        }
+        if let Some((row, _)) = line.split_once(" => ")
+            && let Some((law, name)) = row.split_once(": ")
+            && is_word(law)
+        {
+            tables.insert(name.to_owned(), Vec::new());
+            table = Some(name.to_owned());
+            if strength {
+                let all = tables.entry("StrengthParams".to_owned()).or_default();
+                all.push((law.to_owned(), name.to_owned()));
+            }
+        } else if let Some(name) = line.strip_suffix(" {")
             && name.chars().all(char::is_alphanumeric)
         {
             tables.insert(name.to_owned(), Vec::new());
@@ -54,7 +70,11 @@ fn read_tables(source: &str, tables: &mut BTreeMap<String, Vec<(String, String)>
             && !line.starts_with(['/', '#'])
         {
             let key = key.trim_start_matches("r#").to_owned();
-            let kind = kind.trim_end_matches(',').to_owned();
+            let range = kind
+                .strip_suffix(';')
+                .and_then(|kind| kind.split_once(", "));
+            let kind = range.map_or(kind.trim_end_matches(','), |(kind, _)| kind);
+            let kind = kind.to_owned();
             tables.get_mut(name).unwrap().push((key, kind));
         }
     }
