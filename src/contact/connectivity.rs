@@ -102,7 +102,7 @@ impl Connectivity {
     }
 
     /// Joins what has a particle of this rank within the support of another.
-    pub(crate) fn join(&mut self, lists: &Lists, particles: &ParticleStore) {
+    fn join(&mut self, lists: &Lists, particles: &ParticleStore) {
         let particles = particles.owned() + particles.halo();
         self.parents.clear();
         self.parents
@@ -138,10 +138,11 @@ impl Connectivity {
         }
     }
 
-    /// Begins the labels of fragments, after [`Self::join`]: what has come apart are particles of one
+    /// Begins the labels of fragments: what has come apart are particles of one
     /// fragment that no chain of neighbours connects. These are out of each other's support, so that no
     /// force changes by it.
-    pub(crate) fn begin_labels(particles: &mut ParticleStore) {
+    pub(crate) fn begin_labels(&mut self, lists: &Lists, particles: &mut ParticleStore) {
+        self.join(lists, particles);
         let count = particles.part.len();
         particles.part.copy_from_slice(&particles.id[..count]);
         // Roots know what their own pairs have found.

@@ -3,7 +3,7 @@
 //! "Contact").
 
 use super::friction::{Grip, Law, Memory};
-use super::{ContactView, Pair, Party, Reaction, overlap, penalty};
+use super::{ContactView, Pair, Party, Reaction};
 use crate::domain::Mirrors;
 use crate::numerics::vector::dot;
 
@@ -20,7 +20,7 @@ pub struct Hold {
 /// Sums over what a receiver lies on, weighted with `o_ij`.
 #[derive(Default)]
 pub(super) struct Bearing {
-    load: f64,
+    pub(super) load: f64,
     force: [f64; 3],
     motion: [f64; 3],
     /// Normal, of any length.
@@ -44,26 +44,19 @@ impl Bearing {
     }
 }
 
-/// Friction and damping of the receiver at `place` after the step, among its neighbours in `overlap`
-/// and in `penalty` contact.
+/// Friction and damping of a receiver after the step, which rest on what all modes have added to
+/// `bearing`.
 ///
 /// Its load is `Σ_j o_ij e_ij·n`, its velocity against what it lies on `Σ_j o_ij v_ij/O_i`.
 #[must_use]
-pub fn hold(view: &ContactView, place: u32, overlap: &[u32], penalty: &[u32]) -> Hold {
-    let i = view.party(place);
-    let mut bearing = Bearing::default();
-    overlap::bear(view, &i, overlap, &mut bearing);
-    for (facing, seen) in (bearing.facing.iter_mut()).zip(&view.store.contact_normal[i.base]) {
-        *facing += bearing.load * seen;
-    }
-    penalty::bear(view, &i, penalty, &mut bearing);
+pub(super) fn hold(view: &ContactView, i: &Party, bearing: &Bearing) -> Hold {
     let Bearing {
         load,
         force,
         motion,
         facing,
         law,
-    } = bearing;
+    } = *bearing;
     let size = dot(&facing, &facing).sqrt();
     if size <= 0.0 {
         return Hold::default();

@@ -4,6 +4,8 @@
 //! only, so that its energy is a function of positions alone and its forces are that function's
 //! exact gradient (physics page, section 5).
 
+mod books;
+mod boundary;
 mod connectivity;
 pub mod friction;
 pub mod hold;
@@ -14,6 +16,7 @@ pub mod potential;
 mod sums;
 mod surfaces;
 mod table;
+mod task;
 
 pub use connectivity::Connectivity;
 pub use phase::Contact;

@@ -145,6 +145,11 @@ pub(super) fn bear(view: &ContactView, i: &Party, neighbours: &[u32], bearing: &
             *facing -= own * seen;
         }
     }
+    let load = bearing.load;
+    let seen = &view.store.contact_normal[i.base];
+    for (facing, seen) in bearing.facing.iter_mut().zip(seen) {
+        *facing += load * seen;
+    }
 }
 
 /// Adds what the foreign neighbours do to the receiver at `place` to `reaction`:

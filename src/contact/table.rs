@@ -1,6 +1,6 @@
 //! Parameters of every pair of bodies, computed once at set-up.
 
-use super::penalty::Boundary;
+use super::boundary::Boundary;
 use crate::model::{
     Body, Case, ContactDirection, ContactMode, PenaltyLaw, PotentialRange, Resistance,
 };

@@ -2,45 +2,10 @@
 
 use serde::{Deserialize, Deserializer, Serialize};
 
+use super::reason::Reason;
 use crate::contact::{PairExtremes, PairSums, SurfaceForces};
 use crate::loads::Loads;
 use crate::numerics::vector::norm;
-
-/// What limited a time step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Reason {
-    /// Sound and viscosity.
-    Sound,
-    /// Acceleration.
-    Force,
-    /// Stiffness of contact.
-    Contact,
-    /// The input's upper bound.
-    Maximum,
-    /// The end of the case.
-    End,
-    /// The speed at which bodies fly towards each other.
-    Flight,
-}
-
-impl Reason {
-    /// All reasons, in the order of ties.
-    pub const ALL: [Self; 6] = [
-        Self::Sound,
-        Self::Force,
-        Self::Contact,
-        Self::Maximum,
-        Self::End,
-        Self::Flight,
-    ];
-
-    /// Name in histories.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        ["sound", "force", "contact", "maximum", "end", "flight"][self as usize]
-    }
-}
 
 /// Ledger of one pair of bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -244,6 +209,16 @@ fn step_or_none<'a, D: Deserializer<'a>>(from: D) -> Result<f64, D::Error> {
 }
 
 impl RunState {
+    /// The step to do now and what limits it: the vote, unless the case ends before, at `end` (s).
+    pub(crate) fn next_step(&self, end: f64) -> (f64, Reason) {
+        let left = end - self.time;
+        if left <= self.dt {
+            (left, Reason::End)
+        } else {
+            (self.dt, self.dt_reason)
+        }
+    }
+
     /// Work done by all loads so far (J).
     #[must_use]
     pub fn load_work(&self) -> f64 {

@@ -8,13 +8,15 @@ mod limits;
 mod meetings;
 pub mod pieces;
 mod post_mortem;
+mod reason;
 mod step_sums;
 mod totals;
 
 pub(crate) use instability::{fastest, is_explained};
-pub use ledger::{LoadState, NearestPair, PairState, Reason, Removed, RunState, Totals, Worst};
+pub use ledger::{LoadState, NearestPair, PairState, Removed, RunState, Totals, Worst};
 pub use limits::TroubleKind;
 pub(crate) use limits::{Limits, Moved};
 pub(crate) use post_mortem::PAST_VOTES;
 pub use post_mortem::{PastVote, PostMortem};
+pub use reason::Reason;
 pub(crate) use step_sums::{Booked, StepSums};

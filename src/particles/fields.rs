@@ -2,7 +2,106 @@
 //! that becomes of it, one column for each question ([`super::columns`]). Storage, sort, migration,
 //! halo exchange, symmetry planes, freezing, checkpoints and snapshots walk this table.
 
-use super::columns::{FieldInfo, FieldKind, HaloPhase, Life, Mirror, Output, Owner};
+use super::columns::{FieldKind, HaloPhase, Life, Mirror, Output, Owner};
+
+/// One row of the table.
+#[derive(Debug, Clone, Copy)]
+pub struct FieldInfo {
+    /// Which field.
+    pub id: FieldId,
+    /// Its name in the store, in files and on the command line.
+    pub name: &'static str,
+    /// Type.
+    pub kind: FieldKind,
+    /// What becomes of it behind a symmetry plane.
+    pub mirror: Mirror,
+    /// SI unit; empty for none.
+    pub unit: &'static str,
+    /// One sentence for users.
+    pub description: &'static str,
+    /// From when to when its values live.
+    pub life: Life,
+    /// When halo particles get it.
+    pub halo: HaloPhase,
+    /// What snapshots do with it.
+    pub output: Output,
+    /// Options that have use for it; empty for a field of every case.
+    pub owner: Owner,
+    /// Whether a frozen particle keeps it; all else of that is zero.
+    pub kept: bool,
+}
+
+impl FieldInfo {
+    /// Whether a particle takes it along to another rank.
+    #[must_use]
+    pub const fn leaves(&self) -> bool {
+        !matches!(self.life, Life::Scratch)
+    }
+
+    /// Whether a frozen particle keeps it.
+    #[must_use]
+    pub const fn is_kept(&self) -> bool {
+        self.kept
+    }
+
+    /// Whether it is in snapshots, by default or on demand.
+    #[must_use]
+    pub const fn is_shown(&self) -> bool {
+        !matches!(self.output, Output::Never)
+    }
+
+    /// Whether only some cases have use for it.
+    #[must_use]
+    pub const fn is_optional(&self) -> bool {
+        !self.owner.is_empty()
+    }
+
+    /// Whether a case without the options `unused` has use for it.
+    #[must_use]
+    pub const fn is_held_without(&self, unused: Owner) -> bool {
+        self.owner.is_empty() || !unused.contains(self.owner)
+    }
+
+    /// Every field.
+    #[must_use]
+    pub const fn any(&self) -> bool {
+        true
+    }
+
+    /// Refuses, as the table is compiled, columns that contradict each other.
+    const fn check(&self) {
+        assert!(
+            self.mirror as u8 == self.kind.mirror() as u8
+                || matches!(self.mirror, Mirror::Same)
+                || matches!((self.mirror, self.kind), (Mirror::Place, FieldKind::Vector)),
+            "a mirror rule of another kind"
+        );
+        assert!(
+            !self.kept || matches!(self.life, Life::State) && self.owner.is_empty(),
+            "what a frozen particle keeps is state in every case"
+        );
+        assert!(
+            !self.halo.intersects(HaloPhase::CONTACT)
+                || Owner::CONTACT
+                    .union(Owner::FRICTION)
+                    .union(Owner::PENALTY)
+                    .contains(self.owner)
+                    && !self.owner.is_empty(),
+            "the contact message is sent only where there is contact"
+        );
+        assert!(
+            !self.halo.intersects(HaloPhase::FRICTION)
+                || self.owner.bits() == Owner::FRICTION.bits(),
+            "the message of friction is sent only where there is friction"
+        );
+        assert!(
+            !self.halo.intersects(HaloPhase::PARTS)
+                || self.owner.bits() == Owner::SELF_CONTACT.bits()
+                    && self.halo.contains(HaloPhase::MOTION),
+            "parts are told again only with self-contact, to particles that know them"
+        );
+    }
+}
 
 macro_rules! kind_type {
     (Scalar) => {
@@ -110,7 +209,7 @@ macro_rules! particle_fields {
 
             pub(super) fn resize_field(&mut self, field: FieldId, length: usize) {
                 match field { $( FieldId::$name => {
-                    super::store::resize(&mut self.$name, length);
+                    super::arrays::resize(&mut self.$name, length);
                 } )+ }
             }
 
@@ -119,7 +218,7 @@ macro_rules! particle_fields {
             }
 
             pub(super) fn gather_field(&mut self, field: FieldId, order: &[u32], scratch: &mut [u64]) {
-                match field { $( FieldId::$name => super::store::gather(&mut self.$name, order, scratch), )+ }
+                match field { $( FieldId::$name => super::arrays::gather(&mut self.$name, order, scratch), )+ }
             }
 
             pub(super) fn capacity_bytes(&self) -> usize {

@@ -1,16 +1,20 @@
 //! Particles as a structure of arrays: the table of fields and the store that walks it.
 
+mod arrays;
 mod columns;
 mod fields;
 mod image;
 mod point;
 mod scatter;
+mod select;
 mod store;
 
-pub use columns::{FieldInfo, FieldKind, HaloPhase, Life, Mirror, Output, Owner, Select};
-pub use fields::{FIELDS, FieldId, ParticleStore};
+pub use arrays::{SCRATCH_WORDS, resize};
+pub use columns::{FieldKind, HaloPhase, Life, Mirror, Output, Owner};
+pub use fields::{FIELDS, FieldId, FieldInfo, ParticleStore};
 pub use image::Image;
 pub use point::MaterialPoints;
 pub(crate) use point::material_points;
 pub use scatter::Scatter;
-pub use store::{SCRATCH_WORDS, TEMPERATURE, VON_MISES_STRESS, resize, rows, snapshot_names};
+pub use select::Select;
+pub use store::{TEMPERATURE, VON_MISES_STRESS, rows, snapshot_names};

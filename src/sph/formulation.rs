@@ -10,7 +10,8 @@ pub use normalised::Normalised;
 pub use stress_points::StressPoints;
 
 use super::signal::SignalSpeed;
-use super::sums::{Side, Step, Sums};
+use super::step::{Side, Step};
+use super::sums::Sums;
 use crate::neighbours::Lists;
 use crate::particles::ParticleStore;
 

@@ -16,8 +16,10 @@ pub mod normalised;
 pub mod options;
 mod phase;
 pub mod principal;
+mod records;
 mod signal;
 mod smoothing;
+mod step;
 pub mod stress_points;
 mod sums;
 mod terms;
@@ -27,7 +29,7 @@ pub use phase::Sph;
 pub(crate) use phase::with_formulation;
 pub use signal::{SignalSpeed, Signals};
 pub use smoothing::Smoothing;
-pub use sums::{Side, Step};
+pub use step::{Side, Step};
 
 /// Elements that a task handles at least.
 const GRAIN: usize = 1024;

@@ -4,8 +4,8 @@
 //! no trace of them.
 
 use super::neighbourhood::{gather, gather3, records};
-use super::normalised::NormalisedRecord;
 use super::principal::tensile_part;
+use super::records::NormalisedRecord;
 use crate::numerics::lanes::{LANES, Lanes};
 
 /// Artificial stress (Monaghan 2000; Gray, Monaghan & Swift 2001).

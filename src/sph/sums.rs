@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::GRAIN;
 use super::momentum::{StressRecord, Viscosity};
 use super::neighbourhood::Sources;
+use super::step::Side;
 use super::terms::Terms;
 use crate::domain::Mirrors;
 use crate::material::Material;
@@ -28,34 +29,6 @@ pub(super) struct Sums {
     pub from_mirrors: Vec<FromMirrors>,
     /// Particles of this rank whose gradient has no correction.
     pub uncorrected: i64,
-}
-
-/// A step as the sums know it.
-#[derive(Debug, Clone, Copy)]
-pub struct Step {
-    /// Its length (s); zero at the start of a case.
-    pub dt: f64,
-    /// That of the step before (s).
-    pub last_dt: f64,
-    /// Gravity (m/s²).
-    pub gravity: [f64; 3],
-}
-
-/// Which clusters of receivers a sweep takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
-    /// Those without halo particles among their neighbours, which need not wait for messages.
-    Inner,
-    /// Those with some.
-    Outer,
-}
-
-impl Side {
-    /// Whether a cluster with or without halo particles among its neighbours is of this side.
-    #[inline(always)]
-    pub(super) fn takes(self, halo: bool) -> bool {
-        halo == (self == Self::Outer)
-    }
 }
 
 /// What the images behind symmetry planes exert on the particles of a chunk.

@@ -7,7 +7,7 @@ use super::normalised::NormalisedRecord;
 use super::options::{
     ARTIFICIAL_STRESS, BALSARA, CONDUCTION, OptionRecord, Options, XSPH, limiter, repulsion,
 };
-use super::sums::Side;
+use super::step::Side;
 use crate::domain::Mirrors;
 use crate::loads::Loads;
 use crate::model::{Case, SphOptions};

@@ -1,5 +1,6 @@
 //! The loop, the integrator and the time-step votes.
 
+mod error;
 mod fields;
 mod flight;
 mod integrate;
@@ -14,8 +15,8 @@ pub use crate::diagnose::{
     LoadState, NearestPair, PairState, PastVote, PostMortem, Reason, Removed, RunState, Totals,
     TroubleKind, Worst,
 };
+pub use error::{SetupError, StepError};
 pub use fields::bytes_of_options;
-pub use setup::SetupError;
-pub use simulation::{Simulation, StepError};
+pub use simulation::Simulation;
 pub use timers::{Phase, Timers};
 pub use vote::Votes;

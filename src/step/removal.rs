@@ -7,11 +7,13 @@
 //! it carried is booked in the same way. What is left of it in files is where it was and of what,
 //! the fields that are [`FieldInfo::kept`]. All else of it, velocity and stress among it, is zero.
 
+use super::vote::Voter;
 use crate::comm::Comm;
-use crate::diagnose::{Removed, RunState};
+use crate::diagnose::{Moved, Removed, RunState};
 use crate::loads::Loads;
 use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use crate::particles::{FieldInfo, Owner, ParticleStore};
+use crate::sph::SignalSpeed;
 
 /// Particles that this rank has frozen: they are in files, and in nothing else.
 #[derive(Debug, Default)]
@@ -77,6 +79,30 @@ impl Frozen {
             particles.resize_owned(particles.owned() - self.count());
         }
     }
+}
+
+/// Owned particles whose state is out of range.
+pub(super) fn troubled<F: SignalSpeed>(
+    particles: &ParticleStore,
+    loads: &Loads,
+    voter: &Voter<F>,
+) -> Vec<u32> {
+    let is_troubled = |&i: &usize| {
+        if loads.drives() && loads.is_rigid(particles.load[i]) {
+            return false;
+        }
+        let contact = particles.contact_acceleration.get(i);
+        let moved = Moved {
+            velocity: particles.velocity[i],
+            energy: particles.specific_energy[i],
+            contact: contact.copied().unwrap_or_default(),
+        };
+        voter.trouble(i, &moved).is_some()
+    };
+    let troubled = (0..particles.owned()).filter(is_troubled);
+    troubled
+        .map(|i| u32::try_from(i).unwrap_or(u32::MAX))
+        .collect()
 }
 
 /// Books what the owned particles `leaving` take with them, of so many bodies. Collective.

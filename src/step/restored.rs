@@ -1,6 +1,6 @@
 //! What a saved state must hold before a step believes it: a file may come from anybody.
 
-use super::setup::SetupError;
+use super::error::SetupError;
 use super::simulation::Simulation;
 use crate::comm::Comm;
 use crate::diagnose::RunState;

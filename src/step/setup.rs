@@ -1,11 +1,10 @@
 //! From a case to the particles of this rank at time zero, or from saved particles to a run.
 
-use thiserror::Error;
-
+use super::error::SetupError;
 use super::fields::unused_fields;
 use super::removal::Frozen;
 use super::restored::require_own;
-use super::simulation::{Simulation, StepError};
+use super::simulation::Simulation;
 use super::timers::Timers;
 use super::vote::Votes;
 use crate::comm::Comm;
@@ -18,31 +17,6 @@ use crate::neighbours::Lists;
 use crate::particles::{Image, ParticleStore};
 use crate::populate::{self, Slab};
 use crate::sph::Sph;
-
-/// Why a case cannot start; the same on all ranks.
-#[derive(Debug, Clone, Error)]
-pub enum SetupError {
-    /// No particles at all.
-    #[error("the case has no particles: check shapes, spacings and symmetry planes")]
-    Empty,
-    /// More than the program can number on one rank.
-    #[error("a rank would hold {count} particles, more than {limit}: use more ranks")]
-    TooMany {
-        /// Particles of the fullest rank.
-        count: u64,
-        /// The limit.
-        limit: u64,
-    },
-    /// The lattices need more identities than there are.
-    #[error("the bodies' lattices have too many sites to number; use larger spacings")]
-    TooManySites,
-    /// A restored state is not one of the case.
-    #[error("the saved state is not one of this case: {0}")]
-    Foreign(&'static str),
-    /// The first evaluation failed.
-    #[error(transparent)]
-    Step(#[from] StepError),
-}
 
 impl Simulation {
     /// Fills the bodies of a case, each rank its own slab, and evaluates the first forces.

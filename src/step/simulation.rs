@@ -1,17 +1,15 @@
 //! The simulation: everything a rank holds, and one step of it.
 
-use thiserror::Error;
-
+use super::error::{self, StepError};
 use super::flight::Sky;
 use super::integrate;
 use super::removal::{self, Frozen};
 use super::timers::{Phase, Timers};
-use super::vote::{self, Vote, Voter, Votes, vote_fields};
+use super::vote::{Vote, Voter, Votes, vote_fields};
 use crate::comm::Comm;
-use crate::contact::{Connectivity, Contact, ContactTable};
+use crate::contact::{Contact, ContactTable};
 use crate::diagnose::{
-    Booked, Moved, PostMortem, Reason, RunState, StepSums, Totals, TroubleKind, fastest,
-    is_explained,
+    Booked, PostMortem, Reason, RunState, StepSums, Totals, TroubleKind, fastest, is_explained,
 };
 use crate::domain::{Halo, Partition, Slabs};
 use crate::loads::Loads;
@@ -19,31 +17,6 @@ use crate::model::{Case, SphForm, TroublePolicy};
 use crate::neighbours::Lists;
 use crate::particles::{HaloPhase, ParticleStore};
 use crate::sph::{Side, Sph, Step, with_formulation};
-
-/// Why a step failed; the same on all ranks.
-#[derive(Debug, Clone, Error)]
-pub enum StepError {
-    /// A particle's state is no number or out of range.
-    #[error("step {step}: particle {id} {what} ({detail})")]
-    Trouble {
-        /// Step in which it was found.
-        step: u64,
-        /// Identity of the particle.
-        id: u64,
-        /// What is wrong.
-        kind: TroubleKind,
-        /// The same in words.
-        what: String,
-        /// The particle's state.
-        detail: String,
-    },
-    /// Every particle was out of range.
-    #[error("step {step}: no particle is left, all were out of range")]
-    NothingLeft {
-        /// Step in which the last one went.
-        step: u64,
-    },
-}
 
 /// One rank's part of a running case.
 pub struct Simulation {
@@ -83,7 +56,7 @@ impl Simulation {
     /// # Errors
     /// The same on all ranks if any particle's state is no number or out of range.
     pub fn advance(&mut self, comm: &Comm) -> Result<(), StepError> {
-        let (dt, reason) = self.next_step();
+        let (dt, reason) = self.state.next_step(self.case.run.end_time);
         if self.poison {
             self.store.poison();
         }
@@ -109,16 +82,6 @@ impl Simulation {
         self.vote(comm, vote)?;
         self.timers.lap(Phase::Vote);
         Ok(())
-    }
-
-    /// The step to do now and what limits it: the vote, unless the case ends before.
-    fn next_step(&self) -> (f64, Reason) {
-        let left = self.case.run.end_time - self.state.time;
-        if left <= self.state.dt {
-            (left, Reason::End)
-        } else {
-            (self.state.dt, self.state.dt_reason)
-        }
     }
 
     /// First half kick and drift of a step `dt` (s) that ends at time `end` (s).
@@ -194,8 +157,7 @@ impl Simulation {
         }
         timers.lap(Phase::Neighbours);
         if contact.connectivity.is_due(state.step) {
-            contact.connectivity.join(lists, particles);
-            Connectivity::begin_labels(particles);
+            contact.connectivity.begin_labels(lists, particles);
             while comm.any(contact.connectivity.spread_labels(particles)) {
                 halo.exchange(comm, particles, HaloPhase::PARTS);
             }
@@ -290,7 +252,7 @@ impl Simulation {
 
     /// Describes the particle `id`, wherever it is; the same text on all ranks. Collective.
     fn trouble(&self, comm: &Comm, kind: TroubleKind, id: u64) -> StepError {
-        vote::trouble(comm, &self.case, &self.store, (self.state.step, kind, id))
+        error::trouble(comm, &self.case, &self.store, (self.state.step, kind, id))
     }
 
     /// Sums over all particles, into the state, with the errors that follow from them, and the
@@ -341,7 +303,12 @@ impl Simulation {
     /// # Errors
     /// The same on all ranks if there is trouble again, or nothing left.
     pub fn remove_troubled(&mut self, comm: &Comm) -> Result<u64, StepError> {
-        let mut leaving = self.troubled();
+        let rules = (self.case.time_step, self.loads.gravity);
+        let (store, loads, limits) = (&self.store, &self.loads, &self.votes.limits);
+        let mut leaving = with_formulation!(self.case.sph.form, Form => {
+            let voter = Voter::<Form>::new(vote_fields!(store), &self.sph, limits, rules);
+            removal::troubled(store, loads, &voter)
+        });
         let mut count = [leaving.len() as u64, self.store.owned() as u64];
         let counted = (&self.store, self.case.bodies.len());
         removal::book(comm, &mut self.state, counted, &self.loads, &leaving);
@@ -373,29 +340,6 @@ impl Simulation {
         self.state.book_defect();
         self.vote(comm, vote)?;
         Ok(count[0])
-    }
-
-    /// Owned particles whose state is out of range.
-    fn troubled(&self) -> Vec<u32> {
-        let (store, loads) = (&self.store, &self.loads);
-        let rules = (self.case.time_step, loads.gravity);
-        let limits = &self.votes.limits;
-        let is_free = |&i: &usize| !(loads.drives() && loads.is_rigid(store.load[i]));
-        let owned = (0..store.owned()).filter(is_free);
-        with_formulation!(self.case.sph.form, Form => {
-            let voter = Voter::<Form>::new(vote_fields!(store), &self.sph, limits, rules);
-            let is_troubled = |&i: &usize| {
-                let contact = store.contact_acceleration.get(i);
-                let moved = Moved {
-                    velocity: store.velocity[i],
-                    energy: store.specific_energy[i],
-                    contact: contact.copied().unwrap_or_default(),
-                };
-                voter.trouble(i, &moved).is_some()
-            };
-            let troubled = owned.filter(is_troubled);
-            troubled.map(|i| u32::try_from(i).unwrap_or(u32::MAX)).collect()
-        })
     }
 
     /// Does something, such as writing files, while the store holds this rank's frozen particles

@@ -6,15 +6,12 @@ use std::collections::VecDeque;
 use std::marker::PhantomData;
 
 use super::flight::{Flight, Sky};
-use super::simulation::StepError;
 use crate::comm::Comm;
 use crate::contact::ContactTable;
 use crate::diagnose::{Limits, Moved, PAST_VOTES, PastVote, Reason, RunState, TroubleKind};
 use crate::domain::Span;
-use crate::model::readable::{shown, shown_vector};
 use crate::model::{Case, TimeStepOptions};
 use crate::numerics::vector::square;
-use crate::particles::ParticleStore;
 use crate::sph::{SignalSpeed, Signals, Sph};
 
 /// Largest coordinate that still counts as a position (m).
@@ -122,36 +119,6 @@ impl Votes {
 
     pub(super) fn memory(&self) -> usize {
         self.flight.memory() + 8 * self.words.capacity()
-    }
-}
-
-/// Describes the particle `id`, wherever it is, as of kind of trouble; the same text on all ranks.
-/// Collective.
-pub(super) fn trouble(
-    comm: &Comm,
-    case: &Case,
-    particles: &ParticleStore,
-    (step, kind, id): (u64, TroubleKind, u64),
-) -> StepError {
-    let found = particles.id[..particles.owned()]
-        .iter()
-        .position(|&x| x == id);
-    let describe = |i| describe(particles, case, i, comm.rank()).into_bytes();
-    let mine = found.map_or_else(Vec::new, describe);
-    let mut owner = [if mine.is_empty() {
-        u64::MAX
-    } else {
-        comm.rank() as u64
-    }];
-    comm.min_u64(&mut owner);
-    let mut text = mine;
-    comm.broadcast_from(usize::try_from(owner[0]).unwrap_or(0), &mut text);
-    StepError::Trouble {
-        step,
-        id,
-        kind,
-        what: kind.describe(&case.trouble),
-        detail: String::from_utf8_lossy(&text).into_owned(),
     }
 }
 
@@ -370,53 +337,5 @@ impl<'a, F: SignalSpeed> Voter<'a, F> {
             return (ERROR, TroubleKind::Step as u64, id);
         }
         (dt.to_bits(), reason as u64, id)
-    }
-}
-
-fn describe(store: &ParticleStore, case: &Case, i: usize, rank: usize) -> String {
-    format!(
-        "body `{}`, rank {rank}, position {}, velocity {}, density {}, specific energy {}, \
-         pressure {}, sound speed {}; nearest particles {}",
-        case.bodies[store.body[i] as usize].name,
-        case.length_unit.vector(&store.position[i]),
-        shown_vector(&store.velocity[i], "m/s"),
-        shown(store.density[i], "kg/m^3"),
-        shown(store.specific_energy[i], "J/kg"),
-        shown(store.pressure[i], "Pa"),
-        shown(store.sound_speed[i], "m/s"),
-        nearest(store, case, i),
-    )
-}
-
-/// The particles nearest to particle `i` of those that this rank holds: id, body, distance.
-fn nearest(store: &ParticleStore, case: &Case, i: usize) -> String {
-    let here = store.position[i];
-    let distance = |there: &[f64; 3]| {
-        let square: f64 = (0..3)
-            .map(|a| (here[a] - there[a]) * (here[a] - there[a]))
-            .sum();
-        square.sqrt()
-    };
-    let mut others: Vec<(f64, usize)> = store
-        .position
-        .iter()
-        .enumerate()
-        .filter(|&(k, _)| k != i)
-        .map(|(k, there)| (distance(there), k))
-        .filter(|(r, _)| r.is_finite())
-        .collect();
-    others.sort_by(|a, b| a.0.total_cmp(&b.0).then(store.id[a.1].cmp(&store.id[b.1])));
-    let described: Vec<String> = others
-        .iter()
-        .take(3)
-        .map(|&(r, k)| {
-            let distance = case.length_unit.text(r);
-            format!("{} of body {} at {distance}", store.id[k], store.body[k])
-        })
-        .collect();
-    if described.is_empty() {
-        "unknown".to_owned()
-    } else {
-        described.join(", ")
     }
 }

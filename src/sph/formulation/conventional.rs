@@ -13,7 +13,8 @@ use crate::sph::gradient::VelocityGradient;
 use crate::sph::material_update::MaterialUpdate;
 use crate::sph::neighbourhood::Sources;
 use crate::sph::signal::{SignalSpeed, Signals};
-use crate::sph::sums::{Side, Step, Sums, sources, with_scale};
+use crate::sph::step::{Side, Step};
+use crate::sph::sums::{Sums, sources, with_scale};
 
 /// The conventional formulation.
 #[derive(Debug)]

@@ -3,7 +3,6 @@
 
 use rayon::prelude::*;
 
-use super::normalised::StressPower;
 use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Cluster, Lists};
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::kernel::PairScale;
@@ -11,9 +10,10 @@ use crate::numerics::lanes::Lanes;
 use crate::particles::{Image, ParticleStore, Scatter};
 use crate::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
 use crate::sph::neighbourhood::Sources;
-use crate::sph::normalised::NormalisedRecord;
+use crate::sph::normalised::{NormalisedRecord, stress_power};
 use crate::sph::options::{ARTIFICIAL_STRESS, BALSARA, CONDUCTION, NORMALISED, Options, XSPH};
-use crate::sph::sums::{FromMirrors, Side, Sums, sources, with_scale};
+use crate::sph::step::Side;
+use crate::sph::sums::{FromMirrors, Sums, sources, with_scale};
 
 /// Calls `$work` with a set of options as a constant: no options, or those of solids (artificial
 /// stress and XSPH), of shocks (the Balsara switch and conduction), or all, whichever has all that
@@ -152,6 +152,42 @@ impl<'a> ForceTarget<'a> {
                 }
             }
         }
+    }
+}
+
+/// The power that stresses put into heat.
+struct StressPower<'a> {
+    pressure: &'a [f64],
+    deviatoric_stress: &'a [[f64; 6]],
+    velocity_gradient: &'a [[f64; 9]],
+    density: &'a [f64],
+}
+
+impl<'a> StressPower<'a> {
+    /// From fields of the store.
+    fn new(
+        pressure: &'a [f64],
+        deviatoric_stress: &'a [[f64; 6]],
+        velocity_gradient: &'a [[f64; 9]],
+        predicted_density: &'a [f64],
+    ) -> Self {
+        Self {
+            pressure,
+            deviatoric_stress,
+            velocity_gradient,
+            density: predicted_density,
+        }
+    }
+
+    /// Of owned particle `i` (W/kg).
+    #[inline(always)]
+    fn of(&self, i: usize) -> f64 {
+        stress_power(
+            self.pressure[i],
+            &self.deviatoric_stress[i],
+            &self.velocity_gradient[i],
+            self.density[i],
+        )
     }
 }
 

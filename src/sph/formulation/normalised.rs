@@ -14,10 +14,11 @@ use crate::particles::{Image, ParticleStore, Scatter, material_points, resize};
 use crate::sph::GRAIN;
 use crate::sph::material_update::MaterialUpdate;
 use crate::sph::neighbourhood::Sources;
-use crate::sph::normalised::{Correction, NormalisedGradient, NormalisedRecord, stress_power};
+use crate::sph::normalised::{Correction, NormalisedGradient, NormalisedRecord};
 use crate::sph::options::NORMALISED;
 use crate::sph::signal::{SignalSpeed, Signals};
-use crate::sph::sums::{Side, Step, Sums, sources, with_scale};
+use crate::sph::step::{Side, Step};
+use crate::sph::sums::{Sums, sources, with_scale};
 
 /// How much corrections enlarge gradients at surfaces of lattices, which steps need not heed.
 const SURFACE_CORRECTION: f64 = 2.0;
@@ -137,42 +138,6 @@ impl<S: PairScale> Vectorised for NormalisedChunk<'_, S> {
             self.update
                 .apply(cluster, &corrected.gradient, neighbours.len());
         }
-    }
-}
-
-/// The power that stresses put into heat.
-pub(super) struct StressPower<'a> {
-    pressure: &'a [f64],
-    deviatoric_stress: &'a [[f64; 6]],
-    velocity_gradient: &'a [[f64; 9]],
-    density: &'a [f64],
-}
-
-impl<'a> StressPower<'a> {
-    /// From fields of the store.
-    pub(super) fn new(
-        pressure: &'a [f64],
-        deviatoric_stress: &'a [[f64; 6]],
-        velocity_gradient: &'a [[f64; 9]],
-        predicted_density: &'a [f64],
-    ) -> Self {
-        Self {
-            pressure,
-            deviatoric_stress,
-            velocity_gradient,
-            density: predicted_density,
-        }
-    }
-
-    /// Of owned particle `i` (W/kg).
-    #[inline(always)]
-    pub(super) fn of(&self, i: usize) -> f64 {
-        stress_power(
-            self.pressure[i],
-            &self.deviatoric_stress[i],
-            &self.velocity_gradient[i],
-            self.density[i],
-        )
     }
 }
 

@@ -17,8 +17,9 @@ use crate::particles::{Image, ParticleStore, Scatter, resize};
 use crate::sph::GRAIN;
 use crate::sph::neighbourhood::Sources;
 use crate::sph::signal::{SignalSpeed, Signals};
+use crate::sph::step::{Side, Step};
 use crate::sph::stress_points::{self, Pull, Pulled, StressPointRecord};
-use crate::sph::sums::{FromMirrors, Side, Step, Sums, sources, with_scale};
+use crate::sph::sums::{FromMirrors, Sums, sources, with_scale};
 
 /// The formulation by stress points.
 #[derive(Debug, Default)]

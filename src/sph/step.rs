@@ -1,0 +1,29 @@
+//! What a step tells the sums.
+
+/// A step as the sums know it.
+#[derive(Debug, Clone, Copy)]
+pub struct Step {
+    /// Its length (s); zero at the start of a case.
+    pub dt: f64,
+    /// That of the step before (s).
+    pub last_dt: f64,
+    /// Gravity (m/s²).
+    pub gravity: [f64; 3],
+}
+
+/// Which clusters of receivers a sweep takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Those without halo particles among their neighbours, which need not wait for messages.
+    Inner,
+    /// Those with some.
+    Outer,
+}
+
+impl Side {
+    /// Whether a cluster with or without halo particles among its neighbours is of this side.
+    #[inline(always)]
+    pub(super) fn takes(self, halo: bool) -> bool {
+        halo == (self == Self::Outer)
+    }
+}
