@@ -199,7 +199,7 @@ impl Contact {
     }
 
     /// Contact forces after a step `dt` (s), the energy of contact, and what the time step must know
-    /// of both; into [`Self::sums`] go those of this rank.
+    /// of both. Sums are those of this rank.
     pub fn forces(&mut self, particles: &mut ParticleStore, lists: &Lists, loads: &Loads, dt: f64) {
         self.sums.clear();
         if !self.table.is_active() {
