@@ -11,6 +11,27 @@ use whipple::step::{Reason, Simulation};
 /// ρ c v of the bar's step (Pa).
 const PLATEAU: f64 = 0.004_584_9e11;
 
+/// Gravity counts in the acceleration that limits steps.
+#[test]
+fn steps_heed_gravity() {
+    let s = start(inline(
+        r#"
+dimension = 1
+spacing = "1 mm"
+gravity = ["1e11 m/s2"]
+run.end_time = "1 us"
+material.a.library = "copper"
+[[body]]
+name = "bar"
+material = "a"
+shape.box = { size = ["20 mm"] }
+"#,
+    ));
+    let (h, force) = (s.case.bodies[0].smoothing_length, s.case.time_step.force);
+    assert_eq!(s.state.dt_reason, Reason::Force);
+    assert!((s.state.dt / (force * (h / 1e11).sqrt()) - 1.0).abs() < 1e-12);
+}
+
 /// Free fall is exact: velocity g t, place ½ g t², and no force inside, to the bit.
 #[test]
 fn free_fall() {
