@@ -34,8 +34,8 @@ use crate::run::{launch, say};
 For work on the program itself: `whipple compare` tells whether two results agree to the last bit,
 `whipple bench` measures how fast it steps on this machine.
 
-`whipple COMMAND --help` says more. Only `run`, `restart` and `bench` use MPI. Exit codes: 0 done, 1 failed
-(or `compare` found differences), 2 wrong input, 75 stopped softly with a checkpoint."
+`whipple COMMAND --help` says more. Only `run`, `restart` and `bench` use MPI. Exit codes: 0 done,
+1 failed (or `compare` found differences), 2 wrong input, 75 stopped softly with a checkpoint."
 )]
 struct Cli {
     #[command(subcommand)]
