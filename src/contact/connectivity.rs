@@ -2,11 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::GRAIN;
 use crate::domain::Mirrors;
 use crate::model::Case;
 use crate::neighbours::{Kin, Lists, Part};
-use crate::particles::{ParticleStore, resize};
+use crate::particles::{GRAIN, ParticleStore, resize};
 
 /// Steps between two looks at what is still connected.
 const EVERY: u64 = 10;

@@ -57,9 +57,6 @@ pub(crate) struct Party {
     velocity: [f64; 3],
 }
 
-/// Elements that a task handles at least.
-const GRAIN: usize = 1024;
-
 impl<'a> ContactView<'a> {
     /// After a step of `dt` (s).
     fn new(store: &'a ParticleStore, lists: &'a Lists, table: &'a ContactTable, dt: f64) -> Self {

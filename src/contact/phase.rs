@@ -8,11 +8,11 @@ use super::hold::Hold;
 use super::sums::ContactSums;
 use super::surfaces::SurfaceForces;
 use super::task::Task;
-use super::{ContactTable, ContactView, GRAIN, overlap};
+use super::{ContactTable, ContactView, overlap};
 use crate::loads::Loads;
 use crate::model::Case;
 use crate::neighbours::{CHUNKS_AT_ONCE, Lists};
-use crate::particles::{HaloPhase, ParticleStore, Scatter};
+use crate::particles::{GRAIN, HaloPhase, ParticleStore, Scatter};
 
 /// Contact of a case, with what it keeps from step to step.
 pub struct Contact {

@@ -8,12 +8,12 @@ mod friction;
 
 use friction::{Resisting, SurfaceHold};
 
-use super::{ContactTable, GRAIN};
+use super::ContactTable;
 use crate::loads::{Loads, Placed, SurfaceStep};
 use crate::model::{Body, Case, RigidSurface};
 use crate::numerics::exact_sum::ExactSum;
 use crate::numerics::vector::dot;
-use crate::particles::ParticleStore;
+use crate::particles::{GRAIN, ParticleStore};
 
 /// What a surface does to one particle.
 #[derive(Debug, Clone, Copy)]

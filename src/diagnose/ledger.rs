@@ -148,7 +148,7 @@ impl Totals {
 }
 
 /// The scalar state of a run; equal on all ranks, saved with each checkpoint.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunState {
     /// Steps done.

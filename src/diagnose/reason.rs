@@ -3,10 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 /// What limited a time step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reason {
     /// Sound and viscosity.
+    #[default]
     Sound,
     /// Acceleration.
     Force,

@@ -9,10 +9,7 @@ use crate::contact::{Closest, Contact, ContactSums, ContactTable, least, pair_ke
 use crate::domain::{Mirrors, Span};
 use crate::loads::Loads;
 use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
-use crate::particles::ParticleStore;
-
-/// Particles that a task looks at least.
-const GRAIN: usize = 1024;
+use crate::particles::{GRAIN, ParticleStore};
 
 /// What a step adds up beside contact and loads, with the memory to join all.
 pub(crate) struct StepSums {

@@ -6,10 +6,7 @@ use super::ledger::{Removed, RunState, Totals};
 use crate::comm::Comm;
 use crate::loads::Loads;
 use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
-use crate::particles::ParticleStore;
-
-/// Particles that a task adds up at least.
-const GRAIN: usize = 1024;
+use crate::particles::{GRAIN, ParticleStore};
 
 impl Totals {
     /// Of the particles of all ranks that are no part of a rigid body, with the energy of contact (J).

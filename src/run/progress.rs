@@ -125,33 +125,15 @@ fn terminal() -> Option<ProgressDrawTarget> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::step::{Reason, Totals, Worst};
+    use crate::step::Reason;
 
     fn state(step: u64, time: f64) -> RunState {
         RunState {
             step,
             time,
-            dt: 0.0,
-            dt_reason: Reason::Sound,
             last_dt: 1.5e-9,
             last_reason: Reason::Force,
-            initial: Totals::default(),
-            totals: Totals::default(),
-            contact_energy: 0.0,
-            contact_work: 0.0,
-            plane_force: [0.0; 3],
-            plane_impulse: [0.0; 3],
-            plane_crossings: 0,
-            pairs: Vec::new(),
-            loads: Vec::new(),
-            work_put_in: 0.0,
-            momentum_put_in: 0.0,
-            capped_reliefs: 0,
-            interpenetrated: 0,
-            uncorrected: 0,
-            removed: Vec::new(),
-            removed_contact_energy: 0.0,
-            worst: Worst::default(),
+            ..RunState::default()
         }
     }
 

@@ -30,6 +30,3 @@ pub(crate) use phase::with_formulation;
 pub use signal::{SignalSpeed, Signals};
 pub use smoothing::Smoothing;
 pub use step::{Side, Step};
-
-/// Elements that a task handles at least.
-const GRAIN: usize = 1024;

@@ -2,7 +2,6 @@
 
 use rayon::prelude::*;
 
-use super::GRAIN;
 use super::momentum::{StressRecord, Viscosity};
 use super::neighbourhood::Sources;
 use super::step::Side;
@@ -13,7 +12,7 @@ use crate::model::{Case, SmoothingLength};
 use crate::neighbours::Lists;
 use crate::numerics::kernel::{ConstantScale, Kernel, MeanScale};
 use crate::numerics::lanes::LANES;
-use crate::particles::{ParticleStore, resize};
+use crate::particles::{GRAIN, ParticleStore, resize};
 
 /// What a formulation finds beside particles and lists, kept from step to step.
 pub(super) struct Sums {

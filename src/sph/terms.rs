@@ -2,7 +2,6 @@
 
 use rayon::prelude::*;
 
-use super::GRAIN;
 use super::normalised::NormalisedRecord;
 use super::options::{
     ARTIFICIAL_STRESS, BALSARA, CONDUCTION, OptionRecord, Options, XSPH, limiter, repulsion,
@@ -13,7 +12,7 @@ use crate::loads::Loads;
 use crate::model::{Case, SphOptions};
 use crate::neighbours::Lists;
 use crate::numerics::kernel::Kernel;
-use crate::particles::{ParticleStore, resize};
+use crate::particles::{GRAIN, ParticleStore, resize};
 
 /// The pair terms of a case, and what particles and images show for them.
 pub(super) struct Terms {

@@ -18,11 +18,8 @@ use crate::domain::Span;
 use crate::loads::{Drive, Free, Goal, Loads};
 use crate::numerics::exact_sum::ExactSum;
 use crate::numerics::vector::dot;
-use crate::particles::ParticleStore;
+use crate::particles::{GRAIN, ParticleStore};
 use crate::sph::{SignalSpeed, Smoothing};
-
-/// Elements that a task handles at least.
-const GRAIN: usize = 1024;
 
 fn add(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|k| a[k] + b[k])

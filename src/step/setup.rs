@@ -9,7 +9,7 @@ use super::timers::Timers;
 use super::vote::Votes;
 use crate::comm::Comm;
 use crate::contact::{Connectivity, Contact};
-use crate::diagnose::{LoadState, PairState, Reason, RunState, StepSums, Totals, Worst};
+use crate::diagnose::{LoadState, PairState, RunState, StepSums, Worst};
 use crate::domain::{Halo, Mirrors, Outset, Partition};
 use crate::loads::{Drive, Goal, Loads};
 use crate::model::{Case, SphForm};
@@ -66,7 +66,11 @@ impl Simulation {
         Self {
             frozen: Frozen::like(&store),
             store,
-            state: fresh_state(table.active_pairs().len(), case.load_names().count()),
+            state: RunState {
+                pairs: vec![PairState::default(); table.active_pairs().len()],
+                loads: vec![LoadState::default(); case.load_names().count()],
+                ..RunState::default()
+            },
             timers: Timers::default(),
             poison: false,
             votes: Votes::new(&case, table, comm),
@@ -212,33 +216,5 @@ fn limit_count(comm: &Comm, owned: u64) -> Result<(), SetupError> {
         0 => Err(SetupError::Empty),
         count if count > limit => Err(SetupError::TooMany { count, limit }),
         _ => Ok(()),
-    }
-}
-
-fn fresh_state(pairs: usize, loads: usize) -> RunState {
-    RunState {
-        step: 0,
-        time: 0.0,
-        dt: 0.0,
-        dt_reason: Reason::Sound,
-        last_dt: 0.0,
-        last_reason: Reason::Sound,
-        initial: Totals::default(),
-        totals: Totals::default(),
-        contact_energy: 0.0,
-        contact_work: 0.0,
-        plane_force: [0.0; 3],
-        plane_impulse: [0.0; 3],
-        plane_crossings: 0,
-        pairs: vec![PairState::default(); pairs],
-        loads: vec![LoadState::default(); loads],
-        work_put_in: 0.0,
-        momentum_put_in: 0.0,
-        capped_reliefs: 0,
-        interpenetrated: 0,
-        uncorrected: 0,
-        removed: Vec::new(),
-        removed_contact_energy: 0.0,
-        worst: Worst::default(),
     }
 }

@@ -3,8 +3,7 @@
 
 use rayon::prelude::*;
 
-use crate::particles::ParticleStore;
-use crate::sph::GRAIN;
+use crate::particles::{GRAIN, ParticleStore};
 use crate::sph::momentum::Viscosity;
 use crate::sph::normalised::stress_power;
 use crate::sph::stress_points::{moment, viscous_stress};
