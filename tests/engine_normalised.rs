@@ -29,7 +29,7 @@ use whipple::sph::neighbourhood::Sources;
 use whipple::sph::normalised::{
     Corrected, Correction, LARGEST_CORRECTION, NormalisedGradient, NormalisedRecord, stress_power,
 };
-use whipple::sph::options::{NORMALISED, Options};
+use whipple::sph::terms::{NORMALISED, PairTerms};
 use whipple::step::Simulation;
 
 /// A cloud with all that the sums read.
@@ -201,9 +201,9 @@ impl World {
                         alpha: 0.0,
                         beta: 0.0,
                     },
-                    options: Options {
+                    terms: PairTerms {
                         normalised: &normalised,
-                        ..Options::NONE
+                        ..PairTerms::NONE
                     },
                 })
             };

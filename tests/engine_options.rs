@@ -13,9 +13,10 @@ use whipple::numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use whipple::numerics::lanes::LANES;
 use whipple::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
 use whipple::sph::neighbourhood::Sources;
-use whipple::sph::options::{
-    ARTIFICIAL_STRESS, BALSARA, CONDUCTION, OptionRecord, Options, RECORDED, XSPH, limiter,
-    repulsion,
+use whipple::sph::terms::artificial_stress::repulsion;
+use whipple::sph::terms::balsara::limiter;
+use whipple::sph::terms::{
+    ARTIFICIAL_STRESS, BALSARA, CONDUCTION, PairTerms, RECORDED, TermRecord, XSPH,
 };
 
 const VISCOSITY: Viscosity = Viscosity {
@@ -33,7 +34,7 @@ struct Records {
     motion: Vec<MotionRecord>,
     lengths: Vec<f64>,
     stress: Vec<StressRecord>,
-    options: Vec<OptionRecord>,
+    options: Vec<TermRecord>,
     inverse_shape: f64,
 }
 
@@ -62,7 +63,7 @@ impl Records {
                 sound_speed,
                 stress_over_density2: Mirrors::reflect_symmetric(&stress, image.code()),
             });
-            records.options.push(OptionRecord {
+            records.options.push(TermRecord {
                 repulsion: Mirrors::reflect_symmetric(&repulsion, image.code()),
                 half_limiter: 0.25 * limiter,
                 specific_energy: energy,
@@ -71,14 +72,14 @@ impl Records {
         records
     }
 
-    fn sums<S: PairScale, const OPTIONS: u8>(
+    fn sums<S: PairScale, const TERMS: u8>(
         &self,
         set: Instructions,
         receivers: [u32; LANES],
         neighbours: &[u32],
         scale: S,
     ) -> Forces {
-        set.run(Momentum::<S, OPTIONS> {
+        set.run(Momentum::<S, TERMS> {
             around: Sources {
                 records: &self.motion,
                 lengths: &self.lengths,
@@ -87,7 +88,7 @@ impl Records {
             .around(receivers, neighbours),
             stresses: &self.stress,
             viscosity: VISCOSITY,
-            options: Options {
+            terms: PairTerms {
                 records: &self.options,
                 normalised: &[],
                 inverse_shape: self.inverse_shape,
@@ -184,13 +185,13 @@ fn bits(forces: &Forces) -> Vec<u64> {
 
 /// The sums of a set of options over all clusters of a cloud: equal to the plain sums, and equal
 /// bits for all instruction sets.
-fn check<S: PairScale, const OPTIONS: u8>(cloud: &Cloud, scale: S) {
+fn check<S: PairScale, const TERMS: u8>(cloud: &Cloud, scale: S) {
     let kernel = Kernel::new(cloud.dimension);
     let found = cloud.find();
     let records = Records::new(cloud, &found, 77);
     let sets = available();
     for (cluster, list, _) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
-        let sums = records.sums::<S, OPTIONS>(sets[0], cluster.receivers, list, scale);
+        let sums = records.sums::<S, TERMS>(sets[0], cluster.receivers, list, scale);
         for k in 0..cluster.lanes {
             let group = found.sequence.group(cluster.group);
             let slow = plain(
@@ -198,15 +199,12 @@ fn check<S: PairScale, const OPTIONS: u8>(cloud: &Cloud, scale: S) {
                 group,
                 &kernel,
                 cluster.receivers[k] as usize,
-                OPTIONS,
+                TERMS,
             );
             // As in `engine_sph`: some tens of roundings a term.
             let close = |value: f64, reference: f64, size: f64| {
                 let error = (value - reference).abs();
-                assert!(
-                    error <= 3e-14 * size,
-                    "{OPTIONS}: {value} is not {reference}"
-                );
+                assert!(error <= 3e-14 * size, "{TERMS}: {value} is not {reference}");
             };
             for a in 0..3 {
                 close(
@@ -219,7 +217,7 @@ fn check<S: PairScale, const OPTIONS: u8>(cloud: &Cloud, scale: S) {
             close(sums.power.0[k], slow.power, slow.sizes[1]);
         }
         for &set in &sets {
-            let other = records.sums::<S, OPTIONS>(set, cluster.receivers, list, scale);
+            let other = records.sums::<S, TERMS>(set, cluster.receivers, list, scale);
             assert_eq!(bits(&other), bits(&sums), "{}", set.name());
         }
     }
@@ -250,13 +248,13 @@ fn options_agree_with_plain_sums() {
     }
 }
 
-/// Options that are off have neutral data where sums know them: no bit differs from plain sums.
+/// PairTerms that are off have neutral data where sums know them: no bit differs from plain sums.
 #[test]
 fn neutral_options_change_no_bit() {
     let cloud = cloud(3, 1.0, 1, 46);
     let found = cloud.find();
     let mut records = Records::new(&cloud, &found, 79);
-    records.options.fill(OptionRecord::NEUTRAL);
+    records.options.fill(TermRecord::NEUTRAL);
     let scale = ConstantScale::new(&Kernel::new(3), cloud.smoothing_length[0]);
     for (cluster, list, _) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
         let set = available()[0];

@@ -18,7 +18,7 @@ use whipple::numerics::lanes::{F64x8, LANES};
 use whipple::sph::gradient::VelocityGradient;
 use whipple::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
 use whipple::sph::neighbourhood::Sources;
-use whipple::sph::options::Options;
+use whipple::sph::terms::PairTerms;
 
 const VISCOSITY: Viscosity = Viscosity {
     alpha: 1.3,
@@ -181,7 +181,7 @@ fn momentum<S: PairScale>(
         .around(receivers, neighbours),
         stresses: &records.stress,
         viscosity: VISCOSITY,
-        options: Options::NONE,
+        terms: PairTerms::NONE,
     })
 }
 

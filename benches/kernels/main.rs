@@ -19,7 +19,7 @@ use whipple::numerics::lanes::{LANES, Lanes};
 use whipple::sph::gradient::VelocityGradient;
 use whipple::sph::momentum::{Momentum, StressRecord, Viscosity};
 use whipple::sph::neighbourhood::Sources;
-use whipple::sph::options::Options;
+use whipple::sph::terms::PairTerms;
 
 /// A group whose throughput counts so many elements.
 fn group<'a>(
@@ -83,7 +83,7 @@ fn momentum(criterion: &mut Criterion) {
                             .around(receivers, neighbours),
                             stresses: &stresses,
                             viscosity,
-                            options: Options::NONE,
+                            terms: PairTerms::NONE,
                         }),
                     );
                 });

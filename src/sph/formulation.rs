@@ -1,6 +1,7 @@
 //! Formulations of the SPH sums: one file each.
 
 mod conventional;
+mod gradient_sweep;
 mod momentum_sweep;
 mod normalised;
 mod stress_points;

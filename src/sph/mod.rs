@@ -13,7 +13,6 @@ pub mod mid_step;
 pub mod momentum;
 pub mod neighbourhood;
 pub mod normalised;
-pub mod options;
 mod phase;
 pub mod principal;
 mod records;
@@ -22,7 +21,7 @@ mod smoothing;
 mod step;
 pub mod stress_points;
 mod sums;
-mod terms;
+pub mod terms;
 
 pub use formulation::{Conventional, Normalised, StressPoints};
 pub use phase::Sph;

@@ -3,7 +3,7 @@
 
 use super::neighbourhood::{Neighbourhood, gather, gather3, records};
 use super::normalised::NormalisedSums;
-use super::options::{BALSARA, CONDUCTION, NORMALISED, OptionSums, Options, SHAPED};
+use super::terms::{NORMALISED, PairTerms, SHAPED, TermSums};
 use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
@@ -58,16 +58,16 @@ pub struct Viscosity {
     pub beta: f64,
 }
 
-/// The sums over pairs. `OPTIONS` is a set of the constants of [`super::options`].
-pub struct Momentum<'a, S, const OPTIONS: u8> {
+/// The sums over pairs. `TERMS` is a set of the constants of [`super::terms`].
+pub struct Momentum<'a, S, const TERMS: u8> {
     /// The receivers and their neighbours.
     pub around: Neighbourhood<'a, S>,
     /// Stresses of all particles and images.
     pub stresses: &'a [StressRecord],
     /// Artificial viscosity.
     pub viscosity: Viscosity,
-    /// What the options in use need.
-    pub options: Options<'a>,
+    /// What the pair terms in use need.
+    pub terms: PairTerms<'a>,
 }
 
 /// The sums of [`Momentum`].
@@ -95,7 +95,7 @@ impl Forces {
     };
 }
 
-impl<S: PairScale, const OPTIONS: u8> Vectorised for Momentum<'_, S, OPTIONS> {
+impl<S: PairScale, const TERMS: u8> Vectorised for Momentum<'_, S, TERMS> {
     type Output = Forces;
 
     #[inline(always)]
@@ -117,15 +117,15 @@ impl<S: PairScale, const OPTIONS: u8> Vectorised for Momentum<'_, S, OPTIONS> {
             V::splat(2.0 * self.viscosity.beta),
         );
         let c_i = c_i.mul(alpha);
-        let mut options = OptionSums::<V, OPTIONS>::begin(&self.options, &around.receivers);
-        let mut corrected = NormalisedSums::<V, OPTIONS>::begin(&self.options, around);
+        let mut terms = TermSums::<V, TERMS>::begin(&self.terms, &around.receivers);
+        let mut corrected = NormalisedSums::<V, TERMS>::begin(&self.terms, around);
         let mut acceleration = [zero; 3];
         let mut power = zero;
         let mut fastest = zero;
         for pair in around.pairs(&position) {
             let (place, source, now, kernel) = (pair.place, pair.source, &pair.gap, &pair.kernel);
             let state = &self.stresses[place];
-            let option = self.options.record::<OPTIONS>(place);
+            let shown = self.terms.record::<TERMS>(place);
             let (r, square) = (now.r, now.square);
             let along = |a: usize| velocity[a].sub(V::splat(source.velocity[a]));
             let v = [along(0), along(1), along(2)];
@@ -141,28 +141,25 @@ impl<S: PairScale, const OPTIONS: u8> Vectorised for Momentum<'_, S, OPTIONS> {
             let mu = h.mul(approach).mul(inverse.mul(rho_sum));
             // Π = μ (β μ − α c̄)/ρ̄ with c̄ = ½ c_sum and ρ̄ = ½ rho_sum.
             let linear = V::splat(state.sound_speed).mul_add(alpha, c_i);
-            let mut signal = mu.mul(beta).sub(linear);
-            if OPTIONS & BALSARA != 0 {
-                signal = options.limit(signal, option);
-            }
+            let signal = terms.limit(mu.mul(beta).sub(linear), shown);
             let pi = mu.mul(inverse.mul(soft)).mul(signal);
             fastest = fastest.min_where_positive(mu, kernel.inside);
             let s = |c: usize| V::splat(state.stress_over_density2[c]);
             let pull = |a: usize| normal[a].add(s(a)).sub(pi);
             let slide = |a: usize| shear[a].add(s(3 + a));
-            let mut stress = if OPTIONS & NORMALISED == 0 {
+            let mut stress = if TERMS & NORMALISED == 0 {
                 [pull(0), pull(1), pull(2), slide(0), slide(1), slide(2)]
             } else {
                 [zero.sub(pi), zero.sub(pi), zero.sub(pi), zero, zero, zero]
             };
-            if OPTIONS & SHAPED != 0 {
+            if TERMS & SHAPED != 0 {
                 let shape = around.sources.scale.shape(kernel);
-                options.repel(&mut stress, option, shape);
+                terms.repel(&mut stress, shown, shape);
                 let w = around.sources.scale.value(kernel, shape);
-                let other = self.options.normalised::<OPTIONS>(place);
+                let other = self.terms.normalised::<TERMS>(place);
                 corrected.pull(other, now, kernel.slope, w, source.volume);
                 let w = w.mul(V::splat(source.mass));
-                options.follow(&v, w.mul(inverse.mul(soft)));
+                terms.follow(&v, w.mul(inverse.mul(soft)));
             }
             let [xx, yy, zz, xy, xz, yz] = stress;
             let weight = now.inverse.mul(V::splat(source.mass)).mul(kernel.slope);
@@ -171,13 +168,11 @@ impl<S: PairScale, const OPTIONS: u8> Vectorised for Momentum<'_, S, OPTIONS> {
                 xy.mul_add(r[0], yy.mul_add(r[1], yz.mul(r[2]))),
                 xz.mul_add(r[0], yz.mul_add(r[1], zz.mul(r[2]))),
             ];
-            let mut work =
-                traction[2].mul_add(v[2], traction[1].mul_add(v[1], traction[0].mul(v[0])));
-            if OPTIONS & CONDUCTION != 0 {
+            let work = traction[2].mul_add(v[2], traction[1].mul_add(v[1], traction[0].mul(v[0])));
+            let work = terms.conduct(work, shown, || {
                 let signal = zero.min_where_positive(signal, zero.sub(mu));
-                let speed = signal.mul(now.distance).mul(inverse.mul(soft));
-                work = options.flow(option).mul_add(speed, work);
-            }
+                signal.mul(now.distance).mul(inverse.mul(soft))
+            });
             power = work.mul_add(weight, power);
             for a in 0..3 {
                 acceleration[a] = traction[a].mul_add(weight, acceleration[a]);
@@ -187,7 +182,7 @@ impl<S: PairScale, const OPTIONS: u8> Vectorised for Momentum<'_, S, OPTIONS> {
             acceleration: corrected.add_to(acceleration).map(V::store),
             power: zero.sub(power.mul(V::splat(0.5))).store(),
             approach: zero.sub(fastest).store(),
-            correction: options.correction().map(V::store),
+            correction: terms.correction().map(V::store),
         }
     }
 }

@@ -10,8 +10,8 @@
 //! corrected velocity gradient; only the forces need the corrections of neighbours.
 
 use super::neighbourhood::{Neighbourhood, Separation, gather, gather3, records};
-use super::options::{NORMALISED, Options};
 pub use super::records::NormalisedRecord;
+use super::terms::{NORMALISED, PairTerms};
 use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
@@ -232,7 +232,7 @@ pub fn stress_power(pressure: f64, deviatoric: &[f64; 6], l: &[f64; 9], density:
 
 /// Accelerations of eight receivers by corrected gradients:
 /// `1/ρ_i Σ V_j [(P_i + P_j) ∇W_ij − W_ij (P_i γ_i − P_j γ_j)]`.
-pub(super) struct NormalisedSums<V, const OPTIONS: u8> {
+pub(super) struct NormalisedSums<V, const TERMS: u8> {
     stress: [V; 9],
     shift: [V; 3],
     /// `1/ρ_i`.
@@ -240,11 +240,11 @@ pub(super) struct NormalisedSums<V, const OPTIONS: u8> {
     sum: [V; 3],
 }
 
-impl<V: Lanes, const OPTIONS: u8> NormalisedSums<V, OPTIONS> {
+impl<V: Lanes, const TERMS: u8> NormalisedSums<V, TERMS> {
     #[inline(always)]
-    pub(super) fn begin<S: PairScale>(options: &Options, around: &Neighbourhood<S>) -> Self {
+    pub(super) fn begin<S: PairScale>(terms: &PairTerms, around: &Neighbourhood<S>) -> Self {
         let zero = V::splat(0.0);
-        if OPTIONS & NORMALISED == 0 {
+        if TERMS & NORMALISED == 0 {
             return Self {
                 stress: [zero; 9],
                 shift: [zero; 3],
@@ -252,7 +252,7 @@ impl<V: Lanes, const OPTIONS: u8> NormalisedSums<V, OPTIONS> {
                 sum: [zero; 3],
             };
         }
-        let all = records(options.normalised, &around.receivers);
+        let all = records(terms.normalised, &around.receivers);
         let motion = records(around.sources.records, &around.receivers);
         let row = |a: usize| gather3::<V, _>(&all, |record, b| record.stress[3 * a + b]);
         let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = [row(0), row(1), row(2)];
@@ -274,7 +274,7 @@ impl<V: Lanes, const OPTIONS: u8> NormalisedSums<V, OPTIONS> {
         value: V,
         volume: f64,
     ) {
-        if OPTIONS & NORMALISED == 0 {
+        if TERMS & NORMALISED == 0 {
             return;
         }
         let volume = V::splat(volume);
@@ -292,7 +292,7 @@ impl<V: Lanes, const OPTIONS: u8> NormalisedSums<V, OPTIONS> {
     /// With what conventional sums give.
     #[inline(always)]
     pub(super) fn add_to(&self, acceleration: [V; 3]) -> [V; 3] {
-        if OPTIONS & NORMALISED == 0 {
+        if TERMS & NORMALISED == 0 {
             return acceleration;
         }
         let [x, y, z] = acceleration;

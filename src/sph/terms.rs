@@ -1,24 +1,203 @@
-//! What particles show to each other for the pair terms of a case, and the drift of XSPH.
+//! Pair terms of the second sweep, each off unless a case asks for it: one file each, put together
+//! here.
+//!
+//! A set of terms is a constant of the sums' type, so that those of a case without terms hold no trace
+//! of them.
+
+pub mod artificial_stress;
+pub mod balsara;
+mod conduction;
+mod xsph;
 
 use rayon::prelude::*;
 
-use super::normalised::NormalisedRecord;
-use super::options::{
-    ARTIFICIAL_STRESS, BALSARA, CONDUCTION, OptionRecord, Options, XSPH, limiter, repulsion,
-};
+use super::neighbourhood::records;
+use super::records::NormalisedRecord;
 use super::step::Side;
-use crate::domain::Mirrors;
 use crate::loads::Loads;
 use crate::model::{Case, SphOptions};
 use crate::neighbours::Lists;
 use crate::numerics::kernel::Kernel;
+use crate::numerics::lanes::{LANES, Lanes};
 use crate::particles::{GRAIN, ParticleStore, resize};
+
+/// Artificial stress: [`artificial_stress`].
+pub const ARTIFICIAL_STRESS: u8 = 1;
+/// The Balsara switch on artificial viscosity: [`balsara`].
+pub const BALSARA: u8 = 2;
+/// Artificial conduction between approaching particles.
+pub const CONDUCTION: u8 = 4;
+/// XSPH.
+pub const XSPH: u8 = 8;
+/// Stress along corrected gradients: [`super::normalised`].
+pub const NORMALISED: u8 = 16;
+
+/// The terms that need the kernel's value.
+pub(super) const SHAPED: u8 = ARTIFICIAL_STRESS | XSPH | NORMALISED;
+/// The terms for which particles show a [`TermRecord`].
+pub const RECORDED: u8 = ARTIFICIAL_STRESS | BALSARA | CONDUCTION;
+/// The terms of solids and of shocks, which [`with_terms`] puts together.
+pub(super) const SOLIDS: u8 = ARTIFICIAL_STRESS | XSPH;
+pub(super) const SHOCKS: u8 = BALSARA | CONDUCTION;
+
+/// Calls `$work` with a set of terms as a constant: none, or those of solids, of shocks, or all,
+/// whichever has all that are wanted. The others then have neutral data. The normalised form has none
+/// or all.
+macro_rules! with_terms {
+    ($wanted:expr, $name:ident => $work:expr) => {
+        $crate::sph::terms::with_terms!(@ $wanted, $name => $work,
+            { 0 } { SOLIDS } { SHOCKS } { SOLIDS | SHOCKS }
+            { NORMALISED } { NORMALISED | SOLIDS | SHOCKS })
+    };
+    (@ $wanted:expr, $name:ident => $work:expr, $({ $set:expr })+) => {{
+        use $crate::sph::terms::{NORMALISED, SHOCKS, SOLIDS};
+        let wanted: u8 = $wanted;
+        $(if wanted & !($set) == 0 && (wanted ^ ($set)) & NORMALISED == 0 {
+            const $name: u8 = $set;
+            $work
+        } else)+ {
+            unreachable!("the last set has all terms")
+        }
+    }};
+}
+pub(super) use with_terms;
+
+/// What a particle shows to its neighbours for the terms: one cache line.
+#[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C, align(64))]
+pub struct TermRecord {
+    /// `R`, components xx, yy, zz, xy, xz, yz (Pa m⁶/kg²).
+    pub repulsion: [f64; 6],
+    /// Half the factor of the Balsara switch.
+    pub half_limiter: f64,
+    /// Specific internal energy (J/kg).
+    pub specific_energy: f64,
+}
+
+impl TermRecord {
+    /// What changes nothing.
+    pub const NEUTRAL: Self = Self {
+        repulsion: [0.0; 6],
+        half_limiter: 0.5,
+        specific_energy: 0.0,
+    };
+}
+
+/// Coefficients of the terms, and what particles show for them.
+#[derive(Debug, Clone, Copy)]
+pub struct PairTerms<'a> {
+    /// Records of all particles and images; empty without terms that show any.
+    pub records: &'a [TermRecord],
+    /// Stresses with corrections of all particles and images; empty without [`NORMALISED`].
+    pub normalised: &'a [NormalisedRecord],
+    /// `1/w(Δp/h)`, with `w = W h^d/σ_d`.
+    pub inverse_shape: f64,
+    /// Coefficient `α_u` of the conduction.
+    pub conduction: f64,
+    /// Factor ε of XSPH.
+    pub xsph: f64,
+}
+
+impl PairTerms<'_> {
+    /// No terms.
+    pub const NONE: Self = Self {
+        records: &[],
+        normalised: &[],
+        inverse_shape: 0.0,
+        conduction: 0.0,
+        xsph: 0.0,
+    };
+
+    /// What the particle or image at a place shows for a set of terms.
+    #[inline(always)]
+    pub(super) fn record<const TERMS: u8>(&self, place: usize) -> &TermRecord {
+        if TERMS & RECORDED == 0 {
+            &TermRecord::NEUTRAL
+        } else {
+            &self.records[place]
+        }
+    }
+
+    /// The same of [`NORMALISED`].
+    #[inline(always)]
+    pub(super) fn normalised<const TERMS: u8>(&self, place: usize) -> &NormalisedRecord {
+        if TERMS & NORMALISED == 0 {
+            &NormalisedRecord::FREE
+        } else {
+            &self.normalised[place]
+        }
+    }
+}
+
+/// The terms of eight receivers, of which those that are not of the set do nothing.
+pub(super) struct TermSums<V, const TERMS: u8> {
+    artificial_stress: artificial_stress::Lane<V>,
+    balsara: balsara::Lane<V>,
+    conduction: conduction::Lane<V>,
+    xsph: xsph::Lane<V>,
+}
+
+impl<V: Lanes, const TERMS: u8> TermSums<V, TERMS> {
+    #[inline(always)]
+    pub fn begin(terms: &PairTerms, places: &[u32; LANES]) -> Self {
+        let own = if TERMS & RECORDED == 0 {
+            [&TermRecord::NEUTRAL; LANES]
+        } else {
+            records(terms.records, places)
+        };
+        Self {
+            artificial_stress: artificial_stress::Lane::begin(&own, terms.inverse_shape),
+            balsara: balsara::Lane::begin(&own),
+            conduction: conduction::Lane::begin(&own, terms.conduction),
+            xsph: xsph::Lane::begin(terms.xsph),
+        }
+    }
+
+    /// The viscosity's signal speed.
+    #[inline(always)]
+    pub fn limit(&self, signal: V, other: &TermRecord) -> V {
+        if TERMS & BALSARA == 0 {
+            return signal;
+        }
+        self.balsara.limit(signal, other)
+    }
+
+    /// Adds to the stress of pairs of a `shape`.
+    #[inline(always)]
+    pub fn repel(&self, stress: &mut [V; 6], other: &TermRecord, shape: V) {
+        if TERMS & ARTIFICIAL_STRESS != 0 {
+            self.artificial_stress.repel(stress, other, shape);
+        }
+    }
+
+    /// Sums `v_ij` times the `share` `m_j W/(ρ_i + ρ_j)`.
+    #[inline(always)]
+    pub fn follow(&mut self, v: &[V; 3], share: V) {
+        if TERMS & XSPH != 0 {
+            self.xsph.follow(v, share);
+        }
+    }
+
+    /// What conduction lets flow times speed (J/kg), added to `work` by `speed`.
+    #[inline(always)]
+    pub fn conduct(&self, work: V, other: &TermRecord, speed: impl FnOnce() -> V) -> V {
+        if TERMS & CONDUCTION == 0 {
+            return work;
+        }
+        self.conduction.flow(other).mul_add(speed(), work)
+    }
+
+    /// What XSPH adds to the drift (m/s).
+    #[inline(always)]
+    pub fn correction(&self) -> [V; 3] {
+        self.xsph.correction()
+    }
+}
 
 /// The pair terms of a case, and what particles and images show for them.
 pub(super) struct Terms {
-    /// A set of the constants of [`super::options`].
     set: u8,
-    records: Vec<OptionRecord>,
+    records: Vec<TermRecord>,
     inverse_shape: f64,
     sph: SphOptions,
 }
@@ -40,7 +219,7 @@ pub(super) fn bytes_of_records(sph: &SphOptions) -> usize {
     if set_of(sph) == 0 {
         0
     } else {
-        size_of::<OptionRecord>()
+        size_of::<TermRecord>()
     }
 }
 
@@ -57,14 +236,14 @@ impl Terms {
         }
     }
 
-    /// A set of the constants of [`super::options`].
+    /// Which terms there are.
     pub fn set(&self) -> u8 {
         self.set
     }
 
     /// What the sums need; with stresses along corrected gradients, if any.
-    pub fn of_sums<'a>(&'a self, normalised: &'a [NormalisedRecord]) -> Options<'a> {
-        Options {
+    pub fn of_sums<'a>(&'a self, normalised: &'a [NormalisedRecord]) -> PairTerms<'a> {
+        PairTerms {
             records: &self.records,
             normalised,
             inverse_shape: self.inverse_shape,
@@ -74,26 +253,16 @@ impl Terms {
     }
 
     pub fn memory(&self) -> usize {
-        self.records.capacity() * size_of::<OptionRecord>()
+        self.records.capacity() * size_of::<TermRecord>()
     }
 
     /// What this rank's particles show to others, after the first sweep of a step `dt` (s).
     pub fn prepare(&self, particles: &mut ParticleStore, dt: f64) {
-        let owned = particles.owned();
         if self.set & BALSARA != 0 {
-            particles.viscosity_limiter[..owned]
-                .par_iter_mut()
-                .with_min_len(GRAIN)
-                .zip(&particles.velocity_gradient)
-                .zip((&particles.sound_speed, &particles.smoothing_length))
-                .for_each(|((factor, l), (&c, &h))| *factor = limiter(l, c, h));
+            balsara::prepare(particles);
         }
         if self.set & CONDUCTION != 0 {
-            particles.predicted_energy[..owned]
-                .par_iter_mut()
-                .with_min_len(GRAIN)
-                .zip((&particles.specific_energy, &particles.d_specific_energy_dt))
-                .for_each(|(predicted, (e, de))| *predicted = e + 0.5 * dt * de);
+            conduction::prepare(particles, dt);
         }
     }
 
@@ -108,17 +277,14 @@ impl Terms {
         let epsilon = self.sph.artificial_stress;
         resize(&mut self.records, images.len());
         let records = self.records.par_iter_mut().zip(images);
-        records.with_min_len(GRAIN).for_each(|(record, image)| {
-            let (i, code) = (image.base(), image.code());
+        records.with_min_len(GRAIN).for_each(|(record, &image)| {
+            let i = image.base();
             if !side.takes(i >= particles.owned()) {
                 return;
             }
-            *record = OptionRecord::NEUTRAL;
+            *record = TermRecord::NEUTRAL;
             if set & ARTIFICIAL_STRESS != 0 {
-                let stress = &particles.deviatoric_stress[i];
-                let (pressure, density) = (particles.pressure[i], particles.density[i]);
-                let repulsion = repulsion(epsilon, pressure, stress, density);
-                record.repulsion = Mirrors::reflect_symmetric(&repulsion, code);
+                record.repulsion = artificial_stress::shown(particles, image, epsilon);
             }
             if set & BALSARA != 0 {
                 record.half_limiter = 0.5 * particles.viscosity_limiter[i];
@@ -129,32 +295,10 @@ impl Terms {
         });
     }
 
-    /// XSPH: the rest of the drift of a step `dt` (s). The mean velocity of the neighbours is that
-    /// of the last sums, taken with the velocities predicted for the beginning of this step.
-    ///
-    /// Particles that feel contact move with their own velocity: the energy of contact is a
-    /// function of their positions, and its balance holds only where force times velocity is work.
-    /// So do particles that a load drives, along the axes that it prescribes.
+    /// The rest of the drift of a step `dt` (s).
     pub fn drift(&self, particles: &mut ParticleStore, loads: &Loads, dt: f64) {
-        if self.set & XSPH == 0 {
-            return;
+        if self.set & XSPH != 0 {
+            xsph::drift(particles, loads, dt);
         }
-        let (contact, bits) = (&particles.contact_acceleration, &particles.load);
-        (&mut particles.position, &particles.velocity_correction)
-            .into_par_iter()
-            .with_min_len(GRAIN)
-            .enumerate()
-            .for_each(|(i, (x, correction))| {
-                if contact.get(i).is_some_and(|force| *force != [0.0; 3]) {
-                    return;
-                }
-                let mut drift = *correction;
-                if let Some(&bits) = bits.get(i) {
-                    loads.clear_prescribed(bits, &mut drift);
-                }
-                for a in 0..3 {
-                    x[a] += dt * drift[a];
-                }
-            });
     }
 }

@@ -1,20 +1,18 @@
 //! The conventional formulation: plain sums over pairs.
 
-use rayon::prelude::*;
-
 use super::Formulation;
+use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
-use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Lists};
-use crate::numerics::dispatch::{Vectorised, instructions};
+use crate::neighbours::{Among, Cluster, Lists};
+use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
 use crate::particles::{ParticleStore, material_points};
 use crate::sph::gradient::VelocityGradient;
-use crate::sph::material_update::MaterialUpdate;
-use crate::sph::neighbourhood::Sources;
+use crate::sph::neighbourhood::Neighbourhood;
 use crate::sph::signal::{SignalSpeed, Signals};
 use crate::sph::step::{Side, Step};
-use crate::sph::sums::{Sums, sources, with_scale};
+use crate::sph::sums::Sums;
 
 /// The conventional formulation.
 #[derive(Debug)]
@@ -28,13 +26,7 @@ impl Formulation for Conventional {
         lists: &Lists,
         step: &Step,
     ) {
-        let set = instructions();
-        let scale = sums.scale;
-        let update = &MaterialUpdate::new(material_points!(particles), sums, lists, step.dt);
-        let chunks = lists.chunks().par_iter().with_max_len(CHUNKS_AT_ONCE);
-        with_scale!(scale, scale => chunks.for_each(|chunk| {
-            set.run(GradientChunk { chunk, motion: sources(lists, scale), update });
-        }));
+        strain(self, sums, material_points!(particles), lists, step.dt);
     }
 
     fn forces(
@@ -58,30 +50,19 @@ impl SignalSpeed for Conventional {
     }
 }
 
-/// The first sweep over one task's clusters.
-struct GradientChunk<'a, S> {
-    chunk: &'a Chunk,
-    motion: Sources<'a, S>,
-    update: &'a MaterialUpdate<'a>,
-}
-
-impl<S: PairScale> Vectorised for GradientChunk<'_, S> {
-    type Output = ();
-
+impl Gradient for Conventional {
     #[inline(always)]
-    fn run<V: Lanes>(self) {
-        for (cluster, neighbours, among) in self.chunk.iter() {
-            if !among.moving {
-                // No relative velocity: the sum would be this, to the bit.
-                let none = [F64x8([0.0; LANES]); 9];
-                self.update.apply(cluster, &none, neighbours.len());
-                continue;
-            }
-            let gradient = VelocityGradient {
-                around: self.motion.around(cluster.receivers, neighbours),
-            };
-            self.update
-                .apply(cluster, &gradient.run::<V>(), neighbours.len());
+    fn of<V: Lanes, S: PairScale>(
+        &self,
+        _: &Cluster,
+        among: Among,
+        around: Neighbourhood<S>,
+    ) -> [F64x8; 9] {
+        if among.moving {
+            VelocityGradient { around }.run::<V>()
+        } else {
+            // No relative velocity: the sum would be this, to the bit.
+            [F64x8([0.0; LANES]); 9]
         }
     }
 }

@@ -11,48 +11,11 @@ use crate::particles::{Image, ParticleStore, Scatter};
 use crate::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
 use crate::sph::neighbourhood::Sources;
 use crate::sph::normalised::{NormalisedRecord, stress_power};
-use crate::sph::options::{ARTIFICIAL_STRESS, BALSARA, CONDUCTION, NORMALISED, Options, XSPH};
 use crate::sph::step::Side;
 use crate::sph::sums::{FromMirrors, Sums, sources, with_scale};
+use crate::sph::terms::{NORMALISED, PairTerms, XSPH, with_terms};
 
-/// Calls `$work` with a set of options as a constant: no options, or those of solids (artificial
-/// stress and XSPH), of shocks (the Balsara switch and conduction), or all, whichever has all that
-/// are wanted. The others then have neutral data. The normalised form has none or all.
-macro_rules! with_options {
-    ($wanted:expr, $name:ident => $work:expr) => {
-        match $wanted {
-            0 => {
-                const $name: u8 = 0;
-                $work
-            }
-            set if set & !SOLIDS == 0 => {
-                const $name: u8 = SOLIDS;
-                $work
-            }
-            set if set & !SHOCKS == 0 => {
-                const $name: u8 = SHOCKS;
-                $work
-            }
-            set if set & NORMALISED == 0 => {
-                const $name: u8 = SOLIDS | SHOCKS;
-                $work
-            }
-            NORMALISED => {
-                const $name: u8 = NORMALISED;
-                $work
-            }
-            _ => {
-                const $name: u8 = NORMALISED | SOLIDS | SHOCKS;
-                $work
-            }
-        }
-    };
-}
-
-const SOLIDS: u8 = ARTIFICIAL_STRESS | XSPH;
-const SHOCKS: u8 = BALSARA | CONDUCTION;
-
-/// The sweep over the clusters of a side with a set of options, after stresses and terms have been
+/// The sweep over the clusters of a side with a set of pair terms, after stresses and terms have been
 /// shown; `normalised` holds the stresses along corrected gradients, if any.
 pub(super) fn accelerate(
     sums: &mut Sums,
@@ -78,7 +41,7 @@ pub(super) fn accelerate(
         stresses,
         mirrored: lists.sequence().mirrored(),
         viscosity: *viscosity,
-        options: terms.of_sums(normalised),
+        terms: terms.of_sums(normalised),
     };
     with_scale!(*scale, scale => chunks
     .par_iter()
@@ -88,7 +51,7 @@ pub(super) fn accelerate(
         if side == Side::Inner {
             from_mirrors.forces.clear();
         }
-        with_options!(set, OPTIONS => instructions.run(MomentumChunk::<_, OPTIONS> {
+        with_terms!(set, TERMS => instructions.run(MomentumChunk::<_, TERMS> {
             chunk, side, motion: sources(lists, scale), sources: shown, target, from_mirrors,
         }));
     }));
@@ -100,7 +63,7 @@ struct ForceSources<'a> {
     stresses: &'a [StressRecord],
     mirrored: &'a [u8],
     viscosity: Viscosity,
-    options: Options<'a>,
+    terms: PairTerms<'a>,
 }
 
 /// Where the second sweep writes.
@@ -134,7 +97,7 @@ impl<'a> ForceTarget<'a> {
     }
 
     #[inline(always)]
-    fn store<const OPTIONS: u8>(&self, cluster: &Cluster, forces: &Forces) {
+    fn store<const TERMS: u8>(&self, cluster: &Cluster, forces: &Forces) {
         for k in 0..cluster.lanes {
             let i = self.images[cluster.receivers[k] as usize].base();
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
@@ -142,10 +105,10 @@ impl<'a> ForceTarget<'a> {
                 *self.acceleration.slot(i) = std::array::from_fn(|a| forces.acceleration[a].0[k]);
                 *self.power.slot(i) = forces.power.0[k];
                 *self.approach.slot(i) = forces.approach.0[k];
-                if OPTIONS & NORMALISED != 0 {
+                if TERMS & NORMALISED != 0 {
                     *self.power.slot(i) += self.stress_power.of(i);
                 }
-                if OPTIONS & XSPH != 0
+                if TERMS & XSPH != 0
                     && let Some(correction) = &self.correction
                 {
                     *correction.slot(i) = std::array::from_fn(|a| forces.correction[a].0[k]);
@@ -191,8 +154,8 @@ impl<'a> StressPower<'a> {
     }
 }
 
-/// The second sweep over one task's clusters, with a set of options.
-struct MomentumChunk<'a, S, const OPTIONS: u8> {
+/// The second sweep over one task's clusters, with a set of pair terms.
+struct MomentumChunk<'a, S, const TERMS: u8> {
     chunk: &'a Chunk,
     side: Side,
     motion: Sources<'a, S>,
@@ -201,7 +164,7 @@ struct MomentumChunk<'a, S, const OPTIONS: u8> {
     from_mirrors: &'a mut FromMirrors,
 }
 
-impl<S: PairScale, const OPTIONS: u8> Vectorised for MomentumChunk<'_, S, OPTIONS> {
+impl<S: PairScale, const TERMS: u8> Vectorised for MomentumChunk<'_, S, TERMS> {
     type Output = ();
 
     #[inline(always)]
@@ -212,10 +175,10 @@ impl<S: PairScale, const OPTIONS: u8> Vectorised for MomentumChunk<'_, S, OPTION
         for (cluster, neighbours, among) in all.filter(|(_, _, among)| side.takes(among.halo)) {
             let free = |&j: &u32| self.sources.stresses[j as usize].is_free();
             if !among.moving && neighbours.iter().all(free) {
-                target.store::<OPTIONS>(cluster, &Forces::NONE);
+                target.store::<TERMS>(cluster, &Forces::NONE);
                 continue;
             }
-            target.store::<OPTIONS>(
+            target.store::<TERMS>(
                 cluster,
                 &Self::sum::<V>(self.motion, &self.sources, cluster, neighbours),
             );
@@ -239,7 +202,7 @@ impl<S: PairScale, const OPTIONS: u8> Vectorised for MomentumChunk<'_, S, OPTION
     }
 }
 
-impl<S: PairScale, const OPTIONS: u8> MomentumChunk<'_, S, OPTIONS> {
+impl<S: PairScale, const TERMS: u8> MomentumChunk<'_, S, TERMS> {
     #[inline(always)]
     fn sum<V: Lanes>(
         motion: Sources<S>,
@@ -247,11 +210,11 @@ impl<S: PairScale, const OPTIONS: u8> MomentumChunk<'_, S, OPTIONS> {
         cluster: &Cluster,
         neighbours: &[u32],
     ) -> Forces {
-        let sums = Momentum::<S, OPTIONS> {
+        let sums = Momentum::<S, TERMS> {
             around: motion.around(cluster.receivers, neighbours),
             stresses: sources.stresses,
             viscosity: sources.viscosity,
-            options: sources.options,
+            terms: sources.terms,
         };
         sums.run::<V>()
     }

@@ -4,20 +4,20 @@
 use rayon::prelude::*;
 
 use super::Formulation;
+use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
 use crate::domain::Mirrors;
-use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Lists};
-use crate::numerics::dispatch::{Vectorised, instructions};
+use crate::neighbours::{Among, Cluster, Lists};
+use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
-use crate::numerics::lanes::Lanes;
+use crate::numerics::lanes::{F64x8, Lanes};
 use crate::particles::{GRAIN, Image, ParticleStore, Scatter, material_points, resize};
-use crate::sph::material_update::MaterialUpdate;
-use crate::sph::neighbourhood::Sources;
-use crate::sph::normalised::{Correction, NormalisedGradient, NormalisedRecord};
-use crate::sph::options::NORMALISED;
+use crate::sph::neighbourhood::Neighbourhood;
+use crate::sph::normalised::{NormalisedGradient, NormalisedRecord};
 use crate::sph::signal::{SignalSpeed, Signals};
 use crate::sph::step::{Side, Step};
-use crate::sph::sums::{Sums, sources, with_scale};
+use crate::sph::sums::Sums;
+use crate::sph::terms::NORMALISED;
 
 /// How much corrections enlarge gradients at surfaces of lattices, which steps need not heed.
 const SURFACE_CORRECTION: f64 = 2.0;
@@ -36,19 +36,14 @@ impl Formulation for Normalised {
         lists: &Lists,
         step: &Step,
     ) {
-        let set = instructions();
-        let (scale, dimension, images) = (sums.scale, sums.dimension, lists.images());
-        let corrections = &CorrectionTarget {
+        let gradient = CorrectedGradient {
+            dimension: sums.dimension,
+            images: lists.images(),
             matrix: Scatter::new(&mut particles.gradient_correction),
             shift: Scatter::new(&mut particles.gradient_shift),
             norm: Scatter::new(&mut particles.correction_norm),
         };
-        let update = &MaterialUpdate::new(material_points!(particles), sums, lists, step.dt);
-        let chunks = lists.chunks().par_iter().with_max_len(CHUNKS_AT_ONCE);
-        with_scale!(scale, scale => chunks.for_each(|chunk| {
-            let motion = sources(lists, scale);
-            set.run(NormalisedChunk { chunk, motion, dimension, images, update, corrections });
-        }));
+        strain(&gradient, sums, material_points!(particles), lists, step.dt);
         let norms = particles.correction_norm.par_iter().with_min_len(GRAIN);
         let uncorrected = norms.filter(|&&norm| norm == 0.0).count();
         sums.uncorrected = i64::try_from(uncorrected).unwrap_or(i64::MAX);
@@ -89,54 +84,39 @@ impl SignalSpeed for Normalised {
     }
 }
 
-/// Where the first sweep writes corrections.
-struct CorrectionTarget<'a> {
+/// Corrected gradients, and where corrections go. Gradients of particles that move alike are zero too,
+/// but their corrections are of use.
+struct CorrectedGradient<'a> {
+    dimension: usize,
+    images: &'a [Image],
     matrix: Scatter<'a, [f64; 9]>,
     shift: Scatter<'a, [f64; 3]>,
     norm: Scatter<'a, f64>,
 }
 
-impl CorrectionTarget<'_> {
+impl Gradient for CorrectedGradient<'_> {
     #[inline(always)]
-    fn store(&self, i: usize, correction: &Correction) {
-        // SAFETY: particle `i` belongs to one cluster alone, and this thread has the cluster.
-        unsafe {
-            *self.matrix.slot(i) = correction.matrix;
-            *self.shift.slot(i) = correction.shift;
-            *self.norm.slot(i) = correction.norm;
-        }
-    }
-}
-
-/// The first sweep over one task's clusters, with corrected gradients. Those of particles that move
-/// alike are zero too, but their corrections are of use.
-struct NormalisedChunk<'a, S> {
-    chunk: &'a Chunk,
-    motion: Sources<'a, S>,
-    dimension: usize,
-    images: &'a [Image],
-    update: &'a MaterialUpdate<'a>,
-    corrections: &'a CorrectionTarget<'a>,
-}
-
-impl<S: PairScale> Vectorised for NormalisedChunk<'_, S> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<V: Lanes>(self) {
-        for (cluster, neighbours, _) in self.chunk.iter() {
-            let sums = NormalisedGradient {
-                around: self.motion.around(cluster.receivers, neighbours),
-                dimension: self.dimension,
-            };
-            let corrected = sums.run::<V>();
-            for k in 0..cluster.lanes {
-                let i = self.images[cluster.receivers[k] as usize].base();
-                self.corrections.store(i, &corrected.corrections[k]);
+    fn of<V: Lanes, S: PairScale>(
+        &self,
+        cluster: &Cluster,
+        _: Among,
+        around: Neighbourhood<S>,
+    ) -> [F64x8; 9] {
+        let sums = NormalisedGradient {
+            around,
+            dimension: self.dimension,
+        };
+        let corrected = sums.run::<V>();
+        for (k, correction) in corrected.corrections[..cluster.lanes].iter().enumerate() {
+            let i = self.images[cluster.receivers[k] as usize].base();
+            // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
+            unsafe {
+                *self.matrix.slot(i) = correction.matrix;
+                *self.shift.slot(i) = correction.shift;
+                *self.norm.slot(i) = correction.norm;
             }
-            self.update
-                .apply(cluster, &corrected.gradient, neighbours.len());
         }
+        corrected.gradient
     }
 }
 

@@ -1,0 +1,64 @@
+//! The first sweep of the formulations whose stress stands at the particles: velocity gradients, and
+//! the material's answer to them.
+
+use rayon::prelude::*;
+
+use crate::neighbours::{Among, CHUNKS_AT_ONCE, Chunk, Cluster, Lists};
+use crate::numerics::dispatch::{Vectorised, instructions};
+use crate::numerics::kernel::PairScale;
+use crate::numerics::lanes::{F64x8, Lanes};
+use crate::particles::MaterialPoints;
+use crate::sph::material_update::MaterialUpdate;
+use crate::sph::neighbourhood::{Neighbourhood, Sources};
+use crate::sph::sums::{Sums, sources, with_scale};
+
+/// How a formulation makes velocity gradients.
+pub(super) trait Gradient: Sync {
+    /// Velocity gradients (1/s, row-major) of the receivers of a cluster, `around` which its neighbours
+    /// stand.
+    fn of<V: Lanes, S: PairScale>(
+        &self,
+        cluster: &Cluster,
+        among: Among,
+        around: Neighbourhood<S>,
+    ) -> [F64x8; 9];
+}
+
+/// The sweep over all clusters, after a step `dt` (s).
+pub(super) fn strain<G: Gradient>(
+    gradient: &G,
+    sums: &mut Sums,
+    points: MaterialPoints,
+    lists: &Lists,
+    dt: f64,
+) {
+    let instructions = instructions();
+    let scale = sums.scale;
+    let update = &MaterialUpdate::new(points, sums, lists, dt);
+    let chunks = lists.chunks().par_iter().with_max_len(CHUNKS_AT_ONCE);
+    with_scale!(scale, scale => chunks.for_each(|chunk| {
+        let motion = sources(lists, scale);
+        instructions.run(GradientChunk { chunk, motion, gradient, update });
+    }));
+}
+
+/// The sweep over one task's clusters.
+struct GradientChunk<'a, S, G> {
+    chunk: &'a Chunk,
+    motion: Sources<'a, S>,
+    gradient: &'a G,
+    update: &'a MaterialUpdate<'a>,
+}
+
+impl<S: PairScale, G: Gradient> Vectorised for GradientChunk<'_, S, G> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) {
+        for (cluster, neighbours, among) in self.chunk.iter() {
+            let around = self.motion.around(cluster.receivers, neighbours);
+            let gradient = self.gradient.of::<V, S>(cluster, among, around);
+            self.update.apply(cluster, &gradient, neighbours.len());
+        }
+    }
+}
