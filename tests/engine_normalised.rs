@@ -189,7 +189,7 @@ impl World {
         let chunks = self.found.clusters.chunks();
         for (cluster, list, _) in chunks.iter().flat_map(Chunk::iter) {
             let sums = |set: whipple::numerics::dispatch::Instructions| {
-                set.run(Momentum::<S, NORMALISED> {
+                set.run(Momentum::<S, StressRecord, NORMALISED> {
                     around: Sources {
                         records: &self.found.motion,
                         lengths: self.found.sequence.smoothing_lengths(),

@@ -79,7 +79,7 @@ impl Records {
         neighbours: &[u32],
         scale: S,
     ) -> Forces {
-        set.run(Momentum::<S, TERMS> {
+        set.run(Momentum::<S, StressRecord, TERMS> {
             around: Sources {
                 records: &self.motion,
                 lengths: &self.lengths,

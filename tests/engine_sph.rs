@@ -172,7 +172,7 @@ fn momentum<S: PairScale>(
     neighbours: &[u32],
     scale: S,
 ) -> Forces {
-    set.run(Momentum::<S, 0> {
+    set.run(Momentum::<S, StressRecord, 0> {
         around: Sources {
             records: &records.motion,
             lengths: &records.lengths,

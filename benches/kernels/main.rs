@@ -74,7 +74,7 @@ fn momentum(criterion: &mut Criterion) {
             bencher.iter(|| {
                 scene.sweep(|receivers, neighbours| {
                     black_box(
-                        set.run(Momentum::<_, 0> {
+                        set.run(Momentum::<_, StressRecord, 0> {
                             around: Sources {
                                 records: &scene.motion,
                                 lengths: scene.sequence.smoothing_lengths(),

@@ -23,6 +23,8 @@ pub enum SphForm {
     /// By the gradient of the kernel.
     #[default]
     Conventional,
+    /// By gradients that a smooth function of the neighbours' moments corrects.
+    Corrected,
     /// By the corrected gradient of the normalised kernel.
     Normalised,
     /// By linear fits at stress points between the particles, which carry mass and velocity alone.

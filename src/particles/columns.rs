@@ -141,5 +141,7 @@ bitflags! {
         const FREEZE = 1 << 11;
         /// Stress points, which carry the stress.
         const STRESS_POINTS = 1 << 12;
+        /// The corrected form of the sums.
+        const CORRECTED = 1 << 13;
     }
 }

@@ -337,6 +337,8 @@ particle_fields! {
     gradient_correction: Tensor,          "",       Scratch,  STRESS,         OnDemand, NORMALISED;
     /// Gradient of the kernel sum over the kernel sum; it points into the body.
     gradient_shift: Vector,               "1/m",    Scratch,  STRESS,         OnDemand, NORMALISED;
+    /// Stress of the corrected form between its corrections, `P = A σ B`, row-major.
+    pair_stress: Tensor,                  "Pa",     Scratch,  STRESS,         OnDemand, CORRECTED;
     /// How much the correction enlarges gradients; 0 where it is ill-conditioned and left out.
     correction_norm: Scalar,              "",       Scratch,  -,              OnDemand, NORMALISED;
     /// Velocity gradient at a stress point at the predicted velocities.

@@ -35,7 +35,7 @@ pub fn of_rank(case: &Case, comm: &Comm, ranks: usize) -> f64 {
     // As many stress points for each particle as there are axes, less some at surfaces.
     let points = match case.sph.form {
         SphForm::StressPoints => (1 + case.dimension) as f64,
-        SphForm::Conventional | SphForm::Normalised => 1.0,
+        SphForm::Conventional | SphForm::Corrected | SphForm::Normalised => 1.0,
     };
     let surfaces = case.loads.surfaces.iter().map(RigidSurface::memory);
     let process = PROCESS + surfaces.sum::<usize>() as f64;

@@ -1,12 +1,15 @@
 //! Formulations of the SPH sums: one file each.
 
 mod conventional;
+mod corrected;
 mod gradient_sweep;
 mod momentum_sweep;
 mod normalised;
 mod stress_points;
+mod stresses;
 
 pub use conventional::Conventional;
+pub use corrected::Corrected;
 pub use normalised::Normalised;
 pub use stress_points::StressPoints;
 
@@ -29,8 +32,9 @@ pub(super) trait Formulation: SignalSpeed {
     /// The drift in a step `dt` (s) that velocities and `gravity` (m/s²) do not tell.
     fn drift(&self, _particles: &mut ParticleStore, _dt: f64, _gravity: &[f64; 3]) {}
 
+    /// Memory for so many images that is free until [`Self::rates`], in words.
+    fn scratch(&mut self, images: usize) -> &mut [u64];
+
     /// Bytes allocated.
-    fn memory(&self) -> usize {
-        0
-    }
+    fn memory(&self) -> usize;
 }

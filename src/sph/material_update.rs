@@ -4,8 +4,7 @@ use super::sums::Sums;
 use crate::material::{LANES, Material, PointBatch};
 use crate::neighbours::{Cluster, Lists};
 use crate::numerics::lanes::F64x8;
-use crate::particles::{Image, MaterialPoints, Scatter};
-use crate::sph::momentum::StressRecord;
+use crate::particles::{Image, MaterialPoints};
 
 /// Work for a particle apart from its neighbours, in neighbours of the pair sums: sort, list,
 /// material, integration and votes against both sweeps, as timed by the bench.
@@ -22,13 +21,27 @@ pub(super) struct MaterialUpdate<'a> {
     dt: f64,
     /// Specific energies are those after the first half kick.
     points: MaterialPoints<'a>,
-    stresses: Scatter<'a, StressRecord>,
+}
+
+/// What a formulation shows of eight particles after their update.
+pub(super) trait Show {
+    /// Shows lane `k`, which is particle `i` and stands at `place` among the images.
+    ///
+    /// # Safety
+    /// No other thread may read or write what belongs to this particle and place.
+    unsafe fn show(&self, after: &PointBatch, k: usize, i: usize, place: usize);
+}
+
+/// Nothing is shown.
+impl Show for () {
+    #[inline(always)]
+    unsafe fn show(&self, _: &PointBatch, _: usize, _: usize, _: usize) {}
 }
 
 impl<'a> MaterialUpdate<'a> {
     pub(super) fn new(
         points: MaterialPoints<'a>,
-        sums: &'a mut Sums,
+        sums: &'a Sums,
         lists: &'a Lists,
         dt: f64,
     ) -> Self {
@@ -39,14 +52,19 @@ impl<'a> MaterialUpdate<'a> {
             rigid: &lists.groups.rigid,
             dt,
             points,
-            stresses: Scatter::new(&mut sums.stresses),
         }
     }
 
     /// Advances density, stress and strain of a cluster whose velocity gradient at the end of
     /// the step is `gradient`; `neighbours` is the length of its list.
     #[inline(always)]
-    pub(super) fn apply(&self, cluster: &Cluster, gradient: &[F64x8; 9], neighbours: usize) {
+    pub(super) fn apply(
+        &self,
+        cluster: &Cluster,
+        gradient: &[F64x8; 9],
+        neighbours: usize,
+        show: &impl Show,
+    ) {
         if self.rigid[cluster.group] {
             self.store_free(cluster, 0);
             return;
@@ -59,7 +77,7 @@ impl<'a> MaterialUpdate<'a> {
                 before.velocity_gradient[c][k] = mean;
             }
         }
-        self.advance(cluster, &base, before, gradient, neighbours);
+        self.advance(cluster, &base, before, gradient, neighbours, show);
     }
 
     /// The same of a cluster of stress points, whose velocity gradient in the middle of the step is
@@ -77,7 +95,7 @@ impl<'a> MaterialUpdate<'a> {
         for c in 0..9 {
             before.velocity_gradient[c] = mean[c].0;
         }
-        self.advance(cluster, &base, before, gradient, neighbours);
+        self.advance(cluster, &base, before, gradient, neighbours, &());
     }
 
     /// Adds to the specific energy of particle `i` (J/kg).
@@ -115,6 +133,7 @@ impl<'a> MaterialUpdate<'a> {
         mut before: PointBatch,
         gradient: &[F64x8; 9],
         neighbours: usize,
+        show: &impl Show,
     ) {
         let half = 0.5 * self.dt;
         let [xx, _, _, _, yy, _, _, _, zz] = &before.velocity_gradient;
@@ -139,15 +158,8 @@ impl<'a> MaterialUpdate<'a> {
                 if material(lane) == own {
                     done |= 1 << lane;
                     self.store(base[lane], lane, &after, gradient, work);
-                    let s = |c: usize| after.deviatoric_stress[c][lane];
-                    let record = StressRecord::new(
-                        after.pressure[lane],
-                        &[s(0), s(1), s(2), s(3), s(4), s(5)],
-                        after.density[lane],
-                        after.sound_speed[lane],
-                    );
                     // SAFETY: the place belongs to this cluster alone, as its particle does.
-                    unsafe { *self.stresses.slot(places[lane] as usize) = record };
+                    unsafe { show.show(&after, lane, base[lane], places[lane] as usize) };
                 }
             }
         }

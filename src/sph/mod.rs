@@ -5,6 +5,7 @@
 //! eight receivers stand in the lanes of a vector, so no sum ever crosses lanes and a lane
 //! outside the support adds an exact zero.
 
+pub mod corrected;
 mod formulation;
 pub mod gradient;
 pub mod linear_fit;
@@ -23,7 +24,7 @@ pub mod stress_points;
 mod sums;
 pub mod terms;
 
-pub use formulation::{Conventional, Normalised, StressPoints};
+pub use formulation::{Conventional, Corrected, Normalised, StressPoints};
 pub use phase::Sph;
 pub(crate) use phase::with_formulation;
 pub use signal::{SignalSpeed, Signals};

@@ -1,9 +1,9 @@
 //! Conservative momentum equation with its compatible energy equation and Monaghan–Gingold
 //! viscosity (physics page, section 2).
 
-use super::neighbourhood::{Neighbourhood, gather, gather3, records};
+use super::neighbourhood::{Neighbourhood, Separation, gather, gather3, records};
 use super::normalised::NormalisedSums;
-use super::terms::{NORMALISED, PairTerms, SHAPED, TermSums};
+use super::terms::{NORMALISED, PairTerms, SHAPED, TermRecord, TermSums};
 use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
@@ -21,13 +21,6 @@ pub struct StressRecord {
 }
 
 impl StressRecord {
-    /// Whether there is no stress at all.
-    #[inline(always)]
-    #[must_use]
-    pub fn is_free(&self) -> bool {
-        self.stress_over_density2 == [0.0; 6]
-    }
-
     /// From pressure (Pa), deviatoric stress (Pa), density (kg/m³) and sound speed (m/s).
     #[inline(always)]
     #[must_use]
@@ -58,12 +51,105 @@ pub struct Viscosity {
     pub beta: f64,
 }
 
+/// What particles show of their stress, and how pairs of it sum up.
+pub trait PairStress: bytemuck::Pod + Send + Sync {
+    /// Whether the power of stresses on their own particles is no sum over pairs.
+    const CORRECTED: bool;
+
+    /// Whether there is no stress at all.
+    fn is_free(&self) -> bool;
+
+    /// The sums of eight receivers.
+    fn sum<V: Lanes, S: PairScale, const TERMS: u8>(sums: &Momentum<S, Self, TERMS>) -> Forces;
+}
+
+/// Artificial viscosity of eight receivers.
+pub(super) struct Viscous<V> {
+    /// Density of the receivers (kg/m³).
+    pub rho: V,
+    /// `α c_i` (m/s).
+    signal: V,
+    alpha: V,
+    twice_beta: V,
+}
+
+/// Artificial viscosity of pairs.
+pub(super) struct ViscousPair<V> {
+    /// `min(v·r, 0)` (m²/s).
+    pub approach: V,
+    /// `μ` (m/s).
+    pub mu: V,
+    /// `Π` (m⁵/(kg s²)).
+    pub pi: V,
+    /// `1/(ρ_i + ρ_j)`.
+    pub inverse_density: V,
+    /// `2 β μ − α (c_i + c_j)`, limited (m/s).
+    signal: V,
+}
+
+impl<V: Lanes> Viscous<V> {
+    /// Of receivers of these densities (kg/m³) and sound speeds (m/s).
+    #[inline(always)]
+    pub fn begin(viscosity: Viscosity, rho: V, sound_speed: V) -> Self {
+        let alpha = V::splat(viscosity.alpha);
+        Self {
+            rho,
+            signal: sound_speed.mul(alpha),
+            alpha,
+            twice_beta: V::splat(2.0 * viscosity.beta),
+        }
+    }
+
+    /// Of the receivers with a neighbour of this density and sound speed at the relative velocity `v`.
+    #[inline(always)]
+    pub fn pair<const TERMS: u8>(
+        &self,
+        terms: &TermSums<V, TERMS>,
+        (separation, h): (&Separation<V>, V),
+        v: &[V; 3],
+        (density, sound_speed): (f64, f64),
+        shown: &TermRecord,
+    ) -> ViscousPair<V> {
+        let r = &separation.r;
+        let soft = h.mul(h).mul(V::splat(0.01)).add(separation.square);
+        let rho_sum = self.rho.add(V::splat(density));
+        // One division serves 1/(r² + 0.01 h²) and 1/(ρ_i + ρ_j).
+        let inverse = V::splat(1.0).div(soft.mul(rho_sum));
+        // μ = h v·r/(r² + 0.01 h²) for approaching pairs.
+        let approach = r[2]
+            .mul_add(v[2], r[1].mul_add(v[1], r[0].mul(v[0])))
+            .min(V::splat(0.0));
+        let mu = h.mul(approach).mul(inverse.mul(rho_sum));
+        // Π = μ (β μ − α c̄)/ρ̄ with c̄ = ½ c_sum and ρ̄ = ½ rho_sum.
+        let linear = V::splat(sound_speed).mul_add(self.alpha, self.signal);
+        let signal = terms.limit(mu.mul(self.twice_beta).sub(linear), shown);
+        let inverse_density = inverse.mul(soft);
+        ViscousPair {
+            approach,
+            mu,
+            pi: mu.mul(inverse_density).mul(signal),
+            inverse_density,
+            signal,
+        }
+    }
+}
+
+impl<V: Lanes> ViscousPair<V> {
+    /// What conduction multiplies the difference of energies with.
+    #[inline(always)]
+    pub fn heat_speed(&self, separation: &Separation<V>) -> V {
+        let zero = V::splat(0.0);
+        let signal = zero.min_where_positive(self.signal, zero.sub(self.mu));
+        signal.mul(separation.distance).mul(self.inverse_density)
+    }
+}
+
 /// The sums over pairs. `TERMS` is a set of the constants of [`super::terms`].
-pub struct Momentum<'a, S, const TERMS: u8> {
+pub struct Momentum<'a, S, R, const TERMS: u8> {
     /// The receivers and their neighbours.
     pub around: Neighbourhood<'a, S>,
     /// Stresses of all particles and images.
-    pub stresses: &'a [StressRecord],
+    pub stresses: &'a [R],
     /// Artificial viscosity.
     pub viscosity: Viscosity,
     /// What the pair terms in use need.
@@ -95,55 +181,54 @@ impl Forces {
     };
 }
 
-impl<S: PairScale, const TERMS: u8> Vectorised for Momentum<'_, S, TERMS> {
+impl<S: PairScale, R: PairStress, const TERMS: u8> Vectorised for Momentum<'_, S, R, TERMS> {
     type Output = Forces;
 
     #[inline(always)]
     fn run<V: Lanes>(self) -> Forces {
-        let around = &self.around;
+        R::sum::<V, S, TERMS>(&self)
+    }
+}
+
+impl PairStress for StressRecord {
+    const CORRECTED: bool = false;
+
+    #[inline(always)]
+    fn is_free(&self) -> bool {
+        self.stress_over_density2 == [0.0; 6]
+    }
+
+    #[inline(always)]
+    fn sum<V: Lanes, S: PairScale, const TERMS: u8>(sums: &Momentum<S, Self, TERMS>) -> Forces {
+        let around = &sums.around;
         // A particle whose position is no number.
         if around.neighbours.is_empty() {
             return Forces::NONE;
         }
         let (position, velocity) = around.motion::<V>();
-        let stresses = records(self.stresses, &around.receivers);
+        let stresses = records(sums.stresses, &around.receivers);
         let normal = gather3::<V, _>(&stresses, |record, a| record.stress_over_density2[a]);
         let shear = gather3::<V, _>(&stresses, |record, a| record.stress_over_density2[3 + a]);
         let rho_i = gather::<V, _>(&stresses, |record| record.density);
         let c_i = gather::<V, _>(&stresses, |record| record.sound_speed);
         let zero = V::splat(0.0);
-        let (alpha, beta) = (
-            V::splat(self.viscosity.alpha),
-            V::splat(2.0 * self.viscosity.beta),
-        );
-        let c_i = c_i.mul(alpha);
-        let mut terms = TermSums::<V, TERMS>::begin(&self.terms, &around.receivers);
-        let mut corrected = NormalisedSums::<V, TERMS>::begin(&self.terms, around);
+        let viscous = Viscous::begin(sums.viscosity, rho_i, c_i);
+        let mut terms = TermSums::<V, TERMS>::begin(&sums.terms, &around.receivers);
+        let mut corrected = NormalisedSums::<V, TERMS>::begin(&sums.terms, around);
         let mut acceleration = [zero; 3];
         let mut power = zero;
         let mut fastest = zero;
         for pair in around.pairs(&position) {
             let (place, source, now, kernel) = (pair.place, pair.source, &pair.gap, &pair.kernel);
-            let state = &self.stresses[place];
-            let shown = self.terms.record::<TERMS>(place);
-            let (r, square) = (now.r, now.square);
+            let state = &sums.stresses[place];
+            let shown = sums.terms.record::<TERMS>(place);
+            let r = now.r;
             let along = |a: usize| velocity[a].sub(V::splat(source.velocity[a]));
             let v = [along(0), along(1), along(2)];
-            let h = kernel.h;
-            let soft = h.mul(h).mul(V::splat(0.01)).add(square);
-            let rho_sum = rho_i.add(V::splat(state.density));
-            // One division serves 1/(r² + 0.01 h²) and 1/(ρ_i + ρ_j).
-            let inverse = V::splat(1.0).div(soft.mul(rho_sum));
-            // μ = h v·r/(r² + 0.01 h²) for approaching pairs.
-            let approach = r[2]
-                .mul_add(v[2], r[1].mul_add(v[1], r[0].mul(v[0])))
-                .min(zero);
-            let mu = h.mul(approach).mul(inverse.mul(rho_sum));
-            // Π = μ (β μ − α c̄)/ρ̄ with c̄ = ½ c_sum and ρ̄ = ½ rho_sum.
-            let linear = V::splat(state.sound_speed).mul_add(alpha, c_i);
-            let signal = terms.limit(mu.mul(beta).sub(linear), shown);
-            let pi = mu.mul(inverse.mul(soft)).mul(signal);
-            fastest = fastest.min_where_positive(mu, kernel.inside);
+            let state_of = (state.density, state.sound_speed);
+            let viscous = viscous.pair(&terms, (now, kernel.h), &v, state_of, shown);
+            let pi = viscous.pi;
+            fastest = fastest.min_where_positive(viscous.mu, kernel.inside);
             let s = |c: usize| V::splat(state.stress_over_density2[c]);
             let pull = |a: usize| normal[a].add(s(a)).sub(pi);
             let slide = |a: usize| shear[a].add(s(3 + a));
@@ -156,10 +241,10 @@ impl<S: PairScale, const TERMS: u8> Vectorised for Momentum<'_, S, TERMS> {
                 let shape = around.sources.scale.shape(kernel);
                 terms.repel(&mut stress, shown, shape);
                 let w = around.sources.scale.value(kernel, shape);
-                let other = self.terms.normalised::<TERMS>(place);
+                let other = sums.terms.normalised::<TERMS>(place);
                 corrected.pull(other, now, kernel.slope, w, source.volume);
                 let w = w.mul(V::splat(source.mass));
-                terms.follow(&v, w.mul(inverse.mul(soft)));
+                terms.follow(&v, w.mul(viscous.inverse_density));
             }
             let [xx, yy, zz, xy, xz, yz] = stress;
             let weight = now.inverse.mul(V::splat(source.mass)).mul(kernel.slope);
@@ -169,10 +254,7 @@ impl<S: PairScale, const TERMS: u8> Vectorised for Momentum<'_, S, TERMS> {
                 xz.mul_add(r[0], yz.mul_add(r[1], zz.mul(r[2]))),
             ];
             let work = traction[2].mul_add(v[2], traction[1].mul_add(v[1], traction[0].mul(v[0])));
-            let work = terms.conduct(work, shown, || {
-                let signal = zero.min_where_positive(signal, zero.sub(mu));
-                signal.mul(now.distance).mul(inverse.mul(soft))
-            });
+            let work = terms.conduct(work, shown, || viscous.heat_speed(now));
             power = work.mul_add(weight, power);
             for a in 0..3 {
                 acceleration[a] = traction[a].mul_add(weight, acceleration[a]);

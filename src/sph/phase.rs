@@ -1,6 +1,8 @@
 //! The SPH sums of a step.
 
-use super::formulation::{Conventional, Formulation, Normalised, StressPoints};
+use super::corrected::CorrectedRecord;
+use super::formulation::{Conventional, Corrected, Formulation, Normalised, StressPoints};
+use super::momentum::StressRecord;
 use super::normalised::NormalisedRecord;
 use super::signal::Signals;
 use super::smoothing::Smoothing;
@@ -23,6 +25,7 @@ pub struct Sph {
 
 enum Form {
     Conventional(Conventional),
+    Corrected(Corrected),
     Normalised(Normalised),
     StressPoints(StressPoints),
 }
@@ -32,6 +35,7 @@ macro_rules! with_form {
     ($form:expr, $name:ident => $work:expr) => {
         match $form {
             Form::Conventional($name) => $work,
+            Form::Corrected($name) => $work,
             Form::Normalised($name) => $work,
             Form::StressPoints($name) => $work,
         }
@@ -44,6 +48,10 @@ macro_rules! with_formulation {
         match $form {
             $crate::model::SphForm::Conventional => {
                 type $name = $crate::sph::Conventional;
+                $work
+            }
+            $crate::model::SphForm::Corrected => {
+                type $name = $crate::sph::Corrected;
                 $work
             }
             $crate::model::SphForm::Normalised => {
@@ -66,7 +74,8 @@ impl Sph {
         Self {
             smoothing: Smoothing::new(case),
             form: match case.sph.form {
-                SphForm::Conventional => Form::Conventional(Conventional),
+                SphForm::Conventional => Form::Conventional(Conventional::default()),
+                SphForm::Corrected => Form::Corrected(Corrected::default()),
                 SphForm::Normalised => Form::Normalised(Normalised::default()),
                 SphForm::StressPoints => Form::StressPoints(StressPoints::default()),
             },
@@ -77,16 +86,18 @@ impl Sph {
     /// Bytes of what each particle and image shows to others for pair terms and corrections.
     #[must_use]
     pub fn bytes_of_records(case: &Case) -> usize {
+        // Beyond the records of stress, which all forms have.
         let corrected = match case.sph.form {
             SphForm::Normalised => size_of::<NormalisedRecord>(),
+            SphForm::Corrected => size_of::<CorrectedRecord>() - size_of::<StressRecord>(),
             SphForm::Conventional | SphForm::StressPoints => 0,
         };
         terms::bytes_of_records(&case.sph) + corrected
     }
 
     /// Memory for so many images that is free until [`Self::rates`].
-    pub fn scratch(&mut self, images: usize) -> &mut [impl bytemuck::Pod + use<>] {
-        self.sums.scratch(images)
+    pub fn scratch(&mut self, images: usize) -> &mut [u64] {
+        with_form!(&mut self.form, form => form.scratch(images))
     }
 
     /// The first sweep: velocity gradient at the end of the step, density and stress from its mean

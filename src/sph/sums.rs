@@ -2,11 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::momentum::{StressRecord, Viscosity};
+use super::momentum::Viscosity;
 use super::neighbourhood::Sources;
 use super::step::Side;
 use super::terms::Terms;
-use crate::domain::Mirrors;
 use crate::material::Material;
 use crate::model::{Case, SmoothingLength};
 use crate::neighbours::Lists;
@@ -22,8 +21,6 @@ pub(super) struct Sums {
     pub terms: Terms,
     pub materials: Vec<Material>,
     pub material_of_body: Vec<usize>,
-    /// Records of the second sweep.
-    pub stresses: Vec<StressRecord>,
     /// What mirror images exert, by chunk.
     pub from_mirrors: Vec<FromMirrors>,
     /// Particles of this rank whose gradient has no correction.
@@ -91,7 +88,6 @@ impl Sums {
             terms: Terms::new(case, kernel),
             materials: case.materials.clone(),
             material_of_body: case.bodies.iter().map(|b| b.material).collect(),
-            stresses: Vec::new(),
             from_mirrors: Vec::new(),
             uncorrected: 0,
         }
@@ -99,46 +95,48 @@ impl Sums {
 
     pub fn memory(&self) -> usize {
         let mirrors: usize = self.from_mirrors.iter().map(FromMirrors::memory).sum();
-        self.stresses.capacity() * size_of::<StressRecord>() + mirrors + self.terms.memory()
+        mirrors + self.terms.memory()
     }
+}
 
-    /// Memory for so many images until their stresses are known.
-    pub fn scratch(&mut self, images: usize) -> &mut [StressRecord] {
-        if self.stresses.len() < images {
-            resize(&mut self.stresses, images);
-        }
-        &mut self.stresses
+/// What is made of halo particles and their images, or of the images of this rank's particles, whose own
+/// records the first sweep has written: `show` makes it of a particle's index and an image's code.
+pub(super) fn show_images<R: Send>(
+    records: &mut [R],
+    particles: &ParticleStore,
+    lists: &Lists,
+    side: Side,
+    show: impl Fn(usize, u8) -> R + Sync,
+) {
+    let owned = particles.owned();
+    let sequence = lists.sequence();
+    if sequence.images().len() == owned {
+        return;
     }
+    let records = records.par_chunks_mut(LANES);
+    let images = sequence.images().par_chunks(LANES).enumerate();
+    let others = records.zip(images).with_min_len(GRAIN);
+    others
+        .filter(|(_, (eight, _))| sequence.any_images(LANES * eight))
+        .flat_map_iter(|(records, (_, images))| records.iter_mut().zip(images))
+        .for_each(|(record, image)| {
+            let (base, code) = (image.base(), image.code());
+            let of_halo = base >= owned;
+            if side.takes(of_halo) && (of_halo || code != 0) {
+                *record = show(base, code);
+            }
+        });
+}
 
-    /// Stresses of halo particles and their images, or of the images of this rank's particles,
-    /// whose own stresses the first sweep has written.
-    pub fn fill_stresses(&mut self, particles: &ParticleStore, lists: &Lists, side: Side) {
-        let owned = particles.owned();
-        let sequence = lists.sequence();
-        if sequence.images().len() == owned {
-            return;
-        }
-        let stresses = self.stresses.par_chunks_mut(LANES);
-        let images = sequence.images().par_chunks(LANES).enumerate();
-        let others = stresses.zip(images).with_min_len(GRAIN);
-        others
-            .filter(|(_, (eight, _))| sequence.any_images(LANES * eight))
-            .flat_map_iter(|(records, (_, images))| records.iter_mut().zip(images))
-            .for_each(|(record, image)| {
-                let (base, code) = (image.base(), image.code());
-                let of_halo = base >= owned;
-                if !side.takes(of_halo) || (!of_halo && code == 0) {
-                    return;
-                }
-                let stress = Mirrors::reflect_symmetric(&particles.deviatoric_stress[base], code);
-                *record = StressRecord::new(
-                    particles.pressure[base],
-                    &stress,
-                    particles.density[base],
-                    particles.sound_speed[base],
-                );
-            });
+/// Memory for so many images that nobody needs before the next first sweep, in words.
+pub(super) fn scratch_of<R: bytemuck::Pod + Send + Sync>(
+    records: &mut Vec<R>,
+    images: usize,
+) -> &mut [u64] {
+    if records.len() < images {
+        resize(records, images);
     }
+    bytemuck::cast_slice_mut(records)
 }
 
 /// What a sweep over pairs sees of all particles and images.

@@ -23,6 +23,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
         (Owner::BALSARA, sph.balsara),
         (Owner::CONDUCTION, sph.conduction > 0.0),
         (Owner::XSPH, sph.xsph > 0.0),
+        (Owner::CORRECTED, sph.form == SphForm::Corrected),
         (Owner::NORMALISED, sph.form == SphForm::Normalised),
         (Owner::FREEZE, case.trouble.policy == TroublePolicy::Freeze),
         (Owner::STRESS_POINTS, sph.form == SphForm::StressPoints),

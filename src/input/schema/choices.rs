@@ -32,7 +32,9 @@ choices! {
     SphFormName {
         /// By the kernel's gradient.
         Conventional,
-        /// By the corrected gradient.
+        /// By gradients that the moments of the neighbours correct.
+        Corrected,
+        /// By the gradient of the normalised kernel, made exact for linear fields.
         Normalised,
         /// By linear fits at stress points.
         StressPoints,

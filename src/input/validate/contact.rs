@@ -341,7 +341,10 @@ fn direction(
     match (name.get_ref(), form) {
         (DirectionName::Pair, _) => Ok(ContactDirection::Pair),
         (DirectionName::Normal, SphForm::Normalised) => Ok(ContactDirection::Normal),
-        (DirectionName::Normal, SphForm::Conventional | SphForm::StressPoints) => {
+        (
+            DirectionName::Normal,
+            SphForm::Conventional | SphForm::Corrected | SphForm::StressPoints,
+        ) => {
             let title = "contact along normals needs the corrected gradients of normalised SPH";
             let help = "set `form = \"normalised\"` in [sph], or take \"pair\"";
             Err(Complaint::new(name.span(), title).help(help))

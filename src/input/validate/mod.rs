@@ -244,6 +244,7 @@ fn sph(params: &SphParams) -> Result<SphOptions, Complaint> {
     Ok(SphOptions {
         form: match params.form.as_ref().map(Spanned::get_ref) {
             None | Some(SphFormName::Conventional) => SphForm::Conventional,
+            Some(SphFormName::Corrected) => SphForm::Corrected,
             Some(SphFormName::Normalised) => SphForm::Normalised,
             Some(SphFormName::StressPoints) => SphForm::StressPoints,
         },

@@ -3,20 +3,24 @@
 use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
+use super::stresses::{ShowStress, fill_stresses};
 use crate::neighbours::{Among, Cluster, Lists};
 use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
 use crate::particles::{ParticleStore, material_points};
 use crate::sph::gradient::VelocityGradient;
+use crate::sph::momentum::StressRecord;
 use crate::sph::neighbourhood::Neighbourhood;
 use crate::sph::signal::{SignalSpeed, Signals};
 use crate::sph::step::{Side, Step};
-use crate::sph::sums::Sums;
+use crate::sph::sums::{Sums, scratch_of};
 
 /// The conventional formulation.
-#[derive(Debug)]
-pub struct Conventional;
+#[derive(Debug, Default)]
+pub struct Conventional {
+    records: Vec<StressRecord>,
+}
 
 impl Formulation for Conventional {
     fn rates(
@@ -26,7 +30,8 @@ impl Formulation for Conventional {
         lists: &Lists,
         step: &Step,
     ) {
-        strain(self, sums, material_points!(particles), lists, step.dt);
+        let gradient = PlainGradient(ShowStress::new(&mut self.records));
+        strain(&gradient, sums, material_points!(particles), lists, step.dt);
     }
 
     fn forces(
@@ -36,10 +41,18 @@ impl Formulation for Conventional {
         lists: &Lists,
         side: Side,
     ) {
-        sums.fill_stresses(particles, lists, side);
+        fill_stresses(&mut self.records, particles, lists, side);
         sums.terms.show(particles, lists, side);
         let set = sums.terms.set();
-        accelerate(sums, (set, &[]), particles, lists, side);
+        accelerate(sums, (set, &self.records, &[]), particles, lists, side);
+    }
+
+    fn scratch(&mut self, images: usize) -> &mut [u64] {
+        scratch_of(&mut self.records, images)
+    }
+
+    fn memory(&self) -> usize {
+        self.records.capacity() * size_of::<StressRecord>()
     }
 }
 
@@ -50,19 +63,28 @@ impl SignalSpeed for Conventional {
     }
 }
 
-impl Gradient for Conventional {
+/// Plain gradients.
+struct PlainGradient<'a>(ShowStress<'a>);
+
+impl Gradient for PlainGradient<'_> {
+    type Show<'b>
+        = &'b ShowStress<'b>
+    where
+        Self: 'b;
+
     #[inline(always)]
     fn of<V: Lanes, S: PairScale>(
         &self,
         _: &Cluster,
         among: Among,
         around: Neighbourhood<S>,
-    ) -> [F64x8; 9] {
-        if among.moving {
+    ) -> ([F64x8; 9], &ShowStress<'_>) {
+        let gradient = if among.moving {
             VelocityGradient { around }.run::<V>()
         } else {
             // No relative velocity: the sum would be this, to the bit.
             [F64x8([0.0; LANES]); 9]
-        }
+        };
+        (gradient, &self.0)
     }
 }

@@ -8,26 +8,31 @@ use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::{F64x8, Lanes};
 use crate::particles::MaterialPoints;
-use crate::sph::material_update::MaterialUpdate;
+use crate::sph::material_update::{MaterialUpdate, Show};
 use crate::sph::neighbourhood::{Neighbourhood, Sources};
 use crate::sph::sums::{Sums, sources, with_scale};
 
 /// How a formulation makes velocity gradients.
 pub(super) trait Gradient: Sync {
+    /// What shows the stresses of a cluster.
+    type Show<'a>: Show
+    where
+        Self: 'a;
+
     /// Velocity gradients (1/s, row-major) of the receivers of a cluster, `around` which its neighbours
-    /// stand.
+    /// stand, and what is to show their stresses.
     fn of<V: Lanes, S: PairScale>(
         &self,
         cluster: &Cluster,
         among: Among,
         around: Neighbourhood<S>,
-    ) -> [F64x8; 9];
+    ) -> ([F64x8; 9], Self::Show<'_>);
 }
 
 /// The sweep over all clusters, after a step `dt` (s).
 pub(super) fn strain<G: Gradient>(
     gradient: &G,
-    sums: &mut Sums,
+    sums: &Sums,
     points: MaterialPoints,
     lists: &Lists,
     dt: f64,
@@ -57,8 +62,9 @@ impl<S: PairScale, G: Gradient> Vectorised for GradientChunk<'_, S, G> {
     fn run<V: Lanes>(self) {
         for (cluster, neighbours, among) in self.chunk.iter() {
             let around = self.motion.around(cluster.receivers, neighbours);
-            let gradient = self.gradient.of::<V, S>(cluster, among, around);
-            self.update.apply(cluster, &gradient, neighbours.len());
+            let (gradient, show) = self.gradient.of::<V, S>(cluster, among, around);
+            self.update
+                .apply(cluster, &gradient, neighbours.len(), &show);
         }
     }
 }

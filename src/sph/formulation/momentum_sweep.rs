@@ -8,7 +8,7 @@ use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::Lanes;
 use crate::particles::{Image, ParticleStore, Scatter};
-use crate::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
+use crate::sph::momentum::{Forces, Momentum, PairStress, Viscosity};
 use crate::sph::neighbourhood::Sources;
 use crate::sph::normalised::{NormalisedRecord, stress_power};
 use crate::sph::step::Side;
@@ -17,9 +17,9 @@ use crate::sph::terms::{NORMALISED, PairTerms, XSPH, with_terms};
 
 /// The sweep over the clusters of a side with a set of pair terms, after stresses and terms have been
 /// shown; `normalised` holds the stresses along corrected gradients, if any.
-pub(super) fn accelerate(
+pub(super) fn accelerate<R: PairStress>(
     sums: &mut Sums,
-    (set, normalised): (u8, &[NormalisedRecord]),
+    (set, stresses, normalised): (u8, &[R], &[NormalisedRecord]),
     particles: &mut ParticleStore,
     lists: &Lists,
     side: Side,
@@ -31,13 +31,12 @@ pub(super) fn accelerate(
         scale,
         viscosity,
         terms,
-        stresses,
         from_mirrors,
         ..
     } = sums;
     from_mirrors.resize_with(chunks.len(), FromMirrors::default);
     let target = &ForceTarget::new(particles, images);
-    let shown = ForceSources {
+    let shown = &ForceSources {
         stresses,
         mirrored: lists.sequence().mirrored(),
         viscosity: *viscosity,
@@ -51,16 +50,15 @@ pub(super) fn accelerate(
         if side == Side::Inner {
             from_mirrors.forces.clear();
         }
-        with_terms!(set, TERMS => instructions.run(MomentumChunk::<_, TERMS> {
+        with_terms!(set, TERMS => instructions.run(MomentumChunk::<_, R, TERMS> {
             chunk, side, motion: sources(lists, scale), sources: shown, target, from_mirrors,
         }));
     }));
 }
 
 /// What the second sweep reads.
-#[derive(Clone, Copy)]
-struct ForceSources<'a> {
-    stresses: &'a [StressRecord],
+struct ForceSources<'a, R> {
+    stresses: &'a [R],
     mirrored: &'a [u8],
     viscosity: Viscosity,
     terms: PairTerms<'a>,
@@ -97,7 +95,7 @@ impl<'a> ForceTarget<'a> {
     }
 
     #[inline(always)]
-    fn store<const TERMS: u8>(&self, cluster: &Cluster, forces: &Forces) {
+    fn store<R: PairStress, const TERMS: u8>(&self, cluster: &Cluster, forces: &Forces) {
         for k in 0..cluster.lanes {
             let i = self.images[cluster.receivers[k] as usize].base();
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
@@ -105,7 +103,7 @@ impl<'a> ForceTarget<'a> {
                 *self.acceleration.slot(i) = std::array::from_fn(|a| forces.acceleration[a].0[k]);
                 *self.power.slot(i) = forces.power.0[k];
                 *self.approach.slot(i) = forces.approach.0[k];
-                if TERMS & NORMALISED != 0 {
+                if R::CORRECTED || TERMS & NORMALISED != 0 {
                     *self.power.slot(i) += self.stress_power.of(i);
                 }
                 if TERMS & XSPH != 0
@@ -155,16 +153,16 @@ impl<'a> StressPower<'a> {
 }
 
 /// The second sweep over one task's clusters, with a set of pair terms.
-struct MomentumChunk<'a, S, const TERMS: u8> {
+struct MomentumChunk<'a, S, R, const TERMS: u8> {
     chunk: &'a Chunk,
     side: Side,
     motion: Sources<'a, S>,
-    sources: ForceSources<'a>,
+    sources: &'a ForceSources<'a, R>,
     target: &'a ForceTarget<'a>,
     from_mirrors: &'a mut FromMirrors,
 }
 
-impl<S: PairScale, const TERMS: u8> Vectorised for MomentumChunk<'_, S, TERMS> {
+impl<S: PairScale, R: PairStress, const TERMS: u8> Vectorised for MomentumChunk<'_, S, R, TERMS> {
     type Output = ();
 
     #[inline(always)]
@@ -175,12 +173,12 @@ impl<S: PairScale, const TERMS: u8> Vectorised for MomentumChunk<'_, S, TERMS> {
         for (cluster, neighbours, among) in all.filter(|(_, _, among)| side.takes(among.halo)) {
             let free = |&j: &u32| self.sources.stresses[j as usize].is_free();
             if !among.moving && neighbours.iter().all(free) {
-                target.store::<TERMS>(cluster, &Forces::NONE);
+                target.store::<R, TERMS>(cluster, &Forces::NONE);
                 continue;
             }
-            target.store::<TERMS>(
+            target.store::<R, TERMS>(
                 cluster,
-                &Self::sum::<V>(self.motion, &self.sources, cluster, neighbours),
+                &Self::sum::<V>(self.motion, self.sources, cluster, neighbours),
             );
             if !among.mirrors {
                 continue;
@@ -189,7 +187,7 @@ impl<S: PairScale, const TERMS: u8> Vectorised for MomentumChunk<'_, S, TERMS> {
             let is_image = |&j: &u32| self.sources.mirrored[j as usize] & 1 == 1;
             places.clear();
             places.extend(neighbours.iter().copied().filter(is_image));
-            let part = Self::sum::<V>(self.motion, &self.sources, cluster, places).acceleration;
+            let part = Self::sum::<V>(self.motion, self.sources, cluster, places).acceleration;
             for k in 0..cluster.lanes {
                 let mass = target.mass[target.images[cluster.receivers[k] as usize].base()];
                 forces.push([
@@ -202,15 +200,15 @@ impl<S: PairScale, const TERMS: u8> Vectorised for MomentumChunk<'_, S, TERMS> {
     }
 }
 
-impl<S: PairScale, const TERMS: u8> MomentumChunk<'_, S, TERMS> {
+impl<S: PairScale, R: PairStress, const TERMS: u8> MomentumChunk<'_, S, R, TERMS> {
     #[inline(always)]
     fn sum<V: Lanes>(
         motion: Sources<S>,
-        sources: &ForceSources,
+        sources: &ForceSources<R>,
         cluster: &Cluster,
         neighbours: &[u32],
     ) -> Forces {
-        let sums = Momentum::<S, TERMS> {
+        let sums = Momentum::<S, R, TERMS> {
             around: motion.around(cluster.receivers, neighbours),
             stresses: sources.stresses,
             viscosity: sources.viscosity,

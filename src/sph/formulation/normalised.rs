@@ -6,17 +6,19 @@ use rayon::prelude::*;
 use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
+use super::stresses::{ShowStress, fill_stresses};
 use crate::domain::Mirrors;
 use crate::neighbours::{Among, Cluster, Lists};
 use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::{F64x8, Lanes};
 use crate::particles::{GRAIN, Image, ParticleStore, Scatter, material_points, resize};
+use crate::sph::momentum::StressRecord;
 use crate::sph::neighbourhood::Neighbourhood;
 use crate::sph::normalised::{NormalisedGradient, NormalisedRecord};
 use crate::sph::signal::{SignalSpeed, Signals};
 use crate::sph::step::{Side, Step};
-use crate::sph::sums::Sums;
+use crate::sph::sums::{Sums, scratch_of};
 use crate::sph::terms::NORMALISED;
 
 /// How much corrections enlarge gradients at surfaces of lattices, which steps need not heed.
@@ -25,6 +27,7 @@ const SURFACE_CORRECTION: f64 = 2.0;
 /// The normalised formulation.
 #[derive(Debug, Default)]
 pub struct Normalised {
+    stresses: Vec<StressRecord>,
     records: Vec<NormalisedRecord>,
 }
 
@@ -36,12 +39,13 @@ impl Formulation for Normalised {
         lists: &Lists,
         step: &Step,
     ) {
-        let gradient = CorrectedGradient {
+        let gradient = NormalisedGradients {
             dimension: sums.dimension,
             images: lists.images(),
             matrix: Scatter::new(&mut particles.gradient_correction),
             shift: Scatter::new(&mut particles.gradient_shift),
             norm: Scatter::new(&mut particles.correction_norm),
+            stresses: ShowStress::new(&mut self.stresses),
         };
         strain(&gradient, sums, material_points!(particles), lists, step.dt);
         let norms = particles.correction_norm.par_iter().with_min_len(GRAIN);
@@ -56,7 +60,7 @@ impl Formulation for Normalised {
         lists: &Lists,
         side: Side,
     ) {
-        sums.fill_stresses(particles, lists, side);
+        fill_stresses(&mut self.stresses, particles, lists, side);
         let images = lists.images();
         resize(&mut self.records, images.len());
         let records = self.records.par_iter_mut().zip(images);
@@ -67,11 +71,22 @@ impl Formulation for Normalised {
         });
         sums.terms.show(particles, lists, side);
         let set = sums.terms.set() | NORMALISED;
-        accelerate(sums, (set, &self.records), particles, lists, side);
+        accelerate(
+            sums,
+            (set, &self.stresses, &self.records),
+            particles,
+            lists,
+            side,
+        );
+    }
+
+    fn scratch(&mut self, images: usize) -> &mut [u64] {
+        scratch_of(&mut self.stresses, images)
     }
 
     fn memory(&self) -> usize {
-        self.records.capacity() * size_of::<NormalisedRecord>()
+        self.stresses.capacity() * size_of::<StressRecord>()
+            + self.records.capacity() * size_of::<NormalisedRecord>()
     }
 }
 
@@ -86,22 +101,28 @@ impl SignalSpeed for Normalised {
 
 /// Corrected gradients, and where corrections go. Gradients of particles that move alike are zero too,
 /// but their corrections are of use.
-struct CorrectedGradient<'a> {
+struct NormalisedGradients<'a> {
     dimension: usize,
     images: &'a [Image],
     matrix: Scatter<'a, [f64; 9]>,
     shift: Scatter<'a, [f64; 3]>,
     norm: Scatter<'a, f64>,
+    stresses: ShowStress<'a>,
 }
 
-impl Gradient for CorrectedGradient<'_> {
+impl Gradient for NormalisedGradients<'_> {
+    type Show<'b>
+        = &'b ShowStress<'b>
+    where
+        Self: 'b;
+
     #[inline(always)]
     fn of<V: Lanes, S: PairScale>(
         &self,
         cluster: &Cluster,
         _: Among,
         around: Neighbourhood<S>,
-    ) -> [F64x8; 9] {
+    ) -> ([F64x8; 9], &ShowStress<'_>) {
         let sums = NormalisedGradient {
             around,
             dimension: self.dimension,
@@ -116,7 +137,7 @@ impl Gradient for CorrectedGradient<'_> {
                 *self.norm.slot(i) = correction.norm;
             }
         }
-        corrected.gradient
+        (corrected.gradient, &self.stresses)
     }
 }
 

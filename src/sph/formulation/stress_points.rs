@@ -18,7 +18,7 @@ use crate::sph::neighbourhood::Sources;
 use crate::sph::signal::{SignalSpeed, Signals};
 use crate::sph::step::{Side, Step};
 use crate::sph::stress_points::{self, Pull, Pulled, StressPointRecord};
-use crate::sph::sums::{FromMirrors, Sums, sources, with_scale};
+use crate::sph::sums::{FromMirrors, Sums, scratch_of, sources, with_scale};
 
 /// The formulation by stress points.
 #[derive(Debug, Default)]
@@ -99,6 +99,10 @@ impl Formulation for StressPoints {
                 }
             }
         });
+    }
+
+    fn scratch(&mut self, images: usize) -> &mut [u64] {
+        scratch_of(&mut self.records, images)
     }
 
     fn memory(&self) -> usize {

@@ -1,0 +1,348 @@
+//! Corrected SPH: the sweeps against plain sums, and what any fade of the correction conserves.
+#![allow(clippy::many_single_char_names, reason = "formulas as on paper")]
+
+mod common;
+
+use common::cloud::{Cloud, Found, small as cloud};
+use common::random::Random;
+use nalgebra::Matrix3;
+use whipple::domain::Mirrors;
+use whipple::model::Vec3;
+use whipple::neighbours::Chunk;
+use whipple::numerics::dispatch::available;
+use whipple::numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
+use whipple::sph::corrected::{Corrected, CorrectedGradient, CorrectedRecord};
+use whipple::sph::momentum::{Forces, Momentum, Viscosity};
+use whipple::sph::neighbourhood::Sources;
+use whipple::sph::terms::PairTerms;
+
+type Matrix = Matrix3<f64>;
+
+/// A cloud with its images, each of which has a mass and a density.
+struct World {
+    cloud: Cloud,
+    found: Found,
+    kernel: Kernel,
+    /// By image.
+    density: Vec<f64>,
+    sigma: Vec<Matrix>,
+}
+
+impl World {
+    fn new(mut cloud: Cloud, seed: u64) -> Self {
+        cloud.owned = cloud.id.len();
+        let mut found = cloud.find();
+        let mut random = Random::new(seed);
+        let own: Vec<([f64; 6], f64, f64)> = (0..cloud.id.len())
+            .map(|_| {
+                let stress = std::array::from_fn(|_| random.within(-1.0, 1.0));
+                (stress, random.within(0.5, 2.0), random.within(0.5, 2.0))
+            })
+            .collect();
+        let (mut density, mut sigma) = (Vec::new(), Vec::new());
+        for (image, motion) in found.sequence.images().iter().zip(&mut found.motion) {
+            let (stress, mass, rho) = own[image.base()];
+            (motion.mass, motion.volume) = (mass, mass / rho);
+            let [xx, yy, zz, xy, mut xz, mut yz] =
+                Mirrors::reflect_symmetric(&stress, image.code());
+            if cloud.dimension < 3 {
+                (xz, yz) = (0.0, 0.0);
+            }
+            sigma.push(Matrix::new(xx, xy, xz, xy, yy, yz, xz, yz, zz));
+            density.push(rho);
+        }
+        Self {
+            kernel: Kernel::new(cloud.dimension),
+            cloud,
+            found,
+            density,
+            sigma,
+        }
+    }
+
+    fn velocity(&self, i: usize) -> Vec3 {
+        Vec3::from(self.found.motion[i].velocity)
+    }
+
+    /// The other particles of image i's group within reach, with `x_j − x_i` and `∇W_ij`.
+    fn near(&self, i: usize) -> Vec<(usize, Vec3, Vec3)> {
+        let group = self.cloud.group(self.found.sequence.images()[i].base());
+        let at = |k: usize| Vec3::from(self.found.motion[k].position);
+        let h = self.found.sequence.smoothing_lengths();
+        let others = self.found.sequence.group(group).filter(|&j| j != i);
+        let pairs = others.filter_map(|j| {
+            let (r, h) = (at(j) - at(i), 0.5 * (h[i] + h[j]));
+            let slope = self.kernel.slope(r.norm(), h);
+            (r.norm() < 2.0 * h).then(|| (j, r, -r * (slope / r.norm())))
+        });
+        pairs.collect()
+    }
+
+    /// `M`, one along axes that the cloud does not have.
+    fn moment(&self, i: usize) -> Matrix {
+        let near = self.near(i);
+        let volume = |j: usize| self.found.motion[j].volume;
+        let mut m: Matrix = (near.iter().map(|&(j, r, g)| r * g.transpose() * volume(j))).sum();
+        for a in self.cloud.dimension..3 {
+            m[(a, a)] = 1.0;
+        }
+        m
+    }
+
+    /// `L₀`, and the sum of the sizes of its terms.
+    fn plain_gradient(&self, i: usize, velocity: impl Fn(usize) -> Vec3) -> (Matrix, f64) {
+        let (mut gradient, mut size) = (Matrix::zeros(), 0.0);
+        for (j, _, g) in self.near(i) {
+            let v = (velocity(j) - velocity(i)) * self.found.motion[j].volume;
+            gradient += v * g.transpose();
+            size += v.norm() * g.norm();
+        }
+        (gradient, size)
+    }
+
+    fn sources<S>(&self, scale: S) -> Sources<'_, S> {
+        Sources {
+            records: &self.found.motion,
+            lengths: self.found.sequence.smoothing_lengths(),
+            scale,
+        }
+    }
+
+    /// The first sweep, with the same bits by all instruction sets.
+    fn rates<S: PairScale>(&self, scale: S, plain: u8, mut check: impl FnMut(&[u32], &Corrected)) {
+        let chunks = self.found.clusters.chunks();
+        for (cluster, list, _) in chunks.iter().flat_map(Chunk::iter) {
+            let all: Vec<Corrected> = (available().iter())
+                .map(|set| {
+                    set.run(CorrectedGradient {
+                        around: self.sources(scale).around(cluster.receivers, list),
+                        dimension: self.cloud.dimension,
+                        plain,
+                    })
+                })
+                .collect();
+            for other in &all {
+                assert_eq!(other.gradient, all[0].gradient);
+                assert_eq!(other.correction.outer, all[0].correction.outer);
+                assert_eq!(other.correction.inner, all[0].correction.inner);
+            }
+            check(&cluster.receivers[..cluster.lanes], &all[0]);
+        }
+    }
+
+    /// The second sweep with stresses `P` between corrections, the same bits by all instruction sets.
+    fn forces<S: PairScale>(
+        &self,
+        scale: S,
+        pair_stress: &[Matrix],
+        alpha: f64,
+        mut visit: impl FnMut(usize, usize, &Forces),
+    ) {
+        let records: Vec<_> = (pair_stress.iter().zip(&self.density))
+            .map(|(p, &density)| CorrectedRecord {
+                stress: p.transpose().as_slice().try_into().unwrap(),
+                density,
+                sound_speed: 1.0,
+            })
+            .collect();
+        let chunks = self.found.clusters.chunks();
+        for (cluster, list, _) in chunks.iter().flat_map(Chunk::iter) {
+            let sums = |set: whipple::numerics::dispatch::Instructions| {
+                set.run(Momentum::<S, CorrectedRecord, 0> {
+                    around: self.sources(scale).around(cluster.receivers, list),
+                    stresses: &records,
+                    viscosity: Viscosity {
+                        alpha,
+                        beta: 2.0 * alpha,
+                    },
+                    terms: PairTerms::NONE,
+                })
+            };
+            let first = sums(available()[0]);
+            for set in available() {
+                assert_eq!(sums(set).acceleration, first.acceleration, "{}", set.name());
+                assert_eq!(sums(set).power, first.power, "{}", set.name());
+            }
+            for (k, &place) in cluster.receivers[..cluster.lanes].iter().enumerate() {
+                visit(k, place as usize, &first);
+            }
+        }
+    }
+}
+
+fn lane(values: &[whipple::numerics::lanes::F64x8; 6], k: usize) -> Matrix {
+    let [xx, yy, zz, xy, xz, yz] = values.map(|v| v.0[k]);
+    Matrix::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+}
+
+/// `A` and `B` by their definition.
+fn fade(m: &Matrix) -> (Matrix, Matrix) {
+    let e4 = 0.28_f64.powi(4);
+    let inverse = (m.pow(4) + Matrix::identity() * e4).try_inverse().unwrap() * (1.0 + e4);
+    (inverse * m.pow(4), inverse * m.pow(3))
+}
+
+fn check_sweeps<S: PairScale>(cloud: Cloud, scale: S) {
+    let world = World::new(cloud, 91);
+    world.rates(scale, 0, |places, corrected| {
+        for (k, &place) in places.iter().enumerate() {
+            let i = place as usize;
+            let (a, b) = fade(&world.moment(i));
+            let found = [&corrected.correction.outer, &corrected.correction.inner];
+            for (found, wanted) in found.into_iter().zip([a, b]) {
+                // The condition of M⁴ + e⁴ I is 1/e⁴ at most.
+                let error = (lane(found, k) - wanted).norm();
+                assert!(error <= 1e-12 * (1.0 + wanted.norm()), "{error:e}");
+            }
+            let largest = b.symmetric_eigenvalues().amax();
+            assert!(largest <= 0.57 / 0.28 * (1.0 + 0.28_f64.powi(4)));
+            let (plain, size) = world.plain_gradient(i, |j| world.velocity(j));
+            let wanted = a * plain * b;
+            for row in 0..3 {
+                for column in 0..3 {
+                    let error = corrected.gradient[3 * row + column].0[k] - wanted[(row, column)];
+                    assert!(error.abs() <= 1e-12 * (1.0 + size), "{error:e} of {size:e}");
+                }
+            }
+        }
+    });
+    world.rates(scale, 0xff, |places, corrected| {
+        for (k, &place) in places.iter().enumerate() {
+            let (plain, size) = world.plain_gradient(place as usize, |j| world.velocity(j));
+            let error = corrected.gradient[0].0[k] - plain[(0, 0)];
+            assert!(error.abs() <= 1e-13 * (1.0 + size), "{error:e} of {size:e}");
+        }
+    });
+    let mut random = Random::new(7);
+    let own: Vec<[f64; 9]> = (0..world.cloud.id.len())
+        .map(|_| std::array::from_fn(|_| random.within(-1.0, 1.0)))
+        .collect();
+    let stress: Vec<Matrix> = (world.found.sequence.images().iter())
+        .map(|image| {
+            Matrix::from_row_slice(&Mirrors::reflect_tensor(&own[image.base()], image.code()))
+        })
+        .collect();
+    world.forces(scale, &stress, 0.0, |k, i, forces| {
+        let (mut sum, mut size) = (Vec3::zeros(), 0.0);
+        for (j, _, g) in world.near(i) {
+            let force = (stress[i] + stress[j]) * g * world.found.motion[j].volume;
+            sum += force;
+            size += force.norm();
+        }
+        for a in 0..3 {
+            let error = forces.acceleration[a].0[k] - sum[a] / world.density[i];
+            assert!(error.abs() <= 1e-13 * size / world.density[i], "{error:e}");
+        }
+        assert!(forces.power.0[k] == 0.0);
+    });
+}
+
+#[test]
+fn sweeps_agree_with_plain_sums() {
+    for dimension in 1..=3 {
+        for planes in [0, dimension] {
+            let cloud = cloud(dimension, 1.0, planes, 51);
+            let scale = ConstantScale::new(&Kernel::new(dimension), cloud.smoothing_length[0]);
+            check_sweeps(cloud, scale);
+        }
+    }
+    check_sweeps(cloud(1, 1.8, 1, 52), MeanScale::<1>::new(&Kernel::new(1)));
+    check_sweeps(cloud(2, 1.8, 1, 53), MeanScale::<2>::new(&Kernel::new(2)));
+    check_sweeps(cloud(3, 1.8, 1, 54), MeanScale::<3>::new(&Kernel::new(3)));
+}
+
+/// A symmetric matrix with the eigenvectors of M and random eigenvalues.
+fn random_fade(m: &Matrix, random: &mut Random) -> Matrix {
+    let eigen = m.symmetric_eigen();
+    let values = Vec3::from(std::array::from_fn(|_| random.within(-0.5, 2.0)));
+    eigen.eigenvectors * Matrix::from_diagonal(&values) * eigen.eigenvectors.transpose()
+}
+
+/// With any B that has M's eigenvectors, on clouds with lone particles and torn bodies: a rotation strains
+/// nothing, and momentum, angular momentum and energy balance.
+#[test]
+fn any_fade_conserves() {
+    for dimension in [2, 3] {
+        let world = World::new(cloud(dimension, 1.0, 0, 61), 62);
+        let scale = ConstantScale::new(&world.kernel, world.cloud.smoothing_length[0]);
+        let mut random = Random::new(63);
+        let n = world.found.motion.len();
+        let corrections: Vec<[Matrix; 2]> = (0..n)
+            .map(|i| {
+                let m = world.moment(i);
+                let b = random_fade(&m, &mut random);
+                [m * b, b]
+            })
+            .collect();
+        let spin = Vec3::new(0.0, 0.0, 1.0) + Vec3::from(random.vector(3, 0.5));
+        let spin = if dimension == 2 { Vec3::z() } else { spin };
+        let mut pair_stress = Vec::new();
+        let mut power = Vec::new();
+        for (i, [a, b]) in corrections.iter().enumerate() {
+            let (rotation, size) = world.plain_gradient(i, |j| {
+                spin.cross(&Vec3::from(world.found.motion[j].position))
+            });
+            let strain = a * rotation * b;
+            let strain = (strain + strain.transpose()).norm();
+            assert!(
+                strain <= 1e-13 * (1.0 + size * a.norm() * b.norm()),
+                "{strain:e}"
+            );
+            let (plain, _) = world.plain_gradient(i, |j| world.velocity(j));
+            let volume = world.found.motion[i].volume;
+            power.push(volume * world.sigma[i].dot(&(a * plain * b)));
+            pair_stress.push(a * world.sigma[i] * b);
+        }
+        let (mut sums, mut sizes) = ([0.0; 7], [0.0; 7]);
+        world.forces(scale, &pair_stress, 0.0, |k, i, forces| {
+            let motion = &world.found.motion[i];
+            let force = Vec3::from(forces.acceleration.map(|lanes| lanes.0[k])) * motion.mass;
+            let turn = Vec3::from(motion.position).cross(&force);
+            let work = Vec3::from(motion.velocity).dot(&force) + power[i];
+            let mut terms: Vec<f64> = force.iter().chain(turn.iter()).copied().collect();
+            terms.push(work);
+            // What each pair does, of which most cancels.
+            let (mut pull, mut rate) = (0.0, power[i].abs());
+            for (j, _, g) in world.near(i) {
+                let volumes = motion.volume * world.found.motion[j].volume;
+                let of_pair = volumes * ((pair_stress[i] + pair_stress[j]) * g).norm();
+                pull += of_pair;
+                rate += of_pair * motion.velocity.iter().map(|v| v.abs()).sum::<f64>();
+            }
+            let arm = Vec3::from(motion.position).norm();
+            for (n, term) in terms.into_iter().enumerate() {
+                sums[n] += term;
+                sizes[n] += [pull, pull * arm, rate][n / 3];
+            }
+        });
+        for (sum, size) in sums.into_iter().zip(sizes) {
+            assert!(f64::abs(sum) <= 1e-13 * size, "{sums:?} of {sizes:?}");
+        }
+    }
+}
+
+/// Artificial viscosity keeps momentum and angular momentum, and what it takes from the motion becomes
+/// heat.
+#[test]
+fn viscosity_balances() {
+    let world = World::new(cloud(3, 1.0, 0, 71), 72);
+    let scale = ConstantScale::new(&world.kernel, world.cloud.smoothing_length[0]);
+    let none = vec![Matrix::zeros(); world.found.motion.len()];
+    let (mut sums, mut sizes) = ([0.0; 7], [0.0; 7]);
+    world.forces(scale, &none, 1.0, |k, i, forces| {
+        let motion = &world.found.motion[i];
+        let force = Vec3::from(forces.acceleration.map(|lanes| lanes.0[k])) * motion.mass;
+        let turn = Vec3::from(motion.position).cross(&force);
+        let heat = forces.power.0[k] * motion.mass;
+        assert!(heat >= 0.0);
+        let work = Vec3::from(motion.velocity).dot(&force) + heat;
+        let terms = force.iter().chain(turn.iter()).copied().chain([work]);
+        for (n, term) in terms.enumerate() {
+            sums[n] += term;
+            sizes[n] += term.abs();
+        }
+    });
+    for (sum, size) in sums.into_iter().zip(sizes) {
+        assert!(f64::abs(sum) <= 1e-12 * size, "{sums:?} of {sizes:?}");
+    }
+}
