@@ -6,9 +6,10 @@ use rayon::prelude::*;
 mod escape;
 mod friction;
 
-use friction::{Resisting, SurfaceHold};
+use friction::SurfaceFriction;
 
 use super::ContactTable;
+use super::pair::PairResistance;
 use crate::loads::{Loads, Placed, SurfaceStep};
 use crate::model::{Body, Case, RigidSurface};
 use crate::numerics::exact_sum::ExactSum;
@@ -40,7 +41,7 @@ struct Penalty {
     /// Where it begins, ½Δp (m).
     reach: f64,
     h: f64,
-    pub resisting: Resisting,
+    resistance: PairResistance,
 }
 
 /// The surfaces of a case and what they do, kept from step to step.
@@ -58,7 +59,7 @@ pub(crate) struct SurfaceForces {
     /// By task.
     pushes: Vec<Vec<Push>>,
     /// The same of friction and damping; empty without.
-    holds: Vec<Vec<SurfaceHold>>,
+    friction: Vec<Vec<SurfaceFriction>>,
 }
 
 impl SurfaceForces {
@@ -86,17 +87,17 @@ impl SurfaceForces {
                 Vec::new()
             },
             pushes: Vec::new(),
-            holds: Vec::new(),
+            friction: Vec::new(),
         }
     }
 
     pub(super) fn memory(&self) -> usize {
         let penalties = self.penalties.iter().map(Vec::capacity).sum::<usize>();
         let pushes = self.pushes.iter().map(Vec::capacity).sum::<usize>();
-        let holds = self.holds.iter().map(Vec::capacity).sum::<usize>();
+        let friction = self.friction.iter().map(Vec::capacity).sum::<usize>();
         penalties * size_of::<Option<Penalty>>()
             + pushes * size_of::<Push>()
-            + holds * size_of::<SurfaceHold>()
+            + friction * size_of::<SurfaceFriction>()
             + size_of::<f64>() * self.sticks.capacity()
             + 4 * size_of::<ExactSum>() * self.sums.capacity()
             + size_of::<ExactSum>() * self.heat.capacity()
@@ -113,17 +114,18 @@ impl Penalty {
     fn new(case: &Case, body: &Body, surface: &RigidSurface) -> Self {
         let spacing = body.lattice.spacing;
         let modulus = surface.stiffness * case.materials[body.material].p_wave_modulus();
-        let resistance = &surface.resistance;
+        let input = &surface.resistance;
         let critical = 2.0 * (modulus * case.initial_density(body)).sqrt() / spacing;
         Self {
             stiffness: modulus / (spacing * spacing),
             reach: 0.5 * spacing,
             h: body.smoothing_length,
-            resisting: Resisting {
-                static_friction: resistance.static_friction,
-                kinetic_friction: resistance.kinetic_friction,
+            resistance: PairResistance {
+                static_friction: input.static_friction,
+                kinetic_friction: input.kinetic_friction,
                 stick: stick(case, body),
-                dashpot: resistance.damping * critical,
+                dashpot: input.damping * critical,
+                heat_share: 1.0,
             },
         }
     }
@@ -135,7 +137,7 @@ impl Penalty {
     }
 
     /// The approach speed of a particle at a gap (m) that changes at `rate` (m/s): that towards its
-    /// mirror image, see `contact::Gap::approach`.
+    /// mirror image, see `Separation::raise_approach`.
     fn approach(&self, gap: f64, rate: f64) -> f64 {
         let soft = 4.0 * (gap * gap) + 0.01 * (self.h * self.h);
         (-4.0 * self.h * rate * gap.abs() / soft).max(0.0)
@@ -178,8 +180,8 @@ impl SurfaceForces {
                 heat.add(push.heat);
             }
         }
-        SurfaceHold::clear(particles);
-        for hold in self.holds.iter().flatten() {
+        SurfaceFriction::clear(particles);
+        for hold in self.friction.iter().flatten() {
             hold.store(particles);
         }
     }
@@ -195,7 +197,7 @@ impl SurfaceForces {
         let owned = particles.owned();
         let chunks = owned.div_ceil(GRAIN);
         self.pushes.resize(chunks, Vec::new());
-        self.holds.resize(chunks, Vec::new());
+        self.friction.resize(chunks, Vec::new());
         let view = View {
             store: particles,
             table,
@@ -204,16 +206,16 @@ impl SurfaceForces {
             penalties: &self.penalties,
             sticks: &self.sticks,
         };
-        let friction = !self.heat.is_empty();
-        let chunks = self.pushes.par_iter_mut().zip(&mut self.holds);
-        chunks.enumerate().for_each(|(chunk, (pushes, holds))| {
+        let has_friction = !self.heat.is_empty();
+        let chunks = self.pushes.par_iter_mut().zip(&mut self.friction);
+        chunks.enumerate().for_each(|(chunk, (pushes, friction))| {
             pushes.clear();
-            holds.clear();
+            friction.clear();
             for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(owned) {
                 let first = pushes.len();
                 pushes.extend((0..view.surfaces.len()).filter_map(|n| view.push(i, n)));
-                if friction {
-                    holds.extend(view.hold(i, &mut pushes[first..], dt));
+                if has_friction {
+                    friction.extend(view.friction(i, &mut pushes[first..], dt));
                 }
             }
         });
@@ -289,7 +291,7 @@ mod tests {
             stiffness: 3e11,
             reach: 0.5e-3,
             h: 1.3e-3,
-            resisting: Resisting::default(),
+            resistance: PairResistance::default(),
         };
         let approach = penalty.approach(0.5e-3, -10.0);
         let expected = 1.3e-3 * 20.0 * 1e-3 / (1e-6 + 0.01 * 1.69e-6);
