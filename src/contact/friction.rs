@@ -9,7 +9,8 @@
 
 use crate::numerics::vector::dot;
 
-/// Coefficients of one particle.
+/// Coefficients of one particle; of springs and dashpots also over volume, of a pair of bodies or of a
+/// body on a rigid surface.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Law {
     /// Coefficient of friction while it sticks.
@@ -64,6 +65,21 @@ fn turned(v: &[f64; 3], n: &[f64; 3]) -> [f64; 3] {
 }
 
 impl Law {
+    /// Whether there is any friction or damping.
+    #[inline]
+    #[must_use]
+    pub fn is_any(&self) -> bool {
+        self.static_friction > 0.0 || self.dashpot > 0.0
+    }
+
+    /// That of a volume, of one over volume.
+    #[must_use]
+    pub fn of_volume(mut self, volume: f64) -> Self {
+        self.stiffness *= volume;
+        self.dashpot *= volume;
+        self
+    }
+
     /// Adds `weight` times another.
     pub fn add(&mut self, weight: f64, other: &Self) {
         self.static_friction += weight * other.static_friction;

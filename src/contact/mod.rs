@@ -9,7 +9,7 @@
 mod books;
 mod connectivity;
 mod force;
-mod friction;
+pub mod friction;
 mod mode;
 pub mod overlap;
 mod pair;
@@ -25,7 +25,7 @@ mod view;
 
 pub use connectivity::Connectivity;
 pub use force::{BodyForce, ContactForce, TaskForces};
-pub use pair::{Pair, PairResistance};
+pub use pair::Pair;
 pub use phase::Contact;
 pub use sums::{Closest, PairExtremes};
 pub(crate) use sums::{ContactSums, PairBook, PairSums, least, pair_key};

@@ -10,7 +10,7 @@ mod measure;
 
 use super::ContactTable;
 use super::mode::{Found, Meeting, Mode, PairForce, Scene};
-use super::pair::{Bodies, Constants, Pair};
+use super::pair::{Between, Constants, Pair};
 use super::resistance::NormalLoad;
 use super::view::{ContactView, Party, Separation};
 use crate::domain::Mirrors;
@@ -55,7 +55,7 @@ impl Constants for Overlap {
 
     const HALO: HaloPhase = HaloPhase::CONTACT;
 
-    fn pair(&self, of: &Bodies) -> OverlapPair {
+    fn pair(&self, of: &Between) -> OverlapPair {
         let [a, b] = of.bodies.map(|body| &of.case.bodies[body]);
         OverlapPair {
             modulus: self.stiffness * of.modulus,
@@ -194,7 +194,7 @@ impl Mode for Overlap {
         for &other in neighbours {
             let j = view.party(other);
             let pair = view.table.pair(i.body, j.body);
-            if !pair.resistance.is_any() {
+            if !pair.friction.is_any() {
                 continue;
             }
             let separation = Separation::between(i, &j);

@@ -18,27 +18,15 @@ pub struct Pair {
     pub spacing: f64,
     /// One over it (1/m).
     pub inverse_spacing: f64,
-    /// Friction and damping.
-    pub resistance: PairResistance,
-}
-
-/// Friction and damping of an ordered pair of bodies, or of a body on a rigid surface.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct PairResistance {
-    /// Coefficient of friction of faces that stick.
-    pub static_friction: f64,
-    /// Coefficient of friction of faces that slide.
-    pub kinetic_friction: f64,
-    /// Stiffness of the spring that sticks over volume, `¼ M/Δp²` (Pa/m²).
-    pub stick: f64,
-    /// Damping over volume (Pa s/m²): `ζ √(M ρ₀)/Δp` of two bodies, `2 ζ √(κ M ρ₀)/Δp` on a surface.
-    pub dashpot: f64,
+    /// Friction and damping over volume: a spring of `¼ M/Δp²` (Pa/m²), a dashpot of `ζ √(M ρ₀)/Δp`
+    /// (Pa s/m²).
+    pub friction: Law,
     /// Share of heat that goes to the receiver: ½, or all where the other is rigid.
     pub heat_share: f64,
 }
 
 /// Two bodies whose constants are wanted.
-pub(crate) struct Bodies<'a> {
+pub(crate) struct Between<'a> {
     pub case: &'a Case,
     pub kernel: &'a Kernel,
     /// Receiver and other.
@@ -60,7 +48,7 @@ pub(crate) trait Constants: ContactLaw {
     const OWNER: Owner = Owner::empty();
 
     /// Its constants of two bodies.
-    fn pair(&self, of: &Bodies) -> Self::Pair;
+    fn pair(&self, of: &Between) -> Self::Pair;
 }
 
 /// Where the constants of a mode are kept.
@@ -77,7 +65,7 @@ macro_rules! pairs {
         }
 
         impl ModePairs {
-            pub fn push(&mut self, of: &Bodies, mode: &ContactMode) {
+            pub fn push(&mut self, of: &Between, mode: &ContactMode) {
                 $(self.$name.push(match mode {
                     ContactMode::$Mode(law) => law.pair(of),
                     _ => Default::default(),
@@ -118,55 +106,35 @@ impl Pair {
         let [a, b] = bodies.map(|body| &case.bodies[body]);
         let spacing = 0.5 * (a.lattice.spacing + b.lattice.spacing);
         let h = 0.5 * (a.smoothing_length + b.smoothing_length);
-        let resistance = mode.resistance();
+        let law = |input: &Resistance| friction(case, [a, b], spacing, input);
         Self {
             h,
             kernel: kernel.of_length(h),
             spacing,
             inverse_spacing: 1.0 / spacing,
-            resistance: resistance.map_or_else(PairResistance::default, |input| {
-                PairResistance::new(case, [a, b], spacing, input)
-            }),
-        }
-    }
-}
-
-impl PairResistance {
-    /// The law of a particle of a reference volume (m^d).
-    pub(super) fn law(&self, volume: f64) -> Law {
-        Law {
-            static_friction: self.static_friction,
-            kinetic_friction: self.kinetic_friction,
-            stiffness: self.stick * volume,
-            dashpot: self.dashpot * volume,
-        }
-    }
-
-    /// Whether there is any.
-    #[inline]
-    #[must_use]
-    pub fn is_any(&self) -> bool {
-        self.static_friction > 0.0 || self.dashpot > 0.0
-    }
-
-    /// Of bodies that resist as `input` says. The softer body gives modulus and density.
-    fn new(case: &Case, bodies: [&Body; 2], spacing: f64, input: &Resistance) -> Self {
-        let facts = bodies.map(|body| {
-            let modulus = case.materials[body.material].p_wave_modulus();
-            (modulus, case.initial_density(body))
-        });
-        let softer = usize::from(facts[1].0 < facts[0].0);
-        let (modulus, density) = facts[softer];
-        Self {
-            static_friction: input.static_friction,
-            kinetic_friction: input.kinetic_friction,
-            stick: 0.25 * modulus / (spacing * spacing),
-            dashpot: input.damping * (modulus * density).sqrt() / spacing,
-            heat_share: match bodies.map(|body| body.rigid.is_some()) {
+            friction: mode.resistance().map_or_else(Law::default, law),
+            heat_share: match [a, b].map(|body| body.rigid.is_some()) {
                 [false, false] => 0.5,
                 [false, true] => 1.0,
                 [true, _] => 0.0,
             },
         }
+    }
+}
+
+/// Friction and damping of bodies that resist as `input` says. The softer body gives modulus and
+/// density.
+fn friction(case: &Case, bodies: [&Body; 2], spacing: f64, input: &Resistance) -> Law {
+    let facts = bodies.map(|body| {
+        let modulus = case.materials[body.material].p_wave_modulus();
+        (modulus, case.initial_density(body))
+    });
+    let softer = usize::from(facts[1].0 < facts[0].0);
+    let (modulus, density) = facts[softer];
+    Law {
+        static_friction: input.static_friction,
+        kinetic_friction: input.kinetic_friction,
+        stiffness: 0.25 * modulus / (spacing * spacing),
+        dashpot: input.damping * (modulus * density).sqrt() / spacing,
     }
 }

@@ -10,7 +10,7 @@
 mod boundary;
 
 use super::mode::{Found, Meeting, Mode, PairForce, Scene, fill, for_each_chunk};
-use super::pair::{Bodies, Constants};
+use super::pair::{Between, Constants};
 use super::resistance::NormalLoad;
 use super::view::{ContactView, Party};
 use crate::domain::Mirrors;
@@ -36,7 +36,7 @@ impl Constants for Penalty {
     const HALO: HaloPhase = HaloPhase::CONTACT;
     const OWNER: Owner = Owner::PENALTY;
 
-    fn pair(&self, of: &Bodies) -> PenaltyPair {
+    fn pair(&self, of: &Between) -> PenaltyPair {
         let body = &of.case.bodies[of.bodies[0]];
         PenaltyPair {
             modulus: self.stiffness * of.modulus,
@@ -142,7 +142,7 @@ impl Mode for Penalty {
         for &other in neighbours {
             let j = view.party(other);
             let meeting = Meeting::<Self>::new(view, [i, &j], ());
-            if !meeting.pair.resistance.is_any() {
+            if !meeting.pair.friction.is_any() {
                 continue;
             }
             if let Some(PairForce { force, loads, .. }) = Self::force(&meeting, &mut 0.0) {

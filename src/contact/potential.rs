@@ -7,7 +7,7 @@
 //! page "Contact").
 
 use super::mode::{Meeting, Mode, PairForce};
-use super::pair::{Bodies, Constants};
+use super::pair::{Between, Constants};
 use super::view::{ContactView, Party};
 use crate::model::{ContactDirection, Potential, PotentialRange};
 
@@ -29,7 +29,7 @@ pub(crate) struct PotentialPair {
 impl Constants for Potential {
     type Pair = PotentialPair;
 
-    fn pair(&self, of: &Bodies) -> PotentialPair {
+    fn pair(&self, of: &Between) -> PotentialPair {
         PotentialPair {
             stiffness: self.stiffness * of.modulus / of.kernel.power(of.pair.spacing),
             exponent: i32::try_from(self.exponent).unwrap_or(i32::MAX),

@@ -27,7 +27,7 @@ impl NormalLoad {
             self.force[a] += force[a];
             self.motion[a] += own * (i.velocity[a] - j.velocity[a]);
         }
-        self.law.add(own, &pair.resistance.law(i.volume));
+        self.law.add(own, &pair.friction.of_volume(i.volume));
     }
 
     /// Adds to the normal `weight` times a vector.
@@ -129,11 +129,9 @@ impl PairFriction {
     /// energy, given `o_ij` and `o_ji` (N).
     pub fn pair(&mut self, view: &ContactView, [i, j]: [&Party; 2], [own, their]: [f64; 2]) {
         (self.force, self.energy, self.heat) = ([0.0; 3], 0.0, 0.0);
-        let (pair, back) = (
-            &view.table.pair(i.body, j.body).resistance,
-            &view.table.pair(j.body, i.body).resistance,
-        );
-        if !pair.is_any() {
+        let pair = view.table.pair(i.body, j.body);
+        let (law, back) = (&pair.friction, &view.table.pair(j.body, i.body).friction);
+        if !law.is_any() {
             return;
         }
         let there = Shared::of(view, j);
@@ -144,8 +142,9 @@ impl PairFriction {
         self.heat = pair.heat_share * (own * self.here.power + their * there.power);
         // Rows of the matrices of all springs and dashpots that i has a part in.
         let [mine, theirs] = [own * self.here.inverse_load, their * there.inverse_load];
-        self.stiffness += 2.0 * (mine * (pair.stick * i.volume) + theirs * (back.stick * j.volume));
+        self.stiffness +=
+            2.0 * (mine * (law.stiffness * i.volume) + theirs * (back.stiffness * j.volume));
         self.dashpot +=
-            2.0 * (mine * (pair.dashpot * i.volume) + theirs * (back.dashpot * j.volume));
+            2.0 * (mine * (law.dashpot * i.volume) + theirs * (back.dashpot * j.volume));
     }
 }

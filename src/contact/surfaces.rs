@@ -9,7 +9,7 @@ mod friction;
 use friction::SurfaceFriction;
 
 use super::ContactTable;
-use super::pair::PairResistance;
+use super::friction::Law;
 use crate::loads::{Loads, Placed, SurfaceStep};
 use crate::model::{Body, Case, RigidSurface};
 use crate::numerics::exact_sum::ExactSum;
@@ -41,7 +41,8 @@ struct Penalty {
     /// Where it begins, ½Δp (m).
     reach: f64,
     h: f64,
-    resistance: PairResistance,
+    /// Over volume: the spring that sticks (Pa/m²), `2 ζ √(κ M ρ₀)/Δp` (Pa s/m²).
+    friction: Law,
 }
 
 /// The surfaces of a case and what they do, kept from step to step.
@@ -120,12 +121,11 @@ impl Penalty {
             stiffness: modulus / (spacing * spacing),
             reach: 0.5 * spacing,
             h: body.smoothing_length,
-            resistance: PairResistance {
+            friction: Law {
                 static_friction: input.static_friction,
                 kinetic_friction: input.kinetic_friction,
-                stick: stick(case, body),
+                stiffness: stick(case, body),
                 dashpot: input.damping * critical,
-                heat_share: 1.0,
             },
         }
     }
@@ -291,7 +291,7 @@ mod tests {
             stiffness: 3e11,
             reach: 0.5e-3,
             h: 1.3e-3,
-            resistance: PairResistance::default(),
+            friction: Law::default(),
         };
         let approach = penalty.approach(0.5e-3, -10.0);
         let expected = 1.3e-3 * 20.0 * 1e-3 / (1e-6 + 0.01 * 1.69e-6);

@@ -1,6 +1,6 @@
 //! Parameters of every pair of bodies, computed once at set-up.
 
-use super::pair::{Bodies, Listed, ModePairs, Pair, needs};
+use super::pair::{Between, Listed, ModePairs, Pair, needs};
 use crate::model::{Case, ContactMode, SelfContact};
 use crate::neighbours::{ForeignTable, Groups};
 use crate::numerics::kernel::{Kernel, SUPPORT};
@@ -68,7 +68,7 @@ impl ContactTable {
         let pair = Pair::new(case, &self.kernel, [a, b], &mode);
         let modulus =
             [a, b].map(|body| case.materials[case.bodies[body].material].p_wave_modulus());
-        let of = Bodies {
+        let of = Between {
             case,
             kernel: &self.kernel,
             bodies: [a, b],
@@ -141,7 +141,7 @@ impl ContactTable {
     #[must_use]
     pub fn has_friction(&self) -> bool {
         let mut pairs = self.pairs.iter();
-        pairs.any(|pair| pair.resistance.is_any())
+        pairs.any(|pair| pair.friction.is_any())
     }
 
     /// The unordered pairs of bodies with contact beyond the SPH sums; a body with itself where its

@@ -3,7 +3,6 @@
 
 use super::{Push, View};
 use crate::contact::friction::{Law, Slip};
-use crate::contact::pair::PairResistance;
 use crate::numerics::vector::norm;
 use crate::particles::ParticleStore;
 
@@ -41,10 +40,10 @@ struct Rest {
 
 impl Rest {
     /// Adds a surface that presses with `press` (N).
-    fn add(&mut self, push: &Push, resistance: &PairResistance, press: f64) {
+    fn add(&mut self, push: &Push, law: &Law, press: f64) {
         self.first = self.first.or(Some(push.force.map(|f| f / press)));
         self.load += press;
-        self.law.add(press, &resistance.law(1.0));
+        self.law.add(press, law);
         for a in 0..3 {
             self.resultant[a] += push.force[a];
             self.ground[a] += press * push.ground[a];
@@ -68,15 +67,14 @@ impl View<'_> {
         let volume = self.store.mass[i] * self.table.inverse_density(body);
         let of = |push: &Push| {
             let penalty = self.penalties[push.surface][body].as_ref();
-            let resistance = penalty.map(|p| p.resistance);
-            let resistance = resistance.filter(PairResistance::is_any)?;
+            let law = penalty.map(|p| p.friction).filter(Law::is_any)?;
             let press = norm(&push.force);
-            (press > 0.0).then_some((resistance, press))
+            (press > 0.0).then_some((law, press))
         };
         let mut rest = Rest::default();
         for push in &*pushes {
-            if let Some((resistance, press)) = of(push) {
-                rest.add(push, &resistance, press);
+            if let Some((law, press)) = of(push) {
+                rest.add(push, &law, press);
             }
         }
         let Some(first) = rest.first else {
@@ -94,9 +92,7 @@ impl View<'_> {
         } else {
             first
         };
-        let mut law = rest.law.over(load);
-        law.stiffness *= volume;
-        law.dashpot *= volume;
+        let law = rest.law.over(load).of_volume(volume);
         let v = &self.store.predicted_velocity[i];
         let velocity = std::array::from_fn(|a| v[a] - ground[a] / load);
         let friction = law.step(&before, &normal.map(|n| n * load), &normal, &velocity, dt);
