@@ -35,8 +35,23 @@ pub(crate) trait Mode: Listed + Sized {
     /// (N/m) of this particle.
     fn force(meeting: &Meeting<Self>, stiffness: &mut f64) -> Option<PairForce>;
 
-    /// Adds what friction and damping of the receiver `i` rest on.
-    fn normal_load(_view: &ContactView, _i: &Party, _neighbours: &[u32], _load: &mut NormalLoad) {}
+    /// Adds what friction and damping of the receiver `i` rest on: half of each force, if not said
+    /// otherwise.
+    fn normal_load(view: &ContactView, i: &Party, neighbours: &[u32], load: &mut NormalLoad) {
+        let here = Self::side(view, i);
+        for &other in neighbours {
+            let j = view.party(other);
+            let meeting = Meeting::<Self>::new(view, [i, &j], here);
+            if !meeting.pair.friction.is_any() {
+                continue;
+            }
+            if let Some(PairForce { force, loads, .. }) = Self::force(&meeting, &mut 0.0) {
+                let force = force.map(|f| 0.5 * f);
+                load.add(meeting.pair, [i, &j], loads[0], &force);
+                load.face(1.0, &force);
+            }
+        }
+    }
 }
 
 /// What a mode measures, chunk by chunk.

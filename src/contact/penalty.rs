@@ -11,7 +11,6 @@ mod boundary;
 
 use super::mode::{Found, Meeting, Mode, PairForce, Scene, fill, for_each_chunk};
 use super::pair::{Between, Constants};
-use super::resistance::NormalLoad;
 use super::view::{ContactView, Party};
 use crate::domain::Mirrors;
 use crate::model::{ContactClass, Penalty, PenaltyLaw};
@@ -135,22 +134,6 @@ impl Mode for Penalty {
             energy,
             loads: [0.5 * size; 2],
         })
-    }
-
-    /// Half of each push.
-    fn normal_load(view: &ContactView, i: &Party, neighbours: &[u32], load: &mut NormalLoad) {
-        for &other in neighbours {
-            let j = view.party(other);
-            let meeting = Meeting::<Self>::new(view, [i, &j], ());
-            if !meeting.pair.friction.is_any() {
-                continue;
-            }
-            if let Some(PairForce { force, loads, .. }) = Self::force(&meeting, &mut 0.0) {
-                let force = force.map(|f| 0.5 * f);
-                load.add(meeting.pair, [i, &j], loads[0], &force);
-                load.face(1.0, &force);
-            }
-        }
     }
 }
 

@@ -8,7 +8,7 @@ use crate::contact::view::{ContactView, Separation};
 use crate::model::{ContactClass, Overlap};
 use crate::neighbours::CHUNKS_AT_ONCE;
 use crate::numerics::vector::norm;
-use crate::particles::{ParticleStore, Scatter};
+use crate::particles::Scatter;
 
 /// A particle whose foreign fraction with current volumes exceeds this is enclosed.
 const ENCLOSED_FRACTION: f64 = 0.5;
@@ -129,49 +129,6 @@ pub(super) fn weigh(found: &mut Found<Overlap>, scene: &Scene) {
     );
 }
 
-/// Where measurements go.
-struct Fields<'a> {
-    fraction: Scatter<'a, f64>,
-    excess: Scatter<'a, f64>,
-    modulus: Scatter<'a, f64>,
-    touching: Scatter<'a, f64>,
-    slope: Scatter<'a, f64>,
-    enclosed: Scatter<'a, f64>,
-    /// With friction.
-    normal: Option<Scatter<'a, [f64; 3]>>,
-}
-
-impl<'a> Fields<'a> {
-    fn new(particles: &'a mut ParticleStore, friction: bool) -> Self {
-        Self {
-            fraction: Scatter::new(&mut particles.foreign_fraction),
-            excess: Scatter::new(&mut particles.contact_excess),
-            modulus: Scatter::new(&mut particles.contact_modulus),
-            touching: Scatter::new(&mut particles.touching_value),
-            slope: Scatter::new(&mut particles.contact_slope),
-            enclosed: Scatter::new(&mut particles.enclosed_time),
-            normal: friction.then(|| Scatter::new(&mut particles.contact_normal)),
-        }
-    }
-
-    #[inline]
-    fn store(&self, measured: &Measured) {
-        let (i, fraction) = (measured.particle, &measured.fraction);
-        // SAFETY: a particle is receiver in one task, and each thread has its own tasks.
-        unsafe {
-            *self.fraction.slot(i) = fraction.fraction;
-            *self.excess.slot(i) = fraction.excess;
-            *self.modulus.slot(i) = fraction.modulus;
-            *self.touching.slot(i) = fraction.touching;
-            *self.slope.slot(i) = fraction.slope;
-            *self.enclosed.slot(i) = measured.enclosed;
-            if let Some(normal) = &self.normal {
-                *normal.slot(i) = measured.normal;
-            }
-        }
-    }
-}
-
 /// Stores what has been measured; nothing of particles without foreign neighbours.
 pub(super) fn store(found: &Found<Overlap>, scene: &mut Scene) {
     let particles = &mut *scene.particles;
@@ -184,7 +141,37 @@ pub(super) fn store(found: &Found<Overlap>, scene: &mut Scene) {
         fill(field, 0.0);
     }
     fill(&mut particles.contact_normal, [0.0; 3]);
-    let fields = Fields::new(particles, scene.table.has_friction());
+    let fields = [
+        &mut particles.foreign_fraction,
+        &mut particles.contact_excess,
+        &mut particles.enclosed_time,
+        &mut particles.contact_modulus,
+        &mut particles.touching_value,
+        &mut particles.contact_slope,
+    ]
+    .map(|field| Scatter::new(field));
+    let friction = scene.table.has_friction();
+    let normals = friction.then(|| Scatter::new(&mut particles.contact_normal));
+    let store = |measured: &Measured| {
+        let (i, f) = (measured.particle, &measured.fraction);
+        let values = [
+            f.fraction,
+            f.excess,
+            measured.enclosed,
+            f.modulus,
+            f.touching,
+            f.slope,
+        ];
+        // SAFETY: a particle is receiver in one task, and each thread has its own tasks.
+        unsafe {
+            for (field, value) in fields.iter().zip(values) {
+                *field.slot(i) = value;
+            }
+            if let Some(normals) = &normals {
+                *normals.slot(i) = measured.normal;
+            }
+        }
+    };
     let chunks = found.par_iter().with_max_len(CHUNKS_AT_ONCE);
-    chunks.for_each(|chunk| chunk.iter().for_each(|measured| fields.store(measured)));
+    chunks.for_each(|chunk| chunk.iter().for_each(store));
 }
