@@ -49,6 +49,16 @@ impl Rest {
             self.ground[a] += press * push.ground[a];
         }
     }
+
+    /// The direction of the resultant, or of the first if they cancel; none without surfaces.
+    fn normal(&self) -> Option<[f64; 3]> {
+        let size = norm(&self.resultant);
+        if size > 0.0 {
+            Some(self.resultant.map(|f| f / size))
+        } else {
+            self.first
+        }
+    }
 }
 
 impl View<'_> {
@@ -77,21 +87,10 @@ impl View<'_> {
                 rest.add(push, &law, press);
             }
         }
-        let Some(first) = rest.first else {
+        let Some(normal) = rest.normal() else {
             return self.release(i, &before, dt);
         };
-        let Rest {
-            load,
-            resultant,
-            ground,
-            ..
-        } = rest;
-        let size = norm(&resultant);
-        let normal = if size > 0.0 {
-            resultant.map(|f| f / size)
-        } else {
-            first
-        };
+        let (load, ground) = (rest.load, rest.ground);
         let law = rest.law.over(load).of_volume(volume);
         let v = &self.store.predicted_velocity[i];
         let velocity = std::array::from_fn(|a| v[a] - ground[a] / load);
