@@ -136,11 +136,11 @@ impl Penalty {
         2.0 * self.h.max(self.reach)
     }
 
-    /// The approach speed of a particle at a gap (m) that changes at `rate` (m/s): that towards its
+    /// The approach speed of a particle at a separation (m) that changes at `rate` (m/s): that towards its
     /// mirror image, see `Separation::raise_approach`.
-    fn approach(&self, gap: f64, rate: f64) -> f64 {
-        let soft = 4.0 * (gap * gap) + 0.01 * (self.h * self.h);
-        (-4.0 * self.h * rate * gap.abs() / soft).max(0.0)
+    fn approach(&self, separation: f64, rate: f64) -> f64 {
+        let soft = 4.0 * (separation * separation) + 0.01 * (self.h * self.h);
+        (-4.0 * self.h * rate * separation.abs() / soft).max(0.0)
     }
 }
 
@@ -181,8 +181,8 @@ impl SurfaceForces {
             }
         }
         SurfaceFriction::clear(particles);
-        for hold in self.friction.iter().flatten() {
-            hold.store(particles);
+        for friction in self.friction.iter().flatten() {
+            friction.store(particles);
         }
     }
 
@@ -249,9 +249,9 @@ impl View<'_> {
         let x = &self.store.position[i];
         let local = placed.local(x);
         let escape = escape::escape(placed.surface, &local, penalty.reach, penalty.limit())?;
-        let gap = escape.foot.gap;
+        let separation = escape.foot.gap;
         // Stress points have no mass and no contact.
-        if gap >= penalty.h.max(penalty.reach) || self.store.mass[i] == 0.0 {
+        if separation >= penalty.h.max(penalty.reach) || self.store.mass[i] == 0.0 {
             return None;
         }
         let volume = self.store.mass[i] * self.table.inverse_density(body);
@@ -273,7 +273,7 @@ impl View<'_> {
             force,
             energy: 0.5 * stiffness * escape.depth2,
             stiffness: stiffness * escape.walls,
-            approach: penalty.approach(gap, rate),
+            approach: penalty.approach(separation, rate),
             ground: surface_v,
             heat: 0.0,
         })
