@@ -188,7 +188,7 @@ impl Simulation {
     fn begin(&mut self, comm: &Comm) -> Result<(), SetupError> {
         // The first pass finds the foreign fractions that contact is to forgive, and the work.
         self.evaluate(comm, 0.0);
-        let mut capped = [self.contact.set_touch_relief(&mut self.store, &self.lists)];
+        let mut capped = [self.contact.begin(&mut self.store, &self.lists)];
         comm.sum_i64(&mut capped);
         self.state.capped_reliefs = capped[0];
         let scratch = self.sph.scratch(self.store.owned());

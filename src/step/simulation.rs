@@ -182,7 +182,7 @@ impl Simulation {
         sph.forces(particles, lists, Side::Outer);
         timers.lap(Phase::Momentum);
         if contact.table.has_friction() {
-            contact.hold(particles, lists, dt);
+            contact.resist(particles, lists, dt);
             timers.lap(Phase::ContactForces);
             halo.exchange(comm, particles, HaloPhase::FRICTION);
             timers.lap(Phase::HaloStress);

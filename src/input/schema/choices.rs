@@ -44,40 +44,6 @@ choices! {
         /// h follows the density.
         Variable,
     }
-    /// Along what contact forces act.
-    DirectionName {
-        /// The line between particles.
-        Pair,
-        /// The normal of the surfaces.
-        Normal,
-    }
-    /// Contact mode.
-    ModeName {
-        /// Nothing.
-        None,
-        /// One continuum.
-        Kernel,
-        /// Contact potential.
-        Potential,
-        /// Overlap energy.
-        Overlap,
-        /// Penalty between boundary particles.
-        Penalty,
-    }
-    /// Law of the penalty force.
-    PenaltyLawName {
-        /// Depth to the power 3/2.
-        Hertz,
-        /// No more than what stops the approach in one step.
-        Pinball,
-    }
-    /// Range of the contact potential.
-    RangeName {
-        /// 2h.
-        Support,
-        /// Mean spacing.
-        Spacing,
-    }
     /// Form of the linear equation of state.
     FormName {
         /// ln(ρ/ρ₀).

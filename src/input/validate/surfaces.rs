@@ -9,12 +9,12 @@ use toml::Spanned;
 
 use super::axis;
 use super::check::{Allowed, Value, number};
-use super::contact::resistance;
 use super::loads::{Reader, given_name};
 use super::motion::{motion, rate};
 use super::shapes::wrong_length;
 use super::touch::direction;
 use crate::input::quantity::{Length, Placed};
+use crate::input::schema::contact::resistance;
 use crate::input::schema::{
     AxisName, CaseParams, NormalParams, PlaneParams, RotationParams, SideName, StlParams,
     SurfaceCylinderParams, SurfaceParams, SurfaceShapeParams, SurfaceSphereParams,
