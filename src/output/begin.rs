@@ -285,7 +285,8 @@ mod tests {
         let run = RunFolder::create(&comm, &path, "title = 1", false).unwrap();
         assert_eq!(run.status().unwrap().state, Phase::Running);
         let refused = RunFolder::create(&comm, &path, "", false).unwrap_err();
-        assert!(refused.is_users() && refused.to_string().contains("--force"));
+        let in_use = matches!(refused, OutputError::FolderInUse { .. });
+        assert!(in_use && refused.to_string().contains("--force"));
 
         write(run.snapshot(3));
         write(run.series());

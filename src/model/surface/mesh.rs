@@ -202,18 +202,6 @@ impl Mesh {
     pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         self.tree.bounds()
     }
-
-    /// Number of triangles.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.triangles.len()
-    }
-
-    /// Whether there are no triangles, which no mesh lets happen.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.triangles.is_empty()
-    }
 }
 
 /// Twice the area along the normal.
