@@ -291,7 +291,6 @@ const LONG_FUNCTIONS: &[(&str, &str, &str)] = &[
     ("contact/surfaces/friction.rs", "hold", ONE_FORMULA),
     ("contact/table.rs", "make_pair", IN_TURN),
     ("input/validate/contact.rs", "contacts", IN_TURN),
-    ("input/validate/mod.rs", "case", IN_TURN),
     ("run/tables.rs", "write", IN_TURN),
     ("sph/momentum.rs", "run", ONE_FORMULA),
     ("step/integrate.rs", "finish", ONE_FORMULA),

@@ -1,9 +1,12 @@
 //! Bodies: a shape filled with particles of one material on one lattice.
 
+use serde::Deserialize;
+
 use super::{Motion, Vec3};
 
 /// A coordinate axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Axis {
     /// First coordinate.
     X,
@@ -82,7 +85,8 @@ pub enum Shape {
 }
 
 /// How particles are stacked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum LatticeKind {
     /// Simple cubic (square in two dimensions).
     Cubic,

@@ -7,14 +7,15 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer, StrDeserial
 use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use toml::Spanned;
 
-use super::choices::{Direction, LatticeName};
+use super::choices::Direction;
 use crate::input::quantity::{Angle, Placed};
+use crate::model::LatticeKind;
 
 tables! {
     /// `lattice` as a table.
     LatticeTable {
         /// Kind of stacking.
-        kind: Spanned<LatticeName>,
+        kind: Spanned<LatticeKind>,
         /// Turn about z.
         angle: Option<Placed<Angle>>,
     }
@@ -40,7 +41,7 @@ optional_tables! {
 #[derive(Debug)]
 pub struct LatticeParams {
     /// Kind of stacking.
-    pub kind: LatticeName,
+    pub kind: LatticeKind,
     /// Turn about z.
     pub angle: Option<Placed<Angle>>,
 }
@@ -58,7 +59,7 @@ impl<'de> Deserialize<'de> for LatticeParams {
             }
 
             fn visit_str<E: Error>(self, word: &str) -> Result<LatticeParams, E> {
-                let kind = LatticeName::deserialize(StrDeserializer::new(word))?;
+                let kind = LatticeKind::deserialize(StrDeserializer::new(word))?;
                 Ok(LatticeParams { kind, angle: None })
             }
 
