@@ -286,15 +286,12 @@ const LONGEST_FUNCTION: usize = 60;
 
 /// Functions that may be longer: file, name, reason.
 const LONG_FUNCTIONS: &[(&str, &str, &str)] = &[
-    ("app/restart.rs", "resume", IN_TURN),
     ("contact/overlap.rs", "react", ONE_FORMULA),
     ("contact/surfaces/friction.rs", "hold", ONE_FORMULA),
     ("contact/table.rs", "make_pair", IN_TURN),
     ("input/validate/contact.rs", "contacts", IN_TURN),
-    ("run/tables.rs", "write", IN_TURN),
     ("sph/momentum.rs", "run", ONE_FORMULA),
     ("step/integrate.rs", "finish", ONE_FORMULA),
-    ("step/setup.rs", "populate", IN_TURN),
 ];
 
 /// One thing after the other, of which none is long.
