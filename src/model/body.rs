@@ -20,6 +20,12 @@ impl Axis {
     /// All three axes in order.
     pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
+    /// The axis of a [`Self::name`].
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|axis| axis.name() == name)
+    }
+
     /// 0, 1 or 2.
     #[must_use]
     pub fn index(self) -> usize {
