@@ -76,7 +76,8 @@ fn columns(dimension: usize, list: &[(&str, &str)]) -> Vec<Column> {
         let unit = unit_of_model(unit, dimension);
         match name.strip_suffix('*') {
             Some(stem) => {
-                all.extend(["x", "y", "z"].map(|axis| Column::new(&format!("{stem}{axis}"), unit)))
+                let names = ["x", "y", "z"].map(|axis| format!("{stem}{axis}"));
+                all.extend(names.iter().map(|name| Column::new(name, unit)));
             }
             None => all.push(Column::new(name, unit)),
         }

@@ -222,21 +222,22 @@ fn sph(params: &SphParams) -> Result<(SphOptions, f64), Complaint> {
         min: number!(params.smoothing_length_min, or 0.6, UpToOne),
         max: number!(params.smoothing_length_max, or 2.0, Within(1.0, 10.0)),
     };
+    let usual = SphOptions::default();
     let options = SphOptions {
         form: params
             .form
             .as_ref()
             .map_or_else(SphForm::default, |form| *form.get_ref()),
-        alpha: number!(params.alpha, or 1.0, NotNegative),
-        beta: number!(params.beta, or 2.0, NotNegative),
+        alpha: number!(params.alpha, or usual.alpha, NotNegative),
+        beta: number!(params.beta, or usual.beta, NotNegative),
         smoothing_length: match params.smoothing_length {
             None | Some(SmoothingName::Constant) => SmoothingLength::Constant,
             Some(SmoothingName::Variable) => bounds,
         },
-        artificial_stress: number!(params.artificial_stress, or 0.0, Within(0.0, 1.0)),
+        artificial_stress: number!(params.artificial_stress, or usual.artificial_stress, Within(0.0, 1.0)),
         balsara: params.balsara.unwrap_or(false),
-        conduction: number!(params.conduction, or 0.0, Within(0.0, 2.0)),
-        xsph: number!(params.xsph, or 0.0, Within(0.0, 1.0)),
+        conduction: number!(params.conduction, or usual.conduction, Within(0.0, 2.0)),
+        xsph: number!(params.xsph, or usual.xsph, Within(0.0, 1.0)),
     };
     Ok((options, number!(params.smoothing, or 1.3, Within(0.6, 3.0))))
 }
