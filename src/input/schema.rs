@@ -10,6 +10,7 @@ use super::forms::{Named, OneOrMany};
 use super::quantity::{
     Acceleration, Density, Extent, Length, Placed, SpecificEnergy, Time, Velocity,
 };
+use crate::model::{Axis, SphForm};
 
 #[macro_use]
 mod declare;
@@ -189,7 +190,7 @@ tables! {
         /// Middle of the axis; the origin if absent.
         centre: Option<Point>,
         /// Direction of the axis; z if absent.
-        axis: Option<Spanned<AxisName>>,
+        axis: Option<Spanned<Axis>>,
         /// Radius.
         radius: Spanned<Extent>,
         /// Length along the axis.
@@ -207,7 +208,7 @@ tables! {
     /// `[[symmetry]]`
     SymmetryParams {
         /// Normal.
-        axis: Spanned<AxisName>,
+        axis: Spanned<Axis>,
         /// Where the plane cuts the axis; zero if absent.
         position: Option<Placed<Length>>,
     }
@@ -217,7 +218,7 @@ optional_tables! {
     /// `[sph]`
     SphParams {
         /// How gradients are taken.
-        form: Option<Spanned<SphFormName>>,
+        form: Option<Spanned<SphForm>>,
         /// Smoothing length over particle spacing.
         smoothing: Option<Spanned<f64>>,
         /// Linear viscosity.
@@ -255,7 +256,7 @@ optional_tables! {
     /// `[domain]`
     DomainParams {
         /// Axis of the slabs.
-        axis: Option<Spanned<AxisName>>,
+        axis: Option<Spanned<Axis>>,
         /// Steps between two balances.
         balance_every: Option<Spanned<i64>>,
     }

@@ -11,7 +11,7 @@ use crate::contact::{Contact, ContactTable};
 use crate::diagnose::{
     Booked, PostMortem, Reason, RunState, StepSums, Totals, TroubleKind, fastest, is_explained,
 };
-use crate::domain::{Halo, Partition, Slabs};
+use crate::domain::{Halo, Partition};
 use crate::loads::Loads;
 use crate::model::{Case, SphForm, TroublePolicy};
 use crate::neighbours::Lists;
@@ -380,12 +380,6 @@ impl Simulation {
             halo.messages + migration.messages,
             halo.bytes + migration.bytes,
         )
-    }
-
-    /// The faces between slabs (m) and their axis.
-    #[must_use]
-    pub fn slabs(&self) -> &Slabs {
-        self.partition.slabs()
     }
 
     /// The contact table.

@@ -1,17 +1,8 @@
-//! Words to choose from.
+//! Words to choose from that make no choice of the model by themselves; those that do are read as it.
 
 use serde::Deserialize;
 
 choices! {
-    /// A coordinate axis.
-    AxisName {
-        /// First.
-        X,
-        /// Second.
-        Y,
-        /// Third.
-        Z,
-    }
     /// Side of a surface.
     SideName {
         /// Outside, as of a punch.
@@ -19,37 +10,12 @@ choices! {
         /// Inside, as of a container.
         Inside,
     }
-    /// Kind of lattice.
-    LatticeName {
-        /// Simple cubic.
-        Cubic,
-        /// Hexagonal close-packed.
-        Hexagonal,
-        /// Concentric rings.
-        Rings,
-    }
-    /// How the SPH sums take gradients.
-    SphFormName {
-        /// By the kernel's gradient.
-        Conventional,
-        /// By the corrected gradient.
-        Normalised,
-        /// By linear fits at stress points.
-        StressPoints,
-    }
     /// Smoothing length in the SPH sums.
     SmoothingName {
         /// h = h₀.
         Constant,
         /// h follows the density.
         Variable,
-    }
-    /// Form of the linear equation of state.
-    FormName {
-        /// ln(ρ/ρ₀).
-        Logarithmic,
-        /// ρ/ρ₀ − 1.
-        DensityRatio,
     }
 }
 
