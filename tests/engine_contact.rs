@@ -14,9 +14,8 @@ mod world;
 use common::random::Random;
 use whipple::contact::ContactTable;
 use whipple::model::{
-    Case, ContactMode, ContactPair, LatticeKind, Overlap, Potential, PotentialRange,
+    Case, ContactClass, ContactMode, ContactPair, LatticeKind, Overlap, Potential, PotentialRange,
 };
-use whipple::neighbours::ContactClass;
 use whipple::numerics::kernel::Kernel;
 use world::{Lists, SPACING, World, case_of, some_body};
 
@@ -37,27 +36,23 @@ fn blobs(case: &Case, seed: u64) -> Vec<(usize, [f64; 3])> {
 /// force, no torque.
 fn check_gradient(world: &mut World) {
     let lists = world.lists();
-    let reactions = world.reactions(&lists);
+    let (forces, by_body) = world.forces(&lists);
     let energy = world.energy();
-    let ledger: f64 = reactions.iter().map(|r| r.energy).sum();
+    let ledger: f64 = forces.iter().map(|f| f.energy).sum();
     assert!(energy > 0.0);
     assert!(
         (ledger - energy).abs() < 1e-13 * energy,
         "{ledger} is not {energy}"
     );
-    let by_body: f64 = reactions
-        .iter()
-        .flat_map(|r| &r.by_body)
-        .map(|b| b.energy)
-        .sum();
+    let by_body: f64 = by_body.iter().map(|b| b.energy).sum();
     assert!((by_body - energy).abs() < 1e-13 * energy);
 
-    let largest = reactions
+    let largest = forces
         .iter()
-        .flat_map(|r| r.force)
+        .flat_map(|f| f.force)
         .fold(0.0, |most: f64, f| most.max(f.abs()));
     let step = 1e-6 * SPACING;
-    for (i, reaction) in reactions.iter().enumerate() {
+    for (i, contact) in forces.iter().enumerate() {
         for axis in 0..world.case.dimension {
             world.shift(i, axis, step);
             let up = world.energy();
@@ -67,20 +62,20 @@ fn check_gradient(world: &mut World) {
             let slope = (up - down) / (2.0 * step);
             // Rounding of the energy by 1e-15 over the step, and the step squared.
             let bound = 1e-9 * energy / SPACING + 1e-7 * largest;
-            let error = (slope + reaction.force[axis]).abs();
+            let error = (slope + contact.force[axis]).abs();
             assert!(
                 error < bound,
                 "{slope} against {}: {error:e}",
-                reaction.force[axis]
+                contact.force[axis]
             );
         }
         for axis in world.case.dimension..3 {
-            assert_eq!(reaction.force[axis], 0.0);
+            assert_eq!(contact.force[axis], 0.0);
         }
     }
     let (mut force, mut torque) = ([0.0; 3], [0.0; 3]);
-    for (reaction, record) in reactions.iter().zip(&world.motion) {
-        let (f, x) = (reaction.force, record.position);
+    for (contact, record) in forces.iter().zip(&world.motion) {
+        let (f, x) = (contact.force, record.position);
         for a in 0..3 {
             let (b, c) = ((a + 1) % 3, (a + 2) % 3);
             force[a] += f[a];
@@ -109,11 +104,11 @@ fn check_pairs(world: &mut World, class: ContactClass) {
     }
 }
 
-/// Random relief for the particles of a world, small enough to leave some excess.
-fn give_relief(world: &mut World, seed: u64) {
+/// Random initial overlap offsets for the particles of a world, small enough to leave some excess.
+fn give_offsets(world: &mut World, seed: u64) {
     let mut random = Random::new(seed);
-    for relief in &mut world.store.touch_relief {
-        *relief = random.within(-0.1, 0.1).max(0.0);
+    for offset in &mut world.store.touch_relief {
+        *offset = random.within(-0.1, 0.1).max(0.0);
     }
 }
 
@@ -135,7 +130,7 @@ fn overlap_forces_are_the_gradient_of_the_energy() {
                 case.bodies[0].lattice.kind = LatticeKind::Hexagonal;
                 let particles = blobs(&case, seed);
                 let mut world = World::new(case, &particles);
-                give_relief(&mut world, seed);
+                give_offsets(&mut world, seed);
                 check_gradient(&mut world);
                 check_pairs(&mut world, ContactClass::Overlap);
             }
@@ -188,8 +183,8 @@ fn a_potential_of_the_spacing_sets_in_without_a_jump() {
             let particles = [(0, [0.0; 3]), (1, [spacings * side, 0.0, 0.0])];
             let mut world = World::new(case.clone(), &particles);
             let lists = world.lists();
-            let [first, second]: [f64; 2] =
-                [0, 1].map(|i| world.reactions(&lists)[i].force[0] / (modulus * area));
+            let forces = world.forces(&lists).0;
+            let [first, second] = [0, 1].map(|i| forces[i].force[0] / (modulus * area));
             assert!((first + second).abs() <= 1e-14 * second.abs());
             (second, world.energy() / (modulus * area * side))
         };
@@ -243,7 +238,7 @@ fn mixed_modes_are_the_gradient_of_one_energy() {
     ];
     let particles = blobs(&case, 3);
     let mut world = World::new(case, &particles);
-    give_relief(&mut world, 4);
+    give_offsets(&mut world, 4);
     check_gradient(&mut world);
 }
 
@@ -263,7 +258,7 @@ fn pair_forces_of_two_like_bodies_repel() {
             case.default_contact = mode.clone();
             let particles = blobs(&case, seed);
             let mut world = World::new(case, &particles);
-            give_relief(&mut world, seed);
+            give_offsets(&mut world, seed);
             let lists = world.lists();
             world.fractions(&lists);
             let mut pushed = 0;
@@ -342,11 +337,8 @@ fn largest_square_frequency(world: &mut World, lists: &Lists) -> f64 {
                 record.position =
                     std::array::from_fn(|a| home[i][a] + sign * step * direction[i][a]);
             }
-            world
-                .reactions(lists)
-                .iter()
-                .map(|r| r.force)
-                .collect::<Vec<_>>()
+            let forces = world.forces(lists).0;
+            forces.iter().map(|f| f.force).collect::<Vec<_>>()
         });
         let [up, down] = &mut force;
         value = 0.0;
@@ -388,11 +380,8 @@ fn the_stiffness_bounds_the_largest_eigenvalue() {
                     world.store.touch_relief[i] = f.fraction - f.touching - 1e-4;
                 }
             }
-            let stiffest = world
-                .reactions(&lists)
-                .iter()
-                .map(|r| r.stiffness)
-                .fold(0.0, f64::max);
+            let forces = world.forces(&lists).0;
+            let stiffest = forces.iter().map(|f| f.stiffness).fold(0.0, f64::max);
             let truth = largest_square_frequency(&mut world, &lists);
             let bound = stiffest / world.store.mass[0];
             let material = &world.case.materials[0];

@@ -7,7 +7,8 @@ use std::collections::BTreeMap;
 use common::cloud::{Cloud, Found, Recipe};
 use common::random::Random;
 use proptest::prelude::*;
-use whipple::neighbours::{Chunk, ContactClass, ForeignLists, ForeignTable, PairList};
+use whipple::model::ContactClass;
+use whipple::neighbours::{Chunk, ForeignLists, ForeignTable, PairList};
 use whipple::particles::Image;
 
 fn recipe() -> impl Strategy<Value = Recipe> {
@@ -93,18 +94,18 @@ fn foreign_table(bodies: usize, random: &mut Random) -> ForeignTable {
     let groups = bodies.div_ceil(2);
     let mut table = ForeignTable {
         bodies,
-        class: vec![ContactClass::None; bodies * bodies],
+        class: vec![None; bodies * bodies],
         reach2: vec![0.0; bodies * bodies],
         group_range: vec![0.0; groups * groups],
     };
     for a in 0..bodies {
         for b in 0..a {
             let class = [
-                ContactClass::None,
-                ContactClass::Potential,
-                ContactClass::Overlap,
+                None,
+                Some(ContactClass::Potential),
+                Some(ContactClass::Overlap),
             ][random.below(3)];
-            if a / 2 == b / 2 || class == ContactClass::None {
+            if a / 2 == b / 2 || class.is_none() {
                 continue;
             }
             let range = random.within(0.5, 4.0);
@@ -145,7 +146,7 @@ fn check_foreign_lists(cloud: &Cloud, found: &Found, table: &ForeignTable) {
                 .clone()
                 .filter(|&j| {
                     let pair = row + body(j);
-                    table.class[pair] == wanted
+                    table.class[pair] == Some(wanted)
                         && square_of_distance(found, receiver, j) < table.reach2[pair]
                 })
                 .collect();
@@ -153,10 +154,7 @@ fn check_foreign_lists(cloud: &Cloud, found: &Found, table: &ForeignTable) {
                 expected.insert(receiver, list);
             }
         }
-        let found = collect(lists.chunks().iter().map(|chunk| match wanted {
-            ContactClass::Overlap => &chunk.overlap,
-            _ => &chunk.potential,
-        }));
+        let found = collect(lists.chunks().iter().map(|chunk| chunk.of(wanted)));
         assert_eq!(found, expected);
     }
 }

@@ -5,7 +5,7 @@ mod common;
 
 use common::{body, case, sphere_on_plate};
 use whipple::comm::Comm;
-use whipple::contact::overlap::{self, RELIEF_LIMIT, relief};
+use whipple::contact::overlap::{self, OFFSET_LIMIT, initial_offset};
 use whipple::model::{Axis, Body, Case, LatticeKind, Shape, Vec3};
 use whipple::populate;
 use whipple::step::Simulation;
@@ -130,9 +130,9 @@ fn relief_is_capped_and_counted() {
         touching: 0.23,
         ..Default::default()
     };
-    assert_eq!(relief(&fraction(0.2)), (0.0, false));
-    assert_eq!(relief(&fraction(0.3)), (0.3 - 0.23, false));
-    assert_eq!(relief(&fraction(0.5)), (RELIEF_LIMIT - 0.23, true));
+    assert_eq!(initial_offset(&fraction(0.2)), (0.0, false));
+    assert_eq!(initial_offset(&fraction(0.3)), (0.3 - 0.23, false));
+    assert_eq!(initial_offset(&fraction(0.5)), (OFFSET_LIMIT - 0.23, true));
 
     let slab = block([0.0, 0.0, -6.0], [10.0, 10.0, 0.0], 1.0);
     let sunk = block([2.0, 2.0, -3.5], [8.0, 8.0, 4.5], 1.0);
@@ -141,8 +141,8 @@ fn relief_is_capped_and_counted() {
     let mut capped = 0;
     for i in 0..store.owned() {
         let level = store.touching_value[i] + store.touch_relief[i];
-        assert!(level <= RELIEF_LIMIT + 1e-15);
-        let beyond = store.foreign_fraction[i] > RELIEF_LIMIT;
+        assert!(level <= OFFSET_LIMIT + 1e-15);
+        let beyond = store.foreign_fraction[i] > OFFSET_LIMIT;
         capped += i64::from(beyond);
         assert_eq!(store.contact_excess[i] > 0.0, beyond);
     }

@@ -4,9 +4,9 @@
 mod exact_support;
 
 use exact_support::elastic::{self, Joint};
+use exact_support::shocks::impact;
 use exact_support::{ALUMINIUM, STEEL, medium};
 use whipple::exact::bars::{Bar, End, Row, Waves};
-use whipple::exact::finite_strain::impact;
 use whipple::material::LinearForm::{self, DensityRatio, Logarithmic};
 
 /// Steel on aluminium at ±`velocity`.

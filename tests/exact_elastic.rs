@@ -6,9 +6,9 @@
 mod exact_support;
 
 use exact_support::elastic::{Bar, End, Joint, Row, Waves};
+use exact_support::shocks::{Shocks, impact};
 use exact_support::{ALUMINIUM, STEEL, medium};
 use proptest::prelude::*;
-use whipple::exact::finite_strain::impact;
 use whipple::material::LinearForm;
 
 fn bar(material: [f64; 3], left: f64, length: f64, velocity: f64) -> Bar {

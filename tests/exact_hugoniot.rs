@@ -1,6 +1,10 @@
 //! Plane impact of Mie–Grüneisen materials against tabulated figures and the jump conditions.
 
-use whipple::exact::hugoniot::{Medium, free_surface_velocity, impact};
+#[path = "exact_support/release.rs"]
+mod release;
+
+use release::free_surface_velocity;
+use whipple::exact::hugoniot::{Medium, impact};
 use whipple::exact::plates::{Plate, profile};
 use whipple::material::library;
 

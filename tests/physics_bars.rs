@@ -1,10 +1,14 @@
 //! The paper's section 3.2: a steel bar on an aluminium bar, against the exact answers.
 
 mod physics_support;
+#[path = "exact_support/shocks.rs"]
+#[allow(dead_code, reason = "not every test file needs all")]
+mod shocks;
 
 use physics_support::bars::{axial_stress, force_on_right, in_order, interface_force};
 use physics_support::{median, ready, run_with, start};
-use whipple::exact::finite_strain::{Medium, impact};
+use shocks::{Shocks, impact};
+use whipple::exact::finite_strain::Medium;
 use whipple::step::Simulation;
 
 /// Final mean velocity of the aluminium in small strain (m/s).

@@ -134,7 +134,7 @@ fn least_slope(s: &Simulation) -> (f64, f64) {
     for i in (0..store.owned()).filter(|&i| store.contact_excess[i] > 0.0) {
         let body = store.body[i] as usize;
         for other in (0..s.case.bodies.len()).filter(|&b| b != body) {
-            let pair = s.contact().pair(body, other);
+            let pair = s.contact().overlap(body, other);
             let (modulus, excess) = (store.contact_modulus[i], store.contact_excess[i]);
             let fraction = store.foreign_fraction[i];
             let slope =

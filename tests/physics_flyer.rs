@@ -6,11 +6,14 @@
 //! (`Lattice` below), which [`leftover_is_the_lattice_sum`] holds to account.
 
 mod physics_support;
+#[path = "exact_support/release.rs"]
+mod release;
 
 use physics_support::{
     crossing, lattice_factor, median, ready, run_to, run_with, slope, sorted_by, start,
 };
-use whipple::exact::hugoniot::{Impact, Medium, free_surface_velocity, impact};
+use release::free_surface_velocity;
+use whipple::exact::hugoniot::{Impact, Medium, impact};
 use whipple::step::Simulation;
 
 /// Thickness of each plate (m).

@@ -2,11 +2,15 @@
 //! sections 3.2 and 3.3 of the paper, tension (`inputs/tension-strip`, `inputs/rubber-rings`).
 
 mod physics_support;
+#[path = "exact_support/shocks.rs"]
+#[allow(dead_code, reason = "not every test file needs all")]
+mod shocks;
 
 use physics_support::bars::{axial_stress, interface_force};
 use physics_support::{inline, median, ready, run_to, run_with, start};
+use shocks::impact;
 use whipple::diagnose::pieces::pieces;
-use whipple::exact::finite_strain::{Medium, impact};
+use whipple::exact::finite_strain::Medium;
 use whipple::step::Simulation;
 
 /// What carries stress: stress points, or all particles.

@@ -3,12 +3,16 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use shocks::Shocks;
 use tiny_skia::Pixmap;
 use whipple::exact::finite_strain::Medium;
 use whipple::material::LinearForm;
 use whipple::plot::{Along, Columns, Mark, ProfileRequest, Profiles, Source, Tables};
 
 mod plot_fixture;
+#[path = "exact_support/shocks.rs"]
+#[allow(dead_code, reason = "not every test file needs all")]
+mod shocks;
 use plot_fixture::{Case, Particles, plot, write};
 
 /// Two elastic bars of 4 mm that meet at ±200 m/s, with waves at 6 km/s.

@@ -102,19 +102,33 @@ fn a_quarter_is_worth_the_whole_at_the_end() {
     }
 }
 
-/// The two outermost layers of both bodies pair up behind the shock. Reported for constant and
-/// variable h: nearest neighbours within the body, by layer.
+/// The two outermost layers of both bodies pair up behind the shock, with constant and with variable h:
+/// nearest neighbours within the body, by layer. In the sphere they are .38 to .46 Δp apart at first, the
+/// fourth layer and deeper ones .63 to .66, with bounds in the middle.
 #[test]
 #[ignore = "slow: make validation"]
-fn pairing_of_the_outermost_layers_is_reported() {
+fn the_outermost_layers_pair_up() {
     for smoothing in ["constant", "variable"] {
         let mut s = main_job(&[&format!("sph.smoothing_length={smoothing}")]);
         let layers = Layers::new(&s);
         for time in [0.02e-6, 0.03e-6, 0.05e-6] {
             run_to(&mut s, time);
             for (name, body) in [("plate", PLATE), ("sphere", SPHERE)] {
-                let rows: Vec<String> = (0..8)
+                let found: Vec<(f64, f64)> = (0..8)
                     .map(|layer| layers.nearest(&s, body, layer))
+                    .collect();
+                if (time, body) == (0.02e-6, SPHERE) {
+                    assert!(
+                        found[..2].iter().all(|(_, median)| *median < 0.55),
+                        "{found:?}"
+                    );
+                    assert!(
+                        found[3..6].iter().all(|(_, median)| *median > 0.55),
+                        "{found:?}"
+                    );
+                }
+                let rows: Vec<String> = found
+                    .iter()
                     .map(|(least, median)| format!("{median:.2} ({least:.2})"))
                     .collect();
                 println!(

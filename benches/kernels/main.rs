@@ -9,8 +9,9 @@ use std::time::Duration;
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use scene::{COUNT, DENSITY, LENGTH, Scene, case, noise};
-use whipple::contact::{ContactTable, Reaction, overlap};
+use whipple::contact::{ContactTable, TaskForces, overlap};
 use whipple::material::{Material, PointBatch};
+use whipple::model::ContactClass;
 use whipple::neighbours::ForeignLists;
 use whipple::numerics::dispatch::{Vectorised, available};
 use whipple::numerics::exact_sum::ExactSum;
@@ -113,7 +114,7 @@ fn contact(criterion: &mut Criterion) {
         foreign
             .chunks()
             .iter()
-            .flat_map(|chunk| chunk.overlap.iter())
+            .flat_map(|chunk| chunk.of(ContactClass::Overlap).iter())
     };
     let mut group = group(criterion, "contact", pairs().count());
     group.bench_function("fractions", |bencher| {
@@ -134,13 +135,11 @@ fn contact(criterion: &mut Criterion) {
         scene.store.contact_slope[i] = fraction.slope;
     }
     group.bench_function("forces", |bencher| {
-        let (view, mut reaction) = (scene.contact(&table), Reaction::default());
+        let (view, mut forces) = (scene.contact(&table), TaskForces::default());
         bencher.iter(|| {
-            for (place, neighbours) in pairs() {
-                reaction.clear();
-                overlap::react::<false>(&view, place, neighbours, &mut reaction);
-                black_box(&reaction);
-            }
+            forces.clear();
+            forces.add::<false>(&view, ContactClass::Overlap, pairs());
+            black_box(&forces);
         });
     });
 }

@@ -13,6 +13,7 @@ use crate::run::launch::{Launch, complain, with_ranks};
 use crate::run::resume::{Origin, go_on, nothing_to_do, state_of};
 use crate::run::saved_case;
 use crate::run::say::say;
+use crate::step::RunState;
 
 /// Go on from a checkpoint, on any number of ranks
 ///
@@ -73,10 +74,8 @@ pub fn run(args: &RestartArgs) -> u8 {
             launch.start_threads(args.common.threads);
             read(comm, &args.from, named, listed)
         });
-        match found {
-            Ok(found) => resume(launch, args, found, lock.as_ref()),
-            Err(message) => complain(comm, &message),
-        }
+        let ended = found.and_then(|found| resume(launch, args, found, lock.as_ref()));
+        ended.unwrap_or_else(|message| complain(comm, &message))
     })
 }
 
@@ -227,48 +226,31 @@ fn refusal(error: &OutputError) -> String {
     format!("error: {error}{hint}")
 }
 
-fn resume(launch: &Launch, args: &RestartArgs, found: Found, lock: Option<&RunLock>) -> u8 {
+/// Goes on from what was found; gives the exit code, or what is complained of.
+fn resume(
+    launch: &Launch,
+    args: &RestartArgs,
+    found: Found,
+    lock: Option<&RunLock>,
+) -> Result<u8, String> {
     let comm = launch.comm;
-    let (checkpoint, restored) = (&found.checkpoint, &found.restored);
-    let place = checkpoint.display().to_string();
+    let place = found.checkpoint.display().to_string();
     let own = Some(&found.named.folder).filter(|_| found.named.own);
-    let settled = saved_case::settle(
-        comm,
-        own,
-        &place,
-        &restored.input,
-        &args.set,
-        args.accept_case,
-    );
-    let settled = match settled {
-        Ok(settled) => settled,
-        Err(message) => return complain(comm, &message),
-    };
+    let (input, set) = (&found.restored.input, &args.set);
+    let settled = saved_case::settle(comm, own, &place, input, set, args.accept_case)?;
     let case = &settled.case;
-    if let Err(error) = snapshot::quantities(&case.output.fields) {
-        return complain(comm, &format!("error: {error}"));
-    }
+    snapshot::quantities(&case.output.fields).map_err(|error| format!("error: {error}"))?;
     if let Some(message) = args.common.shortage(comm, case) {
-        return complain(comm, &message);
+        return Err(message);
     }
-    let state = match state_of(restored) {
-        Ok(state) => state,
-        Err(error) => {
-            let error = OutputError::OtherVersion {
-                path: checkpoint.clone(),
-                by: restored.by.clone(),
-                what: format!("its saved state cannot be read ({error})"),
-            };
-            return complain(comm, &format!("error: {error}"));
-        }
-    };
-    let closed = comm.any(comm.is_root() && is_closed(checkpoint));
+    let state = found.state()?;
+    let closed = comm.any(comm.is_root() && is_closed(&found.checkpoint));
     if closed && let Some(reason) = nothing_to_do(case, &state, args.common.until) {
         if comm.is_root() {
             say(&format!("nothing to do: {place} is at {reason}"));
         }
         comm.barrier();
-        return 0;
+        return Ok(0);
     }
     let mut warnings = settled.warnings.clone();
     warnings.extend(lock.iter().flat_map(|lock| lock.warnings.iter().cloned()));
@@ -281,18 +263,25 @@ fn resume(launch: &Launch, args: &RestartArgs, found: Found, lock: Option<&RunLo
         folder: found.named.folder,
         own: found.named.own,
     };
-    go_on(
-        launch,
-        &args.common,
-        settled,
-        state,
-        origin,
-        args.force,
-        warnings,
-    )
+    let (common, force) = (&args.common, args.force);
+    Ok(go_on(
+        launch, common, settled, state, origin, force, warnings,
+    ))
 }
 
 impl Found {
+    /// The state of the run.
+    fn state(&self) -> Result<RunState, String> {
+        state_of(&self.restored).map_err(|error| {
+            let error = OutputError::OtherVersion {
+                path: self.checkpoint.clone(),
+                by: self.restored.by.clone(),
+                what: format!("its saved state cannot be read ({error})"),
+            };
+            format!("error: {error}")
+        })
+    }
+
     /// What is said of the checkpoints that were passed over.
     fn tell_passed_over(&self) -> impl Iterator<Item = String> {
         let fate = if self.named.own {

@@ -181,14 +181,6 @@ impl Comm {
         }
     }
 
-    /// Ends every rank at once.
-    pub fn abort(&self, code: i32) -> ! {
-        match &self.world {
-            Some(world) => world.abort(code),
-            None => std::process::exit(code),
-        }
-    }
-
     fn reduce<T>(&self, values: &mut [T], operation: SystemOperation)
     where
         T: bytemuck::Pod + mpi::traits::Equivalence,

@@ -1,7 +1,7 @@
 //! From the results of tasks to the store and the sums.
 
-use super::sums::{ContactSums, Met};
-use super::task::{Booked, Task, Weighed};
+use super::force::{ContactForce, TaskForces};
+use super::sums::ContactSums;
 use crate::particles::Scatter;
 
 /// Work for a foreign neighbour, in neighbours of the pair sums, as timed on the quarter impact: its
@@ -11,33 +11,7 @@ const FOREIGN_WORK: usize = 90;
 /// A foreign particle closer than this (in mean spacings) counts as interpenetrated.
 const INTERPENETRATION_DISTANCE: f64 = 0.28;
 
-/// Where foreign fractions go.
-pub(super) struct Fractions<'a> {
-    pub fraction: Scatter<'a, f64>,
-    pub excess: Scatter<'a, f64>,
-    pub modulus: Scatter<'a, f64>,
-    pub touching: Scatter<'a, f64>,
-    pub slope: Scatter<'a, f64>,
-    pub enclosed: Scatter<'a, f64>,
-}
-
-impl Fractions<'_> {
-    #[inline]
-    pub fn store(&self, weighed: &Weighed) {
-        let (i, fraction) = (weighed.base, &weighed.fraction);
-        // SAFETY: a particle is receiver in one task, and each thread has its own tasks.
-        unsafe {
-            *self.fraction.slot(i) = fraction.fraction;
-            *self.excess.slot(i) = fraction.excess;
-            *self.modulus.slot(i) = fraction.modulus;
-            *self.touching.slot(i) = fraction.touching;
-            *self.slope.slot(i) = fraction.slope;
-            *self.enclosed.slot(i) = weighed.enclosed;
-        }
-    }
-}
-
-/// Where reactions go, and what of the particles the sums need.
+/// Where contact forces go, and what of the particles the sums need.
 pub(super) struct Books<'a> {
     pub acceleration: Scatter<'a, [f64; 3]>,
     pub energy: Scatter<'a, f64>,
@@ -60,37 +34,30 @@ pub(super) struct Books<'a> {
 
 impl Books<'_> {
     #[inline]
-    pub fn book(&self, task: &Task, sums: &mut ContactSums) {
-        for booked in &task.reactions {
-            self.book_particle(booked);
-            let i = booked.base;
-            sums.energy.add(booked.energy);
-            sums.add_plane_force(&booked.from_mirrors);
-            let inside = booked.closest < INTERPENETRATION_DISTANCE
+    pub fn book(&self, forces: &TaskForces, sums: &mut ContactSums) {
+        for force in &forces.particles {
+            self.book_particle(force);
+            let i = force.particle;
+            sums.energy.add(force.energy);
+            sums.add_plane_force(&force.from_mirrors);
+            let inside = force.closest < INTERPENETRATION_DISTANCE
                 || self.enclosed_time[i] > self.enclosed_limit;
-            sums.note_particle(inside, booked.closest, self.foreign_fraction[i]);
+            sums.note_particle(inside, force.closest, self.foreign_fraction[i]);
         }
-        for (i, body, reaction) in &task.by_body {
+        for force in &forces.by_body {
+            let i = force.particle;
             // SAFETY: a particle is receiver in one task, and each thread has its own tasks.
-            let stiffness = unsafe { *self.stiffness.slot(*i) };
-            let dt = if stiffness > 0.0 {
-                2.0 * self.safety * (self.mass[*i] / stiffness).sqrt()
-            } else {
-                f64::INFINITY
-            };
-            let met = Met {
-                body: *body,
-                excess: self.excess[*i],
-                dt,
-                particles: [self.id[*i], self.id[reaction.nearest]],
-            };
-            sums.note_pair(self.bodies, &met, reaction);
+            let stiffness = unsafe { *self.stiffness.slot(i) };
+            let dt =
+                (stiffness > 0.0).then(|| 2.0 * self.safety * (self.mass[i] / stiffness).sqrt());
+            let particles = [self.id[i], self.id[force.nearest]];
+            sums.note_pair(self.bodies, force, particles, self.excess[i], dt);
         }
     }
 
     #[inline]
-    fn book_particle(&self, booked: &Booked) {
-        let (i, mass) = (booked.base, self.mass[booked.base]);
+    fn book_particle(&self, contact: &ContactForce) {
+        let (i, mass) = (contact.particle, self.mass[contact.particle]);
         let per_mass = 1.0 / mass;
         // SAFETY: a particle is receiver in one task, and each thread has its own tasks.
         let (acceleration, energy, stiffness, heating, approach, work) = unsafe {
@@ -104,18 +71,18 @@ impl Books<'_> {
             )
         };
         for a in 0..3 {
-            acceleration[a] += booked.force[a] * per_mass;
+            acceleration[a] += contact.force[a] * per_mass;
         }
-        let more = u32::try_from(FOREIGN_WORK * booked.neighbours);
+        let more = u32::try_from(FOREIGN_WORK * contact.neighbours);
         *work = work.saturating_add(more.unwrap_or(u32::MAX));
-        *energy += booked.energy;
-        *stiffness += booked.stiffness;
+        *energy += contact.energy;
+        *stiffness += contact.stiffness;
         if self.friction {
-            *heating += booked.heat * per_mass;
+            *heating += contact.heat * per_mass;
             // A step of m/c is stable: as if it were that of a spring, 2 √(m/k).
-            let rate = booked.dashpot * per_mass;
+            let rate = contact.dashpot * per_mass;
             *stiffness += 4.0 * mass * (rate * rate);
         }
-        *approach = approach.max(booked.approach);
+        *approach = approach.max(contact.approach);
     }
 }

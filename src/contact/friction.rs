@@ -9,7 +9,8 @@
 
 use crate::numerics::vector::dot;
 
-/// Coefficients of one particle.
+/// Coefficients of one particle; of springs and dashpots also over volume, of a pair of bodies or of a
+/// body on a rigid surface.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Law {
     /// Coefficient of friction while it sticks.
@@ -22,11 +23,11 @@ pub struct Law {
     pub dashpot: f64,
 }
 
-/// What friction remembers of the last step.
+/// Friction slip, which is state from step to step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Memory {
+pub struct Slip {
     /// Elastic tangential displacement (m).
-    pub slip: [f64; 3],
+    pub displacement: [f64; 3],
     /// Tangential velocity (m/s).
     pub rate: [f64; 3],
     /// Whether the kinetic limit holds, until the velocity turns against the slip.
@@ -35,11 +36,11 @@ pub struct Memory {
 
 /// What friction and damping do.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Grip {
+pub struct Friction {
     /// Force on the particle (N).
     pub force: [f64; 3],
-    /// What it remembers.
-    pub memory: Memory,
+    /// The slip after the step.
+    pub slip: Slip,
     /// What becomes heat (W).
     pub power: f64,
     /// What the spring holds (J).
@@ -64,6 +65,40 @@ fn turned(v: &[f64; 3], n: &[f64; 3]) -> [f64; 3] {
 }
 
 impl Law {
+    /// Whether there is any friction or damping.
+    #[inline]
+    #[must_use]
+    pub fn is_any(&self) -> bool {
+        self.static_friction > 0.0 || self.dashpot > 0.0
+    }
+
+    /// That of a volume, of one over volume.
+    #[must_use]
+    pub fn of_volume(mut self, volume: f64) -> Self {
+        self.stiffness *= volume;
+        self.dashpot *= volume;
+        self
+    }
+
+    /// Adds `weight` times another.
+    pub fn add(&mut self, weight: f64, other: &Self) {
+        self.static_friction += weight * other.static_friction;
+        self.kinetic_friction += weight * other.kinetic_friction;
+        self.stiffness += weight * other.stiffness;
+        self.dashpot += weight * other.dashpot;
+    }
+
+    /// All coefficients over `weights`.
+    #[must_use]
+    pub fn over(&self, weights: f64) -> Self {
+        Self {
+            static_friction: self.static_friction / weights,
+            kinetic_friction: self.kinetic_friction / weights,
+            stiffness: self.stiffness / weights,
+            dashpot: self.dashpot / weights,
+        }
+    }
+
     /// A step of `dt` (s; zero at the start of a case) under the contact force `pressing` (N) on a
     /// face of the unit normal `normal`, which points into the particle, at the velocity `velocity`
     /// (m/s) against what it lies on.
@@ -73,25 +108,25 @@ impl Law {
     #[must_use]
     pub fn step(
         &self,
-        memory: &Memory,
+        before: &Slip,
         pressing: &[f64; 3],
         normal: &[f64; 3],
         velocity: &[f64; 3],
         dt: f64,
-    ) -> Grip {
+    ) -> Friction {
         let size = dot(pressing, pressing).sqrt();
         let per_size = if size > 0.0 { 1.0 / size } else { 0.0 };
         let approach = -dot(velocity, pressing) * per_size;
         let push = (self.dashpot * approach).clamp(-size, size);
         let load = dot(pressing, normal).max(0.0) * (1.0 + push * per_size);
         let rate = tangential(velocity, normal);
-        let held = turned(&memory.slip, normal);
-        let before = turned(&memory.rate, normal);
-        let wanted: [f64; 3] = std::array::from_fn(|a| held[a] + 0.5 * dt * (before[a] + rate[a]));
+        let held = turned(&before.displacement, normal);
+        let last = turned(&before.rate, normal);
+        let wanted: [f64; 3] = std::array::from_fn(|a| held[a] + 0.5 * dt * (last[a] + rate[a]));
         let size = dot(&wanted, &wanted).sqrt();
         let turns_back = dot(&wanted, &rate) <= 0.0;
         let breaks = self.stiffness * size > self.static_friction * load;
-        let sliding = breaks || (memory.sliding && !turns_back);
+        let sliding = breaks || (before.sliding && !turns_back);
         let friction = if sliding {
             self.kinetic_friction
         } else {
@@ -104,10 +139,10 @@ impl Law {
         let lost: f64 = (0..3)
             .map(|a| (held[a] + slip[a]) * (wanted[a] - slip[a]))
             .sum();
-        let mut grip = Grip {
+        let mut resisting = Friction {
             force: slip.map(|x| -self.stiffness * x),
-            memory: Memory {
-                slip,
+            slip: Slip {
+                displacement: slip,
                 rate,
                 sliding,
             },
@@ -119,10 +154,10 @@ impl Law {
         let drag = (self.dashpot * speed).min(left);
         let per_speed = if speed > 0.0 { drag / speed } else { 0.0 };
         for a in 0..3 {
-            grip.force[a] += push * per_size * pressing[a] - per_speed * rate[a];
+            resisting.force[a] += push * per_size * pressing[a] - per_speed * rate[a];
         }
-        grip.power += drag * speed + push * approach;
-        grip
+        resisting.power += drag * speed + push * approach;
+        resisting
     }
 }
 
@@ -142,32 +177,32 @@ mod tests {
     #[test]
     fn work_becomes_energy_of_the_spring_and_heat() {
         let (load, dt, normal) = ([0.0, 0.0, 10.0], 1e-3, [0.0, 0.0, 1.0]);
-        let mut memory = Memory::default();
+        let mut slip = Slip::default();
         let (mut work, mut heat, mut most) = (0.0, 0.0, 0.0_f64);
-        let mut last = Grip::default();
+        let mut last = Friction::default();
         for step in 0..400 {
             let angle = 0.02 * f64::from(step);
             let velocity = [4e-4 * angle.cos(), 3e-4 * angle.sin(), 1.0];
-            let grip = LAW.step(&memory, &load, &normal, &velocity, dt);
+            let friction = LAW.step(&slip, &load, &normal, &velocity, dt);
             for a in 0..2 {
-                let way = 0.5 * dt * (memory.rate[a] + grip.memory.rate[a]);
-                work += 0.5 * (last.force[a] + grip.force[a]) * way;
+                let way = 0.5 * dt * (slip.rate[a] + friction.slip.rate[a]);
+                work += 0.5 * (last.force[a] + friction.force[a]) * way;
             }
-            heat += grip.power * dt;
-            most = most.max(dot(&grip.force, &grip.force).sqrt());
-            assert!(grip.force[2] == 0.0 && grip.power >= 0.0);
-            (memory, last) = (grip.memory, grip);
+            heat += friction.power * dt;
+            most = most.max(dot(&friction.force, &friction.force).sqrt());
+            assert!(friction.force[2] == 0.0 && friction.power >= 0.0);
+            (slip, last) = (friction.slip, friction);
         }
         assert!(heat > 0.0 && (work + last.energy + heat).abs() < 1e-12 * heat);
         // Half a newton in a step.
         assert!((3.5..=4.0).contains(&most), "{most}");
-        assert!(memory.sliding);
+        assert!(slip.sliding);
         assert!((dot(&last.force, &last.force).sqrt() - 3.0).abs() < 1e-12);
         // It stops, is pushed back, and sticks again.
-        let back = LAW.step(&memory, &load, &normal, &last.force.map(|f| 1e-5 * f), dt);
-        assert!(!back.memory.sliding && back.power == 0.0);
+        let back = LAW.step(&slip, &load, &normal, &last.force.map(|f| 1e-5 * f), dt);
+        assert!(!back.slip.sliding && back.power == 0.0);
         // The load goes: what the spring held becomes heat.
-        let free = LAW.step(&back.memory, &[0.0; 3], &normal, &[0.0; 3], dt);
+        let free = LAW.step(&back.slip, &[0.0; 3], &normal, &[0.0; 3], dt);
         assert!(free.force == [0.0; 3] && free.power > 0.0);
     }
 
@@ -179,23 +214,23 @@ mod tests {
             ..LAW
         };
         for speed in [-1.0, -0.05, 0.02, 0.3] {
-            let grip = law.step(
-                &Memory::default(),
+            let friction = law.step(
+                &Slip::default(),
                 &[4.0, 0.0, 0.0],
                 &[1.0, 0.0, 0.0],
                 &[speed, 0.0, 0.0],
                 1e-3,
             );
-            assert!((grip.force[0] + (100.0 * speed).clamp(-4.0, 4.0)).abs() < 1e-14);
-            assert!((grip.power + grip.force[0] * speed).abs() < 1e-14);
+            assert!((friction.force[0] + (100.0 * speed).clamp(-4.0, 4.0)).abs() < 1e-14);
+            assert!((friction.power + friction.force[0] * speed).abs() < 1e-14);
         }
-        let grip = law.step(
-            &Memory::default(),
+        let friction = law.step(
+            &Slip::default(),
             &[10.0, 0.0, 0.0],
             &[1.0, 0.0, 0.0],
             &[0.0, 0.01, 0.0],
             0.0,
         );
-        assert_eq!(grip.force, [0.0, -1.0, 0.0]);
+        assert_eq!(friction.force, [0.0, -1.0, 0.0]);
     }
 }

@@ -1,18 +1,19 @@
-//! Contact in the step: foreign fractions before the exchange of stresses, forces after it.
+//! Contact in the step: measurements before the exchange of stresses, forces after it.
 
 use rayon::prelude::*;
 
-use super::books::{Books, Fractions};
+use super::ContactTable;
+use super::books::Books;
 use super::connectivity::Connectivity;
-use super::hold::Hold;
+use super::mode::{Measurements, Scene, fill};
 use super::sums::ContactSums;
 use super::surfaces::SurfaceForces;
 use super::task::Task;
-use super::{ContactTable, ContactView, overlap};
+use super::view::ContactView;
 use crate::loads::Loads;
 use crate::model::Case;
-use crate::neighbours::{CHUNKS_AT_ONCE, Lists};
-use crate::particles::{GRAIN, HaloPhase, ParticleStore, Scatter};
+use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, ForeignChunk, Lists};
+use crate::particles::{HaloPhase, ParticleStore, Scatter};
 
 /// Contact of a case, with what it keeps from step to step.
 pub struct Contact {
@@ -25,6 +26,7 @@ pub struct Contact {
     pub(crate) sums: ContactSums,
     /// The same by thread, until they are joined.
     parts: Vec<ContactSums>,
+    measurements: Measurements,
     tasks: Vec<Task>,
     bodies: usize,
     /// How long a particle may be enclosed before it counts as interpenetrated (s).
@@ -45,6 +47,7 @@ impl Contact {
             surfaces: SurfaceForces::new(case),
             sums: ContactSums::default(),
             parts: vec![ContactSums::default(); rayon::current_num_threads()],
+            measurements: Measurements::default(),
             tasks: Vec::new(),
             bodies: case.bodies.len(),
             enclosed_limit: if speed > 0.0 {
@@ -64,6 +67,7 @@ impl Contact {
         self.connectivity.memory()
             + self.surfaces.memory()
             + self.sums.memory()
+            + self.measurements.memory()
             + parts
             + size_of::<Task>() * self.tasks.capacity()
             + tasks
@@ -72,90 +76,41 @@ impl Contact {
     /// What halo particles need before the forces of stress and contact.
     #[must_use]
     pub fn halo_of_forces(&self) -> HaloPhase {
-        if self.table.has_pairs() {
-            HaloPhase::FORCES
-        } else {
-            HaloPhase::STRESS
-        }
+        self.table.halo
     }
 
-    /// Foreign fraction, excess and their weights of every particle with foreign neighbours, and the
-    /// normals of boundary particles, after a step `dt` (s).
+    /// What forces read of particles with foreign neighbours, after a step `dt` (s).
     pub fn measure(&mut self, particles: &mut ParticleStore, lists: &Lists, dt: f64) {
+        if self.table.is_active() {
+            self.measurements.measure(&mut Scene {
+                particles,
+                lists,
+                table: &self.table,
+                dt,
+            });
+        }
+    }
+
+    /// Lets the start of a case be free of force; returns of how many particles of this rank not all
+    /// could be forgiven. Before the first forces.
+    pub fn begin(&mut self, particles: &mut ParticleStore, lists: &Lists) -> i64 {
         if !self.table.is_active() {
-            return;
+            return 0;
         }
-        self.weigh(particles, lists, dt);
-        self.find_boundaries(particles, lists);
-        // What else there is of a fraction nobody reads without excess.
-        for field in [
-            &mut particles.foreign_fraction,
-            &mut particles.contact_excess,
-            &mut particles.enclosed_time,
-        ] {
-            fill(field, 0.0);
-        }
-        fill(&mut particles.contact_normal, [0.0; 3]);
-        for &(i, normal) in self.tasks.iter().flat_map(|task| &task.normals) {
-            particles.contact_normal[i] = normal;
-        }
-        let target = Fractions {
-            fraction: Scatter::new(&mut particles.foreign_fraction),
-            excess: Scatter::new(&mut particles.contact_excess),
-            modulus: Scatter::new(&mut particles.contact_modulus),
-            touching: Scatter::new(&mut particles.touching_value),
-            slope: Scatter::new(&mut particles.contact_slope),
-            enclosed: Scatter::new(&mut particles.enclosed_time),
-        };
-        let tasks = self.tasks.par_iter().with_max_len(CHUNKS_AT_ONCE);
-        tasks.for_each(|task| {
-            task.fractions
-                .iter()
-                .for_each(|weighed| target.store(weighed));
-        });
-    }
-
-    /// Foreign fractions after a step of `dt` (s).
-    fn weigh(&mut self, particles: &ParticleStore, lists: &Lists, dt: f64) {
-        let friction = self.table.has_friction();
-        let chunks = lists.foreign();
-        self.tasks.resize_with(chunks.len(), Task::default);
-        let view = ContactView::new(particles, lists, &self.table, 0.0);
-        self.tasks
-            .par_iter_mut()
-            .zip(chunks)
-            .with_max_len(CHUNKS_AT_ONCE)
-            .for_each(|(task, chunk)| task.weigh(&view, chunk, friction, dt));
-    }
-
-    /// Normals of the boundary particles that `penalty` contact may press on.
-    fn find_boundaries(&mut self, particles: &mut ParticleStore, lists: &Lists) {
-        if !self.table.has_penalty() {
-            return;
-        }
-        let view = ContactView::new(particles, lists, &self.table, 0.0);
-        self.tasks
-            .par_iter_mut()
-            .zip(lists.foreign())
-            .zip(lists.chunks())
-            .with_max_len(CHUNKS_AT_ONCE)
-            .for_each(|((task, foreign), own)| task.find_boundaries(&view, foreign, own));
-        fill(&mut particles.boundary_normal, [0.0; 3]);
-        for (i, normal) in self.tasks.iter().flat_map(|t| &t.boundary) {
-            particles.boundary_normal[*i] = *normal;
-        }
+        self.measurements.begin(&mut Scene {
+            particles,
+            lists,
+            table: &self.table,
+            dt: 0.0,
+        })
     }
 
     /// Friction and damping after a step of `dt` (s), of every particle in contact: halo particles must
     /// hear before the forces.
-    pub fn hold(&mut self, particles: &mut ParticleStore, lists: &Lists, dt: f64) {
-        let view = ContactView::new(particles, lists, &self.table, dt);
-        self.tasks
-            .par_iter_mut()
-            .zip(lists.foreign())
-            .zip(lists.chunks())
-            .with_max_len(CHUNKS_AT_ONCE)
-            .for_each(|((task, foreign), own)| task.hold(&view, foreign, own));
+    pub fn resist(&mut self, particles: &mut ParticleStore, lists: &Lists, dt: f64) {
+        self.for_each_task(particles, lists, dt, |task, view, foreign, own| {
+            task.resist(view, foreign, own);
+        });
         for field in [
             &mut particles.slip,
             &mut particles.slip_rate,
@@ -171,31 +126,15 @@ impl Contact {
         ] {
             fill(field, 0.0);
         }
-        for &(i, Hold { load, grip }) in self.tasks.iter().flat_map(|t| &t.holds) {
-            particles.slip[i] = grip.memory.slip;
-            particles.slip_rate[i] = grip.memory.rate;
-            particles.sliding[i] = u32::from(grip.memory.sliding);
-            particles.friction_force[i] = grip.force;
+        for &(i, load, friction) in self.tasks.iter().flat_map(|task| &task.friction) {
+            particles.slip[i] = friction.slip.displacement;
+            particles.slip_rate[i] = friction.slip.rate;
+            particles.sliding[i] = u32::from(friction.slip.sliding);
+            particles.friction_force[i] = friction.force;
             particles.friction_load[i] = load;
-            particles.friction_power[i] = grip.power;
-            particles.friction_energy[i] = grip.energy;
+            particles.friction_power[i] = friction.power;
+            particles.friction_energy[i] = friction.energy;
         }
-    }
-
-    /// Gives every particle the relief that makes it start free of force; returns how many had
-    /// to be capped on this rank. For the start of a case, before the first forces.
-    pub fn set_touch_relief(&mut self, particles: &mut ParticleStore, lists: &Lists) -> i64 {
-        if !self.table.is_active() {
-            return 0;
-        }
-        self.weigh(particles, lists, 0.0);
-        let mut capped = 0;
-        for weighed in self.tasks.iter().flat_map(|t| &t.fractions) {
-            let (relief, was_capped) = overlap::relief(&weighed.fraction);
-            particles.touch_relief[weighed.base] = relief;
-            capped += i64::from(was_capped);
-        }
-        capped
     }
 
     /// Contact forces after a step `dt` (s), the energy of contact, and what the time step must know
@@ -205,26 +144,36 @@ impl Contact {
         if !self.table.is_active() {
             return;
         }
-        self.react(particles, lists, dt);
+        let friction = self.table.has_friction();
+        self.for_each_task(particles, lists, dt, |task, view, foreign, _| {
+            if friction {
+                task.add_forces::<true>(view, foreign);
+            } else {
+                task.add_forces::<false>(view, foreign);
+            }
+        });
         self.book(particles);
         let (table, energy) = (&self.table, &mut self.sums.energy);
         self.surfaces.act(particles, table, loads, dt, energy);
     }
 
-    fn react(&mut self, particles: &ParticleStore, lists: &Lists, dt: f64) {
-        let friction = self.table.has_friction();
+    /// Calls `work` for each task with its foreign pairs and the lists of the own body.
+    fn for_each_task(
+        &mut self,
+        particles: &ParticleStore,
+        lists: &Lists,
+        dt: f64,
+        work: impl Fn(&mut Task, &ContactView, &ForeignChunk, &Chunk) + Sync,
+    ) {
+        let chunks = lists.foreign();
+        self.tasks.resize_with(chunks.len(), Task::default);
         let view = ContactView::new(particles, lists, &self.table, dt);
         self.tasks
             .par_iter_mut()
-            .zip(lists.foreign())
+            .zip(chunks)
+            .zip(lists.chunks())
             .with_max_len(CHUNKS_AT_ONCE)
-            .for_each(|(task, chunk)| {
-                if friction {
-                    task.react::<true>(&view, chunk);
-                } else {
-                    task.react::<false>(&view, chunk);
-                }
-            });
+            .for_each(|((task, foreign), own)| work(task, &view, foreign, own));
     }
 
     /// What contact does to each particle, and the sums of it. Each thread takes every so manieth
@@ -255,18 +204,11 @@ impl Contact {
         parts.with_max_len(1).for_each(|(thread, part)| {
             part.clear();
             for task in tasks.iter().skip(thread).step_by(threads) {
-                books.book(task, part);
+                books.book(&task.forces, part);
             }
         });
         for part in &self.parts {
             self.sums.merge(part);
         }
     }
-}
-
-/// Sets all elements, on all threads.
-fn fill<T: Copy + Send + Sync>(values: &mut [T], value: T) {
-    values
-        .par_chunks_mut(16 * GRAIN)
-        .for_each(|chunk| chunk.fill(value));
 }

@@ -6,43 +6,73 @@
 //! off, `W_ij^{n−1} − W(Δp̄)^{n−1}` in place of `W_ij^{n−1}`, so that it sets in at zero there (theory
 //! page "Contact").
 
-use super::{ContactView, Gap, Reaction};
+use super::mode::{Meeting, Mode, PairForce};
+use super::pair::{Between, Constants};
+use super::view::{ContactView, Party};
+use crate::model::{ContactDirection, Potential, PotentialRange};
 
-/// Adds what the foreign neighbours do to the receiver at `place` to `reaction`.
-pub fn react(view: &ContactView, place: u32, neighbours: &[u32], reaction: &mut Reaction) {
-    let i = view.party(place);
-    for &other in neighbours {
-        let j = view.party(other);
-        let gap = Gap::between(&i, &j);
-        let pair = view.table.pair(i.body, j.body);
-        let kernel = &pair.kernel;
-        let ratio = kernel.value(gap.distance) * pair.inverse_kernel;
-        let slope = -kernel.slope(gap.distance) * pair.inverse_kernel;
-        let curvature = kernel.curvature(gap.distance).abs() * pair.inverse_kernel;
-        let strength = pair.potential * i.volume * j.volume;
-        let n = f64::from(pair.exponent);
-        let steeper = power(ratio, pair.exponent - 1);
+/// Constants of an ordered pair of bodies.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct PotentialPair {
+    /// K (Pa/m^d).
+    stiffness: f64,
+    exponent: i32,
+    /// W/W(Δp̄) at which the force sets in, 1 where the range is the mean spacing and 0 where it is
+    /// the support.
+    floor: f64,
+    /// 1/W(Δp̄) (m^d).
+    inverse_kernel: f64,
+    /// Whether forces act along the normals of the surfaces.
+    along_normal: bool,
+}
+
+impl Constants for Potential {
+    type Pair = PotentialPair;
+
+    fn pair(&self, of: &Between) -> PotentialPair {
+        PotentialPair {
+            stiffness: self.stiffness * of.modulus / of.kernel.power(of.pair.spacing),
+            exponent: i32::try_from(self.exponent).unwrap_or(i32::MAX),
+            floor: match self.range {
+                PotentialRange::Support => 0.0,
+                PotentialRange::Spacing => 1.0,
+            },
+            inverse_kernel: 1.0 / of.pair.kernel.value(of.pair.spacing),
+            along_normal: self.direction == ContactDirection::Normal,
+        }
+    }
+}
+
+impl Mode for Potential {
+    type Measured = ();
+    type Side = ();
+
+    fn side(_: &ContactView, _: &Party) {}
+
+    #[inline(always)]
+    fn force(meeting: &Meeting<Self>, stiffness: &mut f64) -> Option<PairForce> {
+        let (own, kernel) = (meeting.own, &meeting.pair.kernel);
+        let distance = meeting.separation.distance;
+        let ratio = kernel.value(distance) * own.inverse_kernel;
+        let slope = -kernel.slope(distance) * own.inverse_kernel;
+        let curvature = kernel.curvature(distance).abs() * own.inverse_kernel;
+        let strength = own.stiffness * meeting.i.volume * meeting.j.volume;
+        let n = f64::from(own.exponent);
+        let steeper = power(ratio, own.exponent - 1);
         // With either range: the step must be short enough before the force sets in.
-        reaction.stiffness += 2.0
+        *stiffness += 2.0
             * strength
             * n
-            * ((n - 1.0) * power(ratio, pair.exponent - 2) * (slope * slope) + steeper * curvature);
-        let floor = pair.floor;
-        let (energy, force) = if ratio > floor {
-            let rise = ratio * steeper - floor * (1.0 + n * (ratio - floor));
-            (
-                0.5 * strength * rise,
-                strength * n * (steeper - floor) * slope,
-            )
-        } else {
-            (0.0, 0.0)
-        };
-        let force = if pair.along_normal {
-            gap.along_normal(force, view.normal(place, other))
-        } else {
-            gap.along(force)
-        };
-        reaction.book(&j, &gap, pair, force, energy);
+            * ((n - 1.0) * power(ratio, own.exponent - 2) * (slope * slope) + steeper * curvature);
+        (ratio > own.floor).then(|| {
+            let rise = ratio * steeper - own.floor * (1.0 + n * (ratio - own.floor));
+            let force = strength * n * (steeper - own.floor) * slope;
+            PairForce {
+                force: meeting.along(force, own.along_normal),
+                energy: 0.5 * strength * rise,
+                loads: [0.0; 2],
+            }
+        })
     }
 }
 

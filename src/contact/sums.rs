@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::BodyReaction;
+use super::force::BodyForce;
 use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 
 /// What a pair of bodies has come to in an interval of steps.
@@ -210,47 +210,44 @@ impl ContactSums {
         self.foreign_fraction = self.foreign_fraction.max(fraction);
     }
 
-    /// Books what another body does to a particle.
+    /// Books what another body does to a particle with an excess and a contact step (s), if there is
+    /// force, and the identities of the particle and the nearest one of that body.
     #[inline]
-    pub fn note_pair(&mut self, bodies: usize, met: &Met, reaction: &BodyReaction) {
-        let pair = self.pairs.entry(pair_key(bodies, met.body, reaction.body));
-        if met.body <= reaction.body {
+    pub fn note_pair(
+        &mut self,
+        bodies: usize,
+        force: &BodyForce,
+        [particle, nearest]: [u64; 2],
+        excess: f64,
+        dt: Option<f64>,
+    ) {
+        let [body, other] = force.bodies;
+        let pair = self.pairs.entry(pair_key(bodies, body, other));
+        if body <= other {
             for a in 0..3 {
-                pair.force[a].add(reaction.force[a]);
+                pair.force[a].add(force.force[a]);
             }
         }
-        pair.energy.add(reaction.energy);
-        if reaction.heat != 0.0 {
-            pair.heat.add(reaction.heat);
+        pair.energy.add(force.energy);
+        if force.heat != 0.0 {
+            pair.heat.add(force.heat);
         }
-        pair.touching += i64::from(met.excess > 0.0);
-        let [a, b] = met.particles;
-        let in_order = if met.body == reaction.body {
-            a <= b
-        } else {
-            met.body < reaction.body
-        };
+        pair.touching += i64::from(excess > 0.0);
+        let in_order = (body, particle) <= (other, nearest);
         pair.extremes.join(&PairExtremes {
             peak_force: 0.0,
-            largest_excess: met.excess,
-            closest: reaction.closest.is_finite().then_some(Closest {
-                distance: reaction.closest,
-                particles: if in_order { [a, b] } else { [b, a] },
+            largest_excess: excess,
+            closest: force.closest.is_finite().then_some(Closest {
+                distance: force.closest,
+                particles: if in_order {
+                    [particle, nearest]
+                } else {
+                    [nearest, particle]
+                },
             }),
-            contact_dt: met.dt.is_finite().then_some(met.dt),
+            contact_dt: dt.filter(|dt| dt.is_finite()),
         });
     }
-}
-
-/// A particle that meets another body.
-pub(crate) struct Met {
-    pub body: usize,
-    /// Its excess.
-    pub excess: f64,
-    /// Its contact step (s), infinite without force.
-    pub dt: f64,
-    /// Its identity, and that of the nearest particle of the other body.
-    pub particles: [u64; 2],
 }
 
 /// The smaller one of those there are.

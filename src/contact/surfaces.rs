@@ -6,9 +6,10 @@ use rayon::prelude::*;
 mod escape;
 mod friction;
 
-use friction::{Resisting, SurfaceHold};
+use friction::SurfaceFriction;
 
 use super::ContactTable;
+use super::friction::Law;
 use crate::loads::{Loads, Placed, SurfaceStep};
 use crate::model::{Body, Case, RigidSurface};
 use crate::numerics::exact_sum::ExactSum;
@@ -40,7 +41,8 @@ struct Penalty {
     /// Where it begins, ½Δp (m).
     reach: f64,
     h: f64,
-    pub resisting: Resisting,
+    /// Over volume: the spring that sticks (Pa/m²), `2 ζ √(κ M ρ₀)/Δp` (Pa s/m²).
+    friction: Law,
 }
 
 /// The surfaces of a case and what they do, kept from step to step.
@@ -58,7 +60,7 @@ pub(crate) struct SurfaceForces {
     /// By task.
     pushes: Vec<Vec<Push>>,
     /// The same of friction and damping; empty without.
-    holds: Vec<Vec<SurfaceHold>>,
+    friction: Vec<Vec<SurfaceFriction>>,
 }
 
 impl SurfaceForces {
@@ -86,17 +88,17 @@ impl SurfaceForces {
                 Vec::new()
             },
             pushes: Vec::new(),
-            holds: Vec::new(),
+            friction: Vec::new(),
         }
     }
 
     pub(super) fn memory(&self) -> usize {
         let penalties = self.penalties.iter().map(Vec::capacity).sum::<usize>();
         let pushes = self.pushes.iter().map(Vec::capacity).sum::<usize>();
-        let holds = self.holds.iter().map(Vec::capacity).sum::<usize>();
+        let friction = self.friction.iter().map(Vec::capacity).sum::<usize>();
         penalties * size_of::<Option<Penalty>>()
             + pushes * size_of::<Push>()
-            + holds * size_of::<SurfaceHold>()
+            + friction * size_of::<SurfaceFriction>()
             + size_of::<f64>() * self.sticks.capacity()
             + 4 * size_of::<ExactSum>() * self.sums.capacity()
             + size_of::<ExactSum>() * self.heat.capacity()
@@ -113,17 +115,17 @@ impl Penalty {
     fn new(case: &Case, body: &Body, surface: &RigidSurface) -> Self {
         let spacing = body.lattice.spacing;
         let modulus = surface.stiffness * case.materials[body.material].p_wave_modulus();
-        let resistance = &surface.resistance;
+        let input = &surface.resistance;
         let critical = 2.0 * (modulus * case.initial_density(body)).sqrt() / spacing;
         Self {
             stiffness: modulus / (spacing * spacing),
             reach: 0.5 * spacing,
             h: body.smoothing_length,
-            resisting: Resisting {
-                static_friction: resistance.static_friction,
-                kinetic_friction: resistance.kinetic_friction,
-                stick: stick(case, body),
-                dashpot: resistance.damping * critical,
+            friction: Law {
+                static_friction: input.static_friction,
+                kinetic_friction: input.kinetic_friction,
+                stiffness: stick(case, body),
+                dashpot: input.damping * critical,
             },
         }
     }
@@ -134,11 +136,11 @@ impl Penalty {
         2.0 * self.h.max(self.reach)
     }
 
-    /// The approach speed of a particle at a gap (m) that changes at `rate` (m/s): that towards its
-    /// mirror image, see `contact::Gap::approach`.
-    fn approach(&self, gap: f64, rate: f64) -> f64 {
-        let soft = 4.0 * (gap * gap) + 0.01 * (self.h * self.h);
-        (-4.0 * self.h * rate * gap.abs() / soft).max(0.0)
+    /// The approach speed of a particle at a separation (m) that changes at `rate` (m/s): that towards its
+    /// mirror image, see `Separation::raise_approach`.
+    fn approach(&self, separation: f64, rate: f64) -> f64 {
+        let soft = 4.0 * (separation * separation) + 0.01 * (self.h * self.h);
+        (-4.0 * self.h * rate * separation.abs() / soft).max(0.0)
     }
 }
 
@@ -178,9 +180,9 @@ impl SurfaceForces {
                 heat.add(push.heat);
             }
         }
-        SurfaceHold::clear(particles);
-        for hold in self.holds.iter().flatten() {
-            hold.store(particles);
+        SurfaceFriction::clear(particles);
+        for friction in self.friction.iter().flatten() {
+            friction.store(particles);
         }
     }
 
@@ -195,7 +197,7 @@ impl SurfaceForces {
         let owned = particles.owned();
         let chunks = owned.div_ceil(GRAIN);
         self.pushes.resize(chunks, Vec::new());
-        self.holds.resize(chunks, Vec::new());
+        self.friction.resize(chunks, Vec::new());
         let view = View {
             store: particles,
             table,
@@ -204,16 +206,16 @@ impl SurfaceForces {
             penalties: &self.penalties,
             sticks: &self.sticks,
         };
-        let friction = !self.heat.is_empty();
-        let chunks = self.pushes.par_iter_mut().zip(&mut self.holds);
-        chunks.enumerate().for_each(|(chunk, (pushes, holds))| {
+        let has_friction = !self.heat.is_empty();
+        let chunks = self.pushes.par_iter_mut().zip(&mut self.friction);
+        chunks.enumerate().for_each(|(chunk, (pushes, friction))| {
             pushes.clear();
-            holds.clear();
+            friction.clear();
             for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(owned) {
                 let first = pushes.len();
                 pushes.extend((0..view.surfaces.len()).filter_map(|n| view.push(i, n)));
-                if friction {
-                    holds.extend(view.hold(i, &mut pushes[first..], dt));
+                if has_friction {
+                    friction.extend(view.friction(i, &mut pushes[first..], dt));
                 }
             }
         });
@@ -247,9 +249,9 @@ impl View<'_> {
         let x = &self.store.position[i];
         let local = placed.local(x);
         let escape = escape::escape(placed.surface, &local, penalty.reach, penalty.limit())?;
-        let gap = escape.foot.gap;
+        let separation = escape.foot.gap;
         // Stress points have no mass and no contact.
-        if gap >= penalty.h.max(penalty.reach) || self.store.mass[i] == 0.0 {
+        if separation >= penalty.h.max(penalty.reach) || self.store.mass[i] == 0.0 {
             return None;
         }
         let volume = self.store.mass[i] * self.table.inverse_density(body);
@@ -271,7 +273,7 @@ impl View<'_> {
             force,
             energy: 0.5 * stiffness * escape.depth2,
             stiffness: stiffness * escape.walls,
-            approach: penalty.approach(gap, rate),
+            approach: penalty.approach(separation, rate),
             ground: surface_v,
             heat: 0.0,
         })
@@ -289,7 +291,7 @@ mod tests {
             stiffness: 3e11,
             reach: 0.5e-3,
             h: 1.3e-3,
-            resisting: Resisting::default(),
+            friction: Law::default(),
         };
         let approach = penalty.approach(0.5e-3, -10.0);
         let expected = 1.3e-3 * 20.0 * 1e-3 / (1e-6 + 0.01 * 1.69e-6);

@@ -1,7 +1,6 @@
-//! Conserved sums and ledgers of a run, what tells that it goes wrong, and measures of what an impact
+//! Conserved sums and ledgers of a run, what tells that it goes wrong, and the pieces that an impact
 //! leaves behind.
 
-pub mod hole;
 mod instability;
 mod ledger;
 mod limits;

@@ -1,5 +1,5 @@
 //! Plane impact of Mie–Grüneisen materials without strength: shock states, the match of pressure
-//! and velocity at the interface, and release to a free surface.
+//! and velocity at the interface.
 //!
 //! With shock speed U, particle velocity u and `η = u/U = 1 − ρ₀/ρ`, the Hugoniot of the material
 //! `U = c₀ + [s₁ + s₂ η + s₃ η²] u` gives `u = c₀ η/K`, `U = c₀/K`, `K = 1 − s₁ η − s₂ η² − s₃ η³`.
@@ -9,9 +9,6 @@
 
 use super::bisect;
 use crate::material::{Eos, Material, MieGruneisen};
-
-/// Steps of the fourth-order integration along a release isentrope.
-const RELEASE_STEPS: u32 = 1000;
 
 /// A medium at rest at its reference density, without pressure or energy.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,43 +81,9 @@ impl Medium {
         }
     }
 
-    /// Velocity gained by isentropic release of a shocked state to zero pressure (m/s), so that
-    /// a free surface moves at `particle_velocity + release_velocity`.
-    ///
-    /// Riemann integral `∫ dp/(ρ c)` along `dρ/dp = 1/c²`, `de/dp = p/(ρ c)²` from the shocked
-    /// pressure to zero, by Runge–Kutta of fourth order.
-    #[must_use]
-    pub fn release_velocity(&self, shock: &Shock) -> f64 {
-        let step = -shock.pressure / f64::from(RELEASE_STEPS);
-        let mut state = [shock.density, shock.specific_energy, 0.0];
-        for i in 0..RELEASE_STEPS {
-            let p = shock.pressure + f64::from(i) * step;
-            let k1 = self.along_isentrope(p, state);
-            let k2 = self.along_isentrope(p + 0.5 * step, moved(state, k1, 0.5 * step));
-            let k3 = self.along_isentrope(p + 0.5 * step, moved(state, k2, 0.5 * step));
-            let k4 = self.along_isentrope(p + step, moved(state, k3, step));
-            for (j, value) in state.iter_mut().enumerate() {
-                *value += step / 6.0 * (k1[j] + 2.0 * (k2[j] + k3[j]) + k4[j]);
-            }
-        }
-        -state[2]
-    }
-
     /// `K = 1 − s₁ η − s₂ η² − s₃ η³`.
     fn denominator(&self, eta: f64) -> f64 {
         1.0 - eta * (self.eos.s1 + eta * (self.eos.s2 + eta * self.eos.s3))
-    }
-
-    /// Derivatives of `[ρ, e, ∫ dp/(ρ c)]` by pressure, on the isentrope.
-    fn along_isentrope(&self, p: f64, [rho, e, _]: [f64; 3]) -> [f64; 3] {
-        let at = self.eos.response(self.reference_density, rho, e);
-        let c_squared = at.dp_drho + p / (rho * rho) * at.dp_de;
-        let impedance = rho * c_squared.sqrt();
-        [
-            1.0 / c_squared,
-            p / (impedance * impedance),
-            1.0 / impedance,
-        ]
     }
 }
 
@@ -137,18 +100,4 @@ pub fn impact(flyer: &Medium, target: &Medium, speed: f64) -> Impact {
         flyer: flyer.shock(speed - interface_velocity),
         target,
     }
-}
-
-/// Velocity of the free back surface of the target (m/s), before any release from elsewhere.
-#[must_use]
-pub fn free_surface_velocity(target: &Medium, impact: &Impact) -> f64 {
-    impact.interface_velocity + target.release_velocity(&impact.target)
-}
-
-fn moved(state: [f64; 3], slope: [f64; 3], by: f64) -> [f64; 3] {
-    [
-        state[0] + by * slope[0],
-        state[1] + by * slope[1],
-        state[2] + by * slope[2],
-    ]
 }

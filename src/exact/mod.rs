@@ -13,7 +13,8 @@ pub mod riemann;
 const BISECTIONS: usize = 200;
 
 /// The root of a function that is not positive at `low` and not negative at `high`.
-fn bisect(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
+#[must_use]
+pub fn bisect(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (low + high);
         if middle <= low || middle >= high {

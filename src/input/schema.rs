@@ -10,15 +10,18 @@ use super::forms::{Named, OneOrMany};
 use super::quantity::{
     Acceleration, Density, Extent, Length, Placed, SpecificEnergy, Time, Velocity,
 };
+use crate::model::{Axis, SphForm};
 
 #[macro_use]
 mod declare;
 mod choices;
+pub mod contact;
 mod materials;
 mod short;
 mod surfaces;
 mod trouble;
 pub use choices::*;
+pub use contact::{ContactParams, PairParams};
 pub use materials::*;
 pub use short::*;
 pub use surfaces::*;
@@ -187,7 +190,7 @@ tables! {
         /// Middle of the axis; the origin if absent.
         centre: Option<Point>,
         /// Direction of the axis; z if absent.
-        axis: Option<Spanned<AxisName>>,
+        axis: Option<Spanned<Axis>>,
         /// Radius.
         radius: Spanned<Extent>,
         /// Length along the axis.
@@ -205,30 +208,9 @@ tables! {
     /// `[[symmetry]]`
     SymmetryParams {
         /// Normal.
-        axis: Spanned<AxisName>,
+        axis: Spanned<Axis>,
         /// Where the plane cuts the axis; zero if absent.
         position: Option<Placed<Length>>,
-    }
-
-    /// `[[contact.pair]]`
-    PairParams {
-        /// Names of two bodies.
-        bodies: Spanned<Vec<Spanned<String>>>,
-        /// What happens where they meet; as for all others if absent.
-        mode: Option<ModeName>,
-        /// Coefficients of friction.
-        friction: Option<Spanned<FrictionParams>>,
-        /// Share of critical damping.
-        damping: Option<Spanned<f64>>,
-        /// Parameters of the mode `overlap`.
-        #[serde(default)]
-        overlap: OverlapParams,
-        /// Parameters of the mode `potential`.
-        #[serde(default)]
-        potential: PotentialParams,
-        /// Parameters of the mode `penalty`.
-        #[serde(default)]
-        penalty: PenaltyParams,
     }
 }
 
@@ -236,7 +218,7 @@ optional_tables! {
     /// `[sph]`
     SphParams {
         /// How gradients are taken.
-        form: Option<Spanned<SphFormName>>,
+        form: Option<Spanned<SphForm>>,
         /// Smoothing length over particle spacing.
         smoothing: Option<Spanned<f64>>,
         /// Linear viscosity.
@@ -274,61 +256,9 @@ optional_tables! {
     /// `[domain]`
     DomainParams {
         /// Axis of the slabs.
-        axis: Option<Spanned<AxisName>>,
+        axis: Option<Spanned<Axis>>,
         /// Steps between two balances.
         balance_every: Option<Spanned<i64>>,
-    }
-
-    /// `[contact]`
-    ContactParams {
-        /// Mode of all pairs that have no own.
-        mode: Option<ModeName>,
-        /// Coefficients of friction.
-        friction: Option<Spanned<FrictionParams>>,
-        /// Share of critical damping.
-        damping: Option<Spanned<f64>>,
-        /// Contact of a body with itself.
-        self_contact: Option<Spanned<SelfContactParams>>,
-        /// Parameters of the mode `overlap`.
-        overlap: OverlapParams,
-        /// Parameters of the mode `potential`.
-        potential: PotentialParams,
-        /// Parameters of the mode `penalty`.
-        penalty: PenaltyParams,
-        /// Pairs with a mode or parameters of their own.
-        pair: Vec<PairParams>,
-    }
-
-    /// `contact.overlap`
-    OverlapParams {
-        /// Stiffness κ.
-        stiffness: Option<Spanned<f64>>,
-        /// Stiffness `κ_c` of the core.
-        core_stiffness: Option<Spanned<f64>>,
-        /// Radius of the core in mean spacings.
-        core_radius: Option<Spanned<f64>>,
-        /// Along what it acts.
-        direction: Option<Spanned<DirectionName>>,
-    }
-
-    /// `contact.potential`
-    PotentialParams {
-        /// Stiffness k.
-        stiffness: Option<Spanned<f64>>,
-        /// Exponent n.
-        exponent: Option<Spanned<i64>>,
-        /// Range of the force.
-        range: Option<Spanned<RangeName>>,
-        /// Along what it acts.
-        direction: Option<Spanned<DirectionName>>,
-    }
-
-    /// `contact.penalty`
-    PenaltyParams {
-        /// Stiffness κ.
-        stiffness: Option<Spanned<f64>>,
-        /// Law of the force.
-        law: Option<PenaltyLawName>,
     }
 
     /// `[output]`

@@ -1,7 +1,7 @@
 //! The constants of a material by the names that the input gives them.
 
+use super::declare::{Constants, Listed};
 use super::eos::{Eos, LinearForm};
-use super::point::Constants;
 use super::{Material, ThermalConstants};
 
 /// One constant.
@@ -21,10 +21,6 @@ pub enum Value {
     /// A choice.
     Word(&'static str),
 }
-
-const PRESSURE: &str = "Pa";
-const ENERGY: &str = "J/kg";
-const PLAIN: &str = "";
 
 impl Material {
     /// All constants of the material, each at a key of the input.
@@ -75,47 +71,11 @@ fn group(law: &str, rows: Constants) -> impl Iterator<Item = Constant> {
 
 fn eos(eos: &Eos) -> (&'static str, Constants) {
     match eos {
-        Eos::Linear(law) => (
-            "eos.linear",
-            vec![("bulk_modulus", law.bulk_modulus, PRESSURE)],
-        ),
-        Eos::MieGruneisen(law) => (
-            "eos.mie_gruneisen",
-            vec![
-                ("c0", law.c0, "m/s"),
-                ("s1", law.s1, PLAIN),
-                ("s2", law.s2, PLAIN),
-                ("s3", law.s3, PLAIN),
-                ("gamma0", law.gamma0, PLAIN),
-                ("b", law.b, PLAIN),
-            ],
-        ),
-        Eos::Tait(law) => (
-            "eos.tait",
-            vec![("b", law.b, PRESSURE), ("gamma", law.gamma, PLAIN)],
-        ),
-        Eos::Tillotson(law) => (
-            "eos.tillotson",
-            vec![
-                ("a", law.a, PLAIN),
-                ("b", law.b, PLAIN),
-                ("bulk_modulus", law.bulk_modulus, PRESSURE),
-                ("quadratic_modulus", law.quadratic_modulus, PRESSURE),
-                ("alpha", law.alpha, PLAIN),
-                ("beta", law.beta, PLAIN),
-                ("e0", law.e0, ENERGY),
-                ("e_iv", law.e_iv, ENERGY),
-                ("e_cv", law.e_cv, ENERGY),
-            ],
-        ),
-        Eos::IdealGas(law) => (
-            "eos.ideal_gas",
-            vec![
-                ("gamma", law.gamma, PLAIN),
-                ("stiffening_pressure", law.stiffening_pressure, PRESSURE),
-                ("reference_pressure", law.reference_pressure, PRESSURE),
-            ],
-        ),
+        Eos::Linear(law) => ("eos.linear", vec![("bulk_modulus", law.bulk_modulus, "Pa")]),
+        Eos::MieGruneisen(law) => ("eos.mie_gruneisen", law.constants()),
+        Eos::Tait(law) => ("eos.tait", law.constants()),
+        Eos::Tillotson(law) => ("eos.tillotson", law.constants()),
+        Eos::IdealGas(law) => ("eos.ideal_gas", law.constants()),
     }
 }
 

@@ -4,6 +4,8 @@
 //! made once for each batch, never for each point. They act in the order that [`Law`] states. Stress is positive in tension, pressure in
 //! compression: `σ = −p I + S`. A NaN in a point's state gives NaN at that point, no panic.
 
+#[macro_use]
+mod declare;
 pub mod constants;
 pub mod eos;
 pub mod library;
@@ -11,6 +13,7 @@ mod point;
 pub mod thermal;
 
 pub use constants::{Constant, Value};
+pub use declare::{Constants, Listed};
 pub use eos::{Eos, IdealGas, Linear, LinearForm, MieGruneisen, Tait, Tillotson};
 pub use point::*;
 pub(crate) use point::{point_fields, point_lanes};

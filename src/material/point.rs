@@ -15,11 +15,12 @@ mod steinberg_guinan;
 mod viscous;
 mod von_mises;
 
+use super::declare::Listed;
 pub(crate) use batch::point_lanes;
 pub use batch::{LANES, Lanes, PointBatch, PointField};
 pub use elastic::Elastic;
 pub use johnson_cook::JohnsonCook;
-pub use law::{Conditions, Constants, Contradiction, Law};
+pub use law::{Conditions, Contradiction, Law};
 use law::{failure_laws, strength_laws};
 pub use neo_hookean::NeoHookean;
 pub use spall::Spall;

@@ -1,9 +1,12 @@
 //! Bodies: a shape filled with particles of one material on one lattice.
 
+use serde::Deserialize;
+
 use super::{Motion, Vec3};
 
 /// A coordinate axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Axis {
     /// First coordinate.
     X,
@@ -16,6 +19,12 @@ pub enum Axis {
 impl Axis {
     /// All three axes in order.
     pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
+
+    /// The axis of a [`Self::name`].
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|axis| axis.name() == name)
+    }
 
     /// 0, 1 or 2.
     #[must_use]
@@ -82,7 +91,8 @@ pub enum Shape {
 }
 
 /// How particles are stacked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum LatticeKind {
     /// Simple cubic (square in two dimensions).
     Cubic,

@@ -1,4 +1,28 @@
 //! Contact between pairs of bodies, as chosen by the user.
+//!
+//! Modes with forces are registered in [`contact_modes`]. Each has its parameters in a file here, the
+//! table of its keys in one of `input/schema/contact/`, and its forces in one of `contact/`.
+
+mod overlap;
+mod penalty;
+mod potential;
+
+pub use overlap::Overlap;
+pub use penalty::{Penalty, PenaltyLaw};
+pub use potential::{Potential, PotentialRange};
+
+/// Passes the modes that have forces to the macro `$then`: name in the input, and parameters. Forces are
+/// added in this order.
+macro_rules! contact_modes {
+    ($then:ident) => {
+        $then! {
+            overlap: Overlap,
+            potential: Potential,
+            penalty: Penalty,
+        }
+    };
+}
+pub(crate) use contact_modes;
 
 /// The contact of one pair of bodies.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,42 +33,107 @@ pub struct ContactPair {
     pub mode: ContactMode,
 }
 
-/// What two bodies do to each other.
-#[derive(Debug, Clone, PartialEq)]
-pub enum ContactMode {
-    /// The bodies do not see each other.
-    None,
-    /// Particles of the other body enter the SPH sums: both act as one continuum.
-    Kernel,
-    /// Contact potential of Vignjevic, De Vuyst & Campbell (2006), eqs. 20–24.
-    Potential(Potential),
-    /// Overlap energy of the foreign volume fraction above the touching value.
-    Overlap(Overlap),
-    /// Penalty between boundary particles (Campbell, Vignjevic & Libersky 2000).
-    Penalty(Penalty),
-}
+/// What every mode with forces tells of itself.
+pub trait ContactLaw {
+    /// Stiffness of the forces, relative to that of the materials.
+    fn stiffness(&self) -> f64;
 
-impl ContactMode {
-    /// The name used in inputs.
-    #[must_use]
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Kernel => "kernel",
-            Self::Potential(_) => "potential",
-            Self::Overlap(_) => "overlap",
-            Self::Penalty(_) => "penalty",
-        }
+    /// Friction and damping, if the mode has any.
+    fn resistance(&self) -> Option<&Resistance> {
+        None
+    }
+
+    /// Whether it needs sums over the particles of a body, which rigid bodies and stress points do
+    /// without.
+    fn needs_sums(&self) -> bool {
+        false
     }
 }
 
-/// Where the contact potential acts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PotentialRange {
-    /// Everywhere in the kernel's support, 2h.
-    Support,
-    /// Closer than the mean particle spacing.
-    Spacing,
+macro_rules! declare {
+    ($($name:ident: $Mode:ident,)+) => {
+        /// What two bodies do to each other.
+        #[derive(Debug, Clone, PartialEq)]
+        pub enum ContactMode {
+            /// The bodies do not see each other.
+            None,
+            /// Particles of the other body enter the SPH sums: both act as one continuum.
+            Kernel,
+            $(
+                #[doc = concat!("See [`struct@", stringify!($Mode), "`].")]
+                $Mode($Mode),
+            )+
+        }
+
+        /// Number of a mode that has forces.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum ContactClass {
+            $(
+                #[doc = concat!("Of [`struct@", stringify!($Mode), "`].")]
+                $Mode,
+            )+
+        }
+
+        impl ContactClass {
+            /// All modes with forces.
+            pub const ALL: &[Self] = &[$(Self::$Mode),+];
+            /// How many there are.
+            pub const COUNT: usize = Self::ALL.len();
+        }
+
+        impl ContactMode {
+            /// The modes with forces, with default parameters.
+            #[must_use]
+            pub fn with_forces() -> [Self; ContactClass::COUNT] {
+                [$(Self::$Mode($Mode::default())),+]
+            }
+
+            /// The name used in inputs.
+            #[must_use]
+            pub fn name(&self) -> &'static str {
+                match self {
+                    Self::None => "none",
+                    Self::Kernel => "kernel",
+                    $(Self::$Mode(_) => stringify!($name),)+
+                }
+            }
+
+            /// Its number, if it has forces.
+            #[must_use]
+            pub fn class(&self) -> Option<ContactClass> {
+                match self {
+                    Self::None | Self::Kernel => None,
+                    $(Self::$Mode(_) => Some(ContactClass::$Mode),)+
+                }
+            }
+
+            /// What it tells of itself, if it has forces.
+            #[must_use]
+            pub fn law(&self) -> Option<&dyn ContactLaw> {
+                match self {
+                    Self::None | Self::Kernel => None,
+                    $(Self::$Mode(law) => Some(law),)+
+                }
+            }
+        }
+    };
+}
+contact_modes!(declare);
+
+impl ContactMode {
+    /// Friction and damping, if the mode has any.
+    #[must_use]
+    pub fn resistance(&self) -> Option<&Resistance> {
+        self.law()?.resistance()
+    }
+
+    /// Whether it needs sums over the particles of a body, which rigid bodies and stress points do
+    /// without.
+    #[must_use]
+    pub fn needs_sums(&self) -> bool {
+        let of_law = |law: &dyn ContactLaw| law.needs_sums();
+        self.law().map_or(*self == Self::Kernel, of_law)
+    }
 }
 
 /// Along what contact forces act.
@@ -56,31 +145,6 @@ pub enum ContactDirection {
     Normal,
 }
 
-/// Parameters of [`ContactMode::Potential`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Potential {
-    /// Dimensionless stiffness k: K = k M/Δp^d with the smaller p-wave modulus M of the two
-    /// bodies and their mean spacing.
-    pub stiffness: f64,
-    /// Exponent n ≥ 1 of the kernel ratio.
-    pub exponent: u32,
-    /// Range of the force.
-    pub range: PotentialRange,
-    /// Along what it acts.
-    pub direction: ContactDirection,
-}
-
-impl Default for Potential {
-    fn default() -> Self {
-        Self {
-            stiffness: 1.0,
-            exponent: 4,
-            range: PotentialRange::Support,
-            direction: ContactDirection::Pair,
-        }
-    }
-}
-
 /// Contact of a body with itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SelfContact {
@@ -90,30 +154,11 @@ pub struct SelfContact {
     pub folds: Option<f64>,
 }
 
-/// Parameters of [`ContactMode::Overlap`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Overlap {
-    /// Stiffness κ of the overlap energy relative to the p-wave modulus.
-    pub stiffness: f64,
-    /// Stiffness `κ_c` of the core that keeps lone particles apart.
-    pub core_stiffness: f64,
-    /// Radius of the core in mean particle spacings.
-    pub core_radius: f64,
-    /// Along what it acts, but for the core.
-    pub direction: ContactDirection,
-    /// Friction and damping.
-    pub resistance: Resistance,
-}
-
-impl Default for Overlap {
-    fn default() -> Self {
-        Self {
-            stiffness: 4.0,
-            core_stiffness: 2.2,
-            core_radius: 0.6,
-            direction: ContactDirection::Pair,
-            resistance: Resistance::default(),
-        }
+impl SelfContact {
+    /// What two fragments of a body do to each other.
+    #[must_use]
+    pub fn mode(&self) -> ContactMode {
+        ContactMode::Overlap(self.overlap)
     }
 }
 
@@ -133,35 +178,5 @@ impl Resistance {
     #[must_use]
     pub fn is_any(&self) -> bool {
         self.static_friction > 0.0 || self.damping > 0.0
-    }
-}
-
-/// Law of the penalty force (Belytschko & Neal 1991).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PenaltyLaw {
-    /// As the depth to the power 3/2, as between spheres: a function of places.
-    Hertz,
-    /// The smaller of that and what stops the approach in one step; nothing while parting.
-    Pinball,
-}
-
-/// Parameters of [`ContactMode::Penalty`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Penalty {
-    /// Stiffness κ relative to the p-wave modulus.
-    pub stiffness: f64,
-    /// Law of the force.
-    pub law: PenaltyLaw,
-    /// Friction and damping.
-    pub resistance: Resistance,
-}
-
-impl Default for Penalty {
-    fn default() -> Self {
-        Self {
-            stiffness: 2.0,
-            law: PenaltyLaw::Hertz,
-            resistance: Resistance::default(),
-        }
     }
 }

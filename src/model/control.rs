@@ -1,5 +1,7 @@
 //! Options of the method and controls of a run.
 
+use serde::Deserialize;
+
 use super::Axis;
 
 /// Whether the smoothing length of the SPH sums follows the density. Contact always keeps the
@@ -18,7 +20,8 @@ pub enum SmoothingLength {
 }
 
 /// How the SPH sums take gradients.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum SphForm {
     /// By the gradient of the kernel.
     #[default]

@@ -18,10 +18,7 @@ mod trouble;
 pub(crate) use surface::tests as surface_tests;
 
 pub use body::{Axis, Body, Lattice, LatticeKind, Shape, SymmetryPlane};
-pub use contact::{
-    ContactDirection, ContactMode, ContactPair, Overlap, Penalty, PenaltyLaw, Potential,
-    PotentialRange, Resistance, SelfContact,
-};
+pub use contact::*;
 pub use control::{
     DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm, SphOptions, TimeStepOptions,
 };

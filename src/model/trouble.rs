@@ -1,9 +1,12 @@
 //! Numerical trouble: the ranges that a particle's state may not leave, and what follows if it does.
 
+use serde::Deserialize;
+
 use super::Case;
 
 /// What happens to a particle whose state is out of range.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum TroublePolicy {
     /// The run ends.
     #[default]

@@ -9,29 +9,17 @@ use super::motion::MotionRecord;
 use super::near::{INFLATION, near_box, push_places};
 use super::pairs::PairList;
 use super::sequence::Sequence;
+use crate::model::ContactClass;
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
 
-/// Which contact algorithm handles a pair of bodies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ContactClass {
-    /// Nothing beyond the SPH sums, if any.
-    None,
-    /// Contact potential.
-    Potential,
-    /// Overlap energy.
-    Overlap,
-    /// Penalty between boundary particles.
-    Penalty,
-}
-
-/// For each ordered pair of bodies, the algorithm and its range.
+/// For each ordered pair of bodies, the mode of contact and its range.
 #[derive(Debug, Clone)]
 pub struct ForeignTable {
     /// Number of bodies.
     pub bodies: usize,
-    /// `class[a * bodies + b]`.
-    pub class: Vec<ContactClass>,
+    /// `class[a * bodies + b]`; none where there is nothing beyond the SPH sums.
+    pub class: Vec<Option<ContactClass>>,
     /// Squared range of contact (m²), in the same order.
     pub reach2: Vec<f64>,
     /// `range[g * groups + o]`: largest range (m) between bodies of the groups g and o; zero
@@ -39,15 +27,10 @@ pub struct ForeignTable {
     pub group_range: Vec<f64>,
 }
 
-/// The foreign pairs of one task, one list for each algorithm.
+/// The foreign pairs of one task, one list for each mode of contact.
 #[derive(Debug, Clone, Default)]
 pub struct ForeignChunk {
-    /// Pairs of [`ContactClass::Overlap`].
-    pub overlap: PairList,
-    /// Pairs of [`ContactClass::Potential`].
-    pub potential: PairList,
-    /// Pairs of [`ContactClass::Penalty`].
-    pub penalty: PairList,
+    lists: [PairList; ContactClass::COUNT],
     candidates: Candidates,
     strangers: Candidates,
 }
@@ -115,10 +98,7 @@ impl ForeignLists {
             .map(|chunk| {
                 chunk.candidates.memory()
                     + chunk.strangers.memory()
-                    + [&chunk.overlap, &chunk.potential, &chunk.penalty]
-                        .map(PairList::memory)
-                        .iter()
-                        .sum::<usize>()
+                    + chunk.lists.iter().map(PairList::memory).sum::<usize>()
             })
             .sum()
     }
@@ -140,9 +120,7 @@ impl<B: Fn(u32) -> usize> Vectorised for Find<'_, B> {
     #[inline(always)]
     fn run<V: Lanes>(self) {
         let chunk = self.chunk;
-        chunk.overlap.clear();
-        chunk.potential.clear();
-        chunk.penalty.clear();
+        chunk.lists.iter_mut().for_each(PairList::clear);
         let mut hints = [0; 64];
         let mut strangers = self.own.strangers().iter().peekable();
         let (mut near, mut apart) = (
@@ -263,6 +241,18 @@ impl Candidates {
 }
 
 impl ForeignChunk {
+    /// The lists of all modes, by class.
+    #[must_use]
+    pub fn lists(&self) -> &[PairList; ContactClass::COUNT] {
+        &self.lists
+    }
+
+    /// Pairs of a class.
+    #[must_use]
+    pub fn of(&self, class: ContactClass) -> &PairList {
+        &self.lists[class as usize]
+    }
+
     /// Adds what is in range of a receiver to its lists.
     #[inline(always)]
     fn add_near<V: Lanes>(
@@ -284,19 +274,16 @@ impl ForeignChunk {
                 let k = n * LANES + bits.trailing_zeros() as usize;
                 bits &= bits - 1;
                 let place = candidates.places[k];
-                match classes[candidates.bodies[k]] {
-                    ContactClass::None => {}
-                    ContactClass::Overlap => self.overlap.sources.push(place),
-                    ContactClass::Potential => self.potential.sources.push(place),
-                    ContactClass::Penalty => self.penalty.sources.push(place),
+                if let Some(class) = classes[candidates.bodies[k]] {
+                    self.lists[class as usize].sources.push(place);
                 }
             }
         }
     }
 
     fn close(&mut self, receiver: u32) {
-        self.overlap.close(receiver);
-        self.potential.close(receiver);
-        self.penalty.close(receiver);
+        for list in &mut self.lists {
+            list.close(receiver);
+        }
     }
 }

@@ -41,13 +41,6 @@ impl Groups {
         self.rigid.len()
     }
 
-    /// Whether a group is one of stress points.
-    #[inline]
-    #[must_use]
-    pub fn is_of_stress_points(&self, group: usize) -> bool {
-        group >= self.of_bodies
-    }
-
     /// The bodies of a group.
     pub fn members(&self, group: usize) -> impl Iterator<Item = usize> + Clone + '_ {
         let group = group % self.of_bodies;

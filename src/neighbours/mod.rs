@@ -21,7 +21,7 @@ pub use cluster::{Among, Cluster};
 pub use clusters::{CHUNKS_AT_ONCE, Chunk, ClusterLists, Lengths};
 pub use columns::ColumnGrid;
 pub use facts::ImageFacts;
-pub use foreign::{ContactClass, ForeignChunk, ForeignLists, ForeignTable};
+pub use foreign::{ForeignChunk, ForeignLists, ForeignTable};
 pub use groups::Groups;
 pub use lists::Lists;
 pub use motion::MotionRecord;

@@ -9,22 +9,10 @@ use crate::comm::Comm;
 use super::checkpoint::{self, step_of};
 use super::files::names_in;
 use super::lock::{LOCK, RunLock};
-use super::run_folder::{SNAPSHOT_ENDING, STATUS, TROUBLE};
+use super::run_folder::{FILES, SNAPSHOT_ENDING, STATUS, TROUBLE};
 use super::set_aside::{self, SET_ASIDE, SetAside};
 use super::{OutputError, Phase, RunFolder, Status, files, on_root, series, write_atomically};
 
-/// Files that a run writes into its folder, beside two folders.
-const FILES: [&str; 9] = [
-    "case.toml",
-    "history.csv",
-    "contacts.csv",
-    "loads.csv",
-    "removed.csv",
-    "performance.csv",
-    "log.txt",
-    STATUS,
-    "summary.json",
-];
 /// Files that a restart changes before it has a checkpoint.
 const CHANGED: [&str; 7] = [
     "history.csv",
@@ -247,7 +235,7 @@ impl RunFolder {
         }
         files::remove(&self.path.join(TROUBLE))?;
         self.forget_set_aside()?;
-        for name in FILES {
+        for &name in FILES {
             if name != STATUS {
                 files::remove(&self.path.join(name))?;
             }
@@ -285,7 +273,8 @@ mod tests {
         let run = RunFolder::create(&comm, &path, "title = 1", false).unwrap();
         assert_eq!(run.status().unwrap().state, Phase::Running);
         let refused = RunFolder::create(&comm, &path, "", false).unwrap_err();
-        assert!(refused.is_users() && refused.to_string().contains("--force"));
+        let in_use = matches!(refused, OutputError::FolderInUse { .. });
+        assert!(in_use && refused.to_string().contains("--force"));
 
         write(run.snapshot(3));
         write(run.series());

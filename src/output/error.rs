@@ -183,21 +183,6 @@ impl OutputError {
     pub fn is_other_version(&self) -> bool {
         matches!(self, Self::Format { .. } | Self::OtherVersion { .. })
     }
-
-    /// Whether a different command line would have avoided it.
-    #[must_use]
-    pub fn is_users(&self) -> bool {
-        matches!(
-            self,
-            Self::FolderInUse { .. }
-                | Self::NotARun { .. }
-                | Self::NoCheckpoint { .. }
-                | Self::OutsideRun { .. }
-                | Self::Held { .. }
-                | Self::Unclear { .. }
-                | Self::UnknownField { .. }
-        )
-    }
 }
 
 /// Each on a line of its own, after what stands before them.

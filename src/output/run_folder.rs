@@ -115,12 +115,6 @@ impl RunFolder {
         self.path.join(TROUBLE).join(format!("step-{step:08}"))
     }
 
-    /// Table of what removed particles took with them.
-    #[must_use]
-    pub fn removed(&self) -> PathBuf {
-        self.path.join("removed.csv")
-    }
-
     /// Reads `status.json`.
     ///
     /// # Errors
@@ -145,66 +139,6 @@ impl RunFolder {
         &self.path
     }
 
-    /// The resolved input.
-    #[must_use]
-    pub fn case(&self) -> PathBuf {
-        self.path.join("case.toml")
-    }
-
-    /// Table of conserved sums.
-    #[must_use]
-    pub fn history(&self) -> PathBuf {
-        self.path.join("history.csv")
-    }
-
-    /// Table of contacts.
-    #[must_use]
-    pub fn contacts(&self) -> PathBuf {
-        self.path.join("contacts.csv")
-    }
-
-    /// Table of loads.
-    #[must_use]
-    pub fn loads(&self) -> PathBuf {
-        self.path.join("loads.csv")
-    }
-
-    /// Table of wall-clock times.
-    #[must_use]
-    pub fn performance(&self) -> PathBuf {
-        self.path.join("performance.csv")
-    }
-
-    /// The log.
-    #[must_use]
-    pub fn log(&self) -> PathBuf {
-        self.path.join("log.txt")
-    }
-
-    /// The status file.
-    #[must_use]
-    pub fn status_file(&self) -> PathBuf {
-        self.path.join(STATUS)
-    }
-
-    /// The figures of a finished run; see [`write_json`].
-    #[must_use]
-    pub fn summary(&self) -> PathBuf {
-        self.path.join("summary.json")
-    }
-
-    /// The file whose appearance asks the run to stop.
-    #[must_use]
-    pub fn stop(&self) -> PathBuf {
-        self.path.join("stop")
-    }
-
-    /// The folder of snapshots.
-    #[must_use]
-    pub fn snapshots(&self) -> PathBuf {
-        self.path.join(SNAPSHOTS)
-    }
-
     /// A snapshot's file name. Named by step, so that it means the same state in any run of
     /// the case, whatever is written how often.
     #[must_use]
@@ -225,12 +159,6 @@ impl RunFolder {
         self.snapshots().join(name)
     }
 
-    /// The folder of checkpoints.
-    #[must_use]
-    pub fn checkpoints(&self) -> PathBuf {
-        self.path.join(CHECKPOINTS)
-    }
-
     /// The snapshots there are, in the order of steps.
     ///
     /// # Errors
@@ -242,6 +170,56 @@ impl RunFolder {
         found.sort_by_key(|path| step_of(path, SNAPSHOT_ENDING));
         Ok(found)
     }
+}
+
+/// Declares what stands in the folder of a run: how it is asked for, and its name.
+macro_rules! paths {
+    ($($(#[$doc:meta])+ $path:ident: $name:expr;)+) => {
+        impl RunFolder { $(
+            $(#[$doc])+
+            #[must_use]
+            pub fn $path(&self) -> PathBuf {
+                self.path.join($name)
+            }
+        )+ }
+    };
+    (files $files:ident, $($(#[$doc:meta])+ $path:ident: $name:expr;)+) => {
+        paths! { $($(#[$doc])+ $path: $name;)+ }
+
+        /// The files that a run writes into its folder, beside two folders.
+        pub(super) const $files: &[&str] = &[$($name),+];
+    };
+}
+
+paths! {
+    files FILES,
+    /// The resolved input.
+    case: "case.toml";
+    /// Table of conserved sums.
+    history: "history.csv";
+    /// Table of contacts.
+    contacts: "contacts.csv";
+    /// Table of loads.
+    loads: "loads.csv";
+    /// Table of what removed particles took with them.
+    removed: "removed.csv";
+    /// Table of wall-clock times.
+    performance: "performance.csv";
+    /// The log.
+    log: "log.txt";
+    /// The status file.
+    status_file: STATUS;
+    /// The figures of a finished run; see [`write_json`].
+    summary: "summary.json";
+}
+
+paths! {
+    /// The file whose appearance asks the run to stop.
+    stop: "stop";
+    /// The folder of snapshots.
+    snapshots: SNAPSHOTS;
+    /// The folder of checkpoints.
+    checkpoints: CHECKPOINTS;
 }
 
 #[cfg(test)]

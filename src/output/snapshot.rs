@@ -266,19 +266,13 @@ fn write_quantity(
             }
             file.rows(&path, row, block, bytes)?;
         }
-        Quantity::VonMisesStress => {
-            let stress: Vec<f64> = store.deviatoric_stress[..store.owned()]
-                .iter()
-                .map(von_mises)
-                .collect();
-            let bytes = rows.collect(comm, bytemuck::cast_slice(&stress), 8);
-            file.rows(&path, RowType::single(Element::F64), block, bytes)?;
-        }
-        Quantity::Temperature => {
-            let temperature: Vec<f64> = (0..store.owned())
-                .map(|i| temperature(case, store, i))
-                .collect();
-            let bytes = rows.collect(comm, bytemuck::cast_slice(&temperature), 8);
+        Quantity::VonMisesStress | Quantity::Temperature => {
+            let value = |i: usize| match quantity {
+                Quantity::Temperature => temperature(case, store, i),
+                _ => von_mises(&store.deviatoric_stress[i]),
+            };
+            let values: Vec<f64> = (0..store.owned()).map(value).collect();
+            let bytes = rows.collect(comm, bytemuck::cast_slice(&values), 8);
             file.rows(&path, RowType::single(Element::F64), block, bytes)?;
         }
     }

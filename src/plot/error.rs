@@ -150,3 +150,13 @@ pub enum PlotError {
         reason: String,
     },
 }
+
+impl PlotError {
+    /// A text that is not what was expected.
+    pub(crate) fn quantity(text: &str, expected: impl Into<String>) -> Self {
+        Self::Quantity {
+            text: text.to_owned(),
+            expected: expected.into(),
+        }
+    }
+}

@@ -45,9 +45,11 @@ pub fn parse(text: &str, unit: &str) -> Result<f64, PlotError> {
 
 /// Reads `"0:100 GPa"`, `"-1:2"`, `"0 mm:3 mm"`: a number without a unit takes the last one's.
 pub fn parse_span(text: &str, last_unit: Option<&str>, unit: &str) -> Result<[f64; 2], PlotError> {
-    let wrong = || PlotError::Quantity {
-        text: text.to_owned(),
-        expected: format!("a range LOW:HIGH with LOW < HIGH{}", in_unit(unit)),
+    let wrong = || {
+        PlotError::quantity(
+            text,
+            format!("a range LOW:HIGH with LOW < HIGH{}", in_unit(unit)),
+        )
     };
     let (low, high) = text.split_once(':').ok_or_else(wrong)?;
     let (high_number, high_suffix) = split(high);
@@ -89,10 +91,7 @@ pub fn split(text: &str) -> (&str, &str) {
 }
 
 fn quantity(text: &str, number: &str, suffix: &str, unit: &str) -> Result<f64, PlotError> {
-    let wrong = || PlotError::Quantity {
-        text: text.to_owned(),
-        expected: format!("a number{}", in_unit(unit)),
-    };
+    let wrong = || PlotError::quantity(text, format!("a number{}", in_unit(unit)));
     let value: f64 = number.parse().map_err(|_| wrong())?;
     if !value.is_finite() {
         return Err(wrong());

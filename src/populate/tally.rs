@@ -13,11 +13,6 @@ pub struct Share {
     pub parts: usize,
 }
 
-impl Share {
-    /// All rows.
-    pub const WHOLE: Self = Self { part: 0, parts: 1 };
-}
-
 /// Layers from which shape and cuts leave the same rows.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LikeLayers {

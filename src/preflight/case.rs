@@ -2,7 +2,7 @@
 
 use super::approach::{Approach, flies_straight};
 use crate::model::readable::shown;
-use crate::model::{Body, Case, ContactMode, Overlap, Penalty, Potential};
+use crate::model::{Body, Case, ContactMode};
 
 /// Fewer particles than this across the thinnest part resolve no bending and no wave.
 const ACROSS: f64 = 6.0;
@@ -88,14 +88,14 @@ fn thickness(body: &Body, case: &Case) -> f64 {
 /// Contact far stiffer or softer than the materials.
 pub fn stiffness(case: &Case, found: &mut Vec<String>) {
     let modes = std::iter::once(&case.default_contact).chain(case.contacts.iter().map(|p| &p.mode));
+    let defaults = ContactMode::with_forces();
     let mut told: Vec<(&str, f64)> = Vec::new();
     for mode in modes {
-        let (stiffness, usual) = match mode {
-            ContactMode::Potential(mode) => (mode.stiffness, Potential::default().stiffness),
-            ContactMode::Overlap(mode) => (mode.stiffness, Overlap::default().stiffness),
-            ContactMode::Penalty(mode) => (mode.stiffness, Penalty::default().stiffness),
-            ContactMode::None | ContactMode::Kernel => continue,
+        let default = mode.class().map(|class| &defaults[class as usize]);
+        let (Some(law), Some(default)) = (mode.law(), default.and_then(ContactMode::law)) else {
+            continue;
         };
+        let (stiffness, usual) = (law.stiffness(), default.stiffness());
         let name = mode.name();
         if (usual / FAR..=usual * FAR).contains(&stiffness) || told.contains(&(name, stiffness)) {
             continue;

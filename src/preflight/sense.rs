@@ -72,7 +72,7 @@ fn pairs(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
             let rigid = body.rigid.is_some() && other.rigid.is_some();
             // Bodies joined by the kernel are one continuum.
             let mode = case.contact_between(a, b);
-            if rigid || matches!(mode, ContactMode::None | ContactMode::Kernel) {
+            if rigid || mode.class().is_none() {
                 continue;
             }
             let approach = approaches.iter().find(|pair| pair.bodies == [a, b]);
@@ -136,11 +136,7 @@ fn leaving(body: &Body, other: &Body, dimension: usize) -> Option<String> {
 
 /// Friction and viscosity beyond what is known.
 fn coefficients(case: &Case, found: &mut Vec<String>) {
-    let of_mode = |mode: &ContactMode| match mode {
-        ContactMode::Overlap(mode) => Some(mode.resistance),
-        ContactMode::Penalty(mode) => Some(mode.resistance),
-        ContactMode::None | ContactMode::Kernel | ContactMode::Potential(_) => None,
-    };
+    let of_mode = |mode: &ContactMode| mode.resistance().copied();
     let pairs = case.contacts.iter().map(|pair| &pair.mode);
     let modes = std::iter::once(&case.default_contact).chain(pairs);
     let surfaces = case.loads.surfaces.iter().map(|surface| surface.resistance);

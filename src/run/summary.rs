@@ -61,7 +61,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde
         "interpenetrated_particles": contact.has_pairs().then_some(worst.interpenetrated),
         "closest_foreign_pair": worst.closest,
         "closest_foreign_particles": nearest,
-        "largest_foreign_fraction": contact.has_overlap().then_some(worst.foreign_fraction),
+        "largest_foreign_fraction": contact.measures_fractions().then_some(worst.foreign_fraction),
         "plane_crossings": (!simulation.case.symmetry.is_empty()).then_some(state.plane_crossings),
         "capped_reliefs": state.capped_reliefs,
         "uncorrected_gradients": normalised.then_some(worst.uncorrected),

@@ -3,7 +3,7 @@
 use crate::comm::Comm;
 use crate::model::{Case, SphForm, TroublePolicy};
 use crate::output::{Column, OutputError, RunFolder, Table, Value, unit_of_model};
-use crate::step::{PairState, RunState, Simulation};
+use crate::step::{LoadState, PairState, Removed, RunState, Simulation};
 
 /// The tables of a run, written by rank 0.
 pub struct Tables {
@@ -27,6 +27,14 @@ pub struct Load {
     pub bytes: u64,
     /// Of particles, since the start of the process.
     pub updates: u64,
+}
+
+impl Load {
+    /// The most that a rank has over the mean.
+    #[allow(clippy::cast_precision_loss, reason = "for people")]
+    fn imbalance(&self, [sum, most]: [u64; 2]) -> f64 {
+        most as f64 * self.ranks as f64 / (sum as f64).max(1.0)
+    }
 }
 
 /// The load of all ranks. Collective.
@@ -60,125 +68,153 @@ pub fn load(comm: &Comm, simulation: &Simulation) -> Load {
     }
 }
 
-/// Columns with SI units; what a model of fewer dimensions has is by length or area.
+/// Columns with SI units; what a model of fewer dimensions has is by length or area. A name that ends
+/// with `*` is that of three columns.
 fn columns(dimension: usize, list: &[(&str, &str)]) -> Vec<Column> {
-    list.iter()
-        .map(|(name, unit)| Column::new(name, unit_of_model(unit, dimension)))
-        .collect()
-}
-
-/// Of the history; with a count of uncorrected gradients but in the conventional form.
-fn history_columns(case: &Case) -> Vec<Column> {
-    let mut all = columns(
-        case.dimension,
-        &[
-            ("step", ""),
-            ("time", "s"),
-            ("dt", "s"),
-            ("dt_reason", ""),
-            ("kinetic_energy", "J"),
-            ("internal_energy", "J"),
-            ("contact_energy", "J"),
-            ("gravity_energy", "J"),
-            ("total_energy", "J"),
-            ("momentum_x", "kg m/s"),
-            ("momentum_y", "kg m/s"),
-            ("momentum_z", "kg m/s"),
-            ("plane_impulse_x", "N s"),
-            ("plane_impulse_y", "N s"),
-            ("plane_impulse_z", "N s"),
-            ("load_work", "J"),
-            ("load_impulse_x", "N s"),
-            ("load_impulse_y", "N s"),
-            ("load_impulse_z", "N s"),
-            ("contact_work", "J"),
-            ("contact_heat", "J"),
-            ("interpenetrated", ""),
-        ],
-    );
-    if case.sph.form != SphForm::Conventional {
-        all.push(Column::new("uncorrected", ""));
+    let mut all = Vec::new();
+    for (name, unit) in list {
+        let unit = unit_of_model(unit, dimension);
+        match name.strip_suffix('*') {
+            Some(stem) => {
+                let names = ["x", "y", "z"].map(|axis| format!("{stem}{axis}"));
+                all.extend(names.iter().map(|name| Column::new(name, unit)));
+            }
+            None => all.push(Column::new(name, unit)),
+        }
     }
     all
 }
 
-fn contact_columns(dimension: usize) -> Vec<Column> {
-    columns(
-        dimension,
-        &[
-            ("time", "s"),
-            ("body_a", ""),
-            ("body_b", ""),
-            ("force_x", "N"),
-            ("force_y", "N"),
-            ("force_z", "N"),
-            ("impulse_x", "N s"),
-            ("impulse_y", "N s"),
-            ("impulse_z", "N s"),
-            ("contact_energy", "J"),
-            ("heat", "J"),
-            ("peak_force", "N"),
-            ("touching", ""),
-            ("largest_excess", ""),
-            ("closest_pair", "spacings"),
-            ("closest_a", ""),
-            ("closest_b", ""),
-            ("contact_dt", "s"),
-        ],
-    )
+/// What stands in one row below a name: one value, or three.
+trait Cells<'a> {
+    /// Adds them to a row.
+    fn add(self, row: &mut Vec<Value<'a>>);
 }
 
-fn load_columns(dimension: usize) -> Vec<Column> {
-    columns(
-        dimension,
-        &[
-            ("time", "s"),
-            ("load", ""),
-            ("force_x", "N"),
-            ("force_y", "N"),
-            ("force_z", "N"),
-            ("impulse_x", "N s"),
-            ("impulse_y", "N s"),
-            ("impulse_z", "N s"),
-            ("work", "J"),
-            ("heat", "J"),
-        ],
-    )
+impl Cells<'_> for f64 {
+    fn add(self, row: &mut Vec<Value>) {
+        row.push(Value::Real(self));
+    }
 }
 
-fn removed_columns(dimension: usize) -> Vec<Column> {
-    columns(
-        dimension,
-        &[
-            ("time", "s"),
-            ("body", ""),
-            ("particles", ""),
-            ("mass", "kg"),
-            ("momentum_x", "kg m/s"),
-            ("momentum_y", "kg m/s"),
-            ("momentum_z", "kg m/s"),
-            ("kinetic_energy", "J"),
-            ("internal_energy", "J"),
-            ("gravity_energy", "J"),
-        ],
-    )
+impl Cells<'_> for u64 {
+    fn add(self, row: &mut Vec<Value>) {
+        row.push(Value::Count(self));
+    }
 }
 
-fn performance_columns() -> Vec<Column> {
-    columns(
-        3,
-        &[
-            ("step", ""),
-            ("wall_seconds", "s"),
-            ("million_updates", ""),
-            ("particles", ""),
-            ("particle_imbalance", ""),
-            ("work_imbalance", ""),
-            ("empty_ranks", ""),
-            ("messages", ""),
-            ("megabytes_sent", "MB"),
-        ],
-    )
+/// Nothing is an empty cell.
+impl Cells<'_> for Option<u64> {
+    fn add(self, row: &mut Vec<Value>) {
+        row.push(self.map_or(Value::Word(""), Value::Count));
+    }
+}
+
+impl<'a> Cells<'a> for &'a str {
+    fn add(self, row: &mut Vec<Value<'a>>) {
+        row.push(Value::Word(self));
+    }
+}
+
+impl Cells<'_> for [f64; 3] {
+    fn add(self, row: &mut Vec<Value>) {
+        row.extend(self.map(Value::Real));
+    }
+}
+
+/// Declares tables: a list of columns with their units, and the function that makes a row of them.
+macro_rules! tables {
+    ($(
+        $(#[$doc:meta])+ $columns:ident, $row:ident($($given:ident: $type:ty),+) {
+            $( $name:literal, $unit:literal, $value:expr; )+
+        }
+    )+) => { $(
+        const $columns: &[(&str, &str)] = &[$( ($name, $unit) ),+];
+
+        $(#[$doc])+
+        fn $row<'a>($($given: $type),+) -> Vec<Value<'a>> {
+            let mut row = Vec::new();
+            $( $value.add(&mut row); )+
+            row
+        }
+    )+ };
+}
+
+tables! {
+    /// A row of the history; in other forms than the conventional a count of uncorrected gradients
+    /// follows.
+    HISTORY, history(state: &'a RunState) {
+        "step", "", state.step;
+        "time", "s", state.time;
+        "dt", "s", state.last_dt;
+        "dt_reason", "", state.last_reason.name();
+        "kinetic_energy", "J", state.totals.kinetic_energy;
+        "internal_energy", "J", state.totals.internal_energy;
+        "contact_energy", "J", state.contact_energy;
+        "gravity_energy", "J", state.totals.gravity_energy;
+        "total_energy", "J", state.totals.energy();
+        "momentum_*", "kg m/s", state.totals.momentum;
+        "plane_impulse_*", "N s", state.plane_impulse;
+        "load_work", "J", state.load_work();
+        "load_impulse_*", "N s", state.load_impulse();
+        "contact_work", "J", state.contact_work;
+        "contact_heat", "J", state.contact_heat();
+        "interpenetrated", "", state.interpenetrated.unsigned_abs();
+    }
+
+    /// A row of the contacts, of two bodies by name.
+    CONTACTS, contact(time: f64, names: [&'a str; 2], pair: &PairState) {
+        "time", "s", time;
+        "body_a", "", names[0];
+        "body_b", "", names[1];
+        "force_*", "N", pair.force;
+        "impulse_*", "N s", pair.impulse;
+        "contact_energy", "J", pair.energy;
+        "heat", "J", pair.heat;
+        "peak_force", "N", pair.extremes.peak_force;
+        "touching", "", pair.touching.unsigned_abs();
+        "largest_excess", "", pair.extremes.largest_excess;
+        "closest_pair", "spacings", pair.extremes.closest.map_or(f64::INFINITY, |c| c.distance);
+        "closest_a", "", pair.extremes.closest.map(|c| c.particles[0]);
+        "closest_b", "", pair.extremes.closest.map(|c| c.particles[1]);
+        "contact_dt", "s", pair.extremes.contact_dt.unwrap_or(f64::INFINITY);
+    }
+
+    /// A row of the loads.
+    LOADS, load_row(time: f64, name: &'a str, load: &LoadState) {
+        "time", "s", time;
+        "load", "", name;
+        "force_*", "N", load.force;
+        "impulse_*", "N s", load.impulse;
+        "work", "J", load.work;
+        "heat", "J", load.heat;
+    }
+
+    /// A row of what was removed from a body.
+    REMOVED, removed(time: f64, body: &'a str, gone: &Removed) {
+        "time", "s", time;
+        "body", "", body;
+        "particles", "", gone.particles;
+        "mass", "kg", gone.mass;
+        "momentum_*", "kg m/s", gone.momentum;
+        "kinetic_energy", "J", gone.kinetic_energy;
+        "internal_energy", "J", gone.internal_energy;
+        "gravity_energy", "J", gone.gravity_energy;
+    }
+
+    /// A row of the performance, after `wall` seconds.
+    #[allow(clippy::cast_precision_loss, reason = "for people")]
+    PERFORMANCE, performance(step: u64, wall: f64, load: &Load) {
+        "step", "", step;
+        "wall_seconds", "s", wall;
+        "million_updates", "", load.updates as f64 * 1e-6;
+        "particles", "", load.particles[0];
+        "particle_imbalance", "", load.imbalance(load.particles);
+        "work_imbalance", "", load.imbalance(load.work);
+        "empty_ranks", "", load.empty_ranks;
+        "messages", "", load.messages;
+        "megabytes_sent", "MB", load.bytes as f64 * 1e-6;
+    }
 }
 
 impl Tables {
@@ -196,97 +232,56 @@ impl Tables {
         #[allow(clippy::cast_precision_loss, reason = "steps fit a double")]
         let step = resume.map(|state| state.step as f64);
         let time = resume.map(|state| state.time);
-        let dimension = case.dimension;
+        let columns = |list| columns(case.dimension, list);
+        let mut of_history = columns(HISTORY);
+        if case.sph.form != SphForm::Conventional {
+            of_history.push(Column::new("uncorrected", ""));
+        }
+        let has_loads = case.load_names().next().is_some();
+        let removes = case.trouble.policy != TroublePolicy::Stop
+            || resume.is_some_and(|state| !state.removed.is_empty());
         Ok(Self {
-            history: open(&folder.history(), &history_columns(case), "step", step)?,
-            contacts: open(
-                &folder.contacts(),
-                &contact_columns(dimension),
-                "time",
-                time,
-            )?,
-            loads: (case.load_names().next().is_some())
-                .then(|| open(&folder.loads(), &load_columns(dimension), "time", time))
+            history: open(&folder.history(), &of_history, "step", step)?,
+            contacts: open(&folder.contacts(), &columns(CONTACTS), "time", time)?,
+            loads: has_loads
+                .then(|| open(&folder.loads(), &columns(LOADS), "time", time))
                 .transpose()?,
-            removed: (case.trouble.policy != TroublePolicy::Stop
-                || resume.is_some_and(|state| !state.removed.is_empty()))
-            .then(|| open(&folder.removed(), &removed_columns(dimension), "time", time))
-            .transpose()?,
-            performance: open(&folder.performance(), &performance_columns(), "step", step)?,
+            removed: removes
+                .then(|| open(&folder.removed(), &columns(REMOVED), "time", time))
+                .transpose()?,
+            performance: open(&folder.performance(), &columns(PERFORMANCE), "step", step)?,
         })
     }
 
-    /// Writes a row of each.
+    /// Writes a row of each, after `wall` seconds.
     pub fn write(
         &mut self,
         simulation: &Simulation,
         load: &Load,
         wall: f64,
     ) -> Result<(), OutputError> {
-        let state = &simulation.state;
-        let totals = &state.totals;
-        let [px, py, pz] = totals.momentum.map(Value::Real);
-        let [ix, iy, iz] = state.plane_impulse.map(Value::Real);
-        let [lx, ly, lz] = state.load_impulse().map(Value::Real);
-        let mut row = vec![
-            Value::Count(state.step),
-            Value::Real(state.time),
-            Value::Real(state.last_dt),
-            Value::Word(state.last_reason.name()),
-            Value::Real(totals.kinetic_energy),
-            Value::Real(totals.internal_energy),
-            Value::Real(state.contact_energy),
-            Value::Real(totals.gravity_energy),
-            Value::Real(totals.energy()),
-            px,
-            py,
-            pz,
-            ix,
-            iy,
-            iz,
-            Value::Real(state.load_work()),
-            lx,
-            ly,
-            lz,
-            Value::Real(state.contact_work),
-            Value::Real(state.contact_heat()),
-            Value::Count(state.interpenetrated.unsigned_abs()),
-        ];
-        if simulation.case.sph.form != SphForm::Conventional {
+        let (case, state) = (&simulation.case, &simulation.state);
+        let mut row = history(state);
+        if case.sph.form != SphForm::Conventional {
             row.push(Value::Count(state.uncorrected.unsigned_abs()));
         }
         self.history.row(&row)?;
         let pairs = simulation.contact().active_pairs();
         for (bodies, pair) in pairs.iter().zip(&state.pairs) {
-            let names = bodies.map(|b| simulation.case.bodies[b].name.as_str());
-            self.write_pair(state.time, names, pair)?;
+            let names = bodies.map(|b| case.bodies[b].name.as_str());
+            self.contacts.row(&contact(state.time, names, pair))?;
         }
         if let Some(table) = &mut self.loads {
-            for (name, load) in simulation.case.load_names().zip(&state.loads) {
-                let [fx, fy, fz] = load.force.map(Value::Real);
-                let [ix, iy, iz] = load.impulse.map(Value::Real);
-                let [time, work, heat] = [state.time, load.work, load.heat].map(Value::Real);
-                table.row(&[time, Value::Word(name), fx, fy, fz, ix, iy, iz, work, heat])?;
+            for (name, load) in case.load_names().zip(&state.loads) {
+                table.row(&load_row(state.time, name, load))?;
             }
         }
         if let Some(table) = &mut self.removed {
-            for (body, gone) in simulation.case.bodies.iter().zip(&state.removed) {
-                let [px, py, pz] = gone.momentum.map(Value::Real);
-                table.row(&[
-                    Value::Real(state.time),
-                    Value::Word(&body.name),
-                    Value::Count(gone.particles),
-                    Value::Real(gone.mass),
-                    px,
-                    py,
-                    pz,
-                    Value::Real(gone.kinetic_energy),
-                    Value::Real(gone.internal_energy),
-                    Value::Real(gone.gravity_energy),
-                ])?;
+            for (body, gone) in case.bodies.iter().zip(&state.removed) {
+                table.row(&removed(state.time, &body.name, gone))?;
             }
         }
-        self.write_performance(state.step, load, wall)
+        self.performance.row(&performance(state.step, wall, load))
     }
 
     /// Brings all rows written so far to the disk.
@@ -295,56 +290,5 @@ impl Tables {
         let some = [&self.loads, &self.removed];
         let mut all = always.into_iter().chain(some.into_iter().flatten());
         all.try_for_each(Table::sync)
-    }
-
-    fn write_pair(
-        &mut self,
-        time: f64,
-        names: [&str; 2],
-        pair: &PairState,
-    ) -> Result<(), OutputError> {
-        let [fx, fy, fz] = pair.force.map(Value::Real);
-        let [ix, iy, iz] = pair.impulse.map(Value::Real);
-        let (extremes, closest) = (&pair.extremes, pair.extremes.closest);
-        let [id_a, id_b] = closest.map_or([Value::Word(""); 2], |closest| {
-            closest.particles.map(Value::Count)
-        });
-        self.contacts.row(&[
-            Value::Real(time),
-            Value::Word(names[0]),
-            Value::Word(names[1]),
-            fx,
-            fy,
-            fz,
-            ix,
-            iy,
-            iz,
-            Value::Real(pair.energy),
-            Value::Real(pair.heat),
-            Value::Real(extremes.peak_force),
-            Value::Count(pair.touching.unsigned_abs()),
-            Value::Real(extremes.largest_excess),
-            Value::Real(closest.map_or(f64::INFINITY, |closest| closest.distance)),
-            id_a,
-            id_b,
-            Value::Real(extremes.contact_dt.unwrap_or(f64::INFINITY)),
-        ])
-    }
-
-    #[allow(clippy::cast_precision_loss, reason = "for people")]
-    fn write_performance(&mut self, step: u64, load: &Load, wall: f64) -> Result<(), OutputError> {
-        let imbalance =
-            |[sum, most]: [u64; 2]| most as f64 * load.ranks as f64 / (sum as f64).max(1.0);
-        self.performance.row(&[
-            Value::Count(step),
-            Value::Real(wall),
-            Value::Real(load.updates as f64 * 1e-6),
-            Value::Count(load.particles[0]),
-            Value::Real(imbalance(load.particles)),
-            Value::Real(imbalance(load.work)),
-            Value::Count(load.empty_ranks),
-            Value::Count(load.messages),
-            Value::Real(load.bytes as f64 * 1e-6),
-        ])
     }
 }

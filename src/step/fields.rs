@@ -9,11 +9,8 @@ use crate::sph::Sph;
 pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
     let sph = &case.sph;
     let driven = !case.loads.velocities.is_empty() || case.bodies.iter().any(|b| b.rigid.is_some());
-    [
-        (Owner::CONTACT, contact.is_active()),
-        (Owner::PENALTY, contact.has_penalty()),
+    let used = [
         (Owner::LOADS, driven),
-        (Owner::FRICTION, contact.has_friction()),
         (Owner::SELF_CONTACT, case.self_contact.is_some()),
         (
             Owner::FOLDS,
@@ -29,8 +26,9 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
         (Owner::STRESS_POINTS, sph.form == SphForm::StressPoints),
     ]
     .into_iter()
-    .filter(|&(_, used)| !used)
-    .fold(Owner::default(), |all, (option, _)| all | option)
+    .filter(|&(_, used)| used)
+    .fold(contact.owners(), |all, (option, _)| all | option);
+    Owner::all().difference(used)
 }
 
 /// Bytes that the options of a case add beyond contact without friction: to an owned particle, and

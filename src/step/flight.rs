@@ -12,7 +12,6 @@ use crate::contact::ContactTable;
 use crate::domain::{Mirrors, Span};
 use crate::loads::{Loads, Placed};
 use crate::model::{Case, RigidSurface};
-use crate::neighbours::ContactClass;
 use crate::numerics::vector::norm;
 use crate::particles::ParticleStore;
 
@@ -252,7 +251,7 @@ impl Search {
         meetings.clear();
         for a in 0..bodies {
             for b in a + 1..bodies {
-                if sky.table.foreign.class[a * bodies + b] == ContactClass::None {
+                if sky.table.foreign.class[a * bodies + b].is_none() {
                     continue;
                 }
                 let meet = |code| Meeting {

@@ -112,22 +112,15 @@ impl Simulation {
         let mut i = 0;
         let mut first_id = 0_u64;
         for (b, body) in case.bodies.iter().enumerate() {
-            let (density, energy) = (case.initial_density(body), case.initial_energy(body));
-            let mass = density * populate::particle_volume(body, case.dimension);
-            let velocity = body.velocity.into();
+            let mut start = Start::new(case, b);
+            if stressed {
+                // That is left to the stress points.
+                start.energy = 0.0;
+            }
             for site in populate::sites(body, case.dimension, &case.symmetry, Some(slab)) {
                 let store = &mut self.store;
-                store.id[i] = first_id + site.index;
-                store.body[i] = u32::try_from(b).unwrap_or(u32::MAX);
-                store.mass[i] = mass;
-                store.position[i] = site.position;
-                store.velocity[i] = velocity;
-                store.predicted_velocity[i] = velocity;
-                store.density[i] = density;
-                store.predicted_density[i] = density;
-                // With stress points that is left to them.
-                store.specific_energy[i] = if stressed { 0.0 } else { energy };
-                store.smoothing_length[i] = body.smoothing_length;
+                start.put(store, i, first_id + site.index, site.position);
+                store.mass[i] = start.mass;
                 Connectivity::begin(store, i, first_id);
                 if self.loads.drives() {
                     let bits = self.loads.bits(case, b, &site.position);
@@ -138,10 +131,7 @@ impl Simulation {
                 }
                 i += 1;
             }
-            first_id = first_id
-                .checked_add(populate::index_end(body, case.dimension))
-                .filter(|&id| id < 1 << 62)
-                .ok_or(SetupError::TooManySites)?;
+            first_id = beyond(first_id, populate::index_end(body, case.dimension))?;
         }
         if stressed {
             i = self.populate_stress_points(i, first_id, slab)?;
@@ -160,26 +150,13 @@ impl Simulation {
     ) -> Result<usize, SetupError> {
         let (case, store) = (&self.case, &mut self.store);
         for (b, body) in case.bodies.iter().enumerate() {
-            let density = case.initial_density(body);
-            let mass = density * populate::particle_volume(body, case.dimension);
-            let velocity = body.velocity.into();
+            let start = Start::new(case, b);
             for site in populate::stress_sites(body, case.dimension, &case.symmetry, Some(slab)) {
-                store.id[i] = first_id + site.index;
-                store.body[i] = u32::try_from(b).unwrap_or(u32::MAX);
-                store.stress_mass[i] = mass * site.share;
-                store.position[i] = site.position;
-                store.velocity[i] = velocity;
-                store.predicted_velocity[i] = velocity;
-                store.density[i] = density;
-                store.predicted_density[i] = density;
-                store.specific_energy[i] = case.initial_energy(body);
-                store.smoothing_length[i] = body.smoothing_length;
+                start.put(store, i, first_id + site.index, site.position);
+                store.stress_mass[i] = start.mass * site.share;
                 i += 1;
             }
-            first_id = first_id
-                .checked_add(populate::stress_index_end(body, case.dimension))
-                .filter(|&id| id < 1 << 62)
-                .ok_or(SetupError::TooManySites)?;
+            first_id = beyond(first_id, populate::stress_index_end(body, case.dimension))?;
         }
         Ok(i)
     }
@@ -188,7 +165,7 @@ impl Simulation {
     fn begin(&mut self, comm: &Comm) -> Result<(), SetupError> {
         // The first pass finds the foreign fractions that contact is to forgive, and the work.
         self.evaluate(comm, 0.0);
-        let mut capped = [self.contact.set_touch_relief(&mut self.store, &self.lists)];
+        let mut capped = [self.contact.begin(&mut self.store, &self.lists)];
         comm.sum_i64(&mut capped);
         self.state.capped_reliefs = capped[0];
         let scratch = self.sph.scratch(self.store.owned());
@@ -204,6 +181,51 @@ impl Simulation {
         self.vote(comm, vote)?;
         Ok(())
     }
+}
+
+/// What all particles of a body begin with.
+struct Start {
+    body: u32,
+    /// Of a whole particle (kg).
+    mass: f64,
+    density: f64,
+    velocity: [f64; 3],
+    energy: f64,
+    smoothing_length: f64,
+}
+
+impl Start {
+    fn new(case: &Case, b: usize) -> Self {
+        let body = &case.bodies[b];
+        let density = case.initial_density(body);
+        Self {
+            body: u32::try_from(b).unwrap_or(u32::MAX),
+            mass: density * populate::particle_volume(body, case.dimension),
+            density,
+            velocity: body.velocity.into(),
+            energy: case.initial_energy(body),
+            smoothing_length: body.smoothing_length,
+        }
+    }
+
+    /// Puts a particle at place `i` of the store.
+    fn put(&self, store: &mut ParticleStore, i: usize, id: u64, position: [f64; 3]) {
+        store.id[i] = id;
+        store.body[i] = self.body;
+        store.position[i] = position;
+        store.velocity[i] = self.velocity;
+        store.predicted_velocity[i] = self.velocity;
+        store.density[i] = self.density;
+        store.predicted_density[i] = self.density;
+        store.specific_energy[i] = self.energy;
+        store.smoothing_length[i] = self.smoothing_length;
+    }
+}
+
+/// The first id beyond those of a body, as long as ids last.
+fn beyond(first_id: u64, sites: u64) -> Result<u64, SetupError> {
+    let next = first_id.checked_add(sites).filter(|&id| id < 1 << 62);
+    next.ok_or(SetupError::TooManySites)
 }
 
 /// Refuses a case without particles, or a rank with more than it can number. Collective.

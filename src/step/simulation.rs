@@ -11,7 +11,7 @@ use crate::contact::{Contact, ContactTable};
 use crate::diagnose::{
     Booked, PostMortem, Reason, RunState, StepSums, Totals, TroubleKind, fastest, is_explained,
 };
-use crate::domain::{Halo, Partition, Slabs};
+use crate::domain::{Halo, Partition};
 use crate::loads::Loads;
 use crate::model::{Case, SphForm, TroublePolicy};
 use crate::neighbours::Lists;
@@ -182,7 +182,7 @@ impl Simulation {
         sph.forces(particles, lists, Side::Outer);
         timers.lap(Phase::Momentum);
         if contact.table.has_friction() {
-            contact.hold(particles, lists, dt);
+            contact.resist(particles, lists, dt);
             timers.lap(Phase::ContactForces);
             halo.exchange(comm, particles, HaloPhase::FRICTION);
             timers.lap(Phase::HaloStress);
@@ -380,12 +380,6 @@ impl Simulation {
             halo.messages + migration.messages,
             halo.bytes + migration.bytes,
         )
-    }
-
-    /// The faces between slabs (m) and their axis.
-    #[must_use]
-    pub fn slabs(&self) -> &Slabs {
-        self.partition.slabs()
     }
 
     /// The contact table.

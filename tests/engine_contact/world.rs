@@ -1,10 +1,11 @@
 //! Particles of two or more bodies anywhere in space, what contact does to them, and the energy of
 //! contact written down again.
 
-use whipple::contact::{ContactTable, ContactView, Reaction, overlap, potential};
+use whipple::contact::{BodyForce, ContactForce, ContactTable, ContactView, TaskForces, overlap};
 use whipple::material::library;
-use whipple::model::{Body, Case, ContactMode, Overlap, Potential, PotentialRange, Shape, Vec3};
-use whipple::neighbours::ContactClass;
+use whipple::model::{
+    Body, Case, ContactClass, ContactMode, Overlap, Potential, PotentialRange, Shape, Vec3,
+};
 use whipple::neighbours::MotionRecord;
 use whipple::numerics::kernel::Kernel;
 use whipple::particles::{Image, ParticleStore};
@@ -125,7 +126,7 @@ impl World {
             .filter(|&j| {
                 let (a, b) = self.bodies(i, j);
                 let pair = a * self.case.bodies.len() + b;
-                self.table.foreign.class[pair] == class
+                self.table.foreign.class[pair] == Some(class)
                     && self.distance(i, j).powi(2) < self.table.foreign.reach2[pair]
             })
             .map(|j| u32::try_from(j).unwrap())
@@ -142,8 +143,8 @@ impl World {
         let all: Vec<_> = (0_u32..)
             .zip(overlap)
             .map(|(place, list)| {
-                let relief = self.store.touch_relief[place as usize];
-                overlap::fraction(&self.view(), place, list, relief)
+                let offset = self.store.touch_relief[place as usize];
+                overlap::fraction(&self.view(), place, list, offset)
             })
             .collect();
         for (i, fraction) in all.iter().enumerate() {
@@ -156,30 +157,46 @@ impl World {
         all
     }
 
-    fn react(&self, i: usize, overlap: &[u32], potential: &[u32]) -> Reaction {
-        let mut reaction = Reaction::default();
-        reaction.clear();
-        let place = u32::try_from(i).unwrap();
-        overlap::react::<false>(&self.view(), place, overlap, &mut reaction);
-        potential::react(&self.view(), place, potential, &mut reaction);
-        reaction
+    /// Forces on particle `i` by `overlap` and by `potential`, and what of them each body exerts.
+    fn force(
+        &self,
+        i: usize,
+        overlap: &[u32],
+        potential: &[u32],
+    ) -> (ContactForce, Vec<BodyForce>) {
+        let (place, view) = (u32::try_from(i).unwrap(), self.view());
+        let mut found = TaskForces::default();
+        for (class, list) in [
+            (ContactClass::Overlap, overlap),
+            (ContactClass::Potential, potential),
+        ] {
+            found.add::<false>(&view, class, std::iter::once((place, list)));
+        }
+        let [mut sum, other] = [found.particles[0], found.particles[1]];
+        for a in 0..3 {
+            sum.force[a] += other.force[a];
+        }
+        sum.energy += other.energy;
+        sum.stiffness += other.stiffness;
+        (sum, found.by_body)
     }
 
-    /// Reactions of all particles at their positions.
-    pub fn reactions(&mut self, lists: &Lists) -> Vec<Reaction> {
+    /// Forces on all particles at their positions, and what of them each body exerts.
+    pub fn forces(&mut self, lists: &Lists) -> (Vec<ContactForce>, Vec<BodyForce>) {
         self.fractions(lists);
-        (0..self.len())
-            .map(|i| self.react(i, &lists[0][i], &lists[1][i]))
-            .collect()
+        let all = (0..self.len()).map(|i| self.force(i, &lists[0][i], &lists[1][i]));
+        let (forces, by_body): (_, Vec<_>) = all.unzip();
+        (forces, by_body.concat())
     }
 
     /// What particle j alone does to particle i, after [`Self::fractions`].
     pub fn pair_force(&self, i: usize, j: usize, class: ContactClass) -> [f64; 3] {
         let j = [u32::try_from(j).unwrap()];
-        match class {
-            ContactClass::Overlap => self.react(i, &j, &[]).force,
-            _ => self.react(i, &[], &j).force,
-        }
+        let (force, _) = match class {
+            ContactClass::Overlap => self.force(i, &j, &[]),
+            _ => self.force(i, &[], &j),
+        };
+        force.force
     }
 
     fn volume(&self, i: usize) -> f64 {
@@ -216,8 +233,8 @@ impl World {
                 }
             }
             if fraction > 0.0 {
-                let relief = self.store.touch_relief[i];
-                let excess = (fraction - touching / fraction - relief).max(0.0);
+                let offset = self.store.touch_relief[i];
+                let excess = (fraction - touching / fraction - offset).max(0.0);
                 energy += 0.5 * (modulus / fraction) * self.volume(i) * excess * excess;
             }
         }

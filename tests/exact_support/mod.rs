@@ -4,6 +4,8 @@
 #[allow(dead_code, reason = "not every test file needs all")]
 pub mod elastic;
 #[allow(dead_code, reason = "not every test file needs all")]
+pub mod shocks;
+#[allow(dead_code, reason = "not every test file needs all")]
 mod steps;
 
 use whipple::exact::finite_strain::Medium;

@@ -2,10 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use whipple::diagnose::hole::Plate;
 use whipple::model::Shape;
 use whipple::step::Simulation;
 
+use super::hole::Plate;
 use super::{median, ready, start};
 
 /// Bodies of the input, in its order.

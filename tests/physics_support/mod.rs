@@ -3,6 +3,7 @@
 
 pub mod bars;
 pub mod dam;
+pub mod hole;
 pub mod impact;
 pub mod slope;
 pub mod steps;

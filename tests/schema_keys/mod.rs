@@ -26,13 +26,15 @@ impl Key {
 /// Every key of the schema that holds a value.
 pub fn keys() -> Vec<Key> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/input");
-    let mut files = vec![folder.join("schema.rs")];
-    for entry in fs::read_dir(folder.join("schema")).unwrap() {
-        files.push(entry.unwrap().path());
-    }
+    let mut files = vec![folder.join("schema.rs"), folder.join("schema")];
     let mut tables: BTreeMap<String, Vec<(String, String)>> = BTreeMap::new();
-    for file in files {
-        read_tables(&fs::read_to_string(file).unwrap(), &mut tables);
+    while let Some(file) = files.pop() {
+        if file.is_dir() {
+            let entries = fs::read_dir(file).unwrap();
+            files.extend(entries.map(|entry| entry.unwrap().path()));
+        } else {
+            read_tables(&fs::read_to_string(file).unwrap(), &mut tables);
+        }
     }
     let mut found = Vec::new();
     walk(&tables, "CaseParams", "", &mut found);

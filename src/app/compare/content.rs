@@ -25,23 +25,16 @@ pub fn snapshots(
             .lines
             .push(format!("time: {:?} against {:?}", times[0], times[1]));
     }
-    let ids = format!("{POINT_DATA}/id");
-    let matching = Matching::new(a, b, &ids, &mut found)?;
-    matching.compare(a, b, "/VTKHDF/Points", true, &mut found)?;
-    let (mine, theirs) = (a.arrays(POINT_DATA)?, b.arrays(POINT_DATA)?);
-    for (one, other, letter) in [(&mine, &theirs, "A"), (&theirs, &mine, "B")] {
-        for array in one.iter().filter(|array| !has(other, array)) {
-            report.note(format!(
-                "{what}: only {letter} has the field {}",
-                array.name
-            ));
-        }
-    }
-    for array in mine.iter().filter(|array| has(&theirs, array)) {
-        let path = format!("{POINT_DATA}/{}", array.name);
-        matching.compare(a, b, &path, true, &mut found)?;
-    }
-    found.book(what, matching.common(), report);
+    let particles = fields(
+        [a, b],
+        POINT_DATA,
+        &["/VTKHDF/Points"],
+        &mut found,
+        |_, letter, name| {
+            report.note(format!("{what}: only {letter} has the field {name}"));
+        },
+    )?;
+    found.book(what, particles, report);
     Ok(())
 }
 
@@ -68,21 +61,37 @@ pub fn checkpoints(
     for line in text::states(&a.text("/state")?, &b.text("/state")?) {
         found.lines.push(format!("state {line}"));
     }
-    let matching = Matching::new(a, b, &format!("{FIELDS}/id"), &mut found)?;
-    let (mine, theirs) = (a.arrays(FIELDS)?, b.arrays(FIELDS)?);
+    let particles = fields([a, b], FIELDS, &[], &mut found, |found, letter, name| {
+        found.lines.push(format!("{name}: only {letter} has it"));
+    })?;
+    found.book(what, particles, report);
+    Ok(())
+}
+
+/// Compares the arrays `others` and then those of a group that both have, and tells `lone` of those that
+/// one alone has; gives the number of particles that both have. Snapshots are what has `others`.
+fn fields(
+    [a, b]: [&Content; 2],
+    group: &str,
+    others: &[&str],
+    found: &mut Found,
+    mut lone: impl FnMut(&mut Found, &str, &str),
+) -> Result<usize, ResultsError> {
+    let vtk = !others.is_empty();
+    let matching = Matching::new(a, b, &format!("{group}/id"), found)?;
+    for path in others {
+        matching.compare(a, b, path, vtk, found)?;
+    }
+    let (mine, theirs) = (a.arrays(group)?, b.arrays(group)?);
     for (one, other, letter) in [(&mine, &theirs, "A"), (&theirs, &mine, "B")] {
         for array in one.iter().filter(|array| !has(other, array)) {
-            found
-                .lines
-                .push(format!("{}: only {letter} has it", array.name));
+            lone(found, letter, &array.name);
         }
     }
     for array in mine.iter().filter(|array| has(&theirs, array)) {
-        let path = format!("{FIELDS}/{}", array.name);
-        matching.compare(a, b, &path, false, &mut found)?;
+        matching.compare(a, b, &format!("{group}/{}", array.name), vtk, found)?;
     }
-    found.book(what, matching.common(), report);
-    Ok(())
+    Ok(matching.common())
 }
 
 fn has(arrays: &[Array], array: &Array) -> bool {

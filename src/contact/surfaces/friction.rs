@@ -2,43 +2,62 @@
 //! touches (theory page "Loads").
 
 use super::{Push, View};
-use crate::contact::friction::{Law, Memory};
+use crate::contact::friction::{Law, Slip};
 use crate::numerics::vector::norm;
 use crate::particles::ParticleStore;
 
 /// What friction and damping do to one particle, beside their part of its [`Push`]es.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct SurfaceHold {
+pub(super) struct SurfaceFriction {
     particle: usize,
-    memory: Memory,
+    slip: Slip,
     /// Heat (W) of the particle.
     power: f64,
     /// Sum of dashpots (N s/m), for the time step.
     dashpot: f64,
 }
 
-/// Constants of friction and damping of a surface on a body.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Resisting {
-    pub static_friction: f64,
-    pub kinetic_friction: f64,
-    /// Stiffness of the spring that sticks over volume, `¼ M/Δp²` (Pa/m²).
-    pub stick: f64,
-    /// Damping over volume, `2 ζ √(κ M ρ₀)/Δp` (Pa s/m²).
-    pub dashpot: f64,
-}
-
-impl Resisting {
-    fn is_any(&self) -> bool {
-        self.static_friction > 0.0 || self.dashpot > 0.0
+fn slip(store: &ParticleStore, i: usize) -> Slip {
+    Slip {
+        displacement: store.surface_slip[i],
+        rate: store.surface_slip_rate[i],
+        sliding: store.surface_sliding[i] != 0,
     }
 }
 
-fn memory(store: &ParticleStore, i: usize) -> Memory {
-    Memory {
-        slip: store.surface_slip[i],
-        rate: store.surface_slip_rate[i],
-        sliding: store.surface_sliding[i] != 0,
+/// What friction of a particle rests on: sums over the surfaces that it touches.
+#[derive(Default)]
+struct Rest {
+    load: f64,
+    resultant: [f64; 3],
+    /// Velocity of the surfaces, weighted with the load.
+    ground: [f64; 3],
+    /// The same of their coefficients, over volume.
+    law: Law,
+    /// Direction of the first.
+    first: Option<[f64; 3]>,
+}
+
+impl Rest {
+    /// Adds a surface that presses with `press` (N).
+    fn add(&mut self, push: &Push, law: &Law, press: f64) {
+        self.first = self.first.or(Some(push.force.map(|f| f / press)));
+        self.load += press;
+        self.law.add(press, law);
+        for a in 0..3 {
+            self.resultant[a] += push.force[a];
+            self.ground[a] += press * push.ground[a];
+        }
+    }
+
+    /// The direction of the resultant, or of the first if they cancel; none without surfaces.
+    fn normal(&self) -> Option<[f64; 3]> {
+        let size = norm(&self.resultant);
+        if size > 0.0 {
+            Some(self.resultant.map(|f| f / size))
+        } else {
+            self.first
+        }
     }
 }
 
@@ -47,76 +66,60 @@ impl View<'_> {
     ///
     /// The law is given the sum of the presses along their resultant, and the velocity against what
     /// bears them, each with the share of its press; each bears that share of the law's force.
-    pub(super) fn hold(&self, i: usize, pushes: &mut [Push], dt: f64) -> Option<SurfaceHold> {
-        let store = self.store;
-        let before = memory(store, i);
-        let body = store.body[i] as usize;
+    pub(super) fn friction(
+        &self,
+        i: usize,
+        pushes: &mut [Push],
+        dt: f64,
+    ) -> Option<SurfaceFriction> {
+        let before = slip(self.store, i);
+        let body = self.store.body[i] as usize;
+        let volume = self.store.mass[i] * self.table.inverse_density(body);
         let of = |push: &Push| {
             let penalty = self.penalties[push.surface][body].as_ref();
-            let resisting = penalty.map(|p| p.resisting).filter(Resisting::is_any)?;
+            let law = penalty.map(|p| p.friction).filter(Law::is_any)?;
             let press = norm(&push.force);
-            (press > 0.0).then_some((resisting, press))
+            (press > 0.0).then_some((law, press))
         };
-        let (mut load, mut resultant, mut ground) = (0.0, [0.0; 3], [0.0; 3]);
-        let mut mean = Resisting::default();
-        let mut first = None;
+        let mut rest = Rest::default();
         for push in &*pushes {
-            let Some((resisting, press)) = of(push) else {
-                continue;
-            };
-            first = first.or(Some(push.force.map(|f| f / press)));
-            load += press;
-            mean.static_friction += press * resisting.static_friction;
-            mean.kinetic_friction += press * resisting.kinetic_friction;
-            mean.stick += press * resisting.stick;
-            mean.dashpot += press * resisting.dashpot;
-            for a in 0..3 {
-                resultant[a] += push.force[a];
-                ground[a] += press * push.ground[a];
+            if let Some((law, press)) = of(push) {
+                rest.add(push, &law, press);
             }
         }
-        let Some(first) = first else {
+        let Some(normal) = rest.normal() else {
             return self.release(i, &before, dt);
         };
-        let size = norm(&resultant);
-        let normal = if size > 0.0 {
-            resultant.map(|f| f / size)
-        } else {
-            first
-        };
-        let volume = store.mass[i] * self.table.inverse_density(body);
-        let law = Law {
-            static_friction: mean.static_friction / load,
-            kinetic_friction: mean.kinetic_friction / load,
-            stiffness: mean.stick / load * volume,
-            dashpot: mean.dashpot / load * volume,
-        };
-        let v = &store.predicted_velocity[i];
+        let (load, ground) = (rest.load, rest.ground);
+        let law = rest.law.over(load).of_volume(volume);
+        let v = &self.store.predicted_velocity[i];
         let velocity = std::array::from_fn(|a| v[a] - ground[a] / load);
-        let grip = law.step(&before, &normal.map(|n| n * load), &normal, &velocity, dt);
+        let friction = law.step(&before, &normal.map(|n| n * load), &normal, &velocity, dt);
         for push in pushes {
             let Some((_, press)) = of(push) else { continue };
             let share = press / load;
-            push.heat = share * grip.power;
-            push.energy += share * grip.energy;
+            push.heat = share * friction.power;
+            push.energy += share * friction.energy;
             push.stiffness += share * law.stiffness;
-            let force = grip.force.map(|f| share * f);
-            push.torque += self.placed(push.surface).torque(&store.position[i], &force);
+            let force = friction.force.map(|f| share * f);
+            push.torque += self
+                .placed(push.surface)
+                .torque(&self.store.position[i], &force);
             for a in 0..3 {
                 push.force[a] += force[a];
             }
         }
-        Some(SurfaceHold {
+        Some(SurfaceFriction {
             particle: i,
-            memory: grip.memory,
-            power: grip.power,
+            slip: friction.slip,
+            power: friction.power,
             dashpot: law.dashpot,
         })
     }
 
     /// A particle that touches nothing any more: what its spring held becomes heat.
-    fn release(&self, i: usize, before: &Memory, dt: f64) -> Option<SurfaceHold> {
-        if before.slip == [0.0; 3] {
+    fn release(&self, i: usize, before: &Slip, dt: f64) -> Option<SurfaceFriction> {
+        if before.displacement == [0.0; 3] {
             return None;
         }
         let body = self.store.body[i] as usize;
@@ -125,31 +128,31 @@ impl View<'_> {
             stiffness: self.sticks[body] * volume,
             ..Law::default()
         };
-        let grip = law.step(before, &[0.0; 3], &[0.0; 3], &before.rate, dt);
-        Some(SurfaceHold {
+        let friction = law.step(before, &[0.0; 3], &[0.0; 3], &before.rate, dt);
+        Some(SurfaceFriction {
             particle: i,
-            memory: Memory::default(),
-            power: grip.power,
+            slip: Slip::default(),
+            power: friction.power,
             dashpot: 0.0,
         })
     }
 }
 
-impl SurfaceHold {
-    /// Forgets what friction remembered, before [`Self::store`].
+impl SurfaceFriction {
+    /// Forgets the slip, before [`Self::store`].
     pub(super) fn clear(store: &mut ParticleStore) {
         store.surface_slip.fill([0.0; 3]);
         store.surface_slip_rate.fill([0.0; 3]);
         store.surface_sliding.fill(0);
     }
 
-    /// Gives the particle its heat, its time step and what it remembers.
+    /// Gives the particle its heat, its time step and its slip.
     pub(super) fn store(&self, store: &mut ParticleStore) {
         let i = self.particle;
         let per_mass = 1.0 / store.mass[i];
-        store.surface_slip[i] = self.memory.slip;
-        store.surface_slip_rate[i] = self.memory.rate;
-        store.surface_sliding[i] = u32::from(self.memory.sliding);
+        store.surface_slip[i] = self.slip.displacement;
+        store.surface_slip_rate[i] = self.slip.rate;
+        store.surface_sliding[i] = u32::from(self.slip.sliding);
         store.d_specific_energy_dt[i] += self.power * per_mass;
         // A step of m/c is stable: as if it were that of a spring, 2 √(m/k).
         let rate = self.dashpot * per_mass;

@@ -1,17 +1,8 @@
-//! Words to choose from.
+//! Words to choose from that make no choice of the model by themselves; those that do are read as it.
 
 use serde::Deserialize;
 
 choices! {
-    /// A coordinate axis.
-    AxisName {
-        /// First.
-        X,
-        /// Second.
-        Y,
-        /// Third.
-        Z,
-    }
     /// Side of a surface.
     SideName {
         /// Outside, as of a punch.
@@ -19,73 +10,12 @@ choices! {
         /// Inside, as of a container.
         Inside,
     }
-    /// Kind of lattice.
-    LatticeName {
-        /// Simple cubic.
-        Cubic,
-        /// Hexagonal close-packed.
-        Hexagonal,
-        /// Concentric rings.
-        Rings,
-    }
-    /// How the SPH sums take gradients.
-    SphFormName {
-        /// By the kernel's gradient.
-        Conventional,
-        /// By gradients that the moments of the neighbours correct.
-        Corrected,
-        /// By the gradient of the normalised kernel, made exact for linear fields.
-        Normalised,
-        /// By linear fits at stress points.
-        StressPoints,
-    }
     /// Smoothing length in the SPH sums.
     SmoothingName {
         /// h = h₀.
         Constant,
         /// h follows the density.
         Variable,
-    }
-    /// Along what contact forces act.
-    DirectionName {
-        /// The line between particles.
-        Pair,
-        /// The normal of the surfaces.
-        Normal,
-    }
-    /// Contact mode.
-    ModeName {
-        /// Nothing.
-        None,
-        /// One continuum.
-        Kernel,
-        /// Contact potential.
-        Potential,
-        /// Overlap energy.
-        Overlap,
-        /// Penalty between boundary particles.
-        Penalty,
-    }
-    /// Law of the penalty force.
-    PenaltyLawName {
-        /// Depth to the power 3/2.
-        Hertz,
-        /// No more than what stops the approach in one step.
-        Pinball,
-    }
-    /// Range of the contact potential.
-    RangeName {
-        /// 2h.
-        Support,
-        /// Mean spacing.
-        Spacing,
-    }
-    /// Form of the linear equation of state.
-    FormName {
-        /// ln(ρ/ρ₀).
-        Logarithmic,
-        /// ρ/ρ₀ − 1.
-        DensityRatio,
     }
 }
 

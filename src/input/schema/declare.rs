@@ -49,3 +49,59 @@ macro_rules! choices {
         pub enum $choice { $($(#[$word_doc])+ $word,)+ }
     )+ };
 }
+
+/// Reads a value that may be typed in several ways: what is expected, and what each way makes of what
+/// it reads.
+macro_rules! typed_as {
+    ($made:ident: $expected:literal { $($way:ident: $make:expr;)+ }) => {
+        impl<'de> Deserialize<'de> for $made {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                struct Ways;
+                impl<'de> Visitor<'de> for Ways {
+                    type Value = $made;
+
+                    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                        f.write_str($expected)
+                    }
+
+                    $( way!($way, $made, $make); )+
+                }
+                deserializer.deserialize_any(Ways)
+            }
+        }
+    };
+}
+
+/// One of the ways of [`typed_as`].
+macro_rules! way {
+    (word, $made:ident, $make:expr) => {
+        fn visit_str<E: Error>(self, word: &str) -> Result<$made, E> {
+            Deserialize::deserialize(StrDeserializer::new(word)).map($make)
+        }
+    };
+    (truth, $made:ident, $make:expr) => {
+        fn visit_bool<E: Error>(self, value: bool) -> Result<$made, E> {
+            Ok($make(value))
+        }
+    };
+    (number, $made:ident, $make:expr) => {
+        fn visit_f64<E: Error>(self, value: f64) -> Result<$made, E> {
+            Ok($make(value))
+        }
+
+        #[allow(clippy::cast_precision_loss, reason = "as typed")]
+        fn visit_i64<E: Error>(self, value: i64) -> Result<$made, E> {
+            Ok($make(value as f64))
+        }
+    };
+    (list, $made:ident, $make:expr) => {
+        fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<$made, A::Error> {
+            Deserialize::deserialize(SeqAccessDeserializer::new(list)).map($make)
+        }
+    };
+    (table, $made:ident, $make:expr) => {
+        fn visit_map<A: MapAccess<'de>>(self, table: A) -> Result<$made, A::Error> {
+            Deserialize::deserialize(MapAccessDeserializer::new(table)).map($make)
+        }
+    };
+}

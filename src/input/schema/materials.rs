@@ -3,12 +3,12 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::choices::FormName;
 use crate::input::forms::OrNone;
 use crate::input::quantity::{
     Density, PerPressure, PerTemperature, Placed, Pressure, Rate, SpecificEnergy, SpecificHeat,
     Temperature, Velocity, Viscosity,
 };
+use crate::material::LinearForm;
 
 optional_tables! {
     /// `[material.NAME]`: from the library, or inline, or single values changed.
@@ -46,7 +46,7 @@ optional_tables! {
         /// Bulk modulus.
         bulk_modulus: Option<Placed<Pressure>>,
         /// Dependence on the density ratio.
-        form: Option<FormName>,
+        form: Option<LinearForm>,
     }
 
     /// `eos.mie_gruneisen`

@@ -4,10 +4,11 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::MotionParams;
-use super::choices::{AxisName, SideName};
+use super::choices::SideName;
 use super::short::{FrictionParams, NormalParams};
 use crate::input::forms::OneOrMany;
 use crate::input::quantity::{Angle, AngularRate, Length, Placed, Time};
+use crate::model::Axis;
 
 tables! {
     /// `[[plane]]`
@@ -75,7 +76,7 @@ tables! {
         /// Middle of the axis; the origin if absent.
         centre: Option<Spanned<Vec<Placed<Length>>>>,
         /// Direction of the axis; z if absent.
-        axis: Option<Spanned<AxisName>>,
+        axis: Option<Spanned<Axis>>,
         /// Radius.
         radius: Placed<Length>,
         /// Length along the axis; without ends if absent.
@@ -99,7 +100,7 @@ tables! {
     /// `turn`
     TurnParams {
         /// Axis through the origin.
-        axis: Spanned<AxisName>,
+        axis: Spanned<Axis>,
         /// By how much.
         angle: Placed<Angle>,
     }
@@ -107,7 +108,7 @@ tables! {
     /// `rotation`
     RotationParams {
         /// Axis of the rotation.
-        axis: Spanned<AxisName>,
+        axis: Spanned<Axis>,
         /// A point of the axis; the origin if absent.
         point: Option<Spanned<Vec<Placed<Length>>>>,
         /// Times of the table.

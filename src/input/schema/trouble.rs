@@ -4,12 +4,13 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use crate::input::quantity::{Placed, SpecificEnergy, Time, Velocity};
+use crate::model::TroublePolicy;
 
 optional_tables! {
     /// `[trouble]`
     TroubleParams {
         /// What happens to a particle whose state is out of range.
-        policy: Option<TroublePolicyName>,
+        policy: Option<TroublePolicy>,
         /// Largest speed.
         speed_max: Option<Placed<Velocity>>,
         /// Largest magnitude of the specific energy.
@@ -23,16 +24,4 @@ optional_tables! {
         /// Largest kinetic energy over what there was and has been put in.
         gain_max: Option<Spanned<f64>>,
     }
-}
-
-/// What happens to a particle whose state is out of range.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum TroublePolicyName {
-    /// The run ends.
-    Stop,
-    /// It is taken out and booked.
-    Remove,
-    /// The same, and it stays in the files, at rest where it was.
-    Freeze,
 }

@@ -2,13 +2,13 @@
 
 use toml::Spanned;
 
-use super::check::{Allowed, Value, number, optional};
+use super::check::{Allowed, number, optional};
 use super::motion::motion;
-use super::shapes::Shapes;
+use super::shapes::{Shapes, vector};
 use super::touch;
 use crate::input::names;
-use crate::input::quantity::{Length, Placed, Velocity};
-use crate::input::schema::{BodyParams, LatticeName, LatticeParams};
+use crate::input::quantity::{Length, Placed};
+use crate::input::schema::BodyParams;
 use crate::input::source::Complaint;
 use crate::material::{Eos, Failure, Linear, LinearForm, Material, Strength};
 use crate::model::{Axis, Body, Lattice, LatticeKind, Motion, Shape, SymmetryPlane, Vec3};
@@ -138,11 +138,11 @@ impl Reader<'_> {
 
     /// The initial velocity, and the motion of a rigid body.
     fn motion(&self, params: &BodyParams) -> Result<(Vec3, Option<Motion>), Complaint> {
-        let velocity = self.velocity(params.velocity.as_ref())?;
+        let velocity = vector("velocity", params.velocity.as_ref(), self.dimension)?;
         let rigid = params.rigid == Some(true);
         let Some(table) = &params.motion else {
-            let motion = rigid.then(|| Motion::constant(velocity.into()));
-            return Ok((velocity, motion));
+            let motion = rigid.then(|| Motion::constant(velocity));
+            return Ok((velocity.into(), motion));
         };
         if !rigid || params.velocity.is_some() {
             let title = if rigid {
@@ -170,13 +170,8 @@ impl Reader<'_> {
         let (kind, angle) = match &params.lattice {
             None => (LatticeKind::Cubic, 0.0),
             Some(lattice) => {
-                let LatticeParams { kind, angle } = lattice.get_ref();
-                let kind = match kind {
-                    LatticeName::Cubic => LatticeKind::Cubic,
-                    LatticeName::Hexagonal => LatticeKind::Hexagonal,
-                    LatticeName::Rings => LatticeKind::Rings,
-                };
-                (kind, number(angle.as_ref(), "angle", 0.0, Allowed::Any)?)
+                let params = lattice.get_ref();
+                (params.kind, number!(params.angle, or 0.0, Any))
             }
         };
         if self.dimension == 1
@@ -205,24 +200,6 @@ impl Reader<'_> {
             spacing,
             angle,
         })
-    }
-
-    fn velocity(&self, params: Option<&Spanned<Vec<Placed<Velocity>>>>) -> Result<Vec3, Complaint> {
-        let mut velocity = Vec3::zeros();
-        let Some(params) = params else {
-            return Ok(velocity);
-        };
-        if params.get_ref().len() != self.dimension {
-            return Err(super::shapes::wrong_length(
-                "velocity",
-                params,
-                self.dimension,
-            ));
-        }
-        for (component, value) in velocity.iter_mut().zip(params.get_ref()) {
-            *component = value.get_ref().si();
-        }
-        Ok(velocity)
     }
 
     fn check_size(&self, params: &[Spanned<BodyParams>], bodies: &[Body]) -> Result<(), Complaint> {

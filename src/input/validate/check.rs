@@ -85,6 +85,32 @@ impl<K> Value for Quantity<K> {
     }
 }
 
+/// The [`number`](number()) of a key of a table, or its default: `number!(params.alpha, or 1.0, Positive)`.
+macro_rules! number {
+    ($table:ident.$key:ident, or $default:expr, $($allowed:tt)+) => {
+        $crate::input::validate::check::number(
+            $table.$key.as_ref(),
+            stringify!($key),
+            $default,
+            $crate::input::validate::check::Allowed::$($allowed)+,
+        )?
+    };
+}
+
+/// The [`required`](required()) number of a key of a table; `$base` is the law whose field of the same
+/// name is taken without one.
+macro_rules! required {
+    ($table:ident.$key:ident, $base:expr, $allowed:ident, $at:expr) => {
+        $crate::input::validate::check::required(
+            $table.$key.as_ref(),
+            stringify!($key),
+            $base.map(|law| law.$key),
+            $crate::input::validate::check::Allowed::$allowed,
+            $at,
+        )?
+    };
+}
+
 /// A number in SI units, or its default.
 pub fn number<V: Value>(
     value: Option<&Spanned<V>>,

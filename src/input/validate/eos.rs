@@ -4,10 +4,9 @@ use std::ops::Range;
 
 use toml::Spanned;
 
-use super::check::{Allowed, exactly_one, number, required};
+use super::check::{Allowed, exactly_one, number};
 use crate::input::schema::{
-    EosParams, FormName, IdealGasParams, LinearParams, MieGruneisenParams, TaitParams,
-    TillotsonParams,
+    EosParams, IdealGasParams, LinearParams, MieGruneisenParams, TaitParams, TillotsonParams,
 };
 use crate::input::source::Complaint;
 use crate::material::{Eos, IdealGas, Linear, LinearForm, MieGruneisen, Tait, Tillotson};
@@ -18,32 +17,31 @@ const CHOICES: &str = "`linear`, `mie_gruneisen`, `tait`, `tillotson`, `ideal_ga
 /// `rho0` is the reference density (kg/m³).
 pub fn eos(table: &Spanned<EosParams>, base: Option<&Eos>, rho0: f64) -> Result<Eos, Complaint> {
     let (at, params) = (table.span(), table.get_ref());
-    let laws = [
-        params.linear.is_some(),
-        params.mie_gruneisen.is_some(),
-        params.tait.is_some(),
-        params.tillotson.is_some(),
-        params.ideal_gas.is_some(),
-    ];
-    if laws.iter().filter(|is_there| **is_there).count() != 1 {
-        return Err(exactly_one(at, "eos", CHOICES));
+    let EosParams {
+        linear: a,
+        mie_gruneisen: b,
+        tait: c,
+        tillotson: d,
+        ideal_gas: e,
+    } = params;
+    match (a, b, c, d, e) {
+        (Some(law), None, None, None, None) => linear(law, base, &at).map(Eos::Linear),
+        (None, Some(law), None, None, None) => mie_gruneisen(law, base, &at).map(Eos::MieGruneisen),
+        (None, None, Some(law), None, None) => tait(law, base, rho0, &at).map(Eos::Tait),
+        (None, None, None, Some(law), None) => tillotson(law, base, &at).map(Eos::Tillotson),
+        (None, None, None, None, Some(law)) => ideal_gas(law, base, &at).map(Eos::IdealGas),
+        _ => Err(exactly_one(at, "eos", CHOICES)),
     }
-    if let Some(params) = &params.linear {
-        return linear(params, base, &at).map(Eos::Linear);
-    }
-    if let Some(params) = &params.mie_gruneisen {
-        return mie_gruneisen(params, base, &at).map(Eos::MieGruneisen);
-    }
-    if let Some(params) = &params.tait {
-        return tait(params, base, rho0, &at).map(Eos::Tait);
-    }
-    if let Some(params) = &params.tillotson {
-        return tillotson(params, base, &at).map(Eos::Tillotson);
-    }
-    match &params.ideal_gas {
-        Some(params) => ideal_gas(params, base, &at).map(Eos::IdealGas),
-        None => Err(exactly_one(at, "eos", CHOICES)),
-    }
+}
+
+/// The library's law, if it is of the same kind.
+macro_rules! same {
+    ($base:ident, $law:ident) => {
+        match $base {
+            Some(Eos::$law(law)) => Some(law),
+            _ => None,
+        }
+    };
 }
 
 fn linear(
@@ -51,19 +49,11 @@ fn linear(
     base: Option<&Eos>,
     at: &Range<usize>,
 ) -> Result<Linear, Complaint> {
-    let base = match base {
-        Some(Eos::Linear(linear)) => Some(linear),
-        _ => None,
-    };
-    let modulus = params.bulk_modulus.as_ref();
-    let base_modulus = base.map(|l| l.bulk_modulus);
+    let base = same!(base, Linear);
+    let known = base.map_or(LinearForm::Logarithmic, |law| law.form);
     Ok(Linear {
-        bulk_modulus: required(modulus, "bulk_modulus", base_modulus, Allowed::Positive, at)?,
-        form: match params.form {
-            Some(FormName::Logarithmic) => LinearForm::Logarithmic,
-            Some(FormName::DensityRatio) => LinearForm::DensityRatio,
-            None => base.map_or(LinearForm::Logarithmic, |l| l.form),
-        },
+        bulk_modulus: required!(params.bulk_modulus, base, Positive, at),
+        form: params.form.unwrap_or(known),
     })
 }
 
@@ -72,28 +62,14 @@ fn mie_gruneisen(
     base: Option<&Eos>,
     at: &Range<usize>,
 ) -> Result<MieGruneisen, Complaint> {
-    let base = match base {
-        Some(Eos::MieGruneisen(law)) => Some(law),
-        _ => None,
-    };
-    let positive = Allowed::NotNegative;
-    let [s1, gamma0] = [params.s1.as_ref(), params.gamma0.as_ref()];
-    let curved = |value: &Option<Spanned<f64>>, key, base: Option<f64>| {
-        number(value.as_ref(), key, base.unwrap_or(0.0), Allowed::Any)
-    };
+    let base = same!(base, MieGruneisen);
     Ok(MieGruneisen {
-        c0: required(
-            params.c0.as_ref(),
-            "c0",
-            base.map(|m| m.c0),
-            Allowed::Positive,
-            at,
-        )?,
-        s1: required(s1, "s1", base.map(|m| m.s1), positive, at)?,
-        s2: curved(&params.s2, "s2", base.map(|m| m.s2))?,
-        s3: curved(&params.s3, "s3", base.map(|m| m.s3))?,
-        gamma0: required(gamma0, "gamma0", base.map(|m| m.gamma0), positive, at)?,
-        b: curved(&params.b, "b", base.map(|m| m.b))?,
+        c0: required!(params.c0, base, Positive, at),
+        s1: required!(params.s1, base, NotNegative, at),
+        s2: number!(params.s2, or base.map_or(0.0, |law| law.s2), Any),
+        s3: number!(params.s3, or base.map_or(0.0, |law| law.s3), Any),
+        gamma0: required!(params.gamma0, base, NotNegative, at),
+        b: number!(params.b, or base.map_or(0.0, |law| law.b), Any),
     })
 }
 
@@ -103,16 +79,8 @@ fn tait(
     rho0: f64,
     at: &Range<usize>,
 ) -> Result<Tait, Complaint> {
-    let base = match base {
-        Some(Eos::Tait(law)) => Some(law),
-        _ => None,
-    };
-    let gamma = number(
-        params.gamma.as_ref(),
-        "gamma",
-        base.map_or(7.0, |law| law.gamma),
-        Allowed::Positive,
-    )?;
+    let base = same!(base, Tait);
+    let gamma = number!(params.gamma, or base.map_or(7.0, |law| law.gamma), Positive);
     match (&params.b, &params.sound_speed) {
         (None, Some(c0)) => {
             let c0 = number(Some(c0), "sound_speed", 0.0, Allowed::Positive)?;
@@ -126,13 +94,8 @@ fn tait(
             let title = "`eos.tait` needs `sound_speed` or `b`";
             Err(Complaint::new(at.clone(), title).label("in this table"))
         }
-        (b, None) => Ok(Tait {
-            b: number(
-                b.as_ref(),
-                "b",
-                base.map_or(0.0, |law| law.b),
-                Allowed::Positive,
-            )?,
+        (_, None) => Ok(Tait {
+            b: number!(params.b, or base.map_or(0.0, |law| law.b), Positive),
             gamma,
         }),
     }
@@ -143,31 +106,17 @@ fn tillotson(
     base: Option<&Eos>,
     at: &Range<usize>,
 ) -> Result<Tillotson, Complaint> {
-    let base = match base {
-        Some(Eos::Tillotson(law)) => Some(law),
-        _ => None,
-    };
-    macro_rules! value {
-        ($key:ident, $allowed:ident) => {
-            required(
-                params.$key.as_ref(),
-                stringify!($key),
-                base.map(|law| law.$key),
-                Allowed::$allowed,
-                at,
-            )?
-        };
-    }
+    let base = same!(base, Tillotson);
     let law = Tillotson {
-        a: value!(a, Positive),
-        b: value!(b, NotNegative),
-        bulk_modulus: value!(bulk_modulus, Positive),
-        quadratic_modulus: value!(quadratic_modulus, NotNegative),
-        alpha: value!(alpha, NotNegative),
-        beta: value!(beta, NotNegative),
-        e0: value!(e0, Positive),
-        e_iv: value!(e_iv, Positive),
-        e_cv: value!(e_cv, Positive),
+        a: required!(params.a, base, Positive, at),
+        b: required!(params.b, base, NotNegative, at),
+        bulk_modulus: required!(params.bulk_modulus, base, Positive, at),
+        quadratic_modulus: required!(params.quadratic_modulus, base, NotNegative, at),
+        alpha: required!(params.alpha, base, NotNegative, at),
+        beta: required!(params.beta, base, NotNegative, at),
+        e0: required!(params.e0, base, Positive, at),
+        e_iv: required!(params.e_iv, base, Positive, at),
+        e_cv: required!(params.e_cv, base, Positive, at),
     };
     if law.e_cv > law.e_iv {
         return Ok(law);
@@ -185,30 +134,12 @@ fn ideal_gas(
     base: Option<&Eos>,
     at: &Range<usize>,
 ) -> Result<IdealGas, Complaint> {
-    let base = match base {
-        Some(Eos::IdealGas(law)) => Some(law),
-        _ => None,
-    };
-    let pressure = |value: Option<_>, key, base: Option<f64>| {
-        number(value, key, base.unwrap_or(0.0), Allowed::NotNegative)
-    };
+    let base = same!(base, IdealGas);
+    let stiffening = base.map_or(0.0, |law| law.stiffening_pressure);
+    let reference = base.map_or(0.0, |law| law.reference_pressure);
     Ok(IdealGas {
-        gamma: required(
-            params.gamma.as_ref(),
-            "gamma",
-            base.map(|law| law.gamma),
-            Allowed::AboveOne,
-            at,
-        )?,
-        stiffening_pressure: pressure(
-            params.stiffening_pressure.as_ref(),
-            "stiffening_pressure",
-            base.map(|law| law.stiffening_pressure),
-        )?,
-        reference_pressure: pressure(
-            params.reference_pressure.as_ref(),
-            "reference_pressure",
-            base.map(|law| law.reference_pressure),
-        )?,
+        gamma: required!(params.gamma, base, AboveOne, at),
+        stiffening_pressure: number!(params.stiffening_pressure, or stiffening, NotNegative),
+        reference_pressure: number!(params.reference_pressure, or reference, NotNegative),
     })
 }

@@ -4,9 +4,10 @@ use std::path::Path;
 
 use toml::Spanned;
 
-use super::check::{Allowed, Value, number};
+use super::in_dimension;
 use super::motion::motion;
-use super::shapes::wrong_length;
+use super::shapes::vector;
+use super::touch;
 use crate::input::names;
 use crate::input::quantity::{Acceleration, Placed};
 use crate::input::schema::{CaseParams, LoadParams, SidesParams};
@@ -18,7 +19,7 @@ use crate::populate::{self, Wanted};
 /// What loads are read with.
 pub struct Reader<'a> {
     pub dimension: usize,
-    pub bodies: &'a [Body],
+    pub bodies: &'a mut [Body],
     pub symmetry: &'a [SymmetryPlane],
     /// The unit of length in messages.
     pub length_unit: &'a Readable,
@@ -27,12 +28,16 @@ pub struct Reader<'a> {
 }
 
 impl Reader<'_> {
+    /// Lays bodies on the surfaces of a case, on which loads then act where they are.
+    pub fn all(self, params: &CaseParams) -> Result<Loads, Complaint> {
+        let (symmetry, dimension) = (self.symmetry, self.dimension);
+        let surfaces = self.surfaces(params)?;
+        touch::lay_on_planes(&params.body, self.bodies, &surfaces, symmetry, dimension)?;
+        self.loads(params, surfaces)
+    }
+
     /// All loads of a case that has these `surfaces`.
-    pub fn loads(
-        &self,
-        params: &CaseParams,
-        surfaces: Vec<RigidSurface>,
-    ) -> Result<Loads, Complaint> {
+    fn loads(&self, params: &CaseParams, surfaces: Vec<RigidSurface>) -> Result<Loads, Complaint> {
         let velocities: Result<Vec<VelocityLoad>, _> = params
             .load
             .iter()
@@ -83,18 +88,9 @@ impl Reader<'_> {
         &self,
         params: Option<&Spanned<Vec<Placed<Acceleration>>>>,
     ) -> Result<[f64; 3], Complaint> {
-        let mut gravity = [0.0; 3];
-        let Some(params) = params else {
-            return Ok(gravity);
-        };
-        if params.get_ref().len() != self.dimension {
-            return Err(wrong_length("gravity", params, self.dimension));
-        }
-        for (component, value) in gravity.iter_mut().zip(params.get_ref()) {
-            *component = value.get_ref().si();
-        }
+        let gravity = vector("gravity", params, self.dimension)?;
         let across = |plane: &&SymmetryPlane| gravity[plane.axis.index()] != 0.0;
-        if let Some(plane) = self.symmetry.iter().find(across) {
+        if let (Some(params), Some(plane)) = (params, self.symmetry.iter().find(across)) {
             let axis = plane.axis;
             let title = format!(
                 "gravity along {} is not its own mirror image at the symmetry plane of {}",
@@ -123,14 +119,13 @@ impl Reader<'_> {
             return Err(Complaint::new(params.body.span(), title)
                 .help("give the body a `velocity` or a `motion` instead"));
         }
-        let until = params.until.as_ref();
         let load = VelocityLoad {
             name: given_name(params.name.as_ref(), "load", number_of),
             body: index,
             above: self.sides(params.above.as_ref(), body, f64::NEG_INFINITY)?,
             below: self.sides(params.below.as_ref(), body, f64::INFINITY)?,
             motion: motion(&params.velocity, self.dimension)?,
-            until: number(until, "until", f64::INFINITY, Allowed::Positive)?,
+            until: number!(params.until, or f64::INFINITY, Positive),
         };
         if self.holds_any(&load, body) {
             return Ok(load);
@@ -179,14 +174,7 @@ impl Reader<'_> {
         let params = table.get_ref();
         for (axis, side) in Axis::ALL.into_iter().zip([&params.x, &params.y, &params.z]) {
             let Some(side) = side else { continue };
-            if axis.index() >= self.dimension {
-                let title = format!(
-                    "a {}-dimensional case has no {} axis",
-                    self.dimension,
-                    axis.name()
-                );
-                return Err(Complaint::new(side.span(), title));
-            }
+            in_dimension(axis, self.dimension, side.span())?;
             sides[axis.index()] = side.get_ref().metres(body.lattice.spacing);
         }
         Ok(sides)

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use toml::Spanned;
 
-use super::check::{Allowed, number, optional, required};
+use super::check::{Allowed, optional};
 use super::eos::eos;
 use super::strength::{failure, strength};
 use crate::input::forms::Named;
@@ -46,12 +46,8 @@ fn material(
     if base.is_none() && params.density.is_none() {
         return Err(missing("density"));
     }
-    let reference_density = number(
-        params.density.as_ref(),
-        "density",
-        base.map_or(0.0, |b| b.reference_density),
-        Allowed::Positive,
-    )?;
+    let known_density = base.map_or(0.0, |b| b.reference_density);
+    let reference_density = number!(params.density, or known_density, Positive);
     let eos = match (&params.eos, base.map(|b| &b.eos)) {
         (Some(table), base) => eos(table, base, reference_density)?,
         (None, base) => base.cloned().ok_or_else(|| missing("eos"))?,
@@ -112,12 +108,7 @@ fn thermal(
         Some(table) => {
             let params = table.get_ref();
             let cold = base.map_or(ROOM, |b| b.reference_temperature);
-            let reference_temperature = number(
-                params.reference_temperature.as_ref(),
-                "reference_temperature",
-                cold,
-                Allowed::NotNegative,
-            )?;
+            let reference_temperature = number!(params.reference_temperature, or cold, NotNegative);
             let melting = params.melting_temperature.as_ref();
             let given = optional(melting, "melting_temperature", Allowed::Positive)?;
             if let (Some(value), Some(t)) = (melting, given)
@@ -127,13 +118,7 @@ fn thermal(
                 return Err(Complaint::new(value.span(), title).label("out of range"));
             }
             Some(ThermalConstants {
-                specific_heat: required(
-                    params.specific_heat.as_ref(),
-                    "specific_heat",
-                    base.map(|b| b.specific_heat),
-                    Allowed::Positive,
-                    &table.span(),
-                )?,
+                specific_heat: required!(params.specific_heat, base, Positive, &table.span()),
                 reference_temperature,
                 melting_temperature: given.or(base.and_then(|b| b.melting_temperature)),
             })

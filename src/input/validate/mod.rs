@@ -1,7 +1,8 @@
 //! Typed tables → a [`Case`]: defaults, ranges, references between tables.
 
+#[macro_use]
+pub(super) mod check;
 mod bodies;
-mod check;
 mod contact;
 mod eos;
 mod loads;
@@ -19,14 +20,15 @@ use std::path::Path;
 
 use super::names;
 use super::schema::{
-    AxisName, BodyParams, CaseParams, DomainParams, OutputParams, RunParams, SmoothingName,
-    SphFormName, SphParams, SymmetryParams, TimeStepParams,
+    BodyParams, CaseParams, DomainParams, OutputParams, RunParams, SmoothingName, SphParams,
+    SymmetryParams, TimeStepParams,
 };
 use super::source::Complaint;
+use crate::material::Material;
 use crate::model::readable::Readable;
 use crate::model::{
-    Axis, Case, ContactMode, DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm,
-    SphOptions, SymmetryPlane, TimeStepOptions, Trouble,
+    Axis, Body, Case, ContactMode, DomainOptions, OutputOptions, RunControl, SmoothingLength,
+    SphForm, SphOptions, SymmetryPlane, TimeStepOptions, Trouble,
 };
 use crate::particles::{TEMPERATURE, snapshot_names};
 use crate::populate::overlap;
@@ -41,13 +43,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
     let dimension = dimension(&params.dimension)?;
     let symmetry = symmetry(&params.symmetry, dimension)?;
     let (names, mut materials) = materials::materials(&params.material)?;
-    let sph = sph(&params.sph)?;
-    let smoothing = number(
-        params.sph.smoothing.as_ref(),
-        "smoothing",
-        1.3,
-        Allowed::Within(0.6, 3.0),
-    )?;
+    let (sph, smoothing) = sph(&params.sph)?;
     let mut bodies = bodies::Reader {
         dimension,
         spacing: params.spacing.as_ref(),
@@ -61,29 +57,15 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
     let length_unit = length_unit(&params);
     let (default_contact, contacts, self_contact) =
         contact::contacts(&params.contact, &params.body, sph.form, smoothing)?;
-    let surfaces = loads::Reader {
-        dimension,
-        bodies: &bodies,
-        symmetry: &symmetry,
-        length_unit: &length_unit,
-        folder,
-    }
-    .surfaces(&params)?;
-    touch::lay_on_planes(&params.body, &mut bodies, &surfaces, &symmetry, dimension)?;
     let loads = loads::Reader {
         dimension,
-        bodies: &bodies,
+        bodies: &mut bodies,
         symmetry: &symmetry,
         length_unit: &length_unit,
         folder,
     }
-    .loads(&params, surfaces)?;
-    let mut time_step = time_step(&params.time_step)?;
-    for body in &bodies {
-        let shortest = body.smoothing_length * smallest_smoothing(&sph);
-        let diffusion = materials[body.material].diffusion_time(shortest);
-        time_step.max = time_step.max.min(diffusion);
-    }
+    .all(&params)?;
+    let time_step = time_step(&params.time_step, &sph, &bodies, &materials)?;
     let fields = field_spans(&params.output);
     let form = params.sph.form.as_ref().map(Spanned::span);
     let mut case = Case {
@@ -117,15 +99,11 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
 fn check_moduli(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Complaint> {
     for (a, (body, table)) in case.bodies.iter().zip(params).enumerate() {
         let material = &case.materials[body.material];
-        let pushes = |b| match case.contact_between(a, b) {
-            ContactMode::None | ContactMode::Kernel => false,
-            ContactMode::Overlap(_) | ContactMode::Potential(_) | ContactMode::Penalty(_) => a != b,
-        };
         let pushes = |b| {
             if a == b {
                 case.self_contact.is_some()
             } else {
-                pushes(b)
+                case.contact_between(a, b).class().is_some()
             }
         };
         if material.p_wave_modulus() == 0.0 && (0..case.bodies.len()).any(pushes) {
@@ -204,18 +182,18 @@ fn dimension(params: &Spanned<i64>) -> Result<usize, Complaint> {
     }
 }
 
-/// An axis that exists in the dimension.
-fn axis(name: &Spanned<AxisName>, dimension: usize) -> Result<Axis, Complaint> {
-    let axis = match name.get_ref() {
-        AxisName::X => Axis::X,
-        AxisName::Y => Axis::Y,
-        AxisName::Z => Axis::Z,
-    };
+/// An axis that must exist in the dimension.
+fn in_dimension(axis: Axis, dimension: usize, at: Range<usize>) -> Result<Axis, Complaint> {
     if axis.index() < dimension {
         return Ok(axis);
     }
     let title = format!("a {dimension}-dimensional case has no {} axis", axis.name());
-    Err(Complaint::new(name.span(), title))
+    Err(Complaint::new(at, title))
+}
+
+/// As [`in_dimension`], of the axis that a key names.
+fn axis(name: &Spanned<Axis>, dimension: usize) -> Result<Axis, Complaint> {
+    in_dimension(*name.get_ref(), dimension, name.span())
 }
 
 fn symmetry(params: &[SymmetryParams], dimension: usize) -> Result<Vec<SymmetryPlane>, Complaint> {
@@ -228,47 +206,36 @@ fn symmetry(params: &[SymmetryParams], dimension: usize) -> Result<Vec<SymmetryP
         }
         planes.push(SymmetryPlane {
             axis,
-            position: number(plane.position.as_ref(), "position", 0.0, Allowed::Any)?,
+            position: number!(plane.position, or 0.0, Any),
         });
     }
     Ok(planes)
 }
 
-fn sph(params: &SphParams) -> Result<SphOptions, Complaint> {
-    let min = params.smoothing_length_min.as_ref();
-    let max = params.smoothing_length_max.as_ref();
+/// The options of the sums, and smoothing length over spacing.
+fn sph(params: &SphParams) -> Result<(SphOptions, f64), Complaint> {
     let bounds = SmoothingLength::Variable {
-        min: number(min, "smoothing_length_min", 0.6, Allowed::UpToOne)?,
-        max: number(max, "smoothing_length_max", 2.0, Allowed::Within(1.0, 10.0))?,
+        min: number!(params.smoothing_length_min, or 0.6, UpToOne),
+        max: number!(params.smoothing_length_max, or 2.0, Within(1.0, 10.0)),
     };
-    Ok(SphOptions {
-        form: match params.form.as_ref().map(Spanned::get_ref) {
-            None | Some(SphFormName::Conventional) => SphForm::Conventional,
-            Some(SphFormName::Corrected) => SphForm::Corrected,
-            Some(SphFormName::Normalised) => SphForm::Normalised,
-            Some(SphFormName::StressPoints) => SphForm::StressPoints,
-        },
-        alpha: number(params.alpha.as_ref(), "alpha", 1.0, Allowed::NotNegative)?,
-        beta: number(params.beta.as_ref(), "beta", 2.0, Allowed::NotNegative)?,
+    let usual = SphOptions::default();
+    let options = SphOptions {
+        form: params
+            .form
+            .as_ref()
+            .map_or_else(SphForm::default, |form| *form.get_ref()),
+        alpha: number!(params.alpha, or usual.alpha, NotNegative),
+        beta: number!(params.beta, or usual.beta, NotNegative),
         smoothing_length: match params.smoothing_length {
             None | Some(SmoothingName::Constant) => SmoothingLength::Constant,
             Some(SmoothingName::Variable) => bounds,
         },
-        artificial_stress: number(
-            params.artificial_stress.as_ref(),
-            "artificial_stress",
-            0.0,
-            Allowed::Within(0.0, 1.0),
-        )?,
+        artificial_stress: number!(params.artificial_stress, or usual.artificial_stress, Within(0.0, 1.0)),
         balsara: params.balsara.unwrap_or(false),
-        conduction: number(
-            params.conduction.as_ref(),
-            "conduction",
-            0.0,
-            Allowed::Within(0.0, 2.0),
-        )?,
-        xsph: number(params.xsph.as_ref(), "xsph", 0.0, Allowed::Within(0.0, 1.0))?,
-    })
+        conduction: number!(params.conduction, or usual.conduction, Within(0.0, 2.0)),
+        xsph: number!(params.xsph, or usual.xsph, Within(0.0, 1.0)),
+    };
+    Ok((options, number!(params.smoothing, or 1.3, Within(0.6, 3.0))))
 }
 
 /// Smallest h/h₀ that a particle may have.
@@ -279,16 +246,26 @@ fn smallest_smoothing(sph: &SphOptions) -> f64 {
     }
 }
 
-fn time_step(params: &TimeStepParams) -> Result<TimeStepOptions, Complaint> {
-    let factor = |value, key, default| number(value, key, default, Allowed::UpToOne);
-    Ok(TimeStepOptions {
-        courant: factor(params.courant.as_ref(), "courant", 0.5)?,
-        force: factor(params.force.as_ref(), "force", 0.25)?,
+fn time_step(
+    params: &TimeStepParams,
+    sph: &SphOptions,
+    bodies: &[Body],
+    materials: &[Material],
+) -> Result<TimeStepOptions, Complaint> {
+    let diffusion = bodies.iter().map(|body| {
+        let shortest = body.smoothing_length * smallest_smoothing(sph);
+        materials[body.material].diffusion_time(shortest)
+    });
+    let given = TimeStepOptions {
+        courant: number!(params.courant, or 0.5, UpToOne),
+        force: number!(params.force, or 0.25, UpToOne),
         // Of a bound that is safe by itself; .55 of it is what the first moments of an impact at
         // h = 1.3 Δp take by their sound criterion, so that contact does not slow them down.
-        contact: factor(params.contact.as_ref(), "contact", 0.8)?,
-        max: number(params.max.as_ref(), "max", f64::INFINITY, Allowed::Positive)?,
-    })
+        contact: number!(params.contact, or 0.8, UpToOne),
+        max: number!(params.max, or f64::INFINITY, Positive),
+    };
+    let max = diffusion.fold(given.max, f64::min);
+    Ok(TimeStepOptions { max, ..given })
 }
 
 fn domain(params: &DomainParams, dimension: usize) -> Result<DomainOptions, Complaint> {

@@ -3,6 +3,7 @@
 use toml::Spanned;
 
 use super::check::Value;
+use super::in_dimension;
 use crate::input::forms::OneOrMany;
 use crate::input::quantity::{Placed, Time};
 use crate::input::schema::{MotionParams, RotationParams};
@@ -20,10 +21,7 @@ pub fn motion(table: &Spanned<MotionParams>, dimension: usize) -> Result<Motion,
     let count = motion.times.len();
     for (axis, values) in Axis::ALL.into_iter().zip([&params.x, &params.y, &params.z]) {
         let Some(values) = values else { continue };
-        if axis.index() >= dimension {
-            let title = format!("a {dimension}-dimensional case has no {} axis", axis.name());
-            return Err(Complaint::new(values.span(), title));
-        }
+        in_dimension(axis, dimension, values.span())?;
         motion.velocities[axis.index()] =
             Some(along(values, axis.name(), params.times.is_some(), count)?);
     }

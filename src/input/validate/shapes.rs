@@ -2,7 +2,7 @@
 
 use toml::Spanned;
 
-use crate::input::quantity::Extent;
+use crate::input::quantity::{Extent, Placed};
 use crate::input::schema::{BoxParams, CylinderParams, Point, ShapeParams, SphereParams};
 use crate::input::source::Complaint;
 use crate::model::{Axis, Shape, Vec3};
@@ -15,11 +15,29 @@ pub struct Shapes {
 }
 
 /// A vector with the wrong number of components.
-pub fn wrong_length<T>(key: &str, vector: &Spanned<Vec<T>>, dimension: usize) -> Complaint {
+fn wrong_length<T>(key: &str, vector: &Spanned<Vec<T>>, dimension: usize) -> Complaint {
     let found = vector.get_ref().len();
     let s = if dimension == 1 { "" } else { "s" };
     let title = format!("`{key}` must have {dimension} component{s}, found {found}");
     Complaint::new(vector.span(), title)
+}
+
+/// The components of a vector in SI units; zero if absent.
+pub fn vector<K>(
+    key: &str,
+    params: Option<&Spanned<Vec<Placed<K>>>>,
+    dimension: usize,
+) -> Result<[f64; 3], Complaint> {
+    let mut vector = [0.0; 3];
+    if let Some(params) = params {
+        if params.get_ref().len() != dimension {
+            return Err(wrong_length(key, params, dimension));
+        }
+        for (component, value) in vector.iter_mut().zip(params.get_ref()) {
+            *component = value.get_ref().si;
+        }
+    }
+    Ok(vector)
 }
 
 impl Shapes {

@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
+use super::contact::without_sums;
 use crate::input::source::Complaint;
-use crate::model::{Case, ContactMode, LatticeKind, SphForm};
+use crate::model::{Case, LatticeKind, SphForm};
 
 /// Stress points stand between the particles of cubic lattices, and have the sums of no pair of
 /// particles that the options of these could act in.
@@ -39,17 +40,13 @@ pub fn check(case: &Case, at: Option<Range<usize>>) -> Result<(), Complaint> {
     }
     let n = case.bodies.len();
     let mut modes = (0..n).flat_map(|a| (a + 1..n).map(move |b| case.contact_between(a, b)));
-    let unfit = modes.find_map(|mode| match mode {
-        ContactMode::Kernel => Some("kernel"),
-        ContactMode::Penalty(_) => Some("penalty"),
-        ContactMode::None | ContactMode::Overlap(_) | ContactMode::Potential(_) => None,
-    });
-    if let Some(mode) = unfit {
+    if let Some(mode) = modes.find(|mode| mode.needs_sums()) {
+        let mode = mode.name();
         let title = format!(
             "contact of mode `{mode}` needs sums over pairs of particles of a body, which stress \
              points do without"
         );
-        return refuse(title, "take \"overlap\" or \"potential\"");
+        return refuse(title, &format!("take {}", without_sums()));
     }
     if case.self_contact.is_some() {
         let title = "`self_contact` tells parts by the neighbours of particles in their body, which \

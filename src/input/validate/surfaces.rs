@@ -9,19 +9,19 @@ use toml::Spanned;
 
 use super::axis;
 use super::check::{Allowed, Value, number};
-use super::contact::resistance;
 use super::loads::{Reader, given_name};
 use super::motion::{motion, rate};
-use super::shapes::wrong_length;
+use super::shapes::vector;
 use super::touch::direction;
 use crate::input::quantity::{Length, Placed};
+use crate::input::schema::contact::resistance;
 use crate::input::schema::{
-    AxisName, CaseParams, NormalParams, PlaneParams, RotationParams, SideName, StlParams,
+    CaseParams, NormalParams, PlaneParams, RotationParams, SideName, StlParams,
     SurfaceCylinderParams, SurfaceParams, SurfaceShapeParams, SurfaceSphereParams,
 };
 use crate::input::source::{Complaint, nearest};
 use crate::input::stl;
-use crate::model::{Mesh, Motion, Resistance, RigidSurface, Spin, SurfaceFile, SurfaceShape};
+use crate::model::{Axis, Mesh, Motion, Resistance, RigidSurface, Spin, SurfaceFile, SurfaceShape};
 use crate::populate;
 
 /// Default stiffness of a rigid surface: that of the half spacing of material before it.
@@ -32,7 +32,7 @@ type Place = Spanned<Vec<Placed<Length>>>;
 
 impl Reader<'_> {
     /// The planes and the other surfaces of a case, wherever its bodies stand.
-    pub fn surfaces(&self, params: &CaseParams) -> Result<Vec<RigidSurface>, Complaint> {
+    pub(super) fn surfaces(&self, params: &CaseParams) -> Result<Vec<RigidSurface>, Complaint> {
         let planes = params.plane.iter().enumerate();
         let planes = planes.map(|(n, table)| self.plane(table.get_ref(), n + 1));
         let others = params.surface.iter().enumerate();
@@ -58,13 +58,12 @@ impl Reader<'_> {
         let normal = self.normal(&params.normal)?;
         let point = self.place("point", params.point.as_ref())?;
         let position = normal[0] * point[0] + normal[1] * point[1] + normal[2] * point[2];
-        let stiffness = params.stiffness.as_ref();
         let given = params.motion.as_ref();
         Ok(RigidSurface {
             name: given_name(params.name.as_ref(), "plane", number_of),
             shape: SurfaceShape::Plane { normal, position },
             inside: false,
-            stiffness: number(stiffness, "stiffness", STIFFNESS, Allowed::Positive)?,
+            stiffness: number!(params.stiffness, or STIFFNESS, Positive),
             resistance: resistance(
                 params.friction.as_ref(),
                 params.damping.as_ref(),
@@ -79,14 +78,13 @@ impl Reader<'_> {
 
     fn surface(&self, params: &SurfaceParams, number_of: usize) -> Result<RigidSurface, Complaint> {
         let (shape, file) = self.shape(&params.shape)?;
-        let stiffness = params.stiffness.as_ref();
         let given = params.motion.as_ref();
         let spin = params.rotation.as_ref().map(|table| self.spin(table));
         Ok(RigidSurface {
             name: given_name(params.name.as_ref(), "surface", number_of),
             shape,
             inside: params.side == Some(SideName::Inside),
-            stiffness: number(stiffness, "stiffness", STIFFNESS, Allowed::Positive)?,
+            stiffness: number!(params.stiffness, or STIFFNESS, Positive),
             resistance: resistance(
                 params.friction.as_ref(),
                 params.damping.as_ref(),
@@ -195,17 +193,11 @@ impl Reader<'_> {
     }
 
     fn cylinder(&self, params: &SurfaceCylinderParams) -> Result<SurfaceShape, Complaint> {
-        let length = params.length.as_ref();
         Ok(SurfaceShape::Cylinder {
             centre: self.place("centre", params.centre.as_ref())?,
-            axis: unit(
-                params
-                    .axis
-                    .as_ref()
-                    .map_or(AxisName::Z, |axis| *axis.get_ref()),
-            ),
+            axis: unit(params.axis.as_ref().map_or(Axis::Z, |axis| *axis.get_ref())),
             radius: number(Some(&params.radius), "radius", 0.0, Allowed::Positive)?,
-            half_length: 0.5 * number(length, "length", f64::INFINITY, Allowed::Positive)?,
+            half_length: 0.5 * number!(params.length, or f64::INFINITY, Positive),
         })
     }
 
@@ -260,7 +252,7 @@ impl Reader<'_> {
                 let title = "a 1-dimensional case has no rotation";
                 return Err(Complaint::new(table.span(), title));
             }
-            2 if *params.axis.get_ref() != AxisName::Z => {
+            2 if *params.axis.get_ref() != Axis::Z => {
                 let title = "a 2-dimensional case turns about z alone";
                 return Err(Complaint::new(params.axis.span(), title));
             }
@@ -308,16 +300,7 @@ impl Reader<'_> {
 
     /// A place (m); the origin if absent.
     fn place(&self, key: &str, params: Option<&Place>) -> Result<[f64; 3], Complaint> {
-        let mut place = [0.0; 3];
-        if let Some(params) = params {
-            if params.get_ref().len() != self.dimension {
-                return Err(wrong_length(key, params, self.dimension));
-            }
-            for (component, value) in place.iter_mut().zip(params.get_ref()) {
-                *component = value.get_ref().si();
-            }
-        }
-        Ok(place)
+        vector(key, params, self.dimension)
     }
 }
 
@@ -339,12 +322,8 @@ fn missing_file(complaint: Complaint, path: &Path) -> Complaint {
     }
 }
 
-fn unit(axis: AxisName) -> [f64; 3] {
-    match axis {
-        AxisName::X => [1.0, 0.0, 0.0],
-        AxisName::Y => [0.0, 1.0, 0.0],
-        AxisName::Z => [0.0, 0.0, 1.0],
-    }
+fn unit(axis: Axis) -> [f64; 3] {
+    Axis::ALL.map(|other| f64::from(u8::from(other == axis)))
 }
 
 /// A vector turned by an angle (rad) about a coordinate axis.

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use toml::Spanned;
 
+use super::in_dimension;
 use crate::input::schema::{BodyParams, Direction, TouchParams};
 use crate::input::source::Complaint;
 use crate::model::{Axis, Body, RigidSurface, Shape, SurfaceShape, SymmetryPlane, Vec3};
@@ -140,11 +141,7 @@ pub fn direction(
         Direction::PlusZ => (Axis::Z, true),
         Direction::MinusZ => (Axis::Z, false),
     };
-    if axis.index() < dimension {
-        return Ok((axis, forward));
-    }
-    let title = format!("a {dimension}-dimensional case has no {} axis", axis.name());
-    Err(Complaint::new(at, title))
+    Ok((in_dimension(axis, dimension, at)?, forward))
 }
 
 fn translate(shape: &mut Shape, axis: Axis, distance: f64) {

@@ -13,15 +13,16 @@
 
 use super::PointResponse;
 
-/// Ideal or stiffened gas.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct IdealGas {
-    /// Ratio of specific heats γ.
-    pub gamma: f64,
-    /// Stiffening pressure `p_∞` (Pa); 0 for an ideal gas.
-    pub stiffening_pressure: f64,
-    /// Pressure of the reference state (Pa).
-    pub reference_pressure: f64,
+law! {
+    /// Ideal or stiffened gas.
+    IdealGas {
+        /// Ratio of specific heats γ.
+        gamma: "",
+        /// Stiffening pressure `p_∞` (Pa); 0 for an ideal gas.
+        stiffening_pressure: "Pa",
+        /// Pressure of the reference state (Pa).
+        reference_pressure: "Pa",
+    }
 }
 
 impl IdealGas {

@@ -1,9 +1,12 @@
 //! Linear equation of state, without heat.
 
+use serde::Deserialize;
+
 use super::PointResponse;
 
 /// How the pressure of [`Linear`] depends on the density.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum LinearForm {
     /// `p = K ln(ρ/ρ₀)`: with linear elasticity, uniaxial strain follows `σ̇ = M D` exactly.
     Logarithmic,

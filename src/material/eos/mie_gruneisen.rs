@@ -28,22 +28,23 @@ use crate::material::{at_least, at_most};
 /// Smallest value of the Hugoniot denominator D.
 pub const SMALLEST_DENOMINATOR: f64 = 0.1;
 
-/// Mie–Grüneisen with a cubic Hugoniot and a Grüneisen parameter linear in the compression.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MieGruneisen {
-    /// Bulk sound speed c₀ in the reference state (m/s).
-    pub c0: f64,
-    /// Coefficient s₁ of the Hugoniot `U = c₀ + [s₁ + s₂ u/U + s₃ (u/U)²] u` of shock speed U
-    /// and particle velocity u.
-    pub s1: f64,
-    /// Coefficient s₂ of the Hugoniot (0 for a straight one).
-    pub s2: f64,
-    /// Coefficient s₃ of the Hugoniot (0 for a straight one).
-    pub s3: f64,
-    /// Grüneisen parameter γ₀ in the reference state.
-    pub gamma0: f64,
-    /// Coefficient b in `ρ₀ (γ₀ + b μ)`, the pressure per specific energy, with `μ = ρ/ρ₀ − 1`.
-    pub b: f64,
+law! {
+    /// Mie–Grüneisen with a cubic Hugoniot and a Grüneisen parameter linear in the compression.
+    MieGruneisen {
+        /// Bulk sound speed c₀ in the reference state (m/s).
+        c0: "m/s",
+        /// Coefficient s₁ of the Hugoniot `U = c₀ + [s₁ + s₂ u/U + s₃ (u/U)²] u` of shock speed U
+        /// and particle velocity u.
+        s1: "",
+        /// Coefficient s₂ of the Hugoniot (0 for a straight one).
+        s2: "",
+        /// Coefficient s₃ of the Hugoniot (0 for a straight one).
+        s3: "",
+        /// Grüneisen parameter γ₀ in the reference state.
+        gamma0: "",
+        /// Coefficient b in `ρ₀ (γ₀ + b μ)`, the pressure per specific energy, with `μ = ρ/ρ₀ − 1`.
+        b: "",
+    }
 }
 
 /// Where the numerator N of a [`MieGruneisen`] stops to grow; the same for all points.

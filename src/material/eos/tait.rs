@@ -10,13 +10,14 @@
 
 use super::PointResponse;
 
-/// Tait's law.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tait {
-    /// Coefficient B (Pa).
-    pub b: f64,
-    /// Exponent γ.
-    pub gamma: f64,
+law! {
+    /// Tait's law.
+    Tait {
+        /// Coefficient B (Pa).
+        b: "Pa",
+        /// Exponent γ.
+        gamma: "",
+    }
 }
 
 impl Tait {

@@ -26,27 +26,28 @@ use super::PointResponse;
 /// Smallest `w − 1`.
 const LEAST: f64 = -0.5;
 
-/// Tillotson's law.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tillotson {
-    /// Coefficient a of the thermal pressure of a dense vapour (γ − 1 of the ideal gas).
-    pub a: f64,
-    /// Coefficient b of the thermal pressure: `a + b` is the Grüneisen parameter of the cold solid.
-    pub b: f64,
-    /// Bulk modulus A (Pa).
-    pub bulk_modulus: f64,
-    /// Coefficient B of the square of the compression (Pa).
-    pub quadratic_modulus: f64,
-    /// Exponent α of the vapour's branch.
-    pub alpha: f64,
-    /// Exponent β of the vapour's branch.
-    pub beta: f64,
-    /// Scale of energy E₀ (J/kg).
-    pub e0: f64,
-    /// Specific energy of incipient vaporisation (J/kg).
-    pub e_iv: f64,
-    /// Specific energy of complete vaporisation (J/kg).
-    pub e_cv: f64,
+law! {
+    /// Tillotson's law.
+    Tillotson {
+        /// Coefficient a of the thermal pressure of a dense vapour (γ − 1 of the ideal gas).
+        a: "",
+        /// Coefficient b of the thermal pressure: `a + b` is the Grüneisen parameter of the cold solid.
+        b: "",
+        /// Bulk modulus A (Pa).
+        bulk_modulus: "Pa",
+        /// Coefficient B of the square of the compression (Pa).
+        quadratic_modulus: "Pa",
+        /// Exponent α of the vapour's branch.
+        alpha: "",
+        /// Exponent β of the vapour's branch.
+        beta: "",
+        /// Scale of energy E₀ (J/kg).
+        e0: "J/kg",
+        /// Specific energy of incipient vaporisation (J/kg).
+        e_iv: "J/kg",
+        /// Specific energy of complete vaporisation (J/kg).
+        e_cv: "J/kg",
+    }
 }
 
 /// What the branches share at one state.

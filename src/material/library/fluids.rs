@@ -1,6 +1,6 @@
 //! Liquids and gases.
 
-use super::{Parts, Record, heat};
+use super::{Parts, heat};
 use crate::material::{Eos, IdealGas, Strength, Tait, Viscous};
 
 const ATMOSPHERE: &str = "U.S. Standard Atmosphere (1976), sea level";
@@ -10,39 +10,33 @@ const WATER: &str = "water at 20 °C, c = 1483 m/s: Chaplin, Water structure and
      physical properties";
 const COLE: &str = "Cole (1948), Underwater explosions; Monaghan (1994), J. Comput. Phys. 110, 399";
 
-pub(super) const RECORDS: &[Record] = &[
-    Record {
-        name: "air",
-        title: "air at sea level as an ideal gas",
-        make: || Parts {
+records! {
+    "air", "air at sea level as an ideal gas":
+        Parts {
             density: 1.225,
             eos: Eos::IdealGas(IdealGas {
-                gamma: 1.4,
-                stiffening_pressure: 0.0,
-                reference_pressure: 101_325.0,
-            }),
+                    gamma: 1.4,
+                    stiffening_pressure: 0.0,
+                    reference_pressure: 101_325.0,
+                }),
             strength: Strength::None,
             thermal: Some(heat(717.63, 288.15, None)),
         },
-        sources: &[
+        &[
             ("eos.ideal_gas.gamma", DIATOMIC),
             ("eos.ideal_gas.stiffening_pressure", NONE),
             ("thermal.specific_heat", DIATOMIC),
             ("strength", NONE),
             ("", ATMOSPHERE),
-        ],
-    },
-    Record {
-        name: "water",
-        title: "water by Tait's law; lower its sound speed for free-surface flow",
-        make: || Parts {
+        ];
+    "water", "water by Tait's law; lower its sound speed for free-surface flow":
+        Parts {
             density: 998.2,
             eos: Eos::Tait(Tait::with_sound_speed(998.2, 1483.0, 7.0)),
             strength: Strength::Viscous(Viscous {
-                viscosity: 1.002e-3,
-            }),
+                    viscosity: 1.002e-3,
+                }),
             thermal: None,
         },
-        sources: &[("eos.tait.gamma", COLE), ("", WATER)],
-    },
-];
+        &[("eos.tait.gamma", COLE), ("", WATER)];
+}

@@ -1,6 +1,6 @@
 //! Tillotson's law of metals and rocks.
 
-use super::{Parts, Record};
+use super::Parts;
 use crate::material::{Eos, Strength, Tillotson, VonMises};
 
 const TILLOTSON: &str = "constants on which miluphcuda, SWIFT, Phantom, OpenSPH and Spheral agree; \
@@ -11,45 +11,23 @@ const STEINBERG_6061: &str = "of aluminium 6061-T6: Steinberg-Guinan constants i
 const PLAIN: &str = "no hardening";
 const FLUID: &str = "without strength: its own is for the case to choose";
 
-pub(super) const RECORDS: &[Record] = &[
-    Record {
-        name: "aluminium-tillotson",
-        title: "aluminium to vaporisation, strength of 6061-T6",
-        make: || {
-            tillotson(
-                2700.0,
-                [0.5, 1.63, 75.2e9, 65e9],
-                [5e6, 3e6, 13.9e6],
-                [27.6e9, 0.29e9],
-            )
-        },
-        sources: &[
+records! {
+    "aluminium-tillotson", "aluminium to vaporisation, strength of 6061-T6":
+        tillotson(2700.0, [0.5, 1.63, 75.2e9, 65e9], [5e6, 3e6, 13.9e6], [27.6e9, 0.29e9]),
+        &[
             ("strength.von_mises.hardening_modulus", PLAIN),
             ("strength", STEINBERG_6061),
             ("", TILLOTSON),
-        ],
-    },
-    Record {
-        name: "basalt-tillotson",
-        title: "basalt to vaporisation",
-        make: || {
-            tillotson(
-                2700.0,
-                [0.5, 1.5, 26.7e9, 26.7e9],
-                [487e6, 4.72e6, 18.2e6],
-                [22.7e9, 3.5e9],
-            )
-        },
-        sources: &[
+        ];
+    "basalt-tillotson", "basalt to vaporisation":
+        tillotson(2700.0, [0.5, 1.5, 26.7e9, 26.7e9], [487e6, 4.72e6, 18.2e6], [22.7e9, 3.5e9]),
+        &[
             ("strength.von_mises.hardening_modulus", PLAIN),
             ("strength", BASALT),
             ("", TILLOTSON),
-        ],
-    },
-    Record {
-        name: "granite-tillotson",
-        title: "granite to vaporisation, without strength",
-        make: || {
+        ];
+    "granite-tillotson", "granite to vaporisation, without strength":
+        {
             tillotson(
                 2680.0,
                 [0.5, 1.3, 18e9, 18e9],
@@ -57,12 +35,9 @@ pub(super) const RECORDS: &[Record] = &[
                 [0.0; 2],
             )
         },
-        sources: &[("strength", FLUID), ("", TILLOTSON)],
-    },
-    Record {
-        name: "iron-tillotson",
-        title: "iron to vaporisation, without strength",
-        make: || {
+        &[("strength", FLUID), ("", TILLOTSON)];
+    "iron-tillotson", "iron to vaporisation, without strength":
+        {
             tillotson(
                 7800.0,
                 [0.5, 1.5, 128e9, 105e9],
@@ -70,9 +45,8 @@ pub(super) const RECORDS: &[Record] = &[
                 [0.0; 2],
             )
         },
-        sources: &[("strength", FLUID), ("", TILLOTSON)],
-    },
-];
+        &[("strength", FLUID), ("", TILLOTSON)];
+}
 
 /// Density (kg/m³), `[a, b, A (Pa), B (Pa)]`, `[E₀, e_iv, e_cv]` (J/kg), `[G, Y]` (Pa; zero for a
 /// fluid); α = β = 5.

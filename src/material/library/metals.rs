@@ -2,7 +2,7 @@
 //!
 //! Von Mises strengths are the initial yield stress Y₀ of the Steinberg–Guinan model, kept constant.
 
-use super::{Parts, Record, heat};
+use super::{Parts, heat};
 use crate::material::{
     Eos, JohnsonCook, MieGruneisen, SteinbergGuinan, Strength, ThermalConstants, VonMises,
 };
@@ -60,73 +60,37 @@ macro_rules! steinberg {
     };
 }
 
-pub(super) const RECORDS: &[Record] = &[
-    Record {
-        name: "aluminium-2024",
-        title: "aluminium 2024-T4, constant yield stress",
-        make: || von_mises(&AL_2024, 0.26e9, heat(875.0, 300.0, Some(775.0))),
-        sources: simple!(UINTAH, JOHNSON_COOK),
-    },
-    Record {
-        name: "aluminium-2024-johnson-cook",
-        title: "aluminium 2024-T351",
-        make: || {
-            jc(
-                &AL_2024,
-                [265e6, 426e6, 0.34, 0.015, 1.00],
-                heat(875.0, 300.0, Some(775.0)),
-            )
-        },
-        sources: johnson_cook!(UINTAH, UINTAH, JOHNSON_COOK),
-    },
-    Record {
-        name: "aluminium-2024-steinberg-guinan",
-        title: "aluminium 2024-T4",
-        make: || {
-            sg(
-                &AL_2024,
-                [0.26e9, 0.76e9, 310.0, 0.185],
-                [6.52e-11, 6.16e-4, 1220.0, 1.5],
-                heat(875.0, 300.0, None),
-            )
-        },
-        sources: steinberg!(JOHNSON_COOK),
-    },
-    Record {
-        name: "aluminium-6061",
-        title: "aluminium 6061-T6, constant yield stress",
-        make: || von_mises(&AL_6061, 0.29e9, heat(896.0, 300.0, Some(925.0))),
-        sources: simple!(UINTAH, UINTAH_JC),
-    },
-    Record {
-        name: "aluminium-6061-johnson-cook",
-        title: "aluminium 6061-T6",
-        make: || {
-            jc(
-                &AL_6061,
-                [324e6, 114e6, 0.42, 0.002, 1.34],
-                heat(896.0, 300.0, Some(925.0)),
-            )
-        },
-        sources: johnson_cook!(UINTAH, UINTAH, UINTAH_JC),
-    },
-    Record {
-        name: "aluminium-6061-steinberg-guinan",
-        title: "aluminium 6061-T6",
-        make: || {
-            sg(
-                &AL_6061,
-                [0.29e9, 0.68e9, 125.0, 0.10],
-                [6.52e-11, 6.16e-4, 1220.0, 1.5],
-                heat(896.0, 300.0, None),
-            )
-        },
-        sources: steinberg!(UINTAH_JC),
-    },
-    Record {
-        name: "aluminium-7039-johnson-cook",
-        title: "aluminium 7039",
-        make: || {
+records! {
+    "aluminium-2024", "aluminium 2024-T4, constant yield stress":
+        von_mises(&AL_2024, 0.26e9, heat(875.0, 300.0, Some(775.0))),
+        simple!(UINTAH, JOHNSON_COOK);
+    "aluminium-2024-johnson-cook", "aluminium 2024-T351":
+        jc(&AL_2024, [265e6, 426e6, 0.34, 0.015, 1.00], heat(875.0, 300.0, Some(775.0))),
+        johnson_cook!(UINTAH, UINTAH, JOHNSON_COOK);
+    "aluminium-2024-steinberg-guinan", "aluminium 2024-T4":
+        sg(
+            &AL_2024,
+            [0.26e9, 0.76e9, 310.0, 0.185],
+            [6.52e-11, 6.16e-4, 1220.0, 1.5],
+            heat(875.0, 300.0, None),
+        ),
+        steinberg!(JOHNSON_COOK);
+    "aluminium-6061", "aluminium 6061-T6, constant yield stress":
+        von_mises(&AL_6061, 0.29e9, heat(896.0, 300.0, Some(925.0))),
+        simple!(UINTAH, UINTAH_JC);
+    "aluminium-6061-johnson-cook", "aluminium 6061-T6":
+        jc(&AL_6061, [324e6, 114e6, 0.42, 0.002, 1.34], heat(896.0, 300.0, Some(925.0))),
+        johnson_cook!(UINTAH, UINTAH, UINTAH_JC);
+    "aluminium-6061-steinberg-guinan", "aluminium 6061-T6":
+        sg(
+            &AL_6061,
+            [0.29e9, 0.68e9, 125.0, 0.10],
+            [6.52e-11, 6.16e-4, 1220.0, 1.5],
+            heat(896.0, 300.0, None),
+        ),
+        steinberg!(UINTAH_JC);
+    "aluminium-7039-johnson-cook", "aluminium 7039":
+        {
             let metal = Metal {
                 density: 2770.0,
                 ..AL_2024
@@ -137,7 +101,7 @@ pub(super) const RECORDS: &[Record] = &[
                 heat(875.0, 300.0, Some(877.0)),
             )
         },
-        sources: &[
+        &[
             ("strength.johnson_cook.shear_modulus", LIKE_2024),
             ("strength.johnson_cook.reference_rate", RATE),
             ("thermal.reference_temperature", ROOM),
@@ -145,56 +109,27 @@ pub(super) const RECORDS: &[Record] = &[
             ("density", ASSUMED_7039),
             ("thermal.specific_heat", ASSUMED_7039),
             ("", JOHNSON_COOK),
-        ],
-    },
-    Record {
-        name: "copper",
-        title: "copper OFHC half-hard, constant yield stress",
-        make: || von_mises(&COPPER, 0.12e9, heat(383.0, 300.0, Some(1356.0))),
-        sources: simple!(UINTAH, JOHNSON_COOK),
-    },
-    Record {
-        name: "copper-johnson-cook",
-        title: "copper OFHC",
-        make: || {
-            jc(
-                &COPPER,
-                [90e6, 292e6, 0.31, 0.025, 1.09],
-                heat(383.0, 300.0, Some(1356.0)),
-            )
-        },
-        sources: johnson_cook!(UINTAH, UINTAH, JOHNSON_COOK),
-    },
-    Record {
-        name: "copper-steinberg-guinan",
-        title: "copper OFHC half-hard",
-        make: || {
-            sg(
-                &COPPER,
-                [0.12e9, 0.64e9, 36.0, 0.45],
-                [2.83e-11, 3.77e-4, 1790.0, 1.5],
-                heat(383.0, 300.0, None),
-            )
-        },
-        sources: steinberg!(JOHNSON_COOK),
-    },
-    Record {
-        name: "steel-304",
-        title: "stainless steel 304, constant yield stress",
-        make: || von_mises(&STEEL_304, 0.34e9, heat(500.0, 300.0, Some(1673.0))),
-        sources: simple!(SPHERAL, ASSUMED),
-    },
-    Record {
-        name: "steel-4340-johnson-cook",
-        title: "steel 4340 (Rockwell C 30)",
-        make: || {
-            jc(
-                &STEEL_4340,
-                [792e6, 510e6, 0.26, 0.014, 1.03],
-                heat(477.0, 300.0, Some(1793.0)),
-            )
-        },
-        sources: &[
+        ];
+    "copper", "copper OFHC half-hard, constant yield stress":
+        von_mises(&COPPER, 0.12e9, heat(383.0, 300.0, Some(1356.0))),
+        simple!(UINTAH, JOHNSON_COOK);
+    "copper-johnson-cook", "copper OFHC":
+        jc(&COPPER, [90e6, 292e6, 0.31, 0.025, 1.09], heat(383.0, 300.0, Some(1356.0))),
+        johnson_cook!(UINTAH, UINTAH, JOHNSON_COOK);
+    "copper-steinberg-guinan", "copper OFHC half-hard":
+        sg(
+            &COPPER,
+            [0.12e9, 0.64e9, 36.0, 0.45],
+            [2.83e-11, 3.77e-4, 1790.0, 1.5],
+            heat(383.0, 300.0, None),
+        ),
+        steinberg!(JOHNSON_COOK);
+    "steel-304", "stainless steel 304, constant yield stress":
+        von_mises(&STEEL_304, 0.34e9, heat(500.0, 300.0, Some(1673.0))),
+        simple!(SPHERAL, ASSUMED);
+    "steel-4340-johnson-cook", "steel 4340 (Rockwell C 30)":
+        jc(&STEEL_4340, [792e6, 510e6, 0.26, 0.014, 1.03], heat(477.0, 300.0, Some(1793.0))),
+        &[
             (
                 "strength.johnson_cook.shear_modulus",
                 "assumed: E = 200 GPa, ν = .29, round values of low-alloy steel",
@@ -204,20 +139,16 @@ pub(super) const RECORDS: &[Record] = &[
             ("eos.mie_gruneisen.b", "no volume dependence of γρ assumed"),
             ("eos", MARSH),
             ("", JOHNSON_COOK),
-        ],
-    },
-    Record {
-        name: "tungsten",
-        title: "tungsten, constant yield stress",
-        make: || von_mises(&TUNGSTEN, 2.2e9, heat(129.0, 300.0, None)),
-        sources: &[
+        ];
+    "tungsten", "tungsten, constant yield stress":
+        von_mises(&TUNGSTEN, 2.2e9, heat(129.0, 300.0, None)),
+        &[
             ("strength.von_mises.hardening_modulus", KEPT),
             ("strength", UINTAH),
             ("thermal.reference_temperature", ROOM),
             ("", STEINBERG),
-        ],
-    },
-];
+        ];
+}
 
 /// Density (kg/m³), shear modulus (Pa) and Hugoniot.
 #[derive(Clone, Copy)]

@@ -3,11 +3,6 @@
 //! No record has a spall cut-off: spall strengths depend on the rate of the load, so a case
 //! states its own.
 
-mod fluids;
-mod impact;
-mod metals;
-mod paper;
-
 use super::{Eos, Failure, Material, Strength, Thermal, ThermalConstants};
 
 /// One material of the library.
@@ -20,6 +15,23 @@ struct Record {
     /// counts.
     sources: &'static [(&'static str, &'static str)],
 }
+
+/// Declares records: name and title, what makes the material, and its sources.
+macro_rules! records {
+    ($($name:literal, $title:literal: $make:expr, $sources:expr;)+) => {
+        pub(super) const RECORDS: &[super::Record] = &[$(super::Record {
+            name: $name,
+            title: $title,
+            make: || $make,
+            sources: $sources,
+        }),+];
+    };
+}
+
+mod fluids;
+mod impact;
+mod metals;
+mod paper;
 
 /// What a record makes its material from.
 struct Parts {

@@ -1,6 +1,6 @@
 //! The seed paper's own materials, and those of classical test cases.
 
-use super::{Parts, Record};
+use super::Parts;
 use crate::material::{Elastic, Eos, Linear, LinearForm, NeoHookean, Strength, VonMises};
 
 const BARS: &str = "Vignjevic et al. (2006), section 3.2: E = 2.1 Mbar, ν = .28 (steel), E = .70 \
@@ -13,21 +13,16 @@ const TAYLOR: &str = "Taylor bar of Camacho & Ortiz (1997), Comput. Methods Appl
 const RINGS: &str = "colliding rubber rings in Spheral and PySPH, after Swegle: c = 852 m/s, \
      G = .22 ρ c²";
 
-pub(super) const RECORDS: &[Record] = &[
-    Record {
-        name: "aluminium-bar",
-        title: "the paper's aluminium bar, linear elastic",
-        make: || {
+records! {
+    "aluminium-bar", "the paper's aluminium bar, linear elastic":
+        {
             let [k, g] = moduli(70e9, 0.33);
             let strength = Strength::Elastic(Elastic { shear_modulus: g });
             linear(2700.0, k, LinearForm::Logarithmic, strength)
         },
-        sources: &[("eos.linear.form", FORM), ("", BARS)],
-    },
-    Record {
-        name: "copper-taylor-bar",
-        title: "copper of the Taylor anvil test, linear hardening",
-        make: || {
+        &[("eos.linear.form", FORM), ("", BARS)];
+    "copper-taylor-bar", "copper of the Taylor anvil test, linear hardening":
+        {
             let [k, g] = moduli(117e9, 0.35);
             linear(
                 8930.0,
@@ -36,39 +31,29 @@ pub(super) const RECORDS: &[Record] = &[
                 yielding(g, 0.4e9, 0.1e9),
             )
         },
-        sources: &[("", TAYLOR)],
-    },
-    Record {
-        name: "rubber",
-        title: "rubber of the colliding rings",
-        make: || {
+        &[("", TAYLOR)];
+    "rubber", "rubber of the colliding rings":
+        {
             let k = 1010.0 * 852.0 * 852.0;
             let shear_modulus = 0.22 * k;
             let strength = Strength::NeoHookean(NeoHookean { shear_modulus });
             linear(1010.0, k, LinearForm::DensityRatio, strength)
         },
-        sources: &[("", RINGS)],
-    },
-    Record {
-        name: "steel-bar",
-        title: "the paper's steel bar, linear elastic",
-        make: || {
+        &[("", RINGS)];
+    "steel-bar", "the paper's steel bar, linear elastic":
+        {
             let [k, g] = moduli(210e9, 0.28);
             let strength = Strength::Elastic(Elastic { shear_modulus: g });
             linear(7830.0, k, LinearForm::Logarithmic, strength)
         },
-        sources: &[("eos.linear.form", FORM), ("", BARS)],
-    },
-    Record {
-        name: "steel-block",
-        title: "the paper's block of steel, elastic-plastic",
-        make: || {
+        &[("eos.linear.form", FORM), ("", BARS)];
+    "steel-block", "the paper's block of steel, elastic-plastic":
+        {
             let [k, g] = moduli(210e9, 0.28);
             linear(7830.0, k, LinearForm::DensityRatio, yielding(g, 0.3e9, 0.0))
         },
-        sources: &[("strength.von_mises.hardening_modulus", PLAIN), ("", BLOCK)],
-    },
-];
+        &[("strength.von_mises.hardening_modulus", PLAIN), ("", BLOCK)];
+}
 
 /// Bulk and shear modulus (Pa) of Young's modulus (Pa) and Poisson's ratio.
 fn moduli(young: f64, poisson: f64) -> [f64; 2] {

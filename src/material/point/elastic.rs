@@ -1,20 +1,17 @@
 //! Linear elasticity in shear.
 
-use super::{Conditions, Constants, Law, PointBatch, jaumann};
+use super::{Conditions, Law, PointBatch, jaumann};
 
-/// Linear elastic in shear.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Elastic {
-    /// Shear modulus G (Pa).
-    pub shear_modulus: f64,
+law! {
+    /// Linear elastic in shear.
+    Elastic {
+        /// Shear modulus G (Pa).
+        shear_modulus: "Pa",
+    }
 }
 
 impl Law for Elastic {
     const STATE: &'static [&'static str] = &["deviatoric_stress"];
-
-    fn constants(&self) -> Constants {
-        vec![("shear_modulus", self.shear_modulus, "Pa")]
-    }
 
     fn shear_modulus(&self) -> f64 {
         self.shear_modulus

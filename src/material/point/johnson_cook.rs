@@ -12,26 +12,27 @@
 //! Rates below the reference rate count as that rate, T* stays between 0 and 1 (molten: Y = 0). ε
 //! and ε̇ are those of the end of the step: the return solves for both at once.
 
-use super::{Conditions, Constants, LANES, Law, PointBatch, jaumann, radial_return};
+use super::{Conditions, LANES, Law, PointBatch, jaumann, radial_return};
 use crate::material::ThermalConstants;
 
-/// Elastic–plastic with strain hardening, strain rate hardening and thermal softening.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct JohnsonCook {
-    /// Shear modulus G (Pa).
-    pub shear_modulus: f64,
-    /// Yield stress A (Pa).
-    pub a: f64,
-    /// Hardening coefficient B (Pa).
-    pub b: f64,
-    /// Hardening exponent n.
-    pub n: f64,
-    /// Rate coefficient C.
-    pub c: f64,
-    /// Exponent m of thermal softening.
-    pub m: f64,
-    /// Reference strain rate (1/s).
-    pub reference_rate: f64,
+law! {
+    /// Elastic–plastic with strain hardening, strain rate hardening and thermal softening.
+    JohnsonCook {
+        /// Shear modulus G (Pa).
+        shear_modulus: "Pa",
+        /// Yield stress A (Pa).
+        a: "Pa",
+        /// Hardening coefficient B (Pa).
+        b: "Pa",
+        /// Hardening exponent n.
+        n: "",
+        /// Rate coefficient C.
+        c: "",
+        /// Exponent m of thermal softening.
+        m: "",
+        /// Reference strain rate (1/s).
+        reference_rate: "1/s",
+    }
 }
 
 impl JohnsonCook {
@@ -85,18 +86,6 @@ impl Law for JohnsonCook {
     const NEEDS_TEMPERATURE: bool = true;
     const NEEDS_MELTING: bool = true;
     const FOLLOWS_STATE: bool = true;
-
-    fn constants(&self) -> Constants {
-        vec![
-            ("shear_modulus", self.shear_modulus, "Pa"),
-            ("a", self.a, "Pa"),
-            ("b", self.b, "Pa"),
-            ("n", self.n, ""),
-            ("c", self.c, ""),
-            ("m", self.m, ""),
-            ("reference_rate", self.reference_rate, "1/s"),
-        ]
-    }
 
     fn shear_modulus(&self) -> f64 {
         self.shear_modulus

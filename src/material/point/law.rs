@@ -2,9 +2,7 @@
 
 use super::{LANES, Lanes, PointBatch};
 use crate::material::ThermalConstants;
-
-/// Constants of a law by their keys in the input: value and SI unit (empty for a pure number).
-pub type Constants = Vec<(&'static str, f64, &'static str)>;
+use crate::material::declare::Listed;
 
 /// Constants that cannot go together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,7 +25,7 @@ pub struct Contradiction {
 /// 5. [`Law::fail`], damage.
 ///
 /// At last the sound speed follows. With a step of zero no stage may change the state.
-pub trait Law {
+pub trait Law: Listed {
     /// Fields of the point that the law changes.
     const STATE: &'static [&'static str];
     /// Whether the law follows the temperature.
@@ -37,9 +35,6 @@ pub trait Law {
     /// Whether what the law does follows density, temperature or damage. Such laws act in a function
     /// of their own: inside that of the others they slow down those that have no need of them.
     const FOLLOWS_STATE: bool = false;
-
-    /// Its constants, in the order of the input.
-    fn constants(&self) -> Constants;
 
     /// What is wrong with constants that are each within their range.
     fn contradiction(&self) -> Option<Contradiction> {
@@ -170,7 +165,7 @@ macro_rules! strength_laws {
 
             /// Key of the law in the input and its constants; nothing for a fluid.
             #[must_use]
-            pub fn constants(&self) -> Option<(&'static str, Constants)> {
+            pub fn constants(&self) -> Option<(&'static str, $crate::material::Constants)> {
                 match self {
                     Self::None => None,
                     $( Self::$law(law) => Some((stringify!($key), law.constants())), )+
@@ -240,7 +235,7 @@ macro_rules! failure_laws {
 
             /// Keys of the laws in the input and their constants.
             #[must_use]
-            pub fn constants(&self) -> Vec<(&'static str, Constants)> {
+            pub fn constants(&self) -> Vec<(&'static str, $crate::material::Constants)> {
                 let laws = [$( self.$key.map(|law| (stringify!($key), law.constants())), )+];
                 laws.into_iter().flatten().collect()
             }

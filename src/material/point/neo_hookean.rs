@@ -15,26 +15,23 @@
 //! size turns b̄ by a rotation), then reads S off again. A closed cycle of strain returns to no
 //! stress: the law has a potential, which the Jaumann rate has not.
 
-use super::{Conditions, Constants, LANES, Lanes, Law, PointBatch};
+use super::{Conditions, LANES, Lanes, Law, PointBatch};
 use crate::numerics::vector::dot;
 
 /// Newton iterations for β, the same for all states; ten suffice for a stretch of six.
 const ITERATIONS: usize = 16;
 
-/// Isochoric neo-Hookean elasticity, without bound of strain.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NeoHookean {
-    /// Shear modulus G of small strains (Pa).
-    pub shear_modulus: f64,
+law! {
+    /// Isochoric neo-Hookean elasticity, without bound of strain.
+    NeoHookean {
+        /// Shear modulus G of small strains (Pa).
+        shear_modulus: "Pa",
+    }
 }
 
 impl Law for NeoHookean {
     const STATE: &'static [&'static str] = &["deviatoric_stress"];
     const FOLLOWS_STATE: bool = true;
-
-    fn constants(&self) -> Constants {
-        vec![("shear_modulus", self.shear_modulus, "Pa")]
-    }
 
     fn shear_modulus(&self) -> f64 {
         self.shear_modulus

@@ -15,34 +15,35 @@
 //!
 //! `T_m0` is a constant of the fit, above the melting point at zero pressure.
 
-use super::{Conditions, Constants, Contradiction, LANES, Law, PointBatch, jaumann, radial_return};
+use super::{Conditions, Contradiction, LANES, Law, PointBatch, jaumann, radial_return};
 use crate::material::{at_least, at_most};
 
-/// Elastic–plastic with a shear modulus and a yield stress that follow pressure and temperature.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SteinbergGuinan {
-    /// Shear modulus G₀ of the reference state (Pa).
-    pub shear_modulus: f64,
-    /// Yield stress Y₀ (Pa).
-    pub yield_stress: f64,
-    /// Largest yield stress by hardening `Y_max` (Pa).
-    pub max_yield_stress: f64,
-    /// Hardening coefficient β.
-    pub beta: f64,
-    /// Hardening exponent n.
-    pub n: f64,
-    /// Initial plastic strain `ε_i`.
-    pub initial_strain: f64,
-    /// `G'_p/G₀` (1/Pa).
-    pub pressure_coefficient: f64,
-    /// `−G'_T/G₀` (1/K), positive for softening.
-    pub temperature_coefficient: f64,
-    /// Melting temperature `T_m0` of the fit (K).
-    pub melting_temperature: f64,
-    /// Grüneisen parameter γ₀ in the melting law.
-    pub gamma0: f64,
-    /// Its volume correction a in the melting law.
-    pub a: f64,
+law! {
+    /// Elastic–plastic with a shear modulus and a yield stress that follow pressure and temperature.
+    SteinbergGuinan {
+        /// Shear modulus G₀ of the reference state (Pa).
+        shear_modulus: "Pa",
+        /// Yield stress Y₀ (Pa).
+        yield_stress: "Pa",
+        /// Largest yield stress by hardening `Y_max` (Pa).
+        max_yield_stress: "Pa",
+        /// Hardening coefficient β.
+        beta: "",
+        /// Hardening exponent n.
+        n: "",
+        /// Initial plastic strain `ε_i`.
+        initial_strain: "",
+        /// `G'_p/G₀` (1/Pa).
+        pressure_coefficient: "1/Pa",
+        /// `−G'_T/G₀` (1/K), positive for softening.
+        temperature_coefficient: "1/K",
+        /// Melting temperature `T_m0` of the fit (K).
+        melting_temperature: "K",
+        /// Grüneisen parameter γ₀ in the melting law.
+        gamma0: "",
+        /// Its volume correction a in the melting law.
+        a: "",
+    }
 }
 
 impl SteinbergGuinan {
@@ -85,26 +86,6 @@ impl Law for SteinbergGuinan {
     const STATE: &'static [&'static str] = &["deviatoric_stress", "plastic_strain"];
     const NEEDS_TEMPERATURE: bool = true;
     const FOLLOWS_STATE: bool = true;
-
-    fn constants(&self) -> Constants {
-        vec![
-            ("shear_modulus", self.shear_modulus, "Pa"),
-            ("yield_stress", self.yield_stress, "Pa"),
-            ("max_yield_stress", self.max_yield_stress, "Pa"),
-            ("beta", self.beta, ""),
-            ("n", self.n, ""),
-            ("initial_strain", self.initial_strain, ""),
-            ("pressure_coefficient", self.pressure_coefficient, "1/Pa"),
-            (
-                "temperature_coefficient",
-                self.temperature_coefficient,
-                "1/K",
-            ),
-            ("melting_temperature", self.melting_temperature, "K"),
-            ("gamma0", self.gamma0, ""),
-            ("a", self.a, ""),
-        ]
-    }
 
     fn contradiction(&self) -> Option<Contradiction> {
         (self.max_yield_stress < self.yield_stress).then_some(Contradiction {

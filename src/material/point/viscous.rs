@@ -2,21 +2,18 @@
 //!
 //! L is that of the middle of the step, so that the stress lags half a step behind.
 
-use super::{Conditions, Constants, LANES, Law, PointBatch};
+use super::{Conditions, LANES, Law, PointBatch};
 
-/// A Newtonian fluid.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Viscous {
-    /// Dynamic viscosity η (Pa s).
-    pub viscosity: f64,
+law! {
+    /// A Newtonian fluid.
+    Viscous {
+        /// Dynamic viscosity η (Pa s).
+        viscosity: "Pa s",
+    }
 }
 
 impl Law for Viscous {
     const STATE: &'static [&'static str] = &["deviatoric_stress"];
-
-    fn constants(&self) -> Constants {
-        vec![("viscosity", self.viscosity, "Pa s")]
-    }
 
     fn viscosity(&self) -> f64 {
         self.viscosity

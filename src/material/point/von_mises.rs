@@ -5,30 +5,23 @@
 //! hardened yield surface exactly. Source: Wilkins (1964), *Calculation of elastic-plastic flow*,
 //! UCRL-7322; with hardening Simo & Hughes (1998), *Computational Inelasticity*, box 3.1.
 
-use super::{Conditions, Constants, LANES, Law, PointBatch, jaumann};
+use super::{Conditions, LANES, Law, PointBatch, jaumann};
 
-/// Elastic–plastic: elastic inside the von Mises cylinder, whose radius may grow with plastic
-/// strain.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct VonMises {
-    /// Shear modulus G (Pa).
-    pub shear_modulus: f64,
-    /// Yield stress in uniaxial tension at zero plastic strain, Y₀ (Pa).
-    pub yield_stress: f64,
-    /// Hardening modulus H (Pa): `Y = Y₀ + H ε_p`; 0 for perfect plasticity.
-    pub hardening_modulus: f64,
+law! {
+    /// Elastic–plastic: elastic inside the von Mises cylinder, whose radius may grow with plastic
+    /// strain.
+    VonMises {
+        /// Shear modulus G (Pa).
+        shear_modulus: "Pa",
+        /// Yield stress in uniaxial tension at zero plastic strain, Y₀ (Pa).
+        yield_stress: "Pa",
+        /// Hardening modulus H (Pa): `Y = Y₀ + H ε_p`; 0 for perfect plasticity.
+        hardening_modulus: "Pa",
+    }
 }
 
 impl Law for VonMises {
     const STATE: &'static [&'static str] = &["deviatoric_stress", "plastic_strain"];
-
-    fn constants(&self) -> Constants {
-        vec![
-            ("shear_modulus", self.shear_modulus, "Pa"),
-            ("yield_stress", self.yield_stress, "Pa"),
-            ("hardening_modulus", self.hardening_modulus, "Pa"),
-        ]
-    }
 
     fn shear_modulus(&self) -> f64 {
         self.shear_modulus

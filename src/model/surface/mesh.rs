@@ -202,18 +202,6 @@ impl Mesh {
     pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         self.tree.bounds()
     }
-
-    /// Number of triangles.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.triangles.len()
-    }
-
-    /// Whether there are no triangles, which no mesh lets happen.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.triangles.is_empty()
-    }
 }
 
 /// Twice the area along the normal.
@@ -281,7 +269,7 @@ mod tests {
     fn faces_edges_and_corners_of_a_cube() {
         let mesh = Mesh::new(&cube()).unwrap();
         assert!(mesh.is_convex());
-        assert_eq!(mesh.len(), 12);
+        assert_eq!(mesh.triangles.len(), 12);
         let far = f64::INFINITY;
         near(mesh.foot(&[1.5, 0.2, 0.1], far), [1.0, 0.0, 0.0], 0.5);
         near(mesh.foot(&[0.9, 0.2, 0.1], far), [1.0, 0.0, 0.0], -0.1);
@@ -350,7 +338,7 @@ mod tests {
         near(mesh.foot(&[1.5, 0.2, 0.1], 1.0), [1.0, 0.0, 0.0], 0.5);
         // A needle without width changes nothing.
         soup.push([[1.0; 3], [1.0; 3], [0.0; 3]]);
-        assert_eq!(Mesh::new(&soup).unwrap().len(), 12);
+        assert_eq!(Mesh::new(&soup).unwrap().triangles.len(), 12);
         soup.truncate(11);
         let open = Mesh::new(&soup).unwrap_err();
         assert!(

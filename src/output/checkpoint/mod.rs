@@ -14,7 +14,7 @@ mod write;
 pub(super) use folder::{DAMAGED, discard, is_damaged, step_of};
 pub use folder::{list, list_broken, list_damaged};
 pub use manifest::{FORMAT, MANIFEST, Manifest, manifest};
-pub use read::{Restored, input, read};
+pub use read::{Restored, read};
 pub(super) use state_file::row_type;
 pub use state_file::{FIELDS, state_file};
 pub use write::{Meta, write};

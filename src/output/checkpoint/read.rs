@@ -65,14 +65,6 @@ pub fn read(
     })
 }
 
-/// The resolved input of a checkpoint, by one process and without reading all of it.
-///
-/// # Errors
-/// [`OutputError::Io`], [`OutputError::Hdf5`].
-pub fn input(folder: &Path) -> Result<String, OutputError> {
-    Content::open(&state_file(folder))?.text("/input")
-}
-
 /// Compares size and digests with the manifest. Collective.
 fn verify(comm: &Comm, state: &Path, manifest: &Manifest) -> Result<(), OutputError> {
     let size = size_of(comm, state)?;

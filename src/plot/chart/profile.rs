@@ -34,14 +34,14 @@ impl Along {
     /// # Errors
     /// [`PlotError::Quantity`] for anything else.
     pub fn parse(text: &str) -> Result<Self, PlotError> {
-        let axis = Axis::ALL.into_iter().find(|axis| axis.name() == text);
+        let axis = Axis::named(text);
         match axis {
             Some(axis) => Ok(Self::Line(axis)),
             None if text == "r" => Ok(Self::Radius),
-            None => Err(PlotError::Quantity {
-                text: text.to_owned(),
-                expected: "x, y, z, or r for the distance from a point".to_owned(),
-            }),
+            None => Err(PlotError::quantity(
+                text,
+                "x, y, z, or r for the distance from a point",
+            )),
         }
     }
 

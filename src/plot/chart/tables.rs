@@ -25,10 +25,8 @@ impl Columns {
     /// # Errors
     /// [`PlotError::Quantity`] if the text is no such thing.
     pub fn parse(text: &str) -> Result<Self, PlotError> {
-        let wrong = || PlotError::Quantity {
-            text: text.to_owned(),
-            expected: "columns X:Y or X:Y,Y2, as in time:kinetic_energy".to_owned(),
-        };
+        let wrong =
+            || PlotError::quantity(text, "columns X:Y or X:Y,Y2, as in time:kinetic_energy");
         let (x, y) = text.split_once(':').ok_or_else(wrong)?;
         let y: Vec<String> = y.split(',').map(|name| name.trim().to_owned()).collect();
         if x.trim().is_empty()

@@ -178,9 +178,8 @@ impl Pictures {
 
 /// Reads `LEFT:RIGHT,BOTTOM:TOP`; numbers without a unit take the last one's.
 fn parse_view(text: &str) -> Result<View, PlotError> {
-    let (x, y) = text.split_once(',').ok_or_else(|| PlotError::Quantity {
-        text: text.to_owned(),
-        expected: "a view LEFT:RIGHT,BOTTOM:TOP, as in -1:1,0:2mm".to_owned(),
+    let (x, y) = text.split_once(',').ok_or_else(|| {
+        PlotError::quantity(text, "a view LEFT:RIGHT,BOTTOM:TOP, as in -1:1,0:2mm")
     })?;
     let unit = units::split(y.rsplit(':').next().unwrap_or_default()).1;
     Ok(View {
@@ -204,10 +203,7 @@ fn drawn_as(request: &Request) -> Result<DrawnAs, PlotError> {
         (Some("cut"), Some(_)) => Err(PlotError::Options(
             "a cut has no thickness: leave --thickness out, or draw the slice --as particles",
         )),
-        (Some(other), _) => Err(PlotError::Quantity {
-            text: other.to_owned(),
-            expected: "cut or particles".to_owned(),
-        }),
+        (Some(other), _) => Err(PlotError::quantity(other, "cut or particles")),
     }
 }
 

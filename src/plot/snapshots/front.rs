@@ -25,16 +25,16 @@ impl Direction {
     /// [`PlotError::Quantity`] for anything else.
     pub fn parse(text: &str) -> Result<Self, PlotError> {
         let name = text.trim_start_matches(['+', '-']);
-        let axis = Axis::ALL.into_iter().find(|axis| axis.name() == name);
+        let axis = Axis::named(name);
         match axis {
             Some(axis) if text.len() <= 2 => Ok(Self {
                 axis,
                 backwards: text.starts_with('-'),
             }),
-            _ => Err(PlotError::Quantity {
-                text: text.to_owned(),
-                expected: "x, y or z for a front, or against them -x, -y or -z".to_owned(),
-            }),
+            _ => Err(PlotError::quantity(
+                text,
+                "x, y or z for a front, or against them -x, -y or -z",
+            )),
         }
     }
 

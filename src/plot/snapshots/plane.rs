@@ -34,7 +34,7 @@ impl Plane {
             Some((name, position)) => (name, Some(position)),
             None => (text, None),
         };
-        let axis = Axis::ALL.into_iter().find(|a| a.name() == name.trim());
+        let axis = Axis::named(name.trim());
         let axis = axis.ok_or_else(|| PlotError::Section {
             text: text.to_owned(),
         })?;

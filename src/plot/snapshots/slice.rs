@@ -20,10 +20,10 @@ pub fn thickness(text: &str) -> Result<f64, PlotError> {
     if value > 0.0 {
         Ok(value)
     } else {
-        Err(PlotError::Quantity {
-            text: text.to_owned(),
-            expected: "a thickness above zero, as in 0.1mm".to_owned(),
-        })
+        Err(PlotError::quantity(
+            text,
+            "a thickness above zero, as in 0.1mm",
+        ))
     }
 }
 

@@ -80,7 +80,7 @@ impl Snapshot {
             return Err(damaged(format!("a model of {dimension} dimensions")));
         };
         let plane = |(name, position): (String, f64)| {
-            let axis = Axis::ALL.into_iter().find(|a| a.name() == name);
+            let axis = Axis::named(&name);
             let axis = axis.ok_or_else(|| damaged(format!("a symmetry plane along \"{name}\"")))?;
             Ok(SymmetryPlane { axis, position })
         };

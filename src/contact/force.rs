@@ -1,0 +1,152 @@
+//! Contact forces on their way from pairs of particles to the store and the sums.
+
+use super::pair::Pair;
+use super::view::{Party, Separation};
+
+/// What contact of one mode does to one particle.
+#[derive(Debug, Clone, Copy)]
+pub struct ContactForce {
+    /// Index in the store.
+    pub particle: usize,
+    /// Number of foreign neighbours.
+    pub neighbours: usize,
+    /// Force (N).
+    pub force: [f64; 3],
+    /// The part of `force` that images behind symmetry planes exert (N).
+    pub from_mirrors: [f64; 3],
+    /// Its share of the contact energy (J).
+    pub energy: f64,
+    /// Stiffness for the time step (N/m).
+    pub stiffness: f64,
+    /// Damping for the time step (N s/m).
+    pub dashpot: f64,
+    /// Its share of the heat by friction and damping (W).
+    pub heat: f64,
+    /// Smallest distance to a foreign particle in mean spacings.
+    pub closest: f64,
+    /// Largest approach speed `|μ|` towards a foreign particle (m/s).
+    pub approach: f64,
+}
+
+/// What one foreign body does to one particle.
+#[derive(Debug, Clone, Copy)]
+pub struct BodyForce {
+    /// Index in the store.
+    pub particle: usize,
+    /// The body of the particle, and the other.
+    pub bodies: [usize; 2],
+    /// Force (N).
+    pub force: [f64; 3],
+    /// Share of the contact energy (J).
+    pub energy: f64,
+    /// Share of the heat by friction and damping (W).
+    pub heat: f64,
+    /// Smallest distance to a particle of that body in mean spacings.
+    pub closest: f64,
+    /// Index of that particle in the store.
+    pub nearest: usize,
+}
+
+/// What contact does to the particles of one task, kept from step to step.
+#[derive(Debug, Default)]
+pub struct TaskForces {
+    /// To each of them, mode after mode.
+    pub particles: Vec<ContactForce>,
+    /// The same by the other body.
+    pub by_body: Vec<BodyForce>,
+}
+
+/// The particle that forces of pairs are added to.
+pub(super) struct Receiver<'a> {
+    pub sum: ContactForce,
+    body: usize,
+    by_body: &'a mut Vec<BodyForce>,
+    /// Where its own begin.
+    first: usize,
+}
+
+impl TaskForces {
+    /// Forgets everything but the buffers.
+    pub fn clear(&mut self) {
+        self.particles.clear();
+        self.by_body.clear();
+    }
+
+    pub(super) fn memory(&self) -> usize {
+        size_of::<ContactForce>() * self.particles.capacity()
+            + size_of::<BodyForce>() * self.by_body.capacity()
+    }
+}
+
+impl<'a> Receiver<'a> {
+    pub fn new(i: &Party, neighbours: usize, by_body: &'a mut Vec<BodyForce>) -> Self {
+        Self {
+            sum: ContactForce {
+                particle: i.base,
+                neighbours,
+                force: [0.0; 3],
+                from_mirrors: [0.0; 3],
+                energy: 0.0,
+                stiffness: 0.0,
+                dashpot: 0.0,
+                heat: 0.0,
+                closest: f64::INFINITY,
+                approach: 0.0,
+            },
+            body: i.body,
+            first: by_body.len(),
+            by_body,
+        }
+    }
+
+    /// Distance and approach of the pair with `other`.
+    #[inline]
+    pub fn meet(&mut self, other: &Party, separation: &Separation, pair: &Pair) {
+        separation.raise_approach(pair.h, &mut self.sum.approach);
+        let distance = separation.distance * pair.inverse_spacing;
+        self.sum.closest = self.sum.closest.min(distance);
+        let body = self.by(other.body);
+        if distance < body.closest {
+            (body.closest, body.nearest) = (distance, other.base);
+        }
+    }
+
+    /// Force (N), energy (J) and heat (W) of the pair with `other`.
+    #[inline]
+    pub fn add(&mut self, other: &Party, force: &[f64; 3], energy: f64, heat: f64) {
+        self.sum.energy += energy;
+        self.sum.heat += heat;
+        for a in 0..3 {
+            self.sum.force[a] += force[a];
+            if other.code != 0 {
+                self.sum.from_mirrors[a] += force[a];
+            }
+        }
+        let body = self.by(other.body);
+        body.energy += energy;
+        body.heat += heat;
+        for a in 0..3 {
+            body.force[a] += force[a];
+        }
+    }
+
+    /// What is by one body, which few others are.
+    #[inline]
+    fn by(&mut self, body: usize) -> &mut BodyForce {
+        let own = &self.by_body[self.first..];
+        let at = own.iter().position(|entry| entry.bodies[1] == body);
+        let at = at.map_or(self.by_body.len(), |at| self.first + at);
+        if at == self.by_body.len() {
+            self.by_body.push(BodyForce {
+                particle: self.sum.particle,
+                bodies: [self.body, body],
+                force: [0.0; 3],
+                energy: 0.0,
+                heat: 0.0,
+                closest: f64::INFINITY,
+                nearest: 0,
+            });
+        }
+        &mut self.by_body[at]
+    }
+}

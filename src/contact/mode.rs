@@ -1,0 +1,251 @@
+//! Modes of contact: what each of them says of a pair of particles, and what is done with it in the
+//! same way for all.
+
+use rayon::prelude::*;
+
+use super::ContactTable;
+use super::force::{Receiver, TaskForces};
+use super::pair::{Listed, Pair};
+use super::resistance::{NormalLoad, PairFriction};
+use super::view::{ContactView, Party, Separation};
+use crate::model::{ContactClass, contact_modes};
+use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Lists, PairList};
+use crate::particles::{GRAIN, ParticleStore};
+
+/// A mode of contact, in a file of its own and listed in `contact_modes!`.
+pub(crate) trait Mode: Listed + Sized {
+    /// What it measures of a particle before the forces.
+    type Measured: Send + Sync;
+    /// What its forces read of a particle.
+    type Side: Copy;
+
+    /// Measures before the forces, and stores what these read. `found` is kept from step to step.
+    fn measure(_found: &mut Found<Self>, _scene: &mut Scene) {}
+
+    /// Measures for the first time, before any forces, what the start of a case is to be forgiven; gives
+    /// the number of particles of which not all can be.
+    fn begin(_found: &mut Found<Self>, _scene: &mut Scene) -> i64 {
+        0
+    }
+
+    /// What forces read of a particle.
+    fn side(view: &ContactView, particle: &Party) -> Self::Side;
+
+    /// What a pair does to its first particle, if anything; adds to the stiffness for the time step
+    /// (N/m) of this particle.
+    fn force(meeting: &Meeting<Self>, stiffness: &mut f64) -> Option<PairForce>;
+
+    /// Adds what friction and damping of the receiver `i` rest on: half of each force, if not said
+    /// otherwise.
+    fn normal_load(view: &ContactView, i: &Party, neighbours: &[u32], load: &mut NormalLoad) {
+        let here = Self::side(view, i);
+        for &other in neighbours {
+            let j = view.party(other);
+            let meeting = Meeting::<Self>::new(view, [i, &j], here);
+            if !meeting.pair.friction.is_any() {
+                continue;
+            }
+            if let Some(PairForce { force, loads, .. }) = Self::force(&meeting, &mut 0.0) {
+                let force = force.map(|f| 0.5 * f);
+                load.add(meeting.pair, [i, &j], loads[0], &force);
+                load.face(1.0, &force);
+            }
+        }
+    }
+}
+
+/// What a mode measures, chunk by chunk.
+pub(crate) type Found<M> = Vec<Vec<<M as Mode>::Measured>>;
+
+/// What a mode measures on, after a step of `dt` (s).
+pub(crate) struct Scene<'a> {
+    pub particles: &'a mut ParticleStore,
+    pub lists: &'a Lists,
+    pub table: &'a ContactTable,
+    pub dt: f64,
+}
+
+impl Scene<'_> {
+    pub fn view(&self) -> ContactView<'_> {
+        ContactView::new(self.particles, self.lists, self.table, self.dt)
+    }
+}
+
+/// A particle and a foreign neighbour.
+pub(crate) struct Meeting<'a, M: Mode> {
+    pub view: &'a ContactView<'a>,
+    pub i: &'a Party,
+    pub j: &'a Party,
+    pub separation: Separation,
+    pub pair: &'a Pair,
+    /// Constants of the mode.
+    pub own: &'a M::Pair,
+    pub here: M::Side,
+    pub there: M::Side,
+}
+
+/// What a pair does to its first particle.
+pub(crate) struct PairForce {
+    /// Force (N).
+    pub force: [f64; 3],
+    /// Its half of the energy (J).
+    pub energy: f64,
+    /// What friction rests on from the side of each (N).
+    pub loads: [f64; 2],
+}
+
+impl<'a, M: Mode> Meeting<'a, M> {
+    #[inline(always)]
+    pub fn new(view: &'a ContactView, [i, j]: [&'a Party; 2], here: M::Side) -> Self {
+        Self {
+            view,
+            i,
+            j,
+            separation: Separation::between(i, j),
+            pair: view.table.pair(i.body, j.body),
+            own: view.table.own::<M>(i.body, j.body),
+            here,
+            there: M::side(view, j),
+        }
+    }
+
+    /// A force of `magnitude` (N) along the line between the two, or the part of it along the normal
+    /// of the surface between them.
+    #[inline(always)]
+    pub fn along(&self, magnitude: f64, normal: bool) -> [f64; 3] {
+        if normal {
+            let normal = self.view.normal(self.i, self.j);
+            self.separation.along_normal(magnitude, normal)
+        } else {
+            self.separation.along(magnitude)
+        }
+    }
+}
+
+impl TaskForces {
+    /// Adds what one mode does to receivers with their foreign neighbours, with `FRICTION` friction and
+    /// damping too.
+    fn add_mode<'l, M: Mode, const FRICTION: bool>(
+        &mut self,
+        view: &ContactView,
+        list: impl Iterator<Item = (u32, &'l [u32])>,
+    ) {
+        for (place, neighbours) in list {
+            let i = view.party(place);
+            let here = M::side(view, &i);
+            let mut on = Receiver::new(&i, neighbours.len(), &mut self.by_body);
+            let mut friction = FRICTION.then(|| PairFriction::of(view, &i));
+            for &other in neighbours {
+                let j = view.party(other);
+                let meeting = Meeting::<M>::new(view, [&i, &j], here);
+                on.meet(&j, &meeting.separation, meeting.pair);
+                let Some(mut pair) = M::force(&meeting, &mut on.sum.stiffness) else {
+                    continue;
+                };
+                let mut heat = 0.0;
+                if let Some(friction) = &mut friction {
+                    friction.pair(view, [&i, &j], pair.loads);
+                    for a in 0..3 {
+                        pair.force[a] += friction.force[a];
+                    }
+                    pair.energy += friction.energy;
+                    heat = friction.heat;
+                }
+                on.add(&j, &pair.force, pair.energy, heat);
+            }
+            if let Some(friction) = friction {
+                on.sum.stiffness += friction.stiffness;
+                on.sum.dashpot += friction.dashpot;
+            }
+            let sum = on.sum;
+            self.particles.push(sum);
+        }
+    }
+}
+
+/// Sets all elements, on all threads.
+pub(super) fn fill<T: Copy + Send + Sync>(values: &mut [T], value: T) {
+    values
+        .par_chunks_mut(16 * GRAIN)
+        .for_each(|chunk| chunk.fill(value));
+}
+
+/// Calls `measure` for each chunk with the pairs of a class and the lists of the own body.
+pub(super) fn for_each_chunk<T: Send>(
+    found: &mut Vec<Vec<T>>,
+    lists: &Lists,
+    class: ContactClass,
+    measure: impl Fn(&mut Vec<T>, &PairList, &Chunk) + Sync,
+) {
+    found.resize_with(lists.foreign().len(), Vec::new);
+    found
+        .par_iter_mut()
+        .zip(lists.foreign())
+        .zip(lists.chunks())
+        .with_max_len(CHUNKS_AT_ONCE)
+        .for_each(|((found, foreign), own)| {
+            found.clear();
+            measure(found, foreign.of(class), own);
+        });
+}
+
+macro_rules! dispatch {
+    ($($name:ident: $Mode:ident,)+) => {
+        /// What all modes measure, kept from step to step.
+        #[derive(Default)]
+        pub(super) struct Measurements {
+            $($name: Found<crate::model::$Mode>,)+
+        }
+
+        impl Measurements {
+            pub fn measure(&mut self, scene: &mut Scene) {
+                $(<crate::model::$Mode as Mode>::measure(&mut self.$name, scene);)+
+            }
+
+            pub fn begin(&mut self, scene: &mut Scene) -> i64 {
+                0 $(+ <crate::model::$Mode as Mode>::begin(&mut self.$name, scene))+
+            }
+
+            pub fn memory(&self) -> usize {
+                0 $(+ memory(&self.$name))+
+            }
+        }
+
+        impl TaskForces {
+            /// Adds what contact of a class does to receivers with their foreign neighbours, with
+            /// `FRICTION` friction and damping too.
+            pub fn add<'l, const FRICTION: bool>(
+                &mut self,
+                view: &ContactView,
+                class: ContactClass,
+                list: impl Iterator<Item = (u32, &'l [u32])>,
+            ) {
+                match class {
+                    $(ContactClass::$Mode => {
+                        self.add_mode::<crate::model::$Mode, FRICTION>(view, list);
+                    })+
+                }
+            }
+        }
+
+        /// What friction and damping of the receiver `i` rest on, given its neighbours by class.
+        pub(super) fn normal_load(
+            view: &ContactView,
+            i: &Party,
+            neighbours: &[&[u32]; ContactClass::COUNT],
+        ) -> NormalLoad {
+            let mut load = NormalLoad::default();
+            $(
+                let of_mode = neighbours[ContactClass::$Mode as usize];
+                <crate::model::$Mode as Mode>::normal_load(view, i, of_mode, &mut load);
+            )+
+            load
+        }
+    };
+}
+contact_modes!(dispatch);
+
+fn memory<T>(found: &[Vec<T>]) -> usize {
+    let chunks = found.iter().map(Vec::capacity).sum::<usize>();
+    size_of_val(found) + size_of::<T>() * chunks
+}

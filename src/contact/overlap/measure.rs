@@ -1,0 +1,177 @@
+//! Foreign fractions, and the normals that go with them.
+
+use rayon::prelude::*;
+
+use super::constants;
+use crate::contact::mode::{Found, Scene, fill, for_each_chunk};
+use crate::contact::view::{ContactView, Separation};
+use crate::model::{ContactClass, Overlap};
+use crate::neighbours::CHUNKS_AT_ONCE;
+use crate::numerics::vector::norm;
+use crate::particles::Scatter;
+
+/// A particle whose foreign fraction with current volumes exceeds this is enclosed.
+const ENCLOSED_FRACTION: f64 = 0.5;
+
+/// Largest touching value plus initial overlap offset: beyond it a particle counts as inside the
+/// other body.
+pub const OFFSET_LIMIT: f64 = 0.45;
+
+/// The foreign fraction of one receiver and what follows from it.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Fraction {
+    /// `S_i`.
+    pub fraction: f64,
+    /// `M̄_i` (Pa), stiffness included.
+    pub modulus: f64,
+    /// `C̄_i`.
+    pub touching: f64,
+    /// `E_i`.
+    pub excess: f64,
+    /// `g_i = Σ V_j |∇W_ij|` (1/m).
+    pub slope: f64,
+    /// `Σ V_j W_ij` with current volumes.
+    pub current: f64,
+}
+
+/// What overlap contact measures of one particle.
+pub(crate) struct Measured {
+    pub particle: usize,
+    pub fraction: Fraction,
+    /// For how long it has been enclosed after this step (s).
+    enclosed: f64,
+    /// Its normal, see [`normal`]; zero without friction.
+    normal: [f64; 3],
+}
+
+/// The initial overlap offset of a particle laid with foreign fraction `fraction` and touching value
+/// `touching`, and whether it had to be capped.
+#[must_use]
+pub fn initial_offset(fraction: &Fraction) -> (f64, bool) {
+    let wanted = (fraction.fraction - fraction.touching).max(0.0);
+    let limit = (OFFSET_LIMIT - fraction.touching).max(0.0);
+    (wanted.min(limit), wanted > limit)
+}
+
+/// Sums the foreign fraction of the receiver at `place`, whose initial overlap offset is `offset`.
+#[must_use]
+pub fn fraction(view: &ContactView, place: u32, neighbours: &[u32], offset: f64) -> Fraction {
+    let i = view.party(place);
+    let mut sum = Fraction::default();
+    for &other in neighbours {
+        let j = view.party(other);
+        let (pair, own) = constants(view, &i, &j);
+        let separation = Separation::between(&i, &j);
+        let kernel = pair.kernel.value(separation.distance);
+        let share = j.volume * kernel;
+        sum.fraction += share;
+        sum.modulus += share * own.modulus;
+        sum.touching += share * own.touching;
+        sum.slope -= j.volume * pair.kernel.slope(separation.distance);
+        sum.current += view.motion[other as usize].volume * kernel;
+    }
+    if sum.fraction > 0.0 {
+        sum.modulus /= sum.fraction;
+        sum.touching /= sum.fraction;
+        sum.excess = (sum.fraction - sum.touching - offset).max(0.0);
+    }
+    sum
+}
+
+/// The normal that the receiver at `place` sees, `−∇S_i/|∇S_i|`, times `S_i²`: how much it knows. The
+/// particle that sees a face knows the normal; one of a face that sees a lone particle does not.
+fn normal(view: &ContactView, place: u32, neighbours: &[u32], fraction: &Fraction) -> [f64; 3] {
+    let i = view.party(place);
+    let mut sum = [0.0; 3];
+    for &other in neighbours {
+        let j = view.party(other);
+        let separation = Separation::between(&i, &j);
+        let slope = -constants(view, &i, &j).0.kernel.slope(separation.distance);
+        let along = separation.along(j.volume * slope);
+        for a in 0..3 {
+            sum[a] += along[a];
+        }
+    }
+    let weight = fraction.fraction * fraction.fraction / norm(&sum).max(f64::MIN_POSITIVE);
+    sum.map(|x| x * weight)
+}
+
+/// Measures the receivers of all chunks.
+pub(super) fn weigh(found: &mut Found<Overlap>, scene: &Scene) {
+    let friction = scene.table.has_friction();
+    let view = scene.view();
+    for_each_chunk(
+        found,
+        scene.lists,
+        ContactClass::Overlap,
+        |found, list, _| {
+            found.extend(list.iter().map(|(place, neighbours)| {
+                let particle = view.images[place as usize].base();
+                let offset = view.store.touch_relief[particle];
+                let fraction = fraction(&view, place, neighbours, offset);
+                let is_enclosed = fraction.current > ENCLOSED_FRACTION;
+                Measured {
+                    particle,
+                    fraction,
+                    enclosed: if is_enclosed {
+                        view.store.enclosed_time[particle] + scene.dt
+                    } else {
+                        0.0
+                    },
+                    normal: if friction {
+                        normal(&view, place, neighbours, &fraction)
+                    } else {
+                        [0.0; 3]
+                    },
+                }
+            }));
+        },
+    );
+}
+
+/// Stores what has been measured; nothing of particles without foreign neighbours.
+pub(super) fn store(found: &Found<Overlap>, scene: &mut Scene) {
+    let particles = &mut *scene.particles;
+    // What else there is of a fraction nobody reads without excess.
+    for field in [
+        &mut particles.foreign_fraction,
+        &mut particles.contact_excess,
+        &mut particles.enclosed_time,
+    ] {
+        fill(field, 0.0);
+    }
+    fill(&mut particles.contact_normal, [0.0; 3]);
+    let fields = [
+        &mut particles.foreign_fraction,
+        &mut particles.contact_excess,
+        &mut particles.enclosed_time,
+        &mut particles.contact_modulus,
+        &mut particles.touching_value,
+        &mut particles.contact_slope,
+    ]
+    .map(|field| Scatter::new(field));
+    let friction = scene.table.has_friction();
+    let normals = friction.then(|| Scatter::new(&mut particles.contact_normal));
+    let store = |measured: &Measured| {
+        let (i, f) = (measured.particle, &measured.fraction);
+        let values = [
+            f.fraction,
+            f.excess,
+            measured.enclosed,
+            f.modulus,
+            f.touching,
+            f.slope,
+        ];
+        // SAFETY: a particle is receiver in one task, and each thread has its own tasks.
+        unsafe {
+            for (field, value) in fields.iter().zip(values) {
+                *field.slot(i) = value;
+            }
+            if let Some(normals) = &normals {
+                *normals.slot(i) = measured.normal;
+            }
+        }
+    };
+    let chunks = found.par_iter().with_max_len(CHUNKS_AT_ONCE);
+    chunks.for_each(|chunk| chunk.iter().for_each(store));
+}
