@@ -1,5 +1,5 @@
-//! Numerical trouble: what is out of range stops a run with a post-mortem, or is removed and booked,
-//! with the same bits on any ranks and through a restart.
+//! Numerical trouble: what is out of range stops a run with a post-mortem, or is removed and
+//! booked, with the same bits on any ranks and through a restart.
 
 mod cli_support;
 
@@ -184,7 +184,8 @@ fn energy_from_nowhere_stops_a_run_with_a_post_mortem() {
     assert!((1.0..600.0).contains(&kinetic), "{kinetic} J");
 }
 
-/// What is frozen is in no picture, in no profile and in no front, but where just that is asked for.
+/// What is frozen is in no picture, in no profile and in no front, but where just that is asked
+/// for.
 fn assert_same_pictures(removed: &Path, frozen: &Path, place: &Path) {
     let draw = |run: &Path, what: &[&str]| {
         let out = place.join("out.png");

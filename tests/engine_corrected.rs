@@ -130,7 +130,8 @@ impl World {
         }
     }
 
-    /// The second sweep with stresses `P` between corrections, the same bits by all instruction sets.
+    /// The second sweep with stresses `P` between corrections, the same bits by all instruction
+    /// sets.
     fn forces<S: PairScale>(
         &self,
         scale: S,
@@ -258,8 +259,8 @@ fn random_fade(m: &Matrix, random: &mut Random) -> Matrix {
     eigen.eigenvectors * Matrix::from_diagonal(&values) * eigen.eigenvectors.transpose()
 }
 
-/// With any B that has M's eigenvectors, on clouds with lone particles and torn bodies: a rotation strains
-/// nothing, and momentum, angular momentum and energy balance.
+/// With any B that has M's eigenvectors, on clouds with lone particles and torn bodies: a rotation
+/// strains nothing, and momentum, angular momentum and energy balance.
 #[test]
 fn any_fade_conserves() {
     for dimension in [2, 3] {
@@ -321,8 +322,8 @@ fn any_fade_conserves() {
     }
 }
 
-/// Artificial viscosity keeps momentum and angular momentum, and what it takes from the motion becomes
-/// heat.
+/// Artificial viscosity keeps momentum and angular momentum, and what it takes from the motion
+/// becomes heat.
 #[test]
 fn viscosity_balances() {
     let world = World::new(cloud(3, 1.0, 0, 71), 72);

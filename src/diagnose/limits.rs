@@ -1,18 +1,18 @@
 //! Numerical trouble: who is in it.
 //!
-//! The check is part of the vote, which the last kick of a step takes of each particle. What is no number
-//! can be neither booked nor kept from its neighbours, so it always ends the run; what is out of
-//! range but finite may be removed.
+//! The check is part of the choice of a step, for which the last kick of a step takes of each
+//! particle. What is NaN can be neither booked nor kept from its neighbours, so it always ends the
+//! run; what is out of range but finite may be removed.
 
 use super::instability;
 use crate::comm::Comm;
 use crate::model::readable::{short, shown};
-use crate::model::{Case, Trouble};
+use crate::model::{Case, NumericalLimits};
 use crate::numerics::vector::square;
 
 /// What is wrong with a particle, the worst first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum TroubleKind {
+pub enum NumericalFailure {
     /// A number is none.
     NotFinite,
     /// The density left its range.
@@ -27,8 +27,8 @@ pub enum TroubleKind {
     Gain,
 }
 
-impl TroubleKind {
-    /// What a particle may vote for, in the order of votes.
+impl NumericalFailure {
+    /// What a particle may report, in the order of candidates.
     pub const ALL: [Self; 5] = [
         Self::NotFinite,
         Self::Density,
@@ -37,7 +37,7 @@ impl TroubleKind {
         Self::Step,
     ];
 
-    /// Whether taking particles out is no cure: what is no number has reached its neighbours, and
+    /// Whether taking particles out is no cure: what is NaN has reached its neighbours, and
     /// energy that comes from nowhere is everybody's.
     #[must_use]
     pub fn is_of_all(self) -> bool {
@@ -46,7 +46,7 @@ impl TroubleKind {
 
     /// What is wrong and which key says so.
     #[must_use]
-    pub fn describe(self, limits: &Trouble) -> String {
+    pub fn describe(self, limits: &NumericalLimits) -> String {
         match self {
             Self::NotFinite => "has a non-finite or absurd state".to_owned(),
             Self::Density => format!(
@@ -130,14 +130,14 @@ impl Limits {
     }
 
     /// What is out of range of a particle whose numbers are numbers.
-    pub(crate) fn check(&self, body: u32, rho: f64, moved: &Moved) -> Option<TroubleKind> {
+    pub(crate) fn check(&self, body: u32, rho: f64, moved: &Moved) -> Option<NumericalFailure> {
         let [lower, upper] = self.density[body as usize];
         if rho < lower || rho > upper {
-            Some(TroubleKind::Density)
+            Some(NumericalFailure::Density)
         } else if moved.energy.abs() > self.energy_max {
-            Some(TroubleKind::Energy)
+            Some(NumericalFailure::Energy)
         } else if square(&moved.velocity) > self.speed2_max {
-            Some(TroubleKind::Speed)
+            Some(NumericalFailure::Speed)
         } else {
             None
         }

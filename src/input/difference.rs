@@ -1,5 +1,5 @@
-//! Where two resolved cases differ, key by key: comments, order and formatting are no difference, nor
-//! is another unit for the same quantity.
+//! Where two resolved cases differ, key by key: comments, order and formatting are no difference,
+//! nor is another unit for the same quantity.
 
 use toml::{Table, Value};
 

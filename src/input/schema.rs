@@ -75,7 +75,7 @@ tables! {
         surface: Vec<Spanned<SurfaceParams>>,
         /// Numerical trouble.
         #[serde(default)]
-        trouble: TroubleParams,
+        trouble: NumericalLimitsParams,
         /// What is written.
         #[serde(default)]
         output: OutputParams,

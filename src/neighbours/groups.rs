@@ -22,7 +22,7 @@ impl Groups {
         let of_bodies = of_body.iter().max().map_or(0, |&g| g + 1);
         let count = match case.sph.form {
             SphForm::StressPoints => 2 * of_bodies,
-            SphForm::Conventional | SphForm::Corrected | SphForm::Normalised => of_bodies,
+            _ => of_bodies,
         };
         let mut rigid = vec![false; count];
         for (body, &group) in case.bodies.iter().zip(&of_body) {

@@ -107,7 +107,7 @@ bitflags! {
         /// Before the contact forces, if these have friction.
         const FRICTION = 1 << 3;
         /// When parts are told.
-        const PARTS = 1 << 4;
+        const FRAGMENTS = 1 << 4;
         /// Whatever is needed before forces of stress and contact, in one message.
         const FORCES = Self::STRESS.bits() | Self::CONTACT.bits();
     }

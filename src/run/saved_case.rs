@@ -19,8 +19,8 @@ pub struct Settled {
     pub warnings: Vec<String>,
 }
 
-/// The case of the input `saved` in `place` with the overrides `set`. Where the run in `folder` goes
-/// on, its `case.toml` must say the same, or be accepted. Collective.
+/// The case of the input `saved` in `place` with the overrides `set`. Where the run in `folder`
+/// goes on, its `case.toml` must say the same, or be accepted. Collective.
 ///
 /// # Errors
 /// The whole message.

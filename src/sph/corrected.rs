@@ -1,13 +1,13 @@
-//! Corrected SPH: gradients multiplied by a smooth function of the moments of the neighbours, and forces
-//! that are their adjoint for any such function (theory page "Corrected SPH").
+//! Corrected SPH: gradients multiplied by a smooth function of the moments of the neighbours, and
+//! forces that are their adjoint for any such function (theory page "Corrected SPH").
 //!
 //! With `M = Σ V_j (x_j − x_i) ⊗ ∇W_ij`, which is symmetric, the plain gradient of a linear field
 //! `v = G x` is `L₀ = Σ V_j (v_j − v_i) ⊗ ∇W_ij = G M`. Of M come the commuting symmetric matrices
 //!
 //! `B = (1 + e⁴) (M⁴ + e⁴ I)⁻¹ M³`, `A = M B`,
 //!
-//! of which B is `M⁻¹` where neighbours are complete and fades out where they are few, or stand in a
-//! plane or a row: no entry of its frame exceeds .57/e. Then
+//! of which B is `M⁻¹` where neighbours are complete and fades out where they are few, or stand in
+//! a plane or a row: no entry of its frame exceeds .57/e. Then
 //!
 //! `L = A L₀ B`, `P = A σ B`, `f_i = Σ V_i V_j (P_i + P_j) ∇W_ij`
 //!
@@ -23,8 +23,8 @@ use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
 use crate::numerics::matrix;
 
-/// e⁴ of the fade: at e = .28. Less gives isolated peaks of strain about edges, more leaves surfaces
-/// uncorrected.
+/// e⁴ of the fade: at e = .28. Less gives isolated peaks of strain about edges, more leaves
+/// surfaces uncorrected.
 const FADE: f64 = 0.28 * 0.28 * 0.28 * 0.28;
 
 /// A symmetric matrix in each lane; components xx, yy, zz, xy, xz, yz.
@@ -129,8 +129,8 @@ impl Correction {
         between(&load(&self.outer), t, &load(&self.inner))
     }
 
-    /// `P = A σ B` of lane `k` (Pa, row-major), from pressure and deviatoric stress (Pa; components xx,
-    /// yy, zz, xy, xz, yz).
+    /// `P = A σ B` of lane `k` (Pa, row-major), from pressure and deviatoric stress (Pa; components
+    /// xx, yy, zz, xy, xz, yz).
     #[inline(always)]
     #[must_use]
     pub fn stress(&self, k: usize, pressure: f64, deviatoric: &[f64; 6]) -> [f64; 9] {
@@ -182,9 +182,9 @@ impl<S: PairScale> Vectorised for CorrectedGradient<'_, S> {
         let (position, velocity) = self.around.motion::<V>();
         let (mut gradient, mut moment) = ([zero; 9], [zero; 6]);
         for pair in self.around.pairs(&position) {
-            let (here, r) = (pair.source, pair.gap.r);
+            let (here, r) = (pair.source, pair.separation.r);
             let volume = V::splat(here.volume);
-            let factor = pair.gap.inverse.mul(volume).mul(pair.kernel.slope);
+            let factor = pair.separation.inverse.mul(volume).mul(pair.kernel.slope);
             let steep = [r[0].mul(factor), r[1].mul(factor), r[2].mul(factor)];
             for a in 0..3 {
                 let v_a = V::splat(here.velocity[a]).sub(velocity[a]);
@@ -240,7 +240,7 @@ impl PairStress for CorrectedRecord {
     #[inline(always)]
     fn sum<V: Lanes, S: PairScale, const TERMS: u8>(sums: &Momentum<S, Self, TERMS>) -> Forces {
         let around = &sums.around;
-        // A particle whose position is no number.
+        // A particle whose position is NaN.
         if around.neighbours.is_empty() {
             return Forces::NONE;
         }
@@ -260,9 +260,9 @@ impl PairStress for CorrectedRecord {
         let mut terms = TermSums::<V, TERMS>::begin(&sums.terms, &around.receivers);
         let (mut acceleration, mut power, mut fastest) = ([zero; 3], zero, zero);
         for pair in around.pairs(&position) {
-            let (source, separation, kernel) = (pair.source, &pair.gap, &pair.kernel);
-            let state = &sums.stresses[pair.place];
-            let shown = sums.terms.record::<TERMS>(pair.place);
+            let (source, separation, kernel) = (pair.source, &pair.separation, &pair.kernel);
+            let state = &sums.stresses[pair.index];
+            let shown = sums.terms.record::<TERMS>(pair.index);
             let r = separation.r;
             let along = |a: usize| velocity[a].sub(V::splat(source.velocity[a]));
             let v = [along(0), along(1), along(2)];

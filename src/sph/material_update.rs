@@ -7,7 +7,7 @@ use crate::numerics::lanes::F64x8;
 use crate::particles::{Image, MaterialPoints};
 
 /// Work for a particle apart from its neighbours, in neighbours of the pair sums: sort, list,
-/// material, integration and votes against both sweeps, as timed by the bench.
+/// material, integration and time-step candidates against both sweeps, as timed by the bench.
 const OWN_WORK: u32 = 60;
 
 /// What the update reads and writes: each owned particle stands in exactly one lane of one
@@ -25,11 +25,11 @@ pub(super) struct MaterialUpdate<'a> {
 
 /// What a formulation shows of eight particles after their update.
 pub(super) trait Show {
-    /// Shows lane `k`, which is particle `i` and stands at `place` among the images.
+    /// Shows lane `k`, which is particle `i` and stands at `index` among the images.
     ///
     /// # Safety
     /// No other thread may read or write what belongs to this particle and place.
-    unsafe fn show(&self, after: &PointBatch, k: usize, i: usize, place: usize);
+    unsafe fn show(&self, after: &PointBatch, k: usize, i: usize, index: usize);
 }
 
 /// Nothing is shown.
@@ -141,7 +141,7 @@ impl<'a> MaterialUpdate<'a> {
             let strain = half * (xx[k] + yy[k] + zz[k]);
             before.density[k] *= (1.0 - strain) / (1.0 + strain);
         }
-        let places = &cluster.receivers;
+        let indices = &cluster.receivers;
         let material = |k: usize| self.material_of_body[self.points.body[base[k]] as usize];
         // Empty lanes cost as much as others.
         let work = neighbours * LANES / cluster.lanes;
@@ -159,7 +159,7 @@ impl<'a> MaterialUpdate<'a> {
                     done |= 1 << lane;
                     self.store(base[lane], lane, &after, gradient, work);
                     // SAFETY: the place belongs to this cluster alone, as its particle does.
-                    unsafe { show.show(&after, lane, base[lane], places[lane] as usize) };
+                    unsafe { show.show(&after, lane, base[lane], indices[lane] as usize) };
                 }
             }
         }
@@ -170,8 +170,8 @@ impl<'a> MaterialUpdate<'a> {
     #[cold]
     pub(super) fn store_free(&self, cluster: &Cluster, neighbours: usize) {
         let work = OWN_WORK + u32::try_from(neighbours).unwrap_or(u32::MAX / 2);
-        for &place in &cluster.receivers[..cluster.lanes] {
-            let i = self.images[place as usize].base();
+        for &index in &cluster.receivers[..cluster.lanes] {
+            let i = self.images[index as usize].base();
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
             unsafe {
                 *self.points.pressure.slot(i) = 0.0;

@@ -100,7 +100,8 @@ impl<V: Lanes> Viscous<V> {
         }
     }
 
-    /// Of the receivers with a neighbour of this density and sound speed at the relative velocity `v`.
+    /// Of the receivers with a neighbour of this density and sound speed at the relative velocity
+    /// `v`.
     #[inline(always)]
     pub fn pair<const TERMS: u8>(
         &self,
@@ -159,11 +160,11 @@ pub struct Momentum<'a, S, R, const TERMS: u8> {
 /// The sums of [`Momentum`].
 #[derive(Debug, Clone, Copy)]
 pub struct Forces {
-    /// `dv/dt = Σ m_j (σ_i/ρ_i² + σ_j/ρ_j² − Π_ij I + R_ij f⁴) ∇W_ij` (m/s²); in the normalised form
-    /// the stresses stand in [`super::normalised`] instead.
+    /// `dv/dt = Σ m_j (σ_i/ρ_i² + σ_j/ρ_j² − Π_ij I + R_ij f⁴) ∇W_ij` (m/s²); in the normalised
+    /// form the stresses stand in [`super::normalised`] instead.
     pub acceleration: [F64x8; 3],
-    /// `de/dt = −½ Σ m_j v_ij · (pair stress) · ∇W_ij` and conduction (W/kg); in the normalised form
-    /// without the power of `σ`.
+    /// `de/dt = −½ Σ m_j v_ij · (pair stress) · ∇W_ij` and conduction (W/kg); in the normalised
+    /// form without the power of `σ`.
     pub power: F64x8,
     /// Largest approach speed `|μ_ij|` (m/s).
     pub approach: F64x8,
@@ -201,7 +202,7 @@ impl PairStress for StressRecord {
     #[inline(always)]
     fn sum<V: Lanes, S: PairScale, const TERMS: u8>(sums: &Momentum<S, Self, TERMS>) -> Forces {
         let around = &sums.around;
-        // A particle whose position is no number.
+        // A particle whose position is NaN.
         if around.neighbours.is_empty() {
             return Forces::NONE;
         }
@@ -219,9 +220,10 @@ impl PairStress for StressRecord {
         let mut power = zero;
         let mut fastest = zero;
         for pair in around.pairs(&position) {
-            let (place, source, now, kernel) = (pair.place, pair.source, &pair.gap, &pair.kernel);
-            let state = &sums.stresses[place];
-            let shown = sums.terms.record::<TERMS>(place);
+            let (index, source, now, kernel) =
+                (pair.index, pair.source, &pair.separation, &pair.kernel);
+            let state = &sums.stresses[index];
+            let shown = sums.terms.record::<TERMS>(index);
             let r = now.r;
             let along = |a: usize| velocity[a].sub(V::splat(source.velocity[a]));
             let v = [along(0), along(1), along(2)];
@@ -241,7 +243,7 @@ impl PairStress for StressRecord {
                 let shape = around.sources.scale.shape(kernel);
                 terms.repel(&mut stress, shown, shape);
                 let w = around.sources.scale.value(kernel, shape);
-                let other = sums.terms.normalised::<TERMS>(place);
+                let other = sums.terms.normalised::<TERMS>(index);
                 corrected.pull(other, now, kernel.slope, w, source.volume);
                 let w = w.mul(V::splat(source.mass));
                 terms.follow(&v, w.mul(viscous.inverse_density));

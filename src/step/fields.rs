@@ -1,7 +1,7 @@
 //! Which fields a case has use for.
 
 use crate::contact::{Connectivity, ContactTable};
-use crate::model::{Case, SphForm, TroublePolicy};
+use crate::model::{Case, NumericalFailurePolicy, SphForm};
 use crate::particles::{FieldInfo, HaloPhase, Owner, Select, rows};
 use crate::sph::Sph;
 
@@ -22,7 +22,10 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
         (Owner::XSPH, sph.xsph > 0.0),
         (Owner::CORRECTED, sph.form == SphForm::Corrected),
         (Owner::NORMALISED, sph.form == SphForm::Normalised),
-        (Owner::FREEZE, case.trouble.policy == TroublePolicy::Freeze),
+        (
+            Owner::FREEZE,
+            case.trouble.policy == NumericalFailurePolicy::Freeze,
+        ),
         (Owner::STRESS_POINTS, sph.form == SphForm::StressPoints),
     ]
     .into_iter()

@@ -1,5 +1,5 @@
-//! The corrected formulation: gradients that a smooth function of the neighbours' moments corrects, and
-//! forces that are their adjoint.
+//! The corrected formulation: gradients that a smooth function of the neighbours' moments corrects,
+//! and forces that are their adjoint.
 
 use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
@@ -117,7 +117,7 @@ struct ShowCorrected<'a> {
 
 impl Show for ShowCorrected<'_> {
     #[inline(always)]
-    unsafe fn show(&self, after: &PointBatch, k: usize, i: usize, place: usize) {
+    unsafe fn show(&self, after: &PointBatch, k: usize, i: usize, index: usize) {
         let s = |c: usize| after.deviatoric_stress[c][k];
         let stress =
             self.correction
@@ -130,7 +130,7 @@ impl Show for ShowCorrected<'_> {
         // SAFETY: by the contract of this function.
         unsafe {
             *self.target.stress.slot(i) = stress;
-            *self.target.records.slot(place) = record;
+            *self.target.records.slot(index) = record;
         }
     }
 }

@@ -1,5 +1,5 @@
-//! The first sweep of the formulations whose stress stands at the particles: velocity gradients, and
-//! the material's answer to them.
+//! The first sweep of the formulations whose stress stands at the particles: velocity gradients,
+//! and the material's answer to them.
 
 use rayon::prelude::*;
 
@@ -19,8 +19,8 @@ pub(super) trait Gradient: Sync {
     where
         Self: 'a;
 
-    /// Velocity gradients (1/s, row-major) of the receivers of a cluster, `around` which its neighbours
-    /// stand, and what is to show their stresses.
+    /// Velocity gradients (1/s, row-major) of the receivers of a cluster, `around` which its
+    /// neighbours stand, and what is to show their stresses.
     fn of<V: Lanes, S: PairScale>(
         &self,
         cluster: &Cluster,

@@ -20,7 +20,7 @@ impl<'a> ShowStress<'a> {
 
 impl Show for &ShowStress<'_> {
     #[inline(always)]
-    unsafe fn show(&self, after: &PointBatch, k: usize, _: usize, place: usize) {
+    unsafe fn show(&self, after: &PointBatch, k: usize, _: usize, index: usize) {
         let s = |c: usize| after.deviatoric_stress[c][k];
         let record = StressRecord::new(
             after.pressure[k],
@@ -29,7 +29,7 @@ impl Show for &ShowStress<'_> {
             after.sound_speed[k],
         );
         // SAFETY: by the contract of this function.
-        unsafe { *self.0.slot(place) = record };
+        unsafe { *self.0.slot(index) = record };
     }
 }
 
