@@ -1,6 +1,7 @@
-//! Holds the walls between the rooms of `src/` and the laws that can be read off the source.
+//! Holds the dependency rules between the modules of `src/` and the laws that can be read off the
+//! source.
 //!
-//! The developer guide (`docs/src/developer/rooms.md`) says what each room may know; the tables
+//! The developer guide (`docs/src/developer/modules.md`) says what each module may know; the tables
 //! below are the same in code. The source is read as tokens: comments, strings and unit tests are
 //! left out, and `use` trees are unfolded into full paths.
 
@@ -15,19 +16,19 @@ use std::fs;
 
 use source::{Source, sources, src};
 
-/// Every room, in the order in which data flows.
-const ROOMS: &str = "app run input model preflight populate numerics material particles comm domain neighbours \
+/// Every module, in the order in which data flows.
+const MODULES: &str = "app run input model preflight populate numerics material particles comm domain neighbours \
      loads contact sph step diagnose output exact plot";
 
-/// The rooms on top, and who may name them.
+/// The modules on top, and who may name them.
 const ON_TOP: &[(&str, &str)] = &[("app", ""), ("run", "app"), ("preflight", "app run")];
 
 /// Folders whose files may start, go on with and step a simulation.
 const CALLERS_OF_LOOP: &[&str] = &["step/", "run/", "app/bench/"];
 
-/// What a part of `src/` may not name, beside the rooms [`ON_TOP`]: rooms of this crate (`comm`), or a
-/// place in one (`output::h5`).
-const WALLS: &[(&str, &str)] = &[
+/// What a part of `src/` may not name, beside the modules [`ON_TOP`]: modules of this crate
+/// (`comm`), or a place in one (`output::h5`).
+const FORBIDDEN: &[(&str, &str)] = &[
     ("app", "domain neighbours contact sph diagnose exact"),
     (
         "run",
@@ -89,14 +90,14 @@ const ENTRUSTED: &[(&str, &str)] = &[
     ("hdf5_sys", "output/h5/"),
 ];
 
-/// The only rooms that call `comm`, from the main thread.
+/// The only modules that call `comm`, from the main thread.
 const CALLERS_OF_COMM: &str = "app run preflight domain step output diagnose comm";
 
 /// Rooms whose results must have the same bits on any ranks, threads and hosts.
 const PHYSICS: &str = "numerics populate material particles domain neighbours loads contact sph step diagnose \
      exact";
 
-/// Physics rooms that have no business with clocks at all (`step` times its phases).
+/// Physics modules that have no business with clocks at all (`step` times its phases).
 const TIMELESS: &str = "numerics populate material particles neighbours loads contact sph exact";
 
 /// Functions of `f64` whose bits depend on the host's libm; the `libm` crate has them all.
@@ -134,7 +135,7 @@ fn has(words: &str, word: &str) -> bool {
 }
 
 #[test]
-fn lib_rs_lists_every_room() {
+fn lib_rs_lists_every_module() {
     let source = &Source::read(&src().join("lib.rs"));
     let listed: BTreeSet<&str> = source
         .tokens
@@ -148,31 +149,31 @@ fn lib_rs_lists_every_room() {
         .filter(|path| path.is_dir())
         .map(|path| path.file_name().unwrap().to_string_lossy().into_owned())
         .collect();
-    let rooms: BTreeSet<&str> = ROOMS.split(' ').collect();
-    assert_eq!(listed, rooms, "lib.rs and ROOMS of this test differ");
+    let modules: BTreeSet<&str> = MODULES.split(' ').collect();
+    assert_eq!(listed, modules, "lib.rs and MODULES of this test differ");
     assert_eq!(
         folders.iter().map(String::as_str).collect::<BTreeSet<_>>(),
-        rooms
+        modules
     );
 }
 
 #[test]
-fn no_room_names_what_it_may_not_know() {
+fn no_module_names_what_it_may_not_know() {
     for_each_source(|source, complain| {
-        let room = source.room.as_str();
-        let Some((_, forbidden)) = WALLS.iter().find(|(of, _)| *of == room) else {
+        let module = source.module.as_str();
+        let Some((_, forbidden)) = FORBIDDEN.iter().find(|(of, _)| *of == module) else {
             return;
         };
         let top = ON_TOP.iter();
-        let above = top.filter(|(top, knowers)| *top != room && !has(knowers, room));
-        let walls: Vec<&str> = forbidden
+        let above = top.filter(|(top, knowers)| *top != module && !has(knowers, module));
+        let rules: Vec<&str> = forbidden
             .split(' ')
             .chain(above.map(|(top, _)| *top))
             .collect();
         for path in source.paths() {
             let named = path.named();
-            for wall in &walls {
-                if named == *wall || named.starts_with(&format!("{wall}::")) {
+            for rule in &rules {
+                if named == *rule || named.starts_with(&format!("{rule}::")) {
                     complain(path.line, &format!("names {named}"));
                 }
             }
@@ -194,12 +195,16 @@ fn only_comm_names_mpi_and_only_output_h5_names_hdf5() {
 }
 
 #[test]
-fn only_the_rooms_of_the_main_thread_call_comm() {
+fn only_the_modules_of_the_main_thread_call_comm() {
     for_each_source(|source, complain| {
-        if has(CALLERS_OF_COMM, &source.room) {
+        if has(CALLERS_OF_COMM, &source.module) {
             return;
         }
-        for path in source.paths().iter().filter(|path| path.names_room("comm")) {
+        for path in source
+            .paths()
+            .iter()
+            .filter(|path| path.names_module("comm"))
+        {
             complain(path.line, "names comm");
         }
     });
@@ -224,7 +229,7 @@ fn only_run_and_the_bench_call_the_loop() {
 fn threads_never_meet_mpi() {
     for_each_source(|source, complain| {
         for path in source.paths() {
-            if source.room == "comm" && path.is_of_crate("rayon") {
+            if source.module == "comm" && path.is_of_crate("rayon") {
                 complain(path.line, "names rayon");
             }
         }
@@ -243,7 +248,7 @@ fn threads_never_meet_mpi() {
 #[test]
 fn calls_of_mpi_that_wait_are_timed() {
     for_each_source(|source, complain| {
-        if source.room != "comm" {
+        if source.module != "comm" {
             return;
         }
         let lines: Vec<&str> = source.text.lines().collect();
@@ -262,7 +267,7 @@ fn calls_of_mpi_that_wait_are_timed() {
 #[test]
 fn physics_has_no_unordered_maps_clocks_or_host_mathematics() {
     for_each_source(|source, complain| {
-        if !has(PHYSICS, &source.room) {
+        if !has(PHYSICS, &source.module) {
             return;
         }
         for token in &source.tokens {
@@ -270,7 +275,7 @@ fn physics_has_no_unordered_maps_clocks_or_host_mathematics() {
             let clock = ["Instant", "SystemTime"].contains(&token.text.as_str());
             if unordered {
                 complain(token.line, "HashMap has no order: use BTreeMap");
-            } else if clock && has(TIMELESS, &source.room) {
+            } else if clock && has(TIMELESS, &source.module) {
                 complain(token.line, "reads a clock");
             }
         }
@@ -292,7 +297,7 @@ fn physics_has_no_unordered_maps_clocks_or_host_mathematics() {
 #[test]
 fn no_sum_depends_on_threads() {
     for_each_source(|source, complain| {
-        if !has(PHYSICS, &source.room) {
+        if !has(PHYSICS, &source.module) {
             return;
         }
         for (line, what) in source.parallel_reductions() {
@@ -334,8 +339,9 @@ fn functions_are_short_or_have_a_reason() {
 ///
 /// A file imports another if it names what the other declares, by a `use` or by a path from
 /// `crate`, `super` or a child. What is merely passed on (`pub use`) is followed to where it is
-/// declared, and is no import. A parent may take from the files of its own folder, which it gathers: such
-/// imports do not count, those of the children from the parent do. Unit tests are left out.
+/// declared, and is no import. A parent may take from the files of its own folder, which it
+/// gathers: such imports do not count, those of the children from the parent do. Unit tests are
+/// left out.
 #[test]
 fn no_files_import_each_other_in_a_circle() {
     let mut complaints = String::new();

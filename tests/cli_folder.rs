@@ -1,5 +1,5 @@
-//! The folder of a run: who may write into it, what a restart takes from it, and that one that cannot
-//! begin leaves it as it was.
+//! The folder of a run: who may write into it, what a restart takes from it, and that one that
+//! cannot begin leaves it as it was.
 
 mod cli_support;
 

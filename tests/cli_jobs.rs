@@ -1,4 +1,5 @@
-//! The scripts in `jobs/`: what they make of their arguments, with stand-ins for `mpirun` and `qsub`.
+//! The scripts in `jobs/`: what they make of their arguments, with stand-ins for `mpirun` and
+//! `qsub`.
 
 mod cli_support;
 

@@ -1,5 +1,5 @@
-//! A run that is killed at any of its calls of the system leaves a whole state with its tables: what
-//! goes on from there ends in the bits of an untouched run.
+//! A run that is killed at any of its calls of the system leaves a whole state with its tables:
+//! what goes on from there ends in the bits of an untouched run.
 
 #![cfg(all(target_os = "linux", target_arch = "x86_64"))]
 
@@ -22,7 +22,8 @@ use std::time::{Duration, Instant};
 use cli_support::{WHIPPLE, assert_same, command, end};
 use kill_support::{Call, trace};
 
-/// Two bodies of a few particles that meet; 16 steps, a row after each, a checkpoint after each four.
+/// Two bodies of a few particles that meet; 16 steps, a row after each, a checkpoint after each
+/// four.
 const CASE: &str = r#"
 title = "Kill points"
 dimension = 2
@@ -153,8 +154,8 @@ fn points(calls: &[Call], all: bool) -> Vec<usize> {
     order
 }
 
-/// Kills a command at its calls, and lets `recover` go on from each, on all cores; says how many points
-/// were tried.
+/// Kills a command at its calls, and lets `recover` go on from each, on all cores; says how many
+/// points were tried.
 fn kill_at_each(
     name: &str,
     time: Option<Duration>,

@@ -1,5 +1,5 @@
-//! A restart takes the newest whole checkpoint and says what it passed over, and any number of ranks
-//! goes on from that of any other.
+//! A restart takes the newest whole checkpoint and says what it passed over, and any number of
+//! ranks goes on from that of any other.
 
 mod cli_support;
 
@@ -154,10 +154,10 @@ fn a_stop_in_the_step_before_a_snapshot_or_in_its_own_loses_none() {
     }
 }
 
-/// All that is hard at once: more than half of the particles fly along a row of cubes, past them and
-/// into them, across faces of slabs that never move, so that the last slab runs empty; half of each
-/// cube is behind a symmetry plane, a splinter crosses the plane, and particles leave their range and
-/// are taken out.
+/// All that is hard at once: more than half of the particles fly along a row of cubes, past them
+/// and into them, across faces of slabs that never move, so that the last slab runs empty; half of
+/// each cube is behind a symmetry plane, a splinter crosses the plane, and particles leave their
+/// range and are taken out.
 const HARD: &str = r#"
 title = "A flyer along a row of cubes"
 dimension = 3

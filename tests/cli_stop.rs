@@ -199,7 +199,8 @@ fn until_stops_at_its_time_and_is_no_failure() {
     assert_goes_on(&run, &reference(place.path()), 2);
 }
 
-/// A file `stop` from before a restart is of the earlier run; one that comes while it starts counts.
+/// A file `stop` from before a restart is of the earlier run; one that comes while it starts
+/// counts.
 #[test]
 #[cfg_attr(
     not(feature = "fault-injection"),

@@ -1,5 +1,5 @@
-//! Numerical trouble: what is out of range stops a run with a post-mortem, or is removed and booked,
-//! with the same bits on any ranks and through a restart.
+//! Numerical trouble: what is out of range stops a run with a post-mortem, or is removed and
+//! booked, with the same bits on any ranks and through a restart.
 
 mod cli_support;
 
@@ -16,8 +16,8 @@ fn removing(number: usize, folder: &Path) -> Command {
 
 fn taking_out(policy: &str, number: usize, folder: &Path) -> Command {
     let mut command = coarse_run(number, folder);
-    command.args(["--set", "trouble.density_max=1.25"]);
-    command.args(["--set", &format!("trouble.policy={policy}")]);
+    command.args(["--set", "numerical_limits.density_max=1.25"]);
+    command.args(["--set", &format!("numerical_limits.policy={policy}")]);
     command.args(["--poison", "--threads", "1"]);
     command
 }
@@ -32,6 +32,7 @@ fn a_particle_out_of_range_stops_a_run_with_a_post_mortem() {
         ("step_min=\"5 ns\"", "asks for a time step below"),
     ] {
         let run = place.path().join(&key[..6]);
+        // The older name of the table.
         let set = format!("trouble.{key}");
         let mut command = coarse_run(2, &run);
         let ended = end(command.args(["--set", &set])).with_code(1);
@@ -184,7 +185,8 @@ fn energy_from_nowhere_stops_a_run_with_a_post_mortem() {
     assert!((1.0..600.0).contains(&kinetic), "{kinetic} J");
 }
 
-/// What is frozen is in no picture, in no profile and in no front, but where just that is asked for.
+/// What is frozen is in no picture, in no profile and in no front, but where just that is asked
+/// for.
 fn assert_same_pictures(removed: &Path, frozen: &Path, place: &Path) {
     let draw = |run: &Path, what: &[&str]| {
         let out = place.join("out.png");

@@ -73,8 +73,12 @@ fn sparing_what_is_calm_changes_no_bit() {
     // The plate's rim has not heard of the impact yet.
     let mut simulation = Simulation::start(quarter(), &Comm::solo()).unwrap();
     advance(&mut simulation, 2);
-    let still = simulation.store.velocity.iter().filter(|v| **v == [0.0; 3]);
-    assert!(still.count() > simulation.store.owned() / 2);
+    let still = simulation
+        .particles
+        .velocity
+        .iter()
+        .filter(|v| **v == [0.0; 3]);
+    assert!(still.count() > simulation.particles.owned() / 2);
 }
 
 /// The order of particles in memory is nobody's business.
@@ -84,11 +88,11 @@ fn order_in_memory_changes_no_bit() {
         let mut simulation = start(case());
         let mut random = Random::new(2);
         for _ in 0..STEPS {
-            let count = u32::try_from(simulation.store.owned()).unwrap();
+            let count = u32::try_from(simulation.particles.owned()).unwrap();
             let mut order: Vec<u32> = (0..count).collect();
             random.shuffle(&mut order);
             let mut scratch = vec![0; SCRATCH_WORDS * order.len()];
-            simulation.store.keep(&order, &mut scratch);
+            simulation.particles.keep(&order, &mut scratch);
             advance(&mut simulation, 1);
         }
         assert_same(&Outcome::of(&simulation), &reference(case));
@@ -101,7 +105,7 @@ fn resuming_changes_no_bit() {
     for case in CASES {
         let mut first = start(case());
         advance(&mut first, STEPS / 2);
-        let mut saved = first.store.clone();
+        let mut saved = first.particles.clone();
         saved.resize_halo(0);
         saved.poison();
         let state = first.state.clone();

@@ -107,7 +107,7 @@ fn check_pairs(world: &mut World, class: ContactClass) {
 /// Random initial overlap offsets for the particles of a world, small enough to leave some excess.
 fn give_offsets(world: &mut World, seed: u64) {
     let mut random = Random::new(seed);
-    for offset in &mut world.store.touch_relief {
+    for offset in &mut world.particles.touch_relief {
         *offset = random.within(-0.1, 0.1).max(0.0);
     }
 }
@@ -321,7 +321,7 @@ fn largest_square_frequency(world: &mut World, lists: &Lists) -> f64 {
     let mut random = Random::new(1);
     let mut direction: Vec<[f64; 3]> = (0..world.len()).map(|_| random.vector(3, 1.0)).collect();
     let home: Vec<[f64; 3]> = world.motion.iter().map(|r| r.position).collect();
-    let mass = world.store.mass[0];
+    let mass = world.particles.mass[0];
     let step = 1e-5 * SPACING;
     let mut value = 0.0;
     for _ in 0..40 {
@@ -377,13 +377,13 @@ fn the_stiffness_bounds_the_largest_eigenvalue() {
             if *gap > 0.99 {
                 // All of the face, its edges too, is just in contact.
                 for (i, f) in world.fractions(&lists).iter().enumerate() {
-                    world.store.touch_relief[i] = f.fraction - f.touching - 1e-4;
+                    world.particles.touch_relief[i] = f.fraction - f.touching - 1e-4;
                 }
             }
             let forces = world.forces(&lists).0;
             let stiffest = forces.iter().map(|f| f.stiffness).fold(0.0, f64::max);
             let truth = largest_square_frequency(&mut world, &lists);
-            let bound = stiffest / world.store.mass[0];
+            let bound = stiffest / world.particles.mass[0];
             let material = &world.case.materials[0];
             let c = (material.p_wave_modulus() / material.reference_density).sqrt();
             let limit = 2.0 / truth.sqrt() * c / (h * SPACING);

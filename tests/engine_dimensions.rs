@@ -34,8 +34,12 @@ fn cube(dimension: usize) -> Case {
 
 /// Owned particles at least three spacings inside the cube.
 fn inside(s: &Simulation) -> Vec<usize> {
-    let deep = |i: &usize| s.store.position[*i].iter().all(|x| x.abs() < 3.0 * SPACING);
-    (0..s.store.owned()).filter(deep).collect()
+    let deep = |i: &usize| {
+        s.particles.position[*i]
+            .iter()
+            .all(|x| x.abs() < 3.0 * SPACING)
+    };
+    (0..s.particles.owned()).filter(deep).collect()
 }
 
 #[test]
@@ -46,10 +50,10 @@ fn a_linear_velocity_field_gives_its_gradient_inside() {
         case.time_step.max = 1e-15;
         let mut s = start(case);
         assert_eq!(
-            s.store.owned(),
+            s.particles.owned(),
             12_usize.pow(u32::try_from(dimension).unwrap())
         );
-        for (v, x) in s.store.velocity.iter_mut().zip(&s.store.position) {
+        for (v, x) in s.particles.velocity.iter_mut().zip(&s.particles.position) {
             for a in 0..dimension {
                 v[a] = (0..dimension).map(|b| field[3 * a + b] * x[b]).sum();
             }
@@ -61,7 +65,7 @@ fn a_linear_velocity_field_gives_its_gradient_inside() {
             for c in 0..9 {
                 let known = c / 3 < dimension && c % 3 < dimension;
                 let wanted = if known { factor * field[c] } else { 0.0 };
-                let error = (s.store.velocity_gradient[i][c] - wanted).abs();
+                let error = (s.particles.velocity_gradient[i][c] - wanted).abs();
                 assert!(error < 1e-9 * 1e3, "{dimension}-D, {c}: {error:e}");
             }
         }
@@ -77,14 +81,14 @@ fn a_stressed_block_that_turns_keeps_its_invariants() {
     let mut case = cube(2);
     case.time_step.max = 1e-8;
     let mut s = start(case);
-    let store = &mut s.store;
+    let particles = &mut s.particles;
     let gradient = FACTORS[1] * SPIN;
-    for i in 0..store.owned() {
-        store.deviatoric_stress[i] = [SHEAR, -SHEAR, 0.0, 0.0, 0.0, 0.0];
-        store.velocity_gradient[i] = [0.0, -gradient, 0.0, gradient, 0.0, 0.0, 0.0, 0.0, 0.0];
+    for i in 0..particles.owned() {
+        particles.deviatoric_stress[i] = [SHEAR, -SHEAR, 0.0, 0.0, 0.0, 0.0];
+        particles.velocity_gradient[i] = [0.0, -gradient, 0.0, gradient, 0.0, 0.0, 0.0, 0.0, 0.0];
     }
-    let reference: BTreeMap<u64, [f64; 3]> = (0..store.owned())
-        .map(|i| (store.id[i], store.position[i]))
+    let reference: BTreeMap<u64, [f64; 3]> = (0..particles.owned())
+        .map(|i| (particles.id[i], particles.position[i]))
         .collect();
     let turned = |x: &[f64; 3], angle: f64| {
         let (sin, cos) = angle.sin_cos();
@@ -95,16 +99,16 @@ fn a_stressed_block_that_turns_keeps_its_invariants() {
         // Velocities and accelerations that the drift takes to the turned place, with the turned
         // velocity.
         let dt = s.state.dt;
-        let store = &mut s.store;
-        for i in 0..store.owned() {
-            let rest = &reference[&store.id[i]];
+        let particles = &mut s.particles;
+        for i in 0..particles.owned() {
+            let rest = &reference[&particles.id[i]];
             let (here, there) = (turned(rest, angle), turned(rest, angle + SPIN * dt));
             let last = [-SPIN * there[1], SPIN * there[0], 0.0];
             for a in 0..3 {
                 let mean = (there[a] - here[a]) / dt;
-                store.position[i][a] = here[a];
-                store.velocity[i][a] = 2.0 * mean - last[a];
-                store.acceleration[i][a] = 2.0 * (last[a] - mean) / dt;
+                particles.position[i][a] = here[a];
+                particles.velocity[i][a] = 2.0 * mean - last[a];
+                particles.acceleration[i][a] = 2.0 * (last[a] - mean) / dt;
             }
         }
         advance(&mut s, 1);
@@ -113,8 +117,8 @@ fn a_stressed_block_that_turns_keeps_its_invariants() {
     assert!(angle > 0.2, "{angle}");
     let (sin, cos) = (2.0 * FACTORS[1] * angle).sin_cos();
     for i in inside(&s) {
-        let [xx, yy, zz, xy, xz, yz] = s.store.deviatoric_stress[i];
-        assert!(s.store.pressure[i].abs() < 1e-9 * SHEAR);
+        let [xx, yy, zz, xy, xz, yz] = s.particles.deviatoric_stress[i];
+        assert!(s.particles.pressure[i].abs() < 1e-9 * SHEAR);
         assert!(xz == 0.0 && yz == 0.0 && zz.abs() < 1e-9 * SHEAR);
         let square = 0.5 * (xx * xx + yy * yy) + xy * xy;
         assert!((square / (SHEAR * SHEAR) - 1.0).abs() < 1e-9, "{square:e}");
@@ -125,12 +129,12 @@ fn a_stressed_block_that_turns_keeps_its_invariants() {
 
 /// Largest difference of position, in spacings, between a reduced model and the whole.
 fn difference(reduced: &Simulation, whole: &Simulation) -> f64 {
-    let places: BTreeMap<u64, [f64; 3]> = (0..whole.store.owned())
-        .map(|i| (whole.store.id[i], whole.store.position[i]))
+    let places: BTreeMap<u64, [f64; 3]> = (0..whole.particles.owned())
+        .map(|i| (whole.particles.id[i], whole.particles.position[i]))
         .collect();
-    let store = &reduced.store;
-    (0..store.owned())
-        .map(|i| (Vec3::from(places[&store.id[i]]) - Vec3::from(store.position[i])).norm())
+    let particles = &reduced.particles;
+    (0..particles.owned())
+        .map(|i| (Vec3::from(places[&particles.id[i]]) - Vec3::from(particles.position[i])).norm())
         .fold(0.0, f64::max)
         / SPACING
 }

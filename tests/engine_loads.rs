@@ -51,26 +51,29 @@ velocity = ["2 m/s", 0]
     ));
     let first = sorted_by(&s, 0, |_| 0.0)
         .into_iter()
-        .map(|i| (s.store.id[i], s.store.position[i]))
+        .map(|i| (s.particles.id[i], s.particles.position[i]))
         .collect::<std::collections::BTreeMap<_, _>>();
     run_to(&mut s, 1e-4);
     let (t, g) = (s.state.time, [1.5, -9.81]);
     #[allow(clippy::cast_precision_loss, reason = "few steps")]
     let steps = s.state.step as f64;
-    for i in 0..s.store.owned() {
-        let begin = first[&s.store.id[i]];
+    for i in 0..s.particles.owned() {
+        let begin = first[&s.particles.id[i]];
         for a in 0..2 {
             let v0 = [2.0, 0.0][a];
             let v = v0 + g[a] * t;
             let x = begin[a] + v0 * t + 0.5 * g[a] * t * t;
             // A rounding or two of each step.
             assert!(
-                (s.store.velocity[i][a] - v).abs() < 4e-16 * steps,
+                (s.particles.velocity[i][a] - v).abs() < 4e-16 * steps,
                 "velocity"
             );
-            assert!((s.store.position[i][a] - x).abs() < 2e-18 * steps, "place");
+            assert!(
+                (s.particles.position[i][a] - x).abs() < 2e-18 * steps,
+                "place"
+            );
         }
-        assert_eq!(s.store.acceleration[i], [0.0; 3]);
+        assert_eq!(s.particles.acceleration[i], [0.0; 3]);
     }
     let worst = &s.state.worst;
     println!("{steps} steps: {worst:?}");
@@ -111,16 +114,21 @@ below.x = "1 spacing"
 #[allow(clippy::cast_precision_loss, reason = "few particles")]
 fn a_step_of_velocity_on_a_bar() {
     let mut s = driven_bar(1.0, "", "velocity.x = \"0.001 cm/us\"");
-    assert_eq!(s.store.velocity[0][0].to_bits(), 10f64.to_bits());
-    let before = s.store.position.iter().map(|x| x[0]).fold(1.0, f64::min);
+    assert_eq!(s.particles.velocity[0][0].to_bits(), 10f64.to_bits());
+    let before = s
+        .particles
+        .position
+        .iter()
+        .map(|x| x[0])
+        .fold(1.0, f64::min);
     run_with(&mut s, 128.8e-6, |s| {
-        let first = sorted_by(s, 0, |i| s.store.position[i][0])[0];
-        assert_eq!(s.store.velocity[first][0].to_bits(), 10f64.to_bits());
+        let first = sorted_by(s, 0, |i| s.particles.position[i][0])[0];
+        assert_eq!(s.particles.velocity[first][0].to_bits(), 10f64.to_bits());
         let place = before + 10.0 * s.state.time;
-        assert!((s.store.position[first][0] - place).abs() < 1e-15);
+        assert!((s.particles.position[first][0] - place).abs() < 1e-15);
     });
-    let order = sorted_by(&s, 0, |i| s.store.position[i][0]);
-    let stress = |i: usize| s.store.pressure[i] - s.store.deviatoric_stress[i][0];
+    let order = sorted_by(&s, 0, |i| s.particles.position[i][0]);
+    let stress = |i: usize| s.particles.pressure[i] - s.particles.deviatoric_stress[i][0];
     let plateau: Vec<f64> = order[15..60].iter().map(|&i| stress(i)).collect();
     let mean = plateau.iter().sum::<f64>() / 45.0;
     // ρ c v = .0045849 Mbar; the lattice's own stiffness at h = Δp is exact.
@@ -129,7 +137,7 @@ fn a_step_of_velocity_on_a_bar() {
         mean / PLATEAU
     );
     assert!((mean / PLATEAU - 1.0).abs() < 0.005);
-    let v = |k: usize| s.store.velocity[order[k]][0];
+    let v = |k: usize| s.particles.velocity[order[k]][0];
     let k = (0..99)
         .find(|&k| v(k) > 5.0 && v(k + 1) <= 5.0)
         .expect("a front");
@@ -166,8 +174,8 @@ fn pulse(spacing: f64) -> (f64, f64) {
     let worst = &s.state.worst;
     println!("{worst:?}");
     assert!(worst.energy_error < 1e-13 && worst.momentum_error[0] < 1e-13);
-    let order = sorted_by(&s, 0, |i| s.store.position[i][0]);
-    let v = |k: usize| s.store.velocity[order[k]][0];
+    let order = sorted_by(&s, 0, |i| s.particles.position[i][0]);
+    let v = |k: usize| s.particles.velocity[order[k]][0];
     assert!(
         v(0).abs() < 0.5,
         "free and at rest behind the pulse: {}",
@@ -223,7 +231,7 @@ below.y = "1 spacing"
 velocity.y = 0
 "#,
     ));
-    let begin = s.store.clone();
+    let begin = s.particles.clone();
     let at = |id: u64| begin.id.iter().position(|&x| x == id).unwrap();
     let velocity = |t: f64| match t * 1e6 {
         t if t < 2.0 => 5.0 * t,
@@ -241,18 +249,18 @@ velocity.y = 0
     };
     let mut stretched = false;
     run_with(&mut s, 10e-6, |s| {
-        let (store, t) = (&s.store, s.state.time);
-        for i in 0..store.owned() {
-            let first = begin.position[at(store.id[i])];
+        let (particles, t) = (&s.particles, s.state.time);
+        for i in 0..particles.owned() {
+            let first = begin.position[at(particles.id[i])];
             if first[0] < 1e-3 {
-                assert!((store.velocity[i][0] - velocity(t)).abs() < 1e-12);
+                assert!((particles.velocity[i][0] - velocity(t)).abs() < 1e-12);
                 let place = first[0] + moved(t);
-                assert!((store.position[i][0] - place).abs() < 1e-16, "{t:e}");
-                stretched |= first[1] > 1e-3 && store.velocity[i][1].abs() > 1e-3;
+                assert!((particles.position[i][0] - place).abs() < 1e-16, "{t:e}");
+                stretched |= first[1] > 1e-3 && particles.velocity[i][1].abs() > 1e-3;
             }
             if first[1] < 1e-3 {
-                assert_eq!(store.velocity[i][1], 0.0);
-                assert_eq!(store.position[i][1], first[1]);
+                assert_eq!(particles.velocity[i][1], 0.0);
+                assert_eq!(particles.position[i][1], first[1]);
             }
         }
     });
@@ -307,7 +315,7 @@ fn a_block_rests_on_the_floor() {
         });
         let mean = mean / f64::from(count);
         let fastest = s
-            .store
+            .particles
             .velocity
             .iter()
             .map(|v| v[1].abs())
@@ -320,10 +328,10 @@ fn a_block_rests_on_the_floor() {
         assert!(worst.energy_error < 1e-3, "{:e}", worst.energy_error);
         assert!(worst.momentum_error.iter().all(|&e| e < 1e-12));
         let lowest = s
-            .store
+            .particles
             .position
             .iter()
-            .zip(&s.store.body)
+            .zip(&s.particles.body)
             .filter(|(_, b)| **b == 0);
         let lowest = lowest.map(|(x, _)| x[1]).fold(1.0, f64::min);
         assert!((lowest - 0.5e-3).abs() < 0.1e-3, "{lowest}");
@@ -400,8 +408,8 @@ shape.box = {{ lower = [0], upper = ["100 cm"] }}
         )));
         assert_eq!(s.state.initial.kinetic_energy, 0.0);
         run_to(&mut s, 128.8e-6);
-        let order = sorted_by(&s, 0, |i| s.store.position[i][0]);
-        let stress = |i: usize| s.store.pressure[i] - s.store.deviatoric_stress[i][0];
+        let order = sorted_by(&s, 0, |i| s.particles.position[i][0]);
+        let stress = |i: usize| s.particles.pressure[i] - s.particles.deviatoric_stress[i][0];
         let mean = order[15..60].iter().map(|&i| stress(i)).sum::<f64>() / 45.0;
         let load = &s.state.loads[0];
         let worst = &s.state.worst;
@@ -464,14 +472,14 @@ point = [{}]
             &up[1..],
             vec!["0"; dimension].join(", "),
         )));
-        let contact = s.store.contact_acceleration.clone();
+        let contact = s.particles.contact_acceleration.clone();
         assert!(
             contact.iter().flatten().all(|a| a.abs() < 1e-3),
             "{dimension} {lattice}"
         );
         run_to(&mut s, 20e-6);
         let fastest = s
-            .store
+            .particles
             .velocity
             .iter()
             .flatten()
@@ -482,8 +490,9 @@ point = [{}]
     }
 }
 
-/// The core of `overlap` is as stiff, `κ_c max(M, .85 ρ v²)`, as the fastest meeting takes that tables of
-/// loads state: v is that of the tables up to `until`, and along free axes that of the start.
+/// The core of `overlap` is as stiff, `κ_c max(M, .85 ρ v²)`, as the fastest meeting takes that
+/// tables of loads state: v is that of the tables up to `until`, and along free axes that of the
+/// start.
 #[test]
 fn the_core_knows_the_speeds_that_loads_prescribe() {
     let core = |loads: &str| {

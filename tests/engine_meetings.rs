@@ -1,5 +1,5 @@
-//! Bodies that meet: none flies through another unseen, however it came by its speed, and what is kept
-//! of pairs of bodies is of those that have met.
+//! Bodies that meet: none flies through another unseen, however it came by its speed, and what is
+//! kept of pairs of bodies is of those that have met.
 
 mod common;
 
@@ -158,10 +158,10 @@ fn fast_surfaces_are_seen() {
 fn is_limited(z: f64, speed: f64) -> bool {
     let bodies = vec![ball("target", 0.0, 3.0, 0.0), ball("other", 6.0, 3.0, 0.0)];
     let mut s = start(soft(bodies));
-    let of_target = s.store.body.iter().position(|&body| body == 0);
+    let of_target = s.particles.body.iter().position(|&body| body == 0);
     let i = of_target.expect("a particle");
-    s.store.position[i] = [0.0, 0.0, z * SPACING];
-    s.store.velocity[i] = [0.0, 0.0, speed];
+    s.particles.position[i] = [0.0, 0.0, z * SPACING];
+    s.particles.velocity[i] = [0.0, 0.0, speed];
     (0..8).any(|_| {
         s.advance(&Comm::solo()).expect("a step");
         s.state.dt_reason == Reason::Flight
@@ -178,8 +178,8 @@ fn ejecta_limit_the_step_only_where_they_can_meet() {
     assert!(!is_limited(50.0, SPEED));
 }
 
-/// A hundred balls in a row, each in touch with the next ones alone: the exact sums of 99 pairs, and
-/// not of 4950, which took 14 MB for each thread.
+/// A hundred balls in a row, each in touch with the next ones alone: the exact sums of 99 pairs,
+/// and not of 4950, which took 14 MB for each thread.
 #[test]
 fn sums_are_of_pairs_that_have_met() {
     let balls = (0..100_u32).map(|k| ball(&format!("ball {k}"), 2.0 * f64::from(k), 1.0, 0.0));

@@ -22,15 +22,15 @@ use whipple::step::Simulation;
 /// Largest differences of position (in spacings) and velocity (relative to `speed`) between the
 /// particles of a reduced model and the same ones of the whole.
 fn largest_difference(reduced: &Simulation, whole: &Simulation, speed: f64) -> (f64, f64) {
-    let whole_slot: BTreeMap<u64, usize> = (0..whole.store.owned())
-        .map(|i| (whole.store.id[i], i))
+    let whole_slot: BTreeMap<u64, usize> = (0..whole.particles.owned())
+        .map(|i| (whole.particles.id[i], i))
         .collect();
     let (mut position, mut velocity) = (0.0_f64, 0.0_f64);
-    for i in 0..reduced.store.owned() {
-        let j = whole_slot[&reduced.store.id[i]];
+    for i in 0..reduced.particles.owned() {
+        let j = whole_slot[&reduced.particles.id[i]];
         for a in 0..3 {
-            let dx = reduced.store.position[i][a] - whole.store.position[j][a];
-            let dv = reduced.store.velocity[i][a] - whole.store.velocity[j][a];
+            let dx = reduced.particles.position[i][a] - whole.particles.position[j][a];
+            let dv = reduced.particles.velocity[i][a] - whole.particles.velocity[j][a];
             position = position.max(dx.abs() / SPACING);
             velocity = velocity.max(dv.abs() / speed);
         }
@@ -65,8 +65,8 @@ fn mirrored_models_equal_the_whole() {
         let (mut reduced, mut whole) = (model(axes), model(&[]));
         let share = 1_u32 << axes.len();
         assert_eq!(
-            whole.store.owned(),
-            (share as usize) * reduced.store.owned()
+            whole.particles.owned(),
+            (share as usize) * reduced.particles.owned()
         );
         advance(&mut reduced, 60);
         advance(&mut whole, 60);
@@ -100,17 +100,17 @@ fn image(field: &FieldInfo, value: &[f64]) -> Vec<f64> {
     (0..value.len()).map(of).collect()
 }
 
-/// All that a particle may take to another rank is mirrored when it crosses planes, whichever field it
-/// is; nothing else of it is touched, and nobody else.
+/// All that a particle may take to another rank is mirrored when it crosses planes, whichever field
+/// it is; nothing else of it is touched, and nobody else.
 #[test]
 fn every_field_is_folded() {
     let planes = [(Axis::X, 1.0), (Axis::Z, -2.0)];
     let planes = planes.map(|(axis, position)| SymmetryPlane { axis, position });
     let mirrors = Mirrors::new(&planes);
-    let mut store = ParticleStore::default();
-    store.resize_owned(3);
+    let mut particles = ParticleStore::default();
+    particles.resize_owned(3);
     for (row, field) in (0_u64..).zip(FIELDS) {
-        for (word, number) in (0_u64..).zip(store.bytes_mut(field.id).chunks_mut(8)) {
+        for (word, number) in (0_u64..).zip(particles.bytes_mut(field.id).chunks_mut(8)) {
             let bits = mix(row << 32 | word) % 1_000_000;
             #[allow(clippy::cast_precision_loss, reason = "six digits")]
             let value = if field.kind.is_real() {
@@ -121,13 +121,13 @@ fn every_field_is_folded() {
             number.copy_from_slice(&value.to_ne_bytes()[..number.len()]);
         }
     }
-    store.position[1] = [0.25, 7.0, -5.0];
-    let before = store.clone();
-    assert_eq!(mirrors.fold(&mut store, 1), 0b101);
+    particles.position[1] = [0.25, 7.0, -5.0];
+    let before = particles.clone();
+    assert_eq!(mirrors.fold(&mut particles, 1), 0b101);
     for field in FIELDS {
         let size = field.kind.bytes();
-        let part = |store: &ParticleStore, slot: usize| {
-            store.bytes(field.id)[slot * size..(slot + 1) * size].to_vec()
+        let part = |particles: &ParticleStore, slot: usize| {
+            particles.bytes(field.id)[slot * size..(slot + 1) * size].to_vec()
         };
         for slot in 0..3 {
             let mut expected = part(&before, slot);
@@ -135,7 +135,7 @@ fn every_field_is_folded() {
                 let value: Vec<f64> = bytemuck::pod_collect_to_vec(&expected);
                 expected = bytemuck::pod_collect_to_vec(&image(field, &value));
             }
-            assert_eq!(part(&store, slot), expected, "{} of {slot}", field.name);
+            assert_eq!(part(&particles, slot), expected, "{} of {slot}", field.name);
         }
     }
 }
@@ -150,12 +150,12 @@ fn particles_that_cross_a_plane_go_on_as_their_images() {
         (case.sph.alpha, case.sph.beta) = (0.0, 0.0);
         case.symmetry = planes(symmetry);
         let mut simulation = start(case);
-        let store = &mut simulation.store;
-        for i in 0..store.owned() {
-            let [x, y, z] = store.position[i].map(|x| x / SPACING);
+        let particles = &mut simulation.particles;
+        for i in 0..particles.owned() {
+            let [x, y, z] = particles.position[i].map(|x| x / SPACING);
             // The layers nearest to the plane x = 0 fly through it and each other, in shear.
             if x.abs() < 1.0 {
-                store.velocity[i] = [-30e3 * x.signum(), 900.0 * z, 700.0 * y];
+                particles.velocity[i] = [-30e3 * x.signum(), 900.0 * z, 700.0 * y];
             }
         }
         simulation
@@ -164,8 +164,8 @@ fn particles_that_cross_a_plane_go_on_as_their_images() {
     reduced.diagnose(&Comm::solo());
     let before = reduced.state.totals;
     let whole_slot = |whole: &Simulation| -> BTreeMap<u64, usize> {
-        (0..whole.store.owned())
-            .map(|i| (whole.store.id[i], i))
+        (0..whole.particles.owned())
+            .map(|i| (whole.particles.id[i], i))
             .collect()
     };
     let mut crossed = 0;
@@ -173,7 +173,7 @@ fn particles_that_cross_a_plane_go_on_as_their_images() {
         advance(&mut reduced, 1);
         advance(&mut whole, 1);
         let slots = whole_slot(&whole);
-        let (half, full) = (&reduced.store, &whole.store);
+        let (half, full) = (&reduced.particles, &whole.particles);
         for i in 0..half.owned() {
             let j = slots[&half.id[i]];
             let side = if full.position[j][0] < 0.0 { -1.0 } else { 1.0 };

@@ -12,7 +12,9 @@ use common::random::Random;
 use common::ranks::on_each;
 use common::sentinel::{id, mix, sentinel};
 use whipple::comm::{Comm, Exchange, waited};
-use whipple::domain::{Decomposition, Halo, Histogram, Migration, Mirrors, Paces, Slabs, balance};
+use whipple::domain::{
+    Decomposition, Halo, Histogram, Migration, Mirrors, RankSpeeds, Slabs, balance,
+};
 use whipple::model::{Axis, Overlap, SelfContact, SymmetryPlane};
 use whipple::particles::{
     FIELDS, FieldInfo, HaloPhase, Image, ParticleStore, SCRATCH_WORDS, Select,
@@ -43,13 +45,13 @@ fn expected(k: u64, row: usize, round: u64) -> Vec<u8> {
     bytes
 }
 
-fn value<'a>(store: &'a ParticleStore, field: &FieldInfo, slot: usize) -> &'a [u8] {
+fn value<'a>(particles: &'a ParticleStore, field: &FieldInfo, slot: usize) -> &'a [u8] {
     let size = field.kind.bytes();
-    &store.bytes(field.id)[slot * size..(slot + 1) * size]
+    &particles.bytes(field.id)[slot * size..(slot + 1) * size]
 }
 
 fn set(
-    store: &mut ParticleStore,
+    particles: &mut ParticleStore,
     slot: usize,
     k: u64,
     round: u64,
@@ -58,16 +60,16 @@ fn set(
     for (row, field) in FIELDS.iter().enumerate().filter(|(_, field)| only(field)) {
         let size = field.kind.bytes();
         let bytes = expected(k, row, round);
-        store.bytes_mut(field.id)[slot * size..(slot + 1) * size].copy_from_slice(&bytes);
+        particles.bytes_mut(field.id)[slot * size..(slot + 1) * size].copy_from_slice(&bytes);
     }
 }
 
 /// Asserts that slot `slot` holds particle k in all fields that `which` takes.
-fn assert_holds(store: &ParticleStore, slot: usize, k: u64, round: u64, which: impl Select) {
+fn assert_holds(particles: &ParticleStore, slot: usize, k: u64, round: u64, which: impl Select) {
     for (row, field) in FIELDS.iter().enumerate() {
         if which.takes(field) {
             assert!(
-                value(store, field, slot) == expected(k, row, round),
+                value(particles, field, slot) == expected(k, row, round),
                 "{} of particle {k} in slot {slot}",
                 field.name
             );
@@ -86,12 +88,12 @@ fn scattered(comm: &Comm, seed: u64) -> ParticleStore {
     let mine: Vec<u64> = (0..TOTAL)
         .filter(|_| random.below(comm.size()) == comm.rank())
         .collect();
-    let mut store = ParticleStore::default();
-    store.resize_owned(mine.len());
+    let mut particles = ParticleStore::default();
+    particles.resize_owned(mine.len());
     for (slot, &k) in mine.iter().enumerate() {
-        set(&mut store, slot, k, 0, |_| true);
+        set(&mut particles, slot, k, 0, |_| true);
     }
-    store
+    particles
 }
 
 /// Slabs at random places, some empty; every third round, all ranks but one are.
@@ -114,31 +116,31 @@ fn random_slabs(comm: &Comm, axis: usize, random: &mut Random) -> Slabs {
 }
 
 /// Every particle is on the rank that owns its place, whole; together they are all there.
-fn check_owners(comm: &Comm, slabs: &Slabs, store: &ParticleStore, round: u64) {
+fn check_owners(comm: &Comm, slabs: &Slabs, particles: &ParticleStore, round: u64) {
     let numbers = numbers();
-    for slot in 0..store.owned() {
-        let k = numbers[&store.id[slot]];
+    for slot in 0..particles.owned() {
+        let k = numbers[&particles.id[slot]];
         assert_eq!(slabs.owner(&position(k, round)), comm.rank());
-        assert_holds(store, slot, k, round, FieldInfo::leaves);
+        assert_holds(particles, slot, k, round, FieldInfo::leaves);
     }
-    let mine: BTreeSet<u64> = store.id[..store.owned()].iter().copied().collect();
-    assert_eq!(mine.len(), store.owned());
+    let mine: BTreeSet<u64> = particles.id[..particles.owned()].iter().copied().collect();
+    assert_eq!(mine.len(), particles.owned());
     let mut count = [mine.len() as u64];
     comm.sum_u64(&mut count);
     assert_eq!(count, [TOTAL]);
 }
 
 /// Moves everybody somewhere else, reorders the store, and gives it the values of `round`.
-fn next_round(store: &mut ParticleStore, round: u64, random: &mut Random) {
-    let mut order: Vec<u32> = (0..u32::try_from(store.owned()).unwrap()).collect();
+fn next_round(particles: &mut ParticleStore, round: u64, random: &mut Random) {
+    let mut order: Vec<u32> = (0..u32::try_from(particles.owned()).unwrap()).collect();
     random.shuffle(&mut order);
-    store.keep(&order, &mut vec![0; SCRATCH_WORDS * order.len()]);
+    particles.keep(&order, &mut vec![0; SCRATCH_WORDS * order.len()]);
     let numbers = numbers();
-    for slot in 0..store.owned() {
-        let k = numbers[&store.id[slot]];
+    for slot in 0..particles.owned() {
+        let k = numbers[&particles.id[slot]];
         // Fields that need not travel get their values again; all others had better be right.
-        assert_holds(store, slot, k, round - 1, FieldInfo::leaves);
-        set(store, slot, k, round, |field| {
+        assert_holds(particles, slot, k, round - 1, FieldInfo::leaves);
+        set(particles, slot, k, round, |field| {
             field.name == "position" || !field.leaves()
         });
     }
@@ -151,19 +153,19 @@ fn migrate_any_distance(comm: &Comm) {
 }
 
 fn migrate_in_rounds_of(comm: &Comm, most: usize) {
-    let mut store = scattered(comm, 5);
+    let mut particles = scattered(comm, 5);
     let mut migration = Migration::in_rounds_of(most);
     let mut random = Random::new(6);
     let mut own = Random::new(7 + comm.rank() as u64);
     let mut was_empty = false;
     let mut filled_again = false;
     for round in 1..30 {
-        next_round(&mut store, round, &mut own);
+        next_round(&mut particles, round, &mut own);
         let slabs = random_slabs(comm, random.below(3), &mut random);
-        migration.migrate(comm, &slabs, &mut store);
-        check_owners(comm, &slabs, &store, round);
-        filled_again |= was_empty && store.owned() > 0;
-        was_empty |= store.owned() == 0;
+        migration.migrate(comm, &slabs, &mut particles);
+        check_owners(comm, &slabs, &particles, round);
+        filled_again |= was_empty && particles.owned() > 0;
+        was_empty |= particles.owned() == 0;
     }
     assert!(comm.size() == 1 || filled_again);
     assert_eq!(migration.traffic().messages > 0, comm.size() > 1);
@@ -216,7 +218,7 @@ fn reach_of(k: u64, scale: f64) -> f64 {
 
 fn check_halo(
     comm: &Comm,
-    store: &ParticleStore,
+    particles: &ParticleStore,
     halo: &Halo,
     needed: &BTreeSet<(u64, u8)>,
     round: u64,
@@ -224,31 +226,31 @@ fn check_halo(
     let numbers = numbers();
     let mut held = BTreeSet::new();
     let mut copies = BTreeSet::new();
-    let owned = (0..store.owned()).map(|i| Image::new(i, 0));
+    let owned = (0..particles.owned()).map(|i| Image::new(i, 0));
     for image in owned.chain(halo.others().iter().copied()) {
         let slot = image.base();
-        assert!(slot < store.owned() + store.halo());
-        let k = numbers[&store.id[slot]];
+        assert!(slot < particles.owned() + particles.halo());
+        let k = numbers[&particles.id[slot]];
         assert!(held.insert((k, image.code())), "an image twice");
-        if slot >= store.owned() {
+        if slot >= particles.owned() {
             copies.insert(slot);
         }
     }
     assert!(needed.is_subset(&held));
     // Whoever came has at least one image, and only ranks with particles have a halo at all.
-    assert_eq!(copies.len(), store.halo());
-    assert!(store.owned() > 0 || store.halo() == 0);
-    assert!(comm.size() > 1 || store.halo() == 0);
-    for slot in 0..store.owned() + store.halo() {
-        let k = numbers[&store.id[slot]];
-        assert_holds(store, slot, k, round, HaloPhase::MOTION);
+    assert_eq!(copies.len(), particles.halo());
+    assert!(particles.owned() > 0 || particles.halo() == 0);
+    assert!(comm.size() > 1 || particles.halo() == 0);
+    for slot in 0..particles.owned() + particles.halo() {
+        let k = numbers[&particles.id[slot]];
+        assert_holds(particles, slot, k, round, HaloPhase::MOTION);
     }
 }
 
 fn exchange_halos(comm: &Comm) {
     let mut random = Random::new(16);
     let mut own = Random::new(17 + comm.rank() as u64);
-    let mut store = scattered(comm, 15);
+    let mut particles = scattered(comm, 15);
     let mut migration = Migration::default();
     let mut round = 0;
     let numbers = numbers();
@@ -267,31 +269,33 @@ fn exchange_halos(comm: &Comm) {
             // The same halo is used again with more particles and with fewer.
             for scale in [0.4, 2.0, 0.1] {
                 round += 1;
-                next_round(&mut store, round, &mut own);
+                next_round(&mut particles, round, &mut own);
                 let slabs = random_slabs(comm, axis, &mut random);
-                migration.migrate(comm, &slabs, &mut store);
-                for slot in 0..store.owned() {
-                    let k = numbers[&store.id[slot]];
-                    set(&mut store, slot, k, round, |_| true);
+                migration.migrate(comm, &slabs, &mut particles);
+                for slot in 0..particles.owned() {
+                    let k = numbers[&particles.id[slot]];
+                    set(&mut particles, slot, k, round, |_| true);
                 }
                 let reach = |k: u64| reach_of(k, scale);
-                halo.post_motion(comm, &mut store, |store, i| reach(numbers[&store.id[i]]));
-                halo.finish_motion(&mut store);
+                halo.post_motion(comm, &mut particles, |particles, i| {
+                    reach(numbers[&particles.id[i]])
+                });
+                halo.finish_motion(&mut particles);
                 let needed = needed(comm, &slabs, &mirrors, round, reach);
-                check_halo(comm, &store, &halo, &needed, round);
+                check_halo(comm, &particles, &halo, &needed, round);
                 for phase in [HaloPhase::STRESS, HaloPhase::FORCES] {
-                    halo.post(comm, &store, phase);
-                    halo.finish(&mut store, phase);
-                    for slot in 0..store.owned() + store.halo() {
-                        assert_holds(&store, slot, numbers[&store.id[slot]], round, phase);
+                    halo.post(comm, &particles, phase);
+                    halo.finish(&mut particles, phase);
+                    for slot in 0..particles.owned() + particles.halo() {
+                        assert_holds(&particles, slot, numbers[&particles.id[slot]], round, phase);
                     }
                 }
-                for slot in 0..store.owned() {
-                    let k = numbers[&store.id[slot]];
-                    assert_holds(&store, slot, k, round, FieldInfo::leaves);
+                for slot in 0..particles.owned() {
+                    let k = numbers[&particles.id[slot]];
+                    assert_holds(&particles, slot, k, round, FieldInfo::leaves);
                 }
-                farther |= (store.owned()..store.owned() + store.halo())
-                    .any(|slot| slabs.owner(&store.position[slot]).abs_diff(comm.rank()) > 1);
+                farther |= (particles.owned()..particles.owned() + particles.halo())
+                    .any(|slot| slabs.owner(&particles.position[slot]).abs_diff(comm.rank()) > 1);
             }
         }
     }
@@ -378,10 +382,10 @@ fn messages_of_any_size_between_any_ranks() {
 }
 
 fn balance_work(comm: &Comm) {
-    let mut store = scattered(comm, 31);
+    let mut particles = scattered(comm, 31);
     let mut migration = Migration::default();
     let mut histogram = Histogram::default();
-    let paces = Paces::default();
+    let rank_speeds = RankSpeeds::default();
     let numbers = numbers();
     for round in 1..12_u64 {
         // Work unevenly spread; in the last rounds all particles stand in few places.
@@ -391,21 +395,21 @@ fn balance_work(comm: &Comm) {
             _ => position(k, round).map(|x| x.min(LENGTH)),
         };
         let work = |k: u64| u32::try_from(mix(k ^ round) % 1000).unwrap();
-        for slot in 0..store.owned() {
-            let k = numbers[&store.id[slot]];
-            store.position[slot] = place(k);
-            store.work[slot] = work(k);
+        for slot in 0..particles.owned() {
+            let k = numbers[&particles.id[slot]];
+            particles.position[slot] = place(k);
+            particles.work[slot] = work(k);
         }
         let axis = usize::try_from(round % 3).unwrap();
         let before = Slabs::new(axis, vec![f64::INFINITY; comm.size() - 1]);
-        let positions = &store.position[..store.owned()];
+        let positions = &particles.position[..particles.owned()];
         let slabs = balance(
             comm,
             &before,
             positions,
-            &store.work,
+            &particles.work,
             &mut histogram,
-            &paces,
+            &rank_speeds,
         );
         // The same faces everywhere.
         let mut faces = Vec::new();
@@ -414,9 +418,9 @@ fn balance_work(comm: &Comm) {
         assert!(faces.chunks(mine.len().max(1)).all(|theirs| theirs == mine));
         assert!(slabs.faces().is_sorted());
 
-        migration.migrate(comm, &slabs, &mut store);
+        migration.migrate(comm, &slabs, &mut particles);
         let share = |k: u64| u64::from(work(k).max(1));
-        let mine: u64 = store.id[..store.owned()]
+        let mine: u64 = particles.id[..particles.owned()]
             .iter()
             .map(|id| share(numbers[id]))
             .sum();
@@ -433,7 +437,7 @@ fn balance_work(comm: &Comm) {
     // Nobody anywhere: the faces stay.
     let slabs = Slabs::new(0, vec![1.0; comm.size() - 1]);
     assert_eq!(
-        balance(comm, &slabs, &[], &[], &mut histogram, &paces),
+        balance(comm, &slabs, &[], &[], &mut histogram, &rank_speeds),
         slabs
     );
 }
@@ -441,28 +445,28 @@ fn balance_work(comm: &Comm) {
 /// Rank 0 takes twice as long for the same work: after some balances it has half of what each
 /// other rank has; a measurement too short to mean anything changes nothing.
 fn balance_paces(comm: &Comm) {
-    let (mut histogram, mut paces) = (Histogram::default(), Paces::default());
+    let (mut histogram, mut rank_speeds) = (Histogram::default(), RankSpeeds::default());
     let positions: Vec<[f64; 3]> = (0..1000)
         .filter(|k| k % comm.size() == comm.rank())
         .map(|k| [0.001 * f64::from(u32::try_from(k).unwrap()), 0.0, 0.0])
         .collect();
     let slabs = Slabs::new(0, vec![f64::INFINITY; comm.size() - 1]);
     let work = vec![1; positions.len()];
-    let mut faces = |paces: &Paces| {
-        let slabs = balance(comm, &slabs, &positions, &work, &mut histogram, paces);
+    let mut faces = |rank_speeds: &RankSpeeds| {
+        let slabs = balance(comm, &slabs, &positions, &work, &mut histogram, rank_speeds);
         slabs.faces().to_vec()
     };
-    let even = faces(&paces);
+    let even = faces(&rank_speeds);
     let slow = if comm.is_root() { 2.0 } else { 1.0 };
-    paces.measure(comm, 1000, 0.0);
-    paces.measure(comm, 1000, 1e-3 * slow);
-    assert_eq!(faces(&paces), even);
+    rank_speeds.measure(comm, 1000, 0.0);
+    rank_speeds.measure(comm, 1000, 1e-3 * slow);
+    assert_eq!(faces(&rank_speeds), even);
     for round in 1..=20 {
-        paces.measure(comm, 1000, f64::from(round) * slow);
+        rank_speeds.measure(comm, 1000, f64::from(round) * slow);
     }
     let ranks = f64::from(u32::try_from(comm.size()).unwrap());
     let first = 1.0 / (2.0 * ranks - 1.0);
-    for (r, face) in (0_u32..).zip(faces(&paces)) {
+    for (r, face) in (0_u32..).zip(faces(&rank_speeds)) {
         let share = first * (1.0 + 2.0 * f64::from(r));
         assert!((face - share).abs() < 0.005, "{r}: {face} {share}");
     }

@@ -363,14 +363,14 @@ fn forces_conserve_momentum_energy_and_angular_momentum() {
 
 /// Moves the particles off their lattice, each by its id, and gives them the field's velocities.
 fn stir(simulation: &mut Simulation, field: &Matrix3<f64>) {
-    let store = &mut simulation.store;
-    for i in 0..store.owned() {
-        let mut random = Random::new(store.id[i] + 1);
+    let particles = &mut simulation.particles;
+    for i in 0..particles.owned() {
+        let mut random = Random::new(particles.id[i] + 1);
         let jitter = random.vector(simulation.case.dimension, 0.3e-4);
         for a in 0..3 {
-            store.position[i][a] += jitter[a];
+            particles.position[i][a] += jitter[a];
         }
-        store.velocity[i] = (field * Vec3::from(store.position[i])).into();
+        particles.velocity[i] = (field * Vec3::from(particles.position[i])).into();
     }
 }
 
@@ -402,10 +402,10 @@ fn check_linear(comm: &Comm, dimension: usize, mirrors: &[Axis]) {
         simulation.advance(comm).unwrap();
         let motion = Matrix3::identity() + field * simulation.state.time;
         let wanted = field * motion.try_inverse().unwrap();
-        let store = &simulation.store;
-        for i in 0..store.owned() {
+        let particles = &simulation.particles;
+        for i in 0..particles.owned() {
             for c in 0..9 {
-                let error = store.velocity_gradient[i][c] - wanted[(c / 3, c % 3)];
+                let error = particles.velocity_gradient[i][c] - wanted[(c / 3, c % 3)];
                 largest = largest.max(error.abs() / field.norm());
             }
         }
@@ -432,21 +432,21 @@ fn flat_clouds_keep_the_plain_gradient() {
     sheet.sph.form = SphForm::Normalised;
     let mut corrected = start(sheet);
     for simulation in [&mut plain, &mut corrected] {
-        let store = &mut simulation.store;
-        for i in 0..store.owned() {
-            let [x, y, _] = store.position[i];
-            store.velocity[i] = [1e5 * x * x, 3e4 * y, 5e4 * x];
+        let particles = &mut simulation.particles;
+        for i in 0..particles.owned() {
+            let [x, y, _] = particles.position[i];
+            particles.velocity[i] = [1e5 * x * x, 3e4 * y, 5e4 * x];
         }
         simulation.advance(&Comm::solo()).unwrap();
     }
-    let count = i64::try_from(corrected.store.owned()).unwrap();
+    let count = i64::try_from(corrected.particles.owned()).unwrap();
     assert_eq!((count, corrected.state.uncorrected), (100, 100));
     assert_eq!(plain.state.uncorrected, 0);
     for (a, b) in plain
-        .store
+        .particles
         .velocity_gradient
         .iter()
-        .zip(&corrected.store.velocity_gradient)
+        .zip(&corrected.particles.velocity_gradient)
     {
         for c in 0..9 {
             assert!((a[c] - b[c]).abs() < 1e-9, "{} {}", a[c], b[c]);

@@ -29,20 +29,22 @@ fn free_flight_changes_nothing() {
     let mut case = case(3, vec![body("ball", shape, SPACING, velocity)], 1.0);
     case.sph.smoothing_length = SmoothingLength::Variable { min: 0.6, max: 2.0 };
     let mut simulation = start(case);
-    let first = simulation.store.clone();
+    let first = simulation.particles.clone();
     advance(&mut simulation, 50);
-    let (store, state) = (&simulation.store, &simulation.state);
+    let (particles, state) = (&simulation.particles, &simulation.state);
     let velocity = <[f64; 3]>::from(velocity);
-    let here: BTreeMap<u64, usize> = (0..store.owned()).map(|i| (store.id[i], i)).collect();
+    let here: BTreeMap<u64, usize> = (0..particles.owned())
+        .map(|i| (particles.id[i], i))
+        .collect();
     for (old, &id) in first.id.iter().enumerate() {
         let i = here[&id];
-        assert_eq!(store.velocity[i], velocity);
-        assert_eq!(store.density[i], 2785.0);
-        assert_eq!(store.specific_energy[i], 0.0);
-        assert_eq!(store.pressure[i], 0.0);
-        assert!(store.deviatoric_stress[i].iter().all(|&s| s == 0.0));
+        assert_eq!(particles.velocity[i], velocity);
+        assert_eq!(particles.density[i], 2785.0);
+        assert_eq!(particles.specific_energy[i], 0.0);
+        assert_eq!(particles.pressure[i], 0.0);
+        assert!(particles.deviatoric_stress[i].iter().all(|&s| s == 0.0));
         for a in 0..3 {
-            let moved = store.position[i][a] - first.position[old][a];
+            let moved = particles.position[i][a] - first.position[old][a];
             let far = velocity[a] * state.time;
             // Fifty additions to a coordinate no larger than the distance and the ball.
             assert!((moved - far).abs() < 50.0 * 1e-16 * (far.abs() + 1e-3));
@@ -53,11 +55,11 @@ fn free_flight_changes_nothing() {
 }
 
 fn angular_momentum(simulation: &Simulation) -> Vec3 {
-    let store = &simulation.store;
-    (0..store.owned())
+    let particles = &simulation.particles;
+    (0..particles.owned())
         .map(|i| {
-            let (x, v) = (store.position[i], store.velocity[i]);
-            Vec3::from(x).cross(&Vec3::from(v)) * store.mass[i]
+            let (x, v) = (particles.position[i], particles.velocity[i]);
+            Vec3::from(x).cross(&Vec3::from(v)) * particles.mass[i]
         })
         .sum()
 }
@@ -68,11 +70,11 @@ fn spinning(radius: f64, speed: f64) -> (Simulation, f64) {
     make_elastic(&mut case);
     let mut simulation = start(case);
     let spin = speed / (radius * SPACING);
-    let store = &mut simulation.store;
-    for i in 0..store.owned() {
-        let x = store.position[i];
-        store.velocity[i] = [-spin * x[1], spin * x[0], 0.0];
-        store.velocity_gradient[i] = [0.0, -spin, 0.0, spin, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let particles = &mut simulation.particles;
+    for i in 0..particles.owned() {
+        let x = particles.position[i];
+        particles.velocity[i] = [-spin * x[1], spin * x[0], 0.0];
+        particles.velocity_gradient[i] = [0.0, -spin, 0.0, spin, 0.0, 0.0, 0.0, 0.0, 0.0];
     }
     (simulation, spin)
 }
@@ -97,23 +99,23 @@ fn an_elastic_sphere_spins() {
         while simulation.state.time * spin < 0.5 {
             advance(&mut simulation, 1);
         }
-        let (store, last) = (&simulation.store, simulation.state.totals);
+        let (particles, last) = (&simulation.particles, simulation.state.totals);
         assert!((last.energy() - first.energy()).abs() < 1e-14 * first.energy());
         for a in 0..3 {
             let error = last.momentum[a] - first.momentum[a];
             assert!(error.abs() < 1e-15 * first.momentum_scale);
         }
         let centrifugal = 2785.0 * SPEED * SPEED;
-        for i in 0..store.owned() {
-            let mut stress = store.deviatoric_stress[i].to_vec();
-            stress.push(store.pressure[i]);
+        for i in 0..particles.owned() {
+            let mut stress = particles.deviatoric_stress[i].to_vec();
+            stress.push(particles.pressure[i]);
             let stress = stress.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
-            let inside = Vec3::from(store.position[i]).norm() < (radius - 3.0) * SPACING;
+            let inside = Vec3::from(particles.position[i]).norm() < (radius - 3.0) * SPACING;
             let bound = if inside { 1.0 } else { 2.0 };
             assert!(
                 stress < bound * centrifugal,
                 "{stress:e} in {}",
-                store.id[i]
+                particles.id[i]
             );
         }
         (angular_momentum(&simulation) - before).norm() / before.norm()
@@ -234,10 +236,10 @@ fn the_impulse_of_a_pair_is_the_change_of_momentum() {
     ];
     let mut simulation = start(case(3, bodies, 1.0));
     let momentum = |simulation: &Simulation, body: u32| -> Vec3 {
-        let store = &simulation.store;
-        (0..store.owned())
-            .filter(|&i| store.body[i] == body)
-            .map(|i| Vec3::from(store.velocity[i]) * store.mass[i])
+        let particles = &simulation.particles;
+        (0..particles.owned())
+            .filter(|&i| particles.body[i] == body)
+            .map(|i| Vec3::from(particles.velocity[i]) * particles.mass[i])
             .sum()
     };
     let before = [0, 1].map(|body| momentum(&simulation, body));
@@ -260,14 +262,14 @@ fn the_impulse_of_a_pair_is_the_change_of_momentum() {
 fn a_particle_that_is_no_number_is_reported() {
     for what in 0..3 {
         let mut simulation = start(everything());
-        let store = &mut simulation.store;
-        let slot = store.owned() / 3;
+        let particles = &mut simulation.particles;
+        let slot = particles.owned() / 3;
         match what {
-            0 => store.velocity[slot][1] = f64::NAN,
-            1 => store.density[slot] = f64::NAN,
-            _ => store.position[slot][2] = 1e13,
+            0 => particles.velocity[slot][1] = f64::NAN,
+            1 => particles.density[slot] = f64::NAN,
+            _ => particles.position[slot][2] = 1e13,
         }
-        let id = store.id[slot];
+        let id = particles.id[slot];
         let error = simulation.advance(&Comm::solo()).unwrap_err().to_string();
         assert!(error.contains("step 1: particle "), "{error}");
         // Neighbours catch a NaN in the same step, and the smallest id speaks for all.

@@ -38,16 +38,16 @@ fn block(dimension: usize, lower: f64, counts: [f64; 3]) -> Case {
 }
 
 fn is_point(s: &Simulation, i: usize) -> bool {
-    s.store.stress_mass[i] > 0.0
+    s.particles.stress_mass[i] > 0.0
 }
 
 /// Moves particles and stress points off their lattices, each by its id.
 fn stir(s: &mut Simulation, by: f64) {
-    for i in 0..s.store.owned() {
-        let mut random = Random::new(s.store.id[i] + 1);
+    for i in 0..s.particles.owned() {
+        let mut random = Random::new(s.particles.id[i] + 1);
         let jitter = random.vector(s.case.dimension, by);
         for a in 0..3 {
-            s.store.position[i][a] += jitter[a];
+            s.particles.position[i][a] += jitter[a];
         }
     }
 }
@@ -76,8 +76,8 @@ fn check_linear(comm: &Comm, dimension: usize, mirrors: &[Axis]) {
     let mut s = Simulation::start(case, comm).unwrap();
     assert_eq!(s.state.uncorrected, 0);
     stir(&mut s, 0.2 * SPACING);
-    for i in 0..s.store.owned() {
-        s.store.velocity[i] = (field * Vec3::from(s.store.position[i])).into();
+    for i in 0..s.particles.owned() {
+        s.particles.velocity[i] = (field * Vec3::from(s.particles.position[i])).into();
     }
     // Nothing is known of velocities before.
     s.state.last_dt = 1e30;
@@ -86,16 +86,17 @@ fn check_linear(comm: &Comm, dimension: usize, mirrors: &[Axis]) {
         s.advance(comm).unwrap();
         let motion = Matrix3::identity() + field * s.state.time;
         let wanted = field * motion.try_inverse().unwrap();
-        for i in (0..s.store.owned()).filter(|&i| is_point(&s, i)) {
+        for i in (0..s.particles.owned()).filter(|&i| is_point(&s, i)) {
             for c in 0..9 {
-                let error = s.store.velocity_gradient[i][c] - wanted[(c / 3, c % 3)];
+                let error = s.particles.velocity_gradient[i][c] - wanted[(c / 3, c % 3)];
                 gradient = gradient.max(error.abs() / field.norm());
             }
-            let error = Vec3::from(s.store.velocity[i]) - wanted * Vec3::from(s.store.position[i]);
+            let error =
+                Vec3::from(s.particles.velocity[i]) - wanted * Vec3::from(s.particles.position[i]);
             velocity = velocity.max(error.norm() / (field.norm() * SPACING));
         }
     }
-    let steepest = s.store.fit_norm.iter().copied().fold(0.0, f64::max);
+    let steepest = s.particles.fit_norm.iter().copied().fold(0.0, f64::max);
     println!("steepest fit {steepest:.2}");
     assert_eq!(s.state.worst.uncorrected, 0);
     println!("{dimension}-D {mirrors:?}: gradients {gradient:e}, velocities {velocity:e}");
@@ -108,8 +109,8 @@ fn check_linear(comm: &Comm, dimension: usize, mirrors: &[Axis]) {
 fn volumes_are_a_partition() {
     let masses = |case: Case| {
         let s = start(case);
-        let particles: f64 = s.store.mass.iter().sum();
-        (particles, s.store.stress_mass.iter().sum::<f64>())
+        let particles: f64 = s.particles.mass.iter().sum();
+        (particles, s.particles.stress_mass.iter().sum::<f64>())
     };
     let mut shapes = vec![
         block(2, 0.0, [9.0, 4.0, 0.0]),
@@ -148,27 +149,27 @@ fn forces_are_the_adjoint_of_strain() {
             }
             let mut s = start(case);
             stir(&mut s, 0.2 * SPACING);
-            for i in 0..s.store.owned() {
-                let mut random = Random::new(s.store.id[i] + 7);
-                s.store.velocity[i] = random.vector(dimension, 100.0);
+            for i in 0..s.particles.owned() {
+                let mut random = Random::new(s.particles.id[i] + 7);
+                s.particles.velocity[i] = random.vector(dimension, 100.0);
                 if is_point(&s, i) {
-                    s.store.deviatoric_stress[i] =
+                    s.particles.deviatoric_stress[i] =
                         std::array::from_fn(|_| 1e9 * random.vector(1, 1.0)[0]);
-                    s.store.density[i] *= 1.0 + 0.05 * random.vector(1, 1.0)[0];
+                    s.particles.density[i] *= 1.0 + 0.05 * random.vector(1, 1.0)[0];
                 }
             }
             s.case.time_step.max = 1e-12;
             s.state.dt = 1e-12;
             s.advance(&Comm::solo()).unwrap();
             let (mut sums, mut sizes) = ([0.0; 7], [0.0; 7]);
-            let store = &s.store;
+            let particles = &s.particles;
             let mut add = |k: usize, x: f64| {
                 sums[k] += x;
                 sizes[k] += x.abs();
             };
-            for i in 0..store.owned() {
-                let force = Vec3::from(store.acceleration[i]) * store.mass[i];
-                let turn = Vec3::from(store.position[i]).cross(&force);
+            for i in 0..particles.owned() {
+                let force = Vec3::from(particles.acceleration[i]) * particles.mass[i];
+                let turn = Vec3::from(particles.position[i]).cross(&force);
                 for a in 0..3 {
                     add(a, force[a]);
                     // What turns in the model's own dimensions.
@@ -176,9 +177,12 @@ fn forces_are_the_adjoint_of_strain() {
                         add(3 + a, turn[a]);
                     }
                 }
-                add(6, Vec3::from(store.predicted_velocity[i]).dot(&force));
+                add(6, Vec3::from(particles.predicted_velocity[i]).dot(&force));
                 if is_point(&s, i) {
-                    add(6, store.stress_mass[i] * store.d_specific_energy_dt[i]);
+                    add(
+                        6,
+                        particles.stress_mass[i] * particles.d_specific_energy_dt[i],
+                    );
                 }
             }
             println!("{dimension}-D: {sums:?} of {sizes:?}");
@@ -195,10 +199,10 @@ fn seen(form: SphForm, dimension: usize) -> f64 {
     let mut case = block(dimension, 0.0, [12.0; 3]);
     case.sph.form = form;
     let mut s = start(case);
-    for i in 0..s.store.owned() {
-        let cells = s.store.position[i].map(|x| (x / SPACING).floor());
+    for i in 0..s.particles.owned() {
+        let cells = s.particles.position[i].map(|x| (x / SPACING).floor());
         let odd = cells.iter().sum::<f64>() % 2.0 != 0.0;
-        s.store.velocity[i] = if odd {
+        s.particles.velocity[i] = if odd {
             [1e-3, 0.0, 0.0]
         } else {
             [-1e-3, 0.0, 0.0]
@@ -209,11 +213,11 @@ fn seen(form: SphForm, dimension: usize) -> f64 {
     s.state.last_dt = 1e30;
     s.advance(&Comm::solo()).unwrap();
     let inside = |i: &usize| {
-        let x = &s.store.position[*i];
+        let x = &s.particles.position[*i];
         (0..dimension).all(|a| (x[a] / SPACING - 6.0).abs() < 2.2)
     };
-    let rates = (0..s.store.owned()).filter(inside);
-    let rates = rates.map(|i| s.store.velocity_gradient[i][0].abs());
+    let rates = (0..s.particles.owned()).filter(inside);
+    let rates = rates.map(|i| s.particles.velocity_gradient[i][0].abs());
     rates.fold(0.0, f64::max) * SPACING / 2e-3
 }
 

@@ -54,15 +54,15 @@ fn a_face_is_a_plane() {
     }
     let [plane, others @ ..] = &runs;
     for other in others {
-        let away = (0..plane.store.owned())
+        let away = (0..plane.particles.owned())
             .map(|i| {
                 let k = other
-                    .store
+                    .particles
                     .id
                     .iter()
-                    .position(|id| *id == plane.store.id[i]);
-                let y = other.store.position[k.expect("the same particles")];
-                let x = plane.store.position[i];
+                    .position(|id| *id == plane.particles.id[i]);
+                let y = other.particles.position[k.expect("the same particles")];
+                let x = plane.particles.position[i];
                 (0..3).map(|a| (x[a] - y[a]).abs()).fold(0.0, f64::max)
             })
             .fold(0.0, f64::max);
@@ -99,7 +99,7 @@ fn corners_hold_what_falls_into_them() {
         assert!(s.state.loads[0].impulse.iter().all(|&j| j > 0.0));
         assert_eq!(s.state.loads[0].work, 0.0);
         let surface = &s.case.loads.surfaces[0];
-        let deepest = s.store.position.iter().map(|x| surface.gap(x, 1e-3));
+        let deepest = s.particles.position.iter().map(|x| surface.gap(x, 1e-3));
         assert!(deepest.fold(1.0, f64::min) > 0.0);
         assert!(rest > 0.3);
     }

@@ -18,10 +18,16 @@ fn start(case: Case) -> Simulation {
 
 fn check_at_rest(name: &str, simulation: &Simulation) {
     assert_eq!(simulation.state.capped_reliefs, 0, "{name}");
-    let store = &simulation.store;
-    assert!(store.foreign_fraction.iter().any(|&f| f > 0.1), "{name}");
+    let particles = &simulation.particles;
     assert!(
-        store.contact_acceleration.iter().all(|a| *a == [0.0; 3]),
+        particles.foreign_fraction.iter().any(|&f| f > 0.1),
+        "{name}"
+    );
+    assert!(
+        particles
+            .contact_acceleration
+            .iter()
+            .all(|a| *a == [0.0; 3]),
         "{name}"
     );
     assert_eq!(simulation.state.contact_energy, 0.0, "{name}");
@@ -49,7 +55,7 @@ fn bodies_laid_in_touch_start_free_of_force() {
         let simulation = start(case(3, vec![slab.clone(), top], 1.0));
         check_at_rest(name, &simulation);
         let most = simulation
-            .store
+            .particles
             .touch_relief
             .iter()
             .copied()
@@ -137,14 +143,14 @@ fn relief_is_capped_and_counted() {
     let slab = block([0.0, 0.0, -6.0], [10.0, 10.0, 0.0], 1.0);
     let sunk = block([2.0, 2.0, -3.5], [8.0, 8.0, 4.5], 1.0);
     let simulation = start(case(3, vec![slab, sunk], 1.0));
-    let store = &simulation.store;
+    let particles = &simulation.particles;
     let mut capped = 0;
-    for i in 0..store.owned() {
-        let level = store.touching_value[i] + store.touch_relief[i];
+    for i in 0..particles.owned() {
+        let level = particles.touching_value[i] + particles.touch_relief[i];
         assert!(level <= OFFSET_LIMIT + 1e-15);
-        let beyond = store.foreign_fraction[i] > OFFSET_LIMIT;
+        let beyond = particles.foreign_fraction[i] > OFFSET_LIMIT;
         capped += i64::from(beyond);
-        assert_eq!(store.contact_excess[i] > 0.0, beyond);
+        assert_eq!(particles.contact_excess[i] > 0.0, beyond);
     }
     assert!(capped > 20);
     assert_eq!(simulation.state.capped_reliefs, capped);

@@ -138,8 +138,8 @@ fn plates_carry_their_shocks_from_a_gap_on() {
     assert_eq!(a[3].velocity, b[0].velocity);
     // Mass, momentum and energy (at equal areas) are those of the start.
     let sum = |f: &dyn Fn(&whipple::exact::Sample) -> f64| -> f64 {
-        let pieces = after.iter().flat_map(|line| line.windows(2));
-        pieces
+        let fragments = after.iter().flat_map(|line| line.windows(2));
+        fragments
             .map(|p| 0.5 * (f(&p[0]) + f(&p[1])) * (p[1].position - p[0].position))
             .sum()
     };

@@ -1,10 +1,10 @@
-//! Random inputs, checkpoints and snapshots: whatever is wrong is told, nothing panics, hangs or takes
-//! more memory than it should.
+//! Random inputs, checkpoints and snapshots: whatever is wrong is told, nothing panics, hangs or
+//! takes more memory than it should.
 //!
 //! What a message says, but for its names and numbers, tells how far a reader came; what reaches a
 //! new message is changed further. `make test` makes a short run of this, `make fuzz` one of ten
-//! minutes each, which keeps the shortest of its new texts and files in `tests/fuzz/`, and
-//! `make fuzz-memory` lets valgrind watch the reading of files. What panics is kept there too and tried
+//! minutes each, which keeps the shortest of its new texts and files in `tests/fuzz/`, and `make
+//! fuzz-memory` lets valgrind watch the reading of files. What panics is kept there too and tried
 //! first from then on.
 
 #[path = "fuzz/changes.rs"]

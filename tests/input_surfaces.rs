@@ -196,15 +196,20 @@ fn assert_in_touch(case: Case, name: &str) {
     let told = warnings(&case);
     assert!(told.iter().all(|line| !line.contains("pushes")), "{told:?}");
     let mut simulation = Simulation::start(case, &Comm::solo()).unwrap();
-    let still = |s: &Simulation| s.store.contact_acceleration.iter().all(|a| *a == [0.0; 3]);
+    let still = |s: &Simulation| {
+        s.particles
+            .contact_acceleration
+            .iter()
+            .all(|a| *a == [0.0; 3])
+    };
     assert!(still(&simulation), "{name}");
     assert_eq!(simulation.state.contact_energy.to_bits(), 0, "{name}");
     // No gap either: the first step leads into the plane.
     for (v, x) in simulation
-        .store
+        .particles
         .velocity
         .iter_mut()
-        .zip(&simulation.store.position)
+        .zip(&simulation.particles.position)
     {
         *v = x.map(|x| -1e6 * x);
     }
@@ -215,8 +220,8 @@ fn assert_in_touch(case: Case, name: &str) {
 const FLOOR: &str = "[[plane]]\nnormal = \"+z\"";
 const WALLS: &str = "[[plane]]\nnormal = \"+x\"\n[[plane]]\nnormal = \"+y\"";
 
-/// A body whose shape rests on planes begins in touch with them, whatever its lattice leaves between
-/// its outermost layer and its shape.
+/// A body whose shape rests on planes begins in touch with them, whatever its lattice leaves
+/// between its outermost layer and its shape.
 #[test]
 fn bodies_that_rest_on_planes_begin_in_touch() {
     let rod = |lattice: &str, length: f64| {
@@ -246,8 +251,8 @@ fn bodies_that_rest_on_planes_begin_in_touch() {
     assert_in_touch(on_planes(2, &disc("\"cubic\""), slope), "a disc on a slope");
 }
 
-/// What stays where it is: between two plates, cut by a symmetry plane, off the plane; and a body that
-/// touches another one moves with that.
+/// What stays where it is: between two plates, cut by a symmetry plane, off the plane; and a body
+/// that touches another one moves with that.
 #[test]
 fn bodies_on_planes_move_no_further_than_into_touch() {
     let block = "lattice = \"hexagonal\"\n\

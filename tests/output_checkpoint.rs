@@ -20,8 +20,8 @@ fn write(folder: &Path, step: u64, keep: usize) -> PathBuf {
         state: "{}",
         input: &case.resolved,
     };
-    let store = particles(&comm, 40);
-    checkpoint::write(&comm, folder, &store, &meta, keep, &mut Rows::default()).unwrap()
+    let particles = particles(&comm, 40);
+    checkpoint::write(&comm, folder, &particles, &meta, keep, &mut Rows::default()).unwrap()
 }
 
 fn refusal(checkpoint: &Path) -> String {
@@ -80,9 +80,9 @@ fn a_bit_flipped_anywhere_is_told_before_hdf5_sees_it() {
     let mut places: Vec<usize> = (0..64).map(|k| k * whole.len() / 64).collect();
     places.extend([8, 13, whole.len() - 1]);
     // A particle's value of each field, wherever it stands in the file.
-    let store = particles(&Comm::solo(), 40);
-    for field in store.held(Life::State) {
-        let bytes = &store.bytes(field.id)[..field.kind.bytes()];
+    let particles = particles(&Comm::solo(), 40);
+    for field in particles.held(Life::State) {
+        let bytes = &particles.bytes(field.id)[..field.kind.bytes()];
         let found = whole
             .windows(bytes.len())
             .position(|window| window == bytes);
@@ -179,8 +179,8 @@ fn a_checkpoint_that_is_being_replaced_is_still_one() {
     fs::rename(&path, &old).unwrap();
     let list = || checkpoint::list(folder.path()).unwrap();
     assert_eq!(list(), [(3, old.clone())]);
-    let mut store = ParticleStore::default();
-    assert!(checkpoint::read(&Comm::solo(), &old, &mut store).is_ok());
+    let mut particles = ParticleStore::default();
+    assert!(checkpoint::read(&Comm::solo(), &old, &mut particles).is_ok());
     write(folder.path(), 3, 1);
     assert_eq!(list(), [(3, path)]);
     assert!(!old.exists());

@@ -19,14 +19,14 @@ use whipple::particles::{ParticleStore, SCRATCH_WORDS};
 fn run(place: &Path, name: &str, change: impl Fn(&mut ParticleStore)) -> PathBuf {
     let (comm, case, mut rows) = (Comm::solo(), case(), Rows::default());
     let folder = RunFolder::create(&comm, &place.join(name), &case.resolved, true).unwrap();
-    let mut store = particles(&comm, 30);
+    let mut particles = particles(&comm, 30);
     for k in 0..30 {
-        store.body[k] = u32::try_from(k % 2).unwrap();
+        particles.body[k] = u32::try_from(k % 2).unwrap();
     }
-    change(&mut store);
+    change(&mut particles);
     let path = folder.snapshot(12);
     let fields = snapshot::quantities(&[]).unwrap();
-    snapshot::write(&comm, &path, &store, &meta(&case), &fields, &mut rows).unwrap();
+    snapshot::write(&comm, &path, &particles, &meta(&case), &fields, &mut rows).unwrap();
     series::add(&folder.series(), &RunFolder::snapshot_name(12), 3.5e-8).unwrap();
     let meta = checkpoint::Meta {
         step: 12,
@@ -34,7 +34,15 @@ fn run(place: &Path, name: &str, change: impl Fn(&mut ParticleStore)) -> PathBuf
         state: r#"{"dt":1e-10}"#,
         input: &case.resolved,
     };
-    checkpoint::write(&comm, &folder.checkpoints(), &store, &meta, 1, &mut rows).unwrap();
+    checkpoint::write(
+        &comm,
+        &folder.checkpoints(),
+        &particles,
+        &meta,
+        1,
+        &mut rows,
+    )
+    .unwrap();
     let columns = [Column::new("step", ""), Column::new("energy", "J")];
     let mut table = Table::create(&folder.history(), &columns).unwrap();
     for step in 0..4 {
@@ -78,11 +86,11 @@ fn equal_runs_agree_and_what_only_one_has_is_told() {
 #[test]
 fn one_bit_is_found_with_its_particle_and_component() {
     let place = tempfile::tempdir().unwrap();
-    let a = run(place.path(), "a", |store| {
-        store.velocity[7] = [1.0, 0.0, 2.0];
+    let a = run(place.path(), "a", |particles| {
+        particles.velocity[7] = [1.0, 0.0, 2.0];
     });
-    let b = run(place.path(), "b", |store| {
-        store.velocity[7] = [1.0, -0.0, 2.5];
+    let b = run(place.path(), "b", |particles| {
+        particles.velocity[7] = [1.0, -0.0, 2.5];
     });
     let id = particles(&Comm::solo(), 30).id[7];
     let report = compare(&a, &b).unwrap();
@@ -112,8 +120,8 @@ fn one_bit_is_found_with_its_particle_and_component() {
 fn tensor_components_have_their_own_names_in_both_orders() {
     let place = tempfile::tempdir().unwrap();
     let xz = |value| {
-        move |store: &mut ParticleStore| {
-            store.deviatoric_stress[3] = [1.0, 2.0, 3.0, 4.0, value, 6.0];
+        move |particles: &mut ParticleStore| {
+            particles.deviatoric_stress[3] = [1.0, 2.0, 3.0, 4.0, value, 6.0];
         }
     };
     let (a, b) = (
@@ -133,10 +141,10 @@ fn tensor_components_have_their_own_names_in_both_orders() {
 fn other_particles_are_told_and_the_common_ones_compared() {
     let place = tempfile::tempdir().unwrap();
     let a = run(place.path(), "a", |_| ());
-    let b = run(place.path(), "b", |store| {
+    let b = run(place.path(), "b", |particles| {
         let order: Vec<u32> = (0..30).filter(|k| k % 7 != 3).collect();
-        store.keep(&order, &mut vec![0; SCRATCH_WORDS * order.len()]);
-        store.pressure[2] = f64::from_bits(0x7ff8_0000_0000_0001);
+        particles.keep(&order, &mut vec![0; SCRATCH_WORDS * order.len()]);
+        particles.pressure[2] = f64::from_bits(0x7ff8_0000_0000_0001);
     });
     let told = text(&compare(&a, &b).unwrap());
     assert!(
@@ -154,8 +162,8 @@ fn other_particles_are_told_and_the_common_ones_compared() {
 #[test]
 fn info_tells_what_is_there() {
     let place = tempfile::tempdir().unwrap();
-    let path = run(place.path(), "a", |store| {
-        for (k, velocity) in store.velocity.iter_mut().enumerate() {
+    let path = run(place.path(), "a", |particles| {
+        for (k, velocity) in particles.velocity.iter_mut().enumerate() {
             *velocity = [f64::from(u8::try_from(k).unwrap()), -7e3, f64::NAN];
         }
     });

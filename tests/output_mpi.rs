@@ -95,7 +95,7 @@ fn state() -> String {
 }
 
 fn write_checkpoint(comm: &Comm, folder: &Path, total: u64, step: u64) -> Result<(), OutputError> {
-    let (store, case, state) = (particles(comm, total), case(), state());
+    let (particles, case, state) = (particles(comm, total), case(), state());
     let meta = checkpoint::Meta {
         step,
         time: f64::MIN_POSITIVE / 4.0,
@@ -103,24 +103,28 @@ fn write_checkpoint(comm: &Comm, folder: &Path, total: u64, step: u64) -> Result
         input: &case.resolved,
     };
     let mut rows = Rows::default();
-    checkpoint::write(comm, folder, &store, &meta, 2, &mut rows).map(drop)
+    checkpoint::write(comm, folder, &particles, &meta, 2, &mut rows).map(drop)
 }
 
 fn check_restored(comm: &Comm, folder: &Path, total: u64) {
-    let mut store = ParticleStore::default();
-    let restored = checkpoint::read(comm, folder, &mut store).unwrap();
+    let mut particles = ParticleStore::default();
+    let restored = checkpoint::read(comm, folder, &mut particles).unwrap();
     assert_eq!(restored.particles, total);
     assert_eq!(restored.state, state());
     assert_eq!(restored.input, case().resolved);
     assert_eq!(restored.time.to_bits(), (f64::MIN_POSITIVE / 4.0).to_bits());
     let block = Block::even(total, comm.rank(), comm.size());
-    assert_eq!(store.owned(), block.count);
+    assert_eq!(particles.owned(), block.count);
     for (row, field) in FIELDS.iter().enumerate() {
         if field.life == Life::State {
             let all = expected(row, total, false);
             let start = usize::try_from(block.first).unwrap() * field.kind.bytes();
             let here = &all[start..start + block.count * field.kind.bytes()];
-            assert!(store.bytes(field.id) == here, "{} of {total}", field.name);
+            assert!(
+                particles.bytes(field.id) == here,
+                "{} of {total}",
+                field.name
+            );
         }
     }
 }
@@ -134,9 +138,17 @@ fn snapshots_hold_every_field_in_id_order_on_any_ranks() {
             let (case, mut rows) = (case(), Rows::default());
             for total in TOTALS {
                 let path = folder.join(format!("{total}.vtkhdf"));
-                let store = particles(comm, total);
+                let particles = particles(comm, total);
                 let quantities = all_quantities();
-                snapshot::write(comm, &path, &store, &meta(&case), &quantities, &mut rows).unwrap();
+                snapshot::write(
+                    comm,
+                    &path,
+                    &particles,
+                    &meta(&case),
+                    &quantities,
+                    &mut rows,
+                )
+                .unwrap();
             }
         });
         if is_rank() {
@@ -155,11 +167,11 @@ fn a_lone_rank_without_mpi_writes_the_same() {
     let (comm, case, mut rows) = (Comm::solo(), case(), Rows::default());
     for total in TOTALS {
         let path = folder.path().join("snapshot.vtkhdf");
-        let store = particles(&comm, total);
+        let particles = particles(&comm, total);
         snapshot::write(
             &comm,
             &path,
-            &store,
+            &particles,
             &meta(&case),
             &all_quantities(),
             &mut rows,
@@ -248,12 +260,12 @@ fn on_small_disk(bytes: u64, task: impl FnOnce(&Path)) -> bool {
 /// Writes where there may be too little room: all ranks say so, or all of it is there.
 fn fill_disk(comm: &Comm, folder: &Path) {
     let (case, total) = (case(), 3000);
-    let store = particles(comm, total);
+    let particles = particles(comm, total);
     let path = folder.join("snapshot.vtkhdf");
     let checkpoints = folder.join("checkpoints");
     let checkpoint = checkpoints.join("step-00000001");
     let (meta, mut rows) = (meta(&case), Rows::default());
-    let snapshot = snapshot::write(comm, &path, &store, &meta, &all_quantities(), &mut rows);
+    let snapshot = snapshot::write(comm, &path, &particles, &meta, &all_quantities(), &mut rows);
     if snapshot.is_ok() && comm.is_root() {
         check_snapshot(&path, total);
         fs::remove_file(&path).unwrap();

@@ -93,7 +93,7 @@ impl Variant {
         });
         let state = &s.state;
         let aluminium = &in_order(&s)[half..];
-        let velocities = aluminium.iter().map(|&i| s.store.velocity[i][0]);
+        let velocities = aluminium.iter().map(|&i| s.particles.velocity[i][0]);
         out.rebound = velocities.sum::<f64>() / f64::from(cells);
         let change = state.totals.energy() - state.initial.energy();
         let end = change.abs() / state.initial.kinetic_energy;
@@ -114,7 +114,7 @@ fn plateau(s: &Simulation, half: usize, force: f64) -> [f64; 4] {
     let [steel, aluminium] =
         bars.map(|bar| median(bar.iter().map(|&i| -axial_stress(s, i)).collect()));
     let both = bars.concat();
-    let velocity = median(both.iter().map(|&i| s.store.velocity[i][0]).collect());
+    let velocity = median(both.iter().map(|&i| s.particles.velocity[i][0]).collect());
     [force, steel, aluminium, velocity]
 }
 

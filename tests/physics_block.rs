@@ -1,6 +1,6 @@
-//! Two elastic–plastic steel blocks that meet with their long faces (`inputs/block-impact`), section
-//! 3.3 of the paper: uniaxial strain on the axis until the edges' release arrives at .85 µs, then
-//! corners, plastic flow along the interface, and parting.
+//! Two elastic–plastic steel blocks that meet with their long faces (`inputs/block-impact`),
+//! section 3.3 of the paper: uniaxial strain on the axis until the edges' release arrives at .85
+//! µs, then corners, plastic flow along the interface, and parting.
 
 mod physics_support;
 
@@ -30,43 +30,43 @@ fn spacing(s: &Simulation) -> f64 {
 /// interface: four layers of the ready case. Alternate layers differ by some percent, which is a
 /// mode that collocated sums do not see.
 fn on_axis(s: &Simulation) -> [f64; 2] {
-    let store = &s.store;
+    let particles = &s.particles;
     let near = |i: &usize| {
-        let [x, y, _] = store.position[*i];
+        let [x, y, _] = particles.position[*i];
         x.abs() < 1e-3 && y.abs() < 0.8e-3
     };
-    let chosen: Vec<usize> = (0..store.owned()).filter(near).collect();
+    let chosen: Vec<usize> = (0..particles.owned()).filter(near).collect();
     #[allow(clippy::cast_precision_loss, reason = "few particles")]
     let n = chosen.len() as f64;
     let mean = |f: &dyn Fn(usize) -> f64| chosen.iter().map(|&i| f(i)).sum::<f64>() / n;
     [
-        mean(&|i| store.pressure[i] - store.deviatoric_stress[i][1]),
-        mean(&|i| store.pressure[i]),
+        mean(&|i| particles.pressure[i] - particles.deviatoric_stress[i][1]),
+        mean(&|i| particles.pressure[i]),
     ]
 }
 
 /// Force of the lower block on the upper one (N per metre of thickness), positive in compression:
 /// what accelerates the upper block as a whole.
 fn push(s: &Simulation) -> f64 {
-    let store = &s.store;
-    let own = (0..store.owned()).filter(|&i| store.body[i] == 1);
+    let particles = &s.particles;
+    let own = (0..particles.owned()).filter(|&i| particles.body[i] == 1);
     own.map(|i| {
-        let contact = store.contact_acceleration.get(i).map_or(0.0, |a| a[1]);
-        store.mass[i] * (store.acceleration[i][1] + contact)
+        let contact = particles.contact_acceleration.get(i).map_or(0.0, |a| a[1]);
+        particles.mass[i] * (particles.acceleration[i][1] + contact)
     })
     .sum()
 }
 
 /// Smallest distance of the two faces (in spacings, by particle centres) within 4.5 mm of the axis.
 fn gap(s: &Simulation) -> f64 {
-    let store = &s.store;
+    let particles = &s.particles;
     let mut faces = [f64::NEG_INFINITY, f64::INFINITY];
-    for i in 0..store.owned() {
-        let [x, y, _] = store.position[i];
+    for i in 0..particles.owned() {
+        let [x, y, _] = particles.position[i];
         if x.abs() > 4.5e-3 {
             continue;
         }
-        if store.body[i] == 0 {
+        if particles.body[i] == 0 {
             faces[0] = faces[0].max(y);
         } else {
             faces[1] = faces[1].min(y);
@@ -78,22 +78,22 @@ fn gap(s: &Simulation) -> f64 {
 /// Largest difference of a particle and the one nearest to its mirror image in the plane across
 /// `axis`: places in spacings, velocities over those of the blocks.
 fn asymmetry(s: &Simulation, axis: usize) -> [f64; 2] {
-    let store = &s.store;
+    let particles = &s.particles;
     let mut worst = [0.0_f64; 2];
-    for i in 0..store.owned() {
-        let (mut x, mut v) = (store.position[i], store.velocity[i]);
+    for i in 0..particles.owned() {
+        let (mut x, mut v) = (particles.position[i], particles.velocity[i]);
         (x[axis], v[axis]) = (-x[axis], -v[axis]);
         let apart = |a: &[f64; 3], b: &[f64; 3]| {
             let square: f64 = (0..3).map(|c| (a[c] - b[c]) * (a[c] - b[c])).sum();
             square.sqrt()
         };
-        let twin = (0..store.owned())
+        let twin = (0..particles.owned())
             .min_by(|&j, &k| {
-                apart(&x, &store.position[j]).total_cmp(&apart(&x, &store.position[k]))
+                apart(&x, &particles.position[j]).total_cmp(&apart(&x, &particles.position[k]))
             })
             .expect("particles");
-        worst[0] = worst[0].max(apart(&x, &store.position[twin]) / spacing(s));
-        worst[1] = worst[1].max(apart(&v, &store.velocity[twin]) / SPEED);
+        worst[0] = worst[0].max(apart(&x, &particles.position[twin]) / spacing(s));
+        worst[1] = worst[1].max(apart(&v, &particles.velocity[twin]) / SPEED);
     }
     worst
 }

@@ -9,9 +9,9 @@ use whipple::step::Simulation;
 /// Particles of every body keep their bits when nothing moves.
 fn assert_at_rest(text: &str) {
     let mut s = start(inline(text));
-    let before = s.store.clone();
+    let before = s.particles.clone();
     let forced = |s: &Simulation| {
-        s.store
+        s.particles
             .contact_acceleration
             .iter()
             .filter(|a| **a != [0.0; 3])
@@ -19,17 +19,17 @@ fn assert_at_rest(text: &str) {
     };
     assert_eq!(forced(&s), 0, "a force at the start");
     assert!(
-        s.store.foreign_fraction.iter().any(|&f| f > 0.1),
+        s.particles.foreign_fraction.iter().any(|&f| f > 0.1),
         "no touch"
     );
     for _ in 0..5 {
         s.advance(&Comm::solo()).expect("a step");
         assert_eq!(forced(&s), 0, "a force in step {}", s.state.step);
     }
-    assert!(s.store.velocity.iter().all(|v| *v == [0.0; 3]));
+    assert!(s.particles.velocity.iter().all(|v| *v == [0.0; 3]));
     assert_eq!(s.state.contact_energy.to_bits(), 0);
     let mut old: Vec<_> = before.id.iter().zip(&before.position).collect();
-    let mut new: Vec<_> = s.store.id.iter().zip(&s.store.position).collect();
+    let mut new: Vec<_> = s.particles.id.iter().zip(&s.particles.position).collect();
     old.sort_by_key(|row| row.0);
     new.sort_by_key(|row| row.0);
     assert_eq!(old, new);
@@ -129,16 +129,16 @@ touch = { body = "left", direction = "-z" }
 /// Smallest slope of a particle's contact energy by its fraction of another body, over the
 /// largest: the pair force is the sum of two of these times a positive factor.
 fn least_slope(s: &Simulation) -> (f64, f64) {
-    let store = &s.store;
+    let particles = &s.particles;
     let (mut least, mut most) = (0.0_f64, 0.0_f64);
-    for i in (0..store.owned()).filter(|&i| store.contact_excess[i] > 0.0) {
-        let body = store.body[i] as usize;
+    for i in (0..particles.owned()).filter(|&i| particles.contact_excess[i] > 0.0) {
+        let body = particles.body[i] as usize;
         for other in (0..s.case.bodies.len()).filter(|&b| b != body) {
             let pair = s.contact().overlap(body, other);
-            let (modulus, excess) = (store.contact_modulus[i], store.contact_excess[i]);
-            let fraction = store.foreign_fraction[i];
+            let (modulus, excess) = (particles.contact_modulus[i], particles.contact_excess[i]);
+            let fraction = particles.foreign_fraction[i];
             let slope =
-                modulus * excess * (1.0 - (pair.touching - store.touching_value[i]) / fraction)
+                modulus * excess * (1.0 - (pair.touching - particles.touching_value[i]) / fraction)
                     + 0.5 * excess * excess * (pair.modulus - modulus) / fraction;
             least = least.min(slope);
             most = most.max(slope);
@@ -168,8 +168,8 @@ fn every_pair_force_is_repulsive() {
     assert!(worst.contact_defect < 0.001);
 }
 
-/// `potential` of the range "spacing": bodies laid in touch begin without force and energy, however the
-/// round-off of their places falls, and part with the energy that they had.
+/// `potential` of the range "spacing": bodies laid in touch begin without force and energy, however
+/// the round-off of their places falls, and part with the energy that they had.
 #[test]
 fn a_potential_of_the_spacing_begins_at_rest_and_keeps_energy() {
     let mode = ["contact.mode=potential", "contact.potential.range=spacing"];
@@ -185,7 +185,7 @@ fn a_potential_of_the_spacing_begins_at_rest_and_keeps_energy() {
             let kinetic = s.state.initial.kinetic_energy;
             assert!(s.state.contact_energy.abs() < 1e-12 * kinetic, "{name}");
             let force = |a: &[f64; 3]| a.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-            let contact = s.store.contact_acceleration.iter().map(force);
+            let contact = s.particles.contact_acceleration.iter().map(force);
             // That of one spacing within a body under a billionth of its modulus.
             let case = &s.case;
             let body = &case.bodies[0];

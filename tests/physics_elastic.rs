@@ -12,7 +12,7 @@ fn wave_speed(smoothing: f64) -> f64 {
     for k in 0..10_i32 {
         run_to(&mut s, 1e-6 * f64::from(60 + 10 * k));
         let v = bar_velocities(&s);
-        let mut x: Vec<f64> = s.store.position.iter().map(|x| x[0]).collect();
+        let mut x: Vec<f64> = s.particles.position.iter().map(|x| x[0]).collect();
         x.sort_by(f64::total_cmp);
         let half = 0.5 * STEP;
         let front = (0..v.len() - 1)

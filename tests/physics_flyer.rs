@@ -63,7 +63,7 @@ impl Flyer {
                 return;
             }
             next += 0.03 * arrival;
-            let x = |i: usize| s.store.position[i][0];
+            let x = |i: usize| s.particles.position[i][0];
             let order = sorted_by(s, 0, x);
             let front = crossing(s, &order, 0, half);
             fronts.push((s.state.time, front));
@@ -71,7 +71,7 @@ impl Flyer {
             let plateau: Vec<f64> = order
                 .iter()
                 .filter(|&&i| x(i) > interface + 8.0 * spacing && x(i) < front - 8.0 * spacing)
-                .map(|&i| s.store.pressure[i])
+                .map(|&i| s.particles.pressure[i])
                 .collect();
             if plateau.len() >= 4 {
                 pressure = median(plateau);
@@ -153,8 +153,8 @@ fn free_surface_velocity_follows_the_isentrope() {
         let mut flyer = Flyer::new(speed, 200.0, &[]);
         let s = &mut flyer.simulation;
         run_to(s, 1.3 * flyer.arrival);
-        let order = sorted_by(s, 0, |i| -s.store.position[i][0]);
-        let outer = order[..12].iter().map(|&i| s.store.velocity[i][0]);
+        let order = sorted_by(s, 0, |i| -s.particles.position[i][0]);
+        let outer = order[..12].iter().map(|&i| s.particles.velocity[i][0]);
         let measured = median(outer.collect());
         let exact = free_surface_velocity(&flyer.medium, &flyer.exact);
         println!(
@@ -233,7 +233,7 @@ fn leftover_is_the_lattice_sum() {
 /// Distance of the target's two outermost particles at the interface, over the median of the bulk
 /// behind the shock.
 fn outermost_spacing(s: &Simulation) -> f64 {
-    let x = |i: usize| s.store.position[i][0];
+    let x = |i: usize| s.particles.position[i][0];
     let order = sorted_by(s, 0, x);
     let gap = |k: usize| x(order[k + 1]) - x(order[k]);
     gap(0) / median((10..30).map(gap).collect())
@@ -258,8 +258,8 @@ fn four_metals_reach_their_hugoniots() {
                 let outermost = outermost_spacing(&flyer.simulation);
                 let s = &mut flyer.simulation;
                 run_to(s, 1.3 * flyer.arrival);
-                let order = sorted_by(s, 0, |i| -s.store.position[i][0]);
-                let outer = order[..12].iter().map(|&i| s.store.velocity[i][0]);
+                let order = sorted_by(s, 0, |i| -s.particles.position[i][0]);
+                let outer = order[..12].iter().map(|&i| s.particles.velocity[i][0]);
                 let free = free_surface_velocity(&flyer.medium, &flyer.exact);
                 let errors = [
                     percent(measured.pressure, flyer.exact.pressure),

@@ -44,7 +44,8 @@ fn slides(ground: Ground, defect: f64) {
                 worst.momentum_error
             );
             let error = (acceleration / exact - 1.0).abs();
-            // A turned lattice stands on three particles and rocks: on `overlap` measured, not held.
+            // A turned lattice stands on three particles and rocks: on `overlap` measured, not
+            // held.
             let held = angle == 0.0 || ground != Ground::Body;
             assert!(!held || error <= 0.02, "{slope:?}: {error}");
             assert!(worst.contact_defect < defect, "{:e}", worst.contact_defect);

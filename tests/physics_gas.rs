@@ -1,8 +1,8 @@
 //! Shocks in gas against exact answers: Sod's tube (`inputs/sod`) and Noh's wall (`inputs/noh`).
 //!
-//! Errors are `L1 = Σ V |q − q_exact| / Σ V` with the volume `V = m/ρ` of each particle. What variable
-//! h and the density by continuity leave behind a shock is an error that does not fall with the
-//! spacing: see the validation page of the book.
+//! Errors are `L1 = Σ V |q − q_exact| / Σ V` with the volume `V = m/ρ` of each particle. What
+//! variable h and the density by continuity leave behind a shock is an error that does not fall
+//! with the spacing: see the validation page of the book.
 
 #[allow(
     dead_code,
@@ -24,17 +24,21 @@ impl Errors {
     /// Against an answer as density (kg/m³), velocity (m/s) and pressure (Pa) at x, between two
     /// places (m).
     fn new(s: &Simulation, [from, to]: [f64; 2], exact: impl Fn(f64) -> [f64; 3]) -> Self {
-        let store = &s.store;
+        let particles = &s.particles;
         let mut sums = [0.0; 3];
         let mut length = 0.0;
-        for i in 0..store.owned() {
-            let x = store.position[i][0];
+        for i in 0..particles.owned() {
+            let x = particles.position[i][0];
             if x < from || x > to {
                 continue;
             }
-            let volume = store.mass[i] / store.density[i];
+            let volume = particles.mass[i] / particles.density[i];
             length += volume;
-            let values = [store.density[i], store.velocity[i][0], store.pressure[i]];
+            let values = [
+                particles.density[i],
+                particles.velocity[i][0],
+                particles.pressure[i],
+            ];
             for (sum, (value, exact)) in sums.iter_mut().zip(values.iter().zip(exact(x))) {
                 *sum += volume * (value - exact).abs();
             }
@@ -45,7 +49,7 @@ impl Errors {
     fn print(&self, s: &Simulation) {
         println!(
             "{} particles, {} steps: L1 of density, velocity, pressure {:.2?}e-3",
-            s.store.owned(),
+            s.particles.owned(),
             s.state.step,
             self.0.map(|e| 1e3 * e),
         );
@@ -116,11 +120,11 @@ fn nohs_wall() {
         });
         errors.print(&s);
         assert!(s.state.worst.energy_error < 1e-12);
-        let shocked = (0..s.store.owned()).filter(|&i| {
-            let x = s.store.position[i][0];
+        let shocked = (0..s.particles.owned()).filter(|&i| {
+            let x = s.particles.position[i][0];
             x > 0.05 && x < 0.15
         });
-        let density = median(shocked.map(|i| s.store.density[i]).collect());
+        let density = median(shocked.map(|i| s.particles.density[i]).collect());
         println!("  density behind the shock {density:.3} of 4");
         assert!((density / 4.0 - 1.0).abs() < 0.03, "{density}");
         errors

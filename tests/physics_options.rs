@@ -22,8 +22,8 @@ fn rectangle(x: f64, y: f64) -> Case {
 }
 
 fn set_velocities(simulation: &mut Simulation, velocity: impl Fn(&[f64; 3]) -> [f64; 3]) {
-    let store = &mut simulation.store;
-    for (v, x) in store.velocity.iter_mut().zip(&store.position) {
+    let particles = &mut simulation.particles;
+    for (v, x) in particles.velocity.iter_mut().zip(&particles.position) {
         *v = velocity(x);
     }
 }
@@ -34,7 +34,7 @@ fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 
 /// The smallest distance of two particles, in spacings.
 fn closest(simulation: &Simulation) -> f64 {
-    let x = &simulation.store.position;
+    let x = &simulation.particles.position;
     let pairs = (0..x.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
     pairs
         .map(|(i, j)| distance(&x[i], &x[j]))
@@ -87,11 +87,15 @@ fn heating(l: [f64; 4], balsara: bool) -> f64 {
         [l[0] * x[0] + l[1] * x[1], l[2] * x[0] + l[3] * x[1], 0.0]
     });
     advance(&mut flow, 1);
-    let store = &flow.store;
-    let middle = |i: &usize| store.position[*i].iter().all(|x| x.abs() < 3.0 * SPACING);
-    (0..store.owned())
+    let particles = &flow.particles;
+    let middle = |i: &usize| {
+        particles.position[*i]
+            .iter()
+            .all(|x| x.abs() < 3.0 * SPACING)
+    };
+    (0..particles.owned())
         .filter(middle)
-        .map(|i| store.d_specific_energy_dt[i])
+        .map(|i| particles.d_specific_energy_dt[i])
         .fold(0.0, f64::max)
 }
 
@@ -151,7 +155,12 @@ fn conduction_spreads_the_heat_at_the_wall() {
             advance(&mut s, 1);
         }
         assert!(s.state.worst.energy_error < 1e-14);
-        let hottest = s.store.specific_energy.iter().copied().fold(0.0, f64::max);
+        let hottest = s
+            .particles
+            .specific_energy
+            .iter()
+            .copied()
+            .fold(0.0, f64::max);
         hottest / 0.5 - 1.0
     };
     let excess = [0.0, 0.5, 1.0].map(wall);
@@ -181,8 +190,12 @@ fn conduction_leaves_rest_alone_and_smooths_what_is_compressed() {
     for moving in [false, true] {
         let mut s = start(case.clone());
         let hot = |x: f64| if x < 0.5 { 1.0 } else { 0.0 };
-        let store = &mut s.store;
-        for (e, x) in store.specific_energy.iter_mut().zip(&store.position) {
+        let particles = &mut s.particles;
+        for (e, x) in particles
+            .specific_energy
+            .iter_mut()
+            .zip(&particles.position)
+        {
             *e = hot(x[0]);
         }
         if moving {
@@ -191,10 +204,13 @@ fn conduction_leaves_rest_alone_and_smooths_what_is_compressed() {
         s.diagnose(&Comm::solo());
         let first = s.state.totals.energy();
         advance(&mut s, 40);
-        let store = &s.store;
-        let mut order: Vec<usize> = (0..store.owned()).collect();
-        order.sort_by(|&i, &j| store.position[i][0].total_cmp(&store.position[j][0]));
-        let e: Vec<f64> = order.iter().map(|&i| store.specific_energy[i]).collect();
+        let particles = &s.particles;
+        let mut order: Vec<usize> = (0..particles.owned()).collect();
+        order.sort_by(|&i, &j| particles.position[i][0].total_cmp(&particles.position[j][0]));
+        let e: Vec<f64> = order
+            .iter()
+            .map(|&i| particles.specific_energy[i])
+            .collect();
         if moving {
             println!("energies at the step: {:.3?}", &e[95..105]);
             assert!(e[99] < 0.9 && e[100] > 0.1 && e[99] > e[100]);
@@ -214,8 +230,8 @@ fn xsph_keeps_particles_in_order() {
         (case.sph.alpha, case.sph.beta) = (0.2, 0.4);
         case.sph.xsph = xsph;
         let mut s = start(case);
-        let store = &mut s.store;
-        for (v, &id) in store.velocity.iter_mut().zip(&store.id) {
+        let particles = &mut s.particles;
+        for (v, &id) in particles.velocity.iter_mut().zip(&particles.id) {
             let mut random = Random::new(id);
             *v = random.vector(2, 800.0);
         }

@@ -5,8 +5,8 @@ mod physics_support;
 
 use physics_support::{inline, ready, run_to, run_with, start};
 
-/// The boundary of a block: its faces with their normals, its edges as corners, nothing inside. Laid
-/// on another body, its faces are free of force.
+/// The boundary of a block: its faces with their normals, its edges as corners, nothing inside.
+/// Laid on another body, its faces are free of force.
 #[test]
 fn boundaries_have_normals() {
     for dimension in [2, 3] {
@@ -36,7 +36,7 @@ touch = {{ body = "below", direction = "-{up}" }}
         let top = dimension - 1;
         let (mut faces, mut corners) = (0, 0);
         let places = |body: u32| -> Vec<f64> {
-            let rows = s.store.body.iter().zip(&s.store.position);
+            let rows = s.particles.body.iter().zip(&s.particles.position);
             rows.filter(|(b, _)| **b == body)
                 .map(|(_, x)| x[top])
                 .collect()
@@ -44,10 +44,10 @@ touch = {{ body = "below", direction = "-{up}" }}
         let lowest = places(1).into_iter().fold(1.0, f64::min);
         let highest = places(0).into_iter().fold(-1.0, f64::max);
         assert!((lowest - highest - 1e-3).abs() < 1e-12);
-        for i in 0..s.store.owned() {
-            let (x, n) = (s.store.position[i], s.store.boundary_normal[i]);
+        for i in 0..s.particles.owned() {
+            let (x, n) = (s.particles.position[i], s.particles.boundary_normal[i]);
             let length = n.iter().map(|c| c * c).sum::<f64>().sqrt();
-            if s.store.body[i] == 1 && (x[top] - lowest).abs() < 1e-6 {
+            if s.particles.body[i] == 1 && (x[top] - lowest).abs() < 1e-6 {
                 let edge = (0..top).any(|a| x[a].abs() > 3.2e-3);
                 assert!(length > 0.0);
                 if edge {
@@ -56,7 +56,7 @@ touch = {{ body = "below", direction = "-{up}" }}
                     faces += 1;
                     assert!((n[top] / length + 1.0).abs() < 1e-9, "{n:?}");
                 }
-            } else if s.store.body[i] == 1
+            } else if s.particles.body[i] == 1
                 && (x[top] - lowest - 1e-3).abs() < 1e-6
                 && (0..top).all(|a| x[a].abs() < 1.1e-3)
             {
@@ -64,15 +64,16 @@ touch = {{ body = "below", direction = "-{up}" }}
             }
         }
         assert!(faces > 0 && corners > 0);
-        // Normals lean near edges, so that there is some force there; in the middle of the faces none.
+        // Normals lean near edges, so that there is some force there; in the middle of the faces
+        // none.
         let modulus = s.case.materials[0].p_wave_modulus();
         let (mut middle, mut rim) = (0.0_f64, 0.0_f64);
-        for i in 0..s.store.owned() {
-            let density = s.store.density[i];
-            let x = s.store.position[i];
+        for i in 0..s.particles.owned() {
+            let density = s.particles.density[i];
+            let x = s.particles.position[i];
             let inside = (0..top).all(|a| x[a].abs() < 1.1e-3);
             let largest = if inside { &mut middle } else { &mut rim };
-            for a in s.store.contact_acceleration[i] {
+            for a in s.particles.contact_acceleration[i] {
                 *largest = largest.max((density * 1e-3 * a / modulus).abs());
             }
         }

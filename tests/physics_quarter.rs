@@ -10,8 +10,8 @@ use whipple::step::Simulation;
 
 /// Positions by identity, which a particle of the quarter shares with its twin in the whole model.
 fn positions(s: &Simulation) -> BTreeMap<u64, Vec3> {
-    let place = |i: usize| (s.store.id[i], Vec3::from(s.store.position[i]));
-    (0..s.store.owned()).map(place).collect()
+    let place = |i: usize| (s.particles.id[i], Vec3::from(s.particles.position[i]));
+    (0..s.particles.owned()).map(place).collect()
 }
 
 /// Mirror images must be worth as much as particles: 1e-9 Δp leaves room for the different order
@@ -23,7 +23,7 @@ fn a_quarter_follows_the_whole_model() {
         "quarter-impact",
         &["spacing=\"0.05 mm\"", "symmetry=[]"],
     ));
-    assert_eq!(4 * quarter.store.owned(), whole.store.owned());
+    assert_eq!(4 * quarter.particles.owned(), whole.particles.owned());
     let first = positions(&quarter);
     run_to(&mut quarter, 0.01e-6);
     run_to(&mut whole, 0.01e-6);

@@ -8,19 +8,19 @@ use whipple::step::Simulation;
 
 /// Number of connected pieces of a body whose particles are linked when they are nearer than
 /// `reach` (m).
-fn pieces(s: &Simulation, body: u32, reach: f64) -> usize {
-    let of_body = |&i: &usize| s.store.body[i] == body;
-    let particles = (0..s.store.owned()).filter(of_body);
-    let points: Vec<[f64; 3]> = particles.map(|i| s.store.position[i]).collect();
-    diagnose::pieces::pieces(&points, reach).len()
+fn fragments(s: &Simulation, body: u32, reach: f64) -> usize {
+    let of_body = |&i: &usize| s.particles.body[i] == body;
+    let particles = (0..s.particles.owned()).filter(of_body);
+    let points: Vec<[f64; 3]> = particles.map(|i| s.particles.position[i]).collect();
+    diagnose::fragments::fragments(&points, reach).len()
 }
 
 /// Mean velocity of a body along x (m/s).
 fn mean_velocity(s: &Simulation, body: u32) -> f64 {
     let (mut momentum, mut mass) = (0.0, 0.0);
-    for i in (0..s.store.owned()).filter(|&i| s.store.body[i] == body) {
-        momentum += s.store.mass[i] * s.store.velocity[i][0];
-        mass += s.store.mass[i];
+    for i in (0..s.particles.owned()).filter(|&i| s.particles.body[i] == body) {
+        momentum += s.particles.mass[i] * s.particles.velocity[i][0];
+        mass += s.particles.mass[i];
     }
     momentum / mass
 }
@@ -33,7 +33,7 @@ fn collide(overrides: &[&str]) -> (Simulation, [usize; 2]) {
     for k in 1..=10 {
         run_to(&mut s, 0.3e-3 * f64::from(k));
         for body in [0, 1] {
-            most[body as usize] = pieces(&s, body, reach).max(most[body as usize]);
+            most[body as usize] = fragments(&s, body, reach).max(most[body as usize]);
         }
     }
     (s, most)

@@ -26,9 +26,9 @@ fn block(name: &str, from: f64, to: f64) -> String {
 /// Momentum (kg m/s) and kinetic energy (J) of what is left and what is right of the middle.
 fn sides(s: &Simulation) -> [[f64; 2]; 2] {
     let mut sides = [[0.0; 2]; 2];
-    for i in 0..s.store.owned() {
-        let (m, v) = (s.store.mass[i], s.store.velocity[i]);
-        let side = &mut sides[usize::from(s.store.position[i][0] > 0.0)];
+    for i in 0..s.particles.owned() {
+        let (m, v) = (s.particles.mass[i], s.particles.velocity[i]);
+        let side = &mut sides[usize::from(s.particles.position[i][0] > 0.0)];
         side[0] += m * v[0];
         side[1] += 0.5 * m * (v[0] * v[0] + v[1] * v[1]);
     }
@@ -36,7 +36,7 @@ fn sides(s: &Simulation) -> [[f64; 2]; 2] {
 }
 
 fn parts(s: &Simulation) -> usize {
-    s.store.part.iter().collect::<BTreeSet<_>>().len()
+    s.particles.part.iter().collect::<BTreeSet<_>>().len()
 }
 
 /// A bar whose halves stand 3 mm apart and are thrown at each other is two bodies: their velocities
@@ -57,12 +57,15 @@ fn halves_of_a_body_collide_like_two_bodies() {
             "dimension = 2\nspacing = \"1 mm\"\nrun.end_time = \"3 ms\"\n\
              contact.self_contact = {self_contact}\n{SOFT}{bodies}"
         )));
-        for i in 0..s.store.owned() {
-            let side = s.store.position[i][0].signum();
+        for i in 0..s.particles.owned() {
+            let side = s.particles.position[i][0].signum();
             if !apart {
-                s.store.position[i][0] += 1.5e-3 * side;
+                s.particles.position[i][0] += 1.5e-3 * side;
             }
-            for velocity in [&mut s.store.velocity[i], &mut s.store.predicted_velocity[i]] {
+            for velocity in [
+                &mut s.particles.velocity[i],
+                &mut s.particles.predicted_velocity[i],
+            ] {
                 velocity[0] = -4.0 * side;
             }
         }
@@ -181,7 +184,7 @@ fn a_ring_that_is_squashed_carries_on_its_inside() {
             pressed = pressed.max(-s.state.loads[0].force[1]);
         });
         let opening = |s: &Simulation| {
-            let inside = s.store.position.iter().filter(|x| x[0].abs() < 2e-3);
+            let inside = s.particles.position.iter().filter(|x| x[0].abs() < 2e-3);
             inside.map(|x| x[1].abs()).fold(1.0, f64::min)
         };
         let worst = &s.state.worst;

@@ -9,33 +9,33 @@ mod shocks;
 use physics_support::bars::{axial_stress, interface_force};
 use physics_support::{inline, median, ready, run_to, run_with, start};
 use shocks::impact;
-use whipple::diagnose::pieces::pieces;
+use whipple::diagnose::fragments::fragments;
 use whipple::exact::finite_strain::Medium;
 use whipple::step::Simulation;
 
 /// What carries stress: stress points, or all particles.
 fn carriers(s: &Simulation) -> Vec<usize> {
-    let points = &s.store.stress_mass;
+    let points = &s.particles.stress_mass;
     let carries = |&i: &usize| points.get(i).is_none_or(|&m| m > 0.0);
-    (0..s.store.owned()).filter(carries).collect()
+    (0..s.particles.owned()).filter(carries).collect()
 }
 
 /// What has mass: all but stress points.
 fn particles(s: &Simulation) -> Vec<usize> {
-    let has_mass = |&i: &usize| s.store.mass[i] > 0.0;
-    (0..s.store.owned()).filter(has_mass).collect()
+    let has_mass = |&i: &usize| s.particles.mass[i] > 0.0;
+    (0..s.particles.owned()).filter(has_mass).collect()
 }
 
 /// Energy that stays at velocity particles, over the energy put in.
 fn remainder(s: &Simulation) -> f64 {
-    let heat = |i: usize| s.store.mass[i] * s.store.specific_energy[i];
+    let heat = |i: usize| s.particles.mass[i] * s.particles.specific_energy[i];
     let all: f64 = particles(s).into_iter().map(heat).sum();
     all / s.state.initial.kinetic_energy.max(s.state.work_put_in)
 }
 
 /// ±1, from particle to particle along each axis.
 fn sign(s: &Simulation, i: usize) -> f64 {
-    let cells = s.store.position[i].map(|x| (x * 1e3).floor());
+    let cells = s.particles.position[i].map(|x| (x * 1e3).floor());
     if cells.iter().sum::<f64>() % 2.0 == 0.0 {
         1.0
     } else {
@@ -43,8 +43,8 @@ fn sign(s: &Simulation, i: usize) -> f64 {
     }
 }
 
-/// Part of alternating velocities of ±1 m/s in the middle of a block of 20 spacings that is left when
-/// sound has gone 10 spacings, and the least on the way.
+/// Part of alternating velocities of ±1 m/s in the middle of a block of 20 spacings that is left
+/// when sound has gone 10 spacings, and the least on the way.
 fn left(form: &str, dimension: usize, alpha: f64) -> [f64; 2] {
     let (upper, lower) = (["\"20 mm\""; 3], ["0"; 3]);
     let (upper, lower) = (upper[..dimension].join(", "), lower[..dimension].join(", "));
@@ -56,23 +56,23 @@ fn left(form: &str, dimension: usize, alpha: f64) -> [f64; 2] {
          shape.box = {{ lower = [{lower}], upper = [{upper}] }}\n"
     )));
     for i in particles(&s) {
-        s.store.velocity[i] = [sign(&s, i), 0.0, 0.0];
+        s.particles.velocity[i] = [sign(&s, i), 0.0, 0.0];
     }
     // Nothing is known of velocities before.
     s.state.last_dt = 1e30;
     let middle = |x: &[f64; 3]| (0..dimension).all(|a| (x[a] - 10e-3).abs() < 5e-3);
     let mut signs = particles(&s);
-    signs.retain(|&i| middle(&s.store.position[i]));
+    signs.retain(|&i| middle(&s.particles.position[i]));
     let signs: std::collections::BTreeMap<u64, f64> = signs
         .into_iter()
-        .map(|i| (s.store.id[i], sign(&s, i)))
+        .map(|i| (s.particles.id[i], sign(&s, i)))
         .collect();
     let (mut last, mut least) = (1.0_f64, 1.0_f64);
     run_with(&mut s, 10e-3 / 5855.5, |s| {
         let part = |i: usize| {
             signs
-                .get(&s.store.id[i])
-                .map(|sign| sign * s.store.velocity[i][0])
+                .get(&s.particles.id[i])
+                .map(|sign| sign * s.particles.velocity[i][0])
         };
         let parts: Vec<f64> = particles(s).into_iter().filter_map(part).collect();
         #[allow(clippy::cast_precision_loss, reason = "few particles")]
@@ -119,7 +119,7 @@ fn the_bars_meet_and_part() {
                 last = s.state.time;
             }
             let mut order = carriers(s);
-            let x = |i: usize| s.store.position[i][0];
+            let x = |i: usize| s.particles.position[i][0];
             order.sort_by(|&a, &b| x(a).total_cmp(&x(b)));
             let half = order.len() / 2;
             let stress = |k: usize| -axial_stress(s, order[k]);
@@ -127,7 +127,7 @@ fn the_bars_meet_and_part() {
                 let (from, to) = (half / 16, half / 5);
                 let [steel, aluminium] = [half - to..half - from, half + from..half + to];
                 let speeds = steel.clone().chain(aluminium.clone());
-                let speeds = speeds.map(|k| s.store.velocity[order[k]][0]).collect();
+                let speeds = speeds.map(|k| s.particles.velocity[order[k]][0]).collect();
                 plateau = [
                     force / -exact.stress,
                     median(steel.map(stress).collect()) / -exact.stress,
@@ -141,8 +141,10 @@ fn the_bars_meet_and_part() {
                 remains = remains.max(rest / -exact.stress);
             }
         });
-        let of_aluminium = particles(&s).into_iter().filter(|&i| s.store.body[i] == 1);
-        let speeds = of_aluminium.map(|i| s.store.velocity[i][0]);
+        let of_aluminium = particles(&s)
+            .into_iter()
+            .filter(|&i| s.particles.body[i] == 1);
+        let speeds = of_aluminium.map(|i| s.particles.velocity[i][0]);
         let rebound = speeds.sum::<f64>() / f64::from(cells) / 386.1;
         let worst = &s.state.worst;
         println!(
@@ -162,8 +164,8 @@ fn the_bars_meet_and_part() {
     }
 }
 
-/// The blocks beyond the first layers, whose stress differs: means of stress and pressure over those
-/// of a one-dimensional reference, and the scatter of pressure.
+/// The blocks beyond the first layers, whose stress differs: means of stress and pressure over
+/// those of a one-dimensional reference, and the scatter of pressure.
 #[test]
 fn the_blocks_have_their_stress() {
     for (form, spacing) in [
@@ -177,18 +179,18 @@ fn the_blocks_have_their_stress() {
         run_to(&mut s, 0.6e-6);
         let mut samples = Vec::new();
         run_with(&mut s, 0.8e-6, |s| {
-            let store = &s.store;
+            let particles = &s.particles;
             let inside = |i: &usize| {
-                let [x, y, _] = store.position[*i];
+                let [x, y, _] = particles.position[*i];
                 x.abs() < 1e-3 && (0.8e-3..2e-3).contains(&y.abs())
             };
             let chosen: Vec<usize> = carriers(s).into_iter().filter(inside).collect();
             #[allow(clippy::cast_precision_loss, reason = "few particles")]
             let n = chosen.len() as f64;
             let mean = |f: &dyn Fn(usize) -> f64| chosen.iter().map(|&i| f(i)).sum::<f64>() / n;
-            let stress = mean(&|i| store.pressure[i] - store.deviatoric_stress[i][1]);
-            let pressure = mean(&|i| store.pressure[i]);
-            let scatter = mean(&|i| (store.pressure[i] - pressure).powi(2)).sqrt();
+            let stress = mean(&|i| particles.pressure[i] - particles.deviatoric_stress[i][1]);
+            let pressure = mean(&|i| particles.pressure[i]);
+            let scatter = mean(&|i| (particles.pressure[i] - pressure).powi(2)).sqrt();
             samples.push([stress / 0.0733e11, pressure / 0.0713e11, scatter / pressure]);
         });
         let [stress, pressure, scatter] =
@@ -213,7 +215,7 @@ fn the_blocks_have_their_stress() {
 /// Smallest over median distance of particles to their nearest, and the number of pieces that
 /// particles within `reach` (m) hang together in.
 fn spacings(s: &Simulation, reach: f64) -> (f64, usize) {
-    let place = |&i: &usize| s.store.position[i];
+    let place = |&i: &usize| s.particles.position[i];
     let points: Vec<[f64; 3]> = particles(s).iter().map(place).collect();
     let apart =
         |p: &[f64; 3], q: &[f64; 3]| -> f64 { (0..3).map(|a| (p[a] - q[a]) * (p[a] - q[a])).sum() };
@@ -226,11 +228,11 @@ fn spacings(s: &Simulation, reach: f64) -> (f64, usize) {
     };
     let all: Vec<f64> = points.iter().map(nearest).collect();
     let least = all.iter().copied().fold(f64::INFINITY, f64::min);
-    (least / median(all), pieces(&points, reach).len())
+    (least / median(all), fragments(&points, reach).len())
 }
 
-/// A strip that flows evenly keeps its spacings to a stretch of 1.56; conventional SPH is in pieces at
-/// 1.17, normalised SPH has clumped at 1.28.
+/// A strip that flows evenly keeps its spacings to a stretch of 1.56; conventional SPH is in pieces
+/// at 1.17, normalised SPH has clumped at 1.28.
 #[test]
 fn a_strip_in_tension_stays_whole() {
     for (form, steps) in [
@@ -244,7 +246,9 @@ fn a_strip_in_tension_stays_whole() {
             let time = 50e-6 * f64::from(k);
             run_to(&mut s, time);
             let stretch = 1.0 + 40.0 * time / 36e-3;
-            let of_points = carriers(&s).into_iter().map(|i| s.store.plastic_strain[i]);
+            let of_points = carriers(&s)
+                .into_iter()
+                .map(|i| s.particles.plastic_strain[i]);
             let plastic: Vec<f64> = of_points.collect();
             let most = plastic.iter().copied().fold(0.0, f64::max);
             let middle = median(plastic);
@@ -283,7 +287,7 @@ fn rings_rebound_whole() {
     ));
     let of = |s: &Simulation, body: u32| {
         let mut own = particles(s);
-        own.retain(|&i| s.store.body[i] == body);
+        own.retain(|&i| s.particles.body[i] == body);
         own
     };
     let mut least = 1.0_f64;
@@ -291,16 +295,16 @@ fn rings_rebound_whole() {
         run_to(&mut s, 0.3e-3 * f64::from(k));
         least = least.min(spacings(&s, 3e-3).0);
         for body in [0, 1] {
-            let places = of(&s, body).into_iter().map(|i| s.store.position[i]);
-            assert_eq!(pieces(&places.collect::<Vec<_>>(), 3e-3).len(), 1);
+            let places = of(&s, body).into_iter().map(|i| s.particles.position[i]);
+            assert_eq!(fragments(&places.collect::<Vec<_>>(), 3e-3).len(), 1);
         }
     }
     let velocities = [0, 1].map(|body| {
         let own = of(&s, body);
-        let mass: f64 = own.iter().map(|&i| s.store.mass[i]).sum();
+        let mass: f64 = own.iter().map(|&i| s.particles.mass[i]).sum();
         let momentum = own
             .iter()
-            .map(|&i| s.store.mass[i] * s.store.velocity[i][0]);
+            .map(|&i| s.particles.mass[i] * s.particles.velocity[i][0]);
         momentum.sum::<f64>() / mass
     });
     let restitution = (velocities[1] - velocities[0]) / (2.0 * 50.27);

@@ -36,7 +36,7 @@ impl Pair {
     /// Largest difference of velocity over that of the step: farther than three spacings from the
     /// interface, and within.
     fn errors(&self) -> [f64; 2] {
-        let velocity = |s: &Simulation, i: usize| s.store.velocity[i][0];
+        let velocity = |s: &Simulation, i: usize| s.particles.velocity[i][0];
         let mut worst = [0.0_f64; 2];
         let all = in_order(&self.split).into_iter().zip(in_order(&self.whole));
         for (k, (a, b)) in all.enumerate() {

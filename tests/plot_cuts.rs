@@ -167,7 +167,8 @@ fn a_block_has_no_holes_wherever_it_is_cut() {
             let [left, right, top, bottom] = bounds(&picture, FIRST);
             let area = real(places(&picture, FIRST, 130).len());
             let square = f64::from(right - left + 1) * f64::from(bottom - top + 1);
-            // A turned square covers less of the one about it; a hexagonal lattice has jagged faces.
+            // A turned square covers less of the one about it; a hexagonal lattice has jagged
+            // faces.
             let (share, bound) = match name {
                 "turned" => ((0.4_f64.sin() + 0.4_f64.cos()).powi(-2), 0.04),
                 "hexagonal" => (0.95, 0.05),

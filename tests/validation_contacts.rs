@@ -1,5 +1,5 @@
-//! Every contact mode on the same problems: the tables of the book's page on choosing a contact, which
-//! `make contact-lab` writes. Reported; the bounds stand in the tests of each problem.
+//! Every contact mode on the same problems: the tables of the book's page on choosing a contact,
+//! which `make contact-lab` writes. Reported; the bounds stand in the tests of each problem.
 
 mod physics_support;
 
@@ -31,7 +31,8 @@ const MODES: &[(&str, &[&str])] = &[
     ("`kernel`", &["contact.mode=kernel"]),
 ];
 
-/// A problem: its input, what it changes there, when it ends (s), and what its answer is off by (%).
+/// A problem: its input, what it changes there, when it ends (s), and what its answer is off by
+/// (%).
 struct Problem {
     name: &'static str,
     input: &'static str,
@@ -94,7 +95,8 @@ struct Run {
     mode: &'static [&'static str],
     /// Of the answer, in %.
     error: Option<f64>,
-    /// Largest change of energy and contact defect, over the first kinetic energy or the work put in.
+    /// Largest change of energy and contact defect, over the first kinetic energy or the work put
+    /// in.
     energy: f64,
     defect: f64,
     /// Mean and largest tangential force over the mean normal force.
@@ -226,20 +228,22 @@ fn run(problem: &'static Problem, mode: &'static [&'static str]) -> Run {
 
 /// What must be read off while a problem runs.
 fn sample(problem: &Problem, s: &Simulation, samples: &mut Vec<f64>) {
-    let store = &s.store;
+    let particles = &s.particles;
     if problem.name == "block" && (0.6e-6..0.8e-6).contains(&s.state.time) {
-        let near =
-            |i: &usize| store.position[*i][0].abs() < 1e-3 && store.position[*i][1].abs() < 0.8e-3;
-        let chosen = (0..store.owned()).filter(near);
-        let stress = chosen.map(|i| store.pressure[i] - store.deviatoric_stress[i][1]);
+        let near = |i: &usize| {
+            particles.position[*i][0].abs() < 1e-3 && particles.position[*i][1].abs() < 0.8e-3
+        };
+        let chosen = (0..particles.owned()).filter(near);
+        let stress = chosen.map(|i| particles.pressure[i] - particles.deviatoric_stress[i][1]);
         samples.push(mean(stress));
     }
     if problem.name == "dam" && s.state.step.is_multiple_of(10) {
         let spacing = s.case.bodies[0].lattice.spacing;
-        let water = (0..store.owned()).filter(|&i| store.body[i] == 0);
-        let points: Vec<[f64; 3]> = water.map(|i| store.position[i]).collect();
-        let front = whipple::diagnose::pieces::front(&points, 0, spacing).unwrap_or(0.0);
-        // Distance of the front over the column's width, and Martin & Moyce's time of it over √(a/2g).
+        let water = (0..particles.owned()).filter(|&i| particles.body[i] == 0);
+        let points: Vec<[f64; 3]> = water.map(|i| particles.position[i]).collect();
+        let front = whipple::diagnose::fragments::front(&points, 0, spacing).unwrap_or(0.0);
+        // Distance of the front over the column's width, and Martin & Moyce's time of it over
+        // √(a/2g).
         let measured = [(2.0, 1.71), (3.0, 2.52), (4.0, 3.21)];
         if let Some((z, time)) = measured.get(samples.len())
             && front + 0.05 * spacing >= z * 0.146
@@ -258,22 +262,24 @@ fn none(_: &Simulation, _: &Run) -> Option<f64> {
     None
 }
 
-/// Largest difference of velocity from the bar in one piece over that of the step, farther than three
-/// spacings from the interface.
+/// Largest difference of velocity from the bar in one piece over that of the step, farther than
+/// three spacings from the interface.
 fn wave(s: &Simulation, run: &Run) -> Option<f64> {
     let whole = in_one_piece(load(run.problem.input, run.mode).ok()?);
     let (whole, _) = advance(whole, f64::INFINITY, &mut |_| {});
     let both = in_order(s).into_iter().zip(in_order(&whole)).enumerate();
     let away = both.filter(|(k, _)| !(47..53).contains(k));
-    let off = |(a, b): (usize, usize)| (s.store.velocity[a][0] - whole.store.velocity[b][0]).abs();
+    let off = |(a, b): (usize, usize)| {
+        (s.particles.velocity[a][0] - whole.particles.velocity[b][0]).abs()
+    };
     Some(1e2 / STEP * away.map(|(_, pair)| off(pair)).fold(0.0, f64::max))
 }
 
 /// Final velocity of the aluminium bar beside the exact one of small strain, 386.1 m/s.
 #[allow(clippy::unnecessary_wraps, reason = "the form of a measure")]
 fn rebound(s: &Simulation, _: &Run) -> Option<f64> {
-    let aluminium = (0..s.store.owned()).filter(|&i| s.store.body[i] == 1);
-    Some(1e2 * (mean(aluminium.map(|i| s.store.velocity[i][0])) / 386.1 - 1.0))
+    let aluminium = (0..s.particles.owned()).filter(|&i| s.particles.body[i] == 1);
+    Some(1e2 * (mean(aluminium.map(|i| s.particles.velocity[i][0])) / 386.1 - 1.0))
 }
 
 /// Mean stress on the axis beside that of one dimension, .0733 Mbar.
@@ -319,8 +325,8 @@ fn off_a_wall(s: &Simulation, _: &Run) -> Option<f64> {
     let wall = load("rubber-rings", &changes).expect("a ring and a wall");
     let (wall, _) = advance(wall, s.state.time, &mut |_| {});
     let rebound = |s: &Simulation| {
-        let right = (0..s.store.owned()).filter(|&i| s.store.body[i] == 1);
-        mean(right.map(|i| s.store.velocity[i][0]))
+        let right = (0..s.particles.owned()).filter(|&i| s.particles.body[i] == 1);
+        mean(right.map(|i| s.particles.velocity[i][0]))
     };
     Some(1e2 * (rebound(s) / rebound(&wall) - 1.0))
 }
@@ -334,8 +340,8 @@ fn seam(s: &Simulation, run: &Run) -> Option<f64> {
     );
     let lost = |s: &Simulation| {
         let body = u32::try_from(s.case.bodies.len() - 1).expect("few bodies");
-        let sphere = (0..s.store.owned()).filter(|&i| s.store.body[i] == body);
-        7000.0 + mean(sphere.map(|i| s.store.velocity[i][2]))
+        let sphere = (0..s.particles.owned()).filter(|&i| s.particles.body[i] == body);
+        7000.0 + mean(sphere.map(|i| s.particles.velocity[i][2]))
     };
     Some(1e2 * (lost(s) / lost(&whole) - 1.0))
 }

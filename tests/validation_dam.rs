@@ -20,8 +20,8 @@ fn the_dam_keeps_its_bars() {
     assert!(dam.simulation.is_finished());
 }
 
-/// The less viscosity the earlier the front. It leads by up to 13 % at first and by as long all the way:
-/// a wall that vanishes at once is not Martin & Moyce's. 15 % leave room for other spacings.
+/// The less viscosity the earlier the front. It leads by up to 13 % at first and by as long all the
+/// way: a wall that vanishes at once is not Martin & Moyce's. 15 % leave room for other spacings.
 #[test]
 #[ignore = "slow: make validation"]
 fn the_front_by_viscosity() {

@@ -57,10 +57,10 @@ fn the_middle_of_a_block_reaches_the_hugoniot() {
                 return;
             }
             next += 0.05 * end;
-            let z = |i: usize| s.store.position[i][2];
+            let z = |i: usize| s.particles.position[i][2];
             let mut column = sorted_by(s, 0, z);
             column.retain(|&i| {
-                let [x, y, _] = s.store.position[i];
+                let [x, y, _] = s.particles.position[i];
                 x < spacing && y < spacing
             });
             let front = crossing(s, &column, 2, 0.5 * exact.pressure);
@@ -69,7 +69,7 @@ fn the_middle_of_a_block_reaches_the_hugoniot() {
             let plateau = column
                 .iter()
                 .filter(|&&i| z(i) > interface + 8.0 * spacing && z(i) < front - 8.0 * spacing)
-                .map(|&i| s.store.pressure[i]);
+                .map(|&i| s.particles.pressure[i]);
             let plateau: Vec<f64> = plateau.collect();
             if plateau.len() >= 3 {
                 pressure = median(plateau);
@@ -80,7 +80,7 @@ fn the_middle_of_a_block_reaches_the_hugoniot() {
         println!(
             "{smoothing_length}: {} particles, {} steps, {:.2} GPa ({:+.2} %), {shock_speed:.0} m/s ({:+.2} %), \
              interpenetrated at worst {}, closest {:?}",
-            s.store.owned(),
+            s.particles.owned(),
             s.state.step,
             1e-9 * pressure,
             1e2 * (pressure / 97.6e9 - 1.0),

@@ -15,18 +15,18 @@ const PLANE_MODULUS: f64 = 70e9 / (1.0 - 0.33 * 0.33);
 
 /// Forces of contact along y (N/m) of one half of the model, and where along x they stand (m).
 fn pushes(s: &Simulation) -> Vec<(f64, f64)> {
-    let store = &s.store;
-    (0..store.owned())
+    let particles = &s.particles;
+    (0..particles.owned())
         .map(|i| {
-            let force = store.mass[i] * store.contact_acceleration[i][1];
-            (store.position[i][0], -force)
+            let force = particles.mass[i] * particles.contact_acceleration[i][1];
+            (particles.position[i][0], -force)
         })
         .filter(|push| push.1 > 0.0)
         .collect()
 }
 
-/// Means over the end of a run of the half width of a line contact and of its largest pressure, over
-/// those of Hertz at the force of the same moment.
+/// Means over the end of a run of the half width of a line contact and of its largest pressure,
+/// over those of Hertz at the force of the same moment.
 #[derive(Default)]
 struct LineContact {
     samples: f64,
@@ -85,8 +85,8 @@ fn width_and_pressure_of_a_line_contact() {
     }
 }
 
-/// Errors of the half width of a disc's contact with a plate and of its largest pressure, and of `σ_x`
-/// and `σ_y` at its centre, from 33 µs to the end.
+/// Errors of the half width of a disc's contact with a plate and of its largest pressure, and of
+/// `σ_x` and `σ_y` at its centre, from 33 µs to the end.
 fn disc(spacing: &str) -> [f64; 4] {
     let mut s = start(ready("hertz-disc", &[&format!("spacing=\"{spacing}\"")]));
     let mut contact = LineContact::default();
@@ -97,13 +97,13 @@ fn disc(spacing: &str) -> [f64; 4] {
         }
         contact.sample(s);
         force += 2.0 * pushes(s).iter().map(|p| p.1).sum::<f64>();
-        let store = &s.store;
-        let near = |i: &usize| store.position[*i][0].hypot(store.position[*i][1]) < 1e-3;
-        let inner: Vec<usize> = (0..store.owned()).filter(near).collect();
+        let particles = &s.particles;
+        let near = |i: &usize| particles.position[*i][0].hypot(particles.position[*i][1]) < 1e-3;
+        let inner: Vec<usize> = (0..particles.owned()).filter(near).collect();
         #[allow(clippy::cast_precision_loss, reason = "few particles")]
         let count = inner.len() as f64;
         for (a, sum) in stress.iter_mut().enumerate() {
-            let of = |&i: &usize| store.deviatoric_stress[i][a] - store.pressure[i];
+            let of = |&i: &usize| particles.deviatoric_stress[i][a] - particles.pressure[i];
             *sum += inner.iter().map(of).sum::<f64>() / count;
         }
     });

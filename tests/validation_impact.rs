@@ -30,7 +30,7 @@ fn run(overrides: &[&str]) -> Run {
          energy error {:.4} %, contact defect {:.4} %, momentum error {:.1e} {:.1e} {:.1e}\n  \
          interpenetrated {}, closest {:?}, largest fraction {:.3}, limited by contact {}\n  \
          hole {:.4} mm, kinetic energy {:.4} of the first",
-        simulation.store.owned(),
+        simulation.particles.owned(),
         state.step,
         seconds(&simulation),
         1e2 * worst.energy_error,
@@ -102,9 +102,9 @@ fn a_quarter_is_worth_the_whole_at_the_end() {
     }
 }
 
-/// The two outermost layers of both bodies pair up behind the shock, with constant and with variable h:
-/// nearest neighbours within the body, by layer. In the sphere they are .38 to .46 Δp apart at first, the
-/// fourth layer and deeper ones .63 to .66, with bounds in the middle.
+/// The two outermost layers of both bodies pair up behind the shock, with constant and with
+/// variable h: nearest neighbours within the body, by layer. In the sphere they are .38 to .46 Δp
+/// apart at first, the fourth layer and deeper ones .63 to .66, with bounds in the middle.
 #[test]
 #[ignore = "slow: make validation"]
 fn the_outermost_layers_pair_up() {

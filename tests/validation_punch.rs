@@ -8,8 +8,8 @@ use whipple::step::LoadState;
 /// The die carries what the punch presses with, and both do the work that the block has got. The
 /// law of the block in uniaxial strain gives the force `A M ln(H/h)` and the work that is its
 /// integral; conventional sums make the layers at a free face too soft, which adds the give of some
-/// spacings to that of the block: `F = A M ln(H/h) / (1 + c Δp/H)`. Without it, that is extrapolated
-/// from two spacings, the force is the exact one.
+/// spacings to that of the block: `F = A M ln(H/h) / (1 + c Δp/H)`. Without it, that is
+/// extrapolated from two spacings, the force is the exact one.
 #[test]
 #[ignore = "slow: make validation"]
 fn the_reaction_of_the_die() {

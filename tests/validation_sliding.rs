@@ -42,7 +42,8 @@ fn slide(overrides: &[&str]) -> Friction {
     friction
 }
 
-/// Mean and largest at most .01 for `overlap`, whatever the lattices; the case asks for .01 and .02.
+/// Mean and largest at most .01 for `overlap`, whatever the lattices; the case asks for .01 and
+/// .02.
 #[test]
 #[ignore = "slow: make validation"]
 fn sliding_is_free_of_friction() {
@@ -56,8 +57,8 @@ fn sliding_is_free_of_friction() {
     }
 }
 
-/// The same figures for `potential`, reported, at a stiffness that presses with about a hundredth of
-/// the modulus: with 1, bodies laid in touch throw each other off.
+/// The same figures for `potential`, reported, at a stiffness that presses with about a hundredth
+/// of the modulus: with 1, bodies laid in touch throw each other off.
 #[test]
 #[ignore = "slow: make validation"]
 fn sliding_with_the_potential() {

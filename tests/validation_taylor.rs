@@ -16,12 +16,12 @@ fn radius(place: &[f64; 3]) -> f64 {
 /// The rim of the foot: particles of the lowest layer that begin beyond nine tenths of the radius,
 /// with that beginning (m), sorted by identity.
 fn rim(s: &Simulation) -> Vec<(u64, f64)> {
-    let store = &s.store;
-    let z = |i: usize| store.position[i][2];
-    let lowest = (0..store.owned()).map(z).fold(f64::INFINITY, f64::min);
-    let layer = (0..store.owned()).filter(|&i| z(i) < lowest + 1e-6);
+    let particles = &s.particles;
+    let z = |i: usize| particles.position[i][2];
+    let lowest = (0..particles.owned()).map(z).fold(f64::INFINITY, f64::min);
+    let layer = (0..particles.owned()).filter(|&i| z(i) < lowest + 1e-6);
     let mut rim: Vec<(u64, f64)> = layer
-        .map(|i| (store.id[i], radius(&store.position[i])))
+        .map(|i| (particles.id[i], radius(&particles.position[i])))
         .filter(|(_, r)| *r > 0.9 * RADIUS)
         .collect();
     rim.sort_unstable_by_key(|(id, _)| *id);
@@ -38,24 +38,26 @@ fn copper_rod_ends_as_in_published_codes() {
     let mut s = start(ready("taylor-bar", &[]));
     let rim = rim(&s);
     run_to(&mut s, 80e-6);
-    let store = &s.store;
-    let top = store.position[..store.owned()]
+    let particles = &s.particles;
+    let top = particles.position[..particles.owned()]
         .iter()
         .map(|x| x[2])
         .fold(0.0, f64::max);
     let length = top + 0.5 * s.case.bodies[0].lattice.spacing;
-    let stretch = (0..store.owned()).filter_map(|i| {
-        let k = rim.binary_search_by_key(&store.id[i], |(id, _)| *id).ok()?;
-        Some(radius(&store.position[i]) / rim[k].1)
+    let stretch = (0..particles.owned()).filter_map(|i| {
+        let k = rim
+            .binary_search_by_key(&particles.id[i], |(id, _)| *id)
+            .ok()?;
+        Some(radius(&particles.position[i]) / rim[k].1)
     });
     let foot = RADIUS * median(stretch.collect());
-    let strain = store.plastic_strain[..store.owned()]
+    let strain = particles.plastic_strain[..particles.owned()]
         .iter()
         .copied()
         .fold(0.0, f64::max);
     println!(
         "{} particles, {} steps: length {:.2} mm, foot {:.2} mm, plastic strain {strain:.2}",
-        store.owned(),
+        particles.owned(),
         s.state.step,
         1e3 * length,
         1e3 * foot,

@@ -120,19 +120,19 @@ fn contact(criterion: &mut Criterion) {
     group.bench_function("fractions", |bencher| {
         let view = scene.contact(&table);
         bencher.iter(|| {
-            for (place, neighbours) in pairs() {
-                black_box(overlap::fraction(&view, place, neighbours, 0.0));
+            for (index, neighbours) in pairs() {
+                black_box(overlap::fraction(&view, index, neighbours, 0.0));
             }
         });
     });
-    for (place, neighbours) in pairs() {
-        let fraction = overlap::fraction(&scene.contact(&table), place, neighbours, 0.0);
-        let i = scene.sequence.images()[place as usize].base();
-        scene.store.foreign_fraction[i] = fraction.fraction;
-        scene.store.contact_excess[i] = fraction.excess;
-        scene.store.contact_modulus[i] = fraction.modulus;
-        scene.store.touching_value[i] = fraction.touching;
-        scene.store.contact_slope[i] = fraction.slope;
+    for (index, neighbours) in pairs() {
+        let fraction = overlap::fraction(&scene.contact(&table), index, neighbours, 0.0);
+        let i = scene.sequence.images()[index as usize].base();
+        scene.particles.foreign_fraction[i] = fraction.fraction;
+        scene.particles.contact_excess[i] = fraction.excess;
+        scene.particles.contact_modulus[i] = fraction.modulus;
+        scene.particles.touching_value[i] = fraction.touching;
+        scene.particles.contact_slope[i] = fraction.slope;
     }
     group.bench_function("forces", |bencher| {
         let (view, mut forces) = (scene.contact(&table), TaskForces::default());

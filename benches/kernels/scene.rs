@@ -54,7 +54,7 @@ pub fn case() -> Case {
 
 /// Particles, sorted and listed.
 pub struct Scene {
-    pub store: ParticleStore,
+    pub particles: ParticleStore,
     pub sequence: Sequence,
     scratch: Vec<u64>,
     clusters: ClusterLists,
@@ -64,18 +64,18 @@ pub struct Scene {
 impl Scene {
     /// The block as one body or as two halves, each a group of its own.
     pub fn new(bodies: u32) -> Self {
-        let mut store = ParticleStore::default();
-        store.resize_owned(COUNT);
+        let mut particles = ParticleStore::default();
+        particles.resize_owned(COUNT);
         for (i, site) in (0..EDGE * EDGE * EDGE).enumerate() {
-            store.id[i] = u64::from(site);
-            store.body[i] = site % EDGE * bodies / EDGE;
-            store.mass[i] = DENSITY * SPACING.powi(3);
-            store.position[i] = place(site);
+            particles.id[i] = u64::from(site);
+            particles.body[i] = site % EDGE * bodies / EDGE;
+            particles.mass[i] = DENSITY * SPACING.powi(3);
+            particles.position[i] = index(site);
         }
         let side = f64::from(EDGE) * SPACING;
         let grid = ColumnGrid::new([0.0; 3], [side; 3], SPACING, 0);
         let mut scene = Self {
-            store,
+            particles,
             sequence: Sequence::new((0..bodies).map(|_| grid.clone()), true),
             scratch: vec![0; Sequence::SCRATCH_WORDS * COUNT],
             clusters: ClusterLists::default(),
@@ -84,17 +84,17 @@ impl Scene {
         scene.sort();
         scene.list();
         let sorted = scene.sequence.images().iter();
-        let motions = sorted.map(|image| motion(&scene.store.position[image.base()]));
+        let motions = sorted.map(|image| motion(&scene.particles.position[image.base()]));
         scene.motion = motions.collect();
         scene
     }
 
     pub fn sort(&mut self) {
-        let store = &self.store;
+        let particles = &self.particles;
         let facts = |image: Image| ImageFacts {
-            position: store.position[image.base()],
-            id: store.id[image.base()],
-            group: store.body[image.base()] as usize,
+            position: particles.position[image.base()],
+            id: particles.id[image.base()],
+            group: particles.body[image.base()] as usize,
             smoothing_length: LENGTH,
             moving: true,
         };
@@ -114,8 +114,8 @@ impl Scene {
     }
 
     pub fn list_foreign(&self, table: &ContactTable, foreign: &mut ForeignLists) {
-        let (images, body) = (self.sequence.images(), &self.store.body);
-        let body_of = |place: u32| body[images[place as usize].base()] as usize;
+        let (images, body) = (self.sequence.images(), &self.particles.body);
+        let body_of = |index: u32| body[images[index as usize].base()] as usize;
         foreign.build(
             &self.clusters,
             &self.sequence,
@@ -136,7 +136,7 @@ impl Scene {
         ContactView {
             images: self.sequence.images(),
             motion: &self.motion,
-            store: &self.store,
+            particles: &self.particles,
             table,
             dt: 0.0,
         }
@@ -144,7 +144,7 @@ impl Scene {
 }
 
 /// A site of the lattice, off by up to a tenth of the spacing along each axis (m).
-fn place(site: u32) -> [f64; 3] {
+fn index(site: u32) -> [f64; 3] {
     let sites = [site % EDGE, site / EDGE % EDGE, site / EDGE / EDGE];
     let mut axis = 0;
     sites.map(|along| {

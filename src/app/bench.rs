@@ -26,8 +26,8 @@ use report::{Report, Row};
 /// process of its own with its threads bound to cores, and prints million particle updates a second
 /// for each core, efficiencies, memory, messages and nanoseconds a particle by phase. Figures are
 /// medians of the repetitions; an efficiency is the median of the ratios within them. Under mpirun,
-/// or with --threads, it measures just that number of ranks and threads. Whole steps count, with the
-/// sums of history.csv but without writing files.
+/// or with --threads, it measures just that number of ranks and threads. Whole steps count, with
+/// the sums of history.csv but without writing files.
 #[derive(Debug, clap::Args)]
 #[command(after_help = format!("Cases:\n{}
 
@@ -96,7 +96,7 @@ pub fn run(args: &BenchArgs) -> u8 {
         return one_configuration(args);
     }
     if let Err(message) = writable(args) {
-        say::complain(&message);
+        say::warn(&message);
         return EXIT_INPUT;
     }
     driver::run(args)
@@ -106,7 +106,7 @@ pub fn run(args: &BenchArgs) -> u8 {
 fn one_configuration(args: &BenchArgs) -> u8 {
     let (_session, comm) = if launch::by_mpi() {
         let Some((session, comm)) = Session::start() else {
-            say::complain("error: MPI does not start; is this the mpirun that it was built with?");
+            say::warn("error: MPI does not start; is this the mpirun that it was built with?");
             return EXIT_FAILED;
         };
         launch::abort_on_panic(comm.rank());
@@ -115,7 +115,7 @@ fn one_configuration(args: &BenchArgs) -> u8 {
         (None, Comm::solo())
     };
     if let Err(message) = pin::start_threads(args.threads.map_or(1, usize::from), &comm) {
-        return launch::complain(&comm, &message);
+        return launch::warn(&comm, &message);
     }
     let ready = if comm.is_root() {
         writable(args)
@@ -123,7 +123,7 @@ fn one_configuration(args: &BenchArgs) -> u8 {
         Ok(())
     };
     if comm.any(ready.is_err()) {
-        return launch::complain(&comm, &ready.err().unwrap_or_default());
+        return launch::warn(&comm, &ready.err().unwrap_or_default());
     }
     let done = match &args.save {
         Some(folder) => args
@@ -135,7 +135,7 @@ fn one_configuration(args: &BenchArgs) -> u8 {
     match done {
         Ok(()) => 0,
         Err(message) => {
-            launch::complain(&comm, &format!("error: {message}"));
+            launch::warn(&comm, &format!("error: {message}"));
             EXIT_FAILED
         }
     }

@@ -10,7 +10,7 @@ use crate::output::snapshot;
 use crate::populate;
 use crate::preflight::{self, memory};
 use crate::run::exit::EXIT_INPUT;
-use crate::run::say::{complain, say};
+use crate::run::say::{say, warn};
 
 /// Check a case without running it: particles by body, memory, expected steps
 ///
@@ -40,17 +40,17 @@ pub fn run(args: &CheckArgs) -> u8 {
     let case = match input::load(&args.case, &args.set) {
         Ok(case) => case,
         Err(error) => {
-            complain(&error.to_string());
+            warn(&error.to_string());
             return EXIT_INPUT;
         }
     };
     if let Err(error) = snapshot::quantities(&case.output.fields) {
-        complain(&format!("error: {error}"));
+        warn(&format!("error: {error}"));
         return EXIT_INPUT;
     }
     let warnings = preflight::warnings(&case);
     for warning in warnings.into_iter().chain(preflight::advice(&case)) {
-        complain(&format!("warning: {warning}"));
+        warn(&format!("warning: {warning}"));
     }
     print_report(&case, args.ranks as usize);
     0

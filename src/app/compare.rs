@@ -13,7 +13,7 @@ use crate::output::checkpoint;
 use crate::output::h5::Content;
 use crate::output::{RunFolder, read_regular};
 use crate::run::exit::EXIT_INPUT;
-use crate::run::say::{complain, say};
+use crate::run::say::{say, warn};
 
 /// Tell whether two results agree to the last bit
 ///
@@ -51,7 +51,7 @@ pub fn run(args: &CompareArgs) -> u8 {
             if report.agrees() { 0 } else { EXIT_DIFFERENT }
         }
         Err(error) => {
-            complain(&format!("error: {error}"));
+            warn(&format!("error: {error}"));
             EXIT_INPUT
         }
     }

@@ -11,7 +11,7 @@ use crate::output::h5::{Array, Content, Element, RowType};
 use crate::output::{Block, OutputError, Phase, Presence, RunFolder, read_small, series};
 use crate::preflight::memory::in_words;
 use crate::run::exit::EXIT_INPUT;
-use crate::run::say::{complain, say, seconds};
+use crate::run::say::{say, seconds, warn};
 
 /// Tell what is in a run folder, a snapshot or a checkpoint
 ///
@@ -40,7 +40,7 @@ pub fn run(args: &InfoArgs) -> u8 {
             0
         }
         Err(error) => {
-            complain(&format!("error: {error}"));
+            warn(&format!("error: {error}"));
             EXIT_INPUT
         }
     }

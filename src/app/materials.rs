@@ -6,7 +6,7 @@ use serde_json::json;
 
 use crate::material::{Constant, Material, Value, library};
 use crate::run::exit::EXIT_INPUT;
-use crate::run::say::complain;
+use crate::run::say::warn;
 
 /// Print the material library: all names, or each number of one material with its source
 ///
@@ -47,7 +47,7 @@ pub fn run(args: &MaterialsArgs) -> u8 {
         return 0;
     }
     let names = library::names().join(", ");
-    complain(&format!(
+    warn(&format!(
         "error: unknown material `{name}`\n  = help: the library has {names}"
     ));
     EXIT_INPUT

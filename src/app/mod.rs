@@ -75,7 +75,7 @@ pub fn main() -> ExitCode {
         Command::Check(args) => check::run(&args),
         Command::Plot(args) => plot::run(&args).map_or_else(
             |error| {
-                say::complain(&format!("error: {error}"));
+                say::warn(&format!("error: {error}"));
                 EXIT_INPUT
             },
             |()| 0,
@@ -93,7 +93,7 @@ pub fn main() -> ExitCode {
 fn tell(error: &clap::Error) {
     let hostile = |word: OsString| !word.to_string_lossy().chars().all(is_printable);
     if std::env::args_os().any(hostile) {
-        say::complain(&error.to_string());
+        say::warn(&error.to_string());
     } else {
         let _ = error.print();
     }

@@ -133,8 +133,8 @@ pub struct PlotArgs {
     ])]
     pub profile: Option<String>,
 
-    /// Axis of the profile's line, or r for the distance from a point; axis of the front, or -x, -y,
-    /// -z for the one against it
+    /// Axis of the profile's line, or r for the distance from a point; axis of the front, or -x,
+    /// -y, -z for the one against it
     #[arg(
         long,
         value_name = "x|y|z|r",
@@ -158,9 +158,9 @@ pub struct PlotArgs {
     #[arg(long, requires = "profile")]
     pub exact: bool,
 
-    /// Draw columns of a table (of a run: history.csv) against another: X:Y or X:Y,Y2; "force" is the
-    /// magnitude of force_x, force_y, force_z. Pairs of bodies, loads and bodies are lines of their
-    /// own [default of contacts.csv: time:force]
+    /// Draw columns of a table (of a run: history.csv) against another: X:Y or X:Y,Y2; "force" is
+    /// the magnitude of force_x, force_y, force_z. Pairs of bodies, loads and bodies are lines of
+    /// their own [default of contacts.csv: time:force]
     #[arg(long, value_name = "X:Y", conflicts_with_all = [
         "which", "field", "section", "drawn_as", "thickness", "no_mirror", "panels", "history", "profile",
     ])]

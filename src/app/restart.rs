@@ -9,7 +9,7 @@ use crate::output::checkpoint::{self, MANIFEST, Restored};
 use crate::output::{OutputError, Phase, RunFolder, RunLock, from_root, snapshot};
 use crate::particles::ParticleStore;
 use crate::run::CommonArgs;
-use crate::run::launch::{Launch, complain, with_ranks};
+use crate::run::launch::{Launch, warn, with_ranks};
 use crate::run::resume::{Origin, go_on, nothing_to_do, state_of};
 use crate::run::saved_case;
 use crate::run::say::say;
@@ -18,8 +18,8 @@ use crate::step::RunState;
 /// Go on from a checkpoint, on any number of ranks
 ///
 /// Results go on as if there had been no stop, to the last bit. What the run had written after the
-/// checkpoint is written anew; it is set aside until there is a new checkpoint. Exit codes are those of `run`; with nothing left to do,
-/// it says so and exits with 0.
+/// checkpoint is written anew; it is set aside until there is a new checkpoint. Exit codes are
+/// those of `run`; with nothing left to do, it says so and exits with 0.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   mpirun -n 4 whipple restart runs/quarter-impact
@@ -34,12 +34,13 @@ pub struct RestartArgs {
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
 
-    /// Change a value of `run`, `output`, `domain` or `trouble`, as in `run.end_time=0.3us`; may be
+    /// Change a value of `run`, `output`, `domain` or `numerical_limits`, as in `run.end_time=0.3us`; may be
     /// given many times
     #[arg(short, long, value_name = "KEY=VALUE")]
     set: Vec<String>,
 
-    /// Go on with the run's case.toml where it was edited, in `run`, `output`, `domain` or `trouble`
+    /// Go on with the run's case.toml where it was edited, in `run`, `output`, `domain` or
+    /// `numerical_limits`
     #[arg(long)]
     accept_case: bool,
 
@@ -56,9 +57,9 @@ pub fn run(args: &RestartArgs) -> u8 {
     with_ranks(|launch| {
         let comm = launch.comm;
         if let Err(error) = input::output_and_run_only(&args.set) {
-            return complain(comm, &error.to_string());
+            return warn(comm, &error.to_string());
         }
-        let refused = |error: OutputError| complain(comm, &format!("error: {error}"));
+        let refused = |error: OutputError| warn(comm, &format!("error: {error}"));
         let named = match locate(comm, args) {
             Ok(named) => named,
             Err(error) => return refused(error),
@@ -75,7 +76,7 @@ pub fn run(args: &RestartArgs) -> u8 {
             read(comm, &args.from, named, listed)
         });
         let ended = found.and_then(|found| resume(launch, args, found, lock.as_ref()));
-        ended.unwrap_or_else(|message| complain(comm, &message))
+        ended.unwrap_or_else(|message| warn(comm, &message))
     })
 }
 
@@ -170,7 +171,7 @@ fn find(comm: &Comm, named: &Named) -> Result<(Vec<OsString>, Vec<PassedOver>), 
 struct Found {
     named: Named,
     checkpoint: PathBuf,
-    store: ParticleStore,
+    particles: ParticleStore,
     restored: Restored,
     passed_over: Vec<PassedOver>,
 }
@@ -188,13 +189,13 @@ fn read(
 ) -> Result<Found, String> {
     for path in paths {
         let checkpoint = PathBuf::from(&path);
-        let mut store = ParticleStore::default();
-        let error = match checkpoint::read(comm, &checkpoint, &mut store) {
+        let mut particles = ParticleStore::default();
+        let error = match checkpoint::read(comm, &checkpoint, &mut particles) {
             Ok(restored) => {
                 return Ok(Found {
                     named,
                     checkpoint,
-                    store,
+                    particles,
                     restored,
                     passed_over,
                 });
@@ -259,7 +260,7 @@ fn resume(
     let origin = Origin {
         passed_over: passed.collect(),
         checkpoint: found.checkpoint,
-        store: found.store,
+        particles: found.particles,
         folder: found.named.folder,
         own: found.named.own,
     };

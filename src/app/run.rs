@@ -6,7 +6,7 @@ use crate::comm::Comm;
 use crate::input;
 use crate::output::{RunFolder, snapshot};
 use crate::run::CommonArgs;
-use crate::run::launch::{complain, with_ranks};
+use crate::run::launch::{warn, with_ranks};
 use crate::run::start::start;
 
 /// Run a case from its start
@@ -50,23 +50,23 @@ pub fn run(args: &RunArgs) -> u8 {
         let comm = launch.comm;
         let (path, text) = match read_case(comm, &args.case) {
             Ok(found) => found,
-            Err(message) => return complain(comm, &message),
+            Err(message) => return warn(comm, &message),
         };
         let case = match input::parse(&path.display().to_string(), &text, &args.set) {
             Ok(case) => case,
-            Err(error) => return complain(comm, &error.to_string()),
+            Err(error) => return warn(comm, &error.to_string()),
         };
         if let Err(error) = snapshot::quantities(&case.output.fields) {
-            return complain(comm, &format!("error: {error}"));
+            return warn(comm, &format!("error: {error}"));
         }
         if let Some(message) = args.common.shortage(comm, &case) {
-            return complain(comm, &message);
+            return warn(comm, &message);
         }
         let out = args.out.clone().unwrap_or_else(|| default_folder(&path));
         // Held to the end.
         let lock = match RunFolder::at(&out).take_new(comm, args.force, args.common.ignore_lock) {
             Ok(lock) => lock,
-            Err(error) => return complain(comm, &format!("error: {error}")),
+            Err(error) => return warn(comm, &format!("error: {error}")),
         };
         let warnings = lock.iter().flat_map(|lock| lock.warnings.iter().cloned());
         start(launch, &args.common, case, &out, args.force, warnings)

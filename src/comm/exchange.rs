@@ -133,7 +133,8 @@ impl Exchange {
                 (receive.as_mut_ptr(), receive.len())
             };
             for start in (0..length).step_by(PIECE) {
-                // SAFETY: the buffer is owned by `self`, lives until the requests end, and the piece lies in it.
+                // SAFETY: the buffer is owned by `self`, lives until the requests end, and the
+                // piece lies in it.
                 unsafe {
                     let piece = pointer.add(start).cast();
                     self.receive_piece(raw, piece, PIECE.min(length - start), rank, TAG_DATA);

@@ -1,4 +1,4 @@
-//! Messages between ranks: the only room that names MPI.
+//! Messages between ranks: the only module that names MPI.
 //!
 //! MPI is initialised *funneled*: every call comes from the main thread. A [`Comm`] without a
 //! world ([`Comm::solo`]) is a single rank that never touches MPI, for tests and library use.

@@ -4,8 +4,8 @@ use super::force::{ContactForce, TaskForces};
 use super::sums::ContactSums;
 use crate::particles::Scatter;
 
-/// Work for a foreign neighbour, in neighbours of the pair sums, as timed on the quarter impact: its
-/// own sums, its search, and the disorder where bodies meet.
+/// Work for a foreign neighbour, in neighbours of the pair sums, as timed on the quarter impact:
+/// its own sums, its search, and the disorder where bodies meet.
 const FOREIGN_WORK: usize = 90;
 
 /// A foreign particle closer than this (in mean spacings) counts as interpenetrated.

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::domain::Mirrors;
 use crate::model::Case;
-use crate::neighbours::{Kin, Lists, Part};
+use crate::neighbours::{Fragment, Lists, Membership};
 use crate::particles::{GRAIN, ParticleStore, resize};
 
 /// Steps between two looks at what is still connected.
@@ -12,15 +12,15 @@ const EVERY: u64 = 10;
 /// Every symmetry plane: at the start nothing is cut off from any.
 const ALL_PLANES: u32 = 7;
 
-/// Parts of the images, and the union of what is connected, kept from step to step; empty without
-/// self-contact.
+/// Fragments of the images, and the union of what is connected, kept from step to step; empty
+/// without self-contact.
 #[derive(Debug, Default)]
 pub struct Connectivity {
     /// Whether there is self-contact.
     is_active: bool,
     /// 1 over the distance of folds (1/m), by body; empty without.
     per_fold: Vec<f64>,
-    of_images: Vec<Part>,
+    of_images: Vec<Fragment>,
     /// Places at the start over the distance of folds.
     references: Vec<[f64; 3]>,
     /// Union-find over particles, halo included: parent, and at roots label and planes.
@@ -36,12 +36,12 @@ impl Connectivity {
             return 0;
         };
         let union = size_of::<u32>() + size_of::<(u64, u32)>();
-        let places = if own.folds.is_some() {
+        let indices = if own.folds.is_some() {
             size_of::<[f64; 3]>()
         } else {
             0
         };
-        size_of::<Part>() + places + union
+        size_of::<Fragment>() + indices + union
     }
 
     pub(crate) fn new(case: &Case) -> Self {
@@ -55,23 +55,23 @@ impl Connectivity {
     }
 
     pub(crate) fn memory(&self) -> usize {
-        size_of::<Part>() * self.of_images.capacity()
+        size_of::<Fragment>() * self.of_images.capacity()
             + size_of::<[f64; 3]>() * self.references.capacity()
             + 4 * self.parents.capacity()
             + size_of::<(u64, u32)>() * self.labels.capacity()
     }
 
     /// Reads what the images show.
-    fn show(&mut self, lists: &Lists, store: &ParticleStore, mirrors: &Mirrors) {
+    fn show(&mut self, lists: &Lists, particles: &ParticleStore, mirrors: &Mirrors) {
         let images = lists.images();
         resize(&mut self.of_images, images.len());
-        let parts = self.of_images.par_iter_mut().with_min_len(GRAIN);
-        parts.zip(images).for_each(|(part, image)| {
+        let fragments = self.of_images.par_iter_mut().with_min_len(GRAIN);
+        fragments.zip(images).for_each(|(part, image)| {
             let i = image.base();
             // Behind a plane that cuts the part stands the part itself.
-            let code = u32::from(image.code()) & !store.part_planes[i];
-            *part = Part {
-                label: store.part[i],
+            let code = u32::from(image.code()) & !particles.part_planes[i];
+            *part = Fragment {
+                label: particles.part[i],
                 code: code.into(),
             };
         });
@@ -80,11 +80,11 @@ impl Connectivity {
         }
         resize(&mut self.references, images.len());
         let references = self.references.par_iter_mut().with_min_len(GRAIN);
-        references.zip(images).for_each(|(place, image)| {
+        references.zip(images).for_each(|(index, image)| {
             let i = image.base();
-            let start = mirrors.reflect_position(&store.reference_position[i], image.code());
-            let scale = self.per_fold[store.body[i] as usize];
-            *place = start.map(|x| x * scale);
+            let start = mirrors.reflect_position(&particles.reference_position[i], image.code());
+            let scale = self.per_fold[particles.body[i] as usize];
+            *index = start.map(|x| x * scale);
         });
     }
 
@@ -110,7 +110,7 @@ impl Connectivity {
         self.labels.resize(particles, (u64::MAX, 0));
         let images = lists.images();
         #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
-        let base = |place: u32| images[place as usize].base() as u32;
+        let base = |index: u32| images[index as usize].base() as u32;
         for chunk in lists.chunks() {
             for (cluster, neighbours, _) in chunk.iter() {
                 for &i in &cluster.receivers[..cluster.lanes] {
@@ -137,9 +137,9 @@ impl Connectivity {
         }
     }
 
-    /// Begins the labels of fragments: what has come apart are particles of one
-    /// fragment that no chain of neighbours connects. These are out of each other's support, so that no
-    /// force changes by it.
+    /// Begins the labels of fragments: what has come apart are particles of one fragment that no
+    /// chain of neighbours connects. These are out of each other's support, so that no force
+    /// changes by it.
     pub(crate) fn begin_labels(&mut self, lists: &Lists, particles: &mut ParticleStore) {
         self.join(lists, particles);
         let count = particles.part.len();
@@ -189,8 +189,8 @@ impl Connectivity {
             return;
         }
         self.show(lists, particles, mirrors);
-        lists.separate(&Kin {
-            parts: &self.of_images,
+        lists.separate(&Membership {
+            fragments: &self.of_images,
             references: &self.references,
         });
     }

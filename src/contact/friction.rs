@@ -9,8 +9,8 @@
 
 use crate::numerics::vector::dot;
 
-/// Coefficients of one particle; of springs and dashpots also over volume, of a pair of bodies or of a
-/// body on a rigid surface.
+/// Coefficients of one particle; of springs and dashpots also over volume, of a pair of bodies or
+/// of a body on a rigid surface.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Law {
     /// Coefficient of friction while it sticks.
@@ -103,8 +103,8 @@ impl Law {
     /// face of the unit normal `normal`, which points into the particle, at the velocity `velocity`
     /// (m/s) against what it lies on.
     ///
-    /// The dashpot acts along `pressing` and never by more than that, so that contact does not pull;
-    /// friction rests on both together.
+    /// The dashpot acts along `pressing` and never by more than that, so that contact does not
+    /// pull; friction rests on both together.
     #[must_use]
     pub fn step(
         &self,

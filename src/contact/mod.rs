@@ -4,7 +4,8 @@
 //! only, so that its energy is a function of positions alone and its forces are that function's
 //! exact gradient (physics page, section 5).
 //!
-//! A mode is an `impl` of `Constants` and of `Mode` for its parameters; nothing else knows it by name.
+//! A mode is an `impl` of `Constants` and of `Mode` for its parameters; nothing else knows it by
+//! name.
 
 mod books;
 mod connectivity;

@@ -22,8 +22,8 @@ pub(crate) trait Mode: Listed + Sized {
     /// Measures before the forces, and stores what these read. `found` is kept from step to step.
     fn measure(_found: &mut Found<Self>, _scene: &mut Scene) {}
 
-    /// Measures for the first time, before any forces, what the start of a case is to be forgiven; gives
-    /// the number of particles of which not all can be.
+    /// Measures for the first time, before any forces, what the start of a case is to be forgiven;
+    /// gives the number of particles of which not all can be.
     fn begin(_found: &mut Found<Self>, _scene: &mut Scene) -> i64 {
         0
     }
@@ -109,8 +109,8 @@ impl<'a, M: Mode> Meeting<'a, M> {
         }
     }
 
-    /// A force of `magnitude` (N) along the line between the two, or the part of it along the normal
-    /// of the surface between them.
+    /// A force of `magnitude` (N) along the line between the two, or the part of it along the
+    /// normal of the surface between them.
     #[inline(always)]
     pub fn along(&self, magnitude: f64, normal: bool) -> [f64; 3] {
         if normal {
@@ -123,15 +123,15 @@ impl<'a, M: Mode> Meeting<'a, M> {
 }
 
 impl TaskForces {
-    /// Adds what one mode does to receivers with their foreign neighbours, with `FRICTION` friction and
-    /// damping too.
+    /// Adds what one mode does to receivers with their foreign neighbours, with `FRICTION` friction
+    /// and damping too.
     fn add_mode<'l, M: Mode, const FRICTION: bool>(
         &mut self,
         view: &ContactView,
         list: impl Iterator<Item = (u32, &'l [u32])>,
     ) {
-        for (place, neighbours) in list {
-            let i = view.party(place);
+        for (index, neighbours) in list {
+            let i = view.party(index);
             let here = M::side(view, &i);
             let mut on = Receiver::new(&i, neighbours.len(), &mut self.by_body);
             let mut friction = FRICTION.then(|| PairFriction::of(view, &i));

@@ -67,9 +67,9 @@ impl Constants for Overlap {
     }
 }
 
-/// What the core of two bodies is as stiff as (Pa): `max(M, .85 ρ v²)` with v (m/s) the largest speed
-/// against each other that the case states. M and ρ are harmonic means of moduli and densities, as
-/// the mass of two particles that meet head-on is; what is rigid counts as infinite.
+/// What the core of two bodies is as stiff as (Pa): `max(M, .85 ρ v²)` with v (m/s) the largest
+/// speed against each other that the case states. M and ρ are harmonic means of moduli and
+/// densities, as the mass of two particles that meet head-on is; what is rigid counts as infinite.
 fn core_scale(case: &Case, [a, b]: [usize; 2]) -> f64 {
     let bodies = [&case.bodies[a], &case.bodies[b]];
     let harmonic_mean = |value: &dyn Fn(&Body) -> f64| {
@@ -113,17 +113,17 @@ impl Mode for Overlap {
 
     #[inline(always)]
     fn side(view: &ContactView, particle: &Party) -> Fraction {
-        let (store, base) = (view.store, particle.base);
-        let excess = store.contact_excess[base];
+        let (particles, base) = (view.particles, particle.base);
+        let excess = particles.contact_excess[base];
         if excess == 0.0 {
             return Fraction::default();
         }
         Fraction {
             excess,
-            fraction: store.foreign_fraction[base],
-            modulus: store.contact_modulus[base],
-            touching: store.touching_value[base],
-            slope: store.contact_slope[base],
+            fraction: particles.foreign_fraction[base],
+            modulus: particles.contact_modulus[base],
+            touching: particles.touching_value[base],
+            slope: particles.contact_slope[base],
             current: 0.0,
         }
     }
@@ -184,12 +184,12 @@ impl Mode for Overlap {
         })
     }
 
-    /// The normal is that which i sees less the mean of those that its neighbours see, weighted with
-    /// `o_ij`.
+    /// The normal is that which i sees less the mean of those that its neighbours see, weighted
+    /// with `o_ij`.
     fn normal_load(view: &ContactView, i: &Party, neighbours: &[u32], load: &mut NormalLoad) {
         let here = Self::side(view, i);
         let normal =
-            |of: &Party| Mirrors::reflect_vector(&view.store.contact_normal[of.base], of.code);
+            |of: &Party| Mirrors::reflect_vector(&view.particles.contact_normal[of.base], of.code);
         let mut sum = 0.0;
         for &other in neighbours {
             let j = view.party(other);

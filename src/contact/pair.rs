@@ -1,4 +1,5 @@
-//! Constants of a pair of bodies: those that all modes share, and those that each mode has beside them.
+//! Constants of a pair of bodies: those that all modes share, and those that each mode has beside
+//! them.
 
 use std::fmt::Debug;
 
@@ -58,7 +59,8 @@ pub(crate) trait Listed: Constants {
 
 macro_rules! pairs {
     ($($name:ident: $Mode:ident,)+) => {
-        /// Constants of each mode for every ordered pair of bodies; zeros where the mode is another.
+        /// Constants of each mode for every ordered pair of bodies; zeros where the mode is
+        /// another.
         #[derive(Debug, Clone, Default)]
         pub(crate) struct ModePairs {
             $($name: Vec<<crate::model::$Mode as Constants>::Pair>,)+

@@ -2,10 +2,10 @@
 //!
 //! The outermost particles of a body and their normals are found after Randles & Libersky (1996):
 //! the corrected gradient of what the body fills, `b_i = B_i s_i` with `s_i = −Σ V_j ∇W_ij` and
-//! `B_i⁻¹ = −Σ V_j ∇W_ij ⊗ r_ij` over the own body, points out of it and is longest on its outermost
-//! layer. Boundary particles of two bodies push each other along the mean of their normals; a corner,
-//! which has two, along that of the face it is pressed on, and two corners along the line between
-//! them, as pinballs do (Belytschko & Neal 1991), whose laws these are.
+//! `B_i⁻¹ = −Σ V_j ∇W_ij ⊗ r_ij` over the own body, points out of it and is longest on its
+//! outermost layer. Boundary particles of two bodies push each other along the mean of their
+//! normals; a corner, which has two, along that of the face it is pressed on, and two corners along
+//! the line between them, as pinballs do (Belytschko & Neal 1991), whose laws these are.
 
 mod boundary;
 
@@ -64,9 +64,9 @@ impl Mode for Penalty {
                 // Receivers of both lists stand in the same order.
                 let mut wanted = list.iter().peekable();
                 for (cluster, neighbours, _) in own.iter() {
-                    for &place in &cluster.receivers[..cluster.lanes] {
-                        if let Some((_, foreign)) = wanted.next_if(|(at, _)| *at == place) {
-                            let i = view.party(place);
+                    for &index in &cluster.receivers[..cluster.lanes] {
+                        if let Some((_, foreign)) = wanted.next_if(|(at, _)| *at == index) {
+                            let i = view.party(index);
                             let j = view.party(foreign[0]);
                             let known = &view.table.own::<Self>(i.body, j.body).boundary;
                             found.push((i.base, normal(&view, &i, neighbours, known)));
@@ -83,9 +83,9 @@ impl Mode for Penalty {
 
     fn side(_: &ContactView, _: &Party) {}
 
-    /// Over the directions n of [`directions`] with shares s: `p = Δp̄ − r·n`,
-    /// `w = s ⟨1 − t²/Δp̄²⟩₊²` over the offset t across n, `F₂ = w κ M V̄/Δp̄ (p/Δp̄)^{3/2}` along n; by
-    /// the law of pinballs their sum is no more than `F₁ = Σw m_i m_j/(m_i + m_j) ṗ/Δt` while the two
+    /// Over the directions n of [`directions`] with shares s: `p = Δp̄ − r·n`, `w = s ⟨1 −
+    /// t²/Δp̄²⟩₊²` over the offset t across n, `F₂ = w κ M V̄/Δp̄ (p/Δp̄)^{3/2}` along n; by the
+    /// law of pinballs their sum is no more than `F₁ = Σw m_i m_j/(m_i + m_j) ṗ/Δt` while the two
     /// approach along it and nothing while they part.
     fn force(meeting: &Meeting<Self>, stiffness: &mut f64) -> Option<PairForce> {
         let Meeting { view, i, j, .. } = *meeting;
@@ -120,7 +120,7 @@ impl Mode for Penalty {
             // It stores nothing: what it takes is lost.
             energy = 0.0;
             if view.dt > 0.0 {
-                let (m_i, m_j) = (view.store.mass[i.base], view.store.mass[j.base]);
+                let (m_i, m_j) = (view.particles.mass[i.base], view.particles.mass[j.base]);
                 let v = minus(&i.velocity, &j.velocity);
                 let rate = (-dot(&v, &force) / size).max(0.0);
                 let most = weights * (m_i * m_j / (m_i + m_j)) * rate / view.dt;
@@ -138,12 +138,13 @@ impl Mode for Penalty {
 }
 
 /// Directions from `j` to `i` in which the two press on each other, with their shares, which sum to
-/// one: the mean of both normals as they count, and the line between the two as far as no normal says
-/// how they lie, as of two corners or of faces that look the same way. `None` unless both are of the
-/// boundary.
+/// one: the mean of both normals as they count, and the line between the two as far as no normal
+/// says how they lie, as of two corners or of faces that look the same way. `None` unless both are
+/// of the boundary.
 fn directions(meeting: &Meeting<Penalty>) -> Option<[(f64, [f64; 3]); 2]> {
-    let outward =
-        |of: &Party| Mirrors::reflect_vector(&meeting.view.store.boundary_normal[of.base], of.code);
+    let outward = |of: &Party| {
+        Mirrors::reflect_vector(&meeting.view.particles.boundary_normal[of.base], of.code)
+    };
     let (here, there) = (outward(meeting.i), outward(meeting.j));
     let (a, b) = (norm(&here), norm(&there));
     if a == 0.0 || b == 0.0 {

@@ -91,8 +91,8 @@ impl Contact {
         }
     }
 
-    /// Lets the start of a case be free of force; returns of how many particles of this rank not all
-    /// could be forgiven. Before the first forces.
+    /// Lets the start of a case be free of force; returns of how many particles of this rank not
+    /// all could be forgiven. Before the first forces.
     pub fn begin(&mut self, particles: &mut ParticleStore, lists: &Lists) -> i64 {
         if !self.table.is_active() {
             return 0;
@@ -105,8 +105,8 @@ impl Contact {
         })
     }
 
-    /// Friction and damping after a step of `dt` (s), of every particle in contact: halo particles must
-    /// hear before the forces.
+    /// Friction and damping after a step of `dt` (s), of every particle in contact: halo particles
+    /// must hear before the forces.
     pub fn resist(&mut self, particles: &mut ParticleStore, lists: &Lists, dt: f64) {
         self.for_each_task(particles, lists, dt, |task, view, foreign, own| {
             task.resist(view, foreign, own);
@@ -137,8 +137,8 @@ impl Contact {
         }
     }
 
-    /// Contact forces after a step `dt` (s), the energy of contact, and what the time step must know
-    /// of both. Sums are those of this rank.
+    /// Contact forces after a step `dt` (s), the energy of contact, and what the time step must
+    /// know of both. Sums are those of this rank.
     pub fn forces(&mut self, particles: &mut ParticleStore, lists: &Lists, loads: &Loads, dt: f64) {
         self.sums.clear();
         if !self.table.is_active() {

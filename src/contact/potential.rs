@@ -1,10 +1,9 @@
 //! The contact potential of Vignjevic, De Vuyst & Campbell (2006), with the repulsive sign.
 //!
-//! `φ_i = Σ_j V_j K (W_ij/W(Δp̄))^n` (V 21) and
-//! `f_i = −Σ_j V_i V_j K n W_ij^{n−1}/W(Δp̄)^n ∇_i W_ij` (V 24 read as −∇φ); the energy of all
-//! pairs is `½ Σ V_i φ_i`. With the range "spacing" the force of a pair at the mean spacing is taken
-//! off, `W_ij^{n−1} − W(Δp̄)^{n−1}` in place of `W_ij^{n−1}`, so that it sets in at zero there (theory
-//! page "Contact").
+//! `φ_i = Σ_j V_j K (W_ij/W(Δp̄))^n` (V 21) and `f_i = −Σ_j V_i V_j K n W_ij^{n−1}/W(Δp̄)^n ∇_i
+//! W_ij` (V 24 read as −∇φ); the energy of all pairs is `½ Σ V_i φ_i`. With the range "spacing" the
+//! force of a pair at the mean spacing is taken off, `W_ij^{n−1} − W(Δp̄)^{n−1}` in place of
+//! `W_ij^{n−1}`, so that it sets in at zero there (theory page "Contact").
 
 use super::mode::{Meeting, Mode, PairForce};
 use super::pair::{Between, Constants};

@@ -37,8 +37,8 @@ impl NormalLoad {
         }
     }
 
-    /// `O_i = Σ_j o_ij` (N), over pairs that have friction or damping, and what these do to the receiver
-    /// after the step; neighbour j bears the share `o_ij/O_i` of it.
+    /// `O_i = Σ_j o_ij` (N), over pairs that have friction or damping, and what these do to the
+    /// receiver after the step; neighbour j bears the share `o_ij/O_i` of it.
     ///
     /// Its load is `Σ_j o_ij e_ij·n`, its velocity against what it lies on `Σ_j o_ij v_ij/O_i`.
     #[must_use]
@@ -48,9 +48,9 @@ impl NormalLoad {
             return None;
         }
         let before = Slip {
-            displacement: view.store.slip[i.base],
-            rate: view.store.slip_rate[i.base],
-            sliding: view.store.sliding[i.base] != 0,
+            displacement: view.particles.slip[i.base],
+            rate: view.particles.slip_rate[i.base],
+            sliding: view.particles.sliding[i.base] != 0,
         };
         let normal = self.facing.map(|n| n / size);
         let velocity = self.motion.map(|v| v / self.load);
@@ -81,23 +81,27 @@ impl Shared {
     };
 
     fn of(view: &ContactView, particle: &Party) -> Self {
-        let (store, base) = (view.store, particle.base);
-        let load = store.friction_load[base];
+        let (particles, base) = (view.particles, particle.base);
+        let load = particles.friction_load[base];
         if load <= 0.0 {
             return Self::NONE;
         }
-        let force = Mirrors::reflect_vector(&store.friction_force[base], particle.code);
+        let force = Mirrors::reflect_vector(&particles.friction_force[base], particle.code);
         Self {
             force: force.map(|f| f / load),
-            power: store.friction_power[base] / load,
+            power: particles.friction_power[base] / load,
             // Of this rank's particles only, and never asked of others.
-            energy: store.friction_energy.get(base).map_or(0.0, |e| e / load),
+            energy: particles
+                .friction_energy
+                .get(base)
+                .map_or(0.0, |e| e / load),
             inverse_load: 1.0 / load,
         }
     }
 }
 
-/// Friction of a receiver: its own, that of the pair in hand, and sums over pairs for the time step.
+/// Friction of a receiver: its own, that of the pair in hand, and sums over pairs for the time
+/// step.
 pub(super) struct PairFriction {
     here: Shared,
     /// Of the pair (N).

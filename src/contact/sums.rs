@@ -52,7 +52,8 @@ impl Closest {
     }
 }
 
-/// Number of an unordered pair of bodies among all of `bodies`: these order as `[a, b]`, `a ≤ b`, do.
+/// Number of an unordered pair of bodies among all of `bodies`: these order as `[a, b]`, `a ≤ b`,
+/// do.
 pub(crate) fn pair_key(bodies: usize, a: usize, b: usize) -> usize {
     a.min(b) * bodies + a.max(b)
 }
@@ -69,11 +70,12 @@ pub(crate) struct ContactSums {
     pub foreign_fraction: f64,
 }
 
-/// Sums of those pairs of bodies that have any, by [`pair_key`]. What is let go of is kept for reuse.
+/// Sums of those pairs of bodies that have any, by [`pair_key`]. What is let go of is kept for
+/// reuse.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct PairBook {
     /// Keys in their order, and where their sums are.
-    places: Vec<(usize, usize)>,
+    indices: Vec<(usize, usize)>,
     sums: Vec<PairSums>,
 }
 
@@ -121,39 +123,39 @@ impl PairSums {
 
 impl PairBook {
     pub fn clear(&mut self) {
-        self.places.clear();
+        self.indices.clear();
     }
 
     /// The sums of a pair, of nothing where there were none.
     pub fn entry(&mut self, key: usize) -> &mut PairSums {
-        let place = match self.places.binary_search_by_key(&key, |entry| entry.0) {
-            Ok(at) => self.places[at].1,
+        let index = match self.indices.binary_search_by_key(&key, |entry| entry.0) {
+            Ok(at) => self.indices[at].1,
             Err(at) => {
-                let place = self.places.len();
-                match self.sums.get_mut(place) {
+                let index = self.indices.len();
+                match self.sums.get_mut(index) {
                     Some(sums) => *sums = PairSums::default(),
                     None => self.sums.push(PairSums::default()),
                 }
-                self.places.insert(at, (key, place));
-                place
+                self.indices.insert(at, (key, index));
+                index
             }
         };
-        &mut self.sums[place]
+        &mut self.sums[index]
     }
 
     /// The sums of a pair, if it has any.
     pub fn get(&self, key: usize) -> Option<&PairSums> {
-        let found = self.places.binary_search_by_key(&key, |entry| entry.0);
-        found.ok().map(|at| &self.sums[self.places[at].1])
+        let found = self.indices.binary_search_by_key(&key, |entry| entry.0);
+        found.ok().map(|at| &self.sums[self.indices[at].1])
     }
 
     /// All pairs in the order of their keys.
     pub fn iter(&self) -> impl Iterator<Item = (usize, &PairSums)> {
-        self.places.iter().map(|&(key, at)| (key, &self.sums[at]))
+        self.indices.iter().map(|&(key, at)| (key, &self.sums[at]))
     }
 
     fn memory(&self) -> usize {
-        size_of::<(usize, usize)>() * self.places.capacity()
+        size_of::<(usize, usize)>() * self.indices.capacity()
             + size_of::<PairSums>() * self.sums.capacity()
     }
 }
@@ -210,8 +212,8 @@ impl ContactSums {
         self.foreign_fraction = self.foreign_fraction.max(fraction);
     }
 
-    /// Books what another body does to a particle with an excess and a contact step (s), if there is
-    /// force, and the identities of the particle and the nearest one of that body.
+    /// Books what another body does to a particle with an excess and a contact step (s), if there
+    /// is force, and the identities of the particle and the nearest one of that body.
     #[inline]
     pub fn note_pair(
         &mut self,

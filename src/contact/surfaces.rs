@@ -136,8 +136,8 @@ impl Penalty {
         2.0 * self.h.max(self.reach)
     }
 
-    /// The approach speed of a particle at a separation (m) that changes at `rate` (m/s): that towards its
-    /// mirror image, see `Separation::raise_approach`.
+    /// The approach speed of a particle at a separation (m) that changes at `rate` (m/s): that
+    /// towards its mirror image, see `Separation::raise_approach`.
     fn approach(&self, separation: f64, rate: f64) -> f64 {
         let soft = 4.0 * (separation * separation) + 0.01 * (self.h * self.h);
         (-4.0 * self.h * rate * separation.abs() / soft).max(0.0)
@@ -145,8 +145,8 @@ impl Penalty {
 }
 
 impl SurfaceForces {
-    /// Adds what the rigid surfaces do after a step `dt` (s) to the forces of contact, and their energy
-    /// to `energy`.
+    /// Adds what the rigid surfaces do after a step `dt` (s) to the forces of contact, and their
+    /// energy to `energy`.
     pub(super) fn act(
         &mut self,
         particles: &mut ParticleStore,
@@ -199,7 +199,7 @@ impl SurfaceForces {
         self.pushes.resize(chunks, Vec::new());
         self.friction.resize(chunks, Vec::new());
         let view = View {
-            store: particles,
+            particles: particles,
             table,
             surfaces: &self.surfaces,
             steps: &loads.surfaces,
@@ -224,7 +224,7 @@ impl SurfaceForces {
 
 /// What a push depends on.
 struct View<'a> {
-    pub store: &'a ParticleStore,
+    pub particles: &'a ParticleStore,
     pub table: &'a ContactTable,
     surfaces: &'a [RigidSurface],
     steps: &'a [SurfaceStep],
@@ -243,21 +243,21 @@ impl View<'_> {
 
     /// What surface `n` does to particle `i`, if that is near it.
     fn push(&self, i: usize, n: usize) -> Option<Push> {
-        let body = self.store.body[i] as usize;
+        let body = self.particles.body[i] as usize;
         let penalty = self.penalties[n][body].as_ref()?;
         let placed = self.placed(n);
-        let x = &self.store.position[i];
+        let x = &self.particles.position[i];
         let local = placed.local(x);
         let escape = escape::escape(placed.surface, &local, penalty.reach, penalty.limit())?;
         let separation = escape.foot.gap;
         // Stress points have no mass and no contact.
-        if separation >= penalty.h.max(penalty.reach) || self.store.mass[i] == 0.0 {
+        if separation >= penalty.h.max(penalty.reach) || self.particles.mass[i] == 0.0 {
             return None;
         }
-        let volume = self.store.mass[i] * self.table.inverse_density(body);
+        let volume = self.particles.mass[i] * self.table.inverse_density(body);
         let stiffness = penalty.stiffness * volume;
         let force = placed.outward(escape.way.map(|u| stiffness * u));
-        let (v, surface_v) = (&self.store.predicted_velocity[i], placed.velocity(x));
+        let (v, surface_v) = (&self.particles.predicted_velocity[i], placed.velocity(x));
         let rate = dot(
             &placed.outward(escape.foot.normal),
             &[

@@ -28,15 +28,15 @@ impl Task {
             .each_ref()
             .map(|list| list.iter().peekable());
         for (cluster, _, _) in own.iter() {
-            for &place in &cluster.receivers[..cluster.lanes] {
+            for &index in &cluster.receivers[..cluster.lanes] {
                 let neighbours = lists.each_mut().map(|list| {
-                    let next = list.next_if(|(at, _)| *at == place);
+                    let next = list.next_if(|(at, _)| *at == index);
                     next.map_or(&[][..], |(_, neighbours)| neighbours)
                 });
                 if neighbours.iter().all(|list| list.is_empty()) {
                     continue;
                 }
-                let i = view.party(place);
+                let i = view.party(index);
                 let load = normal_load(view, &i, &neighbours);
                 let friction = load.friction(view, &i);
                 self.friction

@@ -14,7 +14,7 @@ pub struct ContactView<'a> {
     /// Their positions.
     pub motion: &'a [MotionRecord],
     /// The particles behind them.
-    pub store: &'a ParticleStore,
+    pub particles: &'a ParticleStore,
     /// Parameters of all pairs of bodies.
     pub table: &'a ContactTable,
     /// The step that led here (s); zero at the start.
@@ -38,7 +38,7 @@ pub(crate) struct Party {
 impl<'a> ContactView<'a> {
     /// After a step of `dt` (s).
     pub(super) fn new(
-        store: &'a ParticleStore,
+        particles: &'a ParticleStore,
         lists: &'a Lists,
         table: &'a ContactTable,
         dt: f64,
@@ -46,18 +46,18 @@ impl<'a> ContactView<'a> {
         Self {
             images: lists.images(),
             motion: lists.motion(),
-            store,
+            particles,
             table,
             dt,
         }
     }
 
     #[inline(always)]
-    pub(crate) fn party(&self, place: u32) -> Party {
-        let image = self.images[place as usize];
+    pub(crate) fn party(&self, index: u32) -> Party {
+        let image = self.images[index as usize];
         let base = image.base();
-        let body = self.store.body[base] as usize;
-        let record = &self.motion[place as usize];
+        let body = self.particles.body[base] as usize;
+        let record = &self.motion[index as usize];
         Party {
             base,
             body,
@@ -72,7 +72,7 @@ impl<'a> ContactView<'a> {
     /// gradients, into the first one's body; none inside bodies.
     pub(super) fn normal(&self, i: &Party, j: &Party) -> Option<[f64; 3]> {
         let inward =
-            |of: &Party| Mirrors::reflect_vector(&self.store.gradient_shift[of.base], of.code);
+            |of: &Party| Mirrors::reflect_vector(&self.particles.gradient_shift[of.base], of.code);
         let (a, b) = (inward(i), inward(j));
         let n = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
         let size = square(&n).sqrt();

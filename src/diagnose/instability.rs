@@ -1,17 +1,17 @@
 //! Kinetic energy that comes from nowhere.
 //!
-//! The sums keep the total energy to rounding whatever happens, also where they are not stable: what
-//! goes mad then takes its kinetic energy from an internal energy that falls below all that there is
-//! to be had, without a limit. So the total does not tell; this does:
-//! `K ≤ G (K₀ + U₀ + Φ₀ + W + H)` with the energies at the start, the largest work W of loads or
-//! gravity so far, and H, what bodies hold that begin compressed or stretched. In a sound run K stays
-//! below the sum itself, but for heat of the reference state that an expansion may take.
+//! The sums keep the total energy to rounding whatever happens, also where they are not stable:
+//! what goes mad then takes its kinetic energy from an internal energy that falls below all that
+//! there is to be had, without a limit. So the total does not tell; this does: `K ≤ G (K₀ + U₀ + Φ₀
+//! + W + H)` with the energies at the start, the largest work W of loads or gravity so far, and H,
+//! what bodies hold that begin compressed or stretched. In a sound run K stays below the sum
+//! itself, but for heat of the reference state that an expansion may take.
 
 use super::ledger::RunState;
 use crate::comm::Comm;
 use crate::domain::Outset;
 use crate::loads::Loads;
-use crate::model::{Body, Case, Trouble};
+use crate::model::{Body, Case, NumericalLimits};
 use crate::numerics::vector::square;
 use crate::particles::ParticleStore;
 use crate::populate;
@@ -21,7 +21,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// `½ m c² (ρ/ρ₀ − 1)²` of all bodies, and what rounding may do (J). Collective.
 pub(crate) fn hidden_energy(case: &Case, comm: &Comm) -> f64 {
-    let natural = Trouble::natural_speed(case);
+    let natural = NumericalLimits::natural_speed(case);
     let of_body = |(body, count): (&Body, &u64)| {
         let material = &case.materials[body.material];
         let (density, reference) = (case.initial_density(body), material.reference_density);
@@ -37,8 +37,8 @@ pub(crate) fn hidden_energy(case: &Case, comm: &Comm) -> f64 {
     deforming.map(of_body).sum()
 }
 
-/// Whether the kinetic energy, as of the last totals, can have come from what there was, what has been
-/// put in and the `hidden` energy (J), or from `most` times that.
+/// Whether the kinetic energy, as of the last totals, can have come from what there was, what has
+/// been put in and the `hidden` energy (J), or from `most` times that.
 pub(crate) fn is_explained(state: &RunState, hidden: f64, most: f64) -> bool {
     let first = &state.initial;
     let there = first.kinetic_energy
@@ -53,7 +53,7 @@ pub(crate) fn is_explained(state: &RunState, hidden: f64, most: f64) -> bool {
 pub(crate) fn fastest(comm: &Comm, particles: &ParticleStore, loads: &Loads) -> u64 {
     let mut best = (u64::MAX, u64::MAX);
     for i in 0..particles.owned() {
-        if loads.drives() && loads.is_rigid(particles.load[i]) {
+        if loads.has_motions() && loads.is_rigid(particles.load[i]) {
             continue;
         }
         // Positive doubles order as their bits, so that their complements order downwards.

@@ -155,7 +155,8 @@ pub struct RunState {
     pub step: u64,
     /// Time (s).
     pub time: f64,
-    /// The next time step by vote (s), infinite where nobody votes; the end of the case may clip it.
+    /// The next time step by candidates (s), infinite where there are none; the end of the case may
+    /// clip it.
     #[serde(deserialize_with = "step_or_none")]
     pub dt: f64,
     /// What limits it.
@@ -209,7 +210,8 @@ fn step_or_none<'a, D: Deserializer<'a>>(from: D) -> Result<f64, D::Error> {
 }
 
 impl RunState {
-    /// The step to do now and what limits it: the vote, unless the case ends before, at `end` (s).
+    /// The step to do now and what limits it: the smallest candidate, unless the case ends before,
+    /// at `end` (s).
     pub(crate) fn next_step(&self, end: f64) -> (f64, Reason) {
         let left = end - self.time;
         if left <= self.dt {

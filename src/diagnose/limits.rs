@@ -1,18 +1,18 @@
-//! Numerical trouble: who is in it.
+//! Numerical failure limits: who left them.
 //!
-//! The check is part of the vote, which the last kick of a step takes of each particle. What is no number
-//! can be neither booked nor kept from its neighbours, so it always ends the run; what is out of
-//! range but finite may be removed.
+//! The check is part of the choice of a step, for which the last kick of a step takes of each
+//! particle. What is NaN can be neither booked nor kept from its neighbours, so it always ends the
+//! run; what is out of range but finite may be removed.
 
 use super::instability;
 use crate::comm::Comm;
 use crate::model::readable::{short, shown};
-use crate::model::{Case, Trouble};
+use crate::model::{Case, NumericalLimits};
 use crate::numerics::vector::square;
 
 /// What is wrong with a particle, the worst first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum TroubleKind {
+pub enum NumericalFailure {
     /// A number is none.
     NotFinite,
     /// The density left its range.
@@ -27,8 +27,8 @@ pub enum TroubleKind {
     Gain,
 }
 
-impl TroubleKind {
-    /// What a particle may vote for, in the order of votes.
+impl NumericalFailure {
+    /// What a particle may report, in the order of candidates.
     pub const ALL: [Self; 5] = [
         Self::NotFinite,
         Self::Density,
@@ -37,7 +37,7 @@ impl TroubleKind {
         Self::Step,
     ];
 
-    /// Whether taking particles out is no cure: what is no number has reached its neighbours, and
+    /// Whether taking particles out is no cure: what is NaN has reached its neighbours, and
     /// energy that comes from nowhere is everybody's.
     #[must_use]
     pub fn is_of_all(self) -> bool {
@@ -46,31 +46,31 @@ impl TroubleKind {
 
     /// What is wrong and which key says so.
     #[must_use]
-    pub fn describe(self, limits: &Trouble) -> String {
+    pub fn describe(self, limits: &NumericalLimits) -> String {
         match self {
             Self::NotFinite => "has a non-finite or absurd state".to_owned(),
             Self::Density => format!(
                 "has a density outside of {} to {} of that at the start \
-                 (trouble.density_min, density_max)",
+                 (numerical_limits.density_min, density_max)",
                 short(limits.density_min),
                 short(limits.density_max)
             ),
             Self::Energy => format!(
-                "has a specific energy beyond {} (trouble.energy_max)",
+                "has a specific energy beyond {} (numerical_limits.energy_max)",
                 shown(limits.energy_max, "J/kg")
             ),
             Self::Speed => format!(
-                "is faster than {} (trouble.speed_max)",
+                "is faster than {} (numerical_limits.speed_max)",
                 shown(limits.speed_max, "m/s")
             ),
             Self::Step => format!(
-                "asks for a time step below {} (trouble.step_min)",
+                "asks for a time step below {} (numerical_limits.step_min)",
                 shown(limits.step_min, "s")
             ),
             Self::Gain => format!(
                 "is the fastest where the kinetic energy of all is beyond {} times the energy that \
                  there was or has been put in: the sums are not stable, more viscosity (sph.alpha) or \
-                 shorter steps (time_step) may help (trouble.gain_max)",
+                 shorter steps (time_step) may help (numerical_limits.gain_max)",
                 short(limits.gain_max)
             ),
         }
@@ -101,7 +101,7 @@ pub(crate) struct Limits {
 impl Limits {
     /// Of a case. Collective.
     pub(crate) fn new(case: &Case, comm: &Comm) -> Self {
-        let limits = &case.trouble;
+        let limits = &case.numerical_limits;
         let range = |body| {
             let first = case.initial_density(body);
             [limits.density_min * first, limits.density_max * first]
@@ -130,14 +130,14 @@ impl Limits {
     }
 
     /// What is out of range of a particle whose numbers are numbers.
-    pub(crate) fn check(&self, body: u32, rho: f64, moved: &Moved) -> Option<TroubleKind> {
+    pub(crate) fn check(&self, body: u32, rho: f64, moved: &Moved) -> Option<NumericalFailure> {
         let [lower, upper] = self.density[body as usize];
         if rho < lower || rho > upper {
-            Some(TroubleKind::Density)
+            Some(NumericalFailure::Density)
         } else if moved.energy.abs() > self.energy_max {
-            Some(TroubleKind::Energy)
+            Some(NumericalFailure::Energy)
         } else if square(&moved.velocity) > self.speed2_max {
-            Some(TroubleKind::Speed)
+            Some(NumericalFailure::Speed)
         } else {
             None
         }

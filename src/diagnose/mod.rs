@@ -1,11 +1,11 @@
-//! Conserved sums and ledgers of a run, what tells that it goes wrong, and the pieces that an impact
-//! leaves behind.
+//! Conserved sums and ledgers of a run, what tells that it goes wrong, and the fragments that an
+//! impact leaves behind.
 
+pub mod fragments;
 mod instability;
 mod ledger;
 mod limits;
 mod meetings;
-pub mod pieces;
 mod post_mortem;
 mod reason;
 mod step_sums;
@@ -13,9 +13,9 @@ mod totals;
 
 pub(crate) use instability::{fastest, is_explained};
 pub use ledger::{LoadState, NearestPair, PairState, Removed, RunState, Totals, Worst};
-pub use limits::TroubleKind;
+pub use limits::NumericalFailure;
 pub(crate) use limits::{Limits, Moved};
-pub(crate) use post_mortem::PAST_VOTES;
-pub use post_mortem::{PastVote, PostMortem};
+pub(crate) use post_mortem::PAST_STEPS;
+pub use post_mortem::{PastStep, PostMortem};
 pub use reason::Reason;
 pub(crate) use step_sums::{Booked, StepSums};

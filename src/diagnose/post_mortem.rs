@@ -1,4 +1,5 @@
-//! What is about a particle in trouble: its neighbours on this rank, and the last votes.
+//! What is about a particle that failed numerically: its neighbours on this rank, and the last
+//! choices of steps.
 
 use std::collections::VecDeque;
 
@@ -25,13 +26,13 @@ pub struct PostMortem {
     pub members: Vec<u32>,
     /// Their distances from it (m); not a number if its place is none.
     pub distances: Vec<f64>,
-    /// The last votes, oldest first.
-    pub votes: Vec<PastVote>,
+    /// The last choices of steps, oldest first.
+    pub past_steps: Vec<PastStep>,
 }
 
-/// A step's vote, for post-mortems.
+/// How a step was chosen, for post-mortems.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PastVote {
+pub struct PastStep {
     /// Steps done.
     pub step: u64,
     /// Step chosen (s).
@@ -42,18 +43,18 @@ pub struct PastVote {
     pub id: u64,
 }
 
-/// Votes kept for post-mortems.
-pub(crate) const PAST_VOTES: usize = 16;
+/// Choices kept for post-mortems.
+pub(crate) const PAST_STEPS: usize = 16;
 
 impl PostMortem {
-    /// What is about the particle `id`, on the rank `rank` that owns it; nothing on others. `reach` (m) is
-    /// how far neighbours are looked for.
+    /// What is about the particle `id`, on the rank `rank` that owns it; nothing on others. `reach`
+    /// (m) is how far neighbours are looked for.
     pub(crate) fn of(
         (id, rank): (u64, usize),
         particles: &ParticleStore,
         reach: f64,
         state: &RunState,
-        votes: &VecDeque<PastVote>,
+        past_steps: &VecDeque<PastStep>,
     ) -> Option<Self> {
         let owned = &particles.id[..particles.owned()];
         let i = owned.iter().position(|&x| x == id)?;
@@ -76,7 +77,7 @@ impl PostMortem {
             rank,
             members,
             distances,
-            votes: votes.iter().copied().collect(),
+            past_steps: past_steps.iter().copied().collect(),
         })
     }
 }

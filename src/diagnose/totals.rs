@@ -9,8 +9,8 @@ use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use crate::particles::{GRAIN, ParticleStore};
 
 impl Totals {
-    /// Of the particles of all ranks that are no part of a rigid body, with the energy of contact (J).
-    /// Collective.
+    /// Of the particles of all ranks that are no part of a rigid body, with the energy of contact
+    /// (J). Collective.
     pub(crate) fn of(
         particles: &ParticleStore,
         loads: &Loads,
@@ -23,7 +23,7 @@ impl Totals {
             // same bits in any order: exact sums are integers
             .fold(TotalSums::default, |mut sums, chunk| {
                 for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(owned) {
-                    if loads.drives() && loads.is_rigid(particles.load[i]) {
+                    if loads.has_motions() && loads.is_rigid(particles.load[i]) {
                         continue;
                     }
                     sums.add(particles, i, &loads.gravity);
@@ -105,13 +105,17 @@ impl RunState {
 struct TotalSums([ExactSum; 8]);
 
 impl TotalSums {
-    fn add(&mut self, store: &ParticleStore, i: usize, gravity: &[f64; 3]) {
-        let (m, v, x) = (store.mass[i], &store.velocity[i], &store.position[i]);
+    fn add(&mut self, particles: &ParticleStore, i: usize, gravity: &[f64; 3]) {
+        let (m, v, x) = (
+            particles.mass[i],
+            &particles.velocity[i],
+            &particles.position[i],
+        );
         let height = -(gravity[0] * x[0] + gravity[1] * x[1] + gravity[2] * x[2]);
         let v2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
         let terms = [
             0.5 * m * v2,
-            store.thermal_mass(i) * store.specific_energy[i],
+            particles.thermal_mass(i) * particles.specific_energy[i],
             m * height,
             m,
             m * v[0],

@@ -1,6 +1,6 @@
 //! Faces of the slabs so that counted work is even.
 
-use super::pace::Paces;
+use super::rank_speed::RankSpeeds;
 use super::slabs::Slabs;
 use crate::comm::Comm;
 
@@ -69,7 +69,7 @@ impl Histogram {
     }
 
     /// Faces that split the work of all ranks by their shares. Collective.
-    pub fn split(&mut self, comm: &Comm, paces: &Paces) -> Vec<f64> {
+    pub fn split(&mut self, comm: &Comm, rank_speeds: &RankSpeeds) -> Vec<f64> {
         self.sum(comm);
         let ranks = comm.size();
         let total: u64 = self.counts.iter().sum();
@@ -80,7 +80,7 @@ impl Histogram {
             clippy::cast_precision_loss,
             reason = "a part of the total"
         )]
-        let target_of = |face: usize| (paces.up_to(face, ranks) * total as f64) as u64;
+        let target_of = |face: usize| (rank_speeds.up_to(face, ranks) * total as f64) as u64;
         let mut target = target_of(0);
         let mut below = 0;
         for (bin, &count) in self.counts.iter().enumerate() {
@@ -153,7 +153,7 @@ pub fn balance(
     positions: &[[f64; 3]],
     work: &[u32],
     histogram: &mut Histogram,
-    paces: &Paces,
+    rank_speeds: &RankSpeeds,
 ) -> Slabs {
     let along = |p: &[f64; 3]| p[slabs.axis];
     let lower = positions.iter().map(along).fold(f64::INFINITY, f64::min);
@@ -169,7 +169,7 @@ pub fn balance(
     for (position, &work) in positions.iter().zip(work) {
         histogram.add(along(position), u64::from(work.max(1)));
     }
-    Slabs::new(slabs.axis, histogram.split(comm, paces))
+    Slabs::new(slabs.axis, histogram.split(comm, rank_speeds))
 }
 
 #[cfg(test)]
@@ -207,7 +207,7 @@ mod tests {
             &positions,
             &[5, 5, 5],
             &mut histogram,
-            &Paces::default(),
+            &RankSpeeds::default(),
         );
         assert_eq!(new, slabs);
     }

@@ -107,19 +107,19 @@ impl Halo {
     pub fn post_motion(
         &mut self,
         comm: &Comm,
-        store: &mut ParticleStore,
+        particles: &mut ParticleStore,
         reach: impl Fn(&ParticleStore, usize) -> f64 + Sync,
     ) {
-        store.resize_halo(0);
+        particles.resize_halo(0);
         self.rank = comm.rank();
-        self.gather_extents(comm, store, &reach);
+        self.gather_extents(comm, particles, &reach);
         self.find_peers(comm);
-        self.choose(comm, store, &reach);
+        self.choose(comm, particles, &reach);
         for k in 0..self.exchange.peers() {
-            let (particles, codes) = &self.sends[k];
+            let (sent, codes) = &self.sends[k];
             let message = self.exchange.outgoing(k);
             message.extend_from_slice(codes);
-            store.pack(HaloPhase::MOTION, particles, message);
+            particles.pack(HaloPhase::MOTION, sent, message);
         }
         self.exchange.post_sizes(comm);
         self.exchange.post(comm);
@@ -127,24 +127,24 @@ impl Halo {
 
     /// Receives what [`Self::post_motion`] of the others sent, and lists the halo particles and
     /// their images behind planes.
-    pub fn finish_motion(&mut self, store: &mut ParticleStore) {
+    pub fn finish_motion(&mut self, particles: &mut ParticleStore) {
         self.exchange.wait();
-        let size = 1 + store.bytes_per_particle(HaloPhase::MOTION);
+        let size = 1 + particles.bytes_per_particle(HaloPhase::MOTION);
         self.received.clear();
         for k in 0..self.exchange.peers() {
             self.received.push(self.exchange.incoming(k).len() / size);
         }
-        store.resize_halo(self.received.iter().sum());
+        particles.resize_halo(self.received.iter().sum());
         self.others.clear();
         let mut own = Some(&self.own);
-        let mut first = store.owned();
+        let mut first = particles.owned();
         for (k, &count) in self.received.iter().enumerate() {
             if self.exchange.rank(k) > self.rank {
                 self.others.extend(own.take().into_iter().flatten());
                 self.below = self.others.len();
             }
             let (needs, fields) = self.exchange.incoming(k).split_at(count);
-            store.unpack(HaloPhase::MOTION, first, count, fields);
+            particles.unpack(HaloPhase::MOTION, first, count, fields);
             for (i, &need) in needs.iter().enumerate() {
                 for code in (0..8).filter(|code| need >> code & 1 == 1) {
                     self.others.push(Image::new(first + i, code));
@@ -162,37 +162,37 @@ impl Halo {
     pub fn exchange_motion(
         &mut self,
         comm: &Comm,
-        store: &mut ParticleStore,
+        particles: &mut ParticleStore,
         reach: impl Fn(&ParticleStore, usize) -> f64 + Sync,
     ) {
-        self.post_motion(comm, store, reach);
-        self.finish_motion(store);
+        self.post_motion(comm, particles, reach);
+        self.finish_motion(particles);
     }
 
     /// [`Self::post`] and [`Self::finish`]. Collective.
-    pub fn exchange(&mut self, comm: &Comm, store: &mut ParticleStore, phase: HaloPhase) {
-        self.post(comm, store, phase);
-        self.finish(store, phase);
+    pub fn exchange(&mut self, comm: &Comm, particles: &mut ParticleStore, phase: HaloPhase) {
+        self.post(comm, particles, phase);
+        self.finish(particles, phase);
     }
 
     /// Starts to send the fields of `phase` of the same particles.
-    pub fn post(&mut self, comm: &Comm, store: &ParticleStore, phase: HaloPhase) {
-        let size = store.bytes_per_particle(phase);
+    pub fn post(&mut self, comm: &Comm, particles: &ParticleStore, phase: HaloPhase) {
+        let size = particles.bytes_per_particle(phase);
         for k in 0..self.exchange.peers() {
             let message = self.exchange.outgoing(k);
             message.clear();
-            store.pack(phase, &self.sends[k].0, message);
+            particles.pack(phase, &self.sends[k].0, message);
             self.exchange.expect(k, self.received[k] * size);
         }
         self.exchange.post(comm);
     }
 
     /// Receives what [`Self::post`] of the others sent.
-    pub fn finish(&mut self, store: &mut ParticleStore, phase: HaloPhase) {
+    pub fn finish(&mut self, particles: &mut ParticleStore, phase: HaloPhase) {
         self.exchange.wait();
-        let mut first = store.owned();
+        let mut first = particles.owned();
         for (k, &count) in self.received.iter().enumerate() {
-            store.unpack(phase, first, count, self.exchange.incoming(k));
+            particles.unpack(phase, first, count, self.exchange.incoming(k));
             first += count;
         }
     }
@@ -240,17 +240,17 @@ impl Halo {
     fn gather_extents(
         &mut self,
         comm: &Comm,
-        store: &ParticleStore,
+        particles: &ParticleStore,
         reach: &(impl Fn(&ParticleStore, usize) -> f64 + Sync),
     ) {
         let axis = self.axis;
-        let mine = (store.position.par_chunks(SHARE).enumerate())
+        let mine = (particles.position.par_chunks(SHARE).enumerate())
             .map(|(task, positions)| {
                 let mut part = Extent::EMPTY;
                 for (k, position) in positions.iter().enumerate() {
                     part.lower = part.lower.min(position[axis]);
                     part.upper = part.upper.max(position[axis]);
-                    part.reach = part.reach.max(reach(store, task * SHARE + k));
+                    part.reach = part.reach.max(reach(particles, task * SHARE + k));
                 }
                 part
             })
@@ -289,7 +289,7 @@ impl Halo {
     fn choose(
         &mut self,
         comm: &Comm,
-        store: &ParticleStore,
+        particles: &ParticleStore,
         reach: &(impl Fn(&ParticleStore, usize) -> f64 + Sync),
     ) {
         let peers = self.exchange.peers();
@@ -314,16 +314,16 @@ impl Halo {
             mine: self.extents[comm.rank()],
             theirs: &self.theirs,
         };
-        let tasks = store.position.len().div_ceil(SHARE);
+        let tasks = particles.position.len().div_ceil(SHARE);
         self.found.resize(tasks, Vec::new());
-        (&mut self.found, store.position.par_chunks(SHARE))
+        (&mut self.found, particles.position.par_chunks(SHARE))
             .into_par_iter()
             .enumerate()
             .for_each(|(task, (found, positions))| {
                 found.clear();
                 for (k, position) in positions.iter().enumerate() {
                     let i = task * SHARE + k;
-                    finder.find(i, position, reach(store, i) + farthest, found);
+                    finder.find(i, position, reach(particles, i) + farthest, found);
                 }
             });
         for entry in self.found.iter().flatten() {

@@ -4,8 +4,9 @@ use super::slabs::Decomposition;
 use crate::comm::{Comm, Exchange, Traffic};
 use crate::particles::{FieldInfo, ParticleStore};
 
-/// Particles that a rank may send in one round, or [`PART`] of its own if that is more: where a whole
-/// model moves, as in a restart, its messages must not take as much memory as the model itself.
+/// Particles that a rank may send in one round, or [`PART`] of its own if that is more: where a
+/// whole model moves, as in a restart, its messages must not take as much memory as the model
+/// itself.
 const ROUND: usize = 1 << 12;
 /// One part of so many.
 const PART: usize = 32;
@@ -44,33 +45,43 @@ impl Migration {
 
     /// Sends every owned particle to the owner of its position. Drops the halo; the order of
     /// the store changes. Collective.
-    pub fn migrate(&mut self, comm: &Comm, owners: &impl Decomposition, store: &mut ParticleStore) {
+    pub fn migrate(
+        &mut self,
+        comm: &Comm,
+        owners: &impl Decomposition,
+        particles: &mut ParticleStore,
+    ) {
         let (rank, size) = (comm.rank(), comm.size());
         if size == 1 {
             return;
         }
         self.leaving.resize(size, Vec::new());
-        self.find_leaving(rank, owners, store);
+        self.find_leaving(rank, owners, particles);
         let leaving: usize = self.leaving.iter().map(Vec::len).sum();
-        let most = self.round.max(store.owned() / PART);
+        let most = self.round.max(particles.owned() / PART);
         let mut rounds = [leaving.div_ceil(most) as u64];
         comm.max_u64(&mut rounds);
         for round in 0..rounds[0] {
             if round > 0 {
-                self.find_leaving(rank, owners, store);
+                self.find_leaving(rank, owners, particles);
             }
             self.limit_round(rank, most);
             self.counts.clear();
             self.counts
                 .extend(self.leaving.iter().map(|list| list.len() as u64));
             comm.all_to_all_u64(&self.counts, &mut self.arrivals);
-            self.swap(comm, store);
+            self.swap(comm, particles);
         }
     }
 
-    fn find_leaving(&mut self, rank: usize, owners: &impl Decomposition, store: &ParticleStore) {
+    fn find_leaving(
+        &mut self,
+        rank: usize,
+        owners: &impl Decomposition,
+        particles: &ParticleStore,
+    ) {
         self.leaving.iter_mut().for_each(Vec::clear);
-        for (i, position) in store.position[..store.owned()].iter().enumerate() {
+        for (i, position) in particles.position[..particles.owned()].iter().enumerate() {
             let owner = owners.owner(position);
             if owner != rank {
                 #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
@@ -88,14 +99,14 @@ impl Migration {
         }
     }
 
-    fn swap(&mut self, comm: &Comm, store: &mut ParticleStore) {
+    fn swap(&mut self, comm: &Comm, particles: &mut ParticleStore) {
         let peers = (0..comm.size()).filter(|&r| self.counts[r] > 0 || self.arrivals[r] > 0);
         self.exchange.set_peers(peers);
-        let size = store.bytes_per_particle(FieldInfo::leaves);
+        let size = particles.bytes_per_particle(FieldInfo::leaves);
         let mut arriving = 0;
         for k in 0..self.exchange.peers() {
             let peer = self.exchange.rank(k);
-            store.pack(
+            particles.pack(
                 FieldInfo::leaves,
                 &self.leaving[peer],
                 self.exchange.outgoing(k),
@@ -107,14 +118,14 @@ impl Migration {
         self.exchange.post(comm);
         self.gone.clear();
         self.gone.extend(self.leaving.iter().flatten());
-        store.remove(&mut self.gone, &mut self.moves);
-        let mut first = store.owned();
-        store.resize_owned(first + arriving);
+        particles.remove(&mut self.gone, &mut self.moves);
+        let mut first = particles.owned();
+        particles.resize_owned(first + arriving);
         self.exchange.wait();
         for k in 0..self.exchange.peers() {
             let bytes = self.exchange.incoming(k);
             let count = bytes.len() / size;
-            store.unpack(FieldInfo::leaves, first, count, bytes);
+            particles.unpack(FieldInfo::leaves, first, count, bytes);
             first += count;
         }
     }

@@ -139,12 +139,12 @@ impl Mirrors {
     /// the other way: both are the same material. All that a particle takes along when it changes
     /// ranks, as it may next, is mirrored as the table of fields says. Returns the code, 0 for a
     /// particle that stays.
-    pub fn fold(&self, store: &mut ParticleStore, i: usize) -> u8 {
-        let code = self.beyond(&store.position[i]);
+    pub fn fold(&self, particles: &mut ParticleStore, i: usize) -> u8 {
+        let code = self.beyond(&particles.position[i]);
         if code != 0 {
-            for field in store.held(FieldInfo::leaves) {
+            for field in particles.held(FieldInfo::leaves) {
                 let size = field.kind.bytes();
-                let value = &mut store.bytes_mut(field.id)[i * size..(i + 1) * size];
+                let value = &mut particles.bytes_mut(field.id)[i * size..(i + 1) * size];
                 self.reflect(field.mirror, value, code);
             }
         }

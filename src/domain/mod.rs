@@ -5,8 +5,8 @@ mod halo;
 mod migrate;
 mod mirrors;
 mod outset;
-mod pace;
 mod partition;
+mod rank_speed;
 mod slabs;
 mod span;
 
@@ -15,7 +15,7 @@ pub use halo::Halo;
 pub use migrate::Migration;
 pub use mirrors::Mirrors;
 pub use outset::Outset;
-pub use pace::Paces;
 pub use partition::Partition;
+pub use rank_speed::RankSpeeds;
 pub use slabs::{Decomposition, Slabs};
 pub(crate) use span::Span;

@@ -1,7 +1,7 @@
 //! Where the particles of a case stand before its first step.
 
 use super::balance::Histogram;
-use super::pace::Paces;
+use super::rank_speed::RankSpeeds;
 use super::slabs::Slabs;
 use crate::comm::Comm;
 use crate::model::{Axis, Case};
@@ -96,7 +96,7 @@ impl Outset {
             return Slabs::new(self.axis, Vec::new());
         }
         self.count(case, comm, comm.size(), histogram);
-        Slabs::new(self.axis, histogram.split(comm, &Paces::default()))
+        Slabs::new(self.axis, histogram.split(comm, &RankSpeeds::default()))
     }
 }
 

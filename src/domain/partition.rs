@@ -3,7 +3,7 @@
 use super::balance::{Histogram, balance};
 use super::migrate::Migration;
 use super::outset::Outset;
-use super::pace::Paces;
+use super::rank_speed::RankSpeeds;
 use super::slabs::Slabs;
 use crate::comm::{Comm, Traffic};
 use crate::model::Case;
@@ -13,7 +13,7 @@ use crate::particles::ParticleStore;
 pub struct Partition {
     slabs: Slabs,
     histogram: Histogram,
-    paces: Paces,
+    rank_speeds: RankSpeeds,
     migration: Migration,
     /// Steps between two balances; zero for none.
     every: u64,
@@ -37,7 +37,7 @@ impl Partition {
         Self {
             slabs: Slabs::new(outset.axis, vec![f64::INFINITY; comm.size() - 1]),
             histogram: Histogram::default(),
-            paces: Paces::default(),
+            rank_speeds: RankSpeeds::default(),
             migration: Migration::default(),
             every: case.domain.balance_every,
         }
@@ -62,7 +62,7 @@ impl Partition {
             return;
         }
         let counted = particles.work.iter().map(|&w| u64::from(w)).sum();
-        self.paces.measure(comm, counted, busy);
+        self.rank_speeds.measure(comm, counted, busy);
         self.cut(comm, particles);
     }
 
@@ -81,7 +81,7 @@ impl Partition {
             &particles.position[..particles.owned()],
             &particles.work,
             &mut self.histogram,
-            &self.paces,
+            &self.rank_speeds,
         );
     }
 
@@ -100,6 +100,6 @@ impl Partition {
     /// Bytes allocated.
     #[must_use]
     pub fn memory(&self) -> usize {
-        self.migration.memory() + self.histogram.memory() + self.paces.memory()
+        self.migration.memory() + self.histogram.memory() + self.rank_speeds.memory()
     }
 }

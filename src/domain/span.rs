@@ -40,7 +40,7 @@ impl Span {
     /// Takes a particle in.
     #[inline(always)]
     pub fn add(&mut self, x: &[f64; 3], v: &[f64; 3]) {
-        // Plain comparisons are one instruction each; `min` and `max` look for what is no number.
+        // Plain comparisons are one instruction each; `min` and `max` look for what is NaN.
         let least = |least: f64, x: f64| if x < least { x } else { least };
         let most = |most: f64, x: f64| if x > most { x } else { most };
         for a in 0..3 {
@@ -84,7 +84,8 @@ impl Span {
         std::array::from_fn(|a| [self.slowest[a], self.fastest[a]])
     }
 
-    /// Largest speed (m/s) along each axis against what moves with velocities in these ranges (m/s).
+    /// Largest speed (m/s) along each axis against what moves with velocities in these ranges
+    /// (m/s).
     pub fn against(&self, others: &[[f64; 2]; 3]) -> [f64; 3] {
         std::array::from_fn(|a| {
             let [least, most] = others[a];
@@ -193,8 +194,8 @@ mod tests {
         span
     }
 
-    /// What flies apart or misses has all the time it wants; what meets has the time to come as near as h,
-    /// or to fly h.
+    /// What flies apart or misses has all the time it wants; what meets has the time to come as
+    /// near as h, or to fly h.
     #[test]
     fn steps_follow_gap_and_closing_speed() {
         let (h, at_rest) = (0.1, ball(0.0, 0.0));

@@ -167,7 +167,7 @@ impl Waves {
     fn next(&self) -> Option<(f64, Event)> {
         let mut next: Option<(f64, Event)> = None;
         let instant = SPECK * self.time;
-        let mut vote = |wait: f64, event: Event| {
+        let mut offer = |wait: f64, event: Event| {
             let time = self.time + wait.max(0.0);
             if next.is_none_or(|first| time < first.0) {
                 next = Some((time, event));
@@ -177,27 +177,27 @@ impl Waves {
             for (i, pair) in strand.fronts.windows(2).enumerate() {
                 let closing = pair[0].speed - pair[1].speed;
                 if closing > 0.0 {
-                    vote((pair[1].at - pair[0].at) / closing, Event::Fronts(k, i));
+                    offer((pair[1].at - pair[0].at) / closing, Event::Fronts(k, i));
                 }
             }
             if let Some(front) = strand.fronts.first().filter(|f| f.speed < 0.0) {
-                vote(front.at / -front.speed, Event::Face(k, 0));
+                offer(front.at / -front.speed, Event::Face(k, 0));
             }
             if let Some(front) = strand.fronts.last().filter(|f| f.speed > 0.0) {
-                vote((strand.length - front.at) / front.speed, Event::Face(k, 1));
+                offer((strand.length - front.at) / front.speed, Event::Face(k, 1));
             }
         }
         for (end, held) in self.ends.iter().enumerate() {
             if let End::Moved(steps) = held
                 && let Some(step) = steps.iter().find(|step| step.0 > self.time + instant)
             {
-                vote(step.0 - self.time, Event::Given(end));
+                offer(step.0 - self.time, Event::Given(end));
             }
         }
         for (joint, gap) in self.gaps.iter().enumerate() {
             let closing = self.closing(joint);
             if let Some(gap) = gap.filter(|_| closing > 0.0) {
-                vote(gap / closing, Event::Gap(joint));
+                offer(gap / closing, Event::Gap(joint));
             }
         }
         next

@@ -6,9 +6,9 @@ use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, Error};
 
-use super::overrides::Override;
+use super::overrides::{Override, modernise};
 use super::schema::CaseParams;
-use super::source::Complaint;
+use super::source::Diagnostic;
 use crate::model::readable::short;
 
 /// Reads the document with its overrides, which begin at `places` in the address space. Returns
@@ -17,8 +17,9 @@ pub fn read(
     text: &str,
     overrides: &[String],
     places: &[usize],
-) -> Result<(CaseParams, String), Complaint> {
+) -> Result<(CaseParams, String), Diagnostic> {
     let mut document = DeTable::parse(text).map_err(|e| translate(&e))?;
+    modernise(document.get_mut());
     for (text, &start) in overrides.iter().zip(places) {
         Override::parse(text, start)?.apply(document.get_mut())?;
     }
@@ -32,7 +33,7 @@ pub fn read(
 }
 
 /// The document as text, headed by the overrides in it.
-fn resolve(document: Spanned<DeTable<'_>>, overrides: &[String]) -> Result<String, Complaint> {
+fn resolve(document: Spanned<DeTable<'_>>, overrides: &[String]) -> Result<String, Diagnostic> {
     let lines = overrides.iter().flat_map(|text| text.lines());
     // Comments hold no control characters but tabs.
     let bare = |c: char| c.is_control() && c != '\t';
@@ -40,25 +41,25 @@ fn resolve(document: Spanned<DeTable<'_>>, overrides: &[String]) -> Result<Strin
     let head: Vec<String> = lines.map(line).collect();
     let table =
         toml::Table::deserialize(toml::Deserializer::from(document)).map_err(|e| translate(&e))?;
-    let text = toml::to_string(&table).map_err(|e| Complaint::new(0..0, e.to_string()))?;
+    let text = toml::to_string(&table).map_err(|e| Diagnostic::new(0..0, e.to_string()))?;
     let head = head.concat();
     Ok(format!(
         "# the case with its overrides laid over it:\n{head}{text}"
     ))
 }
 
-/// A complaint of the TOML reader or of a derived `Deserialize`, in our words.
-fn translate(error: &Error) -> Complaint {
+/// A diagnostic of the TOML reader or of a derived `Deserialize`, in our words.
+fn translate(error: &Error) -> Diagnostic {
     let span = error.span().unwrap_or(0..0);
     let message = error.message();
     let words: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     if let [found, known @ ..] = words.as_slice() {
         let known = || known.iter().copied();
         if message.starts_with("unknown field") {
-            return Complaint::unknown(span, "key", found, known());
+            return Diagnostic::unknown(span, "key", found, known());
         }
         if message.starts_with("unknown variant") {
-            return Complaint::unknown(span, "choice", found, known());
+            return Diagnostic::unknown(span, "choice", found, known());
         }
         if message.starts_with("missing field") {
             return missing(span, found);
@@ -73,23 +74,23 @@ fn translate(error: &Error) -> Complaint {
             let digits = number.trim_matches(|c: char| !c.is_ascii_digit() && c != '-');
             let number = digits.parse().map_or_else(|_| number.to_owned(), short);
             let title = format!("expected {expected}, found {number}, which is too large");
-            return Complaint::new(span, title);
+            return Diagnostic::new(span, title);
         }
-        return Complaint::new(span, format!("expected {expected}, found {found}"));
+        return Diagnostic::new(span, format!("expected {expected}, found {found}"));
     }
     // What the reader says where one of several words is wanted.
     if message.starts_with("wanted ") {
-        return Complaint::new(span, "expected a word in quotes");
+        return Diagnostic::new(span, "expected a word in quotes");
     }
-    Complaint::new(span, message)
+    Diagnostic::new(span, message)
 }
 
-fn missing(span: Range<usize>, key: &str) -> Complaint {
-    let complaint = Complaint::new(span.clone(), format!("the key `{key}` is missing"));
+fn missing(span: Range<usize>, key: &str) -> Diagnostic {
+    let diagnostic = Diagnostic::new(span.clone(), format!("the key `{key}` is missing"));
     if span.start == 0 {
-        return complaint.label("in this case");
+        return diagnostic.label("in this case");
     }
-    complaint.label("in this table")
+    diagnostic.label("in this table")
 }
 
 /// Rust's names of types in words.

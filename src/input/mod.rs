@@ -1,4 +1,4 @@
-//! TOML → a validated [`Case`]; every complaint with file, line and a caret.
+//! TOML → a validated [`Case`]; every diagnostic with file, line and a caret.
 //!
 //! The text becomes a document (`document`) over which `--set` overrides are laid, the
 //! document becomes typed tables (`schema`), and these become the [`Case`]
@@ -20,7 +20,7 @@ mod validate;
 use std::path::{Path, PathBuf};
 
 use crate::model::Case;
-use source::{Complaint, Sources};
+use source::{Diagnostic, Sources};
 
 pub use difference::{Difference, differences};
 pub use file::{content, open_regular, text};
@@ -108,11 +108,11 @@ pub fn time(text: &str) -> Result<f64, String> {
 }
 
 /// Does some reading in an address space of the text and the overrides, whose first addresses it
-/// is given, and renders its complaint.
+/// is given, and renders its diagnostic.
 fn with_sources<T>(
     text: Option<(&str, &str)>,
     overrides: &[String],
-    read: impl FnOnce(&[usize]) -> Result<T, Complaint>,
+    read: impl FnOnce(&[usize]) -> Result<T, Diagnostic>,
 ) -> Result<T, InputError> {
     let mut sources = Sources::default();
     if let Some((name, text)) = text {
@@ -122,5 +122,5 @@ fn with_sources<T>(
         .iter()
         .map(|text| sources.add("--set", text))
         .collect();
-    read(&places).map_err(|complaint| InputError::Invalid(sources.render(&complaint)))
+    read(&places).map_err(|diagnostic| InputError::Invalid(sources.render(&diagnostic)))
 }

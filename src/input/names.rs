@@ -2,7 +2,7 @@
 
 use toml::Spanned;
 
-use super::source::Complaint;
+use super::source::Diagnostic;
 use crate::model::readable::is_printable;
 
 /// Longest name and longest title, in characters.
@@ -13,7 +13,7 @@ const MARKS: &str = " -_.+()";
 
 /// Complains unless a name is safe wherever it is written: letters and digits of any script and
 /// [`MARKS`], with a letter or a digit at the beginning and no space at the end.
-pub fn check(name: &Spanned<String>, of: &str) -> Result<(), Complaint> {
+pub fn check(name: &Spanned<String>, of: &str) -> Result<(), Diagnostic> {
     let text = name.get_ref().as_str();
     let allowed = |c: char| c.is_alphanumeric() || MARKS.contains(c);
     let title = if let Some(c) = text.chars().find(|c| !allowed(*c)) {
@@ -33,14 +33,14 @@ pub fn check(name: &Spanned<String>, of: &str) -> Result<(), Complaint> {
         return Ok(());
     };
     let marks = MARKS.trim_start();
-    Err(Complaint::new(name.span(), title).help(format!(
+    Err(Diagnostic::new(name.span(), title).help(format!(
         "a name has letters and digits of any script, spaces and `{marks}`; it stands in tables \
          and in the names of files"
     )))
 }
 
 /// The title: any one line that a terminal can show.
-pub fn title(title: Option<Spanned<String>>) -> Result<String, Complaint> {
+pub fn title(title: Option<Spanned<String>>) -> Result<String, Diagnostic> {
     let Some(title) = title else {
         return Ok("untitled".to_owned());
     };
@@ -50,11 +50,11 @@ pub fn title(title: Option<Spanned<String>>) -> Result<String, Complaint> {
             "`title` must be one line without control characters, found `{}`",
             c.escape_unicode()
         );
-        return Err(Complaint::new(title.span(), what));
+        return Err(Diagnostic::new(title.span(), what));
     }
     if text.chars().count() > LONGEST_TITLE {
         let what = format!("`title` can have {LONGEST_TITLE} characters at most");
-        return Err(Complaint::new(title.span(), what));
+        return Err(Diagnostic::new(title.span(), what));
     }
     Ok(title.into_inner())
 }

@@ -10,10 +10,25 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-use super::source::Complaint;
+use super::source::Diagnostic;
 
 /// Sections that do not touch the state of a run, so that a restart may change them.
-pub(super) const RESTARTABLE: [&str; 4] = ["run", "output", "domain", "trouble"];
+pub(super) const RESTARTABLE: [&str; 4] = ["run", "output", "domain", LIMITS];
+
+/// Key of the numerical failure limits, and its older name.
+pub(super) const LIMITS: &str = "numerical_limits";
+pub(super) const OLD_LIMITS: &str = "trouble";
+
+/// Gives tables of older names their present ones. What stands there under both stays, and is found
+/// out by the reader.
+pub fn modernise(document: &mut DeTable) {
+    if document.contains_key(LIMITS) {
+        return;
+    }
+    if let Some((key, value)) = document.remove_entry(OLD_LIMITS) {
+        document.insert(Spanned::new(key.span(), Cow::Borrowed(LIMITS)), value);
+    }
+}
 
 type Key<'t> = Spanned<Cow<'t, str>>;
 type Value<'t> = Spanned<DeValue<'t>>;
@@ -26,19 +41,23 @@ pub struct Override<'t> {
 
 impl<'t> Override<'t> {
     /// Reads `key=value`; `start` is the address of the text.
-    pub fn parse(text: &'t str, start: usize) -> Result<Self, Complaint> {
+    pub fn parse(text: &'t str, start: usize) -> Result<Self, Diagnostic> {
         let Some(equals) = text.find('=') else {
-            let complaint = Complaint::new(start..start + text.len(), "an override needs a `=`");
-            return Err(complaint.help("write it as `--set key=value`"));
+            let diagnostic = Diagnostic::new(start..start + text.len(), "an override needs a `=`");
+            return Err(diagnostic.help("write it as `--set key=value`"));
         };
+        let mut path = parse_path(&text[..equals], start)?;
+        if path[0].get_ref() == OLD_LIMITS {
+            path[0] = Spanned::new(path[0].span(), Cow::Borrowed(LIMITS));
+        }
         Ok(Self {
-            path: parse_path(&text[..equals], start)?,
+            path,
             value: parse_value(&text[equals + 1..], start + equals + 1)?,
         })
     }
 
     /// Lays the value over the document.
-    pub fn apply(self, document: &mut DeTable<'t>) -> Result<(), Complaint> {
+    pub fn apply(self, document: &mut DeTable<'t>) -> Result<(), Diagnostic> {
         let Self { mut path, value } = self;
         let last = path.pop().expect("a parsed path has a key");
         let mut path = path.into_iter();
@@ -65,21 +84,21 @@ impl<'t> Override<'t> {
     }
 
     /// Complains if the override changes more than a restart may.
-    pub fn restartable(&self) -> Result<(), Complaint> {
+    pub fn restartable(&self) -> Result<(), Diagnostic> {
         let section = &self.path[0];
         if RESTARTABLE.contains(&section.get_ref().as_ref()) {
             return Ok(());
         }
         let title = format!("`{}` cannot change on a restart", section.get_ref());
-        let help = "a restart may change `run`, `output`, `domain` and `trouble`";
-        Err(Complaint::new(section.span(), title).help(help))
+        let help = "a restart may change `run`, `output`, `domain` and `numerical_limits`";
+        Err(Diagnostic::new(section.span(), title).help(help))
     }
 }
 
 /// The keys of a dotted path, read as TOML so that quotes work.
-fn parse_path<'t>(text: &str, start: usize) -> Result<Vec<Key<'t>>, Complaint> {
+fn parse_path<'t>(text: &str, start: usize) -> Result<Vec<Key<'t>>, Diagnostic> {
     let bad_key = || {
-        Complaint::new(start..start + text.len(), "this is not a dotted key")
+        Diagnostic::new(start..start + text.len(), "this is not a dotted key")
             .help("keys look like `body.sphere.velocity` or `output.snapshot_every`")
     };
     let document = format!("{text}=0");
@@ -102,18 +121,18 @@ fn parse_path<'t>(text: &str, start: usize) -> Result<Vec<Key<'t>>, Complaint> {
 }
 
 /// The TOML value in a text at `start`; what is no TOML value is a string.
-fn parse_value(text: &str, start: usize) -> Result<Value<'_>, Complaint> {
+fn parse_value(text: &str, start: usize) -> Result<Value<'_>, Diagnostic> {
     let start = start + (text.len() - text.trim_start().len());
     let text = text.trim();
     let span = start..start + text.len();
     if text.is_empty() {
-        return Err(Complaint::new(span, "an override needs a value after `=`"));
+        return Err(Diagnostic::new(span, "an override needs a value after `=`"));
     }
     match DeValue::parse(text) {
         Ok(value) => Ok(moved(value, start)),
         Err(error) if text.starts_with(['[', '{', '"', '\'']) => {
             let span = error.span().map_or(span, |s| moved_range(&s, start));
-            Err(Complaint::new(span, error.message()))
+            Err(Diagnostic::new(span, error.message()))
         }
         Err(_) => Ok(Spanned::new(span, DeValue::String(Cow::Borrowed(text)))),
     }
@@ -156,7 +175,7 @@ fn entry<'d, 't>(table: &'d mut DeTable<'t>, key: Key<'t>) -> &'d mut Value<'t> 
         .or_insert_with(|| Spanned::new(span, DeValue::Table(DeTable::new())))
 }
 
-fn child<'d, 't>(place: &'d mut Value<'t>, key: Key<'t>) -> Result<&'d mut Value<'t>, Complaint> {
+fn child<'d, 't>(place: &'d mut Value<'t>, key: Key<'t>) -> Result<&'d mut Value<'t>, Diagnostic> {
     match place.get_mut() {
         DeValue::Table(table) => Ok(entry(table, key)),
         DeValue::Array(array) => {
@@ -168,7 +187,7 @@ fn child<'d, 't>(place: &'d mut Value<'t>, key: Key<'t>) -> Result<&'d mut Value
 }
 
 /// The index of the element that a key names by its `name` or by its position.
-fn element(array: &DeArray<'_>, key: &Key<'_>) -> Result<usize, Complaint> {
+fn element(array: &DeArray<'_>, key: &Key<'_>) -> Result<usize, Diagnostic> {
     let word = key.get_ref().as_ref();
     let names: Vec<&str> = array
         .iter()
@@ -182,15 +201,15 @@ fn element(array: &DeArray<'_>, key: &Key<'_>) -> Result<usize, Complaint> {
     by_name
         .or(by_index)
         .ok_or_else(|| match (names.len(), array.len()) {
-            (0, 0) => Complaint::new(key.span(), "there is no element in this list"),
+            (0, 0) => Diagnostic::new(key.span(), "there is no element in this list"),
             (0, n) => {
                 let title = format!("there is no element `{word}` in this list");
-                Complaint::new(key.span(), title).help(format!("the elements are 0 to {}", n - 1))
+                Diagnostic::new(key.span(), title).help(format!("the elements are 0 to {}", n - 1))
             }
-            _ => Complaint::unknown(key.span(), "element", word, names),
+            _ => Diagnostic::unknown(key.span(), "element", word, names),
         })
 }
 
-fn not_a_table(span: &Range<usize>) -> Complaint {
-    Complaint::new(span.clone(), "there are no keys below a plain value")
+fn not_a_table(span: &Range<usize>) -> Diagnostic {
+    Diagnostic::new(span.clone(), "there are no keys below a plain value")
 }

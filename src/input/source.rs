@@ -1,4 +1,4 @@
-//! The texts a case is read from, and complaints that point into them.
+//! The texts a case is read from, and diagnostics that point into them.
 //!
 //! The file and each `--set` lie one after the other in a single address space, so that a byte
 //! range says both which text and where in it.
@@ -9,7 +9,7 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
 /// What is wrong, and where.
 #[derive(Debug)]
-pub struct Complaint {
+pub struct Diagnostic {
     /// Bytes in the address space of [`Sources`].
     pub span: Range<usize>,
     /// One line: value, allowed range.
@@ -20,8 +20,8 @@ pub struct Complaint {
     pub help: Option<String>,
 }
 
-impl Complaint {
-    /// A complaint with a title alone.
+impl Diagnostic {
+    /// A diagnostic with a title alone.
     pub fn new(span: Range<usize>, title: impl Into<String>) -> Self {
         Self {
             span,
@@ -51,16 +51,16 @@ impl Complaint {
         known: impl IntoIterator<Item = &'a str>,
     ) -> Self {
         let known: Vec<&str> = known.into_iter().collect();
-        let complaint = Self::new(span, format!("unknown {what} `{found}`"));
-        let complaint = match nearest(found, &known) {
-            Some(name) => complaint.label(format!("did you mean `{name}`?")),
-            None => complaint,
+        let diagnostic = Self::new(span, format!("unknown {what} `{found}`"));
+        let diagnostic = match nearest(found, &known) {
+            Some(name) => diagnostic.label(format!("did you mean `{name}`?")),
+            None => diagnostic,
         };
         if known.is_empty() {
-            return complaint.help(format!("there is no {what} here"));
+            return diagnostic.help(format!("there is no {what} here"));
         }
         let list: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();
-        complaint.help(format!("the choices are {}", list.join(", ")))
+        diagnostic.help(format!("the choices are {}", list.join(", ")))
     }
 }
 
@@ -88,26 +88,26 @@ impl Sources {
         start
     }
 
-    /// The complaint as the user sees it: title, file, line, column, caret, help.
-    pub fn render(&self, complaint: &Complaint) -> String {
-        let after = self.0.partition_point(|s| s.start <= complaint.span.start);
+    /// The diagnostic as the user sees it: title, file, line, column, caret, help.
+    pub fn render(&self, diagnostic: &Diagnostic) -> String {
+        let after = self.0.partition_point(|s| s.start <= diagnostic.span.start);
         let source = &self.0[after.saturating_sub(1)];
         let text = &source.text;
-        let begin = (complaint.span.start - source.start).min(text.len());
-        let end = (complaint.span.end - source.start).clamp(begin, text.len());
+        let begin = (diagnostic.span.start - source.start).min(text.len());
+        let end = (diagnostic.span.end - source.start).clamp(begin, text.len());
         // A caret under one line says as much as a bracket around a whole table.
         let end = text[begin..end].find('\n').map_or(end, |line| begin + line);
         let mut annotation = AnnotationKind::Primary.span(begin..end);
-        if !complaint.label.is_empty() {
-            annotation = annotation.label(complaint.label.as_str());
+        if !diagnostic.label.is_empty() {
+            annotation = annotation.label(diagnostic.label.as_str());
         }
         let snippet = Snippet::source(text)
             .path(&source.name)
             .annotation(annotation);
         let group: Group<'_> = Level::ERROR
-            .primary_title(complaint.title.as_str())
+            .primary_title(diagnostic.title.as_str())
             .element(snippet);
-        let group = match &complaint.help {
+        let group = match &diagnostic.help {
             Some(help) => group.element(Level::HELP.message(help.as_str())),
             None => group,
         };

@@ -6,7 +6,7 @@ use std::path::Path;
 use sha2::{Digest, Sha256};
 
 use super::file;
-use super::source::Complaint;
+use super::source::Diagnostic;
 use crate::model::{Loads, SurfaceFile};
 
 /// Longest file that is read as a surface (bytes): 20 million triangles of a binary file.
@@ -82,11 +82,11 @@ fn prepare(bytes: &mut Vec<u8>) -> Result<(), String> {
 
 /// The resolved text of a case with the absolute paths of its surfaces' files and their digests,
 /// so that it stands for the same case wherever it is read.
-pub fn settle(resolved: String, loads: &Loads) -> Result<String, Complaint> {
+pub fn settle(resolved: String, loads: &Loads) -> Result<String, Diagnostic> {
     if loads.surfaces.iter().all(|surface| surface.file.is_none()) {
         return Ok(resolved);
     }
-    let failed = |cause: String| Complaint::new(0..0, cause);
+    let failed = |cause: String| Diagnostic::new(0..0, cause);
     let mut table: toml::Table = toml::from_str(&resolved).map_err(|e| failed(e.to_string()))?;
     let tables = table.get_mut("surface").and_then(toml::Value::as_array_mut);
     let tables = tables.map_or(&mut [][..], Vec::as_mut_slice);

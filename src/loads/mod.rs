@@ -53,10 +53,10 @@ impl Prescribed {
 }
 
 /// What moves a particle beside forces.
-pub(crate) trait Drive: Copy + Send {
+pub(crate) trait Prescribe: Copy + Send {
     /// Replaces what forces do (`total`, m/s²) by what takes the velocity `v` (m/s) to the goal
     /// in a half kick, of which there are `per_half` in a second.
-    fn steer(&self, goal: Goal, v: &[f64; 3], per_half: f64, total: &mut [f64; 3]);
+    fn accelerate(&self, goal: Goal, v: &[f64; 3], per_half: f64, total: &mut [f64; 3]);
     /// Sets what is prescribed of a velocity (m/s).
     fn set(&self, goal: Goal, v: &mut [f64; 3]);
     /// Corrects the mean velocity (m/s) in a half kick, as forces make it, of a particle with the
@@ -70,9 +70,9 @@ pub(crate) trait Drive: Copy + Send {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Free;
 
-impl Drive for Free {
+impl Prescribe for Free {
     #[inline(always)]
-    fn steer(&self, _: Goal, _: &[f64; 3], _: f64, _: &mut [f64; 3]) {}
+    fn accelerate(&self, _: Goal, _: &[f64; 3], _: f64, _: &mut [f64; 3]) {}
     #[inline(always)]
     fn set(&self, _: Goal, _: &mut [f64; 3]) {}
     #[inline(always)]
@@ -83,9 +83,9 @@ impl Drive for Free {
     }
 }
 
-impl Drive for Prescribed {
+impl Prescribe for Prescribed {
     #[inline(always)]
-    fn steer(&self, goal: Goal, v: &[f64; 3], per_half: f64, total: &mut [f64; 3]) {
+    fn accelerate(&self, goal: Goal, v: &[f64; 3], per_half: f64, total: &mut [f64; 3]) {
         for a in 0..3 {
             if self.by[a].is_some() {
                 total[a] = (self.velocity(goal)[a] - v[a]) * per_half;
@@ -122,7 +122,7 @@ impl Drive for Prescribed {
 pub struct Loads {
     /// By bit of [`crate::particles::ParticleStore::load`]: prescribed velocities, then rigid
     /// bodies. Ledgers have the same order, then come those of the surfaces.
-    drives: Vec<Prescribed>,
+    motions: Vec<Prescribed>,
     /// Body of each rigid body's drive.
     rigid_bodies: Vec<usize>,
     velocities: usize,
@@ -139,19 +139,19 @@ impl Loads {
         let rigid = |&b: &usize| case.bodies[b].rigid.is_some();
         let rigid_bodies: Vec<usize> = (0..case.bodies.len()).filter(rigid).collect();
         let velocities = case.loads.velocities.len();
-        let drives = velocities + rigid_bodies.len();
+        let motions = velocities + rigid_bodies.len();
         assert!(
-            drives <= model::Loads::MOST,
+            motions <= model::Loads::MOST,
             "too many loads and rigid bodies"
         );
         let mut step = Self {
-            drives: vec![Prescribed::default(); drives],
-            rigid_bits: (0..drives).fold(0, |bits, k| bits | u32::from(k >= velocities) << k),
+            motions: vec![Prescribed::default(); motions],
+            rigid_bits: (0..motions).fold(0, |bits, k| bits | u32::from(k >= velocities) << k),
             rigid_bodies,
             velocities,
             surfaces: vec![SurfaceStep::default(); case.loads.surfaces.len()],
             gravity: case.loads.gravity,
-            sums: (0..drives).map(|_| Default::default()).collect(),
+            sums: (0..motions).map(|_| Default::default()).collect(),
         };
         step.prepare(case, 0.0, 0.0);
         step
@@ -163,18 +163,18 @@ impl Loads {
     }
 
     /// Whether velocities of any particle are prescribed.
-    pub(crate) fn drives(&self) -> bool {
-        !self.drives.is_empty()
+    pub(crate) fn has_motions(&self) -> bool {
+        !self.motions.is_empty()
     }
 
     /// Whether bits name loads and rigid bodies of the case and no others.
     pub(crate) fn knows(&self, bits: u32) -> bool {
-        u64::from(bits) >> self.drives.len() == 0
+        u64::from(bits) >> self.motions.len() == 0
     }
 
     /// Number of ledgers before those of surfaces.
     pub(crate) fn driven(&self) -> usize {
-        self.drives.len()
+        self.motions.len()
     }
 
     /// Whether a particle with these bits is part of a rigid body.
@@ -187,7 +187,7 @@ impl Loads {
     pub(crate) fn prepare(&mut self, case: &Case, from: f64, to: f64) {
         let middle = from + 0.5 * (to - from);
         for (k, load) in case.loads.velocities.iter().enumerate() {
-            self.drives[k] = if middle < load.until {
+            self.motions[k] = if middle < load.until {
                 Prescribed::new(&load.motion, k, false, from, to)
             } else {
                 Prescribed::default()
@@ -196,7 +196,7 @@ impl Loads {
         for (n, &body) in self.rigid_bodies.iter().enumerate() {
             let k = self.velocities + n;
             if let Some(motion) = &case.bodies[body].rigid {
-                self.drives[k] = Prescribed::new(motion, k, true, from, to);
+                self.motions[k] = Prescribed::new(motion, k, true, from, to);
             }
         }
         for (step, surface) in self.surfaces.iter_mut().zip(&case.loads.surfaces) {
@@ -218,7 +218,7 @@ impl Loads {
         let mut all = Prescribed::default();
         let mut rest = bits;
         while rest != 0 {
-            let one = &self.drives[rest.trailing_zeros() as usize];
+            let one = &self.motions[rest.trailing_zeros() as usize];
             rest &= rest - 1;
             all.rigid |= one.rigid;
             for a in 0..3 {
@@ -244,7 +244,7 @@ impl Loads {
     }
 
     pub(crate) fn memory(&self) -> usize {
-        size_of::<Prescribed>() * self.drives.capacity()
+        size_of::<Prescribed>() * self.motions.capacity()
             + size_of::<SurfaceStep>() * self.surfaces.capacity()
             + size_of::<usize>() * self.rigid_bodies.capacity()
             + 4 * size_of::<ExactSum>() * self.sums.capacity()

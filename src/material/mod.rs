@@ -1,8 +1,9 @@
 //! Physics at one point: equation of state, strength, failure. Knows neither particles nor MPI.
 //!
-//! A [`Material`] advances eight points at a time ([`PointBatch`]); the choice of its laws is
-//! made once for each batch, never for each point. They act in the order that [`Law`] states. Stress is positive in tension, pressure in
-//! compression: `σ = −p I + S`. A NaN in a point's state gives NaN at that point, no panic.
+//! A [`Material`] advances eight points at a time ([`PointBatch`]); the choice of its laws is made
+//! once for each batch, never for each point. They act in the order that [`Law`] states. Stress is
+//! positive in tension, pressure in compression: `σ = −p I + S`. A NaN in a point's state gives NaN
+//! at that point, no panic.
 
 #[macro_use]
 mod declare;

@@ -28,8 +28,9 @@ pub use steinberg_guinan::SteinbergGuinan;
 pub use viscous::Viscous;
 pub use von_mises::VonMises;
 
-/// Passes the fields of a material point to the macro `$then`, after `$more`: name, kind and role of each. `Given`
-/// is taken from the particle, `State` is taken and written back, and `Answer` is written back.
+/// Passes the fields of a material point to the macro `$then`, after `$more`: name, kind and role
+/// of each. `Given` is taken from the particle, `State` is taken and written back, and `Answer` is
+/// written back.
 macro_rules! point_fields {
     ($then:ident $($more:tt)*) => {
         $then! {

@@ -1,12 +1,12 @@
 //! Temperature from density and specific energy.
 //!
-//! With a constant specific heat `c_v`, `T = (e − e_c(ρ))/c_v`, where `e_c` is the energy of the cold
-//! curve: the isentrope of zero temperature, `de_c/dρ = p(ρ, e_c)/ρ²`, through
-//! `e_c(ρ₀) = e₀ − c_v T₀`, since the reference state (ρ₀, e₀) has the temperature T₀. This is exact
-//! for an equation of state that is linear in e (Mie–Grüneisen, ideal gas), for which
-//! `p = p_c(ρ) + Γ(ρ) ρ c_v T` follows; for Tillotson's it is an approximation. Source: Zel'dovich
-//! & Raizer (1967), *Physics of shock waves*, XI §§3–5. Heat of melting and vaporisation is not
-//! part of it, and T is never below zero.
+//! With a constant specific heat `c_v`, `T = (e − e_c(ρ))/c_v`, where `e_c` is the energy of the
+//! cold curve: the isentrope of zero temperature, `de_c/dρ = p(ρ, e_c)/ρ²`, through `e_c(ρ₀) = e₀ −
+//! c_v T₀`, since the reference state (ρ₀, e₀) has the temperature T₀. This is exact for an
+//! equation of state that is linear in e (Mie–Grüneisen, ideal gas), for which `p = p_c(ρ) + Γ(ρ) ρ
+//! c_v T` follows; for Tillotson's it is an approximation. Source: Zel'dovich & Raizer (1967),
+//! *Physics of shock waves*, XI §§3–5. Heat of melting and vaporisation is not part of it, and T is
+//! never below zero.
 
 use super::eos::{Eos, Response};
 use super::{LANES, Lanes, at_least, at_most};

@@ -98,8 +98,8 @@ pub enum LatticeKind {
     Cubic,
     /// Hexagonal close-packed (triangular in two dimensions), stacked along z.
     Hexagonal,
-    /// Concentric rings about z, as wide apart as their particles; the outermost follows the outline of
-    /// a disc, a ring or a cylinder along z.
+    /// Concentric rings about z, as wide apart as their particles; the outermost follows the
+    /// outline of a disc, a ring or a cylinder along z.
     Rings,
 }
 

@@ -1,7 +1,7 @@
 //! Contact between pairs of bodies, as chosen by the user.
 //!
-//! Modes with forces are registered in [`contact_modes`]. Each has its parameters in a file here, the
-//! table of its keys in one of `input/schema/contact/`, and its forces in one of `contact/`.
+//! Modes with forces are registered in [`contact_modes`]. Each has its parameters in a file here,
+//! the table of its keys in one of `input/schema/contact/`, and its forces in one of `contact/`.
 
 mod overlap;
 mod penalty;
@@ -11,8 +11,8 @@ pub use overlap::Overlap;
 pub use penalty::{Penalty, PenaltyLaw};
 pub use potential::{Potential, PotentialRange};
 
-/// Passes the modes that have forces to the macro `$then`: name in the input, and parameters. Forces are
-/// added in this order.
+/// Passes the modes that have forces to the macro `$then`: name in the input, and parameters.
+/// Forces are added in this order.
 macro_rules! contact_modes {
     ($then:ident) => {
         $then! {
@@ -150,7 +150,8 @@ pub enum ContactDirection {
 pub struct SelfContact {
     /// Its law.
     pub overlap: Overlap,
-    /// Particles of one part are strangers if they began farther from each other than this (spacings).
+    /// Particles of one part are strangers if they began farther from each other than this
+    /// (spacings).
     pub folds: Option<f64>,
 }
 

@@ -1,7 +1,7 @@
 //! What is simulated, in SI units, before there are particles: bodies, materials, contact,
 //! symmetry planes, and the controls of a run.
 //!
-//! A [`Case`] is complete and validated: the `input` room builds it from TOML, every later room
+//! A [`Case`] is complete and validated: the `input` module builds it from TOML, every later module
 //! only reads it.
 
 mod body;
@@ -10,9 +10,9 @@ mod control;
 mod distance;
 mod load;
 mod motion;
+mod numerical_limits;
 pub mod readable;
 mod surface;
-mod trouble;
 
 #[cfg(test)]
 pub(crate) use surface::tests as surface_tests;
@@ -24,11 +24,11 @@ pub use control::{
 };
 pub use load::{Loads, VelocityLoad};
 pub use motion::Motion;
+pub use numerical_limits::{NumericalFailurePolicy, NumericalLimits};
 pub use surface::{
     Feature, Foot, Mesh, MeshError, RigidSurface, Spin, SurfaceFile, SurfaceShape,
     closest_on_triangle,
 };
-pub use trouble::{Trouble, TroublePolicy};
 
 use crate::material::Material;
 use readable::Readable;
@@ -66,8 +66,8 @@ pub struct Case {
     pub time_step: TimeStepOptions,
     /// Distribution over ranks.
     pub domain: DomainOptions,
-    /// What counts as numerical trouble.
-    pub trouble: Trouble,
+    /// Numerical failure limits.
+    pub numerical_limits: NumericalLimits,
     /// When to stop.
     pub run: RunControl,
     /// What to write and when.
@@ -113,8 +113,9 @@ impl Case {
             .unwrap_or_else(|| eos.reference_energy(density))
     }
 
-    /// The "impact speed" (m/s) of the interpenetration measure: the largest [`Self::closing_speed`]
-    /// of two bodies, or the largest speed of a single one if there is none.
+    /// The "impact speed" (m/s) of the interpenetration measure: the largest
+    /// [`Self::closing_speed`] of two bodies, or the largest speed of a single one if there is
+    /// none.
     #[must_use]
     pub fn impact_speed(&self) -> f64 {
         let bodies = 0..self.bodies.len();
@@ -127,8 +128,9 @@ impl Case {
         velocities.fold(0.0, |most, velocity| most.max(velocity.norm()))
     }
 
-    /// Largest speed of two bodies against each other (m/s) by the velocities at which they begin and
-    /// those that loads and rigid motions prescribe, at whatever times; of a body with itself zero.
+    /// Largest speed of two bodies against each other (m/s) by the velocities at which they begin
+    /// and those that loads and rigid motions prescribe, at whatever times; of a body with itself
+    /// zero.
     #[must_use]
     pub fn closing_speed(&self, a: usize, b: usize) -> f64 {
         if a == b {

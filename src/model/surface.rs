@@ -1,5 +1,5 @@
-//! Rigid surfaces, which keep particles on one of their sides: planes, spheres, cylinders and closed
-//! meshes of triangles.
+//! Rigid surfaces, which keep particles on one of their sides: planes, spheres, cylinders and
+//! closed meshes of triangles.
 //!
 //! All of them answer one question, [`RigidSurface::foot`]: where is the nearest place of the
 //! surface, and on which side of it is a point. Shapes are given where they stand at time zero; a

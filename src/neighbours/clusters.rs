@@ -6,10 +6,10 @@ use rayon::prelude::*;
 
 use super::cluster::{Among, Cluster, Lists};
 use super::facts::{HALO, MIRROR, MOVING};
+use super::fragments::{Membership, Split};
 use super::gather::Gatherer;
 use super::near::{INFLATION, near_box, push_places};
 use super::pairs::PairList;
-use super::parts::{Kin, Parted};
 use super::sequence::Sequence;
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::lanes::Lanes;
@@ -19,11 +19,11 @@ use crate::numerics::lanes::Lanes;
 pub struct Chunk {
     group: usize,
     /// The part of the sequence whose particles are receivers here.
-    places: Range<usize>,
+    indices: Range<usize>,
     gatherer: Gatherer,
     lists: Lists,
     /// What [`ClusterLists::part`] has taken out of them; empty without self-contact.
-    parted: Parted,
+    split: Split,
 }
 
 impl Chunk {
@@ -34,7 +34,7 @@ impl Chunk {
 
     /// Receivers whose strangers [`ClusterLists::part`] has taken out of the lists, with these.
     pub(super) fn strangers(&self) -> &PairList {
-        &self.parted.strangers
+        &self.split.strangers
     }
 }
 
@@ -67,7 +67,7 @@ impl Vectorised for Build<'_> {
     fn run<V: Lanes>(self) {
         let Chunk {
             group,
-            places,
+            indices,
             gatherer,
             lists:
                 Lists {
@@ -75,7 +75,7 @@ impl Vectorised for Build<'_> {
                     ends,
                     neighbours,
                 },
-            parted: _,
+            split: _,
         } = self.chunk;
         let (sequence, lengths) = (self.sequence, self.lengths);
         let Lengths {
@@ -84,7 +84,7 @@ impl Vectorised for Build<'_> {
             uniform,
             rigid,
         } = lengths;
-        gatherer.gather(sequence, *group, places.clone(), 2.0 * longest, clusters);
+        gatherer.gather(sequence, *group, indices.clone(), 2.0 * longest, clusters);
         ends.clear();
         if rigid {
             ends.resize(clusters.len(), (0, Among::default()));
@@ -231,11 +231,11 @@ impl ClusterLists {
     }
 
     /// Takes strangers out of the lists. They become foreign neighbours.
-    pub fn part(&mut self, kin: &Kin) {
+    pub fn part(&mut self, membership: &Membership) {
         let chunks = self.chunks[..self.used].par_iter_mut();
         chunks
             .with_max_len(CHUNKS_AT_ONCE)
-            .for_each(|chunk| chunk.parted.part(kin, &mut chunk.lists));
+            .for_each(|chunk| chunk.split.part(membership, &mut chunk.lists));
     }
 
     /// The tasks, for parallel iteration.
@@ -253,7 +253,7 @@ impl ClusterLists {
                 size_of::<Chunk>()
                     + chunk.lists.memory()
                     + chunk.gatherer.memory()
-                    + chunk.parted.memory()
+                    + chunk.split.memory()
             })
             .sum()
     }
@@ -268,7 +268,7 @@ impl ClusterLists {
                 }
                 let chunk = &mut self.chunks[self.used];
                 chunk.group = group;
-                chunk.places = first..end.min(first + PLACES_PER_CHUNK);
+                chunk.indices = first..end.min(first + PLACES_PER_CHUNK);
                 self.used += 1;
             }
         }

@@ -38,7 +38,7 @@ pub struct ForeignChunk {
 /// What may be in range of a receiver, eight images at a time.
 #[derive(Debug, Clone, Default)]
 struct Candidates {
-    places: Vec<u32>,
+    indices: Vec<u32>,
     /// How many of these there are.
     used: usize,
     bodies: Vec<usize>,
@@ -181,30 +181,30 @@ impl Candidates {
                 range,
                 hints,
                 |_| V::splat(range),
-                |first, bits, _| self.used = push_places(&mut self.places, self.used, first, bits),
+                |first, bits, _| self.used = push_places(&mut self.indices, self.used, first, bits),
             );
         }
     }
 
     /// Takes a list.
     fn take(&mut self, list: &[u32]) {
-        self.places.clear();
-        self.places.extend_from_slice(list);
+        self.indices.clear();
+        self.indices.extend_from_slice(list);
         self.used = list.len();
     }
 
     /// Positions and bodies of what is listed.
     #[inline(always)]
     fn look_up(&mut self, sources: &[MotionRecord], body_of: &impl Fn(u32) -> usize) {
-        let places = &self.places[..self.used];
+        let indices = &self.indices[..self.used];
         self.bodies.clear();
         self.bodies
-            .extend(places.iter().map(|&place| body_of(place)));
+            .extend(indices.iter().map(|&index| body_of(index)));
         self.positions.clear();
-        self.positions.extend(places.chunks(LANES).map(|eight| {
+        self.positions.extend(indices.chunks(LANES).map(|eight| {
             let mut positions = [F64x8([0.0; LANES]); 3];
-            for (k, &place) in eight.iter().enumerate() {
-                let position = &sources[place as usize].position;
+            for (k, &index) in eight.iter().enumerate() {
+                let position = &sources[index as usize].position;
                 for a in 0..3 {
                     positions[a].0[k] = position[a];
                 }
@@ -233,7 +233,7 @@ impl Candidates {
     }
 
     fn memory(&self) -> usize {
-        4 * self.places.capacity()
+        4 * self.indices.capacity()
             + 8 * self.bodies.capacity()
             + size_of::<[F64x8; 3]>() * self.positions.capacity()
             + size_of::<F64x8>() * self.reach2.capacity()
@@ -273,9 +273,9 @@ impl ForeignChunk {
             while bits != 0 {
                 let k = n * LANES + bits.trailing_zeros() as usize;
                 bits &= bits - 1;
-                let place = candidates.places[k];
+                let index = candidates.indices[k];
                 if let Some(class) = classes[candidates.bodies[k]] {
-                    self.lists[class as usize].sources.push(place);
+                    self.lists[class as usize].sources.push(index);
                 }
             }
         }

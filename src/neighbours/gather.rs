@@ -26,41 +26,41 @@ impl Gatherer {
         &mut self,
         sequence: &Sequence,
         group: usize,
-        places: Range<usize>,
+        indices: Range<usize>,
         range: f64,
         clusters: &mut Vec<Cluster>,
     ) {
         clusters.clear();
         self.leftover.clear();
         let mut growing = Growing::new(sequence, group, range);
-        sequence.for_each_segment(places, |segment| {
+        sequence.for_each_segment(indices, |segment| {
             let end = segment.end;
-            let mut place = segment.start;
-            while place < end {
-                let whole = growing.cluster.lanes == 0 && place + LANES <= end;
-                if whole && let Some(cluster) = growing.row(place) {
+            let mut index = segment.start;
+            while index < end {
+                let whole = growing.cluster.lanes == 0 && index + LANES <= end;
+                if whole && let Some(cluster) = growing.row(index) {
                     clusters.push(cluster);
-                    place += LANES;
+                    index += LANES;
                     continue;
                 }
-                if sequence.is_owned(place) {
-                    if !growing.try_add(place) {
+                if sequence.is_owned(index) {
+                    if !growing.try_add(index) {
                         growing.drain(|cluster| self.leftover.extend(cluster.valid()));
-                        growing.try_add(place);
+                        growing.try_add(index);
                     }
                     if growing.cluster.lanes == LANES {
                         growing.drain(|cluster| clusters.push(*cluster));
                     }
                 }
-                place += 1;
+                index += 1;
             }
             growing.drain(|cluster| self.leftover.extend(cluster.valid()));
         });
-        for &place in &self.leftover {
-            let place = place as usize;
-            if growing.cluster.lanes == LANES || !growing.try_add(place) {
+        for &index in &self.leftover {
+            let index = index as usize;
+            if growing.cluster.lanes == LANES || !growing.try_add(index) {
                 growing.drain(|cluster| clusters.push(*cluster));
-                growing.try_add(place);
+                growing.try_add(index);
             }
         }
         growing.drain(|cluster| clusters.push(*cluster));
@@ -101,8 +101,8 @@ impl<'a> Growing<'a> {
 
     /// The eight images from a place on as a cluster, if all are owned and near each other.
     #[inline(always)]
-    fn row(&self, place: usize) -> Option<Cluster> {
-        let eight = self.sequence.eights(place..place + LANES).next()?;
+    fn row(&self, index: usize) -> Option<Cluster> {
+        let eight = self.sequence.eights(index..index + LANES).next()?;
         let edge = |pick: fn(f64, f64) -> f64| {
             eight.coordinates.map(|x| {
                 let four: [f64; 4] = std::array::from_fn(|k| pick(x[k], x[k + 4]));
@@ -116,7 +116,7 @@ impl<'a> Growing<'a> {
         let owned = u64::from_le_bytes(*eight.special) & u64::from_le_bytes([IMAGE; LANES]) == 0;
         #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
         (near && owned).then(|| Cluster {
-            receivers: std::array::from_fn(|k| (place + k) as u32),
+            receivers: std::array::from_fn(|k| (index + k) as u32),
             lanes: LANES,
             group: self.cluster.group,
             lower,
@@ -126,7 +126,7 @@ impl<'a> Growing<'a> {
 
     /// Adds a particle if it is near the others.
     #[inline(always)]
-    fn try_add(&mut self, place: usize) -> bool {
+    fn try_add(&mut self, index: usize) -> bool {
         let Cluster {
             receivers,
             lanes,
@@ -134,7 +134,7 @@ impl<'a> Growing<'a> {
             upper,
             ..
         } = &mut self.cluster;
-        let x: [f64; 3] = std::array::from_fn(|a| self.sequence.coordinates(a, place)[0]);
+        let x: [f64; 3] = std::array::from_fn(|a| self.sequence.coordinates(a, index)[0]);
         if *lanes == 0 {
             (*lower, *upper, self.reach) = (x, x, self.sphere);
         } else {
@@ -148,7 +148,7 @@ impl<'a> Growing<'a> {
             (*lower, *upper, self.reach) = (low, high, volume);
         }
         #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
-        receivers[*lanes..].fill(place as u32);
+        receivers[*lanes..].fill(index as u32);
         *lanes += 1;
         true
     }

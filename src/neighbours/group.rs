@@ -20,9 +20,9 @@ pub(super) struct Group {
 }
 
 impl Group {
-    /// Place of a column of the grid among all columns of the sequence.
+    /// Index of a column of the grid among all columns of the sequence.
     #[inline(always)]
-    pub(super) fn place(&self, column: [u32; 2]) -> usize {
+    pub(super) fn index(&self, column: [u32; 2]) -> usize {
         let index = |k: usize| {
             let last = self.size[k].saturating_sub(1);
             (column[k].saturating_sub(self.first[k]) as usize).min(last)

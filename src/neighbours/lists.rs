@@ -6,9 +6,9 @@ use super::clusters::{Chunk, ClusterLists, Lengths};
 use super::columns::ColumnGrid;
 use super::facts::ImageFacts;
 use super::foreign::{ForeignChunk, ForeignLists, ForeignTable};
+use super::fragments::Membership;
 use super::groups::Groups;
 use super::motion::MotionRecord;
-use super::parts::Kin;
 use super::sequence::Sequence;
 use crate::domain::{Halo, Mirrors, Outset};
 use crate::model::{Case, SmoothingLength};
@@ -106,11 +106,11 @@ impl Lists {
     /// Whether two images of a group are within each other's support.
     #[must_use]
     pub fn in_support(&self, group: usize, i: u32, j: u32) -> bool {
-        let [a, b] = [i, j].map(|place| &self.motion[place as usize].position);
+        let [a, b] = [i, j].map(|index| &self.motion[index as usize].position);
         let r = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
         let lengths = self.sequence.smoothing_lengths();
-        let h = |place: u32| {
-            let own = lengths.get(place as usize);
+        let h = |index: u32| {
+            let own = lengths.get(index as usize);
             own.copied().unwrap_or(self.lengths[group].longest)
         };
         let range = (h(i) + h(j)).max(self.lengths[group].least);
@@ -136,8 +136,8 @@ impl Lists {
             + 4 * self.order.capacity()
     }
 
-    /// Sorts all particles and images and lists the neighbours of each in its own group. `scratch` is
-    /// memory to work in, see [`Sequence::build`].
+    /// Sorts all particles and images and lists the neighbours of each in its own group. `scratch`
+    /// is memory to work in, see [`Sequence::build`].
     pub fn build<R: bytemuck::Pod>(
         &mut self,
         particles: &ParticleStore,
@@ -172,7 +172,7 @@ impl Lists {
             owned,
             (others, halo.below()),
             facts,
-            |place, image| {
+            |index, image| {
                 let (base, code) = (image.base(), image.code());
                 let record = MotionRecord {
                     position: mirrors.reflect_position(&particles.position[base], code),
@@ -181,7 +181,7 @@ impl Lists {
                     mass: particles.mass[base],
                 };
                 // SAFETY: each place is emitted once.
-                unsafe { *motion.slot(place) = record };
+                unsafe { *motion.slot(index) = record };
             },
         );
         if self.is_variable {
@@ -198,8 +198,8 @@ impl Lists {
 
     /// Takes those of another fragment out of the lists of the own group, before
     /// [`Self::build_foreign`] takes them in.
-    pub fn separate(&mut self, kin: &Kin) {
-        self.clusters.part(kin);
+    pub fn separate(&mut self, membership: &Membership) {
+        self.clusters.part(membership);
     }
 
     /// Lists the neighbours of other groups that contact knows, after [`Self::build`].
@@ -210,7 +210,7 @@ impl Lists {
             &self.sequence,
             &self.motion,
             table,
-            |place| particles.body[images[place as usize].base()] as usize,
+            |index| particles.body[images[index as usize].base()] as usize,
         );
     }
 

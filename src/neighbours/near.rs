@@ -7,9 +7,9 @@ use crate::numerics::lanes::{LANES, Lanes};
 /// never drops a pair with a contribution.
 pub(super) const INFLATION: f64 = 1.0 + 1e-9;
 
-/// Calls `found` with each eight images of a group that stand by a box, the place of the first, and a bit
-/// for each of them that is nearer than `range` (m), which is nowhere more than `far`. `hints` are where the
-/// last box nearby began to read columns, by the last bits of their indices.
+/// Calls `found` with each eight images of a group that stand by a box, the index of the first, and
+/// a bit for each of them that is nearer than `range` (m), which is nowhere more than `far`.
+/// `hints` are where the last box nearby began to read columns, by the last bits of their indices.
 #[inline(always)]
 pub(super) fn near_box<V: Lanes>(
     sequence: &Sequence,
@@ -58,11 +58,11 @@ pub(super) fn push_places(list: &mut Vec<u32>, used: usize, first: usize, bits: 
     let offsets = OFFSETS[bits as usize];
     #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
     let first = first as u32;
-    let mut places = [first; LANES];
+    let mut indices = [first; LANES];
     for k in 0..LANES {
-        places[k] += u32::from(offsets[k]);
+        indices[k] += u32::from(offsets[k]);
     }
-    list[used..used + LANES].copy_from_slice(&places);
+    list[used..used + LANES].copy_from_slice(&indices);
     used + bits.count_ones() as usize
 }
 

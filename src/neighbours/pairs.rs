@@ -3,7 +3,7 @@
 /// Receivers with their foreign neighbours.
 #[derive(Debug, Clone, Default)]
 pub struct PairList {
-    /// Place of each receiver in the sequence and the end of its neighbours.
+    /// Index of each receiver in the sequence and the end of its neighbours.
     receivers: Vec<(u32, u32)>,
     pub(super) sources: Vec<u32>,
 }

@@ -67,11 +67,11 @@ impl Sequence {
     /// Words of scratch memory that [`Self::build`] needs for each image.
     pub const SCRATCH_WORDS: usize = SCRATCH_WORDS;
 
-    /// Sorts particles `0..owned` of the store and the images `others` (mirror images of these,
-    /// and halo particles with theirs; the first `below` of them stand below the particles as far
-    /// as one can tell, the rest above, which saves work). `facts` tells position, id and group of an image; `emit`
-    /// is called once with each place of the sequence and the image that stands there. `scratch`
-    /// is memory to work in: at least [`Self::SCRATCH_WORDS`] for each image.
+    /// Sorts particles `0..owned` of the store and the images `others` (mirror images of these, and
+    /// halo particles with theirs; the first `below` of them stand below the particles as far as
+    /// one can tell, the rest above, which saves work). `facts` tells position, id and group of an
+    /// image; `emit` is called once with each index of the sequence and the image that stands
+    /// there. `scratch` is memory to work in: at least [`Self::SCRATCH_WORDS`] for each image.
     pub fn build(
         &mut self,
         scratch: &mut [u64],
@@ -111,8 +111,8 @@ impl Sequence {
             lengths: (!self.uniform).then(|| Scatter::new(&mut self.lengths)),
         };
         for group in &mut self.groups {
-            let place = |column: usize| self.starts[column] as usize;
-            group.images = place(group.columns.start)..place(group.columns.end);
+            let index = |column: usize| self.starts[column] as usize;
+            group.images = index(group.columns.start)..index(group.columns.end);
             let (starts, walls) = (&self.starts, &mut self.walls);
             Sorter::finish(
                 (scratch, count),
@@ -130,19 +130,19 @@ impl Sequence {
     /// whatever.
     ///
     /// # Panics
-    /// If `place` is beyond the last image.
+    /// If `index` is beyond the last image.
     #[inline(always)]
     #[must_use]
-    pub fn coordinates(&self, axis: usize, place: usize) -> &[f64; LANES] {
-        self.coordinates[axis][place..]
+    pub fn coordinates(&self, axis: usize, index: usize) -> &[f64; LANES] {
+        self.coordinates[axis][index..]
             .first_chunk()
             .expect("the arrays are padded")
     }
 
     /// The images of a range of places by eights; the last eight may go beyond the range.
     #[inline(always)]
-    pub(super) fn eights<'a>(&'a self, places: Range<usize>) -> impl Iterator<Item = Eight<'a>> {
-        let padded = places.start..places.start + places.len().next_multiple_of(LANES);
+    pub(super) fn eights<'a>(&'a self, indices: Range<usize>) -> impl Iterator<Item = Eight<'a>> {
+        let padded = indices.start..indices.start + indices.len().next_multiple_of(LANES);
         let eights = |all: &'a [f64]| all[padded.clone()].as_chunks().0;
         let [x, y, z] = &self.coordinates;
         let lengths = if self.uniform { x } else { &self.lengths };
@@ -160,20 +160,20 @@ impl Sequence {
     /// the last image may say so too.
     ///
     /// # Panics
-    /// If `place` is beyond the last image.
+    /// If `index` is beyond the last image.
     #[inline(always)]
     #[must_use]
-    pub fn any_images(&self, place: usize) -> bool {
-        let eight = *self.special[place..]
+    pub fn any_images(&self, index: usize) -> bool {
+        let eight = *self.special[index..]
             .first_chunk()
             .expect("the array is padded");
         u64::from_le_bytes(eight) & u64::from_le_bytes([IMAGE; LANES]) != 0
     }
 
-    /// Whether the image at a place is a particle of this rank itself.
+    /// Whether the image at an index is a particle of this rank itself.
     #[inline(always)]
-    pub(super) fn is_owned(&self, place: usize) -> bool {
-        self.special[place] & IMAGE == 0
+    pub(super) fn is_owned(&self, index: usize) -> bool {
+        self.special[index] & IMAGE == 0
     }
 
     /// The images in canonical order, group after group.
@@ -200,7 +200,7 @@ impl Sequence {
         self.groups.len()
     }
 
-    /// The places of a group's images in [`Self::images`].
+    /// The indices of a group's images in [`Self::images`].
     #[must_use]
     pub fn group(&self, group: usize) -> Range<usize> {
         self.groups[group].images.clone()
@@ -220,13 +220,13 @@ impl Sequence {
     /// Calls `visit` with those parts of `places` that stand in one column each.
     pub(super) fn for_each_segment(
         &self,
-        places: Range<usize>,
+        indices: Range<usize>,
         mut visit: impl FnMut(Range<usize>),
     ) {
-        let mut at = places.start;
+        let mut at = indices.start;
         let mut column = self.starts.partition_point(|&start| start as usize <= at);
-        while at < places.end {
-            let end = (self.starts[column] as usize).min(places.end);
+        while at < indices.end {
+            let end = (self.starts[column] as usize).min(indices.end);
             if end > at {
                 visit(at..end);
             }
@@ -237,7 +237,7 @@ impl Sequence {
 
     /// Calls `visit`, in canonical order, with the columns of a group that have images within
     /// `range` (m) of the box `lower..=upper` (m) as far as the directions across tell: two
-    /// indices across and the places of the column.
+    /// indices across and the indices of the column.
     #[inline(always)]
     pub(super) fn columns_near(
         &self,

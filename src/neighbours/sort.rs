@@ -152,14 +152,14 @@ impl Sorter {
         self.cursors.clear();
         self.cursors.resize(columns * tasks, 0);
         let groups: &[Group] = groups;
-        let place =
-            |column: &Column| groups[column.group as usize].place(column.across.map(u32::from));
+        let index =
+            |column: &Column| groups[column.group as usize].index(column.across.map(u32::from));
         self.cursors
             .par_chunks_mut(columns)
             .zip(columns_of.par_chunks(share))
             .for_each(|(counts, mine)| {
                 for column in mine {
-                    counts[place(column)] += 1;
+                    counts[index(column)] += 1;
                 }
             });
         lay_out_cursors(&mut self.cursors, columns, starts);
@@ -173,7 +173,7 @@ impl Sorter {
                     let image = image(task * share + k);
                     let facts = facts(image);
                     let along = facts.position[groups[facts.group].grid.along];
-                    let cursor = &mut cursors[place(column)];
+                    let cursor = &mut cursors[index(column)];
                     // SAFETY: the counts give every image a slot of its own.
                     unsafe {
                         *entries.slot(*cursor as usize) = Entry::new(image, along, facts.id);
@@ -253,11 +253,11 @@ impl Sorter {
                 emit(first + k, entry.image);
             }
         };
-        let places = group.images.clone();
+        let indices = group.images.clone();
         let columns = group.columns.clone();
         halve(
             &starts[columns.start..=columns.end],
-            &mut split(scratch, count).0[places],
+            &mut split(scratch, count).0[indices],
             &mut walls[columns],
             &finish,
         );
@@ -285,19 +285,19 @@ pub(super) struct Targets<'a> {
 
 impl Targets<'_> {
     #[inline(always)]
-    fn write(&self, place: usize, image: Image, facts: &ImageFacts) {
+    fn write(&self, index: usize, image: Image, facts: &ImageFacts) {
         let mirror = if image.code() == 0 { 0 } else { MIRROR };
         let halo = if image.base() < self.owned { 0 } else { HALO };
         let moving = if facts.moving { MOVING } else { 0 };
         // SAFETY: each place belongs to one column, and one thread has that column.
         unsafe {
-            *self.images.slot(place) = image;
-            *self.special.slot(place) = mirror | halo | moving;
+            *self.images.slot(index) = image;
+            *self.special.slot(index) = mirror | halo | moving;
             for axis in 0..3 {
-                *self.coordinates[axis].slot(place) = facts.position[axis];
+                *self.coordinates[axis].slot(index) = facts.position[axis];
             }
             if let Some(lengths) = &self.lengths {
-                *lengths.slot(place) = facts.smoothing_length;
+                *lengths.slot(index) = facts.smoothing_length;
             }
         }
     }
@@ -317,7 +317,7 @@ fn lay_out_cursors(cursors: &mut [u32], columns: usize, starts: &mut Vec<u32>) {
 }
 
 /// Calls `finish` with each column's first place, entries and walls, halving the places among
-/// threads. `starts` are the first places of the columns and the end of the last.
+/// threads. `starts` are the first indices of the columns and the end of the last.
 fn halve(
     starts: &[u32],
     entries: &mut [Entry],
@@ -327,8 +327,8 @@ fn halve(
     let offset = starts[0];
     if walls.len() == 1 || entries.len() < GRAIN {
         for (pair, walls) in starts.windows(2).zip(walls) {
-            let places = (pair[0] - offset) as usize..(pair[1] - offset) as usize;
-            finish(pair[0] as usize, &mut entries[places], walls);
+            let indices = (pair[0] - offset) as usize..(pair[1] - offset) as usize;
+            finish(pair[0] as usize, &mut entries[indices], walls);
         }
         return;
     }

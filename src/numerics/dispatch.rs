@@ -23,12 +23,12 @@ pub enum Instructions {
 pub fn instructions() -> Instructions {
     static CHOICE: OnceLock<Instructions> = OnceLock::new();
     *CHOICE.get_or_init(|| {
-        let wish = std::env::var("WHIPPLE_SIMD").unwrap_or_default();
+        let request = std::env::var("WHIPPLE_SIMD").unwrap_or_default();
         let available = available();
         available
             .iter()
             .copied()
-            .find(|set| set.name() == wish)
+            .find(|set| set.name() == request)
             .unwrap_or(available[0])
     })
 }

@@ -26,8 +26,8 @@ const CHANGED: [&str; 7] = [
 
 impl RunFolder {
     /// Takes the folder of a new run, and makes it if need be; nothing in it changes. A folder with
-    /// something in it is refused, unless `force` is given and it holds a run. One that a run has open
-    /// is refused unless `ignore` is given. The lock is rank 0's. Collective.
+    /// something in it is refused, unless `force` is given and it holds a run. One that a run has
+    /// open is refused unless `ignore` is given. The lock is rank 0's. Collective.
     ///
     /// # Errors
     /// [`OutputError::FolderInUse`], [`OutputError::NotARun`], [`OutputError::Held`],
@@ -56,8 +56,8 @@ impl RunFolder {
     /// Takes the folder of a run to go on in it; nothing in it changes. The lock is rank 0's.
     /// Collective.
     ///
-    /// # Errors
-    /// [`OutputError::Held`], [`OutputError::Unclear`], [`OutputError::Io`]; the same on every rank.
+    /// # Errors [`OutputError::Held`], [`OutputError::Unclear`], [`OutputError::Io`]; the same on
+    /// every rank.
     pub fn take(&self, comm: &Comm, ignore: bool) -> Result<Option<RunLock>, OutputError> {
         let mut lock = None;
         on_root(comm, || {
@@ -94,11 +94,11 @@ impl RunFolder {
         Ok(folder)
     }
 
-    /// Goes on in the folder of an earlier run from a checkpoint of it, with a resolved input unless
-    /// the one there stays. Checkpoints that were passed
-    /// over as damaged get another name. What the run had written later is set aside until
-    /// [`Self::forget_set_aside`], for the new run writes it again; copies of the tables go there too,
-    /// which [`super::Table::resume`] cuts. Collective.
+    /// Goes on in the folder of an earlier run from a checkpoint of it, with a resolved input
+    /// unless the one there stays. Checkpoints that were passed over as damaged get another name.
+    /// What the run had written later is set aside until [`Self::forget_set_aside`], for the new
+    /// run writes it again; copies of the tables go there too, which [`super::Table::resume`] cuts.
+    /// Collective.
     ///
     /// # Errors
     /// [`OutputError::Io`], [`OutputError::Damaged`]; the same on every rank. The folder is then as
@@ -207,8 +207,8 @@ impl RunFolder {
         }
     }
 
-    /// Whether there is nothing in it but a lock, or what a run has left that was killed at its very
-    /// beginning.
+    /// Whether there is nothing in it but a lock, or what a run has left that was killed at its
+    /// very beginning.
     fn is_empty(&self) -> Result<bool, OutputError> {
         let names = names_in(&self.path)?;
         let unfinished = [LOCK, STATUS].map(|name| files::partial(Path::new(name)));
@@ -219,9 +219,9 @@ impl RunFolder {
     }
 
     /// Removes what a run has written, at once: who gives `--force` asks for it. Checkpoints go
-    /// first, each at a stroke and the newest first, so that a restart after a clearing that was cut
-    /// short finds whole ones or none; the status stays until a new one takes its place, so that
-    /// the folder remains one that `--force` clears.
+    /// first, each at a stroke and the newest first, so that a restart after a clearing that was
+    /// cut short finds whole ones or none; the status stays until a new one takes its place, so
+    /// that the folder remains one that `--force` clears.
     fn clear(&self) -> Result<(), OutputError> {
         for (_, path) in checkpoint::list(&self.checkpoints())?.iter().rev() {
             checkpoint::discard(path)?;

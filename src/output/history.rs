@@ -152,9 +152,9 @@ impl Table {
     }
 }
 
-/// The bytes of those `rows` whose number in column `key` is at most `last`; or the number of the first
-/// row that is wrong and has one of those after it. What is wrong at the end was half written, or is
-/// what a power cut leaves.
+/// The bytes of those `rows` whose number in column `key` is at most `last`; or the number of the
+/// first row that is wrong and has one of those after it. What is wrong at the end was half
+/// written, or is what a power cut leaves.
 fn keep(rows: &[u8], columns: usize, key: usize, last: f64) -> Result<Vec<u8>, usize> {
     let mut kept = Vec::new();
     let mut reader = sheet::rows(rows);

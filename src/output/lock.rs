@@ -1,9 +1,9 @@
 //! The lock of a run's folder, so that no second run writes into it.
 //!
-//! Rank 0 holds an advisory lock on the file `lock` for as long as the run lives; the system drops it
-//! when the process ends, in whatever way. The file says who holds it: a run that ends in good order
-//! removes it, and one that was killed leaves it behind. Where a file system has no locks, or keeps
-//! them on each host for itself, what the file says is all there is.
+//! Rank 0 holds an advisory lock on the file `lock` for as long as the run lives; the system drops
+//! it when the process ends, in whatever way. The file says who holds it: a run that ends in good
+//! order removes it, and one that was killed leaves it behind. Where a file system has no locks, or
+//! keeps them on each host for itself, what the file says is all there is.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Read as _, Write as _};
@@ -19,8 +19,8 @@ use super::{OutputError, files};
 /// Name of the lock's file in a run's folder.
 pub(super) const LOCK: &str = "lock";
 
-/// How often a lock is tried for: `info` holds it for a moment, and `mpirun` may end before a rank that
-/// it has killed.
+/// How often a lock is tried for: `info` holds it for a moment, and `mpirun` may end before a rank
+/// that it has killed.
 const TRIES: u32 = 20;
 const PAUSE: Duration = Duration::from_millis(50);
 
@@ -139,7 +139,8 @@ pub struct RunLock {
 }
 
 impl RunLock {
-    /// Takes the folder of a run, or says who has it; `ignore` takes it all the same. By one process.
+    /// Takes the folder of a run, or says who has it; `ignore` takes it all the same. By one
+    /// process.
     ///
     /// # Errors
     /// [`OutputError::Held`], [`OutputError::Unclear`], [`OutputError::Io`].

@@ -2,7 +2,7 @@
 //!
 //! All ranks call the writers together and all get the same verdict: every return code is voted
 //! before anybody goes on ([`agree`]), so that callers leave together. Rows stand in the order of
-//! particle ids ([`Rows`]), whatever the ranks. [`h5`] is the only room that names HDF5.
+//! particle ids ([`Rows`]), whatever the ranks. [`h5`] is the only module that names HDF5.
 
 mod begin;
 pub mod checkpoint;

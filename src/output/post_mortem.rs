@@ -1,4 +1,4 @@
-//! Post-mortems: a particle in trouble with all that is about it, as text and as HDF5.
+//! Post-mortems: a particle that failed numerically with all that is about it, as text and as HDF5.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -20,13 +20,13 @@ pub fn write(
     stem: &Path,
     what: &str,
     case: &Case,
-    store: &ParticleStore,
+    particles: &ParticleStore,
     about: &PostMortem,
 ) -> Result<(), OutputError> {
     if let Some(folder) = stem.parent() {
         std::fs::create_dir_all(folder).map_err(OutputError::io("create the folder", folder))?;
     }
-    let text = text(what, case, store, about);
+    let text = text(what, case, particles, about);
     write_atomically(&stem.with_extension("txt"), text.as_bytes())?;
     let alone = Comm::solo();
     let file = Writer::create(&alone, &stem.with_extension("h5"))?;
@@ -36,8 +36,14 @@ pub fn write(
     file.text("/what", what)?;
     file.text("/input", &case.resolved)?;
     let (particle, neighbours) = about.members.split_at(1);
-    write_fields(&file, "/particle", store, particle, FieldInfo::any)?;
-    write_fields(&file, "/neighbours", store, neighbours, HaloPhase::all())?;
+    write_fields(&file, "/particle", particles, particle, FieldInfo::any)?;
+    write_fields(
+        &file,
+        "/neighbours",
+        particles,
+        neighbours,
+        HaloPhase::all(),
+    )?;
     let block = Block::even(about.distances.len() as u64 - 1, 0, 1);
     let bytes = bytemuck::cast_slice(&about.distances[1..]);
     file.rows(
@@ -53,24 +59,24 @@ pub fn write(
 fn write_fields(
     file: &Writer,
     group: &str,
-    store: &ParticleStore,
+    particles: &ParticleStore,
     members: &[u32],
     which: impl Select,
 ) -> Result<(), OutputError> {
     file.group(group)?;
     let block = Block::even(members.len() as u64, 0, 1);
-    for field in store.held(which) {
+    for field in particles.held(which) {
         let row = row_type(field.kind);
         let path = format!("{group}/{}", field.name);
-        file.rows(&path, row, block, &gather(store, field, members))?;
+        file.rows(&path, row, block, &gather(particles, field, members))?;
         file.note(&path, "unit", field.unit)?;
     }
     Ok(())
 }
 
 /// A field's bytes of some particles; zeros where a particle does not have it now.
-fn gather(store: &ParticleStore, field: &FieldInfo, members: &[u32]) -> Vec<u8> {
-    let (size, bytes) = (field.kind.bytes(), store.bytes(field.id));
+fn gather(particles: &ParticleStore, field: &FieldInfo, members: &[u32]) -> Vec<u8> {
+    let (size, bytes) = (field.kind.bytes(), particles.bytes(field.id));
     let mut rows = Vec::with_capacity(size * members.len());
     for &i in members {
         let start = i as usize * size;
@@ -82,30 +88,30 @@ fn gather(store: &ParticleStore, field: &FieldInfo, members: &[u32]) -> Vec<u8> 
     rows
 }
 
-fn text(what: &str, case: &Case, store: &ParticleStore, about: &PostMortem) -> String {
+fn text(what: &str, case: &Case, particles: &ParticleStore, about: &PostMortem) -> String {
     let particle = about.members[0];
-    let body = &case.bodies[store.body[particle as usize] as usize].name;
+    let body = &case.bodies[particles.body[particle as usize] as usize].name;
     let mut text = format!(
         "Particle {} of body `{body}`, on rank {}, after step {} at {:e} s:\n{what}\n\n",
         about.id, about.rank, about.step, about.time
     );
-    tell_fields(&mut text, store, particle);
-    tell_neighbours(&mut text, case, store, about);
+    tell_fields(&mut text, particles, particle);
+    tell_neighbours(&mut text, case, particles, about);
     text.push_str("\nThe last votes (step, next time step in s, its reason, particle):\n");
-    for vote in &about.votes {
+    for past in &about.past_steps {
         let _ = writeln!(
             text,
             "{} {:e} {} {}",
-            vote.step, vote.dt, vote.reason, vote.id
+            past.step, past.dt, past.reason, past.id
         );
     }
     text
 }
 
 /// A line for each field of a particle.
-fn tell_fields(text: &mut String, store: &ParticleStore, particle: u32) {
-    for field in store.held(FieldInfo::any) {
-        let bytes = gather(store, field, &[particle]);
+fn tell_fields(text: &mut String, particles: &ParticleStore, particle: u32) {
+    for field in particles.held(FieldInfo::any) {
+        let bytes = gather(particles, field, &[particle]);
         let values = match field.kind {
             FieldKind::Id => {
                 vec![u64::from_le_bytes(bytes[..8].try_into().unwrap_or_default()).to_string()]
@@ -129,8 +135,8 @@ fn tell_fields(text: &mut String, store: &ParticleStore, particle: u32) {
 }
 
 /// A line for each neighbour: those of the particle's own body, then others.
-fn tell_neighbours(text: &mut String, case: &Case, store: &ParticleStore, about: &PostMortem) {
-    let own = store.body[about.members[0] as usize];
+fn tell_neighbours(text: &mut String, case: &Case, particles: &ParticleStore, about: &PostMortem) {
+    let own = particles.body[about.members[0] as usize];
     let spacing = case.bodies[own as usize].lattice.spacing;
     for (title, other) in [
         ("Neighbours of its own body", false),
@@ -142,16 +148,16 @@ fn tell_neighbours(text: &mut String, case: &Case, store: &ParticleStore, about:
         );
         for (&i, r) in about.members.iter().zip(&about.distances).skip(1) {
             let k = i as usize;
-            if (store.body[k] != own) == other {
+            if (particles.body[k] != own) == other {
                 let _ = writeln!(
                     text,
                     "{} {} {:.4} {:e} {:?} {}",
-                    store.id[k],
-                    case.bodies[store.body[k] as usize].name,
+                    particles.id[k],
+                    case.bodies[particles.body[k] as usize].name,
                     r / spacing,
-                    store.predicted_density[k],
-                    store.predicted_velocity[k],
-                    k < store.owned()
+                    particles.predicted_density[k],
+                    particles.predicted_velocity[k],
+                    k < particles.owned()
                 );
             }
         }

@@ -72,8 +72,8 @@ impl RunFolder {
         }
     }
 
-    /// Removes a file `stop` that asked an earlier run to stop: one from before `began`. One that has
-    /// come since, while this run was starting, stays and stops it. Rank 0's alone.
+    /// Removes a file `stop` that asked an earlier run to stop: one from before `began`. One that
+    /// has come since, while this run was starting, stays and stops it. Rank 0's alone.
     ///
     /// # Errors
     /// [`OutputError::Io`].

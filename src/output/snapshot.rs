@@ -31,7 +31,7 @@ pub enum Quantity {
     Field(&'static FieldInfo),
     /// `√(3/2 s:s)` of the deviatoric stress s.
     VonMisesStress,
-    /// Temperature; no number for materials without thermal constants.
+    /// Temperature; NaN for materials without thermal constants.
     Temperature,
 }
 
@@ -148,13 +148,13 @@ pub struct Meta<'a> {
 pub fn write(
     comm: &Comm,
     path: &Path,
-    store: &ParticleStore,
+    particles: &ParticleStore,
     meta: &Meta,
     quantities: &[Quantity],
     rows: &mut Rows,
 ) -> Result<(), OutputError> {
     let temporary = files::partial(path);
-    let written = write_file(comm, &temporary, store, meta, quantities, rows);
+    let written = write_file(comm, &temporary, particles, meta, quantities, rows);
     settle(comm, written, &temporary, || {
         files::publish(&temporary, path)
     })
@@ -163,25 +163,25 @@ pub fn write(
 fn write_file(
     comm: &Comm,
     path: &Path,
-    store: &ParticleStore,
+    particles: &ParticleStore,
     meta: &Meta,
     quantities: &[Quantity],
     rows: &mut Rows,
 ) -> Result<(), OutputError> {
-    rows.plan(comm, &store.id[..store.owned()])?;
+    rows.plan(comm, &particles.id[..particles.owned()])?;
     let file = Writer::create(comm, path)?;
-    write_grid(comm, &file, store, meta.time, rows)?;
-    for quantity in with_frozen(store, quantities) {
-        write_quantity(comm, &file, store, meta.case, quantity, rows)?;
+    write_grid(comm, &file, particles, meta.time, rows)?;
+    for quantity in with_frozen(particles, quantities) {
+        write_quantity(comm, &file, particles, meta.case, quantity, rows)?;
     }
     write_meta(comm, &file, meta)?;
     file.close()
 }
 
 /// The quantities chosen, and which particles are frozen where any may be.
-fn with_frozen(store: &ParticleStore, chosen: &[Quantity]) -> impl Iterator<Item = Quantity> {
+fn with_frozen(particles: &ParticleStore, chosen: &[Quantity]) -> impl Iterator<Item = Quantity> {
     let name = |quantity: &Quantity| quantity.name();
-    let missing = store.held(Owner::FREEZE).map(Quantity::Field);
+    let missing = particles.held(Owner::FREEZE).map(Quantity::Field);
     let missing = missing.filter(move |field| !chosen.iter().any(|q| name(q) == name(field)));
     chosen.iter().copied().chain(missing)
 }
@@ -190,7 +190,7 @@ fn with_frozen(store: &ParticleStore, chosen: &[Quantity]) -> impl Iterator<Item
 fn write_grid(
     comm: &Comm,
     file: &Writer,
-    store: &ParticleStore,
+    particles: &ParticleStore,
     time: f64,
     rows: &mut Rows,
 ) -> Result<(), OutputError> {
@@ -205,7 +205,7 @@ fn write_grid(
         element: Element::F64,
         components: 3,
     };
-    let points = rows.collect(comm, store.bytes(FieldId::position), vector.bytes());
+    let points = rows.collect(comm, particles.bytes(FieldId::position), vector.bytes());
     file.rows(&format!("{GRID}/Points"), vector, block, points)?;
     file.note(&format!("{GRID}/Points"), "unit", "m")?;
 
@@ -246,7 +246,7 @@ fn write_grid(
 fn write_quantity(
     comm: &Comm,
     file: &Writer,
-    store: &ParticleStore,
+    particles: &ParticleStore,
     case: &Case,
     quantity: Quantity,
     rows: &mut Rows,
@@ -256,7 +256,7 @@ fn write_quantity(
     match quantity {
         Quantity::Field(field) => {
             let row = row_type(field.kind);
-            let bytes = rows.collect(comm, &store.bytes_or_zeros(field), row.bytes());
+            let bytes = rows.collect(comm, &particles.bytes_or_zeros(field), row.bytes());
             if field.kind == FieldKind::Symmetric {
                 // The store has xy, xz, yz at the end, VTK xy, yz, xz.
                 for tensor in bytes.chunks_exact_mut(48) {
@@ -268,10 +268,10 @@ fn write_quantity(
         }
         Quantity::VonMisesStress | Quantity::Temperature => {
             let value = |i: usize| match quantity {
-                Quantity::Temperature => temperature(case, store, i),
-                _ => von_mises(&store.deviatoric_stress[i]),
+                Quantity::Temperature => temperature(case, particles, i),
+                _ => von_mises(&particles.deviatoric_stress[i]),
             };
-            let values: Vec<f64> = (0..store.owned()).map(value).collect();
+            let values: Vec<f64> = (0..particles.owned()).map(value).collect();
             let bytes = rows.collect(comm, bytemuck::cast_slice(&values), 8);
             file.rows(&path, RowType::single(Element::F64), block, bytes)?;
         }
@@ -289,11 +289,11 @@ fn von_mises(s: &[f64; 6]) -> f64 {
 }
 
 /// Temperature (K) of an owned particle.
-fn temperature(case: &Case, store: &ParticleStore, i: usize) -> f64 {
-    let body = case.bodies.get(store.body[i] as usize);
+fn temperature(case: &Case, particles: &ParticleStore, i: usize) -> f64 {
+    let body = case.bodies.get(particles.body[i] as usize);
     let material = body.and_then(|body| case.materials.get(body.material));
     material
-        .and_then(|m| m.temperature(store.density[i], store.specific_energy[i]))
+        .and_then(|m| m.temperature(particles.density[i], particles.specific_energy[i]))
         .unwrap_or(f64::NAN)
 }
 

@@ -57,8 +57,8 @@ pub fn on_root(
     agree(comm, if comm.is_root() { task() } else { Ok(()) })
 }
 
-/// Ends what all ranks have `written` under a temporary name: rank 0 publishes it if it is whole, else
-/// takes it away. Collective.
+/// Ends what all ranks have `written` under a temporary name: rank 0 publishes it if it is whole,
+/// else takes it away. Collective.
 ///
 /// # Errors
 /// That of writing or of publishing, with the same text on every rank.

@@ -107,7 +107,7 @@ bitflags! {
         /// Before the contact forces, if these have friction.
         const FRICTION = 1 << 3;
         /// When parts are told.
-        const PARTS = 1 << 4;
+        const FRAGMENTS = 1 << 4;
         /// Whatever is needed before forces of stress and contact, in one message.
         const FORCES = Self::STRESS.bits() | Self::CONTACT.bits();
     }
@@ -137,7 +137,7 @@ bitflags! {
         const SELF_CONTACT = 1 << 9;
         /// Self-contact of folds.
         const FOLDS = 1 << 10;
-        /// Freezing of particles in trouble.
+        /// Freezing of particles that fail numerically.
         const FREEZE = 1 << 11;
         /// Stress points, which carry the stress.
         const STRESS_POINTS = 1 << 12;

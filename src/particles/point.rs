@@ -84,12 +84,12 @@ macro_rules! points {
 
         /// Borrows [`MaterialPoints`] of a store, which leaves its other fields free.
         macro_rules! material_points {
-            ($d store:expr) => {
+            ($d particles:expr) => {
                 $crate::particles::MaterialPoints {
-                    body: &$d store.body,
-                    heating: &$d store.d_specific_energy_dt,
-                    work: $crate::particles::Scatter::new(&mut $d store.work),
-                    $( $name: $crate::particles::Scatter::new(&mut $d store.$name), )+
+                    body: &$d particles.body,
+                    heating: &$d particles.d_specific_energy_dt,
+                    work: $crate::particles::Scatter::new(&mut $d particles.work),
+                    $( $name: $crate::particles::Scatter::new(&mut $d particles.$name), )+
                 }
             };
         }

@@ -26,8 +26,8 @@ impl ParticleStore {
         self.capacity_bytes()
     }
 
-    /// The mass that a particle's specific energy belongs to (kg): also of stress points, which have
-    /// no mass that moves.
+    /// The mass that a particle's specific energy belongs to (kg): also of stress points, which
+    /// have no mass that moves.
     #[inline]
     #[must_use]
     pub fn thermal_mass(&self, i: usize) -> f64 {
@@ -209,14 +209,14 @@ mod tests {
     #[allow(clippy::cast_possible_truncation, reason = "below 251")]
     /// A store whose every number tells its field, particle and component.
     fn sentinel(owned: usize) -> ParticleStore {
-        let mut store = ParticleStore::default();
-        store.resize_owned(owned);
+        let mut particles = ParticleStore::default();
+        particles.resize_owned(owned);
         for (row, field) in FIELDS.iter().enumerate() {
-            for (at, byte) in store.bytes_mut(field.id).iter_mut().enumerate() {
+            for (at, byte) in particles.bytes_mut(field.id).iter_mut().enumerate() {
                 *byte = ((row * 31 + at * 7 + at / 8 * 13) % 251) as u8;
             }
         }
-        store
+        particles
     }
 
     #[test]
@@ -253,10 +253,10 @@ mod tests {
             let mut after = before.clone();
             after.remove(&mut leaving.to_vec(), &mut Vec::new());
             assert_eq!(after.owned(), 9 - leaving.len());
-            let row = |store: &ParticleStore, i: usize| -> Vec<u8> {
+            let row = |particles: &ParticleStore, i: usize| -> Vec<u8> {
                 let part = |f: &FieldInfo| {
                     let size = f.kind.bytes();
-                    store.bytes(f.id)[i * size..(i + 1) * size].to_vec()
+                    particles.bytes(f.id)[i * size..(i + 1) * size].to_vec()
                 };
                 FIELDS.iter().flat_map(part).collect()
             };
@@ -272,17 +272,17 @@ mod tests {
     #[test]
     fn a_store_has_no_trace_of_what_it_dropped() {
         for unused in [Owner::CONTACT, Owner::LOADS, Owner::XSPH, Owner::all()] {
-            let mut store = sentinel(4);
-            let message = store.bytes_per_particle(FieldInfo::leaves);
-            store.drop_fields(Owner::BALSARA);
-            store.drop_fields(unused);
-            store.resize_owned(6);
-            store.resize_halo(3);
-            store.keep(&[2, 0], &mut [0; 2 * SCRATCH_WORDS]);
-            assert!(store.bytes_per_particle(FieldInfo::leaves) < message);
+            let mut particles = sentinel(4);
+            let message = particles.bytes_per_particle(FieldInfo::leaves);
+            particles.drop_fields(Owner::BALSARA);
+            particles.drop_fields(unused);
+            particles.resize_owned(6);
+            particles.resize_halo(3);
+            particles.keep(&[2, 0], &mut [0; 2 * SCRATCH_WORDS]);
+            assert!(particles.bytes_per_particle(FieldInfo::leaves) < message);
             for field in rows(unused | Owner::BALSARA) {
-                assert!(store.bytes(field.id).is_empty(), "{}", field.name);
-                let zeros = store.bytes_or_zeros(field);
+                assert!(particles.bytes(field.id).is_empty(), "{}", field.name);
+                let zeros = particles.bytes_or_zeros(field);
                 assert_eq!(*zeros, vec![0; 2 * field.kind.bytes()]);
             }
         }

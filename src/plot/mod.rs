@@ -2,9 +2,9 @@
 //!
 //! A [`Pictures`] takes a section of some snapshots and draws them one by one or as panels of one
 //! picture; [`Profiles`] draws values along a line, with the exact answer where there is one;
-//! [`Tables`] and [`energies`] draw columns of tables. These are [`Chart`]s. Everything is drawn by the program itself
-//! with a font of its own: no Python, no system fonts. Sizes of a picture are in proportion to its
-//! width, so that a wider picture is the same picture, finer.
+//! [`Tables`] and [`energies`] draw columns of tables. These are [`Chart`]s. Everything is drawn by
+//! the program itself with a font of its own: no Python, no system fonts. Sizes of a picture are in
+//! proportion to its width, so that a wider picture is the same picture, finer.
 
 #![expect(
     clippy::cast_precision_loss,

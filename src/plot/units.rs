@@ -37,7 +37,7 @@ pub fn times(times: &[f64]) -> Vec<String> {
 /// Reads `"0.1 mm"` for a quantity whose SI unit is `unit`; zero and pure numbers need no unit.
 ///
 /// # Errors
-/// [`PlotError::Quantity`] if the text is no number or its unit is another or missing.
+/// [`PlotError::Quantity`] if the text is not a number or its unit is another or missing.
 pub fn parse(text: &str, unit: &str) -> Result<f64, PlotError> {
     let (number, suffix) = split(text);
     quantity(text, number, suffix, unit)

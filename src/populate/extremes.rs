@@ -6,8 +6,9 @@ use super::row::{Cut, Row, layers, rows_of_layer};
 /// Smallest and largest coordinates (m) of the sites that the cuts leave, if any are left.
 ///
 /// Layers of one kind have the same sites but for what the shape cuts off, and that is more the
-/// farther a layer lies from the centre: the one that is nearest has all the sites of the others, seen
-/// along z. Only a hole may hide some of them, and where it hides an outermost one all layers count.
+/// farther a layer lies from the centre: the one that is nearest has all the sites of the others,
+/// seen along z. Only a hole may hide some of them, and where it hides an outermost one all layers
+/// count.
 pub(super) fn extremes(stack: &Stack, cuts: &[Cut]) -> Option<([f64; 3], [f64; 3])> {
     let layers = layers(stack, cuts);
     let holds = |k: &u64| rows_of_layer(stack, cuts, *k).next().is_some();

@@ -167,8 +167,8 @@ impl Stack {
         ]
     }
 
-    /// How many kinds of layers follow each other in turn: layers of one kind have their sites at the
-    /// same x and y, to the bit.
+    /// How many kinds of layers follow each other in turn: layers of one kind have their sites at
+    /// the same x and y, to the bit.
     pub fn layer_kinds(&self) -> u64 {
         match (self.kind, self.dimension) {
             (LatticeKind::Hexagonal, 3) => 2,
@@ -263,8 +263,8 @@ impl Stack {
         self.kind == LatticeKind::Rings
     }
 
-    /// [`Self::offset`] in rings: four rows, quarter after quarter, make one. Each is the mirror image
-    /// of the one before to the bit.
+    /// [`Self::offset`] in rings: four rows, quarter after quarter, make one. Each is the mirror
+    /// image of the one before to the bit.
     #[allow(clippy::cast_precision_loss)] // as above
     fn on_ring(&self, i: u64, j: u64, k: u64) -> [f64; 3] {
         let radius = self.innermost + (j / 4) as f64 * self.spacing;

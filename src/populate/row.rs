@@ -187,8 +187,8 @@ struct Line<'a> {
 }
 
 impl Line<'_> {
-    /// The run within flat faces and a radius: estimated from the formulas of the line, then settled
-    /// by a test of the sites at its ends.
+    /// The run within flat faces and a radius: estimated from the formulas of the line, then
+    /// settled by a test of the sites at its ends.
     fn run(
         &self,
         flat: [f64; 3],

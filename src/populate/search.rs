@@ -85,9 +85,9 @@ impl Block {
     }
 }
 
-/// The sites of a body (in a dimension, above all symmetry planes) where `value` is smallest, smallest
-/// first. `bound` says what `value` is at least in a box between two corners (m); the tighter it is,
-/// the fewer sites are looked at.
+/// The sites of a body (in a dimension, above all symmetry planes) where `value` is smallest,
+/// smallest first. `bound` says what `value` is at least in a box between two corners (m); the
+/// tighter it is, the fewer sites are looked at.
 pub fn search(
     (body, dimension, symmetry): (&Body, usize, &[SymmetryPlane]),
     wanted: Wanted,

@@ -243,8 +243,8 @@ fn a_quarter_is_exactly_its_part_of_the_whole() {
     }
 }
 
-/// The outermost ring lies half a spacing inside, the innermost half a spacing outside of a hole; all
-/// mirror images are there, and any slabs add up.
+/// The outermost ring lies half a spacing inside, the innermost half a spacing outside of a hole;
+/// all mirror images are there, and any slabs add up.
 #[test]
 fn rings_follow_the_outline() {
     for (shape, dimension, volume) in [

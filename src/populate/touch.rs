@@ -31,10 +31,10 @@ pub fn touching_distance(
 /// particle of `a` one mean spacing in front of the flat face of a half-space of `b`, with the
 /// cubic B-spline at the mean smoothing length.
 ///
-/// The particle stands straight before a particle of the first layer. Elsewhere along the face of
-/// a cubic lattice the sum differs by −.004 to .002 for h = 1.0–1.5 Δp; contact's initial overlap
-/// offset forgives the difference at the start. The face of a cubic lattice is a cube face; that of a
-/// hexagonal one is its close-packed layer (normal to z), in two dimensions its close-packed row.
+/// The particle stands straight before a particle of the first layer. Elsewhere along the face of a
+/// cubic lattice the sum differs by −.004 to .002 for h = 1.0–1.5 Δp; contact's initial overlap
+/// offset forgives the difference at the start. The face of a cubic lattice is a cube face; that of
+/// a hexagonal one is its close-packed layer (normal to z), in two dimensions its close-packed row.
 #[must_use]
 pub fn touching_value(a: &Body, b: &Body, dimension: usize) -> f64 {
     let h = 0.5 * (a.smoothing_length + b.smoothing_length);

@@ -76,8 +76,8 @@ fn approach(case: &Case, boxes: &[Option<Ends>], [a, b]: [usize; 2]) -> Option<A
     Some(found)
 }
 
-/// The smallest distance (m) of the particles of a body from where they touch another, and the first
-/// time (s) at which one does, moving at `velocity` (m/s); infinite if not `until` then (s).
+/// The smallest distance (m) of the particles of a body from where they touch another, and the
+/// first time (s) at which one does, moving at `velocity` (m/s); infinite if not `until` then (s).
 fn towards(case: &Case, [body, target]: [&Body; 2], velocity: Vec3, until: f64) -> (f64, f64) {
     let near = TOUCH * body.lattice.spacing;
     let start = nearest(case, body, target, Vec3::zeros());
@@ -95,8 +95,8 @@ fn towards(case: &Case, [body, target]: [&Body; 2], velocity: Vec3, until: f64) 
     (start, f64::INFINITY)
 }
 
-/// The smallest distance (m) of the particles of `body`, all moved by `way` (m), from where they touch
-/// `target`.
+/// The smallest distance (m) of the particles of `body`, all moved by `way` (m), from where they
+/// touch `target`.
 fn nearest(case: &Case, body: &Body, target: &Body, way: Vec3) -> f64 {
     let (shape, dimension) = (&target.shape, case.dimension);
     let moved = |x: &[f64; 3]| Vec3::from(*x) + way;

@@ -8,8 +8,8 @@ use crate::model::readable::shown;
 /// A linear equation of state misses the stiffening of compressed matter, by a tenth of the
 /// pressure and more once the strain `u/c` of the shock is a tenth or so.
 const LINEAR: f64 = 0.1;
-/// Tait's law is right to some 2.5 `GPa` for water (Cole 1948, *Underwater Explosions*, section 2.3),
-/// which a shock of `u/c = 0.6` reaches.
+/// Tait's law is right to some 2.5 `GPa` for water (Cole 1948, *Underwater Explosions*, section
+/// 2.3), which a shock of `u/c = 0.6` reaches.
 const TAIT: f64 = 0.6;
 /// Matter shocked to `u = c₀` has gained `c₀²/2`, about what binds a metal (aluminium: 14 of
 /// 12 MJ/kg), and a Mie–Grüneisen solid cannot boil.

@@ -25,8 +25,8 @@ const SPARE: f64 = 1.06;
 /// By how much a rank's share may rise as work is balanced.
 const UNEVEN: f64 = 1.05;
 
-/// Bytes that the largest of so many ranks takes at its peak. The processes of `comm`, which need not
-/// be those ranks, share the work. Collective; the same on all of them.
+/// Bytes that the largest of so many ranks takes at its peak. The processes of `comm`, which need
+/// not be those ranks, share the work. Collective; the same on all of them.
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
 pub fn of_rank(case: &Case, comm: &Comm, ranks: usize) -> f64 {
     let contact = ContactTable::new(case).is_active();

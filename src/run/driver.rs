@@ -8,12 +8,12 @@ use super::exit::EXIT_STOPPED;
 use super::launch::{Launch, STEP, fail};
 use super::options::CommonArgs;
 use super::progress::Progress;
-use super::say::{complain, say, seconds};
+use super::say::{say, seconds, warn};
 use super::stop::{self, Watch};
 use super::summary::summary;
 use super::tables::{self, Tables};
 use crate::comm::Comm;
-use crate::model::TroublePolicy;
+use crate::model::NumericalFailurePolicy;
 use crate::output::snapshot::{self, Quantity};
 use crate::output::{
     COMMIT, Log, OutputError, Phase, Rows, RunFolder, Schedule, Status, VERSION, agree, on_root,
@@ -137,7 +137,7 @@ impl<'a> Driver<'a> {
                 return Ok(End::Until);
             }
             STEP.store(self.simulation.state.step + 1, Ordering::Relaxed);
-            self.simulation.votes.wishes = self.watch.wishes();
+            self.simulation.step_control.requests = self.watch.requests();
             #[cfg(feature = "fault-injection")]
             super::fault::strike(
                 comm.rank(),
@@ -146,14 +146,14 @@ impl<'a> Driver<'a> {
             );
             let before = self.simulation.state.time;
             if let Err(error) = self.simulation.advance(comm) {
-                self.meet_trouble(comm, error)?;
+                self.handle_failure(comm, error)?;
             }
             self.write(comm, before).map_err(|e| e.to_string())?;
             if let Err(error) = self.simulation.check_gain(comm) {
-                self.meet_trouble(comm, error)?;
+                self.handle_failure(comm, error)?;
             }
             self.simulation.timers.lap(step::Phase::Output);
-            if let Some(reason) = stop::reason(self.simulation.votes.agreed_wishes)
+            if let Some(reason) = stop::reason(self.simulation.step_control.agreed_requests)
                 && !self.simulation.is_finished()
             {
                 return Ok(End::Stopped(reason));
@@ -161,11 +161,11 @@ impl<'a> Driver<'a> {
         }
     }
 
-    /// A post-mortem of trouble, and then what the case says: the end, or particles taken out until
+    /// A post-mortem of a numerical failure, and then what the case says: the end, or particles taken out until
     /// there is none.
-    fn meet_trouble(&mut self, comm: &Comm, mut error: StepError) -> Result<(), String> {
+    fn handle_failure(&mut self, comm: &Comm, mut error: StepError) -> Result<(), String> {
         loop {
-            let StepError::Trouble { step, id, kind, .. } = error else {
+            let StepError::Failure { step, id, kind, .. } = error else {
                 return Err(error.to_string());
             };
             let stem = self.folder.post_mortem(step);
@@ -175,22 +175,28 @@ impl<'a> Driver<'a> {
                 let simulation = &self.simulation;
                 let about = simulation.post_mortem(id, comm.rank());
                 let written = about.map_or(Ok(()), |about| {
-                    post_mortem::write(&stem, &text, &simulation.case, &simulation.store, &about)
+                    post_mortem::write(
+                        &stem,
+                        &text,
+                        &simulation.case,
+                        &simulation.particles,
+                        &about,
+                    )
                 });
                 text = match agree(comm, written) {
                     Ok(()) => format!("{text}; see {}.txt", stem.display()),
                     Err(refused) => format!("{text}; {refused}"),
                 };
             }
-            let done = match self.simulation.case.trouble.policy {
-                TroublePolicy::Stop => return Err(text),
-                TroublePolicy::Remove => "removed",
-                TroublePolicy::Freeze => "froze",
+            let done = match self.simulation.case.numerical_limits.policy {
+                NumericalFailurePolicy::Stop => return Err(text),
+                NumericalFailurePolicy::Remove => "removed",
+                NumericalFailurePolicy::Freeze => "froze",
             };
             if kind.is_of_all() {
                 return Err(text);
             }
-            match self.simulation.remove_troubled(comm) {
+            match self.simulation.remove_failed(comm) {
                 Ok(count) => {
                     self.log(
                         comm,
@@ -216,7 +222,7 @@ impl<'a> Driver<'a> {
             || output
                 .checkpoint_every_steps
                 .is_some_and(|n| step.is_multiple_of(n))
-            || stop::wants_checkpoint(self.simulation.votes.agreed_wishes);
+            || stop::wants_checkpoint(self.simulation.step_control.agreed_requests);
         if finished || step.is_multiple_of(output.history_every.max(1)) {
             self.simulation.diagnose(comm);
             self.write_row(comm)?;
@@ -225,7 +231,7 @@ impl<'a> Driver<'a> {
             self.write_snapshot(comm)?;
         }
         // A stop writes its own.
-        let stops = stop::reason(self.simulation.votes.agreed_wishes).is_some();
+        let stops = stop::reason(self.simulation.step_control.agreed_requests).is_some();
         if checkpoint_due && !finished && !stops {
             self.write_checkpoint(comm)?;
         }
@@ -261,7 +267,7 @@ impl<'a> Driver<'a> {
                 threads: rayon::current_num_threads(),
                 wall_seconds: self.start.elapsed().as_secs_f64(),
             };
-            snapshot::write(comm, &path, &simulation.store, &meta, quantities, rows)
+            snapshot::write(comm, &path, &simulation.particles, &meta, quantities, rows)
         })?;
         let state = &self.simulation.state;
         on_root(comm, || {
@@ -291,7 +297,7 @@ impl<'a> Driver<'a> {
                 input: &simulation.case.resolved,
             };
             let keep = simulation.case.output.checkpoints_kept;
-            checkpoint::write(comm, &folder, &simulation.store, &meta, keep, rows)
+            checkpoint::write(comm, &folder, &simulation.particles, &meta, keep, rows)
         })?;
         on_root(comm, || self.folder.forget_set_aside())?;
         self.watch.wrote_checkpoint(begun.elapsed());
@@ -341,7 +347,7 @@ impl<'a> Driver<'a> {
     }
 
     fn announce(&mut self, comm: &Comm, restarted: Option<&Path>, warnings: &[String]) {
-        let mut counts = [self.simulation.store.owned() as u64];
+        let mut counts = [self.simulation.particles.owned() as u64];
         comm.sum_u64(&mut counts);
         if !comm.is_root() {
             return;
@@ -366,7 +372,7 @@ impl<'a> Driver<'a> {
         for warning in warnings {
             let text = format!("warning: {warning}");
             self.log.line(&text);
-            complain(&text);
+            warn(&text);
         }
     }
 

@@ -1,9 +1,9 @@
-//! Faults on purpose, to test that one rank's trouble ends all ranks: only in builds with the feature
-//! `fault-injection`.
+//! Faults on purpose, to test that one rank's trouble ends all ranks: only in builds with the
+//! feature `fault-injection`.
 //!
 //! `WHIPPLE_TEST_FAULT=KIND:RANK:STEP` lets that rank meet the trouble before that step. KIND is
 //! `panic` (on the main thread), `task` (a panic on another thread, where there is one), `nan`
-//! (a particle's velocity is no number), `pause` (all wait for this rank, to be stopped), `kill`
+//! (a particle's velocity is NaN), `pause` (all wait for this rank, to be stopped), `kill`
 //! (SIGKILL), `kill-in-checkpoint` (SIGKILL while the next checkpoint is written) or `full` (no
 //! file of this rank may grow beyond 300 kB, as if the disk were full).
 
@@ -33,7 +33,8 @@ struct Fault {
     step: u64,
 }
 
-/// Makes the trouble that the environment asks for, if it is of this rank and of the step that is next.
+/// Makes the trouble that the environment asks for, if it is of this rank and of the step that is
+/// next.
 pub fn strike(rank: usize, simulation: &mut Simulation, checkpoints: &Path) {
     let asked = std::env::var("WHIPPLE_TEST_FAULT").ok();
     let fault = asked.and_then(|text| parse(&text, rank));
@@ -55,7 +56,7 @@ impl Fault {
                 });
             }
             Kind::Nan => {
-                if let Some(velocity) = simulation.store.velocity.first_mut() {
+                if let Some(velocity) = simulation.particles.velocity.first_mut() {
                     velocity[0] = f64::NAN;
                 }
             }

@@ -43,9 +43,7 @@ pub fn with_ranks(work: impl FnOnce(&Launch) -> u8) -> u8 {
     let (start, began) = (Instant::now(), SystemTime::now());
     let signals = Signals::watch();
     let Some((session, comm)) = Session::start() else {
-        say::complain(
-            "error: MPI does not start; is this program linked to the MPI of this mpirun?",
-        );
+        say::warn("error: MPI does not start; is this program linked to the MPI of this mpirun?");
         return EXIT_FAILED;
     };
     abort_on_panic(comm.rank());
@@ -88,19 +86,19 @@ pub fn once(speak: impl FnOnce()) {
 }
 
 /// Says what is wrong with the input, once for all ranks; gives the exit code.
-pub fn complain(comm: &Comm, message: &str) -> u8 {
+pub fn warn(comm: &Comm, message: &str) -> u8 {
     if comm.is_root() {
-        say::complain(message);
+        say::warn(message);
     }
     // Nobody leaves before rank 0 has spoken: mpirun may kill the job at the first exit.
     comm.barrier();
     EXIT_INPUT
 }
 
-/// Says why a run could not begin, once for all ranks; gives the exit code. Its folder is left as it
-/// was.
+/// Says why a run could not begin, once for all ranks; gives the exit code. Its folder is left as
+/// it was.
 pub fn give_up(comm: &Comm, message: &str) -> u8 {
-    complain(comm, &format!("error: {message}"));
+    warn(comm, &format!("error: {message}"));
     EXIT_FAILED
 }
 
@@ -108,7 +106,7 @@ pub fn give_up(comm: &Comm, message: &str) -> u8 {
 /// folder; gives the exit code.
 pub fn fail(comm: &Comm, folder: &RunFolder, message: &str, step: u64, time: f64) -> u8 {
     if comm.is_root() {
-        say::complain(&format!("error: {message}"));
+        say::warn(&format!("error: {message}"));
         // The message above is what counts; the folder may be what failed.
         let _ = folder.write_status(&Status {
             state: Phase::Failed,
@@ -125,7 +123,7 @@ fn start_threads(comm: &Comm, wanted: Option<usize>) {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = wanted.unwrap_or_else(|| default_threads(comm, cores));
     if comm.is_root() && threads > cores {
-        say::complain(&format!(
+        say::warn(&format!(
             "warning: each rank has {threads} threads and may use {cores} of the cores; if the \
              machine has more, mpirun has bound the ranks: --bind-to none or --map-by \
              slot:PE={threads} frees them"
@@ -138,7 +136,7 @@ fn start_threads(comm: &Comm, wanted: Option<usize>) {
     // Without a pool of its own rayon uses all cores, which is right, if not what was asked.
     if let Err(cause) = pool {
         let rank = comm.rank();
-        say::complain(&format!(
+        say::warn(&format!(
             "warning: rank {rank} cannot start {threads} threads: {cause}"
         ));
     }
@@ -170,7 +168,7 @@ pub fn abort_on_panic(rank: usize) {
             .payload_as_str()
             .unwrap_or("unknown cause")
             .replace('\n', " ");
-        say::complain(&format!(
+        say::warn(&format!(
             "error: rank {rank}, step {step}: {what}{place}; this is a bug of the program"
         ));
         if std::env::var_os("RUST_BACKTRACE").is_some_and(|wanted| wanted != "0") {

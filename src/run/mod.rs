@@ -1,5 +1,5 @@
-//! A run in its folder, on all ranks: how it starts or goes on, the loop between its files, why it stops,
-//! and what it says.
+//! A run in its folder, on all ranks: how it starts or goes on, the loop between its files, why it
+//! stops, and what it says.
 
 mod driver;
 pub(crate) mod exit;

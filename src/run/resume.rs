@@ -18,7 +18,7 @@ pub struct Origin {
     /// The checkpoint.
     pub checkpoint: PathBuf,
     /// Its particles, of this rank.
-    pub store: ParticleStore,
+    pub particles: ParticleStore,
     /// Newer checkpoints of the run that cannot be read.
     pub passed_over: Vec<PathBuf>,
     /// Where the run goes on.
@@ -40,8 +40,8 @@ pub fn state_of(restored: &Restored) -> Result<RunState, String> {
     }
 }
 
-/// Sets up what goes on, which changes nothing that cannot be put back, and steps to the end; returns
-/// the exit code. Another folder than the run's own is cleared if `force`. Collective.
+/// Sets up what goes on, which changes nothing that cannot be put back, and steps to the end;
+/// returns the exit code. Another folder than the run's own is cleared if `force`. Collective.
 pub fn go_on(
     launch: &Launch,
     args: &CommonArgs,
@@ -62,7 +62,7 @@ pub fn go_on(
         ));
     }
     let resolved = settled.case.resolved.clone();
-    let simulation = match Simulation::resume(settled.case, comm, state, origin.store) {
+    let simulation = match Simulation::resume(settled.case, comm, state, origin.particles) {
         Ok(simulation) => simulation,
         Err(error) => return give_up(comm, &error.to_string()),
     };

@@ -19,8 +19,8 @@ pub struct Settled {
     pub warnings: Vec<String>,
 }
 
-/// The case of the input `saved` in `place` with the overrides `set`. Where the run in `folder` goes
-/// on, its `case.toml` must say the same, or be accepted. Collective.
+/// The case of the input `saved` in `place` with the overrides `set`. Where the run in `folder`
+/// goes on, its `case.toml` must say the same, or be accepted. Collective.
 ///
 /// # Errors
 /// The whole message.
@@ -99,7 +99,7 @@ fn refusal(name: &str, place: &str, differences: &[Difference]) -> String {
     } else {
         let _ = write!(
             text,
-            "  help: a restart may change `run`, `output`, `domain` and `trouble`, not {}: run the \
+            "  help: a restart may change `run`, `output`, `domain` and `numerical_limits`, not {}: run the \
              case anew, or put the saved value back",
             fixed.join(", ")
         );

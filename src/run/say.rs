@@ -13,8 +13,8 @@ pub fn say(line: &str) {
     let _ = stdout.flush();
 }
 
-/// A complaint or a warning, which may have several lines.
-pub fn complain(text: &str) {
+/// A diagnostic or a warning, which may have several lines.
+pub fn warn(text: &str) {
     let _ = std::io::stderr().write_all(format!("{}\n", printable(text.trim_end())).as_bytes());
 }
 

@@ -10,8 +10,8 @@ use crate::output::RunFolder;
 use crate::preflight::warnings;
 use crate::step::Simulation;
 
-/// Sets the case up, only then clears the folder `out` of an earlier run, and steps to the end; returns
-/// the exit code. What looks like a mistake in the case and `more` is said. Collective.
+/// Sets the case up, only then clears the folder `out` of an earlier run, and steps to the end;
+/// returns the exit code. What looks like a mistake in the case and `more` is said. Collective.
 pub fn start(
     launch: &Launch,
     args: &CommonArgs,

@@ -11,7 +11,7 @@ use signal_hook::flag::{register, register_conditional_shutdown};
 use super::exit::EXIT_INTERRUPTED;
 use crate::input;
 
-/// Wishes of a rank, as bits of a vote.
+/// Requests of a rank, as bits of a vote.
 const SIGNAL: u64 = 1;
 const FILE: u64 = 2;
 const CLOCK: u64 = 4;
@@ -97,46 +97,46 @@ impl Watch {
         self.reserve = self.reserve.max(time);
     }
 
-    /// This rank's wishes now.
-    pub fn wishes(&mut self) -> u64 {
+    /// This rank's requests now.
+    pub fn requests(&mut self) -> u64 {
         if let Some(file) = &self.file
             && self.looked.elapsed() >= LOOK_EVERY
         {
             self.looked = Instant::now();
             self.seen = file.exists();
         }
-        let mut wishes = 0;
+        let mut requests = 0;
         if self.signals.0.load(Ordering::Relaxed) {
-            wishes |= SIGNAL;
+            requests |= SIGNAL;
         }
         if self.seen {
-            wishes |= FILE;
+            requests |= FILE;
         }
         if self
             .limit
             .is_some_and(|limit| self.start.elapsed() + self.reserve >= limit)
         {
-            wishes |= CLOCK;
+            requests |= CLOCK;
         }
         if self.every.is_some_and(|every| self.last.elapsed() >= every) {
-            wishes |= CHECKPOINT;
+            requests |= CHECKPOINT;
         }
-        wishes
+        requests
     }
 }
 
 /// Whether the clock asks for a checkpoint.
-pub fn wants_checkpoint(wishes: u64) -> bool {
-    wishes & CHECKPOINT != 0
+pub fn wants_checkpoint(requests: u64) -> bool {
+    requests & CHECKPOINT != 0
 }
 
-/// Why all ranks stop, in words; `None` if nobody wishes to.
-pub fn reason(wishes: u64) -> Option<&'static str> {
-    if wishes & SIGNAL != 0 {
+/// Why all ranks stop, in words; `None` if nobody asks to.
+pub fn reason(requests: u64) -> Option<&'static str> {
+    if requests & SIGNAL != 0 {
         Some("a signal asked to stop")
-    } else if wishes & FILE != 0 {
+    } else if requests & FILE != 0 {
         Some("the file `stop` asked to stop")
-    } else if wishes & CLOCK != 0 {
+    } else if requests & CLOCK != 0 {
         Some("the wall time is used up")
     } else {
         None
@@ -183,12 +183,12 @@ mod tests {
         let signals = Signals(Arc::new(AtomicBool::new(false)));
         let mut watch = Watch::new(signals, None, Instant::now(), limit);
         watch.wrote_checkpoint(Duration::from_mins(1));
-        assert_eq!(watch.wishes(), 0);
+        assert_eq!(watch.requests(), 0);
         watch.wrote_snapshot(Duration::from_secs(40));
-        assert_eq!(watch.wishes(), CLOCK);
-        assert!(!wants_checkpoint(watch.wishes()));
+        assert_eq!(watch.requests(), CLOCK);
+        assert!(!wants_checkpoint(watch.requests()));
         watch.ask_every(Some(0.0));
-        assert!(wants_checkpoint(watch.wishes()));
+        assert!(wants_checkpoint(watch.requests()));
     }
 
     #[test]

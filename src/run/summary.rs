@@ -8,8 +8,8 @@ use crate::model::SphForm;
 use crate::output::{COMMIT, VERSION};
 use crate::step::Simulation;
 
-/// `summary.json`: what the run has come to, and how fast this process has stepped (with the
-/// mean seconds of all ranks by phase). The seconds are those since the start of the program, and of
+/// `summary.json`: what the run has come to, and how fast this process has stepped (with the mean
+/// seconds of all ranks by phase). The seconds are those since the start of the program, and of
 /// them those from the start of MPI to the first step. Collective.
 #[allow(clippy::cast_precision_loss, reason = "for people")]
 pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde_json::Value {

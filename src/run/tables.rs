@@ -1,7 +1,7 @@
 //! The tables of a run.
 
 use crate::comm::Comm;
-use crate::model::{Case, SphForm, TroublePolicy};
+use crate::model::{Case, NumericalFailurePolicy, SphForm};
 use crate::output::{Column, OutputError, RunFolder, Table, Value, unit_of_model};
 use crate::step::{LoadState, PairState, Removed, RunState, Simulation};
 
@@ -39,8 +39,8 @@ impl Load {
 
 /// The load of all ranks. Collective.
 pub fn load(comm: &Comm, simulation: &Simulation) -> Load {
-    let particles = simulation.store.owned() as u64;
-    let work: u64 = simulation.store.work[..simulation.store.owned()]
+    let particles = simulation.particles.owned() as u64;
+    let work: u64 = simulation.particles.work[..simulation.particles.owned()]
         .iter()
         .map(|&work| u64::from(work))
         .sum();
@@ -68,8 +68,8 @@ pub fn load(comm: &Comm, simulation: &Simulation) -> Load {
     }
 }
 
-/// Columns with SI units; what a model of fewer dimensions has is by length or area. A name that ends
-/// with `*` is that of three columns.
+/// Columns with SI units; what a model of fewer dimensions has is by length or area. A name that
+/// ends with `*` is that of three columns.
 fn columns(dimension: usize, list: &[(&str, &str)]) -> Vec<Column> {
     let mut all = Vec::new();
     for (name, unit) in list {
@@ -238,7 +238,7 @@ impl Tables {
             of_history.push(Column::new("uncorrected", ""));
         }
         let has_loads = case.load_names().next().is_some();
-        let removes = case.trouble.policy != TroublePolicy::Stop
+        let removes = case.numerical_limits.policy != NumericalFailurePolicy::Stop
             || resume.is_some_and(|state| !state.removed.is_empty());
         Ok(Self {
             history: open(&folder.history(), &of_history, "step", step)?,

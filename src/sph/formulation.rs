@@ -22,8 +22,8 @@ pub(super) trait Formulation: SignalSpeed {
     /// step; owned particles.
     fn rates(&mut self, sums: &mut Sums, particles: &mut ParticleStore, lists: &Lists, step: &Step);
 
-    /// The second sweep: accelerations by stress and viscosity, and the power they put into heat, of the
-    /// receivers of a side.
+    /// The second sweep: accelerations by stress and viscosity, and the power they put into heat,
+    /// of the receivers of a side.
     fn forces(&mut self, sums: &mut Sums, particles: &mut ParticleStore, lists: &Lists, side: Side);
 
     /// The drift in a step `dt` (s) that velocities and `gravity` (m/s²) do not tell.

@@ -20,15 +20,15 @@ impl<S: PairScale> Vectorised for VelocityGradient<'_, S> {
         let (position, velocity) = self.around.motion::<V>();
         let mut gradient = [V::splat(0.0); 9];
         for pair in self.around.pairs(&position) {
-            let (here, gap) = (pair.source, &pair.gap);
-            let factor = gap
+            let (here, separation) = (pair.source, &pair.separation);
+            let factor = separation
                 .inverse
                 .mul(V::splat(here.volume))
                 .mul(pair.kernel.slope);
             for a in 0..3 {
                 let v_a = V::splat(here.velocity[a]).sub(velocity[a]).mul(factor);
                 for b in 0..3 {
-                    gradient[3 * a + b] = v_a.mul_add(gap.r[b], gradient[3 * a + b]);
+                    gradient[3 * a + b] = v_a.mul_add(separation.r[b], gradient[3 * a + b]);
                 }
             }
         }

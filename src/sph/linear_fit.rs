@@ -10,14 +10,16 @@ use crate::numerics::kernel::{PairKernel, PairScale};
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
 use crate::numerics::matrix::product;
 
-/// Particles that give `M` less than this along a direction, over h², are at the edge of the kernel:
-/// two at 1.5 h do. Gradients along it fade out, as they would else end at once with the kernel.
+/// Particles that give `M` less than this along a direction, over h², are at the edge of the
+/// kernel: two at 1.5 h do. Gradients along it fade out, as they would else end at once with the
+/// kernel.
 const FAINT: f64 = 1e-6;
-/// Fits of a larger [`Fit::norm`] are those of particles nearly in a row, in a plane or at one place.
+/// Fits of a larger [`Fit::norm`] are those of particles nearly in a row, in a plane or at one
+/// place.
 const STEEP: f64 = 12.0;
-/// The steeper they are the more `M` gets along its diagonal, up to so much of `h² Σ w`, about a third
-/// of what it has in a lattice: gradients along the row or the plane become less, those across it
-/// vanish.
+/// The steeper they are the more `M` gets along its diagonal, up to so much of `h² Σ w`, about a
+/// third of what it has in a lattice: gradients along the row or the plane become less, those
+/// across it vanish.
 const REGULAR: f64 = 0.05;
 /// The norm over `h √(Σ |G|²)`.
 pub(super) const NORM: f64 = 0.8;
@@ -57,8 +59,8 @@ impl Fit {
         complete: false,
     };
 
-    /// From `M` and `Σ w² (x_a − x̄) ⊗ (x_a − x̄)` (m²), components xx, yy, zz, xy, xz, yz, `x̄ − x_s`
-    /// (m), `Σ w` and the smoothing length (m).
+    /// From `M` and `Σ w² (x_a − x̄) ⊗ (x_a − x̄)` (m²), components xx, yy, zz, xy, xz, yz, `x̄ −
+    /// x_s` (m), `Σ w` and the smoothing length (m).
     #[inline(always)]
     fn new(
         mut m: [f64; 6],
@@ -194,7 +196,7 @@ impl<S: PairScale> Vectorised for LinearFit<'_, S> {
         for pair in around.pairs(&position) {
             let here = pair.source;
             let w = weight(&around.sources.scale, &pair.kernel);
-            let r = pair.gap.r;
+            let r = pair.separation.r;
             let wy = [
                 zero.sub(r[0].mul(w)),
                 zero.sub(r[1].mul(w)),

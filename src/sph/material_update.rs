@@ -8,7 +8,7 @@ use crate::particles::{Image, MaterialPoints, Scatter};
 use crate::sph::momentum::StressRecord;
 
 /// Work for a particle apart from its neighbours, in neighbours of the pair sums: sort, list,
-/// material, integration and votes against both sweeps, as timed by the bench.
+/// material, integration and time-step candidates against both sweeps, as timed by the bench.
 const OWN_WORK: u32 = 60;
 
 /// What the update reads and writes: each owned particle stands in exactly one lane of one
@@ -122,7 +122,7 @@ impl<'a> MaterialUpdate<'a> {
             let strain = half * (xx[k] + yy[k] + zz[k]);
             before.density[k] *= (1.0 - strain) / (1.0 + strain);
         }
-        let places = &cluster.receivers;
+        let indices = &cluster.receivers;
         let material = |k: usize| self.material_of_body[self.points.body[base[k]] as usize];
         // Empty lanes cost as much as others.
         let work = neighbours * LANES / cluster.lanes;
@@ -147,7 +147,7 @@ impl<'a> MaterialUpdate<'a> {
                         after.sound_speed[lane],
                     );
                     // SAFETY: the place belongs to this cluster alone, as its particle does.
-                    unsafe { *self.stresses.slot(places[lane] as usize) = record };
+                    unsafe { *self.stresses.slot(indices[lane] as usize) = record };
                 }
             }
         }
@@ -158,8 +158,8 @@ impl<'a> MaterialUpdate<'a> {
     #[cold]
     pub(super) fn store_free(&self, cluster: &Cluster, neighbours: usize) {
         let work = OWN_WORK + u32::try_from(neighbours).unwrap_or(u32::MAX / 2);
-        for &place in &cluster.receivers[..cluster.lanes] {
-            let i = self.images[place as usize].base();
+        for &index in &cluster.receivers[..cluster.lanes] {
+            let i = self.images[index as usize].base();
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
             unsafe {
                 *self.points.pressure.slot(i) = 0.0;

@@ -1,5 +1,5 @@
-//! The pair sums of smoothed particle hydrodynamics: sums over slices at the bottom, formulations that
-//! run them over the particles of a rank above.
+//! The pair sums of smoothed particle hydrodynamics: sums over slices at the bottom, formulations
+//! that run them over the particles of a rank above.
 //!
 //! A *cluster* of eight receivers meets its neighbours one by one in one canonical order; the
 //! eight receivers stand in the lanes of a vector, so no sum ever crosses lanes and a lane

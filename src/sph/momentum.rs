@@ -73,11 +73,11 @@ pub struct Momentum<'a, S, const TERMS: u8> {
 /// The sums of [`Momentum`].
 #[derive(Debug, Clone, Copy)]
 pub struct Forces {
-    /// `dv/dt = Σ m_j (σ_i/ρ_i² + σ_j/ρ_j² − Π_ij I + R_ij f⁴) ∇W_ij` (m/s²); in the normalised form
-    /// the stresses stand in [`super::normalised`] instead.
+    /// `dv/dt = Σ m_j (σ_i/ρ_i² + σ_j/ρ_j² − Π_ij I + R_ij f⁴) ∇W_ij` (m/s²); in the normalised
+    /// form the stresses stand in [`super::normalised`] instead.
     pub acceleration: [F64x8; 3],
-    /// `de/dt = −½ Σ m_j v_ij · (pair stress) · ∇W_ij` and conduction (W/kg); in the normalised form
-    /// without the power of `σ`.
+    /// `de/dt = −½ Σ m_j v_ij · (pair stress) · ∇W_ij` and conduction (W/kg); in the normalised
+    /// form without the power of `σ`.
     pub power: F64x8,
     /// Largest approach speed `|μ_ij|` (m/s).
     pub approach: F64x8,
@@ -101,7 +101,7 @@ impl<S: PairScale, const TERMS: u8> Vectorised for Momentum<'_, S, TERMS> {
     #[inline(always)]
     fn run<V: Lanes>(self) -> Forces {
         let around = &self.around;
-        // A particle whose position is no number.
+        // A particle whose position is NaN.
         if around.neighbours.is_empty() {
             return Forces::NONE;
         }
@@ -123,9 +123,10 @@ impl<S: PairScale, const TERMS: u8> Vectorised for Momentum<'_, S, TERMS> {
         let mut power = zero;
         let mut fastest = zero;
         for pair in around.pairs(&position) {
-            let (place, source, now, kernel) = (pair.place, pair.source, &pair.gap, &pair.kernel);
-            let state = &self.stresses[place];
-            let shown = self.terms.record::<TERMS>(place);
+            let (index, source, now, kernel) =
+                (pair.index, pair.source, &pair.separation, &pair.kernel);
+            let state = &self.stresses[index];
+            let shown = self.terms.record::<TERMS>(index);
             let (r, square) = (now.r, now.square);
             let along = |a: usize| velocity[a].sub(V::splat(source.velocity[a]));
             let v = [along(0), along(1), along(2)];
@@ -156,7 +157,7 @@ impl<S: PairScale, const TERMS: u8> Vectorised for Momentum<'_, S, TERMS> {
                 let shape = around.sources.scale.shape(kernel);
                 terms.repel(&mut stress, shown, shape);
                 let w = around.sources.scale.value(kernel, shape);
-                let other = self.terms.normalised::<TERMS>(place);
+                let other = self.terms.normalised::<TERMS>(index);
                 corrected.pull(other, now, kernel.slope, w, source.volume);
                 let w = w.mul(V::splat(source.mass));
                 terms.follow(&v, w.mul(inverse.mul(soft)));

@@ -20,8 +20,8 @@ pub struct Sources<'a, S> {
 }
 
 impl<'a, S: PairScale> Sources<'a, S> {
-    /// Eight receivers, of which unused lanes repeat a valid one, with the neighbours of all of them
-    /// together, in canonical order.
+    /// Eight receivers, of which unused lanes repeat a valid one, with the neighbours of all of
+    /// them together, in canonical order.
     #[inline(always)]
     #[must_use]
     pub fn around(self, receivers: [u32; LANES], neighbours: &'a [u32]) -> Neighbourhood<'a, S> {
@@ -60,7 +60,7 @@ impl<'a, S: PairScale> Neighbourhood<'a, S> {
     }
 
     /// The receivers, which stand at `position` (m), with one neighbour after the other. A particle
-    /// whose position is no number has none, not even itself.
+    /// whose position is NaN has none, not even itself.
     #[inline(always)]
     pub(super) fn pairs<V: Lanes>(&self, position: &[V; 3]) -> Pairs<'a, V, S> {
         let first = self.neighbours.first().copied().unwrap_or_default();
@@ -77,12 +77,12 @@ impl<'a, S: PairScale> Neighbourhood<'a, S> {
 
 /// Eight receivers and one neighbour.
 pub(super) struct Pair<'a, V> {
-    /// Place of the neighbour among all sources.
-    pub(super) place: usize,
+    /// Index of the neighbour among all sources.
+    pub(super) index: usize,
     /// The neighbour.
     pub(super) source: &'a MotionRecord,
     /// How they stand.
-    pub(super) gap: Separation<V>,
+    pub(super) separation: Separation<V>,
     /// The kernel.
     pub(super) kernel: PairKernel<V>,
 }
@@ -112,15 +112,15 @@ impl<'a, V: Lanes, S: PairScale> Iterator for Pairs<'a, V, S> {
         if self.done == count {
             return None;
         }
-        let (place, gap) = (neighbours[self.done] as usize, self.next);
+        let (index, separation) = (neighbours[self.done] as usize, self.next);
         self.done += 1;
         let following = neighbours[self.done.min(count - 1)] as usize;
         self.next = Separation::begin(&self.position, &records[following].position);
         Some(Pair {
-            place,
-            source: &records[place],
-            gap,
-            kernel: scale.kernel(gap.distance, self.h, length::<S>(lengths, place)),
+            index,
+            source: &records[index],
+            separation,
+            kernel: scale.kernel(separation.distance, self.h, length::<S>(lengths, index)),
         })
     }
 }
@@ -128,8 +128,8 @@ impl<'a, V: Lanes, S: PairScale> Iterator for Pairs<'a, V, S> {
 /// The records of eight receivers. (Written out, since what array methods call may be compiled
 /// apart from the vector code.)
 #[inline(always)]
-pub(super) fn records<'a, R>(sources: &'a [R], places: &[u32; LANES]) -> [&'a R; LANES] {
-    let at = |k: usize| &sources[places[k] as usize];
+pub(super) fn records<'a, R>(sources: &'a [R], indices: &[u32; LANES]) -> [&'a R; LANES] {
+    let at = |k: usize| &sources[indices[k] as usize];
     [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)]
 }
 
@@ -155,8 +155,8 @@ pub(super) fn gather3<V: Lanes, R>(
 
 /// Smoothing length of a neighbour (m), whatever if the scale is constant.
 #[inline(always)]
-fn length<S: PairScale>(lengths: &[f64], place: usize) -> f64 {
-    if S::VARIABLE { lengths[place] } else { 0.0 }
+fn length<S: PairScale>(lengths: &[f64], index: usize) -> f64 {
+    if S::VARIABLE { lengths[index] } else { 0.0 }
 }
 
 /// Where eight receivers stand seen from one neighbour, with the distances.

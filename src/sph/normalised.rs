@@ -83,7 +83,7 @@ impl Moments {
             }
         }
         let norm = self.kernel * (square / f64::from([1_u8, 1, 2, 3][dimension])).sqrt();
-        // Also false for what is no number.
+        // Also false for what is NaN.
         if determinant > 0.0 && norm <= LARGEST_CORRECTION {
             Correction {
                 matrix,
@@ -130,7 +130,7 @@ impl<S: PairScale> Vectorised for NormalisedGradient<'_, S> {
     #[inline(always)]
     fn run<V: Lanes>(self) -> Corrected {
         let around = &self.around;
-        // A particle whose position is no number.
+        // A particle whose position is NaN.
         if around.neighbours.is_empty() {
             return Corrected::NONE;
         }
@@ -143,13 +143,13 @@ impl<S: PairScale> Vectorised for NormalisedGradient<'_, S> {
         for pair in around.pairs(&position) {
             let (here, kernel) = (pair.source, &pair.kernel);
             let volume = V::splat(here.volume);
-            let factor = pair.gap.inverse.mul(volume).mul(kernel.slope);
+            let factor = pair.separation.inverse.mul(volume).mul(kernel.slope);
             let share = around
                 .sources
                 .scale
                 .value(kernel, around.sources.scale.shape(kernel));
             let share = share.mul(volume);
-            let r = pair.gap.r;
+            let r = pair.separation.r;
             let steep = [r[0].mul(factor), r[1].mul(factor), r[2].mul(factor)];
             for a in 0..3 {
                 let v_a = V::splat(here.velocity[a]).sub(velocity[a]);
@@ -264,7 +264,7 @@ impl<V: Lanes, const TERMS: u8> NormalisedSums<V, TERMS> {
         }
     }
 
-    /// Adds pairs with the neighbour at `place`, of kernel slopes `W'` and values `W`.
+    /// Adds pairs with the neighbour at `index`, of kernel slopes `W'` and values `W`.
     #[inline(always)]
     pub(super) fn pull(
         &mut self,

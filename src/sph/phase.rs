@@ -97,8 +97,8 @@ impl Sph {
         sums.terms.prepare(particles, step.dt);
     }
 
-    /// The second sweep: accelerations by stress and viscosity, and the power they put into heat, of the
-    /// receivers of a side.
+    /// The second sweep: accelerations by stress and viscosity, and the power they put into heat,
+    /// of the receivers of a side.
     pub fn forces(&mut self, particles: &mut ParticleStore, lists: &Lists, side: Side) {
         if side == Side::Outer && particles.halo() == 0 {
             return;

@@ -22,8 +22,8 @@ pub trait SignalSpeed: Sync {
 }
 
 impl Signals<'_> {
-    /// Speed (m/s) of sound and viscosity of particle `i`: no less than that of the approach, however
-    /// little viscosity there is.
+    /// Speed (m/s) of sound and viscosity of particle `i`: no less than that of the approach,
+    /// however little viscosity there is.
     #[inline(always)]
     #[must_use]
     pub fn of<F: SignalSpeed>(&self, i: usize) -> f64 {
@@ -31,7 +31,7 @@ impl Signals<'_> {
         let c = self.sound_speed[i];
         let approach = self.approach_speed[i];
         let signal = c + 0.6 * (alpha * c + beta * approach);
-        // Not `max`, which would hide what is no number.
+        // Not `max`, which would hide what is NaN.
         let signal = if approach > signal { approach } else { signal };
         F::speed(self, i, signal)
     }

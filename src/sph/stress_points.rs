@@ -1,8 +1,8 @@
 //! Stress points (Dyka & Ingel 1995; Randles & Libersky 2000; Vignjevic, Campbell & Libersky 2000):
 //! velocities live on particles, stress on points between them.
 //!
-//! Forces are the adjoint of the gradients of [`super::linear_fit`]: `f_a = −Σ_s w Q_s (x_a − x̄_s)`,
-//! `Q = V_s σ_s M_s⁻¹`.
+//! Forces are the adjoint of the gradients of [`super::linear_fit`]: `f_a = −Σ_s w Q_s (x_a −
+//! x̄_s)`, `Q = V_s σ_s M_s⁻¹`.
 
 use super::linear_fit::{NORM, weight};
 use super::momentum::Viscosity;
@@ -26,8 +26,8 @@ pub struct StressPointRecord {
     pub heat: f64,
 }
 
-/// `Q` and `Q (x̄ − x_s)` from the stress `σ` (Pa; xx, yy, zz, xy, xz, yz), the volume (m^d) and the
-/// fit's `M⁻¹` (1/m², row-major) and `x̄ − x_s` (m).
+/// `Q` and `Q (x̄ − x_s)` from the stress `σ` (Pa; xx, yy, zz, xy, xz, yz), the volume (m^d) and
+/// the fit's `M⁻¹` (1/m², row-major) and `x̄ − x_s` (m).
 #[must_use]
 pub fn moment(
     stress: &[f64; 6],
@@ -62,7 +62,7 @@ pub struct Pull<'a, S> {
 pub struct Pulled {
     /// `f_a = −Σ_s w Q_s (x_a − x̄_s)` (N).
     pub force: [F64x8; 3],
-    /// `Σ w ρ_s/Σ w` (kg/m³); no number without stress points.
+    /// `Σ w ρ_s/Σ w` (kg/m³); NaN without stress points.
     pub density: F64x8,
     /// Energy that stress points take over (J).
     pub heat: F64x8,
@@ -78,9 +78,9 @@ impl<S: PairScale> Vectorised for Pull<'_, S> {
         let zero = V::splat(0.0);
         let (mut force, mut mass, mut heat, mut all) = ([zero; 3], zero, zero, zero);
         for pair in around.pairs(&position) {
-            let point = &self.points[pair.place];
+            let point = &self.points[pair.index];
             let w = weight(&around.sources.scale, &pair.kernel);
-            let r = pair.gap.r;
+            let r = pair.separation.r;
             for a in 0..3 {
                 let q = |c: usize| V::splat(point.moment[3 * a + c]);
                 let pull = r[0].mul_add(q(0), zero.sub(V::splat(point.offset[a])));
@@ -140,10 +140,10 @@ pub fn viscous_stress(
 /// [norm](super::linear_fit::Fit::norm), from the sound speed (m/s) and the approach speed
 /// `h ‖E‖` (m/s).
 ///
-/// A lattice has waves of up to `ω = √(2/d) c √(Σ |G|²)`: a wave along one of its d axes strains the
-/// points on that axis alone, which have 1/d of the volume. In one dimension it is `2c/Δp`. Viscosity
-/// damps them by `ζ = ¼ (α c + 2 β h ‖E‖) h ω/c²`, and their velocity is known half a step
-/// late: `ω Δt ≤ 2 (√(1 + ζ²) − ζ)`.
+/// A lattice has waves of up to `ω = √(2/d) c √(Σ |G|²)`: a wave along one of its d axes strains
+/// the points on that axis alone, which have 1/d of the volume. In one dimension it is `2c/Δp`.
+/// Viscosity damps them by `ζ = ¼ (α c + 2 β h ‖E‖) h ω/c²`, and their velocity is known half a
+/// step late: `ω Δt ≤ 2 (√(1 + ζ²) − ζ)`.
 #[inline(always)]
 #[must_use]
 pub fn signal(

@@ -34,14 +34,14 @@ pub(super) struct Sums {
 #[derive(Debug, Clone, Default)]
 pub(super) struct FromMirrors {
     /// The images among the neighbours of one cluster.
-    pub(super) places: Vec<u32>,
+    pub(super) indices: Vec<u32>,
     /// Forces on single particles (N).
     pub(super) forces: Vec<[f64; 3]>,
 }
 
 impl FromMirrors {
     fn memory(&self) -> usize {
-        4 * self.places.capacity() + size_of::<[f64; 3]>() * self.forces.capacity()
+        4 * self.indices.capacity() + size_of::<[f64; 3]>() * self.forces.capacity()
     }
 }
 

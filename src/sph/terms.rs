@@ -1,8 +1,8 @@
 //! Pair terms of the second sweep, each off unless a case asks for it: one file each, put together
 //! here.
 //!
-//! A set of terms is a constant of the sums' type, so that those of a case without terms hold no trace
-//! of them.
+//! A set of terms is a constant of the sums' type, so that those of a case without terms hold no
+//! trace of them.
 
 pub mod artificial_stress;
 pub mod balsara;
@@ -41,8 +41,8 @@ pub(super) const SOLIDS: u8 = ARTIFICIAL_STRESS | XSPH;
 pub(super) const SHOCKS: u8 = BALSARA | CONDUCTION;
 
 /// Calls `$work` with a set of terms as a constant: none, or those of solids, of shocks, or all,
-/// whichever has all that are wanted. The others then have neutral data. The normalised form has none
-/// or all.
+/// whichever has all that are wanted. The others then have neutral data. The normalised form has
+/// none or all.
 macro_rules! with_terms {
     ($wanted:expr, $name:ident => $work:expr) => {
         $crate::sph::terms::with_terms!(@ $wanted, $name => $work,
@@ -108,23 +108,23 @@ impl PairTerms<'_> {
         xsph: 0.0,
     };
 
-    /// What the particle or image at a place shows for a set of terms.
+    /// What the particle or image at an index shows for a set of terms.
     #[inline(always)]
-    pub(super) fn record<const TERMS: u8>(&self, place: usize) -> &TermRecord {
+    pub(super) fn record<const TERMS: u8>(&self, index: usize) -> &TermRecord {
         if TERMS & RECORDED == 0 {
             &TermRecord::NEUTRAL
         } else {
-            &self.records[place]
+            &self.records[index]
         }
     }
 
     /// The same of [`NORMALISED`].
     #[inline(always)]
-    pub(super) fn normalised<const TERMS: u8>(&self, place: usize) -> &NormalisedRecord {
+    pub(super) fn normalised<const TERMS: u8>(&self, index: usize) -> &NormalisedRecord {
         if TERMS & NORMALISED == 0 {
             &NormalisedRecord::FREE
         } else {
-            &self.normalised[place]
+            &self.normalised[index]
         }
     }
 }
@@ -139,11 +139,11 @@ pub(super) struct TermSums<V, const TERMS: u8> {
 
 impl<V: Lanes, const TERMS: u8> TermSums<V, TERMS> {
     #[inline(always)]
-    pub fn begin(terms: &PairTerms, places: &[u32; LANES]) -> Self {
+    pub fn begin(terms: &PairTerms, indices: &[u32; LANES]) -> Self {
         let own = if TERMS & RECORDED == 0 {
             [&TermRecord::NEUTRAL; LANES]
         } else {
-            records(terms.records, places)
+            records(terms.records, indices)
         };
         Self {
             artificial_stress: artificial_stress::Lane::begin(&own, terms.inverse_shape),

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::comm::Comm;
-use crate::diagnose::TroubleKind;
+use crate::diagnose::NumericalFailure;
 use crate::model::Case;
 use crate::model::readable::{shown, shown_vector};
 use crate::particles::ParticleStore;
@@ -36,15 +36,15 @@ pub enum SetupError {
 /// Why a step failed; the same on all ranks.
 #[derive(Debug, Clone, Error)]
 pub enum StepError {
-    /// A particle's state is no number or out of range.
+    /// A particle's state is NaN or out of range.
     #[error("step {step}: particle {id} {what} ({detail})")]
-    Trouble {
+    Failure {
         /// Step in which it was found.
         step: u64,
         /// Identity of the particle.
         id: u64,
         /// What is wrong.
-        kind: TroubleKind,
+        kind: NumericalFailure,
         /// The same in words.
         what: String,
         /// The particle's state.
@@ -58,13 +58,13 @@ pub enum StepError {
     },
 }
 
-/// Describes the particle `id`, wherever it is, as of kind of trouble; the same text on all ranks.
+/// Describes the particle `id`, wherever it is, as of a kind of failure; the same text on all ranks.
 /// Collective.
-pub(super) fn trouble(
+pub(super) fn failure(
     comm: &Comm,
     case: &Case,
     particles: &ParticleStore,
-    (step, kind, id): (u64, TroubleKind, u64),
+    (step, kind, id): (u64, NumericalFailure, u64),
 ) -> StepError {
     let found = particles.id[..particles.owned()]
         .iter()
@@ -79,40 +79,40 @@ pub(super) fn trouble(
     comm.min_u64(&mut owner);
     let mut text = mine;
     comm.broadcast_from(usize::try_from(owner[0]).unwrap_or(0), &mut text);
-    StepError::Trouble {
+    StepError::Failure {
         step,
         id,
         kind,
-        what: kind.describe(&case.trouble),
+        what: kind.describe(&case.numerical_limits),
         detail: String::from_utf8_lossy(&text).into_owned(),
     }
 }
 
-fn describe(store: &ParticleStore, case: &Case, i: usize, rank: usize) -> String {
+fn describe(particles: &ParticleStore, case: &Case, i: usize, rank: usize) -> String {
     format!(
         "body `{}`, rank {rank}, position {}, velocity {}, density {}, specific energy {}, \
          pressure {}, sound speed {}; nearest particles {}",
-        case.bodies[store.body[i] as usize].name,
-        case.length_unit.vector(&store.position[i]),
-        shown_vector(&store.velocity[i], "m/s"),
-        shown(store.density[i], "kg/m^3"),
-        shown(store.specific_energy[i], "J/kg"),
-        shown(store.pressure[i], "Pa"),
-        shown(store.sound_speed[i], "m/s"),
-        nearest(store, case, i),
+        case.bodies[particles.body[i] as usize].name,
+        case.length_unit.vector(&particles.position[i]),
+        shown_vector(&particles.velocity[i], "m/s"),
+        shown(particles.density[i], "kg/m^3"),
+        shown(particles.specific_energy[i], "J/kg"),
+        shown(particles.pressure[i], "Pa"),
+        shown(particles.sound_speed[i], "m/s"),
+        nearest(particles, case, i),
     )
 }
 
 /// The particles nearest to particle `i` of those that this rank holds: id, body, distance.
-fn nearest(store: &ParticleStore, case: &Case, i: usize) -> String {
-    let here = store.position[i];
+fn nearest(particles: &ParticleStore, case: &Case, i: usize) -> String {
+    let here = particles.position[i];
     let distance = |there: &[f64; 3]| {
         let square: f64 = (0..3)
             .map(|a| (here[a] - there[a]) * (here[a] - there[a]))
             .sum();
         square.sqrt()
     };
-    let mut others: Vec<(f64, usize)> = store
+    let mut others: Vec<(f64, usize)> = particles
         .position
         .iter()
         .enumerate()
@@ -120,13 +120,19 @@ fn nearest(store: &ParticleStore, case: &Case, i: usize) -> String {
         .map(|(k, there)| (distance(there), k))
         .filter(|(r, _)| r.is_finite())
         .collect();
-    others.sort_by(|a, b| a.0.total_cmp(&b.0).then(store.id[a.1].cmp(&store.id[b.1])));
+    others.sort_by(|a, b| {
+        a.0.total_cmp(&b.0)
+            .then(particles.id[a.1].cmp(&particles.id[b.1]))
+    });
     let described: Vec<String> = others
         .iter()
         .take(3)
         .map(|&(r, k)| {
             let distance = case.length_unit.text(r);
-            format!("{} of body {} at {distance}", store.id[k], store.body[k])
+            format!(
+                "{} of body {} at {distance}",
+                particles.id[k], particles.body[k]
+            )
         })
         .collect();
     if described.is_empty() {

@@ -1,7 +1,7 @@
 //! Which fields a case has use for.
 
 use crate::contact::{Connectivity, ContactTable};
-use crate::model::{Case, SphForm, TroublePolicy};
+use crate::model::{Case, NumericalFailurePolicy, SphForm};
 use crate::particles::{FieldInfo, HaloPhase, Owner, Select, rows};
 use crate::sph::Sph;
 
@@ -21,7 +21,10 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
         (Owner::CONDUCTION, sph.conduction > 0.0),
         (Owner::XSPH, sph.xsph > 0.0),
         (Owner::NORMALISED, sph.form == SphForm::Normalised),
-        (Owner::FREEZE, case.trouble.policy == TroublePolicy::Freeze),
+        (
+            Owner::FREEZE,
+            case.numerical_limits.policy == NumericalFailurePolicy::Freeze,
+        ),
         (Owner::STRESS_POINTS, sph.form == SphForm::StressPoints),
     ]
     .into_iter()

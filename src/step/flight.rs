@@ -87,8 +87,8 @@ impl Flight {
         self.search.memory() + size_of::<[Option<[f64; 2]>; 3]>() * self.prescribed.capacity()
     }
 
-    /// The longest step, of no more than `dt` (s), in which nothing flies through anything else unseen,
-    /// given what all particles span. Collective.
+    /// The longest step, of no more than `dt` (s), in which nothing flies through anything else
+    /// unseen, given what all particles span. Collective.
     pub fn longest_step(&mut self, comm: &Comm, sky: &Sky, span: &Span, dt: f64) -> f64 {
         let mut all = *span;
         let from = sky.time;
@@ -110,7 +110,7 @@ impl Flight {
             images.join(&all.reflected(sky.mirrors, code));
         }
         let flyers = Flyers {
-            store: sky.particles,
+            particles: sky.particles,
             prescribed: &self.prescribed,
         };
         let mut longest = dt;
@@ -144,8 +144,8 @@ impl Search {
             + size_of::<u64>() * self.words.capacity()
     }
 
-    /// Joins `sets` spans over all particles and ranks, to which `book` adds a particle, into the first
-    /// of `parts`. Collective.
+    /// Joins `sets` spans over all particles and ranks, to which `book` adds a particle, into the
+    /// first of `parts`. Collective.
     fn join(
         &mut self,
         comm: &Comm,
@@ -196,7 +196,8 @@ impl Search {
         longest
     }
 
-    /// The longest step, of no more than `dt` (s), of bodies that fly towards each other. Collective.
+    /// The longest step, of no more than `dt` (s), of bodies that fly towards each other.
+    /// Collective.
     fn of_bodies(&mut self, comm: &Comm, sky: &Sky, flyers: &Flyers, dt: f64) -> f64 {
         let (particles, bodies) = (sky.particles, sky.case.bodies.len());
         let mirrors = sky.mirrors;
@@ -269,15 +270,15 @@ impl Search {
 
 /// What tells the velocities of a particle in the next step.
 struct Flyers<'a> {
-    store: &'a ParticleStore,
+    particles: &'a ParticleStore,
     prescribed: &'a [[Option<[f64; 2]>; 3]],
 }
 
 impl Flyers<'_> {
     fn point(&self, i: usize) -> Span {
-        let store = self.store;
-        let mut point = Span::point(&store.position[i], &store.velocity[i]);
-        let mut bits = store.load.get(i).copied().unwrap_or(0);
+        let particles = self.particles;
+        let mut point = Span::point(&particles.position[i], &particles.velocity[i]);
+        let mut bits = particles.load.get(i).copied().unwrap_or(0);
         while bits != 0 {
             let ranges = &self.prescribed[bits.trailing_zeros() as usize];
             bits &= bits - 1;
@@ -301,7 +302,8 @@ fn prescribed(case: &Case, from: f64, to: f64) -> impl Iterator<Item = [Option<[
     })
 }
 
-/// The longest step, of no more than `dt` (s), of this rank's particles that fly towards rigid surfaces.
+/// The longest step, of no more than `dt` (s), of this rank's particles that fly towards rigid
+/// surfaces.
 fn to_surfaces(sky: &Sky, flyers: &Flyers, dt: f64) -> f64 {
     let (from, to) = (sky.time, sky.time + dt);
     let (particles, case) = (sky.particles, sky.case);

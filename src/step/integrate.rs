@@ -12,10 +12,10 @@
 
 use rayon::prelude::*;
 
-use super::vote::{Ballot, Vote, Voter, vote_fields};
+use super::candidate::{BestCandidate, Candidate, Criteria, criteria_fields};
 use crate::diagnose::Moved;
 use crate::domain::Span;
-use crate::loads::{Drive, Free, Goal, Loads};
+use crate::loads::{Free, Goal, Loads, Prescribe};
 use crate::numerics::exact_sum::ExactSum;
 use crate::numerics::vector::dot;
 use crate::particles::{GRAIN, ParticleStore};
@@ -45,12 +45,12 @@ impl Kick {
     }
 }
 
-/// Calls `$work` with what tells the acceleration by contact (m/s²) and the loads of a particle: a type
-/// of its own where there are none.
+/// Calls `$work` with what tells the acceleration by contact (m/s²) and the loads of a particle: a
+/// type of its own where there are none.
 macro_rules! with_outside {
     ($loads:expr, $particles:expr, $name:ident => $work:expr) => {{
         let (contact, bits) = (&$particles.contact_acceleration, &$particles.load);
-        if $loads.drives() {
+        if $loads.has_motions() {
             let $name = |i: usize| {
                 let contact = contact.get(i).copied().unwrap_or_default();
                 (contact, $loads.of(bits[i]))
@@ -118,7 +118,7 @@ pub(super) fn kick_and_drift(
 }
 
 impl Drifting<'_> {
-    fn advance<D: Drive>(
+    fn advance<D: Prescribe>(
         self,
         kick: Kick,
         rates: &Rates,
@@ -144,21 +144,21 @@ impl Drifting<'_> {
                 |mut work, (chunk, (v, e, x, v_p, rho_p, h))| {
                     for k in 0..v.len() {
                         let i = chunk * GRAIN + k;
-                        let (contact, drive) = outside(i);
+                        let (contact, prescribed) = outside(i);
                         let a = &rates.acceleration[i];
                         let mut total = kick.total(a, &contact);
                         if contact != [0.0; 3] {
                             let mut mean = add_scaled(&v[k], 0.25 * dt, &total);
-                            drive.correct_mean(&v[k], &mut mean);
+                            prescribed.correct_mean(&v[k], &mut mean);
                             work.add(half * rates.mass[i] * dot(&contact, &mean));
                         }
-                        drive.steer(Goal::Middle, &v[k], per_half, &mut total);
+                        prescribed.accelerate(Goal::Middle, &v[k], per_half, &mut total);
                         e[k] += half * (rates.heating[i] - 0.25 * dt * dot(a, &total));
                         v[k] = add_scaled(&v[k], half, &total);
-                        drive.set(Goal::Middle, &mut v[k]);
+                        prescribed.set(Goal::Middle, &mut v[k]);
                         x[k] = add_scaled(&x[k], dt, &v[k]);
                         v_p[k] = add_scaled(&v[k], half, &total);
-                        drive.set(Goal::End, &mut v_p[k]);
+                        prescribed.set(Goal::End, &mut v_p[k]);
                         let l = &rates.velocity_gradient[i];
                         let strain = half * (l[0] + l[4] + l[8]);
                         rho_p[k] = rates.density[i] * ((1.0 - strain) / (1.0 + strain));
@@ -176,25 +176,25 @@ impl Drifting<'_> {
 pub(super) struct Kicked {
     /// Work of contact (J).
     pub work: ExactSum,
-    /// This rank's vote on the next step, taken while each particle is at hand.
-    pub vote: Vote,
+    /// This rank's candidate for the next step, taken while each particle is at hand.
+    pub candidate: Candidate,
     /// Where particles are and how they move.
     pub span: Span,
 }
 
-/// Second half kick of a step `dt` (s), zero at the start of a case. What `voter` makes of the fields of
-/// votes lets particles vote.
+/// Second half kick of a step `dt` (s), zero at the start of a case. What `criteria` makes of the
+/// fields of candidates asks particles for candidates.
 pub(super) fn kick<'a, F: SignalSpeed>(
     particles: &'a mut ParticleStore,
     loads: &Loads,
-    voter: impl FnOnce(super::vote::VoteFields<'a>) -> Voter<'a, F>,
+    criteria: impl FnOnce(super::candidate::CriteriaFields<'a>) -> Criteria<'a, F>,
     dt: f64,
 ) -> Kicked {
     let kick = Kick {
         dt,
         gravity: loads.gravity,
     };
-    let voter = voter(vote_fields!(particles));
+    let criteria = criteria(criteria_fields!(particles));
     let predicted_velocity = &particles.predicted_velocity;
     let kicking = Kicking {
         velocity: &mut particles.velocity,
@@ -202,7 +202,7 @@ pub(super) fn kick<'a, F: SignalSpeed>(
         heating: &mut particles.d_specific_energy_dt,
     };
     with_outside!(loads, particles, outside => {
-        kicking.finish(kick, &voter, predicted_velocity, outside)
+        kicking.finish(kick, &criteria, predicted_velocity, outside)
     })
 }
 
@@ -214,19 +214,19 @@ struct Kicking<'a> {
 }
 
 impl Kicking<'_> {
-    fn finish<D: Drive, F: SignalSpeed>(
+    fn finish<D: Prescribe, F: SignalSpeed>(
         self,
         kick: Kick,
-        voter: &Voter<F>,
+        criteria: &Criteria<F>,
         predicted_velocity: &[[f64; 3]],
         outside: impl Fn(usize) -> ([f64; 3], D) + Sync,
     ) -> Kicked {
         let dt = kick.dt;
         let half = 0.5 * dt;
         let per_half = Loads::per_half(dt);
-        let fields = &voter.fields;
-        let none = || (ExactSum::default(), voter.ballot(), Span::NONE);
-        let (work, ballot, span) = (
+        let fields = &criteria.fields;
+        let none = || (ExactSum::default(), criteria.best(), Span::NONE);
+        let (work, best, span) = (
             self.velocity.par_chunks_mut(GRAIN),
             self.specific_energy.par_chunks_mut(GRAIN),
             self.heating.par_chunks_mut(GRAIN),
@@ -236,46 +236,46 @@ impl Kicking<'_> {
             // same bits in any order: exact sums are integers, and smallest numbers are one
             .fold(
                 none,
-                |(mut work, mut ballot, mut span), (chunk, (v, e, de))| {
+                |(mut work, mut best, mut span), (chunk, (v, e, de))| {
                     for k in 0..v.len() {
                         let i = chunk * GRAIN + k;
-                        let (contact, drive) = outside(i);
+                        let (contact, prescribed) = outside(i);
                         let a = &fields.acceleration[i];
                         let forces = kick.total(a, &contact);
                         let mut total = forces;
-                        drive.steer(Goal::End, &v[k], per_half, &mut total);
+                        prescribed.accelerate(Goal::End, &v[k], per_half, &mut total);
                         v[k] = add_scaled(&v[k], half, &total);
-                        drive.set(Goal::End, &mut v[k]);
+                        prescribed.set(Goal::End, &mut v[k]);
                         span.add(&fields.position[i], &v[k]);
                         if contact != [0.0; 3] {
                             let mut mean = add_scaled(&v[k], -0.25 * dt, &forces);
-                            drive.correct_mean(&v[k], &mut mean);
+                            prescribed.correct_mean(&v[k], &mut mean);
                             work.add(half * fields.mass[i] * dot(&contact, &mean));
                         }
                         let v_p = &predicted_velocity[i];
                         let late = add_scaled(&v[k], -1.0, v_p);
                         de[k] -= dot(a, &late);
                         e[k] += half * (de[k] + 0.25 * dt * dot(a, &total));
-                        if !drive.is_rigid() {
+                        if !prescribed.is_rigid() {
                             let moved = Moved {
                                 velocity: v[k],
                                 energy: e[k],
                                 contact,
                             };
-                            voter.ask(i, &moved, &mut ballot);
+                            criteria.ask(i, &moved, &mut best);
                         }
                     }
-                    (work, ballot, span)
+                    (work, best, span)
                 },
             )
             // same bits in any order, as above
-            .reduce(none, |(work, ballot, mut span), (other, others, beyond)| {
+            .reduce(none, |(work, best, mut span), (other, others, beyond)| {
                 span.join(&beyond);
-                (merged(work, other), Ballot::min(ballot, others), span)
+                (merged(work, other), BestCandidate::min(best, others), span)
             });
         Kicked {
             work,
-            vote: ballot.vote(),
+            candidate: best.candidate(),
             span,
         }
     }

@@ -1,5 +1,6 @@
-//! The loop, the integrator and the time-step votes.
+//! The loop, the integrator and the time-step candidates.
 
+mod candidate;
 mod error;
 mod fields;
 mod flight;
@@ -9,14 +10,13 @@ mod restored;
 mod setup;
 mod simulation;
 mod timers;
-mod vote;
 
 pub use crate::diagnose::{
-    LoadState, NearestPair, PairState, PastVote, PostMortem, Reason, Removed, RunState, Totals,
-    TroubleKind, Worst,
+    LoadState, NearestPair, NumericalFailure, PairState, PastStep, PostMortem, Reason, Removed,
+    RunState, Totals, Worst,
 };
+pub use candidate::StepControl;
 pub use error::{SetupError, StepError};
 pub use fields::bytes_of_options;
 pub use simulation::Simulation;
 pub use timers::{Phase, Timers};
-pub use vote::Votes;

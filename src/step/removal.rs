@@ -1,5 +1,5 @@
-//! Particles out of range are taken out of a run with all that they carry booked, and frozen ones are
-//! out of all sums like removed ones, kept for the files.
+//! Particles out of range are taken out of a run with all that they carry booked, and frozen ones
+//! are out of all sums like removed ones, kept for the files.
 //!
 //! Were a particle to stay in the sums at rest, it would push others without being pushed: momentum
 //! and energy would be lost in each step, and its state, which is out of range, would go on to act.
@@ -7,7 +7,7 @@
 //! it carried is booked in the same way. What is left of it in files is where it was and of what,
 //! the fields that are [`FieldInfo::kept`]. All else of it, velocity and stress among it, is zero.
 
-use super::vote::Voter;
+use super::candidate::Criteria;
 use crate::comm::Comm;
 use crate::diagnose::{Moved, Removed, RunState};
 use crate::loads::Loads;
@@ -82,13 +82,13 @@ impl Frozen {
 }
 
 /// Owned particles whose state is out of range.
-pub(super) fn troubled<F: SignalSpeed>(
+pub(super) fn failed<F: SignalSpeed>(
     particles: &ParticleStore,
     loads: &Loads,
-    voter: &Voter<F>,
+    criteria: &Criteria<F>,
 ) -> Vec<u32> {
-    let is_troubled = |&i: &usize| {
-        if loads.drives() && loads.is_rigid(particles.load[i]) {
+    let has_failed = |&i: &usize| {
+        if loads.has_motions() && loads.is_rigid(particles.load[i]) {
             return false;
         }
         let contact = particles.contact_acceleration.get(i);
@@ -97,10 +97,10 @@ pub(super) fn troubled<F: SignalSpeed>(
             energy: particles.specific_energy[i],
             contact: contact.copied().unwrap_or_default(),
         };
-        voter.trouble(i, &moved).is_some()
+        criteria.failure(i, &moved).is_some()
     };
-    let troubled = (0..particles.owned()).filter(is_troubled);
-    troubled
+    let failed = (0..particles.owned()).filter(has_failed);
+    failed
         .map(|i| u32::try_from(i).unwrap_or(u32::MAX))
         .collect()
 }

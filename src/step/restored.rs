@@ -18,7 +18,7 @@ pub(super) fn require_own(
     comm: &Comm,
     simulation: &Simulation,
     state: &RunState,
-    store: &ParticleStore,
+    particles: &ParticleStore,
 ) -> Result<(), SetupError> {
     let (own, bodies) = (&simulation.state, simulation.case.bodies.len());
     let ledgers = |state: &RunState| [state.pairs.len(), state.loads.len()];
@@ -36,13 +36,18 @@ pub(super) fn require_own(
             counts(state).any(|count| count > MOST)
         }),
         ("it has particles of another body", &|| {
-            store.body.iter().any(|&body| body as usize >= bodies)
+            particles.body.iter().any(|&body| body as usize >= bodies)
         }),
         ("it has particles under another load", &|| {
-            store.load.iter().any(|&bits| !simulation.loads.knows(bits))
+            particles
+                .load
+                .iter()
+                .any(|&bits| !simulation.loads.knows(bits))
         }),
         ("it has numbers that are not finite", &|| {
-            store.held(Life::State).any(|f| !is_finite(store, f))
+            particles
+                .held(Life::State)
+                .any(|f| !is_finite(particles, f))
         }),
     ];
     let wrong = checks.iter().position(|(_, wrong)| wrong());
@@ -75,10 +80,10 @@ fn counts(state: &RunState) -> impl Iterator<Item = u64> {
         .chain(removed)
 }
 
-fn is_finite(store: &ParticleStore, field: &FieldInfo) -> bool {
+fn is_finite(particles: &ParticleStore, field: &FieldInfo) -> bool {
     if !field.kind.is_real() {
         return true;
     }
-    let values: &[f64] = bytemuck::cast_slice(store.bytes(field.id));
+    let values: &[f64] = bytemuck::cast_slice(particles.bytes(field.id));
     values.iter().all(|value| value.is_finite())
 }

@@ -1,17 +1,17 @@
 //! From a case to the particles of this rank at time zero, or from saved particles to a run.
 
+use super::candidate::StepControl;
 use super::error::SetupError;
 use super::fields::unused_fields;
 use super::removal::Frozen;
 use super::restored::require_own;
 use super::simulation::Simulation;
 use super::timers::Timers;
-use super::vote::Votes;
 use crate::comm::Comm;
 use crate::contact::{Connectivity, Contact};
 use crate::diagnose::{LoadState, PairState, RunState, StepSums, Worst};
 use crate::domain::{Halo, Mirrors, Outset, Partition};
-use crate::loads::{Drive, Goal, Loads};
+use crate::loads::{Goal, Loads, Prescribe};
 use crate::model::{Case, SphForm};
 use crate::neighbours::Lists;
 use crate::particles::{Image, ParticleStore};
@@ -42,18 +42,18 @@ impl Simulation {
         case: Case,
         comm: &Comm,
         state: RunState,
-        store: ParticleStore,
+        particles: ParticleStore,
     ) -> Result<Self, SetupError> {
         let outset = Outset::new(&case).ok_or(SetupError::Empty)?;
         let partition = Partition::none(&case, comm, &outset);
         let mut simulation = Self::empty(case, comm, &outset, partition);
-        require_own(comm, &simulation, &state, &store)?;
-        simulation.store = store;
+        require_own(comm, &simulation, &state, &particles)?;
+        simulation.particles = particles;
         let unused = unused_fields(&simulation.case, &simulation.contact.table);
-        simulation.frozen = Frozen::part(comm, &mut simulation.store, unused);
+        simulation.frozen = Frozen::part(comm, &mut simulation.particles, unused);
         simulation.state = state;
-        simulation.partition.deal(comm, &mut simulation.store);
-        limit_count(comm, simulation.store.owned() as u64)?;
+        simulation.partition.deal(comm, &mut simulation.particles);
+        limit_count(comm, simulation.particles.owned() as u64)?;
         Ok(simulation)
     }
 
@@ -61,11 +61,11 @@ impl Simulation {
     fn empty(case: Case, comm: &Comm, outset: &Outset, partition: Partition) -> Self {
         let contact = Contact::new(&case);
         let table = &contact.table;
-        let mut store = ParticleStore::default();
-        store.drop_fields(unused_fields(&case, table));
+        let mut particles = ParticleStore::default();
+        particles.drop_fields(unused_fields(&case, table));
         Self {
-            frozen: Frozen::like(&store),
-            store,
+            frozen: Frozen::like(&particles),
+            particles,
             state: RunState {
                 pairs: vec![PairState::default(); table.active_pairs().len()],
                 loads: vec![LoadState::default(); case.load_names().count()],
@@ -73,7 +73,7 @@ impl Simulation {
             },
             timers: Timers::default(),
             poison: false,
-            votes: Votes::new(&case, table, comm),
+            step_control: StepControl::new(&case, table, comm),
             lists: Lists::new(&case, table.groups.clone(), outset),
             partition,
             halo: Halo::new(outset.axis, Mirrors::new(&case.symmetry)),
@@ -107,7 +107,7 @@ impl Simulation {
         };
         let total: u64 = case.bodies.iter().map(count).sum();
         limit_count(comm, total)?;
-        self.store
+        self.particles
             .resize_owned(usize::try_from(total).unwrap_or(usize::MAX));
         let mut i = 0;
         let mut first_id = 0_u64;
@@ -118,16 +118,16 @@ impl Simulation {
                 start.energy = 0.0;
             }
             for site in populate::sites(body, case.dimension, &case.symmetry, Some(slab)) {
-                let store = &mut self.store;
-                start.put(store, i, first_id + site.index, site.position);
-                store.mass[i] = start.mass;
-                Connectivity::begin(store, i, first_id);
-                if self.loads.drives() {
+                let particles = &mut self.particles;
+                start.put(particles, i, first_id + site.index, site.position);
+                particles.mass[i] = start.mass;
+                Connectivity::begin(particles, i, first_id);
+                if self.loads.has_motions() {
                     let bits = self.loads.bits(case, b, &site.position);
                     let prescribed = self.loads.of(bits);
-                    prescribed.set(Goal::End, &mut store.velocity[i]);
-                    prescribed.set(Goal::End, &mut store.predicted_velocity[i]);
-                    store.load[i] = bits;
+                    prescribed.set(Goal::End, &mut particles.velocity[i]);
+                    prescribed.set(Goal::End, &mut particles.predicted_velocity[i]);
+                    particles.load[i] = bits;
                 }
                 i += 1;
             }
@@ -136,7 +136,7 @@ impl Simulation {
         if stressed {
             i = self.populate_stress_points(i, first_id, slab)?;
         }
-        debug_assert_eq!(i, self.store.owned());
+        debug_assert_eq!(i, self.particles.owned());
         Ok(())
     }
 
@@ -148,12 +148,12 @@ impl Simulation {
         mut first_id: u64,
         slab: Slab,
     ) -> Result<usize, SetupError> {
-        let (case, store) = (&self.case, &mut self.store);
+        let (case, particles) = (&self.case, &mut self.particles);
         for (b, body) in case.bodies.iter().enumerate() {
             let start = Start::new(case, b);
             for site in populate::stress_sites(body, case.dimension, &case.symmetry, Some(slab)) {
-                start.put(store, i, first_id + site.index, site.position);
-                store.stress_mass[i] = start.mass * site.share;
+                start.put(particles, i, first_id + site.index, site.position);
+                particles.stress_mass[i] = start.mass * site.share;
                 i += 1;
             }
             first_id = beyond(first_id, populate::stress_index_end(body, case.dimension))?;
@@ -165,20 +165,20 @@ impl Simulation {
     fn begin(&mut self, comm: &Comm) -> Result<(), SetupError> {
         // The first pass finds the foreign fractions that contact is to forgive, and the work.
         self.evaluate(comm, 0.0);
-        let mut capped = [self.contact.begin(&mut self.store, &self.lists)];
+        let mut capped = [self.contact.begin(&mut self.particles, &self.lists)];
         comm.sum_i64(&mut capped);
         self.state.capped_reliefs = capped[0];
-        let scratch = self.sph.scratch(self.store.owned());
-        self.lists.restore_order(&mut self.store, scratch);
+        let scratch = self.sph.scratch(self.particles.owned());
+        self.lists.restore_order(&mut self.particles, scratch);
         self.evaluate(comm, 0.0);
-        let vote = self.kick(0.0);
+        let candidate = self.kick(0.0);
         self.book_step(comm, 0.0);
         self.state.initial = self.totals(comm);
         self.state.initial.contact_energy = self.state.contact_energy;
         self.state.worst = Worst::default();
         self.diagnose(comm);
         self.state.worst.nearest = None;
-        self.vote(comm, vote)?;
+        self.choose_step(comm, candidate)?;
         Ok(())
     }
 }
@@ -209,16 +209,16 @@ impl Start {
     }
 
     /// Puts a particle at place `i` of the store.
-    fn put(&self, store: &mut ParticleStore, i: usize, id: u64, position: [f64; 3]) {
-        store.id[i] = id;
-        store.body[i] = self.body;
-        store.position[i] = position;
-        store.velocity[i] = self.velocity;
-        store.predicted_velocity[i] = self.velocity;
-        store.density[i] = self.density;
-        store.predicted_density[i] = self.density;
-        store.specific_energy[i] = self.energy;
-        store.smoothing_length[i] = self.smoothing_length;
+    fn put(&self, particles: &mut ParticleStore, i: usize, id: u64, position: [f64; 3]) {
+        particles.id[i] = id;
+        particles.body[i] = self.body;
+        particles.position[i] = position;
+        particles.velocity[i] = self.velocity;
+        particles.predicted_velocity[i] = self.velocity;
+        particles.density[i] = self.density;
+        particles.predicted_density[i] = self.density;
+        particles.specific_energy[i] = self.energy;
+        particles.smoothing_length[i] = self.smoothing_length;
     }
 }
 

@@ -1,19 +1,19 @@
 //! The simulation: everything a rank holds, and one step of it.
 
+use super::candidate::{Candidate, Criteria, StepControl, criteria_fields};
 use super::error::{self, StepError};
 use super::flight::Sky;
 use super::integrate;
 use super::removal::{self, Frozen};
 use super::timers::{Phase, Timers};
-use super::vote::{Vote, Voter, Votes, vote_fields};
 use crate::comm::Comm;
 use crate::contact::{Contact, ContactTable};
 use crate::diagnose::{
-    Booked, PostMortem, Reason, RunState, StepSums, Totals, TroubleKind, fastest, is_explained,
+    Booked, NumericalFailure, PostMortem, Reason, RunState, StepSums, Totals, fastest, is_explained,
 };
 use crate::domain::{Halo, Partition};
 use crate::loads::Loads;
-use crate::model::{Case, SphForm, TroublePolicy};
+use crate::model::{Case, NumericalFailurePolicy, SphForm};
 use crate::neighbours::Lists;
 use crate::particles::{HaloPhase, ParticleStore};
 use crate::sph::{Side, Sph, Step, with_formulation};
@@ -23,7 +23,7 @@ pub struct Simulation {
     /// The case.
     pub case: Case,
     /// This rank's particles.
-    pub store: ParticleStore,
+    pub particles: ParticleStore,
     pub(super) frozen: Frozen,
     /// The scalar state, equal on all ranks.
     pub state: RunState,
@@ -31,8 +31,8 @@ pub struct Simulation {
     pub timers: Timers,
     /// Fill everything that is not state with NaN between steps: for tests.
     pub poison: bool,
-    /// Votes on steps and wishes.
-    pub votes: Votes,
+    /// The choice of time steps, and requests to stop.
+    pub step_control: StepControl,
     /// Sorted images and neighbours.
     pub lists: Lists,
     pub(super) partition: Partition,
@@ -54,11 +54,11 @@ impl Simulation {
     /// One step of kick–drift–kick. Collective.
     ///
     /// # Errors
-    /// The same on all ranks if any particle's state is no number or out of range.
+    /// The same on all ranks if any particle's state is NaN or out of range.
     pub fn advance(&mut self, comm: &Comm) -> Result<(), StepError> {
         let (dt, reason) = self.state.next_step(self.case.run.end_time);
         if self.poison {
-            self.store.poison();
+            self.particles.poison();
         }
         let end = match reason {
             Reason::End => self.case.run.end_time,
@@ -69,18 +69,18 @@ impl Simulation {
         self.timers.lap(Phase::Integrate);
         self.balance(comm);
         self.timers.lap(Phase::Balance);
-        self.partition.migrate(comm, &mut self.store);
+        self.partition.migrate(comm, &mut self.particles);
         self.timers.lap(Phase::Migrate);
         self.evaluate(comm, dt);
-        let vote = self.kick(dt);
+        let candidate = self.kick(dt);
         self.timers.lap(Phase::Integrate);
         self.state.step += 1;
         self.state.time = end;
         (self.state.last_dt, self.state.last_reason) = (dt, reason);
         self.book_step(comm, dt);
-        self.timers.updates += self.store.owned() as u64;
-        self.vote(comm, vote)?;
-        self.timers.lap(Phase::Vote);
+        self.timers.updates += self.particles.owned() as u64;
+        self.choose_step(comm, candidate)?;
+        self.timers.lap(Phase::TimeStep);
         Ok(())
     }
 
@@ -88,7 +88,7 @@ impl Simulation {
     fn kick_and_drift(&mut self, dt: f64, end: f64) {
         let Self {
             case,
-            store: particles,
+            particles,
             state,
             halo,
             sph,
@@ -106,11 +106,11 @@ impl Simulation {
         sums.cross_planes(particles, halo.mirrors(), loads);
     }
 
-    /// Every few steps gives each rank its share of the work, and particles in memory the order of the
-    /// last search.
+    /// Every few steps gives each rank its share of the work, and particles in memory the order of
+    /// the last search.
     fn balance(&mut self, comm: &Comm) {
         let Self {
-            store: particles,
+            particles,
             state,
             timers,
             lists,
@@ -133,7 +133,7 @@ impl Simulation {
     /// densities and energies.
     pub(super) fn evaluate(&mut self, comm: &Comm, dt: f64) {
         let Self {
-            store: particles,
+            particles,
             state,
             timers,
             lists,
@@ -159,7 +159,7 @@ impl Simulation {
         if contact.connectivity.is_due(state.step) {
             contact.connectivity.begin_labels(lists, particles);
             while comm.any(contact.connectivity.spread_labels(particles)) {
-                halo.exchange(comm, particles, HaloPhase::PARTS);
+                halo.exchange(comm, particles, HaloPhase::FRAGMENTS);
             }
             timers.lap(Phase::Neighbours);
         }
@@ -192,13 +192,13 @@ impl Simulation {
         timers.lap(Phase::ContactForces);
     }
 
-    /// Second half kick of a step `dt` (s), zero at the start of a case. Gives this rank's vote on
-    /// the next one.
-    pub(super) fn kick(&mut self, dt: f64) -> Vote {
+    /// Second half kick of a step `dt` (s), zero at the start of a case. Gives this rank's
+    /// candidate on the next one.
+    pub(super) fn kick(&mut self, dt: f64) -> Candidate {
         let Self {
             case,
-            store: particles,
-            votes,
+            particles,
+            step_control,
             sph,
             loads,
             sums,
@@ -206,20 +206,22 @@ impl Simulation {
         } = self;
         let rules = (case.time_step, loads.gravity);
         let kicked = with_formulation!(case.sph.form, Form => {
-            let voter = |fields| Voter::<Form>::new(fields, sph, &votes.limits, rules);
-            integrate::kick(particles, loads, voter, dt)
+            let criteria = |fields| Criteria::<Form>::new(fields, sph, &step_control.limits, rules);
+            integrate::kick(particles, loads, criteria, dt)
         });
         sums.contact_work.merge(&kicked.work);
         sums.span = kicked.span;
         loads.book(particles, dt, false);
-        kicked.vote
+        kicked.candidate
     }
 
-    /// Joins the sums of all ranks into the state, after the second half of a step `dt` (s). Collective.
+    /// Joins the sums of all ranks into the state, after the second half of a step `dt` (s).
+    /// Collective.
     pub(super) fn book_step(&mut self, comm: &Comm, dt: f64) {
         let corrects = self.case.sph.form != SphForm::Conventional;
         let mirrors = !self.halo.mirrors().is_empty();
-        let sums_any = self.contact.table.is_active() || mirrors || self.loads.drives() || corrects;
+        let sums_any =
+            self.contact.table.is_active() || mirrors || self.loads.has_motions() || corrects;
         let mut booked = Booked {
             uncorrected: self.sph.uncorrected(),
             contact: &mut self.contact,
@@ -231,28 +233,29 @@ impl Simulation {
         self.sums.book(&mut self.state, &mut booked, dt);
     }
 
-    /// Chooses the next Δt, given this rank's vote. Collective.
-    pub(super) fn vote(&mut self, comm: &Comm, own: Vote) -> Result<(), StepError> {
+    /// Chooses the next Δt, given this rank's candidate. Collective.
+    pub(super) fn choose_step(&mut self, comm: &Comm, own: Candidate) -> Result<(), StepError> {
         let sky = Sky {
             case: &self.case,
-            particles: &self.store,
+            particles: &self.particles,
             table: &self.contact.table,
             loads: &self.loads,
             mirrors: self.halo.mirrors(),
             time: self.state.time,
         };
-        let chosen = self.votes.choose(comm, own, &sky, &self.sums.span);
-        let (dt, reason) = chosen.map_err(|(kind, id)| self.trouble(comm, kind, id))?;
+        let chosen = self.step_control.choose(comm, own, &sky, &self.sums.span);
+        let (dt, reason) = chosen.map_err(|(kind, id)| self.failure(comm, kind, id))?;
         (self.state.dt, self.state.dt_reason) = (dt, reason);
-        self.votes.keep(&self.state);
+        self.step_control.keep(&self.state);
         let limited = reason == Reason::Contact;
         self.state.worst.contact_limited_steps += u64::from(limited);
         Ok(())
     }
 
     /// Describes the particle `id`, wherever it is; the same text on all ranks. Collective.
-    fn trouble(&self, comm: &Comm, kind: TroubleKind, id: u64) -> StepError {
-        error::trouble(comm, &self.case, &self.store, (self.state.step, kind, id))
+    fn failure(&self, comm: &Comm, kind: NumericalFailure, id: u64) -> StepError {
+        let what = (self.state.step, kind, id);
+        error::failure(comm, &self.case, &self.particles, what)
     }
 
     /// Sums over all particles, into the state, with the errors that follow from them, and the
@@ -264,7 +267,12 @@ impl Simulation {
     }
 
     pub(super) fn totals(&self, comm: &Comm) -> Totals {
-        Totals::of(&self.store, &self.loads, self.state.contact_energy, comm)
+        Totals::of(
+            &self.particles,
+            &self.loads,
+            self.state.contact_energy,
+            comm,
+        )
     }
 
     /// Joins what the pairs of bodies have come to since the last time on all ranks into the state:
@@ -277,45 +285,45 @@ impl Simulation {
     /// anywhere. Collective.
     ///
     /// # Errors
-    /// The same on all ranks: [`StepError::Trouble`] of the fastest particle if it cannot.
+    /// The same on all ranks: [`StepError::Failure`] of the fastest particle if it cannot.
     pub fn check_gain(&self, comm: &Comm) -> Result<(), StepError> {
-        let hidden = self.votes.limits.hidden_energy;
-        if is_explained(&self.state, hidden, self.case.trouble.gain_max) {
+        let hidden = self.step_control.limits.hidden_energy;
+        if is_explained(&self.state, hidden, self.case.numerical_limits.gain_max) {
             return Ok(());
         }
-        let id = fastest(comm, &self.store, &self.loads);
-        Err(self.trouble(comm, TroubleKind::Gain, id))
+        let id = fastest(comm, &self.particles, &self.loads);
+        Err(self.failure(comm, NumericalFailure::Gain, id))
     }
 
     /// What is about the particle `id`, on the rank `rank` that owns it; nothing on others.
     #[must_use]
     pub fn post_mortem(&self, id: u64, rank: usize) -> Option<PostMortem> {
         let reach = 4.0 * self.sph.smoothing.longest();
-        let votes = self.votes.past();
-        PostMortem::of((id, rank), &self.store, reach, &self.state, votes)
+        let past = self.step_control.past();
+        PostMortem::of((id, rank), &self.particles, reach, &self.state, past)
     }
 
-    /// Takes out all particles whose state is out of range, books them (and keeps them for the files
-    /// if they are to be frozen), and sums the forces on the others anew. For a step that
-    /// [`StepError::Trouble`] has ended and whose particles are all finite. Collective. Gives the number
-    /// of particles taken out on all ranks.
+    /// Takes out all particles whose state is out of range, books them (and keeps them for the
+    /// files if they are to be frozen), and sums the forces on the others anew. For a step that
+    /// [`StepError::Failure`] has ended and whose particles are all finite. Collective. Gives the
+    /// number of particles taken out on all ranks.
     ///
     /// # Errors
-    /// The same on all ranks if there is trouble again, or nothing left.
-    pub fn remove_troubled(&mut self, comm: &Comm) -> Result<u64, StepError> {
+    /// The same on all ranks if a particle fails again, or nothing left.
+    pub fn remove_failed(&mut self, comm: &Comm) -> Result<u64, StepError> {
         let rules = (self.case.time_step, self.loads.gravity);
-        let (store, loads, limits) = (&self.store, &self.loads, &self.votes.limits);
+        let (particles, loads, limits) = (&self.particles, &self.loads, &self.step_control.limits);
         let mut leaving = with_formulation!(self.case.sph.form, Form => {
-            let voter = Voter::<Form>::new(vote_fields!(store), &self.sph, limits, rules);
-            removal::troubled(store, loads, &voter)
+            let criteria = Criteria::<Form>::new(criteria_fields!(particles), &self.sph, limits, rules);
+            removal::failed(particles, loads, &criteria)
         });
-        let mut count = [leaving.len() as u64, self.store.owned() as u64];
-        let counted = (&self.store, self.case.bodies.len());
+        let mut count = [leaving.len() as u64, self.particles.owned() as u64];
+        let counted = (&self.particles, self.case.bodies.len());
         removal::book(comm, &mut self.state, counted, &self.loads, &leaving);
-        if self.case.trouble.policy == TroublePolicy::Freeze {
-            self.frozen.freeze(&self.store, &leaving);
+        if self.case.numerical_limits.policy == NumericalFailurePolicy::Freeze {
+            self.frozen.freeze(&self.particles, &leaving);
         }
-        self.store.remove(&mut leaving, &mut Vec::new());
+        self.particles.remove(&mut leaving, &mut Vec::new());
         comm.sum_u64(&mut count);
         if count[0] == count[1] {
             return Err(StepError::NothingLeft {
@@ -323,14 +331,14 @@ impl Simulation {
             });
         }
         let contact_energy = self.state.contact_energy;
-        let owned = self.store.owned();
-        let store = &mut self.store;
-        store.predicted_velocity[..owned].copy_from_slice(&store.velocity[..owned]);
-        store.predicted_density[..owned].copy_from_slice(&store.density[..owned]);
+        let owned = self.particles.owned();
+        let particles = &mut self.particles;
+        particles.predicted_velocity[..owned].copy_from_slice(&particles.velocity[..owned]);
+        particles.predicted_density[..owned].copy_from_slice(&particles.density[..owned]);
         self.loads
             .prepare(&self.case, self.state.time, self.state.time);
         self.evaluate(comm, 0.0);
-        let vote = self.kick(0.0);
+        let candidate = self.kick(0.0);
         // The sums of a step of no length have no work in them. Its defect is taken with what has
         // been lost, so the loss must be known first.
         let worst = self.state.worst;
@@ -338,16 +346,16 @@ impl Simulation {
         self.state.removed_contact_energy += contact_energy - self.state.contact_energy;
         self.state.worst = worst;
         self.state.book_defect();
-        self.vote(comm, vote)?;
+        self.choose_step(comm, candidate)?;
         Ok(count[0])
     }
 
     /// Does something, such as writing files, while the store holds this rank's frozen particles
     /// too, in place of the halo.
     pub fn with_frozen<T>(&mut self, task: impl FnOnce(&Self) -> T) -> T {
-        self.frozen.append_to(&mut self.store);
+        self.frozen.append_to(&mut self.particles);
         let result = task(self);
-        self.frozen.take_from(&mut self.store);
+        self.frozen.take_from(&mut self.particles);
         result
     }
 
@@ -360,14 +368,14 @@ impl Simulation {
     /// Bytes that this rank holds in particle arrays, lists and buffers.
     #[must_use]
     pub fn memory(&self) -> usize {
-        self.store.memory()
+        self.particles.memory()
             + self.frozen.memory()
             + self.lists.memory()
             + self.sph.memory()
             + self.contact.memory()
             + self.loads.memory()
             + self.sums.memory()
-            + self.votes.memory()
+            + self.step_control.memory()
             + self.halo.memory()
             + self.partition.memory()
     }

@@ -38,8 +38,8 @@ phases! {
     Momentum = "momentum_and_energy",
     /// Contact forces.
     ContactForces = "contact_forces",
-    /// Time-step votes and conserved sums.
-    Vote = "vote_and_sums",
+    /// Time-step candidates and conserved sums.
+    TimeStep = "vote_and_sums",
     /// Histories, snapshots and checkpoints.
     Output = "output",
 }

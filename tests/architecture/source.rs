@@ -28,7 +28,7 @@ pub struct Source {
     /// Path below `src/`.
     pub name: String,
     /// First folder of that path; empty for `lib.rs` and `main.rs`.
-    pub room: String,
+    pub module: String,
     pub text: String,
     /// Without comments, strings and unit tests.
     pub tokens: Vec<Token>,
@@ -54,8 +54,8 @@ impl Reference {
         }
     }
 
-    pub fn names_room(&self, room: &str) -> bool {
-        self.named().split("::").next() == Some(room)
+    pub fn names_module(&self, module: &str) -> bool {
+        self.named().split("::").next() == Some(module)
     }
 
     pub fn is_of_crate(&self, name: &str) -> bool {
@@ -71,11 +71,14 @@ impl Source {
     }
 
     pub fn new(name: &str, text: String) -> Self {
-        let room = name.split_once('/').map_or("", |(room, _)| room).to_owned();
+        let module = name
+            .split_once('/')
+            .map_or("", |(module, _)| module)
+            .to_owned();
         let tokens = without_unit_tests(&tokens(&text));
         Self {
             name: name.to_owned(),
-            room,
+            module,
             text,
             tokens,
         }

@@ -14,8 +14,8 @@ pub const WHIPPLE: &str = env!("CARGO_BIN_EXE_whipple");
 /// Time that a command may take before it counts as hanging; a coarse run takes a second.
 const PATIENCE: Duration = Duration::from_secs(100);
 
-/// A quarter impact of 3,056 particles and some 120 steps that takes well under a second: two bodies
-/// in contact, two planes of symmetry, checkpoints on the way.
+/// A quarter impact of 3,056 particles and some 120 steps that takes well under a second: two
+/// bodies in contact, two planes of symmetry, checkpoints on the way.
 pub const COARSE: [&str; 8] = [
     "--set",
     "spacing=0.05mm",

@@ -27,15 +27,15 @@ pub fn advance(simulation: &mut Simulation, steps: usize) {
 
 /// All bytes of the particles that a user or the next step can see, by id.
 pub fn rows(simulation: &Simulation) -> BTreeMap<u64, Vec<u8>> {
-    let store = &simulation.store;
+    let particles = &simulation.particles;
     let mut rows = BTreeMap::new();
-    for slot in 0..store.owned() {
-        let row: &mut Vec<u8> = rows.entry(store.id[slot]).or_default();
+    for slot in 0..particles.owned() {
+        let row: &mut Vec<u8> = rows.entry(particles.id[slot]).or_default();
         assert!(row.is_empty(), "an id twice");
         let seen = |field: &FieldInfo| field.life == Life::State || field.is_shown();
         for field in fields(seen) {
             let size = field.kind.bytes();
-            let bytes = store.bytes_or_zeros(field);
+            let bytes = particles.bytes_or_zeros(field);
             row.extend_from_slice(&bytes[slot * size..(slot + 1) * size]);
         }
     }

@@ -21,7 +21,7 @@ pub struct World {
     pub table: ContactTable,
     /// Touching value of each ordered pair of bodies.
     touching: Vec<f64>,
-    pub store: ParticleStore,
+    pub particles: ParticleStore,
     images: Vec<Image>,
     pub motion: Vec<MotionRecord>,
 }
@@ -63,22 +63,22 @@ struct Pair {
 }
 
 impl World {
-    pub fn new(case: Case, particles: &[(usize, [f64; 3])]) -> Self {
-        let mut store = ParticleStore::default();
-        store.resize_owned(particles.len());
+    pub fn new(case: Case, placed: &[(usize, [f64; 3])]) -> Self {
+        let mut particles = ParticleStore::default();
+        particles.resize_owned(placed.len());
         let mut motion = Vec::new();
-        for (i, &(b, position)) in particles.iter().enumerate() {
+        for (i, &(b, position)) in placed.iter().enumerate() {
             let body = &case.bodies[b];
             let volume = populate::particle_volume(body, case.dimension);
-            store.id[i] = i as u64;
-            store.body[i] = u32::try_from(b).unwrap();
-            store.mass[i] = volume * case.materials[body.material].reference_density;
-            store.position[i] = position;
+            particles.id[i] = i as u64;
+            particles.body[i] = u32::try_from(b).unwrap();
+            particles.mass[i] = volume * case.materials[body.material].reference_density;
+            particles.position[i] = position;
             motion.push(MotionRecord {
                 position,
                 velocity: [0.0; 3],
                 volume,
-                mass: store.mass[i],
+                mass: particles.mass[i],
             });
         }
         let touching = case
@@ -90,9 +90,9 @@ impl World {
         Self {
             table: ContactTable::new(&case),
             touching,
-            images: (0..particles.len()).map(|i| Image::new(i, 0)).collect(),
+            images: (0..placed.len()).map(|i| Image::new(i, 0)).collect(),
             case,
-            store,
+            particles,
             motion,
         }
     }
@@ -105,14 +105,17 @@ impl World {
         ContactView {
             images: &self.images,
             motion: &self.motion,
-            store: &self.store,
+            particles: &self.particles,
             table: &self.table,
             dt: 0.0,
         }
     }
 
     fn bodies(&self, i: usize, j: usize) -> (usize, usize) {
-        (self.store.body[i] as usize, self.store.body[j] as usize)
+        (
+            self.particles.body[i] as usize,
+            self.particles.body[j] as usize,
+        )
     }
 
     fn distance(&self, i: usize, j: usize) -> f64 {
@@ -143,16 +146,16 @@ impl World {
         let all: Vec<_> = (0_u32..)
             .zip(overlap)
             .map(|(place, list)| {
-                let offset = self.store.touch_relief[place as usize];
+                let offset = self.particles.touch_relief[place as usize];
                 overlap::fraction(&self.view(), place, list, offset)
             })
             .collect();
         for (i, fraction) in all.iter().enumerate() {
-            self.store.foreign_fraction[i] = fraction.fraction;
-            self.store.contact_excess[i] = fraction.excess;
-            self.store.contact_modulus[i] = fraction.modulus;
-            self.store.touching_value[i] = fraction.touching;
-            self.store.contact_slope[i] = fraction.slope;
+            self.particles.foreign_fraction[i] = fraction.fraction;
+            self.particles.contact_excess[i] = fraction.excess;
+            self.particles.contact_modulus[i] = fraction.modulus;
+            self.particles.touching_value[i] = fraction.touching;
+            self.particles.contact_slope[i] = fraction.slope;
         }
         all
     }
@@ -201,7 +204,7 @@ impl World {
 
     fn volume(&self, i: usize) -> f64 {
         populate::particle_volume(
-            &self.case.bodies[self.store.body[i] as usize],
+            &self.case.bodies[self.particles.body[i] as usize],
             self.case.dimension,
         )
     }
@@ -233,7 +236,7 @@ impl World {
                 }
             }
             if fraction > 0.0 {
-                let offset = self.store.touch_relief[i];
+                let offset = self.particles.touch_relief[i];
                 let excess = (fraction - touching / fraction - offset).max(0.0);
                 energy += 0.5 * (modulus / fraction) * self.volume(i) * excess * excess;
             }
@@ -280,7 +283,7 @@ impl World {
     }
 
     pub fn shift(&mut self, i: usize, axis: usize, by: f64) {
-        self.store.position[i][axis] += by;
+        self.particles.position[i][axis] += by;
         self.motion[i].position[axis] += by;
     }
 }

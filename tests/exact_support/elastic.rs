@@ -174,16 +174,16 @@ impl Waves {
     /// All bars at time `t` (s), from left to right, in stretches of one state.
     #[must_use]
     pub fn profile(&self, t: f64) -> Vec<Piece> {
-        let mut pieces: Vec<Piece> = Vec::new();
+        let mut fragments: Vec<Piece> = Vec::new();
         for (k, bar) in self.bars.iter().enumerate() {
             let edges = self.fronts(k, t);
-            let first = pieces.len();
+            let first = fragments.len();
             for ends in edges.windows(2) {
                 let state = self.at(k, 0.5 * (ends[0] + ends[1]), t);
                 let to = bar.left + ends[1];
-                match pieces[first..].last_mut() {
+                match fragments[first..].last_mut() {
                     Some(last) if last.state == state => last.to = to,
-                    _ => pieces.push(Piece {
+                    _ => fragments.push(Piece {
                         bar: k,
                         from: bar.left + ends[0],
                         to,
@@ -192,14 +192,14 @@ impl Waves {
                 }
             }
         }
-        pieces
+        fragments
     }
 
     /// Mean velocity of a bar (m/s) at time `t` (s).
     #[must_use]
     pub fn mean_velocity(&self, bar: usize, t: f64) -> f64 {
-        let pieces = self.profile(t).into_iter().filter(|p| p.bar == bar);
-        let moved: f64 = pieces.map(|p| (p.to - p.from) * p.state.velocity).sum();
+        let fragments = self.profile(t).into_iter().filter(|p| p.bar == bar);
+        let moved: f64 = fragments.map(|p| (p.to - p.from) * p.state.velocity).sum();
         moved / self.bars[bar].length
     }
 

@@ -185,7 +185,7 @@ impl Change {
                 attribute(file, at, name, kind, &Shape::Scalar, Some(text))
             }
             Self::Silence(at, name) => object(file, at)?.delete_attr(name),
-            Self::Data(at, kind, shape, store) => dataset(file, at, *kind, shape, *store),
+            Self::Data(at, kind, shape, particles) => dataset(file, at, *kind, shape, *particles),
             Self::Group(at) => {
                 let _ = file.unlink(at);
                 file.create_group(at).map(drop)
@@ -316,7 +316,7 @@ fn padded(text: &[u8]) -> Vec<u8> {
     }
 }
 
-fn dataset(file: &File, at: &str, kind: Kind, shape: &Shape, store: Store) -> hdf5::Result<()> {
+fn dataset(file: &File, at: &str, kind: Kind, shape: &Shape, particles: Store) -> hdf5::Result<()> {
     let _ = file.unlink(at);
     let descriptor = kind.descriptor();
     let mut builder = file
@@ -328,7 +328,7 @@ fn dataset(file: &File, at: &str, kind: Kind, shape: &Shape, store: Store) -> hd
         Shape::Of(dimensions) => dimensions.iter().map(|n| (*n).clamp(1, 64)).collect(),
         _ => vec![1],
     };
-    match store {
+    match particles {
         Store::Plain | Store::Empty => {}
         Store::Compact => builder = builder.layout(Layout::Compact),
         Store::Chunked => builder = builder.chunk(&piece[..]),
@@ -341,7 +341,7 @@ fn dataset(file: &File, at: &str, kind: Kind, shape: &Shape, store: Store) -> hd
     }
     let dataset = builder.create(at)?;
     let written = matches!(
-        store,
+        particles,
         Store::Plain | Store::Compact | Store::Chunked | Store::Packed
     );
     match shape.pattern(dataset.dtype()?.size()) {

@@ -1,5 +1,5 @@
-//! Checkpoints and snapshots that are sound as HDF5 files and as their digests say, with content that
-//! no run writes: other types and shapes, links, filters, other files, values.
+//! Checkpoints and snapshots that are sound as HDF5 files and as their digests say, with content
+//! that no run writes: other types and shapes, links, filters, other files, values.
 
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -71,7 +71,7 @@ impl Bench {
         let input = case.resolved.clone();
         let mut simulation = Simulation::start(case, &comm).unwrap();
         simulation.advance(&comm).unwrap();
-        let (state, store) = (&simulation.state, &simulation.store);
+        let (state, particles) = (&simulation.state, &simulation.particles);
         let meta = checkpoint::Meta {
             step: state.step,
             time: state.time,
@@ -79,7 +79,7 @@ impl Bench {
             input: &input,
         };
         let mut rows = Rows::default();
-        let sound = checkpoint::write(&comm, place.path(), store, &meta, 1, &mut rows).unwrap();
+        let sound = checkpoint::write(&comm, place.path(), particles, &meta, 1, &mut rows).unwrap();
         let meta = snapshot::Meta {
             case: &simulation.case,
             step: state.step,
@@ -89,13 +89,13 @@ impl Bench {
         };
         let path = place.path().join("sound.vtkhdf");
         let fields = snapshot::quantities(&[]).unwrap();
-        snapshot::write(&comm, &path, store, &meta, &fields, &mut rows).unwrap();
+        snapshot::write(&comm, &path, particles, &meta, &fields, &mut rows).unwrap();
         let state = checkpoint::state_file(&sound);
         let places = [state.as_path(), &path].map(places);
         fs::create_dir(place.path().join("changed")).unwrap();
         fs::copy(&state, place.path().join("changed/other.h5")).unwrap();
         Self {
-            rows: store.owned(),
+            rows: particles.owned(),
             place,
             sound,
             places,
@@ -353,8 +353,8 @@ fn places(path: &Path) -> Vec<String> {
 /// Reads a checkpoint as `restart` does, and takes a step; gives the message.
 fn restart(path: &Path) -> String {
     let comm = Comm::solo();
-    let mut store = ParticleStore::default();
-    let restored = match checkpoint::read(&comm, path, &mut store) {
+    let mut particles = ParticleStore::default();
+    let restored = match checkpoint::read(&comm, path, &mut particles) {
         Ok(restored) => restored,
         Err(error) => return error.to_string(),
     };
@@ -366,7 +366,7 @@ fn restart(path: &Path) -> String {
         Ok(state) => state,
         Err(error) => return error.to_string(),
     };
-    let mut simulation = match Simulation::resume(case, &comm, state, store) {
+    let mut simulation = match Simulation::resume(case, &comm, state, particles) {
         Ok(simulation) => simulation,
         Err(error) => return error.to_string(),
     };

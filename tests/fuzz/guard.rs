@@ -1,4 +1,5 @@
-//! What no file may make a reader do: take much more memory than the file is long, or wait for ever.
+//! What no file may make a reader do: take much more memory than the file is long, or wait for
+//! ever.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -59,7 +60,8 @@ pub struct Watch {
     _end: Sender<()>,
 }
 
-/// Watches an attempt: one that does not end is told and ends the process, which nothing else could.
+/// Watches an attempt: one that does not end is told and ends the process, which nothing else
+/// could.
 pub fn watch(what: &str) -> Watch {
     let begun = HELD.load(Relaxed);
     PEAK.store(begun, Relaxed);

@@ -69,8 +69,9 @@ fn attributes_of_another_type_or_shape_are_refused() {
 fn datasets_of_another_type_shape_or_storage_are_refused() {
     let bench = Bench::new();
     let n = bench.rows;
-    let mass =
-        |kind, shape: &[usize], store| Change::Data(name("/fields/mass"), kind, of(shape), store);
+    let mass = |kind, shape: &[usize], particles| {
+        Change::Data(name("/fields/mass"), kind, of(shape), particles)
+    };
     let elsewhere = "is a link to another place";
     let stored = "not stored in one piece";
     for (change, expected) in [
@@ -134,8 +135,9 @@ fn datasets_of_another_type_shape_or_storage_are_refused() {
         }
         assert!(restart.contains(expected), "{change:?}: {restart}");
     }
-    let points =
-        |shape: &[usize], store| Change::Data(name("/VTKHDF/Points"), Kind::F64, of(shape), store);
+    let points = |shape: &[usize], particles| {
+        Change::Data(name("/VTKHDF/Points"), Kind::F64, of(shape), particles)
+    };
     for (change, expected) in [
         (
             points(&[1 << 50, 3], Store::Empty),

@@ -26,7 +26,8 @@ pub struct Traced {
     pub code: Option<i32>,
 }
 
-/// Runs a command, to its end or up to the call of this number, counted from 0, at which it is killed.
+/// Runs a command, to its end or up to the call of this number, counted from 0, at which it is
+/// killed.
 ///
 /// # Errors
 /// If the system lets nobody trace.

@@ -53,7 +53,7 @@ pub fn case() -> Case {
         }],
         loads: Loads::default(),
         sph: SphOptions::default(),
-        trouble: whipple::model::Trouble::default(),
+        numerical_limits: whipple::model::NumericalLimits::default(),
         time_step: TimeStepOptions {
             courant: 0.3,
             force: 0.3,
@@ -102,17 +102,17 @@ pub fn particles(comm: &Comm, total: u64) -> ParticleStore {
     let mine: Vec<u64> = (0..total)
         .filter(|&k| owner(k) == comm.rank() as u64)
         .collect();
-    let mut store = ParticleStore::default();
-    store.resize_owned(mine.len());
-    store.resize_halo(3);
+    let mut particles = ParticleStore::default();
+    particles.resize_owned(mine.len());
+    particles.resize_halo(3);
     for (row, field) in FIELDS.iter().enumerate() {
         let size = field.kind.bytes();
-        let values = store.bytes_mut(field.id);
+        let values = particles.bytes_mut(field.id);
         for (bytes, &k) in values.chunks_exact_mut(size).zip(&mine) {
             sentinel(id(k), row, bytes);
         }
     }
-    store
+    particles
 }
 
 /// All ids in order.

@@ -42,7 +42,7 @@ pub fn step_bar(smoothing: f64) -> Case {
 /// Velocities along a [`step_bar`] in the frame of its undisturbed part (m/s).
 pub fn bar_velocities(s: &Simulation) -> Vec<f64> {
     let all = in_order(s).into_iter();
-    all.map(|i| s.store.velocity[i][0] + STEP).collect()
+    all.map(|i| s.particles.velocity[i][0] + STEP).collect()
 }
 
 /// The first bar of a case made as long as all together, and alone.
@@ -60,21 +60,21 @@ pub fn in_one_piece(mut case: Case) -> Case {
 
 /// All particles from left to right.
 pub fn in_order(s: &Simulation) -> Vec<usize> {
-    let mut all: Vec<usize> = (0..s.store.owned()).collect();
-    all.sort_by(|&a, &b| s.store.position[a][0].total_cmp(&s.store.position[b][0]));
+    let mut all: Vec<usize> = (0..s.particles.owned()).collect();
+    all.sort_by(|&a, &b| s.particles.position[a][0].total_cmp(&s.particles.position[b][0]));
     all
 }
 
 /// Stress of a particle along the bar (Pa), tension positive.
 pub fn axial_stress(s: &Simulation, i: usize) -> f64 {
-    s.store.deviatoric_stress[i][0] - s.store.pressure[i]
+    s.particles.deviatoric_stress[i][0] - s.particles.pressure[i]
 }
 
 /// Force (Pa, positive to the right) that the particles up to the `first`-th from the left exert
 /// on all others in the SPH sums: what accelerates these.
 pub fn force_on_right(s: &Simulation, first: usize) -> f64 {
     let right = in_order(s).split_off(first);
-    let force = |&i: &usize| s.store.mass[i] * s.store.acceleration[i][0];
+    let force = |&i: &usize| s.particles.mass[i] * s.particles.acceleration[i][0];
     right.iter().map(force).sum()
 }
 

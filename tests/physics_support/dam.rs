@@ -1,6 +1,6 @@
 //! The breaking dam, `inputs/dam-break`, and what is measured on it.
 
-use whipple::diagnose::pieces;
+use whipple::diagnose::fragments;
 use whipple::step::Simulation;
 
 use super::{ready, run_with, start};
@@ -58,18 +58,20 @@ pub fn run(overrides: &[&str], end: f64) -> Dam {
 }
 
 fn water(s: &Simulation) -> impl Iterator<Item = usize> {
-    (0..s.store.owned()).filter(|&i| s.store.body[i] == WATER)
+    (0..s.particles.owned()).filter(|&i| s.particles.body[i] == WATER)
 }
 
 /// Area of the water (m²).
 fn volume(s: &Simulation) -> f64 {
-    water(s).map(|i| s.store.mass[i] / s.store.density[i]).sum()
+    water(s)
+        .map(|i| s.particles.mass[i] / s.particles.density[i])
+        .sum()
 }
 
 /// Smallest distance of a particle of water from floor or walls (m); negative behind them.
 fn distance_to_walls(s: &Simulation) -> f64 {
     let distance = |i: usize| {
-        let [x, y, _] = s.store.position[i];
+        let [x, y, _] = s.particles.position[i];
         assert!(y < TANK[1], "water leaves over the walls");
         x.min(TANK[0] - x).min(y)
     };
@@ -78,8 +80,8 @@ fn distance_to_walls(s: &Simulation) -> f64 {
 
 /// How far the bulk of the water reaches (m).
 fn front(s: &Simulation, spacing: f64) -> f64 {
-    let points: Vec<[f64; 3]> = water(s).map(|i| s.store.position[i]).collect();
-    pieces::front(&points, 0, spacing).expect("there is water")
+    let points: Vec<[f64; 3]> = water(s).map(|i| s.particles.position[i]).collect();
+    fragments::front(&points, 0, spacing).expect("there is water")
 }
 
 /// One line for people.

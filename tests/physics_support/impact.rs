@@ -38,11 +38,11 @@ pub fn hole_radius(s: &Simulation) -> Option<f64> {
         spacing: body.lattice.spacing,
         angle: s.case.symmetry.iter().fold(TAU, |angle, _| 0.5 * angle),
     };
-    let store = &s.store;
+    let particles = &s.particles;
     plate.hole_radius(
-        (0..store.owned())
-            .filter(|&i| store.body[i] == PLATE)
-            .map(|i| (&store.position[i], store.mass[i])),
+        (0..particles.owned())
+            .filter(|&i| particles.body[i] == PLATE)
+            .map(|i| (&particles.position[i], particles.mass[i])),
     )
 }
 
@@ -69,12 +69,12 @@ impl Layers {
             panic!("the plate is a cylinder");
         };
         let mut ids = [vec![Vec::new(); 8], vec![Vec::new(); 8]];
-        for i in 0..s.store.owned() {
-            let [x, y, z] = s.store.position[i];
+        for i in 0..s.particles.owned() {
+            let [x, y, z] = s.particles.position[i];
             if x * x + y * y > 0.25 * radius * radius {
                 continue;
             }
-            let depth = if s.store.body[i] == PLATE {
+            let depth = if s.particles.body[i] == PLATE {
                 plate.z + 0.5 * length - z
             } else if z < centre.z {
                 radius - (x * x + y * y + (z - centre.z) * (z - centre.z)).sqrt()
@@ -87,8 +87,8 @@ impl Layers {
                 reason = "few layers"
             )]
             let layer = (depth / spacing).max(0.0) as usize;
-            if let Some(layer) = ids[s.store.body[i] as usize].get_mut(layer) {
-                layer.push(s.store.id[i]);
+            if let Some(layer) = ids[s.particles.body[i] as usize].get_mut(layer) {
+                layer.push(s.particles.id[i]);
             }
         }
         for layer in ids.iter_mut().flatten() {
@@ -100,17 +100,17 @@ impl Layers {
     /// Smallest and median distance (in spacings) from the particles of a body's layer to their
     /// nearest neighbour in the same body.
     pub fn nearest(&self, s: &Simulation, body: u32, layer: usize) -> (f64, f64) {
-        let store = &s.store;
+        let particles = &s.particles;
         let wanted = &self.ids[body as usize][layer];
-        let own: Vec<&[f64; 3]> = (0..store.owned())
-            .filter(|&i| store.body[i] == body)
-            .map(|i| &store.position[i])
+        let own: Vec<&[f64; 3]> = (0..particles.owned())
+            .filter(|&i| particles.body[i] == body)
+            .map(|i| &particles.position[i])
             .collect();
         let spacing = s.case.bodies[body as usize].lattice.spacing;
-        let distances: Vec<f64> = (0..store.owned())
-            .filter(|&i| wanted.binary_search(&store.id[i]).is_ok())
+        let distances: Vec<f64> = (0..particles.owned())
+            .filter(|&i| wanted.binary_search(&particles.id[i]).is_ok())
             .map(|i| {
-                let x = &store.position[i];
+                let x = &particles.position[i];
                 let square = |y: &[f64; 3]| (0..3).map(|a| (x[a] - y[a]) * (x[a] - y[a])).sum();
                 let least = own
                     .iter()

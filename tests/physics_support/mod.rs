@@ -85,8 +85,8 @@ pub fn lattice_factor(ratio: f64) -> f64 {
 /// `order`, sorted along `axis` (m).
 pub fn crossing(s: &Simulation, order: &[usize], axis: usize, level: f64) -> f64 {
     let (x, p) = (
-        |k: usize| s.store.position[order[k]][axis],
-        |k: usize| s.store.pressure[order[k]],
+        |k: usize| s.particles.position[order[k]][axis],
+        |k: usize| s.particles.pressure[order[k]],
     );
     let k = (0..order.len() - 1)
         .rev()
@@ -97,9 +97,9 @@ pub fn crossing(s: &Simulation, order: &[usize], axis: usize, level: f64) -> f64
 
 /// Owned particles of a body, in the order of `key`.
 pub fn sorted_by(simulation: &Simulation, body: u32, key: impl Fn(usize) -> f64) -> Vec<usize> {
-    let store = &simulation.store;
-    let mut indices: Vec<usize> = (0..store.owned())
-        .filter(|&i| store.body[i] == body)
+    let particles = &simulation.particles;
+    let mut indices: Vec<usize> = (0..particles.owned())
+        .filter(|&i| particles.body[i] == body)
         .collect();
     indices.sort_by(|&a, &b| key(a).total_cmp(&key(b)));
     indices

@@ -1,5 +1,5 @@
-//! A soft block on a slope, whose weight is a hundredth of its stiffness; two dimensions. Gravity has
-//! a component along the slope.
+//! A soft block on a slope, whose weight is a hundredth of its stiffness; two dimensions. Gravity
+//! has a component along the slope.
 
 use whipple::comm::Comm;
 use whipple::step::Simulation;
@@ -43,7 +43,12 @@ impl Slope<'_> {
             ..*self
         };
         let s = start(inline(&free.text_at(0.0, -5.0)));
-        let lowest = s.store.position.iter().map(|x| x[1]).fold(1.0, f64::min);
+        let lowest = s
+            .particles
+            .position
+            .iter()
+            .map(|x| x[1])
+            .fold(1.0, f64::min);
         1e3 * lowest - 0.5
     }
 
@@ -109,14 +114,14 @@ shape.box = {{ lower = ["-10 mm", 0], upper = ["10 mm", "8 mm"] }}
     /// The same particles on another slope.
     fn tilt(&self, s: &Simulation, tangent: f64) -> Simulation {
         let case = inline(&self.text(tangent));
-        let mut store = s.store.clone();
-        store.resize_halo(0);
-        Simulation::resume(case, &Comm::solo(), s.state.clone(), store).expect("it resumes")
+        let mut particles = s.particles.clone();
+        particles.resize_halo(0);
+        Simulation::resume(case, &Comm::solo(), s.state.clone(), particles).expect("it resumes")
     }
 
     /// Tilts the slope in small steps until the block has slid by half a hundredth of a spacing
-    /// within one, and returns the tangent. Half of what Coulomb's law gives on the first slope that is
-    /// too steep by two hundredths; a block that sticks moves by less than a fifth of it.
+    /// within one, and returns the tangent. Half of what Coulomb's law gives on the first slope
+    /// that is too steep by two hundredths; a block that sticks moves by less than a fifth of it.
     pub fn critical(&self, step: f64) -> f64 {
         let mut tangent = 46.0 * step;
         let mut s = self.laid(0.0);
@@ -132,7 +137,11 @@ shape.box = {{ lower = ["-10 mm", 0], upper = ["10 mm", "8 mm"] }}
             let end = s.state.time + 4e-3;
             let mut way = 0.0;
             run_with(&mut s, end, |s| way += s.state.last_dt * speed(s));
-            let sliding = s.store.sliding.iter().chain(&s.store.surface_sliding);
+            let sliding = s
+                .particles
+                .sliding
+                .iter()
+                .chain(&s.particles.surface_sliding);
             println!(
                 "{self:?} {tangent:.4}: way {way:e}, sliding {}, speed {:e}",
                 sliding.filter(|&&x| x == 1).count(),
@@ -147,8 +156,8 @@ shape.box = {{ lower = ["-10 mm", 0], upper = ["10 mm", "8 mm"] }}
 
 /// Mean velocity of the block along the slope (m/s).
 pub fn speed(s: &Simulation) -> f64 {
-    let block = s.store.body.iter().copied().max();
-    let rows = s.store.velocity.iter().zip(&s.store.body);
+    let block = s.particles.body.iter().copied().max();
+    let rows = s.particles.velocity.iter().zip(&s.particles.body);
     let (mut sum, mut count) = (0.0, 0.0);
     for (v, _) in rows.filter(|(_, body)| Some(**body) == block) {
         sum += v[0];
@@ -157,8 +166,8 @@ pub fn speed(s: &Simulation) -> f64 {
     sum / count
 }
 
-/// Acceleration in the 20 ms after the first 5 (m/s²), and the way (m). Prints the friction over the
-/// normal force.
+/// Acceleration in the 20 ms after the first 5 (m/s²), and the way (m). Prints the friction over
+/// the normal force.
 pub fn slide(s: &mut Simulation) -> (f64, f64) {
     let (mut normal, mut along) = (0.0, 0.0);
     let from = s.state.time;

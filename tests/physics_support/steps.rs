@@ -121,9 +121,9 @@ impl Outcome {
 
 fn mean_pressure(s: &Simulation) -> f64 {
     let (mut force, mut volume) = (0.0, 0.0);
-    for i in (0..s.store.owned()).filter(|&i| s.store.body[i] == SPHERE) {
-        let v = s.store.mass[i] / s.store.density[i];
-        force += s.store.pressure[i] * v;
+    for i in (0..s.particles.owned()).filter(|&i| s.particles.body[i] == SPHERE) {
+        let v = s.particles.mass[i] / s.particles.density[i];
+        force += s.particles.pressure[i] * v;
         volume += v;
     }
     force / volume
@@ -131,15 +131,15 @@ fn mean_pressure(s: &Simulation) -> f64 {
 
 fn mean_velocity(s: &Simulation) -> f64 {
     let (mut momentum, mut mass) = (0.0, 0.0);
-    for i in (0..s.store.owned()).filter(|&i| s.store.body[i] == SPHERE) {
-        momentum += s.store.mass[i] * s.store.velocity[i][2];
-        mass += s.store.mass[i];
+    for i in (0..s.particles.owned()).filter(|&i| s.particles.body[i] == SPHERE) {
+        momentum += s.particles.mass[i] * s.particles.velocity[i][2];
+        mass += s.particles.mass[i];
     }
     momentum / mass
 }
 
-/// Pressure behind the shock of `inputs/flyer-plate` with overrides: mean (Pa), and its scatter over
-/// the mean. Not a number when the run has gone to pieces.
+/// Pressure behind the shock of `inputs/flyer-plate` with overrides: mean (Pa), and its scatter
+/// over the mean. Not a number when the run has gone to pieces.
 pub fn plateau(speed: f64, overrides: &[&str], factors: Factors) -> (f64, f64) {
     let velocity = format!("body.flyer.velocity=[\"{speed} km/s\"]");
     let mut all = vec![&*velocity, "run.end_time=\"1 us\""];
@@ -182,24 +182,24 @@ fn shock(case: Case, axis: usize, end: f64, within: [f64; 2], factors: Factors) 
         }
     }
     let spacing = s.case.bodies[0].lattice.spacing;
-    let x = |i: usize| s.store.position[i][axis];
+    let x = |i: usize| s.particles.position[i][axis];
     let mut order = sorted_by(&s, 0, x);
     order.retain(|&i| {
-        let place = &s.store.position[i];
+        let place = &s.particles.position[i];
         (0..3).all(|a| a == axis || place[a] < 3.0 * spacing)
     });
-    let pressures = order.iter().map(|&i| s.store.pressure[i]);
+    let pressures = order.iter().map(|&i| s.particles.pressure[i]);
     let level = 0.5 * median(pressures.filter(|&p| p > 1e9).collect());
     let front = order
         .iter()
         .copied()
-        .filter(|&i| s.store.pressure[i] > level);
+        .filter(|&i| s.particles.pressure[i] > level);
     let front = front.map(x).fold(f64::NEG_INFINITY, f64::max);
     let behind = x(order[0]) + within[0] * spacing..front - within[1] * spacing;
     let pressures = order.iter().filter(|&&i| behind.contains(&x(i)));
     scatter(
         &pressures
-            .map(|&i| s.store.pressure[i])
+            .map(|&i| s.particles.pressure[i])
             .collect::<Vec<f64>>(),
     )
 }
@@ -225,7 +225,7 @@ pub fn growth_of_noise(smoothing: f64, alpha: f64, courant: f64) -> f64 {
     let comm = Comm::solo();
     // A linear congruential generator (Knuth, MMIX): the same noise everywhere.
     let mut word = 12345_u64;
-    for velocity in &mut s.store.velocity {
+    for velocity in &mut s.particles.velocity {
         word = word
             .wrapping_mul(6_364_136_223_846_793_005)
             .wrapping_add(1_442_695_040_888_963_407);

@@ -41,8 +41,8 @@ pub fn keys() -> Vec<Key> {
     found
 }
 
-/// Reads declarations such as `Table { key: Type, }`, one key a line, and those of laws, `law: Table =>
-/// Law { key: Type, Range; }`.
+/// Reads declarations such as `Table { key: Type, }`, one key a line, and those of laws, `law:
+/// Table => Law { key: Type, Range; }`.
 fn read_tables(source: &str, tables: &mut BTreeMap<String, Vec<(String, String)>>) {
     let mut table = None;
     let mut strength = false;

@@ -13,7 +13,7 @@ use super::cases::BenchCase;
 use super::machine::cores;
 use super::report::{Report, Row};
 use crate::run::exit::{EXIT_FAILED, EXIT_INTERRUPTED};
-use crate::run::say::{complain, say};
+use crate::run::say::{say, warn};
 
 /// Ranks and the threads of each; the first is what the others are compared with.
 type Configuration = (usize, usize);
@@ -37,7 +37,7 @@ pub fn run(args: &BenchArgs) -> u8 {
             u8::try_from(EXIT_INTERRUPTED).unwrap_or(EXIT_FAILED)
         }
         Err(message) => {
-            complain(&format!("error: {}", message.trim_start_matches("error: ")));
+            warn(&format!("error: {}", message.trim_start_matches("error: ")));
             EXIT_FAILED
         }
     }
@@ -52,7 +52,7 @@ fn measure_all(args: &BenchArgs) -> Result<(), String> {
             Some(reason) => {
                 let (ranks, threads) = configuration;
                 let text = format!("{ranks} x {threads} is skipped: {reason}");
-                complain(&text);
+                warn(&text);
                 report.skipped.push(text);
                 false
             }
@@ -192,7 +192,7 @@ fn mpirun(ranks: usize) -> Command {
 /// Runs a command to its end.
 ///
 /// # Errors
-/// What it complains of, if it does not start or fails.
+/// What it warns of, if it does not start or fails.
 fn launch(command: &mut Command) -> Result<(), String> {
     let program = command.get_program().to_string_lossy().into_owned();
     let output = command

@@ -31,7 +31,7 @@ pub fn prepare(comm: &Comm, bench: &BenchCase, folder: &Path) -> Result<(), Stri
         input: &simulation.case.resolved,
     };
     let mut rows = Rows::default();
-    checkpoint::write(comm, folder, &simulation.store, &meta, 1, &mut rows)
+    checkpoint::write(comm, folder, &simulation.particles, &meta, 1, &mut rows)
         .map(drop)
         .map_err(|e| e.to_string())
 }
@@ -109,11 +109,11 @@ fn resumed(comm: &Comm, bench: &BenchCase, folder: &Path) -> Result<Simulation, 
     });
     let newest = newest.map_err(|e| e.to_string())?;
     let newest = newest.ok_or_else(|| format!("{} has no state", folder.display()))?;
-    let mut store = ParticleStore::default();
-    let saved = checkpoint::read(comm, Path::new(&newest), &mut store);
+    let mut particles = ParticleStore::default();
+    let saved = checkpoint::read(comm, Path::new(&newest), &mut particles);
     let saved = saved.map_err(|e| e.to_string())?;
     let state = serde_json::from_str(&saved.state).map_err(|e| e.to_string())?;
-    Simulation::resume(case, comm, state, store).map_err(|e| e.to_string())
+    Simulation::resume(case, comm, state, particles).map_err(|e| e.to_string())
 }
 
 /// What all ranks have done so far.
@@ -159,7 +159,7 @@ fn row(
     let cores = (comm.size() * threads) as f64;
     let known = !comm.any(peak.is_none());
     let mut sums = [
-        simulation.store.owned() as u64,
+        simulation.particles.owned() as u64,
         simulation.memory() as u64,
         peak.unwrap_or(0),
     ];

@@ -10,8 +10,8 @@ const SAMPLE: u64 = 500;
 const WORDS: usize = 6;
 
 /// Mean number of particles and mirror images of the own group within 2h of a particle, itself not
-/// counted: by brute force over all particles, for a sample of them that depends on their ids alone.
-/// Collective.
+/// counted: by brute force over all particles, for a sample of them that depends on their ids
+/// alone. Collective.
 #[allow(clippy::cast_precision_loss, reason = "a mean")]
 pub fn true_mean(comm: &Comm, simulation: &Simulation) -> f64 {
     let mut sample = Vec::new();
@@ -25,7 +25,10 @@ pub fn true_mean(comm: &Comm, simulation: &Simulation) -> f64 {
 /// Mean length of the list that a particle's cluster walks. Collective.
 #[allow(clippy::cast_precision_loss, reason = "a mean")]
 pub fn list_mean(comm: &Comm, simulation: &Simulation) -> f64 {
-    let mut sums = [simulation.lists.entries(), simulation.store.owned() as u64];
+    let mut sums = [
+        simulation.lists.entries(),
+        simulation.particles.owned() as u64,
+    ];
     comm.sum_u64(&mut sums);
     sums[0] as f64 / (sums[1] as f64).max(1.0)
 }
@@ -33,19 +36,19 @@ pub fn list_mean(comm: &Comm, simulation: &Simulation) -> f64 {
 /// This rank's part of the sample, filled up with zeros to the same length on all ranks: a particle
 /// is known by its smoothing length.
 fn sampled(comm: &Comm, simulation: &Simulation) -> Vec<u64> {
-    let store = &simulation.store;
-    let mut all = [store.owned() as u64];
+    let particles = &simulation.particles;
+    let mut all = [particles.owned() as u64];
     comm.sum_u64(&mut all);
     // Ids follow the lattice, so every n-th would be a choice of layers: multiplying by 2^64 over
     // the golden ratio scatters them evenly over all numbers.
     let limit = (u64::MAX / all[0].max(1)).saturating_mul(SAMPLE);
     let mut words = Vec::new();
-    for i in 0..store.owned() {
-        if store.id[i].wrapping_mul(0x9e37_79b9_7f4a_7c15) <= limit {
-            words.extend(store.position[i].map(f64::to_bits));
-            words.push(store.smoothing_length[i].to_bits());
-            words.push(simulation.contact().groups.of_body[store.body[i] as usize] as u64);
-            words.push(store.id[i]);
+    for i in 0..particles.owned() {
+        if particles.id[i].wrapping_mul(0x9e37_79b9_7f4a_7c15) <= limit {
+            words.extend(particles.position[i].map(f64::to_bits));
+            words.push(particles.smoothing_length[i].to_bits());
+            words.push(simulation.contact().groups.of_body[particles.body[i] as usize] as u64);
+            words.push(particles.id[i]);
         }
     }
     let mut longest = [words.len() as u64];
@@ -57,7 +60,7 @@ fn sampled(comm: &Comm, simulation: &Simulation) -> Vec<u64> {
 /// Neighbours of a sampled particle among this rank's particles and their images. That an image of
 /// a particle is near the receiver is the same as that the particle is near the receiver's image.
 fn count(simulation: &Simulation, words: &[u64]) -> u64 {
-    let store = &simulation.store;
+    let particles = &simulation.particles;
     let receiver = [0, 1, 2].map(|a| f64::from_bits(words[a]));
     let h = f64::from_bits(words[3]);
     let (group, id) = (words[4], words[5]);
@@ -71,16 +74,16 @@ fn count(simulation: &Simulation, words: &[u64]) -> u64 {
         }
     }
     let mut count = 0;
-    for i in 0..store.owned() {
-        if simulation.contact().groups.of_body[store.body[i] as usize] as u64 != group {
+    for i in 0..particles.owned() {
+        if simulation.contact().groups.of_body[particles.body[i] as usize] as u64 != group {
             continue;
         }
-        let reach = h + store.smoothing_length[i];
+        let reach = h + particles.smoothing_length[i];
         for (k, image) in images.iter().enumerate() {
             let square: f64 = (0..3)
-                .map(|a| (store.position[i][a] - image[a]).powi(2))
+                .map(|a| (particles.position[i][a] - image[a]).powi(2))
                 .sum();
-            let itself = k == 0 && store.id[i] == id;
+            let itself = k == 0 && particles.id[i] == id;
             count += u64::from(square < reach * reach && !itself);
         }
     }

@@ -16,7 +16,7 @@ pub fn start_threads(threads: usize, comm: &Comm) -> Result<(), String> {
     // None where the system does not tell.
     let all = core_affinity::get_core_ids().unwrap_or_default();
     if comm.is_root() && all.len() < threads {
-        say::complain(&format!(
+        say::warn(&format!(
             "warning: each rank has {threads} threads and may use {} of the cores",
             all.len()
         ));

@@ -68,8 +68,9 @@ pub fn checkpoints(
     Ok(())
 }
 
-/// Compares the arrays `others` and then those of a group that both have, and tells `lone` of those that
-/// one alone has; gives the number of particles that both have. Snapshots are what has `others`.
+/// Compares the arrays `others` and then those of a group that both have, and tells `lone` of those
+/// that one alone has; gives the number of particles that both have. Snapshots are what has
+/// `others`.
 fn fields(
     [a, b]: [&Content; 2],
     group: &str,

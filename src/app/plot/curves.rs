@@ -126,8 +126,8 @@ fn table(place: &Path, of_run: &str) -> PathBuf {
     }
 }
 
-/// The title of a run as its snapshots know it, also for a table in its folder; without any snapshot
-/// a place goes by its path.
+/// The title of a run as its snapshots know it, also for a table in its folder; without any
+/// snapshot a place goes by its path.
 fn title_of(place: &Path) -> String {
     let folder = if place.is_dir() {
         Some(place)

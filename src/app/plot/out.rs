@@ -9,9 +9,8 @@ use crate::run::say::say;
 
 /// Refuses a name that is neither that of a PNG picture nor of a folder, before anything is drawn.
 ///
-/// # Errors
-/// [`PlotError::Ending`] for a name with an ending of letters, as `x.svg`, unless it is a folder, or
-/// a slash says that it is to be one.
+/// # Errors [`PlotError::Ending`] for a name with an ending of letters, as `x.svg`, unless it is a
+/// folder, or a slash says that it is to be one.
 pub fn check(args: &PlotArgs) -> Result<(), PlotError> {
     let Some(out) = args.out.as_deref().filter(|out| !is_png(out)) else {
         return Ok(());

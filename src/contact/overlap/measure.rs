@@ -44,8 +44,8 @@ pub(crate) struct Measured {
     normal: [f64; 3],
 }
 
-/// The initial overlap offset of a particle laid with foreign fraction `fraction` and touching value
-/// `touching`, and whether it had to be capped.
+/// The initial overlap offset of a particle laid with foreign fraction `fraction` and touching
+/// value `touching`, and whether it had to be capped.
 #[must_use]
 pub fn initial_offset(fraction: &Fraction) -> (f64, bool) {
     let wanted = (fraction.fraction - fraction.touching).max(0.0);
@@ -53,10 +53,10 @@ pub fn initial_offset(fraction: &Fraction) -> (f64, bool) {
     (wanted.min(limit), wanted > limit)
 }
 
-/// Sums the foreign fraction of the receiver at `place`, whose initial overlap offset is `offset`.
+/// Sums the foreign fraction of the receiver at `index`, whose initial overlap offset is `offset`.
 #[must_use]
-pub fn fraction(view: &ContactView, place: u32, neighbours: &[u32], offset: f64) -> Fraction {
-    let i = view.party(place);
+pub fn fraction(view: &ContactView, index: u32, neighbours: &[u32], offset: f64) -> Fraction {
+    let i = view.party(index);
     let mut sum = Fraction::default();
     for &other in neighbours {
         let j = view.party(other);
@@ -78,10 +78,11 @@ pub fn fraction(view: &ContactView, place: u32, neighbours: &[u32], offset: f64)
     sum
 }
 
-/// The normal that the receiver at `place` sees, `−∇S_i/|∇S_i|`, times `S_i²`: how much it knows. The
-/// particle that sees a face knows the normal; one of a face that sees a lone particle does not.
-fn normal(view: &ContactView, place: u32, neighbours: &[u32], fraction: &Fraction) -> [f64; 3] {
-    let i = view.party(place);
+/// The normal that the receiver at `index` sees, `−∇S_i/|∇S_i|`, times `S_i²`: how much it knows.
+/// The particle that sees a face knows the normal; one of a face that sees a lone particle does
+/// not.
+fn normal(view: &ContactView, index: u32, neighbours: &[u32], fraction: &Fraction) -> [f64; 3] {
+    let i = view.party(index);
     let mut sum = [0.0; 3];
     for &other in neighbours {
         let j = view.party(other);
@@ -105,21 +106,21 @@ pub(super) fn weigh(found: &mut Found<Overlap>, scene: &Scene) {
         scene.lists,
         ContactClass::Overlap,
         |found, list, _| {
-            found.extend(list.iter().map(|(place, neighbours)| {
-                let particle = view.images[place as usize].base();
-                let offset = view.store.touch_relief[particle];
-                let fraction = fraction(&view, place, neighbours, offset);
+            found.extend(list.iter().map(|(index, neighbours)| {
+                let particle = view.images[index as usize].base();
+                let offset = view.particles.touch_relief[particle];
+                let fraction = fraction(&view, index, neighbours, offset);
                 let is_enclosed = fraction.current > ENCLOSED_FRACTION;
                 Measured {
                     particle,
                     fraction,
                     enclosed: if is_enclosed {
-                        view.store.enclosed_time[particle] + scene.dt
+                        view.particles.enclosed_time[particle] + scene.dt
                     } else {
                         0.0
                     },
                     normal: if friction {
-                        normal(&view, place, neighbours, &fraction)
+                        normal(&view, index, neighbours, &fraction)
                     } else {
                         [0.0; 3]
                     },
@@ -152,7 +153,7 @@ pub(super) fn store(found: &Found<Overlap>, scene: &mut Scene) {
     .map(|field| Scatter::new(field));
     let friction = scene.table.has_friction();
     let normals = friction.then(|| Scatter::new(&mut particles.contact_normal));
-    let store = |measured: &Measured| {
+    let particles = |measured: &Measured| {
         let (i, f) = (measured.particle, &measured.fraction);
         let values = [
             f.fraction,
@@ -173,5 +174,5 @@ pub(super) fn store(found: &Found<Overlap>, scene: &mut Scene) {
         }
     };
     let chunks = found.par_iter().with_max_len(CHUNKS_AT_ONCE);
-    chunks.for_each(|chunk| chunk.iter().for_each(store));
+    chunks.for_each(|chunk| chunk.iter().for_each(particles));
 }

@@ -22,8 +22,8 @@ impl Boundary {
     /// For a cubic lattice of unit spacing with a flat face and the smoothing length `h`: half-way
     /// between the first layer and the second.
     pub(super) fn of_lattice(kernel: &Kernel, h: f64) -> Self {
-        // Length of the boundary vector and filled share, `depth` below a face that is `edges` times
-        // cut at a right angle.
+        // Length of the boundary vector and filled share, `depth` below a face that is `edges`
+        // times cut at a right angle.
         #[allow(clippy::cast_possible_truncation, reason = "a few layers")]
         let reach = (SUPPORT * h).ceil() as i32;
         let layer = |depth: i32, edges: usize| {
@@ -69,8 +69,8 @@ impl Boundary {
     }
 }
 
-/// The outward normal of the receiver `i`, as long as it counts beside others, from the images of its
-/// own group; zero inside of the body.
+/// The outward normal of the receiver `i`, as long as it counts beside others, from the images of
+/// its own group; zero inside of the body.
 pub(super) fn normal(view: &ContactView, i: &Party, own: &[u32], known: &Boundary) -> [f64; 3] {
     let pair = view.table.pair(i.body, i.body);
     let (mut outward, mut filled) = ([0.0; 3], 0.0);

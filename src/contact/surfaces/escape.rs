@@ -1,16 +1,16 @@
 //! Rigid surfaces: a penalty on particles that are nearer to one than half a spacing.
 //!
 //! A particle may be wherever it keeps its reach `R = ½Δp` from the surface. The way back there is
-//! the shortest displacement `u` that keeps all of `n_k·u ≥ R − g_k`, over the places of the surface
-//! with gap `g_k` and normal `n_k` that it is too near to, and its energy is `½ κ M V (|u|/Δp)²`: a
-//! function of its place whose gradient is the force `κ M V/Δp² u`. On a face, along an edge and at
-//! a corner that stands out there is one such place, in a corner of two or three walls one on each;
-//! a shallow valley counts once.
+//! the shortest displacement `u` that keeps all of `n_k·u ≥ R − g_k`, over the indices of the
+//! surface with gap `g_k` and normal `n_k` that it is too near to, and its energy is `½ κ M V
+//! (|u|/Δp)²`: a function of its place whose gradient is the force `κ M V/Δp² u`. On a face, along
+//! an edge and at a corner that stands out there is one such place, in a corner of two or three
+//! walls one on each; a shallow valley counts once.
 
 use crate::model::{Foot, RigidSurface};
 use crate::numerics::vector::dot;
 
-/// Places of a surface that a particle may be too near to at the same time.
+/// Indices of a surface that a particle may be too near to at the same time.
 const MOST: usize = 4;
 /// Searches for such places.
 const TRIES: usize = 8;
@@ -20,7 +20,7 @@ const CLOSE: f64 = 1e-9;
 /// The way of a particle back to where it keeps its reach.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Escape {
-    /// The nearest place of the surface.
+    /// The nearest index of the surface.
     pub foot: Foot,
     /// The way (m); zero for a particle that keeps its reach.
     pub way: [f64; 3],

@@ -17,11 +17,11 @@ pub(super) struct SurfaceFriction {
     dashpot: f64,
 }
 
-fn slip(store: &ParticleStore, i: usize) -> Slip {
+fn slip(particles: &ParticleStore, i: usize) -> Slip {
     Slip {
-        displacement: store.surface_slip[i],
-        rate: store.surface_slip_rate[i],
-        sliding: store.surface_sliding[i] != 0,
+        displacement: particles.surface_slip[i],
+        rate: particles.surface_slip_rate[i],
+        sliding: particles.surface_sliding[i] != 0,
     }
 }
 
@@ -72,9 +72,9 @@ impl View<'_> {
         pushes: &mut [Push],
         dt: f64,
     ) -> Option<SurfaceFriction> {
-        let before = slip(self.store, i);
-        let body = self.store.body[i] as usize;
-        let volume = self.store.mass[i] * self.table.inverse_density(body);
+        let before = slip(self.particles, i);
+        let body = self.particles.body[i] as usize;
+        let volume = self.particles.mass[i] * self.table.inverse_density(body);
         let of = |push: &Push| {
             let penalty = self.penalties[push.surface][body].as_ref();
             let law = penalty.map(|p| p.friction).filter(Law::is_any)?;
@@ -92,7 +92,7 @@ impl View<'_> {
         };
         let (load, ground) = (rest.load, rest.ground);
         let law = rest.law.over(load).of_volume(volume);
-        let v = &self.store.predicted_velocity[i];
+        let v = &self.particles.predicted_velocity[i];
         let velocity = std::array::from_fn(|a| v[a] - ground[a] / load);
         let friction = law.step(&before, &normal.map(|n| n * load), &normal, &velocity, dt);
         for push in pushes {
@@ -104,7 +104,7 @@ impl View<'_> {
             let force = friction.force.map(|f| share * f);
             push.torque += self
                 .placed(push.surface)
-                .torque(&self.store.position[i], &force);
+                .torque(&self.particles.position[i], &force);
             for a in 0..3 {
                 push.force[a] += force[a];
             }
@@ -122,8 +122,8 @@ impl View<'_> {
         if before.displacement == [0.0; 3] {
             return None;
         }
-        let body = self.store.body[i] as usize;
-        let volume = self.store.mass[i] * self.table.inverse_density(body);
+        let body = self.particles.body[i] as usize;
+        let volume = self.particles.mass[i] * self.table.inverse_density(body);
         let law = Law {
             stiffness: self.sticks[body] * volume,
             ..Law::default()
@@ -140,22 +140,22 @@ impl View<'_> {
 
 impl SurfaceFriction {
     /// Forgets the slip, before [`Self::store`].
-    pub(super) fn clear(store: &mut ParticleStore) {
-        store.surface_slip.fill([0.0; 3]);
-        store.surface_slip_rate.fill([0.0; 3]);
-        store.surface_sliding.fill(0);
+    pub(super) fn clear(particles: &mut ParticleStore) {
+        particles.surface_slip.fill([0.0; 3]);
+        particles.surface_slip_rate.fill([0.0; 3]);
+        particles.surface_sliding.fill(0);
     }
 
     /// Gives the particle its heat, its time step and its slip.
-    pub(super) fn store(&self, store: &mut ParticleStore) {
+    pub(super) fn store(&self, particles: &mut ParticleStore) {
         let i = self.particle;
-        let per_mass = 1.0 / store.mass[i];
-        store.surface_slip[i] = self.slip.displacement;
-        store.surface_slip_rate[i] = self.slip.rate;
-        store.surface_sliding[i] = u32::from(self.slip.sliding);
-        store.d_specific_energy_dt[i] += self.power * per_mass;
+        let per_mass = 1.0 / particles.mass[i];
+        particles.surface_slip[i] = self.slip.displacement;
+        particles.surface_slip_rate[i] = self.slip.rate;
+        particles.surface_sliding[i] = u32::from(self.slip.sliding);
+        particles.d_specific_energy_dt[i] += self.power * per_mass;
         // A step of m/c is stable: as if it were that of a spring, 2 √(m/k).
         let rate = self.dashpot * per_mass;
-        store.contact_stiffness[i] += 4.0 * store.mass[i] * (rate * rate);
+        particles.contact_stiffness[i] += 4.0 * particles.mass[i] * (rate * rate);
     }
 }

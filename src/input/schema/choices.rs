@@ -1,4 +1,5 @@
-//! Words to choose from that make no choice of the model by themselves; those that do are read as it.
+//! Words to choose from that make no choice of the model by themselves; those that do are read as
+//! it.
 
 use serde::Deserialize;
 

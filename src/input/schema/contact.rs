@@ -1,5 +1,5 @@
-//! Contact as it is typed: the keys that all modes share, and one file for each mode with the table of
-//! its keys, and what they make.
+//! Contact as it is typed: the keys that all modes share, and one file for each mode with the table
+//! of its keys, and what they make.
 
 mod overlap;
 mod penalty;
@@ -9,7 +9,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::{FrictionParams, SelfContactParams};
-use crate::input::source::Complaint;
+use crate::input::source::Diagnostic;
 use crate::input::validate::check::{Allowed, number};
 use crate::model::{ContactDirection, ContactMode, Resistance, SphForm, contact_modes};
 use overlap::OverlapParams;
@@ -143,7 +143,7 @@ macro_rules! read {
     ($Table:ident: $($name:ident)+) => {
         impl $Table {
             /// What this table chooses; the rest is that of `base`.
-            pub fn choice(&self, base: &Choice, form: SphForm) -> Result<Choice, Complaint> {
+            pub fn choice(&self, base: &Choice, form: SphForm) -> Result<Choice, Diagnostic> {
                 let (friction, damping) = (self.friction.as_ref(), self.damping.as_ref());
                 let shared = Shared {
                     resistance: resistance(friction, damping, base.resistance)?,
@@ -167,7 +167,7 @@ pub fn resistance(
     friction: Option<&Spanned<FrictionParams>>,
     damping: Option<&Spanned<f64>>,
     base: Resistance,
-) -> Result<Resistance, Complaint> {
+) -> Result<Resistance, Diagnostic> {
     let of = |value: &Spanned<f64>, key: &str| {
         number(Some(value), key, 0.0, Allowed::NotNegative).map(Some)
     };
@@ -181,7 +181,7 @@ pub fn resistance(
             ];
             if sliding > sticking {
                 let title = "`kinetic` must be at most `static`";
-                return Err(Complaint::new(table.kinetic.span(), title).label("out of range"));
+                return Err(Diagnostic::new(table.kinetic.span(), title).label("out of range"));
             }
             [sticking, sliding]
         }
@@ -198,7 +198,7 @@ fn direction(
     name: Option<&Spanned<DirectionName>>,
     base: ContactDirection,
     shared: &Shared,
-) -> Result<ContactDirection, Complaint> {
+) -> Result<ContactDirection, Diagnostic> {
     let Some(name) = name else {
         return Ok(base);
     };
@@ -208,7 +208,7 @@ fn direction(
         (DirectionName::Normal, SphForm::Conventional | SphForm::StressPoints) => {
             let title = "contact along normals needs the corrected gradients of normalised SPH";
             let help = "set `form = \"normalised\"` in [sph], or take \"pair\"";
-            Err(Complaint::new(name.span(), title).help(help))
+            Err(Diagnostic::new(name.span(), title).help(help))
         }
     }
 }

@@ -50,8 +50,8 @@ macro_rules! choices {
     )+ };
 }
 
-/// Reads a value that may be typed in several ways: what is expected, and what each way makes of what
-/// it reads.
+/// Reads a value that may be typed in several ways: what is expected, and what each way makes of
+/// what it reads.
 macro_rules! typed_as {
     ($made:ident: $expected:literal { $($way:ident: $make:expr;)+ }) => {
         impl<'de> Deserialize<'de> for $made {

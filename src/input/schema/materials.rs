@@ -118,9 +118,9 @@ optional_tables! {
     }
 }
 
-/// Passes the laws of strength to the macro `$then`: key, table, the law that it makes, and keys and
-/// values of its constants, with their range and what they are if neither the table nor the library
-/// says. A shear modulus may be that of the library's law, whichever that is.
+/// Passes the laws of strength to the macro `$then`: key, table, the law that it makes, and keys
+/// and values of its constants, with their range and what they are if neither the table nor the
+/// library says. A shear modulus may be that of the library's law, whichever that is.
 macro_rules! strength_laws {
     ($then:ident) => {
         $then! {

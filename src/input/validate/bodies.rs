@@ -9,7 +9,7 @@ use super::touch;
 use crate::input::names;
 use crate::input::quantity::{Length, Placed};
 use crate::input::schema::BodyParams;
-use crate::input::source::Complaint;
+use crate::input::source::Diagnostic;
 use crate::material::{Eos, Failure, Linear, LinearForm, Material, Strength};
 use crate::model::{Axis, Body, Lattice, LatticeKind, Motion, Shape, SymmetryPlane, Vec3};
 use crate::populate;
@@ -52,21 +52,21 @@ impl Reader<'_> {
         &self,
         params: &[Spanned<BodyParams>],
         symmetry: &[SymmetryPlane],
-    ) -> Result<Vec<Body>, Complaint> {
+    ) -> Result<Vec<Body>, Diagnostic> {
         if params.is_empty() {
-            return Err(Complaint::new(0..0, "the case has no `[[body]]`"));
+            return Err(Diagnostic::new(0..0, "the case has no `[[body]]`"));
         }
         let mut bodies: Vec<Body> = Vec::new();
         for table in params {
             let body = self.body(table)?;
             if bodies.iter().any(|other| other.name == body.name) {
                 let title = format!("a second body is named `{}`", body.name);
-                return Err(Complaint::new(table.get_ref().name.span(), title));
+                return Err(Diagnostic::new(table.get_ref().name.span(), title));
             }
             bodies.push(body);
         }
         if bodies.iter().all(|body| body.rigid.is_some()) {
-            return Err(Complaint::new(params[0].span(), "every body is rigid"));
+            return Err(Diagnostic::new(params[0].span(), "every body is rigid"));
         }
         self.check_size(params, &bodies)?;
         touch::resolve(params, &mut bodies, self.dimension)?;
@@ -76,18 +76,18 @@ impl Reader<'_> {
         Ok(bodies)
     }
 
-    fn body(&self, table: &Spanned<BodyParams>) -> Result<Body, Complaint> {
+    fn body(&self, table: &Spanned<BodyParams>) -> Result<Body, Diagnostic> {
         let params = table.get_ref();
         let name = params.name.get_ref();
         if name.is_empty() || name.bytes().all(|c| c.is_ascii_digit()) {
             let title = "a body's name must have a letter";
-            return Err(Complaint::new(params.name.span(), title));
+            return Err(Diagnostic::new(params.name.span(), title));
         }
         names::check(&params.name, "body")?;
         let material = self.material(params, table)?;
         let Some(spacing) = params.spacing.as_ref().or(self.spacing) else {
             let title = format!("the body `{name}` has no `spacing`");
-            return Err(Complaint::new(params.name.span(), title)
+            return Err(Diagnostic::new(params.name.span(), title)
                 .help("give it one, or one to all bodies at the top: `spacing = \"0.02 mm\"`"));
         };
         let spacing = number(Some(spacing), "spacing", 0.0, Allowed::Positive)?;
@@ -120,24 +120,24 @@ impl Reader<'_> {
         &self,
         params: &BodyParams,
         table: &Spanned<BodyParams>,
-    ) -> Result<usize, Complaint> {
+    ) -> Result<usize, Diagnostic> {
         let Some(name) = &params.material else {
             if params.rigid == Some(true) {
                 return Ok(self.materials.len());
             }
             let title = "the key `material` is missing";
-            return Err(Complaint::new(table.span(), title).label("in this table"));
+            return Err(Diagnostic::new(table.span(), title).label("in this table"));
         };
         let wanted = name.get_ref();
         let found = self.materials.iter().position(|m| m == wanted);
         found.ok_or_else(|| {
             let known = self.materials.iter().map(String::as_str);
-            Complaint::unknown(name.span(), "material", wanted, known)
+            Diagnostic::unknown(name.span(), "material", wanted, known)
         })
     }
 
     /// The initial velocity, and the motion of a rigid body.
-    fn motion(&self, params: &BodyParams) -> Result<(Vec3, Option<Motion>), Complaint> {
+    fn motion(&self, params: &BodyParams) -> Result<(Vec3, Option<Motion>), Diagnostic> {
         let velocity = vector("velocity", params.velocity.as_ref(), self.dimension)?;
         let rigid = params.rigid == Some(true);
         let Some(table) = &params.motion else {
@@ -150,7 +150,7 @@ impl Reader<'_> {
             } else {
                 "only a rigid body has a `motion`"
             };
-            return Err(Complaint::new(table.span(), title)
+            return Err(Diagnostic::new(table.span(), title)
                 .help("regions of other bodies are driven by a `[[load]]`"));
         }
         let mut motion = motion(table, self.dimension)?;
@@ -166,7 +166,7 @@ impl Reader<'_> {
         params: &BodyParams,
         spacing: f64,
         shape: &Shape,
-    ) -> Result<Lattice, Complaint> {
+    ) -> Result<Lattice, Diagnostic> {
         let (kind, angle) = match &params.lattice {
             None => (LatticeKind::Cubic, 0.0),
             Some(lattice) => {
@@ -179,7 +179,7 @@ impl Reader<'_> {
             && let Some(lattice) = &params.lattice
         {
             let title = "in one dimension particles stand in a row: `lattice` must be \"cubic\"";
-            return Err(Complaint::new(lattice.span(), title));
+            return Err(Diagnostic::new(lattice.span(), title));
         }
         if kind == LatticeKind::Rings
             && let Some(lattice) = &params.lattice
@@ -192,7 +192,7 @@ impl Reader<'_> {
             if !is_round || angle != 0.0 {
                 let title = "a lattice of rings, which has no `angle`, fills discs and rings in two \
                     dimensions and cylinders along z in three";
-                return Err(Complaint::new(lattice.span(), title));
+                return Err(Diagnostic::new(lattice.span(), title));
             }
         }
         Ok(Lattice {
@@ -202,7 +202,11 @@ impl Reader<'_> {
         })
     }
 
-    fn check_size(&self, params: &[Spanned<BodyParams>], bodies: &[Body]) -> Result<(), Complaint> {
+    fn check_size(
+        &self,
+        params: &[Spanned<BodyParams>],
+        bodies: &[Body],
+    ) -> Result<(), Diagnostic> {
         for (table, body) in params.iter().zip(bodies) {
             let sites = populate::index_end(body, self.dimension);
             if sites > MOST_SITES {
@@ -212,7 +216,7 @@ impl Reader<'_> {
                     "the body `{}` would have more than {MOST_SITES:e} particles",
                     body.name
                 );
-                return Err(Complaint::new(at, title).help("check the units of size and spacing"));
+                return Err(Diagnostic::new(at, title).help("check the units of size and spacing"));
             }
         }
         Ok(())
@@ -224,20 +228,18 @@ impl Reader<'_> {
         params: &BodyParams,
         body: &Body,
         symmetry: &[SymmetryPlane],
-    ) -> Result<(), Complaint> {
-        let complain = |title| Complaint::new(params.shape.span(), title);
+    ) -> Result<(), Diagnostic> {
+        let warn = |title| Diagnostic::new(params.shape.span(), title);
         if populate::bounds(body, self.dimension).is_none() {
             let title = format!("the body `{}` is too thin for a single particle", body.name);
-            return Err(complain(title).help("make its spacing finer"));
+            return Err(warn(title).help("make its spacing finer"));
         }
         if populate::bounds_above(body, self.dimension, symmetry).is_none() {
             let title = format!(
                 "the body `{}` has no particle above the symmetry planes",
                 body.name
             );
-            return Err(
-                complain(title).help("a symmetry plane keeps the side of larger coordinates")
-            );
+            return Err(warn(title).help("a symmetry plane keeps the side of larger coordinates"));
         }
         for plane in symmetry {
             let (axis, spacing) = (plane.axis, body.lattice.spacing);
@@ -251,7 +253,7 @@ impl Reader<'_> {
                     axis.name(),
                     body.name
                 );
-                return Err(complain(title).help(
+                return Err(warn(title).help(
                     "take an even number of layers about the plane, or a body that begins at it",
                 ));
             }

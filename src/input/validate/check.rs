@@ -5,7 +5,7 @@ use std::ops::Range;
 use toml::Spanned;
 
 use crate::input::quantity::Quantity;
-use crate::input::source::Complaint;
+use crate::input::source::Diagnostic;
 use crate::model::readable::short;
 
 /// Values that a key accepts.
@@ -54,8 +54,8 @@ impl Allowed {
     }
 }
 
-fn out_of_range(at: Range<usize>, key: &str, allowed: &str) -> Complaint {
-    Complaint::new(at, format!("`{key}` must be {allowed}")).label("out of range")
+fn out_of_range(at: Range<usize>, key: &str, allowed: &str) -> Diagnostic {
+    Diagnostic::new(at, format!("`{key}` must be {allowed}")).label("out of range")
 }
 
 /// A number without a unit that is larger is a slip, and its powers would be infinite.
@@ -85,7 +85,8 @@ impl<K> Value for Quantity<K> {
     }
 }
 
-/// The [`number`](number()) of a key of a table, or its default: `number!(params.alpha, or 1.0, Positive)`.
+/// The [`number`](number()) of a key of a table, or its default: `number!(params.alpha, or 1.0,
+/// Positive)`.
 macro_rules! number {
     ($table:ident.$key:ident, or $default:expr, $($allowed:tt)+) => {
         $crate::input::validate::check::number(
@@ -97,8 +98,8 @@ macro_rules! number {
     };
 }
 
-/// The [`required`](required()) number of a key of a table; `$base` is the law whose field of the same
-/// name is taken without one.
+/// The [`required`](required()) number of a key of a table; `$base` is the law whose field of the
+/// same name is taken without one.
 macro_rules! required {
     ($table:ident.$key:ident, $base:expr, $allowed:ident, $at:expr) => {
         $crate::input::validate::check::required(
@@ -117,12 +118,12 @@ pub fn number<V: Value>(
     key: &str,
     default: f64,
     allowed: Allowed,
-) -> Result<f64, Complaint> {
+) -> Result<f64, Diagnostic> {
     match value {
         None => Ok(default),
         Some(x) if x.get_ref().si().is_finite() && x.get_ref().si().abs() > V::LARGEST => {
             let title = format!("`{key}` cannot be larger than {}", short(V::LARGEST));
-            Err(Complaint::new(x.span(), title).label("out of range"))
+            Err(Diagnostic::new(x.span(), title).label("out of range"))
         }
         Some(x) if allowed.has(x.get_ref().si()) => Ok(x.get_ref().si()),
         Some(x) => Err(out_of_range(x.span(), key, &allowed.words())),
@@ -134,7 +135,7 @@ pub fn optional<V: Value>(
     value: Option<&Spanned<V>>,
     key: &str,
     allowed: Allowed,
-) -> Result<Option<f64>, Complaint> {
+) -> Result<Option<f64>, Diagnostic> {
     value
         .map(|x| number(Some(x), key, 0.0, allowed))
         .transpose()
@@ -148,10 +149,10 @@ pub fn required<V: Value>(
     base: Option<f64>,
     allowed: Allowed,
     table: &Range<usize>,
-) -> Result<f64, Complaint> {
+) -> Result<f64, Diagnostic> {
     if value.is_none() && base.is_none() {
         let title = format!("the key `{key}` is missing");
-        return Err(Complaint::new(table.clone(), title).label("in this table"));
+        return Err(Diagnostic::new(table.clone(), title).label("in this table"));
     }
     number(value, key, base.unwrap_or_default(), allowed)
 }
@@ -162,7 +163,7 @@ pub fn whole(
     key: &str,
     default: u64,
     least: u64,
-) -> Result<u64, Complaint> {
+) -> Result<u64, Diagnostic> {
     let Some(value) = value else {
         return Ok(default);
     };
@@ -173,6 +174,6 @@ pub fn whole(
 }
 
 /// Says that a table must have exactly one of several others.
-pub fn exactly_one(at: Range<usize>, table: &str, choices: &str) -> Complaint {
-    Complaint::new(at, format!("`{table}` must have exactly one of {choices}"))
+pub fn exactly_one(at: Range<usize>, table: &str, choices: &str) -> Diagnostic {
+    Diagnostic::new(at, format!("`{table}` must have exactly one of {choices}"))
 }

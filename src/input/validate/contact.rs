@@ -9,19 +9,20 @@ use crate::input::schema::contact::Choice;
 use crate::input::schema::{
     BodyParams, ContactParams, FrictionParams, PairParams, SelfContactParams,
 };
-use crate::input::source::Complaint;
+use crate::input::source::Diagnostic;
 use crate::model::{ContactMode, ContactPair, SelfContact, SphForm};
 
 /// The default mode, the pairs, and contact of bodies with themselves.
 type Contacts = (ContactMode, Vec<ContactPair>, Option<SelfContact>);
 
-/// The default mode and the pairs, and self-contact; a pair takes what it does not give from the default.
+/// The default mode and the pairs, and self-contact; a pair takes what it does not give from the
+/// default.
 pub fn contacts(
     params: &ContactParams,
     bodies: &[Spanned<BodyParams>],
     form: SphForm,
     ratio: f64,
-) -> Result<Contacts, Complaint> {
+) -> Result<Contacts, Diagnostic> {
     let default = params.choice(&Choice::default(), form)?;
     let own = self_contact(params, ratio, &default)?;
     let modes = params.pair.iter().map(|pair| pair.mode);
@@ -49,7 +50,7 @@ fn pair(
     default: &Choice,
     form: SphForm,
     before: &[ContactPair],
-) -> Result<ContactPair, Complaint> {
+) -> Result<ContactPair, Diagnostic> {
     let [a, b] = indices(params, bodies)?;
     let mode = default.of(params.mode);
     for (body, named) in [a, b].into_iter().zip(params.bodies.get_ref()) {
@@ -63,7 +64,7 @@ fn pair(
         .any(|p| p.bodies == [a, b] || p.bodies == [b, a])
     {
         let title = "this pair of bodies has a contact already";
-        return Err(Complaint::new(params.bodies.span(), title));
+        return Err(Diagnostic::new(params.bodies.span(), title));
     }
     if mode.resistance().is_none() {
         refuse_resistance(params.friction.as_ref(), params.damping.as_ref())?;
@@ -79,7 +80,7 @@ fn self_contact(
     params: &ContactParams,
     ratio: f64,
     default: &Choice,
-) -> Result<Option<SelfContact>, Complaint> {
+) -> Result<Option<SelfContact>, Diagnostic> {
     let Some(given) = &params.self_contact else {
         return Ok(None);
     };
@@ -94,7 +95,7 @@ fn self_contact(
         .any(|mode| default.of(mode) == ContactMode::Kernel)
     {
         let title = "self-contact knows no bodies that are joined by `kernel` contact";
-        return Err(Complaint::new(given.span(), title)
+        return Err(Diagnostic::new(given.span(), title)
             .help("take another mode for all pairs, or leave `self_contact` out"));
     }
     // No pair that begins within the support may be a fold.
@@ -105,7 +106,7 @@ fn self_contact(
             let spacings = number(Some(folds), "folds", 0.0, Allowed::Positive)?;
             if spacings < least {
                 let title = format!("`folds` must be at least {least:.2} spacings, the support");
-                return Err(Complaint::new(folds.span(), title).label("out of range"));
+                return Err(Diagnostic::new(folds.span(), title).label("out of range"));
             }
             Some(spacings)
         }
@@ -122,7 +123,7 @@ fn check_fit(
     mode: &ContactMode,
     body: &Spanned<String>,
     at: Range<usize>,
-) -> Result<(), Complaint> {
+) -> Result<(), Diagnostic> {
     if !mode.needs_sums() {
         return Ok(());
     }
@@ -132,7 +133,7 @@ fn check_fit(
         mode.name()
     );
     let others = without_sums();
-    Err(Complaint::new(at, title).help(format!("take {others} for its pairs")))
+    Err(Diagnostic::new(at, title).help(format!("take {others} for its pairs")))
 }
 
 /// The modes with forces that do without sums over the particles of a body, in quotes.
@@ -143,16 +144,16 @@ pub(super) fn without_sums() -> String {
     names.join(" or ")
 }
 
-fn indices(pair: &PairParams, bodies: &[Spanned<BodyParams>]) -> Result<[usize; 2], Complaint> {
+fn indices(pair: &PairParams, bodies: &[Spanned<BodyParams>]) -> Result<[usize; 2], Diagnostic> {
     let names = || bodies.iter().map(|b| b.get_ref().name.get_ref().as_str());
     let index = |name: &Spanned<String>| {
         names()
             .position(|known| known == name.get_ref())
-            .ok_or_else(|| Complaint::unknown(name.span(), "body", name.get_ref(), names()))
+            .ok_or_else(|| Diagnostic::unknown(name.span(), "body", name.get_ref(), names()))
     };
     match pair.bodies.get_ref().as_slice() {
         [a, b] if a != b => Ok([index(a)?, index(b)?]),
-        _ => Err(Complaint::new(
+        _ => Err(Diagnostic::new(
             pair.bodies.span(),
             "`bodies` must name two different bodies",
         )),
@@ -163,7 +164,7 @@ fn indices(pair: &PairParams, bodies: &[Spanned<BodyParams>]) -> Result<[usize; 
 fn refuse_resistance(
     friction: Option<&Spanned<FrictionParams>>,
     damping: Option<&Spanned<f64>>,
-) -> Result<(), Complaint> {
+) -> Result<(), Diagnostic> {
     let at = [
         friction.map(|key| ("friction", key.span())),
         damping.map(|key| ("damping", key.span())),
@@ -176,7 +177,7 @@ fn refuse_resistance(
             let names: Vec<String> = modes.map(|mode| format!("`{}`", mode.name())).collect();
             let names = names.join(" and ");
             let title = format!("`{key}` acts in no contact but that of the modes {names}");
-            Err(Complaint::new(at, title).help("set `mode = \"overlap\"`, or leave it out"))
+            Err(Diagnostic::new(at, title).help("set `mode = \"overlap\"`, or leave it out"))
         }
     }
 }

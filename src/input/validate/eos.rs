@@ -8,14 +8,14 @@ use super::check::{Allowed, exactly_one, number};
 use crate::input::schema::{
     EosParams, IdealGasParams, LinearParams, MieGruneisenParams, TaitParams, TillotsonParams,
 };
-use crate::input::source::Complaint;
+use crate::input::source::Diagnostic;
 use crate::material::{Eos, IdealGas, Linear, LinearForm, MieGruneisen, Tait, Tillotson};
 
 const CHOICES: &str = "`linear`, `mie_gruneisen`, `tait`, `tillotson`, `ideal_gas`";
 
 /// The equation of state of a table, with values of the library's `base` where the table has none;
 /// `rho0` is the reference density (kg/m³).
-pub fn eos(table: &Spanned<EosParams>, base: Option<&Eos>, rho0: f64) -> Result<Eos, Complaint> {
+pub fn eos(table: &Spanned<EosParams>, base: Option<&Eos>, rho0: f64) -> Result<Eos, Diagnostic> {
     let (at, params) = (table.span(), table.get_ref());
     let EosParams {
         linear: a,
@@ -48,7 +48,7 @@ fn linear(
     params: &LinearParams,
     base: Option<&Eos>,
     at: &Range<usize>,
-) -> Result<Linear, Complaint> {
+) -> Result<Linear, Diagnostic> {
     let base = same!(base, Linear);
     let known = base.map_or(LinearForm::Logarithmic, |law| law.form);
     Ok(Linear {
@@ -61,7 +61,7 @@ fn mie_gruneisen(
     params: &MieGruneisenParams,
     base: Option<&Eos>,
     at: &Range<usize>,
-) -> Result<MieGruneisen, Complaint> {
+) -> Result<MieGruneisen, Diagnostic> {
     let base = same!(base, MieGruneisen);
     Ok(MieGruneisen {
         c0: required!(params.c0, base, Positive, at),
@@ -78,7 +78,7 @@ fn tait(
     base: Option<&Eos>,
     rho0: f64,
     at: &Range<usize>,
-) -> Result<Tait, Complaint> {
+) -> Result<Tait, Diagnostic> {
     let base = same!(base, Tait);
     let gamma = number!(params.gamma, or base.map_or(7.0, |law| law.gamma), Positive);
     match (&params.b, &params.sound_speed) {
@@ -88,11 +88,11 @@ fn tait(
         }
         (Some(_), Some(c0)) => {
             let title = "`b` and `sound_speed` say the same twice: give one of them";
-            Err(Complaint::new(c0.span(), title))
+            Err(Diagnostic::new(c0.span(), title))
         }
         (None, None) if base.is_none() => {
             let title = "`eos.tait` needs `sound_speed` or `b`";
-            Err(Complaint::new(at.clone(), title).label("in this table"))
+            Err(Diagnostic::new(at.clone(), title).label("in this table"))
         }
         (_, None) => Ok(Tait {
             b: number!(params.b, or base.map_or(0.0, |law| law.b), Positive),
@@ -105,7 +105,7 @@ fn tillotson(
     params: &TillotsonParams,
     base: Option<&Eos>,
     at: &Range<usize>,
-) -> Result<Tillotson, Complaint> {
+) -> Result<Tillotson, Diagnostic> {
     let base = same!(base, Tillotson);
     let law = Tillotson {
         a: required!(params.a, base, Positive, at),
@@ -123,7 +123,7 @@ fn tillotson(
     }
     let place = params.e_cv.as_ref().or(params.e_iv.as_ref());
     let title = "`e_cv` must be above `e_iv`: complete vaporisation takes more than incipient";
-    Err(Complaint::new(
+    Err(Diagnostic::new(
         place.map_or(at.clone(), Spanned::span),
         title,
     ))
@@ -133,7 +133,7 @@ fn ideal_gas(
     params: &IdealGasParams,
     base: Option<&Eos>,
     at: &Range<usize>,
-) -> Result<IdealGas, Complaint> {
+) -> Result<IdealGas, Diagnostic> {
     let base = same!(base, IdealGas);
     let stiffening = base.map_or(0.0, |law| law.stiffening_pressure);
     let reference = base.map_or(0.0, |law| law.reference_pressure);

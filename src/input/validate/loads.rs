@@ -11,7 +11,7 @@ use super::touch;
 use crate::input::names;
 use crate::input::quantity::{Acceleration, Placed};
 use crate::input::schema::{CaseParams, LoadParams, SidesParams};
-use crate::input::source::Complaint;
+use crate::input::source::Diagnostic;
 use crate::model::readable::Readable;
 use crate::model::{Axis, Body, Loads, RigidSurface, SymmetryPlane, VelocityLoad};
 use crate::populate::{self, Wanted};
@@ -29,7 +29,7 @@ pub struct Reader<'a> {
 
 impl Reader<'_> {
     /// Lays bodies on the surfaces of a case, on which loads then act where they are.
-    pub fn all(self, params: &CaseParams) -> Result<Loads, Complaint> {
+    pub fn all(self, params: &CaseParams) -> Result<Loads, Diagnostic> {
         let (symmetry, dimension) = (self.symmetry, self.dimension);
         let surfaces = self.surfaces(params)?;
         touch::lay_on_planes(&params.body, self.bodies, &surfaces, symmetry, dimension)?;
@@ -37,7 +37,7 @@ impl Reader<'_> {
     }
 
     /// All loads of a case that has these `surfaces`.
-    fn loads(&self, params: &CaseParams, surfaces: Vec<RigidSurface>) -> Result<Loads, Complaint> {
+    fn loads(&self, params: &CaseParams, surfaces: Vec<RigidSurface>) -> Result<Loads, Diagnostic> {
         let velocities: Result<Vec<VelocityLoad>, _> = params
             .load
             .iter()
@@ -52,7 +52,7 @@ impl Reader<'_> {
                 "a case can have at most {} loads and rigid bodies together",
                 Loads::MOST
             );
-            return Err(Complaint::new(table.span(), title));
+            return Err(Diagnostic::new(table.span(), title));
         }
         self.check_names(params)?;
         self.check_starts(params, &surfaces)?;
@@ -64,7 +64,7 @@ impl Reader<'_> {
     }
 
     /// Names are those of rows in one table, with rigid bodies.
-    fn check_names(&self, params: &CaseParams) -> Result<(), Complaint> {
+    fn check_names(&self, params: &CaseParams) -> Result<(), Diagnostic> {
         let named = || {
             let loads = params.load.iter().map(|t| ("load", &t.get_ref().name));
             let planes = params.plane.iter().map(|t| ("plane", &t.get_ref().name));
@@ -78,7 +78,7 @@ impl Reader<'_> {
             let mut bodies = self.bodies.iter().map(|body| &body.name);
             if before.any(|b| b == name.get_ref()) || bodies.any(|b| b == name.get_ref()) {
                 let title = format!("the name `{}` is taken already", name.get_ref());
-                return Err(Complaint::new(name.span(), title));
+                return Err(Diagnostic::new(name.span(), title));
             }
         }
         Ok(())
@@ -87,7 +87,7 @@ impl Reader<'_> {
     fn gravity(
         &self,
         params: Option<&Spanned<Vec<Placed<Acceleration>>>>,
-    ) -> Result<[f64; 3], Complaint> {
+    ) -> Result<[f64; 3], Diagnostic> {
         let gravity = vector("gravity", params, self.dimension)?;
         let across = |plane: &&SymmetryPlane| gravity[plane.axis.index()] != 0.0;
         if let (Some(params), Some(plane)) = (params, self.symmetry.iter().find(across)) {
@@ -97,26 +97,28 @@ impl Reader<'_> {
                 axis.name(),
                 axis.name()
             );
-            return Err(Complaint::new(params.get_ref()[axis.index()].span(), title)
-                .help("a frictionless floor is a `[[plane]]`"));
+            return Err(
+                Diagnostic::new(params.get_ref()[axis.index()].span(), title)
+                    .help("a frictionless floor is a `[[plane]]`"),
+            );
         }
         Ok(gravity)
     }
 
-    pub fn body(&self, name: &Spanned<String>) -> Result<(usize, &Body), Complaint> {
+    pub fn body(&self, name: &Spanned<String>) -> Result<(usize, &Body), Diagnostic> {
         let found = self.bodies.iter().position(|b| b.name == *name.get_ref());
         let index = found.ok_or_else(|| {
             let known = self.bodies.iter().map(|body| body.name.as_str());
-            Complaint::unknown(name.span(), "body", name.get_ref(), known)
+            Diagnostic::unknown(name.span(), "body", name.get_ref(), known)
         })?;
         Ok((index, &self.bodies[index]))
     }
 
-    fn load(&self, params: &LoadParams, number_of: usize) -> Result<VelocityLoad, Complaint> {
+    fn load(&self, params: &LoadParams, number_of: usize) -> Result<VelocityLoad, Diagnostic> {
         let (index, body) = self.body(&params.body)?;
         if body.rigid.is_some() {
             let title = format!("the body `{}` is rigid", body.name);
-            return Err(Complaint::new(params.body.span(), title)
+            return Err(Diagnostic::new(params.body.span(), title)
                 .help("give the body a `velocity` or a `motion` instead"));
         }
         let load = VelocityLoad {
@@ -135,7 +137,7 @@ impl Reader<'_> {
         let title = format!("the region holds no particle of `{}`", body.name);
         let (lower, upper) = populate::bounds(body, self.dimension).unwrap_or_default();
         let corner = |x: [f64; 3]| self.length_unit.vector(&x[..self.dimension]);
-        Err(Complaint::new(at, title).help(format!(
+        Err(Diagnostic::new(at, title).help(format!(
             "its particles stand from {} to {}",
             corner(lower),
             corner(upper)
@@ -166,7 +168,7 @@ impl Reader<'_> {
         params: Option<&Spanned<SidesParams>>,
         body: &Body,
         open: f64,
-    ) -> Result<[f64; 3], Complaint> {
+    ) -> Result<[f64; 3], Diagnostic> {
         let mut sides = [open; 3];
         let Some(table) = params else {
             return Ok(sides);

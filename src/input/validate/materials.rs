@@ -10,7 +10,7 @@ use super::strength::{failure, strength};
 use crate::input::forms::Named;
 use crate::input::names;
 use crate::input::schema::{MaterialParams, ThermalParams};
-use crate::input::source::Complaint;
+use crate::input::source::Diagnostic;
 use crate::material::{Eos, Material, Thermal, ThermalConstants, library};
 
 /// Temperature of the reference state (K) where none is given.
@@ -19,7 +19,7 @@ const ROOM: f64 = 300.0;
 /// Names and materials in the order of the input.
 pub fn materials(
     params: &Named<MaterialParams>,
-) -> Result<(Vec<String>, Vec<Material>), Complaint> {
+) -> Result<(Vec<String>, Vec<Material>), Diagnostic> {
     let materials: Result<_, _> = params.0.iter().map(|(n, t)| material(n, t)).collect();
     let names = params.0.iter().map(|(name, _)| name.get_ref().clone());
     Ok((names.collect(), materials?))
@@ -28,20 +28,20 @@ pub fn materials(
 fn material(
     name: &Spanned<String>,
     table: &Spanned<MaterialParams>,
-) -> Result<Material, Complaint> {
+) -> Result<Material, Diagnostic> {
     names::check(name, "material")?;
     let params = table.get_ref();
     let base = params.library.as_ref().map(|library| {
         library::find(library.get_ref()).ok_or_else(|| {
             let known = library::names();
-            Complaint::unknown(library.span(), "material", library.get_ref(), known)
+            Diagnostic::unknown(library.span(), "material", library.get_ref(), known)
         })
     });
     let base = base.transpose()?;
     let base = base.as_ref();
     let missing = |key: &str| {
         let title = format!("the material `{}` has no `{key}`", name.get_ref());
-        Complaint::new(name.span(), title).help("name a `library` material or give the key")
+        Diagnostic::new(name.span(), title).help("name a `library` material or give the key")
     };
     if base.is_none() && params.density.is_none() {
         return Err(missing("density"));
@@ -73,8 +73,8 @@ fn material(
     };
     match (&params.strength, missing_heat(&material)) {
         (_, None) => Ok(material),
-        (Some(table), Some(key)) => Err(heat_complaint(table.span(), key)),
-        (None, Some(key)) => Err(heat_complaint(name.span(), key)),
+        (Some(table), Some(key)) => Err(heat_diagnostic(table.span(), key)),
+        (None, Some(key)) => Err(heat_diagnostic(name.span(), key)),
     }
 }
 
@@ -90,9 +90,9 @@ fn missing_heat(material: &Material) -> Option<&'static str> {
     }
 }
 
-fn heat_complaint(at: Range<usize>, key: &str) -> Complaint {
+fn heat_diagnostic(at: Range<usize>, key: &str) -> Diagnostic {
     let title = format!("this strength follows the temperature and needs `{key}`");
-    Complaint::new(at, title)
+    Diagnostic::new(at, title)
 }
 
 /// Thermal constants, with the cold curve of this material's own equation of state.
@@ -101,7 +101,7 @@ fn thermal(
     base: Option<&Thermal>,
     reference_density: f64,
     eos: &Eos,
-) -> Result<Option<Thermal>, Complaint> {
+) -> Result<Option<Thermal>, Diagnostic> {
     let base = base.map(Thermal::constants);
     let constants = match table {
         None => base.copied(),
@@ -115,7 +115,7 @@ fn thermal(
                 && t <= reference_temperature
             {
                 let title = "`melting_temperature` must be above `reference_temperature`";
-                return Err(Complaint::new(value.span(), title).label("out of range"));
+                return Err(Diagnostic::new(value.span(), title).label("out of range"));
             }
             Some(ThermalConstants {
                 specific_heat: required!(params.specific_heat, base, Positive, &table.span()),

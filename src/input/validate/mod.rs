@@ -8,12 +8,12 @@ mod eos;
 mod loads;
 mod materials;
 mod motion;
+mod numerical_limits;
 mod shapes;
 mod strength;
 mod stress_points;
 mod surfaces;
 mod touch;
-mod trouble;
 
 use std::ops::Range;
 use std::path::Path;
@@ -23,12 +23,12 @@ use super::schema::{
     BodyParams, CaseParams, DomainParams, OutputParams, RunParams, SmoothingName, SphParams,
     SymmetryParams, TimeStepParams,
 };
-use super::source::Complaint;
+use super::source::Diagnostic;
 use crate::material::Material;
 use crate::model::readable::Readable;
 use crate::model::{
-    Axis, Body, Case, ContactMode, DomainOptions, OutputOptions, RunControl, SmoothingLength,
-    SphForm, SphOptions, SymmetryPlane, TimeStepOptions, Trouble,
+    Axis, Body, Case, ContactMode, DomainOptions, NumericalLimits, OutputOptions, RunControl,
+    SmoothingLength, SphForm, SphOptions, SymmetryPlane, TimeStepOptions,
 };
 use crate::particles::{TEMPERATURE, snapshot_names};
 use crate::populate::overlap;
@@ -39,7 +39,7 @@ use toml::Spanned;
 const MOST_OVERLAP: f64 = 0.5;
 
 /// Builds the case, whose files stand in `folder`; `resolved` is left empty.
-pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
+pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     let dimension = dimension(&params.dimension)?;
     let symmetry = symmetry(&params.symmetry, dimension)?;
     let (names, mut materials) = materials::materials(&params.material)?;
@@ -82,12 +82,12 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
         sph,
         time_step,
         domain: domain(&params.domain, dimension)?,
-        trouble: Trouble::default(),
+        numerical_limits: NumericalLimits::default(),
         run: run(params.run.get_ref())?,
         output: output(params.output)?,
         resolved: String::new(),
     };
-    case.trouble = trouble::trouble(&params.trouble, &case)?;
+    case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, &case)?;
     stress_points::check(&case, form)?;
     check_moduli(&case, &params.body)?;
     check_overlaps(&case, &params.body)?;
@@ -96,7 +96,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Complaint> {
 }
 
 /// Contact scales with a modulus, which a gas has only at a reference pressure.
-fn check_moduli(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Complaint> {
+fn check_moduli(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Diagnostic> {
     for (a, (body, table)) in case.bodies.iter().zip(params).enumerate() {
         let material = &case.materials[body.material];
         let pushes = |b| {
@@ -112,7 +112,7 @@ fn check_moduli(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Compl
                 material.name
             );
             let named = table.get_ref().material.as_ref();
-            return Err(Complaint::new(named.map_or_else(|| table.span(), Spanned::span), title)
+            return Err(Diagnostic::new(named.map_or_else(|| table.span(), Spanned::span), title)
                 .help("give its `eos.ideal_gas` a `reference_pressure`, or join the bodies by `kernel` contact"));
         }
     }
@@ -120,7 +120,7 @@ fn check_moduli(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Compl
 }
 
 /// Bodies that begin within each other would fly apart at once.
-fn check_overlaps(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Complaint> {
+fn check_overlaps(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Diagnostic> {
     for (b, table) in params.iter().enumerate() {
         for a in 0..b {
             let bodies = [a, b].map(|body| &case.bodies[body]);
@@ -135,7 +135,7 @@ fn check_overlaps(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Com
                     bodies[0].name,
                     case.length_unit.vector(&found.at[..case.dimension])
                 );
-                return Err(Complaint::new(table.get_ref().shape.span(), title).help(
+                return Err(Diagnostic::new(table.get_ref().shape.span(), title).help(
                     "move one of them, or let it `touch` the other; only bodies with contact of \
                      mode \"none\" may overlap",
                 ));
@@ -145,11 +145,11 @@ fn check_overlaps(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Com
     Ok(())
 }
 
-fn check_temperature(case: &Case, fields: &[(String, Range<usize>)]) -> Result<(), Complaint> {
+fn check_temperature(case: &Case, fields: &[(String, Range<usize>)]) -> Result<(), Diagnostic> {
     match fields.iter().find(|(name, _)| name == TEMPERATURE) {
         Some((_, at)) if case.materials.iter().all(|m| m.thermal.is_none()) => {
             let title = "no material has `thermal` constants that would give it a temperature";
-            Err(Complaint::new(at.clone(), title))
+            Err(Diagnostic::new(at.clone(), title))
         }
         _ => Ok(()),
     }
@@ -170,12 +170,12 @@ fn field_spans(params: &OutputParams) -> Vec<(String, Range<usize>)> {
         .collect()
 }
 
-fn dimension(params: &Spanned<i64>) -> Result<usize, Complaint> {
+fn dimension(params: &Spanned<i64>) -> Result<usize, Diagnostic> {
     match params.get_ref() {
         1 => Ok(1),
         2 => Ok(2),
         3 => Ok(3),
-        _ => Err(Complaint::new(
+        _ => Err(Diagnostic::new(
             params.span(),
             "`dimension` must be 1 (uniaxial strain), 2 (plane strain) or 3",
         )),
@@ -183,26 +183,26 @@ fn dimension(params: &Spanned<i64>) -> Result<usize, Complaint> {
 }
 
 /// An axis that must exist in the dimension.
-fn in_dimension(axis: Axis, dimension: usize, at: Range<usize>) -> Result<Axis, Complaint> {
+fn in_dimension(axis: Axis, dimension: usize, at: Range<usize>) -> Result<Axis, Diagnostic> {
     if axis.index() < dimension {
         return Ok(axis);
     }
     let title = format!("a {dimension}-dimensional case has no {} axis", axis.name());
-    Err(Complaint::new(at, title))
+    Err(Diagnostic::new(at, title))
 }
 
 /// As [`in_dimension`], of the axis that a key names.
-fn axis(name: &Spanned<Axis>, dimension: usize) -> Result<Axis, Complaint> {
+fn axis(name: &Spanned<Axis>, dimension: usize) -> Result<Axis, Diagnostic> {
     in_dimension(*name.get_ref(), dimension, name.span())
 }
 
-fn symmetry(params: &[SymmetryParams], dimension: usize) -> Result<Vec<SymmetryPlane>, Complaint> {
+fn symmetry(params: &[SymmetryParams], dimension: usize) -> Result<Vec<SymmetryPlane>, Diagnostic> {
     let mut planes: Vec<SymmetryPlane> = Vec::new();
     for plane in params {
         let axis = axis(&plane.axis, dimension)?;
         if planes.iter().any(|p| p.axis == axis) {
             let title = format!("a second symmetry plane normal to {}", axis.name());
-            return Err(Complaint::new(plane.axis.span(), title).help("each axis can have one"));
+            return Err(Diagnostic::new(plane.axis.span(), title).help("each axis can have one"));
         }
         planes.push(SymmetryPlane {
             axis,
@@ -213,7 +213,7 @@ fn symmetry(params: &[SymmetryParams], dimension: usize) -> Result<Vec<SymmetryP
 }
 
 /// The options of the sums, and smoothing length over spacing.
-fn sph(params: &SphParams) -> Result<(SphOptions, f64), Complaint> {
+fn sph(params: &SphParams) -> Result<(SphOptions, f64), Diagnostic> {
     let bounds = SmoothingLength::Variable {
         min: number!(params.smoothing_length_min, or 0.6, UpToOne),
         max: number!(params.smoothing_length_max, or 2.0, Within(1.0, 10.0)),
@@ -251,7 +251,7 @@ fn time_step(
     sph: &SphOptions,
     bodies: &[Body],
     materials: &[Material],
-) -> Result<TimeStepOptions, Complaint> {
+) -> Result<TimeStepOptions, Diagnostic> {
     let diffusion = bodies.iter().map(|body| {
         let shortest = body.smoothing_length * smallest_smoothing(sph);
         materials[body.material].diffusion_time(shortest)
@@ -268,7 +268,7 @@ fn time_step(
     Ok(TimeStepOptions { max, ..given })
 }
 
-fn domain(params: &DomainParams, dimension: usize) -> Result<DomainOptions, Complaint> {
+fn domain(params: &DomainParams, dimension: usize) -> Result<DomainOptions, Diagnostic> {
     let axis = params.axis.as_ref().map(|name| axis(name, dimension));
     Ok(DomainOptions {
         axis: axis.transpose()?,
@@ -276,7 +276,7 @@ fn domain(params: &DomainParams, dimension: usize) -> Result<DomainOptions, Comp
     })
 }
 
-fn run(params: &RunParams) -> Result<RunControl, Complaint> {
+fn run(params: &RunParams) -> Result<RunControl, Diagnostic> {
     let max_steps = params.max_steps.as_ref();
     Ok(RunControl {
         end_time: number(Some(&params.end_time), "end_time", 0.0, Allowed::Positive)?,
@@ -286,13 +286,13 @@ fn run(params: &RunParams) -> Result<RunControl, Complaint> {
     })
 }
 
-fn output(params: OutputParams) -> Result<OutputOptions, Complaint> {
+fn output(params: OutputParams) -> Result<OutputOptions, Diagnostic> {
     let fields = match params.fields {
         Some(fields) if fields.get_ref().is_empty() => {
             let title = "`fields` names no field";
             let help =
                 "leave it out for the usual fields; id, body and position are always written";
-            return Err(Complaint::new(fields.span(), title).help(help));
+            return Err(Diagnostic::new(fields.span(), title).help(help));
         }
         fields => fields.map_or_else(Vec::new, Spanned::into_inner),
     };
@@ -303,7 +303,7 @@ fn output(params: OutputParams) -> Result<OutputOptions, Complaint> {
     let kept = whole(params.checkpoints_kept.as_ref(), "checkpoints_kept", 2, 1)?;
     for (n, field) in fields.iter().enumerate() {
         if !snapshot_names().any(|name| name == field.get_ref()) {
-            return Err(Complaint::unknown(
+            return Err(Diagnostic::unknown(
                 field.span(),
                 "field",
                 field.get_ref(),
@@ -312,7 +312,7 @@ fn output(params: OutputParams) -> Result<OutputOptions, Complaint> {
         }
         if fields[..n].contains(field) {
             let title = format!("the field `{}` is listed twice", field.get_ref());
-            return Err(Complaint::new(field.span(), title));
+            return Err(Diagnostic::new(field.span(), title));
         }
     }
     Ok(OutputOptions {

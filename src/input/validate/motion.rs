@@ -7,11 +7,11 @@ use super::in_dimension;
 use crate::input::forms::OneOrMany;
 use crate::input::quantity::{Placed, Time};
 use crate::input::schema::{MotionParams, RotationParams};
-use crate::input::source::Complaint;
+use crate::input::source::Diagnostic;
 use crate::model::{Axis, Motion};
 
 /// The motion in a table that names at least one axis, all of them in the dimension.
-pub fn motion(table: &Spanned<MotionParams>, dimension: usize) -> Result<Motion, Complaint> {
+pub fn motion(table: &Spanned<MotionParams>, dimension: usize) -> Result<Motion, Diagnostic> {
     let params = table.get_ref();
     let times = times(params.times.as_ref())?;
     let mut motion = Motion {
@@ -27,13 +27,13 @@ pub fn motion(table: &Spanned<MotionParams>, dimension: usize) -> Result<Motion,
     }
     if motion.velocities.iter().all(Option::is_none) {
         let title = "a velocity must be given along at least one of `x`, `y`, `z`";
-        return Err(Complaint::new(table.span(), title));
+        return Err(Diagnostic::new(table.span(), title));
     }
     Ok(motion)
 }
 
 /// The rate of a rotation (rad/s), as a motion along the first axis.
-pub fn rate(params: &RotationParams) -> Result<Motion, Complaint> {
+pub fn rate(params: &RotationParams) -> Result<Motion, Diagnostic> {
     let times = times(params.times.as_ref())?;
     let timed = params.times.is_some();
     let values = along(&params.rate, "rate", timed, times.len())?;
@@ -43,7 +43,7 @@ pub fn rate(params: &RotationParams) -> Result<Motion, Complaint> {
     })
 }
 
-fn times(params: Option<&Spanned<Vec<Placed<Time>>>>) -> Result<Vec<f64>, Complaint> {
+fn times(params: Option<&Spanned<Vec<Placed<Time>>>>) -> Result<Vec<f64>, Diagnostic> {
     let Some(times) = params else {
         return Ok(vec![0.0]);
     };
@@ -52,12 +52,12 @@ fn times(params: Option<&Spanned<Vec<Placed<Time>>>>) -> Result<Vec<f64>, Compla
         let t = time.get_ref().si();
         if t < 0.0 || read.last().is_some_and(|&before| t < before) {
             let title = "`times` must begin at zero or later and never fall";
-            return Err(Complaint::new(time.span(), title).label("out of order"));
+            return Err(Diagnostic::new(time.span(), title).label("out of order"));
         }
         read.push(t);
     }
     if read.is_empty() {
-        return Err(Complaint::new(times.span(), "`times` must not be empty"));
+        return Err(Diagnostic::new(times.span(), "`times` must not be empty"));
     }
     Ok(read)
 }
@@ -67,12 +67,12 @@ fn along<K>(
     name: &str,
     timed: bool,
     count: usize,
-) -> Result<Vec<f64>, Complaint> {
+) -> Result<Vec<f64>, Diagnostic> {
     match values.get_ref() {
         OneOrMany::One(value) => Ok(vec![value.si(); count]),
         OneOrMany::Many(_) if !timed => {
             let title = format!("`{name}` is a table of time without `times`");
-            Err(Complaint::new(values.span(), title)
+            Err(Diagnostic::new(values.span(), title)
                 .help("add `times`, one for each value, or give one value for ever"))
         }
         OneOrMany::Many(list) if list.len() == count => {
@@ -81,7 +81,7 @@ fn along<K>(
         OneOrMany::Many(list) => {
             let found = list.len();
             let title = format!("`{name}` must have {count} values as `times` has, found {found}");
-            Err(Complaint::new(values.span(), title))
+            Err(Diagnostic::new(values.span(), title))
         }
     }
 }

@@ -4,7 +4,7 @@ use toml::Spanned;
 
 use crate::input::quantity::{Extent, Placed};
 use crate::input::schema::{BoxParams, CylinderParams, Point, ShapeParams, SphereParams};
-use crate::input::source::Complaint;
+use crate::input::source::Diagnostic;
 use crate::model::{Axis, Shape, Vec3};
 
 /// What the shape of one body is read with.
@@ -15,11 +15,11 @@ pub struct Shapes {
 }
 
 /// A vector with the wrong number of components.
-fn wrong_length<T>(key: &str, vector: &Spanned<Vec<T>>, dimension: usize) -> Complaint {
+fn wrong_length<T>(key: &str, vector: &Spanned<Vec<T>>, dimension: usize) -> Diagnostic {
     let found = vector.get_ref().len();
     let s = if dimension == 1 { "" } else { "s" };
     let title = format!("`{key}` must have {dimension} component{s}, found {found}");
-    Complaint::new(vector.span(), title)
+    Diagnostic::new(vector.span(), title)
 }
 
 /// The components of a vector in SI units; zero if absent.
@@ -27,7 +27,7 @@ pub fn vector<K>(
     key: &str,
     params: Option<&Spanned<Vec<Placed<K>>>>,
     dimension: usize,
-) -> Result<[f64; 3], Complaint> {
+) -> Result<[f64; 3], Diagnostic> {
     let mut vector = [0.0; 3];
     if let Some(params) = params {
         if params.get_ref().len() != dimension {
@@ -42,7 +42,7 @@ pub fn vector<K>(
 
 impl Shapes {
     /// The shape of a body, before `touch`.
-    pub fn shape(&self, table: &Spanned<ShapeParams>) -> Result<Shape, Complaint> {
+    pub fn shape(&self, table: &Spanned<ShapeParams>) -> Result<Shape, Diagnostic> {
         let ShapeParams {
             r#box,
             sphere,
@@ -62,19 +62,19 @@ impl Shapes {
                     "a sphere, which is a disc,"
                 },
             )),
-            _ => Err(Complaint::new(
+            _ => Err(Diagnostic::new(
                 table.span(),
                 "`shape` must have exactly one of `box`, `sphere`, `cylinder`",
             )),
         }
     }
 
-    fn unfit<T>(&self, table: &Spanned<T>, shape: &str, other: &str) -> Complaint {
+    fn unfit<T>(&self, table: &Spanned<T>, shape: &str, other: &str) -> Diagnostic {
         let title = format!("a {}-dimensional case has no {shape}", self.dimension);
-        Complaint::new(table.span(), title).help(format!("take {other} instead"))
+        Diagnostic::new(table.span(), title).help(format!("take {other} instead"))
     }
 
-    fn cuboid(&self, table: &Spanned<BoxParams>) -> Result<Shape, Complaint> {
+    fn cuboid(&self, table: &Spanned<BoxParams>) -> Result<Shape, Diagnostic> {
         let BoxParams {
             lower,
             upper,
@@ -94,16 +94,16 @@ impl Shapes {
             }
             _ => {
                 let title = "a box must have `lower` and `upper`, or `size` and perhaps `centre`";
-                return Err(Complaint::new(table.span(), title));
+                return Err(Diagnostic::new(table.span(), title));
             }
         };
         if (0..self.dimension).all(|a| lower[a] < upper[a]) {
             return Ok(Shape::Box { lower, upper });
         }
-        Err(Complaint::new(at, "every edge of a box must be positive"))
+        Err(Diagnostic::new(at, "every edge of a box must be positive"))
     }
 
-    fn sphere(&self, params: &SphereParams) -> Result<Shape, Complaint> {
+    fn sphere(&self, params: &SphereParams) -> Result<Shape, Diagnostic> {
         let centre = self.point(params.centre.as_ref(), "centre")?;
         let radius = self.positive(&params.radius, "radius")?;
         let Some(inner) = &params.inner_radius else {
@@ -118,10 +118,10 @@ impl Shapes {
             });
         }
         let title = "`inner_radius` must be smaller than `radius`";
-        Err(Complaint::new(inner.span(), title))
+        Err(Diagnostic::new(inner.span(), title))
     }
 
-    fn cylinder(&self, params: &CylinderParams) -> Result<Shape, Complaint> {
+    fn cylinder(&self, params: &CylinderParams) -> Result<Shape, Diagnostic> {
         let axis = params.axis.as_ref();
         Ok(Shape::Cylinder {
             centre: self.point(params.centre.as_ref(), "centre")?,
@@ -131,19 +131,19 @@ impl Shapes {
         })
     }
 
-    fn positive(&self, value: &Spanned<Extent>, key: &str) -> Result<f64, Complaint> {
+    fn positive(&self, value: &Spanned<Extent>, key: &str) -> Result<f64, Diagnostic> {
         let metres = value.get_ref().metres(self.spacing);
         if metres > 0.0 {
             return Ok(metres);
         }
-        Err(Complaint::new(
+        Err(Diagnostic::new(
             value.span(),
             format!("`{key}` must be positive"),
         ))
     }
 
     /// A point; the origin if absent.
-    fn point(&self, value: Option<&Point>, key: &str) -> Result<Vec3, Complaint> {
+    fn point(&self, value: Option<&Point>, key: &str) -> Result<Vec3, Diagnostic> {
         let mut point = Vec3::zeros();
         if let Some(value) = value {
             if value.get_ref().len() != self.dimension {

@@ -5,7 +5,7 @@ use toml::Spanned;
 use super::check::{Allowed, exactly_one, number, required};
 use crate::input::forms::OrNone;
 use crate::input::schema::{MaterialParams, StrengthParams, failure_laws, strength_laws};
-use crate::input::source::Complaint;
+use crate::input::source::Diagnostic;
 use crate::material::{Failure, Law, Strength};
 
 /// The value of a constant: that of the table, else that of the library's law of the same kind
@@ -55,7 +55,7 @@ macro_rules! law {
                 _ => None,
             };
             let place = wrong.keys.iter().find_map(place);
-            return Err(Complaint::new(place.unwrap_or($at), wrong.title));
+            return Err(Diagnostic::new(place.unwrap_or($at), wrong.title));
         }
         law
     }};
@@ -71,7 +71,7 @@ macro_rules! strength {
         pub fn strength(
             table: &Spanned<OrNone<StrengthParams>>,
             base: Option<&Strength>,
-        ) -> Result<Strength, Complaint> {
+        ) -> Result<Strength, Diagnostic> {
             let at = table.span();
             let OrNone::Table(params) = table.get_ref() else {
                 return Ok(Strength::None);
@@ -108,7 +108,7 @@ macro_rules! failure {
         pub fn failure(
             params: &MaterialParams,
             base: Option<&Failure>,
-        ) -> Result<Failure, Complaint> {
+        ) -> Result<Failure, Diagnostic> {
             Ok(Failure { $( $law: match &params.$law {
                 None => base.and_then(|base| base.$law),
                 Some(table) => match table.get_ref() {

@@ -3,16 +3,16 @@
 use std::ops::Range;
 
 use super::contact::without_sums;
-use crate::input::source::Complaint;
+use crate::input::source::Diagnostic;
 use crate::model::{Case, LatticeKind, SphForm};
 
 /// Stress points stand between the particles of cubic lattices, and have the sums of no pair of
 /// particles that the options of these could act in.
-pub fn check(case: &Case, at: Option<Range<usize>>) -> Result<(), Complaint> {
+pub fn check(case: &Case, at: Option<Range<usize>>) -> Result<(), Diagnostic> {
     let Some(at) = at.filter(|_| case.sph.form == SphForm::StressPoints) else {
         return Ok(());
     };
-    let refuse = |title: String, help: &str| Err(Complaint::new(at.clone(), title).help(help));
+    let refuse = |title: String, help: &str| Err(Diagnostic::new(at.clone(), title).help(help));
     let options = [
         ("artificial_stress", case.sph.artificial_stress > 0.0),
         ("balsara", case.sph.balsara),

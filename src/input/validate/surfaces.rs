@@ -19,7 +19,7 @@ use crate::input::schema::{
     CaseParams, NormalParams, PlaneParams, RotationParams, SideName, StlParams,
     SurfaceCylinderParams, SurfaceParams, SurfaceShapeParams, SurfaceSphereParams,
 };
-use crate::input::source::{Complaint, nearest};
+use crate::input::source::{Diagnostic, nearest};
 use crate::input::stl;
 use crate::model::{Axis, Mesh, Motion, Resistance, RigidSurface, Spin, SurfaceFile, SurfaceShape};
 use crate::populate;
@@ -32,7 +32,7 @@ type Place = Spanned<Vec<Placed<Length>>>;
 
 impl Reader<'_> {
     /// The planes and the other surfaces of a case, wherever its bodies stand.
-    pub(super) fn surfaces(&self, params: &CaseParams) -> Result<Vec<RigidSurface>, Complaint> {
+    pub(super) fn surfaces(&self, params: &CaseParams) -> Result<Vec<RigidSurface>, Diagnostic> {
         let planes = params.plane.iter().enumerate();
         let planes = planes.map(|(n, table)| self.plane(table.get_ref(), n + 1));
         let others = params.surface.iter().enumerate();
@@ -45,7 +45,7 @@ impl Reader<'_> {
         &self,
         params: &CaseParams,
         surfaces: &[RigidSurface],
-    ) -> Result<(), Complaint> {
+    ) -> Result<(), Diagnostic> {
         let planes = params.plane.iter().map(|t| t.get_ref().normal.span());
         let others = params.surface.iter().map(|t| t.get_ref().shape.span());
         for (surface, at) in surfaces.iter().zip(planes.chain(others)) {
@@ -54,7 +54,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn plane(&self, params: &PlaneParams, number_of: usize) -> Result<RigidSurface, Complaint> {
+    fn plane(&self, params: &PlaneParams, number_of: usize) -> Result<RigidSurface, Diagnostic> {
         let normal = self.normal(&params.normal)?;
         let point = self.place("point", params.point.as_ref())?;
         let position = normal[0] * point[0] + normal[1] * point[1] + normal[2] * point[2];
@@ -76,7 +76,11 @@ impl Reader<'_> {
         })
     }
 
-    fn surface(&self, params: &SurfaceParams, number_of: usize) -> Result<RigidSurface, Complaint> {
+    fn surface(
+        &self,
+        params: &SurfaceParams,
+        number_of: usize,
+    ) -> Result<RigidSurface, Diagnostic> {
         let (shape, file) = self.shape(&params.shape)?;
         let given = params.motion.as_ref();
         let spin = params.rotation.as_ref().map(|table| self.spin(table));
@@ -98,7 +102,7 @@ impl Reader<'_> {
     }
 
     /// Which bodies feel a surface: those named, or all that are not rigid.
-    fn acts_on(&self, names: Option<&[Spanned<String>]>) -> Result<Vec<bool>, Complaint> {
+    fn acts_on(&self, names: Option<&[Spanned<String>]>) -> Result<Vec<bool>, Diagnostic> {
         let mut bodies: Vec<bool> = self.bodies.iter().map(|b| b.rigid.is_none()).collect();
         let Some(names) = names else {
             return Ok(bodies);
@@ -108,7 +112,7 @@ impl Reader<'_> {
             let (index, body) = self.body(name)?;
             if body.rigid.is_some() {
                 let title = format!("the body `{}` is rigid: no surface moves it", body.name);
-                return Err(Complaint::new(name.span(), title));
+                return Err(Diagnostic::new(name.span(), title));
             }
             bodies[index] = true;
         }
@@ -116,7 +120,7 @@ impl Reader<'_> {
     }
 
     /// No body may begin behind a surface.
-    fn check_start(&self, surface: &RigidSurface, at: &Range<usize>) -> Result<(), Complaint> {
+    fn check_start(&self, surface: &RigidSurface, at: &Range<usize>) -> Result<(), Diagnostic> {
         let acts = surface.bodies.iter();
         for (body, _) in self.bodies.iter().zip(acts).filter(|(_, acts)| **acts) {
             let gap = populate::smallest_gap(body, self.dimension, self.symmetry, surface);
@@ -138,7 +142,7 @@ impl Reader<'_> {
             };
             let name = &body.name;
             let title = format!("the body `{name}` reaches {behind:.3} spacings behind the {what}");
-            return Err(Complaint::new(at.clone(), title).help(help));
+            return Err(Diagnostic::new(at.clone(), title).help(help));
         }
         Ok(())
     }
@@ -146,7 +150,7 @@ impl Reader<'_> {
     fn shape(
         &self,
         table: &Spanned<SurfaceShapeParams>,
-    ) -> Result<(SurfaceShape, Option<SurfaceFile>), Complaint> {
+    ) -> Result<(SurfaceShape, Option<SurfaceFile>), Diagnostic> {
         let SurfaceShapeParams {
             sphere,
             cylinder,
@@ -162,7 +166,7 @@ impl Reader<'_> {
             } else {
                 "`shape.sphere`, a disc,"
             };
-            Err(Complaint::new(table.span(), title).help(format!("take {other} instead")))
+            Err(Diagnostic::new(table.span(), title).help(format!("take {other} instead")))
         };
         match (sphere, cylinder, stl) {
             (Some(params), None, None) => {
@@ -178,21 +182,21 @@ impl Reader<'_> {
                 let (shape, file) = self.mesh(params)?;
                 Ok((shape, Some(file)))
             }
-            _ => Err(Complaint::new(
+            _ => Err(Diagnostic::new(
                 table.span(),
                 "`shape` must have exactly one of `sphere`, `cylinder`, `stl`",
             )),
         }
     }
 
-    fn sphere(&self, params: &SurfaceSphereParams) -> Result<SurfaceShape, Complaint> {
+    fn sphere(&self, params: &SurfaceSphereParams) -> Result<SurfaceShape, Diagnostic> {
         Ok(SurfaceShape::Sphere {
             centre: self.place("centre", params.centre.as_ref())?,
             radius: number(Some(&params.radius), "radius", 0.0, Allowed::Positive)?,
         })
     }
 
-    fn cylinder(&self, params: &SurfaceCylinderParams) -> Result<SurfaceShape, Complaint> {
+    fn cylinder(&self, params: &SurfaceCylinderParams) -> Result<SurfaceShape, Diagnostic> {
         Ok(SurfaceShape::Cylinder {
             centre: self.place("centre", params.centre.as_ref())?,
             axis: unit(params.axis.as_ref().map_or(Axis::Z, |axis| *axis.get_ref())),
@@ -201,7 +205,7 @@ impl Reader<'_> {
         })
     }
 
-    fn mesh(&self, params: &StlParams) -> Result<(SurfaceShape, SurfaceFile), Complaint> {
+    fn mesh(&self, params: &StlParams) -> Result<(SurfaceShape, SurfaceFile), Diagnostic> {
         let unit_length = number(Some(&params.unit), "unit", 0.0, Allowed::Positive)?;
         let at = self.place("at", params.at.as_ref())?;
         let path = self.folder.join(params.file.get_ref());
@@ -210,14 +214,14 @@ impl Reader<'_> {
                 "cannot take the surface `{}`: {cause}",
                 params.file.get_ref()
             );
-            Complaint::new(params.file.span(), title)
+            Diagnostic::new(params.file.span(), title)
         };
         let (mut soup, file) = stl::read(&path).map_err(|cause| {
-            let complaint = refuse(&cause.to_string());
+            let diagnostic = refuse(&cause.to_string());
             if cause.kind() == io::ErrorKind::NotFound {
-                missing_file(complaint, &path)
+                missing_file(diagnostic, &path)
             } else {
-                complaint
+                diagnostic
             }
         })?;
         if let Some(known) = params
@@ -229,7 +233,7 @@ impl Reader<'_> {
                 "the file {} is no longer the one that the case began with",
                 file.path
             );
-            return Err(Complaint::new(known.span(), title)
+            return Err(Diagnostic::new(known.span(), title)
                 .help("bring it back, or begin a new case without `sha256`"));
         }
         let turn = params.turn.as_ref();
@@ -245,16 +249,16 @@ impl Reader<'_> {
         Ok((SurfaceShape::Mesh(Arc::new(mesh)), file))
     }
 
-    fn spin(&self, table: &Spanned<RotationParams>) -> Result<Spin, Complaint> {
+    fn spin(&self, table: &Spanned<RotationParams>) -> Result<Spin, Diagnostic> {
         let params = table.get_ref();
         match self.dimension {
             1 => {
                 let title = "a 1-dimensional case has no rotation";
-                return Err(Complaint::new(table.span(), title));
+                return Err(Diagnostic::new(table.span(), title));
             }
             2 if *params.axis.get_ref() != Axis::Z => {
                 let title = "a 2-dimensional case turns about z alone";
-                return Err(Complaint::new(params.axis.span(), title));
+                return Err(Diagnostic::new(params.axis.span(), title));
             }
             2 => {}
             _ => {
@@ -269,7 +273,7 @@ impl Reader<'_> {
     }
 
     /// The unit normal.
-    fn normal(&self, params: &Spanned<NormalParams>) -> Result<[f64; 3], Complaint> {
+    fn normal(&self, params: &Spanned<NormalParams>) -> Result<[f64; 3], Diagnostic> {
         let mut normal = [0.0; 3];
         match params.get_ref() {
             NormalParams::Axis(word) => {
@@ -283,12 +287,12 @@ impl Reader<'_> {
                         self.dimension,
                         vector.len()
                     );
-                    return Err(Complaint::new(params.span(), title));
+                    return Err(Diagnostic::new(params.span(), title));
                 }
                 let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
                 if !(length > 0.0 && length.is_finite()) {
                     let title = "`normal` must be a vector of some length";
-                    return Err(Complaint::new(params.span(), title));
+                    return Err(Diagnostic::new(params.span(), title));
                 }
                 for (component, x) in normal.iter_mut().zip(vector) {
                     *component = x / length;
@@ -299,13 +303,13 @@ impl Reader<'_> {
     }
 
     /// A place (m); the origin if absent.
-    fn place(&self, key: &str, params: Option<&Place>) -> Result<[f64; 3], Complaint> {
+    fn place(&self, key: &str, params: Option<&Place>) -> Result<[f64; 3], Diagnostic> {
         vector(key, params, self.dimension)
     }
 }
 
 /// Says where a file was looked for, and which other one there may be meant.
-fn missing_file(complaint: Complaint, path: &Path) -> Complaint {
+fn missing_file(diagnostic: Diagnostic, path: &Path) -> Diagnostic {
     let text =
         |name: Option<&std::ffi::OsStr>| name.unwrap_or_default().to_string_lossy().into_owned();
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -315,10 +319,10 @@ fn missing_file(complaint: Complaint, path: &Path) -> Complaint {
         .collect();
     there.sort();
     let there: Vec<&str> = there.iter().map(String::as_str).collect();
-    let complaint = complaint.help(format!("it is looked for at {}", path.display()));
+    let diagnostic = diagnostic.help(format!("it is looked for at {}", path.display()));
     match nearest(&text(path.file_name()), &there) {
-        Some(name) => complaint.label(format!("did you mean `{name}`?")),
-        None => complaint,
+        Some(name) => diagnostic.label(format!("did you mean `{name}`?")),
+        None => diagnostic,
     }
 }
 

@@ -1,5 +1,5 @@
-//! `touch`: bodies moved until their outermost layers are one mean spacing apart, and bodies laid on
-//! rigid planes, half a spacing from them.
+//! `touch`: bodies moved until their outermost layers are one mean spacing apart, and bodies laid
+//! on rigid planes, half a spacing from them.
 
 use std::ops::Range;
 
@@ -7,14 +7,14 @@ use toml::Spanned;
 
 use super::in_dimension;
 use crate::input::schema::{BodyParams, Direction, TouchParams};
-use crate::input::source::Complaint;
+use crate::input::source::Diagnostic;
 use crate::model::{Axis, Body, RigidSurface, Shape, SurfaceShape, SymmetryPlane, Vec3};
 use crate::populate;
 
 /// A shape as near to a plane as this rests on it (spacings).
 const RESTING: f64 = 1e-3;
-/// What rounding does to places (spacings): bodies do not move for it, and begin as much farther from
-/// a plane than where it pushes.
+/// What rounding does to places (spacings): bodies do not move for it, and begin as much farther
+/// from a plane than where it pushes.
 const ROUNDING: f64 = 1e-9;
 
 /// Moves all bodies that touch others; a body moves after the one that it touches.
@@ -22,7 +22,7 @@ pub fn resolve(
     params: &[Spanned<BodyParams>],
     bodies: &mut [Body],
     dimension: usize,
-) -> Result<(), Complaint> {
+) -> Result<(), Diagnostic> {
     let mut waiting: Vec<(usize, usize, &TouchParams)> = Vec::new();
     for (index, table) in params.iter().enumerate() {
         if let Some(touch) = &table.get_ref().touch {
@@ -35,7 +35,7 @@ pub fn resolve(
             let target = bodies.iter().position(|b| b.name == *name);
             match target.filter(|target| *target != index) {
                 Some(target) => waiting.push((index, target, touch)),
-                None => return Err(Complaint::unknown(touch.body.span(), "body", name, names)),
+                None => return Err(Diagnostic::unknown(touch.body.span(), "body", name, names)),
             }
         }
     }
@@ -46,7 +46,7 @@ pub fn resolve(
             .partition(|(_, target, _)| !moving.contains(target));
         if let ([], Some((_, _, touch))) = (ready.as_slice(), later.first()) {
             let title = "bodies touch each other in a circle: one of them must stand still";
-            return Err(Complaint::new(touch.body.span(), title));
+            return Err(Diagnostic::new(touch.body.span(), title));
         }
         for (index, target, touch) in ready {
             let (axis, forward) = direction(
@@ -64,16 +64,16 @@ pub fn resolve(
     Ok(())
 }
 
-/// Moves bodies whose shapes rest on rigid planes until their outermost particles are where the planes
-/// begin to push, and then all that touch others. A lattice need not fill its shape, and stands in
-/// its middle; the layers of a close-packed one are not a spacing apart either.
+/// Moves bodies whose shapes rest on rigid planes until their outermost particles are where the
+/// planes begin to push, and then all that touch others. A lattice need not fill its shape, and
+/// stands in its middle; the layers of a close-packed one are not a spacing apart either.
 pub fn lay_on_planes(
     params: &[Spanned<BodyParams>],
     bodies: &mut [Body],
     planes: &[RigidSurface],
     symmetry: &[SymmetryPlane],
     dimension: usize,
-) -> Result<(), Complaint> {
+) -> Result<(), Diagnostic> {
     let mut moved = false;
     for (index, table) in params.iter().enumerate() {
         if table.get_ref().touch.is_some() {
@@ -96,8 +96,9 @@ pub fn lay_on_planes(
     Ok(())
 }
 
-/// The way (m) of a body into touch with the planes that its shape rests on. Zero if there are none, if
-/// no way leads to all of them, as between two plates, or if it led across a symmetry plane.
+/// The way (m) of a body into touch with the planes that its shape rests on. Zero if there are
+/// none, if no way leads to all of them, as between two plates, or if it led across a symmetry
+/// plane.
 fn way_to_planes<'a>(
     body: &Body,
     surfaces: impl Iterator<Item = &'a RigidSurface>,
@@ -132,7 +133,7 @@ pub fn direction(
     direction: Direction,
     at: Range<usize>,
     dimension: usize,
-) -> Result<(Axis, bool), Complaint> {
+) -> Result<(Axis, bool), Diagnostic> {
     let (axis, forward) = match direction {
         Direction::PlusX => (Axis::X, true),
         Direction::MinusX => (Axis::X, false),

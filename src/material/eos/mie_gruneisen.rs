@@ -15,12 +15,12 @@
 //!
 //! # Strong compression
 //!
-//! The fit has an end. N, the cold part, turns down beyond a `μ_N` where `dN/dμ = 0`, and D has
-//! a zero (at `μ = 1/(s₁ − 1)` for a straight Hugoniot) beyond which the pressure would fall
-//! again. So N keeps its largest value beyond `μ_N`, and D stays at or above
-//! [`SMALLEST_DENOMINATOR`]: the pressure stays continuous and finite, and never falls with
-//! density while `s₁ ≥ 1` and `s₂, s₃ ≥ 0`. For aluminium 2024, `μ_N = 1.18` is reached by the shock
-//! of a symmetric impact at 21 km/s; the floor of D lies at `μ = 2.66`.
+//! The fit has an end. N, the cold part, turns down beyond a `μ_N` where `dN/dμ = 0`, and D has a
+//! zero (at `μ = 1/(s₁ − 1)` for a straight Hugoniot) beyond which the pressure would fall again.
+//! So N keeps its largest value beyond `μ_N`, and D stays at or above [`SMALLEST_DENOMINATOR`]: the
+//! pressure stays continuous and finite, and never falls with density while `s₁ ≥ 1` and `s₂, s₃ ≥
+//! 0`. For aluminium 2024, `μ_N = 1.18` is reached by the shock of a symmetric impact at 21 km/s;
+//! the floor of D lies at `μ = 2.66`.
 
 use super::PointResponse;
 use crate::material::{at_least, at_most};

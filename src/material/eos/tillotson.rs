@@ -13,13 +13,13 @@
 //! p_v = a ρ e + [b ρ e/w + A μ exp(−β z)] exp(−α z²)
 //! ```
 //!
-//! and between the two energies the mean `[(e − e_iv) p_v + (e_cv − e) p_c]/(e_cv − e_iv)`.
-//! The branches meet in value, and at `μ = 0` in slope. Source: Tillotson (1962), *Metallic equations of state for
-//! hypervelocity impact*, GA-3216; in this form Melosh (1989), *Impact cratering*, appendix II, and
-//! Benz & Asphaug (1999), Icarus 142, 5.
+//! and between the two energies the mean `[(e − e_iv) p_v + (e_cv − e) p_c]/(e_cv − e_iv)`. The
+//! branches meet in value, and at `μ = 0` in slope. Source: Tillotson (1962), *Metallic equations
+//! of state for hypervelocity impact*, GA-3216; in this form Melosh (1989), *Impact cratering*,
+//! appendix II, and Benz & Asphaug (1999), Icarus 142, 5.
 //!
-//! Towards `e = −E₀ η²`, far below anything the fit knows, w would vanish: it stays at or above ½. The
-//! expanded cold branch bears any tension: a spall cut-off ends it.
+//! Towards `e = −E₀ η²`, far below anything the fit knows, w would vanish: it stays at or above ½.
+//! The expanded cold branch bears any tension: a spall cut-off ends it.
 
 use super::PointResponse;
 
@@ -31,7 +31,8 @@ law! {
     Tillotson {
         /// Coefficient a of the thermal pressure of a dense vapour (γ − 1 of the ideal gas).
         a: "",
-        /// Coefficient b of the thermal pressure: `a + b` is the Grüneisen parameter of the cold solid.
+        /// Coefficient b of the thermal pressure: `a + b` is the Grüneisen parameter of the cold
+        /// solid.
         b: "",
         /// Bulk modulus A (Pa).
         bulk_modulus: "Pa",

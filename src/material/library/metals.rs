@@ -1,6 +1,7 @@
 //! Metals: Mie–Grüneisen with von Mises, Johnson–Cook or Steinberg–Guinan strength.
 //!
-//! Von Mises strengths are the initial yield stress Y₀ of the Steinberg–Guinan model, kept constant.
+//! Von Mises strengths are the initial yield stress Y₀ of the Steinberg–Guinan model, kept
+//! constant.
 
 use super::{Parts, heat};
 use crate::material::{

@@ -32,8 +32,9 @@ pub trait Law: Listed {
     const NEEDS_TEMPERATURE: bool = false;
     /// Whether the law needs the melting temperature of the thermal constants.
     const NEEDS_MELTING: bool = false;
-    /// Whether what the law does follows density, temperature or damage. Such laws act in a function
-    /// of their own: inside that of the others they slow down those that have no need of them.
+    /// Whether what the law does follows density, temperature or damage. Such laws act in a
+    /// function of their own: inside that of the others they slow down those that have no need of
+    /// them.
     const FOLLOWS_STATE: bool = false;
 
     /// What is wrong with constants that are each within their range.

@@ -11,8 +11,8 @@
 //! F_Δ = (I − ½Δt L)⁻¹ (I + ½Δt L),    b̄ ← F_Δ b̄ F_Δᵀ / det^(1/3)
 //! ```
 //!
-//! with the mid-step velocity gradient L (second order; exact in simple shear, and a rotation of any
-//! size turns b̄ by a rotation), then reads S off again. A closed cycle of strain returns to no
+//! with the mid-step velocity gradient L (second order; exact in simple shear, and a rotation of
+//! any size turns b̄ by a rotation), then reads S off again. A closed cycle of strain returns to no
 //! stress: the law has a potential, which the Jaumann rate has not.
 
 use super::{Conditions, LANES, Lanes, Law, PointBatch};

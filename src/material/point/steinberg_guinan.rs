@@ -10,8 +10,9 @@
 //!
 //! where `A = G'_p/G₀` and `B = −G'_T/G₀`; above `T_m` both are zero, and so they are where the fit
 //! would be negative. Source: Steinberg, Cochran & Guinan (1980), *A constitutive model for metals
-//! applicable at high-strain rate*, J. Appl. Phys. 51, 1498, whose assumption `Y'_p/Y₀ = G'_p/G₀` is
-//! part of this form. It holds above some 1e5/s, where the flow stress no longer follows the rate.
+//! applicable at high-strain rate*, J. Appl. Phys. 51, 1498, whose assumption `Y'_p/Y₀ = G'_p/G₀`
+//! is part of this form. It holds above some 1e5/s, where the flow stress no longer follows the
+//! rate.
 //!
 //! `T_m0` is a constant of the fit, above the melting point at zero pressure.
 
@@ -19,7 +20,8 @@ use super::{Conditions, Contradiction, LANES, Law, PointBatch, jaumann, radial_r
 use crate::material::{at_least, at_most};
 
 law! {
-    /// Elastic–plastic with a shear modulus and a yield stress that follow pressure and temperature.
+    /// Elastic–plastic with a shear modulus and a yield stress that follow pressure and
+    /// temperature.
     SteinbergGuinan {
         /// Shear modulus G₀ of the reference state (Pa).
         shear_modulus: "Pa",

@@ -1,8 +1,8 @@
 //! Checkpoints: the whole state of a run, bit for bit, in a folder that is whole or absent.
 //!
-//! `step-NNNNNNNN/` holds `state.h5` (each state field in id order, the caller's own state and
-//! the resolved input as text) and `manifest.json` (sizes and digests). It is written under
-//! another name and renamed at the end; an older one of the same step is called `.old` meanwhile, and
+//! `step-NNNNNNNN/` holds `state.h5` (each state field in id order, the caller's own state and the
+//! resolved input as text) and `manifest.json` (sizes and digests). It is written under another
+//! name and renamed at the end; an older one of the same step is called `.old` meanwhile, and
 //! counts as long as there is no other. Any number of ranks may read it.
 
 mod folder;

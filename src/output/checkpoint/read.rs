@@ -26,8 +26,8 @@ pub struct Restored {
     pub by: String,
 }
 
-/// Reads a checkpoint: each rank gets an even share of the particles in id order into `store`, in
-/// the fields that the file holds and no others; the caller sizes what else its case uses
+/// Reads a checkpoint: each rank gets an even share of the particles in id order into `particles`,
+/// in the fields that the file holds and no others; the caller sizes what else its case uses
 /// ([`ParticleStore::resize_owned`]) and moves the particles to their owners. Collective. Digests
 /// are checked before HDF5 sees the file, so that what HDF5 meets afterwards is no damage.
 ///
@@ -38,7 +38,7 @@ pub struct Restored {
 pub fn read(
     comm: &Comm,
     folder: &Path,
-    store: &mut ParticleStore,
+    particles: &mut ParticleStore,
 ) -> Result<Restored, OutputError> {
     let manifest = from_root(comm, || manifest(folder))?;
     let state = state_file(folder);
@@ -47,14 +47,14 @@ pub fn read(
     let file = agree(comm, Content::open_shared(comm, &state))?;
     let fields = agree(comm, check_content(&file, &manifest))?;
     let block = Block::even(manifest.particles, comm.rank(), comm.size());
-    store.resize_owned_in(&fields, block.count);
+    particles.resize_owned_in(&fields, block.count);
     for field in fields {
         let row = row_type(field.kind);
         let path = format!("{FIELDS}/{}", field.name);
-        let bytes = &mut store.bytes_mut(field.id)[..block.count * row.bytes()];
+        let bytes = &mut particles.bytes_mut(field.id)[..block.count * row.bytes()];
         agree(comm, file.rows(&path, row, block, bytes))?;
     }
-    check_ids(comm, &state, &store.id)?;
+    check_ids(comm, &state, &particles.id)?;
     Ok(Restored {
         step: manifest.step,
         time: manifest.time,
@@ -131,7 +131,8 @@ fn check_content(
     }
 }
 
-/// Refuses rows that do not stand in the order of their ids, each rank having its block. Collective.
+/// Refuses rows that do not stand in the order of their ids, each rank having its block.
+/// Collective.
 fn check_ids(comm: &Comm, state: &Path, ids: &[u64]) -> Result<(), OutputError> {
     // The last id before each rank's block, if any stands there.
     let mut lasts = Vec::new();

@@ -34,7 +34,7 @@ pub struct Meta<'a> {
 pub fn write(
     comm: &Comm,
     folder: &Path,
-    store: &ParticleStore,
+    particles: &ParticleStore,
     meta: &Meta,
     keep: usize,
     rows: &mut Rows,
@@ -45,7 +45,7 @@ pub fn write(
         files::remove(&temporary)?;
         fs::create_dir_all(&temporary).map_err(OutputError::io("create the folder", &temporary))
     })?;
-    let written = write_parts(comm, &temporary, store, meta, rows);
+    let written = write_parts(comm, &temporary, particles, meta, rows);
     settle(comm, written, &temporary, || {
         replace(&temporary, &path)?;
         prune(folder, meta.step, keep)
@@ -56,12 +56,12 @@ pub fn write(
 fn write_parts(
     comm: &Comm,
     folder: &Path,
-    store: &ParticleStore,
+    particles: &ParticleStore,
     meta: &Meta,
     rows: &mut Rows,
 ) -> Result<(), OutputError> {
     let state = state_file(folder);
-    rows.plan(comm, &store.id[..store.owned()])?;
+    rows.plan(comm, &particles.id[..particles.owned()])?;
     let file = Writer::create(comm, &state)?;
     file.number("/", "format", &FORMAT)?;
     file.number("/", "step", &meta.step)?;
@@ -69,13 +69,13 @@ fn write_parts(
     file.text("/state", meta.state)?;
     file.text("/input", meta.input)?;
     file.group(FIELDS)?;
-    for field in store.held(Life::State) {
+    for field in particles.held(Life::State) {
         let row = row_type(field.kind);
         let path = format!("{FIELDS}/{}", field.name);
         let block = rows.block();
         let bytes = rows.collect(
             comm,
-            &store.bytes(field.id)[..row.bytes() * store.owned()],
+            &particles.bytes(field.id)[..row.bytes() * particles.owned()],
             row.bytes(),
         );
         file.rows(&path, row, block, bytes)?;

@@ -95,8 +95,8 @@ impl Content {
         })
     }
 
-    /// Reads a block of a dataset's rows, of the type that [`Self::array`] told, into `bytes`, which
-    /// is as long.
+    /// Reads a block of a dataset's rows, of the type that [`Self::array`] told, into `bytes`,
+    /// which is as long.
     ///
     /// # Errors
     /// [`OutputError::Hdf5`].

@@ -167,7 +167,7 @@ impl SnapshotFile {
     /// A whole number that is an attribute of a group, such as `dimension` of `/whipple`.
     ///
     /// # Errors
-    /// [`ReadError::Layout`] if the group or the attribute is missing or no number.
+    /// [`ReadError::Layout`] if the group or the attribute is missing or not a number.
     pub fn number(&self, group: &str, name: &str) -> Result<u64, ReadError> {
         let number = self.gate.group(group).and_then(|g| gate::number(&g, name));
         self.told(&format!("attribute {name} of {group}"), number)

@@ -46,7 +46,8 @@ pub(super) fn write_rows(
     })
 }
 
-/// Reads a block of a dataset's rows into `bytes`, unconverted: `row` is what [`super::gate`] found.
+/// Reads a block of a dataset's rows into `bytes`, unconverted: `row` is what [`super::gate`]
+/// found.
 pub(super) fn read_rows(
     dataset: &Dataset,
     row: RowType,

@@ -218,9 +218,10 @@ impl<'a> Writer<'a> {
 }
 
 impl Drop for Writer<'_> {
-    /// Gives back the room of a file that met an error, but leaves it open on all ranks. HDF5 may not
-    /// be able to write its records, and then crashes, at once or when MPI ends and with it HDF5: so
-    /// nobody closes the file, and the job must end without the end of MPI, see [`abandoned`].
+    /// Gives back the room of a file that met an error, but leaves it open on all ranks. HDF5 may
+    /// not be able to write its records, and then crashes, at once or when MPI ends and with it
+    /// HDF5: so nobody closes the file, and the job must end without the end of MPI, see
+    /// [`abandoned`].
     fn drop(&mut self) {
         let Some(file) = self.file.take() else { return };
         if self.comm.is_root() {

@@ -18,8 +18,8 @@ pub struct Series {
     pub rows: Vec<usize>,
 }
 
-/// The series of a table of which `drawn` are the columns that are drawn, in the order in which they
-/// begin; of a pair its own alone.
+/// The series of a table of which `drawn` are the columns that are drawn, in the order in which
+/// they begin; of a pair its own alone.
 ///
 /// # Errors
 /// What is wrong: the table has no pairs, or not this one.

@@ -91,8 +91,8 @@ pub struct Tables {
 }
 
 impl Tables {
-    /// Draws curves through the rows of each table, one for each series of it, and rings for measured
-    /// points.
+    /// Draws curves through the rows of each table, one for each series of it, and rings for
+    /// measured points.
     ///
     /// # Errors
     /// [`PlotError::Table`] if a table or a column cannot be read, or has no such pair.

@@ -1,7 +1,7 @@
 //! The matter that particles stand for: which body fills a place, and the field there.
 //!
-//! A particle fills a cell about it of its own size s, the spacing of the volume it has now. Each has
-//! the weight
+//! A particle fills a cell about it of its own size s, the spacing of the volume it has now. Each
+//! has the weight
 //!
 //! ```text
 //! w(r) = ((2 − r²/s²)/(2 − 1/4))⁴   for r < √2 s, else 0 ,
@@ -12,8 +12,8 @@
 //! makes 2 w(s/√2) and 4 w(√3/2 s) one, too: the free surface is plane, .50 to .55 spacings
 //! outside the outermost layer, and the sum inside is two or more, without holes.
 //!
-//! Bodies are told apart: the one with the largest sum fills the place, so that the line between two
-//! bodies in touch is smooth, and a gap between them is not filled by both together.
+//! Bodies are told apart: the one with the largest sum fills the place, so that the line between
+//! two bodies in touch is smooth, and a gap between them is not filled by both together.
 
 use super::view::View;
 
@@ -64,7 +64,8 @@ pub struct Sample {
     pub value: Option<f64>,
 }
 
-/// The cells of a part of a plane, found by place: each stands in all tiles that its weight reaches.
+/// The cells of a part of a plane, found by place: each stands in all tiles that its weight
+/// reaches.
 #[derive(Debug)]
 pub struct Tiles<'a> {
     cells: &'a [Cell],

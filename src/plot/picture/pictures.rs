@@ -207,8 +207,8 @@ fn drawn_as(request: &Request) -> Result<DrawnAs, PlotError> {
     }
 }
 
-/// The numbers in the picture of a snapshot's bodies: those of the same name, of which `known` takes
-/// up new ones.
+/// The numbers in the picture of a snapshot's bodies: those of the same name, of which `known`
+/// takes up new ones.
 fn numbers(bodies: &[String], known: &mut Vec<String>) -> Vec<usize> {
     let number = |name: &String| {
         known.iter().position(|n| n == name).unwrap_or_else(|| {

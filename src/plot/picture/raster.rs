@@ -38,8 +38,8 @@ struct Panel<'a, C> {
 }
 
 impl Raster {
-    /// Draws cells, which stand body by body, in the colours that `colour` gives, with outlines that
-    /// reach beyond bodies by `line` (pixels).
+    /// Draws cells, which stand body by body, in the colours that `colour` gives, with outlines
+    /// that reach beyond bodies by `line` (pixels).
     pub fn new(
         cells: &[Cell],
         view: View,

@@ -192,8 +192,8 @@ impl Cut {
         0.5 * self.thickness.unwrap_or(default)
     }
 
-    /// Position along the picture's axes and distance from the plane (m) of a point that lies within
-    /// `half` (m) of it.
+    /// Position along the picture's axes and distance from the plane (m) of a point that lies
+    /// within `half` (m) of it.
     fn flatten(&self, point: &[f64; 3], half: f64, spacing: f64) -> Option<[f64; 3]> {
         let distance = point[self.plane.axis.index()] - self.plane.position;
         let [right, up] = self.plane.picture_axes();

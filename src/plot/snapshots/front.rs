@@ -1,11 +1,11 @@
-//! The front of a body over time: how far the largest piece of it reaches along an axis.
+//! The front of a body over time: how far the largest fragment of it reaches along an axis.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use super::field::Shown;
 use super::snapshot::Snapshot;
-use crate::diagnose::pieces;
+use crate::diagnose::fragments;
 use crate::model::Axis;
 use crate::plot::PlotError;
 
@@ -53,11 +53,11 @@ impl Direction {
     }
 }
 
-/// The front of a body in some snapshots, as a table: `time,front_x`, or `front_minus_x` against the
-/// axis.
+/// The front of a body in some snapshots, as a table: `time,front_x`, or `front_minus_x` against
+/// the axis.
 ///
-/// Each row is a time (s) and the largest coordinate (m) of the body's largest connected piece
-/// ([`pieces::front`]); against the axis the smallest.
+/// Each row is a time (s) and the largest coordinate (m) of the body's largest connected fragment
+/// ([`fragments::front`]); against the axis the smallest.
 ///
 /// # Errors
 /// [`PlotError::Body`] if there is no such body, [`PlotError::Read`] if a snapshot cannot be read.
@@ -86,7 +86,7 @@ pub fn front(snapshots: &[PathBuf], body: &str, direction: Direction) -> Result<
                 point
             }));
         }
-        let front = pieces::front(&points, axis, snapshot.spacings[wanted]);
+        let front = fragments::front(&points, axis, snapshot.spacings[wanted]);
         if let Some(front) = front {
             let _ = writeln!(table, "{:?},{:?}", snapshot.time, sign * front);
         }

@@ -25,8 +25,8 @@ pub struct Snapshot {
     pub dimension: i32,
     /// Particle spacing Δp of each body (m).
     pub spacings: Vec<f64>,
-    /// Initial density ρ₀ of each body (kg/m³), of which a particle's mass is `ρ₀ Δp^d`; snapshots of
-    /// older versions do not say it.
+    /// Initial density ρ₀ of each body (kg/m³), of which a particle's mass is `ρ₀ Δp^d`; snapshots
+    /// of older versions do not say it.
     densities: Option<Vec<f64>>,
     /// Which bodies are rigid.
     pub rigid: Vec<bool>,
@@ -137,8 +137,8 @@ impl Snapshot {
         values.into_iter().map(index).collect()
     }
 
-    /// Which of some rows are part of the model still: those that are not frozen. A picture of a run
-    /// that freezes particles is that of one which removes them.
+    /// Which of some rows are part of the model still: those that are not frozen. A picture of a
+    /// run that freezes particles is that of one which removes them.
     pub fn active(&self, rows: Range<usize>) -> Result<Vec<bool>, PlotError> {
         if !self.freezes {
             return Ok(vec![true; rows.len()]);
@@ -162,9 +162,9 @@ impl Snapshot {
         Ok(extents)
     }
 
-    /// Size of some particles: the spacing of the volume that they have now, `(m/ρ)^(1/d)` (m), from
-    /// a quarter of their first spacing to [`LARGEST`] of it. Where the snapshot does not hold the
-    /// density, or it is no number, the first spacing itself.
+    /// Size of some particles: the spacing of the volume that they have now, `(m/ρ)^(1/d)` (m),
+    /// from a quarter of their first spacing to [`LARGEST`] of it. Where the snapshot does not hold
+    /// the density, or it is NaN, the first spacing itself.
     pub fn sizes(&self, rows: Range<usize>, bodies: &[usize]) -> Result<Vec<f64>, PlotError> {
         let spacings = bodies.iter().map(|&body| self.spacings[body]);
         let (Some(first), true) = (&self.densities, self.has("density")?) else {

@@ -226,8 +226,8 @@ fn large_bodies_are_not_walked() {
     }
 }
 
-/// Ranks that count together look each at its part of the rows, and one that fills its slab at those
-/// of the slab.
+/// Ranks that count together look each at its part of the rows, and one that fills its slab at
+/// those of the slab.
 #[test]
 fn a_rank_visits_its_part_only() {
     let parts = 16;

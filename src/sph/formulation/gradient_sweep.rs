@@ -1,5 +1,5 @@
-//! The first sweep of the formulations whose stress stands at the particles: velocity gradients, and
-//! the material's answer to them.
+//! The first sweep of the formulations whose stress stands at the particles: velocity gradients,
+//! and the material's answer to them.
 
 use rayon::prelude::*;
 
@@ -14,8 +14,8 @@ use crate::sph::sums::{Sums, sources, with_scale};
 
 /// How a formulation makes velocity gradients.
 pub(super) trait Gradient: Sync {
-    /// Velocity gradients (1/s, row-major) of the receivers of a cluster, `around` which its neighbours
-    /// stand.
+    /// Velocity gradients (1/s, row-major) of the receivers of a cluster, `around` which its
+    /// neighbours stand.
     fn of<V: Lanes, S: PairScale>(
         &self,
         cluster: &Cluster,

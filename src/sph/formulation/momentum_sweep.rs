@@ -15,8 +15,8 @@ use crate::sph::step::Side;
 use crate::sph::sums::{FromMirrors, Sums, sources, with_scale};
 use crate::sph::terms::{NORMALISED, PairTerms, XSPH, with_terms};
 
-/// The sweep over the clusters of a side with a set of pair terms, after stresses and terms have been
-/// shown; `normalised` holds the stresses along corrected gradients, if any.
+/// The sweep over the clusters of a side with a set of pair terms, after stresses and terms have
+/// been shown; `normalised` holds the stresses along corrected gradients, if any.
 pub(super) fn accelerate(
     sums: &mut Sums,
     (set, normalised): (u8, &[NormalisedRecord]),
@@ -78,20 +78,20 @@ struct ForceTarget<'a> {
 }
 
 impl<'a> ForceTarget<'a> {
-    fn new(store: &'a mut ParticleStore, images: &'a [Image]) -> Self {
-        let correction = &mut store.velocity_correction;
+    fn new(particles: &'a mut ParticleStore, images: &'a [Image]) -> Self {
+        let correction = &mut particles.velocity_correction;
         Self {
             images,
-            mass: &store.mass,
-            acceleration: Scatter::new(&mut store.acceleration),
-            power: Scatter::new(&mut store.d_specific_energy_dt),
-            approach: Scatter::new(&mut store.approach_speed),
+            mass: &particles.mass,
+            acceleration: Scatter::new(&mut particles.acceleration),
+            power: Scatter::new(&mut particles.d_specific_energy_dt),
+            approach: Scatter::new(&mut particles.approach_speed),
             correction: (!correction.is_empty()).then(|| Scatter::new(correction)),
             stress_power: StressPower::new(
-                &store.pressure,
-                &store.deviatoric_stress,
-                &store.velocity_gradient,
-                &store.predicted_density,
+                &particles.pressure,
+                &particles.deviatoric_stress,
+                &particles.velocity_gradient,
+                &particles.predicted_density,
             ),
         }
     }
@@ -185,11 +185,11 @@ impl<S: PairScale, const TERMS: u8> Vectorised for MomentumChunk<'_, S, TERMS> {
             if !among.mirrors {
                 continue;
             }
-            let FromMirrors { places, forces } = &mut *self.from_mirrors;
+            let FromMirrors { indices, forces } = &mut *self.from_mirrors;
             let is_image = |&j: &u32| self.sources.mirrored[j as usize] & 1 == 1;
-            places.clear();
-            places.extend(neighbours.iter().copied().filter(is_image));
-            let part = Self::sum::<V>(self.motion, &self.sources, cluster, places).acceleration;
+            indices.clear();
+            indices.extend(neighbours.iter().copied().filter(is_image));
+            let part = Self::sum::<V>(self.motion, &self.sources, cluster, indices).acceleration;
             for k in 0..cluster.lanes {
                 let mass = target.mass[target.images[cluster.receivers[k] as usize].base()];
                 forces.push([

@@ -1,5 +1,5 @@
-//! The normalised formulation: corrected gradients in the first sweep, and the power of stresses whose
-//! forces are their adjoint.
+//! The normalised formulation: corrected gradients in the first sweep, and the power of stresses
+//! whose forces are their adjoint.
 
 use rayon::prelude::*;
 
@@ -76,16 +76,16 @@ impl Formulation for Normalised {
 }
 
 impl SignalSpeed for Normalised {
-    /// A correction that enlarges gradients more than those of plain surfaces do raises frequencies as
-    /// much.
+    /// A correction that enlarges gradients more than those of plain surfaces do raises frequencies
+    /// as much.
     #[inline(always)]
     fn speed(signals: &Signals, i: usize, plain: f64) -> f64 {
         plain * (signals.correction_norm[i] / SURFACE_CORRECTION).max(1.0)
     }
 }
 
-/// Corrected gradients, and where corrections go. Gradients of particles that move alike are zero too,
-/// but their corrections are of use.
+/// Corrected gradients, and where corrections go. Gradients of particles that move alike are zero
+/// too, but their corrections are of use.
 struct CorrectedGradient<'a> {
     dimension: usize,
     images: &'a [Image],
@@ -121,13 +121,13 @@ impl Gradient for CorrectedGradient<'_> {
 }
 
 /// What an image shows of its stress and correction.
-fn record(store: &ParticleStore, image: Image) -> NormalisedRecord {
+fn record(particles: &ParticleStore, image: Image) -> NormalisedRecord {
     let (i, code) = (image.base(), image.code());
     let own = NormalisedRecord::new(
-        store.pressure[i],
-        &store.deviatoric_stress[i],
-        &store.gradient_correction[i],
-        &store.gradient_shift[i],
+        particles.pressure[i],
+        &particles.deviatoric_stress[i],
+        &particles.gradient_correction[i],
+        &particles.gradient_shift[i],
     );
     NormalisedRecord {
         stress: Mirrors::reflect_tensor(&own.stress, code),

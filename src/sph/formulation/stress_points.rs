@@ -82,9 +82,9 @@ impl Formulation for StressPoints {
         }));
     }
 
-    /// The rest of the drift of stress points in a step `dt` (s), which have moved by their velocity
-    /// and by gravity: their mean velocity in the step is as much later than the last as that was
-    /// later than the one before.
+    /// The rest of the drift of stress points in a step `dt` (s), which have moved by their
+    /// velocity and by gravity: their mean velocity in the step is as much later than the last as
+    /// that was later than the one before.
     fn drift(&self, particles: &mut ParticleStore, dt: f64, gravity: &[f64; 3]) {
         let points = (
             &mut particles.position,
@@ -196,7 +196,7 @@ impl<S: PairScale> Vectorised for PullChunk<'_, S> {
 
     #[inline(always)]
     fn run<V: Lanes>(self) {
-        let FromMirrors { places, forces } = self.from_mirrors;
+        let FromMirrors { indices, forces } = self.from_mirrors;
         for (cluster, neighbours, among) in self.chunk.iter() {
             if !self.side.takes(among.halo) || cluster.group >= self.body_groups {
                 continue;
@@ -211,12 +211,12 @@ impl<S: PairScale> Vectorised for PullChunk<'_, S> {
             // along the plane.
             for axis in 0..3 {
                 let behind = |&j: &u32| self.sources.images[j as usize].code() >> axis & 1 == 1;
-                places.clear();
-                places.extend(neighbours.iter().copied().filter(behind));
-                if places.is_empty() {
+                indices.clear();
+                indices.extend(neighbours.iter().copied().filter(behind));
+                if indices.is_empty() {
                     continue;
                 }
-                let part = Self::sum::<V>(self.motion, &self.sources, cluster, places).force[axis];
+                let part = Self::sum::<V>(self.motion, &self.sources, cluster, indices).force[axis];
                 for k in 0..cluster.lanes {
                     let mut force = [0.0; 3];
                     force[axis] = 2.0 * part.0[k];

@@ -1,5 +1,5 @@
-//! Artificial stress (Monaghan 2000; Gray, Monaghan & Swift 2001): pairs in tension repel each other,
-//! the nearer the more.
+//! Artificial stress (Monaghan 2000; Gray, Monaghan & Swift 2001): pairs in tension repel each
+//! other, the nearer the more.
 
 use super::TermRecord;
 use crate::domain::Mirrors;

@@ -37,8 +37,8 @@ impl<V: Lanes> Lane<V> {
     }
 }
 
-/// The rest of the drift of a step `dt` (s). The mean velocity of the neighbours is that of the last
-/// sums, taken with the velocities predicted for the beginning of this step.
+/// The rest of the drift of a step `dt` (s). The mean velocity of the neighbours is that of the
+/// last sums, taken with the velocities predicted for the beginning of this step.
 ///
 /// Particles that feel contact move with their own velocity: the energy of contact is a
 /// function of their positions, and its balance holds only where force times velocity is work.

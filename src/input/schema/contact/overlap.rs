@@ -4,7 +4,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::{DirectionName, Shared, direction};
-use crate::input::source::Complaint;
+use crate::input::source::Diagnostic;
 use crate::input::validate::check::{Allowed, number};
 use crate::model::Overlap;
 
@@ -24,7 +24,7 @@ optional_tables! {
 
 impl OverlapParams {
     /// The parameters, with those of `base` where the table has none.
-    pub(super) fn law(&self, base: Overlap, shared: &Shared) -> Result<Overlap, Complaint> {
+    pub(super) fn law(&self, base: Overlap, shared: &Shared) -> Result<Overlap, Diagnostic> {
         let (stiffness, core) = (self.stiffness.as_ref(), self.core_stiffness.as_ref());
         let (radius, one) = (self.core_radius.as_ref(), Allowed::Within(0.0, 1.0));
         Ok(Overlap {

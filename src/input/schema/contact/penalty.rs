@@ -4,7 +4,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::Shared;
-use crate::input::source::Complaint;
+use crate::input::source::Diagnostic;
 use crate::input::validate::check::{Allowed, number};
 use crate::model::{Penalty, PenaltyLaw};
 
@@ -30,7 +30,7 @@ choices! {
 
 impl PenaltyParams {
     /// The parameters, with those of `base` where the table has none.
-    pub(super) fn law(&self, base: Penalty, shared: &Shared) -> Result<Penalty, Complaint> {
+    pub(super) fn law(&self, base: Penalty, shared: &Shared) -> Result<Penalty, Diagnostic> {
         let stiffness = self.stiffness.as_ref();
         Ok(Penalty {
             stiffness: number(stiffness, "stiffness", base.stiffness, Allowed::Positive)?,

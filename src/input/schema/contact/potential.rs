@@ -4,7 +4,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::{DirectionName, Shared, direction};
-use crate::input::source::Complaint;
+use crate::input::source::Diagnostic;
 use crate::input::validate::check::{Allowed, number};
 use crate::model::{Potential, PotentialRange};
 
@@ -38,7 +38,7 @@ choices! {
 
 impl PotentialParams {
     /// The parameters, with those of `base` where the table has none.
-    pub(super) fn law(&self, base: Potential, shared: &Shared) -> Result<Potential, Complaint> {
+    pub(super) fn law(&self, base: Potential, shared: &Shared) -> Result<Potential, Diagnostic> {
         let stiffness = self.stiffness.as_ref();
         let potential = Potential {
             stiffness: number(stiffness, "stiffness", base.stiffness, Allowed::Positive)?,
@@ -56,7 +56,7 @@ impl PotentialParams {
 }
 
 /// The exponent of the contact potential.
-fn exponent(value: Option<&Spanned<i64>>, base: u32) -> Result<u32, Complaint> {
+fn exponent(value: Option<&Spanned<i64>>, base: u32) -> Result<u32, Diagnostic> {
     let Some(value) = value else {
         return Ok(base);
     };
@@ -64,12 +64,12 @@ fn exponent(value: Option<&Spanned<i64>>, base: u32) -> Result<u32, Complaint> {
     let allowed = exponent.filter(|n| (1..=LARGEST_EXPONENT).contains(n));
     allowed.ok_or_else(|| {
         let title = format!("`exponent` must be between 1 and {LARGEST_EXPONENT}");
-        Complaint::new(value.span(), title).label("out of range")
+        Diagnostic::new(value.span(), title).label("out of range")
     })
 }
 
 /// The force that sets in at the spacing is that of the exponent less that of an exponent of one.
-fn check_range(params: &PotentialParams, potential: &Potential) -> Result<(), Complaint> {
+fn check_range(params: &PotentialParams, potential: &Potential) -> Result<(), Diagnostic> {
     if potential.range == PotentialRange::Support || potential.exponent > 1 {
         return Ok(());
     }
@@ -81,5 +81,5 @@ fn check_range(params: &PotentialParams, potential: &Potential) -> Result<(), Co
     let at = spans.into_iter().flatten().next().unwrap_or_default();
     let title = "a potential of `range = \"spacing\"` needs an `exponent` of 2 or more";
     let help = "with 1 its force would begin with a jump: take \"support\", or a larger exponent";
-    Err(Complaint::new(at, title).help(help))
+    Err(Diagnostic::new(at, title).help(help))
 }

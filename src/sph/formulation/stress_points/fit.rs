@@ -18,7 +18,7 @@ use crate::sph::step::Step;
 use crate::sph::sums::{Sums, sources, with_scale};
 
 /// Where the first sweep writes what it finds at stress points: velocities, and the geometry of
-/// fits in place of the moments that follow from it.
+/// fits in index of the moments that follow from it.
 struct FitTarget<'a> {
     moment: Scatter<'a, [f64; 9]>,
     offset: Scatter<'a, [f64; 3]>,
@@ -67,9 +67,9 @@ impl FitTarget<'_> {
         mid_step(&predicted, last, self.step.dt, self.step.last_dt)
     }
 
-    /// What stress point `i` has heated less (J/kg) in the kicks about the beginning of this step, by
-    /// `rate` (W/kg) at the predicted velocity, than at the mean of the mid-step velocities before
-    /// and after, whose gradients there were `last` and `next` (1/s).
+    /// What stress point `i` has heated less (J/kg) in the kicks about the beginning of this step,
+    /// by `rate` (W/kg) at the predicted velocity, than at the mean of the mid-step velocities
+    /// before and after, whose gradients there were `last` and `next` (1/s).
     #[inline(always)]
     fn late_heat(&self, i: usize, fit: &Fit, rate: f64, last: &[f64; 9], next: &[f64; 9]) -> f64 {
         let mut mean = [0.0; 9];
@@ -133,8 +133,8 @@ impl<S: PairScale> Vectorised for FitChunk<'_, S> {
     }
 }
 
-/// First sweep: velocities and strain rates at stress points, and the material there. Gives the number
-/// of fits without enough neighbours.
+/// First sweep: velocities and strain rates at stress points, and the material there. Gives the
+/// number of fits without enough neighbours.
 pub(super) fn strain(
     sums: &mut Sums,
     particles: &mut ParticleStore,

@@ -1,4 +1,4 @@
-//! Pieces that particles hang together in, and where the front of the largest is.
+//! Fragments that particles hang together in, and where the front of the largest is.
 
 /// The sets of points that hang together: each is nearer than `reach` (m) to another of its set.
 /// As indices, the largest set first, equals in the order of their first points; points that are
@@ -7,7 +7,7 @@
 /// # Panics
 /// If `reach` is not positive.
 #[must_use]
-pub fn pieces(points: &[[f64; 3]], reach: f64) -> Vec<Vec<usize>> {
+pub fn fragments(points: &[[f64; 3]], reach: f64) -> Vec<Vec<usize>> {
     assert!(reach > 0.0, "a reach of {reach} m");
     let cells = Cells::new(points, reach);
     let mut reached = vec![false; points.len()];
@@ -17,29 +17,29 @@ pub fn pieces(points: &[[f64; 3]], reach: f64) -> Vec<Vec<usize>> {
             continue;
         }
         reached[first] = true;
-        let mut piece = vec![first];
+        let mut fragment = vec![first];
         let mut next = 0;
-        while let Some(&i) = piece.get(next) {
+        while let Some(&i) = fragment.get(next) {
             next += 1;
             cells.about(&points[i], |j| {
                 if !reached[j] && distance_squared(&points[i], &points[j]) < reach * reach {
                     reached[j] = true;
-                    piece.push(j);
+                    fragment.push(j);
                 }
             });
         }
-        found.push(piece);
+        found.push(fragment);
     }
-    found.sort_by_key(|piece| std::cmp::Reverse(piece.len()));
+    found.sort_by_key(|fragment| std::cmp::Reverse(fragment.len()));
     found
 }
 
-/// The largest coordinate (m) along an axis of the largest of the [`pieces`], half a `spacing`
+/// The largest coordinate (m) along an axis of the largest of the [`fragments`], half a `spacing`
 /// (m) beyond its outermost centre; points within one and a half spacings hang together. `None`
 /// without points.
 #[must_use]
 pub fn front(points: &[[f64; 3]], axis: usize, spacing: f64) -> Option<f64> {
-    let bulk = pieces(points, 1.5 * spacing).into_iter().next()?;
+    let bulk = fragments(points, 1.5 * spacing).into_iter().next()?;
     let outermost = bulk.iter().map(|&i| points[i][axis]).reduce(f64::max);
     outermost.map(|x| x + 0.5 * spacing)
 }
@@ -98,11 +98,11 @@ mod tests {
         points.push([11.0, 0.0, 0.0]);
         points.push([12.0, 0.0, 0.0]);
         points.push([f64::NAN, 0.0, 0.0]);
-        let found = pieces(&points, 1.5);
+        let found = fragments(&points, 1.5);
         assert_eq!(found.iter().map(Vec::len).collect::<Vec<_>>(), [10, 2]);
         assert_eq!(front(&points, 0, 1.0), Some(9.5));
         points.push([10.0, 0.9, 0.0]);
-        assert_eq!(pieces(&points, 1.5).len(), 1);
+        assert_eq!(fragments(&points, 1.5).len(), 1);
         assert_eq!(front(&points, 0, 1.0), Some(12.5));
         assert_eq!(front(&[], 0, 1.0), None);
     }

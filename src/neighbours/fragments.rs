@@ -1,35 +1,36 @@
-//! Own neighbours that are none: particles of another part of the same body leave the lists of the
-//! SPH sums and become foreign ones. Lists whose particles are all of one part stay as they are.
+//! Own neighbours that are none: particles of another fragment of the same body leave the lists of
+//! the SPH sums and become foreign ones. Lists whose particles are all of one fragment stay as they
+//! are.
 
 use super::cluster::{Among, Cluster, Lists};
 use super::pairs::PairList;
 use crate::numerics::lanes::LANES;
 
-/// The part of a body that an image belongs to.
+/// The fragment of a body that an image belongs to.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
-pub struct Part {
-    /// Smallest id of the part's particles.
+pub struct Fragment {
+    /// Smallest id of its particles.
     pub label: u64,
-    /// Code of the symmetry planes behind which the image stands and that do not cut the part.
+    /// Code of the symmetry planes behind which the image stands and that do not cut the fragment.
     pub code: u64,
 }
 
-/// What tells particles of one part from strangers.
+/// What tells particles of one fragment from strangers.
 #[derive(Debug, Clone, Copy)]
-pub struct Kin<'a> {
-    /// Parts of the images, by their places.
-    pub parts: &'a [Part],
-    /// Places of the images at the start, where those that began farther from each other than one
+pub struct Membership<'a> {
+    /// Fragments of the images, by their indices.
+    pub fragments: &'a [Fragment],
+    /// Indices of the images at the start, where those that began farther from each other than one
     /// are strangers too; else empty.
     pub references: &'a [[f64; 3]],
 }
 
-impl Kin<'_> {
+impl Membership<'_> {
     /// Whether two images belong together.
     #[must_use]
     pub fn own(&self, a: u32, b: u32) -> bool {
-        self.parts[a as usize] == self.parts[b as usize] && self.near(a, b)
+        self.fragments[a as usize] == self.fragments[b as usize] && self.near(a, b)
     }
 
     fn near(&self, a: u32, b: u32) -> bool {
@@ -44,8 +45,8 @@ impl Kin<'_> {
     /// Whether all of a cluster belong together with all of its neighbours.
     fn one(&self, cluster: &Cluster, neighbours: &[u32]) -> bool {
         let receivers = &cluster.receivers[..cluster.lanes];
-        let part = self.parts[receivers[0] as usize];
-        let same = |&place: &u32| self.parts[place as usize] == part;
+        let fragment = self.fragments[receivers[0] as usize];
+        let same = |&index: &u32| self.fragments[index as usize] == fragment;
         receivers.iter().all(same)
             && neighbours.iter().all(same)
             && (self.references.is_empty()
@@ -56,7 +57,7 @@ impl Kin<'_> {
 
     /// Whether two receivers have the same strangers among `neighbours`.
     fn agree(&self, a: u32, b: u32, neighbours: &[u32]) -> bool {
-        self.parts[a as usize] == self.parts[b as usize]
+        self.fragments[a as usize] == self.fragments[b as usize]
             && (self.references.is_empty()
                 || neighbours.iter().all(|&j| self.own(a, j) == self.own(b, j)))
     }
@@ -64,21 +65,21 @@ impl Kin<'_> {
 
 /// The strangers of a chunk's receivers, and lists in the making.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Parted {
+pub(super) struct Split {
     pub(super) strangers: PairList,
     lists: Lists,
 }
 
-impl Parted {
+impl Split {
     pub(super) fn memory(&self) -> usize {
         self.strangers.memory() + self.lists.memory()
     }
 
     /// Takes strangers out of `lists`.
-    pub(super) fn part(&mut self, kin: &Kin, lists: &mut Lists) {
+    pub(super) fn part(&mut self, membership: &Membership, lists: &mut Lists) {
         self.strangers.clear();
         let whole = |(cluster, list, _): (&Cluster, &[u32], Among)| {
-            list.is_empty() || kin.one(cluster, list)
+            list.is_empty() || membership.one(cluster, list)
         };
         if lists.iter().all(whole) {
             return;
@@ -89,7 +90,7 @@ impl Parted {
                 self.lists.neighbours.extend_from_slice(list);
                 self.lists.push(*cluster, among);
             } else {
-                self.split(kin, cluster, list, among);
+                self.split(membership, cluster, list, among);
             }
         }
         std::mem::swap(&mut self.lists, lists);
@@ -97,7 +98,13 @@ impl Parted {
 
     /// Takes over what of `cluster` belongs together with all its neighbours, in the order of its
     /// first receivers, each part with its own neighbours.
-    fn split(&mut self, kin: &Kin, cluster: &Cluster, neighbours: &[u32], among: Among) {
+    fn split(
+        &mut self,
+        membership: &Membership,
+        cluster: &Cluster,
+        neighbours: &[u32],
+        among: Among,
+    ) {
         let receivers = &cluster.receivers[..cluster.lanes];
         let mut done = [false; LANES];
         for lead in 0..receivers.len() {
@@ -107,13 +114,15 @@ impl Parted {
             let mut part = *cluster;
             part.lanes = 0;
             for (k, &receiver) in receivers.iter().enumerate().skip(lead) {
-                if !done[k] && (k == lead || kin.agree(receivers[lead], receiver, neighbours)) {
+                if !done[k]
+                    && (k == lead || membership.agree(receivers[lead], receiver, neighbours))
+                {
                     done[k] = true;
                     part.receivers[part.lanes..].fill(receiver);
                     part.lanes += 1;
                 }
             }
-            let own = |&&j: &&u32| kin.own(receivers[lead], j);
+            let own = |&&j: &&u32| membership.own(receivers[lead], j);
             self.lists.neighbours.extend(neighbours.iter().filter(own));
             for &receiver in &part.receivers[..part.lanes] {
                 let others = neighbours.iter().filter(|j| !own(j));

@@ -1,16 +1,16 @@
-//! Numerical trouble as it is typed.
+//! Numerical failure limits as they are typed.
 
 use serde::Deserialize;
 use toml::Spanned;
 
 use crate::input::quantity::{Placed, SpecificEnergy, Time, Velocity};
-use crate::model::TroublePolicy;
+use crate::model::NumericalFailurePolicy;
 
 optional_tables! {
-    /// `[trouble]`
-    TroubleParams {
+    /// `[numerical_limits]`
+    NumericalLimitsParams {
         /// What happens to a particle whose state is out of range.
-        policy: Option<TroublePolicy>,
+        policy: Option<NumericalFailurePolicy>,
         /// Largest speed.
         speed_max: Option<Placed<Velocity>>,
         /// Largest magnitude of the specific energy.

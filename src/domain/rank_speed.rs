@@ -8,7 +8,7 @@ use crate::comm::Comm;
 /// in places: with 4 % between two cores, two ranks lose 2 %. Shares follow what was measured
 /// between balances; they decide who computes a particle, never what comes out.
 #[derive(Debug, Clone, Default)]
-pub struct Paces {
+pub struct RankSpeeds {
     /// Of the whole, by rank; empty before the first measurement, when all are equal.
     shares: Vec<f64>,
     /// Sum of the shares up to and with each rank's.
@@ -27,7 +27,7 @@ const FOLLOWED: f64 = 0.25;
 /// Factor that a share may be from the even one.
 const WIDEST: f64 = 2.0;
 
-impl Paces {
+impl RankSpeeds {
     /// Takes what this rank has done since the last call: `work` counted now for one step, and
     /// `busy`, the seconds since its start that it spent neither waiting nor sending. What was
     /// before the first call, with its cold memory, does not count. Collective.
@@ -86,16 +86,16 @@ mod tests {
 
     #[test]
     fn all_are_equal_until_something_was_measured() {
-        let paces = Paces::default();
-        assert!((paces.up_to(0, 4) - 0.25).abs() < 1e-15);
-        assert!((paces.up_to(2, 4) - 0.75).abs() < 1e-15);
+        let rank_speeds = RankSpeeds::default();
+        assert!((rank_speeds.up_to(0, 4) - 0.25).abs() < 1e-15);
+        assert!((rank_speeds.up_to(2, 4) - 0.75).abs() < 1e-15);
     }
 
     #[test]
     fn a_rank_by_itself_has_all() {
-        let mut paces = Paces::default();
-        paces.measure(&Comm::solo(), 1000, 1.0);
-        paces.measure(&Comm::solo(), 1000, 2.0);
-        assert!((paces.up_to(0, 1) - 1.0).abs() < 1e-15);
+        let mut rank_speeds = RankSpeeds::default();
+        rank_speeds.measure(&Comm::solo(), 1000, 1.0);
+        rank_speeds.measure(&Comm::solo(), 1000, 2.0);
+        assert!((rank_speeds.up_to(0, 1) - 1.0).abs() < 1e-15);
     }
 }

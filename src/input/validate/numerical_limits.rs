@@ -1,13 +1,16 @@
-//! `[trouble]`
+//! `[numerical_limits]`
 
-use crate::input::schema::TroubleParams;
-use crate::input::source::Complaint;
-use crate::model::{Case, Trouble};
+use crate::input::schema::NumericalLimitsParams;
+use crate::input::source::Diagnostic;
+use crate::model::{Case, NumericalLimits};
 
 /// Ranges as given, else the case's natural ones.
-pub fn trouble(params: &TroubleParams, case: &Case) -> Result<Trouble, Complaint> {
-    let natural = Trouble::natural(case);
-    Ok(Trouble {
+pub fn numerical_limits(
+    params: &NumericalLimitsParams,
+    case: &Case,
+) -> Result<NumericalLimits, Diagnostic> {
+    let natural = NumericalLimits::natural(case);
+    Ok(NumericalLimits {
         policy: params.policy.unwrap_or_default(),
         speed_max: number!(params.speed_max, or natural.speed_max, Positive),
         energy_max: number!(params.energy_max, or natural.energy_max, Positive),

@@ -1,4 +1,5 @@
-//! Numerical trouble: the ranges that a particle's state may not leave, and what follows if it does.
+//! Numerical failure limits: the ranges that a particle's state may not leave, and what follows if it
+//! does.
 
 use serde::Deserialize;
 
@@ -7,7 +8,7 @@ use super::Case;
 /// What happens to a particle whose state is out of range.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum TroublePolicy {
+pub enum NumericalFailurePolicy {
     /// The run ends.
     #[default]
     Stop,
@@ -19,9 +20,9 @@ pub enum TroublePolicy {
 
 /// Ranges of a particle's state.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Trouble {
+pub struct NumericalLimits {
     /// What happens outside of them.
-    pub policy: TroublePolicy,
+    pub policy: NumericalFailurePolicy,
     /// Largest speed (m/s).
     pub speed_max: f64,
     /// Largest magnitude of the specific energy (J/kg).
@@ -36,11 +37,11 @@ pub struct Trouble {
     pub gain_max: f64,
 }
 
-impl Default for Trouble {
-    /// The run ends at what is no number, and at nothing else.
+impl Default for NumericalLimits {
+    /// The run ends at what is NaN, and at nothing else.
     fn default() -> Self {
         Self {
-            policy: TroublePolicy::Stop,
+            policy: NumericalFailurePolicy::Stop,
             speed_max: f64::INFINITY,
             energy_max: f64::INFINITY,
             density_min: 0.0,
@@ -58,7 +59,7 @@ const STEPS: f64 = 1e-6;
 /// Largest kinetic energy over what could drive it, which a sound run never reaches once.
 const GAIN: f64 = 10.0;
 
-impl Trouble {
+impl NumericalLimits {
     /// Ranges that no healthy run of a case leaves, however violent: they are made of its own
     /// velocities, sound speeds, energies and lengths.
     #[must_use]
@@ -72,7 +73,7 @@ impl Trouble {
             f64::INFINITY
         };
         Self {
-            policy: TroublePolicy::Stop,
+            policy: NumericalFailurePolicy::Stop,
             speed_max,
             energy_max: 0.5 * speed_max * speed_max,
             density_min: 1e-6,
@@ -85,8 +86,8 @@ impl Trouble {
         }
     }
 
-    /// Speeds that a case itself names, added up (m/s): of bodies, loads and surfaces, of a fall to the
-    /// end, of sound, and of what the initial energy may drive.
+    /// Speeds that a case itself names, added up (m/s): of bodies, loads and surfaces, of a fall to
+    /// the end, of sound, and of what the initial energy may drive.
     #[must_use]
     pub fn natural_speed(case: &Case) -> f64 {
         let largest = |speeds: &mut dyn Iterator<Item = f64>| speeds.fold(0.0, f64::max);

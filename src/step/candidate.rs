@@ -1,6 +1,6 @@
-//! The next time step: the smallest vote of all particles on all ranks.
+//! The next time step: the smallest candidate of all particles on all ranks.
 //!
-//! A vote is (Δt, reason, id), compared in that order, so that ties agree on any ranks.
+//! A candidate is (Δt, reason, id), compared in that order, so that ties agree on any ranks.
 
 use std::collections::VecDeque;
 use std::marker::PhantomData;
@@ -8,7 +8,7 @@ use std::marker::PhantomData;
 use super::flight::{Flight, Sky};
 use crate::comm::Comm;
 use crate::contact::ContactTable;
-use crate::diagnose::{Limits, Moved, PAST_VOTES, PastVote, Reason, RunState, TroubleKind};
+use crate::diagnose::{Limits, Moved, NumericalFailure, PAST_STEPS, PastStep, Reason, RunState};
 use crate::domain::Span;
 use crate::model::{Case, TimeStepOptions};
 use crate::numerics::vector::square;
@@ -17,57 +17,58 @@ use crate::sph::{SignalSpeed, Signals, Sph};
 /// Largest coordinate that still counts as a position (m).
 const FARTHEST: f64 = 1e12;
 
-/// A vote: bits of Δt (s; positive doubles order as their bits), reason, id.
-pub(super) type Vote = (u64, u64, u64);
+/// A candidate: bits of Δt (s; positive doubles order as their bits), reason, id.
+pub(super) type Candidate = (u64, u64, u64);
 
-pub(super) const ABSTAIN: Vote = (u64::MAX, 0, 0);
+pub(super) const NO_CANDIDATE: Candidate = (u64::MAX, 0, 0);
 /// Reads as an error: no positive Δt has these bits.
 const ERROR: u64 = 0;
 
-/// Votes on steps, and what a run remembers of them.
-pub struct Votes {
-    /// What this rank wishes (a set of bits): all ranks' wishes are joined by the next step's vote.
-    pub wishes: u64,
-    /// The joined wishes of all ranks as of the last vote.
-    pub agreed_wishes: u64,
+/// The choice of steps, and what a run remembers of them.
+pub struct StepControl {
+    /// What this rank asks for (a set of bits): all ranks' requests are joined by the choice of the
+    /// next step.
+    pub requests: u64,
+    /// The joined requests of all ranks as of the last candidate.
+    pub agreed_requests: u64,
     pub(super) limits: Limits,
     flight: Flight,
     /// Largest step (s).
     longest: f64,
-    /// Who had the last vote.
+    /// Who had the last candidate that was chosen.
     id: u64,
-    /// The last votes, for post-mortems.
-    past: VecDeque<PastVote>,
+    /// The last candidates, for post-mortems.
+    past: VecDeque<PastStep>,
     words: Vec<u64>,
 }
 
-impl Votes {
+impl StepControl {
     /// Of a case. Collective.
     pub(super) fn new(case: &Case, table: &ContactTable, comm: &Comm) -> Self {
         Self {
-            wishes: 0,
-            agreed_wishes: 0,
+            requests: 0,
+            agreed_requests: 0,
             limits: Limits::new(case, comm),
             flight: Flight::new(table),
             longest: case.time_step.max,
             id: 0,
-            past: VecDeque::with_capacity(PAST_VOTES),
+            past: VecDeque::with_capacity(PAST_STEPS),
             words: Vec::new(),
         }
     }
 
-    /// The next step (s) and its reason, given this rank's vote and what all particles span; or who is in
-    /// trouble. Collective.
+    /// The next step (s) and its reason, given this rank's candidate and what all particles span;
+    /// or who has failed numerically. Collective.
     pub(super) fn choose(
         &mut self,
         comm: &Comm,
-        (dt, reason, id): Vote,
+        (dt, reason, id): Candidate,
         sky: &Sky,
         span: &Span,
-    ) -> Result<(f64, Reason), (TroubleKind, u64)> {
+    ) -> Result<(f64, Reason), (NumericalFailure, u64)> {
         let words = &mut self.words;
-        comm.all_gather_u64(&[dt, reason, id, self.wishes], words);
-        self.agreed_wishes = words
+        comm.all_gather_u64(&[dt, reason, id, self.requests], words);
+        self.agreed_requests = words
             .iter()
             .skip(3)
             .step_by(4)
@@ -76,7 +77,7 @@ impl Votes {
             .chunks_exact(4)
             .map(|word| (word[0], word[1], word[2]))
             .min()
-            .unwrap_or(ABSTAIN);
+            .unwrap_or(NO_CANDIDATE);
         let (dt, reason, id) = best;
         if dt == ERROR {
             return Err((kind_of(reason), id));
@@ -84,7 +85,7 @@ impl Votes {
         self.id = id;
         let last = Reason::ALL.len() - 1;
         let mut reason = Reason::ALL[usize::try_from(reason).unwrap_or(0).min(last)];
-        let mut dt = if dt == ABSTAIN.0 {
+        let mut dt = if dt == NO_CANDIDATE.0 {
             f64::INFINITY
         } else {
             f64::from_bits(dt)
@@ -99,12 +100,12 @@ impl Votes {
         Ok((dt, reason))
     }
 
-    /// Remembers the last vote, of which the state knows the rest.
+    /// Remembers the last candidate, of which the state knows the rest.
     pub(super) fn keep(&mut self, state: &RunState) {
-        if self.past.len() == PAST_VOTES {
+        if self.past.len() == PAST_STEPS {
             self.past.pop_front();
         }
-        self.past.push_back(PastVote {
+        self.past.push_back(PastStep {
             step: state.step,
             dt: state.dt,
             reason: state.dt_reason.name(),
@@ -112,8 +113,8 @@ impl Votes {
         });
     }
 
-    /// The last votes, oldest first.
-    pub(super) fn past(&self) -> &VecDeque<PastVote> {
+    /// The last candidates, oldest first.
+    pub(super) fn past(&self) -> &VecDeque<PastStep> {
         &self.past
     }
 
@@ -122,29 +123,29 @@ impl Votes {
     }
 }
 
-fn kind_of(number: u64) -> TroubleKind {
-    let last = TroubleKind::ALL.len() - 1;
-    TroubleKind::ALL[usize::try_from(number).unwrap_or(0).min(last)]
+fn kind_of(number: u64) -> NumericalFailure {
+    let last = NumericalFailure::ALL.len() - 1;
+    NumericalFailure::ALL[usize::try_from(number).unwrap_or(0).min(last)]
 }
 
-/// The smallest vote so far, and what tells without roots and divisions that a particle neither
-/// undercuts it nor is in trouble.
-pub(super) struct Ballot {
-    best: Vote,
+/// The smallest candidate so far, and what tells without roots and divisions that a particle
+/// neither undercuts it nor has failed.
+pub(super) struct BestCandidate {
+    best: Candidate,
     /// Steps beyond this one (s) do not matter, with room for rounding.
     step: f64,
     /// Its square and its fourth power, infinite where they cannot tell.
     step2: f64,
     step4: f64,
-    /// Smoothing length (m) and signal speed (m/s) of a best vote by sound: where all is at rest,
-    /// all votes are this one, and the smallest id has it.
+    /// Smoothing length (m) and signal speed (m/s) of a best candidate by sound: where all is at
+    /// rest, all candidates are this one, and the smallest id has it.
     by_sound: Option<[f64; 2]>,
 }
 
-impl Ballot {
-    fn new(best: Vote, step_min: f64, by_sound: Option<[f64; 2]>) -> Self {
+impl BestCandidate {
+    fn new(best: Candidate, step_min: f64, by_sound: Option<[f64; 2]>) -> Self {
         let dt = match best {
-            ABSTAIN => f64::INFINITY,
+            NO_CANDIDATE => f64::INFINITY,
             (bits, ..) => f64::from_bits(bits),
         };
         let step = dt.max(step_min) * (1.0 + 1e-9);
@@ -161,24 +162,24 @@ impl Ballot {
         }
     }
 
-    /// Whether a vote by sound is the best one too.
+    /// Whether a candidate by sound is the best one too.
     #[inline(always)]
     fn is_matched(&self, h: f64, signal: f64) -> bool {
         self.by_sound == Some([h, signal])
     }
 
-    pub(super) fn vote(&self) -> Vote {
+    pub(super) fn candidate(&self) -> Candidate {
         self.best
     }
 
-    /// The one with the smaller vote.
+    /// The one with the smaller candidate.
     pub(super) fn min(self, other: Self) -> Self {
         if other.best < self.best { other } else { self }
     }
 }
 
-/// Fields that votes follow from.
-pub(super) struct VoteFields<'a> {
+/// Fields that candidates follow from.
+pub(super) struct CriteriaFields<'a> {
     pub id: &'a [u64],
     pub body: &'a [u32],
     pub mass: &'a [f64],
@@ -193,10 +194,10 @@ pub(super) struct VoteFields<'a> {
     pub fit_norm: &'a [f64],
 }
 
-/// Borrows [`VoteFields`] of a fields.
-macro_rules! vote_fields {
+/// Borrows [`CriteriaFields`] of a fields.
+macro_rules! criteria_fields {
     ($particles:expr) => {
-        $crate::step::vote::VoteFields {
+        $crate::step::candidate::CriteriaFields {
             id: &$particles.id,
             body: &$particles.body,
             mass: &$particles.mass,
@@ -212,11 +213,11 @@ macro_rules! vote_fields {
         }
     };
 }
-pub(super) use vote_fields;
+pub(super) use criteria_fields;
 
-/// What a particle's vote depends on, in the formulation `F`.
-pub(super) struct Voter<'a, F> {
-    pub fields: VoteFields<'a>,
+/// What a particle's candidate depends on, in the formulation `F`.
+pub(super) struct Criteria<'a, F> {
+    pub fields: CriteriaFields<'a>,
     signals: Signals<'a>,
     factors: TimeStepOptions,
     contact: bool,
@@ -225,9 +226,9 @@ pub(super) struct Voter<'a, F> {
     formulation: PhantomData<F>,
 }
 
-impl<'a, F: SignalSpeed> Voter<'a, F> {
+impl<'a, F: SignalSpeed> Criteria<'a, F> {
     pub(super) fn new(
-        fields: VoteFields<'a>,
+        fields: CriteriaFields<'a>,
         sph: &Sph,
         limits: &'a Limits,
         (factors, gravity): (TimeStepOptions, [f64; 3]),
@@ -245,45 +246,45 @@ impl<'a, F: SignalSpeed> Voter<'a, F> {
     }
 
     /// What is wrong with a particle, if anything is.
-    pub(super) fn trouble(&self, i: usize, moved: &Moved) -> Option<TroubleKind> {
-        let (dt, kind, _) = self.vote(i, moved);
+    pub(super) fn failure(&self, i: usize, moved: &Moved) -> Option<NumericalFailure> {
+        let (dt, kind, _) = self.candidate(i, moved);
         (dt == ERROR).then(|| kind_of(kind))
     }
 
-    /// Nobody has voted.
-    pub(super) fn ballot(&self) -> Ballot {
-        Ballot::new(ABSTAIN, self.limits.step_min, None)
+    /// No candidate yet.
+    pub(super) fn best(&self) -> BestCandidate {
+        BestCandidate::new(NO_CANDIDATE, self.limits.step_min, None)
     }
 
-    /// Lets a particle vote.
+    /// Takes the candidate of a particle.
     #[inline(always)]
-    pub(super) fn ask(&self, i: usize, moved: &Moved, ballot: &mut Ballot) {
-        if !self.is_beyond(i, moved, ballot) {
-            let vote = self.vote(i, moved);
-            if vote < ballot.best {
-                let by_sound = vote.1 == Reason::Sound as u64 && vote.0 != ERROR;
+    pub(super) fn ask(&self, i: usize, moved: &Moved, best: &mut BestCandidate) {
+        if !self.is_beyond(i, moved, best) {
+            let candidate = self.candidate(i, moved);
+            if candidate < best.best {
+                let by_sound = candidate.1 == Reason::Sound as u64 && candidate.0 != ERROR;
                 let by_sound =
                     by_sound.then(|| [self.fields.smoothing_length[i], self.signals.of::<F>(i)]);
-                *ballot = Ballot::new(vote, self.limits.step_min, by_sound);
+                *best = BestCandidate::new(candidate, self.limits.step_min, by_sound);
             }
         }
     }
 
     /// Whether a particle is sound and asks for more than the smallest step so far: the criteria of
-    /// [`Self::vote`], multiplied out. What is no number is beyond nothing.
+    /// [`Self::candidate`], multiplied out. What is NaN is beyond nothing.
     #[inline(always)]
-    fn is_beyond(&self, i: usize, moved: &Moved, ballot: &Ballot) -> bool {
+    fn is_beyond(&self, i: usize, moved: &Moved, best: &BestCandidate) -> bool {
         let (fields, factors) = (&self.fields, &self.factors);
         let (h, signal) = (fields.smoothing_length[i], self.signals.of::<F>(i));
-        let by_sound = (signal >= 0.0 && factors.courant * h > ballot.step * signal)
-            || (ballot.is_matched(h, signal) && fields.id[i] > ballot.best.2);
+        let by_sound = (signal >= 0.0 && factors.courant * h > best.step * signal)
+            || (best.is_matched(h, signal) && fields.id[i] > best.best.2);
         let reach = factors.force * factors.force * h;
         let a = self.acceleration(i, &moved.contact);
-        let by_force = reach * reach > ballot.step4 * square(&a);
+        let by_force = reach * reach > best.step4 * square(&a);
         let by_contact = !self.contact || {
             let inertia = 4.0 * factors.contact * factors.contact * fields.mass[i];
             // Stress points have neither.
-            inertia >= ballot.step2 * fields.contact_stiffness[i]
+            inertia >= best.step2 * fields.contact_stiffness[i]
         };
         let inside = self.limits.surely_holds(fields.density[i], moved);
         let near = fields.position[i].iter().all(|x| x.abs() < FARTHEST);
@@ -301,7 +302,7 @@ impl<'a, F: SignalSpeed> Voter<'a, F> {
     /// enlarges gradients more than those of plain surfaces do raises frequencies as much.
     #[cold]
     #[inline(never)]
-    fn vote(&self, i: usize, moved: &Moved) -> Vote {
+    fn candidate(&self, i: usize, moved: &Moved) -> Candidate {
         let (fields, factors) = (&self.fields, &self.factors);
         let h = fields.smoothing_length[i];
         let sound = factors.courant * h / self.signals.of::<F>(i);
@@ -320,7 +321,7 @@ impl<'a, F: SignalSpeed> Voter<'a, F> {
             && moved.velocity.iter().all(|v| v.is_finite())
             && fields.position[i].iter().all(|x| x.abs() < FARTHEST);
         if !sane {
-            return (ERROR, TroubleKind::NotFinite as u64, id);
+            return (ERROR, NumericalFailure::NotFinite as u64, id);
         }
         if let Some(kind) = self.limits.check(fields.body[i], fields.density[i], moved) {
             return (ERROR, kind as u64, id);
@@ -334,7 +335,7 @@ impl<'a, F: SignalSpeed> Voter<'a, F> {
         .reduce(|best, next| if next.0 < best.0 { next } else { best })
         .unwrap_or((f64::INFINITY, Reason::Sound));
         if dt < self.limits.step_min {
-            return (ERROR, TroubleKind::Step as u64, id);
+            return (ERROR, NumericalFailure::Step as u64, id);
         }
         (dt.to_bits(), reason as u64, id)
     }
