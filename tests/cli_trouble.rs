@@ -16,8 +16,8 @@ fn removing(number: usize, folder: &Path) -> Command {
 
 fn taking_out(policy: &str, number: usize, folder: &Path) -> Command {
     let mut command = coarse_run(number, folder);
-    command.args(["--set", "trouble.density_max=1.25"]);
-    command.args(["--set", &format!("trouble.policy={policy}")]);
+    command.args(["--set", "numerical_limits.density_max=1.25"]);
+    command.args(["--set", &format!("numerical_limits.policy={policy}")]);
     command.args(["--poison", "--threads", "1"]);
     command
 }
@@ -32,6 +32,7 @@ fn a_particle_out_of_range_stops_a_run_with_a_post_mortem() {
         ("step_min=\"5 ns\"", "asks for a time step below"),
     ] {
         let run = place.path().join(&key[..6]);
+        // The older name of the table.
         let set = format!("trouble.{key}");
         let mut command = coarse_run(2, &run);
         let ended = end(command.args(["--set", &set])).with_code(1);

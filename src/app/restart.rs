@@ -34,13 +34,13 @@ pub struct RestartArgs {
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
 
-    /// Change a value of `run`, `output`, `domain` or `trouble`, as in `run.end_time=0.3us`; may be
+    /// Change a value of `run`, `output`, `domain` or `numerical_limits`, as in `run.end_time=0.3us`; may be
     /// given many times
     #[arg(short, long, value_name = "KEY=VALUE")]
     set: Vec<String>,
 
     /// Go on with the run's case.toml where it was edited, in `run`, `output`, `domain` or
-    /// `trouble`
+    /// `numerical_limits`
     #[arg(long)]
     accept_case: bool,
 

@@ -1,4 +1,4 @@
-//! Numerical trouble: who is in it.
+//! Numerical failure limits: who left them.
 //!
 //! The check is part of the choice of a step, for which the last kick of a step takes of each
 //! particle. What is NaN can be neither booked nor kept from its neighbours, so it always ends the
@@ -51,26 +51,26 @@ impl NumericalFailure {
             Self::NotFinite => "has a non-finite or absurd state".to_owned(),
             Self::Density => format!(
                 "has a density outside of {} to {} of that at the start \
-                 (trouble.density_min, density_max)",
+                 (numerical_limits.density_min, density_max)",
                 short(limits.density_min),
                 short(limits.density_max)
             ),
             Self::Energy => format!(
-                "has a specific energy beyond {} (trouble.energy_max)",
+                "has a specific energy beyond {} (numerical_limits.energy_max)",
                 shown(limits.energy_max, "J/kg")
             ),
             Self::Speed => format!(
-                "is faster than {} (trouble.speed_max)",
+                "is faster than {} (numerical_limits.speed_max)",
                 shown(limits.speed_max, "m/s")
             ),
             Self::Step => format!(
-                "asks for a time step below {} (trouble.step_min)",
+                "asks for a time step below {} (numerical_limits.step_min)",
                 shown(limits.step_min, "s")
             ),
             Self::Gain => format!(
                 "is the fastest where the kinetic energy of all is beyond {} times the energy that \
                  there was or has been put in: the sums are not stable, more viscosity (sph.alpha) or \
-                 shorter steps (time_step) may help (trouble.gain_max)",
+                 shorter steps (time_step) may help (numerical_limits.gain_max)",
                 short(limits.gain_max)
             ),
         }
@@ -101,7 +101,7 @@ pub(crate) struct Limits {
 impl Limits {
     /// Of a case. Collective.
     pub(crate) fn new(case: &Case, comm: &Comm) -> Self {
-        let limits = &case.trouble;
+        let limits = &case.numerical_limits;
         let range = |body| {
             let first = case.initial_density(body);
             [limits.density_min * first, limits.density_max * first]

@@ -3,7 +3,7 @@
 
 use toml::{Table, Value};
 
-use super::overrides::RESTARTABLE;
+use super::overrides::{LIMITS, OLD_LIMITS, RESTARTABLE};
 use super::units;
 
 /// A key with other values in two cases.
@@ -27,10 +27,20 @@ impl Difference {
 /// The keys in which two cases differ; `None` if one of the texts is no TOML.
 #[must_use]
 pub fn differences(a: &str, b: &str) -> Option<Vec<Difference>> {
-    let [a, b] = [a, b].map(|text| text.parse::<Table>().ok().map(Value::Table));
+    let [a, b] = [a, b].map(|text| text.parse::<Table>().ok().map(present));
     let mut found = Vec::new();
     compare("", Some(&a?), Some(&b?), &mut found);
     Some(found)
+}
+
+/// With tables of older names under their present ones, as [`super::overrides`] knows them.
+fn present(mut table: Table) -> Value {
+    if !table.contains_key(LIMITS)
+        && let Some(value) = table.remove(OLD_LIMITS)
+    {
+        table.insert(LIMITS.into(), value);
+    }
+    Value::Table(table)
 }
 
 fn compare(key: &str, a: Option<&Value>, b: Option<&Value>, found: &mut Vec<Difference>) {

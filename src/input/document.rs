@@ -6,7 +6,7 @@ use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, Error};
 
-use super::overrides::Override;
+use super::overrides::{Override, modernise};
 use super::schema::CaseParams;
 use super::source::Diagnostic;
 use crate::model::readable::short;
@@ -19,6 +19,7 @@ pub fn read(
     places: &[usize],
 ) -> Result<(CaseParams, String), Diagnostic> {
     let mut document = DeTable::parse(text).map_err(|e| translate(&e))?;
+    modernise(document.get_mut());
     for (text, &start) in overrides.iter().zip(places) {
         Override::parse(text, start)?.apply(document.get_mut())?;
     }

@@ -13,7 +13,22 @@ use toml::de::{DeArray, DeTable, DeValue};
 use super::source::Diagnostic;
 
 /// Sections that do not touch the state of a run, so that a restart may change them.
-pub(super) const RESTARTABLE: [&str; 4] = ["run", "output", "domain", "trouble"];
+pub(super) const RESTARTABLE: [&str; 4] = ["run", "output", "domain", LIMITS];
+
+/// Key of the numerical failure limits, and its older name.
+pub(super) const LIMITS: &str = "numerical_limits";
+pub(super) const OLD_LIMITS: &str = "trouble";
+
+/// Gives tables of older names their present ones. What stands there under both stays, and is found
+/// out by the reader.
+pub fn modernise(document: &mut DeTable) {
+    if document.contains_key(LIMITS) {
+        return;
+    }
+    if let Some((key, value)) = document.remove_entry(OLD_LIMITS) {
+        document.insert(Spanned::new(key.span(), Cow::Borrowed(LIMITS)), value);
+    }
+}
 
 type Key<'t> = Spanned<Cow<'t, str>>;
 type Value<'t> = Spanned<DeValue<'t>>;
@@ -31,8 +46,12 @@ impl<'t> Override<'t> {
             let diagnostic = Diagnostic::new(start..start + text.len(), "an override needs a `=`");
             return Err(diagnostic.help("write it as `--set key=value`"));
         };
+        let mut path = parse_path(&text[..equals], start)?;
+        if path[0].get_ref() == OLD_LIMITS {
+            path[0] = Spanned::new(path[0].span(), Cow::Borrowed(LIMITS));
+        }
         Ok(Self {
-            path: parse_path(&text[..equals], start)?,
+            path,
             value: parse_value(&text[equals + 1..], start + equals + 1)?,
         })
     }
@@ -71,7 +90,7 @@ impl<'t> Override<'t> {
             return Ok(());
         }
         let title = format!("`{}` cannot change on a restart", section.get_ref());
-        let help = "a restart may change `run`, `output`, `domain` and `trouble`";
+        let help = "a restart may change `run`, `output`, `domain` and `numerical_limits`";
         Err(Diagnostic::new(section.span(), title).help(help))
     }
 }

@@ -17,15 +17,15 @@ mod declare;
 mod choices;
 pub mod contact;
 mod materials;
+mod numerical_limits;
 mod short;
 mod surfaces;
-mod trouble;
 pub use choices::*;
 pub use contact::{ContactParams, PairParams};
 pub use materials::*;
+pub use numerical_limits::*;
 pub use short::*;
 pub use surfaces::*;
-pub use trouble::*;
 
 /// A vector of lengths.
 pub type Point = Spanned<Vec<Spanned<Extent>>>;
@@ -73,9 +73,9 @@ tables! {
         /// Rigid surfaces of other shapes.
         #[serde(default)]
         surface: Vec<Spanned<SurfaceParams>>,
-        /// Numerical trouble.
+        /// Numerical failure limits; `trouble` is an older name of this table.
         #[serde(default)]
-        trouble: NumericalLimitsParams,
+        numerical_limits: NumericalLimitsParams,
         /// What is written.
         #[serde(default)]
         output: OutputParams,

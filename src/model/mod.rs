@@ -10,9 +10,9 @@ mod control;
 mod distance;
 mod load;
 mod motion;
+mod numerical_limits;
 pub mod readable;
 mod surface;
-mod trouble;
 
 #[cfg(test)]
 pub(crate) use surface::tests as surface_tests;
@@ -24,11 +24,11 @@ pub use control::{
 };
 pub use load::{Loads, VelocityLoad};
 pub use motion::Motion;
+pub use numerical_limits::{NumericalFailurePolicy, NumericalLimits};
 pub use surface::{
     Feature, Foot, Mesh, MeshError, RigidSurface, Spin, SurfaceFile, SurfaceShape,
     closest_on_triangle,
 };
-pub use trouble::{NumericalFailurePolicy, NumericalLimits};
 
 use crate::material::Material;
 use readable::Readable;
@@ -66,8 +66,8 @@ pub struct Case {
     pub time_step: TimeStepOptions,
     /// Distribution over ranks.
     pub domain: DomainOptions,
-    /// What counts as numerical trouble.
-    pub trouble: NumericalLimits,
+    /// Numerical failure limits.
+    pub numerical_limits: NumericalLimits,
     /// When to stop.
     pub run: RunControl,
     /// What to write and when.

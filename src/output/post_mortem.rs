@@ -1,4 +1,4 @@
-//! Post-mortems: a particle in trouble with all that is about it, as text and as HDF5.
+//! Post-mortems: a particle that failed numerically with all that is about it, as text and as HDF5.
 
 use std::fmt::Write as _;
 use std::path::Path;

@@ -137,7 +137,7 @@ bitflags! {
         const SELF_CONTACT = 1 << 9;
         /// Self-contact of folds.
         const FOLDS = 1 << 10;
-        /// Freezing of particles in trouble.
+        /// Freezing of particles that fail numerically.
         const FREEZE = 1 << 11;
         /// Stress points, which carry the stress.
         const STRESS_POINTS = 1 << 12;

@@ -161,7 +161,7 @@ impl<'a> Driver<'a> {
         }
     }
 
-    /// A post-mortem of trouble, and then what the case says: the end, or particles taken out until
+    /// A post-mortem of a numerical failure, and then what the case says: the end, or particles taken out until
     /// there is none.
     fn handle_failure(&mut self, comm: &Comm, mut error: StepError) -> Result<(), String> {
         loop {
@@ -188,7 +188,7 @@ impl<'a> Driver<'a> {
                     Err(refused) => format!("{text}; {refused}"),
                 };
             }
-            let done = match self.simulation.case.trouble.policy {
+            let done = match self.simulation.case.numerical_limits.policy {
                 NumericalFailurePolicy::Stop => return Err(text),
                 NumericalFailurePolicy::Remove => "removed",
                 NumericalFailurePolicy::Freeze => "froze",

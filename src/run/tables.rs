@@ -238,7 +238,7 @@ impl Tables {
             of_history.push(Column::new("uncorrected", ""));
         }
         let has_loads = case.load_names().next().is_some();
-        let removes = case.trouble.policy != NumericalFailurePolicy::Stop
+        let removes = case.numerical_limits.policy != NumericalFailurePolicy::Stop
             || resume.is_some_and(|state| !state.removed.is_empty());
         Ok(Self {
             history: open(&folder.history(), &of_history, "step", step)?,

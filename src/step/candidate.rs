@@ -58,7 +58,7 @@ impl StepControl {
     }
 
     /// The next step (s) and its reason, given this rank's candidate and what all particles span;
-    /// or who is in trouble. Collective.
+    /// or who has failed numerically. Collective.
     pub(super) fn choose(
         &mut self,
         comm: &Comm,
@@ -129,7 +129,7 @@ fn kind_of(number: u64) -> NumericalFailure {
 }
 
 /// The smallest candidate so far, and what tells without roots and divisions that a particle
-/// neither undercuts it nor is in trouble.
+/// neither undercuts it nor has failed.
 pub(super) struct BestCandidate {
     best: Candidate,
     /// Steps beyond this one (s) do not matter, with room for rounding.
@@ -246,7 +246,7 @@ impl<'a, F: SignalSpeed> Criteria<'a, F> {
     }
 
     /// What is wrong with a particle, if anything is.
-    pub(super) fn trouble(&self, i: usize, moved: &Moved) -> Option<NumericalFailure> {
+    pub(super) fn failure(&self, i: usize, moved: &Moved) -> Option<NumericalFailure> {
         let (dt, kind, _) = self.candidate(i, moved);
         (dt == ERROR).then(|| kind_of(kind))
     }

@@ -58,9 +58,9 @@ pub enum StepError {
     },
 }
 
-/// Describes the particle `id`, wherever it is, as of kind of trouble; the same text on all ranks.
+/// Describes the particle `id`, wherever it is, as of a kind of failure; the same text on all ranks.
 /// Collective.
-pub(super) fn trouble(
+pub(super) fn failure(
     comm: &Comm,
     case: &Case,
     particles: &ParticleStore,
@@ -83,7 +83,7 @@ pub(super) fn trouble(
         step,
         id,
         kind,
-        what: kind.describe(&case.trouble),
+        what: kind.describe(&case.numerical_limits),
         detail: String::from_utf8_lossy(&text).into_owned(),
     }
 }

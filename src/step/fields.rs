@@ -24,7 +24,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
         (Owner::NORMALISED, sph.form == SphForm::Normalised),
         (
             Owner::FREEZE,
-            case.trouble.policy == NumericalFailurePolicy::Freeze,
+            case.numerical_limits.policy == NumericalFailurePolicy::Freeze,
         ),
         (Owner::STRESS_POINTS, sph.form == SphForm::StressPoints),
     ]

@@ -82,7 +82,7 @@ impl Frozen {
 }
 
 /// Owned particles whose state is out of range.
-pub(super) fn troubled<F: SignalSpeed>(
+pub(super) fn failed<F: SignalSpeed>(
     particles: &ParticleStore,
     loads: &Loads,
     criteria: &Criteria<F>,
@@ -97,10 +97,10 @@ pub(super) fn troubled<F: SignalSpeed>(
             energy: particles.specific_energy[i],
             contact: contact.copied().unwrap_or_default(),
         };
-        criteria.trouble(i, &moved).is_some()
+        criteria.failure(i, &moved).is_some()
     };
-    let troubled = (0..particles.owned()).filter(has_failed);
-    troubled
+    let failed = (0..particles.owned()).filter(has_failed);
+    failed
         .map(|i| u32::try_from(i).unwrap_or(u32::MAX))
         .collect()
 }

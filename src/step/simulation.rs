@@ -31,7 +31,7 @@ pub struct Simulation {
     pub timers: Timers,
     /// Fill everything that is not state with NaN between steps: for tests.
     pub poison: bool,
-    /// Votes on steps and wishes.
+    /// The choice of time steps, and requests to stop.
     pub step_control: StepControl,
     /// Sorted images and neighbours.
     pub lists: Lists,
@@ -244,7 +244,7 @@ impl Simulation {
             time: self.state.time,
         };
         let chosen = self.step_control.choose(comm, own, &sky, &self.sums.span);
-        let (dt, reason) = chosen.map_err(|(kind, id)| self.trouble(comm, kind, id))?;
+        let (dt, reason) = chosen.map_err(|(kind, id)| self.failure(comm, kind, id))?;
         (self.state.dt, self.state.dt_reason) = (dt, reason);
         self.step_control.keep(&self.state);
         let limited = reason == Reason::Contact;
@@ -253,13 +253,9 @@ impl Simulation {
     }
 
     /// Describes the particle `id`, wherever it is; the same text on all ranks. Collective.
-    fn trouble(&self, comm: &Comm, kind: NumericalFailure, id: u64) -> StepError {
-        error::trouble(
-            comm,
-            &self.case,
-            &self.particles,
-            (self.state.step, kind, id),
-        )
+    fn failure(&self, comm: &Comm, kind: NumericalFailure, id: u64) -> StepError {
+        let what = (self.state.step, kind, id);
+        error::failure(comm, &self.case, &self.particles, what)
     }
 
     /// Sums over all particles, into the state, with the errors that follow from them, and the
@@ -292,11 +288,11 @@ impl Simulation {
     /// The same on all ranks: [`StepError::Failure`] of the fastest particle if it cannot.
     pub fn check_gain(&self, comm: &Comm) -> Result<(), StepError> {
         let hidden = self.step_control.limits.hidden_energy;
-        if is_explained(&self.state, hidden, self.case.trouble.gain_max) {
+        if is_explained(&self.state, hidden, self.case.numerical_limits.gain_max) {
             return Ok(());
         }
         let id = fastest(comm, &self.particles, &self.loads);
-        Err(self.trouble(comm, NumericalFailure::Gain, id))
+        Err(self.failure(comm, NumericalFailure::Gain, id))
     }
 
     /// What is about the particle `id`, on the rank `rank` that owns it; nothing on others.
@@ -313,18 +309,18 @@ impl Simulation {
     /// number of particles taken out on all ranks.
     ///
     /// # Errors
-    /// The same on all ranks if there is trouble again, or nothing left.
+    /// The same on all ranks if a particle fails again, or nothing left.
     pub fn remove_failed(&mut self, comm: &Comm) -> Result<u64, StepError> {
         let rules = (self.case.time_step, self.loads.gravity);
         let (particles, loads, limits) = (&self.particles, &self.loads, &self.step_control.limits);
         let mut leaving = with_formulation!(self.case.sph.form, Form => {
             let criteria = Criteria::<Form>::new(criteria_fields!(particles), &self.sph, limits, rules);
-            removal::troubled(particles, loads, &criteria)
+            removal::failed(particles, loads, &criteria)
         });
         let mut count = [leaving.len() as u64, self.particles.owned() as u64];
         let counted = (&self.particles, self.case.bodies.len());
         removal::book(comm, &mut self.state, counted, &self.loads, &leaving);
-        if self.case.trouble.policy == NumericalFailurePolicy::Freeze {
+        if self.case.numerical_limits.policy == NumericalFailurePolicy::Freeze {
             self.frozen.freeze(&self.particles, &leaving);
         }
         self.particles.remove(&mut leaving, &mut Vec::new());

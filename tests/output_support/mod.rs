@@ -53,7 +53,7 @@ pub fn case() -> Case {
         }],
         loads: Loads::default(),
         sph: SphOptions::default(),
-        trouble: whipple::model::NumericalLimits::default(),
+        numerical_limits: whipple::model::NumericalLimits::default(),
         time_step: TimeStepOptions {
             courant: 0.3,
             force: 0.3,

@@ -8,12 +8,12 @@ mod eos;
 mod loads;
 mod materials;
 mod motion;
+mod numerical_limits;
 mod shapes;
 mod strength;
 mod stress_points;
 mod surfaces;
 mod touch;
-mod trouble;
 
 use std::ops::Range;
 use std::path::Path;
@@ -82,12 +82,12 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         sph,
         time_step,
         domain: domain(&params.domain, dimension)?,
-        trouble: NumericalLimits::default(),
+        numerical_limits: NumericalLimits::default(),
         run: run(params.run.get_ref())?,
         output: output(params.output)?,
         resolved: String::new(),
     };
-    case.trouble = trouble::trouble(&params.trouble, &case)?;
+    case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, &case)?;
     stress_points::check(&case, form)?;
     check_moduli(&case, &params.body)?;
     check_overlaps(&case, &params.body)?;

@@ -1,4 +1,4 @@
-//! Numerical trouble as it is typed.
+//! Numerical failure limits as they are typed.
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -7,7 +7,7 @@ use crate::input::quantity::{Placed, SpecificEnergy, Time, Velocity};
 use crate::model::NumericalFailurePolicy;
 
 optional_tables! {
-    /// `[trouble]`
+    /// `[numerical_limits]`
     NumericalLimitsParams {
         /// What happens to a particle whose state is out of range.
         policy: Option<NumericalFailurePolicy>,

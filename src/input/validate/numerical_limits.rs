@@ -1,11 +1,14 @@
-//! `[trouble]`
+//! `[numerical_limits]`
 
 use crate::input::schema::NumericalLimitsParams;
 use crate::input::source::Diagnostic;
 use crate::model::{Case, NumericalLimits};
 
 /// Ranges as given, else the case's natural ones.
-pub fn trouble(params: &NumericalLimitsParams, case: &Case) -> Result<NumericalLimits, Diagnostic> {
+pub fn numerical_limits(
+    params: &NumericalLimitsParams,
+    case: &Case,
+) -> Result<NumericalLimits, Diagnostic> {
     let natural = NumericalLimits::natural(case);
     Ok(NumericalLimits {
         policy: params.policy.unwrap_or_default(),

@@ -1,4 +1,4 @@
-//! Numerical trouble: the ranges that a particle's state may not leave, and what follows if it
+//! Numerical failure limits: the ranges that a particle's state may not leave, and what follows if it
 //! does.
 
 use serde::Deserialize;
