@@ -199,7 +199,7 @@ impl SurfaceForces {
         self.pushes.resize(chunks, Vec::new());
         self.friction.resize(chunks, Vec::new());
         let view = View {
-            particles: particles,
+            particles,
             table,
             surfaces: &self.surfaces,
             steps: &loads.surfaces,

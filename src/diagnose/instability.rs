@@ -1,11 +1,11 @@
 //! Kinetic energy that comes from nowhere.
 //!
-//! The sums keep the total energy to rounding whatever happens, also where they are not stable:
-//! what goes mad then takes its kinetic energy from an internal energy that falls below all that
-//! there is to be had, without a limit. So the total does not tell; this does: `K ≤ G (K₀ + U₀ + Φ₀
-//! + W + H)` with the energies at the start, the largest work W of loads or gravity so far, and H,
-//! what bodies hold that begin compressed or stretched. In a sound run K stays below the sum
-//! itself, but for heat of the reference state that an expansion may take.
+//! The sums keep the total energy to rounding whatever happens, also where they are not stable: what
+//! goes mad then takes its kinetic energy from an internal energy that falls below all that there is
+//! to be had, without a limit. So the total does not tell; this does:
+//! `K ≤ G (K₀ + U₀ + Φ₀ + W + H)` with the energies at the start, the largest work W of loads or
+//! gravity so far, and H, what bodies hold that begin compressed or stretched. In a sound run K stays
+//! below the sum itself, but for heat of the reference state that an expansion may take.
 
 use super::ledger::RunState;
 use crate::comm::Comm;

@@ -30,6 +30,23 @@ const FADE: f64 = 0.28 * 0.28 * 0.28 * 0.28;
 /// A symmetric matrix in each lane; components xx, yy, zz, xy, xz, yz.
 type Symmetric<V> = [V; 6];
 
+/// Where the nine components of a symmetric matrix stand among its six.
+const FULL: [usize; 9] = [0, 3, 4, 3, 1, 5, 4, 5, 2];
+
+/// All components of a symmetric matrix, row-major.
+#[inline(always)]
+fn full<V: Lanes>(a: &Symmetric<V>) -> [V; 9] {
+    let [xx, yy, zz, xy, xz, yz] = *a;
+    [xx, xy, xz, xy, yy, yz, xz, yz, zz]
+}
+
+/// A matrix times a vector.
+#[inline(always)]
+fn along<V: Lanes>(t: &[V; 9], r: &[V; 3]) -> [V; 3] {
+    let row = |a: usize| t[3 * a + 2].mul_add(r[2], t[3 * a + 1].mul_add(r[1], t[3 * a].mul(r[0])));
+    [row(0), row(1), row(2)]
+}
+
 /// Product of symmetric matrices that commute, which is symmetric.
 #[inline(always)]
 fn product<V: Lanes>(a: &Symmetric<V>, b: &Symmetric<V>) -> Symmetric<V> {
@@ -146,10 +163,10 @@ impl Correction {
             yz,
             zz - pressure,
         ];
-        let full = |m: &[F64x8; 6]| [0, 3, 4, 3, 1, 5, 4, 5, 2].map(|c: usize| m[c].0[k]);
+        let lane = |m: &[F64x8; 6]| FULL.map(|c: usize| m[c].0[k]);
         matrix::product(
-            &matrix::product(&full(&self.outer), &sigma),
-            &full(&self.inner),
+            &matrix::product(&lane(&self.outer), &sigma),
+            &lane(&self.inner),
         )
     }
 }
@@ -264,8 +281,8 @@ impl PairStress for CorrectedRecord {
             let state = &sums.stresses[pair.index];
             let shown = sums.terms.record::<TERMS>(pair.index);
             let r = separation.r;
-            let along = |a: usize| velocity[a].sub(V::splat(source.velocity[a]));
-            let v = [along(0), along(1), along(2)];
+            let against = |a: usize| velocity[a].sub(V::splat(source.velocity[a]));
+            let v = [against(0), against(1), against(2)];
             let now = viscous.pair(
                 &terms,
                 (separation, kernel.h),
@@ -278,26 +295,23 @@ impl PairStress for CorrectedRecord {
             let pi = now.pi.mul(both);
             // Viscosity strains by the plain relative velocity, stress does by L.
             let mut lost = zero.sub(pi.mul(now.approach));
-            let mut push = [zero.sub(pi), zero.sub(pi), zero.sub(pi), zero, zero, zero];
+            let minus_pi = zero.sub(pi);
+            let mut push = [minus_pi, minus_pi, minus_pi, zero, zero, zero];
             if TERMS & SHAPED != 0 {
                 let shape = around.sources.scale.shape(kernel);
                 if TERMS & ARTIFICIAL_STRESS != 0 {
                     let mut extra = [zero; 6];
                     terms.repel(&mut extra, shown, shape);
-                    let extra = extra.map(|c| c.mul(both));
                     for c in 0..6 {
+                        extra[c] = extra[c].mul(both);
                         push[c] = push[c].add(extra[c]);
                     }
-                    let [xx, yy, zz, xy, xz, yz] = extra;
-                    let t = [
-                        xx.mul_add(r[0], xy.mul_add(r[1], xz.mul(r[2]))),
-                        xy.mul_add(r[0], yy.mul_add(r[1], yz.mul(r[2]))),
-                        xz.mul_add(r[0], yz.mul_add(r[1], zz.mul(r[2]))),
-                    ];
+                    let t = along(&full(&extra), &r);
                     lost = t[2].mul_add(v[2], t[1].mul_add(v[1], t[0].mul_add(v[0], lost)));
                 }
                 let w = around.sources.scale.value(kernel, shape);
-                terms.follow(&v, w.mul(V::splat(source.mass)).mul(now.inverse_density));
+                let w = w.mul(V::splat(source.mass));
+                terms.follow(&v, w.mul(now.inverse_density));
             }
             lost = terms.conduct(lost, shown, || now.heat_speed(separation).mul(both));
             let weight = separation
@@ -305,44 +319,16 @@ impl PairStress for CorrectedRecord {
                 .mul(V::splat(source.volume))
                 .mul(kernel.slope);
             power = lost.mul_add(weight, power);
-            let both = |c: usize| stress[c].add(V::splat(state.stress[c]));
-            let total = if TERMS & ARTIFICIAL_STRESS == 0 {
-                let (x, y, z) = (
-                    both(0).add(push[0]),
-                    both(4).add(push[0]),
-                    both(8).add(push[0]),
-                );
-                [
-                    x,
-                    both(1),
-                    both(2),
-                    both(3),
-                    y,
-                    both(5),
-                    both(6),
-                    both(7),
-                    z,
-                ]
-            } else {
-                let [xx, yy, zz, xy, xz, yz] = push;
-                let (x, y, z) = (both(0).add(xx), both(4).add(yy), both(8).add(zz));
-                let (yx, zx, zy) = (both(3).add(xy), both(6).add(xz), both(7).add(yz));
-                [
-                    x,
-                    both(1).add(xy),
-                    both(2).add(xz),
-                    yx,
-                    y,
-                    both(5).add(yz),
-                    zx,
-                    zy,
-                    z,
-                ]
-            };
+            let mut total = stress;
+            for c in 0..9 {
+                total[c] = total[c].add(V::splat(state.stress[c]));
+                if c % 4 == 0 || TERMS & ARTIFICIAL_STRESS != 0 {
+                    total[c] = total[c].add(push[FULL[c]]);
+                }
+            }
+            let traction = along(&total, &r);
             for a in 0..3 {
-                let traction = total[3 * a + 2]
-                    .mul_add(r[2], total[3 * a + 1].mul_add(r[1], total[3 * a].mul(r[0])));
-                acceleration[a] = traction.mul_add(weight, acceleration[a]);
+                acceleration[a] = traction[a].mul_add(weight, acceleration[a]);
             }
         }
         Forces {

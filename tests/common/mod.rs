@@ -47,7 +47,7 @@ pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
         symmetry: Vec::new(),
         loads: Loads::default(),
         sph: SphOptions::default(),
-        trouble: whipple::model::NumericalLimits::default(),
+        numerical_limits: whipple::model::NumericalLimits::default(),
         time_step: TimeStepOptions {
             courant: 0.4,
             force: 0.25,

@@ -248,7 +248,7 @@ fn options_agree_with_plain_sums() {
     }
 }
 
-/// PairTerms that are off have neutral data where sums know them: no bit differs from plain sums.
+/// Pair terms that are off have neutral data where sums know them: no bit differs from plain sums.
 #[test]
 fn neutral_options_change_no_bit() {
     let cloud = cloud(3, 1.0, 1, 46);
