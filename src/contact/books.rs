@@ -23,6 +23,7 @@ pub(super) struct Books<'a> {
     /// How many there are.
     pub bodies: usize,
     pub mass: &'a [f64],
+    pub position: &'a [[f64; 3]],
     pub enclosed_time: &'a [f64],
     pub foreign_fraction: &'a [f64],
     pub excess: &'a [f64],
@@ -39,7 +40,7 @@ impl Books<'_> {
             self.book_particle(force);
             let i = force.particle;
             sums.energy.add(force.energy);
-            sums.add_plane_force(&force.from_mirrors);
+            sums.add_plane_force(&force.from_mirrors, &self.position[i]);
             let inside = force.closest < INTERPENETRATION_DISTANCE
                 || self.enclosed_time[i] > self.enclosed_limit;
             sums.note_particle(inside, force.closest, self.foreign_fraction[i]);

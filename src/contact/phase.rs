@@ -153,8 +153,8 @@ impl Contact {
             }
         });
         self.book(particles);
-        let (table, energy) = (&self.table, &mut self.sums.energy);
-        self.surfaces.act(particles, table, loads, dt, energy);
+        let (table, sums) = (&self.table, &mut self.sums);
+        self.surfaces.act(particles, table, loads, dt, sums);
     }
 
     /// Calls `work` for each task with its foreign pairs and the lists of the own body.
@@ -192,6 +192,7 @@ impl Contact {
             id: &particles.id,
             bodies: self.bodies,
             mass: &particles.mass,
+            position: &particles.position,
             enclosed_time: &particles.enclosed_time,
             foreign_fraction: &particles.foreign_fraction,
             excess: &particles.contact_excess,

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::force::BodyForce;
 use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
+use crate::numerics::vector::cross;
 
 /// What a pair of bodies has come to in an interval of steps.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -64,6 +65,8 @@ pub(crate) struct ContactSums {
     pub energy: ExactSum,
     /// Force of symmetry planes, by stress and by contact.
     pub plane_force: [ExactSum; 3],
+    /// Torque about the origin of symmetry planes, rigid surfaces and gravity.
+    pub outside_torque: [ExactSum; 3],
     pub pairs: PairBook,
     pub interpenetrated: i64,
     pub closest: Option<f64>,
@@ -168,6 +171,7 @@ impl ContactSums {
     pub fn clear(&mut self) {
         self.energy = ExactSum::default();
         self.plane_force = Default::default();
+        self.outside_torque = Default::default();
         self.pairs.clear();
         self.interpenetrated = 0;
         self.closest = None;
@@ -177,8 +181,9 @@ impl ContactSums {
     /// Adds what other particles add up.
     pub fn merge(&mut self, other: &Self) {
         self.energy.merge(&other.energy);
-        for (force, other) in self.plane_force.iter_mut().zip(&other.plane_force) {
-            force.merge(other);
+        let mine = self.plane_force.iter_mut().chain(&mut self.outside_torque);
+        for (sum, other) in mine.zip(other.plane_force.iter().chain(&other.outside_torque)) {
+            sum.merge(other);
         }
         for (key, sums) in other.pairs.iter() {
             self.pairs.entry(key).merge(sums);
@@ -188,18 +193,34 @@ impl ContactSums {
         self.foreign_fraction = self.foreign_fraction.max(other.foreign_fraction);
     }
 
-    /// Adds forces (N) of images behind symmetry planes.
-    pub fn add_plane_forces<'a>(&mut self, forces: impl Iterator<Item = &'a [f64; 3]>) {
-        forces.for_each(|force| self.add_plane_force(force));
+    /// Adds forces (N) of images behind symmetry planes, each with the particle that it acts on, of which
+    /// all stand at `positions` (m).
+    pub fn add_plane_forces<'a>(
+        &mut self,
+        forces: impl Iterator<Item = &'a (usize, [f64; 3])>,
+        positions: &[[f64; 3]],
+    ) {
+        forces.for_each(|(i, force)| self.add_plane_force(force, &positions[*i]));
     }
 
+    /// Adds a force (N) of images behind symmetry planes on a particle at `position` (m).
     #[inline]
-    pub fn add_plane_force(&mut self, force: &[f64; 3]) {
+    pub fn add_plane_force(&mut self, force: &[f64; 3], position: &[f64; 3]) {
+        // Most have none.
+        if *force == [0.0; 3] {
+            return;
+        }
         for (sum, &force) in self.plane_force.iter_mut().zip(force) {
-            // Most have none.
-            if force != 0.0 {
-                sum.add(force);
-            }
+            sum.add(force);
+        }
+        self.add_outside_force(force, position);
+    }
+
+    /// Adds the torque of a force (N) from outside on a particle at `position` (m).
+    #[inline]
+    pub fn add_outside_force(&mut self, force: &[f64; 3], position: &[f64; 3]) {
+        for (sum, torque) in self.outside_torque.iter_mut().zip(cross(position, force)) {
+            sum.add(torque);
         }
     }
 

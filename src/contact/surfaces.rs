@@ -8,8 +8,8 @@ mod friction;
 
 use friction::SurfaceFriction;
 
-use super::ContactTable;
 use super::friction::Law;
+use super::{ContactSums, ContactTable};
 use crate::loads::{Loads, Placed, SurfaceStep};
 use crate::model::{Body, Case, RigidSurface};
 use crate::numerics::exact_sum::ExactSum;
@@ -146,14 +146,14 @@ impl Penalty {
 
 impl SurfaceForces {
     /// Adds what the rigid surfaces do after a step `dt` (s) to the forces of contact, and their
-    /// energy to `energy`.
+    /// energy and torque to the sums `of_contact`.
     pub(super) fn act(
         &mut self,
         particles: &mut ParticleStore,
         table: &ContactTable,
         loads: &Loads,
         dt: f64,
-        energy: &mut ExactSum,
+        of_contact: &mut ContactSums,
     ) {
         self.sums.fill_with(Default::default);
         self.heat.fill_with(ExactSum::default);
@@ -170,7 +170,8 @@ impl SurfaceForces {
             particles.contact_energy[i] += push.energy;
             particles.contact_stiffness[i] += push.stiffness;
             particles.approach_speed[i] = particles.approach_speed[i].max(push.approach);
-            energy.add(push.energy);
+            of_contact.energy.add(push.energy);
+            of_contact.add_outside_force(&push.force, &particles.position[i]);
             let sums = &mut self.sums[push.surface];
             for a in 0..3 {
                 sums[a].add(push.force[a]);

@@ -107,6 +107,9 @@ pub struct Removed {
     pub internal_energy: f64,
     /// `−Σ m g·x` (J).
     pub gravity_energy: f64,
+    /// `Σ x × m v` (kg m²/s).
+    #[serde(default)]
+    pub angular_momentum: [f64; 3],
     /// `Σ m t` with the time of removal (kg s): how long gravity has pulled.
     pub mass_time: f64,
 }
@@ -137,6 +140,13 @@ pub struct Totals {
     pub momentum: [f64; 3],
     /// `Σ |m v|` (kg m/s).
     pub momentum_scale: f64,
+    /// `Σ x × m v` about the origin (kg m²/s).
+    #[serde(default)]
+    pub angular_momentum: [f64; 3],
+    /// `Σ |(x − x̄) × m v|` about the centre of mass (kg m²/s): of the start alone, none in states of
+    /// programs that did not sum it.
+    #[serde(default)]
+    pub angular_momentum_scale: Option<f64>,
 }
 
 impl Totals {
@@ -180,6 +190,15 @@ pub struct RunState {
     /// How often a particle has crossed a symmetry plane so far.
     #[serde(default)]
     pub plane_crossings: i64,
+    /// Torque about the origin of symmetry planes, rigid surfaces and gravity now (N m).
+    #[serde(default)]
+    pub outside_torque: [f64; 3],
+    /// Angular impulse about the origin of these, of loads and of rigid bodies so far (N m s).
+    #[serde(default)]
+    pub angular_impulse: [f64; 3],
+    /// Largest of these so far, of any component (N m s).
+    #[serde(default)]
+    pub angular_momentum_put_in: f64,
     /// Ledgers of the pairs of bodies in contact.
     pub pairs: Vec<PairState>,
     /// Ledgers of prescribed velocities, rigid bodies and rigid surfaces.
@@ -253,6 +272,7 @@ impl RunState {
         self.book_surfaces(loads, dt, true);
         for a in 0..3 {
             self.plane_impulse[a] += 0.5 * dt * self.plane_force[a];
+            self.angular_impulse[a] += 0.5 * dt * self.outside_torque[a];
         }
         for pair in &mut self.pairs {
             for a in 0..3 {
@@ -333,6 +353,13 @@ pub struct Worst {
     pub contact_defect: f64,
     /// `momentum_deviation` over Σ|m v| at the start, or over the impulse put in if that is more.
     pub momentum_error: [f64; 3],
+    /// |angular momentum − first value − angular impulses| (kg m²/s), by component.
+    #[serde(default)]
+    pub angular_momentum_deviation: [f64; 3],
+    /// `angular_momentum_deviation` over Σ|(x − x̄) × m v| at the start, or over the angular impulse put
+    /// in if that is more.
+    #[serde(default)]
+    pub angular_momentum_error: [f64; 3],
     /// Interpenetrated particles.
     pub interpenetrated: i64,
     /// Particles whose gradient has no correction, in the normalised form.

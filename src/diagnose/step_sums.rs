@@ -9,6 +9,7 @@ use crate::contact::{Closest, Contact, ContactSums, ContactTable, least, pair_ke
 use crate::domain::{Mirrors, Span};
 use crate::loads::Loads;
 use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
+use crate::numerics::vector::cross;
 use crate::particles::{GRAIN, ParticleStore};
 
 /// What a step adds up beside contact and loads, with the memory to join all.
@@ -17,6 +18,8 @@ pub(crate) struct StepSums {
     pub contact_work: ExactSum,
     /// Impulse of symmetry planes on particles that crossed them.
     pub crossing_impulse: [ExactSum; 3],
+    /// The same about the origin.
+    crossing_angular_impulse: [ExactSum; 3],
     /// Particles that crossed a symmetry plane in this step.
     pub crossings: i64,
     /// Where all particles are and how they move, after the step.
@@ -54,6 +57,7 @@ impl StepSums {
             meetings: Meetings::default(),
             contact_work: ExactSum::default(),
             crossing_impulse: Default::default(),
+            crossing_angular_impulse: Default::default(),
             crossings: 0,
             uncorrected: 0,
             span: Span::NONE,
@@ -93,9 +97,9 @@ impl StepSums {
             });
         for &i in self.crossed.iter().flatten() {
             self.crossings += 1;
-            let before = particles.velocity[i];
+            let (x, before) = (particles.position[i], particles.velocity[i]);
             mirrors.fold(particles, i);
-            let after = particles.velocity[i];
+            let (y, after) = (particles.position[i], particles.velocity[i]);
             let bits = particles.load.get(i);
             if bits.is_some_and(|&bits| loads.is_rigid(bits)) {
                 continue;
@@ -104,6 +108,45 @@ impl StepSums {
             for a in 0..3 {
                 self.crossing_impulse[a].add(mass * (after[a] - before[a]));
             }
+            let (old, new) = (cross(&x, &before), cross(&y, &after));
+            for a in 0..3 {
+                self.crossing_angular_impulse[a].add(mass * (new[a] - old[a]));
+            }
+        }
+    }
+
+    /// Adds the torque of gravity on what is no part of a rigid body to `torque`.
+    pub fn add_weight(&self, particles: &ParticleStore, loads: &Loads, torque: &mut [ExactSum; 3]) {
+        if loads.gravity == [0.0; 3] {
+            return;
+        }
+        let owned = particles.owned();
+        let of_chunk = |mut sums: [ExactSum; 3], chunk: usize| {
+            for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(owned) {
+                if loads.has_motions() && loads.is_rigid(particles.load[i]) {
+                    continue;
+                }
+                let weight = loads.gravity.map(|g| particles.mass[i] * g);
+                for (sum, torque) in sums.iter_mut().zip(cross(&particles.position[i], &weight)) {
+                    sum.add(torque);
+                }
+            }
+            sums
+        };
+        let merge = |mut sums: [ExactSum; 3], others: [ExactSum; 3]| {
+            for (sum, other) in sums.iter_mut().zip(&others) {
+                sum.merge(other);
+            }
+            sums
+        };
+        let all = (0..owned.div_ceil(GRAIN))
+            .into_par_iter()
+            // same bits in any order: exact sums are integers
+            .fold(Default::default, of_chunk)
+            // same bits in any order, as above
+            .reduce(Default::default, merge);
+        for (sum, other) in torque.iter_mut().zip(&all) {
+            sum.merge(other);
         }
     }
 
@@ -115,11 +158,14 @@ impl StepSums {
         [&mut self.contact_work]
             .into_iter()
             .chain(&mut self.crossing_impulse)
+            .chain(&mut self.crossing_angular_impulse)
+            .chain(&mut loads.angular_impulse)
             .chain(loads.sums.iter_mut().flatten())
             .chain(contact.surfaces.sums.iter_mut().flatten())
             .chain(&mut contact.surfaces.heat)
             .chain([&mut contact.sums.energy])
             .chain(&mut contact.sums.plane_force)
+            .chain(&mut contact.sums.outside_torque)
     }
 
     /// Joins the sums of all ranks. Collective.
@@ -189,6 +235,12 @@ impl StepSums {
             state.plane_impulse[a] +=
                 0.5 * dt * state.plane_force[a] + self.crossing_impulse[a].value();
             self.crossing_impulse[a] = ExactSum::default();
+            state.outside_torque[a] = contact.outside_torque[a].value();
+            state.angular_impulse[a] += 0.5 * dt * state.outside_torque[a]
+                + self.crossing_angular_impulse[a].value()
+                + booked.loads.angular_impulse[a].value();
+            self.crossing_angular_impulse[a] = ExactSum::default();
+            booked.loads.angular_impulse[a] = ExactSum::default();
         }
         state.plane_crossings += std::mem::take(&mut self.crossings);
         for (pair, &key) in state.pairs.iter_mut().zip(&self.pair_keys) {

@@ -6,6 +6,7 @@ use super::ledger::{Removed, RunState, Totals};
 use crate::comm::Comm;
 use crate::loads::Loads;
 use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
+use crate::numerics::vector::{cross, norm};
 use crate::particles::{GRAIN, ParticleStore};
 
 impl Totals {
@@ -33,11 +34,9 @@ impl Totals {
             // same bits in any order, as above
             .reduce(TotalSums::default, TotalSums::merge)
             .0;
-        let mut limbs = Vec::new();
-        gather_limbs(sums.iter_mut(), &mut limbs);
-        comm.sum_i64(&mut limbs);
-        scatter_limbs(sums.iter_mut(), &limbs);
-        let [kinetic, internal, gravity, mass, x, y, z, scale] = sums.map(|sum| sum.value());
+        reduce(comm, &mut sums);
+        let [kinetic, internal, gravity, mass, x, y, z, scale, turn @ ..] =
+            sums.map(|sum| sum.value());
         Self {
             kinetic_energy: kinetic,
             internal_energy: internal,
@@ -46,8 +45,45 @@ impl Totals {
             mass,
             momentum: [x, y, z],
             momentum_scale: scale,
+            angular_momentum: turn,
+            angular_momentum_scale: None,
         }
     }
+}
+
+/// `Σ |(x − x̄) × m v|` (kg m²/s) over the particles of all ranks that are no part of a rigid body,
+/// with x̄ (m) their centre of mass. Collective.
+pub(crate) fn angular_momentum_scale(particles: &ParticleStore, loads: &Loads, comm: &Comm) -> f64 {
+    let movable = || {
+        let owned = 0..particles.owned();
+        owned.filter(|&i| !(loads.has_motions() && loads.is_rigid(particles.load[i])))
+    };
+    let mut sums: [ExactSum; 4] = Default::default();
+    let mut scale = [ExactSum::default()];
+    for i in movable() {
+        let m = particles.mass[i];
+        let [x, y, z] = particles.position[i].map(|x| m * x);
+        for (sum, term) in sums.iter_mut().zip([m, x, y, z]) {
+            sum.add(term);
+        }
+    }
+    reduce(comm, &mut sums);
+    let [mass, centre @ ..] = sums.map(|sum| sum.value());
+    for i in movable() {
+        let x = &particles.position[i];
+        let arm = std::array::from_fn(|a| x[a] - centre[a] / mass);
+        scale[0].add(particles.mass[i] * norm(&cross(&arm, &particles.velocity[i])));
+    }
+    reduce(comm, &mut scale);
+    scale[0].value()
+}
+
+/// Joins the sums of all ranks. Collective.
+fn reduce(comm: &Comm, sums: &mut [ExactSum]) {
+    let mut limbs = Vec::new();
+    gather_limbs(sums.iter_mut(), &mut limbs);
+    comm.sum_i64(&mut limbs);
+    scatter_limbs(sums.iter_mut(), &limbs);
 }
 
 impl RunState {
@@ -79,9 +115,31 @@ impl RunState {
                 self.momentum_put_in = self.momentum_put_in.max(put.abs());
             }
         }
+        self.book_angular_momentum();
+        let worst = &mut self.worst;
         let scale = self.initial.momentum_scale.max(self.momentum_put_in);
         if scale > 0.0 {
             worst.momentum_error = worst.momentum_deviation.map(|error| error / scale);
+        }
+    }
+
+    /// What angular momentum is off by that no angular impulse explains.
+    fn book_angular_momentum(&mut self) {
+        let Some(scale) = self.initial.angular_momentum_scale else {
+            return;
+        };
+        let worst = &mut self.worst;
+        for a in 0..3 {
+            let taken: f64 = self.removed.iter().map(|r| r.angular_momentum[a]).sum();
+            let gained = self.totals.angular_momentum[a] + taken - self.initial.angular_momentum[a];
+            let error = (gained - self.angular_impulse[a]).abs();
+            worst.angular_momentum_deviation[a] = worst.angular_momentum_deviation[a].max(error);
+            let put_in = &mut self.angular_momentum_put_in;
+            *put_in = put_in.max(self.angular_impulse[a].abs());
+        }
+        let scale = scale.max(self.angular_momentum_put_in);
+        if scale > 0.0 {
+            worst.angular_momentum_error = worst.angular_momentum_deviation.map(|e| e / scale);
         }
     }
 
@@ -100,9 +158,10 @@ impl RunState {
     }
 }
 
-/// Kinetic, internal and gravity's energy, mass, momentum, and the sum of its magnitudes.
+/// Kinetic, internal and gravity's energy, mass, momentum, the sum of its magnitudes, and angular
+/// momentum.
 #[derive(Default)]
-struct TotalSums([ExactSum; 8]);
+struct TotalSums([ExactSum; 11]);
 
 impl TotalSums {
     fn add(&mut self, particles: &ParticleStore, i: usize, gravity: &[f64; 3]) {
@@ -113,6 +172,7 @@ impl TotalSums {
         );
         let height = -(gravity[0] * x[0] + gravity[1] * x[1] + gravity[2] * x[2]);
         let v2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+        let turn = cross(x, v);
         let terms = [
             0.5 * m * v2,
             particles.thermal_mass(i) * particles.specific_energy[i],
@@ -122,6 +182,9 @@ impl TotalSums {
             m * v[1],
             m * v[2],
             m * v2.sqrt(),
+            m * turn[0],
+            m * turn[1],
+            m * turn[2],
         ];
         for (sum, term) in self.0.iter_mut().zip(terms) {
             sum.add(term);

@@ -12,6 +12,7 @@ pub(crate) use surface_motion::{Placed, SurfaceStep};
 
 use crate::model::{self, Case, Motion};
 use crate::numerics::exact_sum::ExactSum;
+use crate::numerics::vector::cross;
 use crate::particles::ParticleStore;
 
 /// Which of the two prescribed velocities of a step.
@@ -132,6 +133,8 @@ pub struct Loads {
     pub gravity: [f64; 3],
     /// Impulse and work of prescribed velocities and of rigid bodies in this step, by ledger.
     pub(crate) sums: Vec<[ExactSum; 4]>,
+    /// Angular impulse about the origin of all of them in this step.
+    pub(crate) angular_impulse: [ExactSum; 3],
 }
 
 impl Loads {
@@ -152,6 +155,7 @@ impl Loads {
             surfaces: vec![SurfaceStep::default(); case.loads.surfaces.len()],
             gravity: case.loads.gravity,
             sums: (0..motions).map(|_| Default::default()).collect(),
+            angular_impulse: Default::default(),
         };
         step.prepare(case, 0.0, 0.0);
         step
@@ -160,6 +164,11 @@ impl Loads {
     /// Half kicks in a second of steps `dt` (s); zero at the start of a case.
     pub(crate) fn per_half(dt: f64) -> f64 {
         if dt > 0.0 { 2.0 / dt } else { 0.0 }
+    }
+
+    /// Whether there is gravity, or velocities of any particle are prescribed.
+    pub(crate) fn act(&self) -> bool {
+        self.has_motions() || self.gravity != [0.0; 3]
     }
 
     /// Whether velocities of any particle are prescribed.
@@ -265,6 +274,7 @@ impl Loads {
             let contact = contact.copied().unwrap_or_default();
             let prescribed = self.of(bits);
             let (mass, v) = (particles.mass[i], &particles.velocity[i]);
+            let mut impulses = [0.0; 3];
             for a in 0..3 {
                 let Some(by) = prescribed.by[a] else { continue };
                 let middle = prescribed.middle[a];
@@ -279,6 +289,11 @@ impl Loads {
                 let sums = &mut self.sums[usize::from(by)];
                 sums[a].add(impulse);
                 sums[3].add(work);
+                impulses[a] = impulse;
+            }
+            let angular = cross(&particles.position[i], &impulses);
+            for (sum, impulse) in self.angular_impulse.iter_mut().zip(angular) {
+                sum.add(impulse);
             }
         }
     }

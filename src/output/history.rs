@@ -54,6 +54,10 @@ pub fn unit_of_model(unit: &str, dimension: usize) -> &str {
         ("kg", 2) => "kg/m",
         ("kg m/s", 1) => "kg/(m s)",
         ("kg m/s", 2) => "kg/s",
+        ("kg m^2/s", 1) => "kg/s",
+        ("kg m^2/s", 2) => "kg m/s",
+        ("N m s", 1) => "N s/m",
+        ("N m s", 2) => "N s",
         _ => unit,
     }
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
+use super::drift::Drift;
 use super::exit::EXIT_STOPPED;
 use super::launch::{Launch, STEP, fail};
 use super::options::CommonArgs;
@@ -36,6 +37,7 @@ pub struct Driver<'a> {
     tables: Option<Tables>,
     log: Log,
     progress: Progress,
+    drift: Drift,
     /// Post-mortems written.
     post_mortems: usize,
 }
@@ -89,6 +91,7 @@ impl<'a> Driver<'a> {
             progress: Progress::new(comm.is_root(), &simulation.case.run),
             simulation,
             folder,
+            drift: Drift::default(),
             post_mortems: 0,
         };
         if comm.is_root() {
@@ -252,6 +255,10 @@ impl<'a> Driver<'a> {
             None => Ok(()),
         })?;
         self.simulation.state.begin_interval();
+        if let Some(text) = self.drift.notice(&self.simulation) {
+            self.log(comm, &text);
+            self.progress.warn(&text);
+        }
         Ok(())
     }
 

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use console::Term;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-use super::say::{say, seconds};
+use super::say::{say, seconds, warn};
 use crate::model::RunControl;
 use crate::step::RunState;
 
@@ -78,6 +78,15 @@ impl Progress {
         let steps = self.control.max_steps.unwrap_or(u64::MAX) as f64;
         let done = (state.time / self.control.end_time).max(state.step as f64 / steps);
         (done.clamp(0.0, 1.0) * TICKS as f64) as u64
+    }
+
+    /// A warning, above the bar.
+    pub fn warn(&self, text: &str) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| warn(text)),
+            None if self.tells => warn(text),
+            None => {}
+        }
     }
 
     /// Clears the bar.

@@ -58,6 +58,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde
         "energy_error_max": worst.energy_error,
         "contact_defect": worst.contact_defect,
         "momentum_error": object(["x", "y", "z"].into_iter().zip(worst.momentum_error)),
+        "angular_momentum_error": object(["x", "y", "z"].into_iter().zip(worst.angular_momentum_error)),
         "interpenetrated_particles": contact.has_pairs().then_some(worst.interpenetrated),
         "closest_foreign_pair": worst.closest,
         "closest_foreign_particles": nearest,

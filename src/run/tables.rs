@@ -160,6 +160,8 @@ tables! {
         "contact_work", "J", state.contact_work;
         "contact_heat", "J", state.contact_heat();
         "interpenetrated", "", state.interpenetrated.unsigned_abs();
+        "angular_momentum_*", "kg m^2/s", state.totals.angular_momentum;
+        "angular_impulse_*", "N m s", state.angular_impulse;
     }
 
     /// A row of the contacts, of two bodies by name.

@@ -124,8 +124,9 @@ impl Sph {
         with_form!(&self.form, form => form.drift(particles, dt, &loads.gravity));
     }
 
-    /// Forces (N) of images behind symmetry planes on single particles in the last second sweep.
-    pub fn forces_of_mirrors(&self) -> impl Iterator<Item = &[f64; 3]> {
+    /// Forces (N) of images behind symmetry planes in the last second sweep, with the particles that
+    /// they act on.
+    pub fn forces_of_mirrors(&self) -> impl Iterator<Item = &(usize, [f64; 3])> {
         let chunks = self.sums.from_mirrors.iter();
         chunks.flat_map(|chunk| &chunk.forces)
     }

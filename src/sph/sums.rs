@@ -32,13 +32,13 @@ pub(super) struct Sums {
 pub(super) struct FromMirrors {
     /// The images among the neighbours of one cluster.
     pub(super) indices: Vec<u32>,
-    /// Forces on single particles (N).
-    pub(super) forces: Vec<[f64; 3]>,
+    /// Single particles, and the forces on them (N).
+    pub(super) forces: Vec<(usize, [f64; 3])>,
 }
 
 impl FromMirrors {
     fn memory(&self) -> usize {
-        4 * self.indices.capacity() + size_of::<[f64; 3]>() * self.forces.capacity()
+        4 * self.indices.capacity() + size_of::<(usize, [f64; 3])>() * self.forces.capacity()
     }
 }
 

@@ -12,6 +12,7 @@ use crate::comm::Comm;
 use crate::diagnose::{Moved, Removed, RunState};
 use crate::loads::Loads;
 use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
+use crate::numerics::vector::cross;
 use crate::particles::{FieldInfo, Owner, ParticleStore};
 use crate::sph::SignalSpeed;
 
@@ -113,7 +114,7 @@ pub(super) fn book(
     loads: &Loads,
     leaving: &[u32],
 ) {
-    let mut sums: Vec<[ExactSum; 7]> = (0..bodies).map(|_| Default::default()).collect();
+    let mut sums: Vec<[ExactSum; 10]> = (0..bodies).map(|_| Default::default()).collect();
     let mut counts = vec![0_u64; bodies];
     let g = loads.gravity;
     for &i in leaving {
@@ -123,6 +124,7 @@ pub(super) fn book(
             &particles.velocity[i],
             &particles.position[i],
         );
+        let turn = cross(x, v);
         let body = particles.body[i] as usize;
         counts[body] += 1;
         let terms = [
@@ -133,6 +135,9 @@ pub(super) fn book(
             0.5 * m * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]),
             particles.thermal_mass(i) * particles.specific_energy[i],
             -m * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]),
+            m * turn[0],
+            m * turn[1],
+            m * turn[2],
         ];
         for (sum, term) in sums[body].iter_mut().zip(terms) {
             sum.add(term);
@@ -146,10 +151,14 @@ pub(super) fn book(
     let time = state.time;
     state.removed.resize(bodies, Removed::default());
     for ((booked, sums), count) in state.removed.iter_mut().zip(&sums).zip(counts) {
-        let [mass, x, y, z, kinetic, internal, gravity] = std::array::from_fn(|k| sums[k].value());
+        let values: [f64; 10] = std::array::from_fn(|k| sums[k].value());
+        let [mass, x, y, z, kinetic, internal, gravity, turn @ ..] = values;
         booked.particles += count;
         booked.mass += mass;
         for (total, part) in booked.momentum.iter_mut().zip([x, y, z]) {
+            *total += part;
+        }
+        for (total, part) in booked.angular_momentum.iter_mut().zip(turn) {
             *total += part;
         }
         booked.kinetic_energy += kinetic;

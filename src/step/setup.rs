@@ -9,7 +9,7 @@ use super::simulation::Simulation;
 use super::timers::Timers;
 use crate::comm::Comm;
 use crate::contact::{Connectivity, Contact};
-use crate::diagnose::{LoadState, PairState, RunState, StepSums, Worst};
+use crate::diagnose::{LoadState, PairState, RunState, StepSums, Worst, angular_momentum_scale};
 use crate::domain::{Halo, Mirrors, Outset, Partition};
 use crate::loads::{Goal, Loads, Prescribe};
 use crate::model::{Case, SphForm};
@@ -175,6 +175,8 @@ impl Simulation {
         self.book_step(comm, 0.0);
         self.state.initial = self.totals(comm);
         self.state.initial.contact_energy = self.state.contact_energy;
+        let scale = angular_momentum_scale(&self.particles, &self.loads, comm);
+        self.state.initial.angular_momentum_scale = Some(scale);
         self.state.worst = Worst::default();
         self.diagnose(comm);
         self.state.worst.nearest = None;

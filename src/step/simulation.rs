@@ -141,6 +141,7 @@ impl Simulation {
             sph,
             contact,
             loads,
+            sums,
             ..
         } = self;
         halo.exchange_motion(comm, particles, |particles, i| {
@@ -188,7 +189,10 @@ impl Simulation {
             timers.lap(Phase::HaloStress);
         }
         contact.forces(particles, lists, loads, dt);
-        contact.sums.add_plane_forces(sph.forces_of_mirrors());
+        contact
+            .sums
+            .add_plane_forces(sph.forces_of_mirrors(), &particles.position);
+        sums.add_weight(particles, loads, &mut contact.sums.outside_torque);
         timers.lap(Phase::ContactForces);
     }
 
@@ -220,8 +224,8 @@ impl Simulation {
     pub(super) fn book_step(&mut self, comm: &Comm, dt: f64) {
         let corrects = self.case.sph.form != SphForm::Conventional;
         let mirrors = !self.halo.mirrors().is_empty();
-        let sums_any =
-            self.contact.table.is_active() || mirrors || self.loads.has_motions() || corrects;
+        let outside = mirrors || self.loads.act();
+        let sums_any = self.contact.table.is_active() || outside || corrects;
         let mut booked = Booked {
             uncorrected: self.sph.uncorrected(),
             contact: &mut self.contact,

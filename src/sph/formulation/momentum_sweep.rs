@@ -189,12 +189,9 @@ impl<S: PairScale, R: PairStress, const TERMS: u8> Vectorised for MomentumChunk<
             indices.extend(neighbours.iter().copied().filter(is_image));
             let part = Self::sum::<V>(self.motion, self.sources, cluster, indices).acceleration;
             for k in 0..cluster.lanes {
-                let mass = target.mass[target.images[cluster.receivers[k] as usize].base()];
-                forces.push([
-                    mass * part[0].0[k],
-                    mass * part[1].0[k],
-                    mass * part[2].0[k],
-                ]);
+                let i = target.images[cluster.receivers[k] as usize].base();
+                let mass = target.mass[i];
+                forces.push((i, [0, 1, 2].map(|a: usize| mass * part[a].0[k])));
             }
         }
     }

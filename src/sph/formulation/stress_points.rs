@@ -224,7 +224,8 @@ impl<S: PairScale> Vectorised for PullChunk<'_, S> {
                 for k in 0..cluster.lanes {
                     let mut force = [0.0; 3];
                     force[axis] = 2.0 * part.0[k];
-                    forces.push(force);
+                    let i = self.sources.images[cluster.receivers[k] as usize].base();
+                    forces.push((i, force));
                 }
             }
         }
