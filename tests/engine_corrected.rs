@@ -4,10 +4,13 @@
 mod common;
 
 use common::cloud::{Cloud, Found, small as cloud};
+use common::linear_field::free_block;
 use common::random::Random;
+use common::ranks::on_each;
 use nalgebra::Matrix3;
+use whipple::diagnose::Worst;
 use whipple::domain::Mirrors;
-use whipple::model::Vec3;
+use whipple::model::{Axis, SphForm, Vec3};
 use whipple::neighbours::Chunk;
 use whipple::numerics::dispatch::available;
 use whipple::numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
@@ -15,6 +18,7 @@ use whipple::sph::corrected::{Corrected, CorrectedGradient, CorrectedRecord};
 use whipple::sph::momentum::{Forces, Momentum, Viscosity};
 use whipple::sph::neighbourhood::Sources;
 use whipple::sph::terms::PairTerms;
+use whipple::step::Simulation;
 
 type Matrix = Matrix3<f64>;
 
@@ -346,4 +350,50 @@ fn viscosity_balances() {
     for (sum, size) in sums.into_iter().zip(sizes) {
         assert!(f64::abs(sum) <= 1e-12 * size, "{sums:?} of {sizes:?}");
     }
+}
+
+/// A block that turns, flies and hits: with gravity, a load, a symmetry plane and a rigid plane, whatever
+/// there is of angular momentum is explained by what acts from outside.
+#[test]
+fn angular_momentum_is_explained() {
+    on_each("angular_momentum_is_explained", &[1, 2], |comm| {
+        for (dimension, mirrors, loads) in [
+            (2, &[][..], false),
+            (3, &[][..], false),
+            (2, &[Axis::X][..], true),
+            (3, &[Axis::X, Axis::Y][..], true),
+        ] {
+            let (mut case, field) = free_block(dimension, mirrors, SphForm::Corrected);
+            if loads {
+                case.loads.gravity = [0.0, -1e7, 0.0];
+            }
+            let mut simulation = Simulation::start(case, comm).unwrap();
+            let particles = &mut simulation.particles;
+            for i in 0..particles.owned() {
+                let turned = field * Vec3::from(particles.position[i]);
+                particles.velocity[i] = turned.into();
+            }
+            let before = simulation.state.angular_impulse;
+            simulation.diagnose(comm);
+            simulation.state.initial = simulation.state.totals;
+            simulation.state.initial.angular_momentum_scale = Some(1e-300);
+            simulation.state.worst = Worst::default();
+            assert_eq!(before, [0.0; 3]);
+            for _ in 0..50 {
+                simulation.advance(comm).unwrap();
+            }
+            simulation.diagnose(comm);
+            let state = &simulation.state;
+            let scale = (state.totals.angular_momentum.iter())
+                .chain(&state.angular_impulse)
+                .fold(0.0_f64, |most, x| most.max(x.abs()));
+            let off = state.worst.angular_momentum_deviation;
+            println!("{dimension}-D {mirrors:?} {loads}: {off:?} of {scale:e}");
+            assert!(scale > 0.0);
+            assert!(
+                off.iter().all(|&x| x <= 1e-12 * scale),
+                "{off:?} of {scale:e}"
+            );
+        }
+    });
 }

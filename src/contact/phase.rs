@@ -141,6 +141,7 @@ impl Contact {
     /// know of both. Sums are those of this rank.
     pub fn forces(&mut self, particles: &mut ParticleStore, lists: &Lists, loads: &Loads, dt: f64) {
         self.sums.clear();
+        loads.add_weight(particles, &mut self.sums.outside_torque);
         if !self.table.is_active() {
             return;
         }

@@ -115,41 +115,6 @@ impl StepSums {
         }
     }
 
-    /// Adds the torque of gravity on what is no part of a rigid body to `torque`.
-    pub fn add_weight(&self, particles: &ParticleStore, loads: &Loads, torque: &mut [ExactSum; 3]) {
-        if loads.gravity == [0.0; 3] {
-            return;
-        }
-        let owned = particles.owned();
-        let of_chunk = |mut sums: [ExactSum; 3], chunk: usize| {
-            for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(owned) {
-                if loads.has_motions() && loads.is_rigid(particles.load[i]) {
-                    continue;
-                }
-                let weight = loads.gravity.map(|g| particles.mass[i] * g);
-                for (sum, torque) in sums.iter_mut().zip(cross(&particles.position[i], &weight)) {
-                    sum.add(torque);
-                }
-            }
-            sums
-        };
-        let merge = |mut sums: [ExactSum; 3], others: [ExactSum; 3]| {
-            for (sum, other) in sums.iter_mut().zip(&others) {
-                sum.merge(other);
-            }
-            sums
-        };
-        let all = (0..owned.div_ceil(GRAIN))
-            .into_par_iter()
-            // same bits in any order: exact sums are integers
-            .fold(Default::default, of_chunk)
-            // same bits in any order, as above
-            .reduce(Default::default, merge);
-        for (sum, other) in torque.iter_mut().zip(&all) {
-            sum.merge(other);
-        }
-    }
-
     fn exact<'a>(
         &'a mut self,
         contact: &'a mut Contact,

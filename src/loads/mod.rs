@@ -10,10 +10,12 @@ mod surface_motion;
 
 pub(crate) use surface_motion::{Placed, SurfaceStep};
 
+use rayon::prelude::*;
+
 use crate::model::{self, Case, Motion};
 use crate::numerics::exact_sum::ExactSum;
 use crate::numerics::vector::cross;
-use crate::particles::ParticleStore;
+use crate::particles::{GRAIN, ParticleStore};
 
 /// Which of the two prescribed velocities of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -257,6 +259,41 @@ impl Loads {
             + size_of::<SurfaceStep>() * self.surfaces.capacity()
             + size_of::<usize>() * self.rigid_bodies.capacity()
             + 4 * size_of::<ExactSum>() * self.sums.capacity()
+    }
+
+    /// Adds the torque of gravity on what is no part of a rigid body to `torque`.
+    pub(crate) fn add_weight(&self, particles: &ParticleStore, torque: &mut [ExactSum; 3]) {
+        if self.gravity == [0.0; 3] {
+            return;
+        }
+        let owned = particles.owned();
+        let of_chunk = |mut sums: [ExactSum; 3], chunk: usize| {
+            for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(owned) {
+                if self.has_motions() && self.is_rigid(particles.load[i]) {
+                    continue;
+                }
+                let weight = self.gravity.map(|g| particles.mass[i] * g);
+                for (sum, torque) in sums.iter_mut().zip(cross(&particles.position[i], &weight)) {
+                    sum.add(torque);
+                }
+            }
+            sums
+        };
+        let merge = |mut sums: [ExactSum; 3], others: [ExactSum; 3]| {
+            for (sum, other) in sums.iter_mut().zip(&others) {
+                sum.merge(other);
+            }
+            sums
+        };
+        let all = (0..owned.div_ceil(GRAIN))
+            .into_par_iter()
+            // same bits in any order: exact sums are integers
+            .fold(Default::default, of_chunk)
+            // same bits in any order, as above
+            .reduce(Default::default, merge);
+        for (sum, other) in torque.iter_mut().zip(&all) {
+            sum.merge(other);
+        }
     }
 
     /// Books impulse and work of loads and of what holds rigid bodies in a half kick of a step

@@ -141,7 +141,6 @@ impl Simulation {
             sph,
             contact,
             loads,
-            sums,
             ..
         } = self;
         halo.exchange_motion(comm, particles, |particles, i| {
@@ -150,9 +149,8 @@ impl Simulation {
         timers.lap(Phase::HaloMotion);
         let images = particles.owned() + halo.others().len();
         lists.build(particles, halo, sph.scratch(images));
-        contact
-            .connectivity
-            .separate(particles, lists, halo.mirrors());
+        let mirrors = halo.mirrors();
+        contact.connectivity.separate(particles, lists, mirrors);
         if contact.table.has_pairs() {
             lists.build_foreign(particles, &contact.table.foreign);
         }
@@ -189,10 +187,8 @@ impl Simulation {
             timers.lap(Phase::HaloStress);
         }
         contact.forces(particles, lists, loads, dt);
-        contact
-            .sums
-            .add_plane_forces(sph.forces_of_mirrors(), &particles.position);
-        sums.add_weight(particles, loads, &mut contact.sums.outside_torque);
+        let planes = sph.forces_of_mirrors();
+        contact.sums.add_plane_forces(planes, &particles.position);
         timers.lap(Phase::ContactForces);
     }
 
@@ -223,8 +219,7 @@ impl Simulation {
     /// Collective.
     pub(super) fn book_step(&mut self, comm: &Comm, dt: f64) {
         let corrects = self.case.sph.form != SphForm::Conventional;
-        let mirrors = !self.halo.mirrors().is_empty();
-        let outside = mirrors || self.loads.act();
+        let outside = !self.halo.mirrors().is_empty() || self.loads.act();
         let sums_any = self.contact.table.is_active() || outside || corrects;
         let mut booked = Booked {
             uncorrected: self.sph.uncorrected(),
@@ -279,8 +274,7 @@ impl Simulation {
         )
     }
 
-    /// Joins what the pairs of bodies have come to since the last time on all ranks into the state:
-    /// before rows and checkpoints. Collective.
+    /// Joins the extremes of all ranks into the state: before rows and checkpoints. Collective.
     pub fn join_extremes(&mut self, comm: &Comm) {
         self.sums.join_extremes(comm, &mut self.state);
     }
