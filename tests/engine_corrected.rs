@@ -5,6 +5,7 @@ mod common;
 
 use common::cloud::{Cloud, Found, small as cloud};
 use common::linear_field::free_block;
+use common::make_elastic;
 use common::random::Random;
 use common::ranks::on_each;
 use nalgebra::Matrix3;
@@ -362,8 +363,11 @@ fn angular_momentum_is_explained() {
             (3, &[][..], false),
             (2, &[Axis::X][..], true),
             (3, &[Axis::X, Axis::Y][..], true),
+            (2, &[Axis::X][..], false),
+            (3, &[Axis::X, Axis::Y][..], false),
         ] {
             let (mut case, field) = free_block(dimension, mirrors, SphForm::Corrected);
+            make_elastic(&mut case);
             if loads {
                 case.loads.gravity = [0.0, -1e7, 0.0];
             }
@@ -371,7 +375,10 @@ fn angular_momentum_is_explained() {
             let particles = &mut simulation.particles;
             for i in 0..particles.owned() {
                 let turned = field * Vec3::from(particles.position[i]);
-                particles.velocity[i] = turned.into();
+                // Shaken too, so that the planes have something to do.
+                let mut random = Random::new(particles.id[i] + 1);
+                let shaken = random.vector(dimension, 1e-4 * field.norm());
+                particles.velocity[i] = (turned + Vec3::from(shaken)).into();
             }
             let before = simulation.state.angular_impulse;
             simulation.diagnose(comm);

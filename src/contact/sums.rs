@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::force::BodyForce;
+use crate::domain::MirrorForce;
 use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use crate::numerics::vector::cross;
 
@@ -193,14 +194,18 @@ impl ContactSums {
         self.foreign_fraction = self.foreign_fraction.max(other.foreign_fraction);
     }
 
-    /// Adds forces (N) of images behind symmetry planes, each with the particle that it acts on, of which
-    /// all stand at `positions` (m).
+    /// Adds what images behind symmetry planes do to particles at `positions` (m).
     pub fn add_plane_forces<'a>(
         &mut self,
-        forces: impl Iterator<Item = &'a (usize, [f64; 3])>,
+        forces: impl Iterator<Item = &'a MirrorForce>,
         positions: &[[f64; 3]],
     ) {
-        forces.for_each(|(i, force)| self.add_plane_force(force, &positions[*i]));
+        for force in forces {
+            self.add_plane_force(&force.force, &positions[force.particle]);
+            for (sum, couple) in self.outside_torque.iter_mut().zip(force.couple) {
+                sum.add(couple);
+            }
+        }
     }
 
     /// Adds a force (N) of images behind symmetry planes on a particle at `position` (m).

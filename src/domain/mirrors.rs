@@ -10,6 +10,18 @@ pub struct Mirrors {
     planes: [Option<f64>; 3],
 }
 
+/// What images behind symmetry planes do to one particle.
+#[derive(Debug, Clone, Copy)]
+pub struct MirrorForce {
+    /// Index of the particle.
+    pub particle: usize,
+    /// Force (N).
+    pub force: [f64; 3],
+    /// Torque beyond that of the force at the particle (N m): that which pairs on this side of the plane
+    /// exert on each other without those across it.
+    pub couple: [f64; 3],
+}
+
 impl Mirrors {
     /// Planes of a case.
     #[must_use]

@@ -13,7 +13,7 @@ mod span;
 pub use balance::{Cumulative, Histogram, balance};
 pub use halo::Halo;
 pub use migrate::Migration;
-pub use mirrors::Mirrors;
+pub use mirrors::{MirrorForce, Mirrors};
 pub use outset::Outset;
 pub use partition::Partition;
 pub use rank_speed::RankSpeeds;

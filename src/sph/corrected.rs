@@ -171,6 +171,19 @@ impl Correction {
     }
 }
 
+/// Adds the moments of pairs at `r = x_i − x_j` with `∇W = factor r`; gives V ∇W.
+#[inline(always)]
+fn add_moment<V: Lanes>(moment: &mut [V; 6], r: &[V; 3], factor: V) -> [V; 3] {
+    let steep = [r[0].mul(factor), r[1].mul(factor), r[2].mul(factor)];
+    for a in 0..3 {
+        moment[a] = r[a].neg_mul_add(steep[a], moment[a]);
+    }
+    moment[3] = r[0].neg_mul_add(steep[1], moment[3]);
+    moment[4] = r[0].neg_mul_add(steep[2], moment[4]);
+    moment[5] = r[1].neg_mul_add(steep[2], moment[5]);
+    steep
+}
+
 /// The first sweep over the pairs of eight receivers.
 pub struct CorrectedGradient<'a, S> {
     /// The receivers and their neighbours.
@@ -202,17 +215,13 @@ impl<S: PairScale> Vectorised for CorrectedGradient<'_, S> {
             let (here, r) = (pair.source, pair.separation.r);
             let volume = V::splat(here.volume);
             let factor = pair.separation.inverse.mul(volume).mul(pair.kernel.slope);
-            let steep = [r[0].mul(factor), r[1].mul(factor), r[2].mul(factor)];
+            let steep = add_moment(&mut moment, &r, factor);
             for a in 0..3 {
                 let v_a = V::splat(here.velocity[a]).sub(velocity[a]);
                 for b in 0..3 {
                     gradient[3 * a + b] = v_a.mul_add(steep[b], gradient[3 * a + b]);
                 }
-                moment[a] = r[a].neg_mul_add(steep[a], moment[a]);
             }
-            moment[3] = r[0].neg_mul_add(steep[1], moment[3]);
-            moment[4] = r[0].neg_mul_add(steep[2], moment[4]);
-            moment[5] = r[1].neg_mul_add(steep[2], moment[5]);
         }
         let mut m = moment.map(V::store);
         for axis in self.dimension..3 {
@@ -251,6 +260,29 @@ impl PairStress for CorrectedRecord {
     #[inline(always)]
     fn is_free(&self) -> bool {
         self.stress == [0.0; 9]
+    }
+
+    /// `V_i ε : P_i Σ V_j (x_j − x_i) ⊗ ∇W_ij`: with all neighbours P M is symmetric.
+    #[inline(always)]
+    fn couple<V: Lanes, S: PairScale>(around: &Neighbourhood<S>, stresses: &[Self]) -> [F64x8; 3] {
+        let (position, _) = around.motion::<V>();
+        let mut moment = [V::splat(0.0); 6];
+        for pair in around.pairs(&position) {
+            let volume = V::splat(pair.source.volume);
+            let factor = pair.separation.inverse.mul(volume).mul(pair.kernel.slope);
+            add_moment(&mut moment, &pair.separation.r, factor);
+        }
+        let moment = moment.map(V::store);
+        let mut couple = [F64x8([0.0; LANES]); 3];
+        for (k, &place) in around.receivers.iter().enumerate() {
+            let volume = around.sources.records[place as usize].volume;
+            let lane = FULL.map(|c: usize| moment[c].0[k]);
+            let pm = matrix::product(&stresses[place as usize].stress, &lane);
+            for (a, [c, b]) in [[7, 5], [2, 6], [3, 1]].into_iter().enumerate() {
+                couple[a].0[k] = volume * (pm[c] - pm[b]);
+            }
+        }
+        couple
     }
 
     /// `dv/dt = 1/ρ_i Σ V_j (P_i + P_j − ρ_i ρ_j (Π_ij I + R_ij f⁴)) ∇W_ij`.

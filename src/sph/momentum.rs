@@ -59,6 +59,13 @@ pub trait PairStress: bytemuck::Pod + Send + Sync {
     /// Whether there is no stress at all.
     fn is_free(&self) -> bool;
 
+    /// The torque (N m) that pairs of eight receivers exert on each other without these neighbours, where
+    /// none is left with them; none where angular momentum is not kept anyway.
+    #[must_use]
+    fn couple<V: Lanes, S: PairScale>(_: &Neighbourhood<S>, _: &[Self]) -> [F64x8; 3] {
+        [F64x8([0.0; LANES]); 3]
+    }
+
     /// The sums of eight receivers.
     fn sum<V: Lanes, S: PairScale, const TERMS: u8>(sums: &Momentum<S, Self, TERMS>) -> Forces;
 }

@@ -9,6 +9,7 @@ use super::smoothing::Smoothing;
 use super::step::{Side, Step};
 use super::sums::Sums;
 use super::terms;
+use crate::domain::MirrorForce;
 use crate::loads::Loads;
 use crate::model::{Case, SphForm};
 use crate::neighbours::Lists;
@@ -124,9 +125,8 @@ impl Sph {
         with_form!(&self.form, form => form.drift(particles, dt, &loads.gravity));
     }
 
-    /// Forces (N) of images behind symmetry planes in the last second sweep, with the particles that
-    /// they act on.
-    pub fn forces_of_mirrors(&self) -> impl Iterator<Item = &(usize, [f64; 3])> {
+    /// What images behind symmetry planes did in the last second sweep.
+    pub fn forces_of_mirrors(&self) -> impl Iterator<Item = &MirrorForce> {
         let chunks = self.sums.from_mirrors.iter();
         chunks.flat_map(|chunk| &chunk.forces)
     }

@@ -6,6 +6,7 @@ use super::momentum::Viscosity;
 use super::neighbourhood::Sources;
 use super::step::Side;
 use super::terms::Terms;
+use crate::domain::MirrorForce;
 use crate::material::Material;
 use crate::model::{Case, SmoothingLength};
 use crate::neighbours::Lists;
@@ -32,13 +33,13 @@ pub(super) struct Sums {
 pub(super) struct FromMirrors {
     /// The images among the neighbours of one cluster.
     pub(super) indices: Vec<u32>,
-    /// Single particles, and the forces on them (N).
-    pub(super) forces: Vec<(usize, [f64; 3])>,
+    /// What they do to single particles.
+    pub(super) forces: Vec<MirrorForce>,
 }
 
 impl FromMirrors {
     fn memory(&self) -> usize {
-        4 * self.indices.capacity() + size_of::<(usize, [f64; 3])>() * self.forces.capacity()
+        4 * self.indices.capacity() + size_of::<MirrorForce>() * self.forces.capacity()
     }
 }
 

@@ -3,6 +3,7 @@
 
 use rayon::prelude::*;
 
+use crate::domain::MirrorForce;
 use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Cluster, Lists};
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::kernel::PairScale;
@@ -188,10 +189,16 @@ impl<S: PairScale, R: PairStress, const TERMS: u8> Vectorised for MomentumChunk<
             indices.clear();
             indices.extend(neighbours.iter().copied().filter(is_image));
             let part = Self::sum::<V>(self.motion, self.sources, cluster, indices).acceleration;
+            let around = self.motion.around(cluster.receivers, indices);
+            let couple = R::couple::<V, S>(&around, self.sources.stresses);
             for k in 0..cluster.lanes {
                 let i = target.images[cluster.receivers[k] as usize].base();
                 let mass = target.mass[i];
-                forces.push((i, [0, 1, 2].map(|a: usize| mass * part[a].0[k])));
+                forces.push(MirrorForce {
+                    particle: i,
+                    force: [0, 1, 2].map(|a: usize| mass * part[a].0[k]),
+                    couple: [0, 1, 2].map(|a: usize| couple[a].0[k]),
+                });
             }
         }
     }

@@ -8,7 +8,7 @@ mod moments;
 use rayon::prelude::*;
 
 use super::Formulation;
-use crate::domain::Mirrors;
+use crate::domain::{MirrorForce, Mirrors};
 use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Cluster, Lists};
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::kernel::PairScale;
@@ -225,7 +225,11 @@ impl<S: PairScale> Vectorised for PullChunk<'_, S> {
                     let mut force = [0.0; 3];
                     force[axis] = 2.0 * part.0[k];
                     let i = self.sources.images[cluster.receivers[k] as usize].base();
-                    forces.push((i, force));
+                    forces.push(MirrorForce {
+                        particle: i,
+                        force,
+                        couple: [0.0; 3],
+                    });
                 }
             }
         }
