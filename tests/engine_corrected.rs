@@ -383,7 +383,7 @@ fn angular_momentum_is_explained() {
             let before = simulation.state.angular_impulse;
             simulation.diagnose(comm);
             simulation.state.initial = simulation.state.totals;
-            simulation.state.initial.angular_momentum_scale = Some(1e-300);
+            simulation.state.angular_momentum_scale = Some(1e-300);
             simulation.state.worst = Worst::default();
             assert_eq!(before, [0.0; 3]);
             for _ in 0..50 {

@@ -143,10 +143,6 @@ pub struct Totals {
     /// `Σ x × m v` about the origin (kg m²/s).
     #[serde(default)]
     pub angular_momentum: [f64; 3],
-    /// `Σ |(x − x̄) × m v|` about the centre of mass (kg m²/s): of the start alone, none in states of
-    /// programs that did not sum it.
-    #[serde(default)]
-    pub angular_momentum_scale: Option<f64>,
 }
 
 impl Totals {
@@ -196,6 +192,10 @@ pub struct RunState {
     /// Angular impulse about the origin of these, of loads and of rigid bodies so far (N m s).
     #[serde(default)]
     pub angular_impulse: [f64; 3],
+    /// `Σ |(x − x̄) × m v|` about the centre of mass at the start (kg m²/s); none in states of
+    /// programs that did not sum it.
+    #[serde(default)]
+    pub angular_momentum_scale: Option<f64>,
     /// Largest of these so far, of any component (N m s).
     #[serde(default)]
     pub angular_momentum_put_in: f64,

@@ -1,13 +1,11 @@
 //! Conserved sums over all particles, and the errors that follow from them.
 
-use rayon::prelude::*;
-
 use super::ledger::{Removed, RunState, Totals};
 use crate::comm::Comm;
 use crate::loads::Loads;
 use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use crate::numerics::vector::{cross, norm};
-use crate::particles::{GRAIN, ParticleStore};
+use crate::particles::ParticleStore;
 
 impl Totals {
     /// Of the particles of all ranks that are no part of a rigid body, with the energy of contact
@@ -18,22 +16,27 @@ impl Totals {
         contact_energy: f64,
         comm: &Comm,
     ) -> Self {
-        let owned = particles.owned();
-        let mut sums = (0..owned.div_ceil(GRAIN))
-            .into_par_iter()
-            // same bits in any order: exact sums are integers
-            .fold(TotalSums::default, |mut sums, chunk| {
-                for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(owned) {
-                    if loads.has_motions() && loads.is_rigid(particles.load[i]) {
-                        continue;
-                    }
-                    sums.add(particles, i, &loads.gravity);
-                }
-                sums
-            })
-            // same bits in any order, as above
-            .reduce(TotalSums::default, TotalSums::merge)
-            .0;
+        let g = &loads.gravity;
+        let mut sums = loads.sum_free(particles, |i| {
+            let (m, v) = (particles.mass[i], &particles.velocity[i]);
+            let x = &particles.position[i];
+            let height = -(g[0] * x[0] + g[1] * x[1] + g[2] * x[2]);
+            let v2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+            let turn = cross(x, v);
+            [
+                0.5 * m * v2,
+                particles.thermal_mass(i) * particles.specific_energy[i],
+                m * height,
+                m,
+                m * v[0],
+                m * v[1],
+                m * v[2],
+                m * v2.sqrt(),
+                m * turn[0],
+                m * turn[1],
+                m * turn[2],
+            ]
+        });
         reduce(comm, &mut sums);
         let [kinetic, internal, gravity, mass, x, y, z, scale, turn @ ..] =
             sums.map(|sum| sum.value());
@@ -46,7 +49,6 @@ impl Totals {
             momentum: [x, y, z],
             momentum_scale: scale,
             angular_momentum: turn,
-            angular_momentum_scale: None,
         }
     }
 }
@@ -54,26 +56,18 @@ impl Totals {
 /// `Σ |(x − x̄) × m v|` (kg m²/s) over the particles of all ranks that are no part of a rigid body,
 /// with x̄ (m) their centre of mass. Collective.
 pub(crate) fn angular_momentum_scale(particles: &ParticleStore, loads: &Loads, comm: &Comm) -> f64 {
-    let movable = || {
-        let owned = 0..particles.owned();
-        owned.filter(|&i| !(loads.has_motions() && loads.is_rigid(particles.load[i])))
-    };
-    let mut sums: [ExactSum; 4] = Default::default();
-    let mut scale = [ExactSum::default()];
-    for i in movable() {
+    let mut sums = loads.sum_free(particles, |i| {
         let m = particles.mass[i];
         let [x, y, z] = particles.position[i].map(|x| m * x);
-        for (sum, term) in sums.iter_mut().zip([m, x, y, z]) {
-            sum.add(term);
-        }
-    }
+        [m, x, y, z]
+    });
     reduce(comm, &mut sums);
     let [mass, centre @ ..] = sums.map(|sum| sum.value());
-    for i in movable() {
+    let mut scale = loads.sum_free(particles, |i| {
         let x = &particles.position[i];
         let arm = std::array::from_fn(|a| x[a] - centre[a] / mass);
-        scale[0].add(particles.mass[i] * norm(&cross(&arm, &particles.velocity[i])));
-    }
+        [particles.mass[i] * norm(&cross(&arm, &particles.velocity[i]))]
+    });
     reduce(comm, &mut scale);
     scale[0].value()
 }
@@ -125,7 +119,7 @@ impl RunState {
 
     /// What angular momentum is off by that no angular impulse explains.
     fn book_angular_momentum(&mut self) {
-        let Some(scale) = self.initial.angular_momentum_scale else {
+        let Some(scale) = self.angular_momentum_scale else {
             return;
         };
         let worst = &mut self.worst;
@@ -155,47 +149,5 @@ impl RunState {
         if scale > 0.0 {
             worst.contact_defect = worst.contact_deviation / scale;
         }
-    }
-}
-
-/// Kinetic, internal and gravity's energy, mass, momentum, the sum of its magnitudes, and angular
-/// momentum.
-#[derive(Default)]
-struct TotalSums([ExactSum; 11]);
-
-impl TotalSums {
-    fn add(&mut self, particles: &ParticleStore, i: usize, gravity: &[f64; 3]) {
-        let (m, v, x) = (
-            particles.mass[i],
-            &particles.velocity[i],
-            &particles.position[i],
-        );
-        let height = -(gravity[0] * x[0] + gravity[1] * x[1] + gravity[2] * x[2]);
-        let v2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-        let turn = cross(x, v);
-        let terms = [
-            0.5 * m * v2,
-            particles.thermal_mass(i) * particles.specific_energy[i],
-            m * height,
-            m,
-            m * v[0],
-            m * v[1],
-            m * v[2],
-            m * v2.sqrt(),
-            m * turn[0],
-            m * turn[1],
-            m * turn[2],
-        ];
-        for (sum, term) in self.0.iter_mut().zip(terms) {
-            sum.add(term);
-        }
-    }
-
-    #[allow(clippy::needless_pass_by_value, reason = "the form of a reduction")]
-    fn merge(mut self, other: Self) -> Self {
-        for (sum, other) in self.0.iter_mut().zip(&other.0) {
-            sum.merge(other);
-        }
-        self
     }
 }

@@ -1,9 +1,11 @@
 //! Where two resolved cases differ, key by key: comments, order and formatting are no difference,
 //! nor is another unit for the same quantity.
 
+use serde::Deserialize;
+use toml::de::DeTable;
 use toml::{Table, Value};
 
-use super::overrides::{LIMITS, OLD_LIMITS, RESTARTABLE};
+use super::overrides::{RESTARTABLE, modernise};
 use super::units;
 
 /// A key with other values in two cases.
@@ -27,20 +29,18 @@ impl Difference {
 /// The keys in which two cases differ; `None` if one of the texts is no TOML.
 #[must_use]
 pub fn differences(a: &str, b: &str) -> Option<Vec<Difference>> {
-    let [a, b] = [a, b].map(|text| text.parse::<Table>().ok().map(present));
+    let [a, b] = [a, b].map(read);
     let mut found = Vec::new();
     compare("", Some(&a?), Some(&b?), &mut found);
     Some(found)
 }
 
-/// With tables of older names under their present ones, as [`super::overrides`] knows them.
-fn present(mut table: Table) -> Value {
-    if !table.contains_key(LIMITS)
-        && let Some(value) = table.remove(OLD_LIMITS)
-    {
-        table.insert(LIMITS.into(), value);
-    }
-    Value::Table(table)
+/// The document of a text, with tables of older names under their present ones.
+fn read(text: &str) -> Option<Value> {
+    let mut document = DeTable::parse(text).ok()?;
+    modernise(document.get_mut());
+    let table = Table::deserialize(toml::Deserializer::from(document));
+    table.ok().map(Value::Table)
 }
 
 fn compare(key: &str, a: Option<&Value>, b: Option<&Value>, found: &mut Vec<Difference>) {

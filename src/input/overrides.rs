@@ -16,8 +16,8 @@ use super::source::Diagnostic;
 pub(super) const RESTARTABLE: [&str; 4] = ["run", "output", "domain", LIMITS];
 
 /// Key of the numerical failure limits, and its older name.
-pub(super) const LIMITS: &str = "numerical_limits";
-pub(super) const OLD_LIMITS: &str = "trouble";
+const LIMITS: &str = "numerical_limits";
+const OLD_LIMITS: &str = "trouble";
 
 /// Gives tables of older names their present ones. What stands there under both stays, and is found
 /// out by the reader.

@@ -261,36 +261,48 @@ impl Loads {
             + 4 * size_of::<ExactSum>() * self.sums.capacity()
     }
 
-    /// Adds the torque of gravity on what is no part of a rigid body to `torque`.
-    pub(crate) fn add_weight(&self, particles: &ParticleStore, torque: &mut [ExactSum; 3]) {
-        if self.gravity == [0.0; 3] {
-            return;
-        }
+    /// Exact sums of `terms` of this rank's particles that are no part of a rigid body.
+    pub(crate) fn sum_free<const N: usize>(
+        &self,
+        particles: &ParticleStore,
+        terms: impl Fn(usize) -> [f64; N] + Sync,
+    ) -> [ExactSum; N] {
         let owned = particles.owned();
-        let of_chunk = |mut sums: [ExactSum; 3], chunk: usize| {
+        let none = || std::array::from_fn(|_| ExactSum::default());
+        let of_chunk = |mut sums: [ExactSum; N], chunk: usize| {
             for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(owned) {
                 if self.has_motions() && self.is_rigid(particles.load[i]) {
                     continue;
                 }
-                let weight = self.gravity.map(|g| particles.mass[i] * g);
-                for (sum, torque) in sums.iter_mut().zip(cross(&particles.position[i], &weight)) {
-                    sum.add(torque);
+                for (sum, term) in sums.iter_mut().zip(terms(i)) {
+                    sum.add(term);
                 }
             }
             sums
         };
-        let merge = |mut sums: [ExactSum; 3], others: [ExactSum; 3]| {
+        let merge = |mut sums: [ExactSum; N], others: [ExactSum; N]| {
             for (sum, other) in sums.iter_mut().zip(&others) {
                 sum.merge(other);
             }
             sums
         };
-        let all = (0..owned.div_ceil(GRAIN))
+        (0..owned.div_ceil(GRAIN))
             .into_par_iter()
             // same bits in any order: exact sums are integers
-            .fold(Default::default, of_chunk)
+            .fold(none, of_chunk)
             // same bits in any order, as above
-            .reduce(Default::default, merge);
+            .reduce(none, merge)
+    }
+
+    /// Adds the torque of gravity on what is no part of a rigid body to `torque`.
+    pub(crate) fn add_weight(&self, particles: &ParticleStore, torque: &mut [ExactSum; 3]) {
+        if self.gravity == [0.0; 3] {
+            return;
+        }
+        let all = self.sum_free(particles, |i| {
+            let weight = self.gravity.map(|g| particles.mass[i] * g);
+            cross(&particles.position[i], &weight)
+        });
         for (sum, other) in torque.iter_mut().zip(&all) {
             sum.merge(other);
         }

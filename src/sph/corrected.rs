@@ -100,16 +100,6 @@ pub struct Correction {
 }
 
 impl Correction {
-    /// No correction.
-    pub const NONE: Self = {
-        let (one, zero) = (F64x8([1.0; LANES]), F64x8([0.0; LANES]));
-        let identity = [one, one, one, zero, zero, zero];
-        Self {
-            outer: identity,
-            inner: identity,
-        }
-    };
-
     /// From moments `M`.
     #[inline(always)]
     #[must_use]

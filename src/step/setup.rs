@@ -176,7 +176,7 @@ impl Simulation {
         self.state.initial = self.totals(comm);
         self.state.initial.contact_energy = self.state.contact_energy;
         let scale = angular_momentum_scale(&self.particles, &self.loads, comm);
-        self.state.initial.angular_momentum_scale = Some(scale);
+        self.state.angular_momentum_scale = Some(scale);
         self.state.worst = Worst::default();
         self.diagnose(comm);
         self.state.worst.nearest = None;
