@@ -8,7 +8,7 @@ use toml::Spanned;
 
 use super::forms::{Named, OneOrMany};
 use super::quantity::{
-    Acceleration, Density, Extent, Length, Placed, SpecificEnergy, Time, Velocity,
+    Acceleration, AngularRate, Density, Extent, Length, Placed, SpecificEnergy, Time, Velocity,
 };
 use crate::model::{Axis, SphForm};
 
@@ -103,6 +103,8 @@ tables! {
         spacing: Option<Placed<Length>>,
         /// Initial velocity; at rest if absent.
         velocity: Option<Spanned<Vec<Placed<Velocity>>>>,
+        /// Initial angular velocity about the centre; none if absent.
+        angular_velocity: Option<Spanned<Vec<Placed<AngularRate>>>>,
         /// Initial density; the material's reference density if absent.
         density: Option<Placed<Density>>,
         /// Initial specific energy; that of the material's reference state if absent.

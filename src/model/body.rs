@@ -90,6 +90,29 @@ pub enum Shape {
     },
 }
 
+impl Shape {
+    /// Half way between its ends (m).
+    #[must_use]
+    pub fn centre(&self) -> Vec3 {
+        match self {
+            Self::Box { lower, upper } => 0.5 * (lower + upper),
+            Self::Sphere { centre, .. }
+            | Self::Shell { centre, .. }
+            | Self::Cylinder { centre, .. } => *centre,
+        }
+    }
+
+    /// Radius about the centre within which it lies (m).
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        match self {
+            Self::Box { lower, upper } => 0.5 * (upper - lower).norm(),
+            Self::Sphere { radius, .. } | Self::Shell { radius, .. } => *radius,
+            Self::Cylinder { radius, length, .. } => radius.hypot(0.5 * length),
+        }
+    }
+}
+
 /// How particles are stacked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -130,11 +153,33 @@ pub struct Body {
     pub density: Option<f64>,
     /// Initial specific internal energy (J/kg), if not that of the material's reference state.
     pub specific_energy: Option<f64>,
-    /// Initial velocity (m/s).
+    /// Initial velocity of its centre (m/s).
     pub velocity: Vec3,
+    /// Initial angular velocity about its centre (rad/s).
+    pub angular_velocity: Vec3,
     /// The motion of a rigid body; its particles feel nothing. Absent for bodies that deform.
     pub rigid: Option<Motion>,
     /// Constant smoothing length h₀ (m): the reference of contact, and of the SPH sums unless
     /// they vary it.
     pub smoothing_length: f64,
+}
+
+impl Body {
+    /// Initial velocity (m/s) of a particle at `position` (m).
+    #[must_use]
+    pub fn velocity_at(&self, position: &Vec3) -> Vec3 {
+        if self.angular_velocity == Vec3::zeros() {
+            return self.velocity;
+        }
+        self.velocity
+            + self
+                .angular_velocity
+                .cross(&(position - self.shape.centre()))
+    }
+
+    /// Largest initial speed (m/s) of a particle against the centre, by rotation.
+    #[must_use]
+    pub fn rim_speed(&self) -> f64 {
+        self.angular_velocity.norm() * self.shape.reach()
+    }
 }

@@ -138,8 +138,10 @@ impl Case {
         }
         let theirs = self.known_velocities(b);
         let mine = self.known_velocities(a).into_iter();
+        let rims = self.bodies[a].rim_speed() + self.bodies[b].rim_speed();
         mine.flat_map(|v| theirs.iter().map(move |other| (v - other).norm()))
             .fold(0.0, f64::max)
+            + rims
     }
 
     /// The velocity at which a body begins and all corners of the tables that prescribe one (m/s).

@@ -95,7 +95,12 @@ impl NumericalLimits {
             .chain(case.loads.surfaces.iter().map(|surface| &surface.motion))
             .chain(case.bodies.iter().filter_map(|body| body.rigid.as_ref()));
         let driven = largest(&mut motions.map(crate::model::Motion::largest_speed));
-        let moving = largest(&mut case.bodies.iter().map(|body| body.velocity.norm()));
+        let moving = largest(
+            &mut case
+                .bodies
+                .iter()
+                .map(|body| body.velocity.norm() + body.rim_speed()),
+        );
         // What is rigid has a material that carries nothing.
         let deforming = || case.bodies.iter().filter(|body| body.rigid.is_none());
         let sound = largest(&mut deforming().map(|body| {

@@ -23,6 +23,7 @@ fn body(shape: Shape, kind: LatticeKind, spacing: f64, angle: f64) -> Body {
         density: None,
         specific_energy: None,
         velocity: Vec3::zeros(),
+        angular_velocity: Vec3::zeros(),
         rigid: None,
         smoothing_length: 1.3 * spacing,
     }

@@ -27,6 +27,9 @@ use crate::numerics::matrix;
 /// surfaces uncorrected.
 const FADE: f64 = 0.28 * 0.28 * 0.28 * 0.28;
 
+/// e⁴ of the spin, at e = .05: a lone pair does not tell how it turns about its own axis.
+const SPIN_FADE: f64 = 0.05 * 0.05 * 0.05 * 0.05;
+
 /// A symmetric matrix in each lane; components xx, yy, zz, xy, xz, yz.
 type Symmetric<V> = [V; 6];
 
@@ -90,6 +93,89 @@ fn between<V: Lanes>(a: &Symmetric<V>, t: &[V; 9], b: &Symmetric<V>) -> [V; 9] {
     all
 }
 
+/// The inverse of a matrix, and what the matrix times it gives, both of which fade out where its
+/// eigenvalues are small.
+struct Faded<V> {
+    inverse: Symmetric<V>,
+    one: Symmetric<V>,
+}
+
+/// `(1 + e⁴) (M⁴ + e⁴ I)⁻¹ M³` and its product with M, of `fade = e⁴`.
+#[inline(always)]
+fn faded<V: Lanes>(m: &Symmetric<V>, fade: f64) -> Faded<V> {
+    let square = product(m, m);
+    let (third, fourth) = (product(&square, m), product(&square, &square));
+    let least = V::splat(fade);
+    let [mut xx, mut yy, mut zz, xy, xz, yz] = fourth;
+    (xx, yy, zz) = (xx.add(least), yy.add(least), zz.add(least));
+    let minor = |a: V, b: V, c: V, d: V| a.mul(b).sub(c.mul(d));
+    let adjugate = [
+        minor(yy, zz, yz, yz),
+        minor(xx, zz, xz, xz),
+        minor(xx, yy, xy, xy),
+        minor(xz, yz, xy, zz),
+        minor(xy, yz, xz, yy),
+        minor(xy, xz, xx, yz),
+    ];
+    let determinant = xz.mul_add(adjugate[4], xy.mul_add(adjugate[3], xx.mul(adjugate[0])));
+    let scale = V::splat(1.0 + fade).div(determinant);
+    let inverse = adjugate.map(|c| c.mul(scale));
+    Faded {
+        inverse: product(&inverse, &third),
+        one: product(&inverse, &fourth),
+    }
+}
+
+/// The velocity gradient whose strain rate D is that of `corrected` and whose spin W is that of the
+/// neighbourhood: `W M + M W` is twice the antisymmetric part of `L₀ − D M`, so that the angular
+/// velocity is `(tr M I − M)⁻¹` times its axial vector, as an inertia to an angular momentum.
+#[inline(always)]
+fn with_spin<V: Lanes>(corrected: &[V; 9], plain: &[V; 9], m: &Symmetric<V>) -> [V; 9] {
+    let half = V::splat(0.5);
+    let mean = |a: usize, b: usize| corrected[a].add(corrected[b]).mul(half);
+    let strain = [
+        corrected[0],
+        corrected[4],
+        corrected[8],
+        mean(1, 3),
+        mean(2, 6),
+        mean(5, 7),
+    ];
+    let (d, m9) = (full(&strain), full(m));
+    let explained = |a: usize, b: usize| {
+        d[3 * a + 2].mul_add(
+            m9[6 + b],
+            d[3 * a + 1].mul_add(m9[3 + b], d[3 * a].mul(m9[b])),
+        )
+    };
+    let left = |a: usize, b: usize| plain[3 * a + b].sub(explained(a, b));
+    let axial = |a: usize, b: usize| left(a, b).sub(left(b, a));
+    let [xx, yy, zz, xy, xz, yz] = *m;
+    let zero = V::splat(0.0);
+    let inertia = [
+        yy.add(zz),
+        xx.add(zz),
+        xx.add(yy),
+        zero.sub(xy),
+        zero.sub(xz),
+        zero.sub(yz),
+    ];
+    let inverse = full(&faded(&inertia, SPIN_FADE).inverse);
+    let [x, y, z] = along(&inverse, &[axial(2, 1), axial(0, 2), axial(1, 0)]);
+    let [xx, yy, zz, xy, xz, yz] = strain;
+    [
+        xx,
+        xy.sub(z),
+        xz.add(y),
+        xy.add(z),
+        yy,
+        yz.sub(x),
+        xz.sub(y),
+        yz.add(x),
+        zz,
+    ]
+}
+
 /// The corrections of eight particles; components xx, yy, zz, xy, xz, yz.
 #[derive(Debug, Clone, Copy)]
 pub struct Correction {
@@ -105,26 +191,10 @@ impl Correction {
     #[must_use]
     pub fn new<V: Lanes>(m: &[F64x8; 6]) -> Self {
         let m = [0, 1, 2, 3, 4, 5].map(|c: usize| V::load(&m[c]));
-        let square = product(&m, &m);
-        let (third, fourth) = (product(&square, &m), product(&square, &square));
-        let fade = V::splat(FADE);
-        let [mut xx, mut yy, mut zz, xy, xz, yz] = fourth;
-        (xx, yy, zz) = (xx.add(fade), yy.add(fade), zz.add(fade));
-        let minor = |a: V, b: V, c: V, d: V| a.mul(b).sub(c.mul(d));
-        let adjugate = [
-            minor(yy, zz, yz, yz),
-            minor(xx, zz, xz, xz),
-            minor(xx, yy, xy, xy),
-            minor(xz, yz, xy, zz),
-            minor(xy, yz, xz, yy),
-            minor(xy, xz, xx, yz),
-        ];
-        let determinant = xz.mul_add(adjugate[4], xy.mul_add(adjugate[3], xx.mul(adjugate[0])));
-        let scale = V::splat(1.0 + FADE).div(determinant);
-        let inverse = adjugate.map(|c| c.mul(scale));
+        let Faded { inverse, one } = faded(&m, FADE);
         Self {
-            outer: product(&inverse, &fourth).map(V::store),
-            inner: product(&inverse, &third).map(V::store),
+            outer: one.map(V::store),
+            inner: inverse.map(V::store),
         }
     }
 
@@ -225,8 +295,10 @@ impl<S: PairScale> Vectorised for CorrectedGradient<'_, S> {
             }
         }
         let correction = Correction::new::<V>(&m);
+        let corrected = correction.apply(&gradient);
+        let m = [0, 1, 2, 3, 4, 5].map(|c: usize| V::load(&m[c]));
         Corrected {
-            gradient: correction.apply(&gradient).map(V::store),
+            gradient: with_spin(&corrected, &gradient, &m).map(V::store),
             correction,
         }
     }

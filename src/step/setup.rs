@@ -12,7 +12,7 @@ use crate::contact::{Connectivity, Contact};
 use crate::diagnose::{LoadState, PairState, RunState, StepSums, Worst, angular_momentum_scale};
 use crate::domain::{Halo, Mirrors, Outset, Partition};
 use crate::loads::{Goal, Loads, Prescribe};
-use crate::model::{Case, SphForm};
+use crate::model::{Body, Case, SphForm};
 use crate::neighbours::Lists;
 use crate::particles::{Image, ParticleStore};
 use crate::populate::{self, Slab};
@@ -186,25 +186,25 @@ impl Simulation {
 }
 
 /// What all particles of a body begin with.
-struct Start {
+struct Start<'a> {
+    of: &'a Body,
     body: u32,
     /// Of a whole particle (kg).
     mass: f64,
     density: f64,
-    velocity: [f64; 3],
     energy: f64,
     smoothing_length: f64,
 }
 
-impl Start {
-    fn new(case: &Case, b: usize) -> Self {
+impl<'a> Start<'a> {
+    fn new(case: &'a Case, b: usize) -> Self {
         let body = &case.bodies[b];
         let density = case.initial_density(body);
         Self {
+            of: body,
             body: u32::try_from(b).unwrap_or(u32::MAX),
             mass: density * populate::particle_volume(body, case.dimension),
             density,
-            velocity: body.velocity.into(),
             energy: case.initial_energy(body),
             smoothing_length: body.smoothing_length,
         }
@@ -212,11 +212,12 @@ impl Start {
 
     /// Puts a particle at place `i` of the store.
     fn put(&self, particles: &mut ParticleStore, i: usize, id: u64, position: [f64; 3]) {
+        let velocity = self.of.velocity_at(&position.into()).into();
         particles.id[i] = id;
         particles.body[i] = self.body;
         particles.position[i] = position;
-        particles.velocity[i] = self.velocity;
-        particles.predicted_velocity[i] = self.velocity;
+        particles.velocity[i] = velocity;
+        particles.predicted_velocity[i] = velocity;
         particles.density[i] = self.density;
         particles.predicted_density[i] = self.density;
         particles.specific_energy[i] = self.energy;

@@ -28,6 +28,7 @@ pub fn body(name: &str, shape: Shape, spacing: f64, velocity: Vec3) -> Body {
         density: None,
         specific_energy: None,
         velocity,
+        angular_velocity: Vec3::zeros(),
         rigid: None,
         smoothing_length: 1.3 * spacing,
     }

@@ -35,6 +35,7 @@ pub fn case() -> Case {
         density: Some(2785.0),
         specific_energy: None,
         velocity: Vec3::zeros(),
+        angular_velocity: Vec3::zeros(),
         rigid: None,
         smoothing_length: 1.3 * spacing,
     };

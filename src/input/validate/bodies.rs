@@ -104,6 +104,7 @@ impl Reader<'_> {
             material,
             lattice,
             velocity,
+            angular_velocity: self.angular_velocity(params)?,
             rigid,
             density: optional(params.density.as_ref(), "density", Allowed::Positive)?,
             specific_energy: optional(
@@ -159,6 +160,25 @@ impl Reader<'_> {
         }
         let start = std::array::from_fn::<f64, 3, _>(|a| motion.velocity(a, 0.0));
         Ok((start.into(), Some(motion)))
+    }
+
+    /// The initial angular velocity: about x, y and z, or in two dimensions about z.
+    fn angular_velocity(&self, params: &BodyParams) -> Result<Vec3, Diagnostic> {
+        let Some(rates) = &params.angular_velocity else {
+            return Ok(Vec3::zeros());
+        };
+        if params.rigid == Some(true) {
+            let title = "a rigid body does not turn: it has no `angular_velocity`";
+            return Err(Diagnostic::new(rates.span(), title));
+        }
+        let title = match (self.dimension, rates.get_ref().as_slice()) {
+            (2, [about_z]) => return Ok(Vec3::new(0.0, 0.0, about_z.get_ref().si)),
+            (3, [x, y, z]) => return Ok(Vec3::from([x, y, z].map(|rate| rate.get_ref().si))),
+            (1, _) => "in one dimension nothing turns",
+            (2, _) => "in two dimensions `angular_velocity` has one component, about z",
+            _ => "`angular_velocity` must have three components, about x, y and z",
+        };
+        Err(Diagnostic::new(rates.span(), title))
     }
 
     fn lattice(
@@ -247,6 +267,19 @@ impl Reader<'_> {
             let gap = near.map_or(0.5, |x| (x - plane.position) / spacing);
             let is_cut = populate::bounds(body, self.dimension)
                 .is_some_and(|(lower, _)| lower[axis.index()] <= plane.position);
+            let turns_across = (0..3).any(|a| a != axis.index() && body.angular_velocity[a] != 0.0);
+            if is_cut && turns_across {
+                let title = format!(
+                    "`{}` is cut by the symmetry plane of {}, so that it can turn only about that axis",
+                    body.name,
+                    axis.name()
+                );
+                let span = params
+                    .angular_velocity
+                    .as_ref()
+                    .map_or(params.shape.span(), Spanned::span);
+                return Err(Diagnostic::new(span, title));
+            }
             if gap < FIRST_LAYER.0 || (is_cut && gap > FIRST_LAYER.1) {
                 let title = format!(
                     "the symmetry plane of {} does not lie between two layers of `{}`",
