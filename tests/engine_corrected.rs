@@ -147,6 +147,7 @@ impl World {
         let records: Vec<_> = (pair_stress.iter().zip(&self.density))
             .map(|(p, &density)| CorrectedRecord {
                 stress: p.transpose().as_slice().try_into().unwrap(),
+                hourglass: [0.0; 3],
                 density,
                 sound_speed: 1.0,
             })

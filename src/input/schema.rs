@@ -241,6 +241,8 @@ optional_tables! {
         conduction: Option<Spanned<f64>>,
         /// Factor of XSPH.
         xsph: Option<Spanned<f64>>,
+        /// Stiffness of the hourglass control of the corrected form; 0.1 if absent.
+        hourglass: Option<Spanned<f64>>,
     }
 
     /// `[time_step]`

@@ -53,6 +53,8 @@ pub struct SphOptions {
     pub conduction: f64,
     /// Factor ε of XSPH; 0 for none.
     pub xsph: f64,
+    /// Stiffness ξ of the hourglass control of the corrected form, over the P-wave modulus.
+    pub hourglass: f64,
 }
 
 impl Default for SphOptions {
@@ -67,6 +69,7 @@ impl Default for SphOptions {
             balsara: false,
             conduction: 0.0,
             xsph: 0.0,
+            hourglass: 0.1,
         }
     }
 }

@@ -66,6 +66,19 @@ fn product<V: Lanes>(a: &Symmetric<V>, b: &Symmetric<V>) -> Symmetric<V> {
     ]
 }
 
+/// Product of matrices, row-major.
+#[inline(always)]
+fn times<V: Lanes>(a: &[V; 9], b: &[V; 9]) -> [V; 9] {
+    let mut all = *a;
+    for i in 0..3 {
+        for j in 0..3 {
+            let of = |k: usize, sum: V| a[3 * i + k].mul_add(b[3 * k + j], sum);
+            all[3 * i + j] = of(2, of(1, a[3 * i].mul(b[j])));
+        }
+    }
+    all
+}
+
 /// `A T B` of a matrix T, row-major.
 #[inline(always)]
 fn between<V: Lanes>(a: &Symmetric<V>, t: &[V; 9], b: &Symmetric<V>) -> [V; 9] {
@@ -126,11 +139,34 @@ fn faded<V: Lanes>(m: &Symmetric<V>, fade: f64) -> Faded<V> {
     }
 }
 
-/// The velocity gradient whose strain rate D is that of `corrected` and whose spin W is that of the
-/// neighbourhood: `W M + M W` is twice the antisymmetric part of `L₀ − D M`, so that the angular
+/// What the first sweep sums over pairs.
+struct PlainSums<V> {
+    /// `L₀` (1/s).
+    gradient: [V; 9],
+    /// `M`.
+    moment: Symmetric<V>,
+    /// `Σ w_ij (v_j − v_i)` with `w_ij = −V_j r |∇W_ij|`.
+    velocity: [V; 3],
+    /// `Σ w_ij (x_i − x_j)`.
+    place: [V; 3],
+    /// `Σ w_ij`.
+    weight: V,
+}
+
+/// Parts of a motion.
+struct Motion<V> {
+    /// The velocity gradient (1/s): `D + W`.
+    gradient: [V; 9],
+    /// Mean velocity of the neighbours that no linear field explains (m/s).
+    rest: [V; 3],
+}
+
+/// The motion whose strain rate D is that of the `corrected` gradient and whose spin W is that of
+/// the neighbourhood: `W M + M W` is twice the antisymmetric part of `L₀ − D M`, so that the angular
 /// velocity is `(tr M I − M)⁻¹` times its axial vector, as an inertia to an angular momentum.
+/// Neighbours are expected to move by `W + (L₀ − W M) B`.
 #[inline(always)]
-fn with_spin<V: Lanes>(corrected: &[V; 9], plain: &[V; 9], m: &Symmetric<V>) -> [V; 9] {
+fn motion<V: Lanes>(corrected: &[V; 9], plain: &PlainSums<V>, inner: &Symmetric<V>) -> Motion<V> {
     let half = V::splat(0.5);
     let mean = |a: usize, b: usize| corrected[a].add(corrected[b]).mul(half);
     let strain = [
@@ -141,16 +177,15 @@ fn with_spin<V: Lanes>(corrected: &[V; 9], plain: &[V; 9], m: &Symmetric<V>) -> 
         mean(2, 6),
         mean(5, 7),
     ];
-    let (d, m9) = (full(&strain), full(m));
-    let explained = |a: usize, b: usize| {
-        d[3 * a + 2].mul_add(
-            m9[6 + b],
-            d[3 * a + 1].mul_add(m9[3 + b], d[3 * a].mul(m9[b])),
-        )
-    };
-    let left = |a: usize, b: usize| plain[3 * a + b].sub(explained(a, b));
-    let axial = |a: usize, b: usize| left(a, b).sub(left(b, a));
-    let [xx, yy, zz, xy, xz, yz] = *m;
+    let moment = full(&plain.moment);
+    let explained = times(&full(&strain), &moment);
+    let left = |a: usize| plain.gradient[a].sub(explained[a]);
+    let axial = [
+        left(7).sub(left(5)),
+        left(2).sub(left(6)),
+        left(3).sub(left(1)),
+    ];
+    let [xx, yy, zz, xy, xz, yz] = plain.moment;
     let zero = V::splat(0.0);
     let inertia = [
         yy.add(zz),
@@ -160,20 +195,37 @@ fn with_spin<V: Lanes>(corrected: &[V; 9], plain: &[V; 9], m: &Symmetric<V>) -> 
         zero.sub(xz),
         zero.sub(yz),
     ];
-    let inverse = full(&faded(&inertia, SPIN_FADE).inverse);
-    let [x, y, z] = along(&inverse, &[axial(2, 1), axial(0, 2), axial(1, 0)]);
-    let [xx, yy, zz, xy, xz, yz] = strain;
-    [
-        xx,
-        xy.sub(z),
-        xz.add(y),
-        xy.add(z),
-        yy,
-        yz.sub(x),
-        xz.sub(y),
-        yz.add(x),
-        zz,
-    ]
+    let [x, y, z] = along(&full(&faded(&inertia, SPIN_FADE).inverse), &axial);
+    let spin = [
+        zero,
+        zero.sub(z),
+        y,
+        z,
+        zero,
+        zero.sub(x),
+        zero.sub(y),
+        x,
+        zero,
+    ];
+    let turned = times(&spin, &moment);
+    let mut stretch = plain.gradient;
+    for c in 0..9 {
+        stretch[c] = stretch[c].sub(turned[c]);
+    }
+    let mut expected = times(&stretch, &full(inner));
+    let mut gradient = full(&strain);
+    for c in 0..9 {
+        expected[c] = expected[c].add(spin[c]);
+        gradient[c] = gradient[c].add(spin[c]);
+    }
+    let linear = along(&expected, &plain.place);
+    // A particle alone has no weight.
+    let weight = plain.weight.min(V::splat(-f64::MIN_POSITIVE));
+    let rest = |a: usize| plain.velocity[a].add(linear[a]).div(weight);
+    Motion {
+        gradient,
+        rest: [rest(0), rest(1), rest(2)],
+    }
 }
 
 /// The corrections of eight particles; components xx, yy, zz, xy, xz, yz.
@@ -259,6 +311,8 @@ pub struct CorrectedGradient<'a, S> {
 pub struct Corrected {
     /// Row-major `L` (1/s).
     pub gradient: [F64x8; 9],
+    /// Mean velocity of the neighbours against the particle that no linear field explains (m/s).
+    pub rest: [F64x8; 3],
     /// The corrections.
     pub correction: Correction,
 }
@@ -268,25 +322,11 @@ impl<S: PairScale> Vectorised for CorrectedGradient<'_, S> {
 
     #[inline(always)]
     fn run<V: Lanes>(self) -> Corrected {
-        let zero = V::splat(0.0);
-        let (position, velocity) = self.around.motion::<V>();
-        let (mut gradient, mut moment) = ([zero; 9], [zero; 6]);
-        for pair in self.around.pairs(&position) {
-            let (here, r) = (pair.source, pair.separation.r);
-            let volume = V::splat(here.volume);
-            let factor = pair.separation.inverse.mul(volume).mul(pair.kernel.slope);
-            let steep = add_moment(&mut moment, &r, factor);
-            for a in 0..3 {
-                let v_a = V::splat(here.velocity[a]).sub(velocity[a]);
-                for b in 0..3 {
-                    gradient[3 * a + b] = v_a.mul_add(steep[b], gradient[3 * a + b]);
-                }
-            }
-        }
-        let mut m = moment.map(V::store);
+        let mut plain = self.sums::<V>();
         for axis in self.dimension..3 {
-            m[axis] = F64x8([1.0; LANES]);
+            plain.moment[axis] = V::splat(1.0);
         }
+        let mut m = plain.moment.map(V::store);
         if self.plain != 0 {
             for k in (0..LANES).filter(|k| self.plain >> k & 1 == 1) {
                 for (c, value) in [1.0, 1.0, 1.0, 0.0, 0.0, 0.0].into_iter().enumerate() {
@@ -295,12 +335,47 @@ impl<S: PairScale> Vectorised for CorrectedGradient<'_, S> {
             }
         }
         let correction = Correction::new::<V>(&m);
-        let corrected = correction.apply(&gradient);
-        let m = [0, 1, 2, 3, 4, 5].map(|c: usize| V::load(&m[c]));
+        let corrected = correction.apply(&plain.gradient);
+        let inner = [0, 1, 2, 3, 4, 5].map(|c: usize| V::load(&correction.inner[c]));
+        let motion = motion(&corrected, &plain, &inner);
         Corrected {
-            gradient: with_spin(&corrected, &gradient, &m).map(V::store),
+            gradient: motion.gradient.map(V::store),
+            rest: motion.rest.map(V::store),
             correction,
         }
+    }
+}
+
+impl<S: PairScale> CorrectedGradient<'_, S> {
+    #[inline(always)]
+    fn sums<V: Lanes>(&self) -> PlainSums<V> {
+        let zero = V::splat(0.0);
+        let (position, velocity) = self.around.motion::<V>();
+        let mut sums = PlainSums {
+            gradient: [zero; 9],
+            moment: [zero; 6],
+            velocity: [zero; 3],
+            place: [zero; 3],
+            weight: zero,
+        };
+        for pair in self.around.pairs(&position) {
+            let (here, r) = (pair.source, pair.separation.r);
+            let volume = V::splat(here.volume);
+            let factor = pair.separation.inverse.mul(volume).mul(pair.kernel.slope);
+            let steep = add_moment(&mut sums.moment, &r, factor);
+            let weight = factor.mul(pair.separation.square);
+            sums.weight = sums.weight.add(weight);
+            for a in 0..3 {
+                let v_a = V::splat(here.velocity[a]).sub(velocity[a]);
+                sums.velocity[a] = v_a.mul_add(weight, sums.velocity[a]);
+                sums.place[a] = r[a].mul_add(weight, sums.place[a]);
+                for b in 0..3 {
+                    let sum = &mut sums.gradient[3 * a + b];
+                    *sum = v_a.mul_add(steep[b], *sum);
+                }
+            }
+        }
+        sums
     }
 }
 
@@ -310,10 +385,37 @@ impl<S: PairScale> Vectorised for CorrectedGradient<'_, S> {
 pub struct CorrectedRecord {
     /// `P`, row-major (Pa).
     pub stress: [f64; 9],
+    /// `ξ ρ c²` times the hourglass displacement (Pa m).
+    pub hourglass: [f64; 3],
     /// Density (kg/m³).
     pub density: f64,
     /// Sound speed (m/s).
     pub sound_speed: f64,
+}
+
+impl CorrectedRecord {
+    /// From `P` (Pa), hourglass displacement (m) and its stiffness ξ, density (kg/m³) and sound
+    /// speed (m/s).
+    #[inline(always)]
+    #[must_use]
+    pub fn new(
+        stress: &[f64; 9],
+        displacement: &[f64; 3],
+        stiffness: f64,
+        [density, sound_speed]: [f64; 2],
+    ) -> Self {
+        let modulus = stiffness * density * sound_speed * sound_speed;
+        Self {
+            stress: *stress,
+            hourglass: [
+                modulus * displacement[0],
+                modulus * displacement[1],
+                modulus * displacement[2],
+            ],
+            density,
+            sound_speed,
+        }
+    }
 }
 
 impl PairStress for CorrectedRecord {
@@ -321,7 +423,7 @@ impl PairStress for CorrectedRecord {
 
     #[inline(always)]
     fn is_free(&self) -> bool {
-        self.stress == [0.0; 9]
+        self.stress == [0.0; 9] && self.hourglass == [0.0; 3]
     }
 
     /// `V_i ε : P_i Σ V_j (x_j − x_i) ⊗ ∇W_ij`: with all neighbours P M is symmetric.
@@ -361,6 +463,7 @@ impl PairStress for CorrectedRecord {
         let row = |a: usize| gather3::<V, _>(&own, |record, b| record.stress[3 * a + b]);
         let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = [row(0), row(1), row(2)];
         let stress = [xx, xy, xz, yx, yy, yz, zx, zy, zz];
+        let hourglass = gather3::<V, _>(&own, |record, a| record.hourglass[a]);
         let motion = records(around.sources.records, &around.receivers);
         let specific_volume = gather::<V, _>(&motion, |record| record.volume / record.mass);
         let viscous = Viscous::<V>::begin(
@@ -388,9 +491,15 @@ impl PairStress for CorrectedRecord {
             let both = viscous.rho.mul(V::splat(state.density));
             let pi = now.pi.mul(both);
             // Viscosity strains by the plain relative velocity, stress does by L.
-            let mut lost = zero.sub(pi.mul(now.approach));
-            let minus_pi = zero.sub(pi);
-            let mut push = [minus_pi, minus_pi, minus_pi, zero, zero, zero];
+            let lost = zero.sub(pi.mul(now.approach));
+            // Hourglass displacements against each other pull or push along the pair.
+            let against = |a: usize| hourglass[a].sub(V::splat(state.hourglass[a]));
+            let bent = r[2].mul_add(against(2), r[1].mul_add(against(1), r[0].mul(against(0))));
+            let pull = bent.mul(separation.inverse).mul(separation.inverse);
+            let closing = r[2].mul_add(v[2], r[1].mul_add(v[1], r[0].mul(v[0])));
+            let mut lost = pull.mul_add(closing, lost);
+            let central = pull.sub(pi);
+            let mut push = [central, central, central, zero, zero, zero];
             if TERMS & SHAPED != 0 {
                 let shape = around.sources.scale.shape(kernel);
                 if TERMS & ARTIFICIAL_STRESS != 0 {

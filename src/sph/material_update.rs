@@ -25,17 +25,24 @@ pub(super) struct MaterialUpdate<'a> {
 
 /// What a formulation shows of eight particles after their update.
 pub(super) trait Show {
-    /// Shows lane `k`, which is particle `i` and stands at `index` among the images.
+    /// Shows lane `k` of the points `before` and `after`, which is particle `i` and stands at `index` among the images.
     ///
     /// # Safety
     /// No other thread may read or write what belongs to this particle and place.
-    unsafe fn show(&self, after: &PointBatch, k: usize, i: usize, index: usize);
+    unsafe fn show(
+        &self,
+        before: &PointBatch,
+        after: &PointBatch,
+        k: usize,
+        i: usize,
+        index: usize,
+    );
 }
 
 /// Nothing is shown.
 impl Show for () {
     #[inline(always)]
-    unsafe fn show(&self, _: &PointBatch, _: usize, _: usize, _: usize) {}
+    unsafe fn show(&self, _: &PointBatch, _: &PointBatch, _: usize, _: usize, _: usize) {}
 }
 
 impl<'a> MaterialUpdate<'a> {
@@ -159,7 +166,7 @@ impl<'a> MaterialUpdate<'a> {
                     done |= 1 << lane;
                     self.store(base[lane], lane, &after, gradient, work);
                     // SAFETY: the place belongs to this cluster alone, as its particle does.
-                    unsafe { show.show(&after, lane, base[lane], indices[lane] as usize) };
+                    unsafe { show.show(&before, &after, lane, base[lane], indices[lane] as usize) };
                 }
             }
         }

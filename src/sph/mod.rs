@@ -8,6 +8,7 @@
 pub mod corrected;
 mod formulation;
 pub mod gradient;
+pub mod hourglass;
 pub mod linear_fit;
 mod material_update;
 pub mod mid_step;

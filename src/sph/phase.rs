@@ -76,7 +76,7 @@ impl Sph {
             smoothing: Smoothing::new(case),
             form: match case.sph.form {
                 SphForm::Conventional => Form::Conventional(Conventional::default()),
-                SphForm::Corrected => Form::Corrected(Corrected::default()),
+                SphForm::Corrected => Form::Corrected(Corrected::new(case)),
                 SphForm::Normalised => Form::Normalised(Normalised::default()),
                 SphForm::StressPoints => Form::StressPoints(StressPoints::default()),
             },

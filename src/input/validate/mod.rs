@@ -234,6 +234,7 @@ fn sph(params: &SphParams) -> Result<(SphOptions, f64), Diagnostic> {
         balsara: params.balsara.unwrap_or(false),
         conduction: number!(params.conduction, or usual.conduction, Within(0.0, 2.0)),
         xsph: number!(params.xsph, or usual.xsph, Within(0.0, 1.0)),
+        hourglass: number!(params.hourglass, or usual.hourglass, Within(0.0, 1.0)),
     };
     Ok((options, number!(params.smoothing, or 1.3, Within(0.6, 3.0))))
 }

@@ -20,7 +20,7 @@ impl<'a> ShowStress<'a> {
 
 impl Show for &ShowStress<'_> {
     #[inline(always)]
-    unsafe fn show(&self, after: &PointBatch, k: usize, _: usize, index: usize) {
+    unsafe fn show(&self, _: &PointBatch, after: &PointBatch, k: usize, _: usize, index: usize) {
         let s = |c: usize| after.deviatoric_stress[c][k];
         let record = StressRecord::new(
             after.pressure[k],
