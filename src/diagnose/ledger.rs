@@ -143,6 +143,12 @@ pub struct Totals {
     /// `Σ x × m v` about the origin (kg m²/s).
     #[serde(default)]
     pub angular_momentum: [f64; 3],
+    /// Mass that has failed (kg).
+    #[serde(default)]
+    pub failed_mass: f64,
+    /// Elastic energy that it held when it failed (J), which is part of the internal energy.
+    #[serde(default)]
+    pub failure_energy: f64,
 }
 
 impl Totals {

@@ -1,9 +1,12 @@
 //! The summary of a run.
 
+use std::collections::BTreeMap;
+
 use serde_json::json;
 
 use super::tables::load;
 use crate::comm::Comm;
+use crate::diagnose::failed_mass;
 use crate::model::SphForm;
 use crate::output::{COMMIT, VERSION};
 use crate::step::Simulation;
@@ -30,6 +33,12 @@ pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde
     let nearest = worst.nearest.map(|pair| {
         let names = pair.bodies.map(|b| &simulation.case.bodies[b].name);
         json!({ "bodies": names, "ids": pair.particles })
+    });
+    let case = &simulation.case;
+    let failed = case.may_fail().then(|| {
+        let masses = failed_mass(&simulation.particles, case.bodies.len(), comm);
+        let names = case.bodies.iter().map(|body| body.name.clone());
+        names.zip(masses).collect::<BTreeMap<_, _>>()
     });
     let normalised = simulation.case.sph.form != SphForm::Conventional;
     // What the ranks have stepped since they started, if no particle was taken out.
@@ -66,6 +75,8 @@ pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde
         "plane_crossings": (!simulation.case.symmetry.is_empty()).then_some(state.plane_crossings),
         "capped_reliefs": state.capped_reliefs,
         "uncorrected_gradients": normalised.then_some(worst.uncorrected),
+        "failed_mass": failed,
+        "failure_energy": case.may_fail().then_some(state.totals.failure_energy),
         "contact_limited_steps": worst.contact_limited_steps,
     })
 }
