@@ -7,7 +7,7 @@ use material_support::{batch, equivalent, material, set_gradient, step};
 use nalgebra::Matrix3;
 use whipple::material::{
     AfterSpall, Elastic, Eos, LANES, Linear, LinearForm, Material, PointBatch, Spall, Strength,
-    library,
+    Value, library,
 };
 
 const RHO: f64 = 2700.0;
@@ -40,6 +40,16 @@ fn strain(metal: &Material, points: &mut PointBatch, increment: f64) {
 
 /// Strain at which the pressure is the limit.
 const BREAK: f64 = -LIMIT / K;
+
+#[test]
+fn constants_tell_the_choice() {
+    for (after, word) in MODES.into_iter().zip(["failed", "recompacts", "hold"]) {
+        let constants = metal(after).constants();
+        let found = |key: &str| constants.iter().find(|c| c.key == key).unwrap().value;
+        assert_eq!(found("spall.after"), Value::Word(word));
+        assert_eq!(found("spall.pressure"), Value::Number(LIMIT, "Pa"));
+    }
+}
 
 #[test]
 fn stretched_beyond_the_limit_matter_lets_go_at_once() {
@@ -108,7 +118,7 @@ fn recompacted_matter_is_whole_again_or_only_bears_pressure() {
             }
         }
         let sheared = equivalent(&points) / (2.0 * G * (pressed - BREAK));
-        assert_eq!(sheared > 0.9, after == AfterSpall::Recompacts, "{sheared}");
+        assert_eq!(sheared > 0.85, after == AfterSpall::Recompacts, "{sheared}");
         // What is whole bears tension.
         strain(&metal, &mut points, pressed + 0.9 * BREAK);
         let p = points.pressure[1];

@@ -270,9 +270,7 @@ impl RunState {
     pub fn load_impulse(&self) -> [f64; 3] {
         std::array::from_fn(|a| self.loads.iter().map(|load| load.impulse[a]).sum())
     }
-}
 
-impl RunState {
     /// Impulse of symmetry planes, rigid surfaces and pairs in the first half of a step `dt` (s).
     pub(crate) fn book_first_half(&mut self, loads: &Loads, dt: f64) {
         self.book_surfaces(loads, dt, true);

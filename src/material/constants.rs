@@ -1,6 +1,6 @@
 //! The constants of a material by the names that the input gives them.
 
-use super::declare::{Constants, Listed};
+use super::declare::{Constants, Listed, Value};
 use super::eos::{Eos, LinearForm};
 use super::{Material, ThermalConstants};
 
@@ -11,15 +11,6 @@ pub struct Constant {
     pub key: String,
     /// What it is.
     pub value: Value,
-}
-
-/// The value of a [`Constant`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Value {
-    /// A number in an SI unit (empty for a pure number).
-    Number(f64, &'static str),
-    /// A choice.
-    Word(&'static str),
 }
 
 impl Material {

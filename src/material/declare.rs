@@ -1,6 +1,13 @@
 //! How laws declare their constants: each once, with its unit.
 
-use super::constants::Value;
+/// The value of a constant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Value {
+    /// A number in an SI unit (empty for a pure number).
+    Number(f64, &'static str),
+    /// A choice.
+    Word(&'static str),
+}
 
 /// Constants of a law by their keys in the input.
 pub type Constants = Vec<(&'static str, Value)>;

@@ -13,8 +13,8 @@ pub mod library;
 mod point;
 pub mod thermal;
 
-pub use constants::{Constant, Value};
-pub use declare::{Constants, Listed};
+pub use constants::Constant;
+pub use declare::{Constants, Listed, Value};
 pub use eos::{Eos, IdealGas, Linear, LinearForm, MieGruneisen, Tait, Tillotson};
 pub use point::*;
 pub(crate) use point::{FAILED, point_fields, point_lanes};
