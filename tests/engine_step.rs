@@ -14,6 +14,7 @@ use std::collections::BTreeMap;
 use common::outcome::{advance, everything, start};
 use common::{SPACING, ball, body, case, make_elastic, planes};
 use whipple::comm::Comm;
+use whipple::material::{AfterSpall, Spall};
 use whipple::model::{Axis, Case, ContactMode, Overlap, Potential, Shape, SmoothingLength, Vec3};
 use whipple::step::{Reason, Simulation};
 
@@ -165,9 +166,14 @@ fn energy_of_a_body_is_constant_to_rounding() {
                 let mut case = colliding_halves(dimension, 2000.0);
                 case.sph.smoothing_length = smoothing;
                 case.symmetry = planes(symmetry);
+                case.materials[0].failure.spall = Some(Spall {
+                    pressure: -1e8,
+                    after: AfterSpall::Failed,
+                });
                 let mut simulation = start(case);
                 advance(&mut simulation, 150);
                 let state = &simulation.state;
+                assert!(state.totals.failed_mass > 0.1 * state.totals.mass);
                 let heat = state.totals.internal_energy / state.initial.kinetic_energy;
                 assert!(heat > 0.1, "hardly a collision: {heat}");
                 // Kicks of a few ulp each, 150 of them, in all particles.

@@ -203,6 +203,16 @@ fn values_that_no_run_has_a_use_for_are_told() {
         &["`friction` is 100: dry rubber has about 1, and clean metals in vacuum weld beyond 2"],
     );
     assert_told(&["contact.friction=1"], &[]);
+    let spall = "material.metal.spall.pressure=\"0 Pa\"";
+    assert_told(
+        &[spall],
+        &[
+            "`metal` bears no tension and fails for good at the first of it: give `spall.pressure` \
+             what it bears, or `spall.after` as \"recompacts\" or \"hold\"",
+        ],
+    );
+    assert_told(&[spall, "material.metal.spall.after=hold"], &[]);
+    assert_told(&["material.metal.spall.pressure=\"-1 GPa\""], &[]);
     assert!(told(&["sph.alpha=50"])[0].starts_with("`alpha` is 50: with more than 10"));
     assert_told(
         &["body.plate.shape.box.lower=[\"-2 mm\", \"0.13 mm\"]"],

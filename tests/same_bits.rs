@@ -102,6 +102,11 @@ fn any_ranks_and_threads() {
         run(ranks, threads, QUARTER, &[], &other);
         assert_same(&reference, &other, &what);
     }
+    let history = std::fs::read_to_string(reference.join("history.csv")).expect("the table");
+    for name in ["failed_mass", "failure_energy"] {
+        let last = column(&history, name).pop().expect("a row");
+        assert!(last.parse::<f64>().expect("a number") > 0.0, "{name}");
+    }
 }
 
 #[test]
@@ -135,6 +140,10 @@ fn every_contact_mode_variable_h_and_options() {
         ["sph.balsara=true", "run.end_time=0.05us"],
         ["sph.conduction=1", "run.end_time=0.05us"],
         ["sph.xsph=0.5", "run.end_time=0.1us"],
+        [
+            "material.aluminium.spall.after=recompacts",
+            "sph.form=corrected",
+        ],
     ] {
         let more = ["--set", options[0], "--set", options[1]];
         let (one, three) = (

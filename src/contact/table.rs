@@ -21,6 +21,8 @@ pub struct ContactTable {
     modes: ModePairs,
     pairs: Vec<Pair>,
     inverse_densities: Vec<f64>,
+    /// How many times its reference volume a particle's matter may fill, by body.
+    expansions: Vec<f64>,
     owners: Owner,
 }
 
@@ -43,12 +45,18 @@ impl ContactTable {
             modes: ModePairs::default(),
             pairs: Vec::with_capacity(n * n),
             inverse_densities: Vec::with_capacity(n),
+            expansions: Vec::with_capacity(n),
             owners: Owner::empty(),
         };
         for (a, body) in case.bodies.iter().enumerate() {
             table
                 .inverse_densities
                 .push(1.0 / case.initial_density(body));
+            // Beyond that, what may fail has voids.
+            let bursts = case.materials[body.material].failure.has_memory();
+            table
+                .expansions
+                .push(if bursts { 1.0 } else { f64::INFINITY });
             for b in 0..n {
                 table.add(case, [a, b]);
             }
@@ -110,6 +118,13 @@ impl ContactTable {
     #[must_use]
     pub fn pair(&self, a: usize, b: usize) -> &Pair {
         &self.pairs[self.at(a, b)]
+    }
+
+    /// How many times its reference volume the matter of a particle of a body may fill: beyond that
+    /// what may fail has voids, which are not of the body.
+    #[inline(always)]
+    pub(super) fn expansion(&self, body: usize) -> f64 {
+        self.expansions[body]
     }
 
     /// 1/ρ of a body at the start (m³/kg).

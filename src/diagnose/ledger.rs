@@ -143,6 +143,12 @@ pub struct Totals {
     /// `Σ x × m v` about the origin (kg m²/s).
     #[serde(default)]
     pub angular_momentum: [f64; 3],
+    /// Mass that has failed (kg).
+    #[serde(default)]
+    pub failed_mass: f64,
+    /// Elastic energy that it held when it failed (J), which is part of the internal energy.
+    #[serde(default)]
+    pub failure_energy: f64,
 }
 
 impl Totals {
@@ -264,9 +270,7 @@ impl RunState {
     pub fn load_impulse(&self) -> [f64; 3] {
         std::array::from_fn(|a| self.loads.iter().map(|load| load.impulse[a]).sum())
     }
-}
 
-impl RunState {
     /// Impulse of symmetry planes, rigid surfaces and pairs in the first half of a step `dt` (s).
     pub(crate) fn book_first_half(&mut self, loads: &Loads, dt: f64) {
         self.book_surfaces(loads, dt, true);

@@ -19,4 +19,4 @@ pub(crate) use post_mortem::PAST_STEPS;
 pub use post_mortem::{PastStep, PostMortem};
 pub use reason::Reason;
 pub(crate) use step_sums::{Booked, StepSums};
-pub(crate) use totals::angular_momentum_scale;
+pub(crate) use totals::{angular_momentum_scale, failed_mass};

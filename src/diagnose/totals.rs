@@ -3,6 +3,7 @@
 use super::ledger::{Removed, RunState, Totals};
 use crate::comm::Comm;
 use crate::loads::Loads;
+use crate::material::FAILED;
 use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use crate::numerics::vector::{cross, norm};
 use crate::particles::ParticleStore;
@@ -49,8 +50,36 @@ impl Totals {
             momentum: [x, y, z],
             momentum_scale: scale,
             angular_momentum: turn,
+            failed_mass: 0.0,
+            failure_energy: 0.0,
         }
     }
+
+    /// Adds the sums over matter that may fail. Collective.
+    pub(crate) fn add_failure(&mut self, particles: &ParticleStore, loads: &Loads, comm: &Comm) {
+        let mut sums = loads.sum_free(particles, |i| {
+            let m = particles.thermal_mass(i);
+            let failed = if particles.damage[i] >= FAILED {
+                m
+            } else {
+                0.0
+            };
+            [failed, m * particles.failure_energy[i]]
+        });
+        reduce(comm, &mut sums);
+        [self.failed_mass, self.failure_energy] = sums.map(|sum| sum.value());
+    }
+}
+
+/// Mass that has failed (kg) of each of so many bodies. Collective.
+pub(crate) fn failed_mass(particles: &ParticleStore, bodies: usize, comm: &Comm) -> Vec<f64> {
+    let mut sums = vec![ExactSum::default(); bodies];
+    let owned = particles.damage.iter().enumerate().take(particles.owned());
+    for (i, _) in owned.filter(|(_, damage)| **damage >= FAILED) {
+        sums[particles.body[i] as usize].add(particles.thermal_mass(i));
+    }
+    reduce(comm, &mut sums);
+    sums.iter().map(ExactSum::value).collect()
 }
 
 /// `Σ |(x − x̄) × m v|` (kg m²/s) over the particles of all ranks that are no part of a rigid body,

@@ -1,6 +1,6 @@
 //! The constants of a material by the names that the input gives them.
 
-use super::declare::{Constants, Listed};
+use super::declare::{Constants, Listed, Value};
 use super::eos::{Eos, LinearForm};
 use super::{Material, ThermalConstants};
 
@@ -13,20 +13,12 @@ pub struct Constant {
     pub value: Value,
 }
 
-/// The value of a [`Constant`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Value {
-    /// A number in an SI unit (empty for a pure number).
-    Number(f64, &'static str),
-    /// A choice.
-    Word(&'static str),
-}
-
 impl Material {
     /// All constants of the material, each at a key of the input.
     #[must_use]
     pub fn constants(&self) -> Vec<Constant> {
-        let mut list = vec![number("density", self.reference_density, "kg/m^3")];
+        let density = Value::Number(self.reference_density, "kg/m^3");
+        let mut list = vec![constant("density", density)];
         let (law, rows) = eos(&self.eos);
         list.extend(group(law, rows));
         if let Eos::Linear(linear) = &self.eos {
@@ -34,10 +26,10 @@ impl Material {
                 LinearForm::Logarithmic => "logarithmic",
                 LinearForm::DensityRatio => "density_ratio",
             };
-            list.push(word("eos.linear.form", form));
+            list.push(constant("eos.linear.form", Value::Word(form)));
         }
         match self.strength.constants() {
-            None => list.push(word("strength", "none")),
+            None => list.push(constant("strength", Value::Word("none"))),
             Some((law, rows)) => list.extend(group(&format!("strength.{law}"), rows)),
         }
         for (law, rows) in self.failure.constants() {
@@ -50,28 +42,24 @@ impl Material {
     }
 }
 
-fn number(key: &str, value: f64, unit: &'static str) -> Constant {
+fn constant(key: &str, value: Value) -> Constant {
     Constant {
         key: key.to_owned(),
-        value: Value::Number(value, unit),
-    }
-}
-
-fn word(key: &str, word: &'static str) -> Constant {
-    Constant {
-        key: key.to_owned(),
-        value: Value::Word(word),
+        value,
     }
 }
 
 fn group(law: &str, rows: Constants) -> impl Iterator<Item = Constant> {
     rows.into_iter()
-        .map(move |(key, value, unit)| number(&format!("{law}.{key}"), value, unit))
+        .map(move |(key, value)| constant(&format!("{law}.{key}"), value))
 }
 
 fn eos(eos: &Eos) -> (&'static str, Constants) {
     match eos {
-        Eos::Linear(law) => ("eos.linear", vec![("bulk_modulus", law.bulk_modulus, "Pa")]),
+        Eos::Linear(law) => (
+            "eos.linear",
+            vec![("bulk_modulus", Value::Number(law.bulk_modulus, "Pa"))],
+        ),
         Eos::MieGruneisen(law) => ("eos.mie_gruneisen", law.constants()),
         Eos::Tait(law) => ("eos.tait", law.constants()),
         Eos::Tillotson(law) => ("eos.tillotson", law.constants()),
@@ -81,14 +69,16 @@ fn eos(eos: &Eos) -> (&'static str, Constants) {
 
 fn heat(constants: &ThermalConstants) -> Constants {
     let mut rows = vec![
-        ("specific_heat", constants.specific_heat, "J/(kg K)"),
+        (
+            "specific_heat",
+            Value::Number(constants.specific_heat, "J/(kg K)"),
+        ),
         (
             "reference_temperature",
-            constants.reference_temperature,
-            "K",
+            Value::Number(constants.reference_temperature, "K"),
         ),
     ];
     let melting = constants.melting_temperature;
-    rows.extend(melting.map(|t| ("melting_temperature", t, "K")));
+    rows.extend(melting.map(|t| ("melting_temperature", Value::Number(t, "K"))));
     rows
 }

@@ -1,7 +1,16 @@
 //! How laws declare their constants: each once, with its unit.
 
-/// Constants of a law by their keys in the input: value and SI unit (empty for a pure number).
-pub type Constants = Vec<(&'static str, f64, &'static str)>;
+/// The value of a constant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Value {
+    /// A number in an SI unit (empty for a pure number).
+    Number(f64, &'static str),
+    /// A choice.
+    Word(&'static str),
+}
+
+/// Constants of a law by their keys in the input.
+pub type Constants = Vec<(&'static str, Value)>;
 
 /// What has constants that the input gives.
 pub trait Listed {
@@ -9,18 +18,39 @@ pub trait Listed {
     fn constants(&self) -> Constants;
 }
 
-/// Declares the constants of a law, each with its SI unit: the struct of them, and their list.
+/// Type of a constant: a number with an SI unit, or a choice.
+macro_rules! constant_type {
+    ($unit:literal) => {
+        f64
+    };
+    ($choice:ident) => {
+        $choice
+    };
+}
+
+/// A constant as users see it.
+macro_rules! constant_value {
+    ($value:expr, $unit:literal) => {
+        $crate::material::Value::Number($value, $unit)
+    };
+    ($value:expr, $choice:ident) => {
+        $crate::material::Value::Word($value.name())
+    };
+}
+
+/// Declares the constants of a law, each with its SI unit or as a choice: the struct of them, and
+/// their list.
 macro_rules! law {
-    ($(#[$doc:meta])+ $law:ident { $($(#[$key_doc:meta])+ $key:ident: $unit:literal,)+ }) => {
+    ($(#[$doc:meta])+ $law:ident { $($(#[$key_doc:meta])+ $key:ident: $unit:tt,)+ }) => {
         $(#[$doc])+
         #[derive(Debug, Clone, Copy, PartialEq)]
         pub struct $law {
-            $($(#[$key_doc])+ pub $key: f64,)+
+            $($(#[$key_doc])+ pub $key: constant_type!($unit),)+
         }
 
         impl $crate::material::Listed for $law {
             fn constants(&self) -> $crate::material::Constants {
-                vec![$((stringify!($key), self.$key, $unit)),+]
+                vec![$((stringify!($key), constant_value!(self.$key, $unit))),+]
             }
         }
     };

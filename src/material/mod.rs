@@ -13,11 +13,11 @@ pub mod library;
 mod point;
 pub mod thermal;
 
-pub use constants::{Constant, Value};
-pub use declare::{Constants, Listed};
+pub use constants::Constant;
+pub use declare::{Constants, Listed, Value};
 pub use eos::{Eos, IdealGas, Linear, LinearForm, MieGruneisen, Tait, Tillotson};
 pub use point::*;
-pub(crate) use point::{point_fields, point_lanes};
+pub(crate) use point::{FAILED, point_fields, point_lanes};
 pub use thermal::{Thermal, ThermalConstants};
 
 /// Smallest square of the bulk sound speed, as a fraction of its reference value K/ρ₀: expanded
@@ -64,10 +64,10 @@ impl Material {
         }
     }
 
-    /// Temperature (K) at a density (kg/m³) and specific energy (J/kg), if the material has
+    /// Temperature (K) at a density (kg/m³), specific energy (J/kg) and damage, if the material has
     /// thermal constants.
     #[must_use]
-    pub fn temperature(&self, density: f64, specific_energy: f64) -> Option<f64> {
+    pub fn temperature(&self, density: f64, specific_energy: f64, damage: f64) -> Option<f64> {
         let thermal = self.thermal.as_ref()?;
         let at = self
             .eos
@@ -76,6 +76,7 @@ impl Material {
             density: [density; LANES],
             specific_energy: [specific_energy; LANES],
             pressure: [at.pressure; LANES],
+            damage: [damage; LANES],
             ..PointBatch::ZERO
         };
         self.failure.limit_tension(&mut point);
@@ -85,8 +86,8 @@ impl Material {
 
     /// Advances a batch of points by `dt` (s).
     ///
-    /// With `dt = 0` the elastic stress and plastic strain stay as they are, to the last bit, and
-    /// all that follows from the given state (pressure, sound speed, viscous stress) becomes that
+    /// With `dt = 0` elastic stress, plastic strain and damage stay as they are, to the last bit,
+    /// and all that follows from the given state (pressure, sound speed, viscous stress) becomes that
     /// of it.
     #[inline(always)]
     pub fn update(&self, batch: &mut PointBatch, dt: f64) {
@@ -118,8 +119,9 @@ impl Material {
             self.set_temperatures(batch, &response, &mut now);
         }
         self.strength.act::<ALL>(batch, &mut now, &self.failure);
-        if ALL {
-            self.failure.fail(batch, &now);
+        if ALL && self.failure.follows_state() {
+            let bulk_modulus = self.bulk_modulus(batch, &response);
+            self.failure.fail(batch, &mut now, &bulk_modulus);
         }
         self.set_sound_speed(batch, &response, &now.shear_modulus);
     }
@@ -133,12 +135,17 @@ impl Material {
         }
     }
 
-    /// Longitudinal sound speed, `c² = ∂p/∂ρ|ₛ + 4G/(3ρ)`, where by the first law
-    /// `∂p/∂ρ|ₛ = ∂p/∂ρ|ₑ + (p/ρ²) ∂p/∂e|ᵨ`.
-    ///
-    /// `p` is the pressure after the cut-off, since that does the work. At the cut-off the
-    /// pressure no longer answers to density; its derivatives are kept, so that the speed is
-    /// that of the recompression to come.
+    /// Bulk modulus (Pa) of the state, `ρ ∂p/∂ρ|ₛ`.
+    #[inline(always)]
+    fn bulk_modulus(&self, batch: &PointBatch, response: &eos::Response) -> Lanes {
+        let mut modulus = self.bulk_speed_squared(batch, response);
+        for k in 0..LANES {
+            modulus[k] *= batch.density[k];
+        }
+        modulus
+    }
+
+    /// Longitudinal sound speed, `c² = ∂p/∂ρ|ₛ + 4G/(3ρ)`.
     #[inline(always)]
     fn set_sound_speed(
         &self,
@@ -146,15 +153,30 @@ impl Material {
         response: &eos::Response,
         shear_modulus: &Lanes,
     ) {
+        let bulk = self.bulk_speed_squared(batch, response);
+        for k in 0..LANES {
+            let volume = 1.0 / batch.density[k];
+            let shear = shear_modulus[k] * (4.0 / 3.0);
+            batch.sound_speed[k] = (bulk[k] + shear * volume).sqrt();
+        }
+    }
+
+    /// `∂p/∂ρ|ₛ`, by the first law `∂p/∂ρ|ₑ + (p/ρ²) ∂p/∂e|ᵨ`.
+    ///
+    /// `p` is the pressure after the cut-off, since that does the work. At the cut-off the
+    /// pressure no longer answers to density; its derivatives are kept, so that the speed is
+    /// that of the recompression to come.
+    #[inline(always)]
+    fn bulk_speed_squared(&self, batch: &PointBatch, response: &eos::Response) -> Lanes {
         let floor = SOUND_SPEED_SQUARED_FLOOR * self.eos.bulk_modulus(self.reference_density)
             / self.reference_density;
+        let mut bulk = [0.0; LANES];
         for k in 0..LANES {
             let volume = 1.0 / batch.density[k];
             let de_drho = batch.pressure[k] * volume * volume;
-            let bulk = response.dp_drho[k] + de_drho * response.dp_de[k];
-            let shear = shear_modulus[k] * (4.0 / 3.0);
-            batch.sound_speed[k] = (at_least(bulk, floor) + shear * volume).sqrt();
+            bulk[k] = at_least(response.dp_drho[k] + de_drho * response.dp_de[k], floor);
         }
+        bulk
     }
 }
 

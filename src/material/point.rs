@@ -4,6 +4,7 @@
 //! its rows in `input/schema/materials.rs` its constants.
 
 mod batch;
+mod damage;
 mod elastic;
 mod jaumann;
 mod johnson_cook;
@@ -18,19 +19,21 @@ mod von_mises;
 use super::declare::Listed;
 pub(crate) use batch::point_lanes;
 pub use batch::{LANES, Lanes, PointBatch, PointField};
+pub(crate) use damage::FAILED;
 pub use elastic::Elastic;
 pub use johnson_cook::JohnsonCook;
 pub use law::{Conditions, Contradiction, Law};
 use law::{failure_laws, strength_laws};
 pub use neo_hookean::NeoHookean;
-pub use spall::Spall;
+pub use spall::{AfterSpall, Spall};
 pub use steinberg_guinan::SteinbergGuinan;
 pub use viscous::Viscous;
 pub use von_mises::VonMises;
 
 /// Passes the fields of a material point to the macro `$then`, after `$more`: name, kind and role
 /// of each. `Given` is taken from the particle, `State` is taken and written back, and `Answer` is
-/// written back.
+/// written back. `Memory` is state of failure: the same as `State` where a material of the case
+/// has a law that changes it, zero elsewhere.
 macro_rules! point_fields {
     ($then:ident $($more:tt)*) => {
         $then! {
@@ -45,6 +48,10 @@ macro_rules! point_fields {
             deviatoric_stress: Symmetric, State;
             /// Equivalent plastic strain.
             plastic_strain: Scalar, State;
+            /// Damage: below one intact, from one on failed.
+            damage: Scalar, Memory;
+            /// Elastic energy that failure has released so far (J/kg).
+            failure_energy: Scalar, Memory;
             /// Pressure, compression positive (Pa).
             pressure: Scalar, Answer;
             /// Longitudinal sound speed (m/s).

@@ -97,6 +97,13 @@ impl Case {
             .map(String::as_str)
     }
 
+    /// Whether matter of the case may fail for good.
+    #[must_use]
+    pub fn may_fail(&self) -> bool {
+        let mut bodies = self.bodies.iter();
+        bodies.any(|body| self.materials[body.material].failure.has_memory())
+    }
+
     /// Initial density of a body (kg/m³).
     #[must_use]
     pub fn initial_density(&self, body: &Body) -> f64 {

@@ -70,21 +70,24 @@ impl Quantity {
     }
 }
 
-/// The quantities of a case: as [`quantities`], and what tells stress points from particles where
-/// there are any.
+/// The quantities of a case: as [`quantities`], by default damage too where matter may fail; and
+/// what tells stress points from particles where there are any.
 ///
 /// # Errors
 /// As [`quantities`].
 pub fn quantities_of(case: &Case) -> Result<Vec<Quantity>, OutputError> {
     let mut names = case.output.fields.clone();
-    let role = "stress_mass".to_owned();
-    if case.sph.form == SphForm::StressPoints && !names.contains(&role) {
-        if names.is_empty() {
-            let chosen = quantities(&[])?;
-            names.extend(chosen.iter().map(|choice| choice.name().to_owned()));
-        }
-        names.push(role);
+    let more = [
+        ("damage", case.may_fail() && names.is_empty()),
+        ("stress_mass", case.sph.form == SphForm::StressPoints),
+    ];
+    let more = more.into_iter().filter(|(_, wanted)| *wanted);
+    let mut more = more.map(|(name, _)| name.to_owned()).peekable();
+    if more.peek().is_some() && names.is_empty() {
+        let chosen = quantities(&[])?;
+        names.extend(chosen.iter().map(|choice| choice.name().to_owned()));
     }
+    names.extend(more);
     quantities(&names)
 }
 
@@ -291,9 +294,10 @@ fn von_mises(s: &[f64; 6]) -> f64 {
 /// Temperature (K) of an owned particle.
 fn temperature(case: &Case, particles: &ParticleStore, i: usize) -> f64 {
     let body = case.bodies.get(particles.body[i] as usize);
+    let damage = particles.damage.get(i).copied().unwrap_or_default();
     let material = body.and_then(|body| case.materials.get(body.material));
     material
-        .and_then(|m| m.temperature(particles.density[i], particles.specific_energy[i]))
+        .and_then(|m| m.temperature(particles.density[i], particles.specific_energy[i], damage))
         .unwrap_or(f64::NAN)
 }
 

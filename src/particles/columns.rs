@@ -143,5 +143,7 @@ bitflags! {
         const STRESS_POINTS = 1 << 12;
         /// The corrected form of the sums.
         const CORRECTED = 1 << 13;
+        /// Materials that may fail for good.
+        const FAILURE = 1 << 14;
     }
 }

@@ -249,6 +249,10 @@ particle_fields! {
     deviatoric_stress: Symmetric,         "Pa",     State,    STRESS,         Default,  -;
     /// Equivalent plastic strain.
     plastic_strain: Scalar,               "",       State,    -,              Default,  -, kept;
+    /// Damage: below one intact, one failed.
+    damage: Scalar,                       "",       State,    -,              OnDemand, FAILURE;
+    /// Elastic energy that tension and shear held when the matter failed.
+    failure_energy: Scalar,               "J/kg",   State,    -,              OnDemand, FAILURE;
     /// Velocity gradient, row i column j is the derivative of velocity i along j.
     velocity_gradient: Tensor,            "1/s",    State,    -,              OnDemand, -;
     /// Acceleration by stress and viscosity.

@@ -4,31 +4,49 @@
 use super::columns::Life;
 use super::fields::{FIELDS, FieldId};
 use super::scatter::Scatter;
-use crate::material::{LANES, PointBatch, PointField, point_fields, point_lanes};
+use crate::material::{FAILED, LANES, PointBatch, PointField, point_fields, point_lanes};
 
-/// Copies a field into a batch if its role says so.
+/// Copies a field into a batch if its role says so; a memory that no particle has is zero.
 macro_rules! gather {
-    (Answer $to:expr, $k:ident, $from:expr) => {};
-    ($role:ident $to:expr, $k:ident, $from:expr) => {
-        $to.set_lane($k, $from)
+    (Answer $to:expr, $k:ident, $from:expr, $i:ident) => {};
+    (Memory $to:expr, $k:ident, $from:expr, $i:ident) => {
+        if !$from.is_empty() {
+            $to.set_lane($k, $from.slot($i))
+        }
+    };
+    ($role:ident $to:expr, $k:ident, $from:expr, $i:ident) => {
+        $to.set_lane($k, $from.slot($i))
     };
 }
 
 /// Copies a field out of a batch if its role says so.
 macro_rules! store {
-    (Given $to:expr, $k:ident, $from:expr) => {};
-    ($role:ident $to:expr, $k:ident, $from:expr) => {
-        *$to = $from.lane($k)
+    (Given $to:expr, $i:ident, $k:ident, $from:expr) => {};
+    (Memory $to:expr, $i:ident, $k:ident, $from:expr) => {
+        if !$to.is_empty() {
+            *$to.slot($i) = $from.lane($k)
+        }
+    };
+    ($role:ident $to:expr, $i:ident, $k:ident, $from:expr) => {
+        *$to.slot($i) = $from.lane($k)
     };
 }
 
-/// Refuses, as it is compiled, a state that would not outlive a step.
+/// Refuses, as it is compiled, a state that would not outlive a step, and what only some cases hold
+/// where all must.
 macro_rules! check {
-    (State $name:ident) => {
-        let life = FIELDS[FieldId::$name as usize].life;
+    (Memory $name:ident) => {
+        let field = &FIELDS[FieldId::$name as usize];
         assert!(
-            matches!(life, Life::State),
-            "state of a material must be state of the particle"
+            matches!(field.life, Life::State) && field.is_optional(),
+            "memory of a material must be state of particles that have use for it"
+        );
+    };
+    (State $name:ident) => {
+        let field = &FIELDS[FieldId::$name as usize];
+        assert!(
+            matches!(field.life, Life::State) && !field.is_optional(),
+            "state of a material must be state of every particle"
         );
     };
     ($role:ident $name:ident) => {};
@@ -50,6 +68,20 @@ macro_rules! points {
         }
 
         impl<'a> MaterialPoints<'a> {
+            /// Whether particle `i` has failed.
+            ///
+            /// # Safety
+            /// No other thread may write to this particle.
+            ///
+            /// # Panics
+            /// If there is no such particle.
+            #[inline(always)]
+            #[must_use]
+            pub unsafe fn has_failed(&self, i: usize) -> bool {
+                // SAFETY: by this function's contract; no reference outlives its statement.
+                !self.damage.is_empty() && unsafe { *self.damage.slot(i) >= FAILED }
+            }
+
             /// What the particles `base` hold, in this order; zero for what a material answers.
             ///
             /// # Safety
@@ -63,7 +95,7 @@ macro_rules! points {
                 let mut batch = PointBatch::ZERO;
                 for (k, &i) in base.iter().enumerate() {
                     // SAFETY: by this function's contract; no reference outlives its statement.
-                    unsafe { $( gather!($role batch.$name, k, self.$name.slot(i)); )+ }
+                    unsafe { $( gather!($role batch.$name, k, self.$name, i); )+ }
                 }
                 batch
             }
@@ -78,7 +110,7 @@ macro_rules! points {
             #[inline(always)]
             pub unsafe fn store(&self, i: usize, k: usize, batch: &PointBatch) {
                 // SAFETY: by this function's contract; no reference outlives its statement.
-                unsafe { $( store!($role self.$name.slot(i), k, batch.$name); )+ }
+                unsafe { $( store!($role self.$name, i, k, batch.$name); )+ }
             }
         }
 

@@ -22,6 +22,13 @@ impl<'a, T> Scatter<'a, T> {
         }
     }
 
+    /// Whether there are no elements.
+    #[inline(always)]
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.length == 0
+    }
+
     /// Element `index`.
     ///
     /// # Safety

@@ -1,6 +1,7 @@
 //! Values that are allowed and that no run has a use for.
 
 use super::approach::Approach;
+use crate::material::AfterSpall;
 use crate::model::readable::{short, shown};
 use crate::model::{Body, Case, ContactMode, LatticeKind, Resistance, Shape};
 use crate::populate;
@@ -22,6 +23,7 @@ const TOUCH: f64 = 0.1;
 /// One line for each.
 pub fn warnings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
     unused_materials(case, found);
+    unbearing_materials(case, found);
     for body in &case.bodies {
         found.extend(box_size(body, case));
     }
@@ -34,6 +36,20 @@ fn unused_materials(case: &Case, found: &mut Vec<String>) {
     for (index, material) in case.materials.iter().enumerate() {
         if !case.bodies.iter().any(|body| body.material == index) {
             found.push(format!("no body is of the material `{}`", material.name));
+        }
+    }
+}
+
+/// Materials that noise destroys.
+fn unbearing_materials(case: &Case, found: &mut Vec<String>) {
+    for material in &case.materials {
+        let spall = material.failure.spall;
+        if spall.is_some_and(|s| s.pressure == 0.0 && s.after == AfterSpall::Failed) {
+            found.push(format!(
+                "`{}` bears no tension and fails for good at the first of it: give `spall.pressure` \
+                 what it bears, or `spall.after` as \"recompacts\" or \"hold\"",
+                material.name
+            ));
         }
     }
 }

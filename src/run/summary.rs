@@ -1,12 +1,14 @@
 //! The summary of a run.
 
+use std::collections::BTreeMap;
+
 use serde_json::json;
 
 use super::tables::load;
 use crate::comm::Comm;
 use crate::model::SphForm;
 use crate::output::{COMMIT, VERSION};
-use crate::step::Simulation;
+use crate::step::{Simulation, failed_mass};
 
 /// `summary.json`: what the run has come to, and how fast this process has stepped (with the mean
 /// seconds of all ranks by phase). The seconds are those since the start of the program, and of
@@ -31,6 +33,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde
         let names = pair.bodies.map(|b| &simulation.case.bodies[b].name);
         json!({ "bodies": names, "ids": pair.particles })
     });
+    let failed = failed_by_body(comm, simulation);
     let normalised = simulation.case.sph.form != SphForm::Conventional;
     // What the ranks have stepped since they started, if no particle was taken out.
     let steps = load.updates as f64 / (load.particles[0] as f64).max(1.0);
@@ -66,7 +69,19 @@ pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde
         "plane_crossings": (!simulation.case.symmetry.is_empty()).then_some(state.plane_crossings),
         "capped_reliefs": state.capped_reliefs,
         "uncorrected_gradients": normalised.then_some(worst.uncorrected),
+        "failure_energy": failed.is_some().then_some(state.totals.failure_energy),
+        "failed_mass": failed,
         "contact_limited_steps": worst.contact_limited_steps,
+    })
+}
+
+/// Mass that has failed (kg) by body, where matter may fail. Collective.
+fn failed_by_body<'a>(comm: &Comm, simulation: &'a Simulation) -> Option<BTreeMap<&'a str, f64>> {
+    let bodies = &simulation.case.bodies;
+    simulation.case.may_fail().then(|| {
+        let masses = failed_mass(&simulation.particles, bodies.len(), comm);
+        let names = bodies.iter().map(|body| body.name.as_str());
+        names.zip(masses).collect()
     })
 }
 

@@ -142,7 +142,7 @@ macro_rules! tables {
 
 tables! {
     /// A row of the history; in other forms than the conventional a count of uncorrected gradients
-    /// follows.
+    /// follows, and where matter may fail what has.
     HISTORY, history(state: &'a RunState) {
         "step", "", state.step;
         "time", "s", state.time;
@@ -162,6 +162,12 @@ tables! {
         "interpenetrated", "", state.interpenetrated.unsigned_abs();
         "angular_momentum_*", "kg m^2/s", state.totals.angular_momentum;
         "angular_impulse_*", "N m s", state.angular_impulse;
+    }
+
+    /// What of a row of the history is told where matter may fail.
+    FAILURE, failure(state: &'a RunState) {
+        "failed_mass", "kg", state.totals.failed_mass;
+        "failure_energy", "J", state.totals.failure_energy;
     }
 
     /// A row of the contacts, of two bodies by name.
@@ -239,6 +245,9 @@ impl Tables {
         if case.sph.form != SphForm::Conventional {
             of_history.push(Column::new("uncorrected", ""));
         }
+        if case.may_fail() {
+            of_history.extend(columns(FAILURE));
+        }
         let has_loads = case.load_names().next().is_some();
         let removes = case.numerical_limits.policy != NumericalFailurePolicy::Stop
             || resume.is_some_and(|state| !state.removed.is_empty());
@@ -266,6 +275,9 @@ impl Tables {
         let mut row = history(state);
         if case.sph.form != SphForm::Conventional {
             row.push(Value::Count(state.uncorrected.unsigned_abs()));
+        }
+        if case.may_fail() {
+            row.extend(failure(state));
         }
         self.history.row(&row)?;
         let pairs = simulation.contact().active_pairs();

@@ -118,6 +118,20 @@ impl<'a> MaterialUpdate<'a> {
         self.points.heating[i]
     }
 
+    /// Receivers of a cluster that had failed before this step: bit k is lane k.
+    #[inline(always)]
+    pub(super) fn failed(&self, cluster: &Cluster) -> u8 {
+        if self.points.damage.is_empty() {
+            return 0;
+        }
+        let mut failed = 0;
+        for (k, i) in self.base(cluster).into_iter().enumerate() {
+            // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
+            failed |= u8::from(unsafe { self.points.has_failed(i) }) << k;
+        }
+        failed
+    }
+
     /// The velocity gradient that the last step has left of particle `i`.
     #[inline(always)]
     pub(super) fn last_gradient(&self, i: usize) -> [f64; 9] {

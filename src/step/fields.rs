@@ -17,6 +17,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
             case.self_contact.is_some_and(|s| s.folds.is_some()),
         ),
         (Owner::SURFACE_FRICTION, case.loads.has_friction()),
+        (Owner::FAILURE, case.may_fail()),
         (Owner::BALSARA, sph.balsara),
         (Owner::CONDUCTION, sph.conduction > 0.0),
         (Owner::XSPH, sph.xsph > 0.0),

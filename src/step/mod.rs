@@ -11,6 +11,7 @@ mod setup;
 mod simulation;
 mod timers;
 
+pub(crate) use crate::diagnose::failed_mass;
 pub use crate::diagnose::{
     LoadState, NearestPair, NumericalFailure, PairState, PastStep, PostMortem, Reason, Removed,
     RunState, Totals, Worst,

@@ -266,12 +266,12 @@ impl Simulation {
     }
 
     pub(super) fn totals(&self, comm: &Comm) -> Totals {
-        Totals::of(
-            &self.particles,
-            &self.loads,
-            self.state.contact_energy,
-            comm,
-        )
+        let (particles, loads) = (&self.particles, &self.loads);
+        let mut totals = Totals::of(particles, loads, self.state.contact_energy, comm);
+        if self.case.may_fail() {
+            totals.add_failure(particles, loads, comm);
+        }
+        totals
     }
 
     /// Joins the extremes of all ranks into the state: before rows and checkpoints. Collective.

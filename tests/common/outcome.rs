@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use whipple::comm::Comm;
+use whipple::material::{AfterSpall, Spall};
 use whipple::model::{
     Case, ContactDirection, ContactMode, Overlap, Resistance, SmoothingLength, SphForm,
 };
@@ -74,12 +75,16 @@ pub fn every_option() -> Case {
     case
 }
 
-/// A case with all there is: contact, two planes, variable h, plasticity; without options of the
+/// A case with all there is: contact, two planes, variable h, plasticity, spall; without options of the
 /// SPH sums.
 pub fn everything() -> Case {
     let mut case = sphere_on_plate(6e-5, 7000.0, true, 1.0);
     case.sph.smoothing_length = SmoothingLength::Variable { min: 0.6, max: 2.0 };
     case.domain.balance_every = 7;
+    case.materials[0].failure.spall = Some(Spall {
+        pressure: -1e8,
+        after: AfterSpall::Recompacts,
+    });
     case
 }
 

@@ -30,7 +30,7 @@ pub struct Fraction {
     pub excess: f64,
     /// `g_i = Σ V_j |∇W_ij|` (1/m).
     pub slope: f64,
-    /// `Σ V_j W_ij` with current volumes.
+    /// `Σ V_j W_ij` with current volumes, those of voids left out.
     pub current: f64,
 }
 
@@ -68,7 +68,8 @@ pub fn fraction(view: &ContactView, index: u32, neighbours: &[u32], offset: f64)
         sum.modulus += share * own.modulus;
         sum.touching += share * own.touching;
         sum.slope -= j.volume * pair.kernel.slope(separation.distance);
-        sum.current += view.motion[other as usize].volume * kernel;
+        let matter = j.volume * view.table.expansion(j.body);
+        sum.current += view.motion[other as usize].volume.min(matter) * kernel;
     }
     if sum.fraction > 0.0 {
         sum.modulus /= sum.fraction;

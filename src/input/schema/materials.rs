@@ -8,7 +8,7 @@ use crate::input::quantity::{
     Density, PerPressure, PerTemperature, Placed, Pressure, Rate, SpecificEnergy, SpecificHeat,
     Temperature, Velocity, Viscosity,
 };
-use crate::material::LinearForm;
+use crate::material::{AfterSpall, LinearForm};
 
 optional_tables! {
     /// `[material.NAME]`: from the library, or inline, or single values changed.
@@ -196,7 +196,7 @@ macro_rules! strength_laws {
 pub(in crate::input) use strength_laws;
 
 /// Passes the laws of failure to the macro `$then`, in the same form; each is a key of
-/// [`MaterialParams`].
+/// [`MaterialParams`]. A `Word` is a choice with a default of its own.
 macro_rules! failure_laws {
     ($then:ident) => {
         $then! {
@@ -204,6 +204,8 @@ macro_rules! failure_laws {
             spall: SpallParams => Spall {
                 /// Lowest pressure.
                 pressure: Placed<Pressure>, NotPositive;
+                /// What becomes of matter beyond it.
+                after: Spanned<AfterSpall>, Word;
             }
         }
     };

@@ -11,6 +11,10 @@ use crate::material::{Failure, Law, Strength};
 /// The value of a constant: that of the table, else that of the library's law of the same kind
 /// (`$base`), else its default, if it has one.
 macro_rules! value {
+    ($params:ident $key:ident $base:expr, Word, $at:ident) => {{
+        let word = $params.$key.as_ref().map(|word| *word.get_ref());
+        word.or($base).unwrap_or_default()
+    }};
     ($params:ident $key:ident $base:expr, $allowed:ident, $at:ident, $default:literal) => {
         number(
             $params.$key.as_ref(),

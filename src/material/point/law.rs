@@ -24,7 +24,10 @@ pub struct Contradiction {
 /// 4. [`Law::flow`], return to the yield surface,
 /// 5. [`Law::fail`], damage.
 ///
-/// At last the sound speed follows. With a step of zero no stage may change the state.
+/// Damage of one is failure, whichever law has brought it. At the end of stage 5 of the same step
+/// failed matter lets go of tension and shear; in all later ones it has no tension after stage 1,
+/// and neither shear modulus nor flow stress after stage 2. At last the sound speed follows. With a
+/// step of zero no stage may change the state.
 pub trait Law: Listed {
     /// Fields of the point that the law changes.
     const STATE: &'static [&'static str];
@@ -36,6 +39,17 @@ pub trait Law: Listed {
     /// function of their own: inside that of the others they slow down those that have no need of
     /// them.
     const FOLLOWS_STATE: bool = false;
+
+    /// Fields of the point that the law changes with these constants.
+    fn state(&self) -> &'static [&'static str] {
+        Self::STATE
+    }
+
+    /// Whether what the law does follows the state with these constants.
+    #[inline(always)]
+    fn follows_state(&self) -> bool {
+        Self::FOLLOWS_STATE
+    }
 
     /// What is wrong with constants that are each within their range.
     fn contradiction(&self) -> Option<Contradiction> {
@@ -68,7 +82,7 @@ pub trait Law: Listed {
     #[inline(always)]
     fn flow(&self, _point: &mut PointBatch, _now: &Conditions) {}
 
-    /// Advances damage.
+    /// Advances damage, in a step that is not zero.
     #[inline(always)]
     fn fail(&self, _point: &mut PointBatch, _now: &Conditions) {}
 }
@@ -230,8 +244,14 @@ macro_rules! failure_laws {
 
             /// Fields of the point that the laws change.
             pub fn state(&self) -> impl Iterator<Item = &'static str> {
-                let laws = [$( self.$key.as_ref().map_or(&[][..], |_| $law::STATE), )+];
+                let laws = [$( self.$key.as_ref().map_or(&[][..], |law| law.state()), )+];
                 laws.into_iter().flatten().copied()
+            }
+
+            /// Whether a law changes the state, so that what has failed stays so.
+            #[must_use]
+            pub fn has_memory(&self) -> bool {
+                self.state().next().is_some()
             }
 
             /// Keys of the laws in the input and their constants.
@@ -243,7 +263,7 @@ macro_rules! failure_laws {
 
             #[inline(always)]
             pub(in crate::material) fn follows_state(&self) -> bool {
-                false $( || $law::FOLLOWS_STATE && self.$key.is_some() )+
+                false $( || $law::FOLLOWS_STATE && self.$key.is_some_and(|law| law.follows_state()) )+
             }
 
             /// Stage 1.
@@ -252,6 +272,9 @@ macro_rules! failure_laws {
                 $( if let Some(law) = &self.$key {
                     law.limit_tension(point);
                 } )+
+                if self.follows_state() {
+                    damage::limit_tension(point);
+                }
             }
 
             /// Stage 2.
@@ -260,14 +283,26 @@ macro_rules! failure_laws {
                 $( if let Some(law) = &self.$key {
                     law.soften(point, now);
                 } )+
+                if self.follows_state() {
+                    damage::soften(point, now);
+                }
             }
 
-            /// Stage 5.
+            /// Stage 5, with the bulk modulus of the state (Pa).
             #[inline(always)]
-            pub(in crate::material) fn fail(&self, point: &mut PointBatch, now: &Conditions) {
-                $( if let Some(law) = &self.$key {
-                    law.fail(point, now);
-                } )+
+            pub(in crate::material) fn fail(
+                &self,
+                point: &mut PointBatch,
+                now: &mut Conditions,
+                bulk_modulus: &Lanes,
+            ) {
+                let before = point.damage;
+                if now.dt != 0.0 {
+                    $( if let Some(law) = &self.$key {
+                        law.fail(point, now);
+                    } )+
+                }
+                damage::let_go(point, now, &before, bulk_modulus);
             }
         }
     };
@@ -276,8 +311,10 @@ pub(super) use failure_laws;
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use crate::material::point::point_fields;
-    use crate::material::{LANES, PointBatch, Spall, library};
+    use crate::material::{AfterSpall, Eos, LANES, PointBatch, Spall, library};
 
     macro_rules! values {
         ($( $(#[doc = $doc:literal])+ $name:ident: $kind:ident, $role:ident; )+) => {
@@ -292,26 +329,33 @@ mod tests {
     /// The laws of each material of the library change the state that they name, and no other.
     #[test]
     fn laws_change_the_state_that_they_name() {
-        for name in library::names() {
-            let mut material = library::find(name).unwrap();
-            material.failure.spall = Some(Spall { pressure: -1e6 });
-            let ramp = |c: u8, middle: f64| f64::from(c) - middle;
-            let mut point = PointBatch {
-                density: [0.99 * material.reference_density; LANES],
-                velocity_gradient: [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|c| [1e4 * ramp(c, 3.5); LANES]),
-                deviatoric_stress: [0, 1, 2, 3, 4, 5].map(|c| [1e5 * ramp(c, 1.5); LANES]),
-                plastic_strain: [0.01; LANES],
-                ..PointBatch::ZERO
-            };
-            let before = values(&point);
-            material.update(&mut point, 1e-5);
-            let after = values(&point);
-            let changed = before.iter().zip(&after).filter(|(a, b)| a != b);
-            let changed = changed.filter(|((_, role, _), _)| *role != "Answer");
-            let changed: Vec<&str> = changed.map(|((name, _, _), _)| *name).collect();
-            let mut named = material.strength.state().to_vec();
-            named.extend(material.failure.state());
-            assert_eq!(changed, named, "{name}");
+        for after in [AfterSpall::Hold, AfterSpall::Failed] {
+            for name in library::names() {
+                let mut material = library::find(name).unwrap();
+                let pressure = -1e6;
+                material.failure.spall = Some(Spall { pressure, after });
+                let ramp = |c: u8, middle: f64| f64::from(c) - middle;
+                let mut point = PointBatch {
+                    density: [0.99 * material.reference_density; LANES],
+                    velocity_gradient: [0, 1, 2, 3, 4, 5, 6, 7, 8]
+                        .map(|c| [1e4 * ramp(c, 3.5); LANES]),
+                    deviatoric_stress: [0, 1, 2, 3, 4, 5].map(|c| [1e5 * ramp(c, 1.5); LANES]),
+                    plastic_strain: [0.01; LANES],
+                    ..PointBatch::ZERO
+                };
+                let before = values(&point);
+                material.update(&mut point, 1e-5);
+                let after = values(&point);
+                let changed = before.iter().zip(&after).filter(|(a, b)| a != b);
+                let changed = changed.filter(|((_, role, _), _)| *role != "Answer");
+                let changed: BTreeSet<&str> = changed.map(|((name, _, _), _)| *name).collect();
+                let mut named: BTreeSet<&str> = material.strength.state().iter().copied().collect();
+                // A gas bears no tension that it could fail by.
+                if !matches!(material.eos, Eos::IdealGas(_)) {
+                    named.extend(material.failure.state());
+                }
+                assert_eq!(changed, named, "{name}");
+            }
         }
     }
 }

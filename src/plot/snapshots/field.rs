@@ -101,11 +101,13 @@ impl Shown {
 /// What tells stress points from particles.
 const STRESS_MASS: &str = "stress_mass";
 /// What stress points bear, where there are any.
-const OF_STRESS_POINTS: [&str; 10] = [
+const OF_STRESS_POINTS: [&str; 12] = [
     "density",
     "pressure",
     "deviatoric_stress",
     "plastic_strain",
+    "damage",
+    "failure_energy",
     "specific_energy",
     "sound_speed",
     "velocity_gradient",

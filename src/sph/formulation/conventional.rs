@@ -78,6 +78,7 @@ impl Gradient for PlainGradient<'_> {
         _: &Cluster,
         among: Among,
         around: Neighbourhood<S>,
+        _: impl FnOnce() -> u8,
     ) -> ([F64x8; 9], &ShowStress<'_>) {
         let gradient = if among.moving {
             VelocityGradient { around }.run::<V>()

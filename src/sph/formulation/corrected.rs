@@ -123,11 +123,12 @@ impl Gradient for CorrectedGradients<'_> {
         _: &Cluster,
         _: Among,
         around: Neighbourhood<S>,
+        failed: impl FnOnce() -> u8,
     ) -> ([F64x8; 9], ShowCorrected<'_>) {
         let corrected = CorrectedGradient {
             around,
             dimension: self.dimension,
-            plain: 0,
+            plain: failed(),
         }
         .run::<V>();
         let show = ShowCorrected {

@@ -20,12 +20,14 @@ pub(super) trait Gradient: Sync {
         Self: 'a;
 
     /// Velocity gradients (1/s, row-major) of the receivers of a cluster, `around` which its
-    /// neighbours stand, and what is to show their stresses.
+    /// neighbours stand, and what is to show their stresses; `failed` tells which receivers had
+    /// failed before this step (bit k is lane k).
     fn of<V: Lanes, S: PairScale>(
         &self,
         cluster: &Cluster,
         among: Among,
         around: Neighbourhood<S>,
+        failed: impl FnOnce() -> u8,
     ) -> ([F64x8; 9], Self::Show<'_>);
 }
 
@@ -62,9 +64,10 @@ impl<S: PairScale, G: Gradient> Vectorised for GradientChunk<'_, S, G> {
     fn run<V: Lanes>(self) {
         for (cluster, neighbours, among) in self.chunk.iter() {
             let around = self.motion.around(cluster.receivers, neighbours);
-            let (gradient, show) = self.gradient.of::<V, S>(cluster, among, around);
-            self.update
-                .apply(cluster, &gradient, neighbours.len(), &show);
+            let update = self.update;
+            let failed = || update.failed(cluster);
+            let (gradient, show) = self.gradient.of::<V, S>(cluster, among, around, failed);
+            update.apply(cluster, &gradient, neighbours.len(), &show);
         }
     }
 }

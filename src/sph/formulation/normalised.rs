@@ -122,6 +122,7 @@ impl Gradient for NormalisedGradients<'_> {
         cluster: &Cluster,
         _: Among,
         around: Neighbourhood<S>,
+        _: impl FnOnce() -> u8,
     ) -> ([F64x8; 9], &ShowStress<'_>) {
         let sums = NormalisedGradient {
             around,
