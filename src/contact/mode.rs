@@ -8,6 +8,7 @@ use super::force::{Receiver, TaskForces};
 use super::pair::{Listed, Pair};
 use super::resistance::{NormalLoad, PairFriction};
 use super::view::{ContactView, Party, Separation};
+use super::virial::Virial;
 use crate::model::{ContactClass, contact_modes};
 use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Lists, PairList};
 use crate::particles::{GRAIN, ParticleStore};
@@ -94,6 +95,17 @@ pub(crate) struct PairForce {
     pub loads: [f64; 2],
 }
 
+impl PairForce {
+    /// Adds what friction and damping of the pair do.
+    #[inline(always)]
+    fn resist(&mut self, friction: &PairFriction) {
+        for a in 0..3 {
+            self.force[a] += friction.force[a];
+        }
+        self.energy += friction.energy;
+    }
+}
+
 impl<'a, M: Mode> Meeting<'a, M> {
     #[inline(always)]
     pub fn new(view: &'a ContactView, [i, j]: [&'a Party; 2], here: M::Side) -> Self {
@@ -145,10 +157,7 @@ impl TaskForces {
                 let mut heat = 0.0;
                 if let Some(friction) = &mut friction {
                     friction.pair(view, [&i, &j], pair.loads);
-                    for a in 0..3 {
-                        pair.force[a] += friction.force[a];
-                    }
-                    pair.energy += friction.energy;
+                    pair.resist(friction);
                     heat = friction.heat;
                 }
                 on.add(&j, &pair.force, pair.energy, heat);
@@ -161,6 +170,30 @@ impl TaskForces {
             self.particles.push(sum);
         }
     }
+}
+
+/// The virial of what one mode does to a receiver: half of each pair's line is its side's.
+fn virial_of_mode<M: Mode>(
+    view: &ContactView,
+    i: &Party,
+    neighbours: &[u32],
+    with_friction: bool,
+) -> Virial {
+    let here = M::side(view, i);
+    let mut friction = with_friction.then(|| PairFriction::of(view, i));
+    let mut virial = Virial::default();
+    for &other in neighbours {
+        let j = view.party(other);
+        let meeting = Meeting::<M>::new(view, [i, &j], here);
+        if let Some(mut pair) = M::force(&meeting, &mut 0.0) {
+            if let Some(friction) = &mut friction {
+                friction.pair(view, [i, &j], pair.loads);
+                pair.resist(friction);
+            }
+            virial.add(&pair.force, &meeting.separation.r.map(|x| 0.5 * x));
+        }
+    }
+    virial
 }
 
 /// Sets all elements, on all threads.
@@ -225,6 +258,22 @@ macro_rules! dispatch {
                         self.add_mode::<crate::model::$Mode, FRICTION>(view, list);
                     })+
                 }
+            }
+        }
+
+        /// The virial of what contact of a class does to the receiver `i`, with friction and
+        /// damping if there are any.
+        pub(super) fn virial(
+            view: &ContactView,
+            class: ContactClass,
+            i: &Party,
+            neighbours: &[u32],
+            friction: bool,
+        ) -> Virial {
+            match class {
+                $(ContactClass::$Mode => {
+                    virial_of_mode::<crate::model::$Mode>(view, i, neighbours, friction)
+                })+
             }
         }
 

@@ -9,6 +9,7 @@ mod friction;
 use friction::SurfaceFriction;
 
 use super::friction::Law;
+use super::virial::Virial;
 use super::{ContactSums, ContactTable};
 use crate::loads::{Loads, Placed, SurfaceStep};
 use crate::model::{Body, Case, RigidSurface};
@@ -27,6 +28,8 @@ pub(super) struct Push {
     pub energy: f64,
     pub stiffness: f64,
     approach: f64,
+    /// From the surface to the particle (m).
+    arm: [f64; 3],
     /// Velocity of the surface there (m/s).
     pub ground: [f64; 3],
     /// What friction and damping turn into heat (W).
@@ -187,6 +190,16 @@ impl SurfaceForces {
         }
     }
 
+    /// Particles that surfaces act on, and the virials of that: the matter between a particle and
+    /// the surface is all its own.
+    pub(super) fn virials(&self) -> impl Iterator<Item = (usize, Virial)> {
+        self.pushes.iter().flatten().map(|push| {
+            let mut virial = Virial::default();
+            virial.add(&push.force, &push.arm);
+            (push.particle, virial)
+        })
+    }
+
     /// The particles near surfaces, chunk after chunk.
     fn find_pushes(
         &mut self,
@@ -259,8 +272,9 @@ impl View<'_> {
         let stiffness = penalty.stiffness * volume;
         let force = placed.outward(escape.way.map(|u| stiffness * u));
         let (v, surface_v) = (&self.particles.predicted_velocity[i], placed.velocity(x));
+        let normal = placed.outward(escape.foot.normal);
         let rate = dot(
-            &placed.outward(escape.foot.normal),
+            &normal,
             &[
                 v[0] - surface_v[0],
                 v[1] - surface_v[1],
@@ -275,6 +289,7 @@ impl View<'_> {
             energy: 0.5 * stiffness * escape.depth2,
             stiffness: stiffness * escape.walls,
             approach: penalty.approach(separation, rate),
+            arm: normal.map(|n| separation * n),
             ground: surface_v,
             heat: 0.0,
         })

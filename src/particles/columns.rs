@@ -88,6 +88,8 @@ pub enum Life {
 pub enum Output {
     /// In snapshots by default.
     Default,
+    /// In snapshots by default of cases that have use for it.
+    IfHeld,
     /// In snapshots if `output.fields` names it.
     OnDemand,
     /// In no snapshot.

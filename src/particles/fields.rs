@@ -328,6 +328,8 @@ particle_fields! {
     approach_speed: Scalar,               "m/s",    Scratch,  -,              OnDemand, -;
     /// Stiffness of contact, for the time step.
     contact_stiffness: Scalar,            "N/m",    Scratch,  -,              OnDemand, CONTACT;
+    /// Stress that contact forces carry, tension positive: matter bears it beside its own.
+    contact_stress: Symmetric,            "Pa",     Scratch,  -,              IfHeld,   CONTACT;
     /// Factor of the Balsara switch on artificial viscosity.
     viscosity_limiter: Scalar,            "",       Scratch,  STRESS,         OnDemand, BALSARA;
     /// Specific internal energy at the end of the step as predicted from its last rate.

@@ -8,6 +8,7 @@ mod integrate;
 mod removal;
 mod restored;
 mod setup;
+mod shown;
 mod simulation;
 mod timers;
 
