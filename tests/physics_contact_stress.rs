@@ -1,130 +1,165 @@
-//! Stress beside an interface: that of the material, and with what contact forces carry.
+//! Stress beside an interface: what contact forces carry is part of what matter bears there.
 
 mod physics_support;
 
-use physics_support::{ready, run_to, sorted_by, start};
+use physics_support::bars::interface_force;
+use physics_support::{inline, ready, run_to, run_with, sorted_by, start};
 use whipple::exact::hugoniot::{Medium, impact};
 use whipple::step::Simulation;
 
-/// Normal stress of a particle along `axis` over −`plateau` (Pa): of the material, and with that by
-/// contact.
-fn stresses(s: &Simulation, i: usize, axis: usize, plateau: f64) -> [f64; 2] {
+const FORMS: [&str; 2] = ["conventional", "corrected"];
+
+/// Normal stress along `axis` of a particle (Pa, compression positive): of the material, and with
+/// that by contact.
+fn pressing(s: &Simulation, i: usize, axis: usize) -> [f64; 2] {
     let p = &s.particles;
-    let own = p.deviatoric_stress[i][axis] - p.pressure[i];
-    [own, own + p.contact_stress[i][axis]].map(|stress| -stress / plateau)
+    let own = p.pressure[i] - p.deviatoric_stress[i][axis];
+    [own, own - p.contact_stress[i][axis]]
 }
 
-fn table(s: &mut Simulation, axis: usize, plateau: f64, layers: usize) {
+/// Means of [`pressing`] over the particles of a body in its first layers from its `near` side,
+/// within `aside` (m) of the axis.
+fn layers<const N: usize>(
+    s: &mut Simulation,
+    (body, axis, near): (u32, usize, f64),
+    aside: f64,
+) -> [[f64; 2]; N] {
     s.measure_contact_stress();
-    let dx = s.case.bodies[0].lattice.spacing;
-    for body in 0..2 {
-        let sign = if body == 0 { 1.0 } else { -1.0 };
-        let pos = |i: usize| s.particles.position[i];
-        let mean: f64 = 0.0;
-        let _ = mean;
-        let other: f64 = {
-            let o = sorted_by(s, 1 - body, |i| pos(i)[axis]);
-            let m = sorted_by(s, body, |i| pos(i)[axis]);
-            if pos(o[0])[axis] > pos(m[0])[axis] {
-                1.0
-            } else {
-                -1.0
-            }
-        };
-        let _ = sign;
-        let order = sorted_by(s, body, |i| -other * pos(i)[axis]);
-        let near: Vec<usize> = order
-            .into_iter()
-            .filter(|&i| (0..3).all(|a| a == axis || pos(i)[a].abs() < 3.0 * dx))
-            .collect();
-        let mut k = 0;
-        let mut layer = 0;
-        while layer < layers && k < near.len() {
-            let x0 = pos(near[k])[axis];
-            let mut sums = [0.0; 4];
-            let mut n = 0.0;
-            while k < near.len() && (pos(near[k])[axis] - x0).abs() < 0.3 * dx {
-                let i = near[k];
-                let [a, b] = stresses(s, i, axis, plateau);
-                let p = &s.particles;
-                let c = p.contact_stress[i];
-                let lateral = if axis == 0 { c[1] } else { c[0] };
-                let v = [
-                    a,
-                    b,
-                    -lateral / plateau,
-                    (p.pressure[i] - (c[0] + c[1] + c[2]) / 3.0) / plateau,
-                ];
-                for q in 0..4 {
-                    sums[q] += v[q];
-                }
-                n += 1.0;
-                k += 1;
-            }
-            let m = sums.map(|x| x / n);
-            println!(
-                "  body {body} layer {layer}: own {:.4} with {:.4} lateral {:.4} total p {:.4}  ({n}) x {:.4}",
-                m[0],
-                m[1],
-                m[2],
-                m[3],
-                x0 / dx
-            );
-            layer += 1;
-        }
-    }
+    let x = |i: usize| s.particles.position[i];
+    let mut order = sorted_by(s, body, |i| -near * x(i)[axis]);
+    order.retain(|&i| (0..3).all(|a| a == axis || x(i)[a].abs() < aside));
+    let row = order.len().min(
+        order
+            .iter()
+            .filter(|&&i| {
+                (x(i)[axis] - x(order[0])[axis]).abs() < 0.2 * s.case.bodies[0].lattice.spacing
+            })
+            .count(),
+    );
+    #[allow(clippy::cast_precision_loss, reason = "few particles")]
+    let mean = |k: usize, which: usize| {
+        let of = &order[k * row..(k + 1) * row];
+        of.iter().map(|&i| pressing(s, i, axis)[which]).sum::<f64>() / row as f64
+    };
+    std::array::from_fn(|k| [mean(k, 0), mean(k, 1)])
+}
+
+fn show<const N: usize>(name: &str, layers: &[[f64; 2]; N], plateau: f64) {
+    let over = |which: usize| layers.map(|layer| layer[which] / plateau);
+    println!(
+        "{name}: material {:.3?}, with contact {:.3?}",
+        over(0),
+        over(1)
+    );
 }
 
 #[test]
 fn measure_flyer() {
-    for form in ["conventional", "corrected"] {
-        for speed in [1.0, 7.0] {
+    for form in ["conventional", "corrected", "normalised"] {
+        for speed in [0.2, 1.0, 2.0, 4.0, 7.0] {
             let case = ready(
                 "flyer-plate",
                 &[
                     &format!("sph.form={form}"),
                     "spacing=\"2e-5 m\"",
                     &format!("body.flyer.velocity=[\"{speed} km/s\"]"),
-                    "run.end_time=\"1 us\"",
+                    "run.end_time=\"2 us\"",
                 ],
             );
             let medium = Medium::of(&case.materials[0]).unwrap();
             let exact = impact(&medium, &medium, speed * 1e3);
             let mut s = start(case);
-            run_to(&mut s, 0.6 * 4e-3 / exact.target.shock_speed);
-            println!("flyer {form} {speed}");
-            table(&mut s, 0, exact.pressure, 10);
+            let arrival = 4e-3 / exact.target.shock_speed;
+            for part in [0.4, 0.6, 0.8] {
+                run_to(&mut s, part * arrival);
+                show(
+                    &format!("flyer {form} {speed}"),
+                    &layers::<6>(&mut s, (0, 0, -1.0), 1.0),
+                    exact.pressure,
+                );
+            }
         }
     }
 }
 
 #[test]
 fn measure_blocks() {
-    for form in ["conventional", "corrected"] {
-        let mut s = start(ready(
-            "block-impact",
-            &[&format!("sph.form={form}"), "spacing=\"0.01 cm\""],
-        ));
-        run_to(&mut s, 0.7e-6);
-        println!("block {form}");
-        table(&mut s, 1, 0.0733e11, 10);
+    for form in ["conventional", "corrected", "normalised"] {
+        for spacing in ["0.02", "0.01"] {
+            let mut s = start(ready(
+                "block-impact",
+                &[
+                    &format!("sph.form={form}"),
+                    &format!("spacing=\"{spacing} cm\""),
+                ],
+            ));
+            for time in [0.6e-6, 0.7e-6, 0.8e-6] {
+                run_to(&mut s, time);
+                show(
+                    &format!("block {form} {spacing}"),
+                    &layers::<6>(&mut s, (1, 1, -1.0), 1e-3),
+                    0.0733e11,
+                );
+            }
+        }
     }
 }
 
 #[test]
 fn measure_bars() {
-    for form in ["conventional", "corrected"] {
+    for form in ["conventional", "corrected", "normalised"] {
         let mut s = start(ready("bar-impact", &[&format!("sph.form={form}")]));
         run_to(&mut s, 0.5e-6);
-        println!(
-            "bars {form} {:?}",
-            s.case
-                .bodies
-                .iter()
-                .map(|b| (b.lattice.spacing, b.smoothing_length / b.lattice.spacing))
-                .collect::<Vec<_>>()
+        let f = interface_force(&s);
+        show(
+            &format!("bars {form}"),
+            &layers::<6>(&mut s, (0, 0, 1.0), 1.0),
+            f,
         );
-        let f = physics_support::bars::interface_force(&s);
-        table(&mut s, 0, f, 10);
+        show(
+            &format!("bars {form}"),
+            &layers::<6>(&mut s, (1, 0, -1.0), 1.0),
+            f,
+        );
+    }
+}
+
+/// Two bodies of two particles each, all of which touch: what they bear, summed over a body, is
+/// what accelerates its matter times its distance from the face, to rounding.
+#[test]
+fn what_a_body_bears_is_the_traction_on_it() {
+    for form in FORMS {
+        for contact in ["overlap", "potential"] {
+            let mut s = start(inline(&format!(
+                "dimension = 1\nspacing = \"1 mm\"\n[run]\nend_time = \"1 us\"\n\
+                 [sph]\nform = \"{form}\"\nalpha = 0\nbeta = 0\n[contact]\nmode = \"{contact}\"\n\
+                 [material.steel]\nlibrary = \"steel-bar\"\n\
+                 [[body]]\nname = \"left\"\nmaterial = \"steel\"\nvelocity = [\"50 m/s\"]\n\
+                 shape.box = {{ lower = [\"-2 mm\"], upper = [0] }}\n\
+                 [[body]]\nname = \"right\"\nmaterial = \"steel\"\nvelocity = [\"-50 m/s\"]\n\
+                 shape.box = {{ lower = [0], upper = [\"2 mm\"] }}\n"
+            )));
+            let mut checked = 0;
+            run_with(&mut s, 0.3e-6, |_| {});
+            for _ in 0..1 {
+                s.measure_contact_stress();
+                let p = &s.particles;
+                assert!(p.contact_acceleration.iter().all(|a| a[0] != 0.0));
+                for body in 0..2 {
+                    let (mut borne, mut pushed, mut size) = (0.0, 0.0, 0.0);
+                    for i in (0..p.owned()).filter(|&i| p.body[i] == body) {
+                        let volume = p.mass[i] / p.density[i];
+                        borne += volume * pressing(&s, i, 0)[1];
+                        let a = p.acceleration[i][0] + p.contact_acceleration[i][0];
+                        pushed += p.position[i][0] * p.mass[i] * a;
+                        size += (p.position[i][0] * p.mass[i] * p.contact_acceleration[i][0]).abs();
+                    }
+                    println!("{form} {contact}: {borne:.6e} {pushed:.6e} {size:.3e} J");
+                    assert!((borne - pushed).abs() < 1e-12 * size);
+                    checked += 1;
+                }
+            }
+            assert!(checked == 2);
+        }
     }
 }

@@ -8,7 +8,7 @@ use super::force::{Receiver, TaskForces};
 use super::pair::{Listed, Pair};
 use super::resistance::{NormalLoad, PairFriction};
 use super::view::{ContactView, Party, Separation};
-use super::virial::Virial;
+use super::virial::Borne;
 use crate::model::{ContactClass, contact_modes};
 use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Lists, PairList};
 use crate::particles::{GRAIN, ParticleStore};
@@ -172,28 +172,30 @@ impl TaskForces {
     }
 }
 
-/// The virial of what one mode does to a receiver: half of each pair's line is its side's.
-fn virial_of_mode<M: Mode>(
+/// What forces of one mode carry through a receiver: half of each pair's line is its side's.
+fn borne_of_mode<M: Mode>(
     view: &ContactView,
     i: &Party,
     neighbours: &[u32],
     with_friction: bool,
-) -> Virial {
+) -> Borne {
     let here = M::side(view, i);
     let mut friction = with_friction.then(|| PairFriction::of(view, i));
-    let mut virial = Virial::default();
+    let mut borne = Borne::default();
     for &other in neighbours {
         let j = view.party(other);
         let meeting = Meeting::<M>::new(view, [i, &j], here);
         if let Some(mut pair) = M::force(&meeting, &mut 0.0) {
+            let press = pair.force;
             if let Some(friction) = &mut friction {
                 friction.pair(view, [i, &j], pair.loads);
                 pair.resist(friction);
             }
-            virial.add(&pair.force, &meeting.separation.r.map(|x| 0.5 * x));
+            let arm = meeting.separation.r.map(|x| 0.5 * x);
+            borne.add(&pair.force, &press, &arm);
         }
     }
-    virial
+    borne
 }
 
 /// Sets all elements, on all threads.
@@ -261,18 +263,18 @@ macro_rules! dispatch {
             }
         }
 
-        /// The virial of what contact of a class does to the receiver `i`, with friction and
-        /// damping if there are any.
-        pub(super) fn virial(
+        /// What forces of a class carry through the receiver `i`, with friction and damping if
+        /// there are any.
+        pub(super) fn borne_of(
             view: &ContactView,
             class: ContactClass,
             i: &Party,
             neighbours: &[u32],
             friction: bool,
-        ) -> Virial {
+        ) -> Borne {
             match class {
                 $(ContactClass::$Mode => {
-                    virial_of_mode::<crate::model::$Mode>(view, i, neighbours, friction)
+                    borne_of_mode::<crate::model::$Mode>(view, i, neighbours, friction)
                 })+
             }
         }

@@ -9,7 +9,7 @@ mod friction;
 use friction::SurfaceFriction;
 
 use super::friction::Law;
-use super::virial::Virial;
+use super::virial::Borne;
 use super::{ContactSums, ContactTable};
 use crate::loads::{Loads, Placed, SurfaceStep};
 use crate::model::{Body, Case, RigidSurface};
@@ -28,8 +28,9 @@ pub(super) struct Push {
     pub energy: f64,
     pub stiffness: f64,
     approach: f64,
-    /// From the surface to the particle (m).
-    arm: [f64; 3],
+    /// Unit normal of the surface there, and the distance from it (m).
+    normal: [f64; 3],
+    gap: f64,
     /// Velocity of the surface there (m/s).
     pub ground: [f64; 3],
     /// What friction and damping turn into heat (W).
@@ -190,14 +191,17 @@ impl SurfaceForces {
         }
     }
 
-    /// Particles that surfaces act on, and the virials of that: the matter between a particle and
-    /// the surface is all its own.
-    pub(super) fn virials(&self) -> impl Iterator<Item = (usize, Virial)> {
-        self.pushes.iter().flatten().map(|push| {
-            let mut virial = Virial::default();
-            virial.add(&push.force, &push.arm);
-            (push.particle, virial)
-        })
+    /// Adds what the forces of the last step carry through each particle: the matter between it and
+    /// a surface is all its own.
+    pub(super) fn bear(&self, borne: &mut [Borne]) {
+        for push in self.pushes.iter().flatten() {
+            let press = dot(&push.force, &push.normal);
+            borne[push.particle].add(
+                &push.force,
+                &push.normal.map(|n| press * n),
+                &push.normal.map(|n| push.gap * n),
+            );
+        }
     }
 
     /// The particles near surfaces, chunk after chunk.
@@ -289,7 +293,8 @@ impl View<'_> {
             energy: 0.5 * stiffness * escape.depth2,
             stiffness: stiffness * escape.walls,
             approach: penalty.approach(separation, rate),
-            arm: normal.map(|n| separation * n),
+            normal,
+            gap: separation,
             ground: surface_v,
             heat: 0.0,
         })

@@ -1,90 +1,62 @@
-//! The stress of contact forces: the virial of a particle's pairs, for what snapshots show.
-//!
-//! A pair force carries momentum along the line between its two particles. SPH stresses hold none
-//! of that, so beside an interface they are less than the traction; what the matter bears there is
-//! both together (theory page "Contact").
-
-use std::mem;
+//! The virial of contact forces, for what snapshots show (theory page "Contact").
 
 use rayon::prelude::*;
 
-use super::mode::{fill, virial};
+use super::mode::borne_of;
 use super::phase::Contact;
 use super::view::ContactView;
 use crate::model::ContactClass;
 use crate::neighbours::{CHUNKS_AT_ONCE, Lists};
+use crate::numerics::virial::Virial;
 use crate::particles::{ParticleStore, Scatter};
 
-/// Sum of `−sym(f ⊗ r)` over forces (J): the stress that they carry times the volume that bears
-/// it, tension positive.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Virial([f64; 6]);
+/// What contact forces carry through the matter of a particle.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Borne {
+    /// Of all forces, over half of the line of each pair and all of that to a rigid surface.
+    pub virial: Virial,
+    /// The sum of what presses, without friction of pairs (N); zero without contact.
+    pub press: [f64; 3],
+}
 
-impl Virial {
-    /// Adds a force (N) that acts on a particle over `arm` (m), which leads to it from where the
-    /// matter that carries the force begins.
+impl Borne {
+    /// Adds a force and the part of it that presses (N), over an arm (m).
     #[inline(always)]
-    pub fn add(&mut self, force: &[f64; 3], arm: &[f64; 3]) {
-        for (sum, [a, b]) in self.0.iter_mut().zip(COMPONENTS) {
-            *sum -= 0.5 * (force[a] * arm[b] + force[b] * arm[a]);
+    pub(super) fn add(&mut self, force: &[f64; 3], press: &[f64; 3], arm: &[f64; 3]) {
+        self.virial.add(force, arm);
+        for a in 0..3 {
+            self.press[a] += press[a];
         }
     }
 
-    /// Adds its stress (Pa) in a volume (m^d) to another.
-    fn spread(&self, volume: f64, stress: &mut [f64; 6]) {
-        for (sum, part) in stress.iter_mut().zip(self.0) {
-            *sum += part / volume;
+    fn join(&mut self, other: &Self) {
+        self.virial.join(&other.virial);
+        for a in 0..3 {
+            self.press[a] += other.press[a];
         }
     }
 }
 
-/// xx, yy, zz, xy, xz, yz.
-const COMPONENTS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [0, 2], [1, 2]];
-
 impl Contact {
-    /// Writes into `contact_stress` what the contact forces of the last step, of `dt` (s), carry:
-    /// `σ_i = −1/V_i Σ_j ½ sym(f_ij ⊗ r_ij)` with the volume that the particle has now; of rigid
-    /// surfaces the whole arm. Lists and halo must still be those of the step.
-    pub fn measure_stress(&self, particles: &mut ParticleStore, lists: &Lists, dt: f64) {
-        if !self.table.is_active() {
-            return;
-        }
-        let mut stress = mem::take(&mut particles.contact_stress);
-        fill(&mut stress, [0.0; 6]);
-        let volume = |i: usize| particles.mass[i] / particles.density[i];
+    /// What the contact forces of the last step, of `dt` (s), carry through each owned particle.
+    /// Lists and halo must still be those of that step.
+    pub(crate) fn borne(&self, particles: &ParticleStore, lists: &Lists, dt: f64) -> Vec<Borne> {
+        let mut borne = vec![Borne::default(); particles.owned()];
         let view = ContactView::new(particles, lists, &self.table, dt);
-        let slots = Scatter::new(&mut stress);
+        let slots = Scatter::new(&mut borne);
         let friction = self.table.has_friction();
         let chunks = lists.foreign().par_iter().with_max_len(CHUNKS_AT_ONCE);
         chunks.for_each(|chunk| {
             for &class in ContactClass::ALL {
                 for (index, neighbours) in chunk.of(class).iter() {
                     let i = view.party(index);
-                    let virial = virial(&view, class, &i, neighbours, friction);
+                    let more = borne_of(&view, class, &i, neighbours, friction);
                     // SAFETY: a particle is receiver in one chunk.
-                    virial.spread(volume(i.base), unsafe { slots.slot(i.base) });
+                    unsafe { slots.slot(i.base) }.join(&more);
                 }
             }
         });
-        for (i, virial) in self.surfaces.virials() {
-            virial.spread(volume(i), &mut stress[i]);
-        }
-        particles.contact_stress = stress;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A push is compression along its arm, a drag across it shear.
-    #[test]
-    fn pushes_are_compression() {
-        let mut virial = Virial::default();
-        virial.add(&[3.0, 0.0, 0.0], &[0.5, 0.0, 0.0]);
-        virial.add(&[0.0, 2.0, 0.0], &[0.0, 0.0, 0.25]);
-        let mut stress = [0.0; 6];
-        virial.spread(0.5, &mut stress);
-        assert_eq!(stress, [-3.0, 0.0, 0.0, 0.0, 0.0, -0.5]);
+        self.surfaces.bear(&mut borne);
+        borne
     }
 }
