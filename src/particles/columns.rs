@@ -110,6 +110,8 @@ bitflags! {
         const FRICTION = 1 << 3;
         /// When parts are told.
         const FRAGMENTS = 1 << 4;
+        /// Before a snapshot.
+        const SHOWN = 1 << 5;
         /// Whatever is needed before forces of stress and contact, in one message.
         const FORCES = Self::STRESS.bits() | Self::CONTACT.bits();
     }

@@ -329,7 +329,7 @@ particle_fields! {
     /// Stiffness of contact, for the time step.
     contact_stiffness: Scalar,            "N/m",    Scratch,  -,              OnDemand, CONTACT;
     /// Stress that contact forces carry, tension positive: matter bears it beside its own.
-    contact_stress: Symmetric,            "Pa",     Scratch,  -,              IfHeld,   CONTACT;
+    contact_stress: Symmetric,            "Pa",     Scratch,  SHOWN,           IfHeld,   CONTACT;
     /// Factor of the Balsara switch on artificial viscosity.
     viscosity_limiter: Scalar,            "",       Scratch,  STRESS,         OnDemand, BALSARA;
     /// Specific internal energy at the end of the step as predicted from its last rate.

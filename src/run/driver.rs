@@ -266,7 +266,7 @@ impl<'a> Driver<'a> {
         let begun = Instant::now();
         let (quantities, rows) = (&self.quantities, &mut self.rows);
         let path = self.folder.snapshot(self.simulation.state.step);
-        self.simulation.measure_contact_stress();
+        self.simulation.measure_contact_stress(comm);
         self.simulation.with_frozen(|simulation| {
             let meta = snapshot::Meta {
                 case: &simulation.case,

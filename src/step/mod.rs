@@ -19,5 +19,6 @@ pub use crate::diagnose::{
 pub use candidate::StepControl;
 pub use error::{SetupError, StepError};
 pub use fields::bytes_of_options;
+pub use shown::Carried;
 pub use simulation::Simulation;
 pub use timers::{Phase, Timers};

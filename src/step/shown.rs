@@ -1,58 +1,128 @@
 //! What snapshots show and no step needs.
 
-use std::mem;
-
 use rayon::prelude::*;
 
 use super::simulation::Simulation;
-use crate::neighbours::CHUNKS_AT_ONCE;
-use crate::numerics::vector::norm;
-use crate::numerics::virial::Virial;
-use crate::particles::Scatter;
+use crate::comm::Comm;
+use crate::domain::Mirrors;
+use crate::neighbours::{CHUNKS_AT_ONCE, Lists};
+use crate::numerics::kernel::Kernel;
+use crate::numerics::vector::{minus, norm};
+use crate::particles::{HaloPhase, ParticleStore, Scatter};
 use crate::sph::{StressForces, stress};
 
+/// What the pair forces of a particle carry.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Carried {
+    /// Virial of all its pair forces, by stress and by contact, over its volume (Pa, tension
+    /// positive).
+    pub stress: [f64; 6],
+    /// The direction in which contact presses on it; none where it does not.
+    pub normal: Option<[f64; 3]>,
+}
+
 impl Simulation {
-    /// Writes into `contact_stress` what the traction across a particle in contact is more than
-    /// that of its own stress. Right after a step, before the particles change.
-    ///
-    /// The traction is that of the virial of all its pair forces, by stress and by contact, on the
-    /// plane that contact presses on (theory page "Contact").
-    pub fn measure_contact_stress(&mut self) {
-        if !self.contact.table.is_active() {
-            return;
-        }
-        let mut shown = mem::take(&mut self.particles.contact_stress);
-        shown.fill([0.0; 6]);
+    /// What the pair forces of each owned particle in contact carry, and zeros of all others.
+    /// Right after a step, before the particles change.
+    #[must_use]
+    pub fn carried_in_contact(&self) -> Vec<Carried> {
         let (particles, lists) = (&self.particles, &self.lists);
         let borne = self.contact.borne(particles, lists, self.state.last_dt);
         let forces = StressForces::new(&self.case, particles, lists);
+        let mut carried = vec![Carried::default(); borne.len()];
+        let slots = Scatter::new(&mut carried);
+        for_each_receiver(lists, |place, neighbours| {
+            let i = lists.images()[place as usize].base();
+            let press = norm(&borne[i].press);
+            if press == 0.0 {
+                return;
+            }
+            let mut virial = forces.virial(place, neighbours);
+            virial.join(&borne[i].virial);
+            let volume = particles.mass[i] / particles.density[i];
+            // SAFETY: a particle is receiver once.
+            *unsafe { slots.slot(i) } = Carried {
+                stress: virial.0.map(|v| v / volume),
+                normal: Some(borne[i].press.map(|f| f / press)),
+            };
+        });
+        carried
+    }
+
+    /// Writes into `contact_stress` what the traction across a particle in contact is more than
+    /// that of its own stress. Right after a step, before the particles change. Collective.
+    ///
+    /// The traction is that of [`Self::carried_in_contact`], as the kernel averages it over the
+    /// particles of the body that are in contact, on the plane that contact presses on (theory page
+    /// "Contact").
+    pub fn measure_contact_stress(&mut self, comm: &Comm) {
+        if !self.contact.table.is_active() {
+            return;
+        }
+        let carried = self.carried_in_contact();
+        for (field, of) in self.particles.contact_stress.iter_mut().zip(&carried) {
+            *field = of.stress;
+        }
+        self.halo
+            .exchange(comm, &mut self.particles, HaloPhase::SHOWN);
+        let mut shown = vec![[0.0; 6]; carried.len()];
         let slots = Scatter::new(&mut shown);
-        let chunks = lists.chunks().par_iter().with_max_len(CHUNKS_AT_ONCE);
-        chunks.for_each(|chunk| {
-            for (cluster, neighbours, _) in chunk.iter() {
-                for &place in &cluster.receivers[..cluster.lanes] {
-                    let i = lists.images()[place as usize].base();
-                    let press = norm(&borne[i].press);
-                    if press == 0.0 {
-                        continue;
-                    }
-                    let mut virial = forces.virial(place, neighbours);
-                    virial.join(&borne[i].virial);
-                    let normal = borne[i].press.map(|f| f / press);
-                    let volume = particles.mass[i] / particles.density[i];
-                    let more = excess(&virial, volume, &stress(particles, i));
-                    // SAFETY: a particle is receiver in one chunk.
-                    *unsafe { slots.slot(i) } = on_plane(&more, &normal);
-                }
+        let (particles, lists) = (&self.particles, &self.lists);
+        let kernel = Kernel::new(self.case.dimension);
+        for_each_receiver(lists, |place, neighbours| {
+            let i = lists.images()[place as usize].base();
+            if let Some(normal) = carried[i].normal {
+                let mean = mean_carried(&kernel, particles, lists, (place, neighbours));
+                let own = stress(particles, i);
+                let more = std::array::from_fn(|k| mean[k] - own[k]);
+                // SAFETY: a particle is receiver once.
+                *unsafe { slots.slot(i) } = on_plane(&more, &normal);
             }
         });
-        self.particles.contact_stress = shown;
+        self.particles.contact_stress[..shown.len()].copy_from_slice(&shown);
     }
 }
 
-/// The stress of a virial in a volume (m^d) less another (Pa).
-fn excess(virial: &Virial, volume: f64, stress: &[f64; 6]) -> [f64; 6] {
-    std::array::from_fn(|k| virial.0[k] / volume - stress[k])
+/// Mean over a particle in contact and its neighbours that are in contact too,
+/// `Σ V_j W_ij S_j / Σ V_j W_ij`, of what stands in `contact_stress`.
+fn mean_carried(
+    kernel: &Kernel,
+    particles: &ParticleStore,
+    lists: &Lists,
+    (place, neighbours): (u32, &[u32]),
+) -> [f64; 6] {
+    let (images, motion) = (lists.images(), lists.motion());
+    let h = |place: u32| particles.smoothing_length[images[place as usize].base()];
+    let (mut sum, mut weights) = ([0.0; 6], 0.0);
+    for &other in neighbours {
+        let (image, record) = (images[other as usize], &motion[other as usize]);
+        let carried = &particles.contact_stress[image.base()];
+        if *carried == [0.0; 6] {
+            continue;
+        }
+        let distance = norm(&minus(&motion[place as usize].position, &record.position));
+        let weight = record.volume * kernel.value(distance, 0.5 * (h(place) + h(other)));
+        let carried = Mirrors::reflect_symmetric(carried, image.code());
+        weights += weight;
+        for k in 0..6 {
+            sum[k] += weight * carried[k];
+        }
+    }
+    let weights = weights.max(f64::MIN_POSITIVE);
+    sum.map(|s| s / weights)
+}
+
+/// Calls `work` with the place of each owned particle among the images and its neighbours in its
+/// own body, itself among them.
+fn for_each_receiver(lists: &Lists, work: impl Fn(u32, &[u32]) + Sync) {
+    let chunks = lists.chunks().par_iter().with_max_len(CHUNKS_AT_ONCE);
+    chunks.for_each(|chunk| {
+        for (cluster, neighbours, _) in chunk.iter() {
+            for &place in &cluster.receivers[..cluster.lanes] {
+                work(place, neighbours);
+            }
+        }
+    });
 }
 
 /// The part of a symmetric tensor that acts on the plane of a unit normal: with the same traction
