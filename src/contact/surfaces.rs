@@ -191,17 +191,19 @@ impl SurfaceForces {
         }
     }
 
-    /// Adds what the forces of the last step carry through each particle: the matter between it and
-    /// a surface is all its own.
-    pub(super) fn bear(&self, borne: &mut [Borne]) {
-        for push in self.pushes.iter().flatten() {
+    /// What the forces of the last step carry through particles, with their indices: the matter
+    /// between a particle and a surface is all its own.
+    pub(super) fn borne(&self) -> impl Iterator<Item = (usize, Borne)> {
+        self.pushes.iter().flatten().map(|push| {
             let press = dot(&push.force, &push.normal);
-            borne[push.particle].add(
+            let mut borne = Borne::default();
+            borne.add(
                 &push.force,
                 &push.normal.map(|n| press * n),
                 &push.normal.map(|n| push.gap * n),
             );
-        }
+            (push.particle, borne)
+        })
     }
 
     /// The particles near surfaces, chunk after chunk.

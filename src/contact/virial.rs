@@ -8,7 +8,7 @@ use super::view::ContactView;
 use crate::model::ContactClass;
 use crate::neighbours::{CHUNKS_AT_ONCE, Lists};
 use crate::numerics::virial::Virial;
-use crate::particles::{ParticleStore, Scatter};
+use crate::particles::ParticleStore;
 
 /// What contact forces carry through the matter of a particle.
 #[derive(Debug, Clone, Copy, Default)]
@@ -38,25 +38,40 @@ impl Borne {
 }
 
 impl Contact {
-    /// What the contact forces of the last step, of `dt` (s), carry through each owned particle.
-    /// Lists and halo must still be those of that step.
-    pub(crate) fn borne(&self, particles: &ParticleStore, lists: &Lists, dt: f64) -> Vec<Borne> {
-        let mut borne = vec![Borne::default(); particles.owned()];
+    /// What the contact forces of the last step, of `dt` (s), carry through owned particles, with
+    /// their indices, ascending; none of those that nothing presses on. Lists and halo must still
+    /// be those of that step.
+    pub(crate) fn borne(
+        &self,
+        particles: &ParticleStore,
+        lists: &Lists,
+        dt: f64,
+    ) -> Vec<(usize, Borne)> {
         let view = ContactView::new(particles, lists, &self.table, dt);
-        let slots = Scatter::new(&mut borne);
         let friction = self.table.has_friction();
         let chunks = lists.foreign().par_iter().with_max_len(CHUNKS_AT_ONCE);
-        chunks.for_each(|chunk| {
-            for &class in ContactClass::ALL {
-                for (index, neighbours) in chunk.of(class).iter() {
-                    let i = view.party(index);
-                    let more = borne_of(&view, class, &i, neighbours, friction);
-                    // SAFETY: a particle is receiver in one chunk.
-                    unsafe { slots.slot(i.base) }.join(&more);
+        let mut borne: Vec<(usize, Borne)> = chunks
+            .flat_map_iter(|chunk| {
+                let mut found = Vec::new();
+                for &class in ContactClass::ALL {
+                    found.extend(chunk.of(class).iter().map(|(index, neighbours)| {
+                        let i = view.party(index);
+                        (i.base, borne_of(&view, class, &i, neighbours, friction))
+                    }));
                 }
+                found
+            })
+            .collect();
+        borne.extend(self.surfaces.borne());
+        borne.sort_by_key(|(i, _)| *i);
+        borne.dedup_by(|(next, more), (i, sum)| {
+            let same = next == i;
+            if same {
+                sum.join(more);
             }
+            same
         });
-        self.surfaces.bear(&mut borne);
+        borne.retain(|(_, borne)| borne.press != [0.0; 3]);
         borne
     }
 }

@@ -36,7 +36,13 @@ pub fn write(
     file.text("/what", what)?;
     file.text("/input", &case.resolved)?;
     let (particle, neighbours) = about.members.split_at(1);
-    write_fields(&file, "/particle", particles, particle, FieldInfo::is_of_steps)?;
+    write_fields(
+        &file,
+        "/particle",
+        particles,
+        particle,
+        FieldInfo::is_of_steps,
+    )?;
     write_fields(
         &file,
         "/neighbours",

@@ -8,45 +8,42 @@ use crate::domain::Mirrors;
 use crate::neighbours::{CHUNKS_AT_ONCE, Lists};
 use crate::numerics::kernel::Kernel;
 use crate::numerics::vector::{minus, norm};
-use crate::particles::{HaloPhase, ParticleStore, Scatter};
+use crate::particles::{HaloPhase, ParticleStore};
 use crate::sph::{StressForces, stress};
 
-/// What the pair forces of a particle carry.
-#[derive(Debug, Clone, Copy, Default)]
+/// What the pair forces of a particle in contact carry.
+#[derive(Debug, Clone, Copy)]
 pub struct Carried {
+    /// Index of the particle.
+    pub particle: usize,
     /// Virial of all its pair forces, by stress and by contact, over its volume (Pa, tension
     /// positive).
     pub stress: [f64; 6],
-    /// The direction in which contact presses on it; none where it does not.
-    pub normal: Option<[f64; 3]>,
+    /// The direction in which contact presses on it.
+    pub normal: [f64; 3],
 }
 
 impl Simulation {
-    /// What the pair forces of each owned particle in contact carry, and zeros of all others.
-    /// Right after a step, before the particles change.
+    /// What the pair forces of each owned particle in contact carry. Right after a step, before the
+    /// particles change.
     #[must_use]
     pub fn carried_in_contact(&self) -> Vec<Carried> {
         let (particles, lists) = (&self.particles, &self.lists);
         let borne = self.contact.borne(particles, lists, self.state.last_dt);
         let forces = StressForces::new(&self.case, particles, lists);
-        let mut carried = vec![Carried::default(); borne.len()];
-        let slots = Scatter::new(&mut carried);
-        for_each_receiver(lists, |place, neighbours| {
-            let i = lists.images()[place as usize].base();
-            let press = norm(&borne[i].press);
-            if press == 0.0 {
-                return;
-            }
+        of_receivers(lists, |i, place, neighbours| {
+            let at = borne.binary_search_by_key(&i, |(i, _)| *i).ok()?;
+            let borne = &borne[at].1;
             let mut virial = forces.virial(place, neighbours);
-            virial.join(&borne[i].virial);
+            virial.join(&borne.virial);
             let volume = particles.mass[i] / particles.density[i];
-            // SAFETY: a particle is receiver once.
-            *unsafe { slots.slot(i) } = Carried {
+            let press = norm(&borne.press);
+            Some(Carried {
+                particle: i,
                 stress: virial.0.map(|v| v / volume),
-                normal: Some(borne[i].press.map(|f| f / press)),
-            };
-        });
-        carried
+                normal: borne.press.map(|f| f / press),
+            })
+        })
     }
 
     /// Writes into `contact_stress` what the traction across a particle in contact is more than
@@ -59,27 +56,26 @@ impl Simulation {
         if !self.contact.table.is_active() {
             return;
         }
-        let carried = self.carried_in_contact();
-        for (field, of) in self.particles.contact_stress.iter_mut().zip(&carried) {
-            *field = of.stress;
+        let mut carried = self.carried_in_contact();
+        carried.retain(|of| of.stress != [0.0; 6]);
+        let field = &mut self.particles.contact_stress;
+        field.fill([0.0; 6]);
+        for of in &carried {
+            field[of.particle] = of.stress;
         }
         self.halo
             .exchange(comm, &mut self.particles, HaloPhase::SHOWN);
-        let mut shown = vec![[0.0; 6]; carried.len()];
-        let slots = Scatter::new(&mut shown);
         let (particles, lists) = (&self.particles, &self.lists);
         let kernel = Kernel::new(self.case.dimension);
-        for_each_receiver(lists, |place, neighbours| {
-            let i = lists.images()[place as usize].base();
-            if let Some(normal) = carried[i].normal {
-                let mean = mean_carried(&kernel, particles, lists, (place, neighbours));
-                let own = stress(particles, i);
-                let more = std::array::from_fn(|k| mean[k] - own[k]);
-                // SAFETY: a particle is receiver once.
-                *unsafe { slots.slot(i) } = on_plane(&more, &normal);
-            }
+        let means = of_receivers(lists, |i, place, neighbours| {
+            let is_there = particles.contact_stress[i] != [0.0; 6];
+            is_there.then(|| mean_carried(&kernel, particles, lists, (place, neighbours)))
         });
-        self.particles.contact_stress[..shown.len()].copy_from_slice(&shown);
+        for (of, mean) in carried.iter().zip(means) {
+            let own = stress(&self.particles, of.particle);
+            let more = std::array::from_fn(|k| mean[k] - own[k]);
+            self.particles.contact_stress[of.particle] = on_plane(&more, &of.normal);
+        }
     }
 }
 
@@ -112,17 +108,24 @@ fn mean_carried(
     sum.map(|s| s / weights)
 }
 
-/// Calls `work` with the place of each owned particle among the images and its neighbours in its
-/// own body, itself among them.
-fn for_each_receiver(lists: &Lists, work: impl Fn(u32, &[u32]) + Sync) {
+/// What `work` finds of owned particles, given the index of each, its place among the images and
+/// its neighbours in its own body, itself among them; in the order of the lists.
+fn of_receivers<T: Send>(
+    lists: &Lists,
+    work: impl Fn(usize, u32, &[u32]) -> Option<T> + Sync,
+) -> Vec<T> {
     let chunks = lists.chunks().par_iter().with_max_len(CHUNKS_AT_ONCE);
-    chunks.for_each(|chunk| {
+    let found = chunks.flat_map_iter(|chunk| {
+        let mut found = Vec::new();
         for (cluster, neighbours, _) in chunk.iter() {
             for &place in &cluster.receivers[..cluster.lanes] {
-                work(place, neighbours);
+                let i = lists.images()[place as usize].base();
+                found.extend(work(i, place, neighbours));
             }
         }
+        found
     });
+    found.collect()
 }
 
 /// The part of a symmetric tensor that acts on the plane of a unit normal: with the same traction
