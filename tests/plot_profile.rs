@@ -125,7 +125,7 @@ fn stress_has_that_by_contact() {
             let mut request = request(&format!("{field}.{component}"));
             request.exact = false;
             let profiles = Profiles::new(&[source(&run, 1)], &request).unwrap();
-            let curves = profiles.chart().curves;
+            let curves = &profiles.chart().curves;
             let values = curves.iter().flat_map(|curve| &curve.points);
             values.map(|point| point[1]).collect::<Vec<_>>()
         };

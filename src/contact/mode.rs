@@ -4,11 +4,10 @@
 use rayon::prelude::*;
 
 use super::ContactTable;
-use super::force::{Receiver, TaskForces};
+use super::force::{Borne, Receiver, TaskForces};
 use super::pair::{Listed, Pair};
 use super::resistance::{NormalLoad, PairFriction};
 use super::view::{ContactView, Party, Separation};
-use super::virial::Borne;
 use crate::model::{ContactClass, contact_modes};
 use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Lists, PairList};
 use crate::particles::{GRAIN, ParticleStore};

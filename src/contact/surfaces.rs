@@ -8,8 +8,8 @@ mod friction;
 
 use friction::SurfaceFriction;
 
+use super::force::Borne;
 use super::friction::Law;
-use super::virial::Borne;
 use super::{ContactSums, ContactTable};
 use crate::loads::{Loads, Placed, SurfaceStep};
 use crate::model::{Body, Case, RigidSurface};

@@ -2,40 +2,13 @@
 
 use rayon::prelude::*;
 
+use super::force::Borne;
 use super::mode::borne_of;
 use super::phase::Contact;
 use super::view::ContactView;
 use crate::model::ContactClass;
 use crate::neighbours::{CHUNKS_AT_ONCE, Lists};
-use crate::numerics::virial::Virial;
 use crate::particles::ParticleStore;
-
-/// What contact forces carry through the matter of a particle.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Borne {
-    /// Of all forces, over half of the line of each pair and all of that to a rigid surface.
-    pub virial: Virial,
-    /// The sum of what presses, without friction of pairs (N); zero without contact.
-    pub press: [f64; 3],
-}
-
-impl Borne {
-    /// Adds a force and the part of it that presses (N), over an arm (m).
-    #[inline(always)]
-    pub(super) fn add(&mut self, force: &[f64; 3], press: &[f64; 3], arm: &[f64; 3]) {
-        self.virial.add(force, arm);
-        for a in 0..3 {
-            self.press[a] += press[a];
-        }
-    }
-
-    fn join(&mut self, other: &Self) {
-        self.virial.join(&other.virial);
-        for a in 0..3 {
-            self.press[a] += other.press[a];
-        }
-    }
-}
 
 impl Contact {
     /// What the contact forces of the last step, of `dt` (s), carry through owned particles, with
