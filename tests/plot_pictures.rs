@@ -233,6 +233,7 @@ fn a_snapshot_file_gives_its_fields() {
     assert!(n > 45_000);
     let names = [
         "body",
+        "contact_stress",
         "density",
         "deviatoric_stress",
         "id",

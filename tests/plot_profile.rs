@@ -115,6 +115,28 @@ fn jumps(points: &[[f64; 2]]) -> Vec<[f64; 3]> {
     pairs.map(|p| [p[0][0], p[0][1], p[1][1]]).collect()
 }
 
+/// What contact forces carry is part of the stress, and not of that of the material.
+#[test]
+fn stress_has_that_by_contact() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = bars(folder.path(), "bars", BARS, &[0.5]);
+    for (component, by_contact) in [("xx", -3e7), ("yy", 0.0), ("xy", 1e7)] {
+        let values = |field: &str| {
+            let mut request = request(&format!("{field}.{component}"));
+            request.exact = false;
+            let profiles = Profiles::new(&[source(&run, 1)], &request).unwrap();
+            let curves = &profiles.chart().curves;
+            let values = curves.iter().flat_map(|curve| &curve.points);
+            values.map(|point| point[1]).collect::<Vec<_>>()
+        };
+        let (all, own) = (values("stress"), values("material_stress"));
+        assert_eq!((all.len(), own.len()), (80, 80));
+        for (all, own) in all.iter().zip(own) {
+            assert!((all - own - by_contact).abs() < 1e-3);
+        }
+    }
+}
+
 #[test]
 fn dots_are_the_particles_and_the_line_the_exact_answer() {
     let folder = tempfile::tempdir().unwrap();

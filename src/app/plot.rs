@@ -126,8 +126,8 @@ pub struct PlotArgs {
     ])]
     pub history: bool,
 
-    /// Draw a field along a line instead: FIELD or FIELD.COMPONENT, as for --field; stress.xx … are
-    /// made from pressure and deviatoric stress
+    /// Draw a field along a line instead: FIELD or FIELD.COMPONENT, as for --field; stress.xx … is
+    /// all that matter bears, that by contact too, `material_stress.xx` … without
     #[arg(long, value_name = "FIELD", group = "line", conflicts_with_all = [
         "field", "section", "drawn_as", "no_mirror", "panels", "history",
     ])]

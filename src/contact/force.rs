@@ -2,6 +2,7 @@
 
 use super::pair::Pair;
 use super::view::{Party, Separation};
+use crate::numerics::virial::Virial;
 
 /// What contact of one mode does to one particle.
 #[derive(Debug, Clone, Copy)]
@@ -45,6 +46,33 @@ pub struct BodyForce {
     pub closest: f64,
     /// Index of that particle in the store.
     pub nearest: usize,
+}
+
+/// What contact forces carry through the matter of a particle.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Borne {
+    /// Of all forces, over half of the line of each pair and all of that to a rigid surface.
+    pub virial: Virial,
+    /// The sum of what presses, without friction of pairs (N); zero without contact.
+    pub press: [f64; 3],
+}
+
+impl Borne {
+    /// Adds a force and the part of it that presses (N), over an arm (m).
+    #[inline(always)]
+    pub fn add(&mut self, force: &[f64; 3], press: &[f64; 3], arm: &[f64; 3]) {
+        self.virial.add(force, arm);
+        for a in 0..3 {
+            self.press[a] += press[a];
+        }
+    }
+
+    pub fn join(&mut self, other: &Self) {
+        self.virial.join(&other.virial);
+        for a in 0..3 {
+            self.press[a] += other.press[a];
+        }
+    }
 }
 
 /// What contact does to the particles of one task, kept from step to step.

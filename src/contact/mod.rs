@@ -23,6 +23,7 @@ mod surfaces;
 mod table;
 mod task;
 mod view;
+mod virial;
 
 pub use connectivity::Connectivity;
 pub use force::{BodyForce, ContactForce, TaskForces};

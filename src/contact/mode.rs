@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::ContactTable;
-use super::force::{Receiver, TaskForces};
+use super::force::{Borne, Receiver, TaskForces};
 use super::pair::{Listed, Pair};
 use super::resistance::{NormalLoad, PairFriction};
 use super::view::{ContactView, Party, Separation};
@@ -94,6 +94,17 @@ pub(crate) struct PairForce {
     pub loads: [f64; 2],
 }
 
+impl PairForce {
+    /// Adds what friction and damping of the pair do.
+    #[inline(always)]
+    fn resist(&mut self, friction: &PairFriction) {
+        for a in 0..3 {
+            self.force[a] += friction.force[a];
+        }
+        self.energy += friction.energy;
+    }
+}
+
 impl<'a, M: Mode> Meeting<'a, M> {
     #[inline(always)]
     pub fn new(view: &'a ContactView, [i, j]: [&'a Party; 2], here: M::Side) -> Self {
@@ -145,10 +156,7 @@ impl TaskForces {
                 let mut heat = 0.0;
                 if let Some(friction) = &mut friction {
                     friction.pair(view, [&i, &j], pair.loads);
-                    for a in 0..3 {
-                        pair.force[a] += friction.force[a];
-                    }
-                    pair.energy += friction.energy;
+                    pair.resist(friction);
                     heat = friction.heat;
                 }
                 on.add(&j, &pair.force, pair.energy, heat);
@@ -161,6 +169,32 @@ impl TaskForces {
             self.particles.push(sum);
         }
     }
+}
+
+/// What forces of one mode carry through a receiver: half of each pair's line is its side's.
+fn borne_of_mode<M: Mode>(
+    view: &ContactView,
+    i: &Party,
+    neighbours: &[u32],
+    with_friction: bool,
+) -> Borne {
+    let here = M::side(view, i);
+    let mut friction = with_friction.then(|| PairFriction::of(view, i));
+    let mut borne = Borne::default();
+    for &other in neighbours {
+        let j = view.party(other);
+        let meeting = Meeting::<M>::new(view, [i, &j], here);
+        if let Some(mut pair) = M::force(&meeting, &mut 0.0) {
+            let press = pair.force;
+            if let Some(friction) = &mut friction {
+                friction.pair(view, [i, &j], pair.loads);
+                pair.resist(friction);
+            }
+            let arm = meeting.separation.r.map(|x| 0.5 * x);
+            borne.add(&pair.force, &press, &arm);
+        }
+    }
+    borne
 }
 
 /// Sets all elements, on all threads.
@@ -225,6 +259,22 @@ macro_rules! dispatch {
                         self.add_mode::<crate::model::$Mode, FRICTION>(view, list);
                     })+
                 }
+            }
+        }
+
+        /// What forces of a class carry through the receiver `i`, with friction and damping if
+        /// there are any.
+        pub(super) fn borne_of(
+            view: &ContactView,
+            class: ContactClass,
+            i: &Party,
+            neighbours: &[u32],
+            friction: bool,
+        ) -> Borne {
+            match class {
+                $(ContactClass::$Mode => {
+                    borne_of_mode::<crate::model::$Mode>(view, i, neighbours, friction)
+                })+
             }
         }
 

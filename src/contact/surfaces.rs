@@ -8,6 +8,7 @@ mod friction;
 
 use friction::SurfaceFriction;
 
+use super::force::Borne;
 use super::friction::Law;
 use super::{ContactSums, ContactTable};
 use crate::loads::{Loads, Placed, SurfaceStep};
@@ -27,6 +28,9 @@ pub(super) struct Push {
     pub energy: f64,
     pub stiffness: f64,
     approach: f64,
+    /// Unit normal of the surface there, and the distance from it (m).
+    normal: [f64; 3],
+    gap: f64,
     /// Velocity of the surface there (m/s).
     pub ground: [f64; 3],
     /// What friction and damping turn into heat (W).
@@ -187,6 +191,21 @@ impl SurfaceForces {
         }
     }
 
+    /// What the forces of the last step carry through particles, with their indices: the matter
+    /// between a particle and a surface is all its own.
+    pub(super) fn borne(&self) -> impl Iterator<Item = (usize, Borne)> {
+        self.pushes.iter().flatten().map(|push| {
+            let press = dot(&push.force, &push.normal);
+            let mut borne = Borne::default();
+            borne.add(
+                &push.force,
+                &push.normal.map(|n| press * n),
+                &push.normal.map(|n| push.gap * n),
+            );
+            (push.particle, borne)
+        })
+    }
+
     /// The particles near surfaces, chunk after chunk.
     fn find_pushes(
         &mut self,
@@ -259,8 +278,9 @@ impl View<'_> {
         let stiffness = penalty.stiffness * volume;
         let force = placed.outward(escape.way.map(|u| stiffness * u));
         let (v, surface_v) = (&self.particles.predicted_velocity[i], placed.velocity(x));
+        let normal = placed.outward(escape.foot.normal);
         let rate = dot(
-            &placed.outward(escape.foot.normal),
+            &normal,
             &[
                 v[0] - surface_v[0],
                 v[1] - surface_v[1],
@@ -275,6 +295,8 @@ impl View<'_> {
             energy: 0.5 * stiffness * escape.depth2,
             stiffness: stiffness * escape.walls,
             approach: penalty.approach(separation, rate),
+            normal,
+            gap: separation,
             ground: surface_v,
             heat: 0.0,
         })

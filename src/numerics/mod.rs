@@ -6,3 +6,4 @@ pub mod kernel;
 pub mod lanes;
 pub mod matrix;
 pub mod vector;
+pub mod virial;

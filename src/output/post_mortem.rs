@@ -36,13 +36,19 @@ pub fn write(
     file.text("/what", what)?;
     file.text("/input", &case.resolved)?;
     let (particle, neighbours) = about.members.split_at(1);
-    write_fields(&file, "/particle", particles, particle, FieldInfo::any)?;
+    write_fields(
+        &file,
+        "/particle",
+        particles,
+        particle,
+        FieldInfo::is_of_steps,
+    )?;
     write_fields(
         &file,
         "/neighbours",
         particles,
         neighbours,
-        HaloPhase::all(),
+        HaloPhase::all() - HaloPhase::SHOWN,
     )?;
     let block = Block::even(about.distances.len() as u64 - 1, 0, 1);
     let bytes = bytemuck::cast_slice(&about.distances[1..]);

@@ -70,24 +70,25 @@ impl Quantity {
     }
 }
 
-/// The quantities of a case: as [`quantities`], by default damage too where matter may fail; and
-/// what tells stress points from particles where there are any.
+/// The quantities of a case: as [`quantities`], but by default none that `particles` have no use
+/// for; and what tells stress points from particles where there are any.
 ///
 /// # Errors
 /// As [`quantities`].
-pub fn quantities_of(case: &Case) -> Result<Vec<Quantity>, OutputError> {
+pub fn quantities_of(case: &Case, particles: &ParticleStore) -> Result<Vec<Quantity>, OutputError> {
     let mut names = case.output.fields.clone();
-    let more = [
-        ("damage", case.may_fail() && names.is_empty()),
-        ("stress_mass", case.sph.form == SphForm::StressPoints),
-    ];
-    let more = more.into_iter().filter(|(_, wanted)| *wanted);
-    let mut more = more.map(|(name, _)| name.to_owned()).peekable();
-    if more.peek().is_some() && names.is_empty() {
-        let chosen = quantities(&[])?;
+    if names.is_empty() {
+        let mut chosen = quantities(&[])?;
+        chosen.retain(|choice| match choice {
+            Quantity::Field(field) => field.output != Output::IfHeld || particles.holds(field),
+            _ => true,
+        });
         names.extend(chosen.iter().map(|choice| choice.name().to_owned()));
     }
-    names.extend(more);
+    let role = "stress_mass".to_owned();
+    if case.sph.form == SphForm::StressPoints && !names.contains(&role) {
+        names.push(role);
+    }
     quantities(&names)
 }
 
@@ -115,8 +116,10 @@ pub fn quantities(names: &[String]) -> Result<Vec<Quantity>, OutputError> {
         }
     }
     for choice in choices {
-        let by_default =
-            matches!(choice, Quantity::Field(field) if field.output == Output::Default);
+        let by_default = matches!(
+            choice,
+            Quantity::Field(field) if matches!(field.output, Output::Default | Output::IfHeld)
+        );
         let wanted = if names.is_empty() {
             by_default
         } else {

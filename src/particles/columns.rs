@@ -88,6 +88,8 @@ pub enum Life {
 pub enum Output {
     /// In snapshots by default.
     Default,
+    /// In snapshots by default of cases that have use for it.
+    IfHeld,
     /// In snapshots if `output.fields` names it.
     OnDemand,
     /// In no snapshot.
@@ -108,6 +110,8 @@ bitflags! {
         const FRICTION = 1 << 3;
         /// When parts are told.
         const FRAGMENTS = 1 << 4;
+        /// Before a snapshot.
+        const SHOWN = 1 << 5;
         /// Whatever is needed before forces of stress and contact, in one message.
         const FORCES = Self::STRESS.bits() | Self::CONTACT.bits();
     }

@@ -2,6 +2,8 @@
 
 mod arrays;
 mod columns;
+#[macro_use]
+mod declare;
 mod fields;
 mod image;
 mod point;

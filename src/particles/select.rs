@@ -39,3 +39,11 @@ impl<Q: Fn(&FieldInfo) -> bool + Copy> Select for Q {
         self(field)
     }
 }
+
+impl FieldInfo {
+    /// Whether steps write it, not only snapshots.
+    #[must_use]
+    pub fn is_of_steps(&self) -> bool {
+        self.halo != HaloPhase::SHOWN
+    }
+}

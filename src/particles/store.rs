@@ -49,6 +49,12 @@ impl ParticleStore {
         rows(which).filter(move |field| field.is_held_without(unused))
     }
 
+    /// Whether the case has use for a field.
+    #[must_use]
+    pub fn holds(&self, field: &FieldInfo) -> bool {
+        field.is_held_without(self.unused)
+    }
+
     /// Bytes that a particle's fields of `which` take in a message.
     #[must_use]
     pub fn bytes_per_particle(&self, which: impl Select) -> usize {

@@ -71,7 +71,7 @@ impl<'a> Driver<'a> {
         simulation.poison = args.poison;
         // What set-up took is no part of a step.
         simulation.timers = Timers::default();
-        let quantities = snapshot::quantities_of(&simulation.case)?;
+        let quantities = snapshot::quantities_of(&simulation.case, &simulation.particles)?;
         let mut tables = None;
         on_root(comm, || {
             let resume = restarted.is_some().then_some(&simulation.state);
@@ -266,6 +266,7 @@ impl<'a> Driver<'a> {
         let begun = Instant::now();
         let (quantities, rows) = (&self.quantities, &mut self.rows);
         let path = self.folder.snapshot(self.simulation.state.step);
+        self.simulation.measure_contact_stress(comm);
         self.simulation.with_frozen(|simulation| {
             let meta = snapshot::Meta {
                 case: &simulation.case,
@@ -282,8 +283,7 @@ impl<'a> Driver<'a> {
             series::add(&self.folder.series(), &name, state.time)
         })?;
         self.watch.wrote_snapshot(begun.elapsed());
-        let text = format!("snapshot {}", path.display());
-        self.log(comm, &text);
+        self.log(comm, &format!("snapshot {}", path.display()));
         Ok(())
     }
 

@@ -24,6 +24,7 @@ mod step;
 pub mod stress_points;
 mod sums;
 pub mod terms;
+mod virial;
 
 pub use formulation::{Conventional, Corrected, Normalised, StressPoints};
 pub use phase::Sph;
@@ -31,3 +32,4 @@ pub(crate) use phase::with_formulation;
 pub use signal::{SignalSpeed, Signals};
 pub use smoothing::Smoothing;
 pub use step::{Side, Step};
+pub use virial::{StressForces, stress};

@@ -8,6 +8,7 @@ mod integrate;
 mod removal;
 mod restored;
 mod setup;
+mod shown;
 mod simulation;
 mod timers;
 
@@ -19,5 +20,6 @@ pub use crate::diagnose::{
 pub use candidate::StepControl;
 pub use error::{SetupError, StepError};
 pub use fields::bytes_of_options;
+pub use shown::Carried;
 pub use simulation::Simulation;
 pub use timers::{Phase, Timers};

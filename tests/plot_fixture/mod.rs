@@ -94,7 +94,7 @@ type Made = (
     fn(&[f64; 3], usize) -> f64,
 );
 
-const FIELDS: [Made; 4] = [
+const FIELDS: [Made; 5] = [
     ("pressure", "Pa", 1, |p, _| {
         let d = p[0].hypot(p[1]).hypot(p[2]) / 2.5e-4;
         6e10 * (-d * d).exp() - 1.2e9 * (d - 2.0).abs().min(1.0)
@@ -113,6 +113,9 @@ const FIELDS: [Made; 4] = [
     ("deviatoric_stress", "Pa", 6, |p, c| {
         let s = 1.7e8 * (-(p[0].hypot(p[1]) / 9e-4).powi(2)).exp();
         [s, -0.5 * s, -0.5 * s, 0.0, 0.0, 0.0][c]
+    }),
+    ("contact_stress", "Pa", 6, |_, c| {
+        [-3e7, 0.0, 0.0, 1e7, 0.0, 0.0][c]
     }),
 ];
 

@@ -42,13 +42,17 @@ enum Pick {
     Component(usize),
     Magnitude,
     VonMises,
-    /// A component of −p I + S, made from pressure and deviatoric stress.
-    Stress(usize),
+    /// A component of −p I + S, made from pressure and deviatoric stress, and that of the stress
+    /// by contact with it.
+    Stress {
+        component: usize,
+        contact: bool,
+    },
 }
 
 impl Shown {
-    /// Finds what `name` means in a snapshot: `body`, a field, or `FIELD.COMPONENT`; `stress` is
-    /// made from its parts.
+    /// Finds what `name` means in a snapshot: `body`, a field, or `FIELD.COMPONENT`; `stress` and
+    /// `material_stress` are made from their parts.
     pub fn find(snapshot: &Snapshot, name: &str) -> Result<Self, PlotError> {
         match name {
             "body" => Ok(Self::Body),
@@ -57,15 +61,20 @@ impl Shown {
                 find(snapshot, "von_mises_stress", None).map(Self::Field)
             }
             "von_mises" => find(snapshot, "deviatoric_stress", Some("von_mises")).map(Self::Field),
-            _ if name.strip_prefix("stress.").is_some() && !snapshot.has("stress")? => {
-                stress(snapshot, name).map(Self::Field)
-            }
             _ => {
                 let (dataset, component) = match name.split_once('.') {
                     Some((dataset, component)) => (dataset, Some(component)),
                     None => (name, None),
                 };
-                find(snapshot, dataset, component).map(Self::Field)
+                let field = match (dataset, component) {
+                    ("stress" | "material_stress", Some(component))
+                        if !snapshot.has(dataset)? =>
+                    {
+                        stress(snapshot, dataset, component)
+                    }
+                    _ => find(snapshot, dataset, component),
+                };
+                field.map(Self::Field)
             }
         }
     }
@@ -98,6 +107,8 @@ impl Shown {
     }
 }
 
+/// Stress by contact forces.
+const CONTACT_STRESS: &str = "contact_stress";
 /// What tells stress points from particles.
 const STRESS_MASS: &str = "stress_mass";
 /// What stress points bear, where there are any.
@@ -127,7 +138,7 @@ impl Field {
                 9 => TENSOR[k],
                 _ => "",
             },
-            Pick::Stress(k) => SYMMETRIC[k],
+            Pick::Stress { component, .. } => SYMMETRIC[component],
             Pick::Magnitude | Pick::VonMises => "",
         };
         name.matches(letter).count() == 1
@@ -144,12 +155,17 @@ impl Field {
                 let values = snapshot.file.values(&self.dataset, rows)?;
                 Ok(values.as_chunks::<6>().0.iter().map(von_mises).collect())
             }
-            Pick::Stress(k) => {
-                let mut values = snapshot.file.scalar(&self.dataset, k, rows.clone())?;
-                if k < 3 {
-                    let pressure = snapshot.file.scalar("pressure", 0, rows)?;
-                    for (value, p) in values.iter_mut().zip(pressure) {
+            Pick::Stress { component, contact } => {
+                let part = |name, k| snapshot.file.scalar(name, k, rows.clone());
+                let mut values = part(&self.dataset, component)?;
+                if component < 3 {
+                    for (value, p) in values.iter_mut().zip(part("pressure", 0)?) {
                         *value -= p;
+                    }
+                }
+                if contact {
+                    for (value, more) in values.iter_mut().zip(part(CONTACT_STRESS, component)?) {
+                        *value += more;
                     }
                 }
                 Ok(values)
@@ -205,25 +221,25 @@ fn find(snapshot: &Snapshot, dataset: &str, part: Option<&str>) -> Result<Field,
     })
 }
 
-/// A component of the stress −p I + S, tension positive.
-fn stress(snapshot: &Snapshot, name: &str) -> Result<Field, PlotError> {
+/// A component of a stress, tension positive: of the material stress −p I + S, or of all that
+/// matter bears, that by contact too where the snapshot has it. Stress points have no contact.
+fn stress(snapshot: &Snapshot, name: &str, part: &str) -> Result<Field, PlotError> {
     find(snapshot, "pressure", None)?;
-    let component = name.split_once('.').map(|(_, component)| component);
-    let known = |part: &&str| SYMMETRIC.contains(part);
-    let deviator = find(snapshot, "deviatoric_stress", component.filter(known));
-    let mut field = deviator.map_err(|error| match error {
-        PlotError::Component { .. } => PlotError::Component {
-            field: "stress".to_owned(),
-            component: component.map(str::to_owned),
-            known: SYMMETRIC.join(", "),
-        },
-        other => other,
-    })?;
-    if let Pick::Component(k) = field.pick {
-        field.pick = Pick::Stress(k);
-    }
-    field.label = field.label.replace("deviatoric ", "");
-    Ok(field)
+    let unknown = || PlotError::Component {
+        field: name.to_owned(),
+        component: Some(part.to_owned()),
+        known: SYMMETRIC.join(", "),
+    };
+    let component = SYMMETRIC.iter().position(|&known| known == part);
+    let component = component.ok_or_else(unknown)?;
+    let deviator = find(snapshot, "deviatoric_stress", Some(part))?;
+    let contact =
+        name == "stress" && snapshot.has(CONTACT_STRESS)? && !snapshot.has(STRESS_MASS)?;
+    Ok(Field {
+        pick: Pick::Stress { component, contact },
+        label: format!("{} {part}", name.replace('_', " ")),
+        ..deviator
+    })
 }
 
 fn von_mises_label(dataset: &str, words: &str) -> String {

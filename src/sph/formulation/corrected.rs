@@ -170,8 +170,13 @@ impl Show for ShowCorrected<'_> {
             let gradient =
                 [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|c: usize| after.velocity_gradient[c][k]);
             let rest = [0, 1, 2].map(|a: usize| self.rest[a].0[k]);
-            *displacement = hourglass::advance(displacement, &rest, &gradient, target.dt)
-                .map(|w| w * hourglass::kept(&deviator, 3.0 * shear_modulus * plastic));
+            let kept = if after.damage[k] < 1.0 {
+                hourglass::kept(&deviator, 3.0 * shear_modulus * plastic)
+            } else {
+                0.0
+            };
+            *displacement =
+                hourglass::advance(displacement, &rest, &gradient, target.dt).map(|w| w * kept);
         }
         let state = [after.density[k], after.sound_speed[k]];
         let record = CorrectedRecord::new(&stress, displacement, target.hourglass, state);
