@@ -3,6 +3,7 @@
 pub mod dispatch;
 pub mod exact_sum;
 pub mod kernel;
+pub mod lane_matrix;
 pub mod lanes;
 pub mod matrix;
 pub mod vector;

@@ -1,0 +1,176 @@
+//! The second sweep: what particles show of their stress, and its forces.
+
+use super::add_moment;
+use crate::numerics::kernel::PairScale;
+use crate::numerics::lane_matrix::{FULL, along, full};
+use crate::numerics::lanes::{F64x8, LANES, Lanes};
+use crate::numerics::matrix;
+use crate::sph::momentum::{Forces, Momentum, PairStress, Viscous};
+use crate::sph::neighbourhood::{Neighbourhood, gather, gather3, records};
+use crate::sph::terms::{ARTIFICIAL_STRESS, SHAPED, TermSums};
+
+/// What a particle shows to its neighbours of its stress.
+#[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct CorrectedRecord {
+    /// `P`, row-major (Pa).
+    pub stress: [f64; 9],
+    /// `ξ ρ c²` times the hourglass displacement (Pa m).
+    pub hourglass: [f64; 3],
+    /// Density (kg/m³).
+    pub density: f64,
+    /// Sound speed (m/s).
+    pub sound_speed: f64,
+}
+
+impl CorrectedRecord {
+    /// From `P` (Pa), hourglass displacement (m) and its stiffness ξ, density (kg/m³) and sound
+    /// speed (m/s).
+    #[inline(always)]
+    #[must_use]
+    pub fn new(
+        stress: &[f64; 9],
+        displacement: &[f64; 3],
+        stiffness: f64,
+        [density, sound_speed]: [f64; 2],
+    ) -> Self {
+        let modulus = stiffness * density * sound_speed * sound_speed;
+        Self {
+            stress: *stress,
+            hourglass: [
+                modulus * displacement[0],
+                modulus * displacement[1],
+                modulus * displacement[2],
+            ],
+            density,
+            sound_speed,
+        }
+    }
+}
+
+impl PairStress for CorrectedRecord {
+    const CORRECTED: bool = true;
+
+    #[inline(always)]
+    fn is_free(&self) -> bool {
+        self.stress == [0.0; 9] && self.hourglass == [0.0; 3]
+    }
+
+    /// `V_i ε : P_i Σ V_j (x_j − x_i) ⊗ ∇W_ij`: with all neighbours P M is symmetric.
+    #[inline(always)]
+    fn couple<V: Lanes, S: PairScale>(around: &Neighbourhood<S>, stresses: &[Self]) -> [F64x8; 3] {
+        let (position, _) = around.motion::<V>();
+        let mut moment = [V::splat(0.0); 6];
+        for pair in around.pairs(&position) {
+            let volume = V::splat(pair.source.volume);
+            let factor = pair.separation.inverse.mul(volume).mul(pair.kernel.slope);
+            add_moment(&mut moment, &pair.separation.r, factor);
+        }
+        let moment = moment.map(V::store);
+        let mut couple = [F64x8([0.0; LANES]); 3];
+        for (k, &place) in around.receivers.iter().enumerate() {
+            let volume = around.sources.records[place as usize].volume;
+            let lane = FULL.map(|c: usize| moment[c].0[k]);
+            let pm = matrix::product(&stresses[place as usize].stress, &lane);
+            for (a, [c, b]) in [[7, 5], [2, 6], [3, 1]].into_iter().enumerate() {
+                couple[a].0[k] = volume * (pm[c] - pm[b]);
+            }
+        }
+        couple
+    }
+
+    /// `dv/dt = 1/ρ_i Σ V_j (P_i + P_j − ρ_i ρ_j (Π_ij I + R_ij f⁴)) ∇W_ij`.
+    #[inline(always)]
+    fn sum<V: Lanes, S: PairScale, const TERMS: u8>(sums: &Momentum<S, Self, TERMS>) -> Forces {
+        let around = &sums.around;
+        // A particle whose position is NaN.
+        if around.neighbours.is_empty() {
+            return Forces::NONE;
+        }
+        let zero = V::splat(0.0);
+        let (position, velocity) = around.motion::<V>();
+        let own = records(sums.stresses, &around.receivers);
+        let row = |a: usize| gather3::<V, _>(&own, |record, b| record.stress[3 * a + b]);
+        let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = [row(0), row(1), row(2)];
+        let stress = [xx, xy, xz, yx, yy, yz, zx, zy, zz];
+        let hourglass = gather3::<V, _>(&own, |record, a| record.hourglass[a]);
+        let motion = records(around.sources.records, &around.receivers);
+        let specific_volume = gather::<V, _>(&motion, |record| record.volume / record.mass);
+        let viscous = Viscous::<V>::begin(
+            sums.viscosity,
+            gather(&own, |record| record.density),
+            gather(&own, |record| record.sound_speed),
+        );
+        let mut terms = TermSums::<V, TERMS>::begin(&sums.terms, &around.receivers);
+        let (mut acceleration, mut power, mut fastest) = ([zero; 3], zero, zero);
+        for pair in around.pairs(&position) {
+            let (source, separation, kernel) = (pair.source, &pair.separation, &pair.kernel);
+            let state = &sums.stresses[pair.index];
+            let shown = sums.terms.record::<TERMS>(pair.index);
+            let r = separation.r;
+            let against = |a: usize| velocity[a].sub(V::splat(source.velocity[a]));
+            let v = [against(0), against(1), against(2)];
+            let now = viscous.pair(
+                &terms,
+                (separation, kernel.h),
+                &v,
+                (state.density, state.sound_speed),
+                shown,
+            );
+            fastest = fastest.min_where_positive(now.mu, kernel.inside);
+            let both = viscous.rho.mul(V::splat(state.density));
+            let pi = now.pi.mul(both);
+            // Viscosity strains by the plain relative velocity, stress does by L.
+            let lost = zero.sub(pi.mul(now.approach));
+            // Hourglass displacements against each other pull or push along the pair.
+            let against = |a: usize| hourglass[a].sub(V::splat(state.hourglass[a]));
+            let bent = r[2].mul_add(against(2), r[1].mul_add(against(1), r[0].mul(against(0))));
+            let pull = bent.mul(separation.inverse).mul(separation.inverse);
+            let closing = r[2].mul_add(v[2], r[1].mul_add(v[1], r[0].mul(v[0])));
+            let mut lost = pull.mul_add(closing, lost);
+            let central = pull.sub(pi);
+            let mut push = [central, central, central, zero, zero, zero];
+            if TERMS & SHAPED != 0 {
+                let shape = around.sources.scale.shape(kernel);
+                if TERMS & ARTIFICIAL_STRESS != 0 {
+                    let mut extra = [zero; 6];
+                    terms.repel(&mut extra, shown, shape);
+                    for c in 0..6 {
+                        extra[c] = extra[c].mul(both);
+                        push[c] = push[c].add(extra[c]);
+                    }
+                    let t = along(&full(&extra), &r);
+                    lost = t[2].mul_add(v[2], t[1].mul_add(v[1], t[0].mul_add(v[0], lost)));
+                }
+                let w = around.sources.scale.value(kernel, shape);
+                let w = w.mul(V::splat(source.mass));
+                terms.follow(&v, w.mul(now.inverse_density));
+            }
+            lost = terms.conduct(lost, shown, || now.heat_speed(separation).mul(both));
+            let weight = separation
+                .inverse
+                .mul(V::splat(source.volume))
+                .mul(kernel.slope);
+            power = lost.mul_add(weight, power);
+            let mut total = stress;
+            for c in 0..9 {
+                total[c] = total[c].add(V::splat(state.stress[c]));
+                if c % 4 == 0 || TERMS & ARTIFICIAL_STRESS != 0 {
+                    total[c] = total[c].add(push[FULL[c]]);
+                }
+            }
+            let traction = along(&total, &r);
+            for a in 0..3 {
+                acceleration[a] = traction[a].mul_add(weight, acceleration[a]);
+            }
+        }
+        Forces {
+            acceleration: acceleration.map(|a| a.mul(specific_volume).store()),
+            power: zero
+                .sub(power.mul(V::splat(0.5)).mul(specific_volume))
+                .store(),
+            approach: zero.sub(fastest).store(),
+            correction: terms.correction().map(V::store),
+        }
+    }
+}

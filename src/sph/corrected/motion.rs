@@ -1,0 +1,101 @@
+//! What the plain sums of the first sweep tell of a motion: strain, spin, and the rest that no linear
+//! field explains.
+
+use crate::numerics::lane_matrix::{Symmetric, along, faded, full, times};
+use crate::numerics::lanes::Lanes;
+
+/// e⁴ of the spin, at e = .05: a lone pair does not tell how it turns about its own axis.
+const SPIN_FADE: f64 = 0.05 * 0.05 * 0.05 * 0.05;
+
+/// What the first sweep sums over pairs.
+pub(super) struct PlainSums<V> {
+    /// `L₀` (1/s).
+    pub(super) gradient: [V; 9],
+    /// `M`.
+    pub(super) moment: Symmetric<V>,
+    /// `Σ w_ij (v_j − v_i)` with `w_ij = −V_j r |∇W_ij|`.
+    pub(super) velocity: [V; 3],
+    /// `Σ w_ij (x_i − x_j)`.
+    pub(super) place: [V; 3],
+    /// `Σ w_ij`.
+    pub(super) weight: V,
+}
+
+/// Parts of a motion.
+pub(super) struct Motion<V> {
+    /// The velocity gradient (1/s): `D + W`.
+    pub(super) gradient: [V; 9],
+    /// Mean velocity of the neighbours that no linear field explains (m/s).
+    pub(super) rest: [V; 3],
+}
+
+/// The motion whose strain rate D is that of the `corrected` gradient and whose spin W is that of
+/// the neighbourhood: `W M + M W` is twice the antisymmetric part of `L₀ − D M`, so that the angular
+/// velocity is `(tr M I − M)⁻¹` times its axial vector, as an inertia to an angular momentum.
+/// Neighbours are expected to move by `W + (L₀ − W M) B`.
+#[inline(always)]
+pub(super) fn motion<V: Lanes>(
+    corrected: &[V; 9],
+    plain: &PlainSums<V>,
+    inner: &Symmetric<V>,
+) -> Motion<V> {
+    let half = V::splat(0.5);
+    let mean = |a: usize, b: usize| corrected[a].add(corrected[b]).mul(half);
+    let strain = [
+        corrected[0],
+        corrected[4],
+        corrected[8],
+        mean(1, 3),
+        mean(2, 6),
+        mean(5, 7),
+    ];
+    let moment = full(&plain.moment);
+    let explained = times(&full(&strain), &moment);
+    let left = |a: usize| plain.gradient[a].sub(explained[a]);
+    let axial = [
+        left(7).sub(left(5)),
+        left(2).sub(left(6)),
+        left(3).sub(left(1)),
+    ];
+    let [xx, yy, zz, xy, xz, yz] = plain.moment;
+    let zero = V::splat(0.0);
+    let inertia = [
+        yy.add(zz),
+        xx.add(zz),
+        xx.add(yy),
+        zero.sub(xy),
+        zero.sub(xz),
+        zero.sub(yz),
+    ];
+    let [x, y, z] = along(&full(&faded(&inertia, SPIN_FADE).inverse), &axial);
+    let spin = [
+        zero,
+        zero.sub(z),
+        y,
+        z,
+        zero,
+        zero.sub(x),
+        zero.sub(y),
+        x,
+        zero,
+    ];
+    let turned = times(&spin, &moment);
+    let mut stretch = plain.gradient;
+    for c in 0..9 {
+        stretch[c] = stretch[c].sub(turned[c]);
+    }
+    let mut expected = times(&stretch, &full(inner));
+    let mut gradient = full(&strain);
+    for c in 0..9 {
+        expected[c] = expected[c].add(spin[c]);
+        gradient[c] = gradient[c].add(spin[c]);
+    }
+    let linear = along(&expected, &plain.place);
+    // A particle alone has no weight.
+    let weight = plain.weight.min(V::splat(-f64::MIN_POSITIVE));
+    let rest = |a: usize| plain.velocity[a].add(linear[a]).div(weight);
+    Motion {
+        gradient,
+        rest: [rest(0), rest(1), rest(2)],
+    }
+}
