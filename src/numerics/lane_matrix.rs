@@ -16,12 +16,33 @@ pub fn full<V: Lanes>(a: &Symmetric<V>) -> [V; 9] {
     [xx, xy, xz, xy, yy, yz, xz, yz, zz]
 }
 
+/// Dot product.
+#[inline(always)]
+#[must_use]
+pub fn dot<V: Lanes>(u: &[V; 3], v: &[V; 3]) -> V {
+    u[2].mul_add(v[2], u[1].mul_add(v[1], u[0].mul(v[0])))
+}
+
+/// `u × v`.
+#[inline(always)]
+#[must_use]
+pub fn cross<V: Lanes>(u: &[V; 3], v: &[V; 3]) -> [V; 3] {
+    [
+        u[1].mul(v[2]).sub(u[2].mul(v[1])),
+        u[2].mul(v[0]).sub(u[0].mul(v[2])),
+        u[0].mul(v[1]).sub(u[1].mul(v[0])),
+    ]
+}
+
 /// A matrix times a vector.
 #[inline(always)]
 #[must_use]
 pub fn along<V: Lanes>(t: &[V; 9], r: &[V; 3]) -> [V; 3] {
-    let row = |a: usize| t[3 * a + 2].mul_add(r[2], t[3 * a + 1].mul_add(r[1], t[3 * a].mul(r[0])));
-    [row(0), row(1), row(2)]
+    [
+        dot(&[t[0], t[1], t[2]], r),
+        dot(&[t[3], t[4], t[5]], r),
+        dot(&[t[6], t[7], t[8]], r),
+    ]
 }
 
 /// Product of symmetric matrices that commute, which is symmetric.
@@ -29,15 +50,15 @@ pub fn along<V: Lanes>(t: &[V; 9], r: &[V; 3]) -> [V; 3] {
 #[must_use]
 pub fn product<V: Lanes>(a: &Symmetric<V>, b: &Symmetric<V>) -> Symmetric<V> {
     let [xx, yy, zz, xy, xz, yz] = *a;
-    let dot = |u: [V; 3], v: [V; 3]| u[2].mul_add(v[2], u[1].mul_add(v[1], u[0].mul(v[0])));
+    let (x, y, z) = ([xx, xy, xz], [xy, yy, yz], [xz, yz, zz]);
     let (bx, by, bz) = ([b[0], b[3], b[4]], [b[3], b[1], b[5]], [b[4], b[5], b[2]]);
     [
-        dot([xx, xy, xz], bx),
-        dot([xy, yy, yz], by),
-        dot([xz, yz, zz], bz),
-        dot([xx, xy, xz], by),
-        dot([xx, xy, xz], bz),
-        dot([xy, yy, yz], bz),
+        dot(&x, &bx),
+        dot(&y, &by),
+        dot(&z, &bz),
+        dot(&x, &by),
+        dot(&x, &bz),
+        dot(&y, &bz),
     ]
 }
 
@@ -47,9 +68,9 @@ pub fn product<V: Lanes>(a: &Symmetric<V>, b: &Symmetric<V>) -> Symmetric<V> {
 pub fn times<V: Lanes>(a: &[V; 9], b: &[V; 9]) -> [V; 9] {
     let mut all = *a;
     for i in 0..3 {
+        let row = [a[3 * i], a[3 * i + 1], a[3 * i + 2]];
         for j in 0..3 {
-            let of = |k: usize, sum: V| a[3 * i + k].mul_add(b[3 * k + j], sum);
-            all[3 * i + j] = of(2, of(1, a[3 * i].mul(b[j])));
+            all[3 * i + j] = dot(&row, &[b[j], b[3 + j], b[6 + j]]);
         }
     }
     all
@@ -59,28 +80,13 @@ pub fn times<V: Lanes>(a: &[V; 9], b: &[V; 9]) -> [V; 9] {
 #[inline(always)]
 #[must_use]
 pub fn between<V: Lanes>(a: &Symmetric<V>, t: &[V; 9], b: &Symmetric<V>) -> [V; 9] {
-    let [xx, yy, zz, xy, xz, yz] = *a;
-    let left = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-    let [xx, yy, zz, xy, xz, yz] = *b;
-    let right = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-    let mut half = [V::splat(0.0); 9];
-    for i in 0..3 {
-        for j in 0..3 {
-            let row = &left[i];
-            half[3 * i + j] = row[2].mul_add(t[6 + j], row[1].mul_add(t[3 + j], row[0].mul(t[j])));
-        }
-    }
-    let mut all = half;
-    for i in 0..3 {
-        for j in 0..3 {
-            let row = [half[3 * i], half[3 * i + 1], half[3 * i + 2]];
-            all[3 * i + j] = row[2].mul_add(
-                right[2][j],
-                row[1].mul_add(right[1][j], row[0].mul(right[0][j])),
-            );
-        }
-    }
-    all
+    times(&times(&full(a), t), &full(b))
+}
+
+/// `a b − c d`.
+#[inline(always)]
+fn minor<V: Lanes>(a: V, b: V, c: V, d: V) -> V {
+    a.mul(b).sub(c.mul(d))
 }
 
 /// The inverse of a symmetric matrix, and what the matrix times it gives, both of which fade out where
@@ -102,7 +108,6 @@ pub fn faded<V: Lanes>(m: &Symmetric<V>, fade: f64) -> Faded<V> {
     let least = V::splat(fade);
     let [mut xx, mut yy, mut zz, xy, xz, yz] = fourth;
     (xx, yy, zz) = (xx.add(least), yy.add(least), zz.add(least));
-    let minor = |a: V, b: V, c: V, d: V| a.mul(b).sub(c.mul(d));
     let adjugate = [
         minor(yy, zz, yz, yz),
         minor(xx, zz, xz, xz),
@@ -113,7 +118,10 @@ pub fn faded<V: Lanes>(m: &Symmetric<V>, fade: f64) -> Faded<V> {
     ];
     let determinant = xz.mul_add(adjugate[4], xy.mul_add(adjugate[3], xx.mul(adjugate[0])));
     let scale = V::splat(1.0 + fade).div(determinant);
-    let inverse = adjugate.map(|c| c.mul(scale));
+    let mut inverse = adjugate;
+    for c in 0..6 {
+        inverse[c] = inverse[c].mul(scale);
+    }
     Faded {
         inverse: product(&inverse, &third),
         one: product(&inverse, &fourth),

@@ -23,9 +23,8 @@ pub use forces::CorrectedRecord;
 use super::neighbourhood::Neighbourhood;
 use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
-use crate::numerics::lane_matrix::{FULL, Faded, between, faded};
-use crate::numerics::lanes::{F64x8, LANES, Lanes};
-use crate::numerics::matrix;
+use crate::numerics::lane_matrix::{Faded, between, faded};
+use crate::numerics::lanes::{F64x8, LANES, Lanes, load_all, store_all};
 use motion::{PlainSums, motion};
 
 /// e⁴ of the fade: at e = .28. Less gives isolated peaks of strain about edges, more leaves
@@ -46,11 +45,10 @@ impl Correction {
     #[inline(always)]
     #[must_use]
     pub fn new<V: Lanes>(m: &[F64x8; 6]) -> Self {
-        let m = [0, 1, 2, 3, 4, 5].map(|c: usize| V::load(&m[c]));
-        let Faded { inverse, one } = faded(&m, FADE);
+        let Faded { inverse, one } = faded(&load_all::<V, 6>(m), FADE);
         Self {
-            outer: one.map(V::store),
-            inner: inverse.map(V::store),
+            outer: store_all(&one),
+            inner: store_all(&inverse),
         }
     }
 
@@ -58,32 +56,7 @@ impl Correction {
     #[inline(always)]
     #[must_use]
     pub fn apply<V: Lanes>(&self, t: &[V; 9]) -> [V; 9] {
-        let load = |all: &[F64x8; 6]| [0, 1, 2, 3, 4, 5].map(|c: usize| V::load(&all[c]));
-        between(&load(&self.outer), t, &load(&self.inner))
-    }
-
-    /// `P = A σ B` of lane `k` (Pa, row-major), from pressure and deviatoric stress (Pa; components
-    /// xx, yy, zz, xy, xz, yz).
-    #[inline(always)]
-    #[must_use]
-    pub fn stress(&self, k: usize, pressure: f64, deviatoric: &[f64; 6]) -> [f64; 9] {
-        let [xx, yy, zz, xy, xz, yz] = *deviatoric;
-        let sigma = [
-            xx - pressure,
-            xy,
-            xz,
-            xy,
-            yy - pressure,
-            yz,
-            xz,
-            yz,
-            zz - pressure,
-        ];
-        let lane = |m: &[F64x8; 6]| FULL.map(|c: usize| m[c].0[k]);
-        matrix::product(
-            &matrix::product(&lane(&self.outer), &sigma),
-            &lane(&self.inner),
-        )
+        between(&load_all(&self.outer), t, &load_all(&self.inner))
     }
 }
 
@@ -101,6 +74,7 @@ fn add_moment<V: Lanes>(moment: &mut [V; 6], r: &[V; 3], factor: V) -> [V; 3] {
 }
 
 /// The first sweep over the pairs of eight receivers.
+#[derive(Debug, Clone, Copy)]
 pub struct CorrectedGradient<'a, S> {
     /// The receivers and their neighbours.
     pub around: Neighbourhood<'a, S>,
@@ -121,6 +95,18 @@ pub struct Corrected {
     pub correction: Correction,
 }
 
+impl Corrected {
+    /// No motion, and no correction.
+    pub const AT_REST: Self = Self {
+        gradient: [F64x8([0.0; LANES]); 9],
+        rest: [F64x8([0.0; LANES]); 3],
+        correction: Correction {
+            outer: [F64x8([0.0; LANES]); 6],
+            inner: [F64x8([0.0; LANES]); 6],
+        },
+    };
+}
+
 impl<S: PairScale> Vectorised for CorrectedGradient<'_, S> {
     type Output = Corrected;
 
@@ -130,7 +116,7 @@ impl<S: PairScale> Vectorised for CorrectedGradient<'_, S> {
         for axis in self.dimension..3 {
             plain.moment[axis] = V::splat(1.0);
         }
-        let mut m = plain.moment.map(V::store);
+        let mut m = store_all(&plain.moment);
         if self.plain != 0 {
             for k in (0..LANES).filter(|k| self.plain >> k & 1 == 1) {
                 for (c, value) in [1.0, 1.0, 1.0, 0.0, 0.0, 0.0].into_iter().enumerate() {
@@ -140,11 +126,10 @@ impl<S: PairScale> Vectorised for CorrectedGradient<'_, S> {
         }
         let correction = Correction::new::<V>(&m);
         let corrected = correction.apply(&plain.gradient);
-        let inner = [0, 1, 2, 3, 4, 5].map(|c: usize| V::load(&correction.inner[c]));
-        let motion = motion(&corrected, &plain, &inner);
+        let motion = motion(&corrected, &plain, &load_all(&correction.inner));
         Corrected {
-            gradient: motion.gradient.map(V::store),
-            rest: motion.rest.map(V::store),
+            gradient: store_all(&motion.gradient),
+            rest: store_all(&motion.rest),
             correction,
         }
     }

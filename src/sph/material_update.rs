@@ -3,7 +3,7 @@
 use super::sums::Sums;
 use crate::material::{LANES, Material, PointBatch};
 use crate::neighbours::{Cluster, Lists};
-use crate::numerics::lanes::F64x8;
+use crate::numerics::lanes::{F64x8, Lanes};
 use crate::particles::{Image, MaterialPoints};
 
 /// Work for a particle apart from its neighbours, in neighbours of the pair sums: sort, list,
@@ -23,26 +23,47 @@ pub(super) struct MaterialUpdate<'a> {
     points: MaterialPoints<'a>,
 }
 
+/// Points of one material, before and after their update.
+pub(super) struct Updated<'a> {
+    /// Before.
+    pub before: &'a PointBatch,
+    /// After.
+    pub after: &'a PointBatch,
+    /// Elastic shear modulus of the reference state (Pa).
+    pub shear_modulus: f64,
+    /// Bit k: lane k is one of them.
+    pub lanes: u8,
+    /// Their particles.
+    pub particles: &'a [usize; LANES],
+    /// Where they stand among the images.
+    pub indices: &'a [u32; LANES],
+}
+
+impl Updated<'_> {
+    /// Calls `visit` with each lane, its particle and its place among the images.
+    #[inline(always)]
+    pub(super) fn each(&self, mut visit: impl FnMut(usize, usize, usize)) {
+        for k in 0..LANES {
+            if self.lanes >> k & 1 == 1 {
+                visit(k, self.particles[k], self.indices[k] as usize);
+            }
+        }
+    }
+}
+
 /// What a formulation shows of eight particles after their update.
 pub(super) trait Show {
-    /// Shows lane `k` of the points `before` and `after`, which is particle `i` and stands at `index` among the images.
+    /// Shows points.
     ///
     /// # Safety
-    /// No other thread may read or write what belongs to this particle and place.
-    unsafe fn show(
-        &self,
-        before: &PointBatch,
-        after: &PointBatch,
-        k: usize,
-        i: usize,
-        index: usize,
-    );
+    /// No other thread may read or write what belongs to these particles and places.
+    unsafe fn show<V: Lanes>(&self, points: &Updated);
 }
 
 /// Nothing is shown.
 impl Show for () {
     #[inline(always)]
-    unsafe fn show(&self, _: &PointBatch, _: &PointBatch, _: usize, _: usize, _: usize) {}
+    unsafe fn show<V: Lanes>(&self, _: &Updated) {}
 }
 
 impl<'a> MaterialUpdate<'a> {
@@ -65,7 +86,7 @@ impl<'a> MaterialUpdate<'a> {
     /// Advances density, stress and strain of a cluster whose velocity gradient at the end of
     /// the step is `gradient`; `neighbours` is the length of its list.
     #[inline(always)]
-    pub(super) fn apply(
+    pub(super) fn apply<V: Lanes>(
         &self,
         cluster: &Cluster,
         gradient: &[F64x8; 9],
@@ -84,7 +105,7 @@ impl<'a> MaterialUpdate<'a> {
                 before.velocity_gradient[c][k] = mean;
             }
         }
-        self.advance(cluster, &base, before, gradient, neighbours, show);
+        self.advance::<V>(cluster, &base, before, gradient, neighbours, show);
     }
 
     /// The same of a cluster of stress points, whose velocity gradient in the middle of the step is
@@ -102,7 +123,7 @@ impl<'a> MaterialUpdate<'a> {
         for c in 0..9 {
             before.velocity_gradient[c] = mean[c].0;
         }
-        self.advance(cluster, &base, before, gradient, neighbours, &());
+        self.advance::<F64x8>(cluster, &base, before, gradient, neighbours, &());
     }
 
     /// Adds to the specific energy of particle `i` (J/kg).
@@ -147,7 +168,7 @@ impl<'a> MaterialUpdate<'a> {
 
     /// Advances what was gathered by the velocity gradients in it.
     #[inline(always)]
-    fn advance(
+    fn advance<V: Lanes>(
         &self,
         cluster: &Cluster,
         base: &[usize; LANES],
@@ -162,12 +183,11 @@ impl<'a> MaterialUpdate<'a> {
             let strain = half * (xx[k] + yy[k] + zz[k]);
             before.density[k] *= (1.0 - strain) / (1.0 + strain);
         }
-        let indices = &cluster.receivers;
         let material = |k: usize| self.material_of_body[self.points.body[base[k]] as usize];
         // Empty lanes cost as much as others.
         let work = neighbours * LANES / cluster.lanes;
         let work = OWN_WORK + u32::try_from(work).unwrap_or(u32::MAX / 2);
-        let mut done = 0_u32;
+        let mut done = 0_u8;
         for k in 0..cluster.lanes {
             if done >> k & 1 == 1 {
                 continue;
@@ -175,14 +195,24 @@ impl<'a> MaterialUpdate<'a> {
             let own = material(k);
             let mut after = before;
             self.materials[own].update(&mut after, self.dt);
+            let mut lanes = 0_u8;
             for lane in k..cluster.lanes {
                 if material(lane) == own {
-                    done |= 1 << lane;
+                    lanes |= 1 << lane;
                     self.store(base[lane], lane, &after, gradient, work);
-                    // SAFETY: the place belongs to this cluster alone, as its particle does.
-                    unsafe { show.show(&before, &after, lane, base[lane], indices[lane] as usize) };
                 }
             }
+            done |= lanes;
+            let updated = Updated {
+                before: &before,
+                after: &after,
+                shear_modulus: self.materials[own].strength.shear_modulus(),
+                lanes,
+                particles: base,
+                indices: &cluster.receivers,
+            };
+            // SAFETY: the places belong to this cluster alone, as its particles do.
+            unsafe { show.show::<V>(&updated) };
         }
     }
 

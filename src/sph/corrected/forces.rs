@@ -2,8 +2,8 @@
 
 use super::add_moment;
 use crate::numerics::kernel::PairScale;
-use crate::numerics::lane_matrix::{FULL, along, full};
-use crate::numerics::lanes::{F64x8, LANES, Lanes};
+use crate::numerics::lane_matrix::{FULL, along, dot, full};
+use crate::numerics::lanes::{F64x8, LANES, Lanes, store_all};
 use crate::numerics::matrix;
 use crate::sph::momentum::{Forces, Momentum, PairStress, Viscous};
 use crate::sph::neighbourhood::{Neighbourhood, gather, gather3, records};
@@ -66,7 +66,7 @@ impl PairStress for CorrectedRecord {
             let factor = pair.separation.inverse.mul(volume).mul(pair.kernel.slope);
             add_moment(&mut moment, &pair.separation.r, factor);
         }
-        let moment = moment.map(V::store);
+        let moment = store_all(&moment);
         let mut couple = [F64x8([0.0; LANES]); 3];
         for (k, &place) in around.receivers.iter().enumerate() {
             let volume = around.sources.records[place as usize].volume;
@@ -108,8 +108,12 @@ impl PairStress for CorrectedRecord {
             let state = &sums.stresses[pair.index];
             let shown = sums.terms.record::<TERMS>(pair.index);
             let r = separation.r;
-            let against = |a: usize| velocity[a].sub(V::splat(source.velocity[a]));
-            let v = [against(0), against(1), against(2)];
+            let mut v = velocity;
+            let mut bend = hourglass;
+            for a in 0..3 {
+                v[a] = v[a].sub(V::splat(source.velocity[a]));
+                bend[a] = bend[a].sub(V::splat(state.hourglass[a]));
+            }
             let now = viscous.pair(
                 &terms,
                 (separation, kernel.h),
@@ -123,10 +127,10 @@ impl PairStress for CorrectedRecord {
             // Viscosity strains by the plain relative velocity, stress does by L.
             let lost = zero.sub(pi.mul(now.approach));
             // Hourglass displacements against each other pull or push along the pair.
-            let against = |a: usize| hourglass[a].sub(V::splat(state.hourglass[a]));
-            let bent = r[2].mul_add(against(2), r[1].mul_add(against(1), r[0].mul(against(0))));
-            let pull = bent.mul(separation.inverse).mul(separation.inverse);
-            let closing = r[2].mul_add(v[2], r[1].mul_add(v[1], r[0].mul(v[0])));
+            let pull = dot(&r, &bend)
+                .mul(separation.inverse)
+                .mul(separation.inverse);
+            let closing = dot(&r, &v);
             let mut lost = pull.mul_add(closing, lost);
             let central = pull.sub(pi);
             let mut push = [central, central, central, zero, zero, zero];
@@ -164,13 +168,16 @@ impl PairStress for CorrectedRecord {
                 acceleration[a] = traction[a].mul_add(weight, acceleration[a]);
             }
         }
+        for a in 0..3 {
+            acceleration[a] = acceleration[a].mul(specific_volume);
+        }
         Forces {
-            acceleration: acceleration.map(|a| a.mul(specific_volume).store()),
+            acceleration: store_all(&acceleration),
             power: zero
                 .sub(power.mul(V::splat(0.5)).mul(specific_volume))
                 .store(),
             approach: zero.sub(fastest).store(),
-            correction: terms.correction().map(V::store),
+            correction: store_all(&terms.correction()),
         }
     }
 }

@@ -67,19 +67,19 @@ impl SignalSpeed for Conventional {
 struct PlainGradient<'a>(ShowStress<'a>);
 
 impl Gradient for PlainGradient<'_> {
-    type Show<'b>
+    type Show<'b, S: PairScale>
         = &'b ShowStress<'b>
     where
         Self: 'b;
 
     #[inline(always)]
-    fn of<V: Lanes, S: PairScale>(
-        &self,
+    fn of<'b, V: Lanes, S: PairScale>(
+        &'b self,
         _: &Cluster,
         among: Among,
-        around: Neighbourhood<S>,
+        around: Neighbourhood<'b, S>,
         _: impl FnOnce() -> u8,
-    ) -> ([F64x8; 9], &ShowStress<'_>) {
+    ) -> ([F64x8; 9], &'b ShowStress<'b>) {
         let gradient = if among.moving {
             VelocityGradient { around }.run::<V>()
         } else {

@@ -5,16 +5,17 @@ use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
 use crate::domain::Mirrors;
-use crate::material::{Material, PointBatch};
+use crate::material::PointBatch;
 use crate::model::Case;
 use crate::neighbours::{Among, Cluster, Lists};
 use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
-use crate::numerics::lanes::{F64x8, Lanes};
+use crate::numerics::lane_matrix::full;
+use crate::numerics::lanes::{F64x8, LANES, Lanes, load_all, read_all, store_all};
 use crate::particles::{ParticleStore, Scatter, material_points};
-use crate::sph::corrected::{CorrectedGradient, CorrectedRecord, Correction};
+use crate::sph::corrected::{self, CorrectedGradient, CorrectedRecord, Correction};
 use crate::sph::hourglass;
-use crate::sph::material_update::Show;
+use crate::sph::material_update::{Show, Updated};
 use crate::sph::neighbourhood::Neighbourhood;
 use crate::sph::signal::{SignalSpeed, Signals};
 use crate::sph::step::{Side, Step};
@@ -51,9 +52,6 @@ impl Formulation for Corrected {
             dimension: sums.dimension,
             dt: step.dt,
             hourglass: self.hourglass,
-            materials: &sums.materials,
-            material_of_body: &sums.material_of_body,
-            body: &particles.body,
             displacement: Scatter::new(&mut particles.hourglass_displacement),
             stress: Scatter::new(&mut particles.pair_stress),
             records: Scatter::new(&mut self.records),
@@ -103,87 +101,136 @@ struct CorrectedGradients<'a> {
     dimension: usize,
     dt: f64,
     hourglass: f64,
-    materials: &'a [Material],
-    material_of_body: &'a [usize],
-    body: &'a [u32],
     displacement: Scatter<'a, [f64; 3]>,
     stress: Scatter<'a, [f64; 9]>,
     records: Scatter<'a, CorrectedRecord>,
 }
 
 impl Gradient for CorrectedGradients<'_> {
-    type Show<'b>
-        = ShowCorrected<'b>
+    type Show<'b, S: PairScale>
+        = ShowCorrected<'b, S>
     where
         Self: 'b;
 
     #[inline(always)]
-    fn of<V: Lanes, S: PairScale>(
-        &self,
+    fn of<'b, V: Lanes, S: PairScale>(
+        &'b self,
         _: &Cluster,
-        _: Among,
-        around: Neighbourhood<S>,
+        among: Among,
+        around: Neighbourhood<'b, S>,
         failed: impl FnOnce() -> u8,
-    ) -> ([F64x8; 9], ShowCorrected<'_>) {
-        let corrected = CorrectedGradient {
+    ) -> ([F64x8; 9], ShowCorrected<'b, S>) {
+        let sums = CorrectedGradient {
             around,
             dimension: self.dimension,
             plain: failed(),
-        }
-        .run::<V>();
+        };
+        let corrected = if among.moving {
+            sums.run::<V>()
+        } else {
+            // No relative velocity: the sums would be this, and nobody may need the correction.
+            corrected::Corrected::AT_REST
+        };
         let show = ShowCorrected {
             target: self,
+            is_known: among.moving,
             rest: corrected.rest,
             correction: corrected.correction,
+            sums,
         };
         (corrected.gradient, show)
     }
 }
 
 /// Shows the stresses of a cluster between their corrections.
-struct ShowCorrected<'a> {
+struct ShowCorrected<'a, S> {
     target: &'a CorrectedGradients<'a>,
+    /// Whether the correction is known.
+    is_known: bool,
     rest: [F64x8; 3],
     correction: Correction,
+    sums: CorrectedGradient<'a, S>,
 }
 
-impl Show for ShowCorrected<'_> {
+impl<S: PairScale> Show for ShowCorrected<'_, S> {
     #[inline(always)]
-    unsafe fn show(
-        &self,
-        before: &PointBatch,
-        after: &PointBatch,
-        k: usize,
-        i: usize,
-        index: usize,
-    ) {
-        let target = self.target;
-        let s = |c: usize| after.deviatoric_stress[c][k];
-        let deviator = [s(0), s(1), s(2), s(3), s(4), s(5)];
-        let stress = self.correction.stress(k, after.pressure[k], &deviator);
-        let material = &target.materials[target.material_of_body[target.body[i] as usize]];
-        let shear_modulus = material.strength.shear_modulus();
-        // SAFETY: by the contract of this function.
-        let displacement = unsafe { target.displacement.slot(i) };
-        if shear_modulus > 0.0 {
-            let plastic = after.plastic_strain[k] - before.plastic_strain[k];
-            let gradient =
-                [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|c: usize| after.velocity_gradient[c][k]);
-            let rest = [0, 1, 2].map(|a: usize| self.rest[a].0[k]);
-            let kept = if after.damage[k] < 1.0 {
-                hourglass::kept(&deviator, 3.0 * shear_modulus * plastic)
-            } else {
-                0.0
-            };
-            *displacement =
-                hourglass::advance(displacement, &rest, &gradient, target.dt).map(|w| w * kept);
+    unsafe fn show<V: Lanes>(&self, points: &Updated) {
+        let (target, after) = (self.target, points.after);
+        let deviator: [V; 6] = read_all(&after.deviatoric_stress);
+        let pressure = V::read(&after.pressure);
+        let mut sigma = full(&deviator);
+        for a in 0..3 {
+            sigma[4 * a] = sigma[4 * a].sub(pressure);
         }
-        let state = [after.density[k], after.sound_speed[k]];
-        let record = CorrectedRecord::new(&stress, displacement, target.hourglass, state);
-        // SAFETY: by the contract of this function.
-        unsafe {
-            *target.stress.slot(i) = stress;
-            *target.records.slot(index) = record;
+        let stress = if self.is_known {
+            self.correction.apply(&sigma)
+        } else if is_free(after) {
+            [V::splat(0.0); 9]
+        } else {
+            self.sums.run::<V>().correction.apply(&sigma)
+        };
+        let stress = store_all(&stress);
+        if points.shear_modulus > 0.0 {
+            // SAFETY: by the contract of this function.
+            unsafe { self.bend::<V>(points, &deviator) };
         }
+        points.each(|k, i, index| {
+            let mut own = [0.0; 9];
+            for c in 0..9 {
+                own[c] = stress[c].0[k];
+            }
+            let state = [after.density[k], after.sound_speed[k]];
+            // SAFETY: by the contract of this function.
+            unsafe {
+                let displacement = target.displacement.slot(i);
+                *target.stress.slot(i) = own;
+                *target.records.slot(index) =
+                    CorrectedRecord::new(&own, displacement, target.hourglass, state);
+            }
+        });
     }
+}
+
+impl<S: PairScale> ShowCorrected<'_, S> {
+    /// Advances hourglass displacements.
+    ///
+    /// # Safety
+    /// No other thread may read or write those of these particles.
+    #[inline(always)]
+    unsafe fn bend<V: Lanes>(&self, points: &Updated, deviator: &[V; 6]) {
+        let (target, before, after) = (self.target, points.before, points.after);
+        let mut old = [[0.0; LANES]; 3];
+        let mut intact = [1.0; LANES];
+        for k in 0..LANES {
+            // SAFETY: by the contract of this function.
+            let own = unsafe { *target.displacement.slot(points.particles[k]) };
+            for a in 0..3 {
+                old[a][k] = own[a];
+            }
+            if after.damage[k] >= 1.0 {
+                intact[k] = 0.0;
+            }
+        }
+        let plastic = V::read(&after.plastic_strain).sub(V::read(&before.plastic_strain));
+        let flow = plastic.mul(V::splat(3.0 * points.shear_modulus));
+        let kept = hourglass::kept(deviator, flow).mul(V::read(&intact));
+        let new = hourglass::advance(
+            &read_all(&old),
+            &load_all(&self.rest),
+            &read_all(&after.velocity_gradient),
+            V::splat(target.dt),
+        );
+        let new = [new[0].mul(kept), new[1].mul(kept), new[2].mul(kept)];
+        let new: [F64x8; 3] = store_all::<V, 3>(&new);
+        points.each(|k, i, _| {
+            // SAFETY: by the contract of this function.
+            unsafe { *target.displacement.slot(i) = [new[0].0[k], new[1].0[k], new[2].0[k]] };
+        });
+    }
+}
+
+/// Whether no point bears stress.
+#[inline(always)]
+fn is_free(after: &PointBatch) -> bool {
+    after.pressure == [0.0; LANES] && after.deviatoric_stress == [[0.0; LANES]; 6]
 }

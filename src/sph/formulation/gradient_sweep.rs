@@ -15,20 +15,20 @@ use crate::sph::sums::{Sums, sources, with_scale};
 /// How a formulation makes velocity gradients.
 pub(super) trait Gradient: Sync {
     /// What shows the stresses of a cluster.
-    type Show<'a>: Show
+    type Show<'a, S: PairScale>: Show
     where
         Self: 'a;
 
     /// Velocity gradients (1/s, row-major) of the receivers of a cluster, `around` which its
     /// neighbours stand, and what is to show their stresses; `failed` tells which receivers had
     /// failed before this step (bit k is lane k).
-    fn of<V: Lanes, S: PairScale>(
-        &self,
+    fn of<'a, V: Lanes, S: PairScale>(
+        &'a self,
         cluster: &Cluster,
         among: Among,
-        around: Neighbourhood<S>,
+        around: Neighbourhood<'a, S>,
         failed: impl FnOnce() -> u8,
-    ) -> ([F64x8; 9], Self::Show<'_>);
+    ) -> ([F64x8; 9], Self::Show<'a, S>);
 }
 
 /// The sweep over all clusters, after a step `dt` (s).
@@ -67,7 +67,7 @@ impl<S: PairScale, G: Gradient> Vectorised for GradientChunk<'_, S, G> {
             let update = self.update;
             let failed = || update.failed(cluster);
             let (gradient, show) = self.gradient.of::<V, S>(cluster, among, around, failed);
-            update.apply(cluster, &gradient, neighbours.len(), &show);
+            update.apply::<V>(cluster, &gradient, neighbours.len(), &show);
         }
     }
 }

@@ -111,19 +111,19 @@ struct NormalisedGradients<'a> {
 }
 
 impl Gradient for NormalisedGradients<'_> {
-    type Show<'b>
+    type Show<'b, S: PairScale>
         = &'b ShowStress<'b>
     where
         Self: 'b;
 
     #[inline(always)]
-    fn of<V: Lanes, S: PairScale>(
-        &self,
+    fn of<'b, V: Lanes, S: PairScale>(
+        &'b self,
         cluster: &Cluster,
         _: Among,
-        around: Neighbourhood<S>,
+        around: Neighbourhood<'b, S>,
         _: impl FnOnce() -> u8,
-    ) -> ([F64x8; 9], &ShowStress<'_>) {
+    ) -> ([F64x8; 9], &'b ShowStress<'b>) {
         let sums = NormalisedGradient {
             around,
             dimension: self.dimension,

@@ -1,10 +1,10 @@
 //! Records of the stress of particles and images.
 
 use crate::domain::Mirrors;
-use crate::material::PointBatch;
 use crate::neighbours::Lists;
+use crate::numerics::lanes::Lanes;
 use crate::particles::{ParticleStore, Scatter};
-use crate::sph::material_update::Show;
+use crate::sph::material_update::{Show, Updated};
 use crate::sph::momentum::StressRecord;
 use crate::sph::step::Side;
 use crate::sph::sums::show_images;
@@ -20,16 +20,19 @@ impl<'a> ShowStress<'a> {
 
 impl Show for &ShowStress<'_> {
     #[inline(always)]
-    unsafe fn show(&self, _: &PointBatch, after: &PointBatch, k: usize, _: usize, index: usize) {
-        let s = |c: usize| after.deviatoric_stress[c][k];
-        let record = StressRecord::new(
-            after.pressure[k],
-            &[s(0), s(1), s(2), s(3), s(4), s(5)],
-            after.density[k],
-            after.sound_speed[k],
-        );
-        // SAFETY: by the contract of this function.
-        unsafe { *self.0.slot(index) = record };
+    unsafe fn show<V: Lanes>(&self, points: &Updated) {
+        let after = points.after;
+        points.each(|k, _, index| {
+            let s = |c: usize| after.deviatoric_stress[c][k];
+            let record = StressRecord::new(
+                after.pressure[k],
+                &[s(0), s(1), s(2), s(3), s(4), s(5)],
+                after.density[k],
+                after.sound_speed[k],
+            );
+            // SAFETY: by the contract of this function.
+            unsafe { *self.0.slot(index) = record };
+        });
     }
 }
 
