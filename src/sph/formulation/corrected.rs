@@ -189,6 +189,11 @@ impl<S: PairScale> Show for ShowCorrected<'_, S> {
             }
         });
     }
+
+    unsafe fn show_rigid(&self, i: usize) {
+        // SAFETY: by the contract of this function.
+        unsafe { *self.target.stress.slot(i) = [0.0; 9] };
+    }
 }
 
 impl<S: PairScale> ShowCorrected<'_, S> {
