@@ -5,13 +5,15 @@ use crate::domain::Mirrors;
 use crate::model::{Case, SphForm};
 use crate::neighbours::Lists;
 use crate::numerics::kernel::Kernel;
-use crate::numerics::vector::{minus, norm};
+use crate::numerics::vector::{dot, minus, norm};
 use crate::numerics::virial::Virial;
 use crate::particles::ParticleStore;
 
 /// Forces of stresses after a step, while lists and halo are still those of that step.
 pub struct StressForces<'a> {
     form: SphForm,
+    /// Stiffness ξ of the hourglass control.
+    hourglass: f64,
     kernel: Kernel,
     particles: &'a ParticleStore,
     lists: &'a Lists,
@@ -23,6 +25,7 @@ impl<'a> StressForces<'a> {
     pub fn new(case: &Case, particles: &'a ParticleStore, lists: &'a Lists) -> Self {
         Self {
             form: case.sph.form,
+            hourglass: case.sph.hourglass,
             kernel: Kernel::new(case.dimension),
             particles,
             lists,
@@ -60,9 +63,10 @@ impl<'a> StressForces<'a> {
             }
             let their = self.shown(other);
             let weights = own.weight * their.weight * slope / distance;
+            let pull = dot(&minus(&own.hourglass, &their.hourglass), &r) / (distance * distance);
             let force = std::array::from_fn(|a| {
                 let row = |b: usize| (own.stress[3 * a + b] + their.stress[3 * a + b]) * r[b];
-                weights * (row(0) + row(1) + row(2))
+                weights * (row(0) + row(1) + row(2) + pull * r[a])
             });
             virial.add(&force, &r.map(|x| 0.5 * x));
         }
@@ -70,16 +74,21 @@ impl<'a> StressForces<'a> {
     }
 
     /// What a particle or image brings into the force `w_i w_j (Q_i + Q_j) ∇W_ij`: of conventional
-    /// SPH `w = m` and `Q = σ/ρ²`, of the corrected form `w = V` and `Q = A σ B`.
+    /// SPH `w = m` and `Q = σ/ρ²`, of the corrected form `w = V` and `Q = A σ B`, with what holds
+    /// hourglass displacements.
     fn shown(&self, place: u32) -> Shown {
         let image = self.lists.images()[place as usize];
         let (base, code) = (image.base(), image.code());
         let motion = &self.lists.motion()[place as usize];
         let particles = self.particles;
         if self.form == SphForm::Corrected {
+            let (density, sound) = (particles.density[base], particles.sound_speed[base]);
+            let modulus = self.hourglass * density * sound * sound;
+            let displacement = &particles.hourglass_displacement[base];
             return Shown {
                 weight: motion.volume,
                 stress: Mirrors::reflect_tensor(&particles.pair_stress[base], code),
+                hourglass: Mirrors::reflect_vector(displacement, code).map(|w| modulus * w),
             };
         }
         let [xx, yy, zz, xy, xz, yz] = Mirrors::reflect_symmetric(&stress(particles, base), code);
@@ -87,6 +96,7 @@ impl<'a> StressForces<'a> {
         Shown {
             weight: motion.mass,
             stress: [xx, xy, xz, xy, yy, yz, xz, yz, zz].map(|s| s * scale),
+            hourglass: [0.0; 3],
         }
     }
 }
@@ -95,6 +105,7 @@ impl<'a> StressForces<'a> {
 struct Shown {
     weight: f64,
     stress: [f64; 9],
+    hourglass: [f64; 3],
 }
 
 /// The stress of a particle's material (Pa), tension positive.

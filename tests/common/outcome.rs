@@ -8,7 +8,7 @@ use whipple::material::{AfterSpall, Spall};
 use whipple::model::{
     Case, ContactDirection, ContactMode, Overlap, Resistance, SmoothingLength, SphForm,
 };
-use whipple::particles::{FieldInfo, Life, rows as fields};
+use whipple::particles::{FieldInfo, HaloPhase, Life, rows as fields};
 use whipple::step::Simulation;
 
 use super::sphere_on_plate;
@@ -33,7 +33,10 @@ pub fn rows(simulation: &Simulation) -> BTreeMap<u64, Vec<u8>> {
     for slot in 0..particles.owned() {
         let row: &mut Vec<u8> = rows.entry(particles.id[slot]).or_default();
         assert!(row.is_empty(), "an id twice");
-        let seen = |field: &FieldInfo| field.life == Life::State || field.is_shown();
+        // What is measured for a snapshot alone is in the tests of whole programs.
+        let steps = |field: &FieldInfo| !field.halo.contains(HaloPhase::SHOWN);
+        let seen =
+            |field: &FieldInfo| field.life == Life::State || field.is_shown() && steps(field);
         for field in fields(seen) {
             let size = field.kind.bytes();
             let bytes = particles.bytes_or_zeros(field);
