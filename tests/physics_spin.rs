@@ -15,12 +15,16 @@ const SPIN: f64 = 25_000.0;
 /// A steel rod 40 mm long and 8 mm thick.
 fn rod(dimension: usize, spacing: f64, lattice: &str, more: &[&str]) -> Simulation {
     let (lower, upper, spin) = if dimension == 2 {
-        ("\"-20 mm\", \"-4 mm\"", "\"20 mm\", \"4 mm\"", "25000")
+        (
+            "\"-20 mm\", \"-4 mm\"",
+            "\"20 mm\", \"4 mm\"",
+            "\"25000 rad/s\"",
+        )
     } else {
         (
             "\"-20 mm\", \"-4 mm\", \"-4 mm\"",
             "\"20 mm\", \"4 mm\", \"4 mm\"",
-            "0, 0, 25000",
+            "0, 0, \"25000 rad/s\"",
         )
     };
     let more = more.join("\n");
@@ -161,18 +165,17 @@ fn mean(all: &[Seen], of: fn(&Seen) -> f64) -> f64 {
     all.iter().map(of).sum::<f64>() / count
 }
 
-/// Looks through the third and the tenth turn.
-const THIRD_AND_TENTH: [f64; 10] = [2.2, 2.4, 2.6, 2.8, 3.0, 9.2, 9.4, 9.6, 9.8, 10.0];
-
 fn spins_on(lattice: &str) {
     let mut s = rod(2, 1.0, lattice, &[]);
-    let all = turn(&mut s, &THIRD_AND_TENTH);
-    let (third, tenth) = all.split_at(5);
+    // Many looks, since a rod rings along itself seventeen times a turn.
+    let looks = |turn: f64| (1..=50_i32).map(move |k| turn - 1.0 + 0.02 * f64::from(k));
+    let all = turn(&mut s, &looks(3.0).chain(looks(10.0)).collect::<Vec<_>>());
+    let (third, tenth) = all.split_at(50);
     let axial = mean(tenth, |seen| seen.axial);
     let shear = [third, tenth].map(|all| mean(all, |seen| seen.shear));
     println!("{lattice}: axial {axial:.4}, shear {shear:?} Pa");
     assert!((axial - 1.0).abs() < 0.02, "{axial}");
-    assert!(shear[1] <= 1.05 * shear[0] && shear[1] < 8e6, "{shear:?}");
+    assert!(shear[1] <= shear[0] && shear[1] < 8e6, "{shear:?}");
 }
 
 /// Ten turns: the stress along the rod is what holds it together, and shear does not grow.
@@ -183,13 +186,13 @@ fn a_rod_spins_on() {
     spins_on("hexagonal");
 }
 
-/// Two turns in three dimensions, at which the rod has rung out little.
+/// Two turns in three dimensions: the rod still rings, but shear does not grow.
 #[test]
-#[ignore = "slow"]
 fn a_rod_spins_in_three_dimensions() {
     let mut s = rod(3, 2.0, "cubic", &[]);
     let all = turn(&mut s, &[0.5, 1.0, 1.5, 2.0]);
-    assert!(all.iter().all(|seen| seen.shear < 3e7), "{all:?}");
+    assert!(all.iter().all(|seen| seen.shear < 2e7), "{all:?}");
+    assert!(all[3].shear < all[0].shear, "{all:?}");
 }
 
 /// Without hourglass control tension bends the rows of a cubic lattice into saws; with it they stay
@@ -197,10 +200,15 @@ fn a_rod_spins_in_three_dimensions() {
 #[test]
 fn tension_bends_rows_that_nothing_holds() {
     let end = |hourglass: &str| {
-        let all = turn(&mut rod(2, 1.0, "cubic", &[hourglass]), &[0.5, 1.0, 1.5]);
-        [all[0].teeth, all[2].teeth]
+        let all = turn(&mut rod(2, 1.0, "cubic", &[hourglass]), &[0.5, 1.0]);
+        [all[0].teeth, all[1].teeth]
     };
     let (free, held) = (end("hourglass = 0.0"), end("hourglass = 0.1"));
     println!("teeth: free {free:?} m, held {held:?} m");
-    assert!(free[1] > 3.0 * held[1], "{free:?} {held:?}");
+    // Measured: 46 and .06 µm.
+    assert!(free[1] > 100.0 * held[1], "{free:?} {held:?}");
+    assert!(
+        free[1] > 5.0 * free[0] && held[1] < held[0],
+        "{free:?} {held:?}"
+    );
 }
