@@ -29,28 +29,12 @@ pub(super) struct Motion<V> {
     pub(super) rest: [V; 3],
 }
 
-/// The motion whose strain rate D is that of the `corrected` gradient and whose spin W is that of
-/// the neighbourhood: `W M + M W` is twice the antisymmetric part of `L₀ − D M`, so that the angular
-/// velocity is `(tr M I − M)⁻¹` times its axial vector, as an inertia to an angular momentum.
-/// Neighbours are expected to move by `W + (L₀ − W M) B`.
+/// The spin W of a neighbourhood (1/s) whose strain rate is D: `W M + M W` is twice the antisymmetric
+/// part of `L₀ − D M`, so that the angular velocity is `(tr M I − M)⁻¹` times its axial vector, as an
+/// inertia to an angular momentum.
 #[inline(always)]
-pub(super) fn motion<V: Lanes>(
-    corrected: &[V; 9],
-    plain: &PlainSums<V>,
-    inner: &Symmetric<V>,
-) -> Motion<V> {
-    let half = V::splat(0.5);
-    let mean = |a: usize, b: usize| corrected[a].add(corrected[b]).mul(half);
-    let strain = [
-        corrected[0],
-        corrected[4],
-        corrected[8],
-        mean(1, 3),
-        mean(2, 6),
-        mean(5, 7),
-    ];
-    let moment = full(&plain.moment);
-    let explained = times(&full(&strain), &moment);
+fn spin<V: Lanes>(strain: &[V; 9], plain: &PlainSums<V>) -> [V; 9] {
+    let explained = times(strain, &full(&plain.moment));
     let left = |a: usize| plain.gradient[a].sub(explained[a]);
     let axial = [
         left(7).sub(left(5)),
@@ -59,33 +43,45 @@ pub(super) fn motion<V: Lanes>(
     ];
     let [xx, yy, zz, xy, xz, yz] = plain.moment;
     let zero = V::splat(0.0);
+    let minus = |c: V| zero.sub(c);
     let inertia = [
         yy.add(zz),
         xx.add(zz),
         xx.add(yy),
-        zero.sub(xy),
-        zero.sub(xz),
-        zero.sub(yz),
+        minus(xy),
+        minus(xz),
+        minus(yz),
     ];
     let [x, y, z] = along(&full(&faded(&inertia, SPIN_FADE).inverse), &axial);
-    let spin = [
-        zero,
-        zero.sub(z),
-        y,
-        z,
-        zero,
-        zero.sub(x),
-        zero.sub(y),
-        x,
-        zero,
-    ];
-    let turned = times(&spin, &moment);
+    [zero, minus(z), y, z, zero, minus(x), minus(y), x, zero]
+}
+
+/// The motion whose strain rate D is that of the `corrected` gradient and whose [`spin`] W is that of
+/// the neighbourhood. Neighbours are expected to move by `W + (L₀ − W M) B`.
+#[inline(always)]
+pub(super) fn motion<V: Lanes>(
+    corrected: &[V; 9],
+    plain: &PlainSums<V>,
+    inner: &Symmetric<V>,
+) -> Motion<V> {
+    let half = V::splat(0.5);
+    let mean = |a: usize, b: usize| corrected[a].add(corrected[b]).mul(half);
+    let strain = full(&[
+        corrected[0],
+        corrected[4],
+        corrected[8],
+        mean(1, 3),
+        mean(2, 6),
+        mean(5, 7),
+    ]);
+    let spin = spin(&strain, plain);
+    let turned = times(&spin, &full(&plain.moment));
     let mut stretch = plain.gradient;
     for c in 0..9 {
         stretch[c] = stretch[c].sub(turned[c]);
     }
     let mut expected = times(&stretch, &full(inner));
-    let mut gradient = full(&strain);
+    let mut gradient = strain;
     for c in 0..9 {
         expected[c] = expected[c].add(spin[c]);
         gradient[c] = gradient[c].add(spin[c]);
