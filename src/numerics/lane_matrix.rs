@@ -1,6 +1,6 @@
-//! Matrices of three rows in the lanes of vectors, row-major where nothing else is said.
+//! Arrays and matrices of three rows in the lanes of vectors, row-major where nothing else is said.
 
-use super::lanes::Lanes;
+use super::lanes::{F64x8, LANES, Lanes};
 
 /// A symmetric matrix in each lane; components xx, yy, zz, xy, xz, yz.
 pub type Symmetric<V> = [V; 6];
@@ -126,4 +126,38 @@ pub fn faded<V: Lanes>(m: &Symmetric<V>, fade: f64) -> Faded<V> {
         inverse: product(&inverse, &third),
         one: product(&inverse, &fourth),
     }
+}
+
+/// Vectors from aligned memory. (A loop, since what array methods call may be compiled apart from
+/// the vector code.)
+#[inline(always)]
+#[must_use]
+pub fn load_all<V: Lanes, const N: usize>(values: &[F64x8; N]) -> [V; N] {
+    let mut all = [V::splat(0.0); N];
+    for c in 0..N {
+        all[c] = V::load(&values[c]);
+    }
+    all
+}
+
+/// Vectors from memory anywhere.
+#[inline(always)]
+#[must_use]
+pub fn read_all<V: Lanes, const N: usize>(values: &[[f64; LANES]; N]) -> [V; N] {
+    let mut all = [V::splat(0.0); N];
+    for c in 0..N {
+        all[c] = V::read(&values[c]);
+    }
+    all
+}
+
+/// Vectors to memory.
+#[inline(always)]
+#[must_use]
+pub fn store_all<V: Lanes, const N: usize>(values: &[V; N]) -> [F64x8; N] {
+    let mut all = [F64x8([0.0; LANES]); N];
+    for c in 0..N {
+        all[c] = values[c].store();
+    }
+    all
 }

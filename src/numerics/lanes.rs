@@ -56,40 +56,6 @@ pub trait Lanes: Copy {
     fn less_than(self, other: Self) -> u8;
 }
 
-/// Vectors from aligned memory. (A loop, since what array methods call may be compiled apart from
-/// the vector code.)
-#[inline(always)]
-#[must_use]
-pub fn load_all<V: Lanes, const N: usize>(values: &[F64x8; N]) -> [V; N] {
-    let mut all = [V::splat(0.0); N];
-    for c in 0..N {
-        all[c] = V::load(&values[c]);
-    }
-    all
-}
-
-/// Vectors from memory anywhere.
-#[inline(always)]
-#[must_use]
-pub fn read_all<V: Lanes, const N: usize>(values: &[[f64; LANES]; N]) -> [V; N] {
-    let mut all = [V::splat(0.0); N];
-    for c in 0..N {
-        all[c] = V::read(&values[c]);
-    }
-    all
-}
-
-/// Vectors to memory.
-#[inline(always)]
-#[must_use]
-pub fn store_all<V: Lanes, const N: usize>(values: &[V; N]) -> [F64x8; N] {
-    let mut all = [F64x8([0.0; LANES]); N];
-    for c in 0..N {
-        all[c] = values[c].store();
-    }
-    all
-}
-
 macro_rules! each_lane {
     ($k:ident => $value:expr) => {
         Self(std::array::from_fn(|$k| $value))

@@ -23,8 +23,8 @@ pub use forces::CorrectedRecord;
 use super::neighbourhood::Neighbourhood;
 use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
-use crate::numerics::lane_matrix::{Faded, between, faded};
-use crate::numerics::lanes::{F64x8, LANES, Lanes, load_all, store_all};
+use crate::numerics::lane_matrix::{Faded, between, faded, load_all, store_all};
+use crate::numerics::lanes::{F64x8, LANES, Lanes};
 use motion::{PlainSums, motion};
 
 /// e⁴ of the fade: at e = .28. Less gives isolated peaks of strain about edges, more leaves

@@ -2,8 +2,8 @@
 
 use super::add_moment;
 use crate::numerics::kernel::PairScale;
-use crate::numerics::lane_matrix::{FULL, along, dot, full};
-use crate::numerics::lanes::{F64x8, LANES, Lanes, store_all};
+use crate::numerics::lane_matrix::{FULL, along, dot, full, store_all};
+use crate::numerics::lanes::{F64x8, LANES, Lanes};
 use crate::numerics::matrix;
 use crate::sph::momentum::{Forces, Momentum, PairStress, Viscous};
 use crate::sph::neighbourhood::{Neighbourhood, gather, gather3, records};
