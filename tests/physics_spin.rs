@@ -63,19 +63,32 @@ fn see(s: &Simulation, first: &[[f64; 3]]) -> Seen {
     let p = &s.particles;
     let mut order: Vec<usize> = (0..p.owned()).collect();
     order.sort_by_key(|&i| p.id[i]);
+    // About the centre of mass: a hexagonal lattice does not fill the box evenly, so that the rod flies.
+    let centred = |all: &[[f64; 3]]| -> Vec<[f64; 3]> {
+        #[allow(clippy::cast_precision_loss, reason = "few particles")]
+        let count = all.len() as f64;
+        let mean = [0, 1, 2].map(|a: usize| all.iter().map(|x| x[a]).sum::<f64>() / count);
+        let from_mean = |x: &[f64; 3]| [0, 1, 2].map(|a: usize| x[a] - mean[a]);
+        all.iter().map(from_mean).collect()
+    };
+    let (position, velocity) = (
+        centred(&p.position[..p.owned()]),
+        centred(&p.velocity[..p.owned()]),
+    );
+    let first = &centred(first)[..];
     let (mut along, mut across, mut inertia, mut turning) = (0.0, 0.0, 0.0, 0.0);
     for (&i, from) in order.iter().zip(first) {
-        let x = &p.position[i];
+        let x = &position[i];
         along += from[0] * x[0] + from[1] * x[1];
         across += from[0] * x[1] - from[1] * x[0];
         inertia += x[0] * x[0] + x[1] * x[1];
-        turning += cross(x, &p.velocity[i])[2];
+        turning += cross(x, &velocity[i])[2];
     }
     let size = along.hypot(across);
     let (c, sn) = (along / size, across / size);
     let omega = turning / inertia;
     let local = |x: &[f64; 3]| [c * x[0] + sn * x[1], c * x[1] - sn * x[0], x[2]];
-    let place: Vec<[f64; 3]> = order.iter().map(|&i| local(&p.position[i])).collect();
+    let place: Vec<[f64; 3]> = order.iter().map(|&i| local(&position[i])).collect();
     // Half the length of an even rod with these particles' inertia. (A hexagonal lattice does not end where
     // the box does.)
     #[allow(clippy::cast_precision_loss, reason = "few particles")]
@@ -162,7 +175,7 @@ fn mean(all: &[Seen], of: fn(&Seen) -> f64) -> f64 {
     all.iter().map(of).sum::<f64>() / count
 }
 
-fn spins_on(lattice: &str, bound: f64) {
+fn spins_on(lattice: &str) {
     let mut s = rod(2, 1.0, lattice, &[]);
     // Many looks, since a rod rings along itself seventeen times a turn.
     let looks = |turn: f64| (1..=50_i32).map(move |k| turn - 1.0 + 0.02 * f64::from(k));
@@ -171,7 +184,7 @@ fn spins_on(lattice: &str, bound: f64) {
     let axial = mean(tenth, |seen| seen.axial);
     let shear = [third, tenth].map(|all| mean(all, |seen| seen.shear));
     println!("{lattice}: axial {axial:.4}, shear {shear:?} Pa");
-    assert!((axial - 1.0).abs() < bound, "{axial}");
+    assert!((axial - 1.0).abs() < 0.02, "{axial}");
     assert!(shear[1] <= shear[0] && shear[1] < 8e6, "{shear:?}");
 }
 
@@ -179,9 +192,8 @@ fn spins_on(lattice: &str, bound: f64) {
 #[test]
 #[ignore = "slow"]
 fn a_rod_spins_on() {
-    spins_on("cubic", 0.02);
-    // Measured: 1.044.
-    spins_on("hexagonal", 0.05);
+    spins_on("cubic");
+    spins_on("hexagonal");
 }
 
 /// Two turns in three dimensions: the rod still rings, but shear does not grow.
