@@ -7,9 +7,8 @@ use whipple::model::Vec3;
 use whipple::numerics::vector::cross;
 use whipple::step::Simulation;
 
-/// Half the length of the rod (m), density (kg/m³) and first angular velocity (1/s).
+/// Half the length of the rod (m), and its first angular velocity (1/s).
 const HALF: f64 = 0.02;
-const DENSITY: f64 = 7850.0;
 const SPIN: f64 = 25_000.0;
 
 /// A steel rod 40 mm long and 8 mm thick.
@@ -43,7 +42,7 @@ fn rod(dimension: usize, spacing: f64, lattice: &str, more: &[&str]) -> Simulati
 /// What is seen of a rod in its own frame.
 #[derive(Debug)]
 struct Seen {
-    /// Mean stress along the middle half of the rod over ½ ρω²(ℓ² − x²) there, of the stretched rod.
+    /// Mean stress along the middle half of the rod over ½ ρω²(ℓ² − x²) there, of the stretched rod's ρ and ℓ.
     axial: f64,
     /// Spread of the shear stress (Pa).
     shear: f64,
@@ -64,35 +63,46 @@ fn see(s: &Simulation, first: &[[f64; 3]]) -> Seen {
     let p = &s.particles;
     let mut order: Vec<usize> = (0..p.owned()).collect();
     order.sort_by_key(|&i| p.id[i]);
+    // About the centre of mass: a hexagonal lattice does not fill the box evenly, so that the rod flies.
+    let centred = |all: &[[f64; 3]]| -> Vec<[f64; 3]> {
+        #[allow(clippy::cast_precision_loss, reason = "few particles")]
+        let count = all.len() as f64;
+        let mean = [0, 1, 2].map(|a: usize| all.iter().map(|x| x[a]).sum::<f64>() / count);
+        let from_mean = |x: &[f64; 3]| [0, 1, 2].map(|a: usize| x[a] - mean[a]);
+        all.iter().map(from_mean).collect()
+    };
+    let (position, velocity) = (
+        centred(&p.position[..p.owned()]),
+        centred(&p.velocity[..p.owned()]),
+    );
+    let first = &centred(first)[..];
     let (mut along, mut across, mut inertia, mut turning) = (0.0, 0.0, 0.0, 0.0);
     for (&i, from) in order.iter().zip(first) {
-        let x = &p.position[i];
+        let x = &position[i];
         along += from[0] * x[0] + from[1] * x[1];
         across += from[0] * x[1] - from[1] * x[0];
         inertia += x[0] * x[0] + x[1] * x[1];
-        turning += cross(x, &p.velocity[i])[2];
+        turning += cross(x, &velocity[i])[2];
     }
     let size = along.hypot(across);
     let (c, sn) = (along / size, across / size);
     let omega = turning / inertia;
     let local = |x: &[f64; 3]| [c * x[0] + sn * x[1], c * x[1] - sn * x[0], x[2]];
-    let place: Vec<[f64; 3]> = order.iter().map(|&i| local(&p.position[i])).collect();
-    // The stretched rod ends half a spacing beyond its outermost particles.
-    let reach = |all: &[[f64; 3]]| all.iter().fold(0.0_f64, |most, x| most.max(x[0].abs()));
-    let end = HALF * reach(&place) / reach(first);
+    let place: Vec<[f64; 3]> = order.iter().map(|&i| local(&position[i])).collect();
+    // Half the length of an even rod with these particles' inertia. (A hexagonal lattice does not end where
+    // the box does.)
+    #[allow(clippy::cast_precision_loss, reason = "few particles")]
+    let count = order.len() as f64;
+    let end = (3.0 * place.iter().map(|x| x[0] * x[0]).sum::<f64>() / count).sqrt();
     let (mut axial, mut exact, mut shears) = (0.0, 0.0, Vec::new());
     for (k, &i) in order.iter().enumerate() {
         let [xx, yy, _, xy, _, _] = p.deviatoric_stress[i];
         shears.push(c * sn * (yy - xx) + (c * c - sn * sn) * xy);
         if first[k][0].abs() < 0.5 * HALF {
             axial += c * c * xx + sn * sn * yy + 2.0 * c * sn * xy - p.pressure[i];
-            // Mass is kept: the density of the rod along it falls as it gets longer.
-            let density = DENSITY * HALF / end;
-            exact += 0.5 * density * omega * omega * (end * end - place[k][0] * place[k][0]);
+            exact += 0.5 * p.density[i] * omega * omega * (end * end - place[k][0] * place[k][0]);
         }
     }
-    #[allow(clippy::cast_precision_loss, reason = "few particles")]
-    let count = shears.len() as f64;
     let mean = shears.iter().sum::<f64>() / count;
     let shear = (shears.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count).sqrt();
     Seen {
