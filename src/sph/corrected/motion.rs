@@ -7,6 +7,10 @@ use crate::numerics::lanes::Lanes;
 /// e⁴ of the spin, at e = .05: a lone pair does not tell how it turns about its own axis.
 const SPIN_FADE: f64 = 0.05 * 0.05 * 0.05 * 0.05;
 
+/// How often the spin takes up what the fade has left of it: the error of the share that it sees is
+/// raised to the third power.
+const SPIN_PASSES: usize = 2;
+
 /// What the first sweep sums over pairs.
 pub(super) struct PlainSums<V> {
     /// `L₀` (1/s).
@@ -52,7 +56,24 @@ fn spin<V: Lanes>(strain: &[V; 9], plain: &PlainSums<V>) -> [V; 9] {
         minus(xz),
         minus(yz),
     ];
-    let [x, y, z] = along(&full(&faded(&inertia, SPIN_FADE).inverse), &axial);
+    let inverse = full(&faded(&inertia, SPIN_FADE).inverse);
+    let inertia = full(&inertia);
+    let mut turn = along(&inverse, &axial);
+    for _ in 0..SPIN_PASSES {
+        let seen = along(&inertia, &turn);
+        let more = along(
+            &inverse,
+            &[
+                axial[0].sub(seen[0]),
+                axial[1].sub(seen[1]),
+                axial[2].sub(seen[2]),
+            ],
+        );
+        for a in 0..3 {
+            turn[a] = turn[a].add(more[a]);
+        }
+    }
+    let [x, y, z] = turn;
     [zero, minus(z), y, z, zero, minus(x), minus(y), x, zero]
 }
 
