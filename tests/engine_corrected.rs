@@ -40,7 +40,12 @@ fn spin(m: &Matrix, left: &Matrix) -> Matrix {
     let least = (inertia.pow(4) + Matrix::identity() * e4)
         .try_inverse()
         .unwrap();
-    (least * inertia.pow(3) * axial * (1.0 + e4)).cross_matrix()
+    let inverse = least * inertia.pow(3) * (1.0 + e4);
+    let mut turn = inverse * axial;
+    for _ in 0..2 {
+        turn += inverse * (axial - inertia * turn);
+    }
+    turn.cross_matrix()
 }
 
 fn check_sweeps<S: PairScale>(cloud: Cloud, scale: S) {
