@@ -325,29 +325,22 @@ impl Stack {
 
 /// Centre, half widths, round axes and radius of a shape (m).
 fn extent(shape: &Shape, dimension: usize) -> ([f64; 3], [f64; 3], [bool; 3], f64) {
-    let (centre, half, round, radius) = match *shape {
-        Shape::Box { lower, upper } => (
-            (lower + upper) * 0.5,
-            (upper - lower) * 0.5,
-            [false; 3],
-            f64::INFINITY,
-        ),
-        Shape::Sphere { centre, radius } | Shape::Shell { centre, radius, .. } => (
-            centre,
-            [radius; 3].into(),
-            [0, 1, 2].map(|a| a < dimension),
-            radius,
-        ),
+    let centre = shape.centre();
+    let (half, round, radius) = match *shape {
+        Shape::Box { lower, upper } => ((upper - lower) * 0.5, [false; 3], f64::INFINITY),
+        Shape::Sphere { radius, .. } | Shape::Shell { radius, .. } => {
+            ([radius; 3].into(), [0, 1, 2].map(|a| a < dimension), radius)
+        }
         Shape::Cylinder {
-            centre,
             axis,
             radius,
             length,
+            ..
         } => {
             let mut half = [radius; 3];
             half[axis.index()] = 0.5 * length;
             let round = [0, 1, 2].map(|a| a < dimension && a != axis.index());
-            (centre, half.into(), round, radius)
+            (half.into(), round, radius)
         }
     };
     let used = [0, 1, 2].map(|a| if a < dimension { centre[a] } else { 0.0 });

@@ -95,18 +95,6 @@ pub struct Corrected {
     pub correction: Correction,
 }
 
-impl Corrected {
-    /// No motion, and no correction.
-    pub const AT_REST: Self = Self {
-        gradient: [F64x8([0.0; LANES]); 9],
-        rest: [F64x8([0.0; LANES]); 3],
-        correction: Correction {
-            outer: [F64x8([0.0; LANES]); 6],
-            inner: [F64x8([0.0; LANES]); 6],
-        },
-    };
-}
-
 impl<S: PairScale> Vectorised for CorrectedGradient<'_, S> {
     type Output = Corrected;
 

@@ -8,6 +8,7 @@ use crate::numerics::kernel::Kernel;
 use crate::numerics::vector::{dot, minus, norm};
 use crate::numerics::virial::Virial;
 use crate::particles::ParticleStore;
+use crate::sph::corrected::CorrectedRecord;
 
 /// Forces of stresses after a step, while lists and halo are still those of that step.
 pub struct StressForces<'a> {
@@ -82,13 +83,11 @@ impl<'a> StressForces<'a> {
         let motion = &self.lists.motion()[place as usize];
         let particles = self.particles;
         if self.form == SphForm::Corrected {
-            let (density, sound) = (particles.density[base], particles.sound_speed[base]);
-            let modulus = self.hourglass * density * sound * sound;
-            let displacement = &particles.hourglass_displacement[base];
+            let record = CorrectedRecord::of_image(particles, (base, code), self.hourglass);
             return Shown {
                 weight: motion.volume,
-                stress: Mirrors::reflect_tensor(&particles.pair_stress[base], code),
-                hourglass: Mirrors::reflect_vector(displacement, code).map(|w| modulus * w),
+                stress: record.stress,
+                hourglass: record.hourglass,
             };
         }
         let [xx, yy, zz, xy, xz, yz] = Mirrors::reflect_symmetric(&stress(particles, base), code);

@@ -7,7 +7,7 @@ use crate::comm::Comm;
 use crate::domain::Mirrors;
 use crate::neighbours::{CHUNKS_AT_ONCE, Lists};
 use crate::numerics::kernel::Kernel;
-use crate::numerics::vector::{minus, norm};
+use crate::numerics::vector::{dot, minus, norm};
 use crate::particles::{HaloPhase, ParticleStore};
 use crate::sph::{StressForces, stress};
 
@@ -133,11 +133,11 @@ fn of_receivers<T: Send>(
 fn on_plane(tensor: &[f64; 6], n: &[f64; 3]) -> [f64; 6] {
     let [xx, yy, zz, xy, xz, yz] = *tensor;
     let t = [
-        xx * n[0] + xy * n[1] + xz * n[2],
-        xy * n[0] + yy * n[1] + yz * n[2],
-        xz * n[0] + yz * n[1] + zz * n[2],
+        dot(&[xx, xy, xz], n),
+        dot(&[xy, yy, yz], n),
+        dot(&[xz, yz, zz], n),
     ];
-    let normal = t[0] * n[0] + t[1] * n[1] + t[2] * n[2];
+    let normal = dot(&t, n);
     let part = |a: usize, b: usize| n[a] * t[b] + t[a] * n[b] - normal * (n[a] * n[b]);
     [
         part(0, 0),

@@ -1,10 +1,12 @@
 //! The second sweep: what particles show of their stress, and its forces.
 
 use super::add_moment;
+use crate::domain::Mirrors;
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lane_matrix::{FULL, along, dot, full, store_all};
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
 use crate::numerics::matrix;
+use crate::particles::ParticleStore;
 use crate::sph::momentum::{Forces, Momentum, PairStress, Viscous};
 use crate::sph::neighbourhood::{Neighbourhood, gather, gather3, records};
 use crate::sph::terms::{ARTIFICIAL_STRESS, SHAPED, TermSums};
@@ -45,6 +47,17 @@ impl CorrectedRecord {
             density,
             sound_speed,
         }
+    }
+
+    /// What the image `code` of particle `base` shows, with the stiffness ξ of hourglass displacements.
+    #[must_use]
+    pub fn of_image(particles: &ParticleStore, (base, code): (usize, u8), stiffness: f64) -> Self {
+        Self::new(
+            &Mirrors::reflect_tensor(&particles.pair_stress[base], code),
+            &Mirrors::reflect_vector(&particles.hourglass_displacement[base], code),
+            stiffness,
+            [particles.density[base], particles.sound_speed[base]],
+        )
     }
 }
 

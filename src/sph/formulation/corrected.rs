@@ -4,8 +4,7 @@
 use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
-use crate::domain::Mirrors;
-use crate::material::PointBatch;
+use crate::material::{FAILED, PointBatch};
 use crate::model::Case;
 use crate::neighbours::{Among, Cluster, Lists};
 use crate::numerics::dispatch::Vectorised;
@@ -13,7 +12,7 @@ use crate::numerics::kernel::PairScale;
 use crate::numerics::lane_matrix::{full, load_all, read_all, store_all};
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
 use crate::particles::{ParticleStore, Scatter, material_points};
-use crate::sph::corrected::{self, CorrectedGradient, CorrectedRecord, Correction};
+use crate::sph::corrected::{CorrectedGradient, CorrectedRecord, Correction};
 use crate::sph::hourglass;
 use crate::sph::material_update::{Show, Updated};
 use crate::sph::neighbourhood::Neighbourhood;
@@ -68,12 +67,7 @@ impl Formulation for Corrected {
     ) {
         let hourglass = self.hourglass;
         show_images(&mut self.records, particles, lists, side, |base, code| {
-            CorrectedRecord::new(
-                &Mirrors::reflect_tensor(&particles.pair_stress[base], code),
-                &Mirrors::reflect_vector(&particles.hourglass_displacement[base], code),
-                hourglass,
-                [particles.density[base], particles.sound_speed[base]],
-            )
+            CorrectedRecord::of_image(particles, (base, code), hourglass)
         });
         sums.terms.show(particles, lists, side);
         let set = sums.terms.set();
@@ -125,30 +119,34 @@ impl Gradient for CorrectedGradients<'_> {
             dimension: self.dimension,
             plain: failed(),
         };
-        let corrected = if among.moving {
-            sums.run::<V>()
+        let zero = F64x8([0.0; LANES]);
+        let (gradient, rest, correction) = if among.moving {
+            let corrected = sums.run::<V>();
+            (
+                corrected.gradient,
+                corrected.rest,
+                Some(corrected.correction),
+            )
         } else {
-            // No relative velocity: the sums would be this, and nobody may need the correction.
-            corrected::Corrected::AT_REST
+            // No relative velocity: the sums would be these, and nobody may need the correction.
+            ([zero; 9], [zero; 3], None)
         };
         let show = ShowCorrected {
             target: self,
-            is_known: among.moving,
-            rest: corrected.rest,
-            correction: corrected.correction,
+            rest,
+            correction,
             sums,
         };
-        (corrected.gradient, show)
+        (gradient, show)
     }
 }
 
 /// Shows the stresses of a cluster between their corrections.
 struct ShowCorrected<'a, S> {
     target: &'a CorrectedGradients<'a>,
-    /// Whether the correction is known.
-    is_known: bool,
     rest: [F64x8; 3],
-    correction: Correction,
+    /// Once it is known.
+    correction: Option<Correction>,
     sums: CorrectedGradient<'a, S>,
 }
 
@@ -162,8 +160,8 @@ impl<S: PairScale> Show for ShowCorrected<'_, S> {
         for a in 0..3 {
             sigma[4 * a] = sigma[4 * a].sub(pressure);
         }
-        let stress = if self.is_known {
-            self.correction.apply(&sigma)
+        let stress = if let Some(correction) = &self.correction {
+            correction.apply(&sigma)
         } else if is_free(after) {
             [V::splat(0.0); 9]
         } else {
@@ -212,7 +210,7 @@ impl<S: PairScale> ShowCorrected<'_, S> {
             for a in 0..3 {
                 old[a][k] = own[a];
             }
-            if after.damage[k] >= 1.0 {
+            if after.damage[k] >= FAILED {
                 intact[k] = 0.0;
             }
         }
