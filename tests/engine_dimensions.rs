@@ -6,17 +6,19 @@ use std::collections::BTreeMap;
 
 use common::outcome::{advance, every_option, start};
 use common::{SPACING, body, case, make_elastic, planes};
-use whipple::model::{Axis, Case, ContactMode, Overlap, Potential, Shape, SmoothingLength, Vec3};
+use whipple::model::{
+    Axis, Case, ContactMode, Overlap, Potential, Shape, SmoothingLength, SphForm, Vec3,
+};
 use whipple::step::Simulation;
 
-/// What the sums give a linear field on a cubic lattice at h = 1.3 Δp (see `engine_sph`).
+/// What the conventional sums give a linear field on a cubic lattice at h = 1.3 Δp (see `engine_sph`).
 const FACTORS: [f64; 3] = [
     1.022_373_166_205_665,
     1.010_542_957_253_393,
     0.993_483_699_944_107,
 ];
 
-/// A cube of twelve spacings, or what a dimension leaves of it.
+/// A cube of twelve spacings, or what a dimension leaves of it, in the conventional form.
 fn cube(dimension: usize) -> Case {
     let corner = 6.0 * SPACING * Vec3::new(1.0, 1.0, 1.0);
     let shape = Shape::Box {
@@ -29,6 +31,7 @@ fn cube(dimension: usize) -> Case {
         1.0,
     );
     make_elastic(&mut case);
+    case.sph.form = SphForm::Conventional;
     case
 }
 

@@ -307,8 +307,8 @@ fn a_block_rests_on_the_floor() {
         ));
         let weight = 1000.0 * 1e-4 * 1000.0;
         let (mut mean, mut count) = (0.0, 0);
-        run_with(&mut s, 4e-3, |s| {
-            if s.state.time > 2e-3 {
+        run_with(&mut s, 7e-3, |s| {
+            if s.state.time > 4e-3 {
                 mean += s.state.loads[0].force[1];
                 count += 1;
             }
@@ -364,8 +364,11 @@ fn bounce(floor: &str, courant: f64) -> (f64, f64) {
     (worst.energy_error, -s.state.totals.momentum[1] / momentum)
 }
 
-/// An elastic block thrown on a plane and on a rigid body: it comes back, and the energy error is
-/// of second order.
+/// The speed that a block of [`bounce`] leaves a plane with, of .125 mm instead of 1 mm.
+const RESOLVED_BOUNCE: f64 = 0.729;
+
+/// An elastic block thrown on a plane and on a rigid body: it comes back as fast as a resolved one, and
+/// the energy error is of second order.
 #[test]
 fn a_block_bounces_off() {
     let plane = "[[plane]]\nnormal = \"+y\"\npoint = [0, \"-1 mm\"]\n";
@@ -378,7 +381,7 @@ fn a_block_bounces_off() {
         assert!(coarse < 1.2 * 0.25 * 2.0 * step * step / 10.0);
         assert!(fine < coarse / 10.0);
         // The rest of the fall's energy rings on inside.
-        assert!((0.75..0.85).contains(&speed), "{speed}");
+        assert!((speed / RESOLVED_BOUNCE - 1.0).abs() < 0.05, "{speed}");
     }
 }
 

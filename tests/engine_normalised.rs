@@ -428,6 +428,7 @@ fn flat_clouds_keep_the_plain_gradient() {
     };
     let mut sheet = case(3, vec![body("sheet", shape, 1e-4, Vec3::zeros())], 1.0);
     make_elastic(&mut sheet);
+    sheet.sph.form = SphForm::Conventional;
     let mut plain = start(sheet.clone());
     sheet.sph.form = SphForm::Normalised;
     let mut corrected = start(sheet);

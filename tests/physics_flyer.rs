@@ -1,8 +1,8 @@
 //! Symmetric flyer plates in uniaxial strain (`inputs/flyer-plate`) against the Hugoniot.
 //!
-//! 2024 aluminium without strength. Bounds of the case: pressure within 2 %, shock speed within
-//! 1.5 %. What is left of the error does not fall with the spacing: a lattice compressed from h =
-//! 1.3 Δp differentiates a linear field with a factor `A(h/Δp)` of .977 to 1.024 instead of 1
+//! 2024 aluminium without strength. Pressure and shock speed are within .2 % in the corrected form. In the
+//! conventional one what is left of the error does not fall with the spacing: a lattice compressed from
+//! h = 1.3 Δp differentiates a linear field with a factor `A(h/Δp)` of .977 to 1.024 instead of 1
 //! (`Lattice` below), which [`leftover_is_the_lattice_sum`] holds to account.
 
 mod physics_support;
@@ -16,6 +16,8 @@ use release::free_surface_velocity;
 use whipple::exact::hugoniot::{Impact, Medium, impact};
 use whipple::step::Simulation;
 
+/// Of pressure and shock speed.
+const BOUND: f64 = 0.002;
 /// Thickness of each plate (m).
 const THICKNESS: f64 = 4e-3;
 
@@ -32,6 +34,8 @@ struct Flyer {
 struct Measured {
     pressure: f64,
     shock_speed: f64,
+    /// Largest pressure of a particle that contact presses on, at any time, over the plateau's.
+    peak: f64,
 }
 
 impl Flyer {
@@ -56,9 +60,16 @@ impl Flyer {
         let (half, arrival) = (0.5 * self.exact.pressure, self.arrival);
         let spacing = self.simulation.case.bodies[0].lattice.spacing;
         let mut fronts = Vec::new();
-        let mut pressure = 0.0;
+        let (mut pressure, mut peak) = (0.0, 0.0_f64);
         let mut next = 0.3 * arrival;
         run_with(&mut self.simulation, 0.75 * arrival, |s| {
+            for (&p, contact) in
+                (s.particles.pressure.iter()).zip(&s.particles.contact_acceleration)
+            {
+                if contact[0] != 0.0 {
+                    peak = peak.max(p);
+                }
+            }
             if s.state.time < next {
                 return;
             }
@@ -80,6 +91,7 @@ impl Flyer {
         Measured {
             pressure,
             shock_speed: slope(&fronts),
+            peak: peak / pressure,
         }
     }
 }
@@ -97,15 +109,17 @@ fn reaches_the_hugoniot_at_7_km_s() {
         let speed = relative(measured.shock_speed, flyer.exact.target.shock_speed);
         let worst = &flyer.simulation.state.worst;
         println!(
-            "{cells} cells: {:.2} GPa ({:+.2} %), {:.0} m/s ({:+.2} %), energy error {:.4} %",
+            "{cells} cells: {:.2} GPa ({:+.3} %), {:.0} m/s ({:+.3} %), peak {:.3}, energy error {:.4} %",
             measured.pressure * 1e-9,
             1e2 * pressure,
             measured.shock_speed,
             1e2 * speed,
+            measured.peak,
             1e2 * worst.energy_error
         );
-        assert!(pressure.abs() < 0.02, "pressure off by {pressure}");
-        assert!(speed.abs() < 0.015, "shock speed off by {speed}");
+        assert!(pressure.abs() < BOUND, "pressure off by {pressure}");
+        assert!(speed.abs() < BOUND, "shock speed off by {speed}");
+        assert!(measured.peak < 1.1, "{}", measured.peak);
         assert!(worst.energy_error < 0.005 && worst.contact_defect < 0.001);
         assert_eq!(worst.interpenetrated, 0);
         assert_eq!(worst.contact_limited_steps, 0);
@@ -120,14 +134,17 @@ fn reaches_the_hugoniot_at_other_speeds() {
         let pressure = relative(measured.pressure, flyer.exact.pressure);
         let shock = relative(measured.shock_speed, flyer.exact.target.shock_speed);
         println!(
-            "{speed} km/s: {:.3} GPa ({:+.2} %), {:.0} m/s ({:+.2} %)",
+            "{speed} km/s: {:.3} GPa ({:+.3} %), {:.0} m/s ({:+.3} %), peak {:.3}",
             measured.pressure * 1e-9,
             1e2 * pressure,
             measured.shock_speed,
-            1e2 * shock
+            1e2 * shock,
+            measured.peak
         );
-        assert!(pressure.abs() < 0.02, "{speed} km/s: pressure {pressure}");
-        assert!(shock.abs() < 0.015, "{speed} km/s: shock speed {shock}");
+        assert!(pressure.abs() < BOUND, "{speed} km/s: pressure {pressure}");
+        assert!(shock.abs() < BOUND, "{speed} km/s: shock speed {shock}");
+        // As the plates begin to meet; later it is below one, where the conventional form keeps 1.6.
+        assert!(measured.peak < 1.15, "{}", measured.peak);
     }
 }
 
@@ -142,11 +159,11 @@ fn variable_smoothing_length_keeps_the_bounds_at_7_km_s() {
         1e2 * pressure,
         1e2 * speed
     );
-    assert!(pressure.abs() < 0.02 && speed.abs() < 0.015);
+    assert!(pressure.abs() < BOUND && speed.abs() < BOUND);
 }
 
 /// The free face moves at the velocity behind the shock plus that of the isentropic release.
-/// Half a percent: the median of twelve particles once the release has passed them.
+/// A tenth of a percent: the median of twelve particles once the release has passed them.
 #[test]
 fn free_surface_velocity_follows_the_isentrope() {
     for speed in [1.0, 2.0, 4.0, 7.0] {
@@ -162,7 +179,7 @@ fn free_surface_velocity_follows_the_isentrope() {
             measured / (1e3 * speed),
             exact / (1e3 * speed)
         );
-        assert!(relative(measured, exact).abs() < 0.005);
+        assert!(relative(measured, exact).abs() < 0.001);
     }
 }
 
@@ -208,12 +225,12 @@ impl Lattice<'_> {
     }
 }
 
-/// What the convergence of the shock speed ends at is the lattice sum, not the exact Hugoniot.
+/// What the convergence of the shock speed ends at in the conventional form is the lattice sum, not the exact Hugoniot.
 /// 0.15 %: the front itself still converges at 400 cells.
 #[test]
 fn leftover_is_the_lattice_sum() {
     for speed in [1.0, 2.0, 4.0, 7.0] {
-        let mut flyer = Flyer::new(speed, 400.0, &[]);
+        let mut flyer = Flyer::new(speed, 400.0, &["sph.form=conventional"]);
         let measured = flyer.measure().shock_speed;
         let lattice = Lattice {
             medium: &flyer.medium,
@@ -239,21 +256,19 @@ fn outermost_spacing(s: &Simulation) -> f64 {
     gap(0) / median((10..30).map(gap).collect())
 }
 
-/// Four metals at four speeds. Bounds of the case: pressure 2 %, shock speed 1.5 %, free surface
-/// 2 % of the isentrope's; with variable h the outermost spacing at least half of the bulk's.
+/// Four metals at four speeds: pressure, shock speed and the velocity of the free surface; with variable h
+/// the outermost spacing at least half of the bulk's.
 #[test]
 #[ignore = "slow: make validation"]
 fn four_metals_reach_their_hugoniots() {
     let percent = |value: f64, exact: f64| 1e2 * relative(value, exact);
     let mut missed = Vec::new();
-    // Variable h keeps h/Δp, so it is told one with A = 1.
-    for (h, ratio) in [("constant", 1.3), ("variable", 1.45)] {
+    for h in ["constant", "variable"] {
         for metal in ["aluminium-6061", "aluminium-2024", "copper", "steel-304"] {
             for speed in [1.0, 2.0, 4.0, 7.0] {
                 let material = format!("material.aluminium.library={metal}");
                 let length = format!("sph.smoothing_length={h}");
-                let ratio = format!("sph.smoothing={ratio}");
-                let mut flyer = Flyer::new(speed, 200.0, &[&material, &length, &ratio]);
+                let mut flyer = Flyer::new(speed, 200.0, &[&material, &length]);
                 let measured = flyer.measure();
                 let outermost = outermost_spacing(&flyer.simulation);
                 let s = &mut flyer.simulation;
@@ -270,9 +285,9 @@ fn four_metals_reach_their_hugoniots() {
                     "{h} {metal} {speed} km/s: {:.2} GPa {errors:+.2?} %, outermost {outermost:.2}",
                     1e-9 * flyer.exact.pressure,
                 );
-                let bounds = [2.0, 1.5, 2.0];
                 assert!(h == "constant" || outermost >= 0.5, "{outermost}");
-                if errors.iter().zip(bounds).any(|(e, bound)| e.abs() > bound) {
+                let bound = if h == "constant" { 0.2 } else { 0.25 };
+                if errors.iter().any(|e| e.abs() > bound) {
                     missed.push(format!("{h} {metal} {speed} km/s"));
                 }
             }

@@ -141,7 +141,8 @@ fn a_torn_bar_bounces_and_half_of_it_from_its_image() {
         right > 0.2 && (left + right).abs() < 1e-12,
         "{left} {right}"
     );
-    assert!(sides(&welded)[1][0].abs() < 0.1 * right);
+    // Faces that join in the sums take most of the energy with them.
+    assert!(sides(&welded)[1][1] < 0.3 * energy);
     let [_, [momentum, kinetic]] = sides(&half);
     assert!((momentum / right - 1.0).abs() < 1e-6, "{momentum} {right}");
     assert!((kinetic / energy - 1.0).abs() < 1e-6, "{kinetic} {energy}");

@@ -24,9 +24,9 @@ pub enum SmoothingLength {
 #[serde(rename_all = "snake_case")]
 pub enum SphForm {
     /// By the gradient of the kernel.
-    #[default]
     Conventional,
     /// By gradients that a smooth function of the neighbours' moments corrects.
+    #[default]
     Corrected,
     /// By the corrected gradient of the normalised kernel.
     Normalised,
@@ -61,7 +61,7 @@ impl Default for SphOptions {
     /// Viscosity of α = 1 and β = 2, and nothing else.
     fn default() -> Self {
         Self {
-            form: SphForm::Conventional,
+            form: SphForm::default(),
             alpha: 1.0,
             beta: 2.0,
             smoothing_length: SmoothingLength::Constant,

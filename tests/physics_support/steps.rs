@@ -27,7 +27,7 @@ pub const ANY: Factors = Factors {
 
 /// The largest factors for impacts in three dimensions.
 pub const SOLID: Factors = Factors {
-    courant: 0.8,
+    courant: 0.65,
     force: 0.2,
     contact: 1.0,
 };
