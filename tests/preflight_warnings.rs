@@ -213,6 +213,17 @@ fn values_that_no_run_has_a_use_for_are_told() {
     );
     assert_told(&[spall, "material.metal.spall.after=hold"], &[]);
     assert_told(&["material.metal.spall.pressure=\"-1 GPa\""], &[]);
+    assert_told(
+        &["sph.alpha=0.05"],
+        &[
+            "`alpha` is 0.05: so little viscosity leaves short waves to grow, and energy with them, in \
+             steps of `courant` = 0.5; take 0.31",
+        ],
+    );
+    assert_told(&["sph.alpha=0.05", "time_step.courant=0.3"], &[]);
+    assert_told(&["sph.alpha=0.05", "sph.form=conventional"], &[]);
+    assert_told(&["sph.alpha=0", "time_step.courant=0.25"], &[]);
+    assert_told(&["sph.alpha=0.2"], &[]);
     assert!(told(&["sph.alpha=50"])[0].starts_with("`alpha` is 50: with more than 10"));
     assert_told(
         &["body.plate.shape.box.lower=[\"-2 mm\", \"0.13 mm\"]"],

@@ -102,12 +102,12 @@ fn a_quarter_is_worth_the_whole_at_the_end() {
     }
 }
 
-/// The two outermost layers of both bodies pair up behind the shock, with constant and with
-/// variable h: nearest neighbours within the body, by layer. In the sphere they are .38 to .46 Δp
-/// apart at first, the fourth layer and deeper ones .63 to .66, with bounds in the middle.
+/// The outermost layers of both bodies stay apart behind the shock, with constant and with variable h:
+/// nearest neighbours within the body, by layer. (In the conventional form the two outermost of the sphere
+/// are .38 to .46 Δp apart at first, the fourth and deeper ones .63 to .66.)
 #[test]
 #[ignore = "slow: make validation"]
-fn the_outermost_layers_pair_up() {
+fn the_outermost_layers_stay_apart() {
     for smoothing in ["constant", "variable"] {
         let mut s = main_job(&[&format!("sph.smoothing_length={smoothing}")]);
         let layers = Layers::new(&s);
@@ -119,11 +119,7 @@ fn the_outermost_layers_pair_up() {
                     .collect();
                 if (time, body) == (0.02e-6, SPHERE) {
                     assert!(
-                        found[..2].iter().all(|(_, median)| *median < 0.55),
-                        "{found:?}"
-                    );
-                    assert!(
-                        found[3..6].iter().all(|(_, median)| *median > 0.55),
+                        found.iter().all(|(_, median)| *median > 0.55),
                         "{found:?}"
                     );
                 }

@@ -3,13 +3,18 @@
 use super::approach::Approach;
 use crate::material::AfterSpall;
 use crate::model::readable::{short, shown};
-use crate::model::{Body, Case, ContactMode, LatticeKind, Resistance, Shape};
+use crate::model::{Body, Case, ContactMode, LatticeKind, Resistance, Shape, SphForm};
 use crate::populate;
 
 /// Dry rubber has about 1, clean metals in vacuum some 2 before they weld.
 const MOST_FRICTION: f64 = 2.0;
 /// Viscosity is 1 or 2 in most of what is published, and shortens the step in proportion.
 const MOST_VISCOSITY: f64 = 10.0;
+/// With this `alpha` and `courant` and more viscosity waves of any length die down in the corrected form;
+/// whatever the viscosity they do, or grow too slowly to matter, with the shorter step.
+const ENOUGH_VISCOSITY: f64 = 0.2;
+const LONG_STEP: f64 = 0.5;
+const SHORT_STEP: f64 = 0.25;
 /// Spacings of two bodies in contact over each other: at 3 the mean smoothing length is .87 of the
 /// wider spacing (h = 1.3 Δp), and sums over the wide particles begin to show each of them.
 const MOST_RATIO: f64 = 3.0;
@@ -29,6 +34,7 @@ pub fn warnings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
     }
     pairs(case, approaches, found);
     coefficients(case, found);
+    viscosity_for_step(case, found);
     times(case, found);
 }
 
@@ -174,6 +180,24 @@ fn coefficients(case: &Case, found: &mut Vec<String>) {
                 short(value)
             ));
         }
+    }
+}
+
+/// Steps in which short waves grow by more than the viscosity takes from them: by (ω Δt)⁴/8 a step, and the
+/// viscosity takes α ω Δt times a constant, so that Δt goes with the cube root of α (theory page "Time
+/// integration").
+fn viscosity_for_step(case: &Case, found: &mut Vec<String>) {
+    let share = (case.sph.alpha / ENOUGH_VISCOSITY).cbrt();
+    let longest = (LONG_STEP * share).max(SHORT_STEP);
+    let solid = case.bodies.iter().any(|body| body.rigid.is_none());
+    let corrected = case.sph.form == SphForm::Corrected;
+    if solid && corrected && share < 1.0 && case.time_step.courant > longest {
+        found.push(format!(
+            "`alpha` is {}: so little viscosity leaves short waves to grow, and energy with them, in steps \
+             of `courant` = {}; take {longest:.2}",
+            short(case.sph.alpha),
+            short(case.time_step.courant)
+        ));
     }
 }
 
