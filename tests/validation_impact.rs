@@ -118,10 +118,7 @@ fn the_outermost_layers_stay_apart() {
                     .map(|layer| layers.nearest(&s, body, layer))
                     .collect();
                 if (time, body) == (0.02e-6, SPHERE) {
-                    assert!(
-                        found.iter().all(|(_, median)| *median > 0.55),
-                        "{found:?}"
-                    );
+                    assert!(found.iter().all(|(_, median)| *median > 0.55), "{found:?}");
                 }
                 let rows: Vec<String> = found
                     .iter()

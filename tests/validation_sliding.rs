@@ -50,8 +50,9 @@ fn sliding_is_free_of_friction() {
     for angle in [0.0, 30.0] {
         let lattice = format!("body.block.lattice={{kind=\"cubic\",angle=\"{angle} deg\"}}");
         let friction = slide(&[&lattice]);
-        // The tool's way is given, not its force: about a thousandth.
-        assert!((0.8e-3..1.2e-3).contains(&friction.pressure));
+        // The tool's way is given, not its force: 1.3 thousandths (1.0 in the conventional form, whose faces
+        // give way more).
+        assert!((1.1e-3..1.5e-3).contains(&friction.pressure));
         assert!(friction.largest <= 0.01, "{}", friction.largest);
         assert!(friction.mean.abs() <= 0.01, "{}", friction.mean);
     }
