@@ -50,7 +50,7 @@ Aluminium sphere at 7 km/s on an aluminium plate (3-D): sound
   plate                  2828 particles of aluminium, spacing 0.05 mm, h 0.065 mm
   sphere                  228 particles of aluminium, spacing 0.05 mm, h 0.065 mm
   all                    3056 particles, about 35 MB a rank on 1 rank
-  about 55 steps to 0.2 us
+  about 59 steps to 0.2 us
 ";
     assert_eq!(said, expected);
 
