@@ -313,3 +313,32 @@ fn not_a_number_stays_one_and_fails_nobody_else() {
         }
     }
 }
+
+/// Failed matter is pulled apart by a factor of a thousand: its density stays at a tenth, and grows from
+/// there when it is pressed together again. What is held goes on expanding.
+#[test]
+fn spray_expands_to_a_tenth() {
+    for after in MODES {
+        let metal = metal(after);
+        let mut points = batch(RHO, 0.0);
+        for _ in 0..100 {
+            strain(&metal, &mut points, 0.01 * 1000.0_f64.ln());
+        }
+        let spray = if after == AfterSpall::Hold {
+            0.001
+        } else {
+            0.1
+        };
+        let found = points.density[0] / (spray * RHO);
+        assert!((found - 1.0).abs() < 1e-9, "{after:?}: {found}");
+        if after == AfterSpall::Hold {
+            continue;
+        }
+        assert_eq!(points.pressure, [0.0; LANES]);
+        for _ in 0..10 {
+            strain(&metal, &mut points, -0.1 * 5.0_f64.ln());
+        }
+        let found = points.density[0] / (0.5 * RHO);
+        assert!((found - 1.0).abs() < 1e-9, "{after:?}: {found}");
+    }
+}

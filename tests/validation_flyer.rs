@@ -39,18 +39,18 @@ axis = "y"
     )
 }
 
-/// Pressure within 2 % and shock speed within 1.5 %, as in one dimension. The release from the
-/// sides runs inwards at about the shock's own speed, so that the middle is undisturbed while the
-/// shock has gone less than the half width.
+/// Pressure within 1 % and shock speed within .5 %, once the front has gone 23 spacings: before, it is
+/// still 1 % too fast. The release from the sides runs inwards at about the shock's own speed, so that
+/// the middle is undisturbed while the shock has gone less than the half width.
 #[test]
 #[ignore = "slow: make validation"]
 fn the_middle_of_a_block_reaches_the_hugoniot() {
     for smoothing_length in ["constant", "variable"] {
-        let mut s = start(inline(&blocks(34, 38, smoothing_length)));
+        let mut s = start(inline(&blocks(60, 64, smoothing_length)));
         let spacing = s.case.bodies[0].lattice.spacing;
         let medium = Medium::of(&s.case.materials[0]).expect("Mie-Grueneisen");
         let exact = impact(&medium, &medium, 7e3);
-        let end = 32.0 * spacing / exact.target.shock_speed;
+        let end = 58.0 * spacing / exact.target.shock_speed;
         let (mut fronts, mut pressure, mut next) = (Vec::new(), 0.0, 0.4 * end);
         run_with(&mut s, end, |s| {
             if s.state.time < next {
@@ -88,8 +88,8 @@ fn the_middle_of_a_block_reaches_the_hugoniot() {
             worst.interpenetrated,
             worst.closest,
         );
-        assert!((pressure / 97.6e9 - 1.0).abs() < 0.02, "{pressure}");
-        assert!((shock_speed / exact.target.shock_speed - 1.0).abs() < 0.015);
+        assert!((pressure / 97.6e9 - 1.0).abs() < 0.01, "{pressure}");
+        assert!((shock_speed / exact.target.shock_speed - 1.0).abs() < 0.005);
         // Where the corners of the blocks meet, single particles fly head on at each other and come
         // as close as .25 spacings, which counts for a moment; the core throws them back.
         assert_eq!(s.state.interpenetrated, 0);

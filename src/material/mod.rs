@@ -109,6 +109,9 @@ impl Material {
     #[inline(always)]
     fn compose<const ALL: bool>(&self, batch: &mut PointBatch, dt: f64) {
         let rho0 = self.reference_density;
+        if ALL && self.failure.follows_state() {
+            point::limit_expansion(batch, rho0);
+        }
         let response = self
             .eos
             .response(rho0, &batch.density, &batch.specific_energy);

@@ -20,6 +20,7 @@ use super::declare::Listed;
 pub(crate) use batch::point_lanes;
 pub use batch::{LANES, Lanes, PointBatch, PointField};
 pub(crate) use damage::FAILED;
+pub(super) use damage::limit_expansion;
 pub use elastic::Elastic;
 pub use johnson_cook::JohnsonCook;
 pub use law::{Conditions, Contradiction, Law};
