@@ -220,7 +220,9 @@ fn values_that_no_run_has_a_use_for_are_told() {
              steps of `courant` = 0.5; take 0.31",
         ],
     );
-    assert_told(&["sph.alpha=0.05", "time_step.courant=0.3"], &[]);
+    assert_told(&["sph.alpha=0.05", "time_step.courant=0.31"], &[]);
+    assert!(told(&["sph.alpha=0.1"])[0].ends_with("take 0.39"));
+    assert_told(&["sph.alpha=0.1", "time_step.courant=0.39"], &[]);
     assert_told(&["sph.alpha=0.05", "sph.form=conventional"], &[]);
     assert_told(&["sph.alpha=0", "time_step.courant=0.25"], &[]);
     assert_told(&["sph.alpha=0.2"], &[]);

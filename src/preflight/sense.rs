@@ -188,10 +188,11 @@ fn coefficients(case: &Case, found: &mut Vec<String>) {
 /// integration").
 fn viscosity_for_step(case: &Case, found: &mut Vec<String>) {
     let share = (case.sph.alpha / ENOUGH_VISCOSITY).cbrt();
-    let longest = (LONG_STEP * share).max(SHORT_STEP);
-    let solid = case.bodies.iter().any(|body| body.rigid.is_none());
+    // Rounded down, so that what is told is not told of again.
+    let longest = (100.0 * (LONG_STEP * share).max(SHORT_STEP)).floor() / 100.0;
+    let deforms = case.bodies.iter().any(|body| body.rigid.is_none());
     let corrected = case.sph.form == SphForm::Corrected;
-    if solid && corrected && share < 1.0 && case.time_step.courant > longest {
+    if deforms && corrected && share < 1.0 && case.time_step.courant > longest {
         found.push(format!(
             "`alpha` is {}: so little viscosity leaves short waves to grow, and energy with them, in steps \
              of `courant` = {}; take {longest:.2}",
