@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::{Motion, Vec3};
+use super::{Motion, Shape, Vec3};
 
 /// A coordinate axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
@@ -48,94 +48,43 @@ pub struct SymmetryPlane {
     pub position: f64,
 }
 
-/// The geometry of a body, in its final place (m).
-///
-/// In one dimension a box is an interval of x; in two dimensions a box is a rectangle, a sphere a
-/// disc and a shell a ring of the x-y plane.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Shape {
-    /// Axis-aligned box between two corners.
-    Box {
-        /// Smallest coordinates (m).
-        lower: Vec3,
-        /// Largest coordinates (m).
-        upper: Vec3,
-    },
-    /// Ball of a radius about a centre.
-    Sphere {
-        /// Centre (m).
-        centre: Vec3,
-        /// Radius (m).
-        radius: f64,
-    },
-    /// Ball with a concentric hole; a ring in two dimensions.
-    Shell {
-        /// Centre (m).
-        centre: Vec3,
-        /// Outer radius (m).
-        radius: f64,
-        /// Radius of the hole (m).
-        inner_radius: f64,
-    },
-    /// Circular cylinder along a coordinate axis.
-    Cylinder {
-        /// Middle of the cylinder, half way along its axis (m).
-        centre: Vec3,
-        /// Direction of the axis.
-        axis: Axis,
-        /// Radius (m).
-        radius: f64,
-        /// Full length along the axis (m).
-        length: f64,
-    },
-}
-
-impl Shape {
-    /// Half way between its ends (m).
-    #[must_use]
-    pub fn centre(&self) -> Vec3 {
-        match self {
-            Self::Box { lower, upper } => 0.5 * (lower + upper),
-            Self::Sphere { centre, .. }
-            | Self::Shell { centre, .. }
-            | Self::Cylinder { centre, .. } => *centre,
-        }
-    }
-
-    /// Radius about the centre within which it lies (m).
-    #[must_use]
-    pub fn reach(&self) -> f64 {
-        match self {
-            Self::Box { lower, upper } => 0.5 * (upper - lower).norm(),
-            Self::Sphere { radius, .. } | Self::Shell { radius, .. } => *radius,
-            Self::Cylinder { radius, length, .. } => radius.hypot(0.5 * length),
-        }
-    }
-}
-
 /// How particles are stacked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Default, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LatticeKind {
     /// Simple cubic (square in two dimensions).
+    #[default]
     Cubic,
     /// Hexagonal close-packed (triangular in two dimensions), stacked along z.
     Hexagonal,
     /// Concentric rings about z, as wide apart as their particles; the outermost follows the
     /// outline of a disc, a ring or a cylinder along z.
     Rings,
+    /// Body-centred cubic, two particles in a cell; three dimensions alone.
+    BodyCentred,
+    /// Face-centred cubic, four particles in a cell; three dimensions alone.
+    FaceCentred,
+    /// Without any order: a relaxed, periodic tile, fitted to the surface of the shape.
+    Glass,
 }
 
 /// A lattice of particles: its kind, spacing and orientation.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Default, Clone, PartialEq)]
 pub struct Lattice {
     /// Kind of stacking.
     pub kind: LatticeKind,
     /// Particle spacing Δp (m): the edge of the cube that holds one particle's volume, so that
     /// a particle's volume is Δp^d for every kind (but for what rounding leaves of rings).
     pub spacing: f64,
-    /// Turn of the lattice about the z axis through the shape's centre (rad).
+    /// Turn of the lattice about an axis through the shape's centre (rad).
     pub angle: f64,
+    /// That axis; z if absent.
+    pub axis: Option<Vec3>,
+    /// Which of the fillings of its kind, for those that are drawn at random.
+    pub seed: u64,
+    /// Volume of one particle (m³; m² or m in two or one dimensions), if not Δp^d, so that all
+    /// together fill the volume of the shape.
+    pub volume: Option<f64>,
 }
 
 /// One body of a case.

@@ -40,6 +40,7 @@ impl Shape {
                 let outside = f64::hypot(across.max(0.0), along.max(0.0));
                 outside + across.max(along).min(0.0)
             }
+            Self::Solid(solid) => solid.distance(point),
         }
     }
 
@@ -51,6 +52,11 @@ impl Shape {
             Self::Sphere { centre, .. }
             | Self::Shell { centre, .. }
             | Self::Cylinder { centre, .. } => *centre,
+            Self::Solid(solid) => {
+                // It grows no faster than the point moves.
+                let [lower, upper] = [lower, upper].map(|corner| Vec3::from(*corner));
+                return solid.distance(&((lower + upper) * 0.5)) - 0.5 * (upper - lower).norm();
+            }
         };
         // The distance from what is solid grows along each axis away from the middle.
         let nearest = Vec3::from_fn(|a, _| middle[a].clamp(lower[a], upper[a]));
@@ -87,6 +93,11 @@ impl Shape {
                 let across = (1.0 - along * along).max(0.0).sqrt();
                 normal.dot(centre) - 0.5 * length * along - radius * across
             }
+            Self::Solid(solid) => {
+                let (lower, upper) = solid.bounds();
+                let corner = Vec3::from_fn(|a, _| if normal[a] > 0.0 { lower[a] } else { upper[a] });
+                normal.dot(&corner)
+            }
         }
     }
 
@@ -104,6 +115,11 @@ impl Shape {
                 ..
             } => radius - inner_radius,
             Self::Cylinder { radius, length, .. } => length.min(2.0 * radius),
+            Self::Solid(solid) => {
+                let (lower, upper) = solid.bounds();
+                let size = upper - lower;
+                (0..dimension).map(|a| size[a]).fold(f64::INFINITY, f64::min)
+            }
         }
     }
 }

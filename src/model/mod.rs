@@ -12,12 +12,14 @@ mod load;
 mod motion;
 mod numerical_limits;
 pub mod readable;
+mod shape;
+mod solid;
 mod surface;
 
 #[cfg(test)]
 pub(crate) use surface::tests as surface_tests;
 
-pub use body::{Axis, Body, Lattice, LatticeKind, Shape, SymmetryPlane};
+pub use body::{Axis, Body, Lattice, LatticeKind, SymmetryPlane};
 pub use contact::*;
 pub use control::{
     DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm, SphOptions, TimeStepOptions,
@@ -25,6 +27,8 @@ pub use control::{
 pub use load::{Loads, VelocityLoad};
 pub use motion::Motion;
 pub use numerical_limits::{NumericalFailurePolicy, NumericalLimits};
+pub use shape::Shape;
+pub use solid::{Form, Placement, Profile, Solid, rotation};
 pub use surface::{
     Feature, Foot, Mesh, MeshError, RigidSurface, Spin, SurfaceFile, SurfaceShape,
     closest_on_triangle,

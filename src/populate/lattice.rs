@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::model::{Body, LatticeKind, Shape};
+use crate::model::{Body, LatticeKind, Shape, Vec3};
 
 /// Nearest distance of a hexagonal close-packed lattice with one site in a unit volume, 2^(1/6).
 pub(super) const CLOSE_PACKED: f64 = 1.122_462_048_309_373;
@@ -327,6 +327,8 @@ impl Stack {
 fn extent(shape: &Shape, dimension: usize) -> ([f64; 3], [f64; 3], [bool; 3], f64) {
     let centre = shape.centre();
     let (half, round, radius) = match *shape {
+        // Filled by cells, never by rows.
+        Shape::Solid(_) => (Vec3::zeros(), [false; 3], f64::INFINITY),
         Shape::Box { lower, upper } => ((upper - lower) * 0.5, [false; 3], f64::INFINITY),
         Shape::Sphere { radius, .. } | Shape::Shell { radius, .. } => {
             ([radius; 3].into(), [0, 1, 2].map(|a| a < dimension), radius)

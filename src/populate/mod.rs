@@ -3,6 +3,7 @@
 //! Nothing here depends on ranks: each rank asks for the sites of its own slab, and the union over
 //! any slabs is the whole body with the same bits and the same indices.
 
+mod cells;
 mod extremes;
 mod lattice;
 mod overlap;
@@ -19,6 +20,7 @@ pub use tally::{Share, tally};
 pub use touch::{touching_distance, touching_value};
 
 use crate::model::{Axis, Body, RigidSurface, SymmetryPlane};
+use cells::Cells;
 use lattice::Stack;
 use row::cuts;
 
@@ -77,19 +79,32 @@ pub fn sites(
     symmetry: &[SymmetryPlane],
     slab: Option<Slab>,
 ) -> impl Iterator<Item = Site> + use<> {
-    let stack = Stack::new(body, dimension);
-    row::rows(stack, cuts(symmetry, slab)).flat_map(move |row| {
-        row.range().map(move |i| Site {
-            position: stack.position(i, row.j, row.k),
-            index: stack.index(i, row.j, row.k),
+    let cuts = cuts(symmetry, slab);
+    let cells = Cells::of(body, dimension, symmetry);
+    let stack = cells.is_none().then(|| Stack::new(body, dimension));
+    let in_cells = cells.map(|cells| cells.sites(cuts.clone()));
+    let in_rows = stack.map(|stack| {
+        row::rows(stack, cuts).flat_map(move |row| {
+            row.range().map(move |i| Site {
+                position: stack.position(i, row.j, row.k),
+                index: stack.index(i, row.j, row.k),
+            })
         })
-    })
+    });
+    in_rows
+        .into_iter()
+        .flatten()
+        .chain(in_cells.into_iter().flatten())
 }
 
 /// How many [`sites`] there are, without visiting each, and of layers that are alike only one.
 #[must_use]
 pub fn count(body: &Body, dimension: usize, symmetry: &[SymmetryPlane], slab: Option<Slab>) -> u64 {
-    let (stack, cuts) = (Stack::new(body, dimension), cuts(symmetry, slab));
+    let cuts = cuts(symmetry, slab);
+    if let Some(cells) = Cells::of(body, dimension, symmetry) {
+        return cells.count(&cuts);
+    }
+    let stack = Stack::new(body, dimension);
     let of_layer = |k| -> u64 {
         let rows = row::rows_of_layer(&stack, &cuts, k);
         rows.map(|row| row.end - row.first).sum()
@@ -103,7 +118,7 @@ pub fn count(body: &Body, dimension: usize, symmetry: &[SymmetryPlane], slab: Op
 /// These are the extreme layers of particles, which lie half a spacing or so inside the shape.
 #[must_use]
 pub fn bounds(body: &Body, dimension: usize) -> Option<([f64; 3], [f64; 3])> {
-    extremes::extremes(&Stack::new(body, dimension), &[])
+    bounds_above(body, dimension, &[])
 }
 
 /// [`bounds`] of the [`sites`] above all symmetry planes.
@@ -113,7 +128,11 @@ pub fn bounds_above(
     dimension: usize,
     symmetry: &[SymmetryPlane],
 ) -> Option<([f64; 3], [f64; 3])> {
-    extremes::extremes(&Stack::new(body, dimension), &cuts(symmetry, None))
+    let cuts = cuts(symmetry, None);
+    match Cells::of(body, dimension, symmetry) {
+        Some(cells) => cells::extremes(&cells, &cuts),
+        None => extremes::extremes(&Stack::new(body, dimension), &cuts),
+    }
 }
 
 /// Smallest coordinate on an axis (m) of the [`sites`] above all symmetry planes, or `None` if
@@ -152,15 +171,37 @@ pub fn smallest_gap(
     found.first().map_or(f64::INFINITY, |(gap, _)| *gap)
 }
 
-/// Volume of one particle of the body, Δp^d (m³; m² or m in two or one dimensions), so that its
-/// mass is `ρ Δp^d` with its initial density.
+/// Volume of one particle of the body (m³; m² or m in two or one dimensions), so that its mass is
+/// that times its initial density: [`even_volume`] if the body has been given it, else Δp^d.
 #[must_use]
 pub fn particle_volume(body: &Body, dimension: usize) -> f64 {
-    (1..dimension).fold(body.lattice.spacing, |v, _| v * body.lattice.spacing)
+    let cell = (1..dimension).fold(body.lattice.spacing, |v, _| v * body.lattice.spacing);
+    body.lattice.volume.unwrap_or(cell)
+}
+
+/// The volume of the shape shared out among all its particles (m³; m² in two dimensions), for
+/// bodies that are not filled by rows of a lattice.
+#[must_use]
+pub fn even_volume(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> Option<f64> {
+    let cells = Cells::of(body, dimension, symmetry)?;
+    let planes = if cells.is_fitted() { symmetry } else { &[] };
+    #[allow(clippy::cast_precision_loss)] // far fewer than 2^52
+    let count = cells.count(&cuts(planes, None)) as f64;
+    (count > 0.0).then(|| cells.volume() / count)
+}
+
+/// Whether sites end elsewhere than where slabs are cut: particles may begin a spacing outside the
+/// slab whose sites they are.
+#[must_use]
+pub fn moves_sites(body: &Body, dimension: usize) -> bool {
+    Cells::of(body, dimension, &[]).is_some_and(|cells| cells.is_fitted())
 }
 
 /// One more than the largest [`Site::index`] that the body can have; saturates at `u64::MAX`.
 #[must_use]
 pub fn index_end(body: &Body, dimension: usize) -> u64 {
-    Stack::new(body, dimension).index_end()
+    match Cells::of(body, dimension, &[]) {
+        Some(cells) => cells.index_end(),
+        None => Stack::new(body, dimension).index_end(),
+    }
 }

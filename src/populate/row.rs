@@ -61,6 +61,16 @@ impl Cut {
         x >= self.upper
     }
 
+    /// The same with slabs wider by a length (m) on both sides.
+    pub fn widened(&self, by: f64) -> Self {
+        let by = if self.is_plane { 0.0 } else { by };
+        Self {
+            lower: self.lower - by,
+            upper: self.upper + by,
+            ..*self
+        }
+    }
+
     /// Whether a position (m) is left.
     pub fn keeps(&self, position: &[f64; 3]) -> bool {
         let x = position[self.axis];

@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
+use super::cells::{self, Cells};
 use super::lattice::Stack;
 use super::row::cuts;
 use crate::model::{Body, SymmetryPlane};
@@ -94,7 +95,11 @@ pub fn search(
     bound: impl Fn(&[f64; 3], &[f64; 3]) -> f64,
     value: impl Fn(&[f64; 3]) -> f64,
 ) -> Vec<(f64, [f64; 3])> {
-    let (stack, cuts) = (Stack::new(body, dimension), cuts(symmetry, None));
+    let cuts = cuts(symmetry, None);
+    if let Some(cells) = Cells::of(body, dimension, symmetry) {
+        return cells::search(&cells, &cuts, wanted, bound, value);
+    }
+    let stack = Stack::new(body, dimension);
     let mut found: Vec<(f64, [f64; 3])> = Vec::new();
     let mut waiting: BinaryHeap<Block> = Block::whole(&stack).into_iter().collect();
     while let Some(block) = waiting.pop() {

@@ -1,5 +1,6 @@
 //! How many sites stand at which coordinate of an axis, counted row by row and not site by site.
 
+use super::cells::Cells;
 use super::lattice::Stack;
 use super::row::{Cut, cuts, layers, runs};
 use crate::model::{Body, SymmetryPlane};
@@ -62,7 +63,11 @@ pub fn tally(
     share: Share,
     mut add: impl FnMut(f64, u64),
 ) {
-    let (stack, cuts) = (Stack::new(body, dimension), cuts(symmetry, None));
+    let cuts = cuts(symmetry, None);
+    if let Some(cells) = Cells::of(body, dimension, symmetry) {
+        return cells.tally(&cuts, axis, share, add);
+    }
+    let stack = Stack::new(body, dimension);
     let like: Vec<LikeLayers> = LikeLayers::of(&stack, &cuts).collect();
     let rows = || (share.part as u64..stack.counts[1]).step_by(share.parts.max(1));
     let length = |j, k| -> u64 {

@@ -19,6 +19,7 @@ fn body(shape: Shape, kind: LatticeKind, spacing: f64, angle: f64) -> Body {
             kind,
             spacing,
             angle,
+            ..Lattice::default()
         },
         density: None,
         specific_energy: None,
@@ -135,6 +136,7 @@ fn the_main_jobs_sphere_and_plate() {
 #[test]
 fn mass_is_that_of_the_shape() {
     let volume = |shape: &Shape| match shape {
+        Shape::Solid(solid) => solid.volume(3),
         Shape::Sphere { radius, .. } => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
         Shape::Shell {
             radius,

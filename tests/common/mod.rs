@@ -24,6 +24,7 @@ pub fn body(name: &str, shape: Shape, spacing: f64, velocity: Vec3) -> Body {
             kind: LatticeKind::Cubic,
             spacing,
             angle: 0.0,
+            ..Lattice::default()
         },
         density: None,
         specific_energy: None,

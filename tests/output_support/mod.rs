@@ -31,6 +31,7 @@ pub fn case() -> Case {
             kind: LatticeKind::Cubic,
             spacing,
             angle: 0.0,
+            ..Lattice::default()
         },
         density: Some(2785.0),
         specific_energy: None,

@@ -42,3 +42,41 @@ pub enum Direction {
     #[serde(rename = "-z")]
     MinusZ,
 }
+
+/// An axis with its sense, the positive one if none is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+pub enum AxisWord {
+    /// Towards larger x.
+    #[serde(rename = "x", alias = "+x")]
+    PlusX,
+    /// Towards smaller x.
+    #[serde(rename = "-x")]
+    MinusX,
+    /// Towards larger y.
+    #[serde(rename = "y", alias = "+y")]
+    PlusY,
+    /// Towards smaller y.
+    #[serde(rename = "-y")]
+    MinusY,
+    /// Towards larger z.
+    #[serde(rename = "z", alias = "+z")]
+    PlusZ,
+    /// Towards smaller z.
+    #[serde(rename = "-z")]
+    MinusZ,
+}
+
+impl AxisWord {
+    /// Which axis (0, 1, 2), and 1 or −1.
+    #[must_use]
+    pub fn sense(self) -> (usize, f64) {
+        match self {
+            Self::PlusX => (0, 1.0),
+            Self::MinusX => (0, -1.0),
+            Self::PlusY => (1, 1.0),
+            Self::MinusY => (1, -1.0),
+            Self::PlusZ => (2, 1.0),
+            Self::MinusZ => (2, -1.0),
+        }
+    }
+}

@@ -7,7 +7,8 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer, StrDeserial
 use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use toml::Spanned;
 
-use super::choices::Direction;
+use super::choices::{AxisWord, Direction};
+use super::ShapeTurnParams;
 use crate::input::quantity::{Angle, Placed};
 use crate::model::LatticeKind;
 
@@ -16,8 +17,12 @@ tables! {
     LatticeTable {
         /// Kind of stacking.
         kind: Spanned<LatticeKind>,
-        /// Turn about z.
+        /// Turn of a lattice with an order.
         angle: Option<Placed<Angle>>,
+        /// About which it is turned; z if absent.
+        axis: Option<Spanned<AxisParams>>,
+        /// Which glass; 0 if absent.
+        seed: Option<Spanned<i64>>,
     }
 
     /// `friction` as a table.
@@ -42,16 +47,22 @@ optional_tables! {
 pub struct LatticeParams {
     /// Kind of stacking.
     pub kind: LatticeKind,
-    /// Turn about z.
+    /// Turn of a lattice with an order.
     pub angle: Option<Placed<Angle>>,
+    /// About which it is turned.
+    pub axis: Option<Spanned<AxisParams>>,
+    /// Which glass.
+    pub seed: Option<Spanned<i64>>,
 }
 
 typed_as! {
-    LatticeParams: "\"cubic\", \"hexagonal\", \"rings\" or a table with `kind` and `angle`" {
-        word: |kind| LatticeParams { kind, angle: None };
+    LatticeParams: "\"cubic\", \"glass\" and the like or a table with `kind`" {
+        word: |kind| LatticeParams { kind, angle: None, axis: None, seed: None };
         table: |table: LatticeTable| LatticeParams {
             kind: table.kind.into_inner(),
             angle: table.angle,
+            axis: table.axis,
+            seed: table.seed,
         };
     }
 }
@@ -101,5 +112,37 @@ typed_as! {
     NormalParams: "\"+z\" and the like, or an array of numbers" {
         word: NormalParams::Axis;
         list: NormalParams::Vector;
+    }
+}
+
+/// `"z"`, `"-z"`, or the components of a vector of any length.
+#[derive(Debug)]
+pub enum AxisParams {
+    /// Along an axis.
+    Word(AxisWord),
+    /// Any other.
+    Vector(Vec<f64>),
+}
+
+typed_as! {
+    AxisParams: "\"z\", \"-z\" and the like, or an array of numbers" {
+        word: AxisParams::Word;
+        list: AxisParams::Vector;
+    }
+}
+
+/// One turn, or several in their order.
+#[derive(Debug)]
+pub enum TurnsParams {
+    /// One.
+    One(Box<ShapeTurnParams>),
+    /// Several.
+    Many(Vec<ShapeTurnParams>),
+}
+
+typed_as! {
+    TurnsParams: "a table with `axis` and `angle`, or an array of such" {
+        table: |turn| TurnsParams::One(Box::new(turn));
+        list: TurnsParams::Many;
     }
 }

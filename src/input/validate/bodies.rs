@@ -3,6 +3,7 @@
 use toml::Spanned;
 
 use super::check::{Allowed, number, optional};
+use super::lattice::lattice;
 use super::motion::motion;
 use super::shapes::{Shapes, vector};
 use super::touch;
@@ -11,7 +12,7 @@ use crate::input::quantity::{Length, Placed};
 use crate::input::schema::BodyParams;
 use crate::input::source::Diagnostic;
 use crate::material::{Eos, Failure, Linear, LinearForm, Material, Strength};
-use crate::model::{Axis, Body, Lattice, LatticeKind, Motion, Shape, SymmetryPlane, Vec3};
+use crate::model::{Body, Motion, SymmetryPlane, Vec3};
 use crate::populate;
 
 /// Bounding lattices beyond this are a slip in a unit rather than a body.
@@ -70,8 +71,9 @@ impl Reader<'_> {
         }
         self.check_size(params, &bodies)?;
         touch::resolve(params, &mut bodies, self.dimension)?;
-        for (table, body) in params.iter().zip(&bodies) {
+        for (table, body) in params.iter().zip(&mut bodies) {
             self.check_particles(table.get_ref(), body, symmetry)?;
+            body.lattice.volume = populate::even_volume(body, self.dimension, symmetry);
         }
         Ok(bodies)
     }
@@ -97,7 +99,7 @@ impl Reader<'_> {
         };
         let (velocity, rigid) = self.motion(params)?;
         let shape = shapes.shape(&params.shape)?;
-        let lattice = self.lattice(params, spacing, &shape)?;
+        let lattice = lattice(&shapes, params.lattice.as_ref(), &shape)?;
         Ok(Body {
             name: name.clone(),
             shape,
@@ -179,47 +181,6 @@ impl Reader<'_> {
             _ => "`angular_velocity` must have three components, about x, y and z",
         };
         Err(Diagnostic::new(rates.span(), title))
-    }
-
-    fn lattice(
-        &self,
-        params: &BodyParams,
-        spacing: f64,
-        shape: &Shape,
-    ) -> Result<Lattice, Diagnostic> {
-        let (kind, angle) = match &params.lattice {
-            None => (LatticeKind::Cubic, 0.0),
-            Some(lattice) => {
-                let params = lattice.get_ref();
-                (params.kind, number!(params.angle, or 0.0, Any))
-            }
-        };
-        if self.dimension == 1
-            && (kind, angle) != (LatticeKind::Cubic, 0.0)
-            && let Some(lattice) = &params.lattice
-        {
-            let title = "in one dimension particles stand in a row: `lattice` must be \"cubic\"";
-            return Err(Diagnostic::new(lattice.span(), title));
-        }
-        if kind == LatticeKind::Rings
-            && let Some(lattice) = &params.lattice
-        {
-            let is_round = match shape {
-                Shape::Box { .. } => false,
-                Shape::Sphere { .. } | Shape::Shell { .. } => self.dimension == 2,
-                Shape::Cylinder { axis, .. } => *axis == Axis::Z,
-            };
-            if !is_round || angle != 0.0 {
-                let title = "a lattice of rings, which has no `angle`, fills discs and rings in two \
-                    dimensions and cylinders along z in three";
-                return Err(Diagnostic::new(lattice.span(), title));
-            }
-        }
-        Ok(Lattice {
-            kind,
-            spacing,
-            angle,
-        })
     }
 
     fn check_size(

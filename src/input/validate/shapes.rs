@@ -2,10 +2,11 @@
 
 use toml::Spanned;
 
+use super::solids;
 use crate::input::quantity::{Extent, Placed};
 use crate::input::schema::{BoxParams, CylinderParams, Point, ShapeParams, SphereParams};
 use crate::input::source::Diagnostic;
-use crate::model::{Axis, Shape, Vec3};
+use crate::model::{Axis, Form, Profile, Shape, Vec3};
 
 /// What the shape of one body is read with.
 pub struct Shapes {
@@ -43,28 +44,48 @@ pub fn vector<K>(
 impl Shapes {
     /// The shape of a body, before `touch`.
     pub fn shape(&self, table: &Spanned<ShapeParams>) -> Result<Shape, Diagnostic> {
-        let ShapeParams {
-            r#box,
-            sphere,
-            cylinder,
-        } = table.get_ref();
-        match (r#box, sphere, cylinder) {
-            (Some(params), None, None) => self.cuboid(params),
-            (None, Some(params), None) if self.dimension > 1 => self.sphere(params.get_ref()),
-            (None, None, Some(params)) if self.dimension > 2 => self.cylinder(params.get_ref()),
-            (None, Some(params), None) => Err(self.unfit(params, "sphere", "a box")),
-            (None, None, Some(params)) => Err(self.unfit(
-                params,
-                "cylinder",
-                if self.dimension == 1 {
-                    "a box"
-                } else {
-                    "a sphere, which is a disc,"
-                },
-            )),
+        let params = table.get_ref();
+        let shape = self.form(table)?;
+        if params.turn.is_none() && params.shift.is_none() {
+            return Ok(shape);
+        }
+        self.moved(params, shape)
+    }
+
+    /// The form of a shape, before it is turned and moved.
+    fn form(&self, table: &Spanned<ShapeParams>) -> Result<Shape, Diagnostic> {
+        let mut forms: Vec<Result<Shape, Diagnostic>> = Vec::new();
+        macro_rules! take {
+            ($($key:ident: $least:literal $other:literal $method:ident;)+) => { $(
+                if let Some(params) = &table.get_ref().$key {
+                    forms.push(if self.dimension < $least {
+                        Err(self.unfit(params, stringify!($key).trim_start_matches("r#"), $other))
+                    } else {
+                        self.$method(params)
+                    });
+                }
+            )+ };
+        }
+        take! {
+            r#box: 1 "" cuboid;
+            sphere: 2 "a box" sphere;
+            cylinder: 3 "a sphere, which is a disc in two dimensions," cylinder;
+            ellipsoid: 2 "a box" ellipsoid;
+            cone: 3 "a prism, which is a polygon in two dimensions," cone;
+            ogive: 3 "a prism, which is a polygon in two dimensions," ogive;
+            torus: 3 "a sphere with an `inner_radius`, which is a ring in two dimensions," torus;
+            prism: 2 "a box" prism;
+            union: 2 "a box" union;
+            intersection: 2 "a box" intersection;
+            difference: 2 "a box" difference;
+        }
+        let mut forms = forms.into_iter();
+        match (forms.next(), forms.next()) {
+            (Some(form), None) => form,
             _ => Err(Diagnostic::new(
                 table.span(),
-                "`shape` must have exactly one of `box`, `sphere`, `cylinder`",
+                "`shape` must have exactly one of `box`, `sphere`, `cylinder`, `ellipsoid`, `cone`, \
+                 `ogive`, `torus`, `prism`, `union`, `intersection`, `difference`",
             )),
         }
     }
@@ -103,35 +124,60 @@ impl Shapes {
         Err(Diagnostic::new(at, "every edge of a box must be positive"))
     }
 
-    fn sphere(&self, params: &SphereParams) -> Result<Shape, Diagnostic> {
+    fn sphere(&self, table: &Spanned<SphereParams>) -> Result<Shape, Diagnostic> {
+        let params = table.get_ref();
         let centre = self.point(params.centre.as_ref(), "centre")?;
         let radius = self.positive(&params.radius, "radius")?;
-        let Some(inner) = &params.inner_radius else {
+        let Some(inner_radius) = self.bore(params.inner_radius.as_ref(), radius)? else {
             return Ok(Shape::Sphere { centre, radius });
+        };
+        Ok(Shape::Shell {
+            centre,
+            radius,
+            inner_radius,
+        })
+    }
+
+    /// The radius of a hole, smaller than that of what it is in.
+    fn bore(
+        &self,
+        inner: Option<&Spanned<Extent>>,
+        radius: f64,
+    ) -> Result<Option<f64>, Diagnostic> {
+        let Some(inner) = inner else {
+            return Ok(None);
         };
         let inner_radius = self.positive(inner, "inner_radius")?;
         if inner_radius < radius {
-            return Ok(Shape::Shell {
-                centre,
-                radius,
-                inner_radius,
-            });
+            return Ok(Some(inner_radius));
         }
         let title = "`inner_radius` must be smaller than `radius`";
         Err(Diagnostic::new(inner.span(), title))
     }
 
-    fn cylinder(&self, params: &CylinderParams) -> Result<Shape, Diagnostic> {
-        let axis = params.axis.as_ref();
-        Ok(Shape::Cylinder {
-            centre: self.point(params.centre.as_ref(), "centre")?,
-            axis: axis.map_or(Ok(Axis::Z), |name| super::axis(name, self.dimension))?,
-            radius: self.positive(&params.radius, "radius")?,
-            length: self.positive(&params.length, "length")?,
-        })
+    fn cylinder(&self, table: &Spanned<CylinderParams>) -> Result<Shape, Diagnostic> {
+        let params = table.get_ref();
+        let centre = self.point(params.centre.as_ref(), "centre")?;
+        let radius = self.positive(&params.radius, "radius")?;
+        let length = self.positive(&params.length, "length")?;
+        let bore = self.bore(params.inner_radius.as_ref(), radius)?;
+        let axis = self.direction(params.axis.as_ref())?;
+        let along = Axis::ALL.into_iter().find(|a| axis[a.index()].abs() == 1.0);
+        if let (None, Some(axis)) = (bore, along) {
+            return Ok(Shape::Cylinder {
+                centre,
+                axis,
+                radius,
+                length,
+            });
+        }
+        let (inner, half) = (bore.unwrap_or(0.0), 0.5 * length);
+        let outline = vec![[inner, -half], [radius, -half], [radius, half], [inner, half]];
+        let profile = Profile::new(outline).expect("a rectangle");
+        Ok(solids::placed(Form::Revolved(profile), &axis, centre))
     }
 
-    fn positive(&self, value: &Spanned<Extent>, key: &str) -> Result<f64, Diagnostic> {
+    pub(super) fn positive(&self, value: &Spanned<Extent>, key: &str) -> Result<f64, Diagnostic> {
         let metres = value.get_ref().metres(self.spacing);
         if metres > 0.0 {
             return Ok(metres);
@@ -143,7 +189,7 @@ impl Shapes {
     }
 
     /// A point; the origin if absent.
-    fn point(&self, value: Option<&Point>, key: &str) -> Result<Vec3, Diagnostic> {
+    pub(super) fn point(&self, value: Option<&Point>, key: &str) -> Result<Vec3, Diagnostic> {
         let mut point = Vec3::zeros();
         if let Some(value) = value {
             if value.get_ref().len() != self.dimension {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::contact::without_sums;
 use crate::input::source::Diagnostic;
-use crate::model::{Case, LatticeKind, SphForm};
+use crate::model::{Body, Case, LatticeKind, Shape, SphForm};
 
 /// Stress points stand between the particles of cubic lattices, and have the sums of no pair of
 /// particles that the options of these could act in.
@@ -37,6 +37,11 @@ pub fn check(case: &Case, at: Option<Range<usize>>) -> Result<(), Diagnostic> {
             title,
             "take a cubic lattice, which may be turned by an `angle`",
         );
+    }
+    let is_straight = |b: &Body| !matches!(b.shape, Shape::Solid(_)) && b.lattice.axis.is_none();
+    if let Some(body) = case.bodies.iter().find(|b| b.rigid.is_none() && !is_straight(b)) {
+        let title = format!("stress points cannot fill the shape of `{}`", body.name);
+        return refuse(title, "take a box, a sphere or a cylinder along an axis");
     }
     let n = case.bodies.len();
     let mut modes = (0..n).flat_map(|a| (a + 1..n).map(move |b| case.contact_between(a, b)));

@@ -155,5 +155,10 @@ fn translate(shape: &mut Shape, axis: Axis, distance: f64) {
         Shape::Sphere { centre, .. }
         | Shape::Shell { centre, .. }
         | Shape::Cylinder { centre, .. } => centre[a] += distance,
+        Shape::Solid(solid) => {
+            let mut way = Vec3::zeros();
+            way[a] = distance;
+            solid.translate(&way);
+        }
     }
 }

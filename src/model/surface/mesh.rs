@@ -191,6 +191,24 @@ impl Mesh {
         })
     }
 
+    /// Distance (m) of a point from the surface, negative inside.
+    #[must_use]
+    pub fn distance(&self, x: &[f64; 3]) -> f64 {
+        self.foot(x, f64::INFINITY).map_or(f64::INFINITY, |foot| foot.gap)
+    }
+
+    /// Volume that the surface encloses (m³), by the theorem of Gauss.
+    #[must_use]
+    pub fn volume(&self) -> f64 {
+        let (lower, upper) = self.bounds();
+        let middle: [f64; 3] = std::array::from_fn(|a| 0.5 * (lower[a] + upper[a]));
+        let parts = self.triangles.iter().map(|t| {
+            let [a, b, c] = t.map(|c| minus(&self.corners[c as usize], &middle));
+            dot(&a, &cross(&b, &c)) / 6.0
+        });
+        parts.fold(0.0, |sum, part| sum + part)
+    }
+
     /// Whether the surface is convex.
     #[must_use]
     pub fn is_convex(&self) -> bool {

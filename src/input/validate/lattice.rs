@@ -1,0 +1,85 @@
+//! How a body is filled.
+
+use toml::Spanned;
+
+use super::shapes::Shapes;
+use crate::input::schema::LatticeParams;
+use crate::input::source::Diagnostic;
+use crate::model::{Axis, Lattice, LatticeKind, Shape};
+
+/// The lattice of a body of some shape; cubic if absent.
+pub fn lattice(
+    shapes: &Shapes,
+    params: Option<&Spanned<LatticeParams>>,
+    shape: &Shape,
+) -> Result<Lattice, Diagnostic> {
+    let spacing = shapes.spacing;
+    let Some(table) = params else {
+        return Ok(Lattice {
+            spacing,
+            ..Lattice::default()
+        });
+    };
+    let params = table.get_ref();
+    let angle = params.angle.as_ref().map_or(0.0, |angle| angle.get_ref().si);
+    let is_turned = angle != 0.0 || params.axis.is_some();
+    if let Some(title) = misfit(params.kind, is_turned, shapes.dimension, shape) {
+        return Err(Diagnostic::new(table.span(), title));
+    }
+    let seed = match &params.seed {
+        None => 0,
+        Some(seed) if params.kind != LatticeKind::Glass => {
+            return Err(Diagnostic::new(seed.span(), "only glass has a `seed`"));
+        }
+        Some(seed) => u64::try_from(*seed.get_ref())
+            .map_err(|_| Diagnostic::new(seed.span(), "`seed` must not be negative"))?,
+    };
+    let axis = match &params.axis {
+        None => None,
+        Some(axis) if shapes.dimension < 3 => {
+            let title = "in two dimensions a lattice turns about z alone";
+            return Err(Diagnostic::new(axis.span(), title));
+        }
+        Some(_) => Some(shapes.direction(params.axis.as_ref())?),
+    };
+    Ok(Lattice {
+        kind: params.kind,
+        spacing,
+        angle,
+        axis: axis.filter(|axis| axis.z != 1.0),
+        seed,
+        volume: None,
+    })
+}
+
+/// Why a lattice does not go with a shape.
+fn misfit(
+    kind: LatticeKind,
+    is_turned: bool,
+    dimension: usize,
+    shape: &Shape,
+) -> Option<&'static str> {
+    match kind {
+        _ if dimension == 1 && (kind != LatticeKind::Cubic || is_turned) => {
+            Some("in one dimension particles stand in a row: `lattice` must be \"cubic\"")
+        }
+        LatticeKind::BodyCentred | LatticeKind::FaceCentred if dimension == 2 => {
+            Some("a lattice of cells with centres needs three dimensions")
+        }
+        LatticeKind::Glass if is_turned => {
+            Some("glass, which has no order, has no `angle` and no `axis`")
+        }
+        LatticeKind::Rings => {
+            let is_round = match shape {
+                Shape::Box { .. } | Shape::Solid(_) => false,
+                Shape::Sphere { .. } | Shape::Shell { .. } => dimension == 2,
+                Shape::Cylinder { axis, .. } => *axis == Axis::Z,
+            };
+            (!is_round || is_turned).then_some(
+                "a lattice of rings, which has no `angle`, fills discs and rings in two \
+                 dimensions and cylinders along z in three",
+            )
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,232 @@
+//! Forms that are neither boxes, spheres nor straight cylinders; shapes together, turned and moved.
+
+use toml::Spanned;
+
+use super::shapes::Shapes;
+use crate::input::schema::{
+    AxisParams, ConeParams, EllipsoidParams, OgiveParams, PrismParams, ShapeParams,
+    ShapeTurnParams, TorusParams, TurnsParams,
+};
+use crate::input::source::Diagnostic;
+use crate::model::{Axis, Form, Placement, Profile, Shape, Solid, Vec3, rotation};
+
+/// Most corners of a polygon, and most shapes together.
+const MOST_CORNERS: usize = 10_000;
+const MOST_SHAPES: usize = 1000;
+
+/// A form about z in its place: turned so that its axis points along a unit vector.
+pub fn placed(form: Form, axis: &Vec3, centre: Vec3) -> Shape {
+    let place = Placement::turned(onto(axis), centre);
+    Shape::Solid(Solid::Form(form, place))
+}
+
+/// The matrix that turns z into a unit vector.
+fn onto(axis: &Vec3) -> nalgebra::Matrix3<f64> {
+    let along = Axis::ALL.into_iter().find(|a| axis[a.index()].abs() == 1.0);
+    let Some(along) = along else {
+        let across = Vec3::z().cross(axis);
+        return rotation(&across, libm::acos(axis.z.clamp(-1.0, 1.0)));
+    };
+    let onto = Shape::onto(along);
+    if axis[along.index()] > 0.0 {
+        return onto;
+    }
+    onto * nalgebra::Matrix3::from_diagonal(&Vec3::new(1.0, -1.0, -1.0))
+}
+
+impl Shapes {
+    /// A unit vector; z if absent.
+    pub fn direction(&self, axis: Option<&Spanned<AxisParams>>) -> Result<Vec3, Diagnostic> {
+        let Some(params) = axis else {
+            return Ok(Vec3::z());
+        };
+        let refuse = |title: String| Err(Diagnostic::new(params.span(), title));
+        match params.get_ref() {
+            AxisParams::Word(word) => {
+                let (axis, sense) = word.sense();
+                let mut unit = Vec3::zeros();
+                unit[axis] = sense;
+                Ok(unit)
+            }
+            AxisParams::Vector(vector) => {
+                let &[x, y, z] = vector.as_slice() else {
+                    let found = vector.len();
+                    return refuse(format!("`axis` must have 3 components, found {found}"));
+                };
+                let longest = vector.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+                if !(longest > 0.0 && longest.is_finite()) || vector.iter().any(|c| c.is_nan()) {
+                    return refuse("`axis` must be a vector of some length".to_owned());
+                }
+                Ok((Vec3::new(x, y, z) / longest).normalize())
+            }
+        }
+    }
+
+    pub(super) fn ellipsoid(
+        &self,
+        table: &Spanned<EllipsoidParams>,
+    ) -> Result<Shape, Diagnostic> {
+        let params = table.get_ref();
+        let centre = self.point(params.centre.as_ref(), "centre")?;
+        let mut semi = self.point(Some(&params.semi_axes), "semi_axes")?;
+        if (0..self.dimension).any(|a| semi[a] <= 0.0) {
+            let title = "every semi-axis of an ellipsoid must be positive";
+            return Err(Diagnostic::new(params.semi_axes.span(), title));
+        }
+        if self.dimension == 2 {
+            semi.z = f64::INFINITY;
+        }
+        let place = Placement::at(centre);
+        Ok(Shape::Solid(Solid::Form(Form::Ellipsoid(semi), place)))
+    }
+
+    pub(super) fn cone(&self, table: &Spanned<ConeParams>) -> Result<Shape, Diagnostic> {
+        let params = table.get_ref();
+        let centre = self.point(params.centre.as_ref(), "centre")?;
+        let radius = self.positive(&params.radius, "radius")?;
+        let half = 0.5 * self.positive(&params.length, "length")?;
+        let mut outline = vec![[0.0, -half], [radius, -half]];
+        match &params.top_radius {
+            None => outline.push([0.0, half]),
+            Some(top) => {
+                outline.push([self.positive(top, "top_radius")?, half]);
+                outline.push([0.0, half]);
+            }
+        }
+        let profile = Profile::new(outline).expect("a triangle or a trapezium");
+        let axis = self.direction(params.axis.as_ref())?;
+        Ok(placed(Form::Revolved(profile), &axis, centre))
+    }
+
+    pub(super) fn ogive(&self, table: &Spanned<OgiveParams>) -> Result<Shape, Diagnostic> {
+        let params = table.get_ref();
+        let centre = self.point(params.centre.as_ref(), "centre")?;
+        let radius = self.positive(&params.radius, "radius")?;
+        let nose = self.positive(&params.nose, "nose")?;
+        let length = self.positive(&params.length, "length")?;
+        if nose < radius {
+            let title = "the `nose` of an ogive must be as long as its `radius` at least";
+            return Err(Diagnostic::new(params.nose.span(), title)
+                .help("one that is as long is half a ball; a flatter one is an `ellipsoid`"));
+        }
+        if length < nose {
+            let title = "the `length` of an ogive, which counts its nose, must not be less than that";
+            return Err(Diagnostic::new(params.length.span(), title));
+        }
+        let axis = self.direction(params.axis.as_ref())?;
+        let form = Form::Ogive {
+            radius,
+            arc: (radius * radius + nose * nose) / (2.0 * radius),
+            nose,
+            shank: length - nose,
+        };
+        // Its origin is where the nose begins.
+        let origin = centre + axis * (0.5 * length - nose);
+        Ok(placed(form, &axis, origin))
+    }
+
+    pub(super) fn torus(&self, table: &Spanned<TorusParams>) -> Result<Shape, Diagnostic> {
+        let params = table.get_ref();
+        let radius = self.positive(&params.radius, "radius")?;
+        let tube = self.positive(&params.tube_radius, "tube_radius")?;
+        if tube >= radius {
+            let title = "`tube_radius` must be smaller than `radius`";
+            return Err(Diagnostic::new(params.tube_radius.span(), title));
+        }
+        let centre = self.point(params.centre.as_ref(), "centre")?;
+        let axis = self.direction(params.axis.as_ref())?;
+        Ok(placed(Form::Torus { radius, tube }, &axis, centre))
+    }
+
+    pub(super) fn prism(&self, table: &Spanned<PrismParams>) -> Result<Shape, Diagnostic> {
+        let params = table.get_ref();
+        let centre = self.point(params.centre.as_ref(), "centre")?;
+        let corners = params.corners.get_ref();
+        let refuse = |title: &str| Err(Diagnostic::new(params.corners.span(), title));
+        if corners.len() > MOST_CORNERS {
+            return refuse("a polygon may have 10000 corners at most");
+        }
+        let flat = Self { dimension: 2, ..*self };
+        let outline: Result<Vec<[f64; 2]>, Diagnostic> = corners
+            .iter()
+            .map(|corner| flat.point(Some(corner), "corners").map(|x| [x.x, x.y]))
+            .collect();
+        let Some(section) = Profile::new(outline?) else {
+            return refuse("`corners` must be those of a polygon whose edges do not cross");
+        };
+        let half = match (&params.length, self.dimension) {
+            (Some(length), 3) => 0.5 * self.positive(length, "length")?,
+            (None, 2) => f64::INFINITY,
+            (None, _) => {
+                let title = "a prism must have a `length`";
+                return Err(Diagnostic::new(table.span(), title));
+            }
+            (Some(length), _) => {
+                let title = "in two dimensions a prism has no `length`";
+                return Err(Diagnostic::new(length.span(), title));
+            }
+        };
+        let axis = self.direction(params.axis.as_ref())?;
+        if let (2, Some(given)) = (self.dimension, &params.axis) {
+            let title = "in two dimensions a prism has no `axis`";
+            return Err(Diagnostic::new(given.span(), title));
+        }
+        Ok(placed(Form::Prism { section, half }, &axis, centre))
+    }
+
+    pub(super) fn union(&self, parts: &Parts) -> Result<Shape, Diagnostic> {
+        Ok(Shape::Solid(Solid::Union(self.parts(parts)?)))
+    }
+
+    pub(super) fn intersection(&self, parts: &Parts) -> Result<Shape, Diagnostic> {
+        Ok(Shape::Solid(Solid::Intersection(self.parts(parts)?)))
+    }
+
+    pub(super) fn difference(&self, parts: &Parts) -> Result<Shape, Diagnostic> {
+        Ok(Shape::Solid(Solid::Difference(self.parts(parts)?)))
+    }
+
+    fn parts(&self, parts: &Parts) -> Result<Vec<Solid>, Diagnostic> {
+        let list = parts.get_ref();
+        if list.is_empty() || list.len() > MOST_SHAPES {
+            let title = "one shape at least and 1000 at most go together";
+            return Err(Diagnostic::new(parts.span(), title));
+        }
+        list.iter()
+            .map(|part| Ok(self.shape(part)?.solid(self.dimension)))
+            .collect()
+    }
+
+    /// A shape turned, and then moved.
+    pub(super) fn moved(&self, params: &ShapeParams, shape: Shape) -> Result<Shape, Diagnostic> {
+        let middle = shape.centre();
+        let mut solid = shape.solid(self.dimension);
+        let turns: &[ShapeTurnParams] = match &params.turn {
+            None => &[],
+            Some(TurnsParams::One(turn)) => std::slice::from_ref(turn),
+            Some(TurnsParams::Many(turns)) => turns,
+        };
+        for turn in turns {
+            let axis = self.direction(Some(&turn.axis))?;
+            if self.dimension < 2 || (self.dimension == 2 && axis.z.abs() != 1.0) {
+                let title = match self.dimension {
+                    1 => "in one dimension nothing turns",
+                    _ => "in two dimensions a shape turns about z alone",
+                };
+                return Err(Diagnostic::new(turn.axis.span(), title));
+            }
+            let about = match &turn.about {
+                Some(_) => self.point(turn.about.as_ref(), "about")?,
+                None => middle,
+            };
+            solid.rotate(&rotation(&axis, turn.angle.get_ref().si), &about);
+        }
+        if params.shift.is_some() {
+            solid.translate(&self.point(params.shift.as_ref(), "shift")?);
+        }
+        Ok(Shape::Solid(solid))
+    }
+}
+
+/// Shapes that go together.
+type Parts = Spanned<Vec<Spanned<ShapeParams>>>;
