@@ -8,7 +8,8 @@ use toml::Spanned;
 
 use super::forms::{Named, OneOrMany};
 use super::quantity::{
-    Acceleration, Angle, AngularRate, Density, Extent, Length, Placed, SpecificEnergy, Time, Velocity,
+    Acceleration, Angle, AngularRate, Density, Extent, Length, Placed, SpecificEnergy, Time,
+    Velocity,
 };
 use crate::model::{Axis, SphForm};
 

@@ -95,7 +95,8 @@ impl Shape {
             }
             Self::Solid(solid) => {
                 let (lower, upper) = solid.bounds();
-                let corner = Vec3::from_fn(|a, _| if normal[a] > 0.0 { lower[a] } else { upper[a] });
+                let corner =
+                    Vec3::from_fn(|a, _| if normal[a] > 0.0 { lower[a] } else { upper[a] });
                 normal.dot(&corner)
             }
         }
@@ -118,7 +119,9 @@ impl Shape {
             Self::Solid(solid) => {
                 let (lower, upper) = solid.bounds();
                 let size = upper - lower;
-                (0..dimension).map(|a| size[a]).fold(f64::INFINITY, f64::min)
+                (0..dimension)
+                    .map(|a| size[a])
+                    .fold(f64::INFINITY, f64::min)
             }
         }
     }

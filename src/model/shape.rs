@@ -76,7 +76,8 @@ impl Shape {
     /// The same shape as a solid; in two dimensions it goes on along z.
     #[must_use]
     pub fn solid(&self, dimension: usize) -> Solid {
-        let ball = |centre: &Vec3, radius: f64| Solid::Form(Form::Ball(radius), Placement::at(*centre));
+        let ball =
+            |centre: &Vec3, radius: f64| Solid::Form(Form::Ball(radius), Placement::at(*centre));
         match self {
             Self::Box { lower, upper } => {
                 let mut half = (upper - lower) * 0.5;
@@ -113,8 +114,6 @@ impl Shape {
     #[must_use]
     pub fn onto(axis: Axis) -> nalgebra::Matrix3<f64> {
         let first = (axis.index() + 1) % 3;
-        nalgebra::Matrix3::from_fn(|row, column| {
-            f64::from(u8::from(row == (first + column) % 3))
-        })
+        nalgebra::Matrix3::from_fn(|row, column| f64::from(u8::from(row == (first + column) % 3)))
     }
 }

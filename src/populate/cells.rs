@@ -93,13 +93,18 @@ impl Cells {
             for corner in 0..8_u8 {
                 let x = Vec3::from_fn(|b, _| {
                     let end = if corner >> b & 1 == 1 { upper } else { lower };
-                    if b < self.dimension { end[b] - centre[b] } else { 0.0 }
+                    if b < self.dimension {
+                        end[b] - centre[b]
+                    } else {
+                        0.0
+                    }
                 });
                 let along = self.turn.column(a).dot(&x) / edges[a] - shift[a];
                 (low, high) = (low.min(along), high.max(along));
             }
             first[a] = low.floor();
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturating is meant
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            // saturating is meant
             {
                 self.tiles[a] = (high.ceil() - first[a]).max(1.0) as u64;
             }
@@ -155,9 +160,8 @@ impl Cells {
     fn all_blocks(&self) -> impl Iterator<Item = Block> + use<> {
         let (tiles, blocks) = (self.tiles, self.tile.blocks);
         let each = |n: [u64; 3]| {
-            (0..n[2]).flat_map(move |k| {
-                (0..n[1]).flat_map(move |j| (0..n[0]).map(move |i| [i, j, k]))
-            })
+            (0..n[2])
+                .flat_map(move |k| (0..n[1]).flat_map(move |j| (0..n[0]).map(move |i| [i, j, k])))
         };
         each(tiles).flat_map(move |tile| {
             each(blocks).map(move |block| Block {
@@ -183,7 +187,8 @@ impl Cells {
 
     /// The sites of a block by their numbers in its tile.
     fn numbers(&self, block: Block) -> Range<usize> {
-        self.tile.numbers([0, 1, 2].map(|a| block.at[a] % self.tile.blocks[a]))
+        self.tile
+            .numbers([0, 1, 2].map(|a| block.at[a] % self.tile.blocks[a]))
     }
 
     /// Where the solid and the cuts leave a block.
@@ -200,7 +205,9 @@ impl Cells {
         if distance >= reach {
             return Lie::Outside;
         }
-        let is_kept = cuts.iter().all(|cut| cut.keeps(&lower) && cut.keeps(&upper));
+        let is_kept = cuts
+            .iter()
+            .all(|cut| cut.keeps(&lower) && cut.keeps(&upper));
         if distance <= -reach && is_kept {
             Lie::Inside
         } else {
@@ -248,8 +255,18 @@ impl Cells {
     }
 
     /// Tells the coordinates on an axis (m) of one of several shares of the sites.
-    pub fn tally(&self, cuts: &[Cut], axis: usize, share: super::Share, mut add: impl FnMut(f64, u64)) {
-        for block in self.all_blocks().skip(share.part).step_by(share.parts.max(1)) {
+    pub fn tally(
+        &self,
+        cuts: &[Cut],
+        axis: usize,
+        share: super::Share,
+        mut add: impl FnMut(f64, u64),
+    ) {
+        for block in self
+            .all_blocks()
+            .skip(share.part)
+            .step_by(share.parts.max(1))
+        {
             for site in self.sites_of(block, cuts) {
                 add(site.position[axis], 1);
             }

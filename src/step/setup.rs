@@ -137,8 +137,13 @@ impl Simulation {
             i = self.populate_stress_points(i, first_id, slab)?;
         }
         debug_assert_eq!(i, self.particles.owned());
-        let Case { bodies, dimension, .. } = &self.case;
-        if bodies.iter().any(|body| populate::moves_sites(body, *dimension)) {
+        let Case {
+            bodies, dimension, ..
+        } = &self.case;
+        if bodies
+            .iter()
+            .any(|body| populate::moves_sites(body, *dimension))
+        {
             self.partition.deal(comm, &mut self.particles);
         }
         Ok(())

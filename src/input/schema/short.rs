@@ -7,8 +7,8 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer, StrDeserial
 use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use toml::Spanned;
 
-use super::choices::{AxisWord, Direction};
 use super::ShapeTurnParams;
+use super::choices::{AxisWord, Direction};
 use crate::input::quantity::{Angle, Placed};
 use crate::model::LatticeKind;
 

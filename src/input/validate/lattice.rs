@@ -21,7 +21,10 @@ pub fn lattice(
         });
     };
     let params = table.get_ref();
-    let angle = params.angle.as_ref().map_or(0.0, |angle| angle.get_ref().si);
+    let angle = params
+        .angle
+        .as_ref()
+        .map_or(0.0, |angle| angle.get_ref().si);
     let is_turned = angle != 0.0 || params.axis.is_some();
     if let Some(title) = misfit(params.kind, is_turned, shapes.dimension, shape) {
         return Err(Diagnostic::new(table.span(), title));

@@ -172,7 +172,12 @@ impl Shapes {
             });
         }
         let (inner, half) = (bore.unwrap_or(0.0), 0.5 * length);
-        let outline = vec![[inner, -half], [radius, -half], [radius, half], [inner, half]];
+        let outline = vec![
+            [inner, -half],
+            [radius, -half],
+            [radius, half],
+            [inner, half],
+        ];
         let profile = Profile::new(outline).expect("a rectangle");
         Ok(solids::placed(Form::Revolved(profile), &axis, centre))
     }

@@ -62,10 +62,7 @@ impl Shapes {
         }
     }
 
-    pub(super) fn ellipsoid(
-        &self,
-        table: &Spanned<EllipsoidParams>,
-    ) -> Result<Shape, Diagnostic> {
+    pub(super) fn ellipsoid(&self, table: &Spanned<EllipsoidParams>) -> Result<Shape, Diagnostic> {
         let params = table.get_ref();
         let centre = self.point(params.centre.as_ref(), "centre")?;
         let mut semi = self.point(Some(&params.semi_axes), "semi_axes")?;
@@ -110,7 +107,8 @@ impl Shapes {
                 .help("one that is as long is half a ball; a flatter one is an `ellipsoid`"));
         }
         if length < nose {
-            let title = "the `length` of an ogive, which counts its nose, must not be less than that";
+            let title =
+                "the `length` of an ogive, which counts its nose, must not be less than that";
             return Err(Diagnostic::new(params.length.span(), title));
         }
         let axis = self.direction(params.axis.as_ref())?;
@@ -146,7 +144,10 @@ impl Shapes {
         if corners.len() > MOST_CORNERS {
             return refuse("a polygon may have 10000 corners at most");
         }
-        let flat = Self { dimension: 2, ..*self };
+        let flat = Self {
+            dimension: 2,
+            ..*self
+        };
         let outline: Result<Vec<[f64; 2]>, Diagnostic> = corners
             .iter()
             .map(|corner| flat.point(Some(corner), "corners").map(|x| [x.x, x.y]))

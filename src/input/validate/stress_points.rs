@@ -39,7 +39,11 @@ pub fn check(case: &Case, at: Option<Range<usize>>) -> Result<(), Diagnostic> {
         );
     }
     let is_straight = |b: &Body| !matches!(b.shape, Shape::Solid(_)) && b.lattice.axis.is_none();
-    if let Some(body) = case.bodies.iter().find(|b| b.rigid.is_none() && !is_straight(b)) {
+    if let Some(body) = case
+        .bodies
+        .iter()
+        .find(|b| b.rigid.is_none() && !is_straight(b))
+    {
         let title = format!("stress points cannot fill the shape of `{}`", body.name);
         return refuse(title, "take a box, a sphere or a cylinder along an axis");
     }

@@ -106,9 +106,14 @@ impl Form {
                 }
             }
             Self::Prism { section, half } => {
-                section.near_edges([p.x, p.y], reach, |_| true, |near| {
-                    tell(near.distance, Vec3::new(near.way[0], near.way[1], 0.0));
-                });
+                section.near_edges(
+                    [p.x, p.y],
+                    reach,
+                    |_| true,
+                    |near| {
+                        tell(near.distance, Vec3::new(near.way[0], near.way[1], 0.0));
+                    },
+                );
                 let depth = half - p.z.abs();
                 if depth < reach {
                     tell(depth, Vec3::z() * 1.0_f64.copysign(p.z));
@@ -205,8 +210,9 @@ impl Form {
             } => {
                 // ∫ π r² dz with r = √(arc² − z²) − (arc − radius).
                 let off = arc - radius;
-                let wedge = 0.5 * (nose * (arc * arc - nose * nose).max(0.0).sqrt()
-                    + arc * arc * libm::asin((nose / arc).min(1.0)));
+                let wedge = 0.5
+                    * (nose * (arc * arc - nose * nose).max(0.0).sqrt()
+                        + arc * arc * libm::asin((nose / arc).min(1.0)));
                 let squares = (arc * arc + off * off) * nose - nose * nose * nose / 3.0;
                 PI * (squares - 2.0 * off * wedge) + PI * radius * radius * shank
             }
@@ -229,9 +235,7 @@ impl Form {
                 let r = upper[0];
                 (Vec3::new(-r, -r, lower[1]), Vec3::new(r, r, upper[1]))
             }
-            Self::Torus { radius, tube } => {
-                both(Vec3::new(radius + tube, radius + tube, *tube))
-            }
+            Self::Torus { radius, tube } => both(Vec3::new(radius + tube, radius + tube, *tube)),
             Self::Ogive {
                 radius: r,
                 nose,

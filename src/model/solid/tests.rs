@@ -26,7 +26,14 @@ fn tetrahedron() -> Form {
 }
 
 fn angle() -> Vec<[f64; 2]> {
-    vec![[0.0, 0.0], [2.0, 0.0], [2.0, 0.5], [0.5, 0.5], [0.5, 1.5], [0.0, 1.5]]
+    vec![
+        [0.0, 0.0],
+        [2.0, 0.0],
+        [2.0, 0.5],
+        [0.5, 0.5],
+        [0.5, 1.5],
+        [0.0, 1.5],
+    ]
 }
 
 /// Each form with its volume.
@@ -45,8 +52,14 @@ fn forms() -> Vec<(Form, f64)> {
         (Form::Box(Vec3::new(0.5, 1.0, 0.25)), 1.0),
         (Form::Ball(1.5), 4.5 * PI),
         (Form::Ellipsoid(Vec3::new(1.0, 0.5, 0.25)), PI / 6.0),
-        (revolved(&[[0.0, -1.0], [1.0, -1.0], [1.0, 1.0], [0.0, 1.0]]), 2.0 * PI),
-        (revolved(&[[0.5, -1.0], [1.0, -1.0], [1.0, 1.0], [0.5, 1.0]]), 1.5 * PI),
+        (
+            revolved(&[[0.0, -1.0], [1.0, -1.0], [1.0, 1.0], [0.0, 1.0]]),
+            2.0 * PI,
+        ),
+        (
+            revolved(&[[0.5, -1.0], [1.0, -1.0], [1.0, 1.0], [0.5, 1.0]]),
+            1.5 * PI,
+        ),
         (revolved(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.5]]), 0.5 * PI),
         (
             revolved(&[[0.0, 0.0], [1.0, 0.0], [0.5, 1.2], [0.0, 1.2]]),
@@ -93,12 +106,18 @@ fn solids() -> Vec<Solid> {
 fn volumes_are_those_of_geometry() {
     for (form, volume) in forms() {
         let told = form.volume(3);
-        assert!((told / volume - 1.0).abs() < 1e-9, "{form:?}: {told} for {volume}");
+        assert!(
+            (told / volume - 1.0).abs() < 1e-9,
+            "{form:?}: {told} for {volume}"
+        );
         let solid = placed(form);
         let halved = volume::integrated(&|x| solid.distance(x), solid.bounds(), 3);
         let error = halved / volume - 1.0;
         println!("{error:e}");
-        assert!(error.abs() < 2e-4, "{solid:?}: {halved} for {volume}, {error:e}");
+        assert!(
+            error.abs() < 2e-4,
+            "{solid:?}: {halved} for {volume}, {error:e}"
+        );
     }
 }
 
@@ -109,9 +128,15 @@ fn together_solids_have_the_volume_of_geometry() {
     let lens = |d: f64| PI * (2.0 - d).powi(2) * (d * d + 4.0 * d) / (12.0 * d);
     let whole = 4.0 / 3.0 * PI;
     for (solid, volume) in [
-        (Solid::Union(vec![ball(0.0), ball(0.8)]), 2.0 * whole - lens(0.8)),
+        (
+            Solid::Union(vec![ball(0.0), ball(0.8)]),
+            2.0 * whole - lens(0.8),
+        ),
         (Solid::Intersection(vec![ball(0.0), ball(0.8)]), lens(0.8)),
-        (Solid::Difference(vec![ball(0.0), ball(0.8)]), whole - lens(0.8)),
+        (
+            Solid::Difference(vec![ball(0.0), ball(0.8)]),
+            whole - lens(0.8),
+        ),
     ] {
         let error = solid.volume(3) / volume - 1.0;
         println!("{error:e}");
@@ -144,7 +169,10 @@ fn ready_shapes_are_the_solids_that_they_become() {
             lower: Vec3::new(-1.0, -2.0, 0.5),
             upper: Vec3::new(1.0, 3.0, 1.5),
         },
-        Shape::Sphere { centre, radius: 1.2 },
+        Shape::Sphere {
+            centre,
+            radius: 1.2,
+        },
         Shape::Shell {
             centre,
             radius: 1.2,
@@ -163,7 +191,10 @@ fn ready_shapes_are_the_solids_that_they_become() {
             let f = |k: u64| (n * k % 503) as f64 / 502.0 * 5.0 - 2.5;
             let x = Vec3::new(f(1), f(31), f(97));
             let (own, other) = (shape.distance(&x, 3), solid.distance(&x));
-            assert!((own - other).abs() < 1e-12, "{shape:?} at {x}: {own}, {other}");
+            assert!(
+                (own - other).abs() < 1e-12,
+                "{shape:?} at {x}: {own}, {other}"
+            );
         }
     }
 }

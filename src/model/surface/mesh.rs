@@ -194,7 +194,8 @@ impl Mesh {
     /// Distance (m) of a point from the surface, negative inside.
     #[must_use]
     pub fn distance(&self, x: &[f64; 3]) -> f64 {
-        self.foot(x, f64::INFINITY).map_or(f64::INFINITY, |foot| foot.gap)
+        self.foot(x, f64::INFINITY)
+            .map_or(f64::INFINITY, |foot| foot.gap)
     }
 
     /// Volume that the surface encloses (m³), by the theorem of Gauss.

@@ -30,7 +30,10 @@ impl Fitted {
             return Self::default();
         }
         let spacing = cells.spacing;
-        let wide: Vec<Cut> = cuts.iter().map(|cut| cut.widened(MARGIN * spacing)).collect();
+        let wide: Vec<Cut> = cuts
+            .iter()
+            .map(|cut| cut.widened(MARGIN * spacing))
+            .collect();
         let deepest = (MOVING + REACH + 1.0) * spacing;
         let (mut sites, mut moving) = (Vec::new(), Vec::new());
         for block in cells.all_blocks() {
@@ -154,6 +157,8 @@ impl Scale {
             }
         }
         let mut scaled = |depth: f64, normal: Vec3| tell(depth / self.spacing, normal);
-        cells.solid.faces(&x.into(), reach * self.spacing, &mut scaled);
+        cells
+            .solid
+            .faces(&x.into(), reach * self.spacing, &mut scaled);
     }
 }

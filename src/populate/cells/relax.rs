@@ -63,7 +63,11 @@ impl Wall {
     }
 
     /// At a depth.
-    #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    #[allow(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss
+    )]
     pub fn force(&self, depth: f64) -> f64 {
         let at = (depth / REACH * Self::ROWS as f64).max(0.0);
         let row = at as usize;

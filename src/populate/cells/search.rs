@@ -38,7 +38,9 @@ impl Eq for Part {}
 impl Part {
     /// Both halves across the longest side.
     fn halves(&self) -> [([u64; 3], [u64; 3]); 2] {
-        let axis = (0..3).max_by_key(|&a| self.end[a] - self.first[a]).unwrap_or(0);
+        let axis = (0..3)
+            .max_by_key(|&a| self.end[a] - self.first[a])
+            .unwrap_or(0);
         let middle = u64::midpoint(self.first[axis], self.end[axis]);
         let (mut end, mut first) = (self.end, self.first);
         end[axis] = middle;

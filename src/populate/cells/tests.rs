@@ -179,10 +179,20 @@ fn tiles_are_even_and_isotropic() {
         // The mean of Σ e⁴ over random directions is 3/5 in space and 3/4 in the plane; its scatter
         // over the nearest neighbours of 4096 sites is .002 and .003.
         let isotropic = if dimension == 3 { 0.6 } else { 0.75 };
-        println!("{dimension}-D: sum {mean} ± {rms}, nearest {least}, K4 {}", k4 - isotropic);
-        assert!((mean - 1.0).abs() < 0.01 && rms < 0.01, "{dimension}: {mean} ± {rms}");
+        println!(
+            "{dimension}-D: sum {mean} ± {rms}, nearest {least}, K4 {}",
+            k4 - isotropic
+        );
+        assert!(
+            (mean - 1.0).abs() < 0.01 && rms < 0.01,
+            "{dimension}: {mean} ± {rms}"
+        );
         assert!(least > 0.8, "{dimension}: nearest {least}");
-        assert!((k4 - isotropic).abs() < 0.01, "{dimension}: K4 {}", k4 - isotropic);
+        assert!(
+            (k4 - isotropic).abs() < 0.01,
+            "{dimension}: K4 {}",
+            k4 - isotropic
+        );
     }
 }
 
@@ -204,7 +214,10 @@ fn a_fitted_body_has_a_smooth_layer_half_a_spacing_below_its_faces() {
         let (mean, rms) = spread(&layer);
         let (nearest, _) = pairs(&sites, 3);
         let least = nearest.iter().copied().fold(f64::INFINITY, f64::min);
-        println!("layer of {} at {mean} ± {rms}, nearest {least}", layer.len());
+        println!(
+            "layer of {} at {mean} ± {rms}, nearest {least}",
+            layer.len()
+        );
         assert!((mean - 0.5).abs() < 0.02 && rms < 0.05, "{mean} ± {rms}");
         assert!(depths.iter().all(|&d| d > 0.4));
         assert!(least > 0.6, "nearest {least}");
@@ -215,7 +228,10 @@ fn a_fitted_body_has_a_smooth_layer_half_a_spacing_below_its_faces() {
 fn slabs_hold_what_the_whole_holds_to_the_bit() {
     let body = body(ball(20.0), LatticeKind::Glass, 1.0);
     let whole: Vec<Site> = crate::populate::sites(&body, 3, &[], None).collect();
-    assert_eq!(whole.len() as u64, crate::populate::count(&body, 3, &[], None));
+    assert_eq!(
+        whole.len() as u64,
+        crate::populate::count(&body, 3, &[], None)
+    );
     let mut parts: Vec<Site> = Vec::new();
     for (lower, upper) in [(f64::NEG_INFINITY, -4.0), (-4.0, 1.5), (1.5, f64::INFINITY)] {
         let slab = Some(crate::populate::Slab {
@@ -235,15 +251,26 @@ fn slabs_hold_what_the_whole_holds_to_the_bit() {
 #[test]
 fn crystals_have_their_density_and_neighbours() {
     for (kind, nearest_of, count_of) in [
-        (LatticeKind::BodyCentred, 3.0_f64.sqrt() / 2.0 * 2.0_f64.cbrt(), 8),
-        (LatticeKind::FaceCentred, 0.5_f64.sqrt() * 4.0_f64.cbrt(), 12),
+        (
+            LatticeKind::BodyCentred,
+            3.0_f64.sqrt() / 2.0 * 2.0_f64.cbrt(),
+            8,
+        ),
+        (
+            LatticeKind::FaceCentred,
+            0.5_f64.sqrt() * 4.0_f64.cbrt(),
+            12,
+        ),
     ] {
         let body = body(ball(10.0), kind, 1.0);
         let sites: Vec<Site> = crate::populate::sites(&body, 3, &[], None).collect();
         let volume = 4.0 / 3.0 * std::f64::consts::PI * 1000.0;
         assert!((sites.len() as f64 / volume - 1.0).abs() < 0.02);
         let (nearest, _) = pairs(&sites, 3);
-        assert!(nearest.iter().all(|n| (n - nearest_of).abs() < 1e-9), "{kind:?}");
+        assert!(
+            nearest.iter().all(|n| (n - nearest_of).abs() < 1e-9),
+            "{kind:?}"
+        );
         let middle = sites.iter().min_by(|a, b| {
             let far = |s: &Site| (Vec3::from(s.position) - Vec3::new(0.3, -0.2, 0.1)).norm();
             far(a).total_cmp(&far(b))

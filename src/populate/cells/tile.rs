@@ -60,9 +60,7 @@ impl Tile {
     fn crystal(kind: LatticeKind, dimension: usize) -> Self {
         let third = 1.0_f64 / 3.0;
         let (cell, basis, repeat): ([f64; 3], &[[f64; 3]], [u32; 3]) = match (kind, dimension) {
-            (LatticeKind::BodyCentred, _) => {
-                (scaled([1.0; 3], 2), &[[0.25; 3], [0.75; 3]], [3; 3])
-            }
+            (LatticeKind::BodyCentred, _) => (scaled([1.0; 3], 2), &[[0.25; 3], [0.75; 3]], [3; 3]),
             (LatticeKind::FaceCentred, _) => (
                 scaled([1.0; 3], 4),
                 &[
@@ -112,7 +110,11 @@ impl Tile {
     }
 
     /// Sorts sites by their blocks.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)]
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_precision_loss
+    )]
     fn cut(edges: Vec3, blocks: [u64; 3], mut sites: Vec<Vec3>, is_glass: bool) -> Self {
         let block = |x: &Vec3| {
             let at = |a: usize| ((x[a] / edges[a] * blocks[a] as f64) as u64).min(blocks[a] - 1);
