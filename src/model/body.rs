@@ -73,8 +73,8 @@ pub enum LatticeKind {
 pub struct Lattice {
     /// Kind of stacking.
     pub kind: LatticeKind,
-    /// Particle spacing Δp (m): the edge of the cube that holds one particle's volume, so that
-    /// a particle's volume is Δp^d for every kind (but for what rounding leaves of rings).
+    /// Particle spacing Δp (m): there is one particle in a volume Δp^d, for every kind (but for
+    /// what rounding leaves of rings).
     pub spacing: f64,
     /// Turn of the lattice about an axis through the shape's centre (rad).
     pub angle: f64,

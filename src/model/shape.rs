@@ -116,4 +116,47 @@ impl Shape {
         let first = (axis.index() + 1) % 3;
         nalgebra::Matrix3::from_fn(|row, column| f64::from(u8::from(row == (first + column) % 3)))
     }
+
+    /// Volume (m³; m² or m in two or one dimensions).
+    #[must_use]
+    pub fn volume(&self, dimension: usize) -> f64 {
+        let ball = |radius: f64| Form::Ball(radius).volume(dimension);
+        match self {
+            Self::Box { lower, upper } => (0..dimension).map(|a| upper[a] - lower[a]).product(),
+            Self::Sphere { radius, .. } => ball(*radius),
+            Self::Shell {
+                radius,
+                inner_radius,
+                ..
+            } => ball(*radius) - ball(*inner_radius),
+            Self::Cylinder { .. } | Self::Solid(_) => self.solid(dimension).volume(dimension),
+        }
+    }
+
+    /// [`Self::volume`] of what lies above planes, by their axes (0, 1, 2) and places (m). Planes
+    /// through the middle of a ready shape halve it; others cut a volume that is integrated, but for
+    /// boxes.
+    #[must_use]
+    pub fn volume_above(&self, planes: &[(usize, f64)], dimension: usize) -> f64 {
+        if let Self::Box { lower, upper } = self {
+            let mut lower = *lower;
+            for &(a, at) in planes {
+                lower[a] = lower[a].max(at);
+            }
+            let edges = (0..dimension).map(|a| (upper[a] - lower[a]).max(0.0));
+            return edges.product();
+        }
+        let (lower, _) = self.solid(dimension).bounds();
+        let cut: Vec<(usize, f64)> = planes
+            .iter()
+            .copied()
+            .filter(|&(a, at)| at > lower[a])
+            .collect();
+        let (middle, rounding) = (self.centre(), 1e-9 * self.reach());
+        let is_halved = |&(a, at): &(usize, f64)| (middle[a] - at).abs() < rounding;
+        if !matches!(self, Self::Solid(_)) && cut.iter().all(is_halved) {
+            return cut.iter().fold(self.volume(dimension), |v, _| 0.5 * v);
+        }
+        self.solid(dimension).volume_above(&cut, dimension)
+    }
 }

@@ -124,15 +124,6 @@ impl Cells {
         self.tile.is_glass
     }
 
-    /// Volume (m³; m² in two dimensions) of the solid above the symmetry planes.
-    pub fn volume(&self) -> f64 {
-        if self.is_fitted() {
-            self.solid.volume_above(&self.planes, self.dimension)
-        } else {
-            self.solid.volume(self.dimension)
-        }
-    }
-
     /// Distance (m) from the surface and the symmetry planes, negative inside and above.
     fn distance(&self, x: &Vec3) -> f64 {
         let beyond = self.planes.iter().map(|&(a, at)| at - x[a]);

@@ -49,6 +49,9 @@ pub(crate) mod visits {
     }
 }
 
+/// Volumes that differ by no more than this are the same but for rounding.
+const SAME_VOLUME: f64 = 1e-9;
+
 /// One place of a particle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Site {
@@ -179,15 +182,25 @@ pub fn particle_volume(body: &Body, dimension: usize) -> f64 {
     body.lattice.volume.unwrap_or(cell)
 }
 
-/// The volume of the shape shared out among all its particles (m³; m² in two dimensions), for
-/// bodies that are not filled by rows of a lattice.
+/// The volume of the shape shared out among all its particles (m³; m² or m in two or one
+/// dimensions), where it is not Δp^d: so the body has the mass of its shape. Glass is fitted to the
+/// symmetry planes, so its particles share what lies above them.
 #[must_use]
 pub fn even_volume(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> Option<f64> {
-    let cells = Cells::of(body, dimension, symmetry)?;
-    let planes = if cells.is_fitted() { symmetry } else { &[] };
+    let planes = if moves_sites(body, dimension) {
+        symmetry
+    } else {
+        &[]
+    };
+    let sides: Vec<(usize, f64)> = planes
+        .iter()
+        .map(|plane| (plane.axis.index(), plane.position))
+        .collect();
     #[allow(clippy::cast_precision_loss)] // far fewer than 2^52
-    let count = cells.count(&cuts(planes, None)) as f64;
-    (count > 0.0).then(|| cells.volume() / count)
+    let count = count(body, dimension, planes, None) as f64;
+    let even = body.shape.volume_above(&sides, dimension) / count;
+    let cell = particle_volume(body, dimension);
+    (count > 0.0 && (even / cell - 1.0).abs() > SAME_VOLUME).then_some(even)
 }
 
 /// Whether sites end elsewhere than where slabs are cut: particles may begin a spacing outside the

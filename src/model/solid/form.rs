@@ -177,7 +177,9 @@ impl Form {
                 foot.map_or_else(Vec3::z, |foot| foot.normal.into())
             }
             _ => {
-                let step = 1e-6 * self.bounds().1.amax().min(1e3);
+                let (lower, upper) = self.bounds();
+                let finite = (upper - lower).iter().copied().filter(|c| c.is_finite());
+                let step = 1e-6 * finite.fold(0.0, f64::max);
                 Vec3::from_fn(|a, _| {
                     let mut aside = Vec3::zeros();
                     aside[a] = step;
