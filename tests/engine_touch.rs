@@ -115,17 +115,9 @@ fn lay_in_touch(case: &mut Case, axis: Axis) {
         panic!("two bodies");
     };
     let way = populate::touching_distance(body, other, case.dimension, axis, false).unwrap();
-    match &mut case.bodies[0].shape {
-        Shape::Box { lower, upper } => {
-            lower[axis.index()] += way;
-            upper[axis.index()] += way;
-        }
-        Shape::Sphere { centre, .. }
-        | Shape::Shell { centre, .. }
-        | Shape::Cylinder { centre, .. } => {
-            centre[axis.index()] += way;
-        }
-    }
+    let mut along = Vec3::zeros();
+    along[axis.index()] = way;
+    case.bodies[0].shape.translate(&along);
 }
 
 /// A body laid into another is not forgiven beyond the limit; the particles are counted.

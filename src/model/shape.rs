@@ -159,4 +159,18 @@ impl Shape {
         }
         self.solid(dimension).volume_above(&cut, dimension)
     }
+
+    /// Moves it (m).
+    pub fn translate(&mut self, way: &Vec3) {
+        match self {
+            Self::Box { lower, upper } => {
+                *lower += way;
+                *upper += way;
+            }
+            Self::Sphere { centre, .. }
+            | Self::Shell { centre, .. }
+            | Self::Cylinder { centre, .. } => *centre += way,
+            Self::Solid(solid) => solid.translate(way),
+        }
+    }
 }

@@ -146,19 +146,7 @@ pub fn direction(
 }
 
 fn translate(shape: &mut Shape, axis: Axis, distance: f64) {
-    let a = axis.index();
-    match shape {
-        Shape::Box { lower, upper } => {
-            lower[a] += distance;
-            upper[a] += distance;
-        }
-        Shape::Sphere { centre, .. }
-        | Shape::Shell { centre, .. }
-        | Shape::Cylinder { centre, .. } => centre[a] += distance,
-        Shape::Solid(solid) => {
-            let mut way = Vec3::zeros();
-            way[a] = distance;
-            solid.translate(&way);
-        }
-    }
+    let mut way = Vec3::zeros();
+    way[axis.index()] = distance;
+    shape.translate(&way);
 }

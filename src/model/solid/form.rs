@@ -178,7 +178,8 @@ impl Form {
             }
             _ => {
                 let (lower, upper) = self.bounds();
-                let finite = (upper - lower).iter().copied().filter(|c| c.is_finite());
+                let size = upper - lower;
+                let finite = size.iter().copied().filter(|c| c.is_finite());
                 let step = 1e-6 * finite.fold(0.0, f64::max);
                 Vec3::from_fn(|a, _| {
                     let mut aside = Vec3::zeros();
