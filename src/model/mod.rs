@@ -12,6 +12,7 @@ mod load;
 mod motion;
 mod numerical_limits;
 pub mod readable;
+mod region;
 mod surface;
 
 #[cfg(test)]
@@ -25,6 +26,7 @@ pub use control::{
 pub use load::{Loads, VelocityLoad};
 pub use motion::Motion;
 pub use numerical_limits::{NumericalFailurePolicy, NumericalLimits};
+pub use region::Region;
 pub use surface::{
     Feature, Foot, Mesh, MeshError, RigidSurface, Spin, SurfaceFile, SurfaceShape,
     closest_on_triangle,
