@@ -5,6 +5,7 @@ mod case;
 mod impact;
 pub(crate) mod memory;
 mod sense;
+pub(crate) mod volume;
 
 pub use approach::{Approach, approaches};
 pub use sense::expected_step;
