@@ -7,7 +7,9 @@ use common::outcome::start;
 use common::{SPACING, ball, case, make_elastic};
 use whipple::comm::Comm;
 use whipple::material::{Elastic, Eos, Linear, LinearForm, Strength};
-use whipple::model::{Case, Motion, Resistance, RigidSurface, Spin, SurfaceShape, VelocityLoad};
+use whipple::model::{
+    Case, Motion, Region, Resistance, RigidSurface, Spin, SurfaceShape, VelocityLoad,
+};
 use whipple::step::{Reason, Simulation};
 
 /// Speed of all that flies here (m/s), some two hundred spacings in a step by sound.
@@ -88,8 +90,7 @@ fn a_body_accelerated_by_a_load_is_seen() {
         case.loads.velocities.push(VelocityLoad {
             name: "throw".into(),
             body: 1,
-            above: [f64::NEG_INFINITY; 3],
-            below: [f64::INFINITY; 3],
+            region: Region::OPEN,
             motion: table(-SPEED),
             until: 4e-6,
         });

@@ -1,12 +1,14 @@
 //! `whipple check`: is a case sound, and what will it cost?
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use super::plot::out;
 use crate::comm::Comm;
 use crate::input;
-use crate::model::Case;
 use crate::model::readable::{short, shown};
-use crate::output::snapshot;
+use crate::model::{Body, Case};
+use crate::output::{snapshot, unit_of_model};
+use crate::plot::{self, PlotError};
 use crate::populate;
 use crate::preflight::{self, memory};
 use crate::run::exit::EXIT_INPUT;
@@ -19,6 +21,7 @@ use crate::run::say::{say, warn};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   whipple check inputs/quarter-impact
+  whipple check inputs/quarter-impact --picture model.png    see the particles as they will begin
   whipple check inputs/quarter-impact/case.toml --set spacing=0.01mm")]
 pub struct CheckArgs {
     /// Case file (TOML), or a folder with a case.toml
@@ -33,6 +36,21 @@ pub struct CheckArgs {
     #[arg(short = 'n', long, value_name = "N", default_value_t = 1)]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=100_000))]
     ranks: u32,
+
+    /// Draw the particles as they will begin into this PNG file: a section, and what is seen of them along
+    /// the axes
+    #[arg(short, long, value_name = "FILE.png")]
+    picture: Option<PathBuf>,
+
+    /// Plane of the picture's section, as in y=0.1mm; with the axis alone its plane of symmetry or the middle
+    /// [default: one that cuts most bodies, along the motion]
+    #[arg(
+        long,
+        value_name = "AXIS=POSITION",
+        requires = "picture",
+        allow_hyphen_values = true
+    )]
+    section: Option<String>,
 }
 
 /// Runs the command; returns the exit code.
@@ -53,7 +71,50 @@ pub fn run(args: &CheckArgs) -> u8 {
         warn(&format!("warning: {warning}"));
     }
     print_report(&case, args.ranks as usize);
-    0
+    let drawn = args
+        .picture
+        .as_ref()
+        .map_or(Ok(()), |path| draw(&case, path, args.section.as_deref()));
+    match drawn {
+        Ok(()) => 0,
+        Err(error) => {
+            warn(&format!("error: {error}"));
+            EXIT_INPUT
+        }
+    }
+}
+
+fn draw(case: &Case, path: &Path, section: Option<&str>) -> Result<(), PlotError> {
+    if !out::is_png(path) {
+        let ending = path.extension().unwrap_or_default();
+        return Err(PlotError::Ending {
+            path: path.to_owned(),
+            ending: ending.to_string_lossy().into_owned(),
+        });
+    }
+    out::write(&plot::preview(case, section, None)?, path)
+}
+
+/// The mass of so many particles of a body, and by how much each has more than Δp^d to bear that;
+/// nothing of a rigid body.
+#[allow(clippy::cast_precision_loss, reason = "for people")]
+fn mass(case: &Case, body: &Body, count: u64) -> String {
+    if body.rigid.is_some() {
+        return String::new();
+    }
+    let each = populate::particle_volume(body, case.dimension);
+    let density = case.initial_density(body);
+    let text = shown(
+        density * each * count as f64,
+        unit_of_model("kg", case.dimension),
+    );
+    let cell = (1..case.dimension).fold(body.lattice.spacing, |v, _| v * body.lattice.spacing);
+    let more = 100.0 * (each / cell - 1.0);
+    if more == 0.0 {
+        format!(", {text}")
+    } else {
+        format!(", {text} (a particle {more:+.2} % of its spacing's)")
+    }
 }
 
 #[allow(clippy::cast_precision_loss, reason = "for people")]
@@ -64,11 +125,12 @@ fn print_report(case: &Case, ranks: usize) {
         let count = populate::count(body, case.dimension, &case.symmetry, None);
         total += count;
         say(&format!(
-            "  {:<16} {count:>10} particles of {}, spacing {}, h {}",
+            "  {:<16} {count:>10} particles of {}, spacing {}, h {}{}",
             body.name,
             case.materials[body.material].name,
             case.length_unit.text(body.lattice.spacing),
             case.length_unit.text(body.smoothing_length),
+            mass(case, body, count),
         ));
     }
     let memory = memory::in_words(memory::of_rank(case, &Comm::solo(), ranks));

@@ -316,13 +316,30 @@ fn summary(path: &Path, text: &mut Text) -> Result<(), ResultsError> {
             Value::Object(parts) => {
                 text.entry(name, "");
                 for (part, value) in parts {
-                    text.entry(&format!("  {part}"), short(value));
+                    text.entry(&format!("  {part}"), parts_of(value));
                 }
             }
             value => text.entry(name, short(value)),
         }
     }
     Ok(())
+}
+
+/// A figure, or several with their names and vectors in one line.
+fn parts_of(value: &Value) -> String {
+    match value {
+        Value::Object(parts) => {
+            let part = |(name, value): (&String, &Value)| {
+                format!("{} {}", name.replace('_', " "), parts_of(value))
+            };
+            parts.iter().map(part).collect::<Vec<_>>().join(", ")
+        }
+        Value::Array(parts) => {
+            let all: Vec<String> = parts.iter().map(short).collect();
+            format!("[{}]", all.join(", "))
+        }
+        value => short(value),
+    }
 }
 
 /// A figure to five digits.

@@ -1,7 +1,7 @@
 //! `whipple plot`: pictures from a snapshot or a run folder.
 
 mod curves;
-mod out;
+pub(super) mod out;
 
 use std::path::{Path, PathBuf};
 

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::reason::Reason;
+use super::taken_out::Removed;
 use crate::contact::{PairExtremes, PairSums, SurfaceForces};
 use crate::loads::Loads;
 use crate::numerics::vector::norm;
@@ -89,37 +90,6 @@ pub struct LoadState {
     /// Its time integral (J).
     #[serde(default)]
     pub heat: f64,
-}
-
-/// What removed particles took with them, of one body.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Removed {
-    /// How many.
-    pub particles: u64,
-    /// `Σ m` (kg).
-    pub mass: f64,
-    /// `Σ m v` (kg m/s).
-    pub momentum: [f64; 3],
-    /// `Σ ½ m v²` (J).
-    pub kinetic_energy: f64,
-    /// `Σ m e` (J).
-    pub internal_energy: f64,
-    /// `−Σ m g·x` (J).
-    pub gravity_energy: f64,
-    /// `Σ x × m v` (kg m²/s).
-    #[serde(default)]
-    pub angular_momentum: [f64; 3],
-    /// `Σ m t` with the time of removal (kg s): how long gravity has pulled.
-    pub mass_time: f64,
-}
-
-impl Removed {
-    /// All energy of the particles (J); that of contact is booked for the whole model.
-    #[must_use]
-    pub fn energy(&self) -> f64 {
-        self.kinetic_energy + self.internal_energy + self.gravity_energy
-    }
 }
 
 /// Sums over all particles that are no part of a rigid body (SI).
@@ -225,6 +195,13 @@ pub struct RunState {
     /// Contact energy that went with them (J).
     #[serde(default)]
     pub removed_contact_energy: f64,
+    /// What particles that left the box of interest took with them, by body; empty as long as the
+    /// case has none.
+    #[serde(default)]
+    pub departed: Vec<Removed>,
+    /// Contact energy that went with them (J).
+    #[serde(default)]
+    pub departed_contact_energy: f64,
     /// Largest values over the run.
     pub worst: Worst,
 }
@@ -257,12 +234,6 @@ impl RunState {
     pub fn contact_heat(&self) -> f64 {
         self.pairs.iter().map(|pair| pair.heat).sum::<f64>()
             + self.loads.iter().map(|load| load.heat).sum::<f64>()
-    }
-
-    /// Energy that went with removed particles, that of contact included (J).
-    #[must_use]
-    pub fn removed_energy(&self) -> f64 {
-        self.removed.iter().map(Removed::energy).sum::<f64>() + self.removed_contact_energy
     }
 
     /// Impulse given by all loads so far (N s).
@@ -309,11 +280,13 @@ impl RunState {
     /// Impulses and work of loads, after the second half of a step `dt` (s); forgets their sums.
     pub(super) fn book_loads(&mut self, loads: &mut Loads, surfaces: &SurfaceForces, dt: f64) {
         let driven = loads.driven();
-        let per_step = if dt > 0.0 { 1.0 / dt } else { 0.0 };
         for (ledger, sums) in self.loads.iter_mut().zip(&mut loads.sums) {
             for a in 0..3 {
                 let impulse = sums[a].value();
-                ledger.force[a] = impulse * per_step;
+                // Sums without a step leave the mean of the last one.
+                if dt > 0.0 {
+                    ledger.force[a] = impulse * (1.0 / dt);
+                }
                 ledger.impulse[a] += impulse;
             }
             ledger.work += sums[3].value();

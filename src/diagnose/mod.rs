@@ -9,14 +9,16 @@ mod meetings;
 mod post_mortem;
 mod reason;
 mod step_sums;
+mod taken_out;
 mod totals;
 
 pub(crate) use instability::{fastest, is_explained};
-pub use ledger::{LoadState, NearestPair, PairState, Removed, RunState, Totals, Worst};
+pub use ledger::{LoadState, NearestPair, PairState, RunState, Totals, Worst};
 pub use limits::NumericalFailure;
 pub(crate) use limits::{Limits, Moved};
 pub(crate) use post_mortem::PAST_STEPS;
 pub use post_mortem::{PastStep, PostMortem};
 pub use reason::Reason;
 pub(crate) use step_sums::{Booked, StepSums};
+pub use taken_out::{Leave, Removed};
 pub(crate) use totals::{angular_momentum_scale, failed_mass};

@@ -1,6 +1,7 @@
 //! Conserved sums over all particles, and the errors that follow from them.
 
-use super::ledger::{Removed, RunState, Totals};
+use super::ledger::{RunState, Totals};
+use super::taken_out::{Leave, Removed};
 use crate::comm::Comm;
 use crate::loads::Loads;
 use crate::material::FAILED;
@@ -110,13 +111,44 @@ fn reduce(comm: &Comm, sums: &mut [ExactSum]) {
 }
 
 impl RunState {
+    /// Energy that went with removed particles, that of contact included (J).
+    #[must_use]
+    pub fn removed_energy(&self) -> f64 {
+        self.removed.iter().map(Removed::energy).sum::<f64>() + self.removed_contact_energy
+    }
+
+    /// Energy that went with those that left the box of interest, that of contact included (J).
+    #[must_use]
+    pub fn departed_energy(&self) -> f64 {
+        self.departed.iter().map(Removed::energy).sum::<f64>() + self.departed_contact_energy
+    }
+
+    /// Mass that left the box of interest (kg).
+    #[must_use]
+    pub fn departed_mass(&self) -> f64 {
+        self.departed.iter().map(|gone| gone.mass).sum()
+    }
+
+    /// What all particles that were taken out took with them, by cause and body.
+    fn taken_out(&self) -> impl Iterator<Item = &Removed> {
+        self.removed.iter().chain(&self.departed)
+    }
+
+    /// The ledgers of what leaves for a reason, by body, and of its contact energy (J).
+    pub(crate) fn leaving(&mut self, why: Leave) -> (&mut Vec<Removed>, &mut f64) {
+        match why {
+            Leave::Failed => (&mut self.removed, &mut self.removed_contact_energy),
+            Leave::Departed => (&mut self.departed, &mut self.departed_contact_energy),
+        }
+    }
+
     /// Takes sums over all particles, under gravity (m/s²), with the errors that follow from them.
     pub(crate) fn book_totals(&mut self, totals: Totals, gravity: [f64; 3]) {
         self.totals = totals;
         let (work, impulse) = (self.load_work(), self.load_impulse());
         let fallen = totals.gravity_energy - self.initial.gravity_energy;
         self.work_put_in = self.work_put_in.max(work.abs()).max(fallen.abs());
-        let removed = self.removed_energy();
+        let removed = self.removed_energy() + self.departed_energy();
         let worst = &mut self.worst;
         let error = totals.energy() + removed - self.initial.energy() - work;
         worst.energy_deviation = worst.energy_deviation.max(error.abs());
@@ -126,14 +158,15 @@ impl RunState {
             worst.contact_defect = worst.contact_deviation / scale;
         }
         for a in 0..3 {
-            let removed = |part: fn(&Removed) -> f64| self.removed.iter().map(part).sum::<f64>();
+            let removed = |part: fn(&Removed) -> f64| self.taken_out().map(part).sum::<f64>();
             let mass_time = totals.mass * self.time + removed(|r| r.mass_time);
             let falling = mass_time * gravity[a];
             let outside = impulse[a] + falling;
-            let taken: f64 = self.removed.iter().map(|r| r.momentum[a]).sum();
+            let taken: f64 = self.taken_out().map(|r| r.momentum[a]).sum();
             let gained = totals.momentum[a] + taken - self.initial.momentum[a];
             let error = gained - self.plane_impulse[a] - outside;
-            worst.momentum_deviation[a] = worst.momentum_deviation[a].max(error.abs());
+            let worst = &mut self.worst.momentum_deviation[a];
+            *worst = worst.max(error.abs());
             for put in [impulse[a], falling] {
                 self.momentum_put_in = self.momentum_put_in.max(put.abs());
             }
@@ -151,16 +184,17 @@ impl RunState {
         let Some(scale) = self.angular_momentum_scale else {
             return;
         };
-        let worst = &mut self.worst;
         for a in 0..3 {
-            let taken: f64 = self.removed.iter().map(|r| r.angular_momentum[a]).sum();
+            let taken: f64 = self.taken_out().map(|r| r.angular_momentum[a]).sum();
             let gained = self.totals.angular_momentum[a] + taken - self.initial.angular_momentum[a];
             let error = (gained - self.angular_impulse[a]).abs();
-            worst.angular_momentum_deviation[a] = worst.angular_momentum_deviation[a].max(error);
+            let worst = &mut self.worst.angular_momentum_deviation[a];
+            *worst = worst.max(error);
             let put_in = &mut self.angular_momentum_put_in;
             *put_in = put_in.max(self.angular_impulse[a].abs());
         }
         let scale = scale.max(self.angular_momentum_put_in);
+        let worst = &mut self.worst;
         if scale > 0.0 {
             worst.angular_momentum_error = worst.angular_momentum_deviation.map(|e| e / scale);
         }
@@ -170,9 +204,9 @@ impl RunState {
     pub(crate) fn book_defect(&mut self) {
         let heat = self.contact_heat();
         let worst = &mut self.worst;
-        let defect = self.contact_work + self.removed_contact_energy + self.contact_energy
-            - self.initial.contact_energy
-            + heat;
+        let gone = self.removed_contact_energy + self.departed_contact_energy;
+        let defect =
+            self.contact_work + gone + self.contact_energy - self.initial.contact_energy + heat;
         worst.contact_deviation = worst.contact_deviation.max(defect.abs());
         let scale = self.initial.kinetic_energy.max(self.work_put_in);
         if scale > 0.0 {

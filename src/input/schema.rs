@@ -144,6 +144,14 @@ tables! {
         z: Option<Spanned<Extent>>,
     }
 
+    /// `domain.keep`: sides of the box of interest, at least one.
+    KeepParams {
+        /// Smallest coordinates.
+        above: Option<Spanned<SidesParams>>,
+        /// Largest coordinates.
+        below: Option<Spanned<SidesParams>>,
+    }
+
     /// A velocity as a function of time; free on axes that are absent.
     MotionParams {
         /// Times of the table.
@@ -356,6 +364,8 @@ optional_tables! {
         axis: Option<Spanned<Axis>>,
         /// Steps between two balances.
         balance_every: Option<Spanned<i64>>,
+        /// The box of interest; everything if absent.
+        keep: Option<Spanned<KeepParams>>,
     }
 
     /// `[output]`

@@ -218,7 +218,7 @@ impl Loads {
     /// The bits of a particle of `body` that begins at `position` (m).
     pub(crate) fn bits(&self, case: &Case, body: usize, position: &[f64; 3]) -> u32 {
         let loads = case.loads.velocities.iter();
-        let held = loads.map(|load| load.body == body && load.contains(position));
+        let held = loads.map(|load| load.body == body && load.region.contains(position));
         let rigid = self.rigid_bodies.iter().map(|&rigid| rigid == body);
         (held.chain(rigid).enumerate()).fold(0, |bits, (k, is)| bits | u32::from(is) << k)
     }

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::Axis;
+use super::{Axis, Region};
 
 /// Whether the smoothing length of the SPH sums follows the density. Contact always keeps the
 /// reference h₀.
@@ -87,13 +87,15 @@ pub struct TimeStepOptions {
     pub max: f64,
 }
 
-/// Distribution over ranks; never touches results.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Distribution over ranks, which never touches results, and the box of interest.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DomainOptions {
     /// Axis of the slabs; the longest one when absent.
     pub axis: Option<Axis>,
     /// Steps between two balances of the work; 0 keeps the first faces.
     pub balance_every: u64,
+    /// What of space is of interest: particles that leave it are taken out; everything if absent.
+    pub keep: Option<Region>,
 }
 
 /// When a run ends.

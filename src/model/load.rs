@@ -1,6 +1,6 @@
 //! What acts on bodies from outside: gravity, prescribed velocities, rigid surfaces.
 
-use super::{Motion, RigidSurface};
+use super::{Motion, Region, RigidSurface};
 
 /// All loads of a case.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -37,21 +37,11 @@ pub struct VelocityLoad {
     pub name: String,
     /// Index into [`super::Case::bodies`].
     pub body: usize,
-    /// Smallest coordinates of the region (m); −∞ where it is open.
-    pub above: [f64; 3],
-    /// Largest coordinates of the region (m); ∞ where it is open.
-    pub below: [f64; 3],
+    /// Where these particles stand.
+    pub region: Region,
     /// The velocity.
     pub motion: Motion,
     /// The particles are free from the step boundary nearest to this time on (s); may be
     /// infinite.
     pub until: f64,
-}
-
-impl VelocityLoad {
-    /// Whether a place (m) is in the region.
-    #[must_use]
-    pub fn contains(&self, position: &[f64; 3]) -> bool {
-        (0..3).all(|a| self.above[a] <= position[a] && position[a] <= self.below[a])
-    }
 }

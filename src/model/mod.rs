@@ -12,6 +12,7 @@ mod load;
 mod motion;
 mod numerical_limits;
 pub mod readable;
+mod region;
 mod shape;
 mod solid;
 mod surface;
@@ -27,6 +28,7 @@ pub use control::{
 pub use load::{Loads, VelocityLoad};
 pub use motion::Motion;
 pub use numerical_limits::{NumericalFailurePolicy, NumericalLimits};
+pub use region::Region;
 pub use shape::Shape;
 pub use solid::{Form, Placement, Profile, Solid, rotation};
 pub use surface::{

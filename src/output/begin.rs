@@ -14,11 +14,12 @@ use super::set_aside::{self, SET_ASIDE, SetAside};
 use super::{OutputError, Phase, RunFolder, Status, files, on_root, series, write_atomically};
 
 /// Files that a restart changes before it has a checkpoint.
-const CHANGED: [&str; 7] = [
+const CHANGED: [&str; 8] = [
     "history.csv",
     "contacts.csv",
     "loads.csv",
     "removed.csv",
+    "departed.csv",
     "performance.csv",
     "case.toml",
     STATUS,

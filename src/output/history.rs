@@ -79,7 +79,8 @@ impl Table {
     }
 
     /// Goes on with a table after a restart: keeps the rows whose value in `column` is at most
-    /// `last` and drops later ones, and a half-written last line. A missing table is started.
+    /// `last` and drops later ones, and a half-written last line. A missing table is started. One
+    /// that lacks the last columns gets them, as zero: of what is counted from now on.
     ///
     /// # Errors
     /// [`OutputError::Io`]; [`OutputError::Damaged`] if the table has other columns or a row that
@@ -94,8 +95,12 @@ impl Table {
             return Self::create(path, columns);
         }
         let content = fs::read(path).map_err(OutputError::io("read", path))?;
-        let header = header(columns);
-        let Some(rows) = content.strip_prefix(&header[..]) else {
+        let all = header(columns);
+        let known = |count: usize| {
+            let rows = content.strip_prefix(&header(&columns[..count])[..]);
+            rows.map(|rows| (rows, count))
+        };
+        let Some((rows, count)) = (1..=columns.len()).rev().find_map(known) else {
             let what = "its columns are not those that this run writes; move it away";
             return Err(OutputError::damaged(path, what));
         };
@@ -103,13 +108,11 @@ impl Table {
             let what = format!("it has no column {column}");
             return Err(OutputError::damaged(path, what));
         };
-        let mut kept = header;
-        let rows_kept = keep(rows, columns.len(), key, last);
+        let mut kept = all;
+        let rows_kept = keep(rows, [count, columns.len()], key, last);
         kept.extend(rows_kept.map_err(|number| {
-            let what = format!(
-                "row {number} has not {} values with a number in column {column}",
-                columns.len()
-            );
+            let what =
+                format!("row {number} has not {count} values with a number in column {column}");
             OutputError::damaged(path, what)
         })?);
         write_atomically(path, &kept)?;
@@ -154,10 +157,15 @@ impl Table {
     }
 }
 
-/// The bytes of those `rows` whose number in column `key` is at most `last`; or the number of the
-/// first row that is wrong and has one of those after it. What is wrong at the end was half
-/// written, or is what a power cut leaves.
-fn keep(rows: &[u8], columns: usize, key: usize, last: f64) -> Result<Vec<u8>, usize> {
+/// The bytes of those `rows` of some columns whose number in column `key` is at most `last`, with zeros
+/// up to a number of columns; or the number of the first row that is wrong and has one of those after
+/// it. What is wrong at the end was half written, or is what a power cut leaves.
+fn keep(
+    rows: &[u8],
+    [columns, wanted]: [usize; 2],
+    key: usize,
+    last: f64,
+) -> Result<Vec<u8>, usize> {
     let mut kept = Vec::new();
     let mut reader = sheet::rows(rows);
     let mut record = ByteRecord::new();
@@ -176,10 +184,14 @@ fn keep(rows: &[u8], columns: usize, key: usize, last: f64) -> Result<Vec<u8>, u
         match value.and_then(|value| std::str::from_utf8(value).ok()?.parse::<f64>().ok()) {
             None => wrong = wrong.or(Some(number)),
             Some(value) if value > last => {}
-            Some(_) => match wrong {
-                Some(number) => return Err(number),
-                None => kept.extend_from_slice(row),
-            },
+            Some(_) => {
+                if let Some(number) = wrong {
+                    return Err(number);
+                }
+                kept.extend_from_slice(&row[..row.len() - 1]);
+                kept.extend(b",0.0".repeat(wanted - columns));
+                kept.push(b'\n');
+            }
         }
     }
     Ok(kept)
@@ -253,6 +265,26 @@ mod tests {
         assert_eq!(text.lines().count(), 2 + 5);
         Table::resume(&path, &columns(), "time", 9.0).unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), text);
+    }
+
+    #[test]
+    fn a_restart_may_count_more_than_before() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        let mut table = Table::create(&path, &columns()[..2]).unwrap();
+        for (step, time) in [(0, 0.0), (1, 0.5), (2, 1.0)] {
+            table.row(&row(step, time)[..2]).unwrap();
+        }
+        let [step, time, _] = columns().try_into().unwrap();
+        let more = [step, time, Column::new("mass", "kg")];
+        let mut table = Table::resume(&path, &more, "step", 1.0).unwrap();
+        let values = [Value::Count(2), Value::Real(1.5), Value::Real(3.0)];
+        table.row(&values).unwrap();
+        let text = fs::read_to_string(&path).unwrap();
+        let whole = "# units: -,s,kg\nstep,time,mass\n0,0.0,0.0\n1,0.5,0.0\n2,1.5,3.0\n";
+        assert_eq!(text, whole);
+        // Fewer columns than there are would lose what is counted.
+        assert!(Table::resume(&path, &more[..2], "step", 9.0).is_err());
     }
 
     #[test]

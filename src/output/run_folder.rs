@@ -203,6 +203,8 @@ paths! {
     loads: "loads.csv";
     /// Table of what removed particles took with them.
     removed: "removed.csv";
+    /// Table of what particles that left the box of interest took with them.
+    departed: "departed.csv";
     /// Table of wall-clock times.
     performance: "performance.csv";
     /// The log.

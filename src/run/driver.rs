@@ -4,12 +4,13 @@ use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
+use super::departures::Departures;
 use super::drift::Drift;
 use super::exit::EXIT_STOPPED;
 use super::launch::{Launch, STEP, fail};
 use super::options::CommonArgs;
 use super::progress::Progress;
-use super::say::{say, seconds, warn};
+use super::say::{counted, say, seconds, warn};
 use super::stop::{self, Watch};
 use super::summary::summary;
 use super::tables::{self, Tables};
@@ -38,6 +39,7 @@ pub struct Driver<'a> {
     log: Log,
     progress: Progress,
     drift: Drift,
+    departures: Departures,
     /// Post-mortems written.
     post_mortems: usize,
 }
@@ -89,6 +91,7 @@ impl<'a> Driver<'a> {
             tables,
             log: Log::new(&folder.log(), comm.rank()),
             progress: Progress::new(comm.is_root(), &simulation.case.run),
+            departures: Departures::new(&simulation),
             simulation,
             folder,
             drift: Drift::default(),
@@ -203,7 +206,7 @@ impl<'a> Driver<'a> {
                 Ok(count) => {
                     self.log(
                         comm,
-                        &format!("{done} {}: {text}", counted_u64(count, "particle")),
+                        &format!("{done} {}: {text}", counted(count, "particle")),
                     );
                     return Ok(());
                 }
@@ -217,6 +220,9 @@ impl<'a> Driver<'a> {
 
     /// Whatever is due after a step that began at time `before` (s).
     fn write(&mut self, comm: &Comm, before: f64) -> Result<(), OutputError> {
+        for text in self.departures.notices(&self.simulation) {
+            self.log(comm, &text);
+        }
         let finished = self.simulation.is_finished();
         let (now, step) = (self.simulation.state.time, self.simulation.state.step);
         let output = &self.simulation.case.output;
@@ -368,8 +374,8 @@ impl<'a> Driver<'a> {
             "{}: {} particles, {} with {} each ({}){from}",
             self.simulation.case.title,
             counts[0],
-            counted(comm.size(), "rank"),
-            counted(rayon::current_num_threads(), "thread"),
+            counted(comm.size() as u64, "rank"),
+            counted(rayon::current_num_threads() as u64, "thread"),
             crate::numerics::dispatch::instructions().name(),
         );
         self.log.line(&format!("whipple {VERSION} ({COMMIT})"));
@@ -388,13 +394,4 @@ impl<'a> Driver<'a> {
             self.log.line(text);
         }
     }
-}
-
-fn counted(number: usize, thing: &str) -> String {
-    counted_u64(number as u64, thing)
-}
-
-fn counted_u64(number: u64, thing: &str) -> String {
-    let plural = if number == 1 { "" } else { "s" };
-    format!("{number} {thing}{plural}")
 }

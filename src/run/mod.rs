@@ -1,6 +1,7 @@
 //! A run in its folder, on all ranks: how it starts or goes on, the loop between its files, why it
 //! stops, and what it says.
 
+mod departures;
 mod drift;
 mod driver;
 pub(crate) mod exit;

@@ -23,3 +23,10 @@ pub fn warn(text: &str) {
 pub fn seconds(time: f64) -> String {
     shown(time, "s")
 }
+
+/// A number of things.
+#[must_use]
+pub fn counted(number: u64, thing: &str) -> String {
+    let plural = if number == 1 { "" } else { "s" };
+    format!("{number} {thing}{plural}")
+}

@@ -8,7 +8,7 @@ use super::tables::load;
 use crate::comm::Comm;
 use crate::model::SphForm;
 use crate::output::{COMMIT, VERSION};
-use crate::step::{Simulation, failed_mass};
+use crate::step::{Removed, Simulation, failed_mass};
 
 /// `summary.json`: what the run has come to, and how fast this process has stepped (with the mean
 /// seconds of all ranks by phase). The seconds are those since the start of the program, and of
@@ -29,11 +29,8 @@ pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde
     let cores = (comm.size() * threads) as f64;
     let rate = load.updates as f64 * 1e-6 / stepping.max(f64::MIN_POSITIVE) / cores;
     let contact = simulation.contact();
-    let nearest = worst.nearest.map(|pair| {
-        let names = pair.bodies.map(|b| &simulation.case.bodies[b].name);
-        json!({ "bodies": names, "ids": pair.particles })
-    });
     let failed = failed_by_body(comm, simulation);
+    let departed = departed_by_body(simulation);
     let normalised = simulation.case.sph.form != SphForm::Conventional;
     // What the ranks have stepped since they started, if no particle was taken out.
     let steps = load.updates as f64 / (load.particles[0] as f64).max(1.0);
@@ -49,6 +46,8 @@ pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde
         "removed_particles": taken_out - frozen,
         "frozen_particles": frozen,
         "removed_energy": state.removed_energy(),
+        "departed_energy": departed.is_some().then(|| state.departed_energy()),
+        "departed": departed,
         "steps": state.step,
         "time": state.time,
         "wall_seconds": wall,
@@ -64,7 +63,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde
         "angular_momentum_error": object(["x", "y", "z"].into_iter().zip(worst.angular_momentum_error)),
         "interpenetrated_particles": contact.has_pairs().then_some(worst.interpenetrated),
         "closest_foreign_pair": worst.closest,
-        "closest_foreign_particles": nearest,
+        "closest_foreign_particles": nearest(simulation),
         "largest_foreign_fraction": contact.measures_fractions().then_some(worst.foreign_fraction),
         "plane_crossings": (!simulation.case.symmetry.is_empty()).then_some(state.plane_crossings),
         "capped_reliefs": state.capped_reliefs,
@@ -73,6 +72,33 @@ pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde
         "failed_mass": failed,
         "contact_limited_steps": worst.contact_limited_steps,
     })
+}
+
+/// The nearest two particles of two bodies so far, and whose they are.
+fn nearest(simulation: &Simulation) -> Option<serde_json::Value> {
+    simulation.state.worst.nearest.map(|pair| {
+        let names = pair.bodies.map(|b| &simulation.case.bodies[b].name);
+        json!({ "bodies": names, "ids": pair.particles })
+    })
+}
+
+/// What has left the box of interest, by body, where there is one.
+fn departed_by_body(simulation: &Simulation) -> Option<BTreeMap<&str, serde_json::Value>> {
+    let departed = &simulation.state.departed;
+    let names = simulation.case.bodies.iter().map(|body| body.name.as_str());
+    let row = |gone: &Removed| {
+        let [first, last] = gone.times.map_or([None; 2], |times| times.map(Some));
+        json!({
+            "particles": gone.particles,
+            "mass": gone.mass,
+            "momentum": gone.momentum,
+            "kinetic_energy": gone.kinetic_energy,
+            "internal_energy": gone.internal_energy,
+            "first_time": first,
+            "last_time": last,
+        })
+    };
+    (!departed.is_empty()).then(|| names.zip(departed.iter().map(row)).collect())
 }
 
 /// Mass that has failed (kg) by body, where matter may fail. Collective.

@@ -11,6 +11,7 @@ pub struct Tables {
     contacts: Table,
     loads: Option<Table>,
     removed: Option<Table>,
+    departed: Option<Table>,
     performance: Table,
 }
 
@@ -103,6 +104,13 @@ impl Cells<'_> for u64 {
     }
 }
 
+/// A time that is none yet is not a number.
+impl Cells<'_> for Option<f64> {
+    fn add(self, row: &mut Vec<Value>) {
+        row.push(Value::Real(self.unwrap_or(f64::NAN)));
+    }
+}
+
 /// Nothing is an empty cell.
 impl Cells<'_> for Option<u64> {
     fn add(self, row: &mut Vec<Value>) {
@@ -142,7 +150,7 @@ macro_rules! tables {
 
 tables! {
     /// A row of the history; in other forms than the conventional a count of uncorrected gradients
-    /// follows, and where matter may fail what has.
+    /// follows, where matter may fail what has, and where there is a box of interest what left it.
     HISTORY, history(state: &'a RunState) {
         "step", "", state.step;
         "time", "s", state.time;
@@ -168,6 +176,12 @@ tables! {
     FAILURE, failure(state: &'a RunState) {
         "failed_mass", "kg", state.totals.failed_mass;
         "failure_energy", "J", state.totals.failure_energy;
+    }
+
+    /// What of a row of the history is told where there is a box of interest.
+    DEPARTED, departed(state: &'a RunState) {
+        "departed_mass", "kg", state.departed_mass();
+        "departed_energy", "J", state.departed_energy();
     }
 
     /// A row of the contacts, of two bodies by name.
@@ -210,6 +224,13 @@ tables! {
         "gravity_energy", "J", gone.gravity_energy;
     }
 
+    /// What is told besides of what left the box of interest.
+    DEPARTURE, departure(gone: &Removed) {
+        "angular_momentum_*", "kg m^2/s", gone.angular_momentum;
+        "first_time", "s", gone.times.map(|[first, _]| first);
+        "last_time", "s", gone.times.map(|[_, last]| last);
+    }
+
     /// A row of the performance, after `wall` seconds.
     #[allow(clippy::cast_precision_loss, reason = "for people")]
     PERFORMANCE, performance(step: u64, wall: f64, load: &Load) {
@@ -248,6 +269,12 @@ impl Tables {
         if case.may_fail() {
             of_history.extend(columns(FAILURE));
         }
+        let departs =
+            case.domain.keep.is_some() || resume.is_some_and(|state| !state.departed.is_empty());
+        if departs {
+            of_history.extend(columns(DEPARTED));
+        }
+        let of_departed = [columns(REMOVED), columns(DEPARTURE)].concat();
         let has_loads = case.load_names().next().is_some();
         let removes = case.numerical_limits.policy != NumericalFailurePolicy::Stop
             || resume.is_some_and(|state| !state.removed.is_empty());
@@ -259,6 +286,9 @@ impl Tables {
                 .transpose()?,
             removed: removes
                 .then(|| open(&folder.removed(), &columns(REMOVED), "time", time))
+                .transpose()?,
+            departed: departs
+                .then(|| open(&folder.departed(), &of_departed, "time", time))
                 .transpose()?,
             performance: open(&folder.performance(), &columns(PERFORMANCE), "step", step)?,
         })
@@ -279,6 +309,9 @@ impl Tables {
         if case.may_fail() {
             row.extend(failure(state));
         }
+        if self.departed.is_some() {
+            row.extend(departed(state));
+        }
         self.history.row(&row)?;
         let pairs = simulation.contact().active_pairs();
         for (bodies, pair) in pairs.iter().zip(&state.pairs) {
@@ -295,13 +328,20 @@ impl Tables {
                 table.row(&removed(state.time, &body.name, gone))?;
             }
         }
+        if let Some(table) = &mut self.departed {
+            for (body, gone) in case.bodies.iter().zip(&state.departed) {
+                let mut row = removed(state.time, &body.name, gone);
+                row.extend(departure(gone));
+                table.row(&row)?;
+            }
+        }
         self.performance.row(&performance(state.step, wall, load))
     }
 
     /// Brings all rows written so far to the disk.
     pub fn sync(&self) -> Result<(), OutputError> {
         let always = [&self.history, &self.contacts, &self.performance];
-        let some = [&self.loads, &self.removed];
+        let some = [&self.loads, &self.removed, &self.departed];
         let mut all = always.into_iter().chain(some.into_iter().flatten());
         all.try_for_each(Table::sync)
     }

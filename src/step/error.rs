@@ -50,11 +50,13 @@ pub enum StepError {
         /// The particle's state.
         detail: String,
     },
-    /// Every particle was out of range.
-    #[error("step {step}: no particle is left, all were out of range")]
+    /// Every particle was taken out.
+    #[error("step {step}: no particle is left, {why}")]
     NothingLeft {
         /// Step in which the last one went.
         step: u64,
+        /// Why that one was taken out.
+        why: &'static str,
     },
 }
 

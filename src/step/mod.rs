@@ -10,6 +10,7 @@ mod restored;
 mod setup;
 mod shown;
 mod simulation;
+mod taking_out;
 mod timers;
 
 pub(crate) use crate::diagnose::failed_mass;

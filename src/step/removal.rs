@@ -1,5 +1,5 @@
-//! Particles out of range are taken out of a run with all that they carry booked, and frozen ones
-//! are out of all sums like removed ones, kept for the files.
+//! Particles that are out of range, or have left the box of interest, are taken out of a run with all
+//! that they carry booked, and frozen ones are out of all sums like removed ones, kept for the files.
 //!
 //! Were a particle to stay in the sums at rest, it would push others without being pushed: momentum
 //! and energy would be lost in each step, and its state, which is out of range, would go on to act.
@@ -9,8 +9,9 @@
 
 use super::candidate::Criteria;
 use crate::comm::Comm;
-use crate::diagnose::{Moved, Removed, RunState};
+use crate::diagnose::{Leave, Moved, Removed, RunState};
 use crate::loads::Loads;
+use crate::model::Region;
 use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use crate::numerics::vector::cross;
 use crate::particles::{FieldInfo, Owner, ParticleStore};
@@ -106,39 +107,62 @@ pub(super) fn failed<F: SignalSpeed>(
         .collect()
 }
 
-/// Books what the owned particles `leaving` take with them, of so many bodies. Collective.
+/// Puts the owned particles that have left a region into `leaving`; what is part of a rigid body stays
+/// wherever it goes.
+pub(super) fn find_departed(
+    particles: &ParticleStore,
+    loads: &Loads,
+    keep: &Region,
+    leaving: &mut Vec<u32>,
+) {
+    let places = &particles.position[..particles.owned()];
+    let beyond = (0_u32..).zip(places).filter(|(_, x)| keep.is_left_by(x));
+    let goes = |&i: &u32| {
+        let bits = particles.load.get(i as usize);
+        !bits.is_some_and(|&bits| loads.is_rigid(bits))
+    };
+    leaving.clear();
+    leaving.extend(beyond.map(|(i, _)| i).filter(goes));
+}
+
+/// What particle `i` takes with it, under gravity (m/s²): mass, momentum, kinetic and internal energy,
+/// that of gravity, and angular momentum.
+fn terms(particles: &ParticleStore, i: usize, g: &[f64; 3]) -> [f64; 10] {
+    let (m, v, x) = (
+        particles.mass[i],
+        &particles.velocity[i],
+        &particles.position[i],
+    );
+    let turn = cross(x, v);
+    [
+        m,
+        m * v[0],
+        m * v[1],
+        m * v[2],
+        0.5 * m * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]),
+        particles.thermal_mass(i) * particles.specific_energy[i],
+        -m * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]),
+        m * turn[0],
+        m * turn[1],
+        m * turn[2],
+    ]
+}
+
+/// Books what the owned particles `leaving` take with them, of so many bodies, and why. Collective.
 pub(super) fn book(
     comm: &Comm,
-    state: &mut RunState,
+    (state, why): (&mut RunState, Leave),
     (particles, bodies): (&ParticleStore, usize),
     loads: &Loads,
     leaving: &[u32],
 ) {
     let mut sums: Vec<[ExactSum; 10]> = (0..bodies).map(|_| Default::default()).collect();
     let mut counts = vec![0_u64; bodies];
-    let g = loads.gravity;
     for &i in leaving {
         let i = i as usize;
-        let (m, v, x) = (
-            particles.mass[i],
-            &particles.velocity[i],
-            &particles.position[i],
-        );
-        let turn = cross(x, v);
         let body = particles.body[i] as usize;
         counts[body] += 1;
-        let terms = [
-            m,
-            m * v[0],
-            m * v[1],
-            m * v[2],
-            0.5 * m * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]),
-            particles.thermal_mass(i) * particles.specific_energy[i],
-            -m * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]),
-            m * turn[0],
-            m * turn[1],
-            m * turn[2],
-        ];
+        let terms = terms(particles, i, &loads.gravity);
         for (sum, term) in sums[body].iter_mut().zip(terms) {
             sum.add(term);
         }
@@ -149,8 +173,12 @@ pub(super) fn book(
     scatter_limbs(sums.iter_mut().flatten(), &limbs);
     comm.sum_u64(&mut counts);
     let time = state.time;
-    state.removed.resize(bodies, Removed::default());
-    for ((booked, sums), count) in state.removed.iter_mut().zip(&sums).zip(counts) {
+    let (ledgers, _) = state.leaving(why);
+    ledgers.resize(bodies, Removed::default());
+    for ((booked, sums), count) in ledgers.iter_mut().zip(&sums).zip(counts) {
+        if count == 0 {
+            continue;
+        }
         let values: [f64; 10] = std::array::from_fn(|k| sums[k].value());
         let [mass, x, y, z, kinetic, internal, gravity, turn @ ..] = values;
         booked.particles += count;
@@ -165,5 +193,7 @@ pub(super) fn book(
         booked.internal_energy += internal;
         booked.gravity_energy += gravity;
         booked.mass_time += mass * time;
+        let [first, _] = booked.times.unwrap_or([time; 2]);
+        booked.times = Some([first, time]);
     }
 }

@@ -27,7 +27,10 @@ pub(super) fn require_own(
             ledgers(state) != ledgers(own)
         }),
         ("it has particles removed from other bodies", &|| {
-            ![0, bodies].contains(&state.removed.len())
+            let ledgers = [&state.removed, &state.departed];
+            ledgers
+                .iter()
+                .any(|by_body| ![0, bodies].contains(&by_body.len()))
         }),
         ("its times are none", &|| {
             !(state.dt > 0.0 && state.last_dt >= 0.0 && state.time >= 0.0)
@@ -73,7 +76,8 @@ fn counts(state: &RunState) -> impl Iterator<Item = u64> {
     ];
     let touching = state.pairs.iter().map(|pair| pair.touching);
     let signed = now.into_iter().chain(touching);
-    let removed = state.removed.iter().map(|removed| removed.particles);
+    let removed = state.removed.iter().chain(&state.departed);
+    let removed = removed.map(|removed| removed.particles);
     [state.step, worst.contact_limited_steps]
         .into_iter()
         .chain(signed.map(|count| u64::try_from(count).unwrap_or(u64::MAX)))

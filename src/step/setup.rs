@@ -9,7 +9,9 @@ use super::simulation::Simulation;
 use super::timers::Timers;
 use crate::comm::Comm;
 use crate::contact::{Connectivity, Contact};
-use crate::diagnose::{LoadState, PairState, RunState, StepSums, Worst, angular_momentum_scale};
+use crate::diagnose::{
+    LoadState, PairState, Removed, RunState, StepSums, Worst, angular_momentum_scale,
+};
 use crate::domain::{Halo, Mirrors, Outset, Partition};
 use crate::loads::{Goal, Loads, Prescribe};
 use crate::model::{Body, Case, SphForm};
@@ -30,6 +32,7 @@ impl Simulation {
         let mut simulation = Self::empty(case, comm, &outset, partition);
         simulation.populate(comm)?;
         simulation.begin(comm)?;
+        simulation.open_departures();
         Ok(simulation)
     }
 
@@ -52,6 +55,7 @@ impl Simulation {
         let unused = unused_fields(&simulation.case, &simulation.contact.table);
         simulation.frozen = Frozen::part(comm, &mut simulation.particles, unused);
         simulation.state = state;
+        simulation.open_departures();
         simulation.partition.deal(comm, &mut simulation.particles);
         limit_count(comm, simulation.particles.owned() as u64)?;
         Ok(simulation)
@@ -65,6 +69,7 @@ impl Simulation {
         particles.drop_fields(unused_fields(&case, table));
         Self {
             frozen: Frozen::like(&particles),
+            leaving: Vec::new(),
             particles,
             state: RunState {
                 pairs: vec![PairState::default(); table.active_pairs().len()],
@@ -82,6 +87,14 @@ impl Simulation {
             sums: StepSums::new(table),
             contact,
             case,
+        }
+    }
+
+    /// Ledgers of what leaves the box of interest, which a case may have from a restart on.
+    fn open_departures(&mut self) {
+        if self.case.domain.keep.is_some() {
+            let bodies = self.case.bodies.len();
+            self.state.departed.resize(bodies, Removed::default());
         }
     }
 

@@ -1,10 +1,10 @@
 //! The simulation: everything a rank holds, and one step of it.
 
-use super::candidate::{Candidate, Criteria, StepControl, criteria_fields};
+use super::candidate::{Candidate, Criteria, StepControl};
 use super::error::{self, StepError};
 use super::flight::Sky;
 use super::integrate;
-use super::removal::{self, Frozen};
+use super::removal::Frozen;
 use super::timers::{Phase, Timers};
 use crate::comm::Comm;
 use crate::contact::{Contact, ContactTable};
@@ -13,7 +13,7 @@ use crate::diagnose::{
 };
 use crate::domain::{Halo, Partition};
 use crate::loads::Loads;
-use crate::model::{Case, NumericalFailurePolicy, SphForm};
+use crate::model::{Case, SphForm};
 use crate::neighbours::Lists;
 use crate::particles::{HaloPhase, ParticleStore};
 use crate::sph::{Side, Sph, Step, with_formulation};
@@ -25,6 +25,8 @@ pub struct Simulation {
     /// This rank's particles.
     pub particles: ParticleStore,
     pub(super) frozen: Frozen,
+    /// Particles that are about to be taken out.
+    pub(super) leaving: Vec<u32>,
     /// The scalar state, equal on all ranks.
     pub state: RunState,
     /// Seconds by phase, and what was done in them.
@@ -81,7 +83,7 @@ impl Simulation {
         self.timers.updates += self.particles.owned() as u64;
         self.choose_step(comm, candidate)?;
         self.timers.lap(Phase::TimeStep);
-        Ok(())
+        self.remove_departed(comm)
     }
 
     /// First half kick and drift of a step `dt` (s) that ends at time `end` (s).
@@ -301,53 +303,6 @@ impl Simulation {
         PostMortem::of((id, rank), &self.particles, reach, &self.state, past)
     }
 
-    /// Takes out all particles whose state is out of range, books them (and keeps them for the
-    /// files if they are to be frozen), and sums the forces on the others anew. For a step that
-    /// [`StepError::Failure`] has ended and whose particles are all finite. Collective. Gives the
-    /// number of particles taken out on all ranks.
-    ///
-    /// # Errors
-    /// The same on all ranks if a particle fails again, or nothing left.
-    pub fn remove_failed(&mut self, comm: &Comm) -> Result<u64, StepError> {
-        let rules = (self.case.time_step, self.loads.gravity);
-        let (particles, loads, limits) = (&self.particles, &self.loads, &self.step_control.limits);
-        let mut leaving = with_formulation!(self.case.sph.form, Form => {
-            let criteria = Criteria::<Form>::new(criteria_fields!(particles), &self.sph, limits, rules);
-            removal::failed(particles, loads, &criteria)
-        });
-        let mut count = [leaving.len() as u64, self.particles.owned() as u64];
-        let counted = (&self.particles, self.case.bodies.len());
-        removal::book(comm, &mut self.state, counted, &self.loads, &leaving);
-        if self.case.numerical_limits.policy == NumericalFailurePolicy::Freeze {
-            self.frozen.freeze(&self.particles, &leaving);
-        }
-        self.particles.remove(&mut leaving, &mut Vec::new());
-        comm.sum_u64(&mut count);
-        if count[0] == count[1] {
-            return Err(StepError::NothingLeft {
-                step: self.state.step,
-            });
-        }
-        let contact_energy = self.state.contact_energy;
-        let owned = self.particles.owned();
-        let particles = &mut self.particles;
-        particles.predicted_velocity[..owned].copy_from_slice(&particles.velocity[..owned]);
-        particles.predicted_density[..owned].copy_from_slice(&particles.density[..owned]);
-        self.loads
-            .prepare(&self.case, self.state.time, self.state.time);
-        self.evaluate(comm, 0.0);
-        let candidate = self.kick(0.0);
-        // The sums of a step of no length have no work in them. Its defect is taken with what has
-        // been lost, so the loss must be known first.
-        let worst = self.state.worst;
-        self.book_step(comm, 0.0);
-        self.state.removed_contact_energy += contact_energy - self.state.contact_energy;
-        self.state.worst = worst;
-        self.state.book_defect();
-        self.choose_step(comm, candidate)?;
-        Ok(count[0])
-    }
-
     /// Does something, such as writing files, while the store holds this rank's frozen particles
     /// too, in place of the halo.
     pub fn with_frozen<T>(&mut self, task: impl FnOnce(&Self) -> T) -> T {
@@ -368,6 +323,7 @@ impl Simulation {
     pub fn memory(&self) -> usize {
         self.particles.memory()
             + self.frozen.memory()
+            + 4 * self.leaving.capacity()
             + self.lists.memory()
             + self.sph.memory()
             + self.contact.memory()

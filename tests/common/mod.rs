@@ -59,6 +59,7 @@ pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
         domain: DomainOptions {
             axis: None,
             balance_every: 20,
+            keep: None,
         },
         run: RunControl {
             end_time,

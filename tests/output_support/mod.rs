@@ -65,6 +65,7 @@ pub fn case() -> Case {
         domain: DomainOptions {
             axis: None,
             balance_every: 10,
+            keep: None,
         },
         run: RunControl {
             end_time: 1e-6,

@@ -4,16 +4,16 @@ use std::path::Path;
 
 use toml::Spanned;
 
-use super::in_dimension;
 use super::motion::motion;
+use super::region::region;
 use super::shapes::vector;
 use super::touch;
 use crate::input::names;
 use crate::input::quantity::{Acceleration, Placed};
-use crate::input::schema::{CaseParams, LoadParams, SidesParams};
+use crate::input::schema::{CaseParams, LoadParams};
 use crate::input::source::Diagnostic;
 use crate::model::readable::Readable;
-use crate::model::{Axis, Body, Loads, RigidSurface, SymmetryPlane, VelocityLoad};
+use crate::model::{Body, Loads, RigidSurface, SymmetryPlane, VelocityLoad};
 use crate::populate::{self, Wanted};
 
 /// What loads are read with.
@@ -124,8 +124,11 @@ impl Reader<'_> {
         let load = VelocityLoad {
             name: given_name(params.name.as_ref(), "load", number_of),
             body: index,
-            above: self.sides(params.above.as_ref(), body, f64::NEG_INFINITY)?,
-            below: self.sides(params.below.as_ref(), body, f64::INFINITY)?,
+            region: region(
+                [params.above.as_ref(), params.below.as_ref()],
+                self.dimension,
+                body.lattice.spacing,
+            )?,
             motion: motion(&params.velocity, self.dimension)?,
             until: number!(params.until, or f64::INFINITY, Positive),
         };
@@ -155,31 +158,10 @@ impl Reader<'_> {
                 limit: 1.0,
                 any: true,
             },
-            |lower, upper| {
-                value((0..3).all(|a| load.above[a] <= upper[a] && lower[a] <= load.below[a]))
-            },
-            |x| value(load.contains(x)),
+            |lower, upper| value(load.region.meets(lower, upper)),
+            |x| value(load.region.contains(x)),
         );
         !found.is_empty()
-    }
-
-    fn sides(
-        &self,
-        params: Option<&Spanned<SidesParams>>,
-        body: &Body,
-        open: f64,
-    ) -> Result<[f64; 3], Diagnostic> {
-        let mut sides = [open; 3];
-        let Some(table) = params else {
-            return Ok(sides);
-        };
-        let params = table.get_ref();
-        for (axis, side) in Axis::ALL.into_iter().zip([&params.x, &params.y, &params.z]) {
-            let Some(side) = side else { continue };
-            in_dimension(axis, self.dimension, side.span())?;
-            sides[axis.index()] = side.get_ref().metres(body.lattice.spacing);
-        }
-        Ok(sides)
     }
 }
 

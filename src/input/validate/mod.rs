@@ -10,6 +10,7 @@ mod loads;
 mod materials;
 mod motion;
 mod numerical_limits;
+mod region;
 mod shapes;
 mod solids;
 mod strength;
@@ -22,8 +23,8 @@ use std::path::Path;
 
 use super::names;
 use super::schema::{
-    BodyParams, CaseParams, DomainParams, OutputParams, RunParams, SmoothingName, SphParams,
-    SymmetryParams, TimeStepParams,
+    BodyParams, CaseParams, OutputParams, RunParams, SmoothingName, SphParams, SymmetryParams,
+    TimeStepParams,
 };
 use super::source::Diagnostic;
 use crate::material::Material;
@@ -35,6 +36,7 @@ use crate::model::{
 use crate::particles::{TEMPERATURE, snapshot_names};
 use crate::populate::overlap;
 use check::{Allowed, number, whole};
+use region::KeepReader;
 use toml::Spanned;
 
 /// Overlaps up to this may be those of curved faces on a lattice (spacings).
@@ -68,6 +70,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     }
     .all(&params)?;
     let time_step = time_step(&params.time_step, &sph, &bodies, &materials)?;
+    let domain = domain(&params, dimension, &bodies, &symmetry, &length_unit)?;
     let fields = field_spans(&params.output);
     let form = params.sph.form.as_ref().map(Spanned::span);
     let mut case = Case {
@@ -83,7 +86,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         loads,
         sph,
         time_step,
-        domain: domain(&params.domain, dimension)?,
+        domain,
         numerical_limits: NumericalLimits::default(),
         run: run(params.run.get_ref())?,
         output: output(params.output)?,
@@ -271,11 +274,30 @@ fn time_step(
     Ok(TimeStepOptions { max, ..given })
 }
 
-fn domain(params: &DomainParams, dimension: usize) -> Result<DomainOptions, Diagnostic> {
+fn domain(
+    case: &CaseParams,
+    dimension: usize,
+    bodies: &[Body],
+    symmetry: &[SymmetryPlane],
+    length_unit: &Readable,
+) -> Result<DomainOptions, Diagnostic> {
+    let params = &case.domain;
     let axis = params.axis.as_ref().map(|name| axis(name, dimension));
+    let spacing = case.spacing.as_ref().map(|spacing| spacing.get_ref().si);
+    let reader = KeepReader {
+        dimension,
+        bodies,
+        symmetry,
+        length_unit,
+    };
+    let keep = params
+        .keep
+        .as_ref()
+        .map(|table| reader.read(table, spacing));
     Ok(DomainOptions {
         axis: axis.transpose()?,
         balance_every: whole(params.balance_every.as_ref(), "balance_every", 25, 0)?,
+        keep: keep.transpose()?,
     })
 }
 

@@ -268,8 +268,10 @@ fn moved(part: &Part, load: &VelocityLoad) -> Option<[Option<f64>; 2]> {
     let first = part.ends[0] + 0.5 * spacing;
     let count = ((part.ends[1] - part.ends[0]) / spacing).round();
     let place = |k: f64| first + k * spacing;
-    let low = ((load.above[0] - first) / spacing - 1e-6).ceil().max(0.0);
-    let high = ((load.below[0] - first) / spacing + 1e-6)
+    let low = ((load.region.above[0] - first) / spacing - 1e-6)
+        .ceil()
+        .max(0.0);
+    let high = ((load.region.below[0] - first) / spacing + 1e-6)
         .floor()
         .min(count - 1.0);
     let low_end = (low > 0.0).then(|| place(low));

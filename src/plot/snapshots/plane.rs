@@ -28,8 +28,8 @@ impl Plane {
         }
     }
 
-    /// Reads `y=0.1mm`; without a position the plane of symmetry or the middle of the model.
-    pub fn parse(text: &str, snapshot: &Snapshot) -> Result<Self, PlotError> {
+    /// Reads `y=0.1mm`, or `y` without a position.
+    pub fn read(text: &str) -> Result<(Axis, Option<f64>), PlotError> {
         let (name, position) = match text.split_once('=') {
             Some((name, position)) => (name, Some(position)),
             None => (text, None),
@@ -38,12 +38,15 @@ impl Plane {
         let axis = axis.ok_or_else(|| PlotError::Section {
             text: text.to_owned(),
         })?;
-        match position {
-            Some(position) => Ok(Self {
-                axis,
-                position: units::parse(position, "m")?,
-            }),
-            None => Ok(Self::through(axis, snapshot, &snapshot.extent()?)),
+        let position = position.map(|position| units::parse(position, "m"));
+        Ok((axis, position.transpose()?))
+    }
+
+    /// Reads `y=0.1mm`; without a position the plane of symmetry or the middle of the model.
+    pub fn parse(text: &str, snapshot: &Snapshot) -> Result<Self, PlotError> {
+        match Self::read(text)? {
+            (axis, Some(position)) => Ok(Self { axis, position }),
+            (axis, None) => Ok(Self::through(axis, snapshot, &snapshot.extent()?)),
         }
     }
 

@@ -1,0 +1,262 @@
+//! Lines, arrows and a scale over a panel.
+
+use super::panel::Panel;
+use crate::model::readable::{Readable, shown};
+use crate::model::{Case, Region, SymmetryPlane};
+use crate::plot::canvas::{Align, Canvas, Frame, INK, PAPER, Rgb};
+use crate::plot::font;
+use crate::plot::style::Style;
+use crate::plot::ticks::nice_step;
+
+/// Colour of symmetry planes.
+pub const SYMMETRY: Rgb = [0, 130, 130];
+/// Colour of rigid surfaces.
+pub const SURFACE: Rgb = [110, 60, 20];
+/// Colour of the box of interest.
+pub const KEEP: Rgb = [200, 0, 0];
+
+/// Speeds below this share of the fastest have no arrow.
+const SLOW: f64 = 1e-3;
+/// The fastest body's arrow over the smaller side of its panel.
+const LONGEST: f32 = 0.3;
+
+/// A line of dashes (and, if wanted, dots) between two points.
+fn dashed(canvas: &mut Canvas, style: Style, ends: [(f32, f32); 2], colour: Rgb, dots: bool) {
+    let [a, b] = ends;
+    let (dx, dy) = (b.0 - a.0, b.1 - a.1);
+    let length = dx.hypot(dy);
+    let pattern: &[(f32, f32)] = if dots {
+        &[(14.0, 5.0), (2.0, 5.0)]
+    } else {
+        &[(7.0, 5.0)]
+    };
+    let (mut at, mut k) = (0.0, 0);
+    while at < length {
+        let (dash, gap) = pattern[k % pattern.len()];
+        let end = (at + dash * style.unit).min(length);
+        let point = |s: f32| (a.0 + dx * s / length, a.1 + dy * s / length);
+        canvas.line(&[point(at), point(end)], 2.0 * style.unit, colour);
+        at = end + gap * style.unit;
+        k += 1;
+    }
+}
+
+/// A line across the frame where a coordinate of one axis has a value (m), if it is in the view.
+fn across(
+    canvas: &mut Canvas,
+    style: Style,
+    panel: &Panel,
+    (axis, value): (usize, f64),
+    colour: Rgb,
+) {
+    let [right, up] = panel.axes();
+    let (frame, view) = (&panel.frame, &panel.view);
+    let within = |span: [f64; 2]| span[0] <= value && value <= span[1];
+    let mut place = [0.0; 3];
+    place[axis] = value;
+    let (x, y) = panel.at(&place);
+    let ends = if axis == right && within(view.x) {
+        [(x, frame.top), (x, frame.bottom())]
+    } else if axis == up && within(view.y) {
+        [(frame.left, y), (frame.right(), y)]
+    } else {
+        return;
+    };
+    dashed(canvas, style, ends, colour, colour == SYMMETRY);
+}
+
+/// The planes of symmetry that are seen from their side.
+pub fn symmetry(canvas: &mut Canvas, style: Style, panel: &Panel, planes: &[SymmetryPlane]) {
+    for plane in planes {
+        across(
+            canvas,
+            style,
+            panel,
+            (plane.axis.index(), plane.position),
+            SYMMETRY,
+        );
+    }
+}
+
+/// The sides of the box of interest.
+pub fn keep(canvas: &mut Canvas, style: Style, panel: &Panel, keep: Option<&Region>) {
+    for axis in panel.axes() {
+        for side in keep
+            .iter()
+            .flat_map(|keep| [keep.above[axis], keep.below[axis]])
+        {
+            across(canvas, style, panel, (axis, side), KEEP);
+        }
+    }
+}
+
+/// Pixels of a frame, two wide, in a colour.
+pub fn pixels(canvas: &mut Canvas, panel: &Panel, pixels: &[(usize, usize)]) {
+    for &(column, row) in pixels {
+        let dot = Frame {
+            left: panel.frame.left + column as f32,
+            top: panel.frame.top + row as f32,
+            width: 1.0,
+            height: 1.0,
+        };
+        canvas.fill(&dot, SURFACE);
+    }
+}
+
+/// The number of a body, its middle (m) and its velocity (m/s).
+pub type Flight = (usize, [f64; 3], [f64; 3]);
+
+/// The velocities of bodies that are seen to move.
+pub fn velocities(case: &Case) -> Vec<Flight> {
+    let bodies = case.bodies.iter().enumerate().filter_map(|(index, body)| {
+        let (lower, upper) = super::extent::of_body(body, case)?;
+        let middle: [f64; 3] = std::array::from_fn(|a| 0.5 * (lower[a] + upper[a]));
+        let velocity = match &body.rigid {
+            Some(motion) => std::array::from_fn(|a| motion.velocity(a, 0.0)),
+            None => body.velocity.into(),
+        };
+        Some((index, middle, velocity))
+    });
+    let all: Vec<Flight> = bodies.collect();
+    let fastest = all.iter().fold(0.0, |most: f64, (.., v)| most.max(norm(v)));
+    let moves = |(.., v): &Flight| norm(v) > SLOW * fastest;
+    all.into_iter().filter(moves).collect()
+}
+
+fn norm(v: &[f64; 3]) -> f64 {
+    v.iter().map(|c| c * c).sum::<f64>().sqrt()
+}
+
+/// An arrow for each velocity, as long as it is fast, with its speed if `named`; towards the viewer a
+/// dot in a ring, away a cross.
+pub fn arrows(canvas: &mut Canvas, style: Style, panel: &Panel, all: &[Flight], named: bool) {
+    let fastest = all.iter().fold(0.0, |most: f64, (.., v)| most.max(norm(v)));
+    let longest = LONGEST * panel.frame.width.min(panel.frame.height);
+    let [right, up] = panel.axes();
+    let normal = panel.plane.axis.index();
+    for (_, place, v) in all {
+        let at = panel.at(place);
+        let share = |a: usize| as_pixels(v[a] / fastest) * longest;
+        let (dx, dy) = (share(right), -share(up));
+        if dx.hypot(dy) < 0.05 * longest {
+            along_sight(canvas, style, at, v[normal] * panel.towards() > 0.0);
+        } else {
+            // Short ones are still seen.
+            let least = (16.0 * style.unit / dx.hypot(dy)).max(1.0);
+            arrow(canvas, style, at, (dx * least, dy * least));
+        }
+        if named {
+            // Not over its arrow.
+            let leftwards = dx > dy.abs();
+            let text = shown(norm(v), "m/s");
+            label(canvas, style, at, (&text, leftwards), &panel.frame);
+        }
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "a pixel needs no more")]
+fn as_pixels(length: f64) -> f32 {
+    length as f32
+}
+
+fn arrow(canvas: &mut Canvas, style: Style, at: (f32, f32), (dx, dy): (f32, f32)) {
+    let length = dx.hypot(dy);
+    let (ex, ey) = (dx / length, dy / length);
+    let (line, head) = (3.0 * style.unit, 13.0 * style.unit);
+    let tip = (at.0 + dx, at.1 + dy);
+    // Paper around it keeps it apart from what is below.
+    for (more, colour) in [(2.0 * style.unit, PAPER), (0.0, INK)] {
+        let head = head + more;
+        let end = (tip.0 + ex * more, tip.1 + ey * more);
+        let neck = (end.0 - ex * head, end.1 - ey * head);
+        let side = 0.42 * head;
+        canvas.line(&[at, neck], line + 2.0 * more, colour);
+        canvas.polygon(
+            &[
+                end,
+                (neck.0 - ey * side, neck.1 + ex * side),
+                (neck.0 + ey * side, neck.1 - ex * side),
+            ],
+            colour,
+        );
+    }
+}
+
+/// A dot in a ring for what comes, a cross in one for what goes.
+fn along_sight(canvas: &mut Canvas, style: Style, at: (f32, f32), comes: bool) {
+    let page = Frame {
+        left: 0.0,
+        top: 0.0,
+        width: f32::MAX,
+        height: f32::MAX,
+    };
+    let radius = 9.0 * style.unit;
+    canvas.disc(at, radius + 2.0 * style.unit, PAPER, &page);
+    canvas.disc(at, radius, INK, &page);
+    canvas.disc(at, radius - 2.5 * style.unit, PAPER, &page);
+    if comes {
+        canvas.disc(at, 2.5 * style.unit, INK, &page);
+        return;
+    }
+    let arm = 0.7 * (radius - 2.5 * style.unit);
+    for sign in [-1.0, 1.0] {
+        let ends = [
+            (at.0 - arm, at.1 - sign * arm),
+            (at.0 + arm, at.1 + sign * arm),
+        ];
+        canvas.line(&ends, 2.0 * style.unit, INK);
+    }
+}
+
+/// A text on paper beside a point: on the left if it is wanted there, within a frame if it fits.
+fn label(
+    canvas: &mut Canvas,
+    style: Style,
+    at: (f32, f32),
+    (text, leftwards): (&str, bool),
+    frame: &Frame,
+) {
+    let size = style.small();
+    let (width, gap) = (font::width(text, size), style.gap());
+    let sides = [at.0 - width - 2.0 * gap, at.0 + 2.0 * gap];
+    let fits = |left: &f32| *left > frame.left && *left + width < frame.right();
+    let [wanted, other] = if leftwards {
+        sides
+    } else {
+        [sides[1], sides[0]]
+    };
+    let left = [wanted, other].into_iter().find(fits);
+    let left = left.unwrap_or(frame.right() + gap);
+    let paper = Frame {
+        left: left - 0.4 * gap,
+        top: at.1 - 0.55 * size,
+        width: width + 0.8 * gap,
+        height: 1.1 * size,
+    };
+    canvas.fill(&paper, PAPER);
+    let at = (left, at.1 + 0.36 * size);
+    canvas.text(text, at, size, Align::Start);
+}
+
+/// A bar of a round length with its number, at a place, not longer than some pixels.
+pub fn scale_bar(canvas: &mut Canvas, style: Style, at: (f32, f32), (scale, most): (f64, f32)) {
+    let room = f64::from(most) / scale;
+    // The largest round length that is not longer.
+    let steps = (1..=40).map(|k| nice_step(room / 1.05_f64.powi(k)));
+    let length = steps.filter(|&length| length <= room).fold(0.0, f64::max);
+    let unit = Readable::new("m", length);
+    let number = crate::model::readable::short(length / unit.size);
+    let end = (at.0 + as_pixels(length * scale), at.1);
+    let rise = 0.8 * style.tick();
+    canvas.line(&[at, end], 3.0 * style.unit, INK);
+    for (x, y) in [at, end] {
+        canvas.line(&[(x, y - rise), (x, y + rise)], style.line(), INK);
+    }
+    let text = (end.0 + style.gap(), at.1 + 0.36 * style.small());
+    canvas.text(
+        &format!("{number} {}", unit.name),
+        text,
+        style.small(),
+        Align::Start,
+    );
+}
