@@ -4,9 +4,9 @@ use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use super::drift::Drift;
 use super::exit::EXIT_STOPPED;
 use super::launch::{Launch, STEP, fail};
+use super::notices::Notices;
 use super::options::CommonArgs;
 use super::progress::Progress;
 use super::say::{say, seconds, warn};
@@ -37,7 +37,7 @@ pub struct Driver<'a> {
     tables: Option<Tables>,
     log: Log,
     progress: Progress,
-    drift: Drift,
+    notices: Notices,
     /// Post-mortems written.
     post_mortems: usize,
 }
@@ -91,7 +91,7 @@ impl<'a> Driver<'a> {
             progress: Progress::new(comm.is_root(), &simulation.case.run),
             simulation,
             folder,
-            drift: Drift::default(),
+            notices: Notices::default(),
             post_mortems: 0,
         };
         if comm.is_root() {
@@ -255,7 +255,7 @@ impl<'a> Driver<'a> {
             None => Ok(()),
         })?;
         self.simulation.state.begin_interval();
-        if let Some(text) = self.drift.notice(&self.simulation) {
+        if let Some(text) = self.notices.notice(&self.simulation) {
             self.log(comm, &text);
             self.progress.warn(&text);
         }

@@ -1,12 +1,12 @@
 //! A run in its folder, on all ranks: how it starts or goes on, the loop between its files, why it
 //! stops, and what it says.
 
-mod drift;
 mod driver;
 pub(crate) mod exit;
 #[cfg(feature = "fault-injection")]
 mod fault;
 pub(crate) mod launch;
+mod notices;
 mod options;
 mod progress;
 pub(crate) mod resume;

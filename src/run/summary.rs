@@ -34,6 +34,8 @@ pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde
         json!({ "bodies": names, "ids": pair.particles })
     });
     let failed = failed_by_body(comm, simulation);
+    let zones = &state.loads[simulation.case.absorber_ledgers()];
+    let absorbed = -zones.iter().map(|zone| zone.work).sum::<f64>();
     let normalised = simulation.case.sph.form != SphForm::Conventional;
     // What the ranks have stepped since they started, if no particle was taken out.
     let steps = load.updates as f64 / (load.particles[0] as f64).max(1.0);
@@ -71,6 +73,8 @@ pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde
         "uncorrected_gradients": normalised.then_some(worst.uncorrected),
         "failure_energy": failed.is_some().then_some(state.totals.failure_energy),
         "failed_mass": failed,
+        "absorbed_energy": (!zones.is_empty()).then_some(absorbed),
+        "yielded_mass_in_zones": (!zones.is_empty()).then_some(state.totals.yielded_mass),
         "contact_limited_steps": worst.contact_limited_steps,
     })
 }

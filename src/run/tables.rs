@@ -170,6 +170,11 @@ tables! {
         "failure_energy", "J", state.totals.failure_energy;
     }
 
+    /// What of a row of the history is told where there are absorbing zones.
+    ABSORBED, absorbed(state: &'a RunState) {
+        "yielded_mass_in_zones", "kg", state.totals.yielded_mass;
+    }
+
     /// A row of the contacts, of two bodies by name.
     CONTACTS, contact(time: f64, names: [&'a str; 2], pair: &PairState) {
         "time", "s", time;
@@ -248,6 +253,9 @@ impl Tables {
         if case.may_fail() {
             of_history.extend(columns(FAILURE));
         }
+        if !case.loads.absorbers.is_empty() {
+            of_history.extend(columns(ABSORBED));
+        }
         let has_loads = case.load_names().next().is_some();
         let removes = case.numerical_limits.policy != NumericalFailurePolicy::Stop
             || resume.is_some_and(|state| !state.removed.is_empty());
@@ -278,6 +286,9 @@ impl Tables {
         }
         if case.may_fail() {
             row.extend(failure(state));
+        }
+        if !case.loads.absorbers.is_empty() {
+            row.extend(absorbed(state));
         }
         self.history.row(&row)?;
         let pairs = simulation.contact().active_pairs();

@@ -1,0 +1,5 @@
+pub struct Pulse;
+pub enum Wave {
+    A,
+}
+pub fn returned() {}
