@@ -168,11 +168,9 @@ impl Loads {
         let absorption = &self.absorption;
         let half = 2.0 * absorption.quarter;
         for (n, zone) in absorption.zones.iter().enumerate() {
-            let all = self.sum_free(particles, |i| {
+            let meant = |i: usize| zone.holds(particles.absorption[i], particles.body[i]);
+            let all = self.sum_where(particles, meant, |i| {
                 let rate = particles.absorption[i];
-                if rate == 0.0 || particles.body[i] != zone.body {
-                    return [0.0; 7];
-                }
                 let prescribed = self.of(particles.load.get(i).copied().unwrap_or_default());
                 let contact = particles.contact_acceleration.get(i);
                 let contact = contact.copied().unwrap_or_default();
@@ -216,12 +214,18 @@ impl Loads {
 }
 
 impl Zone {
+    /// Whether it holds a particle of a body with this rate (1/s).
+    #[inline(always)]
+    fn holds(&self, rate: f64, body: u32) -> bool {
+        rate > 0.0 && body == self.body
+    }
+
     /// Relaxes the stress of the zone's particles; gives the work on them (J), that is minus the
     /// energy that they lose.
     fn relax(&self, absorption: &Absorption, particles: &mut ParticleStore) -> ExactSum {
         let owned = particles.owned();
-        let rates = (&particles.absorption, &particles.body, &particles.damage);
-        let has_failed = |i: usize| rates.2.get(i).is_some_and(|&damage| damage >= FAILED);
+        let (rates, body, damage) = (&particles.absorption, &particles.body, &particles.damage);
+        let has_failed = |i: usize| damage.get(i).is_some_and(|&damage| damage >= FAILED);
         let (mass, stress_mass) = (&particles.mass, &particles.stress_mass);
         let pressure = &particles.pressure;
         (
@@ -235,10 +239,10 @@ impl Zone {
             .fold(ExactSum::default, |mut work, (chunk, (rho, s, e))| {
                 for k in 0..e.len() {
                     let i = chunk * GRAIN + k;
-                    if rates.0[i] == 0.0 || rates.1[i] != self.body || has_failed(i) {
+                    if !self.holds(rates[i], body[i]) || has_failed(i) {
                         continue;
                     }
-                    let kept = absorption.kept(rates.0[i]);
+                    let kept = absorption.kept(rates[i]);
                     let change = self.relax_point(kept, pressure[i], &mut rho[k], &mut s[k]);
                     e[k] += change;
                     let mass = mass[i] + stress_mass.get(i).copied().unwrap_or_default();

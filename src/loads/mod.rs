@@ -277,11 +277,21 @@ impl Loads {
         particles: &ParticleStore,
         terms: impl Fn(usize) -> [f64; N] + Sync,
     ) -> [ExactSum; N] {
+        self.sum_where(particles, |_| true, terms)
+    }
+
+    /// The same of those that are `meant`.
+    fn sum_where<const N: usize>(
+        &self,
+        particles: &ParticleStore,
+        meant: impl Fn(usize) -> bool + Sync,
+        terms: impl Fn(usize) -> [f64; N] + Sync,
+    ) -> [ExactSum; N] {
         let owned = particles.owned();
         let none = || std::array::from_fn(|_| ExactSum::default());
         let of_chunk = |mut sums: [ExactSum; N], chunk: usize| {
             for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(owned) {
-                if self.has_motions() && self.is_rigid(particles.load[i]) {
+                if !meant(i) || self.has_motions() && self.is_rigid(particles.load[i]) {
                     continue;
                 }
                 for (sum, term) in sums.iter_mut().zip(terms(i)) {

@@ -47,9 +47,9 @@ impl OuterFace {
     /// most (m).
     fn depths(&self, lower: &[f64; 3], upper: &[f64; 3]) -> [f64; 2] {
         match self {
-            Self::Plane { normal, position } => [upper, lower].map(|ahead| {
-                let behind = if ahead == upper { lower } else { upper };
-                let corner = |a: usize| if normal[a] > 0.0 { ahead[a] } else { behind[a] };
+            Self::Plane { normal, position } => [true, false].map(|foremost| {
+                let is_upper = |a: usize| (normal[a] > 0.0) == foremost;
+                let corner = |a: usize| if is_upper(a) { upper[a] } else { lower[a] };
                 position - dot(normal, &std::array::from_fn(corner))
             }),
             Self::Round {

@@ -17,8 +17,7 @@ use crate::step::{Simulation, failed_mass};
 pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde_json::Value {
     let [wall, set_up] = seconds;
     let load = load(comm, simulation);
-    let state = &simulation.state;
-    let worst = &state.worst;
+    let (state, worst) = (&simulation.state, &simulation.state.worst);
     let phases = mean_seconds(comm, simulation.timers.report());
     let stepping: f64 = phases.iter().map(|(_, seconds)| seconds).sum();
     let mut counts = [simulation.memory() as u64, simulation.frozen() as u64];
@@ -34,8 +33,6 @@ pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde
         json!({ "bodies": names, "ids": pair.particles })
     });
     let failed = failed_by_body(comm, simulation);
-    let zones = &state.loads[simulation.case.absorber_ledgers()];
-    let absorbed = -zones.iter().map(|zone| zone.work).sum::<f64>();
     let normalised = simulation.case.sph.form != SphForm::Conventional;
     // What the ranks have stepped since they started, if no particle was taken out.
     let steps = load.updates as f64 / (load.particles[0] as f64).max(1.0);
@@ -73,10 +70,18 @@ pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde
         "uncorrected_gradients": normalised.then_some(worst.uncorrected),
         "failure_energy": failed.is_some().then_some(state.totals.failure_energy),
         "failed_mass": failed,
-        "absorbed_energy": (!zones.is_empty()).then_some(absorbed),
-        "yielded_mass_in_zones": (!zones.is_empty()).then_some(state.totals.yielded_mass),
+        "absorbing_zones": absorbing_zones(simulation),
         "contact_limited_steps": worst.contact_limited_steps,
     })
+}
+
+/// What absorbing zones have taken up (J), and what has yielded in them (kg), where there are any.
+fn absorbing_zones(simulation: &Simulation) -> Option<serde_json::Value> {
+    let state = &simulation.state;
+    let zones = &state.loads[simulation.case.absorber_ledgers()];
+    let taken = -zones.iter().map(|zone| zone.work).sum::<f64>();
+    let yielded = state.totals.yielded_mass;
+    (!zones.is_empty()).then(|| json!({ "absorbed_energy": taken, "yielded_mass": yielded }))
 }
 
 /// Mass that has failed (kg) by body, where matter may fail. Collective.
