@@ -47,10 +47,10 @@ fn histories(mut s: Simulation, time: f64) -> Vec<Vec<f64>> {
     run_with(&mut s, time, |s| {
         let mut row = vec![0.0; 10];
         for i in 0..s.particles.owned() {
-            if let Some(k) = (s.particles.id[i] as usize).checked_sub(50)
+            if let Some(k) = s.particles.id[i].checked_sub(50)
                 && k < 10
             {
-                row[k] = s.particles.velocity[i][0];
+                row[usize::try_from(k).unwrap()] = s.particles.velocity[i][0];
             }
         }
         rows.push(row);

@@ -334,7 +334,7 @@ fn absorbing_zones_on_any_ranks_and_through_a_restart() {
         run(1, 2, &case, &[], &one);
         run(3, 1, &case, &["--set", "domain.axis=x"], &three);
         assert_same(&one, &three, "three ranks");
-        assert_same_in_legs(&case, &[2, 1], &["0.35us"], &one, &stopped);
+        assert_same_in_legs(&case, &[2, 1], &["0.17us"], &one, &stopped);
         let loads = std::fs::read_to_string(one.join("loads.csv")).expect("the table");
         assert!(loads.contains(",absorb-1,"), "the zone in loads.csv");
         let summary = std::fs::read_to_string(one.join("summary.json")).expect("it is there");

@@ -8,8 +8,9 @@ use whipple::step::Simulation;
 
 use crate::physics_support::{inline, start};
 
-/// P-wave modulus and shear modulus (Pa), density (kg/m³): c_p = 6 km/s, c_s = 3 km/s.
+/// P-wave modulus and shear modulus (Pa), for waves of 6 and 3 km/s.
 pub const MODULI: [f64; 2] = [72e9, 18e9];
+/// Density (kg/m³).
 pub const DENSITY: f64 = 2000.0;
 /// The same in an input.
 pub const MATERIAL: &str = r#"
@@ -173,11 +174,11 @@ pub fn returned(packet: &Packet) -> f64 {
     let begin = packet.zone();
     let key = |s: &Simulation, i: usize| {
         let place = s.particles.position[i];
-        [0, 1].map(|a| (place[a] / STEP).floor() as i64)
+        [0, 1].map(|a| (place[a] / STEP).floor().to_bits())
     };
     // What runs along the face of the zone, and does not leave it, has died down a wave length away.
     let near = 0.5 * begin..begin - packet.length * STEP;
-    let places = |s: &Simulation| -> HashMap<[i64; 2], u64> {
+    let places = |s: &Simulation| -> HashMap<[u64; 2], u64> {
         let particles = 0..s.particles.owned();
         let near = particles.filter(|&i| near.contains(&s.particles.position[i][0]));
         near.map(|i| (key(s, i), s.particles.id[i])).collect()
@@ -199,7 +200,7 @@ pub fn returned(packet: &Packet) -> f64 {
         ours.advance(&comm).expect("a step");
         theirs.advance(&comm).expect("a step");
         assert_eq!(ours.state.time.to_bits(), theirs.state.time.to_bits());
-        if ours.state.step % 4 == 0 {
+        if ours.state.step.is_multiple_of(4) {
             let (a, b) = (velocities(&ours), velocities(&theirs));
             for [own, other] in &twins {
                 let (v, w) = (a[own], b[other]);
