@@ -161,6 +161,7 @@ fn overridden(key: &Key, value: &str) -> String {
         .replace("contact.pair.", "contact.pair.0.")
         .replace("symmetry.", "symmetry.0.")
         .replace("load.", "load.0.")
+        .replace("absorb.", "absorb.0.")
         .replace("plane.", "plane.0.")
         .replace("surface.", "surface.0.");
     // Keys below `touch` and the like end with the same words.

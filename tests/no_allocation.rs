@@ -77,6 +77,11 @@ body = "below"
 above.x = "1.8 mm"
 velocity = { x = 0, y = 0 }
 
+[[absorb]]
+body = "below"
+faces = ["+y"]
+depth = "8 spacing"
+
 [[plane]]
 normal = "+z"
 point = [0, 0, "-0.8 mm"]

@@ -65,6 +65,7 @@ qr | inputs/tension-strip | run.max_steps=120
    | inputs/wave-pulse |
    | inputs/wave-step | sph.smoothing=1.2
 qr | tests/common/loaded.toml | run.max_steps=60
+qr | tests/common/absorbed.toml |
 qr | tests/common/torn.toml |
 q  | tests/common/flight.toml |
 END

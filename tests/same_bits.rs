@@ -324,6 +324,27 @@ fn loads_and_rigid_bodies_on_any_ranks_and_through_a_restart() {
     }
 }
 
+#[test]
+fn absorbing_zones_on_any_ranks_and_through_a_restart() {
+    let (_keep, at) = folder();
+    for form in ["corrected", "stress_points"] {
+        let form = format!("sph.form={form}");
+        let case = ["tests/common/absorbed.toml", "--set", &form];
+        let (one, three, stopped) = (at("one"), at("three"), at("stopped"));
+        run(1, 2, &case, &[], &one);
+        run(3, 1, &case, &["--set", "domain.axis=x"], &three);
+        assert_same(&one, &three, "three ranks");
+        assert_same_in_legs(&case, &[2, 1], &["0.17us"], &one, &stopped);
+        let loads = std::fs::read_to_string(one.join("loads.csv")).expect("the table");
+        assert!(loads.contains(",absorb-1,"), "the zone in loads.csv");
+        let summary = std::fs::read_to_string(one.join("summary.json")).expect("it is there");
+        let summary: serde_json::Value = serde_json::from_str(&summary).expect("it is JSON");
+        let zones = &summary["absorbing_zones"];
+        assert!(zones["absorbed_energy"].as_f64() > Some(0.0), "{zones}");
+        std::fs::remove_dir_all(&stopped).expect("room for the next");
+    }
+}
+
 /// One cube of each law, in a row of collisions.
 fn zoo() -> String {
     let mut text = r#"

@@ -6,7 +6,7 @@ use super::reason::Reason;
 use super::taken_out::Removed;
 use crate::contact::{PairExtremes, PairSums, SurfaceForces};
 use crate::loads::Loads;
-use crate::numerics::vector::norm;
+use crate::numerics::vector::{dot, norm};
 
 /// Ledger of one pair of bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -71,7 +71,7 @@ impl PairState {
     }
 }
 
-/// Ledger of what acts from outside: a prescribed velocity, a rigid body, a rigid surface.
+/// Ledger of what acts from outside: a load, a rigid body, an absorbing zone, a rigid surface.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LoadState {
@@ -119,6 +119,9 @@ pub struct Totals {
     /// Elastic energy that it held when it failed (J), which is part of the internal energy.
     #[serde(default)]
     pub failure_energy: f64,
+    /// Mass in absorbing zones that has yielded or failed (kg).
+    #[serde(default)]
+    pub yielded_mass: f64,
 }
 
 impl Totals {
@@ -177,7 +180,7 @@ pub struct RunState {
     pub angular_momentum_put_in: f64,
     /// Ledgers of the pairs of bodies in contact.
     pub pairs: Vec<PairState>,
-    /// Ledgers of prescribed velocities, rigid bodies and rigid surfaces.
+    /// Ledgers of prescribed velocities, rigid bodies, absorbing zones and rigid surfaces.
     pub loads: Vec<LoadState>,
     /// Largest work of loads and gravity so far (J).
     pub work_put_in: f64,
@@ -264,10 +267,7 @@ impl RunState {
         for (ledger, step) in ledgers.iter_mut().zip(&loads.surfaces) {
             let impulse = ledger.force.map(|f| 0.5 * dt * f);
             let (velocity, rate) = step.in_half(first);
-            let work = impulse[0] * velocity[0]
-                + impulse[1] * velocity[1]
-                + impulse[2] * velocity[2]
-                + 0.5 * dt * ledger.torque * rate;
+            let work = dot(&impulse, &velocity) + 0.5 * dt * ledger.torque * rate;
             for a in 0..3 {
                 ledger.impulse[a] += impulse[a];
             }

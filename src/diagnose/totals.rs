@@ -53,6 +53,7 @@ impl Totals {
             angular_momentum: turn,
             failed_mass: 0.0,
             failure_energy: 0.0,
+            yielded_mass: 0.0,
         }
     }
 
@@ -69,6 +70,25 @@ impl Totals {
         });
         reduce(comm, &mut sums);
         [self.failed_mass, self.failure_energy] = sums.map(|sum| sum.value());
+    }
+
+    /// Adds the mass in absorbing zones that has yielded or failed. Collective.
+    pub(crate) fn add_yielded(&mut self, particles: &ParticleStore, loads: &Loads, comm: &Comm) {
+        if !loads.absorb() {
+            return;
+        }
+        let mut sums = loads.sum_free(particles, |i| {
+            let damage = particles.damage.get(i).copied().unwrap_or_default();
+            let yielded = particles.plastic_strain[i] > 0.0 || damage >= FAILED;
+            let counts = yielded && particles.absorption[i] > 0.0;
+            [if counts {
+                particles.thermal_mass(i)
+            } else {
+                0.0
+            }]
+        });
+        reduce(comm, &mut sums);
+        self.yielded_mass = sums[0].value();
     }
 }
 

@@ -68,6 +68,9 @@ tables! {
         /// Prescribed velocities.
         #[serde(default)]
         load: Vec<Spanned<LoadParams>>,
+        /// Absorbing zones.
+        #[serde(default)]
+        absorb: Vec<Spanned<AbsorbParams>>,
         /// Rigid planes.
         #[serde(default)]
         plane: Vec<Spanned<PlaneParams>>,
@@ -132,6 +135,20 @@ tables! {
         velocity: Spanned<MotionParams>,
         /// When the particles are free again.
         until: Option<Placed<Time>>,
+    }
+
+    /// `[[absorb]]`
+    AbsorbParams {
+        /// Name in reports, as of a body.
+        name: Option<Spanned<String>>,
+        /// Name of a body.
+        body: Spanned<String>,
+        /// Directions out of the body in which it goes on.
+        faces: Option<Spanned<Vec<Spanned<NormalParams>>>>,
+        /// Whether it goes on beyond its curved face, or which one that is.
+        round: Option<Spanned<RoundParams>>,
+        /// How far the zone reaches into the body.
+        depth: Option<Spanned<Extent>>,
     }
 
     /// `above`, `below`: sides of a region, open where absent.

@@ -6,8 +6,10 @@
 //! `J · ½(v_from + v_to)`, which balances the energy of the half kick to round-off. A rigid body
 //! has no mass of its own here: what holds it gives the reaction of contact, `J = −½Δt m a_c`.
 
+mod absorption;
 mod surface_motion;
 
+pub(crate) use absorption::Absorption;
 pub(crate) use surface_motion::{Placed, SurfaceStep};
 
 use rayon::prelude::*;
@@ -63,8 +65,8 @@ pub(crate) trait Prescribe: Copy + Send {
     /// Sets what is prescribed of a velocity (m/s).
     fn set(&self, goal: Goal, v: &mut [f64; 3]);
     /// Corrects the mean velocity (m/s) in a half kick, as forces make it, of a particle with the
-    /// velocity `v` (m/s) at the whole step that begins or ends it.
-    fn correct_mean(&self, v: &[f64; 3], mean: &mut [f64; 3]);
+    /// velocity `whole` (m/s) at the whole step that begins or ends it and `middle` between.
+    fn correct_mean(&self, whole: &[f64; 3], middle: &[f64; 3], mean: &mut [f64; 3]);
     /// Whether the particle is part of a rigid body.
     fn is_rigid(&self) -> bool;
 }
@@ -79,7 +81,7 @@ impl Prescribe for Free {
     #[inline(always)]
     fn set(&self, _: Goal, _: &mut [f64; 3]) {}
     #[inline(always)]
-    fn correct_mean(&self, _: &[f64; 3], _: &mut [f64; 3]) {}
+    fn correct_mean(&self, _: &[f64; 3], _: &[f64; 3], _: &mut [f64; 3]) {}
     #[inline(always)]
     fn is_rigid(&self) -> bool {
         false
@@ -106,10 +108,10 @@ impl Prescribe for Prescribed {
     }
 
     #[inline(always)]
-    fn correct_mean(&self, v: &[f64; 3], mean: &mut [f64; 3]) {
+    fn correct_mean(&self, whole: &[f64; 3], _: &[f64; 3], mean: &mut [f64; 3]) {
         for a in 0..3 {
             if self.by[a].is_some() {
-                mean[a] = 0.5 * (v[a] + self.middle[a]);
+                mean[a] = 0.5 * (whole[a] + self.middle[a]);
             }
         }
     }
@@ -124,16 +126,18 @@ impl Prescribe for Prescribed {
 #[derive(Debug, Default)]
 pub struct Loads {
     /// By bit of [`crate::particles::ParticleStore::load`]: prescribed velocities, then rigid
-    /// bodies. Ledgers have the same order, then come those of the surfaces.
+    /// bodies. Ledgers have the same order, then come those of absorbing zones and of the surfaces.
     motions: Vec<Prescribed>,
     /// Body of each rigid body's drive.
     rigid_bodies: Vec<usize>,
     velocities: usize,
     rigid_bits: u32,
+    pub(crate) absorption: Absorption,
     pub(crate) surfaces: Vec<SurfaceStep>,
     /// Acceleration (m/s²).
     pub gravity: [f64; 3],
-    /// Impulse and work of prescribed velocities and of rigid bodies in this step, by ledger.
+    /// Impulse and work of prescribed velocities, rigid bodies and absorbing zones in this step, by
+    /// ledger.
     pub(crate) sums: Vec<[ExactSum; 4]>,
     /// Angular impulse about the origin of all of them in this step.
     pub(crate) angular_impulse: [ExactSum; 3],
@@ -149,6 +153,7 @@ impl Loads {
             motions <= model::Loads::MOST,
             "too many loads and rigid bodies"
         );
+        let absorption = Absorption::new(case);
         let mut step = Self {
             motions: vec![Prescribed::default(); motions],
             rigid_bits: (0..motions).fold(0, |bits, k| bits | u32::from(k >= velocities) << k),
@@ -156,7 +161,10 @@ impl Loads {
             velocities,
             surfaces: vec![SurfaceStep::default(); case.loads.surfaces.len()],
             gravity: case.loads.gravity,
-            sums: (0..motions).map(|_| Default::default()).collect(),
+            sums: (0..motions + absorption.count())
+                .map(|_| Default::default())
+                .collect(),
+            absorption,
             angular_impulse: Default::default(),
         };
         step.prepare(case, 0.0, 0.0);
@@ -168,9 +176,9 @@ impl Loads {
         if dt > 0.0 { 2.0 / dt } else { 0.0 }
     }
 
-    /// Whether there is gravity, or velocities of any particle are prescribed.
+    /// Whether there is gravity or an absorbing zone, or velocities of any particle are prescribed.
     pub(crate) fn act(&self) -> bool {
-        self.has_motions() || self.gravity != [0.0; 3]
+        self.has_motions() || self.absorb() || self.gravity != [0.0; 3]
     }
 
     /// Whether velocities of any particle are prescribed.
@@ -185,7 +193,7 @@ impl Loads {
 
     /// Number of ledgers before those of surfaces.
     pub(crate) fn driven(&self) -> usize {
-        self.motions.len()
+        self.sums.len()
     }
 
     /// Whether a particle with these bits is part of a rigid body.
@@ -196,6 +204,7 @@ impl Loads {
 
     /// Works out the step from time `from` to `to` (s).
     pub(crate) fn prepare(&mut self, case: &Case, from: f64, to: f64) {
+        self.absorption.prepare(to - from);
         let middle = from + 0.5 * (to - from);
         for (k, load) in case.loads.velocities.iter().enumerate() {
             self.motions[k] = if middle < load.until {
@@ -258,6 +267,7 @@ impl Loads {
         size_of::<Prescribed>() * self.motions.capacity()
             + size_of::<SurfaceStep>() * self.surfaces.capacity()
             + size_of::<usize>() * self.rigid_bodies.capacity()
+            + self.absorption.memory()
             + 4 * size_of::<ExactSum>() * self.sums.capacity()
     }
 
@@ -267,11 +277,21 @@ impl Loads {
         particles: &ParticleStore,
         terms: impl Fn(usize) -> [f64; N] + Sync,
     ) -> [ExactSum; N] {
+        self.sum_where(particles, |_| true, terms)
+    }
+
+    /// The same of those that are `meant`.
+    fn sum_where<const N: usize>(
+        &self,
+        particles: &ParticleStore,
+        meant: impl Fn(usize) -> bool + Sync,
+        terms: impl Fn(usize) -> [f64; N] + Sync,
+    ) -> [ExactSum; N] {
         let owned = particles.owned();
         let none = || std::array::from_fn(|_| ExactSum::default());
         let of_chunk = |mut sums: [ExactSum; N], chunk: usize| {
             for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(owned) {
-                if self.has_motions() && self.is_rigid(particles.load[i]) {
+                if !meant(i) || self.has_motions() && self.is_rigid(particles.load[i]) {
                     continue;
                 }
                 for (sum, term) in sums.iter_mut().zip(terms(i)) {

@@ -1,6 +1,6 @@
-//! What acts on bodies from outside: gravity, prescribed velocities, rigid surfaces.
+//! What acts on bodies from outside: gravity, prescribed velocities, absorbing zones, rigid surfaces.
 
-use super::{Motion, Region, RigidSurface};
+use super::{Absorber, Motion, Region, RigidSurface};
 
 /// All loads of a case.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -9,6 +9,8 @@ pub struct Loads {
     pub gravity: [f64; 3],
     /// Velocities prescribed to regions of bodies. Where several hold, the last one does.
     pub velocities: Vec<VelocityLoad>,
+    /// Absorbing zones, at most one of each body.
+    pub absorbers: Vec<Absorber>,
     /// Rigid planes and other surfaces.
     pub surfaces: Vec<RigidSurface>,
 }

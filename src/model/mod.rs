@@ -4,6 +4,7 @@
 //! A [`Case`] is complete and validated: the `input` module builds it from TOML, every later module
 //! only reads it.
 
+mod absorber;
 mod body;
 mod contact;
 mod control;
@@ -20,6 +21,7 @@ mod surface;
 #[cfg(test)]
 pub(crate) use surface::tests as surface_tests;
 
+pub use absorber::{Absorber, OuterFace};
 pub use body::{Axis, Body, Lattice, LatticeKind, SymmetryPlane};
 pub use contact::*;
 pub use control::{
@@ -64,7 +66,7 @@ pub struct Case {
     pub self_contact: Option<SelfContact>,
     /// Planes of symmetry, at most one for each axis.
     pub symmetry: Vec<SymmetryPlane>,
-    /// Gravity, prescribed velocities and rigid surfaces.
+    /// Gravity, prescribed velocities, absorbing zones and rigid surfaces.
     pub loads: Loads,
     /// Options of the SPH sums.
     pub sph: SphOptions,
@@ -93,14 +95,30 @@ impl Case {
     }
 
     /// Names of what acts from outside, in the order of its ledgers: prescribed velocities, rigid
-    /// bodies, rigid surfaces.
+    /// bodies, absorbing zones, rigid surfaces.
     pub fn load_names(&self) -> impl Iterator<Item = &str> {
         let loads = self.loads.velocities.iter().map(|load| &load.name);
         let rigid = self.bodies.iter().filter(|body| body.rigid.is_some());
+        let absorbers = self.loads.absorbers.iter().map(|absorber| &absorber.name);
         let surfaces = self.loads.surfaces.iter().map(|surface| &surface.name);
         (loads.chain(rigid.map(|body| &body.name)))
+            .chain(absorbers)
             .chain(surfaces)
             .map(String::as_str)
+    }
+
+    /// Index of the body of a name.
+    #[must_use]
+    pub fn body_named(&self, name: &str) -> Option<usize> {
+        self.bodies.iter().position(|body| body.name == name)
+    }
+
+    /// Places of absorbing zones among [`Self::load_names`].
+    #[must_use]
+    pub fn absorber_ledgers(&self) -> std::ops::Range<usize> {
+        let rigid = self.bodies.iter().filter(|body| body.rigid.is_some());
+        let first = self.loads.velocities.len() + rigid.count();
+        first..first + self.loads.absorbers.len()
     }
 
     /// Whether matter of the case may fail for good.

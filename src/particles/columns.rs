@@ -149,5 +149,7 @@ bitflags! {
         const CORRECTED = 1 << 13;
         /// Materials that may fail for good.
         const FAILURE = 1 << 14;
+        /// Absorbing zones.
+        const ABSORBERS = 1 << 15;
     }
 }

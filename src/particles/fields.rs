@@ -160,6 +160,8 @@ particle_fields! {
     reference_position: Vector as Place,  "m",      State,    MOTION,         Never,    FOLDS;
     /// Which loads and rigid bodies prescribe its velocity: a set of bits, in the input's order.
     load: Index,                          "",       State,    -,              OnDemand, LOADS;
+    /// Rate at which an absorbing zone slows it down and relaxes its stress; zero outside of zones.
+    absorption: Scalar,                   "1/s",    State,    -,              OnDemand, ABSORBERS;
     /// Whether it left the range of its state and stands still, outside of all sums (1).
     frozen: Index,                        "",       State,    -,              OnDemand, FREEZE;
     /// Mass of the material whose stress a stress point carries; zero for velocity particles.

@@ -25,7 +25,8 @@ pub fn meetings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
         }
     }
     // What is driven, falls or stands before a plane has something to do without an impact.
-    let driven = !case.loads.velocities.is_empty() || case.load_names().next().is_some();
+    let acting = case.load_names().count() - case.loads.absorbers.len();
+    let driven = acting > 0;
     let straight = (0..case.bodies.len()).all(|body| flies_straight(case, body));
     let towards_mirror = case.symmetry.iter().any(|plane| {
         let bodies = case.bodies.iter();

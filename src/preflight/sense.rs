@@ -34,6 +34,7 @@ pub fn warnings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
     }
     pairs(case, approaches, found);
     coefficients(case, found);
+    weight_on_zones(case, found);
     viscosity_for_step(case, found);
     times(case, found);
 }
@@ -85,6 +86,21 @@ fn box_size(body: &Body, case: &Case) -> Option<String> {
             unit.vector(&got)
         )
     })
+}
+
+/// Absorbing zones that would have to bear a body's weight.
+fn weight_on_zones(case: &Case, found: &mut Vec<String>) {
+    for absorber in case
+        .loads
+        .absorbers
+        .iter()
+        .filter(|_| case.loads.has_gravity())
+    {
+        found.push(format!(
+            "under gravity `{}` sinks through its absorbing zone, which bears no weight",
+            case.bodies[absorber.body].name
+        ));
+    }
 }
 
 /// Bodies in contact of very different spacings, and bodies that leave what they touch.

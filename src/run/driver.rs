@@ -5,9 +5,9 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use super::departures::Departures;
-use super::drift::Drift;
 use super::exit::EXIT_STOPPED;
 use super::launch::{Launch, STEP, fail};
+use super::notices::Notices;
 use super::options::CommonArgs;
 use super::progress::Progress;
 use super::say::{counted, say, seconds, warn};
@@ -38,7 +38,7 @@ pub struct Driver<'a> {
     tables: Option<Tables>,
     log: Log,
     progress: Progress,
-    drift: Drift,
+    notices: Notices,
     departures: Departures,
     /// Post-mortems written.
     post_mortems: usize,
@@ -94,7 +94,7 @@ impl<'a> Driver<'a> {
             departures: Departures::new(&simulation),
             simulation,
             folder,
-            drift: Drift::default(),
+            notices: Notices::default(),
             post_mortems: 0,
         };
         if comm.is_root() {
@@ -261,7 +261,7 @@ impl<'a> Driver<'a> {
             None => Ok(()),
         })?;
         self.simulation.state.begin_interval();
-        if let Some(text) = self.drift.notice(&self.simulation) {
+        if let Some(text) = self.notices.notice(&self.simulation) {
             self.log(comm, &text);
             self.progress.warn(&text);
         }

@@ -2,12 +2,12 @@
 //! stops, and what it says.
 
 mod departures;
-mod drift;
 mod driver;
 pub(crate) mod exit;
 #[cfg(feature = "fault-injection")]
 mod fault;
 pub(crate) mod launch;
+mod notices;
 mod options;
 mod progress;
 pub(crate) mod resume;

@@ -17,8 +17,7 @@ use crate::step::{Removed, Simulation, failed_mass};
 pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde_json::Value {
     let [wall, set_up] = seconds;
     let load = load(comm, simulation);
-    let state = &simulation.state;
-    let worst = &state.worst;
+    let (state, worst) = (&simulation.state, &simulation.state.worst);
     let phases = mean_seconds(comm, simulation.timers.report());
     let stepping: f64 = phases.iter().map(|(_, seconds)| seconds).sum();
     let mut counts = [simulation.memory() as u64, simulation.frozen() as u64];
@@ -70,8 +69,18 @@ pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde
         "uncorrected_gradients": normalised.then_some(worst.uncorrected),
         "failure_energy": failed.is_some().then_some(state.totals.failure_energy),
         "failed_mass": failed,
+        "absorbing_zones": absorbing_zones(simulation),
         "contact_limited_steps": worst.contact_limited_steps,
     })
+}
+
+/// What absorbing zones have taken up (J), and what has yielded in them (kg), where there are any.
+fn absorbing_zones(simulation: &Simulation) -> Option<serde_json::Value> {
+    let state = &simulation.state;
+    let zones = &state.loads[simulation.case.absorber_ledgers()];
+    let taken = -zones.iter().map(|zone| zone.work).sum::<f64>();
+    let yielded = state.totals.yielded_mass;
+    (!zones.is_empty()).then(|| json!({ "absorbed_energy": taken, "yielded_mass": yielded }))
 }
 
 /// The nearest two particles of two bodies so far, and whose they are.

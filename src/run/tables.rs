@@ -178,6 +178,11 @@ tables! {
         "failure_energy", "J", state.totals.failure_energy;
     }
 
+    /// What of a row of the history is told where there are absorbing zones.
+    ABSORBED, absorbed(state: &'a RunState) {
+        "yielded_mass_in_zones", "kg", state.totals.yielded_mass;
+    }
+
     /// What of a row of the history is told where there is a box of interest.
     DEPARTED, departed(state: &'a RunState) {
         "departed_mass", "kg", state.departed_mass();
@@ -269,6 +274,9 @@ impl Tables {
         if case.may_fail() {
             of_history.extend(columns(FAILURE));
         }
+        if !case.loads.absorbers.is_empty() {
+            of_history.extend(columns(ABSORBED));
+        }
         let departs =
             case.domain.keep.is_some() || resume.is_some_and(|state| !state.departed.is_empty());
         if departs {
@@ -308,6 +316,9 @@ impl Tables {
         }
         if case.may_fail() {
             row.extend(failure(state));
+        }
+        if !case.loads.absorbers.is_empty() {
+            row.extend(absorbed(state));
         }
         if self.departed.is_some() {
             row.extend(departed(state));

@@ -11,6 +11,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
     let driven = !case.loads.velocities.is_empty() || case.bodies.iter().any(|b| b.rigid.is_some());
     let used = [
         (Owner::LOADS, driven),
+        (Owner::ABSORBERS, !case.loads.absorbers.is_empty()),
         (Owner::SELF_CONTACT, case.self_contact.is_some()),
         (
             Owner::FOLDS,

@@ -50,7 +50,16 @@ impl Kick {
 macro_rules! with_outside {
     ($loads:expr, $particles:expr, $name:ident => $work:expr) => {{
         let (contact, bits) = (&$particles.contact_acceleration, &$particles.load);
-        if $loads.has_motions() {
+        if $loads.absorb() {
+            let (body, absorption) = (&$particles.body, &$particles.absorption);
+            let $name = |i: usize| {
+                let contact = contact.get(i).copied().unwrap_or_default();
+                let prescribed = $loads.of(bits.get(i).copied().unwrap_or_default());
+                let absorbed = $loads.absorption.of(prescribed, body[i], absorption[i]);
+                (contact, absorbed)
+            };
+            $work
+        } else if $loads.has_motions() {
             let $name = |i: usize| {
                 let contact = contact.get(i).copied().unwrap_or_default();
                 (contact, $loads.of(bits[i]))
@@ -147,15 +156,16 @@ impl Drifting<'_> {
                         let (contact, prescribed) = outside(i);
                         let a = &rates.acceleration[i];
                         let mut total = kick.total(a, &contact);
-                        if contact != [0.0; 3] {
-                            let mut mean = add_scaled(&v[k], 0.25 * dt, &total);
-                            prescribed.correct_mean(&v[k], &mut mean);
-                            work.add(half * rates.mass[i] * dot(&contact, &mean));
-                        }
+                        let mut mean = add_scaled(&v[k], 0.25 * dt, &total);
                         prescribed.accelerate(Goal::Middle, &v[k], per_half, &mut total);
                         e[k] += half * (rates.heating[i] - 0.25 * dt * dot(a, &total));
+                        let whole = v[k];
                         v[k] = add_scaled(&v[k], half, &total);
                         prescribed.set(Goal::Middle, &mut v[k]);
+                        if contact != [0.0; 3] {
+                            prescribed.correct_mean(&whole, &v[k], &mut mean);
+                            work.add(half * rates.mass[i] * dot(&contact, &mean));
+                        }
                         x[k] = add_scaled(&x[k], dt, &v[k]);
                         v_p[k] = add_scaled(&v[k], half, &total);
                         prescribed.set(Goal::End, &mut v_p[k]);
@@ -244,12 +254,13 @@ impl Kicking<'_> {
                         let forces = kick.total(a, &contact);
                         let mut total = forces;
                         prescribed.accelerate(Goal::End, &v[k], per_half, &mut total);
+                        let middle = v[k];
                         v[k] = add_scaled(&v[k], half, &total);
                         prescribed.set(Goal::End, &mut v[k]);
                         span.add(&fields.position[i], &v[k]);
                         if contact != [0.0; 3] {
                             let mut mean = add_scaled(&v[k], -0.25 * dt, &forces);
-                            prescribed.correct_mean(&v[k], &mut mean);
+                            prescribed.correct_mean(&v[k], &middle, &mut mean);
                             work.add(half * fields.mass[i] * dot(&contact, &mean));
                         }
                         let v_p = &predicted_velocity[i];

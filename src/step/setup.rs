@@ -13,7 +13,7 @@ use crate::diagnose::{
     LoadState, PairState, Removed, RunState, StepSums, Worst, angular_momentum_scale,
 };
 use crate::domain::{Halo, Mirrors, Outset, Partition};
-use crate::loads::{Goal, Loads, Prescribe};
+use crate::loads::{Absorption, Goal, Loads, Prescribe};
 use crate::model::{Body, Case, SphForm};
 use crate::neighbours::Lists;
 use crate::particles::{Image, ParticleStore};
@@ -142,6 +142,9 @@ impl Simulation {
                     prescribed.set(Goal::End, &mut particles.predicted_velocity[i]);
                     particles.load[i] = bits;
                 }
+                if self.loads.absorb() {
+                    particles.absorption[i] = Absorption::rate(case, b, &site.position);
+                }
                 i += 1;
             }
             first_id = beyond(first_id, populate::index_end(body, case.dimension))?;
@@ -176,6 +179,9 @@ impl Simulation {
             for site in populate::stress_sites(body, case.dimension, &case.symmetry, Some(slab)) {
                 start.put(particles, i, first_id + site.index, site.position);
                 particles.stress_mass[i] = start.mass * site.share;
+                if self.loads.absorb() {
+                    particles.absorption[i] = Absorption::rate(case, b, &site.position);
+                }
                 i += 1;
             }
             first_id = beyond(first_id, populate::stress_index_end(body, case.dimension))?;

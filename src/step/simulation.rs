@@ -100,6 +100,7 @@ impl Simulation {
         } = self;
         loads.prepare(case, state.time, end);
         loads.book(particles, dt, true);
+        loads.book_drag(particles);
         state.book_first_half(loads, dt);
         particles.resize_halo(0);
         let work = integrate::kick_and_drift(particles, loads, &sph.smoothing, dt);
@@ -206,6 +207,7 @@ impl Simulation {
             sums,
             ..
         } = self;
+        loads.book_drag(particles);
         let rules = (case.time_step, loads.gravity);
         let kicked = with_formulation!(case.sph.form, Form => {
             let criteria = |fields| Criteria::<Form>::new(fields, sph, &step_control.limits, rules);
@@ -214,6 +216,7 @@ impl Simulation {
         sums.contact_work.merge(&kicked.work);
         sums.span = kicked.span;
         loads.book(particles, dt, false);
+        loads.relax(particles);
         kicked.candidate
     }
 
@@ -273,6 +276,7 @@ impl Simulation {
         if self.case.may_fail() {
             totals.add_failure(particles, loads, comm);
         }
+        totals.add_yielded(particles, loads, comm);
         totals
     }
 

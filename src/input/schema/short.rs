@@ -9,8 +9,8 @@ use toml::Spanned;
 
 use super::ShapeTurnParams;
 use super::choices::{AxisWord, Direction};
-use crate::input::quantity::{Angle, Placed};
-use crate::model::LatticeKind;
+use crate::input::quantity::{Angle, Length, Placed};
+use crate::model::{Axis, LatticeKind};
 
 tables! {
     /// `lattice` as a table.
@@ -23,6 +23,16 @@ tables! {
         axis: Option<Spanned<AxisParams>>,
         /// Which glass; 0 if absent.
         seed: Option<Spanned<i64>>,
+    }
+
+    /// `round` as a table.
+    RoundTable {
+        /// A point of the axis, or what the face is about; the origin if absent.
+        centre: Option<Spanned<Vec<Placed<Length>>>>,
+        /// Axis of a cylinder; a sphere if absent.
+        axis: Option<Spanned<Axis>>,
+        /// Radius.
+        radius: Placed<Length>,
     }
 
     /// `friction` as a table.
@@ -96,6 +106,22 @@ typed_as! {
     SelfContactParams: "true, false, or a table with `folds`" {
         truth: SelfContactParams::Is;
         table: SelfContactParams::With;
+    }
+}
+
+/// Whether a zone has a round face: the shape's own, or one of a table.
+#[derive(Debug)]
+pub enum RoundParams {
+    /// The shape's own, or none.
+    Is(bool),
+    /// Another one.
+    Of(RoundTable),
+}
+
+typed_as! {
+    RoundParams: "true, false, or a table with `centre`, `axis` and `radius`" {
+        truth: RoundParams::Is;
+        table: RoundParams::Of;
     }
 }
 

@@ -59,6 +59,7 @@ impl Reader<'_> {
         Ok(Loads {
             gravity: self.gravity(params.gravity.as_ref())?,
             velocities: velocities?,
+            absorbers: Vec::new(),
             surfaces,
         })
     }
@@ -68,8 +69,9 @@ impl Reader<'_> {
         let named = || {
             let loads = params.load.iter().map(|t| ("load", &t.get_ref().name));
             let planes = params.plane.iter().map(|t| ("plane", &t.get_ref().name));
+            let zones = params.absorb.iter().map(|t| ("zone", &t.get_ref().name));
             let surfaces = (params.surface.iter()).map(|t| ("surface", &t.get_ref().name));
-            let all = loads.chain(planes).chain(surfaces);
+            let all = loads.chain(zones).chain(planes).chain(surfaces);
             all.filter_map(|(kind, name)| Some((kind, name.as_ref()?)))
         };
         for (n, (kind, name)) in named().enumerate() {

@@ -2,6 +2,7 @@
 
 #[macro_use]
 pub(super) mod check;
+mod absorbers;
 mod bodies;
 mod contact;
 mod eos;
@@ -93,6 +94,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         resolved: String::new(),
     };
     case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, &case)?;
+    case.loads.absorbers = absorbers::absorbers(&params.absorb, &case)?;
     stress_points::check(&case, form)?;
     check_moduli(&case, &params.body)?;
     check_overlaps(&case, &params.body)?;

@@ -55,7 +55,7 @@ impl Reader<'_> {
     }
 
     fn plane(&self, params: &PlaneParams, number_of: usize) -> Result<RigidSurface, Diagnostic> {
-        let normal = self.normal(&params.normal)?;
+        let normal = unit_vector("normal", &params.normal, self.dimension)?;
         let point = self.place("point", params.point.as_ref())?;
         let position = normal[0] * point[0] + normal[1] * point[1] + normal[2] * point[2];
         let given = params.motion.as_ref();
@@ -272,40 +272,43 @@ impl Reader<'_> {
         })
     }
 
-    /// The unit normal.
-    fn normal(&self, params: &Spanned<NormalParams>) -> Result<[f64; 3], Diagnostic> {
-        let mut normal = [0.0; 3];
-        match params.get_ref() {
-            NormalParams::Axis(word) => {
-                let (axis, forward) = direction(*word, params.span(), self.dimension)?;
-                normal[axis.index()] = if forward { 1.0 } else { -1.0 };
-            }
-            NormalParams::Vector(vector) => {
-                if vector.len() != self.dimension {
-                    let title = format!(
-                        "`normal` must have {} components, found {}",
-                        self.dimension,
-                        vector.len()
-                    );
-                    return Err(Diagnostic::new(params.span(), title));
-                }
-                let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
-                if !(length > 0.0 && length.is_finite()) {
-                    let title = "`normal` must be a vector of some length";
-                    return Err(Diagnostic::new(params.span(), title));
-                }
-                for (component, x) in normal.iter_mut().zip(vector) {
-                    *component = x / length;
-                }
-            }
-        }
-        Ok(normal)
-    }
-
     /// A place (m); the origin if absent.
     fn place(&self, key: &str, params: Option<&Place>) -> Result<[f64; 3], Diagnostic> {
         vector(key, params, self.dimension)
     }
+}
+
+/// The unit vector of a key.
+pub fn unit_vector(
+    key: &str,
+    params: &Spanned<NormalParams>,
+    dimension: usize,
+) -> Result<[f64; 3], Diagnostic> {
+    let mut normal = [0.0; 3];
+    match params.get_ref() {
+        NormalParams::Axis(word) => {
+            let (axis, forward) = direction(*word, params.span(), dimension)?;
+            normal[axis.index()] = if forward { 1.0 } else { -1.0 };
+        }
+        NormalParams::Vector(vector) => {
+            if vector.len() != dimension {
+                let title = format!(
+                    "`{key}` must have {dimension} components, found {}",
+                    vector.len()
+                );
+                return Err(Diagnostic::new(params.span(), title));
+            }
+            let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+            if !(length > 0.0 && length.is_finite()) {
+                let title = format!("`{key}` must be a vector of some length");
+                return Err(Diagnostic::new(params.span(), title));
+            }
+            for (component, x) in normal.iter_mut().zip(vector) {
+                *component = x / length;
+            }
+        }
+    }
+    Ok(normal)
 }
 
 /// Says where a file was looked for, and which other one there may be meant.

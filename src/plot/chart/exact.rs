@@ -77,6 +77,9 @@ impl Exact {
         if case.loads.has_gravity() || !case.loads.surfaces.is_empty() {
             return Err("there is gravity or a rigid surface".to_owned());
         }
+        if !case.loads.absorbers.is_empty() {
+            return Err("there is an absorbing zone".to_owned());
+        }
         let ends = outer_ends(case, &mut parts)?;
         if let Some(bars) = parts.iter().map(bar).collect() {
             return Ok(Self::Bars(Row { bars, ends }));

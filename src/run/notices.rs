@@ -1,0 +1,59 @@
+//! Tells once of what goes wrong in a run that goes on.
+
+use crate::model::SphForm;
+use crate::model::readable::short;
+use crate::step::Simulation;
+
+/// Error of the angular momentum that is worth a warning.
+const WORTH: f64 = 0.01;
+
+/// What has been told.
+#[derive(Debug, Default)]
+pub struct Notices {
+    drift: bool,
+    yielded: bool,
+}
+
+impl Notices {
+    /// A warning, the first time that there is cause for it.
+    pub fn notice(&mut self, simulation: &Simulation) -> Option<String> {
+        self.drift(simulation).or_else(|| self.yielded(simulation))
+    }
+
+    /// Angular momentum is off by more than a hundredth that no plane, surface, load or gravity
+    /// explains.
+    fn drift(&mut self, simulation: &Simulation) -> Option<String> {
+        let state = &simulation.state;
+        let errors = state.worst.angular_momentum_error;
+        let error = errors.into_iter().fold(0.0, f64::max);
+        if self.drift || error <= WORTH {
+            return None;
+        }
+        self.drift = true;
+        let help = match simulation.case.sph.form {
+            SphForm::Corrected => "artificial stress, XSPH and friction change it",
+            _ => "bodies that turn need `sph.form = \"corrected\"`",
+        };
+        let percent = 100.0 * error;
+        Some(format!(
+            "warning: angular momentum is off by {percent:.1} % at step {}: {help}",
+            state.step
+        ))
+    }
+
+    /// Matter in an absorbing zone, which is to be elastic, has yielded or failed.
+    fn yielded(&mut self, simulation: &Simulation) -> Option<String> {
+        let state = &simulation.state;
+        let mass = state.totals.yielded_mass - state.initial.yielded_mass;
+        if self.yielded || mass <= 0.0 {
+            return None;
+        }
+        self.yielded = true;
+        Some(format!(
+            "warning: {} kg in absorbing zones have yielded or failed at step {}: zones take up \
+             elastic waves; let them begin farther away",
+            short(mass),
+            state.step
+        ))
+    }
+}
