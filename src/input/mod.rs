@@ -14,12 +14,11 @@ mod quantity;
 mod schema;
 mod source;
 mod stl;
-mod units;
 mod validate;
 
 use std::path::{Path, PathBuf};
 
-use crate::model::Case;
+use crate::model::{Case, units};
 use source::{Diagnostic, Sources};
 
 pub use difference::{Difference, differences};

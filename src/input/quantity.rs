@@ -6,8 +6,8 @@ use std::marker::PhantomData;
 use serde::de::{Deserialize, Deserializer, Error, Visitor};
 use toml::Spanned;
 
-use super::units::{Powers, parse, unit_of};
 use crate::model::readable::short;
+use crate::model::units::{Powers, parse, unit_of};
 
 /// Names of dimensions, to say what was found where something else was expected.
 const NAMES: &[(Powers, &str)] = &[

@@ -13,6 +13,7 @@ mod motion;
 mod numerical_limits;
 pub mod readable;
 mod surface;
+pub mod units;
 
 #[cfg(test)]
 pub(crate) use surface::tests as surface_tests;
