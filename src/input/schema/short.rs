@@ -7,8 +7,9 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer, StrDeserial
 use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use toml::Spanned;
 
+use super::Point;
 use super::choices::Direction;
-use crate::input::quantity::{Angle, Placed};
+use crate::input::quantity::{Angle, AngularRate, Placed};
 use crate::model::LatticeKind;
 
 tables! {
@@ -18,6 +19,14 @@ tables! {
         kind: Spanned<LatticeKind>,
         /// Turn about z.
         angle: Option<Placed<Angle>>,
+    }
+
+    /// `angular_velocity` as a table.
+    AngularVelocityTable {
+        /// About x, y and z; in two dimensions about z.
+        rate: Spanned<Vec<Placed<AngularRate>>>,
+        /// A point that it turns about.
+        about: Point,
     }
 
     /// `friction` as a table.
@@ -53,6 +62,22 @@ typed_as! {
             kind: table.kind.into_inner(),
             angle: table.angle,
         };
+    }
+}
+
+/// The components of an angular velocity, or a table with the point that a body turns about.
+#[derive(Debug)]
+pub enum AngularVelocityParams {
+    /// About the centre.
+    Own(Vec<Placed<AngularRate>>),
+    /// About any point.
+    About(AngularVelocityTable),
+}
+
+typed_as! {
+    AngularVelocityParams: "an array of angular rates, or a table with `rate` and `about`" {
+        list: AngularVelocityParams::Own;
+        table: AngularVelocityParams::About;
     }
 }
 

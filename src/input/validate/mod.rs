@@ -5,6 +5,7 @@ pub(super) mod check;
 mod bodies;
 mod contact;
 mod eos;
+mod initial;
 mod loads;
 mod materials;
 mod motion;
@@ -87,6 +88,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         output: output(params.output)?,
         resolved: String::new(),
     };
+    initial::settle(&mut case, &params.body)?;
     case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, &case)?;
     stress_points::check(&case, form)?;
     check_moduli(&case, &params.body)?;
