@@ -4,6 +4,7 @@
 //! A [`Case`] is complete and validated: the `input` module builds it from TOML, every later module
 //! only reads it.
 
+mod beginning;
 mod body;
 mod contact;
 mod control;
@@ -20,13 +21,14 @@ pub mod units;
 #[cfg(test)]
 pub(crate) use surface::tests as surface_tests;
 
+pub use beginning::Beginning;
 pub use body::{Axis, Body, Lattice, LatticeKind, Shape, SymmetryPlane};
 pub use contact::*;
 pub use control::{
     DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm, SphOptions, TimeStepOptions,
 };
 pub use formula::{Combination, Formula, Function, Operation, Place, Profile};
-pub use initial::{Beginning, Heat, Initial};
+pub use initial::{Heat, Initial};
 pub use load::{Loads, VelocityLoad};
 pub use motion::Motion;
 pub use numerical_limits::{NumericalFailurePolicy, NumericalLimits};

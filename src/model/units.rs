@@ -40,7 +40,7 @@ const SYMBOLS: &[(&str, Powers, i32, f64)] = &[
 ];
 
 /// 4.4482216152605 N over (.0254 m)².
-const POUND_PER_INCH2: f64 = 6894.757_293_168_361;
+const POUND_PER_INCH2: f64 = 6_894.757_293_168_361;
 /// The degree Celsius, whose zero is another than that of its dimension when it stands alone.
 const CELSIUS: [&str; 2] = ["°C", "degC"];
 /// Zero of the Celsius scale (K).
