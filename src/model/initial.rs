@@ -14,11 +14,12 @@ pub enum Heat {
     Temperature(Profile),
 }
 
-/// What the particles of a body begin with beside density, [`Body::velocity`](super::Body::velocity) and spin.
+/// What the particles of a body begin with beside its density, its spin and a velocity that is the
+/// same everywhere.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Initial {
-    /// Components of the velocity (m/s) where it varies, in place of [`Body::velocity`](super::Body::velocity), which is then
-    /// the middle of them.
+    /// Components of the velocity (m/s) where it varies, in place of
+    /// [`Body::velocity`](super::Body::velocity), which is then the middle of them.
     pub velocity: Option<[Profile; 3]>,
     /// Largest difference of that from its middle (m/s).
     pub velocity_spread: f64,

@@ -3,6 +3,9 @@
 use super::{Site, count, sites};
 use crate::model::{Body, LatticeKind, SymmetryPlane};
 
+/// How much wider a lattice is from one try to the next.
+const WIDER: f64 = 1.2;
+
 /// The sites of a body above all symmetry planes and whether these are all of them: of a body with more
 /// than `most`, the sites of a cubic lattice so wide that there are about as many in its shape.
 pub fn sample(
@@ -29,6 +32,3 @@ pub fn sample(
     }
     (sites(&coarse, dimension, symmetry, None), is_all)
 }
-
-/// From one try to the next.
-const WIDER: f64 = 1.2;

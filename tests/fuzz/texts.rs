@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::random::Random;
 use crate::{Budget, Met, folder, random};
 use whipple::input::parse;
-use whipple::preflight::{advice, approaches, warnings};
+use whipple::preflight::{advice, approaches, beginning, warnings};
 
 /// What stands between two texts in a file of texts.
 const BETWEEN: &str = "\n#%%%%\n";
@@ -135,6 +135,10 @@ fn attempt(text: &str, overrides: &[String]) -> String {
             .iter()
             .map(|pair| format!("gap {}", pair.gap)),
     );
+    said.extend(case.bodies.iter().filter_map(|body| {
+        let begins = beginning(&case, body)?;
+        begins.contains("NaN").then_some(begins)
+    }));
     parse("resolved", &case.resolved, &[]).expect("a resolved case can be read again");
     format!("sound {}", "and doubtful ".repeat(said.len().min(3)))
 }

@@ -177,7 +177,7 @@ fn survey(case: &mut Case, b: usize, table: &Spanned<BodyParams>) -> Result<(), 
         Some(Diagnostic::new(key_span(table, key), title))
     };
     if !body.initial.varies() {
-        // At the farthest from the centre it would turn fastest, which is still a matter of range.
+        // What turns is looked at particle by particle as the run begins.
         return refuse(&body.shape.centre()).map_or(Ok(()), Err);
     }
     let (places, all) = populate::sample(body, case.dimension, &case.symmetry, MOST_PLACES);
