@@ -91,9 +91,20 @@ fn quantities_keep_their_dimensions() {
     assert_eq!(constant("0 * x"), None);
 }
 
+/// Refuses texts at a place in them, or anywhere if that is nothing, with a title.
+fn refuse(texts: &[(&str, &str, &str)]) {
+    for (text, place, title) in texts {
+        let diagnostic = read(text, 3).expect_err(text);
+        let said = &diagnostic.title;
+        assert!(said.contains(title), "{text}: {said}");
+        let shown = &text[diagnostic.span.clone()];
+        assert!(place.is_empty() || shown == *place, "{text}: at `{shown}`");
+    }
+}
+
 #[test]
 fn what_is_no_formula_is_told_where_it_stands() {
-    for (text, place, title) in [
+    refuse(&[
         (
             "",
             "",
@@ -130,6 +141,16 @@ fn what_is_no_formula_is_told_where_it_stands() {
         ("mm * x", "mm", "the unit `mm` follows no number"),
         ("w", "w", "unknown name `w`"),
         ("3 * * 4", "*", "expected a number or a name, found `*`"),
+    ]);
+    let said = |text: &str, dimension| read(text, dimension).unwrap_err().title;
+    assert!(said("z", 2).contains("unknown name `z`"));
+    assert!(said("y0", 1).contains("unknown name `y0`"));
+    assert!(read("x + x0 + r", 1).is_ok());
+}
+
+#[test]
+fn parts_that_do_not_fit_are_told_where_they_stand() {
+    refuse(&[
         ("x + 1 s", "x + 1 s", "cannot add a time to a length"),
         (
             "3 * (x - 1)",
@@ -197,17 +218,7 @@ fn what_is_no_formula_is_told_where_it_stands() {
         ("x # y", "#", "expected an operator, found `#`"),
         ("é", "é", "unknown name `é`"),
         ("x + \u{202e}", "\u{202e}", "expected a number or a name"),
-    ] {
-        let diagnostic = read(text, 3).expect_err(text);
-        let said = &diagnostic.title;
-        assert!(said.contains(title), "{text}: {said}");
-        let shown = &text[diagnostic.span.clone()];
-        assert!(place.is_empty() || shown == place, "{text}: at `{shown}`");
-    }
-    let said = |text: &str, dimension| read(text, dimension).unwrap_err().title;
-    assert!(said("z", 2).contains("unknown name `z`"));
-    assert!(said("y0", 1).contains("unknown name `y0`"));
-    assert!(read("x + x0 + r", 1).is_ok());
+    ]);
 }
 
 #[test]
