@@ -1,7 +1,7 @@
 //! Numbers with a unit: `"7 km/s"`, `"0.2 Mbar"`, `"2.785 g/cm^3"`.
 //!
-//! A unit is a product of powers of the symbols in [`SYMBOLS`], each with an optional prefix of
-//! [`PREFIXES`], so that every combination a user may think of is understood. Powers of ten are
+//! A unit is a product of powers of the symbols in `SYMBOLS`, each with an optional prefix of
+//! `PREFIXES`, so that every combination a user may think of is understood. Powers of ten are
 //! added to the number's own exponent before it is read: `"0.02 mm"` is exactly `2e-5`, and `"0.5
 //! in"` exactly `0.0127`.
 //!

@@ -208,7 +208,7 @@ fn parts_that_do_not_fit_are_told_where_they_stand() {
             "\u{2003}",
             "the formula ends where a number or a name should stand",
         ),
-        ("sin\u{2003}(x", "(", "this parenthesis is not closed"),
+        ("sin\u{2003}(1", "(", "this parenthesis is not closed"),
         ("0 s + x", "0 s + x", "cannot add a length to a time"),
         (
             "((1 m^9)^9)^9",
