@@ -6,7 +6,7 @@ mod common;
 use common::outcome::{advance, start};
 use common::{SPACING, ball, case, make_elastic, planes, sphere_on_plate};
 use whipple::comm::Comm;
-use whipple::model::{Axis, Case, ContactMode, Motion, Region, SphForm, Vec3};
+use whipple::model::{Axis, Case, ContactMode, Heat, Motion, Profile, Region, SphForm, Vec3};
 use whipple::step::StepError;
 
 /// What is above and below some distances (spacings) from the origin.
@@ -23,7 +23,7 @@ const FAR: f64 = f64::INFINITY;
 fn bursting(form: SphForm) -> Case {
     let mut case = case(3, vec![ball("hot", 0.0, 5.0, 600.0)], 1.0);
     case.sph.form = form;
-    case.bodies[0].specific_energy = Some(3e6);
+    case.bodies[0].initial.heat = Heat::Energy(Profile::Constant(3e6));
     case.bodies[0].angular_velocity = Vec3::new(0.0, 4e5, 0.0);
     case.loads.gravity = [1e8, 0.0, -2e8];
     case.symmetry = planes(&[Axis::Y]);

@@ -322,6 +322,8 @@ fn deep_nesting_is_told_and_not_followed() {
         format!("[{keys}]"),
         format!("[[{keys}]]"),
         format!("spacing = \"1 {}\"", deep("(", "m", ")")),
+        SOUND.replace("-1 km/s", &format!("1{}", "/(".repeat(490))),
+        SOUND.replace("-1 km/s", &deep("(", "x", ")")),
         "[a]\n".repeat(100_000),
         "a = 1\n".repeat(100_000),
     ];

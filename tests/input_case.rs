@@ -368,3 +368,41 @@ fn a_restart_changes_only_run_output_and_domain() {
         );
     }
 }
+
+/// Inches, feet, pounds and degrees Celsius say what metres, kilograms and kelvins say.
+#[test]
+fn a_case_in_inches_and_degrees_is_the_one_in_metres_and_kelvins() {
+    let case = |units: &[&str; 7]| {
+        let [spacing, time, modulus, heat, warm, edge, speed] = units;
+        let text = format!(
+            "dimension = 2\nspacing = \"{spacing}\"\n[run]\nend_time = \"{time}\"\n\
+             [material.metal]\nlibrary = \"copper\"\nstrength.elastic.shear_modulus = \"{modulus}\"\n\
+             thermal = {{ specific_heat = \"{heat}\", reference_temperature = \"{warm}\" }}\n\
+             [[body]]\nname = \"plate\"\nmaterial = \"metal\"\n\
+             shape.box.size = [\"{edge}\", \"{edge}\"]\nvelocity = [\"{speed}\", 0]\n"
+        );
+        parse("case.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"))
+    };
+    let inches = case(&[
+        "0.02 in",
+        "0.5 min",
+        "6 Mpsi",
+        "383 J/(kg °C)",
+        "20 °C",
+        "1 ft",
+        "250 ft/s",
+    ]);
+    let metres = case(&[
+        "0.508 mm",
+        "30 s",
+        "41368543759.01016 Pa",
+        "383 J/(kg K)",
+        "293.15 K",
+        "304.8 mm",
+        "76.2 m/s",
+    ]);
+    assert_eq!(inches.bodies, metres.bodies);
+    assert_eq!(inches.materials, metres.materials);
+    assert_eq!(inches.run.end_time.to_bits(), metres.run.end_time.to_bits());
+    assert_eq!(inches.length_unit.name, "in");
+}

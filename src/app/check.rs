@@ -132,6 +132,9 @@ fn print_report(case: &Case, ranks: usize) {
             case.length_unit.text(body.smoothing_length),
             mass(case, body, count),
         ));
+        if let Some(beginning) = preflight::beginning(case, body) {
+            say(&format!("  {:<16} begins with {beginning}", ""));
+        }
     }
     let memory = memory::in_words(memory::of_rank(case, &Comm::solo(), ranks));
     let plural = if ranks == 1 { "" } else { "s" };

@@ -6,7 +6,7 @@ use toml::de::DeTable;
 use toml::{Table, Value};
 
 use super::overrides::{RESTARTABLE, modernise};
-use super::units;
+use crate::model::units;
 
 /// A key with other values in two cases.
 #[derive(Debug, Clone, PartialEq)]

@@ -8,18 +8,19 @@ mod difference;
 mod document;
 mod file;
 mod forms;
+mod formula;
 mod names;
 mod overrides;
+mod profile;
 mod quantity;
 mod schema;
 mod source;
 mod stl;
-mod units;
 mod validate;
 
 use std::path::{Path, PathBuf};
 
-use crate::model::Case;
+use crate::model::{Case, units};
 use source::{Diagnostic, Sources};
 
 pub use difference::{Difference, differences};

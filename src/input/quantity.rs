@@ -6,12 +6,15 @@ use std::marker::PhantomData;
 use serde::de::{Deserialize, Deserializer, Error, Visitor};
 use toml::Spanned;
 
-use super::units::{Powers, parse, unit_of};
 use crate::model::readable::short;
+use crate::model::units::{Powers, parse, unit_of};
+
+/// The dimension of plain numbers.
+pub(super) const PLAIN: Powers = [0; 5];
 
 /// Names of dimensions, to say what was found where something else was expected.
 const NAMES: &[(Powers, &str)] = &[
-    ([0, 0, 0, 0, 0], "a plain number"),
+    (PLAIN, "a plain number"),
     (Length::POWERS, Length::NAME),
     (Time::POWERS, Time::NAME),
     (Velocity::POWERS, Velocity::NAME),
@@ -90,6 +93,8 @@ kinds! {
     Rate = [0, 0, -1, 0, 0], "a rate", "1/s", 1e18 "faster than atoms vibrate";
     /// Per pascal.
     PerPressure = [1, -1, 2, 0, 0], "an inverse pressure", "6.52/Mbar", 1.0 "that of matter that a pascal changes";
+    /// Length over length.
+    Strain = [0, 0, 0, 0, 0], "a plain number", "0.1", 1e3 "more than any matter bears";
     /// Per kelvin.
     PerTemperature = [0, 0, 0, -1, 0], "an inverse temperature", "6.16e-4/K", 10.0 "that of matter that a tenth of a kelvin melts";
 }
@@ -139,6 +144,7 @@ impl<'de, K: Kind> Deserialize<'de> for Quantity<K> {
         deserializer.deserialize_any(TextVisitor {
             expected: || expected::<K>(""),
             read: quantity::<K>,
+            takes_numbers: false,
         })
     }
 }
@@ -147,6 +153,7 @@ impl<'de> Deserialize<'de> for Extent {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(TextVisitor {
             expected: || expected::<Length>(" or \"2 spacing\""),
+            takes_numbers: false,
             read: |text| {
                 let number = text
                     .strip_suffix("spacings")
@@ -164,9 +171,13 @@ impl<'de> Deserialize<'de> for Extent {
 }
 
 /// Reads a string with a unit, or the plain number zero.
-struct TextVisitor<T> {
-    expected: fn() -> String,
-    read: fn(&str) -> Result<T, String>,
+pub(super) struct TextVisitor<T> {
+    /// What is expected, for messages.
+    pub(super) expected: fn() -> String,
+    /// Makes what is wanted of a text.
+    pub(super) read: fn(&str) -> Result<T, String>,
+    /// Whether any plain number will do.
+    pub(super) takes_numbers: bool,
 }
 
 impl<T> Visitor<'_> for TextVisitor<T> {
@@ -184,6 +195,9 @@ impl<T> Visitor<'_> for TextVisitor<T> {
         if value == 0.0 {
             return self.visit_str("0");
         }
+        if self.takes_numbers {
+            return self.visit_str(&value.to_string());
+        }
         let expected = (self.expected)();
         Err(E::custom(format!(
             "expected {expected}, found the plain number {}",
@@ -197,17 +211,26 @@ impl<T> Visitor<'_> for TextVisitor<T> {
     }
 }
 
-fn expected<K: Kind>(or: &str) -> String {
+/// What a key of a kind wants, or something else.
+pub(super) fn expected<K: Kind>(or: &str) -> String {
+    if K::POWERS == PLAIN {
+        return format!("{}, such as {}{or}", K::NAME, K::EXAMPLE);
+    }
     format!("{} with a unit, such as \"{}\"{or}", K::NAME, K::EXAMPLE)
 }
 
-fn quantity<K: Kind>(text: &str) -> Result<Quantity<K>, String> {
-    let (si, powers) =
-        parse(text).map_err(|why| format!("{why}; expected {}", expected::<K>("")))?;
+/// The name of a dimension, with its article.
+pub(super) fn dimension_name(powers: Powers) -> &'static str {
+    let found = NAMES.iter().find(|(p, _)| *p == powers);
+    found.map_or("a quantity of another dimension", |(_, name)| name)
+}
+
+/// Refuses a value (SI), written as `text`, of another dimension than that of a kind, or beyond all
+/// sense.
+pub(super) fn demand<K: Kind>(text: &str, si: f64, powers: Powers) -> Result<(), String> {
     // Zero is zero in any unit, so it may go without.
-    if powers != K::POWERS && !(si == 0.0 && powers == [0; 5]) {
-        let found = NAMES.iter().find(|(p, _)| *p == powers);
-        let found = found.map_or("a quantity of another dimension", |(_, name)| name);
+    if powers != K::POWERS && !(si == 0.0 && powers == PLAIN) {
+        let found = dimension_name(powers);
         return Err(format!("expected {}, found {found}", expected::<K>("")));
     }
     let (most, why) = K::BEYOND;
@@ -215,6 +238,13 @@ fn quantity<K: Kind>(text: &str) -> Result<Quantity<K>, String> {
         let text = text.trim();
         return Err(format!("`{text}` is {why}; check the number and its unit"));
     }
+    Ok(())
+}
+
+fn quantity<K: Kind>(text: &str) -> Result<Quantity<K>, String> {
+    let (si, powers) =
+        parse(text).map_err(|why| format!("{why}; expected {}", expected::<K>("")))?;
+    demand::<K>(text, si, powers)?;
     Ok(Quantity {
         si,
         unit: unit_of(text),

@@ -7,9 +7,10 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::forms::{Named, OneOrMany};
+use super::profile::ProfileParams;
 use super::quantity::{
-    Acceleration, Angle, AngularRate, Density, Extent, Length, Placed, SpecificEnergy, Time,
-    Velocity,
+    Acceleration, Angle, Density, Extent, Length, Placed, SpecificEnergy, Strain, Temperature,
+    Time, Velocity,
 };
 use crate::model::{Axis, SphForm};
 
@@ -106,13 +107,17 @@ tables! {
         /// Own particle spacing.
         spacing: Option<Placed<Length>>,
         /// Initial velocity; at rest if absent.
-        velocity: Option<Spanned<Vec<Placed<Velocity>>>>,
-        /// Initial angular velocity about the centre; none if absent.
-        angular_velocity: Option<Spanned<Vec<Placed<AngularRate>>>>,
+        velocity: Option<Spanned<Vec<Spanned<ProfileParams<Velocity>>>>>,
+        /// Initial angular velocity; none if absent.
+        angular_velocity: Option<Spanned<AngularVelocityParams>>,
         /// Initial density; the material's reference density if absent.
         density: Option<Placed<Density>>,
         /// Initial specific energy; that of the material's reference state if absent.
-        specific_energy: Option<Placed<SpecificEnergy>>,
+        specific_energy: Option<Spanned<ProfileParams<SpecificEnergy>>>,
+        /// Initial temperature, in place of it.
+        temperature: Option<Spanned<ProfileParams<Temperature>>>,
+        /// Initial equivalent plastic strain; none if absent.
+        plastic_strain: Option<Spanned<ProfileParams<Strain>>>,
         /// Moves the body until it touches another one.
         touch: Option<TouchParams>,
         /// Whether the body is rigid: it keeps its velocity, whatever acts on it.

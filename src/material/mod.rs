@@ -43,6 +43,11 @@ pub struct Material {
     pub thermal: Option<Thermal>,
 }
 
+/// Most corrections of the energy of torn matter, and the relative error of its temperature after
+/// which there are no more.
+const TORN_STEPS: u32 = 8;
+const TORN_ERROR: f64 = 1e-13;
+
 impl Material {
     /// Reference p-wave modulus `M = K + 4G/3` (Pa): what contact stiffness scales with. For a
     /// fluid K alone, for a gas that of its reference pressure.
@@ -82,6 +87,24 @@ impl Material {
         self.failure.limit_tension(&mut point);
         let matter = density + thermal::opening(point.pressure[0] - at.pressure, at.dp_drho);
         Some(thermal.temperature(matter, specific_energy))
+    }
+
+    /// Specific energy (J/kg) at a density (kg/m³) and temperature (K) of matter without damage, if
+    /// the material has thermal constants: [`Self::temperature`] of it is that temperature.
+    #[must_use]
+    pub fn energy(&self, density: f64, temperature: f64) -> Option<f64> {
+        let thermal = self.thermal.as_ref()?;
+        let specific_heat = thermal.constants().specific_heat;
+        let mut energy = thermal.cold_energy(density) + specific_heat * temperature;
+        // What a cut-off tears is denser than its mean, and its cold energy another.
+        for _ in 0..TORN_STEPS {
+            let missed = temperature - self.temperature(density, energy, 0.0)?;
+            if missed.abs() <= TORN_ERROR * temperature {
+                break;
+            }
+            energy += specific_heat * missed;
+        }
+        Some(energy)
     }
 
     /// Advances a batch of points by `dt` (s).

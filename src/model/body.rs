@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::{Motion, Shape, Vec3};
+use super::{Initial, Motion, Place, Shape, Vec3};
 
 /// A coordinate axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
@@ -100,9 +100,9 @@ pub struct Body {
     pub lattice: Lattice,
     /// Initial density (kg/m³), if not the material's reference density.
     pub density: Option<f64>,
-    /// Initial specific internal energy (J/kg), if not that of the material's reference state.
-    pub specific_energy: Option<f64>,
-    /// Initial velocity of its centre (m/s).
+    /// What else its particles begin with.
+    pub initial: Initial,
+    /// Initial velocity of its centre (m/s); where that varies, the middle of all.
     pub velocity: Vec3,
     /// Initial angular velocity about its centre (rad/s).
     pub angular_velocity: Vec3,
@@ -117,18 +117,26 @@ impl Body {
     /// Initial velocity (m/s) of a particle at `position` (m).
     #[must_use]
     pub fn velocity_at(&self, position: &Vec3) -> Vec3 {
+        let velocity = match &self.initial.velocity {
+            None => self.velocity,
+            Some(components) => {
+                let place = Place::new(position, &self.shape.centre());
+                Vec3::from_fn(|axis, _| components[axis].at(&place))
+            }
+        };
         if self.angular_velocity == Vec3::zeros() {
-            return self.velocity;
+            return velocity;
         }
-        self.velocity
+        velocity
             + self
                 .angular_velocity
                 .cross(&(position - self.shape.centre()))
     }
 
-    /// Largest initial speed (m/s) of a particle against the centre, by rotation.
+    /// Largest difference (m/s) of the initial velocity of a particle from [`Self::velocity`], or
+    /// somewhat more: by rotation, and where the velocity varies.
     #[must_use]
-    pub fn rim_speed(&self) -> f64 {
-        self.angular_velocity.norm() * self.shape.reach()
+    pub fn speed_spread(&self) -> f64 {
+        self.angular_velocity.norm() * self.shape.reach() + self.initial.velocity_spread
     }
 }

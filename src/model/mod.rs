@@ -5,10 +5,13 @@
 //! only reads it.
 
 mod absorber;
+mod beginning;
 mod body;
 mod contact;
 mod control;
 mod distance;
+mod formula;
+mod initial;
 mod load;
 mod motion;
 mod numerical_limits;
@@ -17,22 +20,26 @@ mod region;
 mod shape;
 mod solid;
 mod surface;
+pub mod units;
 
 #[cfg(test)]
 pub(crate) use surface::tests as surface_tests;
 
 pub use absorber::{Absorber, OuterFace};
+pub use beginning::Beginning;
 pub use body::{Axis, Body, Lattice, LatticeKind, SymmetryPlane};
 pub use contact::*;
 pub use control::{
     DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm, SphOptions, TimeStepOptions,
 };
+pub use formula::{Combination, Formula, Function, Operation, Place, Profile};
+pub use initial::{Heat, Initial};
 pub use load::{Loads, VelocityLoad};
 pub use motion::Motion;
 pub use numerical_limits::{NumericalFailurePolicy, NumericalLimits};
 pub use region::Region;
 pub use shape::Shape;
-pub use solid::{Form, Placement, Profile, Solid, rotation};
+pub use solid::{Form, Placement, Polygon, Solid, rotation};
 pub use surface::{
     Feature, Foot, Mesh, MeshError, RigidSurface, Spin, SurfaceFile, SurfaceShape,
     closest_on_triangle,
@@ -128,22 +135,6 @@ impl Case {
         bodies.any(|body| self.materials[body.material].failure.has_memory())
     }
 
-    /// Initial density of a body (kg/m³).
-    #[must_use]
-    pub fn initial_density(&self, body: &Body) -> f64 {
-        let reference = || self.materials[body.material].reference_density;
-        body.density.unwrap_or_else(reference)
-    }
-
-    /// Initial specific energy of a body (J/kg).
-    #[must_use]
-    pub fn initial_energy(&self, body: &Body) -> f64 {
-        let eos = &self.materials[body.material].eos;
-        let density = self.initial_density(body);
-        body.specific_energy
-            .unwrap_or_else(|| eos.reference_energy(density))
-    }
-
     /// The "impact speed" (m/s) of the interpenetration measure: the largest
     /// [`Self::closing_speed`] of two bodies, or the largest speed of a single one if there is
     /// none.
@@ -155,8 +146,12 @@ impl Case {
         if speed > 0.0 {
             return speed;
         }
-        let velocities = bodies.flat_map(|body| self.known_velocities(body));
-        velocities.fold(0.0, |most, velocity| most.max(velocity.norm()))
+        let largest = |body: usize| {
+            let velocities = self.known_velocities(body).into_iter();
+            let largest = velocities.fold(0.0, |most: f64, velocity| most.max(velocity.norm()));
+            largest + self.bodies[body].initial.velocity_spread
+        };
+        bodies.map(largest).fold(0.0, f64::max)
     }
 
     /// Largest speed of two bodies against each other (m/s) by the velocities at which they begin
@@ -169,10 +164,10 @@ impl Case {
         }
         let theirs = self.known_velocities(b);
         let mine = self.known_velocities(a).into_iter();
-        let rims = self.bodies[a].rim_speed() + self.bodies[b].rim_speed();
+        let spread = self.bodies[a].speed_spread() + self.bodies[b].speed_spread();
         mine.flat_map(|v| theirs.iter().map(move |other| (v - other).norm()))
             .fold(0.0, f64::max)
-            + rims
+            + spread
     }
 
     /// The velocity at which a body begins and all corners of the tables that prescribe one (m/s).

@@ -99,7 +99,7 @@ impl NumericalLimits {
             &mut case
                 .bodies
                 .iter()
-                .map(|body| body.velocity.norm() + body.rim_speed()),
+                .map(|body| body.velocity.norm() + body.speed_spread()),
         );
         // What is rigid has a material that carries nothing.
         let deforming = || case.bodies.iter().filter(|body| body.rigid.is_none());

@@ -18,6 +18,9 @@ pub const PREFIXES: [(&str, f64); 9] = [
 /// Units that take a prefix, as the first factor of the whole unit.
 const PREFIXABLE: [&str; 7] = ["Pa", "m", "s", "J", "N", "W", "Hz"];
 
+/// Units of length that are no metres (m).
+const OTHER_LENGTHS: [(&str, f64); 2] = [("in", 0.0254), ("ft", 0.3048)];
+
 /// Longest plain number without its sign; longer ones have an exponent.
 const LONGEST: usize = 8;
 
@@ -75,13 +78,12 @@ impl Readable {
     /// The unit of length of this size (m), if it has a name; else one that fits.
     #[must_use]
     pub fn length(size: f64) -> Self {
-        let known = PREFIXES.iter().chain(&[("c", 1e-2)]);
-        let same = |prefix: &&(&str, f64)| (prefix.1 / size - 1.0).abs() < 1e-9;
+        let metric = PREFIXES.iter().chain(&[("c", 1e-2)]);
+        let metric = metric.map(|(prefix, size)| (format!("{prefix}m"), *size));
+        let known = metric.chain(OTHER_LENGTHS.map(|(name, size)| (name.to_owned(), size)));
+        let same = |unit: &(String, f64)| (unit.1 / size - 1.0).abs() < 1e-9;
         match known.into_iter().find(same) {
-            Some((prefix, size)) => Self {
-                size: *size,
-                name: format!("{prefix}m"),
-            },
+            Some((name, size)) => Self { size, name },
             None => Self::new("m", size),
         }
     }
@@ -319,7 +321,8 @@ mod tests {
             Readable::length(1e-3).vector(&[0.2, 0.0105]),
             "[200, 10.5] mm"
         );
-        assert_eq!(Readable::length(0.0254).name, "mm");
+        assert_eq!(Readable::length(0.0254).text(0.000_508), "0.02 in");
+        assert_eq!(Readable::length(0.025).name, "mm");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Where the matter of a body begins: its shape.
 
-use super::{Axis, Form, Placement, Profile, Solid, Vec3};
+use super::{Axis, Form, Placement, Polygon, Solid, Vec3};
 
 /// The geometry of a body, in its final place (m).
 ///
@@ -100,7 +100,7 @@ impl Shape {
             } => {
                 let half = 0.5 * length;
                 let outline = vec![[0.0, -half], [*r, -half], [*r, half], [0.0, half]];
-                let profile = Profile::new(outline).expect("a rectangle");
+                let profile = Polygon::new(outline).expect("a rectangle");
                 Solid::Form(
                     Form::Revolved(profile),
                     Placement::turned(Self::onto(*axis), *centre),

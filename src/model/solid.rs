@@ -7,14 +7,14 @@
 
 mod ellipsoid;
 mod form;
-mod profile;
+mod polygon;
 mod volume;
 
 #[cfg(test)]
 mod tests;
 
 pub use form::{Faces, Form};
-pub use profile::Profile;
+pub use polygon::Polygon;
 
 use super::Vec3;
 

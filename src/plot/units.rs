@@ -1,8 +1,9 @@
 //! Units as people read and type them, with the prefix that keeps numbers short.
 
 use super::PlotError;
-use crate::model::readable::{PREFIXES, tidy};
+use crate::model::readable::tidy;
 pub use crate::model::readable::{Readable, fixed, superscript};
+use crate::model::units;
 
 /// The number of decimals that shows about three digits of `largest`.
 pub fn decimals(largest: f64) -> usize {
@@ -34,13 +35,14 @@ pub fn times(times: &[f64]) -> Vec<String> {
     times.iter().map(text).collect()
 }
 
-/// Reads `"0.1 mm"` for a quantity whose SI unit is `unit`; zero and pure numbers need no unit.
+/// Reads `"0.1 mm"` for a quantity of the unit `unit`, in that unit; zero and pure numbers need no
+/// unit.
 ///
 /// # Errors
 /// [`PlotError::Quantity`] if the text is not a number or its unit is another or missing.
 pub fn parse(text: &str, unit: &str) -> Result<f64, PlotError> {
-    let (number, suffix) = split(text);
-    quantity(text, number, suffix, unit)
+    number(text, unit)
+        .ok_or_else(|| PlotError::quantity(text, format!("a number{}", in_unit(unit))))
 }
 
 /// Reads `"0:100 GPa"`, `"-1:2"`, `"0 mm:3 mm"`: a number without a unit takes the last one's.
@@ -52,22 +54,18 @@ pub fn parse_span(text: &str, last_unit: Option<&str>, unit: &str) -> Result<[f6
         )
     };
     let (low, high) = text.split_once(':').ok_or_else(wrong)?;
-    let (high_number, high_suffix) = split(high);
-    let common = if high_suffix.is_empty() {
-        last_unit.unwrap_or_default()
-    } else {
-        high_suffix
+    let common = match unit_behind(high) {
+        "" => last_unit.unwrap_or_default(),
+        own => own,
     };
-    let (low_number, low_suffix) = split(low);
-    let low_suffix = if low_suffix.is_empty() {
-        common
-    } else {
-        low_suffix
+    let end = |end: &str| {
+        let value = match unit_behind(end) {
+            "" => number(&format!("{end} {common}"), unit),
+            _ => number(end, unit),
+        };
+        value.ok_or_else(|| no_number(text, unit))
     };
-    let span = [
-        quantity(text, low_number, low_suffix, unit)?,
-        quantity(text, high_number, common, unit)?,
-    ];
+    let span = [end(low)?, end(high)?];
     if span[0] < span[1] {
         Ok(span)
     } else {
@@ -75,44 +73,32 @@ pub fn parse_span(text: &str, last_unit: Option<&str>, unit: &str) -> Result<[f6
     }
 }
 
-/// Splits `"0.1 mm"` into its number and its unit.
-pub fn split(text: &str) -> (&str, &str) {
-    let text = text.trim();
-    let numeric = |(i, c): &(usize, char)| {
-        let exponent = matches!(c, 'e' | 'E')
-            && text[i + 1..].starts_with(|d: char| d.is_ascii_digit() || d == '-' || d == '+');
-        !(c.is_ascii_digit() || matches!(c, '.' | '-' | '+') || exponent)
-    };
-    let end = text
-        .char_indices()
-        .find(numeric)
-        .map_or(text.len(), |(i, _)| i);
-    (text[..end].trim(), text[end..].trim())
+/// The unit of `"0.1 mm"`; nothing if there is none.
+pub fn unit_behind(text: &str) -> &str {
+    units::split(text).map_or("", |(_, unit)| unit)
 }
 
-fn quantity(text: &str, number: &str, suffix: &str, unit: &str) -> Result<f64, PlotError> {
-    let wrong = || PlotError::quantity(text, format!("a number{}", in_unit(unit)));
-    let value: f64 = number.parse().map_err(|_| wrong())?;
-    if !value.is_finite() {
-        return Err(wrong());
+fn no_number(text: &str, unit: &str) -> PlotError {
+    PlotError::quantity(text, format!("a number{}", in_unit(unit)))
+}
+
+fn number(text: &str, unit: &str) -> Option<f64> {
+    let unit = tidy(unit);
+    let (digits, suffix) = units::split(text)?;
+    if tidy(suffix) == unit {
+        // Whatever that stands for in a table of somebody else's.
+        return digits.parse().ok().filter(|value: &f64| value.is_finite());
     }
-    let plain = |unit: &str| {
-        tidy(unit)
-            .replace('²', "2")
-            .replace('³', "3")
-            .replace('u', "µ")
-    };
-    let (unit, suffix) = (plain(unit), plain(suffix));
-    if suffix == unit || (suffix.is_empty() && value == 0.0) {
-        return Ok(value);
+    let (value, powers) = units::parse(text).ok()?;
+    if value == 0.0 && suffix.is_empty() {
+        return Some(0.0);
     }
-    let prefix = suffix.strip_suffix(&unit).filter(|_| !unit.is_empty());
-    let size = match prefix {
-        Some("c") => Some(1e-2),
-        Some(prefix) => PREFIXES.iter().find(|p| p.0 == prefix).map(|p| p.1),
-        None => None,
+    let one = match unit.strip_prefix('1') {
+        Some(divisor) => format!("1{divisor}"),
+        None => format!("1 {unit}"),
     };
-    size.map(|size| value * size).ok_or_else(wrong)
+    let (size, own) = units::parse(&one).ok()?;
+    (powers == own).then(|| value / size)
 }
 
 fn in_unit(unit: &str) -> String {
@@ -146,6 +132,20 @@ mod tests {
         assert!(parse("0.1", "m").unwrap_err().to_string().contains("unit"));
         assert!(parse("3 GPa", "m").is_err());
         assert!(parse("µ", "m").is_err());
+        assert!(parse("nan m", "m").is_err());
+        assert!(parse("1e999 m", "m").is_err());
+        assert_eq!(
+            parse("0.5 in", "m").unwrap().to_bits(),
+            0.0127_f64.to_bits()
+        );
+        assert!((parse("20 °C", "K").unwrap() - 293.15).abs() < 1e-12);
+        assert!((parse("1 dyn/cm^2", "Pa").unwrap() - 0.1).abs() < 1e-15);
+        // Of tables of others.
+        assert!((parse("2 mm", "cm").unwrap() - 0.2).abs() < 1e-15);
+        assert!((parse("3 counts", "counts").unwrap() - 3.0).abs() < 1e-15);
+        assert!(parse("3", "counts").is_err());
+        assert!((parse("3 1/s", "1/s").unwrap() - 3.0).abs() < 1e-15);
+        assert!((parse("3/us", "1/s").unwrap() - 3e6).abs() < 1e-9);
     }
 
     #[test]

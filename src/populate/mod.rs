@@ -8,12 +8,14 @@ mod extremes;
 mod lattice;
 mod overlap;
 mod row;
+mod sample;
 mod search;
 mod stress_points;
 mod tally;
 mod touch;
 
 pub use overlap::{Overlap, overlap};
+pub use sample::sample;
 pub use search::{Wanted, search};
 pub use stress_points::{StressSite, stress_count, stress_index_end, stress_sites};
 pub use tally::{Share, tally};

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use proptest::prelude::*;
 
 use super::*;
-use crate::model::{Lattice, LatticeKind, Shape, Vec3};
+use crate::model::{Initial, Lattice, LatticeKind, Shape, Vec3};
 
 mod counts;
 mod touch;
@@ -22,7 +22,7 @@ fn body(shape: Shape, kind: LatticeKind, spacing: f64, angle: f64) -> Body {
             ..Lattice::default()
         },
         density: None,
-        specific_energy: None,
+        initial: Initial::default(),
         velocity: Vec3::zeros(),
         angular_velocity: Vec3::zeros(),
         rigid: None,

@@ -41,14 +41,14 @@ pub fn approaches(case: &Case) -> Vec<Approach> {
     found
 }
 
-/// Whether a body does not turn, and nothing but other bodies changes its velocity.
+/// Whether a body has one velocity, and nothing but other bodies changes its velocity.
 pub fn flies_straight(case: &Case, body: usize) -> bool {
     let driven = case.loads.velocities.iter().any(|load| load.body == body);
     let motion = case.bodies[body].rigid.as_ref();
     let table = motion.is_some_and(|motion| motion.times.len() > 1);
     let falls = motion.is_none() && case.loads.gravity != [0.0; 3];
-    let turns = case.bodies[body].rim_speed() > 0.0;
-    !(driven || table || falls || turns)
+    let spreads = case.bodies[body].speed_spread() > 0.0;
+    !(driven || table || falls || spreads)
 }
 
 fn approach(case: &Case, boxes: &[Option<Ends>], [a, b]: [usize; 2]) -> Option<Approach> {

@@ -3,10 +3,12 @@
 mod approach;
 mod case;
 mod impact;
+mod initial;
 pub(crate) mod memory;
 mod sense;
 
 pub use approach::{Approach, approaches};
+pub use initial::beginning;
 pub use sense::expected_step;
 
 use crate::model::{Body, Case, ContactMode};
@@ -18,7 +20,7 @@ const SHALLOW: f64 = 0.2;
 /// Doubtful things in a valid case, one line each: bodies that overlap a little, lattices that a
 /// symmetry plane does not mirror into themselves, planes that push from the start, bodies that
 /// meet without contact or never, contact of an odd stiffness, impacts beyond an equation of state,
-/// and values that no run has a use for.
+/// pressure that heat brings along, and values that no run has a use for.
 #[must_use]
 pub fn warnings(case: &Case) -> Vec<String> {
     let mut found = Vec::new();
@@ -55,6 +57,7 @@ pub fn warnings(case: &Case) -> Vec<String> {
     case::stiffness(case, &mut found);
     case::meetings(case, &approaches, &mut found);
     impact::warnings(case, &approaches, &mut found);
+    initial::warnings(case, &mut found);
     sense::warnings(case, &approaches, &mut found);
     found
 }

@@ -25,6 +25,9 @@ pub enum SetupError {
     /// The lattices need more identities than there are.
     #[error("the bodies' lattices have too many sites to number; use larger spacings")]
     TooManySites,
+    /// A particle begins with what nature does not know.
+    #[error("{0}")]
+    Unsound(String),
     /// A restored state is not one of the case.
     #[error("the saved state is not one of this case: {0}")]
     Foreign(&'static str),

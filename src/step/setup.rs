@@ -124,15 +124,15 @@ impl Simulation {
             .resize_owned(usize::try_from(total).unwrap_or(usize::MAX));
         let mut i = 0;
         let mut first_id = 0_u64;
+        let mut unsound = None;
         for (b, body) in case.bodies.iter().enumerate() {
-            let mut start = Start::new(case, b);
-            if stressed {
-                // That is left to the stress points.
-                start.energy = 0.0;
-            }
+            // Heat and plastic strain of bodies with stress points are those of the points.
+            let start = Start::new(case, b, !stressed);
             for site in populate::sites(body, case.dimension, &case.symmetry, Some(slab)) {
                 let particles = &mut self.particles;
-                start.put(particles, i, first_id + site.index, site.position);
+                let id = first_id + site.index;
+                let sound = start.put(particles, i, id, site.position);
+                unsound = unsound.or_else(|| sound.err().map(|why| (id, why)));
                 particles.mass[i] = start.mass;
                 Connectivity::begin(particles, i, first_id);
                 if self.loads.has_motions() {
@@ -150,7 +150,7 @@ impl Simulation {
             first_id = beyond(first_id, populate::index_end(body, case.dimension))?;
         }
         if stressed {
-            i = self.populate_stress_points(i, first_id, slab)?;
+            i = self.populate_stress_points(i, first_id, slab, &mut unsound)?;
         }
         debug_assert_eq!(i, self.particles.owned());
         let Case {
@@ -162,22 +162,26 @@ impl Simulation {
         {
             self.partition.deal(comm, &mut self.particles);
         }
-        Ok(())
+        all_sound(comm, unsound)
     }
 
-    /// Creates the stress points of a slab from place `i` of the store and `first_id` on; gives the
-    /// place after the last.
+    /// Creates the stress points of a slab from place `i` of the store and `first_id` on, and books the
+    /// first that begins out of range; gives the place after the last.
     fn populate_stress_points(
         &mut self,
         mut i: usize,
         mut first_id: u64,
         slab: Slab,
+        unsound: &mut Option<(u64, String)>,
     ) -> Result<usize, SetupError> {
         let (case, particles) = (&self.case, &mut self.particles);
         for (b, body) in case.bodies.iter().enumerate() {
-            let start = Start::new(case, b);
+            let start = Start::new(case, b, true);
             for site in populate::stress_sites(body, case.dimension, &case.symmetry, Some(slab)) {
-                start.put(particles, i, first_id + site.index, site.position);
+                let id = first_id + site.index;
+                if let Err(why) = start.put(particles, i, id, site.position) {
+                    unsound.get_or_insert((id, why));
+                }
                 particles.stress_mass[i] = start.mass * site.share;
                 if self.loads.absorb() {
                     particles.absorption[i] = Absorption::rate(case, b, &site.position);
@@ -215,32 +219,40 @@ impl Simulation {
 
 /// What all particles of a body begin with.
 struct Start<'a> {
+    case: &'a Case,
     of: &'a Body,
     body: u32,
     /// Of a whole particle (kg).
     mass: f64,
     density: f64,
-    energy: f64,
-    smoothing_length: f64,
+    /// Whether they hold heat and plastic strain.
+    holds_state: bool,
 }
 
 impl<'a> Start<'a> {
-    fn new(case: &'a Case, b: usize) -> Self {
+    fn new(case: &'a Case, b: usize, holds_state: bool) -> Self {
         let body = &case.bodies[b];
         let density = case.initial_density(body);
         Self {
+            case,
             of: body,
             body: u32::try_from(b).unwrap_or(u32::MAX),
             mass: density * populate::particle_volume(body, case.dimension),
             density,
-            energy: case.initial_energy(body),
-            smoothing_length: body.smoothing_length,
+            holds_state,
         }
     }
 
-    /// Puts a particle at place `i` of the store.
-    fn put(&self, particles: &mut ParticleStore, i: usize, id: u64, position: [f64; 3]) {
-        let velocity = self.of.velocity_at(&position.into()).into();
+    /// Puts a particle at place `i` of the store, or says what of it is out of range.
+    fn put(
+        &self,
+        particles: &mut ParticleStore,
+        i: usize,
+        id: u64,
+        position: [f64; 3],
+    ) -> Result<(), String> {
+        let begins = self.case.beginning(self.of, &position.into());
+        let velocity = begins.velocity.into();
         particles.id[i] = id;
         particles.body[i] = self.body;
         particles.position[i] = position;
@@ -248,9 +260,34 @@ impl<'a> Start<'a> {
         particles.predicted_velocity[i] = velocity;
         particles.density[i] = self.density;
         particles.predicted_density[i] = self.density;
-        particles.specific_energy[i] = self.energy;
-        particles.smoothing_length[i] = self.smoothing_length;
+        particles.smoothing_length[i] = self.of.smoothing_length;
+        let held = |value| if self.holds_state { value } else { 0.0 };
+        particles.specific_energy[i] = held(begins.specific_energy);
+        particles.plastic_strain[i] = held(begins.plastic_strain);
+        if begins.fault().is_none() {
+            return Ok(());
+        }
+        let unsound = self.case.unsound(self.of, &position.into());
+        Err(unsound.map_or_else(String::new, |(_, why)| why))
     }
+}
+
+/// Refuses a case some of whose particles begin out of range, with the words about the first of them;
+/// `unsound` is this rank's. Collective.
+fn all_sound(comm: &Comm, unsound: Option<(u64, String)>) -> Result<(), SetupError> {
+    let mut first = [unsound.as_ref().map_or(u64::MAX, |(id, _)| *id)];
+    comm.min_u64(&mut first);
+    if first[0] == u64::MAX {
+        return Ok(());
+    }
+    let mine = unsound.filter(|(id, _)| *id == first[0]);
+    let mut owner = [mine.as_ref().map_or(u64::MAX, |_| comm.rank() as u64)];
+    comm.min_u64(&mut owner);
+    let mut words = mine.map_or_else(Vec::new, |(_, why)| why.into_bytes());
+    comm.broadcast_from(usize::try_from(owner[0]).unwrap_or(0), &mut words);
+    Err(SetupError::Unsound(
+        String::from_utf8_lossy(&words).into_owned(),
+    ))
 }
 
 /// The first id beyond those of a body, as long as ids last.

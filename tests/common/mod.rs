@@ -10,8 +10,8 @@ pub mod sentinel;
 
 use whipple::material::{Elastic, Eos, Linear, LinearForm, Strength, VonMises, library};
 use whipple::model::{
-    Axis, Body, Case, ContactMode, DomainOptions, Lattice, LatticeKind, Loads, OutputOptions,
-    Overlap, RunControl, Shape, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
+    Axis, Body, Case, ContactMode, DomainOptions, Initial, Lattice, LatticeKind, Loads,
+    OutputOptions, Overlap, RunControl, Shape, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
 };
 
 /// A body on a cubic lattice with h = 1.3 Δp.
@@ -27,7 +27,7 @@ pub fn body(name: &str, shape: Shape, spacing: f64, velocity: Vec3) -> Body {
             ..Lattice::default()
         },
         density: None,
-        specific_energy: None,
+        initial: Initial::default(),
         velocity,
         angular_velocity: Vec3::zeros(),
         rigid: None,

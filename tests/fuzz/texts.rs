@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::random::Random;
 use crate::{Budget, Met, folder, random};
 use whipple::input::parse;
-use whipple::preflight::{advice, approaches, warnings};
+use whipple::preflight::{advice, approaches, beginning, warnings};
 
 /// What stands between two texts in a file of texts.
 const BETWEEN: &str = "\n#%%%%\n";
@@ -44,6 +44,16 @@ const WORDS: &[&str] = &[
     "\"((((((\"",
     "\"1e-320 us\"",
     "\"°\"",
+    "\"20 °C\"",
+    "\"1 km/s * (1 - (r / 5 mm)^2)\"",
+    "\"1 m/s / (x - x0)\"",
+    "\"-2^2^-x\"",
+    "\"300 K + 5 K/mm * z\"",
+    "\"sqrt(min(\"",
+    "* exp(",
+    "temperature = ",
+    "plastic_strain = 0.1\n",
+    "angular_velocity = { rate = [0, 0, \"1e4 rad/s\"], about = [0, 0, 0] }\n",
     "\"2 us\"",
     "\"1 g/cm^3\"",
     "\"1e12 GPa\"",
@@ -125,6 +135,10 @@ fn attempt(text: &str, overrides: &[String]) -> String {
             .iter()
             .map(|pair| format!("gap {}", pair.gap)),
     );
+    said.extend(case.bodies.iter().filter_map(|body| {
+        let begins = beginning(&case, body)?;
+        begins.contains("NaN").then_some(begins)
+    }));
     parse("resolved", &case.resolved, &[]).expect("a resolved case can be read again");
     format!("sound {}", "and doubtful ".repeat(said.len().min(3)))
 }

@@ -12,8 +12,8 @@ pub use sentinel::{id, mix, sentinel};
 
 use whipple::comm::Comm;
 use whipple::model::{
-    Body, Case, ContactMode, DomainOptions, Lattice, LatticeKind, Loads, OutputOptions, RunControl,
-    Shape, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
+    Body, Case, ContactMode, DomainOptions, Initial, Lattice, LatticeKind, Loads, OutputOptions,
+    RunControl, Shape, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
 };
 use whipple::output::snapshot;
 use whipple::particles::{FIELDS, ParticleStore};
@@ -34,7 +34,7 @@ pub fn case() -> Case {
             ..Lattice::default()
         },
         density: Some(2785.0),
-        specific_energy: None,
+        initial: Initial::default(),
         velocity: Vec3::zeros(),
         angular_velocity: Vec3::zeros(),
         rigid: None,

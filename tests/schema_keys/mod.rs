@@ -18,7 +18,7 @@ pub struct Key {
 impl Key {
     /// Whether the key takes a number with a unit, or some.
     pub fn takes_quantity(&self) -> bool {
-        let kinds = ["Placed<", "OneOrMany<", "Extent", "Point"];
+        let kinds = ["Placed<", "ProfileParams<", "OneOrMany<", "Extent", "Point"];
         kinds.iter().any(|kind| self.kind.contains(kind))
     }
 }

@@ -7,9 +7,9 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer, StrDeserial
 use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use toml::Spanned;
 
-use super::ShapeTurnParams;
 use super::choices::{AxisWord, Direction};
-use crate::input::quantity::{Angle, Length, Placed};
+use super::{Point, ShapeTurnParams};
+use crate::input::quantity::{Angle, AngularRate, Length, Placed};
 use crate::model::{Axis, LatticeKind};
 
 tables! {
@@ -33,6 +33,14 @@ tables! {
         axis: Option<Spanned<Axis>>,
         /// Radius.
         radius: Placed<Length>,
+    }
+
+    /// `angular_velocity` as a table.
+    AngularVelocityTable {
+        /// About x, y and z; in two dimensions about z.
+        rate: Spanned<Vec<Placed<AngularRate>>>,
+        /// A point that it turns about.
+        about: Point,
     }
 
     /// `friction` as a table.
@@ -74,6 +82,22 @@ typed_as! {
             axis: table.axis,
             seed: table.seed,
         };
+    }
+}
+
+/// The components of an angular velocity, or a table with the point that a body turns about.
+#[derive(Debug)]
+pub enum AngularVelocityParams {
+    /// About the centre.
+    Own(Vec<Placed<AngularRate>>),
+    /// About any point.
+    About(AngularVelocityTable),
+}
+
+typed_as! {
+    AngularVelocityParams: "an array of angular rates, or a table with `rate` and `about`" {
+        list: AngularVelocityParams::Own;
+        table: AngularVelocityParams::About;
     }
 }
 

@@ -159,7 +159,7 @@ impl Reader<'_> {
                     radius,
                     ..
                 } => (*centre, Some(*axis), *radius),
-                Shape::Box { .. } => {
+                Shape::Box { .. } | Shape::Solid(_) => {
                     let title = format!("the shape of `{}` has no round face", body.name);
                     return Err(Diagnostic::new(params.span(), title).help(
                         "say which one: `round = { centre = […], axis = \"z\", radius = \"…\" }`",

@@ -3,16 +3,17 @@
 use toml::Spanned;
 
 use super::check::{Allowed, number, optional};
+use super::initial;
 use super::lattice::lattice;
 use super::motion::motion;
-use super::shapes::{Shapes, vector};
+use super::shapes::Shapes;
 use super::touch;
 use crate::input::names;
 use crate::input::quantity::{Length, Placed};
-use crate::input::schema::BodyParams;
+use crate::input::schema::{AngularVelocityParams, BodyParams};
 use crate::input::source::Diagnostic;
 use crate::material::{Eos, Failure, Linear, LinearForm, Material, Strength};
-use crate::model::{Body, Motion, SymmetryPlane, Vec3};
+use crate::model::{Body, Motion, Profile, SymmetryPlane, Vec3};
 use crate::populate;
 
 /// Bounding lattices beyond this are a slip in a unit rather than a body.
@@ -36,6 +37,9 @@ pub fn no_material() -> Material {
         thermal: None,
     }
 }
+
+/// An initial velocity (m/s), the motion of a rigid body, and the components of a velocity that varies.
+type Moves = (Vec3, Option<Motion>, Option<[Profile; 3]>);
 
 /// What all bodies share.
 pub struct Reader<'a> {
@@ -97,7 +101,7 @@ impl Reader<'_> {
             dimension: self.dimension,
             spacing,
         };
-        let (velocity, rigid) = self.motion(params)?;
+        let (velocity, rigid, varied) = self.motion(params)?;
         let shape = shapes.shape(&params.shape)?;
         let lattice = lattice(&shapes, params.lattice.as_ref(), &shape)?;
         Ok(Body {
@@ -109,11 +113,7 @@ impl Reader<'_> {
             angular_velocity: self.angular_velocity(params)?,
             rigid,
             density: optional(params.density.as_ref(), "density", Allowed::Positive)?,
-            specific_energy: optional(
-                params.specific_energy.as_ref(),
-                "specific_energy",
-                Allowed::Any,
-            )?,
+            initial: initial::initial(params, varied, self.dimension)?,
             smoothing_length: self.smoothing * spacing,
         })
     }
@@ -139,13 +139,18 @@ impl Reader<'_> {
         })
     }
 
-    /// The initial velocity, and the motion of a rigid body.
-    fn motion(&self, params: &BodyParams) -> Result<(Vec3, Option<Motion>), Diagnostic> {
-        let velocity = vector("velocity", params.velocity.as_ref(), self.dimension)?;
+    /// The initial velocity, the motion of a rigid body, and the components of a velocity that varies.
+    fn motion(&self, params: &BodyParams) -> Result<Moves, Diagnostic> {
+        let given = params.velocity.as_ref();
+        let (velocity, varied) = initial::velocity(given, self.dimension)?;
         let rigid = params.rigid == Some(true);
+        if let Some(given) = given.filter(|_| rigid && varied.is_some()) {
+            let title = "a rigid body has one velocity: its `velocity` cannot vary";
+            return Err(Diagnostic::new(given.span(), title));
+        }
         let Some(table) = &params.motion else {
-            let motion = rigid.then(|| Motion::constant(velocity));
-            return Ok((velocity.into(), motion));
+            let motion = rigid.then(|| Motion::constant(velocity.into()));
+            return Ok((velocity, motion, varied));
         };
         if !rigid || params.velocity.is_some() {
             let title = if rigid {
@@ -161,26 +166,30 @@ impl Reader<'_> {
             velocities.get_or_insert_with(|| vec![0.0; motion.times.len()]);
         }
         let start = std::array::from_fn::<f64, 3, _>(|a| motion.velocity(a, 0.0));
-        Ok((start.into(), Some(motion)))
+        Ok((start.into(), Some(motion), None))
     }
 
     /// The initial angular velocity: about x, y and z, or in two dimensions about z.
     fn angular_velocity(&self, params: &BodyParams) -> Result<Vec3, Diagnostic> {
-        let Some(rates) = &params.angular_velocity else {
+        let Some(given) = &params.angular_velocity else {
             return Ok(Vec3::zeros());
         };
         if params.rigid == Some(true) {
             let title = "a rigid body does not turn: it has no `angular_velocity`";
-            return Err(Diagnostic::new(rates.span(), title));
+            return Err(Diagnostic::new(given.span(), title));
         }
-        let title = match (self.dimension, rates.get_ref().as_slice()) {
+        let (rates, span) = match given.get_ref() {
+            AngularVelocityParams::Own(rates) => (rates, given.span()),
+            AngularVelocityParams::About(table) => (table.rate.get_ref(), table.rate.span()),
+        };
+        let title = match (self.dimension, rates.as_slice()) {
             (2, [about_z]) => return Ok(Vec3::new(0.0, 0.0, about_z.get_ref().si)),
             (3, [x, y, z]) => return Ok(Vec3::from([x, y, z].map(|rate| rate.get_ref().si))),
             (1, _) => "in one dimension nothing turns",
             (2, _) => "in two dimensions `angular_velocity` has one component, about z",
             _ => "`angular_velocity` must have three components, about x, y and z",
         };
-        Err(Diagnostic::new(rates.span(), title))
+        Err(Diagnostic::new(span, title))
     }
 
     fn check_size(

@@ -173,6 +173,21 @@ pub fn whole(
     }
 }
 
+/// A vector must have a component for each dimension.
+pub fn components<T>(
+    key: &str,
+    vector: &Spanned<Vec<T>>,
+    dimension: usize,
+) -> Result<(), Diagnostic> {
+    let found = vector.get_ref().len();
+    if found == dimension {
+        return Ok(());
+    }
+    let s = if dimension == 1 { "" } else { "s" };
+    let title = format!("`{key}` must have {dimension} component{s}, found {found}");
+    Err(Diagnostic::new(vector.span(), title))
+}
+
 /// Says that a table must have exactly one of several others.
 pub fn exactly_one(at: Range<usize>, table: &str, choices: &str) -> Diagnostic {
     Diagnostic::new(at, format!("`{table}` must have exactly one of {choices}"))

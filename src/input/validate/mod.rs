@@ -6,6 +6,7 @@ mod absorbers;
 mod bodies;
 mod contact;
 mod eos;
+mod initial;
 mod lattice;
 mod loads;
 mod materials;
@@ -93,6 +94,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         output: output(params.output)?,
         resolved: String::new(),
     };
+    initial::settle(&mut case, &params.body)?;
     case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, &case)?;
     case.loads.absorbers = absorbers::absorbers(&params.absorb, &case)?;
     stress_points::check(&case, form)?;

@@ -6,7 +6,7 @@ use super::solids;
 use crate::input::quantity::{Extent, Placed};
 use crate::input::schema::{BoxParams, CylinderParams, Point, ShapeParams, SphereParams};
 use crate::input::source::Diagnostic;
-use crate::model::{Axis, Form, Profile, Shape, Vec3};
+use crate::model::{Axis, Form, Polygon, Shape, Vec3};
 
 /// What the shape of one body is read with.
 pub struct Shapes {
@@ -178,7 +178,7 @@ impl Shapes {
             [radius, half],
             [inner, half],
         ];
-        let profile = Profile::new(outline).expect("a rectangle");
+        let profile = Polygon::new(outline).expect("a rectangle");
         Ok(solids::placed(Form::Revolved(profile), &axis, centre))
     }
 

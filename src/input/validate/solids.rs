@@ -8,7 +8,7 @@ use crate::input::schema::{
     ShapeTurnParams, TorusParams, TurnsParams,
 };
 use crate::input::source::Diagnostic;
-use crate::model::{Axis, Form, Placement, Profile, Shape, Solid, Vec3, rotation};
+use crate::model::{Axis, Form, Placement, Polygon, Shape, Solid, Vec3, rotation};
 
 /// Most corners of a polygon, and most shapes together.
 const MOST_CORNERS: usize = 10_000;
@@ -90,7 +90,7 @@ impl Shapes {
                 outline.push([0.0, half]);
             }
         }
-        let profile = Profile::new(outline).expect("a triangle or a trapezium");
+        let profile = Polygon::new(outline).expect("a triangle or a trapezium");
         let axis = self.direction(params.axis.as_ref())?;
         Ok(placed(Form::Revolved(profile), &axis, centre))
     }
@@ -152,7 +152,7 @@ impl Shapes {
             .iter()
             .map(|corner| flat.point(Some(corner), "corners").map(|x| [x.x, x.y]))
             .collect();
-        let Some(section) = Profile::new(outline?) else {
+        let Some(section) = Polygon::new(outline?) else {
             return refuse("`corners` must be those of a polygon whose edges do not cross");
         };
         let half = match (&params.length, self.dimension) {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::ellipsoid;
-use super::profile::{Nearest, Profile};
+use super::polygon::{Nearest, Polygon};
 use crate::model::{Mesh, Vec3};
 
 /// What a solid is, before it is turned and moved. In two dimensions z does not count.
@@ -16,7 +16,7 @@ pub enum Form {
     /// Ellipsoid of semi-axes (m); infinite along z in two dimensions.
     Ellipsoid(Vec3),
     /// Solid of revolution about z of a polygon of (r, z), r ≥ 0: cylinder, tube, cone, frustum.
-    Revolved(Profile),
+    Revolved(Polygon),
     /// Ring of a radius, as thick as a circle of another radius (m).
     Torus {
         /// From the axis to the middle of the circle.
@@ -38,7 +38,7 @@ pub enum Form {
     /// Prism of a polygon of (x, y), of half a length along z (m); infinite in two dimensions.
     Prism {
         /// Its section.
-        section: Profile,
+        section: Polygon,
         /// Half its length.
         half: f64,
     },

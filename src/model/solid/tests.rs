@@ -15,7 +15,7 @@ fn placed(form: Form) -> Solid {
 }
 
 fn revolved(corners: &[[f64; 2]]) -> Form {
-    Form::Revolved(Profile::new(corners.to_vec()).unwrap())
+    Form::Revolved(Polygon::new(corners.to_vec()).unwrap())
 }
 
 fn tetrahedron() -> Form {
@@ -83,7 +83,7 @@ fn forms() -> Vec<(Form, f64)> {
         ),
         (
             Form::Prism {
-                section: Profile::new(angle()).unwrap(),
+                section: Polygon::new(angle()).unwrap(),
                 half: 0.75,
             },
             1.5 * 1.5,
@@ -236,9 +236,9 @@ proptest! {
 
 #[test]
 fn polygons_that_cross_themselves_are_refused() {
-    assert!(Profile::new(vec![[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]).is_none());
-    assert!(Profile::new(vec![[0.0, 0.0], [1.0, 1.0]]).is_none());
-    assert!(Profile::new(Vec::new()).is_none());
-    let clockwise = Profile::new(angle().into_iter().rev().collect()).unwrap();
+    assert!(Polygon::new(vec![[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]).is_none());
+    assert!(Polygon::new(vec![[0.0, 0.0], [1.0, 1.0]]).is_none());
+    assert!(Polygon::new(Vec::new()).is_none());
+    let clockwise = Polygon::new(angle().into_iter().rev().collect()).unwrap();
     assert_eq!(clockwise.area(), 1.5);
 }

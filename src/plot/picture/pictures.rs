@@ -181,7 +181,7 @@ fn parse_view(text: &str) -> Result<View, PlotError> {
     let (x, y) = text.split_once(',').ok_or_else(|| {
         PlotError::quantity(text, "a view LEFT:RIGHT,BOTTOM:TOP, as in -1:1,0:2mm")
     })?;
-    let unit = units::split(y.rsplit(':').next().unwrap_or_default()).1;
+    let unit = units::unit_behind(y.rsplit(':').next().unwrap_or_default());
     Ok(View {
         x: units::parse_span(x, Some(unit), "m")?,
         y: units::parse_span(y, None, "m")?,

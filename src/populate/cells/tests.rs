@@ -93,7 +93,7 @@ fn body(shape: Shape, kind: LatticeKind, spacing: f64) -> Body {
             ..Lattice::default()
         },
         density: None,
-        specific_energy: None,
+        initial: crate::model::Initial::default(),
         velocity: Vec3::zeros(),
         angular_velocity: Vec3::zeros(),
         rigid: None,

@@ -1,18 +1,30 @@
 //! Numbers with a unit: `"7 km/s"`, `"0.2 Mbar"`, `"2.785 g/cm^3"`.
 //!
-//! A unit is a product of powers of the symbols in [`SYMBOLS`], each with an optional prefix of
-//! [`PREFIXES`], so that every combination a user may think of is understood. Powers of ten are
-//! added to the number's own exponent before it is read: `"0.02 mm"` is exactly `2e-5`.
+//! A unit is a product of powers of the symbols in `SYMBOLS`, each with an optional prefix of
+//! `PREFIXES`, so that every combination a user may think of is understood. Powers of ten are
+//! added to the number's own exponent before it is read: `"0.02 mm"` is exactly `2e-5`, and `"0.5
+//! in"` exactly `0.0127`.
+//!
+//! A degree Celsius that is the whole unit makes a temperature (`"20 °C"` is 293.15 K); in a product
+//! it is the difference of one kelvin (`"896 J/(kg °C)"`).
 
 /// Exponents of metre, kilogram, second, kelvin and radian.
 pub type Powers = [i32; 5];
 
-/// Symbol, dimension, decimal exponent and factor with respect to SI.
+/// Symbol, dimension, decimal exponent and factor with respect to SI. The inch, the pound and its
+/// force are what they are defined to be: .0254 m, .45359237 kg and 4.4482216152605 N.
 const SYMBOLS: &[(&str, Powers, i32, f64)] = &[
     ("m", [1, 0, 0, 0, 0], 0, 1.0),
+    ("in", [1, 0, 0, 0, 0], -4, 254.0),
+    ("inch", [1, 0, 0, 0, 0], -4, 254.0),
+    ("ft", [1, 0, 0, 0, 0], -4, 3048.0),
     ("g", [0, 1, 0, 0, 0], -3, 1.0),
+    ("lb", [0, 1, 0, 0, 0], -8, 45_359_237.0),
     ("s", [0, 0, 1, 0, 0], 0, 1.0),
+    ("min", [0, 0, 1, 0, 0], 0, 60.0),
     ("K", [0, 0, 0, 1, 0], 0, 1.0),
+    ("°C", [0, 0, 0, 1, 0], 0, 1.0),
+    ("degC", [0, 0, 0, 1, 0], 0, 1.0),
     ("rad", [0, 0, 0, 0, 1], 0, 1.0),
     ("deg", [0, 0, 0, 0, 1], 0, std::f64::consts::PI / 180.0),
     ("°", [0, 0, 0, 0, 1], 0, std::f64::consts::PI / 180.0),
@@ -23,7 +35,16 @@ const SYMBOLS: &[(&str, Powers, i32, f64)] = &[
     ("W", [2, 1, -3, 0, 0], 0, 1.0),
     ("Pa", [-1, 1, -2, 0, 0], 0, 1.0),
     ("bar", [-1, 1, -2, 0, 0], 5, 1.0),
+    ("psi", [-1, 1, -2, 0, 0], 0, POUND_PER_INCH2),
+    ("ksi", [-1, 1, -2, 0, 0], 3, POUND_PER_INCH2),
 ];
+
+/// 4.4482216152605 N over (.0254 m)².
+const POUND_PER_INCH2: f64 = 6_894.757_293_168_361;
+/// The degree Celsius, whose zero is another than that of its dimension when it stands alone.
+const CELSIUS: [&str; 2] = ["°C", "degC"];
+/// Zero of the Celsius scale (K).
+pub const ICE: f64 = 273.15;
 
 /// Prefixes and their powers of ten.
 const PREFIXES: &[(&str, i32)] = &[
@@ -47,6 +68,9 @@ const LONGEST: usize = 200;
 const LARGEST_EXPONENT: i32 = 100_000;
 
 /// Value in SI units and dimension of a number with an optional unit.
+///
+/// # Errors
+/// What of the text is not understood, or that the number is too large.
 pub fn parse(text: &str) -> Result<(f64, Powers), String> {
     let text = text.trim();
     if text.len() > LONGEST {
@@ -55,19 +79,8 @@ pub fn parse(text: &str) -> Result<(f64, Powers), String> {
     }
     let (mantissa, exponent, rest) =
         split_number(text).ok_or_else(|| format!("`{text}` does not begin with a number"))?;
-    let mut unit = Unit::default();
-    let left = unit.read(rest, 1)?;
-    if !left.is_empty() {
-        return Err(format!(
-            "`{left}` in the unit `{}` is not understood",
-            rest.trim()
-        ));
-    }
-    let exponent = exponent + unit.exponent;
-    let value: f64 = format!("{mantissa}e{exponent}")
-        .parse()
-        .map_err(|_| format!("`{mantissa}` is not a number"))?;
-    let value = value * unit.factor;
+    let unit = Unit::whole(rest)?;
+    let value = unit.scale(mantissa, exponent)? + unit.zero();
     if value.is_finite() {
         Ok((value, unit.powers))
     } else {
@@ -75,10 +88,52 @@ pub fn parse(text: &str) -> Result<(f64, Powers), String> {
     }
 }
 
+/// A number with its unit at the beginning of a text.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Leading {
+    /// In SI units; infinite if that is too large.
+    pub value: f64,
+    /// Dimension.
+    pub powers: Powers,
+    /// Whether it is a temperature in degrees Celsius.
+    pub celsius: bool,
+    /// Bytes of the text that it takes.
+    pub length: usize,
+}
+
+/// The number without a sign that a text begins with, and its unit as far as symbols of units go:
+/// of `"3 km/s * (1 - x)"` it takes `3 km/s`. None if there is no number.
+#[must_use]
+pub fn leading(text: &str) -> Option<Leading> {
+    if text.starts_with(['+', '-']) {
+        return None;
+    }
+    let (mantissa, exponent, rest) = split_number(text)?;
+    let (unit, rest) = Unit::leading(rest);
+    let value = unit.scale(mantissa, exponent).ok()? + unit.zero();
+    Some(Leading {
+        value,
+        powers: unit.powers,
+        celsius: unit.zero() != 0.0,
+        length: text.len() - rest.len(),
+    })
+}
+
+/// A number as it is written, and the unit behind it; none if the text begins with no number.
+#[must_use]
+pub fn split(text: &str) -> Option<(&str, &str)> {
+    let text = text.trim();
+    let (_, _, unit) = split_number(text)?;
+    Some((text[..text.len() - unit.len()].trim_end(), unit.trim()))
+}
+
 /// One of the unit that a number is written with, in SI units.
+#[must_use]
 pub fn unit_of(text: &str) -> f64 {
-    let unit = split_number(text.trim()).map_or("", |(_, _, unit)| unit);
-    parse(&format!("1{unit}")).map_or(1.0, |(size, _)| size)
+    let unit = split(text).map_or("", |(_, unit)| unit);
+    Unit::whole(unit)
+        .and_then(|unit| unit.scale("1", 0))
+        .unwrap_or(1.0)
 }
 
 /// Mantissa, decimal exponent and what follows the number.
@@ -112,10 +167,13 @@ fn split_number(text: &str) -> Option<(&str, i32, &str)> {
 }
 
 /// A unit while it is read.
+#[derive(Clone)]
 struct Unit {
     powers: Powers,
     exponent: i32,
     factor: f64,
+    /// How many symbols it has, and how many of them are the degree Celsius.
+    symbols: [u32; 2],
 }
 
 impl Default for Unit {
@@ -124,11 +182,77 @@ impl Default for Unit {
             powers: [0; 5],
             exponent: 0,
             factor: 1.0,
+            symbols: [0; 2],
         }
     }
 }
 
 impl Unit {
+    /// The unit that a text is.
+    fn whole(text: &str) -> Result<Self, String> {
+        let mut unit = Self::default();
+        let left = unit.read(text, 1)?;
+        if left.is_empty() {
+            return Ok(unit);
+        }
+        let text = text.trim();
+        Err(format!("`{left}` in the unit `{text}` is not understood"))
+    }
+
+    /// The longest unit at the beginning of a text, and what follows it.
+    fn leading(text: &str) -> (Self, &str) {
+        let (mut unit, mut rest) = (Self::default(), text);
+        loop {
+            let next = rest.trim_start();
+            let (sign, next) = match next.strip_prefix('/') {
+                Some(after) => (-1, after),
+                None => (1, next.strip_prefix(['*', '·']).unwrap_or(next)),
+            };
+            let mut longer = unit.clone();
+            let read = match next.trim_start().strip_prefix('(') {
+                // A parenthesis without an operator before it is none of a unit.
+                Some(_) if next.len() == rest.trim_start().len() => break,
+                Some(inner) => longer
+                    .read(inner, sign)
+                    .map(|after| after.strip_prefix(')')),
+                None => longer.read_symbol(next.trim_start(), sign).map(Some),
+            };
+            match read {
+                // A name with a parenthesis is a function: `min(`.
+                Ok(Some(after)) if !after.starts_with('(') => (unit, rest) = (longer, after),
+                _ => break,
+            }
+        }
+        (unit, rest)
+    }
+
+    /// A number of this unit in SI units, rounded once where the factor is decimal.
+    fn scale(&self, mantissa: &str, exponent: i32) -> Result<f64, String> {
+        let exponent = exponent + self.exponent;
+        let read = |mantissa: &str| {
+            let number = format!("{mantissa}e{exponent}").parse::<f64>();
+            number.map_err(|_| format!("`{mantissa}` is not a number"))
+        };
+        if self.factor == 1.0 {
+            return read(mantissa);
+        }
+        let plain: f64 = mantissa
+            .parse()
+            .map_err(|_| format!("`{mantissa}` is not a number"))?;
+        let product = plain * self.factor;
+        if product.is_finite() {
+            read(&product.to_string())
+        } else {
+            Ok(product)
+        }
+    }
+
+    /// Where its scale begins, in SI units.
+    fn zero(&self) -> f64 {
+        let is_celsius = self.symbols == [1, 1] && self.powers == [0, 0, 0, 1, 0];
+        if is_celsius { ICE } else { 0.0 }
+    }
+
     /// Multiplies by the product in `text`, to the power `sign`, and returns what follows it:
     /// nothing or a closing parenthesis.
     fn read<'a>(&mut self, text: &'a str, sign: i32) -> Result<&'a str, String> {
@@ -177,6 +301,8 @@ impl Unit {
         })?;
         let (power, rest) = split_power(rest)?;
         let power = power * sign;
+        self.symbols[0] += 1;
+        self.symbols[1] += u32::from(CELSIUS.contains(&name));
         for (sum, p) in self.powers.iter_mut().zip(powers) {
             *sum += power * p;
         }
@@ -227,19 +353,4 @@ fn find_symbol(name: &str) -> Option<(Powers, i32, f64)> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn units_compose() {
-        assert_eq!(parse("896 J/(kg K)").unwrap(), (896.0, [2, 0, -2, -1, 0]));
-        assert_eq!(parse("3.5 kJ/g").unwrap(), (3.5e6, [2, 0, -2, 0, 0]));
-        assert_eq!(parse("1 g/(cm us^2)").unwrap(), (1e11, [-1, 1, -2, 0, 0]));
-        assert_eq!(parse("1 g cm^-1·us^-2").unwrap(), (1e11, [-1, 1, -2, 0, 0]));
-        assert_eq!(parse("6.5 /s").unwrap(), (6.5, [0, 0, -1, 0, 0]));
-        assert_eq!(parse("2/Mbar").unwrap(), (2e-11, [1, -1, 2, 0, 0]));
-        assert!(parse("1/").unwrap_err().contains("ends too early"));
-        assert_eq!(parse("300 K").unwrap(), (300.0, [0, 0, 0, 1, 0]));
-        assert_eq!(parse("-.5").unwrap(), (-0.5, [0; 5]));
-    }
-}
+mod tests;

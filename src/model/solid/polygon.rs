@@ -2,7 +2,7 @@
 
 /// A closed polygon, its corners counter-clockwise.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Profile {
+pub struct Polygon {
     corners: Vec<[f64; 2]>,
 }
 
@@ -12,7 +12,7 @@ pub(super) struct Nearest {
     pub way: [f64; 2],
 }
 
-impl Profile {
+impl Polygon {
     /// Of corners (m) in either order; `None` if they enclose no area or edges cross.
     #[must_use]
     pub fn new(mut corners: Vec<[f64; 2]>) -> Option<Self> {

@@ -1,0 +1,119 @@
+//! What one particle begins with, and whether nature knows such.
+
+use super::readable::shown;
+use super::{Body, Case, Heat, Place, Profile, Vec3};
+
+/// No speed is as large (m/s).
+const LIGHT: f64 = 299_792_458.0;
+/// No temperature is as high (K), none of the middles of stars.
+const HOTTEST: f64 = 1e9;
+/// No specific energy is as large (J/kg): that of all the mass.
+const MOST_ENERGY: f64 = 9e16;
+/// More than any matter bears.
+const MOST_STRAIN: f64 = 1e3;
+
+/// What one particle begins with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Beginning {
+    /// Velocity (m/s).
+    pub velocity: Vec3,
+    /// Temperature (K), if that is given.
+    pub temperature: Option<f64>,
+    /// Specific energy (J/kg).
+    pub specific_energy: f64,
+    /// Equivalent plastic strain.
+    pub plastic_strain: f64,
+}
+
+impl Beginning {
+    /// The key whose value is out of range, the value in words, and what it must be.
+    #[must_use]
+    pub fn fault(&self) -> Option<(&'static str, String, &'static str)> {
+        let speed = self.velocity.norm();
+        let temperature = self.temperature.unwrap_or(1.0);
+        // What is no number is in no range.
+        if !(0.0..LIGHT).contains(&speed) {
+            Some(("velocity", shown(speed, "m/s"), "slower than light"))
+        } else if !(temperature > 0.0 && temperature < HOTTEST) {
+            let range = "above 0 K and below that of any star";
+            Some(("temperature", shown(temperature, "K"), range))
+        } else if !(0.0..MOST_ENERGY).contains(&self.specific_energy.abs()) {
+            let value = shown(self.specific_energy, "J/kg");
+            Some(("specific_energy", value, "less than that of all the mass"))
+        } else if !(0.0..MOST_STRAIN).contains(&self.plastic_strain) {
+            let value = shown(self.plastic_strain, "");
+            Some(("plastic_strain", value, "zero or positive and below 1000"))
+        } else {
+            None
+        }
+    }
+}
+
+impl Case {
+    /// Initial density of a body (kg/m³).
+    #[must_use]
+    pub fn initial_density(&self, body: &Body) -> f64 {
+        let reference = || self.materials[body.material].reference_density;
+        body.density.unwrap_or_else(reference)
+    }
+
+    /// Initial specific energy of a body (J/kg); where it varies, that of the largest magnitude.
+    #[must_use]
+    pub fn initial_energy(&self, body: &Body) -> f64 {
+        match &body.initial.heat {
+            Heat::Energy(Profile::Formula(_)) | Heat::Temperature(Profile::Formula(_)) => {
+                body.initial.largest_energy
+            }
+            _ => {
+                self.heat(
+                    body,
+                    &Place::new(&body.shape.centre(), &body.shape.centre()),
+                )
+                .1
+            }
+        }
+    }
+
+    /// What a particle of a body at `position` (m) begins with.
+    #[must_use]
+    pub fn beginning(&self, body: &Body, position: &Vec3) -> Beginning {
+        let place = Place::new(position, &body.shape.centre());
+        let (temperature, specific_energy) = self.heat(body, &place);
+        Beginning {
+            velocity: body.velocity_at(position),
+            temperature,
+            specific_energy,
+            plastic_strain: body.initial.plastic_strain.at(&place),
+        }
+    }
+
+    /// The key that gives a particle at `position` (m) what nature does not know, and a line that says
+    /// so; nothing if all is in range.
+    #[must_use]
+    pub fn unsound(&self, body: &Body, position: &Vec3) -> Option<(&'static str, String)> {
+        let (key, value, range) = self.beginning(body, position).fault()?;
+        let place = self
+            .length_unit
+            .vector(&position.as_slice()[..self.dimension]);
+        let name = &body.name;
+        Some((
+            key,
+            format!("`{key}` of `{name}` is {value} at {place}, and must be {range}"),
+        ))
+    }
+
+    /// Temperature (K), if it is given, and specific energy (J/kg) at a place.
+    fn heat(&self, body: &Body, place: &Place) -> (Option<f64>, f64) {
+        let material = &self.materials[body.material];
+        let density = self.initial_density(body);
+        match &body.initial.heat {
+            Heat::Reference => (None, material.eos.reference_energy(density)),
+            Heat::Energy(energy) => (None, energy.at(place)),
+            Heat::Temperature(temperature) => {
+                let temperature = temperature.at(place);
+                let energy = material.energy(density, temperature);
+                (Some(temperature), energy.unwrap_or(f64::NAN))
+            }
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! Places all over a body, to see what varies within it.
+
+use super::{Site, count, sites};
+use crate::model::{Body, LatticeKind, SymmetryPlane};
+
+/// How much wider a lattice is from one try to the next.
+const WIDER: f64 = 1.2;
+
+/// The sites of a body above all symmetry planes and whether these are all of them: of a body with more
+/// than `most`, the sites of a cubic lattice so wide that there are about as many in its shape.
+pub fn sample(
+    body: &Body,
+    dimension: usize,
+    symmetry: &[SymmetryPlane],
+    most: u64,
+) -> (impl Iterator<Item = Site> + use<>, bool) {
+    let mut coarse = body.clone();
+    let mut found = count(body, dimension, symmetry, None);
+    let is_all = found <= most;
+    if !is_all {
+        coarse.lattice.kind = LatticeKind::Cubic;
+        coarse.lattice.angle = 0.0;
+        coarse.lattice.axis = None;
+        while found > most {
+            coarse.lattice.spacing *= WIDER;
+            found = count(&coarse, dimension, symmetry, None);
+        }
+        // Thin bodies lose their last layer at once.
+        while found == 0 {
+            coarse.lattice.spacing /= WIDER;
+            found = count(&coarse, dimension, symmetry, None);
+        }
+    }
+    (sites(&coarse, dimension, symmetry, None), is_all)
+}
