@@ -16,9 +16,9 @@ mod touch;
 
 pub use overlap::{Overlap, overlap};
 pub use sample::sample;
-pub use search::{Wanted, search};
+pub use search::search;
 pub use stress_points::{StressSite, stress_count, stress_index_end, stress_sites};
-pub use tally::{Share, tally};
+pub use tally::tally;
 pub use touch::{touching_distance, touching_value};
 
 use crate::model::{Axis, Body, RigidSurface, SymmetryPlane};
@@ -74,6 +74,26 @@ pub struct Slab {
     pub upper: f64,
 }
 
+/// What a [`search`] is for.
+#[derive(Debug, Clone, Copy)]
+pub struct Wanted {
+    /// So many sites at most.
+    pub most: usize,
+    /// Only sites with smaller values.
+    pub limit: f64,
+    /// Whether any such sites do, be their values the smallest or not.
+    pub any: bool,
+}
+
+/// One of several equal parts of the rows or blocks of a body, for ranks that count together.
+#[derive(Debug, Clone, Copy)]
+pub struct Share {
+    /// Which part.
+    pub part: usize,
+    /// How many there are.
+    pub parts: usize,
+}
+
 /// The sites of a body above all symmetry planes and, if given, in a slab, in the order of their
 /// index.
 ///
@@ -87,7 +107,7 @@ pub fn sites(
     let cuts = cuts(symmetry, slab);
     let cells = Cells::of(body, dimension, symmetry);
     let stack = cells.is_none().then(|| Stack::new(body, dimension));
-    let in_cells = cells.map(|cells| cells.sites(cuts.clone()));
+    let in_cells = cells.map(|cells| cells::sites(cells, cuts.clone()));
     let in_rows = stack.map(|stack| {
         row::rows(stack, cuts).flat_map(move |row| {
             row.range().map(move |i| Site {

@@ -3,21 +3,11 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
+use super::Wanted;
 use super::cells::{self, Cells};
 use super::lattice::Stack;
 use super::row::cuts;
 use crate::model::{Body, SymmetryPlane};
-
-/// What a [`search`] is for.
-#[derive(Debug, Clone, Copy)]
-pub struct Wanted {
-    /// So many sites at most.
-    pub most: usize,
-    /// Only sites with smaller values.
-    pub limit: f64,
-    /// Whether any such sites do, be their values the smallest or not.
-    pub any: bool,
-}
 
 /// A part of the lattice by its indices `first..end`, with a bound of what is in it.
 struct Block {

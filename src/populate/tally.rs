@@ -1,18 +1,10 @@
 //! How many sites stand at which coordinate of an axis, counted row by row and not site by site.
 
+use super::Share;
 use super::cells::Cells;
 use super::lattice::Stack;
 use super::row::{Cut, cuts, layers, runs};
 use crate::model::{Body, SymmetryPlane};
-
-/// One of several equal parts of the rows of a body, for ranks that count together.
-#[derive(Debug, Clone, Copy)]
-pub struct Share {
-    /// Which part.
-    pub part: usize,
-    /// How many there are.
-    pub parts: usize,
-}
 
 /// Layers from which shape and cuts leave the same rows.
 #[derive(Debug, Clone, Copy)]
@@ -64,14 +56,23 @@ pub fn tally(
     mut add: impl FnMut(f64, u64),
 ) {
     let cuts = cuts(symmetry, None);
-    if let Some(cells) = Cells::of(body, dimension, symmetry) {
-        return cells.tally(&cuts, axis, share, add);
+    match Cells::of(body, dimension, symmetry) {
+        Some(cells) => cells.tally(&cuts, axis, share, add),
+        None => tally_rows(&Stack::new(body, dimension), &cuts, axis, share, &mut add),
     }
-    let stack = Stack::new(body, dimension);
-    let like: Vec<LikeLayers> = LikeLayers::of(&stack, &cuts).collect();
+}
+
+fn tally_rows(
+    stack: &Stack,
+    cuts: &[Cut],
+    axis: usize,
+    share: Share,
+    mut add: impl FnMut(f64, u64),
+) {
+    let like: Vec<LikeLayers> = LikeLayers::of(stack, cuts).collect();
     let rows = || (share.part as u64..stack.counts[1]).step_by(share.parts.max(1));
     let length = |j, k| -> u64 {
-        let runs = runs(&stack, &cuts, j, k);
+        let runs = runs(stack, cuts, j, k);
         runs.iter().map(|run| run.end - run.first).sum()
     };
     if axis == 2 {
@@ -94,7 +95,7 @@ pub fn tally(
     // Sites with the same index in rows with the same shift stand at the same x, those of one row
     // in layers of one kind at the same place across.
     let is_along_x = stack.is_along_x();
-    let mut columns = [0, 1].map(|_| Columns::new(&stack));
+    let mut columns = [0, 1].map(|_| Columns::new(stack));
     for j in rows() {
         for like in &like {
             let k = like.first;
@@ -105,18 +106,18 @@ pub fn tally(
             };
             let columns = &mut columns[usize::from(is_other)];
             columns.row = [j, k];
-            for run in runs(&stack, &cuts, j, k) {
+            for run in runs(stack, cuts, j, k) {
                 columns.add(run.first, run.end, like.count());
             }
         }
         if !is_along_x {
             for columns in &mut columns {
-                columns.tell(&stack, axis, &mut add);
+                columns.tell(stack, axis, &mut add);
             }
         }
     }
     for columns in &mut columns {
-        columns.tell(&stack, axis, &mut add);
+        columns.tell(stack, axis, &mut add);
     }
 }
 

@@ -153,16 +153,17 @@ impl Simulation {
             i = self.populate_stress_points(i, first_id, slab, &mut unsound)?;
         }
         debug_assert_eq!(i, self.particles.owned());
-        let Case {
-            bodies, dimension, ..
-        } = &self.case;
-        if bodies
-            .iter()
-            .any(|body| populate::moves_sites(body, *dimension))
-        {
+        self.deal_moved(comm);
+        all_sound(comm, unsound)
+    }
+
+    /// Hands particles that begin outside of their slab to its owner, if there can be such.
+    /// Collective.
+    fn deal_moved(&mut self, comm: &Comm) {
+        let (mut bodies, dimension) = (self.case.bodies.iter(), self.case.dimension);
+        if bodies.any(|body| populate::moves_sites(body, dimension)) {
             self.partition.deal(comm, &mut self.particles);
         }
-        all_sound(comm, unsound)
     }
 
     /// Creates the stress points of a slab from place `i` of the store and `first_id` on, and books the

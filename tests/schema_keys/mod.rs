@@ -102,6 +102,11 @@ fn walk(
             Some(table) if words().any(|word| word == "Named") => {
                 walk(tables, &table, &format!("{path}.*."), found);
             }
+            // A list of what the table itself is: its keys are those found already.
+            Some(below) if below == table => found.push(Key {
+                path,
+                kind: kind.clone(),
+            }),
             Some(table) => walk(tables, &table, &format!("{path}."), found),
             None => found.push(Key {
                 path,

@@ -65,8 +65,8 @@ impl Form {
             }
             Self::Ball(radius) => p.norm() - radius,
             Self::Ellipsoid(semi) => ellipsoid::distance(semi, p),
-            Self::Revolved(profile) => profile.distance([p.x.hypot(p.y), p.z], is_surface),
-            Self::Torus { radius, tube } => (p.x.hypot(p.y) - radius).hypot(p.z) - tube,
+            Self::Revolved(profile) => profile.distance([libm::hypot(p.x, p.y), p.z], is_surface),
+            Self::Torus { radius, tube } => libm::hypot(libm::hypot(p.x, p.y) - radius, p.z) - tube,
             Self::Ogive { shank, .. } => joined(self.lateral(p).0, -shank - p.z),
             Self::Prism { section, half } => {
                 let across = section.distance([p.x, p.y], |_| true);
@@ -90,7 +90,7 @@ impl Form {
                 }
             }
             Self::Revolved(profile) => {
-                let radius = p.x.hypot(p.y);
+                let radius = libm::hypot(p.x, p.y);
                 profile.near_edges([radius, p.z], reach, is_surface, |near| {
                     let Nearest { distance, way } = near;
                     tell(distance, around(p, radius, way));
@@ -99,7 +99,7 @@ impl Form {
             Self::Ogive { shank, .. } => {
                 let (lateral, way) = self.lateral(p);
                 if -lateral < reach {
-                    tell(-lateral, around(p, p.x.hypot(p.y), way));
+                    tell(-lateral, around(p, libm::hypot(p.x, p.y), way));
                 }
                 if shank + p.z < reach {
                     tell(shank + p.z, -Vec3::z());
@@ -137,18 +137,18 @@ impl Form {
         else {
             return (f64::INFINITY, [1.0, 0.0]);
         };
-        let r = p.x.hypot(p.y);
+        let r = libm::hypot(p.x, p.y);
         if p.z <= 0.0 {
             return (r - radius, [1.0, 0.0]);
         }
         // From the centre of the arc.
         let from = [r - (radius - arc), p.z];
-        let length = from[0].hypot(from[1]);
+        let length = libm::hypot(from[0], from[1]);
         let tip = [arc - radius, nose];
         if from[0] * tip[1] < from[1] * tip[0] {
             // Beyond the tip.
             let off = [r, p.z - nose];
-            let distance = off[0].hypot(off[1]);
+            let distance = libm::hypot(off[0], off[1]);
             let way = if distance > 0.0 {
                 off.map(|c| c / distance)
             } else {
@@ -169,7 +169,7 @@ impl Form {
                 Vec3::from_fn(|a, _| at[a] / (semi[a] * semi[a]))
             }
             Self::Torus { radius, .. } => {
-                let r = p.x.hypot(p.y);
+                let r = libm::hypot(p.x, p.y);
                 return around(p, r, unit([r - radius, p.z]));
             }
             Self::Mesh(mesh) => {
@@ -262,11 +262,11 @@ impl Form {
 
 /// Distance from the intersection of two solids whose faces meet at right angles.
 fn joined(a: f64, b: f64) -> f64 {
-    a.max(0.0).hypot(b.max(0.0)) + a.max(b).min(0.0)
+    libm::hypot(a.max(0.0), b.max(0.0)) + a.max(b).min(0.0)
 }
 
 fn unit(v: [f64; 2]) -> [f64; 2] {
-    let length = v[0].hypot(v[1]);
+    let length = libm::hypot(v[0], v[1]);
     if length > 0.0 {
         v.map(|c| c / length)
     } else {

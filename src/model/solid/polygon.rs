@@ -120,7 +120,7 @@ impl Polygon {
         let mut first: Option<[f64; 2]> = None;
         for edge in self.edges().filter(counts) {
             let way = to_edge(p, edge);
-            let distance = way[0].hypot(way[1]);
+            let distance = libm::hypot(way[0], way[1]);
             // A corner that is nearest to both its edges is one face, not two.
             let is_known = [last, first].into_iter().flatten().any(|w| w == way);
             last = Some(way);

@@ -1,9 +1,11 @@
 //! Glass fitted to the surface of its solid: the sites of the outermost layer stand half a spacing
 //! below the faces, and those beneath make room.
 
+use super::laid::Cells;
 use super::relax::{REACH, Wall, step};
-use super::{Cells, Cut, Site};
 use crate::model::Vec3;
+use crate::populate::Site;
+use crate::populate::row::Cut;
 
 /// Sites that begin no deeper than this move (spacings).
 const MOVING: f64 = 3.0;

@@ -41,7 +41,10 @@ impl Wall {
     pub fn new(dimension: usize) -> Self {
         let function = |r: f64| {
             let u = (r / REACH).min(1.0);
-            (1.0 - u).powi(4) * (1.0 + 4.0 * u)
+            {
+                let square = (1.0 - u) * (1.0 - u);
+                square * square * (1.0 + 4.0 * u)
+            }
         };
         let step = REACH / Self::ROWS as f64;
         let over_face = |depth: f64| -> f64 {
@@ -52,7 +55,7 @@ impl Wall {
                 } else {
                     2.0
                 };
-                part * step * function(depth.hypot(aside))
+                part * step * function(libm::hypot(depth, aside))
             });
             rings.fold(0.0, |sum, ring| sum + ring)
         };

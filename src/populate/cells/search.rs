@@ -4,8 +4,9 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::fit::settled;
-use super::{Block, Cells, Cut};
+use super::laid::{Block, Cells};
 use crate::populate::Wanted;
+use crate::populate::row::Cut;
 
 /// A range of blocks, with a bound of what is in it.
 struct Part {

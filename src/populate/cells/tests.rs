@@ -3,7 +3,7 @@
 use super::relax::{REACH, step};
 use super::tile::{GLASS_EDGES, Tile, split_mix};
 use super::*;
-use crate::model::{Axis, Lattice, Shape};
+use crate::model::{Axis, Body, Lattice, LatticeKind, Shape, SymmetryPlane, Vec3};
 use crate::numerics::kernel::Kernel;
 
 /// Steps in which a tile comes to rest.
