@@ -113,7 +113,8 @@ fn mass(case: &Case, body: &Body, count: u64) -> String {
     if more == 0.0 {
         format!(", {text}")
     } else {
-        format!(", {text} (a particle {more:+.2} % of its spacing's)")
+        let word = if more > 0.0 { "more" } else { "less" };
+        format!(", {text} (each {:.2} % {word} than its cell)", more.abs())
     }
 }
 

@@ -5,6 +5,7 @@
 //! only reads it.
 
 mod absorber;
+mod axis;
 mod beginning;
 mod body;
 mod contact;
@@ -26,8 +27,9 @@ pub mod units;
 pub(crate) use surface::tests as surface_tests;
 
 pub use absorber::{Absorber, OuterFace};
+pub use axis::{Axis, SymmetryPlane};
 pub use beginning::Beginning;
-pub use body::{Axis, Body, Lattice, LatticeKind, SymmetryPlane};
+pub use body::{Body, Lattice, LatticeKind};
 pub use contact::*;
 pub use control::{
     DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm, SphOptions, TimeStepOptions,

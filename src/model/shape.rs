@@ -1,6 +1,7 @@
 //! Where the matter of a body begins: its shape.
 
-use super::{Axis, Form, Placement, Polygon, Solid, Vec3};
+use super::axis::Axis;
+use super::{Form, Placement, Polygon, Solid, Vec3};
 
 /// The geometry of a body, in its final place (m).
 ///

@@ -32,7 +32,7 @@ tables! {
         /// What the first of some shapes holds and none of the others.
         difference: Option<Spanned<Vec<Spanned<ShapeParams>>>>,
         /// Turns it.
-        turn: Option<TurnsParams>,
+        turn: Option<Spanned<TurnsParams>>,
         /// Moves it, once it is turned.
         shift: Option<Point>,
     }

@@ -2,11 +2,10 @@
 
 use toml::Spanned;
 
-use super::solids;
 use crate::input::quantity::{Extent, Placed};
 use crate::input::schema::{BoxParams, CylinderParams, Point, ShapeParams, SphereParams};
 use crate::input::source::Diagnostic;
-use crate::model::{Axis, Form, Polygon, Shape, Vec3};
+use crate::model::{Axis, Form, Placement, Polygon, Shape, Solid, Vec3, rotation};
 
 /// What the shape of one body is read with.
 pub struct Shapes {
@@ -39,6 +38,26 @@ pub fn vector<K>(
         }
     }
     Ok(vector)
+}
+
+/// A form about z in its place: turned so that its axis points along a unit vector.
+pub fn placed(form: Form, axis: &Vec3, centre: Vec3) -> Shape {
+    let place = Placement::turned(onto(axis), centre);
+    Shape::Solid(Solid::Form(form, place))
+}
+
+/// The matrix that turns z into a unit vector.
+fn onto(axis: &Vec3) -> nalgebra::Matrix3<f64> {
+    let along = Axis::ALL.into_iter().find(|a| axis[a.index()].abs() == 1.0);
+    let Some(along) = along else {
+        let across = Vec3::z().cross(axis);
+        return rotation(&across, libm::acos(axis.z.clamp(-1.0, 1.0)));
+    };
+    let onto = Shape::onto(along);
+    if axis[along.index()] > 0.0 {
+        return onto;
+    }
+    onto * nalgebra::Matrix3::from_diagonal(&Vec3::new(1.0, -1.0, -1.0))
 }
 
 impl Shapes {
@@ -179,7 +198,7 @@ impl Shapes {
             [inner, half],
         ];
         let profile = Polygon::new(outline).expect("a rectangle");
-        Ok(solids::placed(Form::Revolved(profile), &axis, centre))
+        Ok(placed(Form::Revolved(profile), &axis, centre))
     }
 
     pub(super) fn positive(&self, value: &Spanned<Extent>, key: &str) -> Result<f64, Diagnostic> {

@@ -2,37 +2,17 @@
 
 use toml::Spanned;
 
-use super::shapes::Shapes;
+use super::shapes::{Shapes, placed};
 use crate::input::schema::{
     AxisParams, ConeParams, EllipsoidParams, OgiveParams, PrismParams, ShapeParams,
     ShapeTurnParams, TorusParams, TurnsParams,
 };
 use crate::input::source::Diagnostic;
-use crate::model::{Axis, Form, Placement, Polygon, Shape, Solid, Vec3, rotation};
+use crate::model::{Form, Placement, Polygon, Shape, Solid, Vec3, rotation};
 
 /// Most corners of a polygon, and most shapes together.
 const MOST_CORNERS: usize = 10_000;
 const MOST_SHAPES: usize = 1000;
-
-/// A form about z in its place: turned so that its axis points along a unit vector.
-pub fn placed(form: Form, axis: &Vec3, centre: Vec3) -> Shape {
-    let place = Placement::turned(onto(axis), centre);
-    Shape::Solid(Solid::Form(form, place))
-}
-
-/// The matrix that turns z into a unit vector.
-fn onto(axis: &Vec3) -> nalgebra::Matrix3<f64> {
-    let along = Axis::ALL.into_iter().find(|a| axis[a.index()].abs() == 1.0);
-    let Some(along) = along else {
-        let across = Vec3::z().cross(axis);
-        return rotation(&across, libm::acos(axis.z.clamp(-1.0, 1.0)));
-    };
-    let onto = Shape::onto(along);
-    if axis[along.index()] > 0.0 {
-        return onto;
-    }
-    onto * nalgebra::Matrix3::from_diagonal(&Vec3::new(1.0, -1.0, -1.0))
-}
 
 impl Shapes {
     /// A unit vector; z if absent.
@@ -202,7 +182,7 @@ impl Shapes {
     pub(super) fn moved(&self, params: &ShapeParams, shape: Shape) -> Result<Shape, Diagnostic> {
         let middle = shape.centre();
         let mut solid = shape.solid(self.dimension);
-        let turns: &[ShapeTurnParams] = match &params.turn {
+        let turns: &[ShapeTurnParams] = match params.turn.as_ref().map(Spanned::get_ref) {
             None => &[],
             Some(TurnsParams::One(turn)) => std::slice::from_ref(turn),
             Some(TurnsParams::Many(turns)) => turns,

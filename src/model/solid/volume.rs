@@ -4,7 +4,7 @@
 use crate::model::Vec3;
 
 /// Halvings of the longest edge, in two and in three dimensions.
-const HALVINGS: [u32; 2] = [10, 6];
+const HALVINGS: [u32; 2] = [10, 7];
 
 /// Volume (m³; m² in two dimensions) of what lies within a box (m) where a distance that grows no
 /// faster than its argument is negative.

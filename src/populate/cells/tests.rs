@@ -177,7 +177,7 @@ fn tiles_are_even_and_isotropic() {
         }
         let (mean, rms) = spread(&sums);
         // The mean of Σ e⁴ over random directions is 3/5 in space and 3/4 in the plane; its scatter
-        // over the nearest neighbours of 4096 sites is .002 and .003.
+        // over 4096 directions is .0027 and .0028.
         let isotropic = if dimension == 3 { 0.6 } else { 0.75 };
         println!(
             "{dimension}-D: sum {mean} ± {rms}, nearest {least}, K4 {}",
