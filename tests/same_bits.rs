@@ -577,3 +577,29 @@ fn fragments_that_cross_slabs_and_ranks_that_run_empty() {
     run(4, 1, &case, &["--set", "domain.balance_every=3"], &balanced);
     assert_same(&one, &balanced, "four ranks with moving faces");
 }
+
+/// Glass whose faces are fitted by each rank for its slab, in a turned and pierced plate and at
+/// symmetry planes.
+#[test]
+fn glass_in_shapes_of_any_form() {
+    let (_keep, at) = folder();
+    let glass = [
+        QUARTER,
+        &[
+            "--set",
+            "body.sphere.lattice=glass",
+            "--set",
+            "body.plate.lattice={ kind = \"glass\", seed = 7 }",
+            "--set",
+            "body.plate.shape={ difference = [{ cylinder = { radius = \"1.5 mm\", length = \"0.2 mm\" } }, \
+             { ellipsoid = { centre = [\"1 mm\", \"0.5 mm\", 0], semi_axes = [\"0.3 mm\", \"0.2 mm\", \"1 mm\"] } }], \
+             turn = { axis = \"x\", angle = \"1 deg\" } }",
+        ],
+    ]
+    .concat();
+    let (one, three, stopped) = (at("one"), at("three"), at("stopped"));
+    run(1, 2, &glass, &[], &one);
+    run(3, 1, &glass, &[], &three);
+    assert_same(&one, &three, "three ranks");
+    assert_same_in_legs(&glass, &[2, 3], &["0.1us"], &one, &stopped);
+}
