@@ -134,7 +134,7 @@ tables! {
     }
 
     /// `turn` of a shape
-    ShapeTurnParams {
+    TurnsTable {
         /// Axis of the turn.
         axis: Spanned<AxisParams>,
         /// By how much, right-handed.

@@ -8,7 +8,7 @@ use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use toml::Spanned;
 
 use super::choices::{AxisWord, Direction};
-use super::{Point, ShapeTurnParams};
+use super::{Point, TurnsTable};
 use crate::input::quantity::{Angle, AngularRate, Length, Placed};
 use crate::model::{Axis, LatticeKind};
 
@@ -185,9 +185,9 @@ typed_as! {
 #[derive(Debug)]
 pub enum TurnsParams {
     /// One.
-    One(Box<ShapeTurnParams>),
+    One(Box<TurnsTable>),
     /// Several.
-    Many(Vec<ShapeTurnParams>),
+    Many(Vec<TurnsTable>),
 }
 
 typed_as! {

@@ -4,8 +4,8 @@ use toml::Spanned;
 
 use super::shapes::{Shapes, placed};
 use crate::input::schema::{
-    AxisParams, ConeParams, EllipsoidParams, OgiveParams, PrismParams, ShapeParams,
-    ShapeTurnParams, TorusParams, TurnsParams,
+    AxisParams, ConeParams, EllipsoidParams, OgiveParams, PrismParams, ShapeParams, TorusParams,
+    TurnsParams, TurnsTable,
 };
 use crate::input::source::Diagnostic;
 use crate::model::{Form, Placement, Polygon, Shape, Solid, Vec3, rotation};
@@ -182,7 +182,7 @@ impl Shapes {
     pub(super) fn moved(&self, params: &ShapeParams, shape: Shape) -> Result<Shape, Diagnostic> {
         let middle = shape.centre();
         let mut solid = shape.solid(self.dimension);
-        let turns: &[ShapeTurnParams] = match params.turn.as_ref().map(Spanned::get_ref) {
+        let turns: &[TurnsTable] = match params.turn.as_ref().map(Spanned::get_ref) {
             None => &[],
             Some(TurnsParams::One(turn)) => std::slice::from_ref(turn),
             Some(TurnsParams::Many(turns)) => turns,
