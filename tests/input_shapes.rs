@@ -1,5 +1,7 @@
 //! Shapes and fillings as they are typed: volumes, masses, counts, places.
 
+#![allow(clippy::cast_precision_loss, reason = "few particles")]
+
 use std::f64::consts::PI;
 
 use whipple::input::parse;

@@ -75,6 +75,9 @@ impl Shape {
     }
 
     /// The same shape as a solid; in two dimensions it goes on along z.
+    ///
+    /// # Panics
+    /// If a cylinder has no radius or no length.
     #[must_use]
     pub fn solid(&self, dimension: usize) -> Solid {
         let ball =
@@ -92,7 +95,10 @@ impl Shape {
                 centre,
                 radius,
                 inner_radius,
-            } => Solid::Difference(vec![ball(centre, *radius), ball(centre, *inner_radius)]),
+            } => Solid::Difference(
+                Box::new(ball(centre, *radius)),
+                vec![ball(centre, *inner_radius)],
+            ),
             Self::Cylinder {
                 centre,
                 axis,

@@ -67,7 +67,7 @@ pub enum Solid {
     /// What all of them hold.
     Intersection(Vec<Solid>),
     /// What the first holds and none of the others.
-    Difference(Vec<Solid>),
+    Difference(Box<Solid>, Vec<Solid>),
 }
 
 impl Solid {
@@ -84,12 +84,10 @@ impl Solid {
                 .iter()
                 .map(|part| part.distance(x))
                 .fold(f64::NEG_INFINITY, f64::max),
-            Self::Difference(parts) => {
-                let (base, cuts) = parts.split_first().expect("one part at least");
-                cuts.iter()
-                    .map(|cut| -cut.distance(x))
-                    .fold(base.distance(x), f64::max)
-            }
+            Self::Difference(base, cuts) => cuts
+                .iter()
+                .map(|cut| -cut.distance(x))
+                .fold(base.distance(x), f64::max),
         }
     }
 
@@ -114,8 +112,7 @@ impl Solid {
                     part.faces(x, reach, tell);
                 }
             }
-            Self::Difference(parts) => {
-                let (base, cuts) = parts.split_first().expect("one part at least");
+            Self::Difference(base, cuts) => {
                 base.faces(x, reach, tell);
                 for cut in cuts {
                     let depth = cut.distance(x);
@@ -169,7 +166,7 @@ impl Solid {
                 let both = boxes.reduce(|a, b| (a.0.sup(&b.0), a.1.inf(&b.1)));
                 both.unwrap_or(nothing)
             }
-            Self::Difference(parts) => parts[0].bounds(),
+            Self::Difference(base, _) => base.bounds(),
         }
     }
 
@@ -184,9 +181,15 @@ impl Solid {
     pub fn translate(&mut self, way: &Vec3) {
         match self {
             Self::Form(_, place) => place.at += way,
-            Self::Union(parts) | Self::Intersection(parts) | Self::Difference(parts) => {
+            Self::Union(parts) | Self::Intersection(parts) => {
                 for part in parts {
                     part.translate(way);
+                }
+            }
+            Self::Difference(base, cuts) => {
+                base.translate(way);
+                for cut in cuts {
+                    cut.translate(way);
                 }
             }
         }
@@ -199,9 +202,15 @@ impl Solid {
                 place.at = about + turn * (place.at - about);
                 place.turn = turn * place.turn;
             }
-            Self::Union(parts) | Self::Intersection(parts) | Self::Difference(parts) => {
+            Self::Union(parts) | Self::Intersection(parts) => {
                 for part in parts {
                     part.rotate(turn, about);
+                }
+            }
+            Self::Difference(base, cuts) => {
+                base.rotate(turn, about);
+                for cut in cuts {
+                    cut.rotate(turn, about);
                 }
             }
         }

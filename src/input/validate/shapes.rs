@@ -3,7 +3,9 @@
 use toml::Spanned;
 
 use crate::input::quantity::{Extent, Placed};
-use crate::input::schema::{BoxParams, CylinderParams, Point, ShapeParams, SphereParams};
+use crate::input::schema::{
+    AxisParams, BoxParams, CylinderParams, Point, ShapeParams, SphereParams,
+};
 use crate::input::source::Diagnostic;
 use crate::model::{Axis, Form, Placement, Polygon, Shape, Solid, Vec3, rotation};
 
@@ -40,6 +42,33 @@ pub fn vector<K>(
     Ok(vector)
 }
 
+/// A unit vector; z if absent.
+pub fn unit_vector(axis: Option<&Spanned<AxisParams>>) -> Result<Vec3, Diagnostic> {
+    let Some(params) = axis else {
+        return Ok(Vec3::z());
+    };
+    let refuse = |title: String| Err(Diagnostic::new(params.span(), title));
+    match params.get_ref() {
+        AxisParams::Word(word) => {
+            let (axis, sense) = word.sense();
+            let mut unit = Vec3::zeros();
+            unit[axis] = sense;
+            Ok(unit)
+        }
+        AxisParams::Vector(vector) => {
+            let &[x, y, z] = vector.as_slice() else {
+                let found = vector.len();
+                return refuse(format!("`axis` must have 3 components, found {found}"));
+            };
+            let longest = vector.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+            if !(longest > 0.0 && longest.is_finite()) || vector.iter().any(|c| c.is_nan()) {
+                return refuse("`axis` must be a vector of some length".to_owned());
+            }
+            Ok((Vec3::new(x, y, z) / longest).normalize())
+        }
+    }
+}
+
 /// A form about z in its place: turned so that its axis points along a unit vector.
 pub fn placed(form: Form, axis: &Vec3, centre: Vec3) -> Shape {
     let place = Placement::turned(onto(axis), centre);
@@ -68,7 +97,7 @@ impl Shapes {
         if params.turn.is_none() && params.shift.is_none() {
             return Ok(shape);
         }
-        self.moved(params, shape)
+        self.moved(params, &shape)
     }
 
     /// The form of a shape, before it is turned and moved.
@@ -180,7 +209,7 @@ impl Shapes {
         let radius = self.positive(&params.radius, "radius")?;
         let length = self.positive(&params.length, "length")?;
         let bore = self.bore(params.inner_radius.as_ref(), radius)?;
-        let axis = self.direction(params.axis.as_ref())?;
+        let axis = unit_vector(params.axis.as_ref())?;
         let along = Axis::ALL.into_iter().find(|a| axis[a.index()].abs() == 1.0);
         if let (None, Some(axis)) = (bore, along) {
             return Ok(Shape::Cylinder {

@@ -2,46 +2,19 @@
 
 use toml::Spanned;
 
-use super::shapes::{Shapes, placed};
+use super::shapes::{Shapes, placed, unit_vector};
 use crate::input::schema::{
-    AxisParams, ConeParams, EllipsoidParams, OgiveParams, PrismParams, ShapeParams, TorusParams,
-    TurnsParams, TurnsTable,
+    ConeParams, EllipsoidParams, OgiveParams, PrismParams, ShapeParams, TorusParams, TurnsParams,
+    TurnsTable,
 };
 use crate::input::source::Diagnostic;
-use crate::model::{Form, Placement, Polygon, Shape, Solid, Vec3, rotation};
+use crate::model::{Form, Placement, Polygon, Shape, Solid, rotation};
 
 /// Most corners of a polygon, and most shapes together.
 const MOST_CORNERS: usize = 10_000;
 const MOST_SHAPES: usize = 1000;
 
 impl Shapes {
-    /// A unit vector; z if absent.
-    pub fn direction(&self, axis: Option<&Spanned<AxisParams>>) -> Result<Vec3, Diagnostic> {
-        let Some(params) = axis else {
-            return Ok(Vec3::z());
-        };
-        let refuse = |title: String| Err(Diagnostic::new(params.span(), title));
-        match params.get_ref() {
-            AxisParams::Word(word) => {
-                let (axis, sense) = word.sense();
-                let mut unit = Vec3::zeros();
-                unit[axis] = sense;
-                Ok(unit)
-            }
-            AxisParams::Vector(vector) => {
-                let &[x, y, z] = vector.as_slice() else {
-                    let found = vector.len();
-                    return refuse(format!("`axis` must have 3 components, found {found}"));
-                };
-                let longest = vector.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-                if !(longest > 0.0 && longest.is_finite()) || vector.iter().any(|c| c.is_nan()) {
-                    return refuse("`axis` must be a vector of some length".to_owned());
-                }
-                Ok((Vec3::new(x, y, z) / longest).normalize())
-            }
-        }
-    }
-
     pub(super) fn ellipsoid(&self, table: &Spanned<EllipsoidParams>) -> Result<Shape, Diagnostic> {
         let params = table.get_ref();
         let centre = self.point(params.centre.as_ref(), "centre")?;
@@ -71,7 +44,7 @@ impl Shapes {
             }
         }
         let profile = Polygon::new(outline).expect("a triangle or a trapezium");
-        let axis = self.direction(params.axis.as_ref())?;
+        let axis = unit_vector(params.axis.as_ref())?;
         Ok(placed(Form::Revolved(profile), &axis, centre))
     }
 
@@ -91,7 +64,7 @@ impl Shapes {
                 "the `length` of an ogive, which counts its nose, must not be less than that";
             return Err(Diagnostic::new(params.length.span(), title));
         }
-        let axis = self.direction(params.axis.as_ref())?;
+        let axis = unit_vector(params.axis.as_ref())?;
         let form = Form::Ogive {
             radius,
             arc: (radius * radius + nose * nose) / (2.0 * radius),
@@ -112,7 +85,7 @@ impl Shapes {
             return Err(Diagnostic::new(params.tube_radius.span(), title));
         }
         let centre = self.point(params.centre.as_ref(), "centre")?;
-        let axis = self.direction(params.axis.as_ref())?;
+        let axis = unit_vector(params.axis.as_ref())?;
         Ok(placed(Form::Torus { radius, tube }, &axis, centre))
     }
 
@@ -147,7 +120,7 @@ impl Shapes {
                 return Err(Diagnostic::new(length.span(), title));
             }
         };
-        let axis = self.direction(params.axis.as_ref())?;
+        let axis = unit_vector(params.axis.as_ref())?;
         if let (2, Some(given)) = (self.dimension, &params.axis) {
             let title = "in two dimensions a prism has no `axis`";
             return Err(Diagnostic::new(given.span(), title));
@@ -164,7 +137,9 @@ impl Shapes {
     }
 
     pub(super) fn difference(&self, parts: &Parts) -> Result<Shape, Diagnostic> {
-        Ok(Shape::Solid(Solid::Difference(self.parts(parts)?)))
+        let mut cuts = self.parts(parts)?;
+        let base = Box::new(cuts.remove(0));
+        Ok(Shape::Solid(Solid::Difference(base, cuts)))
     }
 
     fn parts(&self, parts: &Parts) -> Result<Vec<Solid>, Diagnostic> {
@@ -179,7 +154,7 @@ impl Shapes {
     }
 
     /// A shape turned, and then moved.
-    pub(super) fn moved(&self, params: &ShapeParams, shape: Shape) -> Result<Shape, Diagnostic> {
+    pub(super) fn moved(&self, params: &ShapeParams, shape: &Shape) -> Result<Shape, Diagnostic> {
         let middle = shape.centre();
         let mut solid = shape.solid(self.dimension);
         let turns: &[TurnsTable] = match params.turn.as_ref().map(Spanned::get_ref) {
@@ -188,7 +163,7 @@ impl Shapes {
             Some(TurnsParams::Many(turns)) => turns,
         };
         for turn in turns {
-            let axis = self.direction(Some(&turn.axis))?;
+            let axis = unit_vector(Some(&turn.axis))?;
             if self.dimension < 2 || (self.dimension == 2 && axis.z.abs() != 1.0) {
                 let title = match self.dimension {
                     1 => "in one dimension nothing turns",

@@ -40,12 +40,12 @@ fn angle() -> Vec<[f64; 2]> {
 fn forms() -> Vec<(Form, f64)> {
     let (radius, nose) = (0.5_f64, 1.2_f64);
     let arc = (radius * radius + nose * nose) / (2.0 * radius);
-    let slices = 200_000;
+    let slices = 200_000_u32;
     let nose_volume: f64 = (0..slices)
         .map(|n| {
-            let z = (n as f64 + 0.5) / slices as f64 * nose;
+            let z = (f64::from(n) + 0.5) / f64::from(slices) * nose;
             let r = (arc * arc - z * z).sqrt() - (arc - radius);
-            PI * r * r * nose / slices as f64
+            PI * r * r * nose / f64::from(slices)
         })
         .sum();
     vec![
@@ -98,7 +98,7 @@ fn solids() -> Vec<Solid> {
     let cube = Solid::Form(Form::Box(Vec3::repeat(1.0)), Placement::at(Vec3::zeros()));
     all.push(Solid::Union(vec![ball(-0.5), ball(0.5)]));
     all.push(Solid::Intersection(vec![ball(0.5), cube.clone()]));
-    all.push(Solid::Difference(vec![cube, ball(1.0)]));
+    all.push(Solid::Difference(Box::new(cube), vec![ball(1.0)]));
     all
 }
 
@@ -134,7 +134,7 @@ fn together_solids_have_the_volume_of_geometry() {
         ),
         (Solid::Intersection(vec![ball(0.0), ball(0.8)]), lens(0.8)),
         (
-            Solid::Difference(vec![ball(0.0), ball(0.8)]),
+            Solid::Difference(Box::new(ball(0.0)), vec![ball(0.8)]),
             whole - lens(0.8),
         ),
     ] {
@@ -144,7 +144,7 @@ fn together_solids_have_the_volume_of_geometry() {
         let half = solid.volume_above(&[(1, 0.0)], 3) / (0.5 * volume) - 1.0;
         assert!(half.abs() < 1e-5, "{half:e}");
     }
-    let flat = Solid::Difference(vec![ball(0.0), ball(3.0)]);
+    let flat = Solid::Difference(Box::new(ball(0.0)), vec![ball(3.0)]);
     assert!((flat.volume(2) / PI - 1.0).abs() < 1e-6);
 }
 
@@ -153,7 +153,7 @@ fn a_solid_lies_within_its_box() {
     for solid in solids() {
         let (lower, upper) = solid.bounds();
         for n in 0..4000 {
-            let f = |k: u64| (n * k % 4001) as f64 / 4000.0 * 8.0 - 4.0;
+            let f = |k: u32| f64::from(n * k % 4001) / 4000.0 * 8.0 - 4.0;
             let x = Vec3::new(f(1), f(61), f(997));
             let is_within = (0..3).all(|a| x[a] >= lower[a] && x[a] <= upper[a]);
             assert!(is_within || solid.distance(&x) > 0.0, "{solid:?} at {x}");
@@ -188,7 +188,7 @@ fn ready_shapes_are_the_solids_that_they_become() {
     for shape in shapes {
         let solid = shape.solid(3);
         for n in 0..500 {
-            let f = |k: u64| (n * k % 503) as f64 / 502.0 * 5.0 - 2.5;
+            let f = |k: u32| f64::from(n * k % 503) / 502.0 * 5.0 - 2.5;
             let x = Vec3::new(f(1), f(31), f(97));
             let (own, other) = (shape.distance(&x, 3), solid.distance(&x));
             assert!(

@@ -1,5 +1,12 @@
 //! Tiles, fits, counts, volumes.
 
+#![allow(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "small numbers"
+)]
+
 use super::relax::{REACH, step};
 use super::tile::{GLASS_EDGES, Tile, split_mix};
 use super::*;
