@@ -1,6 +1,6 @@
 //! Where the matter of a body begins: its shape.
 
-use super::axis::Axis;
+use super::axis::{Axis, SymmetryPlane};
 use super::{Form, Placement, Polygon, Solid, Vec3};
 
 /// The geometry of a body, in its final place (m).
@@ -140,31 +140,30 @@ impl Shape {
         }
     }
 
-    /// [`Self::volume`] of what lies above planes, by their axes (0, 1, 2) and places (m). Planes
-    /// through the middle of a ready shape halve it; others cut a volume that is integrated, but for
-    /// boxes.
+    /// [`Self::volume`] of what lies above symmetry planes. Planes through the middle of a ready shape
+    /// halve it; others cut a volume that is integrated, but for boxes.
     #[must_use]
-    pub fn volume_above(&self, planes: &[(usize, f64)], dimension: usize) -> f64 {
+    pub fn volume_above(&self, planes: &[SymmetryPlane], dimension: usize) -> f64 {
+        let sides = planes
+            .iter()
+            .map(|plane| (plane.axis.index(), plane.position));
         if let Self::Box { lower, upper } = self {
             let mut lower = *lower;
-            for &(a, at) in planes {
+            for (a, at) in sides {
                 lower[a] = lower[a].max(at);
             }
             let edges = (0..dimension).map(|a| (upper[a] - lower[a]).max(0.0));
             return edges.product();
         }
-        let (lower, _) = self.solid(dimension).bounds();
-        let cut: Vec<(usize, f64)> = planes
-            .iter()
-            .copied()
-            .filter(|&(a, at)| at > lower[a])
-            .collect();
+        let solid = self.solid(dimension);
+        let (lower, _) = solid.bounds();
         let (middle, rounding) = (self.centre(), 1e-9 * self.reach());
+        let cut: Vec<(usize, f64)> = sides.filter(|&(a, at)| at > lower[a]).collect();
         let is_halved = |&(a, at): &(usize, f64)| (middle[a] - at).abs() < rounding;
         if !matches!(self, Self::Solid(_)) && cut.iter().all(is_halved) {
             return cut.iter().fold(self.volume(dimension), |v, _| 0.5 * v);
         }
-        self.solid(dimension).volume_above(&cut, dimension)
+        solid.volume_above(&cut, dimension)
     }
 
     /// Moves it (m).

@@ -17,7 +17,7 @@ use super::row::Cut;
 use fit::Fitted;
 
 pub(super) use laid::Cells;
-pub(super) use search::{extremes, search};
+pub(super) use search::{Blocks, extremes};
 
 /// All sites that the cuts leave, by where they stand before they are fitted.
 pub(super) fn sites(cells: Cells, cuts: Vec<Cut>) -> impl Iterator<Item = Site> + use<> {

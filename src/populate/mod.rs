@@ -7,6 +7,7 @@ mod cells;
 mod extremes;
 mod lattice;
 mod overlap;
+mod parts;
 mod row;
 mod sample;
 mod search;
@@ -21,7 +22,7 @@ pub use stress_points::{StressSite, stress_count, stress_index_end, stress_sites
 pub use tally::tally;
 pub use touch::{touching_distance, touching_value};
 
-use crate::model::{Axis, Body, RigidSurface, SymmetryPlane};
+use crate::model::{Axis, Body, LatticeKind, RigidSurface, SymmetryPlane};
 use cells::Cells;
 use lattice::Stack;
 use row::cuts;
@@ -59,7 +60,7 @@ const SAME_VOLUME: f64 = 1e-9;
 pub struct Site {
     /// Position (m); components beyond the dimension are zero.
     pub position: [f64; 3],
-    /// Linear index in the body's bounding lattice, below [`index_end`].
+    /// Number of the site in the body, below [`index_end`].
     pub index: u64,
 }
 
@@ -97,7 +98,8 @@ pub struct Share {
 /// The sites of a body above all symmetry planes and, if given, in a slab, in the order of their
 /// index.
 ///
-/// Only the lattice rows that meet the slab are visited; inside a row no site is tested.
+/// Only what of the filling meets the slab is visited; inside a row of a lattice no site is tested.
+/// Slabs part fitted sites by where they stand before they are fitted.
 pub fn sites(
     body: &Body,
     dimension: usize,
@@ -209,18 +211,10 @@ pub fn particle_volume(body: &Body, dimension: usize) -> f64 {
 /// symmetry planes, so its particles share what lies above them.
 #[must_use]
 pub fn even_volume(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> Option<f64> {
-    let planes = if moves_sites(body, dimension) {
-        symmetry
-    } else {
-        &[]
-    };
-    let sides: Vec<(usize, f64)> = planes
-        .iter()
-        .map(|plane| (plane.axis.index(), plane.position))
-        .collect();
+    let planes = if moves_sites(body) { symmetry } else { &[] };
     #[allow(clippy::cast_precision_loss)] // far fewer than 2^52
     let count = count(body, dimension, planes, None) as f64;
-    let even = body.shape.volume_above(&sides, dimension) / count;
+    let even = body.shape.volume_above(planes, dimension) / count;
     let cell = particle_volume(body, dimension);
     (count > 0.0 && (even / cell - 1.0).abs() > SAME_VOLUME).then_some(even)
 }
@@ -228,8 +222,8 @@ pub fn even_volume(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) ->
 /// Whether sites end elsewhere than where slabs are cut: particles may begin a spacing outside the
 /// slab whose sites they are.
 #[must_use]
-pub fn moves_sites(body: &Body, dimension: usize) -> bool {
-    Cells::of(body, dimension, &[]).is_some_and(|cells| cells.is_fitted())
+pub fn moves_sites(body: &Body) -> bool {
+    body.lattice.kind == LatticeKind::Glass
 }
 
 /// One more than the largest [`Site::index`] that the body can have; saturates at `u64::MAX`.

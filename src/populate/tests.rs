@@ -10,7 +10,7 @@ use crate::model::{Initial, Lattice, LatticeKind, Shape, Vec3};
 mod counts;
 mod touch;
 
-fn body(shape: Shape, kind: LatticeKind, spacing: f64, angle: f64) -> Body {
+pub(super) fn body(shape: Shape, kind: LatticeKind, spacing: f64, angle: f64) -> Body {
     Body {
         name: "body".to_owned(),
         shape,

@@ -160,8 +160,7 @@ impl Simulation {
     /// Hands particles that begin outside of their slab to its owner, if there can be such.
     /// Collective.
     fn deal_moved(&mut self, comm: &Comm) {
-        let (mut bodies, dimension) = (self.case.bodies.iter(), self.case.dimension);
-        if bodies.any(|body| populate::moves_sites(body, dimension)) {
+        if self.case.bodies.iter().any(populate::moves_sites) {
             self.partition.deal(comm, &mut self.particles);
         }
     }

@@ -2,7 +2,7 @@
 
 use toml::Spanned;
 
-use super::shapes::{Shapes, unit_vector};
+use super::shapes::{Shapes, axis_vector};
 use crate::input::schema::LatticeParams;
 use crate::input::source::Diagnostic;
 use crate::model::{Axis, Lattice, LatticeKind, Shape};
@@ -43,7 +43,7 @@ pub fn lattice(
             let title = "in two dimensions a lattice turns about z alone";
             return Err(Diagnostic::new(axis.span(), title));
         }
-        Some(_) => Some(unit_vector(params.axis.as_ref())?),
+        Some(_) => Some(axis_vector(params.axis.as_ref())?),
     };
     Ok(Lattice {
         kind: params.kind,

@@ -43,11 +43,10 @@ pub fn vector<K>(
 }
 
 /// A unit vector; z if absent.
-pub fn unit_vector(axis: Option<&Spanned<AxisParams>>) -> Result<Vec3, Diagnostic> {
+pub fn axis_vector(axis: Option<&Spanned<AxisParams>>) -> Result<Vec3, Diagnostic> {
     let Some(params) = axis else {
         return Ok(Vec3::z());
     };
-    let refuse = |title: String| Err(Diagnostic::new(params.span(), title));
     match params.get_ref() {
         AxisParams::Word(word) => {
             let (axis, sense) = word.sense();
@@ -55,18 +54,30 @@ pub fn unit_vector(axis: Option<&Spanned<AxisParams>>) -> Result<Vec3, Diagnosti
             unit[axis] = sense;
             Ok(unit)
         }
-        AxisParams::Vector(vector) => {
-            let &[x, y, z] = vector.as_slice() else {
-                let found = vector.len();
-                return refuse(format!("`axis` must have 3 components, found {found}"));
-            };
-            let longest = vector.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-            if !(longest > 0.0 && longest.is_finite()) || vector.iter().any(|c| c.is_nan()) {
-                return refuse("`axis` must be a vector of some length".to_owned());
-            }
-            Ok((Vec3::new(x, y, z) / longest).normalize())
-        }
+        AxisParams::Vector(vector) => match normalised("axis", vector, 3) {
+            Ok(unit) => Ok(unit.into()),
+            Err(title) => Err(Diagnostic::new(params.span(), title)),
+        },
     }
+}
+
+/// A vector as long as one, or what is wrong with it.
+pub fn normalised(key: &str, vector: &[f64], dimension: usize) -> Result<[f64; 3], String> {
+    if vector.len() != dimension {
+        return Err(format!(
+            "`{key}` must have {dimension} components, found {}",
+            vector.len()
+        ));
+    }
+    let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if !(length > 0.0 && length.is_finite()) {
+        return Err(format!("`{key}` must be a vector of some length"));
+    }
+    let mut unit = [0.0; 3];
+    for (component, x) in unit.iter_mut().zip(vector) {
+        *component = x / length;
+    }
+    Ok(unit)
 }
 
 /// A form about z in its place: turned so that its axis points along a unit vector.
@@ -209,7 +220,7 @@ impl Shapes {
         let radius = self.positive(&params.radius, "radius")?;
         let length = self.positive(&params.length, "length")?;
         let bore = self.bore(params.inner_radius.as_ref(), radius)?;
-        let axis = unit_vector(params.axis.as_ref())?;
+        let axis = axis_vector(params.axis.as_ref())?;
         let along = Axis::ALL.into_iter().find(|a| axis[a.index()].abs() == 1.0);
         if let (None, Some(axis)) = (bore, along) {
             return Ok(Shape::Cylinder {

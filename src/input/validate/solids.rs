@@ -2,7 +2,7 @@
 
 use toml::Spanned;
 
-use super::shapes::{Shapes, placed, unit_vector};
+use super::shapes::{Shapes, axis_vector, placed};
 use crate::input::schema::{
     ConeParams, EllipsoidParams, OgiveParams, PrismParams, ShapeParams, TorusParams, TurnsParams,
     TurnsTable,
@@ -44,7 +44,7 @@ impl Shapes {
             }
         }
         let profile = Polygon::new(outline).expect("a triangle or a trapezium");
-        let axis = unit_vector(params.axis.as_ref())?;
+        let axis = axis_vector(params.axis.as_ref())?;
         Ok(placed(Form::Revolved(profile), &axis, centre))
     }
 
@@ -64,7 +64,7 @@ impl Shapes {
                 "the `length` of an ogive, which counts its nose, must not be less than that";
             return Err(Diagnostic::new(params.length.span(), title));
         }
-        let axis = unit_vector(params.axis.as_ref())?;
+        let axis = axis_vector(params.axis.as_ref())?;
         let form = Form::Ogive {
             radius,
             arc: (radius * radius + nose * nose) / (2.0 * radius),
@@ -85,7 +85,7 @@ impl Shapes {
             return Err(Diagnostic::new(params.tube_radius.span(), title));
         }
         let centre = self.point(params.centre.as_ref(), "centre")?;
-        let axis = unit_vector(params.axis.as_ref())?;
+        let axis = axis_vector(params.axis.as_ref())?;
         Ok(placed(Form::Torus { radius, tube }, &axis, centre))
     }
 
@@ -120,7 +120,7 @@ impl Shapes {
                 return Err(Diagnostic::new(length.span(), title));
             }
         };
-        let axis = unit_vector(params.axis.as_ref())?;
+        let axis = axis_vector(params.axis.as_ref())?;
         if let (2, Some(given)) = (self.dimension, &params.axis) {
             let title = "in two dimensions a prism has no `axis`";
             return Err(Diagnostic::new(given.span(), title));
@@ -163,7 +163,7 @@ impl Shapes {
             Some(TurnsParams::Many(turns)) => turns,
         };
         for turn in turns {
-            let axis = unit_vector(Some(&turn.axis))?;
+            let axis = axis_vector(Some(&turn.axis))?;
             if self.dimension < 2 || (self.dimension == 2 && axis.z.abs() != 1.0) {
                 let title = match self.dimension {
                     1 => "in one dimension nothing turns",

@@ -11,7 +11,7 @@ use super::axis;
 use super::check::{Allowed, Value, number};
 use super::loads::{Reader, given_name};
 use super::motion::{motion, rate};
-use super::shapes::vector;
+use super::shapes::{normalised, vector};
 use super::touch::direction;
 use crate::input::quantity::{Length, Placed};
 use crate::input::schema::contact::resistance;
@@ -291,21 +291,8 @@ pub fn unit_vector(
             normal[axis.index()] = if forward { 1.0 } else { -1.0 };
         }
         NormalParams::Vector(vector) => {
-            if vector.len() != dimension {
-                let title = format!(
-                    "`{key}` must have {dimension} components, found {}",
-                    vector.len()
-                );
-                return Err(Diagnostic::new(params.span(), title));
-            }
-            let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
-            if !(length > 0.0 && length.is_finite()) {
-                let title = format!("`{key}` must be a vector of some length");
-                return Err(Diagnostic::new(params.span(), title));
-            }
-            for (component, x) in normal.iter_mut().zip(vector) {
-                *component = x / length;
-            }
+            let unit = normalised(key, vector, dimension);
+            normal = unit.map_err(|title| Diagnostic::new(params.span(), title))?;
         }
     }
     Ok(normal)

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use super::tile::{self, Tile};
-use crate::model::{Body, LatticeKind, Solid, SymmetryPlane, Vec3, rotation};
+use crate::model::{Body, LatticeKind, Shape, Solid, SymmetryPlane, Vec3, rotation};
 use crate::populate::row::Cut;
 use crate::populate::{Share, Site};
 
@@ -38,11 +38,14 @@ impl Cells {
     /// Of a body, if it is not filled by rows.
     pub fn of(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> Option<Self> {
         let lattice = &body.lattice;
-        let solid = body.shape.solid(dimension);
-        let is_ordered = matches!(lattice.kind, LatticeKind::Cubic | LatticeKind::Hexagonal);
-        let is_simple = !matches!(body.shape, crate::model::Shape::Solid(_));
-        let is_rings = lattice.kind == LatticeKind::Rings;
-        if is_rings || (is_ordered && is_simple && lattice.axis.is_none()) {
+        let has_rows = match lattice.kind {
+            LatticeKind::Rings => true,
+            LatticeKind::Cubic | LatticeKind::Hexagonal => {
+                lattice.axis.is_none() && !matches!(body.shape, Shape::Solid(_))
+            }
+            LatticeKind::BodyCentred | LatticeKind::FaceCentred | LatticeKind::Glass => false,
+        };
+        if has_rows {
             return None;
         }
         let tile = Tile::of(lattice.kind, dimension);
@@ -63,7 +66,7 @@ impl Cells {
             turn,
             corner: Vec3::zeros(),
             tiles: [1; 3],
-            solid,
+            solid: body.shape.solid(dimension),
         };
         cells.lay(body.shape.centre(), shift);
         Some(cells)

@@ -10,7 +10,7 @@
 use super::relax::{REACH, step};
 use super::tile::{GLASS_EDGES, Tile, split_mix};
 use super::*;
-use crate::model::{Axis, Body, Lattice, LatticeKind, Shape, SymmetryPlane, Vec3};
+use crate::model::{Axis, Body, LatticeKind, Shape, SymmetryPlane, Vec3};
 use crate::numerics::kernel::Kernel;
 
 /// Steps in which a tile comes to rest.
@@ -89,23 +89,9 @@ fn tiles_are_relaxed_by_the_rules_of_the_fit() {
 }
 
 fn body(shape: Shape, kind: LatticeKind, spacing: f64) -> Body {
-    Body {
-        name: "body".to_owned(),
-        shape,
-        material: 0,
-        lattice: Lattice {
-            kind,
-            spacing,
-            seed: 3,
-            ..Lattice::default()
-        },
-        density: None,
-        initial: crate::model::Initial::default(),
-        velocity: Vec3::zeros(),
-        angular_velocity: Vec3::zeros(),
-        rigid: None,
-        smoothing_length: 1.3 * spacing,
-    }
+    let mut body = crate::populate::tests::body(shape, kind, spacing, 0.0);
+    body.lattice.seed = 3;
+    body
 }
 
 fn ball(radius: f64) -> Shape {

@@ -1,0 +1,117 @@
+//! Looking for the sites where a function of place is smallest, part by part of a filling.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use super::Wanted;
+
+/// A filling of which parts are ranges of three indices.
+pub(super) trait Parts {
+    /// Ends of the indices of the whole.
+    fn all(&self) -> [u64; 3];
+
+    /// The axis across which a part is halved.
+    fn longest(&self, first: [u64; 3], end: [u64; 3]) -> usize;
+
+    /// A box (m) around the sites of a part; nothing if it has none.
+    fn around(&self, first: [u64; 3], end: [u64; 3]) -> Option<([f64; 3], [f64; 3])>;
+
+    /// Tells the sites (m) of a part of one index each.
+    fn tell(&self, at: [u64; 3], tell: impl FnMut([f64; 3]));
+}
+
+/// A part, with a bound of what is in it.
+struct Block {
+    bound: f64,
+    first: [u64; 3],
+    end: [u64; 3],
+}
+
+/// Those with the smallest bound come first, and among equals those with the first index.
+impl Ord for Block {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let [own, others] = [self, other].map(|b| [b.first[2], b.first[1], b.first[0]]);
+        let by_bound = other.bound.total_cmp(&self.bound);
+        by_bound.then_with(|| others.cmp(&own))
+    }
+}
+
+impl PartialOrd for Block {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Block {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Block {}
+
+impl Block {
+    fn is_smallest(&self) -> bool {
+        (0..3).all(|a| self.end[a] - self.first[a] == 1)
+    }
+
+    fn halves(&self, axis: usize) -> [([u64; 3], [u64; 3]); 2] {
+        let middle = u64::midpoint(self.first[axis], self.end[axis]);
+        let (mut end, mut first) = (self.end, self.first);
+        end[axis] = middle;
+        first[axis] = middle;
+        [(self.first, end), (first, self.end)]
+    }
+}
+
+/// The sites where `value` is smallest, smallest first, and no larger than a limit.
+pub(super) fn best(
+    parts: &impl Parts,
+    wanted: Wanted,
+    bound: impl Fn(&[f64; 3], &[f64; 3]) -> f64,
+    value: impl Fn(&[f64; 3]) -> f64,
+) -> Vec<(f64, [f64; 3])> {
+    let mut found: Vec<(f64, [f64; 3])> = Vec::new();
+    let worst_of = |found: &[(f64, [f64; 3])]| match found.last() {
+        Some((worst, _)) if found.len() == wanted.most => *worst,
+        _ => wanted.limit,
+    };
+    let whole = Block {
+        bound: f64::NEG_INFINITY,
+        first: [0; 3],
+        end: parts.all(),
+    };
+    let is_any = whole.end.iter().all(|&n| n > 0);
+    let mut waiting: BinaryHeap<Block> = is_any.then_some(whole).into_iter().collect();
+    while let Some(block) = waiting.pop() {
+        #[cfg(test)]
+        super::visits::add();
+        let worst = worst_of(&found);
+        if block.bound >= worst {
+            break;
+        }
+        if !block.is_smallest() {
+            for (first, end) in block.halves(parts.longest(block.first, block.end)) {
+                if let Some((lower, upper)) = parts.around(first, end) {
+                    let bound = bound(&lower, &upper).max(block.bound);
+                    if bound < worst {
+                        waiting.push(Block { bound, first, end });
+                    }
+                }
+            }
+            continue;
+        }
+        parts.tell(block.first, |position| {
+            let value = value(&position);
+            if value < worst_of(&found) {
+                let place = found.partition_point(|(other, _)| *other <= value);
+                found.truncate(wanted.most - 1);
+                found.insert(place, (value, position));
+            }
+        });
+        if wanted.any && found.len() == wanted.most {
+            break;
+        }
+    }
+    found
+}
