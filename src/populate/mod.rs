@@ -62,6 +62,8 @@ pub struct Site {
     pub position: [f64; 3],
     /// Number of the site in the body, below [`index_end`].
     pub index: u64,
+    /// Its volume over [`particle_volume`]; 1 where all particles of the body are alike.
+    pub share: f64,
 }
 
 /// The part of space `lower ≤ x < upper` on one axis (m).
@@ -115,6 +117,7 @@ pub fn sites(
             row.range().map(move |i| Site {
                 position: stack.position(i, row.j, row.k),
                 index: stack.index(i, row.j, row.k),
+                share: 1.0,
             })
         })
     });

@@ -133,7 +133,7 @@ impl Simulation {
                 let id = first_id + site.index;
                 let sound = start.put(particles, i, id, site.position);
                 unsound = unsound.or_else(|| sound.err().map(|why| (id, why)));
-                particles.mass[i] = start.mass;
+                particles.mass[i] = start.mass * site.share;
                 Connectivity::begin(particles, i, first_id);
                 if self.loads.has_motions() {
                     let bits = self.loads.bits(case, b, &site.position);

@@ -162,6 +162,7 @@ impl Cells {
         Site {
             position: (self.corner + self.turn * along).into(),
             index: linear * self.tile.sites.len() as u64 + number as u64,
+            share: 1.0,
         }
     }
 
