@@ -8,7 +8,7 @@ use common::cloud::{Cloud, Found, Recipe};
 use common::random::Random;
 use proptest::prelude::*;
 use whipple::model::ContactClass;
-use whipple::neighbours::{Chunk, ForeignLists, ForeignTable, PairList};
+use whipple::neighbours::{Chunk, ForeignLists, ForeignTable, Kinds, PairList};
 use whipple::particles::Image;
 
 fn recipe() -> impl Strategy<Value = Recipe> {
@@ -93,7 +93,7 @@ fn check_own_lists(cloud: &Cloud, found: &Found) {
 fn foreign_table(bodies: usize, random: &mut Random) -> ForeignTable {
     let groups = bodies.div_ceil(2);
     let mut table = ForeignTable {
-        bodies,
+        kinds: Kinds::of_bodies(bodies),
         class: vec![None; bodies * bodies],
         reach2: vec![0.0; bodies * bodies],
         group_range: vec![0.0; groups * groups],
@@ -141,7 +141,7 @@ fn check_foreign_lists(cloud: &Cloud, found: &Found, table: &ForeignTable) {
             if image.code() != 0 || image.base() >= cloud.owned {
                 continue;
             }
-            let row = body(receiver) * table.bodies;
+            let row = body(receiver) * table.kinds.count();
             let list: Vec<u32> = places
                 .clone()
                 .filter(|&j| {

@@ -46,7 +46,7 @@ impl Connectivity {
 
     pub(crate) fn new(case: &Case) -> Self {
         let folds = case.self_contact.as_ref().and_then(|s| s.folds);
-        let bodies = case.bodies.iter().map(|body| body.lattice.spacing);
+        let bodies = case.bodies.iter().map(|body| body.lattice.coarsest());
         Self {
             is_active: case.self_contact.is_some(),
             per_fold: folds.map_or(Vec::new(), |f| bodies.map(|dp| 1.0 / (f * dp)).collect()),

@@ -113,8 +113,8 @@ impl<'a, M: Mode> Meeting<'a, M> {
             i,
             j,
             separation: Separation::between(i, j),
-            pair: view.table.pair(i.body, j.body),
-            own: view.table.own::<M>(i.body, j.body),
+            pair: view.table.pair(i.kind, j.kind),
+            own: view.table.own::<M>(i.kind, j.kind),
             here,
             there: M::side(view, j),
         }

@@ -36,7 +36,7 @@ pub struct OverlapPair {
 }
 
 impl ContactTable {
-    /// Constants of overlap contact of a receiver of body `a` and a neighbour of body `b`.
+    /// Constants of overlap contact of a receiver of kind `a` and a neighbour of kind `b`.
     #[inline]
     #[must_use]
     pub fn overlap(&self, a: usize, b: usize) -> &OverlapPair {
@@ -56,11 +56,11 @@ impl Constants for Overlap {
     const HALO: HaloPhase = HaloPhase::CONTACT;
 
     fn pair(&self, of: &Between) -> OverlapPair {
-        let [a, b] = of.bodies.map(|body| &of.case.bodies[body]);
+        let [a, b] = of.bodies;
         OverlapPair {
             modulus: self.stiffness * of.modulus,
             touching: populate::touching_value(a, b, of.case.dimension),
-            core_modulus: self.core_stiffness * core_scale(of.case, of.bodies),
+            core_modulus: self.core_stiffness * core_scale(of.case, of.indices),
             core_radius: self.core_radius * of.pair.spacing,
             along_normal: self.direction == ContactDirection::Normal,
         }
@@ -85,7 +85,7 @@ fn core_scale(case: &Case, [a, b]: [usize; 2]) -> f64 {
 #[inline(always)]
 fn constants<'a>(view: &ContactView<'a>, i: &Party, j: &Party) -> (&'a Pair, &'a OverlapPair) {
     let table = view.table;
-    (table.pair(i.body, j.body), table.overlap(i.body, j.body))
+    (table.pair(i.kind, j.kind), table.overlap(i.kind, j.kind))
 }
 
 impl Mode for Overlap {
@@ -147,7 +147,7 @@ impl Mode for Overlap {
             return None;
         }
         let (mut bulk, mut core, mut energy) = (0.0, 0.0, 0.0);
-        let back = view.table.overlap(j.body, i.body);
+        let back = view.table.overlap(j.kind, i.kind);
         if pressed {
             let slope = -pair.kernel.slope(distance);
             let pressure = slope_of_energy(here, own) + slope_of_energy(there, back);
@@ -193,7 +193,7 @@ impl Mode for Overlap {
         let mut sum = 0.0;
         for &other in neighbours {
             let j = view.party(other);
-            let pair = view.table.pair(i.body, j.body);
+            let pair = view.table.pair(i.kind, j.kind);
             if !pair.friction.is_any() {
                 continue;
             }

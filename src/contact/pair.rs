@@ -1,4 +1,4 @@
-//! Constants of a pair of bodies: those that all modes share, and those that each mode has beside
+//! Constants of a pair of kinds of particles: those that all modes share, and those that each mode has beside
 //! them.
 
 use std::fmt::Debug;
@@ -8,7 +8,7 @@ use crate::model::{Body, Case, ContactLaw, ContactMode, Resistance, contact_mode
 use crate::numerics::kernel::{FixedKernel, Kernel};
 use crate::particles::{HaloPhase, Owner};
 
-/// Reference constants of an ordered pair of bodies (receiver, other).
+/// Reference constants of an ordered pair of kinds (receiver, other).
 #[derive(Debug, Clone, Copy)]
 pub struct Pair {
     /// Mean smoothing length `h_ij` (m).
@@ -26,12 +26,14 @@ pub struct Pair {
     pub heat_share: f64,
 }
 
-/// Two bodies whose constants are wanted.
+/// Two kinds of particles whose constants are wanted.
 pub(crate) struct Between<'a> {
     pub case: &'a Case,
     pub kernel: &'a Kernel,
-    /// Receiver and other.
-    pub bodies: [usize; 2],
+    /// Receiver and other, with the spacings of their kinds.
+    pub bodies: [&'a Body; 2],
+    /// Their places in the case.
+    pub indices: [usize; 2],
     /// The smaller p-wave modulus (Pa).
     pub modulus: f64,
     pub pair: &'a Pair,
@@ -39,7 +41,7 @@ pub(crate) struct Between<'a> {
 
 /// The constants of a mode, and what it needs.
 pub(crate) trait Constants: ContactLaw {
-    /// Its constants of an ordered pair of bodies.
+    /// Its constants of an ordered pair of kinds.
     type Pair: Debug + Clone + Default;
 
     /// What it makes halo particles hear of before the forces, beside the stresses.
@@ -48,7 +50,7 @@ pub(crate) trait Constants: ContactLaw {
     /// The option of the table of fields that holds fields of this mode alone.
     const OWNER: Owner = Owner::empty();
 
-    /// Its constants of two bodies.
+    /// Its constants of two kinds.
     fn pair(&self, of: &Between) -> Self::Pair;
 }
 
@@ -59,7 +61,7 @@ pub(crate) trait Listed: Constants {
 
 macro_rules! pairs {
     ($($name:ident: $Mode:ident,)+) => {
-        /// Constants of each mode for every ordered pair of bodies; zeros where the mode is
+        /// Constants of each mode for every ordered pair of kinds; zeros where the mode is
         /// another.
         #[derive(Debug, Clone, Default)]
         pub(crate) struct ModePairs {
@@ -102,10 +104,9 @@ impl Pair {
     pub(super) fn new(
         case: &Case,
         kernel: &Kernel,
-        bodies: [usize; 2],
+        [a, b]: [&Body; 2],
         mode: &ContactMode,
     ) -> Self {
-        let [a, b] = bodies.map(|body| &case.bodies[body]);
         let spacing = 0.5 * (a.lattice.spacing + b.lattice.spacing);
         let h = 0.5 * (a.smoothing_length + b.smoothing_length);
         let law = |input: &Resistance| friction(case, [a, b], spacing, input);

@@ -36,7 +36,7 @@ impl Constants for Penalty {
     const OWNER: Owner = Owner::PENALTY;
 
     fn pair(&self, of: &Between) -> PenaltyPair {
-        let body = &of.case.bodies[of.bodies[0]];
+        let body = of.bodies[0];
         PenaltyPair {
             modulus: self.stiffness * of.modulus,
             pinball: self.law == PenaltyLaw::Pinball,
@@ -68,7 +68,7 @@ impl Mode for Penalty {
                         if let Some((_, foreign)) = wanted.next_if(|(at, _)| *at == index) {
                             let i = view.party(index);
                             let j = view.party(foreign[0]);
-                            let known = &view.table.own::<Self>(i.body, j.body).boundary;
+                            let known = &view.table.own::<Self>(i.kind, j.kind).boundary;
                             found.push((i.base, normal(&view, &i, neighbours, known)));
                         }
                     }

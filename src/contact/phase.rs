@@ -40,7 +40,7 @@ impl Contact {
     #[must_use]
     pub fn new(case: &Case) -> Self {
         let speed = case.impact_speed();
-        let spacings = case.bodies.iter().map(|b| b.lattice.spacing);
+        let spacings = case.bodies.iter().map(|b| b.lattice.coarsest());
         Self {
             table: ContactTable::new(case),
             connectivity: Connectivity::new(case),

@@ -133,8 +133,8 @@ impl PairFriction {
     /// energy, given `o_ij` and `o_ji` (N).
     pub fn pair(&mut self, view: &ContactView, [i, j]: [&Party; 2], [own, their]: [f64; 2]) {
         (self.force, self.energy, self.heat) = ([0.0; 3], 0.0, 0.0);
-        let pair = view.table.pair(i.body, j.body);
-        let (law, back) = (&pair.friction, &view.table.pair(j.body, i.body).friction);
+        let pair = view.table.pair(i.kind, j.kind);
+        let (law, back) = (&pair.friction, &view.table.pair(j.kind, i.kind).friction);
         if !law.is_any() {
             return;
         }

@@ -13,6 +13,7 @@ use super::friction::Law;
 use super::{ContactSums, ContactTable};
 use crate::loads::{Loads, Placed, SurfaceStep};
 use crate::model::{Body, Case, RigidSurface};
+use crate::neighbours::Kinds;
 use crate::numerics::exact_sum::ExactSum;
 use crate::numerics::vector::dot;
 use crate::particles::{GRAIN, ParticleStore};
@@ -37,7 +38,7 @@ pub(super) struct Push {
     pub heat: f64,
 }
 
-/// Constants of a surface and a body that it acts on.
+/// Constants of a surface and a kind of particles that it acts on.
 #[derive(Debug, Clone, Copy)]
 struct Penalty {
     /// Stiffness over volume, `κ M/Δp²` (Pa/m²).
@@ -52,9 +53,9 @@ struct Penalty {
 /// The surfaces of a case and what they do, kept from step to step.
 #[derive(Debug, Default)]
 pub(crate) struct SurfaceForces {
-    /// By surface and body; absent where a surface does not act.
+    /// By surface and kind of particles; absent where a surface does not act.
     penalties: Vec<Vec<Option<Penalty>>>,
-    /// By body: stiffness over volume of the spring that sticks (Pa/m²).
+    /// By kind: stiffness over volume of the spring that sticks (Pa/m²).
     sticks: Vec<f64>,
     surfaces: Vec<RigidSurface>,
     /// Force of each surface, and its torque about the axis that it turns about.
@@ -69,13 +70,18 @@ pub(crate) struct SurfaceForces {
 
 impl SurfaceForces {
     pub(super) fn new(case: &Case) -> Self {
+        let kinds = Kinds::new(case);
+        let bodies: Vec<Body> = (0..kinds.count())
+            .map(|kind| kinds.body_of_size(case, kind))
+            .collect();
         let penalties = case.loads.surfaces.iter().map(|surface| {
-            let bodies = case.bodies.iter().zip(&surface.bodies);
-            let penalty =
-                bodies.map(|(body, &acts)| acts.then(|| Penalty::new(case, body, surface)));
+            let penalty = bodies.iter().enumerate().map(|(kind, body)| {
+                let acts = surface.bodies[kinds.body(kind)];
+                acts.then(|| Penalty::new(case, body, surface))
+            });
             penalty.collect()
         });
-        let sticks = case.bodies.iter().map(|body| stick(case, body));
+        let sticks = bodies.iter().map(|body| stick(case, body));
         Self {
             penalties: penalties.collect(),
             sticks: sticks.collect(),
@@ -261,10 +267,17 @@ impl View<'_> {
         }
     }
 
+    /// The kind of a particle, and its reference volume (m^d).
+    pub(super) fn kind(&self, i: usize) -> (usize, f64) {
+        let (body, mass) = (self.particles.body[i] as usize, self.particles.mass[i]);
+        let volume = mass * self.table.inverse_density(body);
+        (self.table.kind(body, mass), volume)
+    }
+
     /// What surface `n` does to particle `i`, if that is near it.
     fn push(&self, i: usize, n: usize) -> Option<Push> {
-        let body = self.particles.body[i] as usize;
-        let penalty = self.penalties[n][body].as_ref()?;
+        let (kind, volume) = self.kind(i);
+        let penalty = self.penalties[n][kind].as_ref()?;
         let placed = self.placed(n);
         let x = &self.particles.position[i];
         let local = placed.local(x);
@@ -274,7 +287,6 @@ impl View<'_> {
         if separation >= penalty.h.max(penalty.reach) || self.particles.mass[i] == 0.0 {
             return None;
         }
-        let volume = self.particles.mass[i] * self.table.inverse_density(body);
         let stiffness = penalty.stiffness * volume;
         let force = placed.outward(escape.way.map(|u| stiffness * u));
         let (v, surface_v) = (&self.particles.predicted_velocity[i], placed.velocity(x));

@@ -1,12 +1,12 @@
-//! Parameters of every pair of bodies, computed once at set-up.
+//! Parameters of every pair of kinds of particles, computed once at set-up.
 
 use super::pair::{Between, Listed, ModePairs, Pair, needs};
-use crate::model::{Case, ContactMode, SelfContact};
-use crate::neighbours::{ForeignTable, Groups};
+use crate::model::{Body, Case, ContactMode, SelfContact};
+use crate::neighbours::{ForeignTable, Groups, Kinds};
 use crate::numerics::kernel::{Kernel, SUPPORT};
 use crate::particles::{HaloPhase, Owner};
 
-/// All pairs of bodies.
+/// All pairs of kinds.
 #[derive(Debug, Clone)]
 pub struct ContactTable {
     /// The kernel that contact weights with.
@@ -30,12 +30,13 @@ impl ContactTable {
     /// Table of a case.
     #[must_use]
     pub fn new(case: &Case) -> Self {
-        let n = case.bodies.len();
+        let kinds = Kinds::new(case);
+        let n = kinds.count();
         let groups = Groups::new(case);
         let mut table = Self {
             kernel: Kernel::new(case.dimension),
             foreign: ForeignTable {
-                bodies: n,
+                kinds,
                 class: vec![None; n * n],
                 reach2: vec![0.0; n * n],
                 group_range: vec![0.0; groups.count() * groups.count()],
@@ -44,11 +45,11 @@ impl ContactTable {
             halo: HaloPhase::STRESS,
             modes: ModePairs::default(),
             pairs: Vec::with_capacity(n * n),
-            inverse_densities: Vec::with_capacity(n),
-            expansions: Vec::with_capacity(n),
+            inverse_densities: Vec::with_capacity(case.bodies.len()),
+            expansions: Vec::with_capacity(case.bodies.len()),
             owners: Owner::empty(),
         };
-        for (a, body) in case.bodies.iter().enumerate() {
+        for body in &case.bodies {
             table
                 .inverse_densities
                 .push(1.0 / case.initial_density(body));
@@ -57,8 +58,13 @@ impl ContactTable {
             table
                 .expansions
                 .push(if bursts { 1.0 } else { f64::INFINITY });
+        }
+        let bodies: Vec<Body> = (0..n)
+            .map(|kind| table.foreign.kinds.body_of_size(case, kind))
+            .collect();
+        for a in 0..n {
             for b in 0..n {
-                table.add(case, [a, b]);
+                table.add(case, [a, b], [&bodies[a], &bodies[b]]);
             }
         }
         if table.has_pairs() || !case.loads.surfaces.is_empty() {
@@ -71,15 +77,16 @@ impl ContactTable {
     }
 
     /// Adds the next pair.
-    fn add(&mut self, case: &Case, [a, b]: [usize; 2]) {
+    fn add(&mut self, case: &Case, kinds: [usize; 2], bodies: [&Body; 2]) {
+        let [a, b] = kinds.map(|kind| self.foreign.kinds.body(kind));
         let mode = mode_between(case, a, b);
-        let pair = Pair::new(case, &self.kernel, [a, b], &mode);
-        let modulus =
-            [a, b].map(|body| case.materials[case.bodies[body].material].p_wave_modulus());
+        let pair = Pair::new(case, &self.kernel, bodies, &mode);
+        let modulus = bodies.map(|body| case.materials[body.material].p_wave_modulus());
         let of = Between {
             case,
             kernel: &self.kernel,
-            bodies: [a, b],
+            bodies,
+            indices: [a, b],
             modulus: modulus[0].min(modulus[1]),
             pair: &pair,
         };
@@ -93,7 +100,7 @@ impl ContactTable {
         let (halo, owner) = needs(&mode);
         self.halo |= halo;
         self.owners |= owner;
-        let (at, range) = (self.at(a, b), SUPPORT * pair.h);
+        let (at, range) = (self.at(kinds[0], kinds[1]), SUPPORT * pair.h);
         self.foreign.class[at] = mode.class();
         self.foreign.reach2[at] = range * range;
         if a != b {
@@ -102,7 +109,7 @@ impl ContactTable {
         }
     }
 
-    /// Constants of a mode for a receiver of body `a` and a neighbour of body `b`.
+    /// Constants of a mode for a receiver of kind `a` and a neighbour of kind `b`.
     #[inline(always)]
     pub(super) fn own<M: Listed>(&self, a: usize, b: usize) -> &M::Pair {
         &M::list(&self.modes)[self.at(a, b)]
@@ -110,14 +117,34 @@ impl ContactTable {
 
     #[inline(always)]
     fn at(&self, a: usize, b: usize) -> usize {
-        a * self.foreign.bodies + b
+        a * self.foreign.kinds.count() + b
     }
 
-    /// Parameters of a receiver of body `a` and a neighbour of body `b`.
+    /// Parameters of a receiver of kind `a` and a neighbour of kind `b`.
     #[inline]
     #[must_use]
     pub fn pair(&self, a: usize, b: usize) -> &Pair {
         &self.pairs[self.at(a, b)]
+    }
+
+    /// The kind of a particle of a body with a mass (kg).
+    #[inline(always)]
+    #[must_use]
+    pub fn kind(&self, body: usize, mass: f64) -> usize {
+        self.foreign.kinds.of(body, mass)
+    }
+
+    /// How many bodies there are.
+    #[must_use]
+    pub fn bodies(&self) -> usize {
+        self.foreign.kinds.bodies()
+    }
+
+    /// Parameters of the smallest particles of two bodies, if they have contact beyond the SPH sums.
+    #[must_use]
+    pub fn between(&self, a: usize, b: usize) -> Option<&Pair> {
+        let [a, b] = [a, b].map(|body| self.foreign.kinds.smallest(body));
+        self.foreign.class[self.at(a, b)].map(|_| self.pair(a, b))
     }
 
     /// How many times its reference volume the matter of a particle of a body may fill: beyond that
@@ -163,10 +190,10 @@ impl ContactTable {
     /// parts have contact.
     #[must_use]
     pub fn active_pairs(&self) -> Vec<[usize; 2]> {
-        let n = self.foreign.bodies;
+        let n = self.bodies();
         (0..n)
             .flat_map(|a| (a..n).map(move |b| [a, b]))
-            .filter(|&[a, b]| self.foreign.class[self.at(a, b)].is_some())
+            .filter(|&[a, b]| self.between(a, b).is_some())
             .collect()
     }
 }

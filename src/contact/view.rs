@@ -27,6 +27,8 @@ pub(crate) struct Party {
     /// Index in the store.
     pub base: usize,
     pub body: usize,
+    /// Of particles, as contact tells them apart.
+    pub kind: usize,
     /// Reference volume (m^d).
     pub volume: f64,
     /// The planes that it is mirrored by.
@@ -61,6 +63,7 @@ impl<'a> ContactView<'a> {
         Party {
             base,
             body,
+            kind: self.table.kind(body, record.mass),
             volume: record.mass * self.table.inverse_density(body),
             code: image.code(),
             position: record.position,

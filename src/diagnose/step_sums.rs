@@ -47,7 +47,7 @@ pub(crate) struct Booked<'a> {
 
 impl StepSums {
     pub fn new(table: &ContactTable) -> Self {
-        let bodies = table.foreign.bodies;
+        let bodies = table.bodies();
         let pairs = table.active_pairs().into_iter();
         Self {
             pair_keys: pairs.map(|[a, b]| pair_key(bodies, a, b)).collect(),

@@ -106,8 +106,8 @@ tables! {
         shape: Spanned<ShapeParams>,
         /// Stacking of the particles; cubic if absent.
         lattice: Option<Spanned<LatticeParams>>,
-        /// Own particle spacing.
-        spacing: Option<Placed<Length>>,
+        /// Own particle spacing, or how it grows.
+        spacing: Option<Spanned<SpacingParams>>,
         /// Initial velocity; at rest if absent.
         velocity: Option<Spanned<Vec<Spanned<ProfileParams<Velocity>>>>>,
         /// Initial angular velocity; none if absent.

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::{Initial, Motion, Place, Shape, Vec3};
+use super::{Grading, Initial, Motion, Place, Shape, Vec3};
 
 /// How particles are stacked.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -30,8 +30,10 @@ pub struct Lattice {
     /// Kind of stacking.
     pub kind: LatticeKind,
     /// Particle spacing Δp (m): there is one particle in a volume Δp^d, for every kind (but for
-    /// what rounding leaves of rings).
+    /// what rounding leaves of rings). Where it is graded, the finest.
     pub spacing: f64,
+    /// How the spacing grows, if it does: of glass alone.
+    pub grading: Option<Grading>,
     /// Turn of the lattice about an axis through the shape's centre (rad).
     pub angle: f64,
     /// That axis; z if absent.
@@ -39,8 +41,51 @@ pub struct Lattice {
     /// Which of the fillings of its kind, for those that are drawn at random.
     pub seed: u64,
     /// Volume of one particle (m³; m² or m in two or one dimensions), if not Δp^d, so that all
-    /// together fill the volume of the shape.
+    /// together fill the volume of the shape; where the spacing is graded, of a finest one.
     pub volume: Option<f64>,
+}
+
+impl Lattice {
+    /// Spacing (m) at a place (m).
+    #[must_use]
+    pub fn spacing_at(&self, place: &Vec3) -> f64 {
+        self.grading.map_or(self.spacing, |grading| {
+            grading.spacing(self.spacing, grading.from.distance(place))
+        })
+    }
+
+    /// The coarsest spacing (m).
+    #[must_use]
+    pub fn coarsest(&self) -> f64 {
+        self.grading
+            .map_or(self.spacing, |grading| grading.coarsest)
+    }
+
+    /// Size of a particle of a share of the volume of one of the spacing.
+    #[inline]
+    #[must_use]
+    pub fn size(share: f64, dimension: usize) -> f64 {
+        match dimension {
+            1 => share,
+            2 => share.sqrt(),
+            _ => libm::cbrt(share),
+        }
+    }
+
+    /// Smallest and largest size of particles against those of the spacing, unless all are alike.
+    #[must_use]
+    pub fn sizes(&self) -> Option<[f64; 2]> {
+        let grading = self.grading?;
+        Some([1.0, grading.coarsest / self.spacing])
+    }
+
+    /// Volume of one particle (m³; m² or m in two or one dimensions), of a finest one where the
+    /// spacing is graded.
+    #[must_use]
+    pub fn particle_volume(&self, dimension: usize) -> f64 {
+        let cell = (1..dimension).fold(self.spacing, |v, _| v * self.spacing);
+        self.volume.unwrap_or(cell)
+    }
 }
 
 /// One body of a case.
@@ -70,6 +115,13 @@ pub struct Body {
 }
 
 impl Body {
+    /// Constant smoothing length of its largest particles (m).
+    #[must_use]
+    pub fn longest_smoothing_length(&self) -> f64 {
+        let [_, largest] = self.lattice.sizes().unwrap_or([1.0; 2]);
+        self.smoothing_length * largest
+    }
+
     /// Initial velocity (m/s) of a particle at `position` (m).
     #[must_use]
     pub fn velocity_at(&self, position: &Vec3) -> Vec3 {

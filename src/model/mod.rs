@@ -12,6 +12,7 @@ mod contact;
 mod control;
 mod distance;
 mod formula;
+mod grading;
 mod initial;
 mod load;
 mod motion;
@@ -19,6 +20,7 @@ mod numerical_limits;
 pub mod readable;
 mod region;
 mod shape;
+mod sizes;
 mod solid;
 mod surface;
 pub mod units;
@@ -35,12 +37,14 @@ pub use control::{
     DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm, SphOptions, TimeStepOptions,
 };
 pub use formula::{Combination, Formula, Function, Operation, Place, Profile};
+pub use grading::{Focus, Grading};
 pub use initial::{Heat, Initial};
 pub use load::{Loads, VelocityLoad};
 pub use motion::Motion;
 pub use numerical_limits::{NumericalFailurePolicy, NumericalLimits};
 pub use region::Region;
 pub use shape::Shape;
+pub use sizes::Sizes;
 pub use solid::{Form, Placement, Polygon, Solid, rotation};
 pub use surface::{
     Feature, Foot, Mesh, MeshError, RigidSurface, Spin, SurfaceFile, SurfaceShape,

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::cluster::Cluster;
 use super::clusters::{CHUNKS_AT_ONCE, Chunk, ClusterLists};
+use super::kinds::Kinds;
 use super::motion::MotionRecord;
 use super::near::{INFLATION, near_box, push_places};
 use super::pairs::PairList;
@@ -13,12 +14,12 @@ use crate::model::ContactClass;
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
 
-/// For each ordered pair of bodies, the mode of contact and its range.
+/// For each ordered pair of kinds of particles, the mode of contact and its range.
 #[derive(Debug, Clone)]
 pub struct ForeignTable {
-    /// Number of bodies.
-    pub bodies: usize,
-    /// `class[a * bodies + b]`; none where there is nothing beyond the SPH sums.
+    /// The kinds.
+    pub kinds: Kinds,
+    /// `class[a * kinds + b]`; none where there is nothing beyond the SPH sums.
     pub class: Vec<Option<ContactClass>>,
     /// Squared range of contact (m²), in the same order.
     pub reach2: Vec<f64>,
@@ -41,9 +42,9 @@ struct Candidates {
     indices: Vec<u32>,
     /// How many of these there are.
     used: usize,
-    bodies: Vec<usize>,
+    kinds: Vec<usize>,
     positions: Vec<[F64x8; 3]>,
-    /// Squared range (m²) of receivers of the body `reached_by`; zero where an eight is not full.
+    /// Squared range (m²) of receivers of the kind `reached_by`; zero where an eight is not full.
     reach2: Vec<F64x8>,
     reached_by: Option<usize>,
 }
@@ -55,7 +56,7 @@ pub struct ForeignLists {
 }
 
 impl ForeignLists {
-    /// Lists the foreign neighbours of all receivers of `clusters`. `body_of` tells the body of
+    /// Lists the foreign neighbours of all receivers of `clusters`. `kind_of` tells the kind of
     /// an image by its place in the sequence.
     pub fn build(
         &mut self,
@@ -63,7 +64,7 @@ impl ForeignLists {
         sequence: &Sequence,
         sources: &[MotionRecord],
         table: &ForeignTable,
-        body_of: impl Fn(u32) -> usize + Sync,
+        kind_of: impl Fn(u32) -> usize + Sync,
     ) {
         self.chunks
             .resize_with(clusters.chunks().len(), ForeignChunk::default);
@@ -79,7 +80,7 @@ impl ForeignLists {
                     sequence,
                     sources,
                     table,
-                    body_of: &body_of,
+                    kind_of: &kind_of,
                 });
             });
     }
@@ -111,7 +112,7 @@ struct Find<'a, B> {
     sequence: &'a Sequence,
     sources: &'a [MotionRecord],
     table: &'a ForeignTable,
-    body_of: &'a B,
+    kind_of: &'a B,
 }
 
 impl<B: Fn(u32) -> usize> Vectorised for Find<'_, B> {
@@ -132,15 +133,15 @@ impl<B: Fn(u32) -> usize> Vectorised for Find<'_, B> {
             if near.used == 0 && strangers.peek().is_none() {
                 continue;
             }
-            near.look_up(self.sources, self.body_of);
+            near.look_up(self.sources, self.kind_of);
             for &receiver in &cluster.receivers[..cluster.lanes] {
                 let here = Receiver {
                     position: &self.sources[receiver as usize].position,
-                    body: (self.body_of)(receiver),
+                    kind: (self.kind_of)(receiver),
                 };
                 if let Some((_, list)) = strangers.next_if(|(at, _)| *at == receiver) {
                     apart.take(list);
-                    apart.look_up(self.sources, self.body_of);
+                    apart.look_up(self.sources, self.kind_of);
                     chunk.add_near::<V>(&here, &mut apart, self.table);
                 }
                 chunk.add_near::<V>(&here, &mut near, self.table);
@@ -153,7 +154,7 @@ impl<B: Fn(u32) -> usize> Vectorised for Find<'_, B> {
 
 struct Receiver<'a> {
     position: &'a [f64; 3],
-    body: usize,
+    kind: usize,
 }
 
 impl Candidates {
@@ -193,13 +194,13 @@ impl Candidates {
         self.used = list.len();
     }
 
-    /// Positions and bodies of what is listed.
+    /// Positions and kinds of what is listed.
     #[inline(always)]
-    fn look_up(&mut self, sources: &[MotionRecord], body_of: &impl Fn(u32) -> usize) {
+    fn look_up(&mut self, sources: &[MotionRecord], kind_of: &impl Fn(u32) -> usize) {
         let indices = &self.indices[..self.used];
-        self.bodies.clear();
-        self.bodies
-            .extend(indices.iter().map(|&index| body_of(index)));
+        self.kinds.clear();
+        self.kinds
+            .extend(indices.iter().map(|&index| kind_of(index)));
         self.positions.clear();
         self.positions.extend(indices.chunks(LANES).map(|eight| {
             let mut positions = [F64x8([0.0; LANES]); 3];
@@ -214,16 +215,16 @@ impl Candidates {
         self.reached_by = None;
     }
 
-    /// Ranges for receivers of `body`.
+    /// Ranges for receivers of a kind.
     #[inline(always)]
-    fn reach(&mut self, body: usize, table: &ForeignTable) {
-        if self.reached_by == Some(body) {
+    fn reach(&mut self, kind: usize, table: &ForeignTable) {
+        if self.reached_by == Some(kind) {
             return;
         }
-        self.reached_by = Some(body);
-        let row = body * table.bodies;
+        self.reached_by = Some(kind);
+        let row = kind * table.kinds.count();
         self.reach2.clear();
-        self.reach2.extend(self.bodies.chunks(LANES).map(|eight| {
+        self.reach2.extend(self.kinds.chunks(LANES).map(|eight| {
             let mut reach2 = F64x8([0.0; LANES]);
             for (reach2, other) in reach2.0.iter_mut().zip(eight) {
                 *reach2 = table.reach2[row + other];
@@ -234,7 +235,7 @@ impl Candidates {
 
     fn memory(&self) -> usize {
         4 * self.indices.capacity()
-            + 8 * self.bodies.capacity()
+            + 8 * self.kinds.capacity()
             + size_of::<[F64x8; 3]>() * self.positions.capacity()
             + size_of::<F64x8>() * self.reach2.capacity()
     }
@@ -261,8 +262,8 @@ impl ForeignChunk {
         candidates: &mut Candidates,
         table: &ForeignTable,
     ) {
-        candidates.reach(receiver.body, table);
-        let classes = &table.class[receiver.body * table.bodies..];
+        candidates.reach(receiver.kind, table);
+        let classes = &table.class[receiver.kind * table.kinds.count()..];
         let here = receiver.position.map(V::splat);
         let eights = candidates.positions.iter().zip(&candidates.reach2);
         for (n, (positions, reach2)) in eights.enumerate() {
@@ -274,7 +275,7 @@ impl ForeignChunk {
                 let k = n * LANES + bits.trailing_zeros() as usize;
                 bits &= bits - 1;
                 let index = candidates.indices[k];
-                if let Some(class) = classes[candidates.bodies[k]] {
+                if let Some(class) = classes[candidates.kinds[k]] {
                     self.lists[class as usize].sources.push(index);
                 }
             }

@@ -11,7 +11,7 @@ use super::groups::Groups;
 use super::motion::MotionRecord;
 use super::sequence::Sequence;
 use crate::domain::{Halo, Mirrors, Outset};
-use crate::model::{Case, SmoothingLength};
+use crate::model::{Body, Case, SmoothingLength};
 use crate::particles::{Image, ParticleStore, Scatter, resize};
 
 /// The sequence of images, their motion records and the lists, kept from step to step.
@@ -210,7 +210,11 @@ impl Lists {
             &self.sequence,
             &self.motion,
             table,
-            |index| particles.body[images[index as usize].base()] as usize,
+            |index| {
+                let base = images[index as usize].base();
+                let body = particles.body[base] as usize;
+                table.kinds.of(body, particles.mass[base])
+            },
         );
     }
 
@@ -245,8 +249,10 @@ fn group_lengths(case: &Case, groups: &Groups) -> Vec<Lengths> {
     (0..groups.count())
         .map(|group| {
             let members = groups.members(group);
-            let h = || members.clone().map(|b| case.bodies[b].smoothing_length);
-            let longest = h().fold(0.0, f64::max);
+            let bodies = || members.clone().map(|b| &case.bodies[b]);
+            let h = || bodies().map(|body| body.smoothing_length);
+            let longest = bodies().map(Body::longest_smoothing_length);
+            let longest = longest.fold(0.0, f64::max);
             Lengths {
                 longest,
                 least: if case.self_contact.is_some() {
@@ -254,7 +260,9 @@ fn group_lengths(case: &Case, groups: &Groups) -> Vec<Lengths> {
                 } else {
                     0.0
                 },
-                uniform: constant && h().all(|h| h.to_bits() == longest.to_bits()),
+                uniform: constant
+                    && h().all(|h| h.to_bits() == longest.to_bits())
+                    && bodies().all(|body| body.lattice.sizes().is_none()),
                 rigid: groups.rigid[group],
             }
         })

@@ -16,8 +16,8 @@ use super::Site;
 use super::row::Cut;
 use fit::Fitted;
 
-pub(super) use laid::Cells;
-pub(super) use search::{Blocks, extremes};
+pub(super) use laid::{Cells, has_rows};
+pub(super) use search::{extremes, smallest};
 
 /// All sites that the cuts leave, by where they stand before they are fitted.
 pub(super) fn sites(cells: Cells, cuts: Vec<Cut>) -> impl Iterator<Item = Site> + use<> {

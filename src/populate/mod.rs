@@ -187,26 +187,27 @@ pub fn smallest_gap(
     symmetry: &[SymmetryPlane],
     surface: &RigidSurface,
 ) -> f64 {
+    let reach = body.lattice.coarsest();
     let wanted = Wanted {
         most: 1,
-        limit: body.lattice.spacing,
+        limit: reach,
         any: false,
     };
     let found = search(
         (body, dimension, symmetry),
         wanted,
-        |lower, upper| surface.least_gap(lower, upper, body.lattice.spacing),
-        |x| surface.gap(x, body.lattice.spacing),
+        |lower, upper| surface.least_gap(lower, upper, reach),
+        |x| surface.gap(x, reach),
     );
     found.first().map_or(f64::INFINITY, |(gap, _)| *gap)
 }
 
 /// Volume of one particle of the body (m³; m² or m in two or one dimensions), so that its mass is
-/// that times its initial density: [`even_volume`] if the body has been given it, else Δp^d.
+/// that times its initial density and its [`Site::share`]: [`even_volume`] if the body has been
+/// given it, else Δp^d.
 #[must_use]
 pub fn particle_volume(body: &Body, dimension: usize) -> f64 {
-    let cell = (1..dimension).fold(body.lattice.spacing, |v, _| v * body.lattice.spacing);
-    body.lattice.volume.unwrap_or(cell)
+    body.lattice.particle_volume(dimension)
 }
 
 /// The volume of the shape shared out among all its particles (m³; m² or m in two or one
@@ -215,11 +216,22 @@ pub fn particle_volume(body: &Body, dimension: usize) -> f64 {
 #[must_use]
 pub fn even_volume(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> Option<f64> {
     let planes = if moves_sites(body) { symmetry } else { &[] };
-    #[allow(clippy::cast_precision_loss)] // far fewer than 2^52
-    let count = count(body, dimension, planes, None) as f64;
-    let even = body.shape.volume_above(planes, dimension) / count;
+    let shares = shares(body, dimension, planes);
+    let even = body.shape.volume_above(planes, dimension) / shares;
     let cell = particle_volume(body, dimension);
-    (count > 0.0 && (even / cell - 1.0).abs() > SAME_VOLUME).then_some(even)
+    (shares > 0.0 && (even / cell - 1.0).abs() > SAME_VOLUME).then_some(even)
+}
+
+/// The sum of [`Site::share`] of all particles above the symmetry planes.
+#[must_use]
+pub fn shares(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> f64 {
+    let cells = body.lattice.grading.is_some();
+    let cells = cells.then(|| Cells::of(body, dimension, symmetry));
+    #[allow(clippy::cast_precision_loss)] // far fewer than 2^52
+    match cells.flatten() {
+        Some(cells) => cells.shares(&cuts(symmetry, None)),
+        None => count(body, dimension, symmetry, None) as f64,
+    }
 }
 
 /// Whether sites end elsewhere than where slabs are cut: particles may begin a spacing outside the

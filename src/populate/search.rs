@@ -65,7 +65,7 @@ pub fn search(
 ) -> Vec<(f64, [f64; 3])> {
     let cuts = cuts(symmetry, None);
     if let Some(cells) = Cells::of(body, dimension, symmetry) {
-        return best(&cells::Blocks::of(&cells, &cuts), wanted, bound, value);
+        return cells::smallest(&cells, &cuts, wanted, bound, value);
     }
     let stack = Stack::new(body, dimension);
     best(&Rows { stack, cuts }, wanted, bound, value)

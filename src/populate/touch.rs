@@ -1,7 +1,7 @@
 //! Bodies in touch: the distance that `touch` moves a body by, and the touching value of contact.
 
 use super::bounds;
-use super::cells::Cells;
+use super::cells::has_rows;
 use super::lattice::{pitches, shifts};
 use crate::model::{Axis, Body, LatticeKind};
 use crate::numerics::kernel::{Kernel, SUPPORT};
@@ -40,40 +40,30 @@ pub fn touching_distance(
 pub fn touching_value(a: &Body, b: &Body, dimension: usize) -> f64 {
     let h = 0.5 * (a.smoothing_length + b.smoothing_length);
     let gap = 0.5 * (a.lattice.spacing + b.lattice.spacing);
-    if Cells::of(b, dimension, &[]).is_some() {
+    if !has_rows(b) {
         // No face of its lattice faces the particle: matter is smeared out.
         return even_fraction(gap - 0.5 * b.lattice.spacing, dimension, h);
     }
     half_space_fraction(b.lattice.kind, b.lattice.spacing, dimension, gap, h)
 }
 
-/// `∫ W dV` over a half-space whose face lies `away` (m).
+/// `∫ W dV` over a half-space whose face lies `away` (m): by spheres about the particle, of which a
+/// cap of the area `2π r (r − z)` lies beyond a face at a distance z, in two dimensions an arc of the
+/// length `2 r acos(z/r)`.
 fn even_fraction(away: f64, dimension: usize, h: f64) -> f64 {
-    const LAYERS: u32 = 200;
+    const SPHERES: u32 = 4000;
     let kernel = Kernel::new(dimension).of_length(h);
-    let reach = SUPPORT * h;
-    let part = |from: f64, n: u32| {
-        let step = (reach - from) / f64::from(LAYERS);
-        (from + (f64::from(n) + 0.5) * step, step)
-    };
-    // The plane at a distance holds the integral over its rings.
-    let plane = |z: f64| -> f64 {
-        let rings = (0..LAYERS).map(|n| {
-            let (r, step) = part(z, n);
-            let ring = match dimension {
-                3 => std::f64::consts::TAU * r,
-                2 => 2.0 * r / (r * r - z * z).sqrt(),
-                _ => 0.0,
-            };
-            ring * step * kernel.value(r)
-        });
-        rings.fold(0.0, |sum, ring| sum + ring)
-    };
-    let planes = (0..LAYERS).map(|n| {
-        let (z, step) = part(away, n);
-        step * plane(z)
+    let step = (SUPPORT * h - away) / f64::from(SPHERES);
+    let spheres = (0..SPHERES).map(|n| {
+        let r = away + (f64::from(n) + 0.5) * step;
+        let beyond = match dimension {
+            3 => std::f64::consts::TAU * r * (r - away),
+            2 => 2.0 * r * libm::acos(away / r),
+            _ => 1.0,
+        };
+        beyond * step * kernel.value(r)
     });
-    planes.fold(0.0, |sum, plane| sum + plane)
+    spheres.fold(0.0, |sum, sphere| sum + sphere)
 }
 
 /// `Σ V_j W_ij` over a half-space of a lattice whose first layer lies `gap` away.

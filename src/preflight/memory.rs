@@ -70,7 +70,7 @@ fn fullest(case: &Case, comm: &Comm, ranks: usize) -> Option<Fullest> {
     let reach = case
         .bodies
         .iter()
-        .map(|body| SUPPORT * body.smoothing_length);
+        .map(|body| SUPPORT * body.longest_smoothing_length());
     let reach = reach.fold(0.0, f64::max);
     let mut most = [0, 0];
     for rank in 0..ranks {

@@ -1,6 +1,6 @@
 //! Smoothing lengths.
 
-use crate::model::{Case, SmoothingLength};
+use crate::model::{Body, Case, Sizes, SmoothingLength};
 use crate::particles::ParticleStore;
 
 /// How smoothing lengths follow densities (physics page, section 1).
@@ -8,10 +8,13 @@ use crate::particles::ParticleStore;
 pub struct Smoothing {
     rule: SmoothingLength,
     dimension: usize,
-    /// Length of each body at the start (m).
+    /// Length of each body at the start (m), where sizes differ of one of the spacing.
     reference: Vec<f64>,
     /// 1/ρ of each body at the start (m³/kg).
     inverse_density: Vec<f64>,
+    sizes: Sizes,
+    /// The longest length at the start (m).
+    longest: f64,
 }
 
 impl Smoothing {
@@ -24,14 +27,20 @@ impl Smoothing {
             dimension: case.dimension,
             reference: case.bodies.iter().map(|b| b.smoothing_length).collect(),
             inverse_density: case.bodies.iter().map(inverse_density).collect(),
+            sizes: Sizes::new(case),
+            longest: case
+                .bodies
+                .iter()
+                .map(Body::longest_smoothing_length)
+                .fold(0.0, f64::max),
         }
     }
 
-    /// The length (m) of a particle of `body` at a density (kg/m³).
+    /// The length (m) of a particle of `body` with a mass (kg) at a density (kg/m³).
     #[inline]
     #[must_use]
-    pub fn length(&self, body: usize, density: f64) -> f64 {
-        let reference = self.reference[body];
+    pub fn length(&self, body: usize, mass: f64, density: f64) -> f64 {
+        let reference = self.at_start(body, mass);
         match self.rule {
             SmoothingLength::Constant => reference,
             SmoothingLength::Variable { min, max } => {
@@ -51,12 +60,20 @@ impl Smoothing {
     #[inline]
     #[must_use]
     pub fn reach(&self, particles: &ParticleStore, i: usize) -> f64 {
-        particles.smoothing_length[i].max(self.reference[particles.body[i] as usize])
+        let at_start = self.at_start(particles.body[i] as usize, particles.mass[i]);
+        particles.smoothing_length[i].max(at_start)
+    }
+
+    /// The length (m) of a particle of `body` with a mass (kg) at the start.
+    #[inline]
+    #[must_use]
+    pub fn at_start(&self, body: usize, mass: f64) -> f64 {
+        self.reference[body] * self.sizes.of(body, mass)
     }
 
     /// The longest length at the start (m).
     #[must_use]
     pub fn longest(&self) -> f64 {
-        self.reference.iter().copied().fold(0.0, f64::max)
+        self.longest
     }
 }

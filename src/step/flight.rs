@@ -78,7 +78,9 @@ impl Flight {
         let pairs = contact.active_pairs().into_iter();
         let apart = pairs.filter(|[a, b]| a != b);
         Self {
-            shortest: apart.fold(f64::INFINITY, |h, [a, b]| h.min(contact.pair(a, b).h)),
+            shortest: apart
+                .filter_map(|[a, b]| contact.between(a, b))
+                .fold(f64::INFINITY, |h, pair| h.min(pair.h)),
             ..Self::default()
         }
     }
@@ -252,13 +254,13 @@ impl Search {
         meetings.clear();
         for a in 0..bodies {
             for b in a + 1..bodies {
-                if sky.table.foreign.class[a * bodies + b].is_none() {
+                let Some(pair) = sky.table.between(a, b) else {
                     continue;
-                }
+                };
                 let meet = |code| Meeting {
                     bodies: [a, b],
                     code,
-                    h: sky.table.pair(a, b).h,
+                    h: pair.h,
                     spans: [spans[a], spans[b]],
                 };
                 let all = std::iter::once(0).chain(mirrors.codes()).map(meet);

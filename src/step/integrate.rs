@@ -172,7 +172,7 @@ impl Drifting<'_> {
                         let l = &rates.velocity_gradient[i];
                         let strain = half * (l[0] + l[4] + l[8]);
                         rho_p[k] = rates.density[i] * ((1.0 - strain) / (1.0 + strain));
-                        h[k] = smoothing.length(rates.body[i] as usize, rho_p[k]);
+                        h[k] = smoothing.length(rates.body[i] as usize, rates.mass[i], rho_p[k]);
                     }
                     work
                 },

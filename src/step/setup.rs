@@ -14,7 +14,7 @@ use crate::diagnose::{
 };
 use crate::domain::{Halo, Mirrors, Outset, Partition};
 use crate::loads::{Absorption, Goal, Loads, Prescribe};
-use crate::model::{Body, Case, SphForm};
+use crate::model::{Body, Case, Lattice, SphForm};
 use crate::neighbours::Lists;
 use crate::particles::{Image, ParticleStore};
 use crate::populate::{self, Slab};
@@ -134,6 +134,7 @@ impl Simulation {
                 let sound = start.put(particles, i, id, site.position);
                 unsound = unsound.or_else(|| sound.err().map(|why| (id, why)));
                 particles.mass[i] = start.mass * site.share;
+                particles.smoothing_length[i] *= Lattice::size(site.share, case.dimension);
                 Connectivity::begin(particles, i, first_id);
                 if self.loads.has_motions() {
                     let bits = self.loads.bits(case, b, &site.position);

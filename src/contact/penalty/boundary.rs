@@ -72,7 +72,7 @@ impl Boundary {
 /// The outward normal of the receiver `i`, as long as it counts beside others, from the images of
 /// its own group; zero inside of the body.
 pub(super) fn normal(view: &ContactView, i: &Party, own: &[u32], known: &Boundary) -> [f64; 3] {
-    let pair = view.table.pair(i.body, i.body);
+    let pair = view.table.pair(i.kind, i.kind);
     let (mut outward, mut filled) = ([0.0; 3], 0.0);
     // B⁻¹; one on axes that the case does not have.
     let mut matrix = [[0.0; 3]; 3];

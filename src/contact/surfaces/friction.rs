@@ -73,10 +73,9 @@ impl View<'_> {
         dt: f64,
     ) -> Option<SurfaceFriction> {
         let before = slip(self.particles, i);
-        let body = self.particles.body[i] as usize;
-        let volume = self.particles.mass[i] * self.table.inverse_density(body);
+        let (kind, volume) = self.kind(i);
         let of = |push: &Push| {
-            let penalty = self.penalties[push.surface][body].as_ref();
+            let penalty = self.penalties[push.surface][kind].as_ref();
             let law = penalty.map(|p| p.friction).filter(Law::is_any)?;
             let press = norm(&push.force);
             (press > 0.0).then_some((law, press))
@@ -122,10 +121,9 @@ impl View<'_> {
         if before.displacement == [0.0; 3] {
             return None;
         }
-        let body = self.particles.body[i] as usize;
-        let volume = self.particles.mass[i] * self.table.inverse_density(body);
+        let (kind, volume) = self.kind(i);
         let law = Law {
-            stiffness: self.sticks[body] * volume,
+            stiffness: self.sticks[kind] * volume,
             ..Law::default()
         };
         let friction = law.step(before, &[0.0; 3], &[0.0; 3], &before.rate, dt);

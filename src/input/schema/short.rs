@@ -9,7 +9,7 @@ use toml::Spanned;
 
 use super::choices::{AxisWord, Direction};
 use super::{Point, TurnsTable};
-use crate::input::quantity::{Angle, AngularRate, Length, Placed};
+use crate::input::quantity::{Angle, AngularRate, Extent, Length, Placed, Quantity};
 use crate::model::{Axis, LatticeKind};
 
 tables! {
@@ -23,6 +23,24 @@ tables! {
         axis: Option<Spanned<AxisParams>>,
         /// Which glass; 0 if absent.
         seed: Option<Spanned<i64>>,
+    }
+
+    /// `spacing` as a table.
+    SpacingTable {
+        /// The finest spacing.
+        inner: Placed<Length>,
+        /// The coarsest spacing.
+        outer: Placed<Length>,
+        /// How many times as thick a layer is as the one before it; 1.1 if absent.
+        ratio: Option<Spanned<f64>>,
+        /// Where the body is finest, or a point of the line along which it is.
+        at: Option<Point>,
+        /// Direction of that line.
+        axis: Option<Spanned<AxisParams>>,
+        /// The side of the body at which it is finest, in place of `at`.
+        face: Option<Spanned<NormalParams>>,
+        /// How far from there the spacing stays the finest; nowhere if absent.
+        within: Option<Spanned<Extent>>,
     }
 
     /// `round` as a table.
@@ -82,6 +100,32 @@ typed_as! {
             axis: table.axis,
             seed: table.seed,
         };
+    }
+}
+
+/// The spacing of a body, or a table that says how it grows.
+#[derive(Debug)]
+pub enum SpacingParams {
+    /// One everywhere.
+    Even(Quantity<Length>),
+    /// One that grows.
+    Graded(Box<SpacingTable>),
+}
+
+typed_as! {
+    SpacingParams: "a length such as \"0.02 mm\", or a table with `inner` and `outer`" {
+        word: SpacingParams::Even;
+        table: |table| SpacingParams::Graded(Box::new(table));
+    }
+}
+
+impl SpacingParams {
+    /// The finest one, with its place if it is in a table.
+    pub fn finest(&self) -> &Quantity<Length> {
+        match self {
+            Self::Even(length) => length,
+            Self::Graded(table) => table.inner.get_ref(),
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 use toml::Spanned;
 
 use super::check::{Allowed, number, optional};
+use super::grading::{finest, graded, grading};
 use super::initial;
 use super::lattice::lattice;
 use super::motion::motion;
@@ -13,7 +14,7 @@ use crate::input::quantity::{Length, Placed};
 use crate::input::schema::{AngularVelocityParams, BodyParams};
 use crate::input::source::Diagnostic;
 use crate::material::{Eos, Failure, Linear, LinearForm, Material, Strength};
-use crate::model::{Body, Motion, Profile, SymmetryPlane, Vec3};
+use crate::model::{Body, LatticeKind, Motion, Profile, SymmetryPlane, Vec3};
 use crate::populate;
 
 /// Bounding lattices beyond this are a slip in a unit rather than a body.
@@ -91,19 +92,29 @@ impl Reader<'_> {
         }
         names::check(&params.name, "body")?;
         let material = self.material(params, table)?;
-        let Some(spacing) = params.spacing.as_ref().or(self.spacing) else {
-            let title = format!("the body `{name}` has no `spacing`");
-            return Err(Diagnostic::new(params.name.span(), title)
-                .help("give it one, or one to all bodies at the top: `spacing = \"0.02 mm\"`"));
+        let spacing = match (&params.spacing, self.spacing) {
+            (Some(own), _) => finest(own)?,
+            (None, Some(of_case)) => number(Some(of_case), "spacing", 0.0, Allowed::Positive)?,
+            (None, None) => {
+                let title = format!("the body `{name}` has no `spacing`");
+                return Err(Diagnostic::new(params.name.span(), title).help(
+                    "give it one, or one to all bodies at the top: `spacing = \"0.02 mm\"`",
+                ));
+            }
         };
-        let spacing = number(Some(spacing), "spacing", 0.0, Allowed::Positive)?;
         let shapes = Shapes {
             dimension: self.dimension,
             spacing,
         };
         let (velocity, rigid, varied) = self.motion(params)?;
         let shape = shapes.shape(&params.shape)?;
-        let lattice = lattice(&shapes, params.lattice.as_ref(), &shape)?;
+        let mut lattice = lattice(&shapes, params.lattice.as_ref(), &shape)?;
+        if let Some(table) = graded(params.spacing.as_ref()) {
+            if params.lattice.is_none() {
+                lattice.kind = LatticeKind::Glass;
+            }
+            lattice.grading = grading(&shapes, table, &shape, lattice.kind)?;
+        }
         Ok(Body {
             name: name.clone(),
             shape,
@@ -200,8 +211,9 @@ impl Reader<'_> {
         for (table, body) in params.iter().zip(bodies) {
             let sites = populate::index_end(body, self.dimension);
             if sites > MOST_SITES {
-                let spacing = table.get_ref().spacing.as_ref().or(self.spacing);
-                let at = spacing.map_or(table.get_ref().name.span(), Spanned::span);
+                let own = table.get_ref().spacing.as_ref().map(Spanned::span);
+                let at = own.or(self.spacing.map(Spanned::span));
+                let at = at.unwrap_or_else(|| table.get_ref().name.span());
                 let title = format!(
                     "the body `{}` would have more than {MOST_SITES:e} particles",
                     body.name

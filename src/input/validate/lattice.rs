@@ -48,6 +48,7 @@ pub fn lattice(
     Ok(Lattice {
         kind: params.kind,
         spacing,
+        grading: None,
         angle,
         axis: axis.filter(|axis| axis.z != 1.0),
         seed,

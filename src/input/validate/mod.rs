@@ -6,6 +6,7 @@ mod absorbers;
 mod bodies;
 mod contact;
 mod eos;
+mod grading;
 mod initial;
 mod lattice;
 mod loads;
@@ -166,9 +167,10 @@ fn check_temperature(case: &Case, fields: &[(String, Range<usize>)]) -> Result<(
 
 /// The unit in which the spacing is given, of the case or of its first body.
 fn length_unit(params: &CaseParams) -> Readable {
-    let bodies = params.body.iter().map(|table| &table.get_ref().spacing);
-    let spacing = std::iter::once(&params.spacing).chain(bodies).flatten();
-    let size = spacing.map(|spacing| spacing.get_ref().unit).next();
+    let bodies = params.body.iter().flat_map(|table| &table.get_ref().spacing);
+    let of_bodies = bodies.map(|spacing| spacing.get_ref().finest());
+    let of_case = params.spacing.iter().map(Spanned::get_ref);
+    let size = of_case.chain(of_bodies).map(|spacing| spacing.unit).next();
     Readable::length(size.unwrap_or(1.0))
 }
 

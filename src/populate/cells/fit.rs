@@ -1,14 +1,17 @@
 //! Glass fitted to the surface of its solid: the sites of the outermost layer stand half a spacing
-//! below the faces, and those beneath make room.
+//! below the faces, and those beneath make room. Where the spacing is graded, all that is thinned
+//! out comes to rest, too.
 
 use super::laid::Cells;
-use super::relax::{REACH, Wall, step};
+use super::relax::{REACH, Sites, Wall, step};
 use crate::model::Vec3;
 use crate::populate::Site;
 use crate::populate::row::Cut;
 
 /// Sites that begin no deeper than this move (spacings).
 const MOVING: f64 = 3.0;
+/// Those that begin no deeper are felt by what moves (spacings).
+const DEEPEST: f64 = MOVING + REACH + 1.0;
 /// Steps of the relaxation.
 const STEPS: usize = 12;
 /// How far from a site others may change where it ends (spacings): by one reach in each step.
@@ -31,22 +34,23 @@ impl Fitted {
         if !cells.is_fitted() {
             return Self::default();
         }
-        let spacing = cells.spacing;
+        let coarsest = cells.lattice.coarsest();
         let wide: Vec<Cut> = cuts
             .iter()
-            .map(|cut| cut.widened(MARGIN * spacing))
+            .map(|cut| cut.widened(MARGIN * coarsest))
             .collect();
-        let deepest = (MOVING + REACH + 1.0) * spacing;
         let (mut sites, mut moving) = (Vec::new(), Vec::new());
         for block in cells.all_blocks() {
-            let (middle, half) = cells.middle(block.at, block.at.map(|n| n + 1));
-            if cells.distance(&middle) < -deepest - half.norm() {
+            let (middle, half) = cells.middle(block.level, block.at, block.at.map(|n| n + 1));
+            let around = half.norm() + DEEPEST * cells.coarsest(block.level);
+            if !is_near(cells, &middle, around) {
                 continue;
             }
             for site in cells.sites_of(block, &wide) {
-                let depth = -cells.distance(&site.position.into());
-                if depth < deepest {
-                    if depth < MOVING * spacing {
+                let place = site.position.into();
+                let spacing = cells.lattice.spacing_at(&place);
+                if is_near(cells, &place, DEEPEST * spacing) {
+                    if is_near(cells, &place, MOVING * spacing) {
                         moving.push(u32::try_from(sites.len()).unwrap_or(u32::MAX));
                     }
                     sites.push(site);
@@ -68,25 +72,41 @@ impl Fitted {
     }
 }
 
+/// Whether a place (m) is nearer than `reach` (m) to the surface, or to where sites are thinned.
+fn is_near(cells: &Cells, place: &Vec3, reach: f64) -> bool {
+    let lattice = &cells.lattice;
+    let is_thinned = lattice.grading.is_some_and(|grading| {
+        let distance = grading.from.distance(place) + reach;
+        grading.spacing(lattice.spacing, distance) > lattice.spacing
+    });
+    is_thinned || cells.distance(place) > -reach
+}
+
 fn relax(cells: &Cells, sites: &mut [Site], moving: &[u32]) {
     let scale = Scale::of(cells);
-    let mut x: Vec<[f64; 3]> = sites.iter().map(|s| scale.down(&s.position)).collect();
+    let spacing = |s: &Site| cells.lattice.spacing_at(&s.position.into()) / scale.spacing;
+    let largest = (0..cells.levels.len()).map(|level| cells.coarsest(level) / scale.spacing);
+    let mut of = Sites {
+        places: sites.iter().map(|s| scale.down(&s.position)).collect(),
+        sizes: sites.iter().map(spacing).collect(),
+        largest: largest.collect(),
+    };
     let mut velocity = vec![[0.0; 3]; moving.len()];
     let wall = Wall::new(cells.dimension);
-    let outside = |place: &[f64; 3]| {
+    let outside = |place: &[f64; 3], size: f64| {
         let mut force = [0.0; 3];
-        scale.faces(cells, place, REACH, |depth, normal| {
-            let push = wall.force(depth);
+        scale.faces(cells, place, REACH * size, |depth, normal| {
+            let push = wall.force(depth / size);
             for a in 0..3 {
                 force[a] -= push * normal[a];
             }
         });
         force
     };
-    let hold = |place: &mut [f64; 3], v: &mut [f64; 3]| {
+    let hold = |place: &mut [f64; 3], v: &mut [f64; 3], size: f64| {
         let here = *place;
-        scale.faces(cells, &here, OF_LAYER, |depth, normal| {
-            let way = depth - LAYER;
+        scale.faces(cells, &here, OF_LAYER * size, |depth, normal| {
+            let way = depth - LAYER * size;
             let way = if way < 0.0 { way } else { DRAWN * way };
             let across = v[0] * normal.x + v[1] * normal.y + v[2] * normal.z;
             for a in 0..3 {
@@ -96,30 +116,31 @@ fn relax(cells: &Cells, sites: &mut [Site], moving: &[u32]) {
         });
     };
     for _ in 0..STEPS {
-        step(&mut x, &mut velocity, moving, outside, hold);
+        step(&mut of, &mut velocity, moving, outside, hold);
     }
     for &i in moving {
         let i = i as usize;
-        sites[i].position = scale.up(&x[i]);
+        sites[i].position = scale.up(&of.places[i]);
     }
 }
 
 /// Where a site (m) ends, nearly: on the layer, if it begins in it.
 pub(super) fn settled(cells: &Cells, x: &[f64; 3]) -> [f64; 3] {
     let scale = Scale::of(cells);
+    let size = cells.lattice.spacing_at(&(*x).into()) / scale.spacing;
     let mut place = scale.down(x);
     for _ in 0..2 {
         let here = place;
-        scale.faces(cells, &here, OF_LAYER, |depth, normal| {
+        scale.faces(cells, &here, OF_LAYER * size, |depth, normal| {
             for a in 0..3 {
-                place[a] += (depth - LAYER) * normal[a];
+                place[a] += (depth - LAYER * size) * normal[a];
             }
         });
     }
     scale.up(&place)
 }
 
-/// Lengths in spacings from the middle of the solid on.
+/// Lengths in finest spacings from the middle of the solid on.
 struct Scale {
     origin: Vec3,
     spacing: f64,
@@ -134,7 +155,7 @@ impl Scale {
         }
         Self {
             origin,
-            spacing: cells.spacing,
+            spacing: cells.lattice.spacing,
         }
     }
 

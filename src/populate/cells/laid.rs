@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use super::tile::{self, Tile};
-use crate::model::{Body, LatticeKind, Shape, Solid, SymmetryPlane, Vec3, rotation};
+use crate::model::{Body, Lattice, LatticeKind, Shape, Solid, SymmetryPlane, Vec3, rotation};
 use crate::populate::row::Cut;
 use crate::populate::{Share, Site};
 
@@ -19,35 +19,44 @@ pub(in crate::populate) struct Cells {
     /// Lower sides by axis that symmetry planes cut off (m).
     pub(super) planes: Vec<(usize, f64)>,
     pub(super) dimension: usize,
-    pub(super) spacing: f64,
+    /// The finest spacing, and how it grows (m).
+    pub(super) lattice: Lattice,
     tile: Cow<'static, Tile>,
     pub(super) turn: nalgebra::Matrix3<f64>,
+    /// Tiles of the spacing; where that is graded, also of twice the spacing, four times, and so
+    /// on, of which each fills the places with spacings up to twice its own.
+    pub(super) levels: Vec<Level>,
+}
+
+/// Tiles of one size.
+#[derive(Debug, Clone)]
+pub(super) struct Level {
+    /// Spacing of its full tiles (m).
+    pub spacing: f64,
+    /// Beyond all spacings that it fills (m).
+    end: f64,
     /// Where the corner of the first tile lies (m).
     corner: Vec3,
     /// Number of tiles along each axis.
     tiles: [u64; 3],
+    /// The first index of its sites.
+    first: u64,
 }
 
-/// A block by its place among all blocks.
+/// A block by its level and its place among all blocks of that.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Block {
+    pub level: usize,
     pub at: [u64; 3],
 }
 
 impl Cells {
     /// Of a body, if it is not filled by rows.
     pub fn of(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> Option<Self> {
-        let lattice = &body.lattice;
-        let has_rows = match lattice.kind {
-            LatticeKind::Rings => true,
-            LatticeKind::Cubic | LatticeKind::Hexagonal => {
-                lattice.axis.is_none() && !matches!(body.shape, Shape::Solid(_))
-            }
-            LatticeKind::BodyCentred | LatticeKind::FaceCentred | LatticeKind::Glass => false,
-        };
-        if has_rows {
+        if has_rows(body) {
             return None;
         }
+        let lattice = &body.lattice;
         let tile = Tile::of(lattice.kind, dimension);
         let (turn, shift) = if lattice.kind == LatticeKind::Glass {
             tile::drawn(lattice.seed, dimension)
@@ -61,22 +70,39 @@ impl Cells {
                 .map(|plane| (plane.axis.index(), plane.position))
                 .collect(),
             dimension,
-            spacing: lattice.spacing,
+            lattice: lattice.clone(),
             tile,
             turn,
-            corner: Vec3::zeros(),
-            tiles: [1; 3],
+            levels: Vec::new(),
             solid: body.shape.solid(dimension),
         };
-        cells.lay(body.shape.centre(), shift);
+        let (mut spacing, mut first) = (lattice.spacing, 0);
+        while spacing <= lattice.coarsest() {
+            let coarser = 2.0 * spacing;
+            let end = if coarser > lattice.coarsest() {
+                f64::INFINITY
+            } else {
+                coarser
+            };
+            let level = cells.lay(body.shape.centre(), shift, [spacing, end], first);
+            first = first.saturating_add(cells.sites_in(&level));
+            cells.levels.push(level);
+            spacing = coarser;
+        }
         Some(cells)
     }
 
-    /// Lays tiles about a centre (m), moved by a shift (tiles), until they cover the solid.
-    fn lay(&mut self, centre: Vec3, shift: Vec3) {
-        let (lower, upper) = self.solid.bounds();
-        let edges = self.tile.edges * self.spacing;
-        let mut first = Vec3::zeros();
+    /// Lays tiles about a centre (m), moved by a shift (tiles), until they cover those places in the
+    /// solid where spacings lie in a range (m).
+    fn lay(&self, centre: Vec3, shift: Vec3, [spacing, end]: [f64; 2], first: u64) -> Level {
+        let (mut lower, mut upper) = self.solid.bounds();
+        if let Some(grading) = &self.lattice.grading {
+            let farthest = grading.distance(self.lattice.spacing, end);
+            let (nearest_lower, nearest_upper) = grading.from.around(farthest);
+            (lower, upper) = (lower.sup(&nearest_lower), upper.inf(&nearest_upper));
+        }
+        let edges = self.tile.edges * spacing;
+        let (mut begin, mut tiles) = (Vec3::zeros(), [1; 3]);
         for a in 0..self.dimension {
             let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
             for corner in 0..8_u8 {
@@ -91,26 +117,46 @@ impl Cells {
                 let along = self.turn.column(a).dot(&x) / edges[a] - shift[a];
                 (low, high) = (low.min(along), high.max(along));
             }
-            first[a] = low.floor();
+            begin[a] = low.floor();
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
             // saturating is meant
             {
-                self.tiles[a] = (high.ceil() - first[a]).max(1.0) as u64;
+                tiles[a] = (high.ceil() - begin[a]).max(1.0) as u64;
             }
         }
-        let along = (first + shift).component_mul(&edges);
-        self.corner = centre + self.turn * along;
+        if (0..self.dimension).any(|a| lower[a] > upper[a]) {
+            tiles = [0; 3];
+        }
+        let along = (begin + shift).component_mul(&edges);
+        Level {
+            spacing,
+            end,
+            corner: centre + self.turn * along,
+            tiles,
+            first,
+        }
+    }
+
+    /// How many indices the tiles of a level take.
+    fn sites_in(&self, level: &Level) -> u64 {
+        let tiles = level.tiles.iter().fold(1_u64, |n, &m| n.saturating_mul(m));
+        tiles.saturating_mul(self.tile.sites.len() as u64)
     }
 
     /// One more than the largest index.
     pub fn index_end(&self) -> u64 {
-        let tiles = self.tiles.iter().fold(1_u64, |n, &m| n.saturating_mul(m));
-        tiles.saturating_mul(self.tile.sites.len() as u64)
+        let levels = self.levels.iter().map(|level| self.sites_in(level));
+        levels.fold(0, u64::saturating_add)
     }
 
     /// Whether sites are moved to fit the surface.
     pub fn is_fitted(&self) -> bool {
         self.tile.is_glass
+    }
+
+    /// The coarsest spacing (m) of a level.
+    pub(super) fn coarsest(&self, level: usize) -> f64 {
+        self.levels[level].end.min(self.lattice.coarsest())
     }
 
     /// Distance (m) from the surface and the symmetry planes, negative inside and above.
@@ -119,33 +165,41 @@ impl Cells {
         beyond.fold(self.solid.distance(x), f64::max)
     }
 
-    /// Numbers of blocks along each axis.
-    pub(super) fn blocks(&self) -> [u64; 3] {
-        [0, 1, 2].map(|a| self.tiles[a] * self.tile.blocks[a])
+    /// Numbers of blocks of a level along each axis.
+    pub(super) fn blocks(&self, level: usize) -> [u64; 3] {
+        [0, 1, 2].map(|a| self.levels[level].tiles[a] * self.tile.blocks[a])
     }
 
     /// Middle of a range of blocks and half its edges, along the axes of the tile (m).
     #[allow(clippy::cast_precision_loss)] // far fewer than 2^52
-    pub(super) fn middle(&self, first: [u64; 3], end: [u64; 3]) -> (Vec3, Vec3) {
-        let size = |a: usize| self.tile.edges[a] * self.spacing / self.tile.blocks[a] as f64;
+    pub(super) fn middle(&self, level: usize, first: [u64; 3], end: [u64; 3]) -> (Vec3, Vec3) {
+        let Level {
+            spacing, corner, ..
+        } = self.levels[level];
+        let size = |a: usize| self.tile.edges[a] * spacing / self.tile.blocks[a] as f64;
         let mut half = Vec3::from_fn(|a, _| 0.5 * (end[a] - first[a]) as f64 * size(a));
         let mut along = Vec3::from_fn(|a, _| 0.5 * (end[a] + first[a]) as f64 * size(a));
         for a in self.dimension..3 {
             (half[a], along[a]) = (0.0, 0.0);
         }
-        (self.corner + self.turn * along, half)
+        (corner + self.turn * along, half)
     }
 
     /// All blocks in order, tile by tile, that may hold sites within the cuts.
     pub(super) fn all_blocks(&self) -> impl Iterator<Item = Block> + use<> {
-        let (tiles, blocks) = (self.tiles, self.tile.blocks);
+        let tiles: Vec<[u64; 3]> = self.levels.iter().map(|level| level.tiles).collect();
+        let blocks = self.tile.blocks;
         let each = |n: [u64; 3]| {
             (0..n[2])
                 .flat_map(move |k| (0..n[1]).flat_map(move |j| (0..n[0]).map(move |i| [i, j, k])))
         };
-        each(tiles).flat_map(move |tile| {
-            each(blocks).map(move |block| Block {
-                at: [0, 1, 2].map(|a| tile[a] * blocks[a] + block[a]),
+        let tiles = tiles.into_iter().enumerate();
+        tiles.flat_map(move |(level, tiles)| {
+            each(tiles).flat_map(move |tile| {
+                each(blocks).map(move |block| Block {
+                    level,
+                    at: [0, 1, 2].map(|a| tile[a] * blocks[a] + block[a]),
+                })
             })
         })
     }
@@ -153,17 +207,29 @@ impl Cells {
     /// The site of a number in a block's tile: its index and where it stands before it is fitted
     /// (m).
     fn site(&self, block: Block, number: usize) -> Site {
+        let level = &self.levels[block.level];
         let tile = [0, 1, 2].map(|a| block.at[a] / self.tile.blocks[a]);
-        let linear = tile[0] + self.tiles[0] * (tile[1] + self.tiles[1] * tile[2]);
+        let linear = tile[0] + level.tiles[0] * (tile[1] + level.tiles[1] * tile[2]);
         #[allow(clippy::cast_precision_loss)] // far fewer than 2^52
         let along = Vec3::from_fn(|a, _| {
-            (tile[a] as f64 * self.tile.edges[a] + self.tile.sites[number][a]) * self.spacing
+            (tile[a] as f64 * self.tile.edges[a] + self.tile.sites[number][a]) * level.spacing
         });
+        let position = level.corner + self.turn * along;
+        let size = self.lattice.spacing_at(&position) / self.lattice.spacing;
         Site {
-            position: (self.corner + self.turn * along).into(),
-            index: linear * self.tile.sites.len() as u64 + number as u64,
-            share: 1.0,
+            position: position.into(),
+            index: level.first + linear * self.tile.sites.len() as u64 + number as u64,
+            share: (1..self.dimension).fold(size, |volume, _| volume * size),
         }
+    }
+
+    /// Whether the site of a number in a tile is one of those that a spacing (m) leaves of a level.
+    #[allow(clippy::cast_precision_loss)] // a few thousand
+    fn is_left(&self, level: &Level, number: usize, spacing: f64) -> bool {
+        let size = level.spacing / spacing;
+        let share = (1..self.dimension).fold(size, |volume, _| volume * size);
+        let is_of_level = level.spacing <= spacing && spacing < level.end;
+        is_of_level && f64::from(self.tile.ranks[number]) < share * self.tile.sites.len() as f64
     }
 
     /// The sites of a block by their numbers in its tile.
@@ -172,11 +238,15 @@ impl Cells {
             .numbers([0, 1, 2].map(|a| block.at[a] % self.tile.blocks[a]))
     }
 
-    /// Where the solid and the cuts leave a block.
+    /// Where the solid, the cuts and the spacing leave a block.
     fn lie(&self, block: Block, cuts: &[Cut]) -> Lie {
         let end = block.at.map(|n| n + 1);
-        let (middle, half) = self.middle(block.at, end);
-        let reach = half.norm() + FACE * self.spacing;
+        let (middle, half) = self.middle(block.level, block.at, end);
+        let reach = half.norm() + FACE * self.lattice.spacing;
+        let thinned = self.lie_in_grading(&self.levels[block.level], &middle, reach);
+        if thinned == Lie::Outside {
+            return Lie::Outside;
+        }
         let (lower, upper) = (middle.add_scalar(-reach), middle.add_scalar(reach));
         let (lower, upper) = (lower.into(), upper.into());
         if cuts.iter().any(|cut| cut.drops(&lower, &upper)) {
@@ -190,6 +260,23 @@ impl Cells {
             .iter()
             .all(|cut| cut.keeps(&lower) && cut.keeps(&upper));
         if distance <= -reach && is_kept {
+            thinned
+        } else {
+            Lie::Between
+        }
+    }
+
+    /// Whether all sites of a level, none, or some are left as near to a place as `reach` (m).
+    fn lie_in_grading(&self, level: &Level, middle: &Vec3, reach: f64) -> Lie {
+        let Some(grading) = &self.lattice.grading else {
+            return Lie::Inside;
+        };
+        let distance = grading.from.distance(middle);
+        let spacing = |distance| grading.spacing(self.lattice.spacing, distance);
+        let (finest, coarsest) = (spacing(distance - reach), spacing(distance + reach));
+        if coarsest < level.spacing || finest >= level.end {
+            Lie::Outside
+        } else if finest == level.spacing && coarsest == level.spacing {
             Lie::Inside
         } else {
             Lie::Between
@@ -198,7 +285,7 @@ impl Cells {
 
     fn holds(&self, x: &[f64; 3], cuts: &[Cut]) -> bool {
         cuts.iter().all(|cut| cut.keeps(x))
-            && self.solid.distance(&Vec3::from(*x)) < -FACE * self.spacing
+            && self.solid.distance(&Vec3::from(*x)) < -FACE * self.lattice.spacing
     }
 
     /// Its sites before they are fitted, in the order of their index within a block.
@@ -207,10 +294,16 @@ impl Cells {
         if lie == Lie::Outside {
             return Vec::new();
         }
-        let sites = self.numbers(block).map(|number| self.site(block, number));
-        sites
-            .filter(|site| lie == Lie::Inside || self.holds(&site.position, cuts))
-            .collect()
+        let level = &self.levels[block.level];
+        let sites = self.numbers(block).filter_map(|number| {
+            let site = self.site(block, number);
+            let is_one = lie == Lie::Inside || {
+                let spacing = self.lattice.spacing_at(&site.position.into());
+                self.is_left(level, number, spacing) && self.holds(&site.position, cuts)
+            };
+            is_one.then_some(site)
+        });
+        sites.collect()
     }
 
     /// How many there are.
@@ -221,6 +314,15 @@ impl Cells {
             Lie::Between => self.sites_of(block, cuts).len() as u64,
         };
         self.all_blocks().map(of_block).sum()
+    }
+
+    /// The sum of their shares.
+    pub fn shares(&self, cuts: &[Cut]) -> f64 {
+        let of_block = |block| {
+            let sites = self.sites_of(block, cuts);
+            sites.iter().fold(0.0, |sum, site| sum + site.share)
+        };
+        self.all_blocks().map(of_block).fold(0.0, |sum, part| sum + part)
     }
 
     /// Tells the coordinates on an axis (m) of one of several shares of the sites.
@@ -234,6 +336,18 @@ impl Cells {
                 add(site.position[axis], 1);
             }
         }
+    }
+}
+
+/// Whether rows of a lattice fill a body.
+pub(in crate::populate) fn has_rows(body: &Body) -> bool {
+    let lattice = &body.lattice;
+    match lattice.kind {
+        LatticeKind::Rings => true,
+        LatticeKind::Cubic | LatticeKind::Hexagonal => {
+            lattice.axis.is_none() && !matches!(body.shape, Shape::Solid(_))
+        }
+        LatticeKind::BodyCentred | LatticeKind::FaceCentred | LatticeKind::Glass => false,
     }
 }
 

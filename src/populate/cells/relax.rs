@@ -1,8 +1,11 @@
 //! Relaxation: sites push each other apart until they stand evenly.
 //!
-//! Lengths are in spacings. What sites of a number density of one feel is the slope of a Wendland
-//! function, under which they find an even order without pairs or layers, with a spring against
-//! those that are far too near.
+//! Lengths are in finest spacings. What sites feel of each other is the slope of a Wendland function
+//! of their distance over the mean of their spacings, under which they find an even order without
+//! pairs or layers, with a spring against those that are far too near. Of two sites of unequal
+//! spacings s the coarser one pushes more, by their ratio: where s grows evenly and the number
+//! density is 1/s³, the sum of `f(r/s̄) s_j/s_i` over all directions is zero to the first order in
+//! the slope of s, so that sites stay as dense as they are laid.
 
 use rayon::prelude::*;
 
@@ -81,41 +84,67 @@ impl Wall {
     }
 }
 
-/// Sites by cubes of one reach, whose faces do not hang on which sites there are.
+/// What is relaxed: places, and the spacing of each, in finest spacings.
+pub(super) struct Sites {
+    pub places: Vec<[f64; 3]>,
+    pub sizes: Vec<f64>,
+    /// The largest spacing of each level, whose sites are at least half as large.
+    pub largest: Vec<f64>,
+}
+
+impl Sites {
+    /// The level of a spacing: level n begins at 2^n.
+    fn level(&self, size: f64) -> usize {
+        let mut level = 0;
+        let mut coarser = 2.0;
+        while level + 1 < self.largest.len() && size >= coarser {
+            level += 1;
+            coarser *= 2.0;
+        }
+        level
+    }
+}
+
+/// Sites of a level by cubes of one reach, whose faces do not hang on which sites there are.
 struct Grid {
+    edge: f64,
     first: [i64; 3],
     counts: [usize; 3],
     starts: Vec<u32>,
     order: Vec<u32>,
 }
 
-#[allow(clippy::cast_possible_truncation)] // clamped far below 2^31 cubes
-fn cube(x: &[f64; 3]) -> [i64; 3] {
-    x.map(|c| (c / REACH).floor() as i64)
-}
-
 impl Grid {
     #[allow(clippy::cast_sign_loss, clippy::cast_possible_truncation)]
-    fn new(x: &[[f64; 3]]) -> Self {
-        let mut first = [i64::MAX; 3];
+    fn new(sites: &Sites, level: usize) -> Self {
+        let edge = REACH * sites.largest[level];
+        let members = (0..).zip(&sites.sizes);
+        let members = members.filter(|&(_, &size)| sites.level(size) == level);
+        let members: Vec<u32> = members.map(|(i, _)| i).collect();
+        let place = |i: u32| &sites.places[i as usize];
+        let mut grid = Self {
+            edge,
+            first: [i64::MAX; 3],
+            counts: [0; 3],
+            starts: Vec::new(),
+            order: vec![0; members.len()],
+        };
         let mut last = [i64::MIN; 3];
-        for place in x {
-            let at = cube(place);
+        for &i in &members {
+            let at = grid.cube(place(i));
             for a in 0..3 {
-                first[a] = first[a].min(at[a]);
+                grid.first[a] = grid.first[a].min(at[a]);
                 last[a] = last[a].max(at[a]);
             }
         }
-        let counts = [0, 1, 2].map(|a| (last[a] - first[a] + 1).max(0) as usize);
-        let mut grid = Self {
-            first,
-            counts,
-            starts: vec![0; counts.iter().product::<usize>() + 1],
-            order: vec![0; x.len()],
-        };
-        let numbers: Vec<usize> = x
+        if members.is_empty() {
+            (grid.first, last) = ([0; 3], [-1; 3]);
+        }
+        grid.counts = [0, 1, 2].map(|a| (last[a] - grid.first[a] + 1) as usize);
+        grid.starts = vec![0; grid.counts.iter().product::<usize>() + 1];
+        let numbers: Vec<usize> = members
             .iter()
-            .map(|place| grid.number(cube(place)).unwrap_or(0))
+            .map(|&i| grid.number(grid.cube(place(i))).unwrap_or(0))
             .collect();
         for &n in &numbers {
             grid.starts[n + 1] += 1;
@@ -124,11 +153,16 @@ impl Grid {
             grid.starts[n] += grid.starts[n - 1];
         }
         let mut next = grid.starts.clone();
-        for (i, &n) in numbers.iter().enumerate() {
-            grid.order[next[n] as usize] = i as u32;
+        for (&i, &n) in members.iter().zip(&numbers) {
+            grid.order[next[n] as usize] = i;
             next[n] += 1;
         }
         grid
+    }
+
+    #[allow(clippy::cast_possible_truncation)] // clamped far below 2^31 cubes
+    fn cube(&self, x: &[f64; 3]) -> [i64; 3] {
+        x.map(|c| (c / self.edge).floor() as i64)
     }
 
     #[allow(clippy::cast_sign_loss, clippy::cast_possible_truncation)]
@@ -144,25 +178,32 @@ impl Grid {
         Some(number)
     }
 
-    /// What a site feels from the others: their order is that of cubes and of sites, the same
-    /// whichever others there are farther away.
-    fn force(&self, x: &[[f64; 3]], i: usize) -> [f64; 3] {
-        let (here, at) = (x[i], cube(&x[i]));
-        let mut force = [0.0; 3];
-        for k in -1..=1 {
-            for j in -1..=1 {
-                for l in -1..=1 {
-                    let Some(n) = self.number([at[0] + l, at[1] + j, at[2] + k]) else {
+    /// Adds what a site feels from the others of the level, of which the largest are as near as
+    /// `reach`: their order is that of cubes and of sites, the same whichever others there are
+    /// farther away.
+    fn add_force(&self, sites: &Sites, i: usize, reach: f64, force: &mut [f64; 3]) {
+        let (here, size) = (sites.places[i], sites.sizes[i]);
+        let (low, high) = (
+            self.cube(&here.map(|c| c - reach)),
+            self.cube(&here.map(|c| c + reach)),
+        );
+        for k in low[2]..=high[2] {
+            for j in low[1]..=high[1] {
+                for l in low[0]..=high[0] {
+                    let Some(n) = self.number([l, j, k]) else {
                         continue;
                     };
-                    let sites = self.starts[n] as usize..self.starts[n + 1] as usize;
-                    for &other in &self.order[sites] {
+                    let members = self.starts[n] as usize..self.starts[n + 1] as usize;
+                    for &other in &self.order[members] {
                         let other = other as usize;
-                        let there = x[other];
+                        let there = sites.places[other];
                         let way: [f64; 3] = std::array::from_fn(|a| here[a] - there[a]);
                         let square = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
-                        if square < REACH * REACH && other != i {
-                            let push = push(square.sqrt());
+                        let mean = 0.5 * (size + sites.sizes[other]);
+                        let within = REACH * mean;
+                        if square < within * within && other != i {
+                            let push = push(square.sqrt() / mean);
+                            let push = push * sites.sizes[other] / (size * mean);
                             for a in 0..3 {
                                 force[a] += push * way[a];
                             }
@@ -171,40 +212,57 @@ impl Grid {
                 }
             }
         }
-        force
     }
 }
 
-/// One step of those sites that move; `outside` gives what a site feels besides the others, `hold`
-/// keeps it where it may be, with the velocity that it keeps.
+/// What a site feels from the others.
+fn force(grids: &[Grid], sites: &Sites, i: usize) -> [f64; 3] {
+    let size = sites.sizes[i];
+    let own = sites.level(size);
+    let mut force = [0.0; 3];
+    // What is within reach is less than twice as large, and more than half as large.
+    let levels = own.saturating_sub(1)..(own + 2).min(grids.len());
+    for level in levels {
+        let reach = 0.5 * REACH * (size + sites.largest[level]);
+        grids[level].add_force(sites, i, reach, &mut force);
+    }
+    force
+}
+
+/// One step of those sites that move, whose spacings are given to the functions, too; `outside`
+/// gives what a site feels besides the others, `hold` keeps it where it may be, with the velocity
+/// (spacings) that it keeps.
 pub(super) fn step(
-    x: &mut [[f64; 3]],
+    sites: &mut Sites,
     velocity: &mut [[f64; 3]],
     moving: &[u32],
-    outside: impl Fn(&[f64; 3]) -> [f64; 3] + Sync,
-    hold: impl Fn(&mut [f64; 3], &mut [f64; 3]) + Sync,
+    outside: impl Fn(&[f64; 3], f64) -> [f64; 3] + Sync,
+    hold: impl Fn(&mut [f64; 3], &mut [f64; 3], f64) + Sync,
 ) {
-    let grid = Grid::new(x);
-    let places: &[[f64; 3]] = x;
+    let grids: Vec<Grid> = (0..sites.largest.len())
+        .map(|level| Grid::new(sites, level))
+        .collect();
+    let before: &Sites = sites;
     // Each site by itself, so the same bits in any order.
     let moved = moving.par_iter().zip(velocity.par_iter()).map(|(&i, v)| {
-        let mut place = places[i as usize];
-        let (sites, other) = (grid.force(places, i as usize), outside(&place));
+        let i = i as usize;
+        let (mut place, size) = (before.places[i], before.sizes[i]);
+        let (others, other) = (force(&grids, before, i), outside(&place, size));
         let mut v: [f64; 3] =
-            std::array::from_fn(|a| KEPT * v[a] + MOBILITY * (sites[a] + other[a]));
+            std::array::from_fn(|a| KEPT * v[a] + MOBILITY * (others[a] + other[a]));
         let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
         if length > LONGEST {
             v = v.map(|c| c * (LONGEST / length));
         }
         for a in 0..3 {
-            place[a] += v[a];
+            place[a] += v[a] * size;
         }
-        hold(&mut place, &mut v);
+        hold(&mut place, &mut v, size);
         (place, v)
     });
     let moved: Vec<([f64; 3], [f64; 3])> = moved.collect();
     for ((&i, velocity), (place, v)) in moving.iter().zip(velocity).zip(moved) {
-        x[i as usize] = place;
+        sites.places[i as usize] = place;
         *velocity = v;
     }
 }

@@ -6,21 +6,16 @@ use crate::populate::Wanted;
 use crate::populate::parts::{Parts, best};
 use crate::populate::row::Cut;
 
-/// Blocks of what is filled by cells, within some cuts.
-pub(in crate::populate) struct Blocks<'a> {
+/// Blocks of a level of what is filled by cells, within some cuts.
+struct Blocks<'a> {
     cells: &'a Cells,
+    level: usize,
     cuts: &'a [Cut],
-}
-
-impl<'a> Blocks<'a> {
-    pub fn of(cells: &'a Cells, cuts: &'a [Cut]) -> Self {
-        Self { cells, cuts }
-    }
 }
 
 impl Parts for Blocks<'_> {
     fn all(&self) -> [u64; 3] {
-        self.cells.blocks()
+        self.cells.blocks(self.level)
     }
 
     fn longest(&self, first: [u64; 3], end: [u64; 3]) -> usize {
@@ -30,9 +25,9 @@ impl Parts for Blocks<'_> {
 
     fn around(&self, first: [u64; 3], end: [u64; 3]) -> Option<([f64; 3], [f64; 3])> {
         let cells = self.cells;
-        let (middle, half) = cells.middle(first, end);
+        let (middle, half) = cells.middle(self.level, first, end);
         let mut aside = cells.turn.abs() * half;
-        let moved = if cells.is_fitted() { 1.0 } else { 1e-9 } * cells.spacing;
+        let moved = if cells.is_fitted() { 1.0 } else { 1e-9 } * cells.coarsest(self.level);
         for a in 0..cells.dimension {
             aside[a] += moved;
         }
@@ -43,7 +38,11 @@ impl Parts for Blocks<'_> {
 
     /// Sites that are fitted where they end nearly.
     fn tell(&self, at: [u64; 3], mut tell: impl FnMut([f64; 3])) {
-        for site in self.cells.sites_of(Block { at }, self.cuts) {
+        let block = Block {
+            level: self.level,
+            at,
+        };
+        for site in self.cells.sites_of(block, self.cuts) {
             tell(if self.cells.is_fitted() {
                 settled(self.cells, &site.position)
             } else {
@@ -53,6 +52,24 @@ impl Parts for Blocks<'_> {
     }
 }
 
+/// The sites where `value` is smallest, smallest first: see [`crate::populate::search`].
+pub(in crate::populate) fn smallest(
+    cells: &Cells,
+    cuts: &[Cut],
+    wanted: Wanted,
+    bound: impl Fn(&[f64; 3], &[f64; 3]) -> f64,
+    value: impl Fn(&[f64; 3]) -> f64,
+) -> Vec<(f64, [f64; 3])> {
+    let mut found: Vec<(f64, [f64; 3])> = Vec::new();
+    for level in 0..cells.levels.len() {
+        let blocks = Blocks { cells, level, cuts };
+        found.extend(best(&blocks, wanted, &bound, &value));
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.truncate(wanted.most);
+    }
+    found
+}
+
 /// Smallest and largest coordinates (m) of the sites, if there are any.
 pub(in crate::populate) fn extremes(cells: &Cells, cuts: &[Cut]) -> Option<([f64; 3], [f64; 3])> {
     let wanted = Wanted {
@@ -60,11 +77,10 @@ pub(in crate::populate) fn extremes(cells: &Cells, cuts: &[Cut]) -> Option<([f64
         limit: f64::INFINITY,
         any: false,
     };
-    let blocks = Blocks::of(cells, cuts);
     let (mut lowest, mut highest) = ([0.0; 3], [0.0; 3]);
     for a in 0..cells.dimension {
-        let low = best(&blocks, wanted, |lower, _| lower[a], |x| x[a]);
-        let high = best(&blocks, wanted, |_, upper| -upper[a], |x| -x[a]);
+        let low = smallest(cells, cuts, wanted, |lower, _| lower[a], |x| x[a]);
+        let high = smallest(cells, cuts, wanted, |_, upper| -upper[a], |x| -x[a]);
         lowest[a] = low.first()?.0;
         highest[a] = -high.first()?.0;
     }

@@ -7,10 +7,10 @@
     reason = "small numbers"
 )]
 
-use super::relax::{REACH, step};
+use super::relax::{REACH, Sites, step};
 use super::tile::{GLASS_EDGES, Tile, split_mix};
 use super::*;
-use crate::model::{Axis, Body, LatticeKind, Shape, SymmetryPlane, Vec3};
+use crate::model::{Axis, Body, Focus, Grading, LatticeKind, Shape, SymmetryPlane, Vec3};
 use crate::numerics::kernel::Kernel;
 
 /// Steps in which a tile comes to rest.
@@ -41,10 +41,54 @@ fn made(dimension: usize) -> Vec<[f64; 3]> {
             }
         }
         add_images(&mut x, edge, dimension);
-        step(&mut x, &mut velocity, &moving, |_| [0.0; 3], |_, _| ());
+        let mut sites = Sites {
+            sizes: vec![1.0; x.len()],
+            places: std::mem::take(&mut x),
+            largest: vec![1.0],
+        };
+        step(&mut sites, &mut velocity, &moving, |_, _| [0.0; 3], |_, _, _| ());
+        x = sites.places;
         x.truncate(count);
     }
-    x
+    ranked(&x, edge, dimension)
+}
+
+/// Sites in an order of which any first ones are spread evenly: the one that has most others near
+/// it goes last, and so on with the rest, as in dithering by voids and clusters (Ulichney 1993).
+/// How near is measured in spacings of those that are left.
+fn ranked(x: &[[f64; 3]], edge: f64, dimension: usize) -> Vec<[f64; 3]> {
+    const WIDTH: f64 = 0.6;
+    const WIDER: f64 = 1.02;
+    let square = |i: usize, j: usize| -> f64 {
+        let along = |a: usize| {
+            let way = x[i][a] - x[j][a];
+            way - edge * (way / edge).round()
+        };
+        (0..dimension).map(|a| along(a) * along(a)).sum()
+    };
+    let near = |i: usize, j: usize, width: f64| {
+        libm::exp(-square(i, j) / (2.0 * width * width))
+    };
+    let mut left: Vec<usize> = (0..x.len()).collect();
+    let (mut order, mut width) = (Vec::new(), 0.0);
+    let mut crowds = vec![0.0; x.len()];
+    while !left.is_empty() {
+        let spacing = (x.len() as f64 / left.len() as f64).powf(1.0 / dimension as f64);
+        if WIDTH * spacing > WIDER * width {
+            width = WIDTH * spacing;
+            for &i in &left {
+                crowds[i] = left.iter().map(|&j| near(i, j, width)).sum();
+            }
+        }
+        let most = (0..left.len()).max_by(|&a, &b| crowds[left[a]].total_cmp(&crowds[left[b]]));
+        let gone = left.remove(most.unwrap());
+        for &i in &left {
+            crowds[i] -= near(i, gone, width);
+        }
+        order.push(x[gone]);
+    }
+    order.reverse();
+    order
 }
 
 /// Appends the periodic images of sites within reach of a box.
@@ -291,5 +335,53 @@ fn the_mass_of_all_particles_is_that_of_the_shape() {
         let error = each * count as f64 / volume - 1.0;
         println!("{} planes: volume {error:e}", planes.len());
         assert!(error.abs() < 1e-5, "{error:e}");
+    }
+}
+
+/// Particles of a graded body stand evenly: kernel sums with the mean smoothing length of each pair
+/// are one, all through the grading.
+#[test]
+fn a_graded_body_is_even() {
+    let from = Focus::Point(Vec3::new(0.3, -0.2, 0.1));
+    for growth in [0.1, 0.3] {
+        let mut body = body(ball(45.0), LatticeKind::Glass, 1.0);
+        body.lattice.grading = Some(Grading {
+            from,
+            even: 6.0,
+            growth,
+            coarsest: 4.0,
+        });
+        let sites: Vec<Site> = crate::populate::sites(&body, 3, &[], None).collect();
+        let shares = crate::populate::shares(&body, 3, &[]);
+        let sum = sites.iter().fold(0.0, |sum, site| sum + site.share);
+        assert!((sum / shares - 1.0).abs() < 1e-12);
+        let volume = 4.0 / 3.0 * std::f64::consts::PI * 45.0_f64.powi(3);
+        println!("{} sites, shares over volume {}", sites.len(), shares / volume);
+        assert!((shares / volume - 1.0).abs() < 0.01);
+        let kernel = Kernel::new(3);
+        let size: Vec<f64> = sites.iter().map(|site| site.share.cbrt()).collect();
+        let (mut sums, mut layer) = (Vec::new(), Vec::new());
+        for (site, s) in sites.iter().zip(&size) {
+            let x = Vec3::from(site.position);
+            let depth = 45.0 - (x - Vec3::new(0.3, -0.2, 0.1)).norm();
+            if depth < *s {
+                layer.push(depth / s);
+            }
+            if depth < 3.0 * s {
+                continue;
+            }
+            let around = sites.iter().zip(&size).filter_map(|(other, t)| {
+                let h = 0.65 * (s + t);
+                let r = (x - Vec3::from(other.position)).norm();
+                (r < 2.0 * h).then(|| other.share * kernel.of_length(h).value(r))
+            });
+            sums.push(around.fold(0.0, |sum, part| sum + part));
+        }
+        let (mean, rms) = spread(&sums);
+        let (deep, uneven) = spread(&layer);
+        println!("growth {growth}: sum {mean} ± {rms}, layer {deep} ± {uneven}");
+        let noise = libm::hypot(mean - 1.0, rms);
+        assert!(noise < if growth < 0.2 { 0.02 } else { 0.04 }, "{noise}");
+        assert!((deep - 0.5).abs() < 0.02 && uneven < 0.05);
     }
 }

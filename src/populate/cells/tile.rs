@@ -6,7 +6,8 @@ use std::sync::OnceLock;
 
 use crate::model::{LatticeKind, Vec3, rotation};
 
-/// Sites of the shipped tiles: 16³ in three dimensions, 64² in two, as 16-bit fractions of an edge.
+/// Sites of the shipped tiles: 16³ in three dimensions, 64² in two, as 16-bit fractions of an edge;
+/// any first ones of them are spread evenly.
 const GLASS: [&[u8]; 2] = [include_bytes!("glass2.bin"), include_bytes!("glass3.bin")];
 /// Edges of these (spacings).
 pub(super) const GLASS_EDGES: [f64; 2] = [64.0, 16.0];
@@ -20,6 +21,8 @@ pub(super) struct Tile {
     pub blocks: [u64; 3],
     /// Sites from the corner on (spacings), block by block.
     pub sites: Vec<Vec3>,
+    /// Which of them stay when fewer are wanted: any first ones of this order are spread evenly.
+    pub ranks: Vec<u32>,
     /// Where those of each block begin.
     starts: Vec<usize>,
     /// Whether it has no order.
@@ -115,18 +118,21 @@ impl Tile {
         clippy::cast_sign_loss,
         clippy::cast_precision_loss
     )]
-    fn cut(edges: Vec3, blocks: [u64; 3], mut sites: Vec<Vec3>, is_glass: bool) -> Self {
+    fn cut(edges: Vec3, blocks: [u64; 3], sites: Vec<Vec3>, is_glass: bool) -> Self {
         let block = |x: &Vec3| {
             let at = |a: usize| ((x[a] / edges[a] * blocks[a] as f64) as u64).min(blocks[a] - 1);
             at(0) + blocks[0] * (at(1) + blocks[1] * at(2))
         };
-        sites.sort_by_key(|x| block(x));
+        let mut ranked: Vec<(u32, Vec3)> = (0..).zip(sites).collect();
+        ranked.sort_by_key(|(_, x)| block(x));
+        let (ranks, sites): (Vec<u32>, Vec<Vec3>) = ranked.into_iter().unzip();
         let count = blocks.iter().product::<u64>();
         let starts = (0..=count).map(|b| sites.partition_point(|x| block(x) < b));
         Self {
             edges,
             blocks,
             starts: starts.collect(),
+            ranks,
             sites,
             is_glass,
         }
