@@ -95,17 +95,16 @@ fn draw(case: &Case, path: &Path, section: Option<&str>) -> Result<(), PlotError
     out::write(&plot::preview(case, section, None)?, path)
 }
 
-/// The mass of so many particles of a body, and by how much each has more than Δp^d to bear that;
+/// The mass of the particles of a body, and by how much each has more than Δp^d to bear that;
 /// nothing of a rigid body.
-#[allow(clippy::cast_precision_loss, reason = "for people")]
-fn mass(case: &Case, body: &Body, count: u64) -> String {
+fn mass(case: &Case, body: &Body) -> String {
     if body.rigid.is_some() {
         return String::new();
     }
     let each = populate::particle_volume(body, case.dimension);
     let density = case.initial_density(body);
     let text = shown(
-        density * each * count as f64,
+        density * each * populate::shares(body, case.dimension, &case.symmetry),
         unit_of_model("kg", case.dimension),
     );
     let cell = (1..case.dimension).fold(body.lattice.spacing, |v, _| v * body.lattice.spacing);
@@ -125,13 +124,24 @@ fn print_report(case: &Case, ranks: usize) {
     for body in &case.bodies {
         let count = populate::count(body, case.dimension, &case.symmetry, None);
         total += count;
+        let range = |least: f64, most: f64| {
+            if least == most {
+                case.length_unit.text(least)
+            } else {
+                format!(
+                    "{} to {}",
+                    case.length_unit.text(least),
+                    case.length_unit.text(most)
+                )
+            }
+        };
         say(&format!(
             "  {:<16} {count:>10} particles of {}, spacing {}, h {}{}",
             body.name,
             case.materials[body.material].name,
-            case.length_unit.text(body.lattice.spacing),
-            case.length_unit.text(body.smoothing_length),
-            mass(case, body, count),
+            range(body.lattice.spacing, body.lattice.coarsest()),
+            range(body.smoothing_length, body.longest_smoothing_length()),
+            mass(case, body),
         ));
         if let Some(beginning) = preflight::beginning(case, body) {
             say(&format!("  {:<16} begins with {beginning}", ""));

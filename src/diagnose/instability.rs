@@ -26,7 +26,11 @@ pub(crate) fn hidden_energy(case: &Case, comm: &Comm) -> f64 {
         let material = &case.materials[body.material];
         let (density, reference) = (case.initial_density(body), material.reference_density);
         #[allow(clippy::cast_precision_loss, reason = "an estimate")]
-        let mass = *count as f64 * density * populate::particle_volume(body, case.dimension);
+        let volume = match body.lattice.grading {
+            None => *count as f64 * populate::particle_volume(body, case.dimension),
+            Some(_) => body.shape.volume_above(&case.symmetry, case.dimension),
+        };
+        let mass = density * volume;
         let strain = density / reference - 1.0;
         let square = strain * strain * material.p_wave_modulus() / reference;
         0.5 * mass * (square + ROUNDING * natural * natural)

@@ -54,6 +54,13 @@ impl Lattice {
         })
     }
 
+    /// Half of what the spacing at a place (m) is above the finest (m): so much earlier a particle
+    /// there touches something.
+    #[must_use]
+    pub fn wider(&self, place: &[f64; 3]) -> f64 {
+        0.5 * (self.spacing_at(&Vec3::from(*place)) - self.spacing)
+    }
+
     /// The coarsest spacing (m).
     #[must_use]
     pub fn coarsest(&self) -> f64 {

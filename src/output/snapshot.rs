@@ -71,7 +71,8 @@ impl Quantity {
 }
 
 /// The quantities of a case: as [`quantities`], but by default none that `particles` have no use
-/// for; and what tells stress points from particles where there are any.
+/// for; and what tells stress points from particles where there are any, and unequal particles from
+/// each other.
 ///
 /// # Errors
 /// As [`quantities`].
@@ -88,6 +89,12 @@ pub fn quantities_of(case: &Case, particles: &ParticleStore) -> Result<Vec<Quant
     let role = "stress_mass".to_owned();
     if case.sph.form == SphForm::StressPoints && !names.contains(&role) {
         names.push(role);
+    }
+    // Masses tell sizes.
+    let mass = "mass".to_owned();
+    let is_uneven = case.bodies.iter().any(|b| b.lattice.sizes().is_some());
+    if is_uneven && !names.contains(&mass) {
+        names.push(mass);
     }
     quantities(&names)
 }
@@ -329,6 +336,9 @@ fn write_meta(comm: &Comm, file: &Writer, meta: &Meta) -> Result<(), OutputError
     file.note(group, "title", &case.title)?;
     file.note(group, "bodies", &serde_json::json!(names).to_string())?;
     file.note(group, "spacings", &serde_json::json!(spacings).to_string())?;
+    let coarsest: Vec<f64> = case.bodies.iter().map(|b| b.lattice.coarsest()).collect();
+    let coarsest = serde_json::json!(coarsest).to_string();
+    file.note(group, "coarsest_spacings", &coarsest)?;
     let densities = case.bodies.iter().map(|b| case.initial_density(b));
     let densities = serde_json::json!(densities.collect::<Vec<f64>>());
     file.note(group, "densities", &densities.to_string())?;

@@ -179,7 +179,7 @@ pub fn first_layer(
 }
 
 /// Smallest distance (m) of the [`sites`] above all symmetry planes from a rigid surface, negative
-/// behind it; infinite where none is within a spacing.
+/// behind it, as if all were as small as the finest; infinite where none is within a spacing.
 #[must_use]
 pub fn smallest_gap(
     body: &Body,
@@ -196,8 +196,8 @@ pub fn smallest_gap(
     let found = search(
         (body, dimension, symmetry),
         wanted,
-        |lower, upper| surface.least_gap(lower, upper, reach),
-        |x| surface.gap(x, reach),
+        |lower, upper| surface.least_gap(lower, upper, reach) - 0.5 * (reach - body.lattice.spacing),
+        |x| surface.gap(x, reach) - body.lattice.wider(x),
     );
     found.first().map_or(f64::INFINITY, |(gap, _)| *gap)
 }

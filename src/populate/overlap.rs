@@ -33,25 +33,30 @@ pub fn overlap(case: &Case, a: usize, b: usize) -> Option<Overlap> {
 /// The deepest particle of `body` that `other` has particles around.
 fn deepest(case: &Case, body: &Body, other: &Body) -> Option<Overlap> {
     let dimension = case.dimension;
-    let mean = 0.5 * (body.lattice.spacing + other.lattice.spacing);
+    let (own, its) = (&body.lattice, &other.lattice);
+    let mean = |at: &[f64; 3]| {
+        let at = Vec3::from(*at);
+        0.5 * (own.spacing_at(&at) + its.spacing_at(&at))
+    };
+    let widest = 0.5 * (own.coarsest() - own.spacing);
     let within = search(
         (body, dimension, &case.symmetry),
         Wanted {
             most: DEEPEST,
-            limit: 0.5 * body.lattice.spacing,
+            limit: 0.5 * own.spacing,
             any: false,
         },
-        |lower, upper| other.shape.least_distance(lower, upper, dimension),
-        |x| other.shape.distance(&Vec3::from(*x), dimension),
+        |lower, upper| other.shape.least_distance(lower, upper, dimension) - widest,
+        |x| other.shape.distance(&Vec3::from(*x), dimension) - own.wider(x),
     );
     let mut overlaps = within.into_iter().map(|(outside, at)| Overlap {
-        depth: (0.5 * body.lattice.spacing - outside) / mean,
+        depth: (0.5 * own.spacing - outside) / mean(&at),
         at,
     });
     let confirmed = |overlap: &Overlap| {
         // Across the faces, and aside to the middle between particles.
         let across = (1.0 - overlap.depth).max(0.5);
-        let near = (across * across + 0.5).sqrt().min(CLOSE) * mean;
+        let near = (across * across + 0.5).sqrt().min(CLOSE) * mean(&overlap.at);
         has_particle(case, other, overlap.at, near)
     };
     overlaps.find(confirmed)

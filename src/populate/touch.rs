@@ -18,14 +18,29 @@ pub fn touching_distance(
     forward: bool,
 ) -> Option<f64> {
     let a = axis.index();
-    let (lower, upper) = bounds(body, dimension)?;
-    let (other_lower, other_upper) = bounds(other, dimension)?;
+    let (lower, upper) = layers(body, dimension)?;
+    let (other_lower, other_upper) = layers(other, dimension)?;
     let gap = 0.5 * (body.lattice.spacing + other.lattice.spacing);
     Some(if forward {
         other_lower[a] - gap - upper[a]
     } else {
         other_upper[a] + gap - lower[a]
     })
+}
+
+/// Smallest and largest coordinates (m) of the outermost layers of a body; where the spacing is
+/// graded, of such as the finest would have: half a spacing below the faces.
+fn layers(body: &Body, dimension: usize) -> Option<([f64; 3], [f64; 3])> {
+    let found = bounds(body, dimension)?;
+    if body.lattice.grading.is_none() {
+        return Some(found);
+    }
+    let (lower, upper) = body.shape.solid(dimension).bounds();
+    let half = 0.5 * body.lattice.spacing;
+    Some((
+        lower.add_scalar(half).into(),
+        upper.add_scalar(-half).into(),
+    ))
 }
 
 /// Touching value `C*_{A|B}` of overlap contact: the foreign volume fraction `Σ V_j W_ij` of a

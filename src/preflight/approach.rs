@@ -101,6 +101,7 @@ fn towards(case: &Case, [body, target]: [&Body; 2], velocity: Vec3, until: f64) 
 fn nearest(case: &Case, body: &Body, target: &Body, way: Vec3) -> f64 {
     let (shape, dimension) = (&target.shape, case.dimension);
     let moved = |x: &[f64; 3]| Vec3::from(*x) + way;
+    let widest = 0.5 * (body.lattice.coarsest() - body.lattice.spacing);
     let found = search(
         (body, dimension, &case.symmetry),
         Wanted {
@@ -108,8 +109,11 @@ fn nearest(case: &Case, body: &Body, target: &Body, way: Vec3) -> f64 {
             limit: f64::INFINITY,
             any: false,
         },
-        |lower, upper| shape.least_distance(&moved(lower).into(), &moved(upper).into(), dimension),
-        |x| shape.distance(&moved(x), dimension),
+        |lower, upper| {
+            let [lower, upper] = [lower, upper].map(|corner| moved(corner).into());
+            shape.least_distance(&lower, &upper, dimension) - widest
+        },
+        |x| shape.distance(&moved(x), dimension) - body.lattice.wider(x),
     );
     let nearest = found
         .first()

@@ -79,7 +79,7 @@ impl Reader<'_> {
     }
 
     fn depth(&self, body: &Body) -> Result<f64, Diagnostic> {
-        let spacing = body.lattice.spacing;
+        let spacing = body.lattice.coarsest();
         let Some(depth) = &self.table.get_ref().depth else {
             return Ok(Absorber::DEPTH * spacing);
         };

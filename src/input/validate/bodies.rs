@@ -262,7 +262,8 @@ impl Reader<'_> {
                     .map_or(params.shape.span(), Spanned::span);
                 return Err(Diagnostic::new(span, title));
             }
-            if gap < FIRST_LAYER.0 || (is_cut && gap > FIRST_LAYER.1) {
+            let is_fitted = populate::moves_sites(body);
+            if !is_fitted && (gap < FIRST_LAYER.0 || (is_cut && gap > FIRST_LAYER.1)) {
                 let title = format!(
                     "the symmetry plane of {} does not lie between two layers of `{}`",
                     axis.name(),

@@ -8,7 +8,7 @@ use toml::Spanned;
 use super::in_dimension;
 use crate::input::schema::{BodyParams, Direction, TouchParams};
 use crate::input::source::Diagnostic;
-use crate::model::{Axis, Body, RigidSurface, Shape, SurfaceShape, SymmetryPlane, Vec3};
+use crate::model::{Axis, Body, RigidSurface, SurfaceShape, SymmetryPlane, Vec3};
 use crate::populate;
 
 /// A shape as near to a plane as this rests on it (spacings).
@@ -57,7 +57,7 @@ pub fn resolve(
             let (body, other) = (&bodies[index], &bodies[target]);
             // A body without particles is refused later on.
             let distance = populate::touching_distance(body, other, dimension, axis, forward);
-            translate(&mut bodies[index].shape, axis, distance.unwrap_or(0.0));
+            translate(&mut bodies[index], axis, distance.unwrap_or(0.0));
         }
         waiting = later;
     }
@@ -85,7 +85,7 @@ pub fn lay_on_planes(
         for axis in [Axis::X, Axis::Y, Axis::Z] {
             let distance = way[axis.index()];
             if distance.abs() > ROUNDING * body.lattice.spacing {
-                translate(&mut body.shape, axis, distance);
+                translate(body, axis, distance);
                 moved = true;
             }
         }
@@ -145,8 +145,11 @@ pub fn direction(
     Ok((in_dimension(axis, dimension, at)?, forward))
 }
 
-fn translate(shape: &mut Shape, axis: Axis, distance: f64) {
+fn translate(body: &mut Body, axis: Axis, distance: f64) {
     let mut way = Vec3::zeros();
     way[axis.index()] = distance;
-    shape.translate(&way);
+    body.shape.translate(&way);
+    if let Some(grading) = &mut body.lattice.grading {
+        grading.from.translate(&way);
+    }
 }

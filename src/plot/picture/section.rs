@@ -65,7 +65,7 @@ impl Cut {
     /// when the material expands.
     pub fn take(&self, snapshot: &Snapshot, names: &[usize]) -> Result<Section, PlotError> {
         let planes = self.mirrors(snapshot);
-        let coarsest = snapshot.spacings.iter().copied().fold(0.0, f64::max);
+        let coarsest = snapshot.coarsest();
         let reach = match self.drawn_as {
             DrawnAs::Cut => REACH * LARGEST * coarsest,
             DrawnAs::Particles => self.thickness.unwrap_or(2.0 * coarsest),
@@ -82,7 +82,7 @@ impl Cut {
             let bodies = snapshot.body_of(rows.clone())?;
             let sizes = match self.drawn_as {
                 DrawnAs::Cut => snapshot.sizes(rows.clone(), &bodies)?,
-                DrawnAs::Particles => bodies.iter().map(|&b| snapshot.spacings[b]).collect(),
+                DrawnAs::Particles => snapshot.first_sizes(rows.clone(), &bodies)?,
             };
             let values = self.shown.values(snapshot, rows.clone())?;
             let bearers = self.shown.bearers(snapshot, rows)?;

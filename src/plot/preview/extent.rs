@@ -18,7 +18,7 @@ pub type Ends = ([f64; 3], [f64; 3]);
 /// not have are a spacing wide.
 pub fn of_body(body: &Body, case: &Case) -> Option<Ends> {
     let (lower, upper) = populate::bounds_above(body, case.dimension, &case.symmetry)?;
-    let half = 0.5 * body.lattice.spacing;
+    let half = 0.5 * body.lattice.coarsest();
     Some((lower.map(|x| x - half), upper.map(|x| x + half)))
 }
 

@@ -252,7 +252,7 @@ impl<'a> Page<'a> {
         image: &Image,
         dots: &[(usize, usize)],
     ) {
-        let spacings = self.case.bodies.iter().map(|body| body.lattice.spacing);
+        let spacings = self.case.bodies.iter().map(|body| body.lattice.coarsest());
         let coarsest = spacings.fold(0.0, f64::max);
         // What is smooth has no lines, however steep it is seen.
         let step = (2.5 * coarsest).max(STEEP / panel.scale());

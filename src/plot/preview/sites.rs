@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::image::Image;
 use super::panel::Panel;
-use crate::model::{Body, Case};
+use crate::model::{Body, Case, Lattice};
 use crate::populate::{self, Slab};
 
 /// Particles that pictures are made of at most, about; of more every few layers are taken.
@@ -14,7 +14,10 @@ const MOST: f64 = 3e7;
 /// Height of the particles of a case of one dimension (pixels).
 const BAND: f64 = 12.0;
 
-/// Layers of one spacing across a body.
+/// Layers that are taken at once of what is fitted, if all are looked at.
+const THICK: f64 = 60.0;
+
+/// Layers of one spacing across a body, or thicker ones.
 struct Layers {
     body: usize,
     axis: usize,
@@ -38,13 +41,18 @@ impl Layers {
         // Rows run along x.
         let across = (case.dimension.min(2) - 1)..case.dimension;
         let axis = across.max_by(|a, b| length(a).total_cmp(&length(b)))?;
-        let spacing = body.lattice.spacing;
+        let every = (particles / MOST).ceil().max(1.0) as u64;
+        let mut spacing = body.lattice.spacing;
+        if every == 1 && populate::moves_sites(body) {
+            // What is fitted costs as much for all that is beside a layer.
+            spacing = THICK * body.lattice.coarsest();
+        }
         Some(Self {
             body: index,
             axis,
             lower: lower[axis] - 0.5 * spacing,
             spacing,
-            every: (particles / MOST).ceil().max(1.0) as u64,
+            every,
             count: ((length(&axis) / spacing).ceil() + 2.0) as u64,
         })
     }
@@ -76,8 +84,9 @@ fn draw(case: &Case, panels: &[Panel], slabs: &[(usize, Slab)], larger: f64) -> 
     };
     let add = |mut images: Vec<Image>, &(body, slab): &(usize, Slab)| {
         let of = &case.bodies[body];
-        let size = larger * of.lattice.spacing;
+        let spacing = larger * of.lattice.spacing;
         for site in populate::sites(of, case.dimension, &case.symmetry, Some(slab)) {
+            let size = spacing * Lattice::size(site.share, case.dimension);
             for image in &mut images {
                 image.add(&site.position, size, body);
             }

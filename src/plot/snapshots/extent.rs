@@ -46,6 +46,8 @@ impl Extent {
 pub struct Mover {
     /// Where its particles lie.
     pub extents: [Extent; 3],
+    /// How many they are.
+    pub particles: f64,
     /// Its mass at the start of the run (kg).
     pub mass: f64,
     /// Mean velocity (m/s).

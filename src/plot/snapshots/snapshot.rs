@@ -23,8 +23,10 @@ pub struct Snapshot {
     pub bodies: Vec<String>,
     /// Dimensions d of the model, 1 to 3.
     pub dimension: i32,
-    /// Particle spacing Δp of each body (m).
+    /// Particle spacing Δp of each body (m); the finest where it varies.
     pub spacings: Vec<f64>,
+    /// The coarsest of each body (m); snapshots of older versions, where none varies, do not say it.
+    coarsest: Vec<f64>,
     /// Initial density ρ₀ of each body (kg/m³), of which a particle's mass is `ρ₀ Δp^d`; snapshots
     /// of older versions do not say it.
     densities: Option<Vec<f64>>,
@@ -54,11 +56,14 @@ impl Snapshot {
         let title = file.attribute("/whipple", "title")?;
         let bodies: Vec<String> = json(&file, "bodies")?;
         let spacings: Vec<f64> = json(&file, "spacings")?;
+        let coarsest: Vec<f64> =
+            json(&file, "coarsest_spacings").unwrap_or_else(|_| spacings.clone());
         let rigid: Vec<bool> = json(&file, "rigid")?;
         let planes: Vec<(String, f64)> = json(&file, "symmetry")?;
         let densities: Option<Vec<f64>> = json(&file, "densities").ok();
         for (count, what) in [
             (spacings.len(), "spacings"),
+            (coarsest.len(), "coarsest spacings"),
             (rigid.len(), "marks of rigid"),
             (
                 densities.as_ref().map_or(bodies.len(), Vec::len),
@@ -70,7 +75,8 @@ impl Snapshot {
                 return Err(damaged(format!("{b} bodies but {count} {what}")));
             }
         }
-        if let Some(&bad) = spacings.iter().find(|&&s| !(s > 0.0 && s.is_finite())) {
+        let mut all = spacings.iter().chain(&coarsest);
+        if let Some(&bad) = all.find(|&&s| !(s > 0.0 && s.is_finite())) {
             return Err(damaged(format!(
                 "a spacing of {bad} m; it must be positive"
             )));
@@ -96,6 +102,7 @@ impl Snapshot {
             bodies,
             dimension,
             spacings,
+            coarsest,
             densities,
             rigid,
             symmetry,
@@ -105,6 +112,11 @@ impl Snapshot {
     /// The smallest particle spacing (m).
     pub fn finest(&self) -> f64 {
         self.spacings.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// The coarsest particle spacing (m).
+    pub fn coarsest(&self) -> f64 {
+        self.coarsest.iter().copied().fold(0.0, f64::max)
     }
 
     /// The rows of the snapshot in portions that fit in memory.
@@ -162,13 +174,28 @@ impl Snapshot {
         Ok(extents)
     }
 
+    /// Spacing of some particles at the start (m), `(m/ρ₀)^(1/d)` where it varies within bodies.
+    pub fn first_sizes(&self, rows: Range<usize>, bodies: &[usize]) -> Result<Vec<f64>, PlotError> {
+        let (Some(first), true) = (&self.densities, self.coarsest != self.spacings) else {
+            return Ok(bodies.iter().map(|&body| self.spacings[body]).collect());
+        };
+        let masses = self.file.scalar("mass", 0, rows)?;
+        let size = |(&body, mass): (&usize, f64)| {
+            let size = (mass / first[body]).powf(1.0 / f64::from(self.dimension));
+            // Whatever a file says.
+            let size = if size.is_finite() { size } else { 0.0 };
+            size.clamp(0.5 * self.spacings[body], 2.0 * self.coarsest[body])
+        };
+        Ok(bodies.iter().zip(masses).map(size).collect())
+    }
+
     /// Size of some particles: the spacing of the volume that they have now, `(m/ρ)^(1/d)` (m),
     /// from a quarter of their first spacing to [`LARGEST`] of it. Where the snapshot does not hold
     /// the density, or it is NaN, the first spacing itself.
     pub fn sizes(&self, rows: Range<usize>, bodies: &[usize]) -> Result<Vec<f64>, PlotError> {
-        let spacings = bodies.iter().map(|&body| self.spacings[body]);
+        let spacings = self.first_sizes(rows.clone(), bodies)?;
         let (Some(first), true) = (&self.densities, self.has("density")?) else {
-            return Ok(spacings.collect());
+            return Ok(spacings);
         };
         let density = self.file.scalar("density", 0, rows)?;
         let growth = |(&body, now): (&usize, f64)| {
@@ -180,6 +207,7 @@ impl Snapshot {
             }
         };
         let growths = bodies.iter().zip(density).map(growth);
+        let spacings = spacings.into_iter();
         Ok(spacings
             .zip(growths)
             .map(|(s, growth)| s * growth)
@@ -198,10 +226,10 @@ impl Snapshot {
                 velocities = self.file.values("velocity", rows.clone())?;
             }
             let (velocities, _) = velocities.as_chunks::<3>();
+            let sizes = self.first_sizes(rows.clone(), &bodies)?;
             let points = self.file.points(rows)?;
-            for (((point, velocity), body), active) in
-                points.iter().zip(velocities).zip(bodies).zip(active)
-            {
+            let all = points.iter().zip(velocities).zip(bodies).zip(active);
+            for ((((point, velocity), body), active), size) in all.zip(sizes) {
                 if !active || !point.iter().chain(velocity).all(|c| c.is_finite()) {
                     continue;
                 }
@@ -210,11 +238,12 @@ impl Snapshot {
                     mover.extents[k].add(point[k]);
                     mover.velocity[k] += velocity[k];
                 }
-                mover.mass += 1.0;
+                mover.particles += 1.0;
+                mover.mass += (size / self.spacings[body]).powi(self.dimension);
             }
         }
         for (body, mover) in movers.iter_mut().enumerate() {
-            let count = mover.mass.max(1.0);
+            let count = mover.particles.max(1.0);
             mover.velocity = mover.velocity.map(|sum| sum / count);
             let density = self.densities.as_ref().map_or(1.0, |first| first[body]);
             mover.mass *= density * self.spacings[body].powi(self.dimension);
