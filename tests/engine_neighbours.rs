@@ -97,6 +97,7 @@ fn foreign_table(bodies: usize, random: &mut Random) -> ForeignTable {
         class: vec![None; bodies * bodies],
         reach2: vec![0.0; bodies * bodies],
         group_range: vec![0.0; groups * groups],
+        most: None,
     };
     for a in 0..bodies {
         for b in 0..a {

@@ -193,3 +193,55 @@ fn bodies_of_glass_in_touch_are_a_spacing_apart() {
     let bottom = z(1).into_iter().fold(f64::INFINITY, f64::min);
     assert!((bottom - top - 1.0).abs() < 0.05, "{top} to {bottom}");
 }
+
+/// The mass of a graded body is that of its shape, whatever it is finest at; far fewer particles
+/// bear it.
+#[test]
+fn graded_bodies_have_their_mass() {
+    let spacing = "{ inner = \"0.1 mm\", outer = \"0.4 mm\", within = \"0.5 mm\"";
+    for (focus, shape) in [
+        (
+            "at = [0, 0, \"3 mm\"]",
+            "shape.box.size = [\"6 mm\", \"6 mm\", \"6 mm\"]",
+        ),
+        (
+            "face = \"+z\"",
+            "shape.cylinder = { radius = \"3 mm\", length = \"6 mm\" }",
+        ),
+        ("face = [1, 1, 0]", "shape.sphere.radius = \"3 mm\""),
+        (
+            "at = [0, 0, 0], axis = [1, 0, 1]",
+            "shape.ellipsoid.semi_axes = [\"3 mm\", \"2 mm\", \"4 mm\"]",
+        ),
+    ] {
+        for more in ["", "[[symmetry]]\naxis = \"x\""] {
+            let body = format!("{shape}\nspacing = {spacing}, {focus} }}");
+            let case = case(3, &body, more);
+            let body = &case.bodies[0];
+            let sites: Vec<_> = populate::sites(body, 3, &case.symmetry, None).collect();
+            let shares: f64 = sites.iter().map(|site| site.share).sum();
+            let volume = populate::particle_volume(body, 3) * shares;
+            let asked = body.shape.volume_above(&case.symmetry, 3);
+            assert!((volume / asked - 1.0).abs() < 1e-11, "{focus}: {volume}");
+            // Cells are close to the cubes of their spacings.
+            let cell = populate::particle_volume(body, 3) * 1e12;
+            assert!((cell - 1.0).abs() < 0.02, "{focus}: {cell}");
+            let fewer = asked * 1e12 / sites.len() as f64;
+            assert!(fewer > 3.0, "{focus}: {} particles", sites.len());
+            let end = populate::index_end(body, 3);
+            assert!(sites.iter().all(|site| site.index < end));
+            assert!(sites.windows(2).all(|pair| pair[0].index < pair[1].index));
+        }
+    }
+}
+
+/// Where the whole body is as fine, nothing is graded.
+#[test]
+fn a_grading_beyond_the_body_is_none() {
+    let even = case(3, "shape.sphere.radius = \"1 mm\"\nlattice = \"glass\"", "");
+    let spacing =
+        "spacing = { inner = \"0.1 mm\", outer = \"1 mm\", at = [0, 0, 0], within = \"2 mm\" }";
+    let graded = case(3, &format!("shape.sphere.radius = \"1 mm\"\n{spacing}"), "");
+    let sites = |case: &Case| populate::sites(&case.bodies[0], 3, &[], None).collect::<Vec<_>>();
+    assert!(sites(&even) == sites(&graded));
+}

@@ -603,3 +603,23 @@ fn glass_in_shapes_of_any_form() {
     assert_same(&one, &three, "three ranks");
     assert_same_in_legs(&glass, &[2, 3], &["0.1us"], &one, &stopped);
 }
+
+/// A plate whose spacing grows with the distance from where a sphere strikes: sizes, kinds of
+/// contact, fillings of several levels.
+#[test]
+fn a_graded_plate() {
+    let (_keep, at) = folder();
+    let graded = [
+        QUARTER,
+        &[
+            "--set",
+            "body.plate.spacing={ inner = \"0.05 mm\", outer = \"0.12 mm\", at = [0, 0, 0], within = \"0.3 mm\" }",
+        ],
+    ]
+    .concat();
+    let (one, three, stopped) = (at("one"), at("three"), at("stopped"));
+    run(1, 2, &graded, &[], &one);
+    run(3, 1, &graded, &[], &three);
+    assert_same(&one, &three, "three ranks");
+    assert_same_in_legs(&graded, &[2, 3], &["0.1us"], &one, &stopped);
+}

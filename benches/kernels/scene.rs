@@ -107,6 +107,7 @@ impl Scene {
         let lengths = Lengths {
             longest: LENGTH,
             least: 0.0,
+            stretch: 1.0,
             uniform: true,
             rigid: false,
         };

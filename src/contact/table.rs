@@ -40,6 +40,11 @@ impl ContactTable {
                 class: vec![None; n * n],
                 reach2: vec![0.0; n * n],
                 group_range: vec![0.0; groups.count() * groups.count()],
+                most: case
+                    .bodies
+                    .iter()
+                    .any(|body| body.lattice.sizes().is_some())
+                    .then(|| Kinds::longest_range(case)),
             },
             groups,
             halo: HaloPhase::STRESS,

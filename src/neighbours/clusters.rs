@@ -39,12 +39,15 @@ impl Chunk {
 }
 
 /// Smoothing lengths of a group.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub struct Lengths {
     /// Largest smoothing length among its images (m).
     pub longest: f64,
     /// Least range of lists (m): that of self-contact, which does not follow h; else zero.
     pub least: f64,
+    /// Range of lists over the sum of both smoothing lengths: more than one for self-contact of
+    /// unequal particles, which has no least range.
+    pub stretch: f64,
     /// Whether all its images have that length.
     pub uniform: bool,
     /// Whether it is a rigid body, whose particles need no neighbours of their own.
@@ -81,6 +84,7 @@ impl Vectorised for Build<'_> {
         let Lengths {
             longest,
             least,
+            stretch,
             uniform,
             rigid,
         } = lengths;
@@ -95,6 +99,7 @@ impl Vectorised for Build<'_> {
             sources: self.sources,
             longest,
             least,
+            inflation: stretch * INFLATION,
             list: neighbours,
             used: 0,
             hints: [0; 64],
@@ -117,6 +122,7 @@ struct Lister<'a> {
     sources: usize,
     longest: f64,
     least: f64,
+    inflation: f64,
     list: &'a mut Vec<u32>,
     used: usize,
     /// Where the last cluster began to read a column, by the last bits of the column's indices:
@@ -134,7 +140,7 @@ impl Lister<'_> {
             let longer = |h, &i: &u32| f64::max(h, lengths[i as usize]);
             cluster.receivers.iter().fold(0.0, longer)
         };
-        let far = (own + self.longest).max(self.least) * INFLATION;
+        let far = (own + self.longest).max(self.least) * self.inflation;
         let mut special = 0;
         near_box(
             self.sequence,
@@ -147,7 +153,7 @@ impl Lister<'_> {
                     return V::splat(far);
                 }
                 let both = V::read(eight.lengths).add(V::splat(own));
-                both.max(V::splat(self.least)).mul(V::splat(INFLATION))
+                both.max(V::splat(self.least)).mul(V::splat(self.inflation))
             },
             |first, bits, eight| {
                 special |= u64::from_le_bytes(*eight.special) & SPREAD[bits as usize];

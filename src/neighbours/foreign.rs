@@ -9,7 +9,7 @@ use super::kinds::Kinds;
 use super::motion::MotionRecord;
 use super::near::{INFLATION, near_box, push_places};
 use super::pairs::PairList;
-use super::sequence::Sequence;
+use super::sequence::{Eight, Sequence};
 use crate::model::ContactClass;
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
@@ -26,6 +26,9 @@ pub struct ForeignTable {
     /// `range[g * groups + o]`: largest range (m) between bodies of the groups g and o; zero
     /// where these have no contact.
     pub group_range: Vec<f64>,
+    /// Where particles of a body are unequal: no pair has a longer range than so many times the sum
+    /// of its smoothing lengths.
+    pub most: Option<f64>,
 }
 
 /// The foreign pairs of one task, one list for each mode of contact.
@@ -170,19 +173,44 @@ impl Candidates {
     ) {
         self.used = 0;
         let groups = sequence.groups();
+        let range_of = |other| table.group_range[cluster.group * groups + other] * INFLATION;
         for other in 0..groups {
-            let range = table.group_range[cluster.group * groups + other] * INFLATION;
+            let range = range_of(other);
             if range == 0.0 {
                 continue;
             }
+            let mut push = |first, bits, _: &Eight| {
+                self.used = push_places(&mut self.indices, self.used, first, bits);
+            };
+            let bounds = (&cluster.lower, &cluster.upper);
+            let Some(most) = table.most else {
+                let range = |_: &Eight| V::splat(range);
+                near_box(
+                    sequence,
+                    other,
+                    bounds,
+                    range_of(other),
+                    hints,
+                    range,
+                    &mut push,
+                );
+                continue;
+            };
+            let lengths = sequence.smoothing_lengths();
+            let longer = |h, &i: &u32| f64::max(h, lengths[i as usize]);
+            let own = cluster.receivers.iter().fold(0.0, longer);
+            let range = |eight: &Eight| {
+                let both = V::read(eight.lengths).add(V::splat(own));
+                both.mul(V::splat(most)).min(V::splat(range))
+            };
             near_box(
                 sequence,
                 other,
-                (&cluster.lower, &cluster.upper),
-                range,
+                bounds,
+                range_of(other),
                 hints,
-                |_| V::splat(range),
-                |first, bits, _| self.used = push_places(&mut self.indices, self.used, first, bits),
+                range,
+                &mut push,
             );
         }
     }

@@ -1,10 +1,7 @@
 //! Kinds of particles, as contact tells them apart: bodies, and classes of size where the particles
 //! of a body are unequal.
 
-use crate::model::{Body, Case};
-
-/// Sizes of a class are this many times those of the one before.
-const STEP: f64 = 1.05;
+use crate::model::{Body, Case, SmoothingLength};
 
 /// The kinds of a case. Bodies whose particles are alike have one kind each.
 #[derive(Debug, Clone, Default)]
@@ -20,6 +17,9 @@ pub struct Kinds {
 }
 
 impl Kinds {
+    /// Sizes of a class are this many times those of the one before.
+    pub const STEP: f64 = 1.05;
+
     /// Of a case.
     #[must_use]
     pub fn new(case: &Case) -> Self {
@@ -33,7 +33,7 @@ impl Kinds {
             let mass = case.initial_density(body) * volume;
             let mut size = least;
             loop {
-                let limit = size * STEP.sqrt();
+                let limit = size * Self::STEP.sqrt();
                 kinds.body.push(b);
                 kinds.size.push(size);
                 let share = (0..case.dimension).fold(1.0, |share, _| share * limit);
@@ -41,7 +41,7 @@ impl Kinds {
                 if limit >= most {
                     break;
                 }
-                size *= STEP;
+                size *= Self::STEP;
             }
             kinds.first.push(kinds.body.len());
         }
@@ -56,6 +56,16 @@ impl Kinds {
             limits: vec![f64::INFINITY; count],
             body: (0..count).collect(),
             size: vec![1.0; count],
+        }
+    }
+
+    /// The longest range of contact of unequal particles over the sum of both smoothing lengths:
+    /// ranges are those of the start, and of classes of size.
+    #[must_use]
+    pub fn longest_range(case: &Case) -> f64 {
+        match case.sph.smoothing_length {
+            SmoothingLength::Constant => Self::STEP,
+            SmoothingLength::Variable { min, .. } => Self::STEP / min,
         }
     }
 

@@ -8,6 +8,7 @@ use super::facts::ImageFacts;
 use super::foreign::{ForeignChunk, ForeignLists, ForeignTable};
 use super::fragments::Membership;
 use super::groups::Groups;
+use super::kinds::Kinds;
 use super::motion::MotionRecord;
 use super::sequence::Sequence;
 use crate::domain::{Halo, Mirrors, Outset};
@@ -253,16 +254,20 @@ fn group_lengths(case: &Case, groups: &Groups) -> Vec<Lengths> {
             let h = || bodies().map(|body| body.smoothing_length);
             let longest = bodies().map(Body::longest_smoothing_length);
             let longest = longest.fold(0.0, f64::max);
+            let uneven = bodies().any(|body| body.lattice.sizes().is_some());
             Lengths {
                 longest,
-                least: if case.self_contact.is_some() {
+                least: if case.self_contact.is_some() && !uneven {
                     2.0 * longest
                 } else {
                     0.0
                 },
-                uniform: constant
-                    && h().all(|h| h.to_bits() == longest.to_bits())
-                    && bodies().all(|body| body.lattice.sizes().is_none()),
+                stretch: if case.self_contact.is_some() && uneven {
+                    Kinds::longest_range(case)
+                } else {
+                    1.0
+                },
+                uniform: constant && h().all(|h| h.to_bits() == longest.to_bits()) && !uneven,
                 rigid: groups.rigid[group],
             }
         })

@@ -196,7 +196,9 @@ pub fn smallest_gap(
     let found = search(
         (body, dimension, symmetry),
         wanted,
-        |lower, upper| surface.least_gap(lower, upper, reach) - 0.5 * (reach - body.lattice.spacing),
+        |lower, upper| {
+            surface.least_gap(lower, upper, reach) - 0.5 * (reach - body.lattice.spacing)
+        },
         |x| surface.gap(x, reach) - body.lattice.wider(x),
     );
     found.first().map_or(f64::INFINITY, |(gap, _)| *gap)

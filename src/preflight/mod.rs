@@ -43,10 +43,7 @@ pub fn warnings(case: &Case) -> Vec<String> {
             let Some(layer) = layer else { continue };
             let gap = (layer - plane.position) / body.lattice.spacing;
             let is_fitted = populate::moves_sites(body);
-            if !is_fitted
-                && !(0.45..=0.55).contains(&gap)
-                && crosses(body, case.dimension, plane)
-            {
+            if !is_fitted && !(0.45..=0.55).contains(&gap) && crosses(body, case.dimension, plane) {
                 found.push(format!(
                     "the lattice of `{}` is not its own mirror image: its first layer lies \
                      {gap:.2} spacings from the symmetry plane of {}, not 0.5",

@@ -188,6 +188,7 @@ impl Cloud {
                 Lengths {
                     longest,
                     least: 0.0,
+                    stretch: 1.0,
                     uniform: all().all(|h| h == longest),
                     rigid: false,
                 }

@@ -108,6 +108,8 @@ typed_as! {
 pub enum SpacingParams {
     /// One everywhere.
     Even(Quantity<Length>),
+    /// A number without its unit.
+    Plain(f64),
     /// One that grows.
     Graded(Box<SpacingTable>),
 }
@@ -115,16 +117,18 @@ pub enum SpacingParams {
 typed_as! {
     SpacingParams: "a length such as \"0.02 mm\", or a table with `inner` and `outer`" {
         word: SpacingParams::Even;
+        number: SpacingParams::Plain;
         table: |table| SpacingParams::Graded(Box::new(table));
     }
 }
 
 impl SpacingParams {
-    /// The finest one, with its place if it is in a table.
-    pub fn finest(&self) -> &Quantity<Length> {
+    /// The finest one, if it has a unit.
+    pub fn finest(&self) -> Option<&Quantity<Length>> {
         match self {
-            Self::Even(length) => length,
-            Self::Graded(table) => table.inner.get_ref(),
+            Self::Even(length) => Some(length),
+            Self::Plain(_) => None,
+            Self::Graded(table) => Some(table.inner.get_ref()),
         }
     }
 }

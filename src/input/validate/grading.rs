@@ -5,6 +5,7 @@ use toml::Spanned;
 use super::check::{Allowed, number};
 use super::shapes::{Shapes, axis_vector};
 use super::surfaces::unit_vector;
+use crate::input::quantity::{Length, expected};
 use crate::input::schema::{SpacingParams, SpacingTable};
 use crate::input::source::Diagnostic;
 use crate::model::{Focus, Grading, LatticeKind, Shape, Vec3};
@@ -14,23 +15,25 @@ const RATIO: f64 = 1.1;
 
 /// The finest spacing (m) of a body.
 pub fn finest(params: &Spanned<SpacingParams>) -> Result<f64, Diagnostic> {
-    let (si, at) = match params.get_ref() {
-        SpacingParams::Even(length) => (length.si, params.span()),
+    let title = match params.get_ref() {
         SpacingParams::Graded(table) => {
             return number(Some(&table.inner), "inner", 0.0, Allowed::Positive);
         }
+        SpacingParams::Even(length) if length.si > 0.0 => return Ok(length.si),
+        SpacingParams::Plain(plain) if *plain != 0.0 => {
+            let expected = expected::<Length>("");
+            format!("expected {expected}, found the plain number {plain}")
+        }
+        SpacingParams::Even(_) | SpacingParams::Plain(_) => "`spacing` must be positive".to_owned(),
     };
-    if si > 0.0 {
-        return Ok(si);
-    }
-    Err(Diagnostic::new(at, "`spacing` must be positive"))
+    Err(Diagnostic::new(params.span(), title))
 }
 
 /// The table of a spacing that grows.
 pub fn graded(params: Option<&Spanned<SpacingParams>>) -> Option<&SpacingTable> {
     match params?.get_ref() {
-        SpacingParams::Even(_) => None,
         SpacingParams::Graded(table) => Some(table),
+        SpacingParams::Even(_) | SpacingParams::Plain(_) => None,
     }
 }
 
@@ -63,7 +66,10 @@ pub fn grading(
         Some(within) => within.get_ref().metres(shapes.spacing),
     };
     if let (Some(within), true) = (&table.within, even < 0.0) {
-        return Err(Diagnostic::new(within.span(), "`within` must not be negative"));
+        return Err(Diagnostic::new(
+            within.span(),
+            "`within` must not be negative",
+        ));
     }
     let mut grading = Grading {
         from: focus(shapes, table, shape)?,

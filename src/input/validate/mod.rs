@@ -167,8 +167,11 @@ fn check_temperature(case: &Case, fields: &[(String, Range<usize>)]) -> Result<(
 
 /// The unit in which the spacing is given, of the case or of its first body.
 fn length_unit(params: &CaseParams) -> Readable {
-    let bodies = params.body.iter().flat_map(|table| &table.get_ref().spacing);
-    let of_bodies = bodies.map(|spacing| spacing.get_ref().finest());
+    let bodies = params
+        .body
+        .iter()
+        .flat_map(|table| &table.get_ref().spacing);
+    let of_bodies = bodies.filter_map(|spacing| spacing.get_ref().finest());
     let of_case = params.spacing.iter().map(Spanned::get_ref);
     let size = of_case.chain(of_bodies).map(|spacing| spacing.unit).next();
     Readable::length(size.unwrap_or(1.0))

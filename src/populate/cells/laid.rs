@@ -322,7 +322,9 @@ impl Cells {
             let sites = self.sites_of(block, cuts);
             sites.iter().fold(0.0, |sum, site| sum + site.share)
         };
-        self.all_blocks().map(of_block).fold(0.0, |sum, part| sum + part)
+        self.all_blocks()
+            .map(of_block)
+            .fold(0.0, |sum, part| sum + part)
     }
 
     /// Tells the coordinates on an axis (m) of one of several shares of the sites.

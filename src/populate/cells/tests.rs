@@ -46,7 +46,13 @@ fn made(dimension: usize) -> Vec<[f64; 3]> {
             places: std::mem::take(&mut x),
             largest: vec![1.0],
         };
-        step(&mut sites, &mut velocity, &moving, |_, _| [0.0; 3], |_, _, _| ());
+        step(
+            &mut sites,
+            &mut velocity,
+            &moving,
+            |_, _| [0.0; 3],
+            |_, _, _| (),
+        );
         x = sites.places;
         x.truncate(count);
     }
@@ -66,9 +72,7 @@ fn ranked(x: &[[f64; 3]], edge: f64, dimension: usize) -> Vec<[f64; 3]> {
         };
         (0..dimension).map(|a| along(a) * along(a)).sum()
     };
-    let near = |i: usize, j: usize, width: f64| {
-        libm::exp(-square(i, j) / (2.0 * width * width))
-    };
+    let near = |i: usize, j: usize, width: f64| libm::exp(-square(i, j) / (2.0 * width * width));
     let mut left: Vec<usize> = (0..x.len()).collect();
     let (mut order, mut width) = (Vec::new(), 0.0);
     let mut crowds = vec![0.0; x.len()];
@@ -356,7 +360,11 @@ fn a_graded_body_is_even() {
         let sum = sites.iter().fold(0.0, |sum, site| sum + site.share);
         assert!((sum / shares - 1.0).abs() < 1e-12);
         let volume = 4.0 / 3.0 * std::f64::consts::PI * 45.0_f64.powi(3);
-        println!("{} sites, shares over volume {}", sites.len(), shares / volume);
+        println!(
+            "{} sites, shares over volume {}",
+            sites.len(),
+            shares / volume
+        );
         assert!((shares / volume - 1.0).abs() < 0.01);
         let kernel = Kernel::new(3);
         let size: Vec<f64> = sites.iter().map(|site| site.share.cbrt()).collect();
