@@ -96,6 +96,45 @@ touch = { body = "plate", direction = "+z" }
     );
 }
 
+/// Glass has no faces of a lattice; the sizes of a graded body differ along its face.
+#[test]
+fn glass_and_graded_bodies_in_touch_start_free_of_force() {
+    let graded =
+        "spacing = { inner = \"1 mm\", outer = \"3 mm\", at = [0, 0, \"4 mm\"], ratio = 1.3 }";
+    for (a, b) in [
+        (
+            "lattice = \"glass\"",
+            "lattice = { kind = \"glass\", seed = 4 }",
+        ),
+        ("lattice = \"glass\"", "lattice = \"cubic\""),
+        (graded, "lattice = \"glass\""),
+        (graded, "lattice = \"hexagonal\""),
+        (graded, graded),
+    ] {
+        assert_at_rest(&format!(
+            r#"
+dimension = 3
+spacing = "1 mm"
+[run]
+end_time = "1 us"
+[material.aluminium]
+library = "aluminium-2024"
+[[body]]
+name = "a"
+material = "aluminium"
+shape.box = {{ size = ["20 mm", "14 mm", "8 mm"] }}
+{a}
+[[body]]
+name = "b"
+material = "aluminium"
+shape.box = {{ size = ["16 mm", "10 mm", "5 mm"], centre = [0, 0, "9 mm"] }}
+{b}
+touch = {{ body = "a", direction = "-z" }}
+"#
+        ));
+    }
+}
+
 /// A copper ball on the seam of two different plates: the case in which a pair force of a
 /// fraction-weighted energy could change its sign.
 const SEAM: &str = r#"

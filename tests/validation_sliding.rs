@@ -58,6 +58,20 @@ fn sliding_is_free_of_friction() {
     }
 }
 
+/// Mean of the same where bodies are of glass, of both kinds, or graded.
+#[test]
+#[ignore = "slow: make validation"]
+fn sliding_on_glass_is_free_of_friction() {
+    let plate = "body.plate.lattice=glass";
+    let block = "body.block.lattice={kind=\"glass\",seed=3}";
+    let graded =
+        "body.plate.spacing={inner=\"1 mm\",outer=\"1.5 mm\",face=\"-x\",within=\"20 mm\"}";
+    for overrides in [&[plate, block][..], &[plate], &[graded, block]] {
+        let friction = slide(overrides);
+        assert!(friction.mean.abs() <= 0.01, "{}", friction.mean);
+    }
+}
+
 /// The same figures for `potential`, reported, at a stiffness that presses with about a hundredth
 /// of the modulus: with 1, bodies laid in touch throw each other off.
 #[test]
