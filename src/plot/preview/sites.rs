@@ -72,8 +72,15 @@ impl Layers {
     }
 }
 
-/// Draws some slabs of bodies on panels; where layers are left out, particles are as much larger.
-fn draw(case: &Case, panels: &[Panel], slabs: &[(usize, Slab)], larger: f64) -> Vec<Image> {
+/// Draws some slabs of bodies on panels, of which particles of a size (m) are shown as `shows` says;
+/// where layers are left out, particles are as much larger.
+fn draw(
+    case: &Case,
+    panels: &[Panel],
+    slabs: &[(usize, Slab)],
+    larger: f64,
+    shows: impl Fn(&[f64; 3], f64) -> bool + Sync,
+) -> Vec<Image> {
     // A row of particles is a band.
     let height = if case.dimension == 1 { BAND } else { 0.0 };
     let blank = || -> Vec<Image> {
@@ -87,6 +94,9 @@ fn draw(case: &Case, panels: &[Panel], slabs: &[(usize, Slab)], larger: f64) -> 
         let spacing = larger * of.lattice.spacing;
         for site in populate::sites(of, case.dimension, &case.symmetry, Some(slab)) {
             let size = spacing * Lattice::size(site.share, case.dimension);
+            if !shows(&site.position, size) {
+                continue;
+            }
             for image in &mut images {
                 image.add(&site.position, size, body);
             }
@@ -115,14 +125,14 @@ pub fn views(case: &Case, panels: &[Panel], particles: f64) -> Vec<Image> {
     let layers: Vec<Layers> = layers.collect();
     let slabs: Vec<_> = layers.iter().flat_map(Layers::slabs).collect();
     let every = layers.first().map_or(1, |layers| layers.every);
-    draw(case, panels, &slabs, every as f64)
+    draw(case, panels, &slabs, every as f64, |_, _| true)
 }
 
 /// The particles within half a spacing of a panel's plane; at a symmetry plane those next to it.
 pub fn section(case: &Case, panel: &Panel) -> Image {
     let axis = panel.plane.axis.index();
     let slab = |body: &Body| {
-        let (position, spacing) = (panel.plane.position, body.lattice.spacing);
+        let (position, spacing) = (panel.plane.position, body.lattice.coarsest());
         let mut mirrors = case.symmetry.iter();
         let on_mirror = mirrors.any(|mirror| {
             mirror.axis == panel.plane.axis && (mirror.position - position).abs() < 0.01 * spacing
@@ -138,5 +148,13 @@ pub fn section(case: &Case, panel: &Panel) -> Image {
     };
     let bodies = case.bodies.iter().enumerate();
     let slabs: Vec<_> = bodies.map(|(index, body)| (index, slab(body))).collect();
-    draw(case, &[*panel], &slabs, 1.0).remove(0)
+    // What is finer than the coarsest is in the section only if it is as near.
+    let (plane, widest) = (panel.plane.position, 1.0 + 1e-6);
+    let mirrors = || case.symmetry.iter().filter(|m| m.axis == panel.plane.axis);
+    let is_in = |x: &[f64; 3], size: f64| {
+        let on_mirror = mirrors().any(|m| (m.position - plane).abs() < 0.01 * size);
+        let reach = if on_mirror { size } else { 0.5 * size };
+        (x[axis] - plane).abs() <= widest * reach
+    };
+    draw(case, &[*panel], &slabs, 1.0, is_in).remove(0)
 }
