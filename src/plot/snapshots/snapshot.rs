@@ -85,15 +85,7 @@ impl Snapshot {
         let Some(dimension) = (1..=3).find(|&d: &i32| u64::try_from(d) == Ok(dimension)) else {
             return Err(damaged(format!("a model of {dimension} dimensions")));
         };
-        let plane = |(name, position): (String, f64)| {
-            let axis = Axis::named(&name);
-            let axis = axis.ok_or_else(|| damaged(format!("a symmetry plane along \"{name}\"")))?;
-            Ok(SymmetryPlane { axis, position })
-        };
-        let symmetry = planes
-            .into_iter()
-            .map(plane)
-            .collect::<Result<_, PlotError>>()?;
+        let symmetry = symmetry(planes).map_err(damaged)?;
         Ok(Self {
             time: file.time()?,
             freezes: file.names()?.iter().any(|name| name == FROZEN),
@@ -272,6 +264,16 @@ impl Snapshot {
     pub fn has(&self, field: &str) -> Result<bool, PlotError> {
         Ok(self.file.names()?.iter().any(|name| name == field))
     }
+}
+
+/// Planes of symmetry from the names and positions of a snapshot, or what is wrong with these.
+fn symmetry(planes: Vec<(String, f64)>) -> Result<Vec<SymmetryPlane>, String> {
+    let plane = |(name, position): (String, f64)| {
+        let axis = Axis::named(&name);
+        let axis = axis.ok_or_else(|| format!("a symmetry plane along \"{name}\""))?;
+        Ok(SymmetryPlane { axis, position })
+    };
+    planes.into_iter().map(plane).collect()
 }
 
 /// Title of the case that wrote a snapshot.

@@ -40,7 +40,7 @@ impl Fitted {
             .map(|cut| cut.widened(MARGIN * coarsest))
             .collect();
         let (mut sites, mut moving) = (Vec::new(), Vec::new());
-        for block in cells.all_blocks() {
+        for block in cells.all_blocks(&wide) {
             let (middle, half) = cells.middle(block.level, block.at, block.at.map(|n| n + 1));
             let around = half.norm() + DEEPEST * cells.coarsest(block.level);
             if !is_near(cells, &middle, around) {

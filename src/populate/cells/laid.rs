@@ -185,23 +185,30 @@ impl Cells {
         (corner + self.turn * along, half)
     }
 
-    /// All blocks in order, tile by tile, that may hold sites within the cuts.
-    pub(super) fn all_blocks(&self) -> impl Iterator<Item = Block> + use<> {
+    /// All tiles in order, level by level.
+    fn all_tiles(&self) -> impl Iterator<Item = Block> + use<> {
         let tiles: Vec<[u64; 3]> = self.levels.iter().map(|level| level.tiles).collect();
-        let blocks = self.tile.blocks;
-        let each = |n: [u64; 3]| {
-            (0..n[2])
-                .flat_map(move |k| (0..n[1]).flat_map(move |j| (0..n[0]).map(move |i| [i, j, k])))
-        };
         let tiles = tiles.into_iter().enumerate();
-        tiles.flat_map(move |(level, tiles)| {
-            each(tiles).flat_map(move |tile| {
-                each(blocks).map(move |block| Block {
-                    level,
-                    at: [0, 1, 2].map(|a| tile[a] * blocks[a] + block[a]),
-                })
+        tiles.flat_map(|(level, n)| each(n).map(move |at| Block { level, at }))
+    }
+
+    /// All blocks in order, tile by tile, of the tiles that may hold sites within the cuts.
+    pub(super) fn all_blocks(&self, cuts: &[Cut]) -> impl Iterator<Item = Block> + use<> {
+        let held = |tile: &Block| self.lie(tile.level, self.of_tile(*tile), cuts) != Lie::Outside;
+        let tiles: Vec<Block> = self.all_tiles().filter(held).collect();
+        let blocks = self.tile.blocks;
+        tiles.into_iter().flat_map(move |tile| {
+            each(blocks).map(move |block| Block {
+                level: tile.level,
+                at: [0, 1, 2].map(|a| tile.at[a] * blocks[a] + block[a]),
             })
         })
+    }
+
+    /// The first block of a tile, and the end of its blocks.
+    fn of_tile(&self, tile: Block) -> [[u64; 3]; 2] {
+        let corner = |more: u64| [0, 1, 2].map(|a| (tile.at[a] + more) * self.tile.blocks[a]);
+        [corner(0), corner(1)]
     }
 
     /// The site of a number in a block's tile: its index and where it stands before it is fitted
@@ -238,12 +245,11 @@ impl Cells {
             .numbers([0, 1, 2].map(|a| block.at[a] % self.tile.blocks[a]))
     }
 
-    /// Where the solid, the cuts and the spacing leave a block.
-    fn lie(&self, block: Block, cuts: &[Cut]) -> Lie {
-        let end = block.at.map(|n| n + 1);
-        let (middle, half) = self.middle(block.level, block.at, end);
+    /// Where the solid, the cuts and the spacing leave a range of blocks of a level.
+    fn lie(&self, level: usize, [first, end]: [[u64; 3]; 2], cuts: &[Cut]) -> Lie {
+        let (middle, half) = self.middle(level, first, end);
         let reach = half.norm() + FACE * self.lattice.spacing;
-        let thinned = self.lie_in_grading(&self.levels[block.level], &middle, reach);
+        let thinned = self.lie_in_grading(&self.levels[level], &middle, reach);
         if thinned == Lie::Outside {
             return Lie::Outside;
         }
@@ -290,55 +296,73 @@ impl Cells {
 
     /// Its sites before they are fitted, in the order of their index within a block.
     pub(super) fn sites_of(&self, block: Block, cuts: &[Cut]) -> Vec<Site> {
-        let lie = self.lie(block, cuts);
+        let mut found = Vec::new();
+        self.tell_sites(block, cuts, |site| found.push(site));
+        found
+    }
+
+    /// Tells its sites before they are fitted, in the order of their index within a block.
+    fn tell_sites(&self, block: Block, cuts: &[Cut], mut tell: impl FnMut(Site)) {
+        let lie = self.lie(block.level, [block.at, block.at.map(|n| n + 1)], cuts);
         if lie == Lie::Outside {
-            return Vec::new();
+            return;
         }
         let level = &self.levels[block.level];
-        let sites = self.numbers(block).filter_map(|number| {
+        for number in self.numbers(block) {
             let site = self.site(block, number);
             let is_one = lie == Lie::Inside || {
                 let spacing = self.lattice.spacing_at(&site.position.into());
                 self.is_left(level, number, spacing) && self.holds(&site.position, cuts)
             };
-            is_one.then_some(site)
-        });
-        sites.collect()
+            if is_one {
+                tell(site);
+            }
+        }
     }
 
     /// How many there are.
     pub fn count(&self, cuts: &[Cut]) -> u64 {
-        let of_block = |block| match self.lie(block, cuts) {
-            Lie::Outside => 0,
-            Lie::Inside => self.numbers(block).len() as u64,
-            Lie::Between => self.sites_of(block, cuts).len() as u64,
-        };
-        self.all_blocks().map(of_block).sum()
+        let mut count = 0;
+        for tile in self.all_tiles() {
+            let [first, end] = self.of_tile(tile);
+            match self.lie(tile.level, [first, end], cuts) {
+                Lie::Outside => {}
+                Lie::Inside => count += self.tile.sites.len() as u64,
+                Lie::Between => {
+                    for block in each([0, 1, 2].map(|a| end[a] - first[a])) {
+                        let block = Block {
+                            level: tile.level,
+                            at: [0, 1, 2].map(|a| first[a] + block[a]),
+                        };
+                        self.tell_sites(block, cuts, |_| count += 1);
+                    }
+                }
+            }
+        }
+        count
     }
 
     /// The sum of their shares.
     pub fn shares(&self, cuts: &[Cut]) -> f64 {
-        let of_block = |block| {
-            let sites = self.sites_of(block, cuts);
-            sites.iter().fold(0.0, |sum, site| sum + site.share)
-        };
-        self.all_blocks()
-            .map(of_block)
-            .fold(0.0, |sum, part| sum + part)
+        let mut sum = 0.0;
+        for block in self.all_blocks(cuts) {
+            self.tell_sites(block, cuts, |site| sum += site.share);
+        }
+        sum
     }
 
     /// Tells the coordinates on an axis (m) of one of several shares of the sites.
     pub fn tally(&self, cuts: &[Cut], axis: usize, share: Share, mut add: impl FnMut(f64, u64)) {
-        for block in self
-            .all_blocks()
-            .skip(share.part)
-            .step_by(share.parts.max(1))
-        {
-            for site in self.sites_of(block, cuts) {
-                add(site.position[axis], 1);
-            }
+        let blocks = self.all_blocks(cuts).skip(share.part);
+        for block in blocks.step_by(share.parts.max(1)) {
+            self.tell_sites(block, cuts, |site| add(site.position[axis], 1));
         }
     }
+}
+
+/// All triples of indices below some numbers, the first one fastest.
+fn each(n: [u64; 3]) -> impl Iterator<Item = [u64; 3]> {
+    (0..n[2]).flat_map(move |k| (0..n[1]).flat_map(move |j| (0..n[0]).map(move |i| [i, j, k])))
 }
 
 /// Whether rows of a lattice fill a body.
