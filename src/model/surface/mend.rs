@@ -10,14 +10,14 @@ use super::soup::{Soup, is_needle, number, undirected};
 use crate::model::readable::{shown, shown_vector};
 use crate::numerics::vector::{dot, minus};
 
-/// Corners as near as this share of the largest coordinate are one: files hold six digits or so.
+/// Corners as near as this share of the size are one: files hold six digits or so.
 const ROUNDING: f64 = 1e-6;
-/// Triangles as low as this share of the largest coordinate have no area.
+/// Triangles as low as this share of the size have no area.
 const FLAT: f64 = 1e-10;
 /// Corners of open edges as near as this (spacings) are one, as those of faces that were cut into
 /// triangles by themselves.
 const GAP: f64 = 0.1;
-/// And as this share of the largest coordinate, where spacings are coarse.
+/// But not farther apart than this share of the size, where spacings are coarse.
 const WIDEST_GAP: f64 = 0.01;
 
 /// What of a surface was mended.
@@ -50,11 +50,9 @@ impl Mended {
             _ => done.push(format!("{count} {many}{more}")),
         };
         let (width, at) = self.widest;
-        let size = format!(
-            ", the widest {}, near {}",
-            shown(width, "m"),
-            shown_vector(&at, "m")
-        );
+        let size = if self.holes == 1 { "" } else { "the widest " };
+        let at = shown_vector(&at, "m");
+        let size = format!(", {size}{} wide, near {at}", shown(width, "m"));
         tell(self.holes, "hole closed", "holes closed", size);
         let (joined, gap) = self.joined;
         let gap = format!(" across gaps of up to {}", shown(gap, "m"));

@@ -88,7 +88,8 @@ struct Shell {
 /// If a shell encloses nothing.
 pub(super) fn nest(soup: &mut Soup) -> Result<usize, MeshError> {
     let shells = shells(soup);
-    if shells.iter().any(|shell| shell.volume == 0.0) {
+    let is_some = |volume: f64| volume.is_finite() && volume != 0.0;
+    if !shells.iter().all(|shell| is_some(shell.volume)) {
         return Err(MeshError::NoVolume);
     }
     let boxes: Vec<_> = shells.iter().map(|s| (s.lower, s.upper)).collect();

@@ -54,10 +54,15 @@ impl Soup {
         t.map(|c| self.corners[c as usize])
     }
 
-    /// Largest coordinate of a corner (m), whatever its sign.
+    /// Longest edge of the box around all corners (m).
     pub fn size(&self) -> f64 {
-        let all = self.corners.iter().flatten();
-        all.fold(0.0, |most: f64, c| most.max(c.abs()))
+        let ends = |a: usize| {
+            let along = self.corners.iter().map(|x| x[a]);
+            let (low, high) = (f64::INFINITY, f64::NEG_INFINITY);
+            along.fold((low, high), |(low, high), c| (c.min(low), c.max(high)))
+        };
+        let edges = [0, 1, 2].map(|a| ends(a).1 - ends(a).0);
+        edges.into_iter().fold(0.0, f64::max)
     }
 
     /// Whether the triangles make a closed surface, each of some area.

@@ -106,7 +106,7 @@ fn small_holes_are_closed_and_wide_ones_told_with_their_place() {
     let mut holed = sound.clone();
     holed.drain(300..302);
     holed.remove(100);
-    let mesh = Mesh::mend(&holed, 0.05).unwrap();
+    let mesh = Mesh::mend(&holed, 0.06).unwrap();
     assert_eq!(mesh.mended().holes, 2);
     assert!((mesh.volume() / volume - 1.0).abs() < 1e-4);
     let told = mesh.mended().words().unwrap();
@@ -138,7 +138,7 @@ fn a_crack_closes_like_a_zip() {
     let sound = cuboid([0.0; 3], [1.0; 3]);
     let volume = 1.0;
     // The edge from (0, 0, 1) to (1, 0, 1) has corners of its own in the top face.
-    let [a, b, d] = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
+    let [a, b] = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0]];
     let is_split =
         |t: &[[f64; 3]; 3]| t.contains(&a) && t.contains(&b) && t.iter().all(|x| x[2] == 1.0);
     let mut cracked: Triangles = sound.iter().filter(|t| !is_split(t)).copied().collect();
@@ -173,7 +173,6 @@ fn a_crack_closes_like_a_zip() {
         assert!(mesh.distance(&x) > 0.0, "{x:?}");
     }
     assert!(mesh.distance(&[0.45, 0.01, 0.98]) < 0.0);
-    let _ = d;
 }
 
 #[test]
@@ -216,7 +215,7 @@ fn triangles_that_cut_through_each_other_are_found() {
 /// Against the counts of a grid.
 #[test]
 fn volumes_above_planes_are_those_of_what_is_left() {
-    let mesh = Mesh::new(&torus(24, 1.0)).unwrap();
+    let mesh = Mesh::new(&torus(96, 1.0)).unwrap();
     let half = mesh.volume_above(&[([0.0, 0.0, 1.0], 0.0)]);
     assert!((half / mesh.volume() - 0.5).abs() < 1e-12);
     let s = 0.5_f64.sqrt();
