@@ -100,18 +100,37 @@ impl Solid {
     pub fn distance(&self, x: &Vec3) -> f64 {
         match self {
             Self::Form(form, place) => form.distance(&place.inward(x)),
-            Self::Union(parts) => parts
-                .iter()
-                .map(|part| part.distance(x))
-                .fold(f64::INFINITY, f64::min),
+            Self::Union(parts) => parts.iter().fold(f64::INFINITY, |least, part| {
+                if part.is_beyond(x, least) {
+                    return least;
+                }
+                least.min(part.distance(x))
+            }),
             Self::Intersection(parts) => parts
                 .iter()
                 .map(|part| part.distance(x))
                 .fold(f64::NEG_INFINITY, f64::max),
-            Self::Difference(base, cuts) => cuts
-                .iter()
-                .map(|cut| -cut.distance(x))
-                .fold(base.distance(x), f64::max),
+            Self::Difference(base, cuts) => cuts.iter().fold(base.distance(x), |most, cut| {
+                if cut.is_beyond(x, -most) {
+                    return most;
+                }
+                most.max(-cut.distance(x))
+            }),
+        }
+    }
+
+    /// Whether a point is so far (m) or farther from the surface outside, as its box tells; of forms
+    /// that tell their distance as quickly it says no.
+    fn is_beyond(&self, x: &Vec3, distance: f64) -> bool {
+        match self {
+            Self::Form(Form::Mesh(mesh), place) => {
+                let least = mesh.distance_of_box(&place.inward(x).into());
+                least > 0.0 && least >= distance
+            }
+            Self::Form(..) => false,
+            Self::Union(parts) => parts.iter().all(|part| part.is_beyond(x, distance)),
+            Self::Intersection(parts) => parts.iter().any(|part| part.is_beyond(x, distance)),
+            Self::Difference(base, _) => base.is_beyond(x, distance),
         }
     }
 
@@ -138,7 +157,7 @@ impl Solid {
             }
             Self::Difference(base, cuts) => {
                 base.faces(x, reach, tell);
-                for cut in cuts {
+                for cut in cuts.iter().filter(|cut| !cut.is_beyond(x, reach)) {
                     let depth = cut.distance(x);
                     if depth < reach {
                         tell(depth, -cut.outward(x));

@@ -429,9 +429,10 @@ fn a_smooth_mesh_tells_one_face() {
             let [(found, normal)] = told[..] else {
                 panic!("{n} {depth}: {told:?}");
             };
+            // Triangles turn by 4.5° from one to the next.
             assert!(
-                (found - depth).abs() < 0.005 && normal.dot(&n) > 0.999,
-                "{n} {depth}"
+                (found - depth).abs() < 0.005 && normal.dot(&n) > 0.997,
+                "{n} {depth}: {found} {normal}"
             );
         }
     }

@@ -99,6 +99,15 @@ impl Mesh {
         }
     }
 
+    /// What the distance (m) of a point from the surface is at least: that from its box, nought inside.
+    #[must_use]
+    pub fn distance_of_box(&self, x: &[f64; 3]) -> f64 {
+        let (lower, upper) = self.bounds();
+        let beyond: [f64; 3] =
+            std::array::from_fn(|a| (lower[a] - x[a]).max(x[a] - upper[a]).max(0.0));
+        dot(&beyond, &beyond).sqrt()
+    }
+
     /// The largest `n·x` (m) of the surface, for a vector `n`.
     #[must_use]
     pub fn support(&self, n: &[f64; 3]) -> f64 {
