@@ -95,6 +95,36 @@ fn another_schedule_and_checkpoints_by_steps_and_by_the_clock_change_no_bit() {
     assert_same(&run, &reference);
 }
 
+/// A part read from a file goes on from its own file alone.
+#[test]
+fn another_part_in_the_place_of_a_file_is_refused() {
+    let place = tempfile::tempdir().unwrap();
+    let (part, run) = (place.path().join("part.obj"), place.path().join("run"));
+    let cube = std::fs::read_to_string("tests/common/cube.obj").unwrap();
+    std::fs::write(&part, &cube).unwrap();
+    let case = place.path().join("case.toml");
+    let text = "dimension = 3\nspacing = \"0.1 mm\"\nrun.end_time = \"0.2 us\"\n\
+                material.metal.library = \"copper\"\n[[body]]\nname = \"part\"\nmaterial = \"metal\"\n\
+                velocity = [0, 0, \"1 km/s\"]\n\
+                shape.union = [{ obj = { file = \"part.obj\", unit = \"0.1 mm\" } }]\n\
+                [[plane]]\nnormal = \"-z\"\npoint = [0, 0, \"0.4 mm\"]\n";
+    std::fs::write(&case, text).unwrap();
+    let mut begin = ranks(1);
+    begin
+        .arg("run")
+        .arg(&case)
+        .args(["--until", "0.1us", "--out"]);
+    end(begin.arg(&run)).with_code(0);
+    std::fs::write(&part, cube.replace("v 0 0 0", "v 0 0 0.1")).unwrap();
+    let mut again = ranks(1);
+    let refused = end(again.arg("restart").arg(&run)).with_code(2);
+    let said = "part.obj is no longer the one that the case began with";
+    assert!(refused.stderr.contains(said), "{refused:#?}");
+    std::fs::write(&part, cube).unwrap();
+    let mut again = ranks(1);
+    end(again.arg("restart").arg(&run)).with_code(0);
+}
+
 /// Contact across slab faces and two symmetry planes, from every number of ranks to every other.
 #[test]
 fn from_any_ranks_to_any_ranks() {

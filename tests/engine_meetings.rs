@@ -111,7 +111,6 @@ fn surface(shape: SurfaceShape) -> RigidSurface {
         bodies: vec![true],
         motion: Motion::default(),
         spin: None,
-        file: None,
     }
 }
 

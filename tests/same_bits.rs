@@ -578,6 +578,28 @@ fn fragments_that_cross_slabs_and_ranks_that_run_empty() {
     assert_same(&one, &balanced, "four ranks with moving faces");
 }
 
+/// Glass in a part read from a file, out of which another is cut, in contact with a plate.
+#[test]
+fn parts_from_files_of_triangles() {
+    let (_keep, at) = folder();
+    let file = format!("{}/tests/common/cube.obj", env!("CARGO_MANIFEST_DIR"));
+    let shape = format!(
+        "body.sphere.shape={{ difference = [{{ obj = {{ file = \"{file}\", unit = \"0.2 mm\" }} }}, \
+         {{ obj = {{ file = \"{file}\", unit = \"0.1 mm\", at = [\"0.3 mm\", \"0.3 mm\", \"0.5 mm\"] }} }}], \
+         turn = {{ axis = [1, 1, 0], angle = \"10 deg\" }} }}"
+    );
+    let part = [
+        QUARTER,
+        &["--set", "body.sphere.lattice=glass", "--set", &shape],
+    ]
+    .concat();
+    let (one, two, stopped) = (at("one"), at("two"), at("stopped"));
+    run(1, 2, &part, &[], &one);
+    run(2, 1, &part, &[], &two);
+    assert_same(&one, &two, "two ranks");
+    assert_same_in_legs(&part, &[2, 1], &["0.1us"], &one, &stopped);
+}
+
 /// Glass whose faces are fitted by each rank for its slab, in a turned and pierced plate and at
 /// symmetry planes.
 #[test]

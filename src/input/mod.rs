@@ -10,12 +10,15 @@ mod file;
 mod forms;
 mod formula;
 mod names;
+mod obj;
 mod overrides;
 mod profile;
 mod quantity;
 mod schema;
+mod settle;
 mod source;
 mod stl;
+mod triangles;
 mod validate;
 
 use std::path::{Path, PathBuf};
@@ -76,7 +79,7 @@ pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Case, Input
         let (params, resolved) = document::read(text, overrides, places)?;
         let folder = Path::new(name).parent().unwrap_or(Path::new(""));
         let mut case = validate::case(params, folder)?;
-        case.resolved = stl::settle(resolved, &case.loads)?;
+        case.resolved = settle::settle(resolved, folder, &case)?;
         Ok(case)
     })
 }

@@ -1,39 +1,16 @@
-//! Surfaces of triangles from STL files, binary or ASCII.
+//! Triangles from STL files, binary or ASCII.
 
-use std::io::{self, Cursor};
-use std::path::Path;
+use std::io::Cursor;
 
-use sha2::{Digest, Sha256};
-
-use super::file;
-use super::source::Diagnostic;
-use crate::model::{Loads, SurfaceFile};
-
-/// Longest file that is read as a surface (bytes): 20 million triangles of a binary file.
-const LONGEST: u64 = 1_000_000_000;
 /// Bytes of a binary file before its triangles, and of each of these.
 const HEAD: usize = 84;
 const TRIANGLE: usize = 50;
 
-/// The corners of a triangle.
-type Triangle = [[f64; 3]; 3];
-
-/// Reads the triangles of a file, in its own units.
+/// The triangles of a content, in its own units.
 ///
 /// # Errors
-/// What is wrong, as the end of "cannot take the surface `file`: …"; of
-/// [`io::ErrorKind::NotFound`] if there is no such file.
-pub fn read(path: &Path) -> io::Result<(Vec<Triangle>, SurfaceFile)> {
-    let bytes = file::content(path, LONGEST, "a surface")?;
-    take_apart(bytes, path).map_err(io::Error::other)
-}
-
-fn take_apart(mut bytes: Vec<u8>, path: &Path) -> Result<(Vec<Triangle>, SurfaceFile), String> {
-    let digest = Sha256::digest(&bytes);
-    let file = SurfaceFile {
-        path: absolute(path),
-        sha256: format!("{digest:x}"),
-    };
+/// What is wrong.
+pub fn triangles(mut bytes: Vec<u8>) -> Result<Vec<[[f64; 3]; 3]>, String> {
     prepare(&mut bytes)?;
     let mut content = Cursor::new(bytes);
     let triangles = stl_io::create_stl_reader(&mut content).map_err(|cause| cause.to_string())?;
@@ -46,12 +23,7 @@ fn take_apart(mut bytes: Vec<u8>, path: &Path) -> Result<(Vec<Triangle>, Surface
         }
         soup.push(vertices.map(|v| v.0.map(f64::from)));
     }
-    Ok((soup, file))
-}
-
-fn absolute(path: &Path) -> String {
-    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    path.to_string_lossy().into_owned()
+    Ok(soup)
 }
 
 /// Makes the first bytes say which of the two kinds the content is: binary files may begin with
@@ -80,41 +52,12 @@ fn prepare(bytes: &mut Vec<u8>) -> Result<(), String> {
     }
 }
 
-/// The resolved text of a case with the absolute paths of its surfaces' files and their digests,
-/// so that it stands for the same case wherever it is read.
-pub fn settle(resolved: String, loads: &Loads) -> Result<String, Diagnostic> {
-    if loads.surfaces.iter().all(|surface| surface.file.is_none()) {
-        return Ok(resolved);
-    }
-    let failed = |cause: String| Diagnostic::new(0..0, cause);
-    let mut table: toml::Table = toml::from_str(&resolved).map_err(|e| failed(e.to_string()))?;
-    let tables = table.get_mut("surface").and_then(toml::Value::as_array_mut);
-    let tables = tables.map_or(&mut [][..], Vec::as_mut_slice);
-    // Planes come first.
-    let first = loads.surfaces.len() - tables.len();
-    for (table, surface) in tables.iter_mut().zip(&loads.surfaces[first..]) {
-        let stl = table
-            .get_mut("shape")
-            .and_then(|shape| shape.get_mut("stl"));
-        let (Some(stl), Some(file)) = (stl.and_then(toml::Value::as_table_mut), &surface.file)
-        else {
-            continue;
-        };
-        stl.insert("file".to_owned(), file.path.clone().into());
-        stl.insert("sha256".to_owned(), file.sha256.clone().into());
-    }
-    toml::to_string(&table).map_err(|e| failed(e.to_string()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn triangles(bytes: &[u8]) -> Result<usize, String> {
-        let file = tempfile::NamedTempFile::new().expect("a file");
-        std::fs::write(file.path(), bytes).expect("written");
-        let read = read(file.path()).map_err(|cause| cause.to_string());
-        read.map(|(soup, _)| soup.len())
+    fn count(bytes: &[u8]) -> Result<usize, String> {
+        triangles(bytes.to_vec()).map(|soup| soup.len())
     }
 
     fn binary(header: &[u8], count: u32) -> Vec<u8> {
@@ -131,13 +74,13 @@ mod tests {
 
     #[test]
     fn both_kinds_whatever_they_begin_with() {
-        assert_eq!(triangles(&binary(b"", 3)), Ok(3));
-        assert_eq!(triangles(&binary(b"solid of a careless program", 2)), Ok(2));
+        assert_eq!(count(&binary(b"", 3)), Ok(3));
+        assert_eq!(count(&binary(b"solid of a careless program", 2)), Ok(2));
         let facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n\
                      endloop\nendfacet\n";
         for head in ["solid", "solid part 7", "\n  solid\t"] {
             let text = format!("{head}\n{facet}{facet}endsolid\n");
-            assert_eq!(triangles(text.as_bytes()), Ok(2));
+            assert_eq!(count(text.as_bytes()), Ok(2));
         }
     }
 
@@ -145,11 +88,11 @@ mod tests {
     fn what_is_neither_is_refused() {
         let short = &binary(b"", 3)[..200];
         for bytes in [short, b"", b"PK\x03\x04", b"solid"] {
-            assert!(triangles(bytes).unwrap_err().contains("no STL file"));
+            assert!(count(bytes).unwrap_err().contains("no STL file"));
         }
-        assert!(triangles(b"solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 zero 0\n").is_err());
+        assert!(count(b"solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 zero 0\n").is_err());
         let mut bytes = binary(b"", 1);
         bytes[96..100].copy_from_slice(&f32::NAN.to_le_bytes());
-        assert!(triangles(&bytes).unwrap_err().contains("triangle 1"));
+        assert!(count(&bytes).unwrap_err().contains("triangle 1"));
     }
 }

@@ -170,7 +170,6 @@ mod tests {
                     velocities: [Some(vec![0.5, 1.5]), None, None],
                 },
             }),
-            file: None,
         };
         let rider = [0.3, -0.4, 1.7];
         let at = |t: f64| {

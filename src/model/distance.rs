@@ -93,12 +93,7 @@ impl Shape {
                 let across = (1.0 - along * along).max(0.0).sqrt();
                 normal.dot(centre) - 0.5 * length * along - radius * across
             }
-            Self::Solid(solid) => {
-                let (lower, upper) = solid.bounds();
-                let corner =
-                    Vec3::from_fn(|a, _| if normal[a] > 0.0 { lower[a] } else { upper[a] });
-                normal.dot(&corner)
-            }
+            Self::Solid(solid) => -solid.support(&-normal),
         }
     }
 

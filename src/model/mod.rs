@@ -47,8 +47,8 @@ pub use shape::Shape;
 pub use sizes::Sizes;
 pub use solid::{Form, Placement, Polygon, Solid, rotation};
 pub use surface::{
-    Feature, Foot, Mesh, MeshError, RigidSurface, Spin, SurfaceFile, SurfaceShape,
-    closest_on_triangle,
+    Crossing, Feature, Foot, Mended, Mesh, MeshError, RigidSurface, Spin, SurfaceFile,
+    SurfaceShape, closest_on_triangle, triangulate,
 };
 
 use crate::material::Material;
@@ -118,6 +118,25 @@ impl Case {
             .chain(absorbers)
             .chain(surfaces)
             .map(String::as_str)
+    }
+
+    /// The meshes of bodies and of rigid surfaces, with the names of these.
+    #[must_use]
+    pub fn meshes(&self) -> Vec<(&str, &Mesh)> {
+        let mut all: Vec<(&str, &Mesh)> = Vec::new();
+        for body in &self.bodies {
+            let mut found = Vec::new();
+            if let Shape::Solid(solid) = &body.shape {
+                solid.meshes(&mut found);
+            }
+            all.extend(found.into_iter().map(|mesh| (body.name.as_str(), &**mesh)));
+        }
+        for surface in &self.loads.surfaces {
+            if let SurfaceShape::Mesh(mesh) = &surface.shape {
+                all.push((&surface.name, mesh));
+            }
+        }
+        all
     }
 
     /// Index of the body of a name.

@@ -8,6 +8,7 @@
 mod ellipsoid;
 mod form;
 mod polygon;
+mod support;
 mod volume;
 
 #[cfg(test)]
@@ -16,7 +17,9 @@ mod tests;
 pub use form::{Faces, Form};
 pub use polygon::Polygon;
 
-use super::Vec3;
+use std::sync::Arc;
+
+use super::{Mesh, Vec3};
 
 /// A rotation (its rows are the axes of the frame that it turns into) and a translation.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +42,27 @@ impl Placement {
     #[must_use]
     pub fn turned(turn: nalgebra::Matrix3<f64>, at: Vec3) -> Self {
         Self { turn, at }
+    }
+
+    /// Corners of the smallest box around a form in this place (m), flat along an axis without end.
+    fn bounds(&self, form: &Form) -> (Vec3, Vec3) {
+        let is_whole = |c: &f64| *c == 0.0 || c.abs() == 1.0;
+        if self.turn.iter().all(is_whole) {
+            // Along axes, to the last bit.
+            let finite = |v: Vec3| v.map(|c| if c.is_finite() { c } else { 0.0 });
+            let (lower, upper) = form.bounds();
+            let centre = self.at + self.turn * finite((lower + upper) * 0.5);
+            let aside = self.turn.abs() * finite((upper - lower) * 0.5);
+            return (centre - aside, centre + aside);
+        }
+        let farthest = |n: Vec3| {
+            let most = form.support(&self.turn.tr_mul(&n));
+            if most.is_finite() { most } else { 0.0 }
+        };
+        let axis = |a: usize| Vec3::from_fn(|b, _| f64::from(u8::from(a == b)));
+        let lower = Vec3::from_fn(|a, _| -farthest(-axis(a)));
+        let upper = Vec3::from_fn(|a, _| farthest(axis(a)));
+        (self.at + lower, self.at + upper)
     }
 
     fn inward(&self, x: &Vec3) -> Vec3 {
@@ -76,18 +100,37 @@ impl Solid {
     pub fn distance(&self, x: &Vec3) -> f64 {
         match self {
             Self::Form(form, place) => form.distance(&place.inward(x)),
-            Self::Union(parts) => parts
-                .iter()
-                .map(|part| part.distance(x))
-                .fold(f64::INFINITY, f64::min),
+            Self::Union(parts) => parts.iter().fold(f64::INFINITY, |least, part| {
+                if part.is_beyond(x, least) {
+                    return least;
+                }
+                least.min(part.distance(x))
+            }),
             Self::Intersection(parts) => parts
                 .iter()
                 .map(|part| part.distance(x))
                 .fold(f64::NEG_INFINITY, f64::max),
-            Self::Difference(base, cuts) => cuts
-                .iter()
-                .map(|cut| -cut.distance(x))
-                .fold(base.distance(x), f64::max),
+            Self::Difference(base, cuts) => cuts.iter().fold(base.distance(x), |most, cut| {
+                if cut.is_beyond(x, -most) {
+                    return most;
+                }
+                most.max(-cut.distance(x))
+            }),
+        }
+    }
+
+    /// Whether a point is so far (m) or farther from the surface outside, as its box tells; of forms
+    /// that tell their distance as quickly it says no.
+    fn is_beyond(&self, x: &Vec3, distance: f64) -> bool {
+        match self {
+            Self::Form(Form::Mesh(mesh), place) => {
+                let least = mesh.distance_of_box(&place.inward(x).into());
+                least > 0.0 && least >= distance
+            }
+            Self::Form(..) => false,
+            Self::Union(parts) => parts.iter().all(|part| part.is_beyond(x, distance)),
+            Self::Intersection(parts) => parts.iter().any(|part| part.is_beyond(x, distance)),
+            Self::Difference(base, _) => base.is_beyond(x, distance),
         }
     }
 
@@ -114,7 +157,7 @@ impl Solid {
             }
             Self::Difference(base, cuts) => {
                 base.faces(x, reach, tell);
-                for cut in cuts {
+                for cut in cuts.iter().filter(|cut| !cut.is_beyond(x, reach)) {
                     let depth = cut.distance(x);
                     if depth < reach {
                         tell(depth, -cut.outward(x));
@@ -139,24 +182,29 @@ impl Solid {
         slope.try_normalize(0.0).unwrap_or_else(Vec3::z)
     }
 
-    /// Corners of a box around the solid (m); of one that is turned it may be wider.
+    /// The largest `n·x` (m) of the solid, for a vector `n` along axes of the dimension; of what lies
+    /// in several solids, or in none of those cut out of it, it may be less than this.
+    #[must_use]
+    pub fn support(&self, n: &Vec3) -> f64 {
+        let of = |parts: &[Self], from: f64, pick: fn(f64, f64) -> f64| {
+            let all = parts.iter().map(|part| part.support(n));
+            all.fold(from, pick)
+        };
+        match self {
+            Self::Form(form, place) => form.support(&place.turn.tr_mul(n)) + n.dot(&place.at),
+            Self::Union(parts) => of(parts, f64::NEG_INFINITY, f64::max),
+            Self::Intersection(parts) => of(parts, f64::INFINITY, f64::min),
+            Self::Difference(base, _) => base.support(n),
+        }
+    }
+
+    /// Corners of the smallest box around the solid (m); of what lies in several solids, or in none of
+    /// those cut out of it, it may be wider.
     #[must_use]
     pub fn bounds(&self) -> (Vec3, Vec3) {
         let nothing = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
         match self {
-            Self::Form(form, place) => {
-                let (lower, upper) = form.bounds();
-                let middle = (lower + upper) * 0.5;
-                let half = (upper - lower) * 0.5;
-                let finite = |v: Vec3| v.map(|c| if c.is_finite() { c } else { 0.0 });
-                let centre = place.at + place.turn * finite(middle);
-                let aside = if let Form::Ball(radius) = form {
-                    Vec3::repeat(*radius)
-                } else {
-                    place.turn.abs() * finite(half)
-                };
-                (centre - aside, centre + aside)
-            }
+            Self::Form(form, place) => place.bounds(form),
             Self::Union(parts) => {
                 let boxes = parts.iter().map(Self::bounds);
                 boxes.fold(nothing, |a, b| (a.0.inf(&b.0), a.1.sup(&b.1)))
@@ -175,6 +223,21 @@ impl Solid {
     pub fn reach(&self) -> f64 {
         let (lower, upper) = self.bounds();
         0.5 * (upper - lower).norm()
+    }
+
+    /// Adds the meshes among its forms.
+    pub fn meshes<'a>(&'a self, found: &mut Vec<&'a Arc<Mesh>>) {
+        match self {
+            Self::Form(Form::Mesh(mesh), _) => found.push(mesh),
+            Self::Form(..) => {}
+            Self::Union(parts) | Self::Intersection(parts) => {
+                parts.iter().for_each(|part| part.meshes(found));
+            }
+            Self::Difference(base, cuts) => {
+                base.meshes(found);
+                cuts.iter().for_each(|cut| cut.meshes(found));
+            }
+        }
     }
 
     /// Moves it (m).
@@ -230,6 +293,13 @@ impl Solid {
     pub fn volume_above(&self, planes: &[(usize, f64)], dimension: usize) -> f64 {
         if planes.is_empty() {
             return self.volume(dimension);
+        }
+        if let Self::Form(Form::Mesh(mesh), place) = self {
+            let planes = planes.iter().map(|&(a, at)| {
+                let across = Vec3::from_fn(|b, _| f64::from(u8::from(a == b)));
+                (place.turn.tr_mul(&across).into(), at - place.at[a])
+            });
+            return mesh.volume_above(&planes.collect::<Vec<_>>());
         }
         let distance = |x: &Vec3| {
             let beyond = planes.iter().map(|&(a, at)| at - x[a]);

@@ -6,13 +6,22 @@
 //! surface moves as a whole, so that points are taken into its frame and the shape never changes.
 
 mod closed;
+mod crossing;
+mod faces;
+mod holes;
+mod mend;
 mod mesh;
+mod shells;
+mod soup;
 mod tree;
 mod triangle;
 
 use std::sync::Arc;
 
 pub use closed::MeshError;
+pub use crossing::Crossing;
+pub use holes::triangulate;
+pub use mend::Mended;
 pub use mesh::Mesh;
 pub use triangle::{Feature, closest_on_triangle};
 
@@ -38,8 +47,6 @@ pub struct RigidSurface {
     pub motion: Motion,
     /// Its rotation, if it turns.
     pub spin: Option<Spin>,
-    /// The file that its mesh was read from.
-    pub file: Option<SurfaceFile>,
 }
 
 /// A file that holds a mesh.
@@ -92,17 +99,6 @@ pub enum SurfaceShape {
     },
     /// Closed mesh of triangles.
     Mesh(Arc<Mesh>),
-}
-
-impl RigidSurface {
-    /// Bytes that its mesh takes, if it has one.
-    #[must_use]
-    pub fn memory(&self) -> usize {
-        match &self.shape {
-            SurfaceShape::Mesh(mesh) => mesh.memory(),
-            _ => 0,
-        }
-    }
 }
 
 /// The nearest place of a surface, as seen from a point.
@@ -303,7 +299,6 @@ pub(crate) mod tests {
             bodies: Vec::new(),
             motion: Motion::default(),
             spin: None,
-            file: None,
         }
     }
 

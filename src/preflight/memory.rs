@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::comm::Comm;
 use crate::contact::ContactTable;
 use crate::domain::{Histogram, Outset};
-use crate::model::{Case, RigidSurface, SphForm};
+use crate::model::{Case, SphForm};
 use crate::numerics::kernel::SUPPORT;
 use crate::populate;
 use crate::step::bytes_of_options;
@@ -37,8 +37,8 @@ pub fn of_rank(case: &Case, comm: &Comm, ranks: usize) -> f64 {
         SphForm::StressPoints => (1 + case.dimension) as f64,
         _ => 1.0,
     };
-    let surfaces = case.loads.surfaces.iter().map(RigidSurface::memory);
-    let process = PROCESS + surfaces.sum::<usize>() as f64;
+    let meshes = case.meshes().into_iter().map(|(_, mesh)| mesh.memory());
+    let process = PROCESS + meshes.sum::<usize>() as f64;
     if ranks < 2 {
         let count = |body| populate::count(body, case.dimension, &case.symmetry, None);
         let particles: u64 = case.bodies.iter().map(count).sum();

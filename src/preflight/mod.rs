@@ -5,6 +5,7 @@ mod case;
 mod impact;
 mod initial;
 pub(crate) mod memory;
+mod meshes;
 mod sense;
 
 pub use approach::{Approach, approaches};
@@ -19,7 +20,7 @@ const SHALLOW: f64 = 0.2;
 
 /// Doubtful things in a valid case, one line each: bodies that overlap a little, lattices that a
 /// symmetry plane does not mirror into themselves, planes that push from the start, bodies that
-/// meet without contact or never, contact of an odd stiffness, impacts beyond an equation of state,
+/// meet without contact or never, surfaces that were mended, contact of an odd stiffness, impacts beyond an equation of state,
 /// pressure that heat brings along, and values that no run has a use for.
 #[must_use]
 pub fn warnings(case: &Case) -> Vec<String> {
@@ -54,6 +55,7 @@ pub fn warnings(case: &Case) -> Vec<String> {
         }
     }
     surfaces(case, &mut found);
+    meshes::warnings(case, &mut found);
     let approaches = approaches(case);
     case::stiffness(case, &mut found);
     case::meetings(case, &approaches, &mut found);

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{AxisParams, Point, TurnsParams};
+use super::{AxisParams, MeshFileParams, Point, TurnsParams};
 use crate::input::quantity::{Angle, Extent, Placed};
 
 tables! {
@@ -25,6 +25,10 @@ tables! {
         torus: Option<Spanned<TorusParams>>,
         /// Prism of a polygon; the polygon in two dimensions.
         prism: Option<Spanned<PrismParams>>,
+        /// Closed surface of triangles from an STL file.
+        stl: Option<Spanned<MeshFileParams>>,
+        /// Closed surface of triangles and polygons from an OBJ file.
+        obj: Option<Spanned<MeshFileParams>>,
         /// What any of some shapes holds.
         union: Option<Spanned<Vec<Spanned<ShapeParams>>>>,
         /// What all of some shapes hold.

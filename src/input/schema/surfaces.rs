@@ -59,8 +59,10 @@ tables! {
         sphere: Option<SurfaceSphereParams>,
         /// Circular cylinder.
         cylinder: Option<SurfaceCylinderParams>,
-        /// Triangles from a file.
-        stl: Option<StlParams>,
+        /// Triangles from an STL file.
+        stl: Option<Spanned<MeshFileParams>>,
+        /// Triangles and polygons from an OBJ file.
+        obj: Option<Spanned<MeshFileParams>>,
     }
 
     /// `shape.sphere` of a surface.
@@ -83,8 +85,8 @@ tables! {
         length: Option<Placed<Length>>,
     }
 
-    /// `shape.stl`
-    StlParams {
+    /// `shape.stl`, `shape.obj`, of surfaces and of bodies.
+    MeshFileParams {
         /// Path, from the folder of the case.
         file: Spanned<String>,
         /// Length of one unit of the file.

@@ -1,5 +1,7 @@
 //! Bodies: shapes in metres, lattices, velocities; then touch and whether there are particles.
 
+use std::path::Path;
+
 use toml::Spanned;
 
 use super::check::{Allowed, number, optional};
@@ -50,6 +52,8 @@ pub struct Reader<'a> {
     pub materials: &'a [String],
     /// Smoothing length over spacing.
     pub smoothing: f64,
+    /// Where the files that the case names stand.
+    pub folder: &'a Path,
 }
 
 impl Reader<'_> {
@@ -105,6 +109,7 @@ impl Reader<'_> {
         let shapes = Shapes {
             dimension: self.dimension,
             spacing,
+            folder: self.folder,
         };
         let (velocity, rigid, varied) = self.motion(params)?;
         let shape = shapes.shape(&params.shape)?;

@@ -11,6 +11,7 @@ mod initial;
 mod lattice;
 mod loads;
 mod materials;
+mod meshes;
 mod motion;
 mod numerical_limits;
 mod region;
@@ -56,6 +57,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         spacing: params.spacing.as_ref(),
         materials: &names,
         smoothing,
+        folder,
     }
     .bodies(&params.body, &symmetry)?;
     if bodies.iter().any(|body| body.material == materials.len()) {

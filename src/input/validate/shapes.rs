@@ -1,5 +1,7 @@
 //! Shapes in metres.
 
+use std::path::Path;
+
 use toml::Spanned;
 
 use crate::input::quantity::{Extent, Placed};
@@ -10,10 +12,12 @@ use crate::input::source::Diagnostic;
 use crate::model::{Axis, Form, Placement, Polygon, Shape, Solid, Vec3, rotation};
 
 /// What the shape of one body is read with.
-pub struct Shapes {
+pub struct Shapes<'a> {
     pub dimension: usize,
     /// The body's particle spacing (m).
     pub spacing: f64,
+    /// Where the files that the case names stand.
+    pub folder: &'a Path,
 }
 
 /// A vector with the wrong number of components.
@@ -40,6 +44,11 @@ pub fn vector<K>(
         }
     }
     Ok(vector)
+}
+
+/// The unit vector along an axis.
+pub fn unit(axis: Axis) -> [f64; 3] {
+    Axis::ALL.map(|other| f64::from(u8::from(other == axis)))
 }
 
 /// A unit vector; z if absent.
@@ -100,7 +109,7 @@ fn onto(axis: &Vec3) -> nalgebra::Matrix3<f64> {
     onto * nalgebra::Matrix3::from_diagonal(&Vec3::new(1.0, -1.0, -1.0))
 }
 
-impl Shapes {
+impl Shapes<'_> {
     /// The shape of a body, before `touch`.
     pub fn shape(&self, table: &Spanned<ShapeParams>) -> Result<Shape, Diagnostic> {
         let params = table.get_ref();
@@ -134,6 +143,8 @@ impl Shapes {
             ogive: 3 "a prism, which is a polygon in two dimensions," ogive;
             torus: 3 "a sphere with an `inner_radius`, which is a ring in two dimensions," torus;
             prism: 2 "a box" prism;
+            stl: 3 "a prism, which is a polygon in two dimensions," stl;
+            obj: 3 "a prism, which is a polygon in two dimensions," obj;
             union: 2 "a box" union;
             intersection: 2 "a box" intersection;
             difference: 2 "a box" difference;
@@ -144,7 +155,7 @@ impl Shapes {
             _ => Err(Diagnostic::new(
                 table.span(),
                 "`shape` must have exactly one of `box`, `sphere`, `cylinder`, `ellipsoid`, `cone`, \
-                 `ogive`, `torus`, `prism`, `union`, `intersection`, `difference`",
+                 `ogive`, `torus`, `prism`, `stl`, `obj`, `union`, `intersection`, `difference`",
             )),
         }
     }

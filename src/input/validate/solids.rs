@@ -2,19 +2,21 @@
 
 use toml::Spanned;
 
+use super::meshes::MeshReader;
 use super::shapes::{Shapes, axis_vector, placed};
 use crate::input::schema::{
-    ConeParams, EllipsoidParams, OgiveParams, PrismParams, ShapeParams, TorusParams, TurnsParams,
-    TurnsTable,
+    ConeParams, EllipsoidParams, MeshFileParams, OgiveParams, PrismParams, ShapeParams,
+    TorusParams, TurnsParams, TurnsTable,
 };
 use crate::input::source::Diagnostic;
-use crate::model::{Form, Placement, Polygon, Shape, Solid, rotation};
+use crate::input::triangles::Format;
+use crate::model::{Form, Placement, Polygon, Shape, Solid, Vec3, rotation};
 
 /// Most corners of a polygon, and most shapes together.
 const MOST_CORNERS: usize = 10_000;
 const MOST_SHAPES: usize = 1000;
 
-impl Shapes {
+impl Shapes<'_> {
     pub(super) fn ellipsoid(&self, table: &Spanned<EllipsoidParams>) -> Result<Shape, Diagnostic> {
         let params = table.get_ref();
         let centre = self.point(params.centre.as_ref(), "centre")?;
@@ -126,6 +128,25 @@ impl Shapes {
             return Err(Diagnostic::new(given.span(), title));
         }
         Ok(placed(Form::Prism { section, half }, &axis, centre))
+    }
+
+    pub(super) fn stl(&self, table: &Spanned<MeshFileParams>) -> Result<Shape, Diagnostic> {
+        self.mesh(table, Format::Stl)
+    }
+
+    pub(super) fn obj(&self, table: &Spanned<MeshFileParams>) -> Result<Shape, Diagnostic> {
+        self.mesh(table, Format::Obj)
+    }
+
+    fn mesh(&self, table: &Spanned<MeshFileParams>, format: Format) -> Result<Shape, Diagnostic> {
+        let reader = MeshReader {
+            folder: self.folder,
+            spacing: self.spacing,
+            what: "body",
+        };
+        let mesh = Form::Mesh(reader.read(table, format)?);
+        let place = Placement::at(Vec3::zeros());
+        Ok(Shape::Solid(Solid::Form(mesh, place)))
     }
 
     pub(super) fn union(&self, parts: &Parts) -> Result<Shape, Diagnostic> {

@@ -1,27 +1,25 @@
 //! Rigid surfaces: planes, and the shapes of `[[surface]]`.
 
-use std::io;
 use std::ops::Range;
-use std::path::Path;
-use std::sync::Arc;
 
 use toml::Spanned;
 
 use super::axis;
-use super::check::{Allowed, Value, number};
+use super::check::{Allowed, number};
 use super::loads::{Reader, given_name};
+use super::meshes::MeshReader;
 use super::motion::{motion, rate};
-use super::shapes::{normalised, vector};
+use super::shapes::{normalised, unit, vector};
 use super::touch::direction;
 use crate::input::quantity::{Length, Placed};
 use crate::input::schema::contact::resistance;
 use crate::input::schema::{
-    CaseParams, NormalParams, PlaneParams, RotationParams, SideName, StlParams,
-    SurfaceCylinderParams, SurfaceParams, SurfaceShapeParams, SurfaceSphereParams,
+    CaseParams, NormalParams, PlaneParams, RotationParams, SideName, SurfaceCylinderParams,
+    SurfaceParams, SurfaceShapeParams, SurfaceSphereParams,
 };
-use crate::input::source::{Diagnostic, nearest};
-use crate::input::stl;
-use crate::model::{Axis, Mesh, Motion, Resistance, RigidSurface, Spin, SurfaceFile, SurfaceShape};
+use crate::input::source::Diagnostic;
+use crate::input::triangles::Format;
+use crate::model::{Axis, Motion, Resistance, RigidSurface, Spin, SurfaceShape};
 use crate::populate;
 
 /// Default stiffness of a rigid surface: that of the half spacing of material before it.
@@ -72,7 +70,6 @@ impl Reader<'_> {
             bodies: self.acts_on(params.bodies.as_deref())?,
             motion: given.map_or(Ok(Motion::default()), |m| motion(m, self.dimension))?,
             spin: None,
-            file: None,
         })
     }
 
@@ -81,12 +78,11 @@ impl Reader<'_> {
         params: &SurfaceParams,
         number_of: usize,
     ) -> Result<RigidSurface, Diagnostic> {
-        let (shape, file) = self.shape(&params.shape)?;
         let given = params.motion.as_ref();
         let spin = params.rotation.as_ref().map(|table| self.spin(table));
         Ok(RigidSurface {
             name: given_name(params.name.as_ref(), "surface", number_of),
-            shape,
+            shape: self.shape(&params.shape)?,
             inside: params.side == Some(SideName::Inside),
             stiffness: number!(params.stiffness, or STIFFNESS, Positive),
             resistance: resistance(
@@ -97,7 +93,6 @@ impl Reader<'_> {
             bodies: self.acts_on(params.bodies.as_deref())?,
             motion: given.map_or(Ok(Motion::default()), |m| motion(m, self.dimension))?,
             spin: spin.transpose()?,
-            file,
         })
     }
 
@@ -147,14 +142,12 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn shape(
-        &self,
-        table: &Spanned<SurfaceShapeParams>,
-    ) -> Result<(SurfaceShape, Option<SurfaceFile>), Diagnostic> {
+    fn shape(&self, table: &Spanned<SurfaceShapeParams>) -> Result<SurfaceShape, Diagnostic> {
         let SurfaceShapeParams {
             sphere,
             cylinder,
             stl,
+            obj,
         } = table.get_ref();
         let needs = |least: usize, shape: &str| {
             let title = format!("a {}-dimensional case has no {shape}", self.dimension);
@@ -168,23 +161,30 @@ impl Reader<'_> {
             };
             Err(Diagnostic::new(table.span(), title).help(format!("take {other} instead")))
         };
-        match (sphere, cylinder, stl) {
-            (Some(params), None, None) => {
+        let mesh = |params, format| {
+            needs(3, "surface of triangles")?;
+            let spacings = self.bodies.iter().map(|body| body.lattice.spacing);
+            let reader = MeshReader {
+                folder: self.folder,
+                spacing: spacings.fold(f64::INFINITY, f64::min),
+                what: "rigid surface",
+            };
+            Ok(SurfaceShape::Mesh(reader.read(params, format)?))
+        };
+        match (sphere, cylinder, stl, obj) {
+            (Some(params), None, None, None) => {
                 needs(2, "sphere")?;
-                Ok((self.sphere(params)?, None))
+                self.sphere(params)
             }
-            (None, Some(params), None) => {
+            (None, Some(params), None, None) => {
                 needs(3, "cylinder")?;
-                Ok((self.cylinder(params)?, None))
+                self.cylinder(params)
             }
-            (None, None, Some(params)) => {
-                needs(3, "surface of triangles")?;
-                let (shape, file) = self.mesh(params)?;
-                Ok((shape, Some(file)))
-            }
+            (None, None, Some(params), None) => mesh(params, Format::Stl),
+            (None, None, None, Some(params)) => mesh(params, Format::Obj),
             _ => Err(Diagnostic::new(
                 table.span(),
-                "`shape` must have exactly one of `sphere`, `cylinder`, `stl`",
+                "`shape` must have exactly one of `sphere`, `cylinder`, `stl`, `obj`",
             )),
         }
     }
@@ -203,50 +203,6 @@ impl Reader<'_> {
             radius: number(Some(&params.radius), "radius", 0.0, Allowed::Positive)?,
             half_length: 0.5 * number!(params.length, or f64::INFINITY, Positive),
         })
-    }
-
-    fn mesh(&self, params: &StlParams) -> Result<(SurfaceShape, SurfaceFile), Diagnostic> {
-        let unit_length = number(Some(&params.unit), "unit", 0.0, Allowed::Positive)?;
-        let at = self.place("at", params.at.as_ref())?;
-        let path = self.folder.join(params.file.get_ref());
-        let refuse = |cause: &str| {
-            let title = format!(
-                "cannot take the surface `{}`: {cause}",
-                params.file.get_ref()
-            );
-            Diagnostic::new(params.file.span(), title)
-        };
-        let (mut soup, file) = stl::read(&path).map_err(|cause| {
-            let diagnostic = refuse(&cause.to_string());
-            if cause.kind() == io::ErrorKind::NotFound {
-                missing_file(diagnostic, &path)
-            } else {
-                diagnostic
-            }
-        })?;
-        if let Some(known) = params
-            .sha256
-            .as_ref()
-            .filter(|d| *d.get_ref() != file.sha256)
-        {
-            let title = format!(
-                "the file {} is no longer the one that the case began with",
-                file.path
-            );
-            return Err(Diagnostic::new(known.span(), title)
-                .help("bring it back, or begin a new case without `sha256`"));
-        }
-        let turn = params.turn.as_ref();
-        let turn = turn.map(|turn| (unit(*turn.axis.get_ref()), turn.angle.get_ref().si()));
-        for x in soup.iter_mut().flatten() {
-            let scaled = x.map(|c| c * unit_length);
-            let turned = turn.map_or(scaled, |(axis, angle)| turned(&scaled, &axis, angle));
-            *x = std::array::from_fn(|a| turned[a] + at[a]);
-        }
-        let mesh = Mesh::new(&soup).map_err(|cause| {
-            refuse(&cause.to_string()).help("a rigid surface must be one or more closed solids")
-        })?;
-        Ok((SurfaceShape::Mesh(Arc::new(mesh)), file))
     }
 
     fn spin(&self, table: &Spanned<RotationParams>) -> Result<Spin, Diagnostic> {
@@ -296,37 +252,4 @@ pub fn unit_vector(
         }
     }
     Ok(normal)
-}
-
-/// Says where a file was looked for, and which other one there may be meant.
-fn missing_file(diagnostic: Diagnostic, path: &Path) -> Diagnostic {
-    let text =
-        |name: Option<&std::ffi::OsStr>| name.unwrap_or_default().to_string_lossy().into_owned();
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut there: Vec<String> = entries
-        .map(|entry| text(Some(&entry.file_name())))
-        .collect();
-    there.sort();
-    let there: Vec<&str> = there.iter().map(String::as_str).collect();
-    let diagnostic = diagnostic.help(format!("it is looked for at {}", path.display()));
-    match nearest(&text(path.file_name()), &there) {
-        Some(name) => diagnostic.label(format!("did you mean `{name}`?")),
-        None => diagnostic,
-    }
-}
-
-fn unit(axis: Axis) -> [f64; 3] {
-    Axis::ALL.map(|other| f64::from(u8::from(other == axis)))
-}
-
-/// A vector turned by an angle (rad) about a coordinate axis.
-fn turned(x: &[f64; 3], axis: &[f64; 3], angle: f64) -> [f64; 3] {
-    let (s, c) = (libm::sin(angle), libm::cos(angle));
-    let n = (0..3).position(|a| axis[a] == 1.0).unwrap_or(2);
-    let (k, l) = ((n + 1) % 3, (n + 2) % 3);
-    let mut turned = *x;
-    turned[k] = c * x[k] - s * x[l];
-    turned[l] = s * x[k] + c * x[l];
-    turned
 }

@@ -119,7 +119,11 @@ impl Form {
                     tell(depth, Vec3::z() * 1.0_f64.copysign(p.z));
                 }
             }
-            Self::Ball(_) | Self::Ellipsoid(_) | Self::Torus { .. } | Self::Mesh(_) => {
+            Self::Mesh(mesh) => {
+                let x = (*p).into();
+                mesh.faces(&x, reach, &mut |depth, normal| tell(depth, normal.into()));
+            }
+            Self::Ball(_) | Self::Ellipsoid(_) | Self::Torus { .. } => {
                 let depth = -self.distance(p);
                 if depth < reach {
                     tell(depth, self.outward(p));

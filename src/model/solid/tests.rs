@@ -242,3 +242,198 @@ fn polygons_that_cross_themselves_are_refused() {
     let clockwise = Polygon::new(angle().into_iter().rev().collect()).unwrap();
     assert_eq!(clockwise.area(), 1.5);
 }
+
+/// Points of space, evenly enough.
+fn directions() -> impl Iterator<Item = Vec3> {
+    (0..60).map(|n| {
+        let z = (f64::from(n) + 0.5) / 30.0 - 1.0;
+        let (r, turn) = ((1.0 - z * z).sqrt(), 2.399_963 * f64::from(n));
+        Vec3::new(r * turn.cos(), r * turn.sin(), z)
+    })
+}
+
+/// No point of the surface lies beyond the support, and one reaches it.
+#[test]
+fn forms_reach_as_far_as_their_support() {
+    let axes = [Vec3::x(), Vec3::y(), Vec3::z()];
+    for (form, _) in forms() {
+        let (lower, upper) = form.bounds();
+        for n in directions().chain(axes).chain(axes.map(|n| -n)) {
+            let support = form.support(&n);
+            // Into the surface from far beyond along the direction, from many places.
+            let mut farthest = f64::NEG_INFINITY;
+            let cells = 12;
+            for k in 0..cells * cells * cells {
+                let part = |k: i32| f64::from(k % cells) / f64::from(cells - 1);
+                let at = Vec3::new(part(k), part(k / cells), part(k / cells / cells));
+                let mut x = lower + at.component_mul(&(upper - lower));
+                let distance = form.distance(&x);
+                if distance > 1e-9 {
+                    continue;
+                }
+                x += n * -distance;
+                farthest = farthest.max(n.dot(&x));
+            }
+            assert!(
+                farthest <= support + 1e-9,
+                "{form:?} {n}: {farthest} beyond {support}"
+            );
+            let size = (upper - lower).norm();
+            assert!(
+                support - farthest < 0.12 * size,
+                "{form:?} {n}: {farthest} of {support}"
+            );
+        }
+        // Along axes it is the box, to rounding.
+        for a in 0..3 {
+            assert!(
+                (form.support(&axes[a]) - upper[a]).abs() < 1e-12,
+                "{form:?}"
+            );
+            assert!(
+                (form.support(&-axes[a]) + lower[a]).abs() < 1e-12,
+                "{form:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn boxes_of_turned_solids_are_exact() {
+    let turn = rotation(&Vec3::z(), 0.3);
+    let (sin, cos) = 0.3_f64.sin_cos();
+    let put = |form, turn| Solid::Form(form, Placement::turned(turn, Vec3::new(1.0, 2.0, 3.0)));
+    let near = |solid: &Solid, lower: [f64; 3], upper: [f64; 3]| {
+        let (l, u) = solid.bounds();
+        let off = (l - Vec3::from(lower)).norm() + (u - Vec3::from(upper)).norm();
+        assert!(off < 1e-12, "{solid:?}: {l} {u}");
+    };
+    let reach = 0.5 * cos + 0.25 * sin;
+    let brick = put(Form::Box(Vec3::new(0.5, 0.25, 1.0)), turn);
+    let other = 0.5 * sin + 0.25 * cos;
+    near(
+        &brick,
+        [1.0 - reach, 2.0 - other, 2.0],
+        [1.0 + reach, 2.0 + other, 4.0],
+    );
+    // A rod that lies askew is no wider than its slanted end adds.
+    let tilt = rotation(&Vec3::y(), 0.3);
+    let rod = put(
+        revolved(&[[0.0, -2.0], [0.5, -2.0], [0.5, 2.0], [0.0, 2.0]]),
+        tilt,
+    );
+    let (x, z) = (2.0 * sin + 0.5 * cos, 2.0 * cos + 0.5 * sin);
+    near(&rod, [1.0 - x, 1.5, 3.0 - z], [1.0 + x, 2.5, 3.0 + z]);
+    let ring = put(
+        Form::Torus {
+            radius: 1.0,
+            tube: 0.25,
+        },
+        tilt,
+    );
+    let (x, z) = (cos + 0.25, sin + 0.25);
+    near(&ring, [1.0 - x, 0.75, 3.0 - z], [1.0 + x, 3.25, 3.0 + z]);
+    let pair = Solid::Union(vec![brick.clone(), ring.clone()]);
+    let lowest = crate::model::Shape::Solid(pair).lowest(&Vec3::y());
+    assert!((lowest - 0.75).abs() < 1e-12, "{lowest}");
+    let slope = Vec3::new(0.6, 0.0, 0.8);
+    let lowest = crate::model::Shape::Solid(brick).lowest(&slope);
+    let at = slope.dot(&Vec3::new(1.0, 2.0, 3.0));
+    assert!(
+        (lowest - (at - 0.6 * reach - 0.8)).abs() < 1e-12,
+        "{lowest}"
+    );
+}
+
+/// A box of triangles, each face of four.
+fn meshed(half: Vec3) -> Form {
+    let mut soup = Vec::new();
+    for axis in 0..3 {
+        for sign in [-1.0, 1.0] {
+            let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+            let at = |p: f64, q: f64| {
+                let mut x = [0.0; 3];
+                x[axis] = sign * half[axis];
+                x[u] = p * half[u];
+                x[v] = q * sign * half[v];
+                x
+            };
+            let rim = [at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)];
+            for k in 0..4 {
+                soup.push([at(0.2, -0.1), rim[k], rim[(k + 1) % 4]]);
+            }
+        }
+    }
+    Form::Mesh(Arc::new(Mesh::new(&soup).unwrap()))
+}
+
+#[test]
+fn a_mesh_tells_the_faces_of_what_it_is_a_mesh_of() {
+    let half = Vec3::new(1.0, 0.8, 0.5);
+    let (cuboid, mesh) = (Form::Box(half), meshed(half));
+    let told = |form: &Form, x: &Vec3| {
+        let mut all: Vec<(f64, Vec3)> = Vec::new();
+        form.faces(x, 0.3, &mut |depth, normal| all.push((depth, normal)));
+        all.sort_by(|a, b| a.1.iter().partial_cmp(b.1.iter()).unwrap());
+        all
+    };
+    for n in 0..2000 {
+        let n = f64::from(n);
+        let x = Vec3::new(
+            libm::sin(1.3 * n),
+            0.8 * libm::sin(2.1 * n + 1.0),
+            0.5 * libm::sin(3.7 * n + 2.0),
+        ) * 0.999;
+        assert!((cuboid.distance(&x) - mesh.distance(&x)).abs() < 1e-12);
+        let [a, b] = [told(&cuboid, &x), told(&mesh, &x)];
+        assert_eq!(a.len(), b.len(), "{x}: {a:?} {b:?}");
+        for (a, b) in a.iter().zip(&b) {
+            assert!(
+                (a.0 - b.0).abs() < 1e-12 && (a.1 - b.1).norm() < 1e-12,
+                "{x}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_smooth_mesh_tells_one_face() {
+    let (rows, radius) = (40_u32, 1.0);
+    let place = |i: u32, j: u32| {
+        let theta = PI * f64::from(i) / f64::from(rows);
+        let turn = 2.0 * PI * f64::from(j % (2 * rows)) / f64::from(2 * rows);
+        let (s, c) = (libm::sin(theta), libm::cos(theta));
+        // Poles are one place.
+        let s = if i == 0 || i == rows { 0.0 } else { s };
+        [
+            radius * s * libm::cos(turn),
+            radius * s * libm::sin(turn),
+            radius * c,
+        ]
+    };
+    let mut soup = Vec::new();
+    for i in 0..rows {
+        for j in 0..2 * rows {
+            let [a, b, c, d] =
+                [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| place(i, j));
+            soup.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    let mesh = Form::Mesh(Arc::new(Mesh::new(&soup).unwrap()));
+    assert!((mesh.volume(3) / (4.0 / 3.0 * PI) - 1.0).abs() < 0.01);
+    for n in directions() {
+        for depth in [0.01, 0.1, 0.2] {
+            let x = n * (0.997 - depth);
+            let mut told = Vec::new();
+            mesh.faces(&x, 0.3, &mut |depth, normal| told.push((depth, normal)));
+            let [(found, normal)] = told[..] else {
+                panic!("{n} {depth}: {told:?}");
+            };
+            // Triangles turn by 4.5° from one to the next.
+            assert!(
+                (found - depth).abs() < 0.005 && normal.dot(&n) > 0.997,
+                "{n} {depth}: {found} {normal}"
+            );
+        }
+    }
+}

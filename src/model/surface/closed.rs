@@ -27,6 +27,21 @@ pub enum MeshError {
         /// One end of the first of them.
         place: String,
     },
+    /// A hole that is too wide to be closed.
+    #[error(
+        "it is not closed: {edges} edges have no second triangle; its widest hole, near {place}, is \
+         {width} wide, and only those up to one spacing ({widest}) are closed"
+    )]
+    Hole {
+        /// Number of edges without a second triangle, of all holes.
+        edges: usize,
+        /// Four times its area over its rim.
+        width: String,
+        /// Which is still closed.
+        widest: String,
+        /// Its middle.
+        place: String,
+    },
     /// Two triangles run along an edge in the same direction.
     #[error(
         "its triangles are not turned alike, or more than two meet in an edge, as near {place}"

@@ -127,6 +127,63 @@ impl Tree {
         }
     }
 
+    /// Calls `visit` with all whose boxes meet the one between two corners (m).
+    pub fn meeting(&self, lower: &[f64; 3], upper: &[f64; 3], mut visit: impl FnMut(u32)) {
+        let mut open = vec![0_u32];
+        while let Some(index) = open.pop() {
+            let Some(node) = self.nodes.get(index as usize) else {
+                break;
+            };
+            if (0..3).any(|a| node.lower[a] > upper[a] || node.upper[a] < lower[a]) {
+                continue;
+            }
+            if node.count > 0 {
+                let first = node.at as usize;
+                let all = &self.order[first..first + node.count as usize];
+                all.iter().for_each(|&t| visit(t));
+            } else {
+                open.extend([node.at, index + 1]);
+            }
+        }
+    }
+
+    /// The largest `n·x` (m) of what `support` tells that of, for a vector `n`.
+    pub fn farthest(&self, n: &[f64; 3], support: impl Fn(u32) -> f64) -> f64 {
+        let beyond = |node: &Node| {
+            (0..3).fold(0.0, |sum, a| {
+                sum + (n[a] * node.lower[a]).max(n[a] * node.upper[a])
+            })
+        };
+        let mut farthest = f64::NEG_INFINITY;
+        let mut stack = [0_u32; DEPTH];
+        let mut depth = usize::from(!self.nodes.is_empty());
+        while depth > 0 {
+            depth -= 1;
+            let index = stack[depth];
+            let node = &self.nodes[index as usize];
+            if beyond(node) <= farthest {
+                continue;
+            }
+            if node.count > 0 {
+                let first = node.at as usize;
+                let all = self.order[first..first + node.count as usize].iter();
+                farthest = all.fold(farthest, |most, &t| most.max(support(t)));
+                continue;
+            }
+            let mut children = [index + 1, node.at];
+            if beyond(&self.nodes[children[0] as usize]) > beyond(&self.nodes[children[1] as usize])
+            {
+                children.swap(0, 1);
+            }
+            // The farther one last: it comes off the stack first.
+            for child in children {
+                stack[depth] = child;
+                depth += 1;
+            }
+        }
+        farthest
+    }
+
     /// Smallest and largest coordinates of all (m).
     pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         let root = self.nodes.first();

@@ -71,7 +71,6 @@ fn at_rest(shape: SurfaceShape, inside: bool) -> RigidSurface {
         bodies: vec![true],
         motion: Motion::default(),
         spin: None,
-        file: None,
     }
 }
 

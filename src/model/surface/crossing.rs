@@ -1,0 +1,74 @@
+//! Triangles of a surface that cut through each other.
+
+use super::Mesh;
+use super::soup::normal_area;
+use crate::numerics::vector::{cross, dot, minus};
+
+/// Volumes below this share of what they could be are rounding: nothing crosses.
+const ROUNDING: f64 = 1e-9;
+
+/// Where triangles of a surface cut through each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crossing {
+    /// How many pairs do.
+    pub count: usize,
+    /// Where the first of them do (m).
+    pub at: [f64; 3],
+}
+
+impl Mesh {
+    /// Where its triangles cut through each other, if any do. Inside and outside mean little there.
+    #[must_use]
+    pub fn crossing(&self) -> Option<Crossing> {
+        let mut found: Option<Crossing> = None;
+        for (n, t) in (0..).zip(&self.triangles) {
+            let x = self.at(n);
+            let side = |pick: fn(f64, f64) -> f64| -> [f64; 3] {
+                std::array::from_fn(|a| pick(pick(x[0][a], x[1][a]), x[2][a]))
+            };
+            let mut partners = Vec::new();
+            self.tree.meeting(&side(f64::min), &side(f64::max), |m| {
+                let other = &self.triangles[m as usize];
+                if m > n && !other.iter().any(|c| t.contains(c)) {
+                    partners.push(m);
+                }
+            });
+            // The tree's order is no matter.
+            partners.sort_unstable();
+            for m in partners {
+                let y = self.at(m);
+                let Some(at) = pierced(&x, &y).or_else(|| pierced(&y, &x)) else {
+                    continue;
+                };
+                let crossing = found.get_or_insert(Crossing { count: 0, at });
+                crossing.count += 1;
+            }
+        }
+        found
+    }
+}
+
+/// Where an edge of the second triangle goes through the first.
+fn pierced(x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
+    let normal = normal_area(x);
+    let area = dot(&normal, &normal).sqrt();
+    let heights = y.map(|p| dot(&normal, &minus(&p, &x[0])));
+    (0..3).find_map(|k| {
+        let l = (k + 1) % 3;
+        let (p, way) = (y[k], minus(&y[l], &y[k]));
+        let least = ROUNDING * area * dot(&way, &way).sqrt();
+        if heights[k].abs() <= least || heights[l].abs() <= least {
+            return None;
+        }
+        if (heights[k] < 0.0) == (heights[l] < 0.0) {
+            return None;
+        }
+        // On which side of each edge of the triangle the line passes.
+        let from = x.map(|c| minus(&c, &p));
+        let sides: [f64; 3] =
+            std::array::from_fn(|e| dot(&way, &cross(&from[e], &from[(e + 1) % 3])));
+        let is_inside = sides.iter().all(|&s| s > least) || sides.iter().all(|&s| s < -least);
+        let part = heights[k] / (heights[k] - heights[l]);
+        is_inside.then(|| std::array::from_fn(|a| p[a] + part * way[a]))
+    })
+}

@@ -1,0 +1,273 @@
+//! Which way triangles turn: alike along all edges, outwards in outer shells and inwards in cavities.
+
+use std::collections::BTreeMap;
+
+use super::closed::{MeshError, edges, place};
+use super::soup::{Soup, normal_area, number, undirected};
+use super::tree::Tree;
+use crate::numerics::vector::{cross, dot, minus};
+
+/// Turns triangles so that all run alike along their edges, as most of each piece do. Gives how many
+/// were turned.
+///
+/// # Errors
+/// If more than two triangles meet in an edge, or a piece has one side only.
+pub(super) fn align(soup: &mut Soup) -> Result<usize, MeshError> {
+    let mut meeting: BTreeMap<(u32, u32), Vec<u32>> = BTreeMap::new();
+    for (n, t) in (0..).zip(&soup.triangles) {
+        for k in 0..3 {
+            let edge = undirected(t[k], t[(k + 1) % 3]);
+            meeting.entry(edge).or_default().push(n);
+        }
+    }
+    let tangled = |corner: u32| MeshError::Tangled {
+        place: place(&soup.corners[corner as usize]),
+    };
+    if let Some(((corner, _), _)) = meeting.iter().find(|(_, all)| all.len() > 2) {
+        return Err(tangled(*corner));
+    }
+    let runs = |t: &[u32; 3], a: u32, b: u32| (0..3).any(|k| t[k] == a && t[(k + 1) % 3] == b);
+    let mut turned: Vec<Option<bool>> = vec![None; soup.triangles.len()];
+    let mut count = 0;
+    for first in 0..soup.triangles.len() {
+        if turned[first].is_some() {
+            continue;
+        }
+        turned[first] = Some(false);
+        let (mut piece, mut done) = (vec![number(first)], 0);
+        while let Some(&n) = piece.get(done) {
+            done += 1;
+            let t = soup.triangles[n as usize];
+            let is_turned = turned[n as usize] == Some(true);
+            for k in 0..3 {
+                let (a, b) = (t[k], t[(k + 1) % 3]);
+                for &other in meeting[&undirected(a, b)].iter().filter(|&&o| o != n) {
+                    let alike = runs(&soup.triangles[other as usize], b, a);
+                    let wanted = is_turned == alike;
+                    match turned[other as usize] {
+                        None => {
+                            turned[other as usize] = Some(wanted);
+                            piece.push(other);
+                        }
+                        Some(it) if it != wanted => return Err(tangled(a)),
+                        Some(_) => {}
+                    }
+                }
+            }
+        }
+        let of_piece = piece.iter().filter(|&&n| turned[n as usize] == Some(true));
+        let of_piece = of_piece.count();
+        let most = 2 * of_piece > piece.len();
+        count += if most {
+            piece.len() - of_piece
+        } else {
+            of_piece
+        };
+        for n in piece {
+            let n = n as usize;
+            if (turned[n] == Some(true)) != most {
+                soup.triangles[n].swap(1, 2);
+            }
+        }
+    }
+    Ok(count)
+}
+
+/// One connected piece of a closed surface.
+struct Shell {
+    triangles: Vec<u32>,
+    volume: f64,
+    lower: [f64; 3],
+    upper: [f64; 3],
+}
+
+/// Turns the shells of a closed surface so that normals point out of the matter: outwards from those
+/// within no other or in a cavity, inwards from cavities. Gives how many were turned, if not all.
+///
+/// # Errors
+/// If a shell encloses nothing.
+pub(super) fn nest(soup: &mut Soup) -> Result<usize, MeshError> {
+    let shells = shells(soup);
+    let is_some = |volume: f64| volume.is_finite() && volume != 0.0;
+    if !shells.iter().all(|shell| is_some(shell.volume)) {
+        return Err(MeshError::NoVolume);
+    }
+    let boxes: Vec<_> = shells.iter().map(|s| (s.lower, s.upper)).collect();
+    let tree = Tree::new(&boxes);
+    let mut turned = 0;
+    let wrong: Vec<bool> = shells
+        .iter()
+        .enumerate()
+        .map(|(n, shell)| {
+            let inside = shells.len() > 1 && depth(soup, &shells, &tree, n) % 2 == 1;
+            (shell.volume < 0.0) != inside
+        })
+        .collect();
+    for (shell, _) in shells.iter().zip(&wrong).filter(|(_, wrong)| **wrong) {
+        turned += 1;
+        for &n in &shell.triangles {
+            soup.triangles[n as usize].swap(1, 2);
+        }
+    }
+    Ok(if turned == shells.len() { 0 } else { turned })
+}
+
+fn shells(soup: &Soup) -> Vec<Shell> {
+    let edges = edges(&soup.triangles);
+    let mut reached = vec![false; soup.triangles.len()];
+    let mut shells = Vec::new();
+    for first in 0..soup.triangles.len() {
+        if reached[first] {
+            continue;
+        }
+        reached[first] = true;
+        let mut shell = Shell {
+            triangles: vec![number(first)],
+            volume: 0.0,
+            lower: [f64::INFINITY; 3],
+            upper: [f64::NEG_INFINITY; 3],
+        };
+        let mut done = 0;
+        while let Some(&n) = shell.triangles.get(done) {
+            done += 1;
+            let t = soup.triangles[n as usize];
+            for k in 0..3 {
+                let other = edges[&(t[(k + 1) % 3], t[k])];
+                if !reached[other as usize] {
+                    reached[other as usize] = true;
+                    shell.triangles.push(other);
+                }
+            }
+            for x in soup.at(&t) {
+                for a in 0..3 {
+                    shell.lower[a] = shell.lower[a].min(x[a]);
+                    shell.upper[a] = shell.upper[a].max(x[a]);
+                }
+            }
+        }
+        let from = shell.lower;
+        shell.volume = (shell.triangles.iter())
+            .map(|&n| {
+                let [a, b, c] = soup
+                    .at(&soup.triangles[n as usize])
+                    .map(|x| minus(&x, &from));
+                dot(&a, &cross(&b, &c)) / 6.0
+            })
+            .fold(0.0, |sum, part| sum + part);
+        shells.push(shell);
+    }
+    shells
+}
+
+/// Within how many others a shell lies.
+fn depth(soup: &Soup, shells: &[Shell], tree: &Tree, n: usize) -> usize {
+    let t = &soup.triangles[shells[n].triangles[0] as usize];
+    let corners = soup.at(t);
+    let x: [f64; 3] =
+        std::array::from_fn(|a| (corners[0][a] + corners[1][a] + corners[2][a]) / 3.0);
+    let mut around = Vec::new();
+    tree.near(&x, 0.0, |other| {
+        around.push(other as usize);
+        0.0
+    });
+    let holds = |&other: &usize| {
+        let (a, b) = (&shells[n], &shells[other]);
+        let wider = (0..3).all(|k| b.lower[k] <= a.lower[k] && a.upper[k] <= b.upper[k]);
+        other != n && wider && winding(soup, b, &x).abs() > 0.5
+    };
+    around.into_iter().filter(holds).count()
+}
+
+/// How often a shell winds about a point: the solid angles of its triangles over 4π (van Oosterom &
+/// Strackee 1983).
+fn winding(soup: &Soup, shell: &Shell, x: &[f64; 3]) -> f64 {
+    let angles = shell.triangles.iter().map(|&n| {
+        let [a, b, c] = soup.at(&soup.triangles[n as usize]).map(|y| minus(&y, x));
+        let [u, v, w] = [&a, &b, &c].map(|r| dot(r, r).sqrt());
+        let below = u * v * w + dot(&a, &b) * w + dot(&b, &c) * u + dot(&c, &a) * v;
+        2.0 * libm::atan2(dot(&a, &cross(&b, &c)), below)
+    });
+    angles.fold(0.0, |sum, angle| sum + angle) / (4.0 * std::f64::consts::PI)
+}
+
+/// Triangles that stand there twice: of those that run alike one is kept, those that run against each
+/// other cancel out, as where two solids share a face. Gives how many went.
+pub(super) fn drop_doubles(soup: &mut Soup) -> usize {
+    let before = soup.triangles.len();
+    let key = |t: &[u32; 3]| {
+        let mut sorted = *t;
+        sorted.sort_unstable();
+        let first = t.iter().position(|&c| c == sorted[0]).unwrap_or(0);
+        (sorted, t[(first + 1) % 3] == sorted[1])
+    };
+    let mut copies: BTreeMap<[u32; 3], [u32; 2]> = BTreeMap::new();
+    for t in &soup.triangles {
+        let (sorted, forward) = key(t);
+        copies.entry(sorted).or_default()[usize::from(forward)] += 1;
+    }
+    soup.triangles.retain(|t| {
+        let (sorted, forward) = key(t);
+        let Some(counts) = copies.get_mut(&sorted) else {
+            return false;
+        };
+        let [own, other] = [usize::from(forward), usize::from(!forward)];
+        let is_kept = counts[own] > counts[other];
+        if is_kept {
+            // One of them stays.
+            copies.remove(&sorted);
+        }
+        is_kept
+    });
+    before - soup.triangles.len()
+}
+
+/// Triangles whose corners lie on a line give way to a swap of their longest edge, which changes no
+/// place of the surface. Gives how many there were.
+pub(super) fn swap_flat(soup: &mut Soup, rounding: f64) -> usize {
+    let mut edges = edges(&soup.triangles);
+    let longest = |soup: &Soup, t: &[u32; 3]| {
+        let x = soup.at(t);
+        let squares: [f64; 3] = std::array::from_fn(|k| {
+            let r = minus(&x[(k + 1) % 3], &x[k]);
+            dot(&r, &r)
+        });
+        let k = (1..3).fold(
+            0,
+            |best, k| if squares[k] > squares[best] { k } else { best },
+        );
+        let area = normal_area(&x);
+        let is_flat = dot(&area, &area) <= rounding * rounding * squares[k];
+        is_flat.then_some(k)
+    };
+    let flat = |n: &usize| longest(soup, &soup.triangles[*n]).is_some();
+    let mut open: Vec<usize> = (0..soup.triangles.len()).filter(flat).collect();
+    let found = open.len();
+    // Each swap may leave another flat triangle, along a line of many corners.
+    let mut swaps = 100 * found;
+    while let (Some(n), true) = (open.pop(), swaps > 0) {
+        swaps -= 1;
+        let t = soup.triangles[n];
+        let Some(k) = longest(soup, &t) else { continue };
+        let (p, q, o) = (t[k], t[(k + 1) % 3], t[(k + 2) % 3]);
+        let Some(&m) = edges.get(&(q, p)) else {
+            continue;
+        };
+        let u = soup.triangles[m as usize];
+        let Some(&d) = u.iter().find(|&&c| c != p && c != q) else {
+            continue;
+        };
+        if d == o || edges.contains_key(&(o, d)) || edges.contains_key(&(d, o)) {
+            continue;
+        }
+        edges.remove(&(p, q));
+        edges.remove(&(q, p));
+        for (index, new) in [(n, [o, p, d]), (m as usize, [d, q, o])] {
+            soup.triangles[index] = new;
+            for k in 0..3 {
+                edges.insert((new[k], new[(k + 1) % 3]), number(index));
+            }
+            open.push(index);
+        }
+    }
+    found
+}
