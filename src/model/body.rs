@@ -1,8 +1,10 @@
 //! Bodies: a shape filled with particles of one material on one lattice.
 
+use std::sync::Arc;
+
 use serde::Deserialize;
 
-use super::{Initial, Motion, Place, Shape, Vec3};
+use super::{Cloud, Form, Initial, Motion, Place, Placement, Quantity, Shape, Solid, Vec3};
 
 /// How particles are stacked.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -70,6 +72,24 @@ pub struct Body {
 }
 
 impl Body {
+    /// Its particles and where their origin stands (m), if a file gives them.
+    #[must_use]
+    pub fn cloud(&self) -> Option<(&Arc<Cloud>, &Vec3)> {
+        match &self.shape {
+            Shape::Solid(Solid::Form(Form::Cloud(cloud), Placement { at, .. })) => {
+                Some((cloud, at))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether a file tells a quantity of its particles.
+    #[must_use]
+    pub fn holds(&self, quantity: Quantity) -> bool {
+        let cloud = self.cloud();
+        cloud.is_some_and(|(cloud, _)| cloud.all(quantity).is_some())
+    }
+
     /// Initial velocity (m/s) of a particle at `position` (m).
     #[must_use]
     pub fn velocity_at(&self, position: &Vec3) -> Vec3 {

@@ -14,6 +14,7 @@ use std::sync::Arc;
 
 pub use closed::MeshError;
 pub use mesh::Mesh;
+pub(in crate::model) use tree::Tree;
 pub use triangle::{Feature, closest_on_triangle};
 
 use super::{Motion, Resistance};

@@ -1,11 +1,14 @@
 //! Bodies: shapes in metres, lattices, velocities; then touch and whether there are particles.
 
+use std::path::Path;
+
 use toml::Spanned;
 
-use super::check::{Allowed, number, optional};
+use super::check::{Allowed, optional};
 use super::initial;
 use super::lattice::lattice;
 use super::motion::motion;
+use super::particles::{self, Files};
 use super::shapes::Shapes;
 use super::touch;
 use crate::input::names;
@@ -13,7 +16,7 @@ use crate::input::quantity::{Length, Placed};
 use crate::input::schema::{AngularVelocityParams, BodyParams};
 use crate::input::source::Diagnostic;
 use crate::material::{Eos, Failure, Linear, LinearForm, Material, Strength};
-use crate::model::{Body, Motion, Profile, SymmetryPlane, Vec3};
+use crate::model::{Body, Lattice, Motion, Profile, Shape, SymmetryPlane, Vec3};
 use crate::populate;
 
 /// Bounding lattices beyond this are a slip in a unit rather than a body.
@@ -47,8 +50,12 @@ pub struct Reader<'a> {
     /// Spacing of bodies that set none.
     pub spacing: Option<&'a Placed<Length>>,
     pub materials: &'a [String],
+    /// The materials themselves.
+    pub known: &'a [Material],
     /// Smoothing length over spacing.
     pub smoothing: f64,
+    /// The folder of the case.
+    pub folder: &'a Path,
 }
 
 impl Reader<'_> {
@@ -91,31 +98,79 @@ impl Reader<'_> {
         }
         names::check(&params.name, "body")?;
         let material = self.material(params, table)?;
-        let Some(spacing) = params.spacing.as_ref().or(self.spacing) else {
-            let title = format!("the body `{name}` has no `spacing`");
-            return Err(Diagnostic::new(params.name.span(), title)
-                .help("give it one, or one to all bodies at the top: `spacing = \"0.02 mm\"`"));
-        };
-        let spacing = number(Some(spacing), "spacing", 0.0, Allowed::Positive)?;
-        let shapes = Shapes {
-            dimension: self.dimension,
-            spacing,
-        };
         let (velocity, rigid, varied) = self.motion(params)?;
-        let shape = shapes.shape(&params.shape)?;
-        let lattice = lattice(&shapes, params.lattice.as_ref(), &shape)?;
-        Ok(Body {
+        let density = optional(params.density.as_ref(), "density", Allowed::Positive)?;
+        let (shape, lattice) = self.form(params, material, table)?;
+        let mut body = Body {
             name: name.clone(),
+            smoothing_length: self.smoothing * lattice.spacing,
             shape,
             material,
             lattice,
             velocity,
             angular_velocity: self.angular_velocity(params)?,
             rigid,
-            density: optional(params.density.as_ref(), "density", Allowed::Positive)?,
+            density,
             initial: initial::initial(params, varied, self.dimension)?,
-            smoothing_length: self.smoothing * spacing,
-        })
+        };
+        if let Some(cloud) = body.cloud().map(|(cloud, _)| cloud.clone()) {
+            particles::told(&cloud, &mut body.velocity, &mut body.initial);
+        }
+        Ok(body)
+    }
+
+    /// The shape of a body and how it is filled.
+    fn form(
+        &self,
+        params: &BodyParams,
+        material: usize,
+        table: &Spanned<BodyParams>,
+    ) -> Result<(Shape, Lattice), Diagnostic> {
+        let given = params.spacing.as_ref().or(self.spacing);
+        let spacing = optional(given, "spacing", Allowed::Positive)?;
+        match (&params.shape, &params.particles) {
+            (Some(shape), None) => {
+                let Some(spacing) = spacing else {
+                    let name = params.name.get_ref();
+                    let title = format!("the body `{name}` has no `spacing`");
+                    return Err(Diagnostic::new(params.name.span(), title).help(
+                        "give it one, or one to all bodies at the top: `spacing = \"0.02 mm\"`",
+                    ));
+                };
+                let shapes = Shapes {
+                    dimension: self.dimension,
+                    spacing,
+                };
+                let shape = shapes.shape(shape)?;
+                let lattice = lattice(&shapes, params.lattice.as_ref(), &shape)?;
+                Ok((shape, lattice))
+            }
+            (None, Some(particles)) => {
+                let files = Files {
+                    dimension: self.dimension,
+                    folder: self.folder,
+                    material: self.known.get(material),
+                    spacing,
+                };
+                let (shape, mean) = files.shape(params, particles)?;
+                let own = params.spacing.as_ref().and(spacing);
+                let lattice = Lattice {
+                    spacing: own.unwrap_or(mean),
+                    ..Lattice::default()
+                };
+                Ok((shape, lattice))
+            }
+            (Some(_), Some(particles)) => {
+                let title = "a body has a `shape` or `particles`, not both";
+                Err(Diagnostic::new(particles.span(), title))
+            }
+            (None, None) => {
+                let title = "the key `shape` is missing";
+                Err(Diagnostic::new(table.span(), title)
+                    .label("in this table")
+                    .help("or give the body the `particles` of a file"))
+            }
+        }
     }
 
     /// Index of the material; one beyond the last for a rigid body that names none.
@@ -219,7 +274,7 @@ impl Reader<'_> {
         body: &Body,
         symmetry: &[SymmetryPlane],
     ) -> Result<(), Diagnostic> {
-        let warn = |title| Diagnostic::new(params.shape.span(), title);
+        let warn = |title| Diagnostic::new(params.form_span(), title);
         if populate::bounds(body, self.dimension).is_none() {
             let title = format!("the body `{}` is too thin for a single particle", body.name);
             return Err(warn(title).help("make its spacing finer"));
@@ -247,8 +302,12 @@ impl Reader<'_> {
                 let span = params
                     .angular_velocity
                     .as_ref()
-                    .map_or(params.shape.span(), Spanned::span);
+                    .map_or_else(|| params.form_span(), Spanned::span);
                 return Err(Diagnostic::new(span, title));
+            }
+            // Particles of a file stand where they are.
+            if body.cloud().is_some() {
+                continue;
             }
             if gap < FIRST_LAYER.0 || (is_cut && gap > FIRST_LAYER.1) {
                 let title = format!(

@@ -12,6 +12,7 @@ mod loads;
 mod materials;
 mod motion;
 mod numerical_limits;
+mod particles;
 mod region;
 mod shapes;
 mod solids;
@@ -54,7 +55,9 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         dimension,
         spacing: params.spacing.as_ref(),
         materials: &names,
+        known: &materials,
         smoothing,
+        folder,
     }
     .bodies(&params.body, &symmetry)?;
     if bodies.iter().any(|body| body.material == materials.len()) {
@@ -144,7 +147,7 @@ fn check_overlaps(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Dia
                     bodies[0].name,
                     case.length_unit.vector(&found.at[..case.dimension])
                 );
-                return Err(Diagnostic::new(table.get_ref().shape.span(), title).help(
+                return Err(Diagnostic::new(table.get_ref().form_span(), title).help(
                     "move one of them, or let it `touch` the other; only bodies with contact of \
                      mode \"none\" may overlap",
                 ));
@@ -164,10 +167,16 @@ fn check_temperature(case: &Case, fields: &[(String, Range<usize>)]) -> Result<(
     }
 }
 
-/// The unit in which the spacing is given, of the case or of its first body.
+/// The unit in which the spacing is given, of the case or of its first body, or a file's.
 fn length_unit(params: &CaseParams) -> Readable {
-    let bodies = params.body.iter().map(|table| &table.get_ref().spacing);
-    let spacing = std::iter::once(&params.spacing).chain(bodies).flatten();
+    let bodies = params.body.iter().map(|table| table.get_ref());
+    let spacings = bodies.clone().map(|body| body.spacing.as_ref());
+    let given = bodies.filter_map(|body| body.particles.as_ref());
+    let units = given.map(|particles| particles.get_ref().unit.as_ref());
+    let spacing = std::iter::once(params.spacing.as_ref())
+        .chain(spacings)
+        .chain(units)
+        .flatten();
     let size = spacing.map(|spacing| spacing.get_ref().unit).next();
     Readable::length(size.unwrap_or(1.0))
 }

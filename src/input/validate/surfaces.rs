@@ -299,7 +299,7 @@ pub fn unit_vector(
 }
 
 /// Says where a file was looked for, and which other one there may be meant.
-fn missing_file(diagnostic: Diagnostic, path: &Path) -> Diagnostic {
+pub(super) fn missing_file(diagnostic: Diagnostic, path: &Path) -> Diagnostic {
     let text =
         |name: Option<&std::ffi::OsStr>| name.unwrap_or_default().to_string_lossy().into_owned();
     let folder = path.parent().unwrap_or(Path::new(""));
