@@ -1,4 +1,4 @@
-//! Random inputs, checkpoints and snapshots: whatever is wrong is told, nothing panics, hangs or
+//! Random inputs, files of particles, checkpoints and snapshots: whatever is wrong is told, nothing panics, hangs or
 //! takes more memory than it should.
 //!
 //! What a message says, but for its names and numbers, tells how far a reader came; what reaches a
@@ -13,6 +13,8 @@ mod changes;
 mod files;
 #[path = "fuzz/guard.rs"]
 mod guard;
+#[path = "fuzz/particles.rs"]
+mod particles;
 #[path = "common/random.rs"]
 mod random;
 #[path = "fuzz/texts.rs"]

@@ -357,7 +357,8 @@ mod tests {
         let names = |list: &[Quantity]| list.iter().map(|q| q.name()).collect::<Vec<_>>();
         let default = quantities(&[]).unwrap();
         assert!(names(&default).starts_with(&["id", "body", "velocity"]));
-        assert!(!names(&default).contains(&"mass"));
+        assert!(names(&default).contains(&"mass"));
+        assert!(!names(&default).contains(&"sound_speed"));
         let chosen = ["von_mises_stress", "mass", "position"].map(String::from);
         let chosen = quantities(&chosen).unwrap();
         assert_eq!(names(&chosen), ["id", "body", "mass", "von_mises_stress"]);

@@ -229,15 +229,17 @@ pub fn particle_volume(body: &Body, dimension: usize) -> f64 {
 /// the mean volume.
 #[must_use]
 pub fn even_volume(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> Option<f64> {
+    let cell = particle_volume(body, dimension);
+    let differs = |even: &f64| (even / cell - 1.0).abs() > SAME_VOLUME;
     if let Some(given) = Given::of(body) {
-        return given.mean_volume(&cuts(symmetry, None));
+        let mean = given.mean_volume(&cuts(symmetry, None));
+        return mean.filter(differs);
     }
     let planes = if moves_sites(body) { symmetry } else { &[] };
     #[allow(clippy::cast_precision_loss)] // far fewer than 2^52
     let count = count(body, dimension, planes, None) as f64;
     let even = body.shape.volume_above(planes, dimension) / count;
-    let cell = particle_volume(body, dimension);
-    (count > 0.0 && (even / cell - 1.0).abs() > SAME_VOLUME).then_some(even)
+    (count > 0.0 && differs(&even)).then_some(even)
 }
 
 /// Whether sites end elsewhere than where slabs are cut: particles may begin a spacing outside the

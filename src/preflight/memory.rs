@@ -38,7 +38,10 @@ pub fn of_rank(case: &Case, comm: &Comm, ranks: usize) -> f64 {
         _ => 1.0,
     };
     let surfaces = case.loads.surfaces.iter().map(RigidSurface::memory);
-    let process = PROCESS + surfaces.sum::<usize>() as f64;
+    // Each rank reads all of a file.
+    let clouds = case.bodies.iter().filter_map(|body| body.cloud());
+    let read = clouds.map(|(cloud, _)| cloud.memory());
+    let process = PROCESS + surfaces.chain(read).sum::<usize>() as f64;
     if ranks < 2 {
         let count = |body| populate::count(body, case.dimension, &case.symmetry, None);
         let particles: u64 = case.bodies.iter().map(count).sum();

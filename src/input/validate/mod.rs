@@ -63,7 +63,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     if bodies.iter().any(|body| body.material == materials.len()) {
         materials.push(bodies::no_material());
     }
-    let length_unit = length_unit(&params);
+    let length_unit = length_unit(&params, &bodies);
     let (default_contact, contacts, self_contact) =
         contact::contacts(&params.contact, &params.body, sph.form, smoothing)?;
     let loads = loads::Reader {
@@ -167,8 +167,9 @@ fn check_temperature(case: &Case, fields: &[(String, Range<usize>)]) -> Result<(
     }
 }
 
-/// The unit in which the spacing is given, of the case or of its first body, or a file's.
-fn length_unit(params: &CaseParams) -> Readable {
+/// The unit in which the spacing is given, of the case or of its first body, or a file's; one that
+/// fits where none is stated.
+fn length_unit(params: &CaseParams, made: &[Body]) -> Readable {
     let bodies = params.body.iter().map(|table| table.get_ref());
     let spacings = bodies.clone().map(|body| body.spacing.as_ref());
     let given = bodies.filter_map(|body| body.particles.as_ref());
@@ -178,7 +179,8 @@ fn length_unit(params: &CaseParams) -> Readable {
         .chain(units)
         .flatten();
     let size = spacing.map(|spacing| spacing.get_ref().unit).next();
-    Readable::length(size.unwrap_or(1.0))
+    let fits = || made.first().map_or(1.0, |body| body.lattice.spacing);
+    size.map_or_else(|| Readable::new("m", fits()), Readable::length)
 }
 
 fn field_spans(params: &OutputParams) -> Vec<(String, Range<usize>)> {

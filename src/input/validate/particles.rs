@@ -1,5 +1,7 @@
 //! Bodies whose particles a file gives.
 
+mod asked;
+
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
@@ -10,16 +12,14 @@ use super::check::{Allowed, number};
 use super::shapes::Shapes;
 use super::solids::turns;
 use super::surfaces::missing_file;
-use crate::input::cloud::{self, Columns, Fault, Request, Table, UnitSystem, Wanted};
-use crate::input::schema::{
-    BodyParams, ColumnsParams, FormatName, NamesParams, PartParams, ParticlesParams, PartsParams,
-    TakeName,
-};
+use crate::input::cloud::{self, Columns, Fault, Request, Table, UnitSystem};
+use crate::input::schema::{BodyParams, FormatName, ParticlesParams, TakeName};
 use crate::input::source::Diagnostic;
 use crate::material::Material;
 use crate::model::{
     Cloud, Form, Initial, Placement, Quantity, Shape, Solid, SurfaceFile, Vec3, edge,
 };
+use asked::{columns, parts};
 
 /// What a body is made with.
 pub struct Files<'a> {
@@ -350,57 +350,4 @@ fn refusal(params: &ParticlesParams, fault: &Fault) -> Diagnostic {
         _ => None,
     };
     Diagnostic::new(span.unwrap_or_else(|| params.file.span()), title)
-}
-
-fn columns(table: &Spanned<ColumnsParams>) -> Columns {
-    let params = table.get_ref();
-    let names = |names: &NamesParams| match names {
-        NamesParams::One(name) => vec![name.clone()],
-        NamesParams::Many(names) => names.clone(),
-    };
-    let of = [
-        (Quantity::Position, &params.position),
-        (Quantity::Mass, &params.mass),
-        (Quantity::Volume, &params.volume),
-        (Quantity::Density, &params.density),
-        (Quantity::Velocity, &params.velocity),
-        (Quantity::SpecificEnergy, &params.specific_energy),
-        (Quantity::Temperature, &params.temperature),
-        (Quantity::DeviatoricStress, &params.deviatoric_stress),
-        (Quantity::PlasticStrain, &params.plastic_strain),
-        (Quantity::Damage, &params.damage),
-    ];
-    let stated = of
-        .into_iter()
-        .filter_map(|(quantity, given)| Some((quantity, names(given.as_ref()?.get_ref()))));
-    let part = params.part.as_ref();
-    Columns {
-        of: stated.collect(),
-        part: part.and_then(|part| names(part.get_ref()).into_iter().next()),
-    }
-}
-
-fn parts(table: &Spanned<PartsParams>) -> Result<Vec<Wanted>, Diagnostic> {
-    let number = |number: f64| {
-        #[allow(clippy::cast_possible_truncation)] // as checked
-        let whole = (number.fract() == 0.0 && number.abs() < 9e15).then_some(number as i64);
-        let title = "the number of a part is a whole one";
-        whole
-            .map(Wanted::Number)
-            .ok_or_else(|| Diagnostic::new(table.span(), title))
-    };
-    match table.get_ref() {
-        PartsParams::Name(name) => Ok(vec![Wanted::Name(name.clone())]),
-        PartsParams::Number(n) => Ok(vec![number(*n)?]),
-        PartsParams::Many(parts) if parts.is_empty() => {
-            Err(Diagnostic::new(table.span(), "`part` names no part"))
-        }
-        PartsParams::Many(parts) => {
-            let wanted = |part: &PartParams| match part {
-                PartParams::Name(name) => Ok(Wanted::Name(name.clone())),
-                PartParams::Number(n) => number(*n),
-            };
-            parts.iter().map(wanted).collect()
-        }
-    }
 }
