@@ -4,6 +4,7 @@
 //! The meshes of `tests/particles/` are of Gmsh, meshio, VTK and h5py: eight hexahedra of
 //! 1 × ½ × ½ in a box from the origin to (2, 1, 1), or points of a grid.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
@@ -284,7 +285,8 @@ fn sites_are_those_of_any_slabs_and_planes() {
             f64::from(seed >> 8) / f64::from(1 << 24)
         };
         let [x, y, z] = [next(), next(), next()];
-        table += &format!("{},{},{}\n", 10.0 * x - 2.0, 10.0 * y, 30.0 * z);
+        let [x, y, z] = [10.0 * x - 2.0, 10.0 * y, 30.0 * z];
+        let _ = writeln!(table, "{x},{y},{z}");
     }
     fs::write(place.path().join("a.csv"), table).unwrap();
     let more = "spacing = \"1 mm\"";
@@ -414,4 +416,42 @@ fn the_saved_text_names_the_file_and_its_digest() {
         message.contains("is no longer the one that the case began with"),
         "{message}"
     );
+}
+
+#[test]
+fn particles_and_shells_of_decks_are_taken() {
+    let place = tempfile::tempdir().unwrap();
+    let write = |name: &str, content: &str| fs::write(place.path().join(name), content).unwrap();
+    // SPH elements with masses of one part, with volumes of the other.
+    write(
+        "sph.k",
+        "*KEYWORD\n*NODE\n1,0,0,0\n2,1,0,0\n3,2,0,0\n*PART\nball\n5,1,1\n*PART\nsand\n6,1,1\n\
+         *ELEMENT_SPH\n1,5,8.93e-6\n2,5,8.93e-6\n3,6,-0.5\n*END\n",
+    );
+    let keys = "file = \"sph.k\", unit = \"1 mm\", mass_unit = \"1 kg\", part = \"ball\"";
+    let case = case_in(place.path(), keys, "");
+    let (cloud, _) = case.bodies[0].cloud().unwrap();
+    assert_eq!(cloud.get(Quantity::Mass, 1), Some(&[8.93e-6][..]));
+    let keys = "file = \"sph.k\", unit = \"1 mm\", part = 6";
+    let case = case_in(place.path(), keys, "");
+    assert!(close(case.bodies[0].shape.volume(3), 0.5e-9));
+    let keys = "file = \"sph.k\", unit = \"1 mm\", part = 5";
+    let message = refused_in(place.path(), keys, "");
+    assert!(
+        message.contains("units of its mass: state `mass_unit`"),
+        "{message}"
+    );
+    // Shells of a plane: a square and a triangle.
+    write(
+        "shells.k",
+        "*NODE\n1,0,0,0\n2,2,0,0\n3,2,2,0\n4,0,2,0\n5,4,0,0\n*ELEMENT_SHELL\n1,1,1,2,3,4\n2,1,2,5,3,3\n",
+    );
+    let text = text("file = \"shells.k\", unit = \"1 mm\"", "");
+    let name = place.path().join("case.toml").display().to_string();
+    let case = parse(&name, &text.replace("dimension = 3", "dimension = 2"), &[]).unwrap();
+    let (cloud, _) = case.bodies[0].cloud().unwrap();
+    assert!(close(cloud.volumes()[0], 4e-6) && close(cloud.volumes()[1], 2e-6));
+    assert!(close(cloud.positions()[1][0], 8e-3 / 3.0));
+    let message = refused_in(place.path(), "file = \"shells.k\", unit = \"1 mm\"", "");
+    assert!(message.contains("no elements of 3 dimensions"), "{message}");
 }

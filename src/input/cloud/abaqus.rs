@@ -293,7 +293,10 @@ impl Reader {
                 .collect();
         }
         for instance in &self.instances {
-            let block = self.blocks.iter().find(|block| block.name == instance.part);
+            let block = self
+                .blocks
+                .iter()
+                .find(|block| block.name.eq_ignore_ascii_case(&instance.part));
             let block = block.ok_or_else(|| {
                 let (name, part) = (shortened(&instance.name), shortened(&instance.part));
                 format!("the instance `{name}` is of a part `{part}` that is not there")

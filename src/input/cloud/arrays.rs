@@ -29,11 +29,12 @@ pub fn with_arrays(
     let find = |name: &str| arrays.iter().find(|array| array.name == name);
     for &quantity in Quantity::ALL {
         let is_known = table.columns.iter().any(|(held, _)| *held == quantity);
+        if is_known {
+            continue;
+        }
         let array = match request.columns.stated(quantity) {
-            Some(_) if is_known => continue,
             Some([name]) => Some(find(name).ok_or_else(|| no_column("array", name, &there))?),
             Some(_) => return Err(Fault::of("columns", "an array has one name")),
-            None if is_known => continue,
             None => of_array(quantity).iter().find_map(|name| find(name)),
         };
         let Some(array) = array else {

@@ -37,15 +37,11 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
         let help = "save it as ASCII, in Gmsh with `Mesh.Binary = 0`";
         return Err(format!("it is a binary Gmsh mesh: {help}").into());
     }
-    #[allow(clippy::float_cmp)] // as it is written
-    let is_new = match version {
-        v if v == 4.1 => true,
-        v if v == 2.2 || v == 2.1 || v == 2.0 => false,
-        v => {
-            let help = "save it as 4.1 or 2.2 (`Mesh.MshFileVersion`)";
-            return Err(format!("Gmsh's format {v} is not read: {help}").into());
-        }
-    };
+    let is_new = version == 4.1;
+    if !is_new && ![2.0, 2.1, 2.2].contains(&version) {
+        let help = "save it as 4.1 or 2.2 (`Mesh.MshFileVersion`)";
+        return Err(format!("Gmsh's format {version} is not read: {help}").into());
+    }
     let text = of(bytes);
     let mut words = Words::of(&text);
     let mut reader = Reader::default();
@@ -69,7 +65,7 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
     if !has_elements {
         return Err("it has no `$Elements`".into());
     }
-    reader.finished()
+    Ok(reader.finished())
 }
 
 impl Reader {
@@ -224,7 +220,7 @@ impl Reader {
     }
 
     /// Parts are the groups, of a mesh without any its entities.
-    fn finished(mut self) -> Result<Mesh, Fault> {
+    fn finished(mut self) -> Mesh {
         let parts = if self.of_group.is_empty() {
             std::mem::take(&mut self.of_entity)
         } else {
@@ -241,7 +237,7 @@ impl Reader {
                 ..Part::default()
             });
         }
-        Ok(self.mesh)
+        self.mesh
     }
 }
 

@@ -169,7 +169,7 @@ impl Mesh {
         let metre = request.units.metre()?;
         if points.is_empty() {
             let picked = self.picked(&cells, request)?;
-            return picked.table(metre, request.dimension);
+            return Ok(picked.table(metre, request.dimension));
         }
         if !cells.is_empty() {
             return Err("the part has particles and elements: name parts of either".into());
@@ -240,7 +240,7 @@ impl Mesh {
         let mut picked = Picked::default();
         let mut lumped = match request.take {
             TakeName::Nodes => vec![0.0; self.nodes.len()],
-            _ => Vec::new(),
+            TakeName::Elements => Vec::new(),
         };
         for &place in cells {
             let cell = &self.cells[place];
@@ -313,16 +313,16 @@ impl Mesh {
 
 impl Picked {
     /// Their table, for so many metres of a unit.
-    pub fn table(&self, metre: f64, dimension: usize) -> Result<Table, Fault> {
+    pub fn table(&self, metre: f64, dimension: usize) -> Table {
         let cube = (1..dimension).fold(metre, |cube, _| cube * metre);
         let positions = self.positions.iter().flat_map(|x| x.map(|x| x * metre));
         let volumes = self.volumes.iter().map(|volume| volume * cube);
-        Ok(Table {
+        Table {
             columns: vec![
                 (Quantity::Position, positions.collect()),
                 (Quantity::Volume, volumes.collect()),
             ],
-        })
+        }
     }
 }
 

@@ -9,7 +9,7 @@ mod arrays;
 mod csv;
 mod dyna;
 mod gmsh;
-mod hdf5;
+mod h5;
 mod mesh;
 mod names;
 mod part;
@@ -148,7 +148,7 @@ pub fn read(
     let text = || file::content(path, LONGEST, "a file of particles").map_err(Fault::from);
     let table = match format {
         FormatName::Snapshot => snapshot::read(path, request)?,
-        FormatName::Hdf5 => hdf5::read(path, request)?,
+        FormatName::Hdf5 => h5::read(path, request)?,
         FormatName::Csv => csv::read(&text()?, request)?,
         FormatName::Vtu => vtu::read(&text()?, request)?,
         FormatName::Dyna => dyna::read(&text::of(&text()?))?.table(request)?,

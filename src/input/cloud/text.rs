@@ -53,7 +53,7 @@ pub fn shortened(word: &str) -> String {
 /// Words of a text with the numbers of their lines.
 pub struct Words<'t> {
     lines: std::iter::Enumerate<std::str::Lines<'t>>,
-    words: std::str::SplitWhitespace<'t>,
+    in_line: std::str::SplitWhitespace<'t>,
     line: usize,
 }
 
@@ -62,7 +62,7 @@ impl<'t> Words<'t> {
     pub fn of(text: &'t str) -> Self {
         Self {
             lines: text.lines().enumerate(),
-            words: "".split_whitespace(),
+            in_line: "".split_whitespace(),
             line: 0,
         }
     }
@@ -71,7 +71,7 @@ impl<'t> Words<'t> {
     pub fn line(&mut self) -> Option<&'t str> {
         for (line, text) in self.lines.by_ref() {
             self.line = line;
-            self.words = "".split_whitespace();
+            self.in_line = "".split_whitespace();
             if !text.trim().is_empty() {
                 return Some(text.trim());
             }
@@ -85,19 +85,19 @@ impl<'t> Words<'t> {
     /// At the end of the text.
     pub fn next(&mut self) -> Result<&'t str, String> {
         loop {
-            if let Some(word) = self.words.next() {
+            if let Some(word) = self.in_line.next() {
                 return Ok(word);
             }
             let Some((line, text)) = self.lines.next() else {
                 return Err(self.wrong("the file ends too early"));
             };
-            (self.line, self.words) = (line, text.split_whitespace());
+            (self.line, self.in_line) = (line, text.split_whitespace());
         }
     }
 
     /// The rest of the line.
     pub fn rest(&mut self) -> String {
-        let words = std::mem::replace(&mut self.words, "".split_whitespace());
+        let words = std::mem::replace(&mut self.in_line, "".split_whitespace());
         words.collect::<Vec<_>>().join(" ")
     }
 

@@ -47,8 +47,11 @@ pub fn read(bytes: &[u8], request: &Request) -> Result<Table, Fault> {
     Piece::of(piece, &layout, bytes.len())?.table(request)
 }
 
-/// The XML without the data at its end, and those with their encoding.
-fn split(bytes: &[u8]) -> Result<(String, Option<(&[u8], bool)>), Fault> {
+/// What stands at the end of a file, and whether it is in base 64.
+type Appended<'a> = Option<(&'a [u8], bool)>;
+
+/// The XML without the data at its end, and those.
+fn split(bytes: &[u8]) -> Result<(String, Appended<'_>), Fault> {
     let at = bytes
         .windows(APPENDED.len())
         .position(|part| part == APPENDED);
@@ -72,7 +75,7 @@ fn split(bytes: &[u8]) -> Result<(String, Option<(&[u8], bool)>), Fault> {
     ))
 }
 
-fn layout<'a>(root: Node, appended: Option<(&'a [u8], bool)>) -> Result<Layout<'a>, Fault> {
+fn layout<'a>(root: Node, appended: Appended<'a>) -> Result<Layout<'a>, Fault> {
     let header = match root.attribute("header_type") {
         None | Some("UInt32") => 4,
         Some("UInt64") => 8,
@@ -162,11 +165,13 @@ impl Piece {
         };
         let (cells, _) = mesh.chosen(&is_whole)?;
         let picked = mesh.picked(&cells, request)?;
-        let table = picked.table(request.units.metre()?, request.dimension)?;
+        let table = picked.table(request.units.metre()?, request.dimension);
         let arrays = match request.take {
             TakeName::Elements => {
                 // Rows of arrays count the cells of the file.
-                let number = |&place: &usize| (mesh.cells[place].number - 1) as usize;
+                let number = |&place: &usize| {
+                    usize::try_from(mesh.cells[place].number - 1).unwrap_or(usize::MAX)
+                };
                 let rows: Vec<usize> = picked.of.iter().map(number).collect();
                 return with_arrays(table, &self.of_cells, &rows, request);
             }
@@ -216,7 +221,7 @@ fn elements(cells: Node, count: usize, points: usize, layout: &Layout) -> Result
     let wrong = "its `offsets` do not grow";
     let whole = |x: f64| -> Result<usize, Fault> {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked
-        let found = (x >= 0.0 && x < 1e12 && x.fract() == 0.0).then_some(x as usize);
+        let found = ((0.0..1e12).contains(&x) && x.fract() == 0.0).then_some(x as usize);
         found.ok_or_else(|| format!("{x} is no number of a point").into())
     };
     let last = offsets.last().map_or(Ok(0), |x| whole(*x))?;

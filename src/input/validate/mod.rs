@@ -170,7 +170,7 @@ fn check_temperature(case: &Case, fields: &[(String, Range<usize>)]) -> Result<(
 /// The unit in which the spacing is given, of the case or of its first body, or a file's; one that
 /// fits where none is stated.
 fn length_unit(params: &CaseParams, made: &[Body]) -> Readable {
-    let bodies = params.body.iter().map(|table| table.get_ref());
+    let bodies = params.body.iter().map(Spanned::get_ref);
     let spacings = bodies.clone().map(|body| body.spacing.as_ref());
     let given = bodies.filter_map(|body| body.particles.as_ref());
     let units = given.map(|particles| particles.get_ref().unit.as_ref());

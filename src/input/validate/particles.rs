@@ -70,6 +70,10 @@ impl Files<'_> {
     fn read(&self, params: &ParticlesParams) -> Result<(Table, SurfaceFile), Diagnostic> {
         let path = cloud::resolve(&self.folder.join(params.file.get_ref()));
         let stated = params.format.as_ref().map(|format| *format.get_ref());
+        if path.is_dir() {
+            let fault = Fault::from("it is a folder without snapshots");
+            return Err(refusal(params, &fault));
+        }
         let Some(format) = stated.or_else(|| cloud::format_of(&path)) else {
             let title = "its ending does not tell what is in the file: state its `format`";
             return Err(Diagnostic::new(params.file.span(), title).help(

@@ -149,7 +149,7 @@ impl Layout<'_> {
     /// The `length` bytes of an array, which begin with a header.
     fn unpack(&self, from: &[u8], is_base64: bool, length: usize) -> Result<Vec<u8>, String> {
         if !self.is_compressed {
-            let all = self.stream(from, is_base64, self.header + length)?;
+            let all = Self::stream(from, is_base64, self.header + length)?;
             let (head, bytes) = all.split_at(self.header);
             if unsigned(head, self.is_little) != length as u64 {
                 return Err("its length is not that of its numbers".to_owned());
@@ -160,12 +160,12 @@ impl Layout<'_> {
             let bytes = &head[k * self.header..(k + 1) * self.header];
             usize::try_from(unsigned(bytes, self.is_little)).unwrap_or(usize::MAX)
         };
-        let head = self.stream(from, is_base64, 3 * self.header)?;
+        let head = Self::stream(from, is_base64, 3 * self.header)?;
         let (blocks, size, last) = (word(&head, 0), word(&head, 1), word(&head, 2));
         if blocks > from.len() || length > from.len().saturating_mul(MOST_GROWTH) {
             return Err("it has more than the file holds".to_owned());
         }
-        let head = self.stream(from, is_base64, (3 + blocks) * self.header)?;
+        let head = Self::stream(from, is_base64, (3 + blocks) * self.header)?;
         let lengths = || (0..blocks).map(|k| word(&head, 3 + k));
         let total = lengths().try_fold(0_usize, usize::checked_add);
         let total = total.filter(|total| *total <= from.len());
@@ -177,7 +177,7 @@ impl Layout<'_> {
             head.len()
         };
         let from = trimmed(from, is_base64);
-        let packed = self.stream(from.get(begin..).unwrap_or_default(), is_base64, total)?;
+        let packed = Self::stream(from.get(begin..).unwrap_or_default(), is_base64, total)?;
         let mut bytes = Vec::new();
         let mut first = 0;
         for (k, packed_length) in lengths().enumerate() {
@@ -205,7 +205,7 @@ impl Layout<'_> {
     }
 
     /// The first bytes of a stream.
-    fn stream(&self, from: &[u8], is_base64: bool, length: usize) -> Result<Vec<u8>, String> {
+    fn stream(from: &[u8], is_base64: bool, length: usize) -> Result<Vec<u8>, String> {
         let short = "the file holds fewer bytes than it says";
         if !is_base64 {
             return Ok(from.get(..length).ok_or(short)?.to_vec());
