@@ -178,6 +178,6 @@ fn a_table_of_particles_hits_as_the_shape_that_it_fills() {
         ended.stdout.contains("ball.csv with velocity"),
         "{ended:#?}"
     );
-    let spans = "spans [-0.875, -0.875, 0.125] to [0.875, 0.875, 1.875] mm";
+    let spans = "spans [-0.875, -0.875, 0.125] mm to [0.875, 0.875, 1.875] mm";
     assert!(ended.stdout.contains(spans), "{ended:#?}");
 }

@@ -356,7 +356,7 @@ mod tests {
     fn names_choose_quantities_and_id_and_body_come_with_them() {
         let names = |list: &[Quantity]| list.iter().map(|q| q.name()).collect::<Vec<_>>();
         let default = quantities(&[]).unwrap();
-        assert!(names(&default).starts_with(&["id", "body", "velocity"]));
+        assert!(names(&default).starts_with(&["id", "body", "mass", "velocity"]));
         assert!(names(&default).contains(&"mass"));
         assert!(!names(&default).contains(&"sound_speed"));
         let chosen = ["von_mises_stress", "mass", "position"].map(String::from);

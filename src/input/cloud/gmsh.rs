@@ -312,14 +312,14 @@ mod tests {
             (of("4.1 0 8", "3 0 8"), "format 3 is not read"),
             (of("0 0 1 1", "0 0 1 1e9"), "`1e9` is no number of things"),
             (of("0 0 1 1", "0 0 1 99999999999"), "no number of things"),
-            (of("0 1 0\n", "0 nan 0\n"), "line 24: `nan` is no number"),
+            (of("0 1 0\n", "0 nan 0\n"), "line 22: `nan` is no number"),
             (
                 of("3 7 4 1\n", "3 7 99 1\n"),
                 "elements of type 99 are not read",
             ),
             (
                 of("2 1 2 3 4\n", "2 1 2 3 0\n"),
-                "line 31: `0` is no number of a node",
+                "line 30: `0` is no number of a node",
             ),
             (
                 of("2 1 2 3 4\n$EndElements\n", "2 1 2"),
