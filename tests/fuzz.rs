@@ -1,4 +1,4 @@
-//! Random inputs, surfaces, checkpoints and snapshots: whatever is wrong is told, nothing panics, hangs or
+//! Random inputs, surfaces, files of particles, checkpoints and snapshots: whatever is wrong is told, nothing panics, hangs or
 //! takes more memory than it should.
 //!
 //! What a message says, but for its names and numbers, tells how far a reader came; what reaches a
@@ -15,6 +15,8 @@ mod files;
 mod guard;
 #[path = "fuzz/meshes.rs"]
 mod meshes;
+#[path = "fuzz/particles.rs"]
+mod particles;
 #[path = "common/random.rs"]
 mod random;
 #[path = "fuzz/texts.rs"]

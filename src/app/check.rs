@@ -6,7 +6,7 @@ use super::plot::out;
 use crate::comm::Comm;
 use crate::input;
 use crate::model::readable::{short, shown};
-use crate::model::{Body, Case};
+use crate::model::{Body, Case, Quantity};
 use crate::output::{snapshot, unit_of_model};
 use crate::plot::{self, PlotError};
 use crate::populate;
@@ -143,6 +143,20 @@ fn print_report(case: &Case, ranks: usize) {
             range(body.smoothing_length, body.longest_smoothing_length()),
             mass(case, body),
         ));
+        if let Some((cloud, _)) = body.cloud() {
+            let names: Vec<&str> = cloud.quantities().map(Quantity::name).collect();
+            let told = if names.is_empty() {
+                String::new()
+            } else {
+                format!(" with {}", names.join(", "))
+            };
+            say(&format!("  {:<16} from {}{told}", "", cloud.file.path));
+            if let Some((lower, upper)) = populate::bounds(body, case.dimension) {
+                let [lower, upper] =
+                    [lower, upper].map(|x| case.length_unit.vector(&x[..case.dimension]));
+                say(&format!("  {:<16} spans {lower} to {upper}", ""));
+            }
+        }
         if let Some(beginning) = preflight::beginning(case, body) {
             say(&format!("  {:<16} begins with {beginning}", ""));
         }

@@ -43,7 +43,7 @@ impl ContactTable {
                 most: case
                     .bodies
                     .iter()
-                    .any(|body| body.lattice.sizes().is_some())
+                    .any(|body| body.lattice.sizes.is_some())
                     .then(|| Kinds::longest_range(case)),
             },
             groups,

@@ -4,6 +4,7 @@
 //! document becomes typed tables (`schema`), and these become the [`Case`]
 //! (`validate`). The first thing that is wrong ends the reading with one message.
 
+mod cloud;
 mod difference;
 mod document;
 mod file;
@@ -79,7 +80,8 @@ pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Case, Input
         let (params, resolved) = document::read(text, overrides, places)?;
         let folder = Path::new(name).parent().unwrap_or(Path::new(""));
         let mut case = validate::case(params, folder)?;
-        case.resolved = settle::settle(resolved, folder, &case)?;
+        let resolved = settle::settle(resolved, folder, &case)?;
+        case.resolved = cloud::settle(resolved, &case.bodies)?;
         Ok(case)
     })
 }

@@ -28,7 +28,7 @@ const NAMES: &[(Powers, &str)] = &[
     (Rate::POWERS, Rate::NAME),
     (PerPressure::POWERS, PerPressure::NAME),
     (PerTemperature::POWERS, PerTemperature::NAME),
-    ([0, 1, 0, 0, 0], "a mass"),
+    (Mass::POWERS, Mass::NAME),
     (Acceleration::POWERS, Acceleration::NAME),
     ([1, 1, -2, 0, 0], "a force"),
     ([2, 1, -2, 0, 0], "an energy"),
@@ -69,6 +69,8 @@ kinds! {
     Length = [1, 0, 0, 0, 0], "a length", "0.02 mm", 1e9 "farther than the Moon";
     /// Seconds.
     Time = [0, 0, 1, 0, 0], "a time", "0.2 us", 1e10 "more than three centuries";
+    /// Kilograms.
+    Mass = [0, 1, 0, 0, 0], "a mass", "1 g", 1e12 "more than a mountain";
     /// Metres in a second.
     Velocity = [1, 0, -1, 0, 0], "a velocity", "7 km/s", 299_792_458.0 "faster than light";
     /// Metres in a second squared.

@@ -20,6 +20,7 @@ mod choices;
 pub mod contact;
 mod materials;
 mod numerical_limits;
+mod particles;
 mod shapes;
 mod short;
 mod surfaces;
@@ -27,6 +28,7 @@ pub use choices::*;
 pub use contact::{ContactParams, PairParams};
 pub use materials::*;
 pub use numerical_limits::*;
+pub use particles::*;
 pub use shapes::*;
 pub use short::*;
 pub use surfaces::*;
@@ -103,7 +105,9 @@ tables! {
         /// Name of a material; only a rigid body needs none.
         material: Option<Spanned<String>>,
         /// Geometry.
-        shape: Spanned<ShapeParams>,
+        shape: Option<Spanned<ShapeParams>>,
+        /// Those of a file, in place of a shape and its filling.
+        particles: Option<Spanned<ParticlesParams>>,
         /// Stacking of the particles; cubic if absent.
         lattice: Option<Spanned<LatticeParams>>,
         /// Own particle spacing, or how it grows.

@@ -1,7 +1,7 @@
 //! What one particle begins with, and whether nature knows such.
 
 use super::readable::shown;
-use super::{Body, Case, Heat, Place, Profile, Vec3};
+use super::{Body, Case, Heat, Place, Profile, Quantity, Vec3};
 
 /// No speed is as large (m/s).
 const LIGHT: f64 = 299_792_458.0;
@@ -17,6 +17,8 @@ const MOST_STRAIN: f64 = 1e3;
 pub struct Beginning {
     /// Velocity (m/s).
     pub velocity: Vec3,
+    /// Density (kg/m³).
+    pub density: f64,
     /// Temperature (K), if that is given.
     pub temperature: Option<f64>,
     /// Specific energy (J/kg).
@@ -64,6 +66,7 @@ impl Case {
             Heat::Energy(Profile::Formula(_)) | Heat::Temperature(Profile::Formula(_)) => {
                 body.initial.largest_energy
             }
+            _ if body.holds(Quantity::SpecificEnergy) => body.initial.largest_energy,
             _ => {
                 self.heat(
                     body,
@@ -81,10 +84,34 @@ impl Case {
         let (temperature, specific_energy) = self.heat(body, &place);
         Beginning {
             velocity: body.velocity_at(position),
+            density: self.initial_density(body),
             temperature,
             specific_energy,
             plastic_strain: body.initial.plastic_strain.at(&place),
         }
+    }
+
+    /// What the particle of a site of a body begins with: what a file tells of it goes before what
+    /// is said of the whole body.
+    #[must_use]
+    pub fn beginning_of(&self, body: &Body, position: &Vec3, index: u64) -> Beginning {
+        let mut begins = self.beginning(body, position);
+        let (Some((cloud, _)), Ok(row)) = (body.cloud(), usize::try_from(index)) else {
+            return begins;
+        };
+        if let Some(&[x, y, z]) = cloud.get(Quantity::Velocity, row) {
+            begins.velocity = Vec3::new(x, y, z);
+        }
+        for (quantity, value) in [
+            (Quantity::Density, &mut begins.density),
+            (Quantity::SpecificEnergy, &mut begins.specific_energy),
+            (Quantity::PlasticStrain, &mut begins.plastic_strain),
+        ] {
+            if let Some(&[told]) = cloud.get(quantity, row) {
+                *value = told;
+            }
+        }
+        begins
     }
 
     /// The key that gives a particle at `position` (m) what nature does not know, and a line that says

@@ -1,8 +1,12 @@
 //! Bodies: a shape filled with particles of one material on one lattice.
 
+use std::sync::Arc;
+
 use serde::Deserialize;
 
-use super::{Grading, Initial, Motion, Place, Shape, Vec3};
+use super::{
+    Cloud, Form, Grading, Initial, Motion, Place, Placement, Quantity, Shape, Solid, Vec3,
+};
 
 /// How particles are stacked.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -34,6 +38,8 @@ pub struct Lattice {
     pub spacing: f64,
     /// How the spacing grows, if it does: of glass alone.
     pub grading: Option<Grading>,
+    /// Smallest and largest size of particles against those of the spacing, unless all are alike.
+    pub sizes: Option<[f64; 2]>,
     /// Turn of the lattice about an axis through the shape's centre (rad).
     pub angle: f64,
     /// That axis; z if absent.
@@ -64,8 +70,11 @@ impl Lattice {
     /// The coarsest spacing (m).
     #[must_use]
     pub fn coarsest(&self) -> f64 {
-        self.grading
-            .map_or(self.spacing, |grading| grading.coarsest)
+        match (&self.grading, self.sizes) {
+            (Some(grading), _) => grading.coarsest,
+            (None, Some([_, largest])) => self.spacing * largest,
+            (None, None) => self.spacing,
+        }
     }
 
     /// Size of a particle of a share of the volume of one of the spacing.
@@ -79,11 +88,10 @@ impl Lattice {
         }
     }
 
-    /// Smallest and largest size of particles against those of the spacing, unless all are alike.
-    #[must_use]
-    pub fn sizes(&self) -> Option<[f64; 2]> {
-        let grading = self.grading?;
-        Some([1.0, grading.coarsest / self.spacing])
+    /// Lets the spacing grow.
+    pub fn grade(&mut self, grading: Option<Grading>) {
+        self.sizes = grading.map(|grading| [1.0, grading.coarsest / self.spacing]);
+        self.grading = grading;
     }
 
     /// Volume of one particle (m³; m² or m in two or one dimensions), of a finest one where the
@@ -125,8 +133,26 @@ impl Body {
     /// Constant smoothing length of its largest particles (m).
     #[must_use]
     pub fn longest_smoothing_length(&self) -> f64 {
-        let [_, largest] = self.lattice.sizes().unwrap_or([1.0; 2]);
+        let [_, largest] = self.lattice.sizes.unwrap_or([1.0; 2]);
         self.smoothing_length * largest
+    }
+
+    /// Its particles and where their origin stands (m), if a file gives them.
+    #[must_use]
+    pub fn cloud(&self) -> Option<(&Arc<Cloud>, &Vec3)> {
+        match &self.shape {
+            Shape::Solid(Solid::Form(Form::Cloud(cloud), Placement { at, .. })) => {
+                Some((cloud, at))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether a file tells a quantity of its particles.
+    #[must_use]
+    pub fn holds(&self, quantity: Quantity) -> bool {
+        let cloud = self.cloud();
+        cloud.is_some_and(|(cloud, _)| cloud.all(quantity).is_some())
     }
 
     /// Initial velocity (m/s) of a particle at `position` (m).

@@ -8,6 +8,7 @@ mod absorber;
 mod axis;
 mod beginning;
 mod body;
+mod cloud;
 mod contact;
 mod control;
 mod distance;
@@ -32,6 +33,7 @@ pub use absorber::{Absorber, OuterFace};
 pub use axis::{Axis, SymmetryPlane};
 pub use beginning::Beginning;
 pub use body::{Body, Lattice, LatticeKind};
+pub use cloud::{Cloud, Quantity, edge};
 pub use contact::*;
 pub use control::{
     DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm, SphOptions, TimeStepOptions,

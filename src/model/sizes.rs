@@ -17,7 +17,7 @@ impl Sizes {
         let inverse = |body: &super::Body| {
             let volume = body.lattice.particle_volume(case.dimension);
             let mass = case.initial_density(body) * volume;
-            body.lattice.sizes().map_or(0.0, |_| 1.0 / mass)
+            body.lattice.sizes.map_or(0.0, |_| 1.0 / mass)
         };
         Self {
             dimension: case.dimension,

@@ -23,6 +23,7 @@ pub use crossing::Crossing;
 pub use holes::triangulate;
 pub use mend::Mended;
 pub use mesh::Mesh;
+pub(in crate::model) use tree::Tree;
 pub use triangle::{Feature, closest_on_triangle};
 
 use super::{Motion, Resistance};

@@ -28,7 +28,7 @@ impl Kinds {
             ..Self::default()
         };
         for (b, body) in case.bodies.iter().enumerate() {
-            let [least, most] = body.lattice.sizes().unwrap_or([1.0; 2]);
+            let [least, most] = body.lattice.sizes.unwrap_or([1.0; 2]);
             let volume = body.lattice.particle_volume(case.dimension);
             let mass = case.initial_density(body) * volume;
             let mut size = least;

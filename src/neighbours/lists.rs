@@ -254,7 +254,7 @@ fn group_lengths(case: &Case, groups: &Groups) -> Vec<Lengths> {
             let h = || bodies().map(|body| body.smoothing_length);
             let longest = bodies().map(Body::longest_smoothing_length);
             let longest = longest.fold(0.0, f64::max);
-            let uneven = bodies().any(|body| body.lattice.sizes().is_some());
+            let uneven = bodies().any(|body| body.lattice.sizes.is_some());
             Lengths {
                 longest,
                 least: if case.self_contact.is_some() && !uneven {

@@ -92,7 +92,7 @@ pub fn quantities_of(case: &Case, particles: &ParticleStore) -> Result<Vec<Quant
     }
     // Masses tell sizes.
     let mass = "mass".to_owned();
-    let is_uneven = case.bodies.iter().any(|b| b.lattice.sizes().is_some());
+    let is_uneven = case.bodies.iter().any(|b| b.lattice.sizes.is_some());
     if is_uneven && !names.contains(&mass) {
         names.push(mass);
     }
@@ -366,8 +366,9 @@ mod tests {
     fn names_choose_quantities_and_id_and_body_come_with_them() {
         let names = |list: &[Quantity]| list.iter().map(|q| q.name()).collect::<Vec<_>>();
         let default = quantities(&[]).unwrap();
-        assert!(names(&default).starts_with(&["id", "body", "velocity"]));
-        assert!(!names(&default).contains(&"mass"));
+        assert!(names(&default).starts_with(&["id", "body", "mass", "velocity"]));
+        assert!(names(&default).contains(&"mass"));
+        assert!(!names(&default).contains(&"sound_speed"));
         let chosen = ["von_mises_stress", "mass", "position"].map(String::from);
         let chosen = quantities(&chosen).unwrap();
         assert_eq!(names(&chosen), ["id", "body", "mass", "von_mises_stress"]);

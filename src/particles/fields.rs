@@ -111,7 +111,7 @@ particle_fields! {
     /// Index of the body in the input.
     body: Index,                          "",       State,    MOTION,         Default,  -, kept;
     /// Mass.
-    mass: Scalar,                         "kg",     State,    MOTION,         OnDemand, -, kept;
+    mass: Scalar,                         "kg",     State,    MOTION,         Default,  -, kept;
     /// Position.
     position: Vector as Place,            "m",      State,    MOTION,         Never,    -, kept;
     /// Velocity.

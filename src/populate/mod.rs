@@ -5,6 +5,7 @@
 
 mod cells;
 mod extremes;
+mod given;
 mod lattice;
 mod overlap;
 mod parts;
@@ -24,6 +25,7 @@ pub use touch::{touching_distance, touching_value};
 
 use crate::model::{Axis, Body, LatticeKind, RigidSurface, SymmetryPlane};
 use cells::Cells;
+use given::Given;
 use lattice::Stack;
 use row::cuts;
 
@@ -109,8 +111,13 @@ pub fn sites(
     slab: Option<Slab>,
 ) -> impl Iterator<Item = Site> + use<> {
     let cuts = cuts(symmetry, slab);
-    let cells = Cells::of(body, dimension, symmetry);
-    let stack = cells.is_none().then(|| Stack::new(body, dimension));
+    let given = Given::of(body);
+    let is_filled = given.is_none();
+    let in_rows_of_file = given.map(|given| given.sites(&cuts, particle_volume(body, dimension)));
+    let cells = is_filled
+        .then(|| Cells::of(body, dimension, symmetry))
+        .flatten();
+    let stack = (is_filled && cells.is_none()).then(|| Stack::new(body, dimension));
     let in_cells = cells.map(|cells| cells::sites(cells, cuts.clone()));
     let in_rows = stack.map(|stack| {
         row::rows(stack, cuts).flat_map(move |row| {
@@ -125,12 +132,16 @@ pub fn sites(
         .into_iter()
         .flatten()
         .chain(in_cells.into_iter().flatten())
+        .chain(in_rows_of_file.into_iter().flatten())
 }
 
 /// How many [`sites`] there are, without visiting each, and of layers that are alike only one.
 #[must_use]
 pub fn count(body: &Body, dimension: usize, symmetry: &[SymmetryPlane], slab: Option<Slab>) -> u64 {
     let cuts = cuts(symmetry, slab);
+    if let Some(given) = Given::of(body) {
+        return given.count(&cuts);
+    }
     if let Some(cells) = Cells::of(body, dimension, symmetry) {
         return cells.count(&cuts);
     }
@@ -159,6 +170,9 @@ pub fn bounds_above(
     symmetry: &[SymmetryPlane],
 ) -> Option<([f64; 3], [f64; 3])> {
     let cuts = cuts(symmetry, None);
+    if let Some(given) = Given::of(body) {
+        return given.extremes(&cuts);
+    }
     match Cells::of(body, dimension, symmetry) {
         Some(cells) => cells::extremes(&cells, &cuts),
         None => extremes::extremes(&Stack::new(body, dimension), &cuts),
@@ -214,14 +228,20 @@ pub fn particle_volume(body: &Body, dimension: usize) -> f64 {
 
 /// The volume of the shape shared out among all its particles (m³; m² or m in two or one
 /// dimensions), where it is not Δp^d: so the body has the mass of its shape. Glass is fitted to the
-/// symmetry planes, so its particles share what lies above them.
+/// symmetry planes, so its particles share what lies above them. Of particles that a file gives it is
+/// the mean volume.
 #[must_use]
 pub fn even_volume(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> Option<f64> {
+    let cell = particle_volume(body, dimension);
+    let differs = |even: &f64| (even / cell - 1.0).abs() > SAME_VOLUME;
+    if let Some(given) = Given::of(body) {
+        let mean = given.mean_volume(&cuts(symmetry, None));
+        return mean.filter(differs);
+    }
     let planes = if moves_sites(body) { symmetry } else { &[] };
     let shares = shares(body, dimension, planes);
     let even = body.shape.volume_above(planes, dimension) / shares;
-    let cell = particle_volume(body, dimension);
-    (shares > 0.0 && (even / cell - 1.0).abs() > SAME_VOLUME).then_some(even)
+    (shares > 0.0 && differs(&even)).then_some(even)
 }
 
 /// The sum of [`Site::share`] of all particles above the symmetry planes.
@@ -246,6 +266,9 @@ pub fn moves_sites(body: &Body) -> bool {
 /// One more than the largest [`Site::index`] that the body can have; saturates at `u64::MAX`.
 #[must_use]
 pub fn index_end(body: &Body, dimension: usize) -> u64 {
+    if let Some(given) = Given::of(body) {
+        return given.index_end();
+    }
     match Cells::of(body, dimension, &[]) {
         Some(cells) => cells.index_end(),
         None => Stack::new(body, dimension).index_end(),

@@ -17,7 +17,13 @@ pub fn sample(
     let mut coarse = body.clone();
     let mut found = count(body, dimension, symmetry, None);
     let is_all = found <= most;
-    if !is_all {
+    // Of particles that a file gives every few are taken.
+    let every = if body.cloud().is_some() {
+        found.div_ceil(most).max(1)
+    } else {
+        1
+    };
+    if !is_all && every == 1 {
         coarse.lattice.kind = LatticeKind::Cubic;
         coarse.lattice.angle = 0.0;
         coarse.lattice.axis = None;
@@ -32,5 +38,7 @@ pub fn sample(
             found = count(&coarse, dimension, symmetry, None);
         }
     }
-    (sites(&coarse, dimension, symmetry, None), is_all)
+    let every = usize::try_from(every).unwrap_or(usize::MAX);
+    let sites = sites(&coarse, dimension, symmetry, None);
+    (sites.step_by(every), is_all)
 }

@@ -2,6 +2,7 @@
 
 use super::Wanted;
 use super::cells::{self, Cells};
+use super::given::{Given, GivenRows};
 use super::lattice::Stack;
 use super::parts::{Parts, best};
 use super::row::{Cut, cuts};
@@ -64,6 +65,9 @@ pub fn search(
     value: impl Fn(&[f64; 3]) -> f64,
 ) -> Vec<(f64, [f64; 3])> {
     let cuts = cuts(symmetry, None);
+    if let Some(given) = Given::of(body) {
+        return best(&GivenRows { given, cuts }, wanted, bound, value);
+    }
     if let Some(cells) = Cells::of(body, dimension, symmetry) {
         return cells::smallest(&cells, &cuts, wanted, bound, value);
     }

@@ -2,6 +2,7 @@
 
 use super::Share;
 use super::cells::Cells;
+use super::given::Given;
 use super::lattice::Stack;
 use super::row::{Cut, cuts, layers, runs};
 use crate::model::{Body, SymmetryPlane};
@@ -56,6 +57,9 @@ pub fn tally(
     mut add: impl FnMut(f64, u64),
 ) {
     let cuts = cuts(symmetry, None);
+    if let Some(given) = Given::of(body) {
+        return given.tally(&cuts, axis, share, &mut add);
+    }
     match Cells::of(body, dimension, symmetry) {
         Some(cells) => cells.tally(&cuts, axis, share, add),
         None => tally_rows(&Stack::new(body, dimension), &cuts, axis, share, &mut add),

@@ -1,8 +1,8 @@
 //! What bodies begin with, in words.
 
 use crate::model::readable::{shown, shown_vector};
-use crate::model::{Body, Case, Heat, Vec3};
-use crate::populate;
+use crate::model::{Body, Case, Heat, Quantity};
+use crate::populate::{self, Site};
 
 /// Bodies with more particles are looked at on a wider lattice.
 const MOST_PLACES: u64 = 1_000_000;
@@ -37,12 +37,18 @@ pub fn beginning(case: &Case, body: &Body) -> Option<String> {
     match body.initial.heat {
         Heat::Temperature(_) => found.push(format!("temperature {}", seen.temperature.words("K"))),
         Heat::Energy(_) => found.push(format!("specific energy {}", seen.energy.words("J/kg"))),
+        Heat::Reference if body.holds(Quantity::SpecificEnergy) => {
+            found.push(format!("specific energy {}", seen.energy.words("J/kg")));
+        }
         Heat::Reference => {}
     }
     if let Some(density) = body.density {
         found.push(format!("density {}", shown(density, "kg/m^3")));
     }
-    if body.density.is_some() || body.initial.heat != Heat::Reference {
+    let is_told = [Quantity::Density, Quantity::SpecificEnergy]
+        .into_iter()
+        .any(|quantity| body.holds(quantity));
+    if body.density.is_some() || body.initial.heat != Heat::Reference || is_told {
         found.push(format!("pressure {}", seen.pressure.words("Pa")));
     }
     if seen.strain.0 != [0.0; 2] {
@@ -149,23 +155,24 @@ impl Seen {
             pressure: Range::NONE,
             strain: Range::NONE,
         };
-        let alike = !body.initial.varies() && body.speed_spread() == 0.0;
+        let alike = !body.initial.varies() && body.speed_spread() == 0.0 && body.cloud().is_none();
         let (places, _) = populate::sample(body, case.dimension, &case.symmetry, most);
         for site in places.take(if alike { 1 } else { usize::MAX }) {
-            seen.see(case, body, &site.position.into());
+            seen.see(case, body, &site);
         }
         seen
     }
 
-    fn see(&mut self, case: &Case, body: &Body, position: &Vec3) {
+    fn see(&mut self, case: &Case, body: &Body, site: &Site) {
         let material = &case.materials[body.material];
-        let found = case.beginning(body, position);
+        let found = case.beginning_of(body, &site.position.into(), site.index);
         for (range, v) in self.velocity.iter_mut().zip(&found.velocity) {
             range.see(*v);
         }
         let energy = found.specific_energy;
-        let density = case.initial_density(body);
-        let state = material.eos.at(material.reference_density, density, energy);
+        let state = material
+            .eos
+            .at(material.reference_density, found.density, energy);
         self.temperature.see(found.temperature.unwrap_or(0.0));
         self.energy.see(energy);
         self.pressure.see(state.pressure);

@@ -38,7 +38,10 @@ pub fn of_rank(case: &Case, comm: &Comm, ranks: usize) -> f64 {
         _ => 1.0,
     };
     let meshes = case.meshes().into_iter().map(|(_, mesh)| mesh.memory());
-    let process = PROCESS + meshes.sum::<usize>() as f64;
+    // Each rank reads all of a file.
+    let clouds = case.bodies.iter().filter_map(|body| body.cloud());
+    let read = clouds.map(|(cloud, _)| cloud.memory());
+    let process = PROCESS + meshes.chain(read).sum::<usize>() as f64;
     if ranks < 2 {
         let count = |body| populate::count(body, case.dimension, &case.symmetry, None);
         let particles: u64 = case.bodies.iter().map(count).sum();

@@ -71,7 +71,7 @@ impl Sums {
         let equal = case
             .bodies
             .iter()
-            .all(|b| b.smoothing_length.to_bits() == h.to_bits() && b.lattice.sizes().is_none());
+            .all(|b| b.smoothing_length.to_bits() == h.to_bits() && b.lattice.sizes.is_none());
         let constant = case.sph.smoothing_length == SmoothingLength::Constant && equal;
         let scale = match case.dimension {
             _ if constant => Scale::Constant(ConstantScale::new(kernel, h)),

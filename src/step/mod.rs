@@ -4,6 +4,7 @@ mod candidate;
 mod error;
 mod fields;
 mod flight;
+mod given;
 mod integrate;
 mod removal;
 mod restored;

@@ -3,6 +3,7 @@
 use super::candidate::StepControl;
 use super::error::SetupError;
 use super::fields::unused_fields;
+use super::given;
 use super::removal::Frozen;
 use super::restored::require_own;
 use super::simulation::Simulation;
@@ -131,10 +132,11 @@ impl Simulation {
             for site in populate::sites(body, case.dimension, &case.symmetry, Some(slab)) {
                 let particles = &mut self.particles;
                 let id = first_id + site.index;
-                let sound = start.put(particles, i, id, site.position);
+                let sound = start.put(particles, i, id, (site.position, site.index));
                 unsound = unsound.or_else(|| sound.err().map(|why| (id, why)));
                 particles.mass[i] = start.mass * site.share;
                 particles.smoothing_length[i] *= Lattice::size(site.share, case.dimension);
+                given::take_on(body, particles, i, site.index);
                 Connectivity::begin(particles, i, first_id);
                 if self.loads.has_motions() {
                     let bits = self.loads.bits(case, b, &site.position);
@@ -180,7 +182,7 @@ impl Simulation {
             let start = Start::new(case, b, true);
             for site in populate::stress_sites(body, case.dimension, &case.symmetry, Some(slab)) {
                 let id = first_id + site.index;
-                if let Err(why) = start.put(particles, i, id, site.position) {
+                if let Err(why) = start.put(particles, i, id, (site.position, site.index)) {
                     unsound.get_or_insert((id, why));
                 }
                 particles.stress_mass[i] = start.mass * site.share;
@@ -225,7 +227,6 @@ struct Start<'a> {
     body: u32,
     /// Of a whole particle (kg).
     mass: f64,
-    density: f64,
     /// Whether they hold heat and plastic strain.
     holds_state: bool,
 }
@@ -239,7 +240,6 @@ impl<'a> Start<'a> {
             of: body,
             body: u32::try_from(b).unwrap_or(u32::MAX),
             mass: density * populate::particle_volume(body, case.dimension),
-            density,
             holds_state,
         }
     }
@@ -250,17 +250,17 @@ impl<'a> Start<'a> {
         particles: &mut ParticleStore,
         i: usize,
         id: u64,
-        position: [f64; 3],
+        (position, index): ([f64; 3], u64),
     ) -> Result<(), String> {
-        let begins = self.case.beginning(self.of, &position.into());
+        let begins = self.case.beginning_of(self.of, &position.into(), index);
         let velocity = begins.velocity.into();
         particles.id[i] = id;
         particles.body[i] = self.body;
         particles.position[i] = position;
         particles.velocity[i] = velocity;
         particles.predicted_velocity[i] = velocity;
-        particles.density[i] = self.density;
-        particles.predicted_density[i] = self.density;
+        particles.density[i] = begins.density;
+        particles.predicted_density[i] = begins.density;
         particles.smoothing_length[i] = self.of.smoothing_length;
         let held = |value| if self.holds_state { value } else { 0.0 };
         particles.specific_energy[i] = held(begins.specific_energy);

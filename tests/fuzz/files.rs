@@ -150,6 +150,9 @@ impl Bench {
             Which::Checkpoint => restart(path.parent().unwrap()),
             Which::Snapshot => said(draw(&path).map(|()| "drawn".to_owned())),
         });
+        if recipe.file == Which::Snapshot {
+            messages.push(begin(&path));
+        }
         (messages, refused)
     }
 
@@ -372,6 +375,20 @@ fn restart(path: &Path) -> String {
     };
     match simulation.advance(&comm) {
         Ok(()) => "sound".to_owned(),
+        Err(error) => error.to_string(),
+    }
+}
+
+/// Reads a snapshot as the beginning of a body; gives the message.
+fn begin(path: &Path) -> String {
+    let text = format!(
+        "dimension = 2\nrun.end_time = \"1 us\"\nmaterial.metal.library = \"copper\"\n\
+         [[body]]\nname = \"it\"\nmaterial = \"metal\"\n\
+         particles = {{ file = \"{}\", part = \"a\" }}\n",
+        path.display()
+    );
+    match parse("case", &text, &[]) {
+        Ok(_) => "begun".to_owned(),
         Err(error) => error.to_string(),
     }
 }

@@ -78,6 +78,7 @@ const WORDS: &[&str] = &[
     "library = \"copper\"\n",
     "shape.sphere.radius = \"3 mm\"\n",
     "shape.box.size = [\"3 mm\", \"3 mm\"]\n",
+    "particles = { file = \"tests/particles/hexes.msh\", unit = \"1 mm\" }\n",
     "touch = { body = \"a\", direction = \"-z\" }\n",
     "rigid = true\n",
     "material = \"metal\"\n",

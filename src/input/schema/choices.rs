@@ -18,6 +18,30 @@ choices! {
         /// h follows the density.
         Variable,
     }
+    /// Format of a file of particles.
+    FormatName {
+        /// Comma-separated values.
+        Csv,
+        /// A snapshot of this program.
+        Snapshot,
+        /// Arrays of any HDF5 file.
+        Hdf5,
+        /// VTK's XML: unstructured grids and points.
+        Vtu,
+        /// LS-DYNA keywords.
+        Dyna,
+        /// Abaqus keywords.
+        Abaqus,
+        /// Gmsh meshes.
+        Gmsh,
+    }
+    /// What of a mesh becomes particles.
+    TakeName {
+        /// Middles of elements, each with its volume.
+        Elements,
+        /// Nodes, each with its share of the elements around it.
+        Nodes,
+    }
 }
 
 /// A signed axis.

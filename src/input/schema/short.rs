@@ -244,3 +244,54 @@ typed_as! {
         list: TurnsParams::Many;
     }
 }
+
+/// One name, or several.
+#[derive(Debug, Clone)]
+pub enum NamesParams {
+    /// Of all components together, or of a quantity that has one.
+    One(String),
+    /// One for each component.
+    Many(Vec<String>),
+}
+
+typed_as! {
+    NamesParams: "a name in quotes, or an array of such" {
+        word: NamesParams::One;
+        list: NamesParams::Many;
+    }
+}
+
+/// Name or number of a part of a file.
+#[derive(Debug, Clone)]
+pub enum PartParams {
+    /// Its name, or its number in quotes.
+    Name(String),
+    /// Its number.
+    Number(f64),
+}
+
+typed_as! {
+    PartParams: "a name in quotes or a number" {
+        word: PartParams::Name;
+        number: PartParams::Number;
+    }
+}
+
+/// One part of a file, or several.
+#[derive(Debug, Clone)]
+pub enum PartsParams {
+    /// By its name.
+    Name(String),
+    /// By its number.
+    Number(f64),
+    /// Several.
+    Many(Vec<PartParams>),
+}
+
+typed_as! {
+    PartsParams: "the name or the number of a part, or an array of such" {
+        word: PartsParams::Name;
+        number: PartsParams::Number;
+        list: PartsParams::Many;
+    }
+}

@@ -4,11 +4,12 @@ use std::path::Path;
 
 use toml::Spanned;
 
-use super::check::{Allowed, number, optional};
+use super::check::{Allowed, optional};
 use super::grading::{finest, graded, grading};
 use super::initial;
 use super::lattice::lattice;
 use super::motion::motion;
+use super::particles::{self, Files};
 use super::shapes::Shapes;
 use super::touch;
 use crate::input::names;
@@ -16,7 +17,9 @@ use crate::input::quantity::{Length, Placed};
 use crate::input::schema::{AngularVelocityParams, BodyParams};
 use crate::input::source::Diagnostic;
 use crate::material::{Eos, Failure, Linear, LinearForm, Material, Strength};
-use crate::model::{Body, LatticeKind, Motion, Profile, SymmetryPlane, Vec3};
+use crate::model::{
+    Body, Form, Lattice, LatticeKind, Motion, Profile, Shape, Solid, SymmetryPlane, Vec3,
+};
 use crate::populate;
 
 /// Bounding lattices beyond this are a slip in a unit rather than a body.
@@ -50,6 +53,8 @@ pub struct Reader<'a> {
     /// Spacing of bodies that set none.
     pub spacing: Option<&'a Placed<Length>>,
     pub materials: &'a [String],
+    /// The materials themselves.
+    pub known: &'a [Material],
     /// Smoothing length over spacing.
     pub smoothing: f64,
     /// Where the files that the case names stand.
@@ -96,42 +101,93 @@ impl Reader<'_> {
         }
         names::check(&params.name, "body")?;
         let material = self.material(params, table)?;
-        let spacing = match (&params.spacing, self.spacing) {
-            (Some(own), _) => finest(own)?,
-            (None, Some(of_case)) => number(Some(of_case), "spacing", 0.0, Allowed::Positive)?,
-            (None, None) => {
-                let title = format!("the body `{name}` has no `spacing`");
-                return Err(Diagnostic::new(params.name.span(), title).help(
-                    "give it one, or one to all bodies at the top: `spacing = \"0.02 mm\"`",
-                ));
-            }
-        };
-        let shapes = Shapes {
-            dimension: self.dimension,
-            spacing,
-            folder: self.folder,
-        };
         let (velocity, rigid, varied) = self.motion(params)?;
-        let shape = shapes.shape(&params.shape)?;
-        let mut lattice = lattice(&shapes, params.lattice.as_ref(), &shape)?;
-        if let Some(table) = graded(params.spacing.as_ref()) {
-            if params.lattice.is_none() {
-                lattice.kind = LatticeKind::Glass;
-            }
-            lattice.grading = grading(&shapes, table, &shape, lattice.kind)?;
-        }
-        Ok(Body {
+        let density = optional(params.density.as_ref(), "density", Allowed::Positive)?;
+        let (shape, lattice) = self.form(params, material, table)?;
+        let mut body = Body {
             name: name.clone(),
+            smoothing_length: self.smoothing * lattice.spacing,
             shape,
             material,
             lattice,
             velocity,
             angular_velocity: self.angular_velocity(params)?,
             rigid,
-            density: optional(params.density.as_ref(), "density", Allowed::Positive)?,
+            density,
             initial: initial::initial(params, varied, self.dimension)?,
-            smoothing_length: self.smoothing * spacing,
-        })
+        };
+        if let Some(cloud) = body.cloud().map(|(cloud, _)| cloud.clone()) {
+            particles::told(&cloud, &mut body.velocity, &mut body.initial);
+        }
+        Ok(body)
+    }
+
+    /// The shape of a body and how it is filled.
+    fn form(
+        &self,
+        params: &BodyParams,
+        material: usize,
+        table: &Spanned<BodyParams>,
+    ) -> Result<(Shape, Lattice), Diagnostic> {
+        let own = params.spacing.as_ref().map(finest).transpose()?;
+        let of_case = optional(self.spacing, "spacing", Allowed::Positive)?;
+        let spacing = own.or(of_case);
+        match (&params.shape, &params.particles) {
+            (Some(shape), None) => {
+                let Some(spacing) = spacing else {
+                    let name = params.name.get_ref();
+                    let title = format!("the body `{name}` has no `spacing`");
+                    return Err(Diagnostic::new(params.name.span(), title).help(
+                        "give it one, or one to all bodies at the top: `spacing = \"0.02 mm\"`",
+                    ));
+                };
+                let shapes = Shapes {
+                    dimension: self.dimension,
+                    spacing,
+                    folder: self.folder,
+                };
+                let shape = shapes.shape(shape)?;
+                let mut lattice = lattice(&shapes, params.lattice.as_ref(), &shape)?;
+                if let Some(table) = graded(params.spacing.as_ref()) {
+                    if params.lattice.is_none() {
+                        lattice.kind = LatticeKind::Glass;
+                    }
+                    lattice.grade(grading(&shapes, table, &shape, lattice.kind)?);
+                }
+                Ok((shape, lattice))
+            }
+            (None, Some(particles)) => {
+                let files = Files {
+                    dimension: self.dimension,
+                    folder: self.folder,
+                    material: self.known.get(material),
+                    spacing,
+                };
+                let (shape, mean) = files.shape(params, particles)?;
+                if graded(params.spacing.as_ref()).is_some() {
+                    let title = "particles of a file have their own spacings: none can grow";
+                    return Err(Diagnostic::new(particles.span(), title));
+                }
+                let mut lattice = Lattice {
+                    spacing: own.unwrap_or(mean),
+                    ..Lattice::default()
+                };
+                if let Shape::Solid(Solid::Form(Form::Cloud(cloud), _)) = &shape {
+                    lattice.sizes = cloud.sizes();
+                }
+                Ok((shape, lattice))
+            }
+            (Some(_), Some(particles)) => {
+                let title = "a body has a `shape` or `particles`, not both";
+                Err(Diagnostic::new(particles.span(), title))
+            }
+            (None, None) => {
+                let title = "the key `shape` is missing";
+                Err(Diagnostic::new(table.span(), title)
+                    .label("in this table")
+                    .help("or give the body the `particles` of a file"))
+            }
+        }
     }
 
     /// Index of the material; one beyond the last for a rigid body that names none.
@@ -236,7 +292,7 @@ impl Reader<'_> {
         body: &Body,
         symmetry: &[SymmetryPlane],
     ) -> Result<(), Diagnostic> {
-        let warn = |title| Diagnostic::new(params.shape.span(), title);
+        let warn = |title| Diagnostic::new(params.form_span(), title);
         if populate::bounds(body, self.dimension).is_none() {
             let title = format!("the body `{}` is too thin for a single particle", body.name);
             return Err(warn(title).help("make its spacing finer"));
@@ -264,11 +320,14 @@ impl Reader<'_> {
                 let span = params
                     .angular_velocity
                     .as_ref()
-                    .map_or(params.shape.span(), Spanned::span);
+                    .map_or_else(|| params.form_span(), Spanned::span);
                 return Err(Diagnostic::new(span, title));
             }
-            let is_fitted = populate::moves_sites(body);
-            if !is_fitted && (gap < FIRST_LAYER.0 || (is_cut && gap > FIRST_LAYER.1)) {
+            // Particles of a file stand where they are, fitted ones at a face.
+            if body.cloud().is_some() || populate::moves_sites(body) {
+                continue;
+            }
+            if gap < FIRST_LAYER.0 || (is_cut && gap > FIRST_LAYER.1) {
                 let title = format!(
                     "the symmetry plane of {} does not lie between two layers of `{}`",
                     axis.name(),

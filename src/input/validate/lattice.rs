@@ -49,6 +49,7 @@ pub fn lattice(
         kind: params.kind,
         spacing,
         grading: None,
+        sizes: None,
         angle,
         axis: axis.filter(|axis| axis.z != 1.0),
         seed,

@@ -14,6 +14,7 @@ mod materials;
 mod meshes;
 mod motion;
 mod numerical_limits;
+mod particles;
 mod region;
 mod shapes;
 mod solids;
@@ -56,6 +57,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         dimension,
         spacing: params.spacing.as_ref(),
         materials: &names,
+        known: &materials,
         smoothing,
         folder,
     }
@@ -63,7 +65,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     if bodies.iter().any(|body| body.material == materials.len()) {
         materials.push(bodies::no_material());
     }
-    let length_unit = length_unit(&params);
+    let length_unit = length_unit(&params, &bodies);
     let (default_contact, contacts, self_contact) =
         contact::contacts(&params.contact, &params.body, sph.form, smoothing)?;
     let loads = loads::Reader {
@@ -147,7 +149,7 @@ fn check_overlaps(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Dia
                     bodies[0].name,
                     case.length_unit.vector(&found.at[..case.dimension])
                 );
-                return Err(Diagnostic::new(table.get_ref().shape.span(), title).help(
+                return Err(Diagnostic::new(table.get_ref().form_span(), title).help(
                     "move one of them, or let it `touch` the other; only bodies with contact of \
                      mode \"none\" may overlap",
                 ));
@@ -167,16 +169,21 @@ fn check_temperature(case: &Case, fields: &[(String, Range<usize>)]) -> Result<(
     }
 }
 
-/// The unit in which the spacing is given, of the case or of its first body.
-fn length_unit(params: &CaseParams) -> Readable {
-    let bodies = params
-        .body
-        .iter()
-        .flat_map(|table| &table.get_ref().spacing);
-    let of_bodies = bodies.filter_map(|spacing| spacing.get_ref().finest());
+/// The unit in which the spacing is given, of the case or of its first body, or a file's; one that
+/// fits where none is stated.
+fn length_unit(params: &CaseParams, made: &[Body]) -> Readable {
+    let bodies = || params.body.iter().map(Spanned::get_ref);
     let of_case = params.spacing.iter().map(Spanned::get_ref);
-    let size = of_case.chain(of_bodies).map(|spacing| spacing.unit).next();
-    Readable::length(size.unwrap_or(1.0))
+    let spacings = bodies().flat_map(|body| &body.spacing);
+    let of_bodies = spacings.filter_map(|spacing| spacing.get_ref().finest());
+    let given = bodies().flat_map(|body| &body.particles);
+    let of_files = given.flat_map(|particles| &particles.get_ref().unit);
+    let all = of_case
+        .chain(of_bodies)
+        .chain(of_files.map(Spanned::get_ref));
+    let size = all.map(|spacing| spacing.unit).next();
+    let fits = || made.first().map_or(1.0, |body| body.lattice.spacing);
+    size.map_or_else(|| Readable::new("m", fits()), Readable::length)
 }
 
 fn field_spans(params: &OutputParams) -> Vec<(String, Range<usize>)> {

@@ -176,33 +176,44 @@ impl Shapes<'_> {
 
     /// A shape turned, and then moved.
     pub(super) fn moved(&self, params: &ShapeParams, shape: &Shape) -> Result<Shape, Diagnostic> {
-        let middle = shape.centre();
         let mut solid = shape.solid(self.dimension);
-        let turns: &[TurnsTable] = match params.turn.as_ref().map(Spanned::get_ref) {
-            None => &[],
-            Some(TurnsParams::One(turn)) => std::slice::from_ref(turn),
-            Some(TurnsParams::Many(turns)) => turns,
-        };
-        for turn in turns {
-            let axis = axis_vector(Some(&turn.axis))?;
-            if self.dimension < 2 || (self.dimension == 2 && axis.z.abs() != 1.0) {
-                let title = match self.dimension {
-                    1 => "in one dimension nothing turns",
-                    _ => "in two dimensions a shape turns about z alone",
-                };
-                return Err(Diagnostic::new(turn.axis.span(), title));
-            }
-            let about = match &turn.about {
-                Some(_) => self.point(turn.about.as_ref(), "about")?,
-                None => middle,
-            };
-            solid.rotate(&rotation(&axis, turn.angle.get_ref().si), &about);
+        for (turn, about) in turns(self, params.turn.as_ref(), shape.centre())? {
+            solid.rotate(&turn, &about);
         }
         if params.shift.is_some() {
             solid.translate(&self.point(params.shift.as_ref(), "shift")?);
         }
         Ok(Shape::Solid(solid))
     }
+}
+
+/// Turns in their order, each with a point (m) that it is about; the middle (m) if none is stated.
+pub(super) fn turns(
+    shapes: &Shapes,
+    params: Option<&Spanned<TurnsParams>>,
+    middle: Vec3,
+) -> Result<Vec<(nalgebra::Matrix3<f64>, Vec3)>, Diagnostic> {
+    let turns: &[TurnsTable] = match params.map(Spanned::get_ref) {
+        None => &[],
+        Some(TurnsParams::One(turn)) => std::slice::from_ref(turn),
+        Some(TurnsParams::Many(turns)) => turns,
+    };
+    let one = |turn: &TurnsTable| {
+        let axis = axis_vector(Some(&turn.axis))?;
+        if shapes.dimension < 2 || (shapes.dimension == 2 && axis.z.abs() != 1.0) {
+            let title = match shapes.dimension {
+                1 => "in one dimension nothing turns",
+                _ => "in two dimensions a shape turns about z alone",
+            };
+            return Err(Diagnostic::new(turn.axis.span(), title));
+        }
+        let about = match &turn.about {
+            Some(_) => shapes.point(turn.about.as_ref(), "about")?,
+            None => middle,
+        };
+        Ok((rotation(&axis, turn.angle.get_ref().si), about))
+    };
+    turns.iter().map(one).collect()
 }
 
 /// Shapes that go together.

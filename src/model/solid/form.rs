@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::ellipsoid;
 use super::polygon::{Nearest, Polygon};
-use crate::model::{Mesh, Vec3};
+use crate::model::{Cloud, Mesh, Vec3};
 
 /// What a solid is, before it is turned and moved. In two dimensions z does not count.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,6 +44,8 @@ pub enum Form {
     },
     /// Closed surface of triangles.
     Mesh(Arc<Mesh>),
+    /// Particles that a file gives.
+    Cloud(Arc<Cloud>),
 }
 
 /// Takes faces: depth below one (m), and the unit normal out of it.
@@ -73,6 +75,7 @@ impl Form {
                 joined(across, p.z.abs() - half)
             }
             Self::Mesh(mesh) => mesh.distance(&(*p).into()),
+            Self::Cloud(cloud) => cloud.distance(p),
         }
     }
 
@@ -123,7 +126,7 @@ impl Form {
                 let x = (*p).into();
                 mesh.faces(&x, reach, &mut |depth, normal| tell(depth, normal.into()));
             }
-            Self::Ball(_) | Self::Ellipsoid(_) | Self::Torus { .. } => {
+            Self::Ball(_) | Self::Ellipsoid(_) | Self::Torus { .. } | Self::Cloud(_) => {
                 let depth = -self.distance(p);
                 if depth < reach {
                     tell(depth, self.outward(p));
@@ -226,6 +229,7 @@ impl Form {
             Self::Prism { section, .. } if flat => section.area(),
             Self::Prism { section, half } => 2.0 * half * section.area(),
             Self::Mesh(mesh) => mesh.volume(),
+            Self::Cloud(cloud) => cloud.volume(),
         }
     }
 
@@ -258,6 +262,10 @@ impl Form {
             }
             Self::Mesh(mesh) => {
                 let (lower, upper) = mesh.bounds();
+                (lower.into(), upper.into())
+            }
+            Self::Cloud(cloud) => {
+                let (lower, upper) = cloud.bounds();
                 (lower.into(), upper.into())
             }
         }

@@ -184,6 +184,32 @@ impl Tree {
         farthest
     }
 
+    /// All in the order in which they are halved.
+    pub fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// Box (m) around those from one place of the [order](Self::order) to before another, if these
+    /// are a node.
+    pub fn around(&self, first: usize, end: usize) -> Option<([f64; 3], [f64; 3])> {
+        let (mut from, mut to, mut at) = (0, self.order.len(), 0);
+        while let Some(node) = self.nodes.get(at) {
+            if (from, to) == (first, end) {
+                return Some((node.lower, node.upper));
+            }
+            if node.count > 0 {
+                break;
+            }
+            let half = from + (to - from) / 2;
+            (from, to, at) = if end <= half {
+                (from, half, at + 1)
+            } else {
+                (half, to, node.at as usize)
+            };
+        }
+        None
+    }
+
     /// Smallest and largest coordinates of all (m).
     pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         let root = self.nodes.first();

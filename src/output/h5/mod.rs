@@ -1,5 +1,6 @@
 //! HDF5 files: written and read by all ranks together, or read by one process.
 
+pub mod arrays;
 mod content;
 mod gate;
 pub mod read;

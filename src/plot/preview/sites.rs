@@ -137,13 +137,15 @@ pub fn section(case: &Case, panel: &Panel) -> Image {
         let on_mirror = mirrors.any(|mirror| {
             mirror.axis == panel.plane.axis && (mirror.position - position).abs() < 0.01 * spacing
         });
-        let lower = position - if on_mirror { 0.0 } else { 0.5 * spacing };
+        // Particles of a file need not stand in layers: what has been stretched has gaps.
+        let reach = spacing * if body.cloud().is_some() { 0.75 } else { 0.5 };
+        let lower = position - if on_mirror { 0.0 } else { reach };
         // A layer at the very side is taken once whatever rounding does.
         let nudge = 1e-6 * spacing;
         Slab {
             axis,
             lower: lower - nudge,
-            upper: lower + spacing - nudge,
+            upper: lower + 2.0 * reach - nudge,
         }
     };
     let bodies = case.bodies.iter().enumerate();

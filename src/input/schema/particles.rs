@@ -1,0 +1,72 @@
+//! `particles` of a body: those of a file.
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::{FormatName, NamesParams, PartsParams, Point, TakeName, TurnsParams};
+use crate::input::quantity::{Length, Mass, Placed, Time};
+
+tables! {
+    /// `particles`
+    ParticlesParams {
+        /// Path, from the folder of the case.
+        file: Spanned<String>,
+        /// What is in it; its ending tells if absent.
+        format: Option<Spanned<FormatName>>,
+        /// Names or numbers of its parts that the body is of.
+        part: Option<Spanned<PartsParams>>,
+        /// What of a mesh becomes particles; its elements if absent.
+        take: Option<Spanned<TakeName>>,
+        /// Length of one unit of the file.
+        unit: Option<Placed<Length>>,
+        /// Mass of one unit of the file.
+        mass_unit: Option<Placed<Mass>>,
+        /// Time of one unit of the file.
+        time_unit: Option<Placed<Time>>,
+        /// What the file calls its columns or arrays.
+        columns: Option<Spanned<ColumnsParams>>,
+        /// Turns them.
+        turn: Option<Spanned<TurnsParams>>,
+        /// Moves them, once they are turned.
+        shift: Option<Point>,
+        /// SHA-256 that the file must have.
+        sha256: Option<Spanned<String>>,
+    }
+}
+
+optional_tables! {
+    /// `particles.columns`
+    ColumnsParams {
+        /// Of places.
+        position: Option<Spanned<NamesParams>>,
+        /// Of masses.
+        mass: Option<Spanned<NamesParams>>,
+        /// Of volumes.
+        volume: Option<Spanned<NamesParams>>,
+        /// Of densities.
+        density: Option<Spanned<NamesParams>>,
+        /// Of velocities.
+        velocity: Option<Spanned<NamesParams>>,
+        /// Of specific energies.
+        specific_energy: Option<Spanned<NamesParams>>,
+        /// Of temperatures.
+        temperature: Option<Spanned<NamesParams>>,
+        /// Of deviatoric stresses.
+        deviatoric_stress: Option<Spanned<NamesParams>>,
+        /// Of plastic strains.
+        plastic_strain: Option<Spanned<NamesParams>>,
+        /// Of damages.
+        damage: Option<Spanned<NamesParams>>,
+        /// Of names or numbers of parts.
+        part: Option<Spanned<NamesParams>>,
+    }
+}
+
+impl super::BodyParams {
+    /// Where its geometry stands.
+    pub fn form_span(&self) -> std::ops::Range<usize> {
+        let shape = self.shape.as_ref().map(Spanned::span);
+        let particles = self.particles.as_ref().map(Spanned::span);
+        shape.or(particles).unwrap_or_else(|| self.name.span())
+    }
+}
