@@ -77,17 +77,6 @@ impl Lattice {
         }
     }
 
-    /// Size of a particle of a share of the volume of one of the spacing.
-    #[inline]
-    #[must_use]
-    pub fn size(share: f64, dimension: usize) -> f64 {
-        match dimension {
-            1 => share,
-            2 => share.sqrt(),
-            _ => libm::cbrt(share),
-        }
-    }
-
     /// Lets the spacing grow.
     pub fn grade(&mut self, grading: Option<Grading>) {
         self.sizes = grading.map(|grading| [1.0, grading.coarsest / self.spacing]);

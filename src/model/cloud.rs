@@ -223,6 +223,17 @@ impl Cloud {
         nearest
     }
 
+    /// The largest `n·x` (m) of the cubes as large as the particles, for a vector n.
+    #[must_use]
+    pub fn support(&self, n: &Vec3) -> f64 {
+        let across = (0..self.dimension).fold(0.0, |sum, a| sum + n[a].abs());
+        self.tree.farthest(&(*n).into(), |row| {
+            let x = Vec3::from(self.positions[row as usize]);
+            let half = 0.5 * edge(self.volumes[row as usize], self.dimension);
+            n.dot(&x) + half * across
+        })
+    }
+
     /// Volume of all (m³; m² or m in two or one dimensions).
     #[must_use]
     pub fn volume(&self) -> f64 {

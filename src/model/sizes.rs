@@ -1,6 +1,6 @@
 //! Sizes of particles.
 
-use super::{Case, Lattice};
+use super::{Case, edge};
 
 /// How large particles are against those of the spacing of their bodies, as their masses tell.
 #[derive(Debug, Clone)]
@@ -33,6 +33,6 @@ impl Sizes {
         if inverse == 0.0 {
             return 1.0;
         }
-        Lattice::size(mass * inverse, self.dimension)
+        edge(mass * inverse, self.dimension)
     }
 }

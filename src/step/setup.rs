@@ -15,7 +15,7 @@ use crate::diagnose::{
 };
 use crate::domain::{Halo, Mirrors, Outset, Partition};
 use crate::loads::{Absorption, Goal, Loads, Prescribe};
-use crate::model::{Body, Case, Lattice, SphForm};
+use crate::model::{Body, Case, SphForm, edge};
 use crate::neighbours::Lists;
 use crate::particles::{Image, ParticleStore};
 use crate::populate::{self, Slab};
@@ -135,7 +135,7 @@ impl Simulation {
                 let sound = start.put(particles, i, id, (site.position, site.index));
                 unsound = unsound.or_else(|| sound.err().map(|why| (id, why)));
                 particles.mass[i] = start.mass * site.share;
-                particles.smoothing_length[i] *= Lattice::size(site.share, case.dimension);
+                particles.smoothing_length[i] *= edge(site.share, case.dimension);
                 given::take_on(body, particles, i, site.index);
                 Connectivity::begin(particles, i, first_id);
                 if self.loads.has_motions() {

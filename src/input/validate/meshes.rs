@@ -78,7 +78,7 @@ impl MeshReader<'_> {
 }
 
 /// Says where a file was looked for, and which other one there may be meant.
-fn missing_file(diagnostic: Diagnostic, path: &Path) -> Diagnostic {
+pub(super) fn missing_file(diagnostic: Diagnostic, path: &Path) -> Diagnostic {
     let text =
         |name: Option<&std::ffi::OsStr>| name.unwrap_or_default().to_string_lossy().into_owned();
     let folder = path.parent().unwrap_or(Path::new(""));

@@ -9,9 +9,9 @@ use std::sync::Arc;
 use toml::Spanned;
 
 use super::check::{Allowed, number};
+use super::meshes::missing_file;
 use super::shapes::Shapes;
 use super::solids::turns;
-use super::surfaces::missing_file;
 use crate::input::cloud::{self, Columns, Fault, Request, Table, UnitSystem};
 use crate::input::schema::{BodyParams, FormatName, ParticlesParams, TakeName};
 use crate::input::source::Diagnostic;
@@ -256,6 +256,7 @@ impl Files<'_> {
         let shapes = Shapes {
             dimension: self.dimension,
             spacing,
+            folder: self.folder,
         };
         let (lower, upper) = ends(positions);
         let middle = (lower + upper) * 0.5;

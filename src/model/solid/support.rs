@@ -44,6 +44,7 @@ impl Form {
                 farthest.fold(f64::NEG_INFINITY, f64::max) + along(*half, n.z.abs())
             }
             Self::Mesh(mesh) => mesh.support(&(*n).into()),
+            Self::Cloud(cloud) => cloud.support(n),
         }
     }
 }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::image::Image;
 use super::panel::Panel;
-use crate::model::{Body, Case, Lattice};
+use crate::model::{Body, Case, edge};
 use crate::populate::{self, Slab};
 
 /// Particles that pictures are made of at most, about; of more every few layers are taken.
@@ -93,7 +93,7 @@ fn draw(
         let of = &case.bodies[body];
         let spacing = larger * of.lattice.spacing;
         for site in populate::sites(of, case.dimension, &case.symmetry, Some(slab)) {
-            let size = spacing * Lattice::size(site.share, case.dimension);
+            let size = spacing * edge(site.share, case.dimension);
             if !shows(&site.position, size) {
                 continue;
             }
