@@ -6,7 +6,7 @@ use super::plot::out;
 use crate::comm::Comm;
 use crate::input;
 use crate::model::readable::{short, shown};
-use crate::model::{Body, Case, Quantity};
+use crate::model::{Body, Case, Quantity, cube};
 use crate::output::{snapshot, unit_of_model};
 use crate::plot::{self, PlotError};
 use crate::populate;
@@ -107,7 +107,7 @@ fn mass(case: &Case, body: &Body) -> String {
         density * each * populate::shares(body, case.dimension, &case.symmetry),
         unit_of_model("kg", case.dimension),
     );
-    let cell = (1..case.dimension).fold(body.lattice.spacing, |v, _| v * body.lattice.spacing);
+    let cell = cube(body.lattice.spacing, case.dimension);
     let more = 100.0 * (each / cell - 1.0);
     if more == 0.0 {
         format!(", {text}")

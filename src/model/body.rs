@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::Deserialize;
 
 use super::{
-    Cloud, Form, Grading, Initial, Motion, Place, Placement, Quantity, Shape, Solid, Vec3,
+    Cloud, Form, Grading, Initial, Motion, Place, Placement, Quantity, Shape, Solid, Vec3, cube,
 };
 
 /// How particles are stacked.
@@ -87,8 +87,7 @@ impl Lattice {
     /// spacing is graded.
     #[must_use]
     pub fn particle_volume(&self, dimension: usize) -> f64 {
-        let cell = (1..dimension).fold(self.spacing, |v, _| v * self.spacing);
-        self.volume.unwrap_or(cell)
+        self.volume.unwrap_or_else(|| cube(self.spacing, dimension))
     }
 }
 

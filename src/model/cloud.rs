@@ -261,6 +261,12 @@ impl Cloud {
     }
 }
 
+/// Volume of a cube, a square or an interval of an edge (m).
+#[must_use]
+pub fn cube(edge: f64, dimension: usize) -> f64 {
+    (1..dimension).fold(edge, |volume, _| volume * edge)
+}
+
 /// Edge (m) of a cube, a square or an interval of a volume.
 #[must_use]
 pub fn edge(volume: f64, dimension: usize) -> f64 {

@@ -33,7 +33,7 @@ pub use absorber::{Absorber, OuterFace};
 pub use axis::{Axis, SymmetryPlane};
 pub use beginning::Beginning;
 pub use body::{Body, Lattice, LatticeKind};
-pub use cloud::{Cloud, Quantity, edge};
+pub use cloud::{Cloud, Quantity, cube, edge};
 pub use contact::*;
 pub use control::{
     DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm, SphOptions, TimeStepOptions,

@@ -1,7 +1,7 @@
 //! Kinds of particles, as contact tells them apart: bodies, and classes of size where the particles
 //! of a body are unequal.
 
-use crate::model::{Body, Case, SmoothingLength};
+use crate::model::{Body, Case, SmoothingLength, cube};
 
 /// The kinds of a case. Bodies whose particles are alike have one kind each.
 #[derive(Debug, Clone, Default)]
@@ -36,8 +36,7 @@ impl Kinds {
                 let limit = size * Self::STEP.sqrt();
                 kinds.body.push(b);
                 kinds.size.push(size);
-                let share = (0..case.dimension).fold(1.0, |share, _| share * limit);
-                kinds.limits.push(mass * share);
+                kinds.limits.push(mass * cube(limit, case.dimension));
                 if limit >= most {
                     break;
                 }

@@ -17,7 +17,7 @@ use crate::input::schema::{BodyParams, FormatName, ParticlesParams, TakeName};
 use crate::input::source::Diagnostic;
 use crate::material::Material;
 use crate::model::{
-    Cloud, Form, Initial, Placement, Quantity, Shape, Solid, SurfaceFile, Vec3, edge,
+    Cloud, Form, Initial, Placement, Quantity, Shape, Solid, SurfaceFile, Vec3, cube, edge,
 };
 use asked::{columns, parts};
 
@@ -183,7 +183,7 @@ impl Files<'_> {
         let volumes = match (told, self.spacing) {
             (Some(volumes), _) => volumes,
             (None, Some(spacing)) => {
-                let volume = (1..self.dimension).fold(spacing, |v, _| v * spacing);
+                let volume = cube(spacing, self.dimension);
                 vec![volume; count]
             }
             (None, None) => {

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use super::tile::{self, Tile};
-use crate::model::{Body, Lattice, LatticeKind, Shape, Solid, SymmetryPlane, Vec3, rotation};
+use crate::model::{Body, Lattice, LatticeKind, Shape, Solid, SymmetryPlane, Vec3, cube, rotation};
 use crate::populate::row::Cut;
 use crate::populate::{Share, Site};
 
@@ -226,7 +226,7 @@ impl Cells {
         Site {
             position: position.into(),
             index: level.first + linear * self.tile.sites.len() as u64 + number as u64,
-            share: (1..self.dimension).fold(size, |volume, _| volume * size),
+            share: cube(size, self.dimension),
         }
     }
 
@@ -234,7 +234,7 @@ impl Cells {
     #[allow(clippy::cast_precision_loss)] // a few thousand
     fn is_left(&self, level: &Level, number: usize, spacing: f64) -> bool {
         let size = level.spacing / spacing;
-        let share = (1..self.dimension).fold(size, |volume, _| volume * size);
+        let share = cube(size, self.dimension);
         let is_of_level = level.spacing <= spacing && spacing < level.end;
         is_of_level && f64::from(self.tile.ranks[number]) < share * self.tile.sites.len() as f64
     }
