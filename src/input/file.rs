@@ -3,12 +3,7 @@
 use std::fs::{File, FileType};
 use std::io::{self, Read};
 use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
-use std::path::{Path, PathBuf};
-
-use super::InputError;
-
-/// Longest file that is read as a case (bytes): that of some 10⁵ rows of a table of time.
-const LONGEST_CASE: u64 = 16_000_000;
+use std::path::Path;
 
 /// Opens a regular file; gives its length (bytes) too.
 ///
@@ -62,32 +57,5 @@ fn not_regular(kind: FileType) -> Option<&'static str> {
         Some("a pipe")
     } else {
         Some("a device or a socket")
-    }
-}
-
-/// The path and the text of a case file, or of the `case.toml` in a folder.
-///
-/// # Errors
-/// [`InputError::Read`], [`InputError::NoText`].
-pub fn text(path: &Path) -> Result<(PathBuf, String), InputError> {
-    let path = if path.is_dir() {
-        path.join("case.toml")
-    } else {
-        path.to_owned()
-    };
-    let read = match content(&path, LONGEST_CASE, "a case") {
-        Ok(read) => read,
-        Err(cause) => return Err(InputError::Read { path, cause }),
-    };
-    match String::from_utf8(read) {
-        Ok(text) => Ok((path, text)),
-        Err(error) => {
-            let (at, bytes) = (error.utf8_error().valid_up_to(), error.as_bytes());
-            Err(InputError::NoText {
-                path,
-                line: bytes[..at].split(|&byte| byte == b'\n').count(),
-                byte: bytes[at],
-            })
-        }
     }
 }

@@ -4,10 +4,11 @@
 //! document becomes typed tables (`schema`), and these become the [`Case`]
 //! (`validate`). The first thing that is wrong ends the reading with one message.
 
+mod case_file;
 mod cloud;
 mod difference;
 mod document;
-mod file;
+pub(crate) mod file;
 mod forms;
 mod formula;
 mod names;
@@ -27,8 +28,9 @@ use std::path::{Path, PathBuf};
 use crate::model::{Case, units};
 use source::{Diagnostic, Sources};
 
+pub use case_file::text;
 pub use difference::{Difference, differences};
-pub use file::{content, open_regular, text};
+pub use file::{content, open_regular};
 
 /// Why a case cannot be read. `Display` is the whole message for the user, several lines long.
 #[derive(Debug, thiserror::Error)]

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::OutputError;
-use crate::input;
+use crate::input::file;
 
 /// What unfinished files and folders end with.
 pub(super) const PARTIAL: &str = ".partial";
@@ -54,7 +54,7 @@ const SMALL: u64 = 64 << 20;
 /// # Errors
 /// [`OutputError::Io`].
 pub(super) fn length_of_regular(action: &'static str, path: &Path) -> Result<u64, OutputError> {
-    let opened = input::open_regular(path);
+    let opened = file::open_regular(path);
     opened.map_or_else(
         |e| Err(OutputError::io(action, path)(e)),
         |(_, length)| Ok(length),
@@ -66,7 +66,7 @@ pub(super) fn length_of_regular(action: &'static str, path: &Path) -> Result<u64
 /// # Errors
 /// [`OutputError::Io`].
 pub fn read_regular(path: &Path) -> Result<Vec<u8>, OutputError> {
-    let content = input::open_regular(path).and_then(|(mut file, _)| {
+    let content = file::open_regular(path).and_then(|(mut file, _)| {
         let mut content = Vec::new();
         file.read_to_end(&mut content).map(|_| content)
     });
@@ -78,7 +78,7 @@ pub fn read_regular(path: &Path) -> Result<Vec<u8>, OutputError> {
 /// # Errors
 /// [`OutputError::Io`], [`OutputError::Damaged`] if it is no regular file or not small.
 pub fn read_small(path: &Path) -> Result<Vec<u8>, OutputError> {
-    input::content(path, SMALL, "such a file").map_err(|error| match error.kind() {
+    file::content(path, SMALL, "such a file").map_err(|error| match error.kind() {
         ErrorKind::InvalidInput | ErrorKind::FileTooLarge => {
             OutputError::damaged(path, error.to_string())
         }

@@ -175,7 +175,14 @@ impl Seen {
             .at(material.reference_density, found.density, energy);
         self.temperature.see(found.temperature.unwrap_or(0.0));
         self.energy.see(energy);
-        self.pressure.see(state.pressure);
+        // Matter that has failed bears no tension.
+        let row = usize::try_from(site.index).unwrap_or(usize::MAX);
+        let damage = body
+            .cloud()
+            .and_then(|(cloud, _)| cloud.get(Quantity::Damage, row));
+        let has_failed = damage.is_some_and(|damage| damage[0] >= 1.0);
+        let least = if has_failed { 0.0 } else { f64::NEG_INFINITY };
+        self.pressure.see(state.pressure.max(least));
         self.strain.see(found.plastic_strain);
     }
 }
