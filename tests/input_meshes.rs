@@ -304,7 +304,7 @@ fn small_leaks_are_mended_and_said_and_large_ones_refused_with_their_place() {
     write_stl(&path, &sheet);
     assert!(refused(folder.path(), body).contains("it is not closed: 3 edges"));
 
-    write_stl(&path, &Vec::new());
+    write_stl(&path, &[]);
     assert!(refused(folder.path(), body).contains("it has no triangles"));
 
     let mut across = cuboid([0.0; 3], [2.0; 3]);
