@@ -53,7 +53,11 @@ fn each_file(shape: &mut Value, visit: &mut impl FnMut(&mut Table)) {
                 }
             }
         }
-        Value::Array(parts) => parts.iter_mut().for_each(|part| each_file(part, visit)),
+        Value::Array(parts) => {
+            for part in parts {
+                each_file(part, visit);
+            }
+        }
         _ => {}
     }
 }
