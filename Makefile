@@ -30,7 +30,7 @@ check: test-deps
 	$(ENV) RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps
 	$(MAKE) run-tests
 
-fuzz: test-deps ## Read random inputs and files of results for ten minutes each; new ones stay in tests/fuzz/
+fuzz: test-deps ## Read random inputs, surfaces and files of results for ten minutes each; new ones stay in tests/fuzz/
 	$(ENV) WHIPPLE_FUZZ_SECONDS=600 cargo test $(TESTED) --test fuzz -- --nocapture --test-threads=1
 
 fuzz-memory: test-deps ## Read random files of results under valgrind for SECONDS=600

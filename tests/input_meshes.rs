@@ -304,7 +304,7 @@ fn small_leaks_are_mended_and_said_and_large_ones_refused_with_their_place() {
     write_stl(&path, &sheet);
     assert!(refused(folder.path(), body).contains("it is not closed: 3 edges"));
 
-    write_stl(&path, &Vec::new());
+    write_stl(&path, &[]);
     assert!(refused(folder.path(), body).contains("it has no triangles"));
 
     let mut across = cuboid([0.0; 3], [2.0; 3]);
@@ -373,8 +373,8 @@ fn quads_of_an_obj_file_make_a_body_and_a_surface() {
 #[test]
 fn the_resolved_case_finds_its_files_and_knows_them() {
     let folder = tempfile::tempdir().unwrap();
-    write_obj(&folder.path().join("ball.obj"), &ball(12, 0.5));
-    write_stl(&folder.path().join("part.stl"), &torus(12, 1.0, 0.4));
+    write_obj(&folder.path().join("ball.obj"), &ball(5, 0.5));
+    write_stl(&folder.path().join("part.stl"), &torus(6, 1.0, 0.4));
     let body = "[body.shape]\nunion = [\n\
         { stl = { file = \"part.stl\", unit = \"1 mm\" } },\n\
         { difference = [{ box = { size = [\"1 mm\", \"1 mm\", \"1 mm\"] } },\n\
@@ -388,7 +388,7 @@ fn the_resolved_case_finds_its_files_and_knows_them() {
         assert_eq!(again.bodies, case.bodies);
         assert_eq!(again.resolved, case.resolved);
         let saved = std::fs::read(folder.path().join("ball.obj")).unwrap();
-        write_obj(&folder.path().join("ball.obj"), &ball(14, 0.5));
+        write_obj(&folder.path().join("ball.obj"), &ball(6, 0.5));
         let error = whipple::input::parse("elsewhere/case.toml", &case.resolved, &[]).unwrap_err();
         let said = "ball.obj is no longer the one that the case began with";
         assert!(error.to_string().contains(said), "{error}");

@@ -584,8 +584,8 @@ fn parts_from_files_of_triangles() {
     let (_keep, at) = folder();
     let file = format!("{}/tests/common/cube.obj", env!("CARGO_MANIFEST_DIR"));
     let shape = format!(
-        "body.sphere.shape={{ difference = [{{ obj = {{ file = \"{file}\", unit = \"0.2 mm\" }} }}, \
-         {{ obj = {{ file = \"{file}\", unit = \"0.1 mm\", at = [\"0.3 mm\", \"0.3 mm\", \"0.5 mm\"] }} }}], \
+        "body.sphere.shape={{ difference = [{{ obj = {{ file = \"{file}\", unit = \"0.2 mm\", at = [\"-0.4 mm\", \"-0.4 mm\", 0] }} }}, \
+         {{ obj = {{ file = \"{file}\", unit = \"0.1 mm\", at = [\"0.1 mm\", \"0.1 mm\", \"0.5 mm\"] }} }}], \
          turn = {{ axis = [1, 1, 0], angle = \"10 deg\" }} }}"
     );
     let part = [

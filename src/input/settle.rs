@@ -46,14 +46,18 @@ pub fn settle(resolved: String, folder: &Path, case: &Case) -> Result<String, Di
 fn each_file(shape: &mut Value, visit: &mut impl FnMut(&mut Table)) {
     match shape {
         Value::Table(table) => {
-            for (key, value) in table.iter_mut() {
+            for (key, value) in table {
                 match value {
                     Value::Table(file) if Format::KEYS.contains(&key.as_str()) => visit(file),
                     other => each_file(other, visit),
                 }
             }
         }
-        Value::Array(parts) => parts.iter_mut().for_each(|part| each_file(part, visit)),
+        Value::Array(parts) => {
+            for part in parts {
+                each_file(part, visit);
+            }
+        }
         _ => {}
     }
 }

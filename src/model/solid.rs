@@ -231,11 +231,15 @@ impl Solid {
             Self::Form(Form::Mesh(mesh), _) => found.push(mesh),
             Self::Form(..) => {}
             Self::Union(parts) | Self::Intersection(parts) => {
-                parts.iter().for_each(|part| part.meshes(found));
+                for part in parts {
+                    part.meshes(found);
+                }
             }
             Self::Difference(base, cuts) => {
                 base.meshes(found);
-                cuts.iter().for_each(|cut| cut.meshes(found));
+                for cut in cuts {
+                    cut.meshes(found);
+                }
             }
         }
     }

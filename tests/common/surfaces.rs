@@ -1,10 +1,12 @@
 //! Surfaces of triangles, and files of them.
 
 use std::f64::consts::TAU;
+use std::fmt::Write;
 use std::path::Path;
 
-/// The corners of triangles.
-pub type Triangles = Vec<[[f64; 3]; 3]>;
+/// The corners of a triangle, and of several.
+pub type Triangle = [[f64; 3]; 3];
+pub type Triangles = Vec<Triangle>;
 
 /// A box between two corners, normals outwards.
 pub fn cuboid(lower: [f64; 3], upper: [f64; 3]) -> Triangles {
@@ -65,21 +67,21 @@ fn of_quads(rows: u32, columns: u32, place: impl Fn(u32, u32) -> [f64; 3]) -> Tr
 }
 
 /// Turned about an axis through the origin, as `turn` is.
-pub fn turned(triangles: &Triangles, axis: [f64; 3], angle: f64) -> Triangles {
+pub fn turned(triangles: &[Triangle], axis: [f64; 3], angle: f64) -> Triangles {
     let turn = whipple::model::rotation(&axis.into(), angle);
     let place = |x: [f64; 3]| (turn * whipple::model::Vec3::from(x)).into();
     triangles.iter().map(|t| t.map(place)).collect()
 }
 
 /// Coordinates as a binary STL file holds them.
-pub fn rounded(triangles: &Triangles) -> Triangles {
+pub fn rounded(triangles: &[Triangle]) -> Triangles {
     #[allow(clippy::cast_possible_truncation, reason = "that is what is meant")]
     let round = |x: [f64; 3]| x.map(|c| f64::from(c as f32));
     triangles.iter().map(|t| t.map(round)).collect()
 }
 
-/// Six times the volume, by tetrahedra from the first corner, summed without rounding to speak of.
-pub fn volume(triangles: &Triangles) -> f64 {
+/// The volume, by tetrahedra from the first corner, summed without rounding to speak of.
+pub fn volume(triangles: &[Triangle]) -> f64 {
     let from = triangles[0][0];
     let (mut sum, mut rest) = (0.0_f64, 0.0);
     for t in triangles {
@@ -98,7 +100,7 @@ pub fn volume(triangles: &Triangles) -> f64 {
 }
 
 /// Writes a binary STL file.
-pub fn write_stl(path: &Path, triangles: &Triangles) {
+pub fn write_stl(path: &Path, triangles: &[Triangle]) {
     let mut bytes = vec![b' '; 80];
     bytes.extend(u32::try_from(triangles.len()).unwrap().to_le_bytes());
     for t in triangles {
@@ -113,11 +115,11 @@ pub fn write_stl(path: &Path, triangles: &Triangles) {
 }
 
 /// Writes an OBJ file, each triangle with places of its own.
-pub fn write_obj(path: &Path, triangles: &Triangles) {
+pub fn write_obj(path: &Path, triangles: &[Triangle]) {
     let mut text = String::new();
     for t in triangles {
         for x in t {
-            text += &format!("v {:?} {:?} {:?}\n", x[0], x[1], x[2]);
+            writeln!(text, "v {:?} {:?} {:?}", x[0], x[1], x[2]).unwrap();
         }
         text += "f -3 -2 -1\n";
     }

@@ -143,7 +143,7 @@ fn change(bytes: &[u8], other: &[u8], random: &mut Random) -> Vec<u8> {
 
 #[test]
 fn no_surface_makes_the_reader_panic() {
-    let budget = Budget::new(1500);
+    let budget = Budget::new(6000);
     let mut random = random(&budget);
     let place = tempfile::tempdir().unwrap();
     let (mut met, mut seeds) = (Met::default(), seeds());

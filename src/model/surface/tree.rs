@@ -139,8 +139,9 @@ impl Tree {
             }
             if node.count > 0 {
                 let first = node.at as usize;
-                let all = &self.order[first..first + node.count as usize];
-                all.iter().for_each(|&t| visit(t));
+                for &t in &self.order[first..first + node.count as usize] {
+                    visit(t);
+                }
             } else {
                 open.extend([node.at, index + 1]);
             }

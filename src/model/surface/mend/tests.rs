@@ -3,7 +3,8 @@
 use super::*;
 use crate::model::Mesh;
 
-type Triangles = Vec<[[f64; 3]; 3]>;
+type Triangle = [[f64; 3]; 3];
+type Triangles = Vec<Triangle>;
 
 /// A torus about z with a tube of a third of its radius, of 2 `n` by `n` quads.
 fn torus(n: u32, radius: f64) -> Triangles {
@@ -43,7 +44,7 @@ fn cuboid(lower: [f64; 3], upper: [f64; 3]) -> Triangles {
     triangles.map(|t| t.map(x)).collect()
 }
 
-fn whole(triangles: &Triangles) -> f64 {
+fn whole(triangles: &[Triangle]) -> f64 {
     Mesh::new(triangles).expect("closed").volume()
 }
 
@@ -139,8 +140,7 @@ fn a_crack_closes_like_a_zip() {
     let volume = 1.0;
     // The edge from (0, 0, 1) to (1, 0, 1) has corners of its own in the top face.
     let [a, b] = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0]];
-    let is_split =
-        |t: &[[f64; 3]; 3]| t.contains(&a) && t.contains(&b) && t.iter().all(|x| x[2] == 1.0);
+    let is_split = |t: &Triangle| t.contains(&a) && t.contains(&b) && t.iter().all(|x| x[2] == 1.0);
     let mut cracked: Triangles = sound.iter().filter(|t| !is_split(t)).copied().collect();
     assert_eq!(cracked.len(), 11);
     let apex = sound.iter().find(|t| is_split(t)).unwrap();
@@ -181,7 +181,7 @@ fn shells_are_turned_as_they_nest() {
     let hollow = cuboid([-1.0; 3], [1.0; 3]);
     let core = cuboid([-0.5; 3], [0.5; 3]);
     let beside = cuboid([3.0; 3], [4.0; 3]);
-    let turned = |t: &Triangles| -> Triangles { t.iter().map(|t| [t[0], t[2], t[1]]).collect() };
+    let turned = |t: &[Triangle]| -> Triangles { t.iter().map(|t| [t[0], t[2], t[1]]).collect() };
     let volume = 64.0 - 8.0 + 1.0 + 1.0;
     for (hollow, shells) in [(hollow.clone(), 1), (turned(&hollow), 0)] {
         let all = [outer.clone(), hollow, core.clone(), beside.clone()].concat();
@@ -267,7 +267,9 @@ fn random_damage_is_mended_or_refused() {
         for _ in 0..=draw(6) {
             let (n, m) = (draw(damaged.len()), draw(damaged.len()));
             match draw(6) {
-                0 => drop(damaged.remove(n)),
+                0 => {
+                    damaged.remove(n);
+                }
                 1 => damaged[n].swap(0, 1),
                 2 => damaged.push(damaged[m]),
                 3 => damaged[n][draw(3)] = damaged[m][draw(3)],
