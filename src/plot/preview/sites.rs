@@ -79,7 +79,7 @@ fn draw(
     panels: &[Panel],
     slabs: &[(usize, Slab)],
     larger: f64,
-    shows: impl Fn(&[f64; 3], f64) -> bool + Sync,
+    shows: impl Fn(&Body, &[f64; 3], f64) -> bool + Sync,
 ) -> Vec<Image> {
     // A row of particles is a band.
     let height = if case.dimension == 1 { BAND } else { 0.0 };
@@ -94,7 +94,7 @@ fn draw(
         let spacing = larger * of.lattice.spacing;
         for site in populate::sites(of, case.dimension, &case.symmetry, Some(slab)) {
             let size = spacing * edge(site.share, case.dimension);
-            if !shows(&site.position, size) {
+            if !shows(of, &site.position, size) {
                 continue;
             }
             for image in &mut images {
@@ -125,7 +125,13 @@ pub fn views(case: &Case, panels: &[Panel], particles: f64) -> Vec<Image> {
     let layers: Vec<Layers> = layers.collect();
     let slabs: Vec<_> = layers.iter().flat_map(Layers::slabs).collect();
     let every = layers.first().map_or(1, |layers| layers.every);
-    draw(case, panels, &slabs, every as f64, |_, _| true)
+    draw(case, panels, &slabs, every as f64, |_, _, _| true)
+}
+
+/// Half the thickness of a section (spacings): particles of a file need not stand in layers, and
+/// what has been stretched has gaps.
+fn half_thickness(body: &Body) -> f64 {
+    if body.cloud().is_some() { 0.75 } else { 0.5 }
 }
 
 /// The particles within half a spacing of a panel's plane; at a symmetry plane those next to it.
@@ -137,8 +143,7 @@ pub fn section(case: &Case, panel: &Panel) -> Image {
         let on_mirror = mirrors.any(|mirror| {
             mirror.axis == panel.plane.axis && (mirror.position - position).abs() < 0.01 * spacing
         });
-        // Particles of a file need not stand in layers: what has been stretched has gaps.
-        let reach = spacing * if body.cloud().is_some() { 0.75 } else { 0.5 };
+        let reach = spacing * half_thickness(body);
         let lower = position - if on_mirror { 0.0 } else { reach };
         // A layer at the very side is taken once whatever rounding does.
         let nudge = 1e-6 * spacing;
@@ -153,10 +158,10 @@ pub fn section(case: &Case, panel: &Panel) -> Image {
     // What is finer than the coarsest is in the section only if it is as near.
     let (plane, widest) = (panel.plane.position, 1.0 + 1e-6);
     let mirrors = || case.symmetry.iter().filter(|m| m.axis == panel.plane.axis);
-    let is_in = |x: &[f64; 3], size: f64| {
+    let is_in = |body: &Body, x: &[f64; 3], size: f64| {
         let on_mirror = mirrors().any(|m| (m.position - plane).abs() < 0.01 * size);
-        let reach = if on_mirror { size } else { 0.5 * size };
-        (x[axis] - plane).abs() <= widest * reach
+        let sides = if on_mirror { 2.0 } else { 1.0 };
+        (x[axis] - plane).abs() <= widest * sides * half_thickness(body) * size
     };
     draw(case, &[*panel], &slabs, 1.0, is_in).remove(0)
 }
