@@ -9,7 +9,8 @@ use std::fs;
 use std::path::Path;
 
 use whipple::input::parse;
-use whipple::model::{Body, Case, Quantity};
+use whipple::model::{Body, Case, Quantity, Sizes};
+use whipple::neighbours::Kinds;
 use whipple::populate::{self, Share, Slab, Wanted};
 
 /// A case with one body of some particles.
@@ -454,4 +455,36 @@ fn particles_and_shells_of_decks_are_taken() {
     assert!(close(cloud.positions()[1][0], 8e-3 / 3.0));
     let message = refused_in(place.path(), "file = \"shells.k\", unit = \"1 mm\"", "");
     assert!(message.contains("no elements of 3 dimensions"), "{message}");
+}
+
+/// Each particle has the size of its own volume: contact tells kinds of them apart.
+#[test]
+fn unequal_volumes_are_unequal_sizes() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = |large: f64| {
+        let mut text = "x (mm),y (mm),z (mm),volume (mm^3)\n".to_owned();
+        for i in 0..8 {
+            let volume = if i < 4 { 1.0 } else { large };
+            writeln!(text, "{},0,0,{volume}", 2 * i).unwrap();
+        }
+        fs::write(folder.path().join("row.csv"), text).unwrap();
+        case_in(folder.path(), "file = \"row.csv\"", "")
+    };
+    let case = rows(8.0);
+    let [least, most] = case.bodies[0].lattice.sizes.expect("unequal particles");
+    assert!(close(most / least, 2.0), "{least} to {most}");
+    let sizes = Sizes::new(&case);
+    let volume = populate::particle_volume(&case.bodies[0], 3);
+    assert!(close(volume, 4.5e-9), "{volume}");
+    let density = case.initial_density(&case.bodies[0]);
+    for (cell, edge) in [(1e-9, 1e-3), (8e-9, 2e-3)] {
+        let length = sizes.of(0, density * cell) * case.bodies[0].smoothing_length;
+        assert!(close(length, 1.3 * edge), "{length}");
+    }
+    let kinds = Kinds::new(&case);
+    assert!(kinds.count() > 10);
+    assert_eq!(kinds.of(0, density * 1e-9), 0);
+    assert!(kinds.of(0, density * 8e-9) >= kinds.count() - 2);
+    assert_eq!(rows(1.0).bodies[0].lattice.sizes, None);
+    assert_eq!(Kinds::new(&rows(1.0)).count(), 1);
 }
