@@ -20,7 +20,7 @@ const GROWTH: f64 = 1.25;
 
 impl Gatherer {
     /// Fills `clusters` with the owned particles of a group among `places`; `range` is the reach
-    /// of a particle (m).
+    /// of a particle (m), the longest where smoothing lengths differ.
     #[inline(always)]
     pub(super) fn gather(
         &mut self,
@@ -74,11 +74,18 @@ impl Gatherer {
 /// A cluster that is being filled.
 struct Growing<'a> {
     sequence: &'a Sequence,
+    /// Reach of a particle of the cluster (m).
     range: f64,
     /// Volume within reach of one particle and of the cluster (m³).
     sphere: f64,
     reach: f64,
     cluster: Cluster,
+}
+
+/// Volume within reach of a particle (m³).
+#[inline(always)]
+fn sphere(range: f64) -> f64 {
+    reach(&[0.0; 3], &[0.0; 3], range)
 }
 
 impl<'a> Growing<'a> {
@@ -87,7 +94,7 @@ impl<'a> Growing<'a> {
         Self {
             sequence,
             range,
-            sphere: reach(&[0.0; 3], &[0.0; 3], range),
+            sphere: sphere(range),
             reach: 0.0,
             cluster: Cluster {
                 receivers: [0; LANES],
@@ -111,7 +118,12 @@ impl<'a> Growing<'a> {
         };
         let lower = edge(|a, b| if a < b { a } else { b });
         let upper = edge(|a, b| if a > b { a } else { b });
-        let near = reach(&lower, &upper, self.range) <= (1.0 + GROWTH) * self.sphere;
+        let (mut range, mut alone) = (self.range, self.sphere);
+        if let Some(lengths) = self.sequence.smoothing_lengths().get(index..index + LANES) {
+            range = 2.0 * lengths.iter().copied().fold(0.0, f64::max);
+            alone = sphere(range);
+        }
+        let near = reach(&lower, &upper, range) <= (1.0 + GROWTH) * alone;
         #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
         let owned = u64::from_le_bytes(*eight.special) & u64::from_le_bytes([IMAGE; LANES]) == 0;
         #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
@@ -136,6 +148,11 @@ impl<'a> Growing<'a> {
         } = &mut self.cluster;
         let x: [f64; 3] = std::array::from_fn(|a| self.sequence.coordinates(a, index)[0]);
         if *lanes == 0 {
+            if let Some(length) = self.sequence.smoothing_lengths().get(index) {
+                // What comes next is about as large.
+                self.range = 2.0 * length;
+                self.sphere = sphere(self.range);
+            }
             (*lower, *upper, self.reach) = (x, x, self.sphere);
         } else {
             let low = std::array::from_fn(|a| x[a].min(lower[a]));

@@ -3,6 +3,17 @@
 
 use crate::model::{Body, Case, SmoothingLength, cube};
 
+/// Sizes of a class are this many times those of the one before,
+const STEP: f64 = 1.05;
+/// or more times, so that a body has no more classes than these.
+const MOST_CLASSES: f64 = 64.0;
+
+/// How many times larger the sizes of a class of a body are than those of the one before.
+fn step(body: &Body) -> f64 {
+    let [least, most] = body.lattice.sizes.unwrap_or([1.0; 2]);
+    STEP.max(libm::pow(most / least, 1.0 / (MOST_CLASSES - 1.0)))
+}
+
 /// The kinds of a case. Bodies whose particles are alike have one kind each.
 #[derive(Debug, Clone, Default)]
 pub struct Kinds {
@@ -17,9 +28,6 @@ pub struct Kinds {
 }
 
 impl Kinds {
-    /// Sizes of a class are this many times those of the one before.
-    pub const STEP: f64 = 1.05;
-
     /// Of a case.
     #[must_use]
     pub fn new(case: &Case) -> Self {
@@ -29,18 +37,19 @@ impl Kinds {
         };
         for (b, body) in case.bodies.iter().enumerate() {
             let [least, most] = body.lattice.sizes.unwrap_or([1.0; 2]);
+            let step = step(body);
             let volume = body.lattice.particle_volume(case.dimension);
             let mass = case.initial_density(body) * volume;
             let mut size = least;
             loop {
-                let limit = size * Self::STEP.sqrt();
+                let limit = size * step.sqrt();
                 kinds.body.push(b);
                 kinds.size.push(size);
                 kinds.limits.push(mass * cube(limit, case.dimension));
                 if limit >= most {
                     break;
                 }
-                size *= Self::STEP;
+                size *= step;
             }
             kinds.first.push(kinds.body.len());
         }
@@ -62,9 +71,10 @@ impl Kinds {
     /// ranges are those of the start, and of classes of size.
     #[must_use]
     pub fn longest_range(case: &Case) -> f64 {
+        let widest = case.bodies.iter().map(step).fold(1.0, f64::max);
         match case.sph.smoothing_length {
-            SmoothingLength::Constant => Self::STEP,
-            SmoothingLength::Variable { min, .. } => Self::STEP / min,
+            SmoothingLength::Constant => widest,
+            SmoothingLength::Variable { min, .. } => widest / min,
         }
     }
 

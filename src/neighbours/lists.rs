@@ -280,9 +280,13 @@ fn group_grids(case: &Case, groups: &Groups, outset: &Outset) -> Vec<ColumnGrid>
         .map(|group| {
             let members = groups.members(group);
             let (lower, upper) = Outset::join(members.clone().map(|b| outset.boxes[b]));
-            let spacing = members
-                .map(|b| case.bodies[b].lattice.spacing)
-                .fold(0.0, f64::max);
+            // Where sizes differ, between the smallest and the largest ones.
+            let middle = |b: usize| {
+                let lattice = &case.bodies[b].lattice;
+                let [least, most] = lattice.sizes.unwrap_or([1.0; 2]);
+                lattice.spacing * (least * most).sqrt()
+            };
+            let spacing = members.map(middle).fold(0.0, f64::max);
             ColumnGrid::new(lower, upper, spacing, outset.longest)
         })
         .collect()
