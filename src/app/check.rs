@@ -117,50 +117,50 @@ fn mass(case: &Case, body: &Body) -> String {
     }
 }
 
-#[allow(clippy::cast_precision_loss, reason = "for people")]
-fn print_report(case: &Case, ranks: usize) {
-    say(&format!("{} ({}-D): sound", case.title, case.dimension));
-    let mut total = 0;
-    for body in &case.bodies {
-        let count = populate::count(body, case.dimension, &case.symmetry, None);
-        total += count;
-        let range = |least: f64, most: f64| {
-            if least == most {
-                case.length_unit.text(least)
-            } else {
-                format!(
-                    "{} to {}",
-                    case.length_unit.text(least),
-                    case.length_unit.text(most)
-                )
-            }
-        };
-        say(&format!(
-            "  {:<16} {count:>10} particles of {}, spacing {}, h {}{}",
-            body.name,
-            case.materials[body.material].name,
-            range(body.lattice.spacing, body.lattice.coarsest()),
-            range(body.smoothing_length, body.longest_smoothing_length()),
-            mass(case, body),
-        ));
-        if let Some((cloud, _)) = body.cloud() {
-            let names: Vec<&str> = cloud.quantities().map(Quantity::name).collect();
-            let told = if names.is_empty() {
-                String::new()
-            } else {
-                format!(" with {}", names.join(", "))
-            };
-            say(&format!("  {:<16} from {}{told}", "", cloud.file.path));
-            if let Some((lower, upper)) = populate::bounds(body, case.dimension) {
-                let [lower, upper] =
-                    [lower, upper].map(|x| case.length_unit.vector(&x[..case.dimension]));
-                say(&format!("  {:<16} spans {lower} to {upper}", ""));
-            }
+/// What a body is made of; gives the number of its particles.
+fn print_body(case: &Case, body: &Body) -> u64 {
+    let count = populate::count(body, case.dimension, &case.symmetry, None);
+    let range = |length: f64| {
+        let sizes = body.lattice.sizes.unwrap_or([1.0; 2]);
+        let [least, most] = sizes.map(|size| case.length_unit.text(size * length));
+        if least == most {
+            least
+        } else {
+            format!("{least} to {most}")
         }
-        if let Some(beginning) = preflight::beginning(case, body) {
-            say(&format!("  {:<16} begins with {beginning}", ""));
+    };
+    say(&format!(
+        "  {:<16} {count:>10} particles of {}, spacing {}, h {}{}",
+        body.name,
+        case.materials[body.material].name,
+        range(body.lattice.spacing),
+        range(body.smoothing_length),
+        mass(case, body),
+    ));
+    if let Some((cloud, _)) = body.cloud() {
+        let names: Vec<&str> = cloud.quantities().map(Quantity::name).collect();
+        let told = if names.is_empty() {
+            String::new()
+        } else {
+            format!(" with {}", names.join(", "))
+        };
+        say(&format!("  {:<16} from {}{told}", "", cloud.file.path));
+        if let Some((lower, upper)) = populate::bounds(body, case.dimension) {
+            let [lower, upper] =
+                [lower, upper].map(|x| case.length_unit.vector(&x[..case.dimension]));
+            say(&format!("  {:<16} spans {lower} to {upper}", ""));
         }
     }
+    if let Some(beginning) = preflight::beginning(case, body) {
+        say(&format!("  {:<16} begins with {beginning}", ""));
+    }
+    count
+}
+
+fn print_report(case: &Case, ranks: usize) {
+    say(&format!("{} ({}-D): sound", case.title, case.dimension));
+    let counts = case.bodies.iter().map(|body| print_body(case, body));
+    let total: u64 = counts.sum();
     let memory = memory::in_words(memory::of_rank(case, &Comm::solo(), ranks));
     let plural = if ranks == 1 { "" } else { "s" };
     say(&format!(

@@ -14,7 +14,7 @@ use super::shapes::Shapes;
 use super::touch;
 use crate::input::names;
 use crate::input::quantity::{Length, Placed};
-use crate::input::schema::{AngularVelocityParams, BodyParams};
+use crate::input::schema::{AngularVelocityParams, BodyParams, ShapeParams};
 use crate::input::source::Diagnostic;
 use crate::material::{Eos, Failure, Linear, LinearForm, Material, Strength};
 use crate::model::{
@@ -141,20 +141,7 @@ impl Reader<'_> {
                         "give it one, or one to all bodies at the top: `spacing = \"0.02 mm\"`",
                     ));
                 };
-                let shapes = Shapes {
-                    dimension: self.dimension,
-                    spacing,
-                    folder: self.folder,
-                };
-                let shape = shapes.shape(shape)?;
-                let mut lattice = lattice(&shapes, params.lattice.as_ref(), &shape)?;
-                if let Some(table) = graded(params.spacing.as_ref()) {
-                    if params.lattice.is_none() {
-                        lattice.kind = LatticeKind::Glass;
-                    }
-                    lattice.grade(grading(&shapes, table, &shape, lattice.kind)?);
-                }
-                Ok((shape, lattice))
+                self.filled(params, shape, spacing)
             }
             (None, Some(particles)) => {
                 let files = Files {
@@ -188,6 +175,29 @@ impl Reader<'_> {
                     .help("or give the body the `particles` of a file"))
             }
         }
+    }
+
+    /// A shape, and how it is filled with particles of a spacing (m).
+    fn filled(
+        &self,
+        params: &BodyParams,
+        shape: &Spanned<ShapeParams>,
+        spacing: f64,
+    ) -> Result<(Shape, Lattice), Diagnostic> {
+        let shapes = Shapes {
+            dimension: self.dimension,
+            spacing,
+            folder: self.folder,
+        };
+        let shape = shapes.shape(shape)?;
+        let mut lattice = lattice(&shapes, params.lattice.as_ref(), &shape)?;
+        if let Some(table) = graded(params.spacing.as_ref()) {
+            if params.lattice.is_none() {
+                lattice.kind = LatticeKind::Glass;
+            }
+            lattice.grade(grading(&shapes, table, &shape, lattice.kind)?);
+        }
+        Ok((shape, lattice))
     }
 
     /// Index of the material; one beyond the last for a rigid body that names none.
