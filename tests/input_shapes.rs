@@ -245,3 +245,24 @@ fn a_grading_beyond_the_body_is_none() {
     let sites = |case: &Case| populate::sites(&case.bodies[0], 3, &[], None).collect::<Vec<_>>();
     assert!(sites(&even) == sites(&graded));
 }
+
+/// A sample of a graded body stands on one lattice, however its shape is made.
+#[test]
+fn samples_of_graded_bodies_are_even() {
+    let spacing = "spacing = { inner = \"0.1 mm\", outer = \"0.4 mm\", at = [0, 0, 0] }";
+    let turned = "shape = { sphere = { radius = \"2 mm\" }, shift = [\"1 mm\", 0, 0] }";
+    let case = case(3, &format!("{turned}\n{spacing}"), "");
+    let body = &case.bodies[0];
+    let most = 200;
+    assert!(populate::count(body, 3, &[], None) > most);
+    let (sites, is_all) = populate::sample(body, 3, &[], most);
+    let sites: Vec<_> = sites.collect();
+    assert!(!is_all && sites.len() as u64 <= most, "{}", sites.len());
+    for (n, site) in sites.iter().enumerate() {
+        let x = Vec3::from(site.position);
+        let apart = |other: &populate::Site| (x - Vec3::from(other.position)).norm();
+        let nearest = sites[..n].iter().map(apart).fold(f64::INFINITY, f64::min);
+        assert!(nearest > 0.3e-3, "{nearest}");
+        assert_eq!(site.share, 1.0);
+    }
+}

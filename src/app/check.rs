@@ -95,16 +95,21 @@ fn draw(case: &Case, path: &Path, section: Option<&str>) -> Result<(), PlotError
     out::write(&plot::preview(case, section, None)?, path)
 }
 
-/// The mass of the particles of a body, and by how much each has more than Δp^d to bear that;
+/// The mass of so many particles of a body, and by how much each has more than Δp^d to bear that;
 /// nothing of a rigid body.
-fn mass(case: &Case, body: &Body) -> String {
+#[allow(clippy::cast_precision_loss, reason = "for people")]
+fn mass(case: &Case, body: &Body, count: u64) -> String {
     if body.rigid.is_some() {
         return String::new();
     }
-    let each = populate::particle_volume(body, case.dimension);
-    let density = case.initial_density(body);
+    let each = body.lattice.particle_volume(case.dimension);
+    // Where all are alike they have been counted.
+    let shares = match body.lattice.grading {
+        None => count as f64,
+        Some(_) => populate::shares(body, case.dimension, &case.symmetry),
+    };
     let text = shown(
-        density * each * populate::shares(body, case.dimension, &case.symmetry),
+        case.particle_mass(body) * shares,
         unit_of_model("kg", case.dimension),
     );
     let cell = cube(body.lattice.spacing, case.dimension);
@@ -135,7 +140,7 @@ fn print_body(case: &Case, body: &Body) -> u64 {
         case.materials[body.material].name,
         range(body.lattice.spacing),
         range(body.smoothing_length),
-        mass(case, body),
+        mass(case, body, count),
     ));
     if let Some((cloud, _)) = body.cloud() {
         let names: Vec<&str> = cloud.quantities().map(Quantity::name).collect();

@@ -82,8 +82,7 @@ pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Case, Input
         let (params, resolved) = document::read(text, overrides, places)?;
         let folder = Path::new(name).parent().unwrap_or(Path::new(""));
         let mut case = validate::case(params, folder)?;
-        let resolved = settle::settle(resolved, folder, &case)?;
-        case.resolved = cloud::settle(resolved, &case.bodies)?;
+        case.resolved = settle::settle(resolved, folder, &case)?;
         Ok(case)
     })
 }

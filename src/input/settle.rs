@@ -6,17 +6,14 @@ use toml::{Table, Value};
 
 use super::source::Diagnostic;
 use super::triangles::{Format, absolute};
-use crate::model::Case;
+use crate::model::{Case, SurfaceFile};
 
-/// The resolved text of a case from a folder with the absolute paths of its surfaces' files and their
-/// digests.
+/// The resolved text of a case from a folder with the absolute paths of its files of triangles and of
+/// particles, and their digests.
 pub fn settle(resolved: String, folder: &Path, case: &Case) -> Result<String, Diagnostic> {
     let meshes = case.meshes().into_iter();
-    let files: Vec<[&str; 2]> = meshes
-        .filter_map(|(_, mesh)| mesh.file())
-        .map(|file| [file.path.as_str(), file.sha256.as_str()])
-        .collect();
-    if files.is_empty() {
+    let files: Vec<&SurfaceFile> = meshes.filter_map(|(_, mesh)| mesh.file()).collect();
+    if files.is_empty() && case.bodies.iter().all(|body| body.cloud().is_none()) {
         return Ok(resolved);
     }
     let failed = |cause: String| Diagnostic::new(0..0, cause);
@@ -26,9 +23,8 @@ pub fn settle(resolved: String, folder: &Path, case: &Case) -> Result<String, Di
             return;
         };
         let path = absolute(&folder.join(name));
-        if let Some([path, digest]) = files.iter().find(|[other, _]| *other == path) {
-            table.insert("file".to_owned(), (*path).into());
-            table.insert("sha256".to_owned(), (*digest).into());
+        if let Some(file) = files.iter().find(|file| file.path == path) {
+            state(table, file);
         }
     };
     for list in ["body", "surface"] {
@@ -39,7 +35,20 @@ pub fn settle(resolved: String, folder: &Path, case: &Case) -> Result<String, Di
             }
         }
     }
+    let bodies = document.get_mut("body").and_then(Value::as_array_mut);
+    for (table, body) in bodies.into_iter().flatten().zip(&case.bodies) {
+        let particles = table.get_mut("particles").and_then(Value::as_table_mut);
+        if let (Some(particles), Some((cloud, _))) = (particles, body.cloud()) {
+            state(particles, &cloud.file);
+        }
+    }
     toml::to_string(&document).map_err(|e| failed(e.to_string()))
+}
+
+/// States in its table where a file is, and what it holds.
+fn state(table: &mut Table, file: &SurfaceFile) {
+    table.insert("file".to_owned(), file.path.clone().into());
+    table.insert("sha256".to_owned(), file.sha256.clone().into());
 }
 
 /// Visits the tables of a shape, and of those that it is made of, that name files.

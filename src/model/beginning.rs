@@ -59,6 +59,13 @@ impl Case {
         body.density.unwrap_or_else(reference)
     }
 
+    /// Mass of a particle of a body (kg; kg/m or kg/m² in two or one dimensions), where sizes
+    /// differ of one of the spacing.
+    #[must_use]
+    pub fn particle_mass(&self, body: &Body) -> f64 {
+        self.initial_density(body) * body.lattice.particle_volume(self.dimension)
+    }
+
     /// Initial specific energy of a body (J/kg); where it varies, that of the largest magnitude.
     #[must_use]
     pub fn initial_energy(&self, body: &Body) -> f64 {

@@ -15,8 +15,7 @@ impl Sizes {
     #[must_use]
     pub fn new(case: &Case) -> Self {
         let inverse = |body: &super::Body| {
-            let volume = body.lattice.particle_volume(case.dimension);
-            let mass = case.initial_density(body) * volume;
+            let mass = case.particle_mass(body);
             body.lattice.sizes.map_or(0.0, |_| 1.0 / mass)
         };
         Self {

@@ -29,6 +29,13 @@ pub struct Among {
 }
 
 impl Cluster {
+    /// The longest smoothing length of the receivers (m), of those of all places.
+    #[inline(always)]
+    pub(super) fn longest(&self, lengths: &[f64]) -> f64 {
+        let longer = |h, &i: &u32| f64::max(h, lengths[i as usize]);
+        self.receivers.iter().fold(0.0, longer)
+    }
+
     /// The receivers without repetitions.
     pub(super) fn valid(&self) -> &[u32] {
         &self.receivers[..self.lanes]

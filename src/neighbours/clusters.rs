@@ -133,12 +133,10 @@ struct Lister<'a> {
 impl Lister<'_> {
     #[inline(always)]
     fn list<V: Lanes, const UNIFORM: bool>(&mut self, cluster: &Cluster) -> Among {
-        let lengths = self.sequence.smoothing_lengths();
         let own = if UNIFORM {
             self.longest
         } else {
-            let longer = |h, &i: &u32| f64::max(h, lengths[i as usize]);
-            cluster.receivers.iter().fold(0.0, longer)
+            cluster.longest(self.sequence.smoothing_lengths())
         };
         let far = (own + self.longest).max(self.least) * self.inflation;
         let mut special = 0;

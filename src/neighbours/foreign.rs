@@ -196,9 +196,7 @@ impl Candidates {
                 );
                 continue;
             };
-            let lengths = sequence.smoothing_lengths();
-            let longer = |h, &i: &u32| f64::max(h, lengths[i as usize]);
-            let own = cluster.receivers.iter().fold(0.0, longer);
+            let own = cluster.longest(sequence.smoothing_lengths());
             let range = |eight: &Eight| {
                 let both = V::read(eight.lengths).add(V::splat(own));
                 both.mul(V::splat(most)).min(V::splat(range))

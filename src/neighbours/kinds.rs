@@ -38,8 +38,7 @@ impl Kinds {
         for (b, body) in case.bodies.iter().enumerate() {
             let [least, most] = body.lattice.sizes.unwrap_or([1.0; 2]);
             let step = step(body);
-            let volume = body.lattice.particle_volume(case.dimension);
-            let mass = case.initial_density(body) * volume;
+            let mass = case.particle_mass(body);
             let mut size = least;
             loop {
                 let limit = size * step.sqrt();

@@ -234,12 +234,11 @@ struct Start<'a> {
 impl<'a> Start<'a> {
     fn new(case: &'a Case, b: usize, holds_state: bool) -> Self {
         let body = &case.bodies[b];
-        let density = case.initial_density(body);
         Self {
             case,
             of: body,
             body: u32::try_from(b).unwrap_or(u32::MAX),
-            mass: density * populate::particle_volume(body, case.dimension),
+            mass: case.particle_mass(body),
             holds_state,
         }
     }

@@ -13,7 +13,6 @@ mod h5;
 mod mesh;
 mod names;
 mod part;
-mod settle;
 mod snapshot;
 mod table;
 mod text;
@@ -30,7 +29,6 @@ use super::schema::{FormatName, TakeName};
 use crate::model::SurfaceFile;
 
 pub use part::Wanted;
-pub use settle::settle;
 pub use table::{Columns, Table};
 pub use units::UnitSystem;
 
