@@ -4,6 +4,7 @@
 //! whole, one outside not at all, as one distance tells; of the others each site is tested.
 
 mod fit;
+mod forces;
 mod laid;
 mod relax;
 mod search;
@@ -21,7 +22,7 @@ pub(super) use search::{extremes, smallest};
 
 /// All sites that the cuts leave, by where they stand before they are fitted.
 pub(super) fn sites(cells: Cells, cuts: Vec<Cut>) -> impl Iterator<Item = Site> + use<> {
-    let fitted = Fitted::new(&cells, &cuts);
+    let mut fitted = Fitted::new(&cells, &cuts);
     cells.all_blocks(&cuts).flat_map(move |block| {
         let mut sites = cells.sites_of(block, &cuts);
         for site in &mut sites {

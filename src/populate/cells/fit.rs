@@ -2,8 +2,9 @@
 //! below the faces, and those beneath make room. Where the spacing is graded, all that is thinned
 //! out comes to rest, too.
 
+use super::forces::{REACH, Sites};
 use super::laid::Cells;
-use super::relax::{REACH, Sites, Wall, step};
+use super::relax::{Wall, step};
 use crate::model::Vec3;
 use crate::populate::Site;
 use crate::populate::row::Cut;
@@ -14,8 +15,8 @@ const MOVING: f64 = 3.0;
 const DEEPEST: f64 = MOVING + REACH + 1.0;
 /// Steps of the relaxation.
 const STEPS: usize = 12;
-/// How far from a site others may change where it ends (spacings): by one reach in each step.
-const MARGIN: f64 = 30.0;
+/// How far sites move in all steps, at most, for who may feel whom (spacings).
+const SLACK: f64 = 3.6;
 /// Depth of the outermost layer (spacings), and which sites belong to it.
 const LAYER: f64 = 0.5;
 const OF_LAYER: f64 = 1.0;
@@ -26,19 +27,20 @@ const DRAWN: f64 = 0.3;
 #[derive(Debug, Default)]
 pub(in crate::populate) struct Fitted {
     sites: Vec<Site>,
+    /// The first of them that no site before has passed.
+    next: usize,
 }
 
 impl Fitted {
-    /// Those that the cuts leave, by where they stood before.
+    /// Those that the cuts leave, by where they stood before. What becomes of them hangs on others
+    /// one reach away for each step: sites outside the cuts move as long as that may matter.
     pub fn new(cells: &Cells, cuts: &[Cut]) -> Self {
         if !cells.is_fitted() {
             return Self::default();
         }
         let coarsest = cells.lattice.coarsest();
-        let wide: Vec<Cut> = cuts
-            .iter()
-            .map(|cut| cut.widened(MARGIN * coarsest))
-            .collect();
+        let wide = widened(cuts, STEPS, coarsest);
+        let after: Vec<Vec<Cut>> = (0..STEPS).map(|n| widened(cuts, n, coarsest)).collect();
         let (mut sites, mut moving) = (Vec::new(), Vec::new());
         for block in cells.all_blocks(&wide) {
             let (middle, half) = cells.middle(block.level, block.at, block.at.map(|n| n + 1));
@@ -50,26 +52,56 @@ impl Fitted {
                 let place = site.position.into();
                 let spacing = cells.lattice.spacing_at(&place);
                 if is_near(cells, &place, DEEPEST * spacing) {
-                    if is_near(cells, &place, MOVING * spacing) {
-                        moving.push(u32::try_from(sites.len()).unwrap_or(u32::MAX));
+                    let is_left =
+                        |cuts: &Vec<Cut>| cuts.iter().all(|cut| cut.keeps(&site.position));
+                    let spared = after.iter().position(is_left);
+                    if let Some(spared) = spared
+                        && is_near(cells, &place, MOVING * spacing)
+                    {
+                        moving.push(Moving {
+                            site: u32::try_from(sites.len()).unwrap_or(u32::MAX),
+                            spared,
+                        });
                     }
                     sites.push(site);
                 }
             }
         }
+        moving.sort_by_key(|one| one.spared);
         relax(cells, &mut sites, &moving);
-        let kept = moving.into_iter().map(|i| sites[i as usize]);
+        let kept = moving.iter().take_while(|one| one.spared == 0);
         Self {
-            sites: kept.collect(),
+            sites: kept.map(|one| sites[one.site as usize]).collect(),
+            next: 0,
         }
     }
 
-    /// Moves a site to where it ends.
-    pub fn place(&self, site: &mut Site) {
-        if let Ok(at) = self.sites.binary_search_by_key(&site.index, |s| s.index) {
-            site.position = self.sites[at].position;
+    /// Moves a site to where it ends; sites come in the order of their index.
+    pub fn place(&mut self, site: &mut Site) {
+        let rest = &self.sites[self.next..];
+        self.next += rest.iter().take_while(|s| s.index < site.index).count();
+        if let Some(moved) = self.sites.get(self.next)
+            && moved.index == site.index
+        {
+            site.position = moved.position;
         }
     }
+}
+
+/// What moves: the number of a site, and of how many of the last steps it is spared.
+struct Moving {
+    site: u32,
+    spared: usize,
+}
+
+/// Cuts with all that may change what they leave in so many steps.
+fn widened(cuts: &[Cut], steps: usize, spacing: f64) -> Vec<Cut> {
+    #[allow(clippy::cast_precision_loss)] // a few
+    let far = match steps {
+        0 => 0.0,
+        _ => (REACH * steps as f64 + SLACK) * spacing,
+    };
+    cuts.iter().map(|cut| cut.widened(far)).collect()
 }
 
 /// Whether a place (m) is nearer than `reach` (m) to the surface, or to where sites are thinned.
@@ -82,7 +114,8 @@ fn is_near(cells: &Cells, place: &Vec3, reach: f64) -> bool {
     is_thinned || cells.distance(place) > -reach
 }
 
-fn relax(cells: &Cells, sites: &mut [Site], moving: &[u32]) {
+/// Moves sites, of which those that are spared least come first.
+fn relax(cells: &Cells, sites: &mut [Site], moving: &[Moving]) {
     let scale = Scale::of(cells);
     let spacing = |s: &Site| cells.lattice.spacing_at(&s.position.into()) / scale.spacing;
     let largest = (0..cells.levels.len()).map(|level| cells.coarsest(level) / scale.spacing);
@@ -91,6 +124,7 @@ fn relax(cells: &Cells, sites: &mut [Site], moving: &[u32]) {
         sizes: sites.iter().map(spacing).collect(),
         largest: largest.collect(),
     };
+    let numbers: Vec<u32> = moving.iter().map(|one| one.site).collect();
     let mut velocity = vec![[0.0; 3]; moving.len()];
     let wall = Wall::new(cells.dimension);
     let outside = |place: &[f64; 3], size: f64| {
@@ -115,10 +149,17 @@ fn relax(cells: &Cells, sites: &mut [Site], moving: &[u32]) {
             }
         });
     };
-    for _ in 0..STEPS {
-        step(&mut of, &mut velocity, moving, outside, hold);
+    for left in (0..STEPS).rev() {
+        let end = moving.partition_point(|one| one.spared <= left);
+        step(
+            &mut of,
+            &mut velocity[..end],
+            &numbers[..end],
+            outside,
+            hold,
+        );
     }
-    for &i in moving {
+    for i in numbers {
         let i = i as usize;
         sites[i].position = scale.up(&of.places[i]);
     }

@@ -7,7 +7,8 @@
     reason = "small numbers"
 )]
 
-use super::relax::{REACH, Sites, step};
+use super::forces::{REACH, Sites};
+use super::relax::step;
 use super::tile::{GLASS_EDGES, Tile, split_mix};
 use super::*;
 use crate::model::{Axis, Body, Focus, Grading, LatticeKind, Shape, SymmetryPlane, Vec3};
