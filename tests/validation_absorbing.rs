@@ -49,10 +49,12 @@ axis = "y"
 name = "target"
 material = "a"
 shape.box = {{ lower = [0, 0, "-{width} spacing"], upper = ["{width} spacing", "{width} spacing", 0] }}
+lattice = "cubic"
 [[body]]
 name = "ball"
 material = "a"
 shape.sphere = {{ radius = "0.2 mm", centre = [0, 0, "0.25 mm"] }}
+lattice = "cubic"
 velocity = [0, 0, "-2 km/s"]
 touch = {{ body = "target", direction = "-z" }}
 {zone}

@@ -23,10 +23,12 @@ strength = "none"
 name = "target"
 material = "aluminium"
 shape.box = {{ size = ["{width} mm", "{width} mm", "{long} mm"] }}
+lattice = "cubic"
 [[body]]
 name = "flyer"
 material = "aluminium"
 shape.box = {{ size = ["{width} mm", "{width} mm", "{long} mm"] }}
+lattice = "cubic"
 velocity = [0, 0, "7 km/s"]
 touch = {{ body = "target", direction = "+z" }}
 [[symmetry]]

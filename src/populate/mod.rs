@@ -274,3 +274,13 @@ pub fn index_end(body: &Body, dimension: usize) -> u64 {
         None => Stack::new(body, dimension).index_end(),
     }
 }
+
+/// No fewer sites than a body has: all of a lattice about it, of cells those of a box about it;
+/// saturates at `u64::MAX`.
+#[must_use]
+pub fn most_sites(body: &Body, dimension: usize) -> u64 {
+    match Cells::of(body, dimension, &[]) {
+        Some(cells) if body.cloud().is_none() => cells.most_sites(),
+        _ => index_end(body, dimension),
+    }
+}

@@ -92,6 +92,7 @@ library = "aluminium-2024"
 name = "block"
 material = "aluminium"
 shape.box = { size = ["0.94 mm", "0.94 mm", "0.94 mm"] }
+lattice = "cubic"
 "#,
     set: &[],
     begin: 0.0,

@@ -55,6 +55,8 @@ pub struct Reader<'a> {
     pub materials: &'a [String],
     /// The materials themselves.
     pub known: &'a [Material],
+    /// What fills bodies that do not say.
+    pub filling: LatticeKind,
     /// Smoothing length over spacing.
     pub smoothing: f64,
     /// Where the files that the case names stand.
@@ -190,7 +192,7 @@ impl Reader<'_> {
             folder: self.folder,
         };
         let shape = shapes.shape(shape)?;
-        let mut lattice = lattice(&shapes, params.lattice.as_ref(), &shape)?;
+        let mut lattice = lattice(&shapes, params.lattice.as_ref(), &shape, self.filling)?;
         if let Some(table) = graded(params.spacing.as_ref()) {
             if params.lattice.is_none() {
                 lattice.kind = LatticeKind::Glass;
@@ -280,7 +282,7 @@ impl Reader<'_> {
         bodies: &[Body],
     ) -> Result<(), Diagnostic> {
         for (table, body) in params.iter().zip(bodies) {
-            let sites = populate::index_end(body, self.dimension);
+            let sites = populate::most_sites(body, self.dimension);
             if sites > MOST_SITES {
                 let own = table.get_ref().spacing.as_ref().map(Spanned::span);
                 let at = own.or(self.spacing.map(Spanned::span));

@@ -5,17 +5,30 @@ use toml::Spanned;
 use super::shapes::{Shapes, axis_vector};
 use crate::input::schema::LatticeParams;
 use crate::input::source::Diagnostic;
-use crate::model::{Axis, Lattice, LatticeKind, Shape};
+use crate::model::{Axis, Lattice, LatticeKind, Shape, SphForm};
 
-/// The lattice of a body of some shape; cubic if absent.
+/// What fills bodies that do not say: glass, which prefers no direction. In the plane, where the
+/// kernel sums of glass scatter five times as much, and where stress points need rows, a cubic
+/// lattice.
+pub fn usual(dimension: usize, form: SphForm) -> LatticeKind {
+    if dimension == 3 && form != SphForm::StressPoints {
+        LatticeKind::Glass
+    } else {
+        LatticeKind::Cubic
+    }
+}
+
+/// The lattice of a body of some shape; of the usual kind if absent.
 pub fn lattice(
     shapes: &Shapes,
     params: Option<&Spanned<LatticeParams>>,
     shape: &Shape,
+    usual: LatticeKind,
 ) -> Result<Lattice, Diagnostic> {
     let spacing = shapes.spacing;
     let Some(table) = params else {
         return Ok(Lattice {
+            kind: usual,
             spacing,
             ..Lattice::default()
         });

@@ -58,6 +58,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         spacing: params.spacing.as_ref(),
         materials: &names,
         known: &materials,
+        filling: lattice::usual(dimension, sph.form),
         smoothing,
         folder,
     }
@@ -103,10 +104,14 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, &case)?;
     case.loads.absorbers = absorbers::absorbers(&params.absorb, &case)?;
     stress_points::check(&case, form)?;
-    check_moduli(&case, &params.body)?;
-    check_overlaps(&case, &params.body)?;
+    check_bodies(&case, &params.body)?;
     check_temperature(&case, &fields)?;
     Ok(case)
+}
+
+fn check_bodies(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Diagnostic> {
+    check_moduli(case, params)?;
+    check_overlaps(case, params)
 }
 
 /// Contact scales with a modulus, which a gas has only at a reference pressure.

@@ -143,6 +143,14 @@ impl Cells {
         tiles.saturating_mul(self.tile.sites.len() as u64)
     }
 
+    /// Sites that a box about the solid would have at the finest spacing.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
+    pub fn most_sites(&self) -> u64 {
+        let (lower, upper) = self.solid.bounds();
+        let along = |a: usize| ((upper[a] - lower[a]) / self.lattice.spacing).max(1.0);
+        (0..self.dimension).fold(1.0, |n, a| n * along(a)).ceil() as u64
+    }
+
     /// One more than the largest index.
     pub fn index_end(&self) -> u64 {
         let levels = self.levels.iter().map(|level| self.sites_in(level));
