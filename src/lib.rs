@@ -6,6 +6,7 @@
 
 pub mod app;
 pub mod run;
+pub mod sweep;
 
 pub mod input;
 pub mod model;

@@ -17,11 +17,16 @@ use std::fs;
 use source::{Source, sources, src};
 
 /// Every module, in the order in which data flows.
-const MODULES: &str = "app run input model preflight populate numerics material particles comm domain neighbours \
+const MODULES: &str = "app run sweep input model preflight populate numerics material particles comm domain neighbours \
      loads contact sph step diagnose output exact plot";
 
 /// The modules on top, and who may name them.
-const ON_TOP: &[(&str, &str)] = &[("app", ""), ("run", "app"), ("preflight", "app run")];
+const ON_TOP: &[(&str, &str)] = &[
+    ("app", ""),
+    ("run", "app"),
+    ("sweep", "app"),
+    ("preflight", "app run"),
+];
 
 /// Folders whose files may start, go on with and step a simulation.
 const CALLERS_OF_LOOP: &[&str] = &["step/", "run/", "app/bench/"];
@@ -33,6 +38,10 @@ const FORBIDDEN: &[(&str, &str)] = &[
     (
         "run",
         "populate material domain neighbours contact sph diagnose exact plot",
+    ),
+    (
+        "sweep",
+        "populate numerics material particles comm domain neighbours loads contact sph step diagnose exact",
     ),
     (
         "preflight",

@@ -9,6 +9,7 @@ pub mod plot;
 mod restart;
 pub mod results;
 mod run;
+mod sweep;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -30,6 +31,7 @@ use crate::run::{launch, say};
   whipple info runs/quarter
   whipple plot runs/quarter --panels
   mpirun -n 4 whipple restart runs/quarter --set run.end_time=0.3us
+  whipple sweep inputs/quarter-impact --vary body.sphere.velocity=\"3..9 km/s\"
 
 For work on the program itself: `whipple compare` tells whether two results agree to the last bit,
 `whipple bench` measures how fast it steps on this machine.
@@ -50,6 +52,8 @@ enum Command {
     Plot(Box<plot::PlotArgs>),
     Info(info::InfoArgs),
     Materials(materials::MaterialsArgs),
+    Sweep(sweep::SweepArgs),
+    Converge(sweep::ConvergeArgs),
     #[command(hide = true)]
     Compare(compare::CompareArgs),
     #[command(hide = true)]
@@ -82,6 +86,8 @@ pub fn main() -> ExitCode {
         ),
         Command::Info(args) => info::run(&args),
         Command::Materials(args) => materials::run(&args),
+        Command::Sweep(args) => sweep::run(&args),
+        Command::Converge(args) => sweep::converge(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Bench(args) => bench::run(&args),
     };

@@ -66,6 +66,18 @@ impl Sheet {
         sheet.units.resize(sheet.names.len(), String::new());
         Ok(sheet)
     }
+
+    /// The table as a file holds it: units, names, rows.
+    #[must_use]
+    pub fn text(&self) -> Vec<u8> {
+        let unit = |unit: &String| if unit.is_empty() { "-" } else { unit }.to_owned();
+        let mut text = units_line(self.units.iter().map(unit));
+        text.extend(line(&self.names));
+        for (_, cells) in &self.rows {
+            text.extend(line(cells));
+        }
+        text
+    }
 }
 
 /// The only record of a line.

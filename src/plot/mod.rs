@@ -31,6 +31,7 @@ pub use chart::history::energies;
 pub use chart::profile::{Along, ProfileRequest, Profiles};
 pub use chart::series::parse_pair;
 pub use chart::tables::{Columns, Points, Tables};
+pub use colour::body as colour_of;
 pub use error::PlotError;
 pub use header::Mark;
 pub use picture::pictures::{Pictures, Request};

@@ -1,0 +1,153 @@
+//! What a bisection asks of a run: `fragments.largest_mass<1 mg`, `measures.plate.verdict==held`.
+
+use super::answers::Answers;
+use crate::model::units;
+
+/// How an answer is compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Compared {
+    Below,
+    Above,
+    Equal,
+    Different,
+}
+
+/// A question whose answer is yes or no.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Condition {
+    name: String,
+    compared: Compared,
+    with: String,
+}
+
+/// What a rear wall has to be so that a shield has failed.
+const FAILED: &str = "failed";
+const HOLED: &[&str] = &["detached spall", "detached_spall", "perforated"];
+
+impl Condition {
+    /// Reads `NAME<NUMBER`, `NAME>NUMBER`, `NAME==WORD`, `NAME!=WORD` or `failed`: whether any verdict
+    /// among the measures is detached spall or a perforation.
+    ///
+    /// # Errors
+    /// What is wrong.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let signs = [
+            ("==", Compared::Equal),
+            ("!=", Compared::Different),
+            ("<", Compared::Below),
+            (">", Compared::Above),
+        ];
+        let text = text.trim();
+        if text == FAILED {
+            return Ok(Self {
+                name: FAILED.to_owned(),
+                compared: Compared::Equal,
+                with: String::new(),
+            });
+        }
+        let found = signs.iter().find_map(|&(sign, compared)| {
+            let (name, with) = text.split_once(sign)?;
+            Some((name.trim(), compared, with.trim()))
+        });
+        let Some((name, compared, with)) = found.filter(|(name, _, _)| !name.is_empty()) else {
+            return Err(format!(
+                "`{text}` is no condition, such as `failed`, `measures.plate.hole>1 mm` or \
+                 `history.interpenetrated==0`"
+            ));
+        };
+        if matches!(compared, Compared::Below | Compared::Above) {
+            units::parse(with)?;
+        }
+        Ok(Self {
+            name: name.to_owned(),
+            compared,
+            with: with.to_owned(),
+        })
+    }
+
+    /// Whether it holds.
+    ///
+    /// # Errors
+    /// That the run has no such answer, or one that cannot be compared.
+    pub fn holds(&self, answers: &Answers) -> Result<bool, String> {
+        if self.name == FAILED {
+            return failed(answers);
+        }
+        let Some(answer) = answers.get(&self.name) else {
+            return Err(format!("the run has no answer `{}`", self.name));
+        };
+        let is_equal = || match (answer.text.parse::<f64>(), units::parse(&self.with)) {
+            (Ok(a), Ok((b, _))) => a == b,
+            _ => answer.text == self.with,
+        };
+        let numbers = || {
+            let value = answer.text.parse::<f64>();
+            let value = value.map_err(|_| {
+                format!(
+                    "the answer `{}` is \"{}\", no number",
+                    self.name, answer.text
+                )
+            })?;
+            units::parse(&self.with).map(|(with, _)| (value, with))
+        };
+        Ok(match self.compared {
+            Compared::Equal => is_equal(),
+            Compared::Different => !is_equal(),
+            Compared::Below => numbers().map(|(a, b)| a < b)?,
+            Compared::Above => numbers().map(|(a, b)| a > b)?,
+        })
+    }
+}
+
+fn failed(answers: &Answers) -> Result<bool, String> {
+    let mut verdicts = answers
+        .iter()
+        .filter(|(name, _)| name.starts_with("measures.") && name.ends_with("verdict"))
+        .peekable();
+    if verdicts.peek().is_none() {
+        return Err("the run has no verdict among its measures".to_owned());
+    }
+    Ok(verdicts.any(|(_, answer)| HOLED.contains(&answer.text.as_str())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::answers::Answer;
+    use super::*;
+
+    fn holds(condition: &str, name: &str, text: &str) -> Result<bool, String> {
+        let answer = Answer {
+            text: text.to_owned(),
+            unit: String::new(),
+        };
+        let answers = Answers::from([(name.to_owned(), answer)]);
+        Condition::parse(condition)?.holds(&answers)
+    }
+
+    #[test]
+    fn conditions_compare_numbers_and_words() {
+        assert_eq!(holds("a.b < 1 mm", "a.b", "0.0005"), Ok(true));
+        assert_eq!(holds("a.b>1 mm", "a.b", "0.0005"), Ok(false));
+        assert_eq!(holds("a==0", "a", "0.0"), Ok(true));
+        assert_eq!(holds("a!=held", "a", "held"), Ok(false));
+        assert_eq!(
+            holds("failed", "measures.wall.verdict", "perforated"),
+            Ok(true)
+        );
+        assert_eq!(holds("failed", "measures.wall.verdict", "held"), Ok(false));
+    }
+
+    #[test]
+    fn what_is_no_condition_is_refused() {
+        assert!(holds("a", "a", "1").unwrap_err().contains("no condition"));
+        assert!(holds("<1", "a", "1").unwrap_err().contains("no condition"));
+        assert!(holds("a<x", "a", "1").is_err());
+        assert!(
+            holds("b<1", "a", "1")
+                .unwrap_err()
+                .contains("no answer `b`")
+        );
+        assert!(holds("a<1", "a", "held").unwrap_err().contains("no number"));
+        assert!(holds("failed", "a", "1").unwrap_err().contains("verdict"));
+    }
+}
