@@ -20,8 +20,8 @@ pub struct Shares {
     #[arg(short, long, value_name = "KEY=VALUE")]
     set: Vec<String>,
 
-    /// Answers in the table, by the beginning of their names, as in bodies.sphere or
-    /// summary.energy_error_max [default: all of measures and fragments]
+    /// Answers in the table, by the beginning of their names, as in
+    /// history or bodies.sphere [default: all of measures and fragments]
     #[arg(short, long, value_name = "NAME", value_delimiter = ',')]
     answers: Vec<String>,
 
@@ -161,7 +161,7 @@ fn sweep(args: &SweepArgs) -> Result<u8, SweepError> {
     let keys = definition.vary.len();
     let (mut sweep, jobs) = args.shares.sweep(definition.clone())?;
     if let Some(number) = args.point {
-        let is_finished = sweep.run_one(number, |line| say(line))?;
+        let is_finished = sweep.run_one(number, say)?;
         return Ok(if is_finished { 0 } else { EXIT_FAILED });
     }
     let _lock = hold(definition)?;
@@ -178,7 +178,7 @@ fn sweep(args: &SweepArgs) -> Result<u8, SweepError> {
         say(&format!("  whipple sweep {}", folder.display()));
         return Ok(0);
     }
-    let tally = sweep.run(jobs, |line| say(line))?;
+    let tally = sweep.run(jobs, say)?;
     say(&format!("wrote {}", folder.join("sweep.csv").display()));
     if let Some((chart, path)) = sweep::draw(&folder, keys, args.chart.as_deref())? {
         let drawn = chart.draw(None).and_then(|canvas| canvas.save(&path));
@@ -213,7 +213,7 @@ fn converged(args: &ConvergeArgs) -> Result<u8, SweepError> {
     let (mut sweep, jobs) = args.shares.sweep(definition.clone())?;
     let folder = definition.folder.clone();
     let _lock = hold(definition)?;
-    let tally = sweep.run(jobs, |line| say(line))?;
+    let tally = sweep.run(jobs, say)?;
     let converged = Converged::of(&sweep)?;
     converged.write(&sweep)?;
     for line in converged.lines() {

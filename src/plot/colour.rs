@@ -66,6 +66,7 @@ const COOL_WARM: [Rgb; 17] = [
 const TAIL: f64 = 0.002;
 
 /// Colour of a body by its index.
+#[must_use]
 pub fn body(index: usize) -> Rgb {
     let colour = BODIES[index % BODIES.len()];
     // Later rounds of the same seven are darker.

@@ -67,9 +67,7 @@ impl Definition {
     /// # Errors
     /// [`SweepError::Typed`], [`SweepError::Case`], [`SweepError::Output`].
     pub fn keep(&mut self) -> Result<(), SweepError> {
-        let digest = Sha256::digest(self.text()?.as_bytes());
-        let digest: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
-        self.digest = digest;
+        self.digest = format!("{:x}", Sha256::digest(self.text()?.as_bytes()));
         if Self::is_in(&self.folder) {
             let before = Self::read(&self.folder)?;
             if before.digest != self.digest {

@@ -140,12 +140,12 @@ impl Sweep {
     /// [`SweepError::Output`].
     pub fn run(&mut self, jobs: usize, mut tell: impl FnMut(&str)) -> Result<Tally, SweepError> {
         let mut running: Vec<Running> = Vec::new();
-        let mut looked = Instant::now() - PAUSE_FOR_OTHERS;
+        let mut looked: Option<Instant> = None;
         loop {
             let points = self.points()?;
             let mut changed = false;
             let mut waits = !running.is_empty();
-            let looks = looked.elapsed() >= PAUSE_FOR_OTHERS;
+            let looks = looked.is_none_or(|looked| looked.elapsed() >= PAUSE_FOR_OTHERS);
             for point in &points {
                 let is_running = running.iter().any(|run| run.name == point.name);
                 if is_running || self.is_over(point) || !(looks || running.len() < jobs) {
@@ -162,7 +162,7 @@ impl Sweep {
                 }
             }
             if looks {
-                looked = Instant::now();
+                looked = Some(Instant::now());
             }
             changed |= self.collect(&points, &mut running, &mut tell)?;
             if changed {

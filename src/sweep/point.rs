@@ -1,5 +1,7 @@
 //! A point of a sweep: values of the keys that vary, and the folder of its run.
 
+use std::fmt::Write as _;
+
 use sha2::{Digest, Sha256};
 use toml::{Table, Value as Toml};
 
@@ -76,8 +78,7 @@ fn setting(case: &Table, key: &str, value: &Value) -> Result<String, String> {
             value.text
         ));
     }
-    let unit = unit(&value.text);
-    let scale = number(&value.text).unwrap_or(length);
+    let (scale, unit) = split(&value.text).unwrap_or((length, ""));
     let texts: Vec<String> = components
         .iter()
         .map(|c| format!("\"{} {unit}\"", scale * (c / norm)))
@@ -85,24 +86,14 @@ fn setting(case: &Table, key: &str, value: &Value) -> Result<String, String> {
     Ok(format!("{key}=[{}]", texts.join(", ")))
 }
 
-/// The number that a text begins with.
-fn number(text: &str) -> Option<f64> {
-    let ends = (1..=text.len())
-        .rev()
-        .filter(|&end| text.is_char_boundary(end));
-    ends.filter_map(|end| text[..end].trim_end().parse().ok())
-        .next()
-}
-
-/// What stands behind it.
-fn unit(text: &str) -> &str {
-    let ends = (1..=text.len())
-        .rev()
-        .filter(|&end| text.is_char_boundary(end));
-    let end = ends
-        .filter(|&end| text[..end].trim_end().parse::<f64>().is_ok())
-        .next();
-    text[end.unwrap_or(0)..].trim()
+/// The number that a text begins with, and its unit.
+fn split(text: &str) -> Option<(f64, &str)> {
+    let ends = (1..=text.len()).rev();
+    let mut ends = ends.filter(|&end| text.is_char_boundary(end));
+    ends.find_map(|end| {
+        let number = text[..end].trim_end().parse().ok()?;
+        Some((number, text[end..].trim()))
+    })
 }
 
 /// What stands under a dotted key; bodies and other tables in a row go by their names or numbers.
@@ -138,19 +129,15 @@ fn name(keys: &[String], values: &[Value]) -> String {
         };
         let words = value.text.replace(' ', "").replace('/', "p");
         let shown: String = words.chars().map(kept).collect();
-        text += &format!(
+        let _ = write!(
+            text,
             "{}={shown}_",
             short(key).replace(|c: char| !c.is_ascii_alphanumeric(), "_")
         );
     }
     text.truncate(LONGEST);
-    let digest = digest.finalize();
-    let hex: String = digest
-        .iter()
-        .take(4)
-        .map(|byte| format!("{byte:02x}"))
-        .collect();
-    format!("{}-{hex}", text.trim_end_matches('_'))
+    let digest = format!("{:x}", digest.finalize());
+    format!("{}-{}", text.trim_end_matches('_'), &digest[..8])
 }
 
 #[cfg(test)]

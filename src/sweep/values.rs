@@ -152,11 +152,7 @@ fn split(text: &str) -> Vec<&str> {
     let (mut parts, mut begin, mut depth, mut quote) = (Vec::new(), 0, 0_usize, None);
     for (at, c) in text.char_indices() {
         match (quote, c) {
-            (Some(q), _) => {
-                if c == q {
-                    quote = None;
-                }
-            }
+            (Some(q), _) if c == q => quote = None,
             (None, '"' | '\'') => quote = Some(c),
             (None, '[' | '{' | '(') => depth += 1,
             (None, ']' | '}' | ')') => depth = depth.saturating_sub(1),
@@ -164,7 +160,7 @@ fn split(text: &str) -> Vec<&str> {
                 parts.push(&text[begin..at]);
                 begin = at + 1;
             }
-            _ => {}
+            (Some(_) | None, _) => {}
         }
     }
     parts.push(&text[begin..]);
