@@ -231,7 +231,8 @@ fn values_that_no_run_has_a_use_for_are_told() {
         &["body.plate.shape.box.lower=[\"-2 mm\", \"0.13 mm\"]"],
         &[
             "the box of `plate` is no whole number of spacings of 0.1 mm: in place of [5, 0.87] mm \
-             it gets [5, 0.9] mm",
+             it gets [5, 0.9] mm; `lattice = { kind = \"cubic\", fit = true }` stretches the lattice to \
+             fill it",
         ],
     );
     assert_told(&["spacing=\"100 um\""], &[]);

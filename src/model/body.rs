@@ -20,6 +20,9 @@ pub enum LatticeKind {
     /// Concentric rings about z, as wide apart as their particles; the outermost follows the
     /// outline of a disc, a ring or a cylinder along z.
     Rings,
+    /// Concentric spheres, as wide apart as their particles, each turned at random; the outermost
+    /// follows the surface of a ball, the innermost that of its hollow.
+    Shells,
     /// Body-centred cubic, two particles in a cell; three dimensions alone.
     BodyCentred,
     /// Face-centred cubic, four particles in a cell; three dimensions alone.
@@ -44,6 +47,8 @@ pub struct Lattice {
     pub angle: f64,
     /// That axis; z if absent.
     pub axis: Option<Vec3>,
+    /// Whether a cubic lattice is stretched by axis until it fills a box exactly.
+    pub fit: bool,
     /// Which of the fillings of its kind, for those that are drawn at random.
     pub seed: u64,
     /// Volume of one particle (m³; m² or m in two or one dimensions), if not Δp^d, so that all

@@ -3,6 +3,7 @@
 //! A tile is cut into blocks of some fifty sites. A block that lies inside the solid belongs to it
 //! whole, one outside not at all, as one distance tells; of the others each site is tested.
 
+mod counts;
 mod fit;
 mod forces;
 mod laid;
@@ -19,6 +20,7 @@ use fit::Fitted;
 
 pub(super) use laid::{Cells, has_rows};
 pub(super) use search::{extremes, smallest};
+pub(super) use tile::drawn;
 
 /// All sites that the cuts leave, by where they stand before they are fitted.
 pub(super) fn sites(cells: Cells, cuts: Vec<Cut>) -> impl Iterator<Item = Site> + use<> {

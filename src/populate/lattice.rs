@@ -85,7 +85,7 @@ pub(super) struct Stack {
     pub counts: [u64; 3],
     /// Radius of the innermost ring (m).
     innermost: f64,
-    /// Their distances (m).
+    /// Their distances (m); those of a lattice that is fitted are its own by axis.
     pub pitch: [f64; 3],
     /// What the shape cuts out of the lattice.
     pub inside: Inside,
@@ -104,14 +104,18 @@ impl Stack {
         } else {
             [libm::cos(lattice.angle), libm::sin(lattice.angle)]
         };
-        let pitch = pitches(lattice.kind, dimension).map(|p| p * lattice.spacing);
+        let mut pitch = pitches(lattice.kind, dimension).map(|p| p * lattice.spacing);
         let mut counts = [1; 3];
         let mut flat = [f64::INFINITY; 3];
         let mut innermost = 0.0;
         for a in 0..dimension {
             let is_filled = !round[a] && (lattice.angle == 0.0 || a == 2);
             counts[a] = if is_filled {
-                as_count((2.0 * half[a] / pitch[a]).round())
+                let count = (2.0 * half[a] / pitch[a]).round();
+                if lattice.fit && count > 0.0 {
+                    pitch[a] = 2.0 * half[a] / count;
+                }
+                as_count(count)
             } else {
                 if !round[a] {
                     flat[a] = half[a] * FACE;

@@ -12,6 +12,7 @@ mod parts;
 mod row;
 mod sample;
 mod search;
+mod shells;
 mod stress_points;
 mod tally;
 mod touch;
@@ -28,6 +29,7 @@ use cells::Cells;
 use given::Given;
 use lattice::Stack;
 use row::cuts;
+use shells::Shells;
 
 #[cfg(test)]
 mod tests;
@@ -114,10 +116,13 @@ pub fn sites(
     let given = Given::of(body);
     let is_filled = given.is_none();
     let in_rows_of_file = given.map(|given| given.sites(&cuts, particle_volume(body, dimension)));
+    let shells = is_filled.then(|| Shells::of(body)).flatten();
     let cells = is_filled
         .then(|| Cells::of(body, dimension, symmetry))
         .flatten();
-    let stack = (is_filled && cells.is_none()).then(|| Stack::new(body, dimension));
+    let is_in_rows = is_filled && shells.is_none() && cells.is_none();
+    let stack = is_in_rows.then(|| Stack::new(body, dimension));
+    let in_shells = shells.map(|shells| shells.sites(cuts.clone()));
     let in_cells = cells.map(|cells| cells::sites(cells, cuts.clone()));
     let in_rows = stack.map(|stack| {
         row::rows(stack, cuts).flat_map(move |row| {
@@ -131,6 +136,7 @@ pub fn sites(
     in_rows
         .into_iter()
         .flatten()
+        .chain(in_shells.into_iter().flatten())
         .chain(in_cells.into_iter().flatten())
         .chain(in_rows_of_file.into_iter().flatten())
 }
@@ -141,6 +147,9 @@ pub fn count(body: &Body, dimension: usize, symmetry: &[SymmetryPlane], slab: Op
     let cuts = cuts(symmetry, slab);
     if let Some(given) = Given::of(body) {
         return given.count(&cuts);
+    }
+    if let Some(shells) = Shells::of(body) {
+        return shells.count(&cuts);
     }
     if let Some(cells) = Cells::of(body, dimension, symmetry) {
         return cells.count(&cuts);
@@ -172,6 +181,9 @@ pub fn bounds_above(
     let cuts = cuts(symmetry, None);
     if let Some(given) = Given::of(body) {
         return given.extremes(&cuts);
+    }
+    if let Some(shells) = Shells::of(body) {
+        return shells.extremes(&cuts);
     }
     match Cells::of(body, dimension, symmetry) {
         Some(cells) => cells::extremes(&cells, &cuts),
@@ -268,6 +280,9 @@ pub fn moves_sites(body: &Body) -> bool {
 pub fn index_end(body: &Body, dimension: usize) -> u64 {
     if let Some(given) = Given::of(body) {
         return given.index_end();
+    }
+    if let Some(shells) = Shells::of(body) {
+        return shells.index_end();
     }
     match Cells::of(body, dimension, &[]) {
         Some(cells) => cells.index_end(),

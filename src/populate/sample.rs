@@ -27,6 +27,7 @@ pub fn sample(
         coarse.lattice.kind = LatticeKind::Cubic;
         coarse.lattice.angle = 0.0;
         coarse.lattice.axis = None;
+        coarse.lattice.fit = false;
         coarse.lattice.grade(None);
         while found > most {
             coarse.lattice.spacing *= WIDER;

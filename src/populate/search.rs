@@ -6,6 +6,7 @@ use super::given::{Given, GivenRows};
 use super::lattice::Stack;
 use super::parts::{Parts, best};
 use super::row::{Cut, cuts};
+use super::shells::Shells;
 use crate::model::{Body, SymmetryPlane};
 
 /// Rows of a lattice, by the indices of their sites.
@@ -67,6 +68,9 @@ pub fn search(
     let cuts = cuts(symmetry, None);
     if let Some(given) = Given::of(body) {
         return best(&GivenRows { given, cuts }, wanted, bound, value);
+    }
+    if let Some(shells) = Shells::of(body) {
+        return shells.smallest(&cuts, wanted, bound, value);
     }
     if let Some(cells) = Cells::of(body, dimension, symmetry) {
         return cells::smallest(&cells, &cuts, wanted, bound, value);

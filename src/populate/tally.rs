@@ -5,6 +5,7 @@ use super::cells::Cells;
 use super::given::Given;
 use super::lattice::Stack;
 use super::row::{Cut, cuts, layers, runs};
+use super::shells::Shells;
 use crate::model::{Body, SymmetryPlane};
 
 /// Layers from which shape and cuts leave the same rows.
@@ -59,6 +60,9 @@ pub fn tally(
     let cuts = cuts(symmetry, None);
     if let Some(given) = Given::of(body) {
         return given.tally(&cuts, axis, share, &mut add);
+    }
+    if let Some(shells) = Shells::of(body) {
+        return shells.tally(&cuts, axis, share, add);
     }
     match Cells::of(body, dimension, symmetry) {
         Some(cells) => cells.tally(&cuts, axis, share, add),

@@ -8,6 +8,7 @@ use super::*;
 use crate::model::{Initial, Lattice, LatticeKind, Shape, Vec3};
 
 mod counts;
+mod shells;
 mod touch;
 
 pub(super) fn body(shape: Shape, kind: LatticeKind, spacing: f64, angle: f64) -> Body {
@@ -100,6 +101,37 @@ fn a_box_is_filled_with_whole_layers() {
         assert!((lower[a] - (length - upper[a])).abs() < 1e-15);
     }
     assert_eq!(sites.last().unwrap().index, 199);
+}
+
+/// A lattice that is fitted fills the sides of a box whatever they are, and nothing else changes.
+#[test]
+fn a_fitted_lattice_fills_a_box_exactly() {
+    let (lower, upper) = ([-1.0, 0.2, 0.0], [0.53, 0.87, 0.31]);
+    for dimension in [1, 2, 3] {
+        let mut body = body(block(lower, upper), LatticeKind::Cubic, 0.1, 0.0);
+        let plain = all(&body, dimension).len();
+        body.lattice.fit = true;
+        let sites = all(&body, dimension);
+        assert_eq!(sites.len(), plain);
+        let (first, last) = bounds(&body, dimension).unwrap();
+        let numbers = [15.0, 7.0, 3.0];
+        let mut cell = 1.0;
+        for a in 0..dimension {
+            let pitch = (upper[a] - lower[a]) / numbers[a];
+            cell *= pitch;
+            assert!((first[a] - lower[a] - 0.5 * pitch).abs() < 1e-12);
+            assert!((upper[a] - last[a] - 0.5 * pitch).abs() < 1e-12);
+        }
+        let each = even_volume(&body, dimension, &[]).unwrap();
+        assert!((each / cell - 1.0).abs() < 1e-12, "{each} {cell}");
+    }
+    let whole = block([0.0; 3], [1.0, 0.5, 0.2]);
+    let plain = body(whole, LatticeKind::Cubic, 0.1, 0.0);
+    let mut fitted = plain.clone();
+    fitted.lattice.fit = true;
+    for (a, b) in all(&plain, 3).iter().zip(all(&fitted, 3)) {
+        assert!((Vec3::from(a.position) - Vec3::from(b.position)).norm() < 1e-12);
+    }
 }
 
 #[test]

@@ -68,7 +68,7 @@ fn box_size(body: &Body, case: &Case) -> Option<String> {
     };
     // The layers of other lattices are no whole number of spacings apart.
     let lattice = &body.lattice;
-    if lattice.kind != LatticeKind::Cubic || lattice.angle != 0.0 {
+    if lattice.kind != LatticeKind::Cubic || lattice.angle != 0.0 || lattice.fit {
         return None;
     }
     let (first, last) = populate::bounds(body, case.dimension)?;
@@ -79,7 +79,8 @@ fn box_size(body: &Body, case: &Case) -> Option<String> {
     let unit = &case.length_unit;
     asked.iter().zip(&got).any(differs).then(|| {
         format!(
-            "the box of `{}` is no whole number of spacings of {}: in place of {} it gets {}",
+            "the box of `{}` is no whole number of spacings of {}: in place of {} it gets {}; \
+             `lattice = {{ kind = \"cubic\", fit = true }}` stretches the lattice to fill it",
             body.name,
             unit.text(lattice.spacing),
             unit.vector(&asked),

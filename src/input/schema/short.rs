@@ -21,6 +21,8 @@ tables! {
         angle: Option<Placed<Angle>>,
         /// About which it is turned; z if absent.
         axis: Option<Spanned<AxisParams>>,
+        /// Whether the lattice is stretched to fill a box; false if absent.
+        fit: Option<Spanned<bool>>,
         /// Which glass; 0 if absent.
         seed: Option<Spanned<i64>>,
     }
@@ -87,17 +89,20 @@ pub struct LatticeParams {
     pub angle: Option<Placed<Angle>>,
     /// About which it is turned.
     pub axis: Option<Spanned<AxisParams>>,
+    /// Whether the lattice is stretched to fill a box.
+    pub fit: Option<Spanned<bool>>,
     /// Which glass.
     pub seed: Option<Spanned<i64>>,
 }
 
 typed_as! {
     LatticeParams: "\"cubic\", \"glass\" and the like or a table with `kind`" {
-        word: |kind| LatticeParams { kind, angle: None, axis: None, seed: None };
+        word: |kind| LatticeParams { kind, angle: None, axis: None, fit: None, seed: None };
         table: |table: LatticeTable| LatticeParams {
             kind: table.kind.into_inner(),
             angle: table.angle,
             axis: table.axis,
+            fit: table.fit,
             seed: table.seed,
         };
     }

@@ -317,38 +317,59 @@ impl Reader<'_> {
             return Err(warn(title).help("a symmetry plane keeps the side of larger coordinates"));
         }
         for plane in symmetry {
-            let (axis, spacing) = (plane.axis, body.lattice.spacing);
-            let near = populate::first_layer(body, self.dimension, symmetry, axis);
-            let gap = near.map_or(0.5, |x| (x - plane.position) / spacing);
-            let is_cut = populate::bounds(body, self.dimension)
-                .is_some_and(|(lower, _)| lower[axis.index()] <= plane.position);
-            let turns_across = (0..3).any(|a| a != axis.index() && body.angular_velocity[a] != 0.0);
-            if is_cut && turns_across {
-                let title = format!(
-                    "`{}` is cut by the symmetry plane of {}, so that it can turn only about that axis",
-                    body.name,
-                    axis.name()
-                );
-                let span = params
-                    .angular_velocity
-                    .as_ref()
-                    .map_or_else(|| params.form_span(), Spanned::span);
-                return Err(Diagnostic::new(span, title));
-            }
-            // Particles of a file stand where they are, fitted ones at a face.
-            if body.cloud().is_some() || populate::moves_sites(body) {
-                continue;
-            }
-            if gap < FIRST_LAYER.0 || (is_cut && gap > FIRST_LAYER.1) {
-                let title = format!(
-                    "the symmetry plane of {} does not lie between two layers of `{}`",
-                    axis.name(),
-                    body.name
-                );
-                return Err(warn(title).help(
-                    "take an even number of layers about the plane, or a body that begins at it",
-                ));
-            }
+            self.check_plane(params, body, symmetry, plane)?;
+        }
+        Ok(())
+    }
+
+    /// One of the symmetry planes cuts between layers of a body, or not at all.
+    fn check_plane(
+        &self,
+        params: &BodyParams,
+        body: &Body,
+        symmetry: &[SymmetryPlane],
+        plane: &SymmetryPlane,
+    ) -> Result<(), Diagnostic> {
+        let warn = |title| Diagnostic::new(params.form_span(), title);
+        let (axis, spacing) = (plane.axis, body.lattice.spacing);
+        let near = populate::first_layer(body, self.dimension, symmetry, axis);
+        let gap = near.map_or(0.5, |x| (x - plane.position) / spacing);
+        let is_cut = populate::bounds(body, self.dimension)
+            .is_some_and(|(lower, _)| lower[axis.index()] <= plane.position);
+        let turns_across = (0..3).any(|a| a != axis.index() && body.angular_velocity[a] != 0.0);
+        if is_cut && turns_across {
+            let title = format!(
+                "`{}` is cut by the symmetry plane of {}, so that it can turn only about that axis",
+                body.name,
+                axis.name()
+            );
+            let span = params
+                .angular_velocity
+                .as_ref()
+                .map_or_else(|| params.form_span(), Spanned::span);
+            return Err(Diagnostic::new(span, title));
+        }
+        if is_cut && body.lattice.kind == LatticeKind::Shells {
+            let title = format!(
+                "the symmetry plane of {} cuts `{}`, whose shells are not the same on both sides",
+                axis.name(),
+                body.name
+            );
+            return Err(warn(title).help("fill it with glass, or model the whole of it"));
+        }
+        // Particles of a file stand where they are, fitted ones at a face.
+        if body.cloud().is_some() || populate::moves_sites(body) {
+            return Ok(());
+        }
+        if gap < FIRST_LAYER.0 || (is_cut && gap > FIRST_LAYER.1) {
+            let title = format!(
+                "the symmetry plane of {} does not lie between two layers of `{}`",
+                axis.name(),
+                body.name
+            );
+            return Err(warn(title).help(
+                "take an even number of layers about the plane, or a body that begins at it",
+            ));
         }
         Ok(())
     }

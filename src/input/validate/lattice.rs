@@ -65,9 +65,23 @@ pub fn lattice(
         sizes: None,
         angle,
         axis: axis.filter(|axis| axis.z != 1.0),
+        fit: fits(params, is_turned, shape)?,
         seed,
         volume: None,
     })
+}
+
+/// Whether a lattice is stretched to fill its shape.
+fn fits(params: &LatticeParams, is_turned: bool, shape: &Shape) -> Result<bool, Diagnostic> {
+    let Some(fit) = params.fit.as_ref().filter(|fit| *fit.get_ref()) else {
+        return Ok(false);
+    };
+    let is_cubic = params.kind == LatticeKind::Cubic && !is_turned;
+    if is_cubic && matches!(shape, Shape::Box { .. }) {
+        return Ok(true);
+    }
+    let title = "`fit` stretches a cubic lattice that is not turned, and in a box alone";
+    Err(Diagnostic::new(fit.span(), title))
 }
 
 /// Why a lattice does not go with a shape.
@@ -86,6 +100,13 @@ fn misfit(
         }
         LatticeKind::Glass if is_turned => {
             Some("glass, which has no order, has no `angle` and no `axis`")
+        }
+        LatticeKind::Shells => {
+            let is_round = matches!(shape, Shape::Sphere { .. } | Shape::Shell { .. });
+            (!is_round || is_turned || dimension < 3).then_some(
+                "a lattice of shells, which has no `angle`, fills spheres and hollow spheres in \
+                 three dimensions; \"rings\" fill discs and cylinders",
+            )
         }
         LatticeKind::Rings => {
             let is_round = match shape {

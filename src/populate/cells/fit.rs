@@ -18,7 +18,7 @@ const STEPS: usize = 12;
 /// How far sites move in all steps, at most, for who may feel whom (spacings).
 const SLACK: f64 = 3.6;
 /// Depth of the outermost layer (spacings), and which sites belong to it.
-const LAYER: f64 = 0.5;
+pub(super) const LAYER: f64 = 0.5;
 const OF_LAYER: f64 = 1.0;
 /// How far sites of the layer that stand too deep are drawn to it in a step.
 const DRAWN: f64 = 0.3;

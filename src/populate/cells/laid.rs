@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use super::tile::{self, Tile};
 use crate::model::{Body, Lattice, LatticeKind, Shape, Solid, SymmetryPlane, Vec3, cube, rotation};
+use crate::populate::Site;
 use crate::populate::row::Cut;
-use crate::populate::{Share, Site};
 
 /// Sites as near to the surface as this (spacings) are outside: whether a lattice point on a face
 /// belongs to the body must not hang on rounding.
@@ -21,7 +21,7 @@ pub(in crate::populate) struct Cells {
     pub(super) dimension: usize,
     /// The finest spacing, and how it grows (m).
     pub(super) lattice: Lattice,
-    tile: Cow<'static, Tile>,
+    pub(super) tile: Cow<'static, Tile>,
     pub(super) turn: nalgebra::Matrix3<f64>,
     /// Tiles of the spacing; where that is graded, also of twice the spacing, four times, and so
     /// on, of which each fills the places with spacings up to twice its own.
@@ -36,7 +36,7 @@ pub(super) struct Level {
     /// Beyond all spacings that it fills (m).
     end: f64,
     /// Where the corner of the first tile lies (m).
-    corner: Vec3,
+    pub corner: Vec3,
     /// Number of tiles along each axis.
     tiles: [u64; 3],
     /// The first index of its sites.
@@ -51,9 +51,9 @@ pub(super) struct Block {
 }
 
 impl Cells {
-    /// Of a body, if it is not filled by rows.
+    /// Of a body, if it is filled neither by rows nor by shells.
     pub fn of(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> Option<Self> {
-        if has_rows(body) {
+        if has_rows(body) || body.lattice.kind == LatticeKind::Shells {
             return None;
         }
         let lattice = &body.lattice;
@@ -194,7 +194,7 @@ impl Cells {
     }
 
     /// All tiles in order, level by level.
-    fn all_tiles(&self) -> impl Iterator<Item = Block> + use<> {
+    pub(super) fn all_tiles(&self) -> impl Iterator<Item = Block> + use<> {
         let tiles: Vec<[u64; 3]> = self.levels.iter().map(|level| level.tiles).collect();
         let tiles = tiles.into_iter().enumerate();
         tiles.flat_map(|(level, n)| each(n).map(move |at| Block { level, at }))
@@ -214,7 +214,7 @@ impl Cells {
     }
 
     /// The first block of a tile, and the end of its blocks.
-    fn of_tile(&self, tile: Block) -> [[u64; 3]; 2] {
+    pub(super) fn of_tile(&self, tile: Block) -> [[u64; 3]; 2] {
         let corner = |more: u64| [0, 1, 2].map(|a| (tile.at[a] + more) * self.tile.blocks[a]);
         [corner(0), corner(1)]
     }
@@ -254,7 +254,7 @@ impl Cells {
     }
 
     /// Where the solid, the cuts and the spacing leave a range of blocks of a level.
-    fn lie(&self, level: usize, [first, end]: [[u64; 3]; 2], cuts: &[Cut]) -> Lie {
+    pub(super) fn lie(&self, level: usize, [first, end]: [[u64; 3]; 2], cuts: &[Cut]) -> Lie {
         let (middle, half) = self.middle(level, first, end);
         let reach = half.norm() + FACE * self.lattice.spacing;
         let thinned = self.lie_in_grading(&self.levels[level], &middle, reach);
@@ -310,7 +310,7 @@ impl Cells {
     }
 
     /// Tells its sites before they are fitted, in the order of their index within a block.
-    fn tell_sites(&self, block: Block, cuts: &[Cut], mut tell: impl FnMut(Site)) {
+    pub(super) fn tell_sites(&self, block: Block, cuts: &[Cut], mut tell: impl FnMut(Site)) {
         let lie = self.lie(block.level, [block.at, block.at.map(|n| n + 1)], cuts);
         if lie == Lie::Outside {
             return;
@@ -327,49 +327,10 @@ impl Cells {
             }
         }
     }
-
-    /// How many there are.
-    pub fn count(&self, cuts: &[Cut]) -> u64 {
-        let mut count = 0;
-        for tile in self.all_tiles() {
-            let [first, end] = self.of_tile(tile);
-            match self.lie(tile.level, [first, end], cuts) {
-                Lie::Outside => {}
-                Lie::Inside => count += self.tile.sites.len() as u64,
-                Lie::Between => {
-                    for block in each([0, 1, 2].map(|a| end[a] - first[a])) {
-                        let block = Block {
-                            level: tile.level,
-                            at: [0, 1, 2].map(|a| first[a] + block[a]),
-                        };
-                        self.tell_sites(block, cuts, |_| count += 1);
-                    }
-                }
-            }
-        }
-        count
-    }
-
-    /// The sum of their shares.
-    pub fn shares(&self, cuts: &[Cut]) -> f64 {
-        let mut sum = 0.0;
-        for block in self.all_blocks(cuts) {
-            self.tell_sites(block, cuts, |site| sum += site.share);
-        }
-        sum
-    }
-
-    /// Tells the coordinates on an axis (m) of one of several shares of the sites.
-    pub fn tally(&self, cuts: &[Cut], axis: usize, share: Share, mut add: impl FnMut(f64, u64)) {
-        let blocks = self.all_blocks(cuts).skip(share.part);
-        for block in blocks.step_by(share.parts.max(1)) {
-            self.tell_sites(block, cuts, |site| add(site.position[axis], 1));
-        }
-    }
 }
 
 /// All triples of indices below some numbers, the first one fastest.
-fn each(n: [u64; 3]) -> impl Iterator<Item = [u64; 3]> {
+pub(super) fn each(n: [u64; 3]) -> impl Iterator<Item = [u64; 3]> {
     (0..n[2]).flat_map(move |k| (0..n[1]).flat_map(move |j| (0..n[0]).map(move |i| [i, j, k])))
 }
 
@@ -381,13 +342,16 @@ pub(in crate::populate) fn has_rows(body: &Body) -> bool {
         LatticeKind::Cubic | LatticeKind::Hexagonal => {
             lattice.axis.is_none() && !matches!(body.shape, Shape::Solid(_))
         }
-        LatticeKind::BodyCentred | LatticeKind::FaceCentred | LatticeKind::Glass => false,
+        LatticeKind::BodyCentred
+        | LatticeKind::FaceCentred
+        | LatticeKind::Shells
+        | LatticeKind::Glass => false,
     }
 }
 
 /// Where a block lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Lie {
+pub(super) enum Lie {
     Outside,
     Inside,
     Between,

@@ -1,6 +1,6 @@
 //! The sites where a function of place is smallest, block by block.
 
-use super::fit::settled;
+use super::fit::{LAYER, settled};
 use super::laid::{Block, Cells};
 use crate::populate::Wanted;
 use crate::populate::parts::{Parts, best};
@@ -70,17 +70,31 @@ pub(in crate::populate) fn smallest(
     found
 }
 
-/// Smallest and largest coordinates (m) of the sites, if there are any.
+/// Smallest and largest coordinates (m) of the sites, if there are any; of those that are fitted to
+/// a billionth of a spacing.
 pub(in crate::populate) fn extremes(cells: &Cells, cuts: &[Cut]) -> Option<([f64; 3], [f64; 3])> {
     let wanted = Wanted {
         most: 1,
         limit: f64::INFINITY,
         any: false,
     };
+    // No site is fitted farther out than its layer: what stands there ends the search.
+    let (mut least, mut most) = cells.solid.bounds();
+    for &(a, at) in &cells.planes {
+        least[a] = least[a].max(at);
+    }
+    let layer = if cells.is_fitted() {
+        (LAYER + 1e-9) * cells.lattice.spacing
+    } else {
+        0.0
+    };
+    (least, most) = (least.add_scalar(layer), most.add_scalar(-layer));
     let (mut lowest, mut highest) = ([0.0; 3], [0.0; 3]);
     for a in 0..cells.dimension {
-        let low = smallest(cells, cuts, wanted, |lower, _| lower[a], |x| x[a]);
-        let high = smallest(cells, cuts, wanted, |_, upper| -upper[a], |x| -x[a]);
+        let low = |lower: &[f64; 3], _: &[f64; 3]| lower[a].max(least[a]);
+        let high = |_: &[f64; 3], upper: &[f64; 3]| -upper[a].min(most[a]);
+        let low = smallest(cells, cuts, wanted, low, |x| x[a]);
+        let high = smallest(cells, cuts, wanted, high, |x| -x[a]);
         lowest[a] = low.first()?.0;
         highest[a] = -high.first()?.0;
     }

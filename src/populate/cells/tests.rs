@@ -14,6 +14,9 @@ use super::*;
 use crate::model::{Axis, Body, Focus, Grading, LatticeKind, Shape, SymmetryPlane, Vec3};
 use crate::numerics::kernel::Kernel;
 
+mod harmonics;
+mod told;
+
 /// Steps in which a tile comes to rest.
 const STEPS: usize = 600;
 
@@ -264,30 +267,6 @@ fn a_fitted_body_has_a_smooth_layer_half_a_spacing_below_its_faces() {
         assert!(depths.iter().all(|&d| d > 0.4));
         assert!(least > 0.6, "nearest {least}");
     }
-}
-
-#[test]
-fn slabs_hold_what_the_whole_holds_to_the_bit() {
-    let body = body(ball(20.0), LatticeKind::Glass, 1.0);
-    let whole: Vec<Site> = crate::populate::sites(&body, 3, &[], None).collect();
-    assert_eq!(
-        whole.len() as u64,
-        crate::populate::count(&body, 3, &[], None)
-    );
-    let mut parts: Vec<Site> = Vec::new();
-    for (lower, upper) in [(f64::NEG_INFINITY, -4.0), (-4.0, 1.5), (1.5, f64::INFINITY)] {
-        let slab = Some(crate::populate::Slab {
-            axis: 0,
-            lower,
-            upper,
-        });
-        let before = parts.len();
-        parts.extend(crate::populate::sites(&body, 3, &[], slab));
-        let count = (parts.len() - before) as u64;
-        assert_eq!(count, crate::populate::count(&body, 3, &[], slab));
-    }
-    parts.sort_by_key(|site| site.index);
-    assert!(parts == whole);
 }
 
 #[test]

@@ -152,9 +152,9 @@ fn scaled(edges: [f64; 3], sites: u32) -> [f64; 3] {
     edges.map(|edge| edge * libm::cbrt(f64::from(sites) / volume))
 }
 
-/// How the tiles of glass of a seed are turned, and moved (tiles): any turn in space (about z in
-/// two dimensions) and any place are as likely.
-pub(super) fn drawn(seed: u64, dimension: usize) -> (nalgebra::Matrix3<f64>, Vec3) {
+/// How what has a seed is turned, and moved (tiles): any turn in space (about z in two dimensions)
+/// and any place are as likely.
+pub(in crate::populate) fn drawn(seed: u64, dimension: usize) -> (nalgebra::Matrix3<f64>, Vec3) {
     let mut state = seed;
     let mut draw = || {
         let word = split_mix(&mut state);

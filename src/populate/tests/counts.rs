@@ -8,12 +8,13 @@ use crate::model::{Motion, Resistance, SurfaceShape};
 /// A body of any lattice in any dimension, with the shapes that the lattice fills.
 fn any_body() -> impl Strategy<Value = (usize, Body)> {
     let angle = prop_oneof![Just(0.0), Just(PI), Just(0.5 * PI), -3.0..3.0f64];
-    (0_usize..3, 1_usize..4, 0_usize..7, angle, 0.09..0.3f64).prop_map(
+    (0_usize..4, 1_usize..4, 0_usize..8, angle, 0.09..0.3f64).prop_map(
         |(kind, dimension, shape, angle, spacing)| {
             let kind = [
                 LatticeKind::Cubic,
                 LatticeKind::Hexagonal,
                 LatticeKind::Rings,
+                LatticeKind::Shells,
             ][kind];
             let shapes = [
                 ball(1.0),
@@ -24,19 +25,25 @@ fn any_body() -> impl Strategy<Value = (usize, Body)> {
                 plate(Axis::Z),
                 block([-1.0, -0.4, -0.7], [0.5, 1.0, 0.3]),
             ];
+            let is_fitted = kind == LatticeKind::Cubic && shape == 7;
             let (dimension, shape) = match (kind, dimension) {
                 (LatticeKind::Rings, 1 | 2) => (2, shape % 3),
                 (LatticeKind::Rings, _) => (3, 5),
+                (LatticeKind::Shells, _) => (3, shape % 3),
                 (_, 1) => (1, 6),
                 (_, 2) => (2, [0, 1, 2, 6][shape % 4]),
-                _ => (3, shape),
+                _ => (3, shape.min(6)),
             };
-            let angle = if kind == LatticeKind::Rings || dimension == 1 {
+            let has_angle = matches!(kind, LatticeKind::Cubic | LatticeKind::Hexagonal);
+            let fit = is_fitted && shape == 6;
+            let angle = if !has_angle || dimension == 1 || fit {
                 0.0
             } else {
                 angle
             };
-            (dimension, body(shapes[shape].clone(), kind, spacing, angle))
+            let mut body = body(shapes[shape].clone(), kind, spacing, angle);
+            body.lattice.fit = fit;
+            (dimension, body)
         },
     )
 }
