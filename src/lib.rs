@@ -19,6 +19,7 @@ pub mod particles;
 
 pub mod comm;
 pub mod domain;
+pub mod fragments;
 pub mod neighbours;
 
 pub mod contact;

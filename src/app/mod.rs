@@ -3,6 +3,7 @@
 mod bench;
 mod check;
 pub mod compare;
+mod fragments;
 pub mod info;
 mod materials;
 pub mod plot;
@@ -29,6 +30,7 @@ use crate::run::{launch, say};
   mpirun -n 2 whipple run inputs/quarter-impact --out runs/quarter
   whipple info runs/quarter
   whipple plot runs/quarter --panels
+  whipple fragments runs/quarter
   mpirun -n 4 whipple restart runs/quarter --set run.end_time=0.3us
 
 For work on the program itself: `whipple compare` tells whether two results agree to the last bit,
@@ -49,6 +51,7 @@ enum Command {
     Check(check::CheckArgs),
     Plot(Box<plot::PlotArgs>),
     Info(info::InfoArgs),
+    Fragments(fragments::FragmentsArgs),
     Materials(materials::MaterialsArgs),
     #[command(hide = true)]
     Compare(compare::CompareArgs),
@@ -81,6 +84,7 @@ pub fn main() -> ExitCode {
             |()| 0,
         ),
         Command::Info(args) => info::run(&args),
+        Command::Fragments(args) => fragments::run(&args),
         Command::Materials(args) => materials::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Bench(args) => bench::run(&args),

@@ -197,6 +197,28 @@ impl Halo {
         }
     }
 
+    /// Gives halo particles the values of their owners: those of this rank's particles stand first
+    /// in `values`, those of halo particles after them. Collective.
+    pub fn exchange_values<T: bytemuck::Pod>(&mut self, comm: &Comm, values: &mut [T]) {
+        let size = size_of::<T>();
+        for k in 0..self.exchange.peers() {
+            let message = self.exchange.outgoing(k);
+            message.clear();
+            for &i in &self.sends[k].0 {
+                message.extend_from_slice(bytemuck::bytes_of(&values[i as usize]));
+            }
+            self.exchange.expect(k, self.received[k] * size);
+        }
+        self.exchange.post(comm);
+        self.exchange.wait();
+        let mut first = values.len() - self.received.iter().sum::<usize>();
+        for (k, &count) in self.received.iter().enumerate() {
+            bytemuck::cast_slice_mut(&mut values[first..first + count])
+                .copy_from_slice(self.exchange.incoming(k));
+            first += count;
+        }
+    }
+
     /// After [`Self::finish_motion`]: the images of owned particles behind planes, and the halo
     /// particles with theirs.
     #[must_use]

@@ -9,6 +9,7 @@ pub mod checkpoint;
 mod digest;
 mod error;
 mod files;
+pub mod fragments;
 pub mod h5;
 mod history;
 mod lock;

@@ -9,7 +9,7 @@ use std::path::Path;
 use crate::comm::Comm;
 use crate::model::{Case, SphForm};
 use crate::particles::{
-    FIELDS, FieldId, FieldInfo, FieldKind, Output, Owner, ParticleStore, TEMPERATURE,
+    FIELDS, FRAGMENT, FieldId, FieldInfo, FieldKind, Output, Owner, ParticleStore, TEMPERATURE,
     VON_MISES_STRESS,
 };
 
@@ -33,6 +33,8 @@ pub enum Quantity {
     VonMisesStress,
     /// Temperature; NaN for materials without thermal constants.
     Temperature,
+    /// Label of the fragment that it belongs to.
+    Fragment,
 }
 
 impl Quantity {
@@ -43,6 +45,7 @@ impl Quantity {
             Self::Field(field) => field.name,
             Self::VonMisesStress => VON_MISES_STRESS,
             Self::Temperature => TEMPERATURE,
+            Self::Fragment => FRAGMENT,
         }
     }
 
@@ -51,6 +54,7 @@ impl Quantity {
             Self::Field(field) => field.unit,
             Self::VonMisesStress => "Pa",
             Self::Temperature => "K",
+            Self::Fragment => "",
         }
     }
 
@@ -65,6 +69,11 @@ impl Quantity {
             Self::VonMisesStress => "Von Mises equivalent stress.".to_owned(),
             Self::Temperature => {
                 "Temperature; no number for materials without thermal constants.".to_owned()
+            }
+            Self::Fragment => {
+                "Smallest id of the particles that it hangs together with; -1 of what belongs to \
+                 no fragment."
+                    .to_owned()
             }
         }
     }
@@ -85,6 +94,9 @@ pub fn quantities_of(case: &Case, particles: &ParticleStore) -> Result<Vec<Quant
             _ => true,
         });
         names.extend(chosen.iter().map(|choice| choice.name().to_owned()));
+    }
+    if case.fragments.is_some() && case.output.fields.is_empty() {
+        names.push(FRAGMENT.to_owned());
     }
     let role = "stress_mass".to_owned();
     if case.sph.form == SphForm::StressPoints && !names.contains(&role) {
@@ -111,7 +123,11 @@ pub fn quantities(names: &[String]) -> Result<Vec<Quantity>, OutputError> {
         .filter(|field| field.is_shown())
         .map(Quantity::Field)
         .collect();
-    choices.extend([Quantity::VonMisesStress, Quantity::Temperature]);
+    choices.extend([
+        Quantity::VonMisesStress,
+        Quantity::Temperature,
+        Quantity::Fragment,
+    ]);
     for name in names {
         let known = choices.iter().any(|choice| choice.name() == name);
         if !known && name != "position" {
@@ -152,6 +168,9 @@ pub struct Meta<'a> {
     pub threads: usize,
     /// Time since the start of the run (s).
     pub wall_seconds: f64,
+    /// Labels of fragments of this rank's particles, where these are shown; the last ones that have
+    /// none belong to no fragment.
+    pub fragments: &'a [u64],
 }
 
 /// Writes a snapshot, which appears under its name when it is whole. Collective.
@@ -185,7 +204,7 @@ fn write_file(
     let file = Writer::create(comm, path)?;
     write_grid(comm, &file, particles, meta.time, rows)?;
     for quantity in with_frozen(particles, quantities) {
-        write_quantity(comm, &file, particles, meta.case, quantity, rows)?;
+        write_quantity(comm, &file, particles, meta, quantity, rows)?;
     }
     write_meta(comm, &file, meta)?;
     file.close()
@@ -260,11 +279,11 @@ fn write_quantity(
     comm: &Comm,
     file: &Writer,
     particles: &ParticleStore,
-    case: &Case,
+    meta: &Meta,
     quantity: Quantity,
     rows: &mut Rows,
 ) -> Result<(), OutputError> {
-    let block = rows.block();
+    let (block, case) = (rows.block(), meta.case);
     let path = format!("{GRID}/PointData/{}", quantity.name());
     match quantity {
         Quantity::Field(field) => {
@@ -278,6 +297,12 @@ fn write_quantity(
                 }
             }
             file.rows(&path, row, block, bytes)?;
+        }
+        Quantity::Fragment => {
+            let mut labels = meta.fragments.to_vec();
+            labels.resize(particles.owned(), u64::MAX);
+            let bytes = rows.collect(comm, bytemuck::cast_slice(&labels), 8);
+            file.rows(&path, row_type(FieldKind::Id), block, bytes)?;
         }
         Quantity::VonMisesStress | Quantity::Temperature => {
             let value = |i: usize| match quantity {

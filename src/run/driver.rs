@@ -18,8 +18,8 @@ use crate::comm::Comm;
 use crate::model::NumericalFailurePolicy;
 use crate::output::snapshot::{self, Quantity};
 use crate::output::{
-    COMMIT, Log, OutputError, Phase, Rows, RunFolder, Schedule, Status, VERSION, agree, on_root,
-    series, write_json,
+    COMMIT, Log, OutputError, Phase, Rows, RunFolder, Schedule, Status, VERSION, agree, fragments,
+    on_root, series, write_json,
 };
 use crate::output::{checkpoint, post_mortem};
 use crate::step::{self, Simulation, StepError, Timers};
@@ -105,7 +105,8 @@ impl<'a> Driver<'a> {
         driver.announce(comm, restarted, warnings);
         if restarted.is_none() {
             driver.write_row(comm)?;
-            driver.write_snapshot(comm)?;
+            let tells = driver.simulation.case.fragments.is_some();
+            driver.write_snapshot(comm, tells)?;
         }
         Ok(driver)
     }
@@ -236,8 +237,15 @@ impl<'a> Driver<'a> {
             self.simulation.diagnose(comm);
             self.write_row(comm)?;
         }
+        let census_due = self.simulation.case.fragments.is_some_and(|options| {
+            finished
+                || (options.every)
+                    .map_or(snapshot_due, |t| Schedule::new(Some(t)).is_due(before, now))
+        });
         if finished || snapshot_due {
-            self.write_snapshot(comm)?;
+            self.write_snapshot(comm, census_due)?;
+        } else if census_due {
+            self.find_fragments(comm, true)?;
         }
         // A stop writes its own.
         let stops = stop::reason(self.simulation.step_control.agreed_requests).is_some();
@@ -268,11 +276,38 @@ impl<'a> Driver<'a> {
         Ok(())
     }
 
-    fn write_snapshot(&mut self, comm: &Comm) -> Result<(), OutputError> {
+    /// Labels of fragments of this rank's particles, whose tables this writes if it `tells`.
+    /// Collective.
+    fn find_fragments(&mut self, comm: &Comm, tells: bool) -> Result<Vec<u64>, OutputError> {
+        let options = self.simulation.case.fragments.unwrap_or_default();
+        let census = self.simulation.fragments(comm, &options);
+        if tells {
+            let (case, state) = (&self.simulation.case, &self.simulation.state);
+            on_root(comm, || {
+                let bodies: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();
+                let table = fragments::table(&census, &bodies, case.dimension);
+                self.folder.write_fragments(state.step, &table)?;
+                let row = fragments::row(state.step, state.time, &census);
+                self.tables
+                    .as_mut()
+                    .map_or(Ok(()), |tables| tables.write_fragments(&row))
+            })?;
+        }
+        Ok(census.labels)
+    }
+
+    /// Writes a snapshot, and the tables of fragments if it `tells`.
+    fn write_snapshot(&mut self, comm: &Comm, tells: bool) -> Result<(), OutputError> {
         let begun = Instant::now();
-        let (quantities, rows) = (&self.quantities, &mut self.rows);
         let path = self.folder.snapshot(self.simulation.state.step);
         self.simulation.measure_contact_stress(comm);
+        let shows = |quantity: &Quantity| matches!(quantity, Quantity::Fragment);
+        let labels = if tells || self.quantities.iter().any(shows) {
+            self.find_fragments(comm, tells)?
+        } else {
+            Vec::new()
+        };
+        let (quantities, rows) = (&self.quantities, &mut self.rows);
         self.simulation.with_frozen(|simulation| {
             let meta = snapshot::Meta {
                 case: &simulation.case,
@@ -280,6 +315,7 @@ impl<'a> Driver<'a> {
                 time: simulation.state.time,
                 threads: rayon::current_num_threads(),
                 wall_seconds: self.start.elapsed().as_secs_f64(),
+                fragments: &labels,
             };
             snapshot::write(comm, &path, &simulation.particles, &meta, quantities, rows)
         })?;
