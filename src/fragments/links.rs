@@ -11,6 +11,10 @@ use crate::comm::Comm;
 use crate::domain::{Halo, Mirrors};
 use crate::particles::Image;
 
+/// Bytes that a search takes for each particle or image while it lasts: its place, twice, and the
+/// numbers of some eighteen neighbours, with spare room.
+pub const BYTES_OF_SEARCH: usize = 2 * size_of::<Place>() + 160;
+
 /// Cubes of a grid that a task looks at.
 const SHARE: usize = 512;
 

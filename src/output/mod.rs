@@ -15,6 +15,7 @@ mod history;
 mod lock;
 mod log;
 pub mod post_mortem;
+mod quantity;
 mod rows;
 mod run_folder;
 mod schedule;

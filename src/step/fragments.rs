@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::simulation::Simulation;
 use crate::comm::Comm;
 use crate::fragments::{Census, Matter, Rule, Surroundings, belongs, find, link_reach, size};
-use crate::model::FragmentOptions;
+use crate::model::{FragmentOptions, SphForm};
 
 impl Simulation {
     /// Finds the fragments of all ranks. Between steps: halo particles are others afterwards.
@@ -35,11 +35,13 @@ impl Simulation {
         }
         halo.exchange_values(comm, &mut included);
         let included: Vec<bool> = included.iter().map(|&is| is != 0).collect();
+        // Stress points hold the state of the particles about them.
+        let has_state = case.sph.form != SphForm::StressPoints;
         let temperature = (0..owned).into_par_iter().map(|i| {
             let material = &case.materials[case.bodies[particles.body[i] as usize].material];
             let (density, energy) = (particles.density[i], particles.specific_energy[i]);
             let known = material.temperature(density, energy, damage(i));
-            known.unwrap_or(f64::NAN)
+            known.filter(|_| has_state).unwrap_or(f64::NAN)
         });
         let temperature: Vec<f64> = temperature.collect();
         let matter = Matter {

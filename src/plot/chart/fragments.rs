@@ -108,7 +108,7 @@ pub fn tables_of_run(
     table: &Path,
     path_of: impl Fn(u64) -> PathBuf,
 ) -> Result<Vec<(f64, PathBuf)>, PlotError> {
-    let read = || {
+    let read = || -> Result<_, String> {
         let rows = Table::read(table).map_err(|error| error.to_string())?;
         let steps = rows.texts("step")?;
         let times = rows.column("time")?;
@@ -120,7 +120,7 @@ pub fn tables_of_run(
         all.map(|(text, time)| Ok((time, path_of(step(text)?))))
             .collect()
     };
-    read().map_err(|reason: String| wrong(table, reason))
+    read().map_err(|reason| wrong(table, reason))
 }
 
 #[cfg(test)]
