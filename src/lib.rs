@@ -20,6 +20,7 @@ pub mod particles;
 
 pub mod comm;
 pub mod domain;
+pub mod fragments;
 pub mod neighbours;
 
 pub mod contact;

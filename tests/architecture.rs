@@ -17,8 +17,8 @@ use std::fs;
 use source::{Source, sources, src};
 
 /// Every module, in the order in which data flows.
-const MODULES: &str = "app run sweep input model preflight populate numerics material particles comm domain neighbours \
-     loads contact sph step diagnose output exact plot";
+const MODULES: &str = "app run sweep input model preflight populate numerics material particles comm domain fragments \
+     neighbours loads contact sph step diagnose output exact plot";
 
 /// The modules on top, and who may name them.
 const ON_TOP: &[(&str, &str)] = &[
@@ -79,6 +79,10 @@ const FORBIDDEN: &[(&str, &str)] = &[
         "material comm output input loads contact sph step diagnose",
     ),
     (
+        "fragments",
+        "material neighbours loads contact sph step diagnose input output plot",
+    ),
+    (
         "loads",
         "comm output input neighbours contact sph step diagnose",
     ),
@@ -106,14 +110,15 @@ const ENTRUSTED: &[(&str, &str)] = &[
 ];
 
 /// The only modules that call `comm`, from the main thread.
-const CALLERS_OF_COMM: &str = "app run preflight domain step output diagnose comm";
+const CALLERS_OF_COMM: &str = "app run preflight domain fragments step output diagnose comm";
 
 /// Rooms whose results must have the same bits on any ranks, threads and hosts.
-const PHYSICS: &str = "numerics populate material particles domain neighbours loads contact sph step diagnose \
+const PHYSICS: &str = "numerics populate material particles domain fragments neighbours loads contact sph step diagnose \
      exact";
 
 /// Physics modules that have no business with clocks at all (`step` times its phases).
-const TIMELESS: &str = "numerics populate material particles neighbours loads contact sph exact";
+const TIMELESS: &str =
+    "numerics populate material particles fragments neighbours loads contact sph exact";
 
 /// Functions of `f64` whose bits depend on the host's libm; the `libm` crate has them all.
 const HOST_MATHEMATICS: &str = "exp exp2 exp_m1 ln ln_1p log2 log10 powf sin cos tan asin acos atan atan2 sinh cosh tanh \

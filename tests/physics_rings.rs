@@ -3,7 +3,6 @@
 mod physics_support;
 
 use physics_support::{ready, run_to, start};
-use whipple::diagnose;
 use whipple::step::Simulation;
 
 /// Number of connected pieces of a body whose particles are linked when they are nearer than
@@ -12,7 +11,7 @@ fn fragments(s: &Simulation, body: u32, reach: f64) -> usize {
     let of_body = |&i: &usize| s.particles.body[i] == body;
     let particles = (0..s.particles.owned()).filter(of_body);
     let points: Vec<[f64; 3]> = particles.map(|i| s.particles.position[i]).collect();
-    diagnose::fragments::fragments(&points, reach).len()
+    whipple::fragments::components(&points, reach).len()
 }
 
 /// Mean velocity of a body along x (m/s).

@@ -9,8 +9,8 @@ mod shocks;
 use physics_support::bars::{axial_stress, interface_force};
 use physics_support::{inline, median, ready, run_to, run_with, start};
 use shocks::impact;
-use whipple::diagnose::fragments::fragments;
 use whipple::exact::finite_strain::Medium;
+use whipple::fragments::components;
 use whipple::step::Simulation;
 
 /// What carries stress: stress points, or all particles.
@@ -228,7 +228,7 @@ fn spacings(s: &Simulation, reach: f64) -> (f64, usize) {
     };
     let all: Vec<f64> = points.iter().map(nearest).collect();
     let least = all.iter().copied().fold(f64::INFINITY, f64::min);
-    (least / median(all), fragments(&points, reach).len())
+    (least / median(all), components(&points, reach).len())
 }
 
 /// A strip that flows evenly keeps its spacings to a stretch of 1.56; conventional SPH is in pieces
@@ -296,7 +296,7 @@ fn rings_rebound_whole() {
         least = least.min(spacings(&s, 3e-3).0);
         for body in [0, 1] {
             let places = of(&s, body).into_iter().map(|i| s.particles.position[i]);
-            assert_eq!(fragments(&places.collect::<Vec<_>>(), 3e-3).len(), 1);
+            assert_eq!(components(&places.collect::<Vec<_>>(), 3e-3).len(), 1);
         }
     }
     let velocities = [0, 1].map(|body| {

@@ -8,7 +8,9 @@ use super::results::{POINT_DATA, Results, ResultsError, component_names};
 use crate::model::readable::one_line;
 use crate::output::checkpoint::{self, FIELDS};
 use crate::output::h5::{Array, Content, Element, RowType};
-use crate::output::{Block, OutputError, Phase, Presence, RunFolder, read_small, series};
+use crate::output::{
+    Block, OutputError, Phase, Presence, RunFolder, Sheet, read_regular, read_small, series,
+};
 use crate::preflight::memory::in_words;
 use crate::run::exit::EXIT_INPUT;
 use crate::run::say::{say, seconds, warn};
@@ -241,6 +243,21 @@ fn for_chunks(
     Ok(())
 }
 
+/// What the last row of the run's fragments says, if there is one.
+fn fragments(folder: &RunFolder) -> Option<String> {
+    let text = String::from_utf8(read_regular(&folder.fragments()).ok()?).ok()?;
+    let sheet = Sheet::parse(&text).ok()?;
+    let (_, row) = sheet.rows.last()?;
+    let cell = |name: &str| row.get(sheet.names.iter().position(|n| n == name)?);
+    let number = |name: &str| cell(name)?.parse::<f64>().ok();
+    let (largest, total) = (number("largest_mass")?, number("total_mass")?);
+    let (count, time) = (cell("fragments")?, seconds(number("time")?));
+    let share = 100.0 * largest / total;
+    Some(format!(
+        "{count} at {time}, the heaviest with {share:.3} % of the mass"
+    ))
+}
+
 fn run_folder(folder: &RunFolder, text: &mut Text) -> Result<(), ResultsError> {
     let status = folder.status()?;
     text.entry("run", folder.path().display());
@@ -267,6 +284,9 @@ fn run_folder(folder: &RunFolder, text: &mut Text) -> Result<(), ResultsError> {
         _ => String::new(),
     };
     text.entry("snapshots", format!("{}{span}", snapshots.len()));
+    if let Some(line) = fragments(folder) {
+        text.entry("fragments", line);
+    }
     let checkpoints = checkpoint::list(&folder.checkpoints())?;
     let newest = checkpoints.last().map_or_else(String::new, |(step, _)| {
         format!(", the newest of step {step}")

@@ -3,6 +3,7 @@
 mod bench;
 mod check;
 pub mod compare;
+mod fragments;
 pub mod info;
 mod materials;
 pub mod plot;
@@ -30,6 +31,7 @@ use crate::run::{launch, say};
   mpirun -n 2 whipple run inputs/quarter-impact --out runs/quarter
   whipple info runs/quarter
   whipple plot runs/quarter --panels
+  whipple fragments runs/quarter
   mpirun -n 4 whipple restart runs/quarter --set run.end_time=0.3us
   whipple sweep inputs/quarter-impact --vary body.sphere.velocity=\"3..9 km/s\"
 
@@ -51,6 +53,7 @@ enum Command {
     Check(check::CheckArgs),
     Plot(Box<plot::PlotArgs>),
     Info(info::InfoArgs),
+    Fragments(fragments::FragmentsArgs),
     Materials(materials::MaterialsArgs),
     Sweep(sweep::SweepArgs),
     Converge(sweep::ConvergeArgs),
@@ -85,6 +88,7 @@ pub fn main() -> ExitCode {
             |()| 0,
         ),
         Command::Info(args) => info::run(&args),
+        Command::Fragments(args) => fragments::run(&args),
         Command::Materials(args) => materials::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Converge(args) => sweep::converge(&args),

@@ -24,6 +24,7 @@ use out::{is_png, target, write};
   whipple plot runs/impact --all --field velocity.z --range -7:1km/s
   whipple plot state.vtkhdf --section z=0.1mm --view -1:1,-1:1mm
   whipple plot runs/impact --history
+  whipple plot runs/impact --fragments --all
   whipple plot runs/bars --profile stress.xx --at 0.48us --exact
   whipple plot runs/bars --profile velocity.x --with runs/bars-kernel
   whipple plot runs/dam --front water --points martin-moyce.csv
@@ -126,6 +127,14 @@ pub struct PlotArgs {
     ])]
     pub history: bool,
 
+    /// Draw how many fragments of the run are as heavy, and how many as large, as any, instead: one
+    /// picture each, of the last time that the run has told them unless others are asked for; or of
+    /// a table that `whipple fragments --csv` has written
+    #[arg(long, conflicts_with_all = [
+        "field", "section", "drawn_as", "thickness", "no_mirror", "panels", "range", "view", "history",
+    ])]
+    pub fragments: bool,
+
     /// Draw a field along a line instead: FIELD or FIELD.COMPONENT, as for --field; stress.xx … is
     /// all that matter bears, that by contact too, `material_stress.xx` … without
     #[arg(long, value_name = "FIELD", group = "line", conflicts_with_all = [
@@ -199,6 +208,8 @@ pub fn run(args: &PlotArgs) -> Result<(), PlotError> {
     out::check(args)?;
     if args.history {
         curves::draw_history(args)
+    } else if args.fragments {
+        curves::draw_fragments(args)
     } else if let Some(body) = &args.front {
         curves::draw_front(args, body)
     } else if let Some(columns) = curves::columns(args)? {
@@ -304,7 +315,7 @@ fn name(place: &Path) -> String {
     )
 }
 
-fn wanted(args: &PlotArgs) -> Result<Wanted, PlotError> {
+pub(super) fn wanted(args: &PlotArgs) -> Result<Wanted, PlotError> {
     if args.all {
         Ok(Wanted::All)
     } else if !args.time.is_empty() {

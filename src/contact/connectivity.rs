@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::domain::Mirrors;
+use crate::fragments::{Labels, Members, Sets};
 use crate::model::Case;
 use crate::neighbours::{Fragment, Lists, Membership};
 use crate::particles::{GRAIN, ParticleStore, resize};
@@ -12,8 +13,7 @@ const EVERY: u64 = 10;
 /// Every symmetry plane: at the start nothing is cut off from any.
 const ALL_PLANES: u32 = 7;
 
-/// Fragments of the images, and the union of what is connected, kept from step to step; empty
-/// without self-contact.
+/// Fragments of the images, kept from step to step; empty without self-contact.
 #[derive(Debug, Default)]
 pub struct Connectivity {
     /// Whether there is self-contact.
@@ -23,9 +23,6 @@ pub struct Connectivity {
     of_images: Vec<Fragment>,
     /// Places at the start over the distance of folds.
     references: Vec<[f64; 3]>,
-    /// Union-find over particles, halo included: parent, and at roots label and planes.
-    parents: Vec<u32>,
-    labels: Vec<(u64, u32)>,
 }
 
 impl Connectivity {
@@ -35,13 +32,12 @@ impl Connectivity {
         let Some(own) = &case.self_contact else {
             return 0;
         };
-        let union = size_of::<u32>() + size_of::<(u64, u32)>();
         let indices = if own.folds.is_some() {
             size_of::<[f64; 3]>()
         } else {
             0
         };
-        size_of::<Fragment>() + indices + union
+        size_of::<Fragment>() + indices + Labels::BYTES
     }
 
     pub(crate) fn new(case: &Case) -> Self {
@@ -57,8 +53,6 @@ impl Connectivity {
     pub(crate) fn memory(&self) -> usize {
         size_of::<Fragment>() * self.of_images.capacity()
             + size_of::<[f64; 3]>() * self.references.capacity()
-            + 4 * self.parents.capacity()
-            + size_of::<(u64, u32)>() * self.labels.capacity()
     }
 
     /// Reads what the images show.
@@ -88,83 +82,42 @@ impl Connectivity {
         });
     }
 
-    fn root(&mut self, mut i: u32) -> u32 {
-        loop {
-            let parent = self.parents[i as usize];
-            if parent == i {
-                return i;
-            }
-            let above = self.parents[parent as usize];
-            self.parents[i as usize] = above;
-            i = above;
-        }
-    }
-
-    /// Joins what has a particle of this rank within the support of another.
-    fn join(&mut self, lists: &Lists, particles: &ParticleStore) {
-        let particles = particles.owned() + particles.halo();
-        self.parents.clear();
-        self.parents
-            .extend(0..u32::try_from(particles).unwrap_or(u32::MAX));
-        self.labels.clear();
-        self.labels.resize(particles, (u64::MAX, 0));
+    /// Links what has a particle of this rank within the support of another: particles of one
+    /// fragment that no chain of neighbours connects have come apart. These are out of each other's
+    /// support, so that no force changes by it.
+    pub(crate) fn link(lists: &Lists, sets: &Sets) {
         let images = lists.images();
         #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
         let base = |index: u32| images[index as usize].base() as u32;
-        for chunk in lists.chunks() {
+        lists.chunks().par_iter().for_each(|chunk| {
             for (cluster, neighbours, _) in chunk.iter() {
                 for &i in &cluster.receivers[..cluster.lanes] {
-                    let mut here = self.root(base(i));
+                    let own = base(i);
+                    let mut here = sets.root(own);
                     for &j in neighbours {
                         let code = images[j as usize].code();
-                        let there = base(j);
-                        if (self.parents[there as usize] == here && code == 0)
-                            || !lists.in_support(cluster.group, i, j)
-                        {
+                        let there = sets.root(base(j));
+                        if (there == here && code == 0) || !lists.in_support(cluster.group, i, j) {
                             continue;
                         }
-                        let other = self.root(there);
-                        let planes = self.labels[other as usize].1
-                            | self.labels[here as usize].1
-                            | u32::from(code);
-                        let (low, high) = (here.min(other), here.max(other));
-                        self.parents[high as usize] = low;
-                        self.labels[low as usize].1 = planes;
-                        here = low;
+                        sets.mark(own, code.into());
+                        sets.join(here, there);
+                        here = sets.root(own);
                     }
                 }
             }
-        }
+        });
     }
 
-    /// Begins the labels of fragments: what has come apart are particles of one fragment that no
-    /// chain of neighbours connects. These are out of each other's support, so that no force
-    /// changes by it.
-    pub(crate) fn begin_labels(&mut self, lists: &Lists, particles: &mut ParticleStore) {
-        self.join(lists, particles);
-        let count = particles.part.len();
-        particles.part.copy_from_slice(&particles.id[..count]);
-        // Roots know what their own pairs have found.
-        particles.part_planes.fill(0);
-    }
-
-    /// Spreads labels over what is connected on this rank; whether any has changed, so that halo
-    /// particles must hear and labels be spread again.
-    pub(crate) fn spread_labels(&mut self, particles: &mut ParticleStore) -> bool {
-        for i in 0..particles.part.len() {
-            let root = self.root(u32::try_from(i).unwrap_or(u32::MAX)) as usize;
-            let label = &mut self.labels[root];
-            label.0 = label.0.min(particles.part[i]);
-            label.1 |= particles.part_planes[i];
-        }
-        let mut changed = false;
-        for i in 0..particles.owned() {
-            let root = self.root(u32::try_from(i).unwrap_or(u32::MAX)) as usize;
-            let label = self.labels[root];
-            changed |= (particles.part[i], particles.part_planes[i]) != label;
-            (particles.part[i], particles.part_planes[i]) = label;
-        }
-        changed
+    /// Takes over who hangs together with whom.
+    pub(crate) fn tell(members: &Members, particles: &mut ParticleStore) {
+        let owned = particles.owned();
+        let parts = particles.part[..owned].par_iter_mut();
+        let parts = parts.zip(&mut particles.part_planes[..owned]);
+        parts.enumerate().for_each(|(i, (part, planes))| {
+            let member = members.of(i);
+            (*part, *planes) = (member.label, member.planes);
+        });
     }
 
     /// A body begins as one fragment.

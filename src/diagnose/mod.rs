@@ -1,7 +1,5 @@
-//! Conserved sums and ledgers of a run, what tells that it goes wrong, and the fragments that an
-//! impact leaves behind.
+//! Conserved sums and ledgers of a run, and what tells that it goes wrong.
 
-pub mod fragments;
 mod instability;
 mod ledger;
 mod limits;

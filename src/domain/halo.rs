@@ -3,44 +3,10 @@
 
 use rayon::prelude::*;
 
-use super::mirrors::{Mirrors, codes};
+use super::mirrors::Mirrors;
+use super::needs::{Extent, Finder, Found, MYSELF};
 use crate::comm::{Comm, Exchange, Traffic};
 use crate::particles::{HaloPhase, Image, ParticleStore};
-
-/// What a rank tells all others before the exchange.
-#[derive(Debug, Clone, Copy)]
-struct Extent {
-    /// Smallest and largest coordinate of its particles along the slab axis (m).
-    lower: f64,
-    upper: f64,
-    /// Largest reach of its particles (m).
-    reach: f64,
-}
-
-impl Extent {
-    const WORDS: usize = 3;
-    const EMPTY: Self = Self {
-        lower: f64::INFINITY,
-        upper: f64::NEG_INFINITY,
-        reach: 0.0,
-    };
-
-    fn join(self, other: Self) -> Self {
-        Self {
-            lower: self.lower.min(other.lower),
-            upper: self.upper.max(other.upper),
-            reach: self.reach.max(other.reach),
-        }
-    }
-
-    fn is_empty(&self) -> bool {
-        self.lower > self.upper
-    }
-
-    fn distance(&self, x: f64) -> f64 {
-        (self.lower - x).max(x - self.upper).max(0.0)
-    }
-}
 
 /// Halo lists and buffers, kept from step to step.
 pub struct Halo {
@@ -67,17 +33,6 @@ pub struct Halo {
     found: Vec<Vec<Found>>,
 }
 
-/// A particle that a rank needs (this rank itself, or the peer of an index), and the codes of the
-/// images that it needs of it.
-#[derive(Debug, Clone, Copy)]
-struct Found {
-    particle: u32,
-    needs: u8,
-    peer: u16,
-}
-
-/// `Found::peer` of this rank itself.
-const MYSELF: u16 = u16::MAX;
 /// Particles that a task looks at.
 const SHARE: usize = 4096;
 
@@ -193,6 +148,28 @@ impl Halo {
         let mut first = particles.owned();
         for (k, &count) in self.received.iter().enumerate() {
             particles.unpack(phase, first, count, self.exchange.incoming(k));
+            first += count;
+        }
+    }
+
+    /// Gives halo particles the values of their owners: those of this rank's particles stand first
+    /// in `values`, those of halo particles after them. Collective.
+    pub fn exchange_values<T: bytemuck::Pod>(&mut self, comm: &Comm, values: &mut [T]) {
+        let size = size_of::<T>();
+        for k in 0..self.exchange.peers() {
+            let message = self.exchange.outgoing(k);
+            message.clear();
+            for &i in &self.sends[k].0 {
+                message.extend_from_slice(bytemuck::bytes_of(&values[i as usize]));
+            }
+            self.exchange.expect(k, self.received[k] * size);
+        }
+        self.exchange.post(comm);
+        self.exchange.wait();
+        let mut first = values.len() - self.received.iter().sum::<usize>();
+        for (k, &count) in self.received.iter().enumerate() {
+            bytemuck::cast_slice_mut(&mut values[first..first + count])
+                .copy_from_slice(self.exchange.incoming(k));
             first += count;
         }
     }
@@ -342,46 +319,5 @@ impl Halo {
     /// The largest reach of any particle (m).
     fn farthest(&self) -> f64 {
         self.extents.iter().map(|e| e.reach).fold(0.0, f64::max)
-    }
-}
-
-/// Tells who needs a particle.
-struct Finder<'a> {
-    axis: usize,
-    mirrors: &'a Mirrors,
-    mine: Extent,
-    theirs: &'a [Extent],
-}
-
-impl Finder<'_> {
-    /// Notes who needs particle `i` at `position` or its images, within `range` (m).
-    #[inline]
-    fn find(&self, i: usize, position: &[f64; 3], range: f64, found: &mut Vec<Found>) {
-        let near = self.mirrors.near(position, range);
-        let mut note = |peer: u16, there: &Extent, own: bool| {
-            let mut needs = 0;
-            for code in codes(near, own) {
-                let image = self.mirrors.reflect_position(position, code);
-                if there.distance(image[self.axis]) <= range {
-                    needs |= 1 << code;
-                }
-            }
-            if needs != 0 {
-                #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
-                let particle = i as u32;
-                found.push(Found {
-                    particle,
-                    needs,
-                    peer,
-                });
-            }
-        };
-        if near != 0 {
-            note(MYSELF, &self.mine, false);
-        }
-        for (k, there) in self.theirs.iter().enumerate() {
-            #[allow(clippy::cast_possible_truncation, reason = "few ranks are neighbours")]
-            note(k as u16, there, true);
-        }
     }
 }

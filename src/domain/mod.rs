@@ -4,6 +4,7 @@ mod balance;
 mod halo;
 mod migrate;
 mod mirrors;
+mod needs;
 mod outset;
 mod partition;
 mod rank_speed;

@@ -18,6 +18,7 @@ use crate::model::{Axis, SphForm};
 mod declare;
 mod choices;
 pub mod contact;
+mod fragments;
 mod materials;
 mod numerical_limits;
 mod particles;
@@ -26,6 +27,7 @@ mod short;
 mod surfaces;
 pub use choices::*;
 pub use contact::{ContactParams, PairParams};
+pub use fragments::*;
 pub use materials::*;
 pub use numerical_limits::*;
 pub use particles::*;
@@ -88,6 +90,8 @@ tables! {
         /// What is written.
         #[serde(default)]
         output: OutputParams,
+        /// Fragments; they are not told if absent.
+        fragments: Option<FragmentsParams>,
     }
 
     /// `[run]`

@@ -13,6 +13,7 @@ mod contact;
 mod control;
 mod distance;
 mod formula;
+mod fragments;
 mod grading;
 mod initial;
 mod load;
@@ -39,6 +40,7 @@ pub use control::{
     DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm, SphOptions, TimeStepOptions,
 };
 pub use formula::{Combination, Formula, Function, Operation, Place, Profile};
+pub use fragments::{FragmentOptions, Include};
 pub use grading::{Focus, Grading};
 pub use initial::{Heat, Initial};
 pub use load::{Loads, VelocityLoad};
@@ -95,6 +97,8 @@ pub struct Case {
     pub run: RunControl,
     /// What to write and when.
     pub output: OutputOptions,
+    /// How fragments are told, if they are.
+    pub fragments: Option<FragmentOptions>,
     /// The input with all overrides applied, as TOML text; reading it gives this case again.
     pub resolved: String,
 }

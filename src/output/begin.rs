@@ -9,17 +9,18 @@ use crate::comm::Comm;
 use super::checkpoint::{self, step_of};
 use super::files::names_in;
 use super::lock::{LOCK, RunLock};
-use super::run_folder::{FILES, SNAPSHOT_ENDING, STATUS, TROUBLE};
+use super::run_folder::{FILES, FRAGMENTS_ENDING, SNAPSHOT_ENDING, STATUS, TROUBLE};
 use super::set_aside::{self, SET_ASIDE, SetAside};
 use super::{OutputError, Phase, RunFolder, Status, files, on_root, series, write_atomically};
 
 /// Files that a restart changes before it has a checkpoint.
-const CHANGED: [&str; 8] = [
+const CHANGED: [&str; 9] = [
     "history.csv",
     "contacts.csv",
     "loads.csv",
     "removed.csv",
     "departed.csv",
+    "fragments.csv",
     "performance.csv",
     "case.toml",
     STATUS,
@@ -156,6 +157,11 @@ impl RunFolder {
                 place.take(&path)?;
             }
         }
+        for (other, path) in self.fragment_files()? {
+            if other > step {
+                place.take(&path)?;
+            }
+        }
         Ok(())
     }
 
@@ -227,7 +233,7 @@ impl RunFolder {
         for (_, path) in checkpoint::list(&self.checkpoints())?.iter().rev() {
             checkpoint::discard(path)?;
         }
-        for folder in [self.checkpoints(), self.snapshots()] {
+        for folder in [self.checkpoints(), self.snapshots(), self.fragment_tables()] {
             for path in names_in(&folder)? {
                 if is_ours(&path) {
                     files::remove(&path)?;
@@ -252,6 +258,7 @@ fn is_ours(path: &Path) -> bool {
     let name = name.trim_end_matches(files::PARTIAL);
     let name = Path::new(name.strip_suffix(".old").unwrap_or(name));
     step_of(name, SNAPSHOT_ENDING).is_some()
+        || step_of(name, FRAGMENTS_ENDING).is_some()
         || step_of(name, "").is_some()
         || checkpoint::is_damaged(name)
         || name.extension().is_some_and(|e| e == "series")

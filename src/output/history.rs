@@ -128,6 +128,20 @@ impl Table {
         })
     }
 
+    /// A whole table, as its file holds it.
+    ///
+    /// # Panics
+    /// If a row has not one value for each column.
+    #[must_use]
+    pub fn whole(columns: &[Column], rows: &[Vec<Value>]) -> Vec<u8> {
+        let mut content = header(columns);
+        for row in rows {
+            assert_eq!(row.len(), columns.len(), "a row of the wrong length");
+            content.extend(line(row));
+        }
+        content
+    }
+
     /// Writes a row.
     ///
     /// # Errors
@@ -137,13 +151,7 @@ impl Table {
     /// If the row has not one value for each column.
     pub fn row(&mut self, values: &[Value]) -> Result<(), OutputError> {
         assert_eq!(values.len(), self.columns, "a row of the wrong length");
-        let line = sheet::line(values.iter().map(|value| match value {
-            // `Debug` uses an exponent where it is shorter; both round-trip.
-            Value::Real(number) => format!("{number:?}"),
-            Value::Count(count) => count.to_string(),
-            Value::Word(word) => (*word).to_owned(),
-        }));
-        let written = self.file.write_all(&line);
+        let written = self.file.write_all(&line(values));
         written.map_err(OutputError::io("write", &self.path))
     }
 
@@ -155,6 +163,15 @@ impl Table {
         let synced = self.file.sync_all();
         synced.map_err(OutputError::io("sync", &self.path))
     }
+}
+
+fn line(values: &[Value]) -> Vec<u8> {
+    sheet::line(values.iter().map(|value| match value {
+        // `Debug` uses an exponent where it is shorter; both round-trip.
+        Value::Real(number) => format!("{number:?}"),
+        Value::Count(count) => count.to_string(),
+        Value::Word(word) => (*word).to_owned(),
+    }))
 }
 
 /// The bytes of those `rows` of some columns whose number in column `key` is at most `last`, with zeros

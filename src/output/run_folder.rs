@@ -13,6 +13,8 @@ use super::{OutputError, files, snapshot, write_json};
 pub(super) const STATUS: &str = "status.json";
 const SNAPSHOTS: &str = "snapshots";
 const CHECKPOINTS: &str = "checkpoints";
+const FRAGMENTS: &str = "fragments";
+pub(super) const FRAGMENTS_ENDING: &str = ".csv";
 pub(super) const TROUBLE: &str = "trouble";
 pub(super) const SNAPSHOT_ENDING: &str = ".vtkhdf";
 
@@ -152,6 +154,35 @@ impl RunFolder {
         self.snapshots().join(Self::snapshot_name(step))
     }
 
+    /// The path of the table of all fragments at a step.
+    #[must_use]
+    pub fn fragment_table(&self, step: u64) -> PathBuf {
+        self.fragment_tables()
+            .join(format!("step-{step:08}{FRAGMENTS_ENDING}"))
+    }
+
+    /// Writes the table of all fragments at a step. Rank 0's alone.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`].
+    pub fn write_fragments(&self, step: u64, table: &[u8]) -> Result<(), OutputError> {
+        let folder = self.fragment_tables();
+        fs::create_dir_all(&folder).map_err(OutputError::io("create the folder", &folder))?;
+        files::write_atomically(&self.fragment_table(step), table)
+    }
+
+    /// The tables of all fragments that there are, with their steps and in the order of these.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`].
+    pub fn fragment_files(&self) -> Result<Vec<(u64, PathBuf)>, OutputError> {
+        let found = names_in(&self.fragment_tables())?.into_iter();
+        let step = |path: PathBuf| Some((step_of(&path, FRAGMENTS_ENDING)?, path));
+        let mut found: Vec<_> = found.filter_map(step).collect();
+        found.sort_unstable();
+        Ok(found)
+    }
+
     /// The index of the snapshots.
     #[must_use]
     pub fn series(&self) -> PathBuf {
@@ -205,6 +236,8 @@ paths! {
     removed: "removed.csv";
     /// Table of what particles that left the box of interest took with them.
     departed: "departed.csv";
+    /// Table of fragments at one time after the other.
+    fragments: "fragments.csv";
     /// Table of wall-clock times.
     performance: "performance.csv";
     /// The log.
@@ -222,6 +255,8 @@ paths! {
     snapshots: SNAPSHOTS;
     /// The folder of checkpoints.
     checkpoints: CHECKPOINTS;
+    /// The folder of tables of all fragments.
+    fragment_tables: FRAGMENTS;
 }
 
 #[cfg(test)]

@@ -7,13 +7,11 @@
 use std::path::Path;
 
 use crate::comm::Comm;
-use crate::model::{Case, SphForm};
-use crate::particles::{
-    FIELDS, FieldId, FieldInfo, FieldKind, Output, Owner, ParticleStore, TEMPERATURE,
-    VON_MISES_STRESS,
-};
+use crate::model::Case;
+use crate::particles::{FieldId, FieldKind, Owner, ParticleStore};
 
 use super::h5::{Element, RowType, Writer};
+pub use super::quantity::{Quantity, quantities, quantities_of};
 use super::{COMMIT, OutputError, Rows, VERSION, files, settle, unit_of_model};
 
 /// Extension of snapshot files.
@@ -23,121 +21,6 @@ pub const EXTENSION: &str = "vtkhdf";
 const GRID: &str = "/VTKHDF";
 /// VTK's number of a cell that is a single point.
 const VERTEX: u8 = 1;
-
-/// Something that a snapshot holds for each particle, beside its position.
-#[derive(Debug, Clone, Copy)]
-pub enum Quantity {
-    /// A field of the table.
-    Field(&'static FieldInfo),
-    /// `√(3/2 s:s)` of the deviatoric stress s.
-    VonMisesStress,
-    /// Temperature; NaN for materials without thermal constants.
-    Temperature,
-}
-
-impl Quantity {
-    /// Its name in the file.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Field(field) => field.name,
-            Self::VonMisesStress => VON_MISES_STRESS,
-            Self::Temperature => TEMPERATURE,
-        }
-    }
-
-    fn unit(self) -> &'static str {
-        match self {
-            Self::Field(field) => field.unit,
-            Self::VonMisesStress => "Pa",
-            Self::Temperature => "K",
-        }
-    }
-
-    fn description(self) -> String {
-        match self {
-            Self::Field(field) => match field.kind {
-                FieldKind::Symmetric => {
-                    format!("{} Components xx, yy, zz, xy, yz, xz.", field.description)
-                }
-                _ => field.description.to_owned(),
-            },
-            Self::VonMisesStress => "Von Mises equivalent stress.".to_owned(),
-            Self::Temperature => {
-                "Temperature; no number for materials without thermal constants.".to_owned()
-            }
-        }
-    }
-}
-
-/// The quantities of a case: as [`quantities`], but by default none that `particles` have no use
-/// for; and what tells stress points from particles where there are any, and unequal particles from
-/// each other.
-///
-/// # Errors
-/// As [`quantities`].
-pub fn quantities_of(case: &Case, particles: &ParticleStore) -> Result<Vec<Quantity>, OutputError> {
-    let mut names = case.output.fields.clone();
-    if names.is_empty() {
-        let mut chosen = quantities(&[])?;
-        chosen.retain(|choice| match choice {
-            Quantity::Field(field) => field.output != Output::IfHeld || particles.holds(field),
-            _ => true,
-        });
-        names.extend(chosen.iter().map(|choice| choice.name().to_owned()));
-    }
-    let role = "stress_mass".to_owned();
-    if case.sph.form == SphForm::StressPoints && !names.contains(&role) {
-        names.push(role);
-    }
-    // Masses tell sizes.
-    let mass = "mass".to_owned();
-    let is_uneven = case.bodies.iter().any(|b| b.lattice.sizes.is_some());
-    if is_uneven && !names.contains(&mass) {
-        names.push(mass);
-    }
-    quantities(&names)
-}
-
-/// The quantities of these names, and always id and body; the field table's defaults for an
-/// empty list.
-///
-/// # Errors
-/// [`OutputError::UnknownField`] names all choices.
-pub fn quantities(names: &[String]) -> Result<Vec<Quantity>, OutputError> {
-    let mut chosen: Vec<Quantity> = Vec::new();
-    let mut choices: Vec<Quantity> = FIELDS
-        .iter()
-        .filter(|field| field.is_shown())
-        .map(Quantity::Field)
-        .collect();
-    choices.extend([Quantity::VonMisesStress, Quantity::Temperature]);
-    for name in names {
-        let known = choices.iter().any(|choice| choice.name() == name);
-        if !known && name != "position" {
-            let names: Vec<&str> = choices.iter().map(|choice| choice.name()).collect();
-            return Err(OutputError::UnknownField {
-                name: name.clone(),
-                allowed: names.join(", "),
-            });
-        }
-    }
-    for choice in choices {
-        let by_default = matches!(
-            choice,
-            Quantity::Field(field) if matches!(field.output, Output::Default | Output::IfHeld)
-        );
-        let wanted = if names.is_empty() {
-            by_default
-        } else {
-            ["id", "body"].contains(&choice.name()) || names.iter().any(|n| n == choice.name())
-        };
-        if wanted {
-            chosen.push(choice);
-        }
-    }
-    Ok(chosen)
-}
 
 /// What a snapshot says beside the particles.
 #[derive(Debug, Clone, Copy)]
@@ -152,6 +35,9 @@ pub struct Meta<'a> {
     pub threads: usize,
     /// Time since the start of the run (s).
     pub wall_seconds: f64,
+    /// Labels of fragments of this rank's particles, where these are shown; the last ones that have
+    /// none belong to no fragment.
+    pub fragments: &'a [u64],
 }
 
 /// Writes a snapshot, which appears under its name when it is whole. Collective.
@@ -185,7 +71,7 @@ fn write_file(
     let file = Writer::create(comm, path)?;
     write_grid(comm, &file, particles, meta.time, rows)?;
     for quantity in with_frozen(particles, quantities) {
-        write_quantity(comm, &file, particles, meta.case, quantity, rows)?;
+        write_quantity(comm, &file, particles, meta, quantity, rows)?;
     }
     write_meta(comm, &file, meta)?;
     file.close()
@@ -260,11 +146,11 @@ fn write_quantity(
     comm: &Comm,
     file: &Writer,
     particles: &ParticleStore,
-    case: &Case,
+    meta: &Meta,
     quantity: Quantity,
     rows: &mut Rows,
 ) -> Result<(), OutputError> {
-    let block = rows.block();
+    let (block, case) = (rows.block(), meta.case);
     let path = format!("{GRID}/PointData/{}", quantity.name());
     match quantity {
         Quantity::Field(field) => {
@@ -278,6 +164,12 @@ fn write_quantity(
                 }
             }
             file.rows(&path, row, block, bytes)?;
+        }
+        Quantity::Fragment => {
+            let mut labels = meta.fragments.to_vec();
+            labels.resize(particles.owned(), u64::MAX);
+            let bytes = rows.collect(comm, bytemuck::cast_slice(&labels), 8);
+            file.rows(&path, row_type(FieldKind::Id), block, bytes)?;
         }
         Quantity::VonMisesStress | Quantity::Temperature => {
             let value = |i: usize| match quantity {
@@ -361,24 +253,6 @@ fn write_meta(comm: &Comm, file: &Writer, meta: &Meta) -> Result<(), OutputError
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn names_choose_quantities_and_id_and_body_come_with_them() {
-        let names = |list: &[Quantity]| list.iter().map(|q| q.name()).collect::<Vec<_>>();
-        let default = quantities(&[]).unwrap();
-        assert!(names(&default).starts_with(&["id", "body", "mass", "velocity"]));
-        assert!(names(&default).contains(&"mass"));
-        assert!(!names(&default).contains(&"sound_speed"));
-        let chosen = ["von_mises_stress", "mass", "position"].map(String::from);
-        let chosen = quantities(&chosen).unwrap();
-        assert_eq!(names(&chosen), ["id", "body", "mass", "von_mises_stress"]);
-        let error = quantities(&["presure".to_owned()]).unwrap_err();
-        assert!(
-            error
-                .to_string()
-                .contains("`presure`; choose from id, body")
-        );
-    }
 
     #[test]
     fn von_mises_stress_of_uniaxial_and_shear_stress() {

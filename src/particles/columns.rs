@@ -108,10 +108,8 @@ bitflags! {
         const CONTACT = 1 << 2;
         /// Before the contact forces, if these have friction.
         const FRICTION = 1 << 3;
-        /// When parts are told.
-        const FRAGMENTS = 1 << 4;
         /// Before a snapshot.
-        const SHOWN = 1 << 5;
+        const SHOWN = 1 << 4;
         /// Whatever is needed before forces of stress and contact, in one message.
         const FORCES = Self::STRESS.bits() | Self::CONTACT.bits();
     }

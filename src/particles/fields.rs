@@ -94,12 +94,6 @@ impl FieldInfo {
                 || self.owner.bits() == Owner::FRICTION.bits(),
             "the message of friction is sent only where there is friction"
         );
-        assert!(
-            !self.halo.intersects(HaloPhase::FRAGMENTS)
-                || self.owner.bits() == Owner::SELF_CONTACT.bits()
-                    && self.halo.contains(HaloPhase::MOTION),
-            "parts are told again only with self-contact, to particles that know them"
-        );
     }
 }
 
@@ -153,9 +147,9 @@ particle_fields! {
     /// Whether friction of rigid surfaces is kinetic (1) or static (0).
     surface_sliding: Index,               "",       State,    -,              OnDemand, SURFACE_FRICTION;
     /// Smallest id among the particles that it is connected with.
-    part: Id,                             "",       State,    MOTION | FRAGMENTS, Default,  SELF_CONTACT;
+    part: Id,                             "",       State,    MOTION,            Default,  SELF_CONTACT;
     /// Symmetry planes that the part reaches across: a set of bits.
-    part_planes: Index,                   "",       State,    MOTION | FRAGMENTS, Never,    SELF_CONTACT;
+    part_planes: Index,                   "",       State,    MOTION,            Never,    SELF_CONTACT;
     /// Position at the start.
     reference_position: Vector as Place,  "m",      State,    MOTION,         Never,    FOLDS;
     /// Which loads and rigid bodies prescribe its velocity: a set of bits, in the input's order.

@@ -19,7 +19,7 @@ pub use point::MaterialPoints;
 pub(crate) use point::material_points;
 pub use scatter::Scatter;
 pub use select::Select;
-pub use store::{TEMPERATURE, VON_MISES_STRESS, rows, snapshot_names};
+pub use store::{FRAGMENT, TEMPERATURE, VON_MISES_STRESS, rows, snapshot_names};
 
 /// Particles that a task handles at least, where they take little work each.
 pub(crate) const GRAIN: usize = 1024;

@@ -198,13 +198,17 @@ pub fn rows<S: Select>(which: S) -> impl Iterator<Item = &'static FieldInfo> + u
 
 /// Names that a snapshot can be asked for: fields of the table and what is derived from them.
 pub fn snapshot_names() -> impl Iterator<Item = &'static str> {
-    rows(FieldInfo::is_shown)
-        .map(|field| field.name)
-        .chain([VON_MISES_STRESS, TEMPERATURE])
+    rows(FieldInfo::is_shown).map(|field| field.name).chain([
+        VON_MISES_STRESS,
+        TEMPERATURE,
+        FRAGMENT,
+    ])
 }
 
 /// A quantity that snapshots derive from the stress.
 pub const VON_MISES_STRESS: &str = "von_mises_stress";
+/// What snapshots tell of fragments.
+pub const FRAGMENT: &str = "fragment";
 /// A quantity that snapshots derive from density and specific energy.
 pub const TEMPERATURE: &str = "temperature";
 

@@ -27,6 +27,7 @@ mod units;
 
 pub use canvas::{Canvas, Rgb};
 pub use chart::curves::{Chart, Curve, Quantity};
+pub use chart::fragments::{By, cumulative, tables_of_run};
 pub use chart::history::energies;
 pub use chart::profile::{Along, ProfileRequest, Profiles};
 pub use chart::series::parse_pair;
@@ -36,7 +37,7 @@ pub use error::PlotError;
 pub use header::Mark;
 pub use picture::pictures::{Pictures, Request};
 pub use preview::page::preview;
-pub use snapshots::front::{Direction, front};
+pub use snapshots::front::{Direction, front, largest_reaches};
 pub use snapshots::snapshot::title;
 pub use snapshots::source::{Source, Wanted, choose, snapshots};
 pub use units::parse as parse_quantity;

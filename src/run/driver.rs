@@ -4,13 +4,15 @@ use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
+use super::announce;
+use super::census;
 use super::departures::Departures;
 use super::exit::EXIT_STOPPED;
 use super::launch::{Launch, STEP, fail};
 use super::notices::Notices;
 use super::options::CommonArgs;
 use super::progress::Progress;
-use super::say::{counted, say, seconds, warn};
+use super::say::{counted, say, seconds};
 use super::stop::{self, Watch};
 use super::summary::summary;
 use super::tables::{self, Tables};
@@ -18,8 +20,7 @@ use crate::comm::Comm;
 use crate::model::NumericalFailurePolicy;
 use crate::output::snapshot::{self, Quantity};
 use crate::output::{
-    COMMIT, Log, OutputError, Phase, Rows, RunFolder, Schedule, Status, VERSION, agree, on_root,
-    series, write_json,
+    Log, OutputError, Phase, Rows, RunFolder, Schedule, Status, agree, on_root, series, write_json,
 };
 use crate::output::{checkpoint, post_mortem};
 use crate::step::{self, Simulation, StepError, Timers};
@@ -102,10 +103,18 @@ impl<'a> Driver<'a> {
                 .watch
                 .ask_every(driver.simulation.case.output.checkpoint_every_wall);
         }
-        driver.announce(comm, restarted, warnings);
+        let set_up = driver.set_up;
+        announce::say_all(
+            comm,
+            &driver.simulation,
+            &mut driver.log,
+            (restarted, set_up),
+            warnings,
+        );
         if restarted.is_none() {
             driver.write_row(comm)?;
-            driver.write_snapshot(comm)?;
+            let tells = driver.simulation.case.fragments.is_some();
+            driver.write_snapshot(comm, tells)?;
         }
         Ok(driver)
     }
@@ -236,8 +245,14 @@ impl<'a> Driver<'a> {
             self.simulation.diagnose(comm);
             self.write_row(comm)?;
         }
+        let options = self.simulation.case.fragments;
+        let census_due = options.is_some_and(|options| {
+            finished || census::is_due(&options, [before, now], snapshot_due)
+        });
         if finished || snapshot_due {
-            self.write_snapshot(comm)?;
+            self.write_snapshot(comm, census_due)?;
+        } else if census_due {
+            self.find_fragments(comm, true)?;
         }
         // A stop writes its own.
         let stops = stop::reason(self.simulation.step_control.agreed_requests).is_some();
@@ -268,11 +283,28 @@ impl<'a> Driver<'a> {
         Ok(())
     }
 
-    fn write_snapshot(&mut self, comm: &Comm) -> Result<(), OutputError> {
+    /// Labels of fragments of this rank's particles. Collective.
+    fn find_fragments(&mut self, comm: &Comm, tells: bool) -> Result<Vec<u64>, OutputError> {
+        let tables = self.tables.as_mut();
+        census::take(
+            comm,
+            &mut self.simulation,
+            tells.then_some((self.folder, tables)),
+        )
+    }
+
+    /// Writes a snapshot, and the tables of fragments if it `tells`.
+    fn write_snapshot(&mut self, comm: &Comm, tells: bool) -> Result<(), OutputError> {
         let begun = Instant::now();
-        let (quantities, rows) = (&self.quantities, &mut self.rows);
         let path = self.folder.snapshot(self.simulation.state.step);
         self.simulation.measure_contact_stress(comm);
+        let shows = |quantity: &Quantity| matches!(quantity, Quantity::Fragment);
+        let labels = if tells || self.quantities.iter().any(shows) {
+            self.find_fragments(comm, tells)?
+        } else {
+            Vec::new()
+        };
+        let (quantities, rows) = (&self.quantities, &mut self.rows);
         self.simulation.with_frozen(|simulation| {
             let meta = snapshot::Meta {
                 case: &simulation.case,
@@ -280,6 +312,7 @@ impl<'a> Driver<'a> {
                 time: simulation.state.time,
                 threads: rayon::current_num_threads(),
                 wall_seconds: self.start.elapsed().as_secs_f64(),
+                fragments: &labels,
             };
             snapshot::write(comm, &path, &simulation.particles, &meta, quantities, rows)
         })?;
@@ -357,36 +390,6 @@ impl<'a> Driver<'a> {
             time: self.simulation.state.time,
             reason: reason.map(str::to_owned),
         })
-    }
-
-    fn announce(&mut self, comm: &Comm, restarted: Option<&Path>, warnings: &[String]) {
-        let mut counts = [self.simulation.particles.owned() as u64];
-        comm.sum_u64(&mut counts);
-        if !comm.is_root() {
-            return;
-        }
-        let state = &self.simulation.state;
-        let from = restarted.map_or(String::new(), |path| {
-            let time = seconds(state.time);
-            format!(", from {} at {time}", path.display())
-        });
-        let text = format!(
-            "{}: {} particles, {} with {} each ({}){from}",
-            self.simulation.case.title,
-            counts[0],
-            counted(comm.size() as u64, "rank"),
-            counted(rayon::current_num_threads() as u64, "thread"),
-            crate::numerics::dispatch::instructions().name(),
-        );
-        self.log.line(&format!("whipple {VERSION} ({COMMIT})"));
-        self.log.line(&text);
-        self.log.line(&format!("set up in {:.3} s", self.set_up));
-        say(&text);
-        for warning in warnings {
-            let text = format!("warning: {warning}");
-            self.log.line(&text);
-            warn(&text);
-        }
     }
 
     fn log(&mut self, comm: &Comm, text: &str) {

@@ -1,6 +1,8 @@
 //! A run in its folder, on all ranks: how it starts or goes on, the loop between its files, why it
 //! stops, and what it says.
 
+mod announce;
+mod census;
 mod departures;
 mod driver;
 pub(crate) mod exit;

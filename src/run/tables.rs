@@ -2,7 +2,7 @@
 
 use crate::comm::Comm;
 use crate::model::{Case, NumericalFailurePolicy, SphForm};
-use crate::output::{Column, OutputError, RunFolder, Table, Value, unit_of_model};
+use crate::output::{Column, OutputError, RunFolder, Table, Value, fragments, unit_of_model};
 use crate::step::{LoadState, PairState, Removed, RunState, Simulation};
 
 /// The tables of a run, written by rank 0.
@@ -12,6 +12,7 @@ pub struct Tables {
     loads: Option<Table>,
     removed: Option<Table>,
     departed: Option<Table>,
+    fragments: Option<Table>,
     performance: Table,
 }
 
@@ -298,6 +299,16 @@ impl Tables {
             departed: departs
                 .then(|| open(&folder.departed(), &of_departed, "time", time))
                 .transpose()?,
+            fragments: (case.fragments.is_some())
+                .then(|| {
+                    open(
+                        &folder.fragments(),
+                        &fragments::columns(case.dimension),
+                        "time",
+                        time,
+                    )
+                })
+                .transpose()?,
             performance: open(&folder.performance(), &columns(PERFORMANCE), "step", step)?,
         })
     }
@@ -349,10 +360,17 @@ impl Tables {
         self.performance.row(&performance(state.step, wall, load))
     }
 
+    /// Writes a row of fragments.
+    pub fn write_fragments(&mut self, row: &[Value]) -> Result<(), OutputError> {
+        self.fragments
+            .as_mut()
+            .map_or(Ok(()), |table| table.row(row))
+    }
+
     /// Brings all rows written so far to the disk.
     pub fn sync(&self) -> Result<(), OutputError> {
         let always = [&self.history, &self.contacts, &self.performance];
-        let some = [&self.loads, &self.removed, &self.departed];
+        let some = [&self.loads, &self.removed, &self.departed, &self.fragments];
         let mut all = always.into_iter().chain(some.into_iter().flatten());
         all.try_for_each(Table::sync)
     }

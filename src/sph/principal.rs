@@ -1,64 +1,18 @@
 //! The tensile part of a symmetric tensor, in its principal frame.
 
-/// Cyclic Jacobi sweeps at most; they converge quadratically, and five suffice at double precision.
-const SWEEPS: usize = 8;
-/// Off-diagonal over diagonal squares at which the rest is rounding.
-const CONVERGED: f64 = 1e-34;
+use crate::numerics::principal::principal;
 
 /// `Σ_a ⟨σ_a⟩₊ n_a ⊗ n_a` over the principal values `σ_a` and directions `n_a` of a symmetric
 /// tensor; components xx, yy, zz, xy, xz, yz, in and out.
-///
-/// Jacobi's rotations (Golub & Van Loan, *Matrix computations*, section 8.5): additions, products,
-/// quotients and roots alone, so that the bits are the same on any machine.
 #[must_use]
 pub fn tensile_part(tensor: &[f64; 6]) -> [f64; 6] {
-    let [xx, yy, zz, xy, xz, yz] = *tensor;
-    let mut a = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-    // Columns are the directions.
-    let mut n = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    for _ in 0..SWEEPS {
-        let off = a[0][1] * a[0][1] + a[0][2] * a[0][2] + a[1][2] * a[1][2];
-        let on = a[0][0] * a[0][0] + a[1][1] * a[1][1] + a[2][2] * a[2][2];
-        if off <= CONVERGED * on {
-            break;
-        }
-        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            rotate(&mut a, &mut n, p, q);
-        }
-    }
-    let value = [0, 1, 2].map(|k: usize| a[k][k].max(0.0));
+    let (value, n) = principal(tensor);
+    let value = value.map(|x| x.max(0.0));
     [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|(i, j): (usize, usize)| {
         value[0] * (n[i][0] * n[j][0])
             + value[1] * (n[i][1] * n[j][1])
             + value[2] * (n[i][2] * n[j][2])
     })
-}
-
-/// Turns the plane of the axes `p` and `q` so that `a[p][q]` vanishes.
-fn rotate(a: &mut [[f64; 3]; 3], n: &mut [[f64; 3]; 3], p: usize, q: usize) {
-    if a[p][q] == 0.0 {
-        return;
-    }
-    let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-    let root = (theta * theta + 1.0).sqrt();
-    let tangent = if theta < 0.0 {
-        1.0 / (theta - root)
-    } else {
-        1.0 / (theta + root)
-    };
-    let cosine = 1.0 / (tangent * tangent + 1.0).sqrt();
-    let sine = tangent * cosine;
-    a[p][p] -= tangent * a[p][q];
-    a[q][q] += tangent * a[p][q];
-    (a[p][q], a[q][p]) = (0.0, 0.0);
-    let k = 3 - p - q;
-    let (kp, kq) = (a[k][p], a[k][q]);
-    (a[k][p], a[k][q]) = (cosine * kp - sine * kq, sine * kp + cosine * kq);
-    (a[p][k], a[q][k]) = (a[k][p], a[k][q]);
-    for row in n {
-        let (np, nq) = (row[p], row[q]);
-        (row[p], row[q]) = (cosine * np - sine * nq, sine * np + cosine * nq);
-    }
 }
 
 #[cfg(test)]

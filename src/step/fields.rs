@@ -1,6 +1,7 @@
 //! Which fields a case has use for.
 
 use crate::contact::{Connectivity, ContactTable};
+use crate::fragments::{BYTES_OF_SEARCH, Labels};
 use crate::model::{Case, NumericalFailurePolicy, SphForm};
 use crate::particles::{FieldInfo, HaloPhase, Owner, Select, rows};
 use crate::sph::Sph;
@@ -46,7 +47,10 @@ pub fn bytes_of_options(case: &Case) -> [usize; 2] {
     let owned: usize = fields().map(|field| field.kind.bytes()).sum();
     let halo = fields().filter(|field| HaloPhase::all().takes(field));
     let halo: usize = halo.map(|field| field.kind.bytes()).sum();
-    let record = Sph::bytes_of_records(case) + Connectivity::bytes_of_image(case);
+    let mut record = Sph::bytes_of_records(case) + Connectivity::bytes_of_image(case);
+    if case.fragments.is_some() {
+        record += Labels::BYTES + BYTES_OF_SEARCH;
+    }
     // In the store, and in a message on its way out and in.
     [owned + record, 3 * halo + record]
 }

@@ -4,6 +4,7 @@ mod candidate;
 mod error;
 mod fields;
 mod flight;
+mod fragments;
 mod given;
 mod integrate;
 mod removal;

@@ -14,6 +14,7 @@ use crate::diagnose::{
     LoadState, PairState, Removed, RunState, StepSums, Worst, angular_momentum_scale,
 };
 use crate::domain::{Halo, Mirrors, Outset, Partition};
+use crate::fragments::Labels;
 use crate::loads::{Absorption, Goal, Loads, Prescribe};
 use crate::model::{Body, Case, SphForm, edge};
 use crate::neighbours::Lists;
@@ -87,6 +88,7 @@ impl Simulation {
             loads: Loads::new(&case),
             sums: StepSums::new(table),
             contact,
+            labels: Labels::default(),
             case,
         }
     }

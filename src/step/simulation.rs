@@ -7,11 +7,12 @@ use super::integrate;
 use super::removal::Frozen;
 use super::timers::{Phase, Timers};
 use crate::comm::Comm;
-use crate::contact::{Contact, ContactTable};
+use crate::contact::{Connectivity, Contact, ContactTable};
 use crate::diagnose::{
     Booked, NumericalFailure, PostMortem, Reason, RunState, StepSums, Totals, fastest, is_explained,
 };
 use crate::domain::{Halo, Partition};
+use crate::fragments::Labels;
 use crate::loads::Loads;
 use crate::model::{Case, SphForm};
 use crate::neighbours::Lists;
@@ -41,6 +42,8 @@ pub struct Simulation {
     pub(super) halo: Halo,
     pub(super) sph: Sph,
     pub(super) contact: Contact,
+    /// Who hangs together with whom.
+    pub(super) labels: Labels,
     pub(super) loads: Loads,
     pub(super) sums: StepSums,
 }
@@ -144,6 +147,7 @@ impl Simulation {
             sph,
             contact,
             loads,
+            labels,
             ..
         } = self;
         halo.exchange_motion(comm, particles, |particles, i| {
@@ -159,10 +163,10 @@ impl Simulation {
         }
         timers.lap(Phase::Neighbours);
         if contact.connectivity.is_due(state.step) {
-            contact.connectivity.begin_labels(lists, particles);
-            while comm.any(contact.connectivity.spread_labels(particles)) {
-                halo.exchange(comm, particles, HaloPhase::FRAGMENTS);
-            }
+            labels.begin(particles.part.len());
+            Connectivity::link(lists, labels.sets());
+            labels.settle(comm, Some(halo), &particles.id, particles.owned());
+            Connectivity::tell(labels.members(), particles);
             timers.lap(Phase::Neighbours);
         }
         let step = Step {
@@ -331,6 +335,7 @@ impl Simulation {
             + self.lists.memory()
             + self.sph.memory()
             + self.contact.memory()
+            + self.labels.memory()
             + self.loads.memory()
             + self.sums.memory()
             + self.step_control.memory()

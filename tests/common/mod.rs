@@ -46,6 +46,7 @@ pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
         contacts: Vec::new(),
         default_contact: ContactMode::Overlap(Overlap::default()),
         self_contact: None,
+        fragments: None,
         symmetry: Vec::new(),
         loads: Loads::default(),
         sph: SphOptions::default(),

@@ -86,6 +86,7 @@ impl Bench {
             time: state.time,
             threads: 1,
             wall_seconds: 0.0,
+            fragments: &[],
         };
         let path = place.path().join("sound.vtkhdf");
         let fields = snapshot::quantities(&[]).unwrap();

@@ -80,6 +80,7 @@ pub fn case() -> Case {
             history_every: 1,
             fields: Vec::new(),
         },
+        fragments: None,
         resolved: "title = \"Sphere on plate, ⌀ 0.6 mm\"\n[run]\nend = \"1 us\"\n".to_owned(),
     }
 }
@@ -91,6 +92,7 @@ pub fn meta(case: &Case) -> snapshot::Meta<'_> {
         time: 3.5e-8,
         threads: 2,
         wall_seconds: 1.0,
+        fragments: &[],
     }
 }
 

@@ -1,6 +1,6 @@
 //! The breaking dam, `inputs/dam-break`, and what is measured on it.
 
-use whipple::diagnose::fragments;
+use whipple::plot::largest_reaches;
 use whipple::step::Simulation;
 
 use super::{ready, run_with, start};
@@ -81,7 +81,7 @@ fn distance_to_walls(s: &Simulation) -> f64 {
 /// How far the bulk of the water reaches (m).
 fn front(s: &Simulation, spacing: f64) -> f64 {
     let points: Vec<[f64; 3]> = water(s).map(|i| s.particles.position[i]).collect();
-    fragments::front(&points, 0, spacing).expect("there is water")
+    largest_reaches(&points, 0, spacing).expect("there is water")
 }
 
 /// One line for people.

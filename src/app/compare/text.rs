@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 /// Tables of a case that do not touch results.
-const FREE: [&str; 3] = ["output", "run", "domain"];
+const FREE: [&str; 4] = ["output", "fragments", "run", "domain"];
 
 /// Differences of two resolved cases, but for output, run control and distribution.
 pub fn cases(a: &str, b: &str) -> Vec<String> {

@@ -2,12 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::output::RunFolder;
 use crate::plot::{
-    Columns, Direction, PlotError, Points, Tables, energies, front, parse_pair, snapshots, title,
+    By, Columns, Direction, PlotError, Points, Tables, choose, cumulative, energies, front,
+    parse_pair, snapshots, tables_of_run, title,
 };
+use crate::run::say::seconds;
 
-use super::out::{save, target, unsaved, write};
-use super::{PlotArgs, name, places};
+use super::out::{is_png, save, target, unsaved, write};
+use super::{PlotArgs, name, places, wanted};
 
 /// What `--xy` is of a table that knows what to draw, or with `--pair`.
 ///
@@ -38,6 +41,43 @@ const HISTORY: &str = "history.csv";
 pub fn draw_history(args: &PlotArgs) -> Result<(), PlotError> {
     let chart = energies(&table(&args.source, HISTORY), &title_of(&args.source))?;
     write(&chart.draw(args.width)?, &target(args, "history.png"))
+}
+
+/// Draws the fragments of each run by mass and by size.
+pub fn draw_fragments(args: &PlotArgs) -> Result<(), PlotError> {
+    let mut tables = Vec::new();
+    for place in places(args) {
+        if !place.is_dir() {
+            tables.push((name(place), place.clone()));
+            continue;
+        }
+        let folder = RunFolder::at(place);
+        let all = tables_of_run(&folder.fragments(), |step| folder.fragment_table(step))?;
+        for path in choose(&all, &wanted(args)?)? {
+            let time = all.iter().find(|(_, found)| *found == path);
+            let time = time.map_or(String::new(), |(time, _)| seconds(*time));
+            let told = if args.with.is_empty() {
+                time
+            } else {
+                format!("{}, {time}", name(place))
+            };
+            tables.push((told, path));
+        }
+    }
+    for by in By::ALL {
+        let chart = cumulative(&tables, by, &title_of(&args.source))?;
+        let picture = format!("fragments-{}.png", by.name());
+        let path = match &args.out {
+            // One name is no name of two pictures.
+            Some(out) if is_png(out) => {
+                let stem = out.file_stem().unwrap_or_default().to_string_lossy();
+                out.with_file_name(format!("{stem}-{}.png", by.name()))
+            }
+            _ => target(args, &picture),
+        };
+        write(&chart.draw(args.width)?, &path)?;
+    }
+    Ok(())
 }
 
 /// Writes the table of each run beside the picture, or into the run's pictures.

@@ -6,6 +6,7 @@ mod absorbers;
 mod bodies;
 mod contact;
 mod eos;
+mod fragments;
 mod grading;
 mod initial;
 mod lattice;
@@ -98,6 +99,11 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         numerical_limits: NumericalLimits::default(),
         run: run(params.run.get_ref())?,
         output: output(params.output)?,
+        fragments: params
+            .fragments
+            .as_ref()
+            .map(fragments::fragments)
+            .transpose()?,
         resolved: String::new(),
     };
     initial::settle(&mut case, &params.body)?;

@@ -2,6 +2,7 @@
 
 pub mod curves;
 pub mod exact;
+pub mod fragments;
 pub mod history;
 pub mod profile;
 pub mod series;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use super::field::Shown;
 use super::snapshot::Snapshot;
-use crate::diagnose::fragments;
+use crate::fragments::components;
 use crate::model::Axis;
 use crate::plot::PlotError;
 
@@ -57,7 +57,7 @@ impl Direction {
 /// the axis.
 ///
 /// Each row is a time (s) and the largest coordinate (m) of the body's largest connected fragment
-/// ([`fragments::front`]); against the axis the smallest.
+/// ([`largest_reaches`]); against the axis the smallest.
 ///
 /// # Errors
 /// [`PlotError::Body`] if there is no such body, [`PlotError::Read`] if a snapshot cannot be read.
@@ -86,12 +86,22 @@ pub fn front(snapshots: &[PathBuf], body: &str, direction: Direction) -> Result<
                 point
             }));
         }
-        let front = fragments::front(&points, axis, snapshot.spacings[wanted]);
+        let front = largest_reaches(&points, axis, snapshot.spacings[wanted]);
         if let Some(front) = front {
             let _ = writeln!(table, "{:?},{:?}", snapshot.time, sign * front);
         }
     }
     Ok(table)
+}
+
+/// The largest coordinate (m) along an axis of most of the points, those that hang together, half a
+/// `spacing` (m) beyond its outermost centre; points within one and a half spacings hang together.
+/// `None` without points.
+#[must_use]
+pub fn largest_reaches(points: &[[f64; 3]], axis: usize, spacing: f64) -> Option<f64> {
+    let bulk = components(points, 1.5 * spacing).into_iter().next()?;
+    let outermost = bulk.iter().map(|&i| points[i][axis]).reduce(f64::max);
+    outermost.map(|x| x + 0.5 * spacing)
 }
 
 #[cfg(test)]
@@ -113,5 +123,20 @@ mod tests {
                     .contains("-x, -y or -z")
             );
         }
+    }
+
+    #[test]
+    fn a_splash_is_no_part_of_the_bulk() {
+        let mut points: Vec<[f64; 3]> = (0..10).map(|k| [f64::from(k), -0.2, 0.0]).collect();
+        points.push([11.0, 0.0, 0.0]);
+        points.push([12.0, 0.0, 0.0]);
+        points.push([f64::NAN, 0.0, 0.0]);
+        let found = components(&points, 1.5);
+        assert_eq!(found.iter().map(Vec::len).collect::<Vec<_>>(), [10, 2]);
+        assert_eq!(largest_reaches(&points, 0, 1.0), Some(9.5));
+        points.push([10.0, 0.9, 0.0]);
+        assert_eq!(components(&points, 1.5).len(), 1);
+        assert_eq!(largest_reaches(&points, 0, 1.0), Some(12.5));
+        assert_eq!(largest_reaches(&[], 0, 1.0), None);
     }
 }

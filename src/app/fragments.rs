@@ -1,0 +1,225 @@
+//! `whipple fragments`: the fragments of a run's snapshots, by the code of the run itself.
+
+mod matter;
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use super::results::ResultsError;
+use crate::fragments::{Census, Fragment, Rule, find_alone};
+use crate::input;
+use crate::model::readable::{one_line, shown, shown_vector};
+use crate::model::{FragmentOptions, Include};
+use crate::output::{OutputError, RunFolder, fragments, write_atomically};
+use crate::plot::{PlotError, Wanted, choose, parse_quantity, snapshots};
+use crate::run::exit::EXIT_INPUT;
+use crate::run::say::{counted, say, seconds, warn};
+use matter::Loaded;
+
+/// Tell the fragments of a run: how many, how heavy, how large, how fast
+///
+/// A fragment is matter that hangs together by particles near each other; of a model with symmetry
+/// planes the whole is told. The rule is that of the case's `[fragments]` unless options change it.
+#[derive(Debug, Clone, clap::Args)]
+#[command(after_help = "Examples:
+  whipple fragments runs/impact
+  whipple fragments runs/impact --at 5us --csv fragments.csv
+  whipple fragments runs/impact --include all --min-particles 20
+  whipple plot runs/impact --fragments")]
+pub struct FragmentsArgs {
+    /// Run folder, or snapshot (.vtkhdf)
+    #[arg(value_name = "FILE_OR_RUN")]
+    pub path: PathBuf,
+
+    /// Snapshot of the run nearest to a time, as in 5us [default: the last one]
+    #[arg(long, visible_alias = "time", value_name = "TIME", group = "which")]
+    pub at: Option<String>,
+
+    /// Snapshot of the run by number, from 0
+    #[arg(long, visible_alias = "index", value_name = "K", group = "which")]
+    pub snapshot: Option<usize>,
+
+    /// Largest distance of linked particles, over the mean of their sizes at the start [default:
+    /// the case's, else 1.5]
+    #[arg(long, value_name = "NUMBER")]
+    pub link: Option<f64>,
+
+    /// What belongs to fragments: what has not failed, or all matter [default: the case's, else
+    /// intact]
+    #[arg(long, value_name = "intact|all", value_parser = ["intact", "all"])]
+    pub include: Option<String>,
+
+    /// Let a single particle join what hangs together by nothing else
+    #[arg(long)]
+    pub bridges: bool,
+
+    /// Keep bodies apart: no fragment is of two
+    #[arg(long)]
+    pub apart: bool,
+
+    /// Least number of particles of a fragment; the rest is dust [default: the case's, else 8]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub min_particles: Option<u64>,
+
+    /// Write the table of all fragments, as a run does into its folder `fragments`
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+}
+
+/// Why the fragments of a snapshot cannot be told.
+#[derive(Debug, thiserror::Error)]
+pub enum FragmentsError {
+    /// No snapshot is found.
+    #[error(transparent)]
+    Choice(#[from] PlotError),
+    /// The path is nothing of ours.
+    #[error(transparent)]
+    Results(#[from] ResultsError),
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// What a snapshot says of itself makes no sense, or it says too little.
+    #[error("{} cannot be taken: {reason}", path.display())]
+    Snapshot {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+    /// An option of the command line is out of range.
+    #[error("--link must be between 1 and 4")]
+    Link,
+}
+
+/// Fragments that are listed on the terminal.
+const LISTED: usize = 10;
+
+/// Runs the command; returns the exit code.
+pub fn run(args: &FragmentsArgs) -> u8 {
+    match tell(args) {
+        Ok(text) => {
+            say(text.trim_end());
+            0
+        }
+        Err(error) => {
+            warn(&format!("error: {error}"));
+            EXIT_INPUT
+        }
+    }
+}
+
+fn tell(args: &FragmentsArgs) -> Result<String, FragmentsError> {
+    if args.link.is_some_and(|link| !(1.0..=4.0).contains(&link)) {
+        return Err(FragmentsError::Link);
+    }
+    let path = chosen(args)?;
+    let loaded = Loaded::read(&path)?;
+    if let Some(missing) = &loaded.missing {
+        warn(&format!("warning: {missing}"));
+    }
+    let options = options(args, loaded.options);
+    let rule = Rule::new(&options, loaded.dimension);
+    let included = loaded.included(options.include);
+    let matter = loaded.matter(&included);
+    let census = find_alone(&matter, &loaded.symmetry, &rule);
+    let bodies: Vec<&str> = loaded.bodies.iter().map(String::as_str).collect();
+    if let Some(path) = &args.csv {
+        let table = fragments::table(&census, &bodies, loaded.dimension);
+        write_atomically(path, &table)?;
+        say(&format!("wrote {}", one_line(&path.display().to_string())));
+    }
+    Ok(report(&loaded, &census, &options))
+}
+
+/// The snapshot that is asked for.
+fn chosen(args: &FragmentsArgs) -> Result<PathBuf, FragmentsError> {
+    if !args.path.is_dir() {
+        if args.at.is_some() || args.snapshot.is_some() {
+            let choice = "--at and --snapshot choose among the snapshots of a run: give its folder";
+            return Err(PlotError::Options(choice).into());
+        }
+        return Ok(args.path.clone());
+    }
+    let wanted = match (&args.at, args.snapshot) {
+        (Some(time), _) => Wanted::Times(vec![parse_quantity(time, "s")?]),
+        (None, Some(index)) => Wanted::Indices(vec![index]),
+        (None, None) => Wanted::Last,
+    };
+    let folder = RunFolder::at(&args.path);
+    let found = snapshots(folder.path())?;
+    Ok(choose(&found, &wanted)?.remove(0))
+}
+
+/// The rule of the case with what the command line changes of it.
+fn options(args: &FragmentsArgs, of_case: Option<FragmentOptions>) -> FragmentOptions {
+    let usual = of_case.unwrap_or_default();
+    FragmentOptions {
+        link: args.link.unwrap_or(usual.link),
+        include: match args.include.as_deref() {
+            Some("all") => Include::All,
+            Some(_) => Include::Intact,
+            None => usual.include,
+        },
+        bridges: args.bridges || usual.bridges,
+        across_bodies: !args.apart && usual.across_bodies,
+        min_particles: args.min_particles.unwrap_or(usual.min_particles),
+        ..usual
+    }
+}
+
+fn report(loaded: &Loaded, census: &Census, options: &FragmentOptions) -> String {
+    let per = ["kg/m^2", "kg/m", "kg"][loaded.dimension - 1];
+    let mass = |value: f64| shown(value, per);
+    let mut text = format!(
+        "{} at {}: {} of {} particles or more, of {} in all\n",
+        loaded.title,
+        seconds(loaded.time),
+        counted(census.count(), "fragment"),
+        options.min_particles,
+        mass(census.total.mass),
+    );
+    let mut entry = |name: &str, value: String| {
+        let _ = writeln!(text, "{name:<36} {value}");
+    };
+    let share = |share: &crate::fragments::Share| {
+        let part = 100.0 * share.mass / census.total.mass;
+        let particles = counted(share.particles, "particle");
+        format!("{} ({part:.2} %) in {particles}", mass(share.mass))
+    };
+    entry("in fragments", share(&census.in_fragments));
+    entry("dust", share(&census.dust));
+    if options.include == Include::Intact {
+        entry("failed", share(&census.excluded));
+    }
+    if census.fragments.is_empty() {
+        return text;
+    }
+    text.push_str("\n     label  copies  particles        mass    diameter  velocity\n");
+    for fragment in census.fragments.iter().take(LISTED) {
+        list(fragment, loaded.dimension, &mut text);
+    }
+    if census.fragments.len() > LISTED {
+        text.push_str("all of them: --csv FILE\n");
+    }
+    text
+}
+
+fn list(fragment: &Fragment, dimension: usize, text: &mut String) {
+    let per = ["kg/m^2", "kg/m", "kg"][dimension - 1];
+    let _ = writeln!(
+        text,
+        "{:>10} {:>7} {:>10} {:>11} {:>11}  {}",
+        fragment.label,
+        fragment.copies,
+        fragment.particles,
+        shown(fragment.mass, per),
+        shown(fragment.diameter(), "m"),
+        shown_vector(&fragment.velocity[..dimension], "m/s"),
+    );
+}
+
+/// The rule of a case's text, if it can be read.
+fn read_case(path: &Path, text: &str) -> Result<crate::model::Case, String> {
+    let name = path.display().to_string();
+    input::parse(&name, text, &[]).map_err(|error| error.to_string())
+}

@@ -1,0 +1,251 @@
+//! The matter of a snapshot.
+
+use std::path::Path;
+
+use super::{FragmentsError, read_case};
+use crate::fragments::{Matter, belongs, size};
+use crate::model::{Axis, Case, FragmentOptions, Include, SymmetryPlane};
+use crate::output::h5::Content;
+use crate::output::h5::read::{ReadError, SnapshotFile};
+
+/// Particles of a snapshot, but for frozen ones.
+pub struct Loaded {
+    pub title: String,
+    /// Time (s).
+    pub time: f64,
+    pub dimension: usize,
+    pub bodies: Vec<String>,
+    pub symmetry: Vec<SymmetryPlane>,
+    /// The case's own rule.
+    pub options: Option<FragmentOptions>,
+    /// What cannot be told.
+    pub missing: Option<String>,
+    ids: Vec<u64>,
+    body: Vec<u32>,
+    position: Vec<[f64; 3]>,
+    size: Vec<f64>,
+    mass: Vec<f64>,
+    velocity: Vec<[f64; 3]>,
+    temperature: Vec<f64>,
+    plastic_strain: Vec<f64>,
+    damage: Vec<f64>,
+}
+
+/// Reads fields of one snapshot.
+struct Reader<'a> {
+    path: &'a Path,
+    file: SnapshotFile,
+    names: Vec<String>,
+}
+
+impl Reader<'_> {
+    fn wrong(&self, reason: impl Into<String>) -> FragmentsError {
+        wrong(self.path, reason)
+    }
+
+    /// An attribute of JSON.
+    fn json<T: serde::de::DeserializeOwned>(&self, name: &str) -> Result<T, FragmentsError> {
+        let text = self.told(self.file.attribute("/whipple", name))?;
+        let value = serde_json::from_str(&text);
+        value.map_err(|e| self.wrong(format!("attribute {name} of /whipple: {e}")))
+    }
+
+    fn told<T>(&self, result: Result<T, ReadError>) -> Result<T, FragmentsError> {
+        result.map_err(|error| match error {
+            ReadError::Open(error) => error.into(),
+            ReadError::Layout { .. } => self.wrong(error.to_string()),
+        })
+    }
+
+    fn has(&self, field: &str) -> bool {
+        self.names.iter().any(|name| name == field)
+    }
+
+    /// Numbers of a field, which must have so many components; zeros if the snapshot lacks it.
+    fn field(&self, field: &str, components: usize) -> Result<Vec<f64>, FragmentsError> {
+        let count = self.file.particles();
+        if !self.has(field) {
+            return Ok(vec![0.0; count * components]);
+        }
+        let found = self.told(self.file.components(field))?;
+        if found != components {
+            return Err(self.wrong(format!("its field {field} has {found} components")));
+        }
+        self.told(self.file.values(field, 0..count))
+    }
+
+    fn dimension(&self) -> Result<usize, FragmentsError> {
+        let dimension = self.told(self.file.number("/whipple", "dimension"))?;
+        let known = (1..=3).find(|&d| d as u64 == dimension);
+        known.ok_or_else(|| self.wrong(format!("it is a model of {dimension} dimensions")))
+    }
+
+    fn symmetry(&self) -> Result<Vec<SymmetryPlane>, FragmentsError> {
+        let planes: Vec<(String, f64)> = self.json("symmetry")?;
+        let plane = |(name, position): (String, f64)| {
+            let axis = Axis::named(&name);
+            let axis = axis.ok_or_else(|| self.wrong("a symmetry plane along no axis"))?;
+            Ok(SymmetryPlane { axis, position })
+        };
+        planes.into_iter().map(plane).collect()
+    }
+
+    /// The body of each particle.
+    fn body(&self, bodies: usize) -> Result<Vec<u32>, FragmentsError> {
+        let index = |value: f64| {
+            let known = (0..bodies).find(|&b| b as f64 == value);
+            let known = known.and_then(|b| u32::try_from(b).ok());
+            known.ok_or_else(|| self.wrong(format!("body {value} of {bodies} bodies")))
+        };
+        self.field("body", 1)?.into_iter().map(index).collect()
+    }
+}
+
+fn wrong(path: &Path, reason: impl Into<String>) -> FragmentsError {
+    FragmentsError::Snapshot {
+        path: path.to_owned(),
+        reason: reason.into(),
+    }
+}
+
+impl Loaded {
+    /// Reads a snapshot.
+    ///
+    /// # Errors
+    /// [`FragmentsError`] if it cannot be read, lacks masses, or makes no sense.
+    pub fn read(path: &Path) -> Result<Self, FragmentsError> {
+        let file = SnapshotFile::open(path).map_err(|error| wrong(path, error.to_string()))?;
+        let names = file
+            .names()
+            .map_err(|error| wrong(path, error.to_string()))?;
+        let reader = Reader { path, file, names };
+        for field in ["mass", "velocity"] {
+            if !reader.has(field) {
+                let what = format!("it does not tell the {field} of its particles");
+                return Err(reader.wrong(format!("{what}: name it in `output.fields` of the run")));
+            }
+        }
+        if reader.has("stress_mass") {
+            return Err(reader.wrong("it has stress points, which hold the state of the particles"));
+        }
+        let bodies: Vec<String> = reader.json("bodies")?;
+        let densities: Vec<f64> = reader.json("densities")?;
+        if densities.len() != bodies.len() {
+            let (b, d) = (bodies.len(), densities.len());
+            return Err(reader.wrong(format!("{b} bodies but {d} densities")));
+        }
+        let dimension = reader.dimension()?;
+        let content = Content::open(path)?;
+        let ids = content.ids("/VTKHDF/PointData/id")?;
+        let case = content
+            .text("/whipple/input")
+            .map_err(|error| error.to_string());
+        let case = case.and_then(|text| read_case(path, &text));
+        let body = reader.body(bodies.len())?;
+        let mass = reader.field("mass", 1)?;
+        let count = reader.file.particles();
+        if ids.len() != count {
+            return Err(reader.wrong(format!("{} ids of {count} particles", ids.len())));
+        }
+        let sizes = mass.iter().zip(&body);
+        let sizes = sizes.map(|(&m, &b)| size(m, densities[b as usize], dimension));
+        let damage = reader.field("damage", 1)?;
+        let (temperature, missing) = temperatures(&reader, case.as_ref(), &body, &damage)?;
+        let mut loaded = Self {
+            title: reader.told(reader.file.attribute("/whipple", "title"))?,
+            time: reader.told(reader.file.time())?,
+            options: case.ok().and_then(|case| case.fragments),
+            missing,
+            size: sizes.collect(),
+            symmetry: reader.symmetry()?,
+            position: reader.told(reader.file.points(0..count))?,
+            velocity: reader.field("velocity", 3)?.as_chunks::<3>().0.to_vec(),
+            plastic_strain: reader.field("plastic_strain", 1)?,
+            dimension,
+            bodies,
+            ids,
+            body,
+            mass,
+            temperature,
+            damage,
+        };
+        // Frozen particles are of the model no more.
+        let frozen = reader.field("frozen", 1)?;
+        for (size, _) in loaded
+            .size
+            .iter_mut()
+            .zip(&frozen)
+            .filter(|(_, f)| **f != 0.0)
+        {
+            *size = 0.0;
+        }
+        Ok(loaded)
+    }
+
+    /// Which particles belong to fragments.
+    pub fn included(&self, include: Include) -> Vec<bool> {
+        self.damage
+            .iter()
+            .map(|&damage| belongs(include, damage))
+            .collect()
+    }
+
+    /// The matter of it all.
+    pub fn matter<'a>(&'a self, included: &'a [bool]) -> Matter<'a> {
+        Matter {
+            owned: self.ids.len(),
+            bodies: self.bodies.len(),
+            ids: &self.ids,
+            body: &self.body,
+            position: &self.position,
+            size: &self.size,
+            included,
+            mass: &self.mass,
+            velocity: &self.velocity,
+            temperature: &self.temperature,
+            plastic_strain: &self.plastic_strain,
+        }
+    }
+}
+
+/// Temperatures as the snapshot tells them, or as the case's materials do; else NaN, and why.
+fn temperatures(
+    reader: &Reader,
+    case: Result<&Case, &String>,
+    body: &[u32],
+    damage: &[f64],
+) -> Result<(Vec<f64>, Option<String>), FragmentsError> {
+    if reader.has("temperature") {
+        return Ok((reader.field("temperature", 1)?, None));
+    }
+    let unknown = |why: String| {
+        let text = format!("no temperatures: {why}");
+        Ok((vec![f64::NAN; body.len()], Some(text)))
+    };
+    let case = match case {
+        Ok(case) => case,
+        Err(why) => return unknown(format!("the snapshot's case cannot be read ({why})")),
+    };
+    if case
+        .materials
+        .iter()
+        .all(|material| material.thermal.is_none())
+    {
+        return Ok((vec![f64::NAN; body.len()], None));
+    }
+    if !(reader.has("density") && reader.has("specific_energy")) {
+        return unknown("the snapshot has neither them nor density and specific energy".into());
+    }
+    let (density, energy) = (
+        reader.field("density", 1)?,
+        reader.field("specific_energy", 1)?,
+    );
+    let of = |i: usize| {
+        let body = case.bodies.get(body[i] as usize)?;
+        case.materials
+            .get(body.material)?
+            .temperature(density[i], energy[i], damage[i])
+    };
+    let values = (0..body.len()).map(|i| of(i).unwrap_or(f64::NAN));
+    Ok((values.collect(), None))
+}

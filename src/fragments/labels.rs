@@ -1,0 +1,142 @@
+//! Labels of what hangs together, over all ranks.
+
+use super::merger::{Merger, Row};
+use super::sets::Sets;
+use crate::comm::Comm;
+use crate::domain::Halo;
+
+/// What hangs together with a particle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Member {
+    /// Smallest id of it all.
+    pub label: u64,
+    /// Marks of it all: the symmetry planes that it reaches across.
+    pub planes: u32,
+    /// Its particles on all ranks.
+    pub count: u64,
+    /// Whether other ranks have some of it.
+    pub crosses: bool,
+}
+
+/// Connected components of particles: labels are the smallest id of all that hangs together. Kept
+/// from one search to the next.
+///
+/// A search is [`Self::begin`], links between this rank's particles, halo particles and their images
+/// ([`Self::sets`]), [`Self::settle`].
+#[derive(Default)]
+pub struct Labels {
+    members: Members,
+    pub(super) merger: Merger,
+    /// Labels of particles on their own rank.
+    told: Vec<u64>,
+}
+
+/// Who hangs together with whom.
+#[derive(Debug, Default)]
+pub struct Members {
+    /// Particles of this rank, then halo particles.
+    sets: Sets,
+    /// Sets that have particles of this rank and of others: root, whole count.
+    crossing: Vec<(u32, u64)>,
+}
+
+impl Labels {
+    /// Bytes for each particle, halo particles included.
+    pub const BYTES: usize = Sets::BYTES + size_of::<u64>();
+
+    /// Begins with `n` particles, halo particles included, each by itself.
+    pub fn begin(&mut self, n: usize) {
+        self.members.sets.reset(n);
+    }
+
+    /// Where links are joined: particles of this rank, then halo particles.
+    #[must_use]
+    pub fn sets(&self) -> &Sets {
+        &self.members.sets
+    }
+
+    /// Who hangs together with whom, after [`Self::settle`].
+    #[must_use]
+    pub fn members(&self) -> &Members {
+        &self.members
+    }
+
+    /// Labels what the links have joined, given the `ids` of this rank's particles and of halo
+    /// particles after them. Without a halo there is one rank. Collective.
+    pub fn settle(&mut self, comm: &Comm, halo: Option<&mut Halo>, ids: &[u64], owned: usize) {
+        let Members { sets, crossing } = &mut self.members;
+        sets.settle(ids, owned);
+        crossing.clear();
+        let Some(halo) = halo.filter(|_| comm.size() > 1) else {
+            return;
+        };
+        let place = |i: usize| u32::try_from(i).unwrap_or(u32::MAX);
+        self.told.clear();
+        self.told
+            .extend((0..ids.len()).map(|i| sets.set(place(i)).label));
+        halo.exchange_values(comm, &mut self.told);
+        let rows = &mut self.merger.rows;
+        rows.clear();
+        for i in owned..ids.len() {
+            let set = sets.set(place(i));
+            // A root is the smallest of its set: halo particles that nothing here is linked with
+            // are by themselves.
+            if set.count == 0 {
+                continue;
+            }
+            crossing.push((set.root, 0));
+            rows.push(Row {
+                label: set.label,
+                other: self.told[i],
+                marks: 0,
+                count: 0,
+            });
+        }
+        rows.sort_unstable();
+        rows.dedup();
+        crossing.sort_unstable();
+        crossing.dedup();
+        rows.extend(crossing.iter().map(|&(root, _)| {
+            let set = sets.set(root);
+            Row {
+                label: set.label,
+                other: set.label,
+                marks: set.marks.into(),
+                count: set.count.into(),
+            }
+        }));
+        self.merger.merge(comm);
+        for (root, count) in crossing {
+            let set = sets.set(*root);
+            if let Some(row) = self.merger.of(set.label) {
+                *count = row.count;
+                let marks = u32::try_from(row.marks).unwrap_or(u32::MAX);
+                sets.rename(*root, row.label, marks);
+            }
+        }
+    }
+
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.members.sets.memory()
+            + self.merger.memory()
+            + 8 * self.told.capacity()
+            + size_of::<(u32, u64)>() * self.members.crossing.capacity()
+    }
+}
+
+impl Members {
+    /// What hangs together with a particle of this rank.
+    #[must_use]
+    pub fn of(&self, i: usize) -> Member {
+        let set = self.sets.set(u32::try_from(i).unwrap_or(u32::MAX));
+        let crossing = (self.crossing).binary_search_by_key(&set.root, |(root, _)| *root);
+        Member {
+            label: set.label,
+            planes: set.marks,
+            count: crossing.map_or(set.count.into(), |at| self.crossing[at].1),
+            crosses: crossing.is_ok(),
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! What a run says as it begins.
+
+use std::path::Path;
+
+use super::say::{counted, say, seconds, warn};
+use crate::comm::Comm;
+use crate::output::{COMMIT, Log, VERSION};
+use crate::step::Simulation;
+
+/// Says what begins: how many particles on how many ranks, from what, and `warnings` about the case.
+/// Collective.
+pub fn say_all(
+    comm: &Comm,
+    simulation: &Simulation,
+    log: &mut Log,
+    (restarted, set_up): (Option<&Path>, f64),
+    warnings: &[String],
+) {
+    let mut counts = [simulation.particles.owned() as u64];
+    comm.sum_u64(&mut counts);
+    if !comm.is_root() {
+        return;
+    }
+    let state = &simulation.state;
+    let from = restarted.map_or(String::new(), |path| {
+        let time = seconds(state.time);
+        format!(", from {} at {time}", path.display())
+    });
+    let text = format!(
+        "{}: {} particles, {} with {} each ({}){from}",
+        simulation.case.title,
+        counts[0],
+        counted(comm.size() as u64, "rank"),
+        counted(rayon::current_num_threads() as u64, "thread"),
+        crate::numerics::dispatch::instructions().name(),
+    );
+    log.line(&format!("whipple {VERSION} ({COMMIT})"));
+    log.line(&text);
+    log.line(&format!("set up in {set_up:.3} s"));
+    say(&text);
+    for warning in warnings {
+        let text = format!("warning: {warning}");
+        log.line(&text);
+        warn(&text);
+    }
+}

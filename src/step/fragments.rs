@@ -1,0 +1,67 @@
+//! The fragments of a running case.
+
+use rayon::prelude::*;
+
+use super::simulation::Simulation;
+use crate::comm::Comm;
+use crate::fragments::{Census, Matter, Rule, Surroundings, belongs, find, link_reach, size};
+use crate::model::{FragmentOptions, SphForm};
+
+impl Simulation {
+    /// Finds the fragments of all ranks. Between steps: halo particles are others afterwards.
+    /// Collective.
+    pub fn fragments(&mut self, comm: &Comm, options: &FragmentOptions) -> Census {
+        let Self {
+            case,
+            particles,
+            halo,
+            labels,
+            ..
+        } = self;
+        let rule = Rule::new(options, case.dimension);
+        let first = case.bodies.iter().map(|body| case.initial_density(body));
+        let first: Vec<f64> = first.collect();
+        let size_of = |mass: f64, body: u32| size(mass, first[body as usize], rule.dimension);
+        halo.exchange_motion(comm, particles, |particles, i| {
+            link_reach(rule.link, size_of(particles.mass[i], particles.body[i]))
+        });
+        let owned = particles.owned();
+        let masses = particles.mass.par_iter().zip(&particles.body);
+        let sizes: Vec<f64> = masses.map(|(&m, &body)| size_of(m, body)).collect();
+        let damage = |i: usize| particles.damage.get(i).copied().unwrap_or_default();
+        let mut included: Vec<u8> = vec![0; particles.id.len()];
+        for (i, included) in included[..owned].iter_mut().enumerate() {
+            *included = belongs(options.include, damage(i)).into();
+        }
+        halo.exchange_values(comm, &mut included);
+        let included: Vec<bool> = included.iter().map(|&is| is != 0).collect();
+        // Stress points hold the state of the particles about them.
+        let has_state = case.sph.form != SphForm::StressPoints;
+        let temperature = (0..owned).into_par_iter().map(|i| {
+            let material = &case.materials[case.bodies[particles.body[i] as usize].material];
+            let (density, energy) = (particles.density[i], particles.specific_energy[i]);
+            let known = material.temperature(density, energy, damage(i));
+            known.filter(|_| has_state).unwrap_or(f64::NAN)
+        });
+        let temperature: Vec<f64> = temperature.collect();
+        let matter = Matter {
+            owned,
+            bodies: case.bodies.len(),
+            ids: &particles.id,
+            body: &particles.body,
+            position: &particles.position,
+            size: &sizes,
+            included: &included,
+            mass: &particles.mass,
+            velocity: &particles.velocity,
+            temperature: &temperature,
+            plastic_strain: &particles.plastic_strain,
+        };
+        let (mirrors, others) = (*halo.mirrors(), halo.others().to_vec());
+        let around = Surroundings {
+            mirrors: &mirrors,
+            others: &others,
+        };
+        find((comm, Some(halo)), &matter, around, &rule, labels)
+    }
+}
