@@ -138,6 +138,10 @@ fn every_contact_mode_variable_h_and_options() {
         ["sph.smoothing_length=constant", "run.end_time=0.1us"],
         ["sph.artificial_stress=0.3", "run.end_time=0.1us"],
         ["sph.balsara=true", "run.end_time=0.05us"],
+        [
+            "output.fields=[\"peak_pressure\", \"peak_pressure_time\", \"peak_tension\", \"peak_temperature\", \"peak_strain_rate\", \"arrival_time\", \"plastic_energy\"]",
+            "run.end_time=0.1us",
+        ],
         ["sph.conduction=1", "run.end_time=0.05us"],
         ["sph.xsph=0.5", "run.end_time=0.1us"],
         [

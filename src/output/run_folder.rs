@@ -205,6 +205,8 @@ paths! {
     removed: "removed.csv";
     /// Table of what particles that left the box of interest took with them.
     departed: "departed.csv";
+    /// Table of what there is of each body.
+    bodies: "bodies.csv";
     /// Table of wall-clock times.
     performance: "performance.csv";
     /// The log.

@@ -19,6 +19,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
         ),
         (Owner::SURFACE_FRICTION, case.loads.has_friction()),
         (Owner::FAILURE, case.may_fail()),
+        (Owner::YIELD, case.may_yield()),
         (Owner::BALSARA, sph.balsara),
         (Owner::CONDUCTION, sph.conduction > 0.0),
         (Owner::XSPH, sph.xsph > 0.0),
@@ -32,8 +33,17 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
     ]
     .into_iter()
     .filter(|&(_, used)| used)
-    .fold(contact.owners(), |all, (option, _)| all | option);
+    .fold(contact.owners() | records(case), |all, (option, _)| {
+        all | option
+    });
     Owner::all().difference(used)
+}
+
+/// What particles keep because snapshots are to show it.
+fn records(case: &Case) -> Owner {
+    let shown = |field: &&FieldInfo| case.output.fields.iter().any(|name| name == field.name);
+    let records = rows(Owner::PEAKS).filter(shown);
+    records.fold(Owner::empty(), |all, field| all | field.owner)
 }
 
 /// Bytes that the options of a case add beyond contact without friction: to an owned particle, and

@@ -13,6 +13,7 @@ use crate::diagnose::{
 };
 use crate::domain::{Halo, Partition};
 use crate::loads::Loads;
+use crate::measure::{self, BodyFigures, Whole};
 use crate::model::{Case, SphForm};
 use crate::neighbours::Lists;
 use crate::particles::{HaloPhase, ParticleStore};
@@ -168,6 +169,7 @@ impl Simulation {
         let step = Step {
             dt,
             last_dt: state.last_dt,
+            time: state.time + dt,
             gravity: loads.gravity,
         };
         sph.rates(particles, lists, &step);
@@ -278,6 +280,13 @@ impl Simulation {
         }
         totals.add_yielded(particles, loads, comm);
         totals
+    }
+
+    /// What there is of each body now, right after a step. Collective.
+    #[must_use]
+    pub fn measure_bodies(&self, comm: &Comm) -> Vec<BodyFigures> {
+        let whole = Whole::new(self.halo.mirrors());
+        measure::bodies(&self.case, &self.particles, &whole, comm)
     }
 
     /// Joins the extremes of all ranks into the state: before rows and checkpoints. Collective.

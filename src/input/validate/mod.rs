@@ -11,6 +11,7 @@ mod initial;
 mod lattice;
 mod loads;
 mod materials;
+mod measure;
 mod meshes;
 mod motion;
 mod numerical_limits;
@@ -38,7 +39,7 @@ use crate::model::{
     Axis, Body, Case, ContactMode, DomainOptions, NumericalLimits, OutputOptions, RunControl,
     SmoothingLength, SphForm, SphOptions, SymmetryPlane, TimeStepOptions,
 };
-use crate::particles::{TEMPERATURE, snapshot_names};
+use crate::particles::{FIELDS, FieldId, TEMPERATURE, snapshot_names};
 use crate::populate::overlap;
 use check::{Allowed, number, whole};
 use region::KeepReader;
@@ -97,6 +98,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         numerical_limits: NumericalLimits::default(),
         run: run(params.run.get_ref())?,
         output: output(params.output)?,
+        measure: measure::measure(&params.measure)?,
         resolved: String::new(),
     };
     initial::settle(&mut case, &params.body)?;
@@ -160,7 +162,11 @@ fn check_overlaps(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Dia
 }
 
 fn check_temperature(case: &Case, fields: &[(String, Range<usize>)]) -> Result<(), Diagnostic> {
-    match fields.iter().find(|(name, _)| name == TEMPERATURE) {
+    let peak = FIELDS[FieldId::peak_temperature as usize].name;
+    match fields
+        .iter()
+        .find(|(name, _)| [TEMPERATURE, peak].contains(&name.as_str()))
+    {
         Some((_, at)) if case.materials.iter().all(|m| m.thermal.is_none()) => {
             let title = "no material has `thermal` constants that would give it a temperature";
             Err(Diagnostic::new(at.clone(), title))
