@@ -90,6 +90,12 @@ tables! {
         /// What is written.
         #[serde(default)]
         output: OutputParams,
+        /// Gauges.
+        #[serde(default)]
+        gauge: Vec<Spanned<GaugeParams>>,
+        /// Planes that count what passes.
+        #[serde(default)]
+        witness: Vec<Spanned<WitnessParams>>,
         /// What is measured.
         #[serde(default)]
         measure: MeasureParams,

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::Whole;
+use super::{Whole, reading};
 use crate::comm::Comm;
 use crate::material::FAILED;
 use crate::model::{Case, edge};
@@ -92,7 +92,7 @@ impl Part {
         let damage = particles.damage.get(i).copied().unwrap_or_default();
         let work = particles.plastic_energy.get(i).copied();
         let material = &case.materials[case.bodies[particles.body[i] as usize].material];
-        let temperature = material.temperature(density, energy, damage);
+        let temperature = reading::temperature(case, particles, i);
         let melting = material.thermal.as_ref();
         let melting = melting.and_then(|t| t.constants().melting_temperature);
         let molten = temperature.zip(melting).is_some_and(|(t, at)| t >= at);

@@ -6,7 +6,15 @@
 //! [`Whole`].
 
 mod bodies;
+mod gauges;
+mod kept;
+mod reading;
 mod whole;
+mod witness;
 
 pub use bodies::{BodyFigures, bodies};
+pub use gauges::{GaugeRow, Gauges};
+pub use kept::Measures;
+pub use reading::Reading;
 pub use whole::Whole;
+pub use witness::{Crossing, Witnesses, whole_passed};

@@ -120,7 +120,7 @@ mod tests {
         ] {
             let mirrors = mirrors(planes);
             let whole = Whole::new(&mirrors);
-            let [mut mass, mut copies] = [0.0, 0];
+            let (mut mass, mut copies) = (0.0, 0);
             let (mut momentum, mut turn, mut centre) = ([0.0; 3], [0.0; 3], [0.0; 3]);
             let (mut part_momentum, mut part_turn) = ([0.0; 3], [0.0; 3]);
             let (mut extents, mut part_extents) = ([[9e9; 3], [-9e9; 3]], [[9e9; 3], [-9e9; 3]]);

@@ -1,14 +1,19 @@
 //! What is measured in a run.
 
+use super::gauge::{Gauge, Witness};
 use crate::material::Material;
 
-/// What is measured in a run: the table `[measure]`.
+/// What is measured in a run: the tables `[measure]`, `[[gauge]]` and `[[witness]]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasureOptions {
     /// Whether `bodies.csv` is written.
     pub bodies: bool,
     /// Pressure (Pa) beyond which a shock has arrived; by material if absent.
     pub arrival_pressure: Option<f64>,
+    /// Gauges, in the order of the input.
+    pub gauges: Vec<Gauge>,
+    /// Witness planes, in the order of the input.
+    pub witnesses: Vec<Witness>,
 }
 
 impl Default for MeasureOptions {
@@ -16,6 +21,8 @@ impl Default for MeasureOptions {
         Self {
             bodies: true,
             arrival_pressure: None,
+            gauges: Vec::new(),
+            witnesses: Vec::new(),
         }
     }
 }

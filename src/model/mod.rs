@@ -13,6 +13,7 @@ mod contact;
 mod control;
 mod distance;
 mod formula;
+mod gauge;
 mod grading;
 mod initial;
 mod load;
@@ -40,6 +41,7 @@ pub use control::{
     DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm, SphOptions, TimeStepOptions,
 };
 pub use formula::{Combination, Formula, Function, Operation, Place, Profile};
+pub use gauge::{Cadence, Gauge, Witness};
 pub use grading::{Focus, Grading};
 pub use initial::{Heat, Initial};
 pub use load::{Loads, VelocityLoad};

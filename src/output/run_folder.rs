@@ -207,6 +207,12 @@ paths! {
     departed: "departed.csv";
     /// Table of what there is of each body.
     bodies: "bodies.csv";
+    /// Table of gauges.
+    gauges: "gauges.csv";
+    /// Table of what has passed witness planes.
+    witness: "witness.csv";
+    /// Table of who has passed them, where and when.
+    crossings: "crossings.csv";
     /// Table of wall-clock times.
     performance: "performance.csv";
     /// The log.

@@ -163,6 +163,8 @@ bitflags! {
         const PEAK_STRAIN_RATE = 1 << 20;
         /// The record of when pressure arrived.
         const ARRIVAL = 1 << 21;
+        /// Witness planes.
+        const WITNESSES = 1 << 22;
         /// Records that a particle keeps because snapshots are to show them.
         const PEAKS = Self::PEAK_PRESSURE.bits() | Self::PEAK_TENSION.bits()
             | Self::PEAK_TEMPERATURE.bits() | Self::PEAK_STRAIN_RATE.bits() | Self::ARRIVAL.bits();

@@ -22,7 +22,7 @@ pub use records::Records;
 pub(crate) use records::records_of;
 pub use scatter::Scatter;
 pub use select::Select;
-pub use store::{TEMPERATURE, VON_MISES_STRESS, rows, snapshot_names};
+pub use store::{STRESS, TEMPERATURE, VON_MISES_STRESS, gauge_names, rows, snapshot_names};
 
 /// Particles that a task handles at least, where they take little work each.
 pub(crate) const GRAIN: usize = 1024;

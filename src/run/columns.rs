@@ -1,9 +1,9 @@
 //! The columns of the tables of a run, and rows of them.
 
 use super::load::Load;
-use crate::measure::BodyFigures;
+use crate::measure::{BodyFigures, Crossing, GaugeRow};
 use crate::output::{Column, Value, unit_of_model};
-use crate::step::{LoadState, PairState, Removed, RunState};
+use crate::step::{LoadState, PairState, Passed, Removed, RunState};
 
 /// Columns with SI units; what a model of fewer dimensions has is by length or area. A name that
 /// ends with `*` is that of three columns.
@@ -210,5 +210,41 @@ tables! {
         "largest_pressure", "Pa", body.pressures[1];
         "largest_temperature", "K", body.temperature;
         "largest_plastic_strain", "", body.plastic_strain;
+    }
+
+    /// What of a row of a gauge comes before its readings.
+    GAUGES, gauge_row(state: &RunState, name: &'a str, gauge: &GaugeRow) {
+        "step", "", state.step;
+        "time", "s", state.time;
+        "gauge", "", name;
+        "place_*", "m", gauge.position;
+        "coverage", "", gauge.coverage;
+    }
+
+    /// A row of what has passed a witness plane in a direction.
+    WITNESS, witness_row(time: f64, names: [&'a str; 3], passed: &Passed) {
+        "time", "s", time;
+        "witness", "", names[0];
+        "body", "", names[1];
+        "direction", "", names[2];
+        "particles", "", passed.particles;
+        "mass", "kg", passed.mass;
+        "momentum_*", "kg m/s", passed.momentum;
+        "kinetic_energy", "J", passed.kinetic_energy;
+        "internal_energy", "J", passed.internal_energy;
+    }
+
+    /// A row of a particle that has passed a witness plane.
+    CROSSINGS, crossing_row(crossing: &Crossing, names: [&'a str; 3]) {
+        "step", "", crossing.step;
+        "time", "s", crossing.time;
+        "witness", "", names[0];
+        "body", "", names[1];
+        "direction", "", names[2];
+        "id", "", crossing.id;
+        "place_*", "m", crossing.position;
+        "velocity_*", "m/s", crossing.velocity;
+        "mass", "kg", crossing.mass;
+        "internal_energy", "J", crossing.internal_energy;
     }
 }

@@ -1,5 +1,7 @@
 //! The run loop: steps, and what is written between them.
 
+mod measures;
+
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -78,7 +80,7 @@ impl<'a> Driver<'a> {
         let mut tables = None;
         on_root(comm, || {
             let resume = restarted.is_some().then_some(&simulation.state);
-            tables = Some(Tables::open(folder, &simulation.case, resume)?);
+            tables = Some(Tables::open(folder, &simulation, resume)?);
             folder.forget_stop(launch.began)
         })?;
         let stop = comm.is_root().then(|| folder.stop());
@@ -106,6 +108,7 @@ impl<'a> Driver<'a> {
         driver.announce(comm, restarted, warnings);
         if restarted.is_none() {
             driver.write_row(comm)?;
+            driver.write_gauges(comm, 0.0)?;
             driver.write_snapshot(comm)?;
         }
         Ok(driver)
@@ -221,6 +224,7 @@ impl<'a> Driver<'a> {
 
     /// Whatever is due after a step that began at time `before` (s).
     fn write(&mut self, comm: &Comm, before: f64) -> Result<(), OutputError> {
+        self.write_gauges(comm, before)?;
         for text in self.departures.notices(&self.simulation) {
             self.log(comm, &text);
         }
@@ -255,6 +259,7 @@ impl<'a> Driver<'a> {
     }
 
     fn write_row(&mut self, comm: &Comm) -> Result<(), OutputError> {
+        self.write_crossings(comm)?;
         let load = load(comm, &self.simulation);
         let bodies = if self.simulation.case.measure.bodies {
             self.simulation.measure_bodies(comm)
@@ -301,6 +306,7 @@ impl<'a> Driver<'a> {
 
     fn write_checkpoint(&mut self, comm: &Comm) -> Result<(), OutputError> {
         let begun = Instant::now();
+        self.write_crossings(comm)?;
         // Rows before this checkpoint are not written again once it is there.
         on_root(comm, || self.tables.as_ref().map_or(Ok(()), Tables::sync))?;
         let folder = self.folder.checkpoints();

@@ -1,12 +1,12 @@
 //! The tables of a run.
 
 use super::columns::{
-    ABSORBED, BODIES, CONTACTS, DEPARTED, DEPARTURE, FAILURE, HISTORY, LOADS, PERFORMANCE, REMOVED,
-    absorbed, body_row, columns, contact, departed, departure, failure, history, load_row,
-    performance, removed,
+    ABSORBED, BODIES, CONTACTS, CROSSINGS, DEPARTED, DEPARTURE, FAILURE, GAUGES, HISTORY, LOADS,
+    PERFORMANCE, REMOVED, WITNESS, absorbed, body_row, columns, contact, crossing_row, departed,
+    departure, failure, gauge_row, history, load_row, performance, removed, witness_row,
 };
 use super::load::Load;
-use crate::measure::BodyFigures;
+use crate::measure::{BodyFigures, Crossing, GaugeRow};
 use crate::model::{Case, NumericalFailurePolicy, SphForm};
 use crate::output::{Column, OutputError, RunFolder, Table, Value};
 use crate::step::{RunState, Simulation};
@@ -19,16 +19,42 @@ pub struct Tables {
     removed: Option<Table>,
     departed: Option<Table>,
     bodies: Option<Table>,
+    gauges: Option<Table>,
+    /// What has passed witness planes, and who.
+    witnesses: Option<[Table; 2]>,
     performance: Table,
+}
+
+/// The directions in which a witness plane is passed, that of its normal first.
+const DIRECTIONS: [&str; 2] = ["forwards", "backwards"];
+
+/// The columns of the history of a case, from whose box of interest particles may have departed.
+fn of_history(case: &Case, departs: bool) -> Vec<Column> {
+    let columns = |list| columns(case.dimension, list);
+    let mut all = columns(HISTORY);
+    if case.sph.form != SphForm::Conventional {
+        all.push(Column::new("uncorrected", ""));
+    }
+    if case.may_fail() {
+        all.extend(columns(FAILURE));
+    }
+    if !case.loads.absorbers.is_empty() {
+        all.extend(columns(ABSORBED));
+    }
+    if departs {
+        all.extend(columns(DEPARTED));
+    }
+    all
 }
 
 impl Tables {
     /// Starts the tables of a run of `case`, or goes on with them after the state `resume`.
     pub fn open(
         folder: &RunFolder,
-        case: &Case,
+        simulation: &Simulation,
         resume: Option<&RunState>,
     ) -> Result<Self, OutputError> {
+        let case = &simulation.case;
         let open =
             |path: &std::path::Path, columns: &[Column], key: &str, last: Option<f64>| match last {
                 Some(last) => Table::resume(path, columns, key, last),
@@ -38,22 +64,13 @@ impl Tables {
         let step = resume.map(|state| state.step as f64);
         let time = resume.map(|state| state.time);
         let columns = |list| columns(case.dimension, list);
-        let mut of_history = columns(HISTORY);
-        if case.sph.form != SphForm::Conventional {
-            of_history.push(Column::new("uncorrected", ""));
-        }
-        if case.may_fail() {
-            of_history.extend(columns(FAILURE));
-        }
-        if !case.loads.absorbers.is_empty() {
-            of_history.extend(columns(ABSORBED));
-        }
         let departs =
             case.domain.keep.is_some() || resume.is_some_and(|state| !state.departed.is_empty());
-        if departs {
-            of_history.extend(columns(DEPARTED));
-        }
+        let of_history = of_history(case, departs);
         let of_departed = [columns(REMOVED), columns(DEPARTURE)].concat();
+        let mut of_gauges = columns(GAUGES);
+        let readings = simulation.gauges().columns();
+        of_gauges.extend(readings.map(|(name, unit)| Column::new(&name, unit)));
         let has_loads = case.load_names().next().is_some();
         let removes = case.numerical_limits.policy != NumericalFailurePolicy::Stop
             || resume.is_some_and(|state| !state.removed.is_empty());
@@ -72,6 +89,16 @@ impl Tables {
             bodies: (case.measure.bodies)
                 .then(|| open(&folder.bodies(), &columns(BODIES), "time", time))
                 .transpose()?,
+            gauges: (simulation.gauges().any())
+                .then(|| open(&folder.gauges(), &of_gauges, "step", step))
+                .transpose()?,
+            witnesses: (!case.measure.witnesses.is_empty())
+                .then(|| {
+                    let passed = open(&folder.witness(), &columns(WITNESS), "time", time)?;
+                    let who = open(&folder.crossings(), &columns(CROSSINGS), "step", step)?;
+                    Ok([passed, who])
+                })
+                .transpose()?,
             performance: open(&folder.performance(), &columns(PERFORMANCE), "step", step)?,
         })
     }
@@ -85,20 +112,7 @@ impl Tables {
         wall: f64,
     ) -> Result<(), OutputError> {
         let (case, state) = (&simulation.case, &simulation.state);
-        let mut row = history(state);
-        if case.sph.form != SphForm::Conventional {
-            row.push(Value::Count(state.uncorrected.unsigned_abs()));
-        }
-        if case.may_fail() {
-            row.extend(failure(state));
-        }
-        if !case.loads.absorbers.is_empty() {
-            row.extend(absorbed(state));
-        }
-        if self.departed.is_some() {
-            row.extend(departed(state));
-        }
-        self.history.row(&row)?;
+        self.write_history(case, state)?;
         let pairs = simulation.contact().active_pairs();
         for (bodies, pair) in pairs.iter().zip(&state.pairs) {
             let names = bodies.map(|b| case.bodies[b].name.as_str());
@@ -126,14 +140,94 @@ impl Tables {
                 table.row(&body_row(state.time, &body.name, figures))?;
             }
         }
+        self.write_passed(simulation)?;
         self.performance.row(&performance(state.step, wall, load))
+    }
+
+    fn write_history(&mut self, case: &Case, state: &RunState) -> Result<(), OutputError> {
+        let mut row = history(state);
+        if case.sph.form != SphForm::Conventional {
+            row.push(Value::Count(state.uncorrected.unsigned_abs()));
+        }
+        if case.may_fail() {
+            row.extend(failure(state));
+        }
+        if !case.loads.absorbers.is_empty() {
+            row.extend(absorbed(state));
+        }
+        if self.departed.is_some() {
+            row.extend(departed(state));
+        }
+        self.history.row(&row)
+    }
+
+    /// Writes what has passed witness planes.
+    fn write_passed(&mut self, simulation: &Simulation) -> Result<(), OutputError> {
+        let (case, state) = (&simulation.case, &simulation.state);
+        if let Some([table, _]) = &mut self.witnesses {
+            let mut passed = simulation.passed().into_iter();
+            for plane in &case.measure.witnesses {
+                for body in &case.bodies {
+                    for (way, passed) in DIRECTIONS.into_iter().zip(&mut passed) {
+                        let names = [&plane.name, &body.name, way];
+                        table.row(&witness_row(state.time, names, &passed))?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes what the gauges have read in this step.
+    pub fn write_gauges(
+        &mut self,
+        simulation: &Simulation,
+        read: &[GaugeRow],
+    ) -> Result<(), OutputError> {
+        let Some(table) = &mut self.gauges else {
+            return Ok(());
+        };
+        let gauges = &simulation.case.measure.gauges;
+        table.rows(read.iter().map(|gauge| {
+            let mut row = gauge_row(&simulation.state, &gauges[gauge.gauge].name, gauge);
+            let values = gauge.values.iter();
+            row.extend(values.map(|value| value.map_or(Value::Word(""), Value::Real)));
+            row
+        }))
+    }
+
+    /// Writes who has passed witness planes.
+    pub fn write_crossings(
+        &mut self,
+        case: &Case,
+        crossings: &[Crossing],
+    ) -> Result<(), OutputError> {
+        let Some([_, table]) = &mut self.witnesses else {
+            return Ok(());
+        };
+        table.rows(crossings.iter().map(|crossing| {
+            let plane = &case.measure.witnesses[crossing.plane].name;
+            let body = &case.bodies[crossing.body].name;
+            let way = DIRECTIONS[usize::from(!crossing.forwards)];
+            crossing_row(crossing, [plane, body, way])
+        }))
     }
 
     /// Brings all rows written so far to the disk.
     pub fn sync(&self) -> Result<(), OutputError> {
         let always = [&self.history, &self.contacts, &self.performance];
-        let some = [&self.loads, &self.removed, &self.departed, &self.bodies];
-        let mut all = always.into_iter().chain(some.into_iter().flatten());
+        let some = [
+            &self.loads,
+            &self.removed,
+            &self.departed,
+            &self.bodies,
+            &self.gauges,
+        ];
+        let witnesses = self.witnesses.iter().flatten();
+        let mut all = always
+            .into_iter()
+            .chain(some.into_iter().flatten())
+            .chain(witnesses);
         all.try_for_each(Table::sync)
     }
 }

@@ -20,6 +20,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
         (Owner::SURFACE_FRICTION, case.loads.has_friction()),
         (Owner::FAILURE, case.may_fail()),
         (Owner::YIELD, case.may_yield()),
+        (Owner::WITNESSES, !case.measure.witnesses.is_empty()),
         (Owner::BALSARA, sph.balsara),
         (Owner::CONDUCTION, sph.conduction > 0.0),
         (Owner::XSPH, sph.xsph > 0.0),
@@ -39,10 +40,11 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
     Owner::all().difference(used)
 }
 
-/// What particles keep because snapshots are to show it.
+/// What particles keep because snapshots or gauges are to show it.
 fn records(case: &Case) -> Owner {
-    let shown = |field: &&FieldInfo| case.output.fields.iter().any(|name| name == field.name);
-    let records = rows(Owner::PEAKS).filter(shown);
+    let gauges = case.measure.gauges.iter().flat_map(|gauge| &gauge.fields);
+    let names = case.output.fields.iter().chain(gauges);
+    let records = rows(Owner::PEAKS).filter(|field| names.clone().any(|name| name == field.name));
     records.fold(Owner::empty(), |all, field| all | field.owner)
 }
 

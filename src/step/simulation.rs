@@ -13,7 +13,7 @@ use crate::diagnose::{
 };
 use crate::domain::{Halo, Partition};
 use crate::loads::Loads;
-use crate::measure::{self, BodyFigures, Whole};
+use crate::measure::Measures;
 use crate::model::{Case, SphForm};
 use crate::neighbours::Lists;
 use crate::particles::{HaloPhase, ParticleStore};
@@ -44,6 +44,17 @@ pub struct Simulation {
     pub(super) contact: Contact,
     pub(super) loads: Loads,
     pub(super) sums: StepSums,
+    pub(super) measures: Measures,
+}
+
+/// What the sums are told of a step `dt` (s) from a state.
+fn step(state: &RunState, loads: &Loads, dt: f64) -> Step {
+    Step {
+        dt,
+        last_dt: state.last_dt,
+        time: state.time + dt,
+        gravity: loads.gravity,
+    }
 }
 
 impl Simulation {
@@ -82,6 +93,7 @@ impl Simulation {
         (self.state.last_dt, self.state.last_reason) = (dt, reason);
         self.book_step(comm, dt);
         self.timers.updates += self.particles.owned() as u64;
+        self.watch_witnesses();
         self.choose_step(comm, candidate)?;
         self.timers.lap(Phase::TimeStep);
         self.remove_departed(comm)
@@ -166,12 +178,7 @@ impl Simulation {
             }
             timers.lap(Phase::Neighbours);
         }
-        let step = Step {
-            dt,
-            last_dt: state.last_dt,
-            time: state.time + dt,
-            gravity: loads.gravity,
-        };
+        let step = step(state, loads, dt);
         sph.rates(particles, lists, &step);
         timers.lap(Phase::Material);
         contact.measure(particles, lists, dt);
@@ -282,13 +289,6 @@ impl Simulation {
         totals
     }
 
-    /// What there is of each body now, right after a step. Collective.
-    #[must_use]
-    pub fn measure_bodies(&self, comm: &Comm) -> Vec<BodyFigures> {
-        let whole = Whole::new(self.halo.mirrors());
-        measure::bodies(&self.case, &self.particles, &whole, comm)
-    }
-
     /// Joins the extremes of all ranks into the state: before rows and checkpoints. Collective.
     pub fn join_extremes(&mut self, comm: &Comm) {
         self.sums.join_extremes(comm, &mut self.state);
@@ -342,6 +342,7 @@ impl Simulation {
             + self.contact.memory()
             + self.loads.memory()
             + self.sums.memory()
+            + self.measures.memory()
             + self.step_control.memory()
             + self.halo.memory()
             + self.partition.memory()

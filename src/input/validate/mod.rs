@@ -36,8 +36,8 @@ use super::source::Diagnostic;
 use crate::material::Material;
 use crate::model::readable::Readable;
 use crate::model::{
-    Axis, Body, Case, ContactMode, DomainOptions, NumericalLimits, OutputOptions, RunControl,
-    SmoothingLength, SphForm, SphOptions, SymmetryPlane, TimeStepOptions,
+    Axis, Body, Case, ContactMode, DomainOptions, MeasureOptions, NumericalLimits, OutputOptions,
+    RunControl, SmoothingLength, SphForm, SphOptions, SymmetryPlane, TimeStepOptions,
 };
 use crate::particles::{FIELDS, FieldId, TEMPERATURE, snapshot_names};
 use crate::populate::overlap;
@@ -80,7 +80,6 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     let time_step = time_step(&params.time_step, &sph, &bodies, &materials)?;
     let domain = domain(&params, dimension, &bodies, &symmetry, &length_unit)?;
     let fields = field_spans(&params.output);
-    let form = params.sph.form.as_ref().map(Spanned::span);
     let mut case = Case {
         title: names::title(params.title)?,
         length_unit,
@@ -98,13 +97,14 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         numerical_limits: NumericalLimits::default(),
         run: run(params.run.get_ref())?,
         output: output(params.output)?,
-        measure: measure::measure(&params.measure)?,
+        measure: MeasureOptions::default(),
         resolved: String::new(),
     };
     initial::settle(&mut case, &params.body)?;
     case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, &case)?;
     case.loads.absorbers = absorbers::absorbers(&params.absorb, &case)?;
-    stress_points::check(&case, form)?;
+    case.measure = measure::measure(&case, &params.measure, &params.gauge, &params.witness)?;
+    stress_points::check(&case, params.sph.form.as_ref().map(Spanned::span))?;
     check_moduli(&case, &params.body)?;
     check_overlaps(&case, &params.body)?;
     check_temperature(&case, &fields)?;
