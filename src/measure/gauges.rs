@@ -206,6 +206,19 @@ impl Gauges {
             .collect()
     }
 
+    /// Tells particles which of them are carriers, at the start of a case.
+    pub fn mark(&self, particles: &mut ParticleStore, carriers: &[u64]) {
+        if carriers.is_empty() {
+            return;
+        }
+        let mut sorted = carriers.to_vec();
+        sorted.sort_unstable();
+        for i in 0..particles.owned() {
+            let carries = sorted.binary_search(&particles.id[i]).is_ok();
+            particles.gauge_carrier[i] = u32::from(carries);
+        }
+    }
+
     /// Looks up where the carriers stand in the store, if they are this rank's.
     fn find_carriers(&mut self, particles: &ParticleStore, carriers: &[u64]) {
         let ids = &particles.id[..particles.owned()];
@@ -218,15 +231,12 @@ impl Gauges {
                 self.missing.push((id, gauge));
             }
         }
-        let Some(&(last, _)) = self.missing.iter().max() else {
+        if self.missing.is_empty() {
             return;
-        };
+        }
         self.missing.sort_unstable();
-        let first = self.missing[0].0;
-        for (i, &id) in ids.iter().enumerate() {
-            if !(first..=last).contains(&id) {
-                continue;
-            }
+        let carriers = particles.gauge_carrier.iter().zip(ids).enumerate();
+        for (i, (_, &id)) in carriers.filter(|(_, (carries, _))| **carries != 0) {
             let at = self.missing.partition_point(|(other, _)| *other < id);
             let same = self.missing[at..]
                 .iter()

@@ -165,6 +165,8 @@ bitflags! {
         const ARRIVAL = 1 << 21;
         /// Witness planes.
         const WITNESSES = 1 << 22;
+        /// Gauges that particles carry.
+        const CARRIERS = 1 << 23;
         /// Records that a particle keeps because snapshots are to show them.
         const PEAKS = Self::PEAK_PRESSURE.bits() | Self::PEAK_TENSION.bits()
             | Self::PEAK_TEMPERATURE.bits() | Self::PEAK_STRAIN_RATE.bits() | Self::ARRIVAL.bits();

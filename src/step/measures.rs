@@ -38,6 +38,7 @@ impl Simulation {
         let there = (&self.particles, &self.lists);
         let gauges = &self.measures.gauges;
         self.state.gauge_carriers = gauges.choose(&self.case, there.0, there.1, comm);
+        gauges.mark(&mut self.particles, &self.state.gauge_carriers);
         if self.measures.witnesses.any() {
             self.measures.witnesses.begin(&mut self.particles);
         }
