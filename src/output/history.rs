@@ -150,17 +150,18 @@ impl Table {
         &mut self,
         rows: impl IntoIterator<Item = impl AsRef<[Value<'a>]>>,
     ) -> Result<(), OutputError> {
-        let mut lines = Vec::new();
-        for row in rows {
-            let values = row.as_ref();
-            assert_eq!(values.len(), self.columns, "a row of the wrong length");
-            lines.extend(sheet::line(values.iter().map(|value| match value {
+        let columns = self.columns;
+        let cells = |row: &[Value]| {
+            assert_eq!(row.len(), columns, "a row of the wrong length");
+            let cell = |value: &Value| match value {
                 // `Debug` uses an exponent where it is shorter; both round-trip.
                 Value::Real(number) => format!("{number:?}"),
                 Value::Count(count) => count.to_string(),
                 Value::Word(word) => (*word).to_owned(),
-            })));
-        }
+            };
+            row.iter().map(cell).collect::<Vec<_>>()
+        };
+        let lines = sheet::lines(rows.into_iter().map(|row| cells(row.as_ref())));
         let written = self.file.write_all(&lines);
         written.map_err(OutputError::io("write", &self.path))
     }
