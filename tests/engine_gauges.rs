@@ -122,7 +122,7 @@ fn a_quarter_is_read_as_the_whole() {
         assert!((a.coverage - b.coverage).abs() < 1e-9);
         for ((x, y), scale) in a.values.iter().zip(&b.values).zip(scales) {
             let apart = x.zip(*y).map_or(0.0, |(x, y)| (x - y).abs());
-            assert!(apart < 1e-7 * scale, "{a:?}\n{b:?}");
+            assert!(apart < 1e-9 * scale, "{a:?}\n{b:?}");
         }
     }
     let first = &whole[0].values;

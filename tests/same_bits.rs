@@ -208,7 +208,7 @@ fn gauges_and_witness_planes_on_any_ranks_and_through_a_restart() {
     }
     let (one, stopped) = (at("one"), at("stopped"));
     run(1, 2, &case, &[], &one);
-    for (ranks, axis) in [(2, "x"), (3, "z"), (5, "x")] {
+    for (ranks, axis) in [(1, "z"), (2, "x"), (3, "z"), (5, "x")] {
         let other = at(&format!("{ranks}{axis}"));
         let axis = format!("domain.axis={axis}");
         run(

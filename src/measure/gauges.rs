@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::reading::{MOST, Reading, along, stress};
 use crate::comm::Comm;
+use crate::domain::Mirrors;
 use crate::model::{Cadence, Case, Gauge};
 use crate::neighbours::Lists;
 use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
@@ -20,6 +21,7 @@ use crate::particles::ParticleStore;
 #[derive(Debug)]
 pub struct Gauges {
     kernel: Kernel,
+    mirrors: Mirrors,
     /// What any of them reads, with the first column of each.
     readings: Vec<(Reading, usize)>,
     /// Column of the normal stress, if any reads it.
@@ -97,6 +99,7 @@ impl Gauges {
         };
         Self {
             kernel: Kernel::new(case.dimension),
+            mirrors: Mirrors::new(&case.symmetry),
             readers: gauges.iter().map(reader).collect(),
             readings,
             along,
@@ -184,11 +187,11 @@ impl Gauges {
             return Vec::new();
         }
         self.find_carriers(particles, carriers);
-        let kernel = &self.kernel;
+        let means = (&self.kernel, &self.mirrors);
         // Each gauge has its own sums: nothing depends on threads.
         (self.readers.par_iter_mut().with_max_len(AT_ONCE))
             .filter(|reader| reader.due)
-            .for_each(|reader| reader.add(case, particles, lists, kernel));
+            .for_each(|reader| reader.add(case, particles, lists, means));
         let due = |reader: &&mut Reader| reader.due;
         let mut limbs = std::mem::take(&mut self.limbs);
         limbs.clear();
@@ -252,28 +255,39 @@ impl Gauges {
 const AT_ONCE: usize = 16;
 
 impl Reader {
-    /// Adds what this rank's particles give.
-    fn add(&mut self, case: &Case, particles: &ParticleStore, lists: &Lists, kernel: &Kernel) {
+    /// Adds what this rank's particles give, and their images behind symmetry planes: all of them, where the
+    /// search has those alone that some particle sees. An image is as far from the gauge as the particle is
+    /// from the image of the gauge.
+    fn add(
+        &mut self,
+        case: &Case,
+        particles: &ParticleStore,
+        lists: &Lists,
+        (kernel, mirrors): (&Kernel, &Mirrors),
+    ) {
         if self.gauge.moves {
             if let Some(i) = self.place {
                 self.add_particle(case, particles, (i, 0), 1.0);
             }
             return;
         }
-        let at = self.gauge.at;
-        lists.near_point(&at, None, |index| {
-            let image = lists.images()[index];
-            let (i, code) = (image.base(), image.code());
-            if i >= particles.owned() || !reads(case, self.gauge.body, particles.body[i]) {
-                return;
-            }
-            let distance = norm(&minus(&lists.motion()[index].position, &at));
-            let volume = particles.mass[i] / particles.density[i];
-            let weight = volume * kernel.value(distance, particles.smoothing_length[i]);
-            if weight > 0.0 {
-                self.add_particle(case, particles, (i, code), weight);
-            }
-        });
+        for code in std::iter::once(0).chain(mirrors.codes()) {
+            let at = mirrors.reflect_position(&self.gauge.at, code);
+            lists.near_point(&at, None, |index| {
+                let image = lists.images()[index];
+                let i = image.base();
+                let own = image.code() == 0 && i < particles.owned();
+                if !own || !reads(case, self.gauge.body, particles.body[i]) {
+                    return;
+                }
+                let distance = norm(&minus(&particles.position[i], &at));
+                let volume = particles.mass[i] / particles.density[i];
+                let weight = volume * kernel.value(distance, particles.smoothing_length[i]);
+                if weight > 0.0 {
+                    self.add_particle(case, particles, (i, code), weight);
+                }
+            });
+        }
     }
 
     /// Adds an image of a particle.
