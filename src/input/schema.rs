@@ -20,6 +20,7 @@ mod choices;
 pub mod contact;
 mod fragments;
 mod materials;
+mod measure;
 mod numerical_limits;
 mod particles;
 mod shapes;
@@ -29,6 +30,7 @@ pub use choices::*;
 pub use contact::{ContactParams, PairParams};
 pub use fragments::*;
 pub use materials::*;
+pub use measure::*;
 pub use numerical_limits::*;
 pub use particles::*;
 pub use shapes::*;
@@ -92,6 +94,15 @@ tables! {
         output: OutputParams,
         /// Fragments; they are not told if absent.
         fragments: Option<FragmentsParams>,
+        /// Gauges.
+        #[serde(default)]
+        gauge: Vec<Spanned<GaugeParams>>,
+        /// Planes that count what passes.
+        #[serde(default)]
+        witness: Vec<Spanned<WitnessParams>>,
+        /// What is measured.
+        #[serde(default)]
+        measure: MeasureParams,
     }
 
     /// `[run]`

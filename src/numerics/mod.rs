@@ -6,6 +6,7 @@ pub mod kernel;
 pub mod lane_matrix;
 pub mod lanes;
 pub mod matrix;
+pub mod ordered;
 pub mod principal;
 pub mod vector;
 pub mod virial;

@@ -14,13 +14,17 @@ use super::set_aside::{self, SET_ASIDE, SetAside};
 use super::{OutputError, Phase, RunFolder, Status, files, on_root, series, write_atomically};
 
 /// Files that a restart changes before it has a checkpoint.
-const CHANGED: [&str; 9] = [
+const CHANGED: [&str; 13] = [
     "history.csv",
     "contacts.csv",
     "loads.csv",
     "removed.csv",
     "departed.csv",
     "fragments.csv",
+    "bodies.csv",
+    "gauges.csv",
+    "witness.csv",
+    "crossings.csv",
     "performance.csv",
     "case.toml",
     STATUS,

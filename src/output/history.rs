@@ -137,7 +137,7 @@ impl Table {
         let mut content = header(columns);
         for row in rows {
             assert_eq!(row.len(), columns.len(), "a row of the wrong length");
-            content.extend(line(row));
+            content.extend(sheet::line(cells(row)));
         }
         content
     }
@@ -150,8 +150,27 @@ impl Table {
     /// # Panics
     /// If the row has not one value for each column.
     pub fn row(&mut self, values: &[Value]) -> Result<(), OutputError> {
-        assert_eq!(values.len(), self.columns, "a row of the wrong length");
-        let written = self.file.write_all(&line(values));
+        self.rows([values])
+    }
+
+    /// Writes rows, all in one call.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`].
+    ///
+    /// # Panics
+    /// If a row has not one value for each column.
+    pub fn rows<'a>(
+        &mut self,
+        rows: impl IntoIterator<Item = impl AsRef<[Value<'a>]>>,
+    ) -> Result<(), OutputError> {
+        let columns = self.columns;
+        let lines = sheet::lines(rows.into_iter().map(|row| {
+            let row = row.as_ref();
+            assert_eq!(row.len(), columns, "a row of the wrong length");
+            cells(row)
+        }));
+        let written = self.file.write_all(&lines);
         written.map_err(OutputError::io("write", &self.path))
     }
 
@@ -165,13 +184,14 @@ impl Table {
     }
 }
 
-fn line(values: &[Value]) -> Vec<u8> {
-    sheet::line(values.iter().map(|value| match value {
+fn cells(values: &[Value]) -> Vec<String> {
+    let cell = |value: &Value| match value {
         // `Debug` uses an exponent where it is shorter; both round-trip.
         Value::Real(number) => format!("{number:?}"),
         Value::Count(count) => count.to_string(),
         Value::Word(word) => (*word).to_owned(),
-    }))
+    };
+    values.iter().map(cell).collect()
 }
 
 /// The bytes of those `rows` of some columns whose number in column `key` is at most `last`, with zeros

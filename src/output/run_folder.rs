@@ -238,6 +238,14 @@ paths! {
     departed: "departed.csv";
     /// Table of fragments at one time after the other.
     fragments: "fragments.csv";
+    /// Table of what there is of each body.
+    bodies: "bodies.csv";
+    /// Table of gauges.
+    gauges: "gauges.csv";
+    /// Table of what has passed witness planes.
+    witness: "witness.csv";
+    /// Table of who has passed them, where and when.
+    crossings: "crossings.csv";
     /// Table of wall-clock times.
     performance: "performance.csv";
     /// The log.

@@ -31,7 +31,7 @@ pub use chart::fragments::{By, cumulative, tables_of_run};
 pub use chart::history::energies;
 pub use chart::profile::{Along, ProfileRequest, Profiles};
 pub use chart::series::parse_pair;
-pub use chart::tables::{Columns, Points, Tables};
+pub use chart::tables::{Columns, Points, Tables, widest};
 pub use colour::body as colour_of;
 pub use error::PlotError;
 pub use header::Mark;

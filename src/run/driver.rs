@@ -1,5 +1,7 @@
 //! The run loop: steps, and what is written between them.
 
+mod measures;
+
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -9,13 +11,14 @@ use super::census;
 use super::departures::Departures;
 use super::exit::EXIT_STOPPED;
 use super::launch::{Launch, STEP, fail};
+use super::load::load;
 use super::notices::Notices;
 use super::options::CommonArgs;
 use super::progress::Progress;
 use super::say::{counted, say, seconds};
 use super::stop::{self, Watch};
 use super::summary::summary;
-use super::tables::{self, Tables};
+use super::tables::Tables;
 use crate::comm::Comm;
 use crate::model::NumericalFailurePolicy;
 use crate::output::snapshot::{self, Quantity};
@@ -78,7 +81,7 @@ impl<'a> Driver<'a> {
         let mut tables = None;
         on_root(comm, || {
             let resume = restarted.is_some().then_some(&simulation.state);
-            tables = Some(Tables::open(folder, &simulation.case, resume)?);
+            tables = Some(Tables::open(folder, &simulation, resume)?);
             folder.forget_stop(launch.began)
         })?;
         let stop = comm.is_root().then(|| folder.stop());
@@ -113,6 +116,7 @@ impl<'a> Driver<'a> {
         );
         if restarted.is_none() {
             driver.write_row(comm)?;
+            driver.write_gauges(comm, 0.0)?;
             let tells = driver.simulation.case.fragments.is_some();
             driver.write_snapshot(comm, tells)?;
         }
@@ -229,6 +233,7 @@ impl<'a> Driver<'a> {
 
     /// Whatever is due after a step that began at time `before` (s).
     fn write(&mut self, comm: &Comm, before: f64) -> Result<(), OutputError> {
+        self.write_gauges(comm, before)?;
         for text in self.departures.notices(&self.simulation) {
             self.log(comm, &text);
         }
@@ -269,10 +274,16 @@ impl<'a> Driver<'a> {
     }
 
     fn write_row(&mut self, comm: &Comm) -> Result<(), OutputError> {
-        let load = tables::load(comm, &self.simulation);
+        self.write_crossings(comm)?;
+        let load = load(comm, &self.simulation);
+        let bodies = if self.simulation.case.measure.bodies {
+            self.simulation.measure_bodies(comm)
+        } else {
+            Vec::new()
+        };
         let wall = self.start.elapsed().as_secs_f64();
         on_root(comm, || match &mut self.tables {
-            Some(tables) => tables.write(&self.simulation, &load, wall),
+            Some(tables) => tables.write(&self.simulation, &bodies, &load, wall),
             None => Ok(()),
         })?;
         self.simulation.state.begin_interval();
@@ -328,6 +339,7 @@ impl<'a> Driver<'a> {
 
     fn write_checkpoint(&mut self, comm: &Comm) -> Result<(), OutputError> {
         let begun = Instant::now();
+        self.write_crossings(comm)?;
         // Rows before this checkpoint are not written again once it is there.
         on_root(comm, || self.tables.as_ref().map_or(Ok(()), Tables::sync))?;
         let folder = self.folder.checkpoints();

@@ -3,12 +3,14 @@
 
 mod announce;
 mod census;
+mod columns;
 mod departures;
 mod driver;
 pub(crate) mod exit;
 #[cfg(feature = "fault-injection")]
 mod fault;
 pub(crate) mod launch;
+mod load;
 mod notices;
 mod options;
 mod progress;

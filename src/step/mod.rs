@@ -7,6 +7,7 @@ mod flight;
 mod fragments;
 mod given;
 mod integrate;
+mod measures;
 mod removal;
 mod restored;
 mod setup;
@@ -17,8 +18,8 @@ mod timers;
 
 pub(crate) use crate::diagnose::failed_mass;
 pub use crate::diagnose::{
-    LoadState, NearestPair, NumericalFailure, PairState, PastStep, PostMortem, Reason, Removed,
-    RunState, Totals, Worst,
+    LoadState, NearestPair, NumericalFailure, PairState, Passed, PastStep, PostMortem, Reason,
+    Removed, RunState, Totals, Worst,
 };
 pub use candidate::StepControl;
 pub use error::{SetupError, StepError};
