@@ -1,5 +1,11 @@
 //! Fragments of made-up clouds whose answer is known.
 
+#![allow(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    reason = "small numbers"
+)]
+
 use whipple::fragments::{Census, Matter, Rule, components, find_alone};
 use whipple::model::{Axis, FragmentOptions, SymmetryPlane};
 
@@ -191,7 +197,9 @@ fn a_quarter_reports_the_whole() {
     quarter.block([0.316, 0.5, 0.2], [4, 4, 4], 0.01);
     for (x, v) in quarter.position.iter_mut().zip(&mut quarter.velocity) {
         *v = [0, 1, 2].map(|a| 1000.0 * x[a] + 50.0 * draw());
-        x.iter_mut().for_each(|x| *x += 1e-3 * (draw() - 0.5));
+        for x in x {
+            *x += 1e-3 * (draw() - 0.5);
+        }
     }
     let mut whole = Cloud::default();
     for [x, y] in [[false, false], [true, false], [false, true], [true, true]] {

@@ -15,7 +15,7 @@ const CASE: &[&str] = &[
     "--set",
     "spacing=0.05mm",
     "--set",
-    "fragments={ every = \"0.05 us\", link = 1.2 }",
+    "fragments={ every = \"0.05 us\", min_particles = 1 }",
     "--set",
     "output.snapshot_every=0.1us",
     "--set",

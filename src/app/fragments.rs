@@ -172,7 +172,7 @@ fn report(loaded: &Loaded, census: &Census, options: &FragmentOptions) -> String
     let mass = |value: f64| shown(value, per);
     let mut text = format!(
         "{} at {}: {} of {} particles or more, of {} in all\n",
-        loaded.title,
+        one_line(&loaded.title),
         seconds(loaded.time),
         counted(census.count(), "fragment"),
         options.min_particles,

@@ -54,6 +54,9 @@ impl Census {
 }
 
 /// Finds all fragments. Without a halo there is one rank. Collective.
+///
+/// # Panics
+/// If arrays of `matter` are too short.
 pub fn find(
     (comm, halo): (&Comm, Option<&mut Halo>),
     matter: &Matter,
@@ -97,7 +100,7 @@ pub fn find(
             words
         });
     let found: Vec<Vec<u64>> = found.collect();
-    found.iter().for_each(|row| words.extend(row));
+    words.extend(found.iter().flatten());
     labels.merger.gather(comm, &mut words);
     census.fragments = read(&words, matter.bodies, (mirrors, rule.dimension));
     census
@@ -135,7 +138,9 @@ fn segments(order: &[usize], labels: &[u64]) -> Vec<Range<usize>> {
 fn sums_over(matter: &Matter, particles: &[usize]) -> Sums {
     let sum = |particles: &[usize]| {
         let mut sums = Sums::new(matter.bodies);
-        particles.iter().for_each(|&i| sums.add(matter, i));
+        for &i in particles {
+            sums.add(matter, i);
+        }
         sums
     };
     if particles.len() <= SHARE {

@@ -55,11 +55,11 @@ pub fn grids(places: Vec<Place>) -> Vec<Grid> {
         classes[class].push(place);
     }
     let grids = classes.into_iter().filter(|places| !places.is_empty());
-    grids.map(Grid::new).collect()
+    grids.map(|places| Grid::new(&places)).collect()
 }
 
 impl Grid {
-    fn new(places: Vec<Place>) -> Self {
+    fn new(places: &[Place]) -> Self {
         let reach = places.iter().map(|p| p.reach).fold(0.0, f64::max);
         let least = |a: usize| {
             places

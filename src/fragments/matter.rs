@@ -1,7 +1,7 @@
 //! Matter whose fragments are looked for, and by which rule.
 
 use crate::domain::Mirrors;
-use crate::model::{FragmentOptions, Include, edge};
+use crate::model::{Body, Case, FragmentOptions, Include, edge};
 use crate::particles::Image;
 
 /// What hangs together.
@@ -69,15 +69,41 @@ pub struct Surroundings<'a> {
     pub others: &'a [Image],
 }
 
-/// Size (m) at the start of a particle of a mass in a body of an initial density, `(m/ρ₀)^(1/d)`,
-/// and zero of what has no mass.
-#[must_use]
-pub fn size(mass: f64, density: f64, dimension: usize) -> f64 {
-    let size = edge(mass / density, dimension);
-    if size.is_finite() && size > 0.0 {
-        size
-    } else {
-        0.0
+/// How large the particles of a body are at the start.
+#[derive(Debug, Clone, Copy)]
+pub struct FirstSizes {
+    /// Spacing (m); the finest where it varies.
+    pub spacing: f64,
+    /// The coarsest (m).
+    pub coarsest: f64,
+    /// Initial density (kg/m³).
+    pub density: f64,
+}
+
+impl FirstSizes {
+    /// Of a body of a case.
+    #[must_use]
+    pub fn new(case: &Case, body: &Body) -> Self {
+        Self {
+            spacing: body.lattice.spacing,
+            coarsest: body.lattice.coarsest(),
+            density: case.initial_density(body),
+        }
+    }
+
+    /// Size (m) of a particle of a mass: the spacing, or where that varies `(m/ρ₀)^(1/d)`; zero of
+    /// what has no mass.
+    #[must_use]
+    pub fn of(&self, mass: f64, dimension: usize) -> f64 {
+        if mass <= 0.0 || mass.is_nan() {
+            0.0
+        } else if self.coarsest > self.spacing {
+            let size = edge(mass / self.density, dimension);
+            // Whatever a file says.
+            if size.is_finite() { size } else { 0.0 }
+        } else {
+            self.spacing
+        }
     }
 }
 

@@ -20,6 +20,6 @@ pub use census::{Census, Share, find, find_alone};
 pub use fragment::Fragment;
 pub use labels::{Labels, Member, Members};
 pub use links::{BYTES_OF_SEARCH, components};
-pub use matter::{Matter, Rule, Surroundings, belongs, images, link_reach, size};
+pub use matter::{FirstSizes, Matter, Rule, Surroundings, belongs, images, link_reach};
 pub use merger::{Merger, Row};
 pub use sets::{Set, Sets};

@@ -4,8 +4,9 @@ use rayon::prelude::*;
 
 use super::simulation::Simulation;
 use crate::comm::Comm;
-use crate::fragments::{Census, Matter, Rule, Surroundings, belongs, find, link_reach, size};
-use crate::model::{FragmentOptions, SphForm};
+use crate::fragments::{Census, FirstSizes, Matter, Rule, Surroundings, belongs, find, link_reach};
+use crate::model::{Case, FragmentOptions, SphForm};
+use crate::particles::ParticleStore;
 
 impl Simulation {
     /// Finds the fragments of all ranks. Between steps: halo particles are others afterwards.
@@ -19,9 +20,9 @@ impl Simulation {
             ..
         } = self;
         let rule = Rule::new(options, case.dimension);
-        let first = case.bodies.iter().map(|body| case.initial_density(body));
-        let first: Vec<f64> = first.collect();
-        let size_of = |mass: f64, body: u32| size(mass, first[body as usize], rule.dimension);
+        let first = case.bodies.iter().map(|body| FirstSizes::new(case, body));
+        let first: Vec<FirstSizes> = first.collect();
+        let size_of = |mass: f64, body: u32| first[body as usize].of(mass, rule.dimension);
         halo.exchange_motion(comm, particles, |particles, i| {
             link_reach(rule.link, size_of(particles.mass[i], particles.body[i]))
         });
@@ -35,15 +36,7 @@ impl Simulation {
         }
         halo.exchange_values(comm, &mut included);
         let included: Vec<bool> = included.iter().map(|&is| is != 0).collect();
-        // Stress points hold the state of the particles about them.
-        let has_state = case.sph.form != SphForm::StressPoints;
-        let temperature = (0..owned).into_par_iter().map(|i| {
-            let material = &case.materials[case.bodies[particles.body[i] as usize].material];
-            let (density, energy) = (particles.density[i], particles.specific_energy[i]);
-            let known = material.temperature(density, energy, damage(i));
-            known.filter(|_| has_state).unwrap_or(f64::NAN)
-        });
-        let temperature: Vec<f64> = temperature.collect();
+        let temperature = temperatures(case, particles);
         let matter = Matter {
             owned,
             bodies: case.bodies.len(),
@@ -64,4 +57,19 @@ impl Simulation {
         };
         find((comm, Some(halo)), &matter, around, &rule, labels)
     }
+}
+
+/// Temperatures (K) of this rank's particles; NaN where there is none to tell.
+fn temperatures(case: &Case, particles: &ParticleStore) -> Vec<f64> {
+    // Stress points hold the state of the particles about them.
+    if case.sph.form == SphForm::StressPoints {
+        return vec![f64::NAN; particles.owned()];
+    }
+    let of = |i: usize| {
+        let material = &case.materials[case.bodies[particles.body[i] as usize].material];
+        let damage = particles.damage.get(i).copied().unwrap_or_default();
+        material.temperature(particles.density[i], particles.specific_energy[i], damage)
+    };
+    let all = (0..particles.owned()).into_par_iter();
+    all.map(|i| of(i).unwrap_or(f64::NAN)).collect()
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{FragmentsError, read_case};
-use crate::fragments::{Matter, belongs, size};
+use crate::fragments::{FirstSizes, Matter, belongs};
 use crate::model::{Axis, Case, FragmentOptions, Include, SymmetryPlane};
 use crate::output::h5::Content;
 use crate::output::h5::read::{ReadError, SnapshotFile};
@@ -90,11 +90,33 @@ impl Reader<'_> {
         planes.into_iter().map(plane).collect()
     }
 
+    /// How large the particles of each body are at the start.
+    fn first_sizes(&self, bodies: usize) -> Result<Vec<FirstSizes>, FragmentsError> {
+        let list = |name: &str| {
+            let values: Vec<f64> = self.json(name)?;
+            let sound = |value: &f64| *value > 0.0 && value.is_finite();
+            if values.len() == bodies && values.iter().all(sound) {
+                return Ok(values);
+            }
+            Err(self.wrong(format!(
+                "its {name} are not one positive number for each body"
+            )))
+        };
+        let (densities, coarsest) = (list("densities")?, list("coarsest_spacings")?);
+        let spacings = list("spacings")?.into_iter();
+        let all = spacings.zip(coarsest).zip(densities);
+        let sizes = all.map(|((spacing, coarsest), density)| FirstSizes {
+            spacing,
+            coarsest,
+            density,
+        });
+        Ok(sizes.collect())
+    }
+
     /// The body of each particle.
     fn body(&self, bodies: usize) -> Result<Vec<u32>, FragmentsError> {
         let index = |value: f64| {
-            let known = (0..bodies).find(|&b| b as f64 == value);
-            let known = known.and_then(|b| u32::try_from(b).ok());
+            let known = (0_u32..).take(bodies).find(|&b| f64::from(b) == value);
             known.ok_or_else(|| self.wrong(format!("body {value} of {bodies} bodies")))
         };
         self.field("body", 1)?.into_iter().map(index).collect()
@@ -129,11 +151,7 @@ impl Loaded {
             return Err(reader.wrong("it has stress points, which hold the state of the particles"));
         }
         let bodies: Vec<String> = reader.json("bodies")?;
-        let densities: Vec<f64> = reader.json("densities")?;
-        if densities.len() != bodies.len() {
-            let (b, d) = (bodies.len(), densities.len());
-            return Err(reader.wrong(format!("{b} bodies but {d} densities")));
-        }
+        let first = reader.first_sizes(bodies.len())?;
         let dimension = reader.dimension()?;
         let content = Content::open(path)?;
         let ids = content.ids("/VTKHDF/PointData/id")?;
@@ -148,7 +166,7 @@ impl Loaded {
             return Err(reader.wrong(format!("{} ids of {count} particles", ids.len())));
         }
         let sizes = mass.iter().zip(&body);
-        let sizes = sizes.map(|(&m, &b)| size(m, densities[b as usize], dimension));
+        let sizes = sizes.map(|(&m, &b)| first[b as usize].of(m, dimension));
         let damage = reader.field("damage", 1)?;
         let (temperature, missing) = temperatures(&reader, case.as_ref(), &body, &damage)?;
         let mut loaded = Self {
