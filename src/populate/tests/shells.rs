@@ -60,7 +60,7 @@ fn shells_follow_the_surface() {
             "inner {inner}: {} sites, nearest {least}, mean {mean}",
             sites.len()
         );
-        assert!(mean > 0.8 && least > 0.4, "{least} {mean}");
+        assert!(mean > 0.95 && least > 0.7, "{least} {mean}");
         let sum = sites
             .iter()
             .fold(Vec3::zeros(), |sum, s| sum + Vec3::from(s.position));
