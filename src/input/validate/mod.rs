@@ -80,7 +80,6 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     let time_step = time_step(&params.time_step, &sph, &bodies, &materials)?;
     let domain = domain(&params, dimension, &bodies, &symmetry, &length_unit)?;
     let fields = field_spans(&params.output);
-    let form = params.sph.form.as_ref().map(Spanned::span);
     let mut case = Case {
         title: names::title(params.title)?,
         length_unit,
@@ -98,17 +97,13 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         numerical_limits: NumericalLimits::default(),
         run: run(params.run.get_ref())?,
         output: output(params.output)?,
-        fragments: params
-            .fragments
-            .as_ref()
-            .map(fragments::fragments)
-            .transpose()?,
+        fragments: fragments::fragments(params.fragments.as_ref())?,
         resolved: String::new(),
     };
     initial::settle(&mut case, &params.body)?;
     case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, &case)?;
     case.loads.absorbers = absorbers::absorbers(&params.absorb, &case)?;
-    stress_points::check(&case, form)?;
+    stress_points::check(&case, params.sph.form.as_ref().map(Spanned::span))?;
     check_moduli(&case, &params.body)?;
     check_overlaps(&case, &params.body)?;
     check_temperature(&case, &fields)?;
