@@ -176,10 +176,7 @@ impl Simulation {
         }
         timers.lap(Phase::Neighbours);
         if contact.connectivity.is_due(state.step) {
-            labels.begin(particles.part.len());
-            Connectivity::link(lists, labels.sets());
-            labels.settle(comm, Some(halo), &particles.id, particles.owned());
-            Connectivity::tell(labels.members(), particles);
+            tell_parts(comm, (lists, halo), particles, labels);
             timers.lap(Phase::Neighbours);
         }
         let step = step(state, loads, dt);
@@ -368,4 +365,17 @@ impl Simulation {
     pub fn contact(&self) -> &ContactTable {
         &self.contact.table
     }
+}
+
+/// Finds anew who is of which part of a body. Collective.
+fn tell_parts(
+    comm: &Comm,
+    (lists, halo): (&Lists, &mut Halo),
+    particles: &mut ParticleStore,
+    labels: &mut Labels,
+) {
+    labels.begin(particles.part.len());
+    Connectivity::link(lists, labels.sets());
+    labels.settle(comm, Some(halo), &particles.id, particles.owned());
+    Connectivity::tell(labels.members(), particles);
 }

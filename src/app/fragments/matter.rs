@@ -113,6 +113,16 @@ impl Reader<'_> {
         Ok(sizes.collect())
     }
 
+    /// The id of each particle, to the last digit.
+    fn ids(&self, content: &Content) -> Result<Vec<u64>, FragmentsError> {
+        let ids = content.ids("/VTKHDF/PointData/id")?;
+        let count = self.file.particles();
+        if ids.len() == count {
+            return Ok(ids);
+        }
+        Err(self.wrong(format!("{} ids of {count} particles", ids.len())))
+    }
+
     /// The body of each particle.
     fn body(&self, bodies: usize) -> Result<Vec<u32>, FragmentsError> {
         let index = |value: f64| {
@@ -154,7 +164,7 @@ impl Loaded {
         let first = reader.first_sizes(bodies.len())?;
         let dimension = reader.dimension()?;
         let content = Content::open(path)?;
-        let ids = content.ids("/VTKHDF/PointData/id")?;
+        let ids = reader.ids(&content)?;
         let case = content
             .text("/whipple/input")
             .map_err(|error| error.to_string());
@@ -162,9 +172,6 @@ impl Loaded {
         let body = reader.body(bodies.len())?;
         let mass = reader.field("mass", 1)?;
         let count = reader.file.particles();
-        if ids.len() != count {
-            return Err(reader.wrong(format!("{} ids of {count} particles", ids.len())));
-        }
         let sizes = mass.iter().zip(&body);
         let sizes = sizes.map(|(&m, &b)| first[b as usize].of(m, dimension));
         let damage = reader.field("damage", 1)?;
@@ -187,17 +194,16 @@ impl Loaded {
             temperature,
             damage,
         };
-        // Frozen particles are of the model no more.
-        let frozen = reader.field("frozen", 1)?;
-        for (size, _) in loaded
-            .size
-            .iter_mut()
-            .zip(&frozen)
-            .filter(|(_, f)| **f != 0.0)
-        {
+        loaded.leave_out(&reader.field("frozen", 1)?);
+        Ok(loaded)
+    }
+
+    /// Frozen particles are of the model no more.
+    fn leave_out(&mut self, frozen: &[f64]) {
+        let sizes = self.size.iter_mut().zip(frozen);
+        for (size, _) in sizes.filter(|(_, frozen)| **frozen != 0.0) {
             *size = 0.0;
         }
-        Ok(loaded)
     }
 
     /// Which particles belong to fragments.

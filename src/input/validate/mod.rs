@@ -99,11 +99,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         numerical_limits: NumericalLimits::default(),
         run: run(params.run.get_ref())?,
         output: output(params.output)?,
-        fragments: params
-            .fragments
-            .as_ref()
-            .map(fragments::fragments)
-            .transpose()?,
+        fragments: fragments::fragments(params.fragments.as_ref())?,
         measure: MeasureOptions::default(),
         resolved: String::new(),
     };
