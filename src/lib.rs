@@ -27,6 +27,7 @@ pub mod sph;
 pub mod step;
 
 pub mod diagnose;
+pub mod measure;
 pub mod output;
 
 pub mod exact;

@@ -18,7 +18,7 @@ use source::{Source, sources, src};
 
 /// Every module, in the order in which data flows.
 const MODULES: &str = "app run input model preflight populate numerics material particles comm domain neighbours \
-     loads contact sph step diagnose output exact plot";
+     loads contact sph step diagnose measure output exact plot";
 
 /// The modules on top, and who may name them.
 const ON_TOP: &[(&str, &str)] = &[("app", ""), ("run", "app"), ("preflight", "app run")];
@@ -76,6 +76,7 @@ const FORBIDDEN: &[(&str, &str)] = &[
     ("contact", "comm output input sph step diagnose"),
     ("sph", "comm output input contact step diagnose"),
     ("diagnose", "output input plot step"),
+    ("measure", "loads contact sph output input plot step"),
     ("step", "output input plot"),
     ("output", "sph plot"),
     ("exact", "particles comm domain output input step"),
@@ -97,14 +98,15 @@ const ENTRUSTED: &[(&str, &str)] = &[
 ];
 
 /// The only modules that call `comm`, from the main thread.
-const CALLERS_OF_COMM: &str = "app run preflight domain step output diagnose comm";
+const CALLERS_OF_COMM: &str = "app run preflight domain step output diagnose measure comm";
 
 /// Rooms whose results must have the same bits on any ranks, threads and hosts.
 const PHYSICS: &str = "numerics populate material particles domain neighbours loads contact sph step diagnose \
-     exact";
+     measure exact";
 
 /// Physics modules that have no business with clocks at all (`step` times its phases).
-const TIMELESS: &str = "numerics populate material particles neighbours loads contact sph exact";
+const TIMELESS: &str =
+    "numerics populate material particles neighbours loads contact sph measure exact";
 
 /// Functions of `f64` whose bits depend on the host's libm; the `libm` crate has them all.
 const HOST_MATHEMATICS: &str = "exp exp2 exp_m1 ln ln_1p log2 log10 powf sin cos tan asin acos atan atan2 sinh cosh tanh \

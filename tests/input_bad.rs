@@ -163,7 +163,9 @@ fn overridden(key: &Key, value: &str) -> String {
         .replace("load.", "load.0.")
         .replace("absorb.", "absorb.0.")
         .replace("plane.", "plane.0.")
-        .replace("surface.", "surface.0.");
+        .replace("surface.", "surface.0.")
+        .replace("gauge.", "gauge.0.")
+        .replace("witness.", "witness.0.");
     // Keys below `touch` and the like end with the same words.
     let path = path.replace("load.0.body.0.", "load.0.body.");
     let set = format!("{path}={value}");

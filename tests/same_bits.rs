@@ -138,6 +138,10 @@ fn every_contact_mode_variable_h_and_options() {
         ["sph.smoothing_length=constant", "run.end_time=0.1us"],
         ["sph.artificial_stress=0.3", "run.end_time=0.1us"],
         ["sph.balsara=true", "run.end_time=0.05us"],
+        [
+            "output.fields=[\"peak_pressure\", \"peak_pressure_time\", \"peak_tension\", \"peak_temperature\", \"peak_strain_rate\", \"arrival_time\", \"plastic_energy\"]",
+            "run.end_time=0.1us",
+        ],
         ["sph.conduction=1", "run.end_time=0.05us"],
         ["sph.xsph=0.5", "run.end_time=0.1us"],
         [
@@ -184,6 +188,43 @@ fn stop_and_restart_on_other_ranks() {
         files.pop().expect("a snapshot")
     };
     assert_same(&last(&reference), &last(&elsewhere), "restart elsewhere");
+}
+
+/// Gauges that are fixed, on a plane of symmetry, in the void, carried; planes that the sphere and the
+/// plate pass: every table on any ranks and through restarts between their rows.
+#[test]
+fn gauges_and_witness_planes_on_any_ranks_and_through_a_restart() {
+    let (_keep, at) = folder();
+    let mut case = QUARTER.to_vec();
+    for set in [
+        "run.end_time=0.1us",
+        "gauge=[{ at = [0, 0, 0], along = \"+z\", fields = [\"stress\", \"velocity\"] }, \
+         { at = [\"0.12 mm\", \"0.3 mm\", \"0.05 mm\"], every = \"0.01 us\" }, \
+         { at = [\"1 mm\", \"1 mm\", \"2 mm\"], every_steps = 3 }, \
+         { at = [0, 0, \"0.5 mm\"], moves = true, body = \"sphere\", fields = [\"peak_pressure\", \"temperature\"] }]",
+        "witness=[{ normal = \"-z\" }, { normal = \"-z\", point = [0, 0, \"-0.12 mm\"] }]",
+    ] {
+        case.extend(["--set", set]);
+    }
+    let (one, stopped) = (at("one"), at("stopped"));
+    run(1, 2, &case, &[], &one);
+    for (ranks, axis) in [(1, "z"), (2, "x"), (3, "z"), (5, "x")] {
+        let other = at(&format!("{ranks}{axis}"));
+        let axis = format!("domain.axis={axis}");
+        run(
+            ranks,
+            1,
+            &case,
+            &["--set", &axis, "--set", "domain.balance_every=7"],
+            &other,
+        );
+        assert_same(&one, &other, &format!("{ranks} ranks, {axis}"));
+    }
+    assert_same_in_legs(&case, &[2, 1, 3], &["0.03us", "0.07us"], &one, &stopped);
+    for table in ["gauges.csv", "witness.csv", "crossings.csv", "bodies.csv"] {
+        let [a, b] = [&one, &stopped].map(|run| std::fs::read(run.join(table)).expect("a table"));
+        assert!(a == b && a.len() > 1000, "{table}");
+    }
 }
 
 #[test]

@@ -92,6 +92,22 @@ pub struct LoadState {
     pub heat: f64,
 }
 
+/// What has passed a witness plane in one direction so far (SI).
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Passed {
+    /// Number of particles, each as often as it passed.
+    pub particles: u64,
+    /// `Σ m` (kg).
+    pub mass: f64,
+    /// `Σ m v` (kg m/s).
+    pub momentum: [f64; 3],
+    /// `Σ ½ m v²` (J).
+    pub kinetic_energy: f64,
+    /// `Σ m e` (J).
+    pub internal_energy: f64,
+}
+
 /// Sums over all particles that are no part of a rigid body (SI).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -205,6 +221,12 @@ pub struct RunState {
     /// Contact energy that went with them (J).
     #[serde(default)]
     pub departed_contact_energy: f64,
+    /// Ids of the particles that carry gauges, in the order of these.
+    #[serde(default)]
+    pub gauge_carriers: Vec<u64>,
+    /// What has passed the witness planes: by plane, body and direction, along the normal first.
+    #[serde(default)]
+    pub passed: Vec<Passed>,
     /// Largest values over the run.
     pub worst: Worst,
 }

@@ -2,6 +2,7 @@
 //! allow.
 
 use super::Mirrors;
+use crate::numerics::ordered::{disordered, ordered};
 use crate::numerics::vector::norm;
 
 /// Smallest and largest coordinates (m) and velocities (m/s) of some particles.
@@ -165,23 +166,6 @@ impl Span {
             fastest: most(9),
         }
     }
-}
-
-const SIGN: u64 = 1 << 63;
-
-/// Bits that order as the doubles do.
-fn ordered(x: f64) -> u64 {
-    let bits = x.to_bits();
-    if bits & SIGN == 0 { bits | SIGN } else { !bits }
-}
-
-/// The double of [`ordered`] bits.
-fn disordered(bits: u64) -> f64 {
-    f64::from_bits(if bits & SIGN == 0 {
-        !bits
-    } else {
-        bits & !SIGN
-    })
 }
 
 #[cfg(test)]

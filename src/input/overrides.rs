@@ -13,7 +13,7 @@ use toml::de::{DeArray, DeTable, DeValue};
 use super::source::Diagnostic;
 
 /// Sections that do not touch the state of a run, so that a restart may change them.
-pub(super) const RESTARTABLE: [&str; 4] = ["run", "output", "domain", LIMITS];
+pub(super) const RESTARTABLE: [&str; 5] = ["run", "output", "domain", "measure", LIMITS];
 
 /// Key of the numerical failure limits, and its older name.
 const LIMITS: &str = "numerical_limits";

@@ -19,6 +19,7 @@ mod declare;
 mod choices;
 pub mod contact;
 mod materials;
+mod measure;
 mod numerical_limits;
 mod particles;
 mod shapes;
@@ -27,6 +28,7 @@ mod surfaces;
 pub use choices::*;
 pub use contact::{ContactParams, PairParams};
 pub use materials::*;
+pub use measure::*;
 pub use numerical_limits::*;
 pub use particles::*;
 pub use shapes::*;
@@ -88,6 +90,15 @@ tables! {
         /// What is written.
         #[serde(default)]
         output: OutputParams,
+        /// Gauges.
+        #[serde(default)]
+        gauge: Vec<Spanned<GaugeParams>>,
+        /// Planes that count what passes.
+        #[serde(default)]
+        witness: Vec<Spanned<WitnessParams>>,
+        /// What is measured.
+        #[serde(default)]
+        measure: MeasureParams,
     }
 
     /// `[run]`

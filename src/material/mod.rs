@@ -77,6 +77,10 @@ impl Material {
         let at = self
             .eos
             .at(self.reference_density, density, specific_energy);
+        if at.pressure >= 0.0 {
+            // No tension that failure could limit.
+            return Some(thermal.temperature(density, specific_energy));
+        }
         let mut point = PointBatch {
             density: [density; LANES],
             specific_energy: [specific_energy; LANES],

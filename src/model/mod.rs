@@ -13,9 +13,11 @@ mod contact;
 mod control;
 mod distance;
 mod formula;
+mod gauge;
 mod grading;
 mod initial;
 mod load;
+mod measure;
 mod motion;
 mod numerical_limits;
 pub mod readable;
@@ -39,9 +41,11 @@ pub use control::{
     DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm, SphOptions, TimeStepOptions,
 };
 pub use formula::{Combination, Formula, Function, Operation, Place, Profile};
+pub use gauge::{Cadence, Gauge, Witness};
 pub use grading::{Focus, Grading};
 pub use initial::{Heat, Initial};
 pub use load::{Loads, VelocityLoad};
+pub use measure::MeasureOptions;
 pub use motion::Motion;
 pub use numerical_limits::{NumericalFailurePolicy, NumericalLimits};
 pub use region::Region;
@@ -95,6 +99,8 @@ pub struct Case {
     pub run: RunControl,
     /// What to write and when.
     pub output: OutputOptions,
+    /// What is measured in the run.
+    pub measure: MeasureOptions,
     /// The input with all overrides applied, as TOML text; reading it gives this case again.
     pub resolved: String,
 }
@@ -160,6 +166,13 @@ impl Case {
     pub fn may_fail(&self) -> bool {
         let mut bodies = self.bodies.iter();
         bodies.any(|body| self.materials[body.material].failure.has_memory())
+    }
+
+    /// Whether matter of the case may yield.
+    #[must_use]
+    pub fn may_yield(&self) -> bool {
+        let mut bodies = self.bodies.iter();
+        bodies.any(|body| self.materials[body.material].strength.yields())
     }
 
     /// The "impact speed" (m/s) of the interpenetration measure: the largest

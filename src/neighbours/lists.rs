@@ -13,6 +13,7 @@ use super::motion::MotionRecord;
 use super::sequence::Sequence;
 use crate::domain::{Halo, Mirrors, Outset};
 use crate::model::{Body, Case, SmoothingLength};
+use crate::numerics::kernel::SUPPORT;
 use crate::particles::{Image, ParticleStore, Scatter, resize};
 
 /// The sequence of images, their motion records and the lists, kept from step to step.
@@ -116,6 +117,22 @@ impl Lists {
         };
         let range = (h(i) + h(j)).max(self.lengths[group].least);
         r[0] * r[0] + r[1] * r[1] + r[2] * r[2] < range * range
+    }
+
+    /// Calls `visit` with the place of each image that is nearer than `range` (m) to a point (m), or
+    /// than the longest support of its group without a range.
+    pub fn near_point(&self, point: &[f64; 3], range: Option<f64>, mut visit: impl FnMut(usize)) {
+        for (group, lengths) in self.lengths.iter().enumerate() {
+            let range = range.unwrap_or(SUPPORT * lengths.longest);
+            self.sequence.near_point(group, point, range, &mut visit);
+        }
+    }
+
+    /// The longest smoothing length (m).
+    #[must_use]
+    pub fn longest(&self) -> f64 {
+        let lengths = self.lengths.iter().map(|lengths| lengths.longest);
+        lengths.fold(0.0, f64::max)
     }
 
     /// Neighbours in the lists, summed over this rank's particles.

@@ -278,6 +278,32 @@ impl Sequence {
         }
     }
 
+    /// Calls `visit`, in canonical order, with the place of each image of a group that is nearer than
+    /// `range` (m) to a point (m).
+    pub fn near_point(
+        &self,
+        group: usize,
+        point: &[f64; 3],
+        range: f64,
+        mut visit: impl FnMut(usize),
+    ) {
+        let along = self.along(group);
+        self.columns_near(group, point, point, range, |_, column| {
+            let x = &self.coordinates[along][column.clone()];
+            let first = x.partition_point(|&x| x < point[along] - range);
+            for index in column.start + first..column.end {
+                if self.coordinates[along][index] > point[along] + range {
+                    break;
+                }
+                let apart = |a: usize| self.coordinates[a][index] - point[a];
+                let [x, y, z] = [apart(0), apart(1), apart(2)];
+                if x * x + y * y + z * z < range * range {
+                    visit(index);
+                }
+            }
+        });
+    }
+
     /// First place of a column whose position along it is not below `from` (m). `hint` is a place
     /// of that column or anything.
     #[inline(always)]

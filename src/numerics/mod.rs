@@ -6,5 +6,6 @@ pub mod kernel;
 pub mod lane_matrix;
 pub mod lanes;
 pub mod matrix;
+pub mod ordered;
 pub mod vector;
 pub mod virial;

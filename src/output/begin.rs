@@ -14,12 +14,16 @@ use super::set_aside::{self, SET_ASIDE, SetAside};
 use super::{OutputError, Phase, RunFolder, Status, files, on_root, series, write_atomically};
 
 /// Files that a restart changes before it has a checkpoint.
-const CHANGED: [&str; 8] = [
+const CHANGED: [&str; 12] = [
     "history.csv",
     "contacts.csv",
     "loads.csv",
     "removed.csv",
     "departed.csv",
+    "bodies.csv",
+    "gauges.csv",
+    "witness.csv",
+    "crossings.csv",
     "performance.csv",
     "case.toml",
     STATUS,

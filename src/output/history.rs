@@ -136,14 +136,33 @@ impl Table {
     /// # Panics
     /// If the row has not one value for each column.
     pub fn row(&mut self, values: &[Value]) -> Result<(), OutputError> {
-        assert_eq!(values.len(), self.columns, "a row of the wrong length");
-        let line = sheet::line(values.iter().map(|value| match value {
-            // `Debug` uses an exponent where it is shorter; both round-trip.
-            Value::Real(number) => format!("{number:?}"),
-            Value::Count(count) => count.to_string(),
-            Value::Word(word) => (*word).to_owned(),
-        }));
-        let written = self.file.write_all(&line);
+        self.rows([values])
+    }
+
+    /// Writes rows, all in one call.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`].
+    ///
+    /// # Panics
+    /// If a row has not one value for each column.
+    pub fn rows<'a>(
+        &mut self,
+        rows: impl IntoIterator<Item = impl AsRef<[Value<'a>]>>,
+    ) -> Result<(), OutputError> {
+        let columns = self.columns;
+        let cells = |row: &[Value]| {
+            assert_eq!(row.len(), columns, "a row of the wrong length");
+            let cell = |value: &Value| match value {
+                // `Debug` uses an exponent where it is shorter; both round-trip.
+                Value::Real(number) => format!("{number:?}"),
+                Value::Count(count) => count.to_string(),
+                Value::Word(word) => (*word).to_owned(),
+            };
+            row.iter().map(cell).collect::<Vec<_>>()
+        };
+        let lines = sheet::lines(rows.into_iter().map(|row| cells(row.as_ref())));
+        let written = self.file.write_all(&lines);
         written.map_err(OutputError::io("write", &self.path))
     }
 

@@ -205,6 +205,14 @@ paths! {
     removed: "removed.csv";
     /// Table of what particles that left the box of interest took with them.
     departed: "departed.csv";
+    /// Table of what there is of each body.
+    bodies: "bodies.csv";
+    /// Table of gauges.
+    gauges: "gauges.csv";
+    /// Table of what has passed witness planes.
+    witness: "witness.csv";
+    /// Table of who has passed them, where and when.
+    crossings: "crossings.csv";
     /// Table of wall-clock times.
     performance: "performance.csv";
     /// The log.

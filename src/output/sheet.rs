@@ -9,15 +9,24 @@ const COMMENT: u8 = b'#';
 
 /// Some values as one line with its end; those with commas, quotes or line ends are quoted.
 pub(super) fn line<T: AsRef<[u8]>>(values: impl IntoIterator<Item = T>) -> Vec<u8> {
-    let mut line = Vec::new();
+    lines([values])
+}
+
+/// The same of several, each of them a line.
+pub(super) fn lines<T: AsRef<[u8]>>(
+    records: impl IntoIterator<Item = impl IntoIterator<Item = T>>,
+) -> Vec<u8> {
+    let mut lines = Vec::new();
     let mut writer = WriterBuilder::new()
         .comment(Some(COMMENT))
-        .from_writer(&mut line);
-    let written = writer.write_record(values);
-    let written = written.and_then(|()| Ok(writer.flush()?));
-    written.expect("memory takes it");
+        .flexible(true)
+        .from_writer(&mut lines);
+    for values in records {
+        writer.write_record(values).expect("memory takes it");
+    }
+    writer.flush().expect("memory takes it");
     drop(writer);
-    line
+    lines
 }
 
 /// The line of units that a table begins with.

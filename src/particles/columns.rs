@@ -118,7 +118,7 @@ bitflags! {
 
     /// The options of a case that have use for a field: a set, empty for a field of every case.
     #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-    pub struct Owner: u16 {
+    pub struct Owner: u32 {
         /// Contact beyond the SPH sums.
         const CONTACT = 1;
         /// The Balsara switch.
@@ -151,5 +151,24 @@ bitflags! {
         const FAILURE = 1 << 14;
         /// Absorbing zones.
         const ABSORBERS = 1 << 15;
+        /// Materials that yield.
+        const YIELD = 1 << 16;
+        /// The record of the largest pressure.
+        const PEAK_PRESSURE = 1 << 17;
+        /// The record of the largest tension.
+        const PEAK_TENSION = 1 << 18;
+        /// The record of the highest temperature.
+        const PEAK_TEMPERATURE = 1 << 19;
+        /// The record of the largest strain rate.
+        const PEAK_STRAIN_RATE = 1 << 20;
+        /// The record of when pressure arrived.
+        const ARRIVAL = 1 << 21;
+        /// Witness planes.
+        const WITNESSES = 1 << 22;
+        /// Gauges that particles carry.
+        const CARRIERS = 1 << 23;
+        /// Records that a particle keeps because snapshots are to show them.
+        const PEAKS = Self::PEAK_PRESSURE.bits() | Self::PEAK_TENSION.bits()
+            | Self::PEAK_TEMPERATURE.bits() | Self::PEAK_STRAIN_RATE.bits() | Self::ARRIVAL.bits();
     }
 }

@@ -128,6 +128,24 @@ particle_fields! {
     damage: Scalar,                       "",       State,    -,              IfHeld,   FAILURE;
     /// Elastic energy that tension and shear held when the matter failed.
     failure_energy: Scalar,               "J/kg",   State,    -,              OnDemand, FAILURE;
+    /// Plastic work on the matter so far.
+    plastic_energy: Scalar,               "J/kg",   State,    -,              OnDemand, YIELD;
+    /// Largest pressure so far, compression positive; zero under tension alone.
+    peak_pressure: Scalar,                "Pa",     State,    -,              OnDemand, PEAK_PRESSURE;
+    /// When the largest pressure so far was reached; zero if there was none.
+    peak_pressure_time: Scalar,           "s",      State,    -,              OnDemand, PEAK_PRESSURE;
+    /// Largest mean tension so far, the opposite of the pressure.
+    peak_tension: Scalar,                 "Pa",     State,    -,              OnDemand, PEAK_TENSION;
+    /// Highest temperature so far; zero for materials without thermal constants.
+    peak_temperature: Scalar,             "K",      State,    -,              OnDemand, PEAK_TEMPERATURE;
+    /// Largest equivalent strain rate so far, of the deviatoric rate of deformation.
+    peak_strain_rate: Scalar,             "1/s",    State,    -,              OnDemand, PEAK_STRAIN_RATE;
+    /// When pressure first passed the threshold of arrival; zero before.
+    arrival_time: Scalar,                 "s",      State,    -,              OnDemand, ARRIVAL;
+    /// Whether it carries a gauge (1).
+    gauge_carrier: Index,                 "",       State,    -,              Never,    CARRIERS;
+    /// Witness planes that it is beyond: a set of bits, in the input's order.
+    witness_sides: Index,                 "",       State,    -,              Never,    WITNESSES;
     /// Velocity gradient, row i column j is the derivative of velocity i along j.
     velocity_gradient: Tensor,            "1/s",    State,    -,              OnDemand, -;
     /// Acceleration by stress and viscosity.

@@ -7,6 +7,7 @@ mod declare;
 mod fields;
 mod image;
 mod point;
+mod records;
 mod scatter;
 mod select;
 mod store;
@@ -17,9 +18,11 @@ pub use fields::{FIELDS, FieldId, FieldInfo, ParticleStore};
 pub use image::Image;
 pub use point::MaterialPoints;
 pub(crate) use point::material_points;
+pub use records::Records;
+pub(crate) use records::records_of;
 pub use scatter::Scatter;
 pub use select::Select;
-pub use store::{TEMPERATURE, VON_MISES_STRESS, rows, snapshot_names};
+pub use store::{STRESS, TEMPERATURE, VON_MISES_STRESS, gauge_names, rows, snapshot_names};
 
 /// Particles that a task handles at least, where they take little work each.
 pub(crate) const GRAIN: usize = 1024;

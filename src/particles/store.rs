@@ -203,6 +203,15 @@ pub fn snapshot_names() -> impl Iterator<Item = &'static str> {
         .chain([VON_MISES_STRESS, TEMPERATURE])
 }
 
+/// Names of what a gauge can read.
+pub fn gauge_names() -> impl Iterator<Item = &'static str> {
+    rows(|field: &FieldInfo| field.is_shown() && field.kind.is_real())
+        .map(|field| field.name)
+        .chain([STRESS, VON_MISES_STRESS, TEMPERATURE])
+}
+
+/// The stress that matter bears, tension positive: that of its material.
+pub const STRESS: &str = "stress";
 /// A quantity that snapshots derive from the stress.
 pub const VON_MISES_STRESS: &str = "von_mises_stress";
 /// A quantity that snapshots derive from density and specific energy.

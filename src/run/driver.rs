@@ -1,25 +1,28 @@
 //! The run loop: steps, and what is written between them.
 
+mod measures;
+
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
+use super::announcement::announcement;
 use super::departures::Departures;
 use super::exit::EXIT_STOPPED;
 use super::launch::{Launch, STEP, fail};
+use super::load::load;
 use super::notices::Notices;
 use super::options::CommonArgs;
 use super::progress::Progress;
 use super::say::{counted, say, seconds, warn};
 use super::stop::{self, Watch};
 use super::summary::summary;
-use super::tables::{self, Tables};
+use super::tables::Tables;
 use crate::comm::Comm;
 use crate::model::NumericalFailurePolicy;
 use crate::output::snapshot::{self, Quantity};
 use crate::output::{
-    COMMIT, Log, OutputError, Phase, Rows, RunFolder, Schedule, Status, VERSION, agree, on_root,
-    series, write_json,
+    Log, OutputError, Phase, Rows, RunFolder, Schedule, Status, agree, on_root, series, write_json,
 };
 use crate::output::{checkpoint, post_mortem};
 use crate::step::{self, Simulation, StepError, Timers};
@@ -77,7 +80,7 @@ impl<'a> Driver<'a> {
         let mut tables = None;
         on_root(comm, || {
             let resume = restarted.is_some().then_some(&simulation.state);
-            tables = Some(Tables::open(folder, &simulation.case, resume)?);
+            tables = Some(Tables::open(folder, &simulation, resume)?);
             folder.forget_stop(launch.began)
         })?;
         let stop = comm.is_root().then(|| folder.stop());
@@ -105,6 +108,7 @@ impl<'a> Driver<'a> {
         driver.announce(comm, restarted, warnings);
         if restarted.is_none() {
             driver.write_row(comm)?;
+            driver.write_gauges(comm, 0.0)?;
             driver.write_snapshot(comm)?;
         }
         Ok(driver)
@@ -220,6 +224,7 @@ impl<'a> Driver<'a> {
 
     /// Whatever is due after a step that began at time `before` (s).
     fn write(&mut self, comm: &Comm, before: f64) -> Result<(), OutputError> {
+        self.write_gauges(comm, before)?;
         for text in self.departures.notices(&self.simulation) {
             self.log(comm, &text);
         }
@@ -254,10 +259,16 @@ impl<'a> Driver<'a> {
     }
 
     fn write_row(&mut self, comm: &Comm) -> Result<(), OutputError> {
-        let load = tables::load(comm, &self.simulation);
+        self.write_crossings(comm)?;
+        let load = load(comm, &self.simulation);
+        let bodies = if self.simulation.case.measure.bodies {
+            self.simulation.measure_bodies(comm)
+        } else {
+            Vec::new()
+        };
         let wall = self.start.elapsed().as_secs_f64();
         on_root(comm, || match &mut self.tables {
-            Some(tables) => tables.write(&self.simulation, &load, wall),
+            Some(tables) => tables.write(&self.simulation, &bodies, &load, wall),
             None => Ok(()),
         })?;
         self.simulation.state.begin_interval();
@@ -295,6 +306,7 @@ impl<'a> Driver<'a> {
 
     fn write_checkpoint(&mut self, comm: &Comm) -> Result<(), OutputError> {
         let begun = Instant::now();
+        self.write_crossings(comm)?;
         // Rows before this checkpoint are not written again once it is there.
         on_root(comm, || self.tables.as_ref().map_or(Ok(()), Tables::sync))?;
         let folder = self.folder.checkpoints();
@@ -360,28 +372,14 @@ impl<'a> Driver<'a> {
     }
 
     fn announce(&mut self, comm: &Comm, restarted: Option<&Path>, warnings: &[String]) {
-        let mut counts = [self.simulation.particles.owned() as u64];
-        comm.sum_u64(&mut counts);
+        let lines = announcement(comm, &self.simulation, restarted, self.set_up);
         if !comm.is_root() {
             return;
         }
-        let state = &self.simulation.state;
-        let from = restarted.map_or(String::new(), |path| {
-            let time = seconds(state.time);
-            format!(", from {} at {time}", path.display())
-        });
-        let text = format!(
-            "{}: {} particles, {} with {} each ({}){from}",
-            self.simulation.case.title,
-            counts[0],
-            counted(comm.size() as u64, "rank"),
-            counted(rayon::current_num_threads() as u64, "thread"),
-            crate::numerics::dispatch::instructions().name(),
-        );
-        self.log.line(&format!("whipple {VERSION} ({COMMIT})"));
-        self.log.line(&text);
-        self.log.line(&format!("set up in {:.3} s", self.set_up));
-        say(&text);
+        for line in &lines {
+            self.log.line(line);
+        }
+        say(&lines[1]);
         for warning in warnings {
             let text = format!("warning: {warning}");
             self.log.line(&text);

@@ -1,12 +1,15 @@
 //! A run in its folder, on all ranks: how it starts or goes on, the loop between its files, why it
 //! stops, and what it says.
 
+mod announcement;
+mod columns;
 mod departures;
 mod driver;
 pub(crate) mod exit;
 #[cfg(feature = "fault-injection")]
 mod fault;
 pub(crate) mod launch;
+mod load;
 mod notices;
 mod options;
 mod progress;

@@ -99,7 +99,7 @@ fn refusal(name: &str, place: &str, differences: &[Difference]) -> String {
     } else {
         let _ = write!(
             text,
-            "  help: a restart may change `run`, `output`, `domain` and `numerical_limits`, not {}: run the \
+            "  help: a restart may change `run`, `output`, `domain`, `measure` and `numerical_limits`, not {}: run the \
              case anew, or put the saved value back",
             fixed.join(", ")
         );

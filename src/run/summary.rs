@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::json;
 
-use super::tables::load;
+use super::load::load;
 use crate::comm::Comm;
 use crate::model::SphForm;
 use crate::output::{COMMIT, VERSION};

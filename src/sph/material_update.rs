@@ -1,10 +1,12 @@
 //! The material's answer to the velocity gradient, cluster by cluster inside the first sweep.
 
+use super::recording::Recording;
+use super::step::Step;
 use super::sums::Sums;
 use crate::material::{LANES, Material, PointBatch};
 use crate::neighbours::{Cluster, Lists};
 use crate::numerics::lanes::{F64x8, Lanes};
-use crate::particles::{Image, MaterialPoints};
+use crate::particles::{Image, MaterialPoints, Records};
 
 /// Work for a particle apart from its neighbours, in neighbours of the pair sums: sort, list,
 /// material, integration and time-step candidates against both sweeps, as timed by the bench.
@@ -21,6 +23,7 @@ pub(super) struct MaterialUpdate<'a> {
     dt: f64,
     /// Specific energies are those after the first half kick.
     points: MaterialPoints<'a>,
+    recording: Option<Recording<'a>>,
 }
 
 /// Points of one material, before and after their update.
@@ -74,18 +77,19 @@ impl Show for () {
 
 impl<'a> MaterialUpdate<'a> {
     pub(super) fn new(
-        points: MaterialPoints<'a>,
+        (points, records): (MaterialPoints<'a>, Records<'a>),
         sums: &'a Sums,
         lists: &'a Lists,
-        dt: f64,
+        step: &Step,
     ) -> Self {
         Self {
             images: lists.images(),
             materials: &sums.materials,
             material_of_body: &sums.material_of_body,
             rigid: &lists.groups.rigid,
-            dt,
+            dt: step.dt,
             points,
+            recording: Recording::new(records, sums, step),
         }
     }
 
@@ -213,6 +217,10 @@ impl<'a> MaterialUpdate<'a> {
                 }
             }
             done |= lanes;
+            if let Some(recording) = &self.recording {
+                // SAFETY: the particles belong to this cluster alone, and this thread has it.
+                unsafe { recording.book(own, [&before, &after], lanes, base) };
+            }
             let updated = Updated {
                 before: &before,
                 after: &after,

@@ -17,6 +17,7 @@ pub mod neighbourhood;
 pub mod normalised;
 mod phase;
 pub mod principal;
+mod recording;
 mod records;
 mod signal;
 mod smoothing;

@@ -7,6 +7,8 @@ pub struct Step {
     pub dt: f64,
     /// That of the step before (s).
     pub last_dt: f64,
+    /// When it ends (s).
+    pub time: f64,
     /// Gravity (m/s²).
     pub gravity: [f64; 3],
 }

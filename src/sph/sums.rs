@@ -22,6 +22,8 @@ pub(super) struct Sums {
     pub terms: Terms,
     pub materials: Vec<Material>,
     pub material_of_body: Vec<usize>,
+    /// Pressure (Pa) that counts as arrived, by material.
+    pub arrival: Vec<f64>,
     /// What mirror images exert, by chunk.
     pub from_mirrors: Vec<FromMirrors>,
     /// Particles of this rank whose gradient has no correction.
@@ -88,6 +90,9 @@ impl Sums {
             },
             terms: Terms::new(case, kernel),
             materials: case.materials.clone(),
+            arrival: (case.materials.iter())
+                .map(|material| case.measure.arrival_of(material))
+                .collect(),
             material_of_body: case.bodies.iter().map(|b| b.material).collect(),
             from_mirrors: Vec::new(),
             uncorrected: 0,

@@ -19,6 +19,12 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
         ),
         (Owner::SURFACE_FRICTION, case.loads.has_friction()),
         (Owner::FAILURE, case.may_fail()),
+        (Owner::YIELD, case.may_yield()),
+        (
+            Owner::CARRIERS,
+            case.measure.gauges.iter().any(|gauge| gauge.moves),
+        ),
+        (Owner::WITNESSES, !case.measure.witnesses.is_empty()),
         (Owner::BALSARA, sph.balsara),
         (Owner::CONDUCTION, sph.conduction > 0.0),
         (Owner::XSPH, sph.xsph > 0.0),
@@ -32,8 +38,18 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
     ]
     .into_iter()
     .filter(|&(_, used)| used)
-    .fold(contact.owners(), |all, (option, _)| all | option);
+    .fold(contact.owners() | records(case), |all, (option, _)| {
+        all | option
+    });
     Owner::all().difference(used)
+}
+
+/// What particles keep because snapshots or gauges are to show it.
+fn records(case: &Case) -> Owner {
+    let gauges = case.measure.gauges.iter().flat_map(|gauge| &gauge.fields);
+    let names = case.output.fields.iter().chain(gauges);
+    let records = rows(Owner::PEAKS).filter(|field| names.clone().any(|name| name == field.name));
+    records.fold(Owner::empty(), |all, field| all | field.owner)
 }
 
 /// Bytes that the options of a case add beyond contact without friction: to an owned particle, and

@@ -6,6 +6,7 @@ mod fields;
 mod flight;
 mod given;
 mod integrate;
+mod measures;
 mod removal;
 mod restored;
 mod setup;
@@ -16,8 +17,8 @@ mod timers;
 
 pub(crate) use crate::diagnose::failed_mass;
 pub use crate::diagnose::{
-    LoadState, NearestPair, NumericalFailure, PairState, PastStep, PostMortem, Reason, Removed,
-    RunState, Totals, Worst,
+    LoadState, NearestPair, NumericalFailure, PairState, Passed, PastStep, PostMortem, Reason,
+    Removed, RunState, Totals, Worst,
 };
 pub use candidate::StepControl;
 pub use error::{SetupError, StepError};

@@ -22,7 +22,7 @@ pub(super) fn require_own(
 ) -> Result<(), SetupError> {
     let (own, bodies) = (&simulation.state, simulation.case.bodies.len());
     let ledgers = |state: &RunState| [state.pairs.len(), state.loads.len()];
-    let checks: [Check; 7] = [
+    let checks: [Check; 8] = [
         ("it has other pairs of bodies or loads", &|| {
             ledgers(state) != ledgers(own)
         }),
@@ -31,6 +31,10 @@ pub(super) fn require_own(
             ledgers
                 .iter()
                 .any(|by_body| ![0, bodies].contains(&by_body.len()))
+        }),
+        ("it has other gauges or witness planes", &|| {
+            let carried = simulation.measures.gauges.count_carried();
+            [state.gauge_carriers.len(), state.passed.len()] != [carried, own.passed.len()]
         }),
         ("its times are none", &|| {
             !(state.dt > 0.0 && state.last_dt >= 0.0 && state.time >= 0.0)
@@ -77,7 +81,8 @@ fn counts(state: &RunState) -> impl Iterator<Item = u64> {
     let touching = state.pairs.iter().map(|pair| pair.touching);
     let signed = now.into_iter().chain(touching);
     let removed = state.removed.iter().chain(&state.departed);
-    let removed = removed.map(|removed| removed.particles);
+    let passed = state.passed.iter().map(|passed| passed.particles);
+    let removed = removed.map(|removed| removed.particles).chain(passed);
     [state.step, worst.contact_limited_steps]
         .into_iter()
         .chain(signed.map(|count| u64::try_from(count).unwrap_or(u64::MAX)))

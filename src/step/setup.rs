@@ -11,10 +11,11 @@ use super::timers::Timers;
 use crate::comm::Comm;
 use crate::contact::{Connectivity, Contact};
 use crate::diagnose::{
-    LoadState, PairState, Removed, RunState, StepSums, Worst, angular_momentum_scale,
+    LoadState, PairState, Passed, Removed, RunState, StepSums, Worst, angular_momentum_scale,
 };
 use crate::domain::{Halo, Mirrors, Outset, Partition};
 use crate::loads::{Absorption, Goal, Loads, Prescribe};
+use crate::measure::Measures;
 use crate::model::{Body, Case, SphForm, edge};
 use crate::neighbours::Lists;
 use crate::particles::{Image, ParticleStore};
@@ -65,6 +66,7 @@ impl Simulation {
     /// Everything but particles, with slabs for them.
     fn empty(case: Case, comm: &Comm, outset: &Outset, partition: Partition) -> Self {
         let contact = Contact::new(&case);
+        let measures = Measures::new(&case);
         let table = &contact.table;
         let mut particles = ParticleStore::default();
         particles.drop_fields(unused_fields(&case, table));
@@ -75,6 +77,7 @@ impl Simulation {
             state: RunState {
                 pairs: vec![PairState::default(); table.active_pairs().len()],
                 loads: vec![LoadState::default(); case.load_names().count()],
+                passed: vec![Passed::default(); measures.witnesses.ledgers()],
                 ..RunState::default()
             },
             timers: Timers::default(),
@@ -87,6 +90,7 @@ impl Simulation {
             loads: Loads::new(&case),
             sums: StepSums::new(table),
             contact,
+            measures,
             case,
         }
     }
@@ -216,6 +220,7 @@ impl Simulation {
         self.diagnose(comm);
         self.state.worst.nearest = None;
         self.choose_step(comm, candidate)?;
+        self.begin_measures(comm);
         Ok(())
     }
 }

@@ -13,6 +13,7 @@ use crate::diagnose::{
 };
 use crate::domain::{Halo, Partition};
 use crate::loads::Loads;
+use crate::measure::Measures;
 use crate::model::{Case, SphForm};
 use crate::neighbours::Lists;
 use crate::particles::{HaloPhase, ParticleStore};
@@ -43,6 +44,17 @@ pub struct Simulation {
     pub(super) contact: Contact,
     pub(super) loads: Loads,
     pub(super) sums: StepSums,
+    pub(super) measures: Measures,
+}
+
+/// What the sums are told of a step `dt` (s) from a state.
+fn step(state: &RunState, loads: &Loads, dt: f64) -> Step {
+    Step {
+        dt,
+        last_dt: state.last_dt,
+        time: state.time + dt,
+        gravity: loads.gravity,
+    }
 }
 
 impl Simulation {
@@ -81,6 +93,7 @@ impl Simulation {
         (self.state.last_dt, self.state.last_reason) = (dt, reason);
         self.book_step(comm, dt);
         self.timers.updates += self.particles.owned() as u64;
+        self.watch_witnesses();
         self.choose_step(comm, candidate)?;
         self.timers.lap(Phase::TimeStep);
         self.remove_departed(comm)
@@ -165,11 +178,7 @@ impl Simulation {
             }
             timers.lap(Phase::Neighbours);
         }
-        let step = Step {
-            dt,
-            last_dt: state.last_dt,
-            gravity: loads.gravity,
-        };
+        let step = step(state, loads, dt);
         sph.rates(particles, lists, &step);
         timers.lap(Phase::Material);
         contact.measure(particles, lists, dt);
@@ -333,6 +342,7 @@ impl Simulation {
             + self.contact.memory()
             + self.loads.memory()
             + self.sums.memory()
+            + self.measures.memory()
             + self.step_control.memory()
             + self.halo.memory()
             + self.partition.memory()

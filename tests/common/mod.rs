@@ -11,7 +11,8 @@ pub mod sentinel;
 use whipple::material::{Elastic, Eos, Linear, LinearForm, Strength, VonMises, library};
 use whipple::model::{
     Axis, Body, Case, ContactMode, DomainOptions, Initial, Lattice, LatticeKind, Loads,
-    OutputOptions, Overlap, RunControl, Shape, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
+    MeasureOptions, OutputOptions, Overlap, RunControl, Shape, SphOptions, SymmetryPlane,
+    TimeStepOptions, Vec3,
 };
 
 /// A body on a cubic lattice with h = 1.3 Δp.
@@ -74,6 +75,7 @@ pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
             history_every: 10,
             fields: Vec::new(),
         },
+        measure: MeasureOptions::default(),
         resolved: String::new(),
     }
 }

@@ -12,8 +12,8 @@ pub use sentinel::{id, mix, sentinel};
 
 use whipple::comm::Comm;
 use whipple::model::{
-    Body, Case, ContactMode, DomainOptions, Initial, Lattice, LatticeKind, Loads, OutputOptions,
-    RunControl, Shape, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
+    Body, Case, ContactMode, DomainOptions, Initial, Lattice, LatticeKind, Loads, MeasureOptions,
+    OutputOptions, RunControl, Shape, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
 };
 use whipple::output::snapshot;
 use whipple::particles::{FIELDS, ParticleStore};
@@ -80,6 +80,7 @@ pub fn case() -> Case {
             history_every: 1,
             fields: Vec::new(),
         },
+        measure: MeasureOptions::default(),
         resolved: "title = \"Sphere on plate, ⌀ 0.6 mm\"\n[run]\nend = \"1 us\"\n".to_owned(),
     }
 }

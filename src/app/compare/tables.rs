@@ -87,6 +87,9 @@ fn distance(a: Option<&String>, b: Option<&String>) -> f64 {
     }
 }
 
+/// Columns that tell rows of one time apart, beside those of bodies.
+const NAMES: [&str; 5] = ["load", "gauge", "witness", "direction", "id"];
+
 fn parse(text: &str) -> Result<Table, String> {
     let sheet = Sheet::parse(text)?;
     let columns = sheet.names;
@@ -95,7 +98,8 @@ fn parse(text: &str) -> Result<Table, String> {
     } else {
         "time"
     };
-    let is_key = |column: &str| column == main || column.starts_with("body");
+    let is_key =
+        |column: &str| column == main || column.starts_with("body") || NAMES.contains(&column);
     let mut rows = BTreeMap::new();
     for (_, values) in sheet.rows {
         let keys = columns

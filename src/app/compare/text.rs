@@ -3,9 +3,9 @@
 use serde_json::Value;
 
 /// Tables of a case that do not touch results.
-const FREE: [&str; 3] = ["output", "run", "domain"];
+const FREE: [&str; 4] = ["output", "run", "domain", "measure"];
 
-/// Differences of two resolved cases, but for output, run control and distribution.
+/// Differences of two resolved cases, but for output, measures, run control and distribution.
 pub fn cases(a: &str, b: &str) -> Vec<String> {
     let parse = |text: &str| -> Result<Value, String> {
         let mut table: toml::Table = text.parse().map_err(|e: toml::de::Error| e.to_string())?;

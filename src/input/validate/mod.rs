@@ -11,6 +11,7 @@ mod initial;
 mod lattice;
 mod loads;
 mod materials;
+mod measure;
 mod meshes;
 mod motion;
 mod numerical_limits;
@@ -35,10 +36,10 @@ use super::source::Diagnostic;
 use crate::material::Material;
 use crate::model::readable::Readable;
 use crate::model::{
-    Axis, Body, Case, ContactMode, DomainOptions, NumericalLimits, OutputOptions, RunControl,
-    SmoothingLength, SphForm, SphOptions, SymmetryPlane, TimeStepOptions,
+    Axis, Body, Case, ContactMode, DomainOptions, MeasureOptions, NumericalLimits, OutputOptions,
+    RunControl, SmoothingLength, SphForm, SphOptions, SymmetryPlane, TimeStepOptions,
 };
-use crate::particles::{TEMPERATURE, snapshot_names};
+use crate::particles::{FIELDS, FieldId, TEMPERATURE, snapshot_names};
 use crate::populate::overlap;
 use check::{Allowed, number, whole};
 use region::KeepReader;
@@ -78,8 +79,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     .all(&params)?;
     let time_step = time_step(&params.time_step, &sph, &bodies, &materials)?;
     let domain = domain(&params, dimension, &bodies, &symmetry, &length_unit)?;
-    let fields = field_spans(&params.output);
-    let form = params.sph.form.as_ref().map(Spanned::span);
+    check_temperature(&materials, &params.output)?;
     let mut case = Case {
         title: names::title(params.title)?,
         length_unit,
@@ -97,15 +97,16 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         numerical_limits: NumericalLimits::default(),
         run: run(params.run.get_ref())?,
         output: output(params.output)?,
+        measure: MeasureOptions::default(),
         resolved: String::new(),
     };
     initial::settle(&mut case, &params.body)?;
     case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, &case)?;
     case.loads.absorbers = absorbers::absorbers(&params.absorb, &case)?;
-    stress_points::check(&case, form)?;
+    case.measure = measure::measure(&case, &params.measure, &params.gauge, &params.witness)?;
+    stress_points::check(&case, params.sph.form.as_ref().map(Spanned::span))?;
     check_moduli(&case, &params.body)?;
     check_overlaps(&case, &params.body)?;
-    check_temperature(&case, &fields)?;
     Ok(case)
 }
 
@@ -159,11 +160,13 @@ fn check_overlaps(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Dia
     Ok(())
 }
 
-fn check_temperature(case: &Case, fields: &[(String, Range<usize>)]) -> Result<(), Diagnostic> {
-    match fields.iter().find(|(name, _)| name == TEMPERATURE) {
-        Some((_, at)) if case.materials.iter().all(|m| m.thermal.is_none()) => {
+fn check_temperature(materials: &[Material], params: &OutputParams) -> Result<(), Diagnostic> {
+    let peak = FIELDS[FieldId::peak_temperature as usize].name;
+    let mut fields = params.fields.iter().flat_map(Spanned::get_ref);
+    match fields.find(|field| [TEMPERATURE, peak].contains(&field.get_ref().as_str())) {
+        Some(field) if materials.iter().all(|m| m.thermal.is_none()) => {
             let title = "no material has `thermal` constants that would give it a temperature";
-            Err(Diagnostic::new(at.clone(), title))
+            Err(Diagnostic::new(field.span(), title))
         }
         _ => Ok(()),
     }
@@ -184,13 +187,6 @@ fn length_unit(params: &CaseParams, made: &[Body]) -> Readable {
     let size = all.map(|spacing| spacing.unit).next();
     let fits = || made.first().map_or(1.0, |body| body.lattice.spacing);
     size.map_or_else(|| Readable::new("m", fits()), Readable::length)
-}
-
-fn field_spans(params: &OutputParams) -> Vec<(String, Range<usize>)> {
-    let spans = params.fields.iter().flat_map(Spanned::get_ref);
-    spans
-        .map(|field| (field.get_ref().clone(), field.span()))
-        .collect()
 }
 
 fn dimension(params: &Spanned<i64>) -> Result<usize, Diagnostic> {

@@ -178,6 +178,12 @@ macro_rules! strength_laws {
                 }
             }
 
+            /// Whether the material yields.
+            #[must_use]
+            pub fn yields(&self) -> bool {
+                self.state().contains(&"plastic_strain")
+            }
+
             /// Key of the law in the input and its constants; nothing for a fluid.
             #[must_use]
             pub fn constants(&self) -> Option<(&'static str, $crate::material::Constants)> {

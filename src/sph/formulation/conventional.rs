@@ -8,7 +8,7 @@ use crate::neighbours::{Among, Cluster, Lists};
 use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
-use crate::particles::{ParticleStore, material_points};
+use crate::particles::{ParticleStore, material_points, records_of};
 use crate::sph::gradient::VelocityGradient;
 use crate::sph::momentum::StressRecord;
 use crate::sph::neighbourhood::Neighbourhood;
@@ -31,7 +31,8 @@ impl Formulation for Conventional {
         step: &Step,
     ) {
         let gradient = PlainGradient(ShowStress::new(&mut self.records));
-        strain(&gradient, sums, material_points!(particles), lists, step.dt);
+        let points = (material_points!(particles), records_of!(particles));
+        strain(&gradient, sums, points, lists, step);
     }
 
     fn forces(

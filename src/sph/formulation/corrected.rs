@@ -11,7 +11,7 @@ use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lane_matrix::{full, load_all, read_all, store_all};
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
-use crate::particles::{ParticleStore, Scatter, material_points};
+use crate::particles::{ParticleStore, Scatter, material_points, records_of};
 use crate::sph::corrected::{CorrectedGradient, CorrectedRecord, Correction};
 use crate::sph::hourglass;
 use crate::sph::material_update::{Show, Updated};
@@ -55,7 +55,8 @@ impl Formulation for Corrected {
             stress: Scatter::new(&mut particles.pair_stress),
             records: Scatter::new(&mut self.records),
         };
-        strain(&gradient, sums, material_points!(particles), lists, step.dt);
+        let points = (material_points!(particles), records_of!(particles));
+        strain(&gradient, sums, points, lists, step);
     }
 
     fn forces(

@@ -7,9 +7,10 @@ use crate::neighbours::{Among, CHUNKS_AT_ONCE, Chunk, Cluster, Lists};
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::{F64x8, Lanes};
-use crate::particles::MaterialPoints;
+use crate::particles::{MaterialPoints, Records};
 use crate::sph::material_update::{MaterialUpdate, Show};
 use crate::sph::neighbourhood::{Neighbourhood, Sources};
+use crate::sph::step::Step;
 use crate::sph::sums::{Sums, sources, with_scale};
 
 /// How a formulation makes velocity gradients.
@@ -31,17 +32,17 @@ pub(super) trait Gradient: Sync {
     ) -> ([F64x8; 9], Self::Show<'a, S>);
 }
 
-/// The sweep over all clusters, after a step `dt` (s).
+/// The sweep over all clusters, after a step.
 pub(super) fn strain<G: Gradient>(
     gradient: &G,
     sums: &Sums,
-    points: MaterialPoints,
+    points: (MaterialPoints, Records),
     lists: &Lists,
-    dt: f64,
+    step: &Step,
 ) {
     let instructions = instructions();
     let scale = sums.scale;
-    let update = &MaterialUpdate::new(points, sums, lists, dt);
+    let update = &MaterialUpdate::new(points, sums, lists, step);
     let chunks = lists.chunks().par_iter().with_max_len(CHUNKS_AT_ONCE);
     with_scale!(scale, scale => chunks.for_each(|chunk| {
         let motion = sources(lists, scale);

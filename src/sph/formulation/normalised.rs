@@ -12,7 +12,7 @@ use crate::neighbours::{Among, Cluster, Lists};
 use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::{F64x8, Lanes};
-use crate::particles::{GRAIN, Image, ParticleStore, Scatter, material_points, resize};
+use crate::particles::{GRAIN, Image, ParticleStore, Scatter, material_points, records_of, resize};
 use crate::sph::momentum::StressRecord;
 use crate::sph::neighbourhood::Neighbourhood;
 use crate::sph::normalised::{NormalisedGradient, NormalisedRecord};
@@ -47,7 +47,8 @@ impl Formulation for Normalised {
             norm: Scatter::new(&mut particles.correction_norm),
             stresses: ShowStress::new(&mut self.stresses),
         };
-        strain(&gradient, sums, material_points!(particles), lists, step.dt);
+        let points = (material_points!(particles), records_of!(particles));
+        strain(&gradient, sums, points, lists, step);
         let norms = particles.correction_norm.par_iter().with_min_len(GRAIN);
         let uncorrected = norms.filter(|&&norm| norm == 0.0).count();
         sums.uncorrected = i64::try_from(uncorrected).unwrap_or(i64::MAX);

@@ -8,7 +8,7 @@ use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Lists};
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
-use crate::particles::{Image, ParticleStore, Scatter, material_points};
+use crate::particles::{Image, ParticleStore, Scatter, material_points, records_of};
 use crate::sph::linear_fit::{Fit, Fitted, LinearFit};
 use crate::sph::material_update::MaterialUpdate;
 use crate::sph::mid_step::{MidStep, mid_step};
@@ -157,7 +157,8 @@ pub(super) fn strain(
         incomplete: AtomicI64::new(0),
         step,
     };
-    let update = &MaterialUpdate::new(material_points!(particles), sums, lists, step.dt);
+    let points = (material_points!(particles), records_of!(particles));
+    let update = &MaterialUpdate::new(points, sums, lists, step);
     let chunks = lists.chunks().par_iter().with_max_len(CHUNKS_AT_ONCE);
     with_scale!(scale, scale => chunks.for_each(|chunk| {
         let motion = sources(lists, scale);

@@ -1,0 +1,224 @@
+//! What there is of each body: the rows of `bodies.csv`.
+
+use rayon::prelude::*;
+
+use super::{Whole, reading};
+use crate::comm::Comm;
+use crate::material::FAILED;
+use crate::model::{Case, edge};
+use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
+use crate::numerics::ordered::{disordered, ordered};
+use crate::numerics::vector::{cross, norm};
+use crate::particles::{GRAIN, ParticleStore};
+
+/// What there is of a body (SI), the images behind symmetry planes with it. What no particle has
+/// is not a number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BodyFigures {
+    /// Number of its particles.
+    pub particles: u64,
+    /// Mass (kg).
+    pub mass: f64,
+    /// Momentum (kg m/s).
+    pub momentum: [f64; 3],
+    /// Angular momentum about the origin (kg m²/s).
+    pub angular_momentum: [f64; 3],
+    /// `Σ ½ m v²` (J).
+    pub kinetic_energy: f64,
+    /// `Σ m e` (J).
+    pub internal_energy: f64,
+    /// Plastic work so far (J).
+    pub plastic_energy: f64,
+    /// Velocity of its centre of mass (m/s).
+    pub velocity: [f64; 3],
+    /// Smallest and largest components of the velocities of its particles (m/s).
+    pub velocities: [[f64; 3]; 2],
+    /// Largest speed (m/s).
+    pub speed: f64,
+    /// Centre of mass (m).
+    pub centre: [f64; 3],
+    /// Smallest and largest coordinates (m), half an edge of the outermost particles beyond their
+    /// centres.
+    pub extents: [[f64; 3]; 2],
+    /// Mass that has failed (kg).
+    pub failed_mass: f64,
+    /// Mass at or above the melting temperature (kg).
+    pub molten_mass: f64,
+    /// Smallest and largest pressure (Pa), compression positive.
+    pub pressures: [f64; 2],
+    /// Highest temperature (K).
+    pub temperature: f64,
+    /// Largest equivalent plastic strain.
+    pub plastic_strain: f64,
+}
+
+/// Sums of a body: mass, momentum, angular momentum, energies, failed and molten mass, `Σ m x`, and
+/// the number of particles.
+const SUMS: usize = 16;
+
+/// Largest values of a body: coordinates and velocities with either sign, speed, pressure with
+/// either sign, temperature, plastic strain.
+const EXTREMES: usize = 17;
+
+/// What some particles of a body come to.
+#[derive(Clone)]
+struct Part {
+    sums: [ExactSum; SUMS],
+    extremes: [f64; EXTREMES],
+}
+
+impl Part {
+    fn new() -> Self {
+        Self {
+            sums: std::array::from_fn(|_| ExactSum::default()),
+            extremes: [f64::NEG_INFINITY; EXTREMES],
+        }
+    }
+
+    fn join(&mut self, other: &Self) {
+        for (sum, other) in self.sums.iter_mut().zip(&other.sums) {
+            sum.merge(other);
+        }
+        for (most, &other) in self.extremes.iter_mut().zip(&other.extremes) {
+            *most = most.max(other);
+        }
+    }
+
+    /// Takes particle `i` of the store in.
+    fn add(&mut self, case: &Case, particles: &ParticleStore, i: usize) {
+        let (m, thermal) = (particles.mass[i], particles.thermal_mass(i));
+        let (x, v) = (&particles.position[i], &particles.velocity[i]);
+        let (density, energy) = (particles.density[i], particles.specific_energy[i]);
+        let damage = particles.damage.get(i).copied().unwrap_or_default();
+        let work = particles.plastic_energy.get(i).copied();
+        let material = &case.materials[case.bodies[particles.body[i] as usize].material];
+        let temperature = reading::temperature(case, particles, i);
+        let melting = material.thermal.as_ref();
+        let melting = melting.and_then(|t| t.constants().melting_temperature);
+        let molten = temperature.zip(melting).is_some_and(|(t, at)| t >= at);
+        let (turn, speed) = (cross(x, v), norm(v));
+        let mass_if = |yes: bool| if yes { thermal } else { 0.0 };
+        let sums = [
+            [m, m * v[0], m * v[1], m * v[2]],
+            [
+                m * turn[0],
+                m * turn[1],
+                m * turn[2],
+                0.5 * m * speed * speed,
+            ],
+            [
+                thermal * energy,
+                thermal * work.unwrap_or_default(),
+                mass_if(damage >= FAILED),
+                mass_if(molten),
+            ],
+            [m * x[0], m * x[1], m * x[2], 1.0],
+        ];
+        for (sum, term) in self.sums.iter_mut().zip(sums.as_flattened()) {
+            sum.add(*term);
+        }
+        let half = 0.5 * edge(thermal / density, case.dimension);
+        let pressure = particles.pressure[i];
+        let extremes = [
+            &x.map(|c| c + half)[..],
+            &x.map(|c| half - c),
+            v,
+            &v.map(|c| -c),
+            &[speed, pressure, -pressure],
+            &[
+                temperature.unwrap_or(f64::NEG_INFINITY),
+                particles.plastic_strain[i],
+            ],
+        ];
+        for (most, &value) in self.extremes.iter_mut().zip(extremes.into_iter().flatten()) {
+            // What is no number has been refused by the choice of the step; zero has one sign.
+            *most = if value > *most { value + 0.0 } else { *most };
+        }
+    }
+
+    /// The figures of the whole, of the sums of all ranks.
+    fn figures(&self, whole: &Whole) -> BodyFigures {
+        let sums: [f64; SUMS] = std::array::from_fn(|k| self.sums[k].value());
+        let three = |first: usize| [sums[first], sums[first + 1], sums[first + 2]];
+        let most = |k: usize| match self.extremes[k] {
+            f64::NEG_INFINITY => f64::NAN,
+            value => value,
+        };
+        let range = |first: usize| {
+            [
+                std::array::from_fn(|a| 0.0 - most(first + 3 + a)),
+                std::array::from_fn(|a| most(first + a)),
+            ]
+        };
+        let (mass, momentum) = (sums[0], three(1));
+        let whole_momentum = whole.momentum(momentum);
+        let whole_mass = whole.sum(mass);
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a count"
+        )]
+        let particles = whole.sum(sums[15]) as u64;
+        BodyFigures {
+            particles,
+            mass: whole_mass,
+            momentum: whole_momentum,
+            angular_momentum: whole.angular_momentum(three(4), momentum),
+            kinetic_energy: whole.sum(sums[7]),
+            internal_energy: whole.sum(sums[8]),
+            plastic_energy: whole.sum(sums[9]),
+            velocity: whole_momentum.map(|p| p / whole_mass),
+            velocities: whole.velocities(range(6)),
+            speed: most(12),
+            centre: whole.mean_position(three(12).map(|c| c / mass)),
+            extents: whole.extents(range(0)),
+            failed_mass: whole.sum(sums[10]),
+            molten_mass: whole.sum(sums[11]),
+            pressures: [0.0 - most(14), most(13)],
+            temperature: most(15),
+            plastic_strain: most(16),
+        }
+    }
+}
+
+/// The figures of each body, in the order of the case. Collective.
+#[must_use]
+pub fn bodies(
+    case: &Case,
+    particles: &ParticleStore,
+    whole: &Whole,
+    comm: &Comm,
+) -> Vec<BodyFigures> {
+    let owned = particles.owned();
+    let none = || vec![Part::new(); case.bodies.len()];
+    let of_chunk = |mut parts: Vec<Part>, chunk: usize| {
+        for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(owned) {
+            parts[particles.body[i] as usize].add(case, particles, i);
+        }
+        parts
+    };
+    let join = |mut parts: Vec<Part>, others: Vec<Part>| {
+        for (part, other) in parts.iter_mut().zip(&others) {
+            part.join(other);
+        }
+        parts
+    };
+    let mut parts = (0..owned.div_ceil(GRAIN))
+        .into_par_iter()
+        // same bits in any order: exact sums are integers, and extremes are some value among all
+        .fold(none, of_chunk)
+        // same bits in any order, as above
+        .reduce(none, join);
+    let mut limbs = Vec::new();
+    gather_limbs(parts.iter_mut().flat_map(|part| &mut part.sums), &mut limbs);
+    comm.sum_i64(&mut limbs);
+    scatter_limbs(parts.iter_mut().flat_map(|part| &mut part.sums), &limbs);
+    let extremes = parts.iter().flat_map(|part| part.extremes);
+    let mut words: Vec<u64> = extremes.map(ordered).collect();
+    comm.max_u64(&mut words);
+    let extremes = parts.iter_mut().flat_map(|part| &mut part.extremes);
+    for (most, &word) in extremes.zip(&words) {
+        *most = disordered(word);
+    }
+    parts.iter().map(|part| part.figures(whole)).collect()
+}

@@ -1,0 +1,53 @@
+//! Gauges and witness planes.
+
+/// A gauge: what matter holds at a place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gauge {
+    /// Name in tables.
+    pub name: String,
+    /// Where it is, or begins (m).
+    pub at: [f64; 3],
+    /// Whether the particle nearest at the start carries it.
+    pub moves: bool,
+    /// The body whose matter it reads; all that deform if absent.
+    pub body: Option<usize>,
+    /// Names of what it reads, at least one.
+    pub fields: Vec<String>,
+    /// Unit vector along which it reads the normal stress, if it does.
+    pub along: Option<[f64; 3]>,
+    /// When it reads.
+    pub every: Cadence,
+}
+
+/// How often something is done.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Cadence {
+    /// Every so many steps.
+    Steps(u64),
+    /// Every so much time (s).
+    Time(f64),
+}
+
+/// A plane that counts what passes it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Witness {
+    /// Name in tables.
+    pub name: String,
+    /// A point of it (m).
+    pub point: [f64; 3],
+    /// Unit normal: what moves along it passes forwards.
+    pub normal: [f64; 3],
+}
+
+impl Witness {
+    /// Most witness planes of a case: particles know their sides in as many bits.
+    pub const MOST: usize = 32;
+
+    /// How far a position (m) is beyond the plane (m).
+    #[must_use]
+    pub fn beyond(&self, x: &[f64; 3]) -> f64 {
+        (0..3)
+            .map(|a| self.normal[a] * (x[a] - self.point[a]))
+            .sum()
+    }
+}

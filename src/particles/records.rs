@@ -1,0 +1,47 @@
+//! What particles remember of their history and no step needs: a sum, and extremes.
+
+use super::scatter::Scatter;
+
+macro_rules! records {
+    (($d:tt) $( $(#[doc = $doc:literal])+ $name:ident, )+) => {
+        /// The records of particles, each empty where a case has no use for it.
+        pub struct Records<'a> {
+            $( $(#[doc = $doc])+ pub $name: Scatter<'a, f64>, )+
+        }
+
+        impl Records<'_> {
+            /// Whether particles keep any.
+            #[must_use]
+            pub fn any(&self) -> bool {
+                $( !self.$name.is_empty() )||+
+            }
+        }
+
+        /// Borrows [`Records`] of a store, which leaves its other fields free.
+        macro_rules! records_of {
+            ($d particles:expr) => {
+                $crate::particles::Records {
+                    $( $name: $crate::particles::Scatter::new(&mut $d particles.$name), )+
+                }
+            };
+        }
+        pub(crate) use records_of;
+    };
+}
+
+records! { ($)
+    /// Plastic work so far (J/kg).
+    plastic_energy,
+    /// Largest pressure so far (Pa).
+    peak_pressure,
+    /// When that was (s).
+    peak_pressure_time,
+    /// Largest mean tension so far (Pa).
+    peak_tension,
+    /// Highest temperature so far (K).
+    peak_temperature,
+    /// Largest equivalent strain rate so far (1/s).
+    peak_strain_rate,
+    /// When pressure first passed the threshold of arrival (s).
+    arrival_time,
+}

@@ -1,0 +1,40 @@
+//! What is measured between steps goes into tables.
+
+use super::Driver;
+use crate::comm::Comm;
+use crate::model::Cadence;
+use crate::output::{OutputError, Schedule, on_root};
+
+impl Driver<'_> {
+    /// What the gauges read whose turn it is after a step that began at time `before` (s).
+    pub(super) fn write_gauges(&mut self, comm: &Comm, before: f64) -> Result<(), OutputError> {
+        if !self.simulation.gauges().any() {
+            return Ok(());
+        }
+        let (step, now) = (self.simulation.state.step, self.simulation.state.time);
+        let due = |every| match every {
+            Cadence::Steps(steps) => step.is_multiple_of(steps),
+            Cadence::Time(time) => step == 0 || Schedule::new(Some(time)).is_due(before, now),
+        };
+        let read = self.simulation.read_gauges(comm, due);
+        if read.is_empty() {
+            return Ok(());
+        }
+        on_root(comm, || match &mut self.tables {
+            Some(tables) => tables.write_gauges(&self.simulation, &read),
+            None => Ok(()),
+        })
+    }
+
+    /// Who has passed witness planes since the last time.
+    pub(super) fn write_crossings(&mut self, comm: &Comm) -> Result<(), OutputError> {
+        let crossings = self.simulation.join_crossings(comm);
+        if crossings.is_empty() {
+            return Ok(());
+        }
+        on_root(comm, || match &mut self.tables {
+            Some(tables) => tables.write_crossings(&self.simulation.case, &crossings),
+            None => Ok(()),
+        })
+    }
+}

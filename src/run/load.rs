@@ -1,0 +1,60 @@
+//! How the work of a run is spread over its ranks.
+
+use crate::comm::Comm;
+use crate::step::Simulation;
+
+/// How evenly the ranks are loaded, and what they have sent.
+pub struct Load {
+    ranks: usize,
+    /// Of all ranks, and of the one with the most.
+    pub particles: [u64; 2],
+    /// The same of their load-balance weights.
+    pub work: [u64; 2],
+    /// Ranks without particles.
+    pub empty_ranks: u64,
+    /// Sent so far.
+    pub messages: u64,
+    /// Sent so far.
+    pub bytes: u64,
+    /// Of particles, since the start of the process.
+    pub updates: u64,
+}
+
+impl Load {
+    /// The most that a rank has over the mean.
+    #[allow(clippy::cast_precision_loss, reason = "for people")]
+    pub(super) fn imbalance(&self, [sum, most]: [u64; 2]) -> f64 {
+        most as f64 * self.ranks as f64 / (sum as f64).max(1.0)
+    }
+}
+
+/// The load of all ranks. Collective.
+pub fn load(comm: &Comm, simulation: &Simulation) -> Load {
+    let particles = simulation.particles.owned() as u64;
+    let work: u64 = simulation.particles.work[..simulation.particles.owned()]
+        .iter()
+        .map(|&work| u64::from(work))
+        .sum();
+    let (messages, bytes) = simulation.traffic();
+    let empty = u64::from(particles == 0);
+    let mut sums = [
+        particles,
+        work,
+        messages,
+        bytes,
+        simulation.timers.updates,
+        empty,
+    ];
+    comm.sum_u64(&mut sums);
+    let mut most = [particles, work];
+    comm.max_u64(&mut most);
+    Load {
+        ranks: comm.size(),
+        particles: [sums[0], most[0]],
+        work: [sums[1], most[1]],
+        messages: sums[2],
+        bytes: sums[3],
+        updates: sums[4],
+        empty_ranks: sums[5],
+    }
+}
