@@ -529,6 +529,7 @@ fn forces_are_drawn_for_each_pair_or_one() {
             points: Vec::new(),
             spans: [None, None],
             logarithmic: [false; 2],
+            dots: false,
         };
         tables.chart().unwrap()
     };

@@ -1,5 +1,7 @@
 //! `whipple info`: what is in a run, a snapshot or a checkpoint.
 
+mod measures;
+
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
@@ -16,7 +18,7 @@ use crate::run::say::{say, seconds, warn};
 /// Tell what is in a run folder, a snapshot or a checkpoint
 ///
 /// Of a file: the case, the time, the particles of each body, and each field with its unit and
-/// range. Of a run: where it stands, what it has written, and its figures.
+/// range. Of a run: where it stands, what it has written, what it last measured, and its figures.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = "Examples:
   whipple info runs/impact
@@ -278,6 +280,13 @@ fn run_folder(folder: &RunFolder, text: &mut Text) -> Result<(), ResultsError> {
     if let Some(path) = folder.set_aside_folder() {
         let what = "until the next checkpoint: what came after the one restarted from";
         text.entry("set aside", format!("{} ({what})", path.display()));
+    }
+    let figures = measures::last_figures(folder);
+    if !figures.is_empty() {
+        text.line("");
+    }
+    for (name, figure) in figures {
+        text.entry(&name, figure);
     }
     summary(&folder.summary(), text)
 }

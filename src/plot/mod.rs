@@ -30,7 +30,7 @@ pub use chart::curves::{Chart, Curve, Quantity};
 pub use chart::history::energies;
 pub use chart::profile::{Along, ProfileRequest, Profiles};
 pub use chart::series::parse_pair;
-pub use chart::tables::{Columns, Points, Tables};
+pub use chart::tables::{Columns, Points, Tables, widest};
 pub use error::PlotError;
 pub use header::Mark;
 pub use picture::pictures::{Pictures, Request};

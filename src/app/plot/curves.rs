@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::plot::{
     Columns, Direction, PlotError, Points, Tables, energies, front, parse_pair, snapshots, title,
+    widest,
 };
 
 use super::out::{save, target, unsaved, write};
@@ -14,20 +15,38 @@ use super::{PlotArgs, name, places};
 /// # Errors
 /// [`PlotError::Options`] for a table of which nothing is known.
 pub fn columns(args: &PlotArgs) -> Result<Option<String>, PlotError> {
-    let table = |wanted: &str| args.source.file_name().is_some_and(|name| name == wanted);
     let columns = match (&args.xy, &args.pair) {
         (Some(columns), _) => columns,
         (None, Some(_)) => "time:force_x,force_y,force_z",
-        (None, None) if table(CONTACTS) => "time:force",
-        (None, None) if args.source.extension().is_some_and(|e| e == "csv") => {
-            return Err(PlotError::Options(
-                "of a table say which columns to draw, as in --xy time:force_x",
-            ));
-        }
-        (None, None) => return Ok(None),
+        (None, None) if is(args, CROSSINGS) => return widest(&args.source).map(Some),
+        (None, None) => match USUAL.iter().find(|(table, _)| is(args, table)) {
+            Some((_, columns)) => columns,
+            None if args.source.extension().is_some_and(|e| e == "csv") => {
+                return Err(PlotError::Options(
+                    "of a table say which columns to draw, as in --xy time:force_x",
+                ));
+            }
+            None => return Ok(None),
+        },
     };
     Ok(Some(columns.to_owned()))
 }
+
+/// Whether a table of a run is drawn.
+fn is(args: &PlotArgs, table: &str) -> bool {
+    args.source.file_name().is_some_and(|name| name == table)
+}
+
+/// What is drawn of tables of a run if nothing is asked for.
+const USUAL: [(&str, &str); 4] = [
+    (CONTACTS, "time:force"),
+    ("bodies.csv", "time:kinetic_energy"),
+    ("gauges.csv", "time:pressure"),
+    ("witness.csv", "time:mass"),
+];
+
+/// The table of a run that tells who has passed witness planes.
+const CROSSINGS: &str = "crossings.csv";
 
 /// The table of a run that tells its pairs of bodies apart.
 const CONTACTS: &str = "contacts.csv";
@@ -109,6 +128,7 @@ fn tables_of(
         points: points.collect::<Result<_, _>>()?,
         spans: [args.view.clone(), args.range.clone()],
         logarithmic: ['x', 'y'].map(|axis| log.contains(axis)),
+        dots: is(args, CROSSINGS),
     })
 }
 

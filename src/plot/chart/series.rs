@@ -4,7 +4,15 @@
 use super::table::Table;
 
 /// Columns that name what a row belongs to.
-const KEYS: [&str; 4] = ["body_a", "body_b", "load", "body"];
+const KEYS: [&str; 7] = [
+    "body_a",
+    "body_b",
+    "load",
+    "gauge",
+    "witness",
+    "body",
+    "direction",
+];
 
 /// The two columns of a pair.
 const PAIR: [&str; 2] = [KEYS[0], KEYS[1]];
@@ -139,6 +147,16 @@ mod tests {
             wrong.contains("no pair a – d; it has a – b, a – c"),
             "{wrong}"
         );
+    }
+
+    #[test]
+    fn gauges_are_series_and_read_nothing_where_cells_are_empty() {
+        let table = Table::parse("time,gauge,pressure\n0,front,1\n0,rear,\n1,front,2\n").unwrap();
+        let all = series(&table, &["time", "pressure"], None).unwrap();
+        let names: Vec<&str> = all.iter().map(|series| series.name.as_str()).collect();
+        assert_eq!(names, ["front", "rear"]);
+        let read = numbers(&table, "pressure").unwrap();
+        assert!(read[1].is_nan() && read[2] == 2.0);
     }
 
     #[test]

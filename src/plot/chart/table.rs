@@ -44,7 +44,7 @@ impl Table {
         Ok(Self { names, units, rows })
     }
 
-    /// The numbers of a column.
+    /// The numbers of a column; an empty cell is none.
     ///
     /// # Errors
     /// What is wrong, and in which line.
@@ -52,6 +52,10 @@ impl Table {
         let at = self.place(name)?;
         let value = |(number, row): &(usize, Vec<String>)| {
             let cell = row.get(at).ok_or(format!("line {number} is cut off"))?;
+            if cell.is_empty() {
+                // Nothing was read there.
+                return Ok(f64::NAN);
+            }
             cell.parse::<f64>()
                 .map_err(|_| format!("line {number}: \"{cell}\" is no number"))
         };

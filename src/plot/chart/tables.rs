@@ -88,6 +88,8 @@ pub struct Tables {
     /// Whether the axes, right and up, are logarithmic; then the rows of a table, which may be
     /// few, are marked.
     pub logarithmic: [bool; 2],
+    /// Whether rows are dots, in no order, in place of curves.
+    pub dots: bool,
 }
 
 impl Tables {
@@ -118,7 +120,7 @@ impl Tables {
                     chart.curves.push(Curve {
                         name: self.name(name, &series, y),
                         colour: colour::body(chart.curves.len()),
-                        mark: Mark::Line,
+                        mark: if self.dots { Mark::Dots } else { Mark::Line },
                         points,
                     });
                 }
@@ -200,15 +202,47 @@ impl Tables {
     }
 }
 
+/// The two of `place_x`, `place_y` and `place_z` in which the places of a table differ most, as
+/// [`Columns`] are typed: those along a witness plane.
+///
+/// # Errors
+/// [`PlotError::Table`] if the table cannot be read or has no such columns.
+pub fn widest(path: &Path) -> Result<String, PlotError> {
+    let table = Table::read(path)?;
+    let mut widths = Vec::new();
+    for name in ["place_x", "place_y", "place_z"] {
+        let all = table.column(name).map_err(|reason| wrong(path, reason))?;
+        let most = |sign: f64| {
+            all.iter()
+                .map(|x| sign * x)
+                .fold(f64::NEG_INFINITY, f64::max)
+        };
+        widths.push((most(1.0) + most(-1.0), name));
+    }
+    let narrowest = (0..3)
+        .rev()
+        .min_by(|&a, &b| widths[a].0.total_cmp(&widths[b].0));
+    let mut names = (0..3)
+        .filter(|k| Some(*k) != narrowest)
+        .map(|k| widths[k].1);
+    let [x, y] = [names.next(), names.next()].map(Option::unwrap_or_default);
+    Ok(format!("{x}:{y}"))
+}
+
 /// Two columns of a series.
 fn points(table: &Table, series: &Series, [x, y]: [&str; 2]) -> Result<Vec<[f64; 2]>, String> {
     let (xs, ys) = (series::numbers(table, x)?, series::numbers(table, y)?);
     Ok(series.rows.iter().map(|&row| [xs[row], ys[row]]).collect())
 }
 
-/// Of many curves those that are zero throughout are left out, as pairs of bodies that never meet;
-/// the others keep their colours in order.
+/// Curves without a number are left out, as of gauges that do not read the column. Of many curves
+/// those that are zero throughout are left out too, as pairs of bodies that never meet; the others keep
+/// their colours in order.
 fn keep_what_is_seen(curves: &mut Vec<Curve>) {
+    let none = |curve: &Curve| curve.points.iter().all(|point| point[1].is_nan());
+    if !curves.iter().all(none) {
+        curves.retain(|curve| !none(curve));
+    }
     let flat = |curve: &Curve| curve.points.iter().all(|point| point[1] == 0.0);
     if curves.len() > MANY && !curves.iter().all(flat) {
         curves.retain(|curve| !flat(curve));
@@ -229,6 +263,14 @@ fn words(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn crossings_are_drawn_along_their_plane() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("crossings.csv");
+        std::fs::write(&path, "place_x,place_y,place_z\n1,0.5,3\n2,0.5,7\n").unwrap();
+        assert_eq!(widest(&path).unwrap(), "place_x:place_z");
+    }
 
     #[test]
     fn columns_and_points_are_read() {

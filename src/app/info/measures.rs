@@ -1,0 +1,168 @@
+//! What the last rows of a run's measures say.
+
+use std::fs::File;
+use std::io::{Read as _, Seek as _, SeekFrom};
+use std::path::Path;
+
+use crate::model::readable::{shown, shown_vector};
+use crate::output::{RunFolder, Sheet};
+
+/// Bytes of the end of a table that are read: the rows of the last time of some hundred bodies.
+const END: u64 = 1 << 16;
+
+/// Bytes of its beginning, where units and names of the columns stand.
+const BEGIN: u64 = 1 << 14;
+
+/// Names and figures of what a run has measured: of bodies, witness planes and gauges at the last
+/// time of their tables.
+pub fn last_figures(folder: &RunFolder) -> Vec<(String, String)> {
+    let mut lines = Vec::new();
+    if let Some(last) = Last::of(&folder.bodies()) {
+        lines.extend(last.lines(
+            "body",
+            &["mass", "velocity", "kinetic_energy", "failed_mass"],
+        ));
+    }
+    if let Some(mut last) = Last::of(&folder.witness()) {
+        last.keep(|last, row| last.number(row, "particles") > 0.0);
+        let passed = ["mass", "momentum", "kinetic_energy"];
+        lines.extend(last.lines("witness", &passed));
+    }
+    if let Some(last) = Last::of(&folder.gauges()) {
+        let reads = ["pressure", "velocity", "normal_stress"];
+        lines.extend(last.lines("gauge", &reads));
+    }
+    lines
+}
+
+/// The rows of the last time of a table.
+struct Last {
+    sheet: Sheet,
+}
+
+impl Last {
+    /// Of a table, if there is one with rows.
+    fn of(path: &Path) -> Option<Self> {
+        let mut file = File::open(path).ok().filter(|file| {
+            let about = file.metadata();
+            about.is_ok_and(|about| about.is_file())
+        })?;
+        let length = file.metadata().ok()?.len();
+        let mut text = Vec::new();
+        (&file).take(BEGIN.max(END)).read_to_end(&mut text).ok()?;
+        if length > text.len() as u64 {
+            let header = end_of_header(&text)?;
+            text.truncate(header);
+            file.seek(SeekFrom::Start(length - END)).ok()?;
+            let mut end = Vec::new();
+            file.take(END).read_to_end(&mut end).ok()?;
+            // The first line is the rest of one.
+            let whole = end.iter().position(|&byte| byte == b'\n')?;
+            text.extend_from_slice(&end[whole + 1..]);
+        }
+        let mut sheet = Sheet::parse(std::str::from_utf8(&text).ok()?).ok()?;
+        let columns = sheet.names.len();
+        sheet.rows.retain(|(_, cells)| cells.len() == columns);
+        let time = sheet.names.iter().position(|name| name == "time")?;
+        let last = sheet.rows.last()?.1[time].clone();
+        sheet.rows.retain(|(_, cells)| cells[time] == last);
+        Some(Self { sheet })
+    }
+
+    fn keep(&mut self, which: impl Fn(&Self, usize) -> bool) {
+        let kept: Vec<bool> = (0..self.sheet.rows.len())
+            .map(|row| which(self, row))
+            .collect();
+        let mut kept = kept.into_iter();
+        self.sheet.rows.retain(|_| kept.next().unwrap_or(false));
+    }
+
+    fn place(&self, name: &str) -> Option<usize> {
+        self.sheet.names.iter().position(|other| other == name)
+    }
+
+    fn cell(&self, row: usize, name: &str) -> &str {
+        self.place(name)
+            .map_or("", |at| &self.sheet.rows[row].1[at])
+    }
+
+    fn number(&self, row: usize, name: &str) -> f64 {
+        self.cell(row, name).parse().unwrap_or(f64::NAN)
+    }
+
+    /// A line for each row: what it is of, and some of its figures with their units.
+    fn lines(&self, of: &str, figures: &[&str]) -> Vec<(String, String)> {
+        let many = self.sheet.rows.len() > MOST;
+        let rows = 0..self.sheet.rows.len().min(MOST);
+        let line = |row: usize| {
+            let mut name = format!("{of} {}", self.cell(row, of));
+            for more in ["body", "direction"].iter().filter(|more| **more != of) {
+                name = format!("{name} {}", self.cell(row, more))
+                    .trim_end()
+                    .to_owned();
+            }
+            let figures = figures.iter().filter_map(|figure| self.figure(row, figure));
+            (name, figures.collect::<Vec<_>>().join(", "))
+        };
+        let mut lines: Vec<_> = rows.map(line).collect();
+        if many {
+            let left = self.sheet.rows.len() - MOST;
+            lines.push((format!("{of} …"), format!("{left} more in the table")));
+        }
+        lines
+    }
+
+    /// A figure or a vector with its unit, if the row has it.
+    fn figure(&self, row: usize, name: &str) -> Option<String> {
+        let words = name.replace('_', " ");
+        let unit = |name: &str| self.place(name).map_or("", |at| &self.sheet.units[at]);
+        let unit = |name: &str| unit(name).trim_matches('-').to_owned();
+        if self.place(name).is_some() {
+            let value = self.number(row, name);
+            return (!value.is_nan()).then(|| format!("{words} {}", shown(value, &unit(name))));
+        }
+        let names = ["x", "y", "z"].map(|axis| format!("{name}_{axis}"));
+        let values = [0, 1, 2].map(|k| self.number(row, &names[k]));
+        let known = values.iter().all(|value| !value.is_nan());
+        known.then(|| format!("{words} {}", shown_vector(&values, &unit(&names[0]))))
+    }
+}
+
+/// Rows that are told of each table.
+const MOST: usize = 20;
+
+/// Where the rows of a table begin: after the units and the names.
+fn end_of_header(text: &[u8]) -> Option<usize> {
+    let ends = text.iter().enumerate().filter(|(_, byte)| **byte == b'\n');
+    ends.map(|(at, _)| at + 1).nth(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fmt::Write as _;
+
+    #[test]
+    fn the_last_rows_are_told_however_long_the_table_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let run = RunFolder::at(folder.path());
+        let mut text = String::from(
+            "# units: s,-,kg,m/s,m/s,m/s,J\ntime,body,mass,velocity_x,velocity_y,velocity_z,kinetic_energy\n",
+        );
+        for n in 0..2000 {
+            for body in ["plate", "sphere"] {
+                writeln!(text, "{n}.0,{body},0.002,0.0,0.0,-{n}.0,NaN").unwrap();
+            }
+        }
+        text.push_str("2000.0,pla");
+        std::fs::write(run.bodies(), &text).unwrap();
+        let lines = last_figures(&run);
+        assert_eq!(lines.len(), 2, "{lines:?}");
+        assert_eq!(lines[0].0, "body plate");
+        assert_eq!(lines[1].1, "mass 2 g, velocity [0, 0, -1.999] km/s");
+        std::fs::write(run.witness(), "time,witness,body,direction,particles,mass\n0.5,a,b,forwards,3,1\n0.5,a,b,backwards,0,0\n").unwrap();
+        let lines = last_figures(&run);
+        assert_eq!(lines[2].0, "witness a b forwards");
+        assert_eq!(lines.len(), 3);
+    }
+}
