@@ -162,7 +162,7 @@ fn mistakes_are_said_before_anything_runs() {
         (&["--vary", "body.sphere.speed=1, 2"], "speed"),
         (&["--vary", "body.plate.velocity=3 km/s"], "velocity"),
         (
-            &["--vary", "sph.alpha=1,2", "--bisect", "failed"],
+            &["--vary", "sph.alpha=1,2", "--bisect", "a>1"],
             "needs a range",
         ),
         (

@@ -19,6 +19,7 @@ fn block(spacing: &str, more: &str) -> Case {
          [material.copper]\nlibrary = \"copper-johnson-cook\"\n\
          [[body]]\nname = \"block\"\nmaterial = \"copper\"\n\
          shape.box = {{ centre = [\"1 mm\", \"2 mm\", \"3 mm\"], size = [\"6 mm\", \"5 mm\", \"4 mm\"] }}\n\
+         lattice = \"cubic\"\n\
          {more}\n"
     ))
 }

@@ -24,6 +24,7 @@ strength.elastic.shear_modulus = "3 MPa"
 name = "block"
 material = "soft"
 shape.box = {{ lower = ["1 mm", "1 mm", "1 mm"], upper = ["6 mm", "7 mm", "8 mm"] }}
+lattice = "cubic"
 velocity = {velocity}
 {surfaces}
 "#

@@ -203,8 +203,8 @@ const IN_FILE: &[(&str, &str, &str, &str)] = &[
         ":14:27",
     ),
     (
-        "\"5 mm\"",
-        "\"0.4 mm\"",
+        "\"5 mm\" }",
+        "\"0.4 mm\" }\nlattice = \"cubic\"",
         "the body `ball` is too thin",
         ":14:1",
     ),
@@ -233,8 +233,8 @@ const IN_FILE: &[(&str, &str, &str, &str)] = &[
         ":20:13",
     ),
     (
-        "lower = [0, 0, \"1 cm\"], upper = [\"1 cm\"",
-        "lower = [\"-0.5 mm\", 0, \"1 cm\"], upper = [\"10.5 mm\"",
+        "lower = [0, 0, \"1 cm\"], upper = [\"1 cm\", \"1 cm\", \"2 cm\"] }",
+        "lower = [\"-0.5 mm\", 0, \"1 cm\"], upper = [\"10.5 mm\", \"1 cm\", \"2 cm\"] }\nlattice = \"cubic\"",
         "does not lie between two layers",
         "",
     ),

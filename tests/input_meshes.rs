@@ -356,7 +356,8 @@ fn quads_of_an_obj_file_make_a_body_and_a_surface() {
     let file = root.join("tests/common/cube.obj");
     let file = file.display();
     let folder = tempfile::tempdir().unwrap();
-    let body = format!("shape.obj = {{ file = \"{file}\", unit = \"0.5 mm\" }}");
+    let body =
+        format!("shape.obj = {{ file = \"{file}\", unit = \"0.5 mm\" }}\nlattice = \"cubic\"");
     let floor = format!(
         "[[surface]]\nshape.obj = {{ file = \"{file}\", unit = \"1 mm\", at = [\"-1 mm\", \"-1 mm\", \"-5 mm\"] }}"
     );

@@ -61,16 +61,19 @@ spall.pressure = "-1 kPa"
 name = "below"
 material = "aluminium"
 shape.box = { lower = ["0 mm", "0 mm", "-0.8 mm"], upper = ["2 mm", "2 mm", "0 mm"] }
+lattice = "cubic"
 
 [[body]]
 name = "above"
 material = "aluminium"
 shape.box = { lower = ["0 mm", "0 mm", "0 mm"], upper = ["1 mm", "1 mm", "0.8 mm"] }
+lattice = "cubic"
 
 [[body]]
 name = "rigid"
 rigid = true
 shape.box = { lower = ["0 mm", "0 mm", "0.8 mm"], upper = ["1 mm", "1 mm", "1.2 mm"] }
+lattice = "cubic"
 
 [[load]]
 body = "below"

@@ -152,10 +152,12 @@ library = "copper"
 name = "left"
 material = "aluminium"
 shape.box = { lower = ["-1 mm", "-0.8 mm", "-0.4 mm"], upper = [0, "0.8 mm", 0] }
+lattice = "cubic"
 [[body]]
 name = "right"
 material = "steel"
 shape.box = { lower = [0, "-0.8 mm", "-0.4 mm"], upper = ["1 mm", "0.8 mm", 0] }
+lattice = "cubic"
 [[body]]
 name = "ball"
 material = "copper"

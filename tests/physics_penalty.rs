@@ -23,10 +23,12 @@ material.a.library = "copper"
 name = "below"
 material = "a"
 shape.box = {{ lower = [{}], upper = [{}] }}
+lattice = "cubic"
 [[body]]
 name = "above"
 material = "a"
 shape.box = {{ size = [{}] }}
+lattice = "cubic"
 touch = {{ body = "below", direction = "-{up}" }}
 "#,
             list("\"-10 mm\""),

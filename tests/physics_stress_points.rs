@@ -53,7 +53,7 @@ fn left(form: &str, dimension: usize, alpha: f64) -> [f64; 2] {
          [sph]\nform = \"{form}\"\nalpha = {alpha}\nbeta = 0.0\n\
          [material.m]\nlibrary = \"steel-bar\"\n\
          [[body]]\nname = \"block\"\nmaterial = \"m\"\n\
-         shape.box = {{ lower = [{lower}], upper = [{upper}] }}\n"
+         shape.box = {{ lower = [{lower}], upper = [{upper}] }}\nlattice = \"cubic\"\n"
     )));
     for i in particles(&s) {
         s.particles.velocity[i] = [sign(&s, i), 0.0, 0.0];

@@ -677,6 +677,8 @@ fn a_graded_plate() {
         &[
             "--set",
             "body.plate.spacing={ inner = \"0.05 mm\", outer = \"0.12 mm\", at = [0, 0, 0], within = \"0.3 mm\" }",
+            "--set",
+            "body.plate.lattice=glass",
         ],
     ]
     .concat();

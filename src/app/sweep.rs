@@ -21,7 +21,7 @@ pub struct Shares {
     set: Vec<String>,
 
     /// Answers in the table, by the beginning of their names, as in
-    /// history or bodies.sphere [default: all of measures and fragments]
+    /// history or bodies.sphere [default: those of bodies and fragments]
     #[arg(short, long, value_name = "NAME", value_delimiter = ',')]
     answers: Vec<String>,
 
@@ -54,11 +54,10 @@ Examples:
   whipple sweep inputs/quarter-impact --vary body.sphere.velocity=\"3..9/4 km/s\" \\
       --answers history.kinetic_energy
   whipple sweep shield.toml --vary body.bumper.shape.box.size.2=\"1, 2 mm\" \\
-      --vary body.sphere.velocity=\"2..8 km/s\" --bisect failed
+      --vary body.sphere.velocity=\"2..8 km/s\" --bisect \"bodies.wall.failed_mass>1 mg\"
   whipple sweep sweeps/shield                             # goes on
 
-A bisection finds where in the range of the last key its condition changes: `failed` (a verdict of \
-detached spall or perforation among the measures), or an answer compared, as in \
+A bisection finds where in the range of the last key its condition changes: an answer compared, as in \
 \"fragments.largest_mass<1 mg\" or \"history.interpenetrated==0\".
 
 Exit codes: 0 all points have answers, 1 some have failed, 2 wrong input, 75 some were stopped."

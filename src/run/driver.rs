@@ -6,8 +6,6 @@ use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use super::announce;
-use super::census;
 use super::departures::Departures;
 use super::exit::EXIT_STOPPED;
 use super::launch::{Launch, STEP, fail};
@@ -19,6 +17,7 @@ use super::say::{counted, say, seconds};
 use super::stop::{self, Watch};
 use super::summary::summary;
 use super::tables::Tables;
+use super::{announce, census};
 use crate::comm::Comm;
 use crate::model::NumericalFailurePolicy;
 use crate::output::snapshot::{self, Quantity};
@@ -106,7 +105,6 @@ impl<'a> Driver<'a> {
                 .watch
                 .ask_every(driver.simulation.case.output.checkpoint_every_wall);
         }
-        let set_up = driver.set_up;
         announce::say_all(
             comm,
             &driver.simulation,
@@ -292,16 +290,6 @@ impl<'a> Driver<'a> {
             self.progress.warn(&text);
         }
         Ok(())
-    }
-
-    /// Labels of fragments of this rank's particles. Collective.
-    fn find_fragments(&mut self, comm: &Comm, tells: bool) -> Result<Vec<u64>, OutputError> {
-        let tables = self.tables.as_mut();
-        census::take(
-            comm,
-            &mut self.simulation,
-            tells.then_some((self.folder, tables)),
-        )
     }
 
     /// Writes a snapshot, and the tables of fragments if it `tells`.

@@ -9,11 +9,19 @@ use serde_json::Value as Json;
 use crate::output::{OutputError, RunFolder, Sheet, read_small};
 
 /// Columns that say what a row is of, if a table has several rows of one time.
-const KEYS: &[&str] = &["measure", "name", "body", "body_a", "body_b", "gauge"];
+const KEYS: &[&str] = &[
+    "name",
+    "witness",
+    "direction",
+    "body",
+    "body_a",
+    "body_b",
+    "gauge",
+];
 /// Columns that are no answers.
 const OF_THE_ROW: &[&str] = &["step", "time"];
 /// Tables whose last rows are answers, if nothing else is asked for.
-const USUAL: &[&str] = &["measures", "fragments"];
+const USUAL: &[&str] = &["bodies", "fragments"];
 
 /// An answer as it stands in the table, and its unit; empty for none.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -163,8 +171,8 @@ mod tests {
     }
 
     #[test]
-    fn the_usual_answers_are_measures() {
-        assert!(is_wanted("measures.hole.diameter", &[]));
+    fn the_usual_answers_are_those_of_bodies_and_fragments() {
+        assert!(is_wanted("bodies.sphere.mass", &[]));
         assert!(!is_wanted("history.kinetic_energy", &[]));
         let wanted = ["bodies.sphere".to_owned()];
         assert!(is_wanted("bodies.sphere.mass", &wanted));

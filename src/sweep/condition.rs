@@ -1,4 +1,4 @@
-//! What a bisection asks of a run: `fragments.largest_mass<1 mg`, `measures.plate.verdict==held`.
+//! What a bisection asks of a run: `fragments.largest_mass<1 mg`, `history.interpenetrated==0`.
 
 use super::answers::Answers;
 use crate::model::units;
@@ -20,13 +20,8 @@ pub struct Condition {
     with: String,
 }
 
-/// What a rear wall has to be so that a shield has failed.
-const FAILED: &str = "failed";
-const HOLED: &[&str] = &["detached spall", "detached_spall", "perforated"];
-
 impl Condition {
-    /// Reads `NAME<NUMBER`, `NAME>NUMBER`, `NAME==WORD`, `NAME!=WORD` or `failed`: whether any verdict
-    /// among the measures is detached spall or a perforation.
+    /// Reads `NAME<NUMBER`, `NAME>NUMBER`, `NAME==WORD` or `NAME!=WORD`.
     ///
     /// # Errors
     /// What is wrong.
@@ -38,20 +33,13 @@ impl Condition {
             (">", Compared::Above),
         ];
         let text = text.trim();
-        if text == FAILED {
-            return Ok(Self {
-                name: FAILED.to_owned(),
-                compared: Compared::Equal,
-                with: String::new(),
-            });
-        }
         let found = signs.iter().find_map(|&(sign, compared)| {
             let (name, with) = text.split_once(sign)?;
             Some((name.trim(), compared, with.trim()))
         });
         let Some((name, compared, with)) = found.filter(|(name, _, _)| !name.is_empty()) else {
             return Err(format!(
-                "`{text}` is no condition, such as `failed`, `measures.plate.hole>1 mm` or \
+                "`{text}` is no condition, such as `bodies.sphere.largest_temperature>900 K` or \
                  `history.interpenetrated==0`"
             ));
         };
@@ -70,9 +58,6 @@ impl Condition {
     /// # Errors
     /// That the run has no such answer, or one that cannot be compared.
     pub fn holds(&self, answers: &Answers) -> Result<bool, String> {
-        if self.name == FAILED {
-            return failed(answers);
-        }
         let Some(answer) = answers.get(&self.name) else {
             return Err(format!("the run has no answer `{}`", self.name));
         };
@@ -99,17 +84,6 @@ impl Condition {
     }
 }
 
-fn failed(answers: &Answers) -> Result<bool, String> {
-    let mut verdicts = answers
-        .iter()
-        .filter(|(name, _)| name.starts_with("measures.") && name.ends_with("verdict"))
-        .peekable();
-    if verdicts.peek().is_none() {
-        return Err("the run has no verdict among its measures".to_owned());
-    }
-    Ok(verdicts.any(|(_, answer)| HOLED.contains(&answer.text.as_str())))
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::answers::Answer;
@@ -130,11 +104,6 @@ mod tests {
         assert_eq!(holds("a.b>1 mm", "a.b", "0.0005"), Ok(false));
         assert_eq!(holds("a==0", "a", "0.0"), Ok(true));
         assert_eq!(holds("a!=held", "a", "held"), Ok(false));
-        assert_eq!(
-            holds("failed", "measures.wall.verdict", "perforated"),
-            Ok(true)
-        );
-        assert_eq!(holds("failed", "measures.wall.verdict", "held"), Ok(false));
     }
 
     #[test]
@@ -148,6 +117,5 @@ mod tests {
                 .contains("no answer `b`")
         );
         assert!(holds("a<1", "a", "held").unwrap_err().contains("no number"));
-        assert!(holds("failed", "a", "1").unwrap_err().contains("verdict"));
     }
 }

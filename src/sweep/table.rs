@@ -193,8 +193,8 @@ mod tests {
         };
         let answers = |name: &str| Ended::Answered(Answers::from([(name.to_owned(), answer("7"))]));
         let rows = [
-            (point(&["3 km/s", "x"]), Some(answers("measures.b"))),
-            (point(&["5 km/s", "2"]), Some(answers("measures.a"))),
+            (point(&["3 km/s", "x"]), Some(answers("fragments.b"))),
+            (point(&["5 km/s", "2"]), Some(answers("fragments.a"))),
             (
                 point(&["7 km/s", "y"]),
                 Some(Ended::Failed("why".to_owned())),
@@ -205,7 +205,7 @@ mod tests {
         let sheet = points(&keys, &rows, &[]);
         assert_eq!(
             sheet.names,
-            ["k0", "k1", "run", "state", "measures.a", "measures.b"]
+            ["k0", "k1", "run", "state", "fragments.a", "fragments.b"]
         );
         assert_eq!(sheet.units, ["m/s", "", "", "", "m", "m"]);
         let states: Vec<&str> = sheet.rows.iter().map(|row| row.1[3].as_str()).collect();

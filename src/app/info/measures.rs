@@ -159,7 +159,7 @@ mod tests {
         let lines = last_figures(&run);
         assert_eq!(lines.len(), 2, "{lines:?}");
         assert_eq!(lines[0].0, "body plate");
-        assert_eq!(lines[1].1, "mass 2 g, velocity [0, 0, -1.999] km/s");
+        assert_eq!(lines[1].1, "mass 0.002 kg, velocity [0, 0, -1.999] km/s");
         std::fs::write(run.witness(), "time,witness,body,direction,particles,mass\n0.5,a,b,forwards,3,1\n0.5,a,b,backwards,0,0\n").unwrap();
         let lines = last_figures(&run);
         assert_eq!(lines[2].0, "witness a b forwards");

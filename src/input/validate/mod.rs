@@ -107,12 +107,21 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, &case)?;
     case.loads.absorbers = absorbers::absorbers(&params.absorb, &case)?;
     case.measure = measure::measure(&case, &params.measure, &params.gauge, &params.witness)?;
-    stress_points::check(&case, params.sph.form.as_ref().map(Spanned::span))?;
-    check_bodies(&case, &params.body)?;
+    check(
+        &case,
+        &params.body,
+        params.sph.form.as_ref().map(Spanned::span),
+    )?;
     Ok(case)
 }
 
-fn check_bodies(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Diagnostic> {
+/// What bodies and the form, which stands at some place, do not go together with.
+fn check(
+    case: &Case,
+    params: &[Spanned<BodyParams>],
+    form: Option<Range<usize>>,
+) -> Result<(), Diagnostic> {
+    stress_points::check(case, form)?;
     check_moduli(case, params)?;
     check_overlaps(case, params)
 }

@@ -1,6 +1,6 @@
 //! What is measured between steps goes into tables.
 
-use super::Driver;
+use super::{Driver, census};
 use crate::comm::Comm;
 use crate::model::Cadence;
 use crate::output::{OutputError, Schedule, on_root};
@@ -36,5 +36,16 @@ impl Driver<'_> {
             Some(tables) => tables.write_crossings(&self.simulation.case, &crossings),
             None => Ok(()),
         })
+    }
+
+    /// Labels of fragments of this rank's particles; `tells` writes their tables. Collective.
+    pub(super) fn find_fragments(
+        &mut self,
+        comm: &Comm,
+        tells: bool,
+    ) -> Result<Vec<u64>, OutputError> {
+        let tables = self.tables.as_mut();
+        let told = tells.then_some((self.folder, tables));
+        census::take(comm, &mut self.simulation, told)
     }
 }
