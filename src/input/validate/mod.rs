@@ -50,7 +50,7 @@ use toml::Spanned;
 const MOST_OVERLAP: f64 = 0.5;
 
 /// Builds the case, whose files stand in `folder`; `resolved` is left empty.
-pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
+pub fn case(mut params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     let dimension = dimension(&params.dimension)?;
     let symmetry = symmetry(&params.symmetry, dimension)?;
     let (names, mut materials) = materials::materials(&params.material)?;
@@ -83,7 +83,7 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     let domain = domain(&params, dimension, &bodies, &symmetry, &length_unit)?;
     check_temperature(&materials, &params.output)?;
     let mut case = Case {
-        title: names::title(params.title)?,
+        title: names::title(params.title.take())?,
         length_unit,
         dimension,
         materials,
@@ -98,32 +98,24 @@ pub fn case(params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         domain,
         numerical_limits: NumericalLimits::default(),
         run: run(params.run.get_ref())?,
-        output: output(params.output)?,
+        output: output(std::mem::take(&mut params.output))?,
         fragments: fragments::fragments(params.fragments.as_ref())?,
         measure: MeasureOptions::default(),
         resolved: String::new(),
     };
-    initial::settle(&mut case, &params.body)?;
-    case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, &case)?;
-    case.loads.absorbers = absorbers::absorbers(&params.absorb, &case)?;
-    case.measure = measure::measure(&case, &params.measure, &params.gauge, &params.witness)?;
-    check(
-        &case,
-        &params.body,
-        params.sph.form.as_ref().map(Spanned::span),
-    )?;
+    complete(&mut case, &params)?;
     Ok(case)
 }
 
-/// What bodies and the form, which stands at some place, do not go together with.
-fn check(
-    case: &Case,
-    params: &[Spanned<BodyParams>],
-    form: Option<Range<usize>>,
-) -> Result<(), Diagnostic> {
-    stress_points::check(case, form)?;
-    check_moduli(case, params)?;
-    check_overlaps(case, params)
+/// Reads what asks a case, and checks what does not go together in it.
+fn complete(case: &mut Case, params: &CaseParams) -> Result<(), Diagnostic> {
+    initial::settle(case, &params.body)?;
+    case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, case)?;
+    case.loads.absorbers = absorbers::absorbers(&params.absorb, case)?;
+    case.measure = measure::measure(case, &params.measure, &params.gauge, &params.witness)?;
+    stress_points::check(case, params.sph.form.as_ref().map(Spanned::span))?;
+    check_moduli(case, &params.body)?;
+    check_overlaps(case, &params.body)
 }
 
 /// Contact scales with a modulus, which a gas has only at a reference pressure.
