@@ -168,6 +168,13 @@ impl Sets {
 mod tests {
     use super::*;
 
+    fn top(slow: &[u32], mut i: u32) -> u32 {
+        while slow[i as usize] != i {
+            i = slow[i as usize];
+        }
+        i
+    }
+
     /// Against sets that are relabelled one link at a time.
     #[test]
     fn threads_join_what_one_would() {
@@ -181,12 +188,6 @@ mod tests {
         };
         let links: Vec<[u32; 2]> = (0..12_000).map(|_| [draw(), draw()]).collect();
         let mut slow: Vec<u32> = (0..N).collect();
-        fn top(slow: &[u32], mut i: u32) -> u32 {
-            while slow[i as usize] != i {
-                i = slow[i as usize];
-            }
-            i
-        }
         for &[a, b] in &links {
             let (a, b) = (top(&slow, a), top(&slow, b));
             slow[a.max(b) as usize] = a.min(b);

@@ -137,7 +137,7 @@ impl Part {
     }
 
     /// The figures of the whole, of the sums of all ranks.
-    fn figures(&self, whole: &Whole) -> BodyFigures {
+    fn figures(&self, whole: Whole) -> BodyFigures {
         let sums: [f64; SUMS] = std::array::from_fn(|k| self.sums[k].value());
         let three = |first: usize| [sums[first], sums[first + 1], sums[first + 2]];
         let most = |k: usize| match self.extremes[k] {
@@ -186,7 +186,7 @@ impl Part {
 pub fn bodies(
     case: &Case,
     particles: &ParticleStore,
-    whole: &Whole,
+    whole: Whole,
     comm: &Comm,
 ) -> Vec<BodyFigures> {
     let owned = particles.owned();

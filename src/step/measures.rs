@@ -10,7 +10,7 @@ impl Simulation {
     /// What there is of each body now, right after a step. Collective.
     #[must_use]
     pub fn measure_bodies(&self, comm: &Comm) -> Vec<BodyFigures> {
-        measure::bodies(&self.case, &self.particles, &self.whole(), comm)
+        measure::bodies(&self.case, &self.particles, self.whole(), comm)
     }
 
     /// From what is computed to the whole.

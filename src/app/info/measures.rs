@@ -97,9 +97,8 @@ impl Last {
         let line = |row: usize| {
             let mut name = format!("{of} {}", self.cell(row, of));
             for more in ["body", "direction"].iter().filter(|more| **more != of) {
-                name = format!("{name} {}", self.cell(row, more))
-                    .trim_end()
-                    .to_owned();
+                let longer = format!("{name} {}", self.cell(row, more));
+                longer.trim_end().clone_into(&mut name);
             }
             let figures = figures.iter().filter_map(|figure| self.figure(row, figure));
             (name, figures.collect::<Vec<_>>().join(", "))
