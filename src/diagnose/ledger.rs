@@ -92,6 +92,16 @@ pub struct LoadState {
     pub heat: f64,
 }
 
+/// What a measure remembers from the start and from its last row.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Remembered {
+    /// Momentum (kg m/s) towards its face at the start of what strikes a plate or a target.
+    pub impulse: Option<f64>,
+    /// Time (s) and position (m) of a front.
+    pub front: Option<[f64; 2]>,
+}
+
 /// What has passed a witness plane in one direction so far (SI).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -227,6 +237,9 @@ pub struct RunState {
     /// What has passed the witness planes: by plane, body and direction, along the normal first.
     #[serde(default)]
     pub passed: Vec<Passed>,
+    /// What measures remember, in their order.
+    #[serde(default)]
+    pub remembered: Vec<Remembered>,
     /// Largest values over the run.
     pub worst: Worst,
 }

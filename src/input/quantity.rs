@@ -30,6 +30,7 @@ const NAMES: &[(Powers, &str)] = &[
     (PerTemperature::POWERS, PerTemperature::NAME),
     (Mass::POWERS, Mass::NAME),
     (Acceleration::POWERS, Acceleration::NAME),
+    (ArealMass::POWERS, ArealMass::NAME),
     ([1, 1, -2, 0, 0], "a force"),
     ([2, 1, -2, 0, 0], "an energy"),
 ];
@@ -77,6 +78,8 @@ kinds! {
     Acceleration = [1, 0, -2, 0, 0], "an acceleration", "9.81 m/s^2", 1e13 "more than the gravity of a neutron star";
     /// Kilograms in a cubic metre.
     Density = [-3, 1, 0, 0, 0], "a density", "2785 kg/m^3", 1e6 "denser than anything on Earth: osmium has 22600 kg/m^3";
+    /// Kilograms in a square metre.
+    ArealMass = [-2, 1, 0, 0, 0], "an areal mass", "0.5 kg/m^2", 1e9 "that of hundreds of kilometres of rock";
     /// Pascals: pressures, stresses and moduli.
     Pressure = [-1, 1, -2, 0, 0], "a pressure or modulus", "0.26 GPa", 1e17 "more than the pressure in the middle of the Sun";
     /// Radians.

@@ -218,7 +218,7 @@ impl Gauges {
         sorted.sort_unstable();
         for i in 0..particles.owned() {
             let carries = sorted.binary_search(&particles.id[i]).is_ok();
-            particles.gauge_carrier[i] = u32::from(carries);
+            particles.measure_marks[i] |= CARRIES * u32::from(carries);
         }
     }
 
@@ -238,8 +238,8 @@ impl Gauges {
             return;
         }
         self.missing.sort_unstable();
-        let carriers = particles.gauge_carrier.iter().zip(ids).enumerate();
-        for (i, (_, &id)) in carriers.filter(|(_, (carries, _))| **carries != 0) {
+        let carriers = particles.measure_marks.iter().zip(ids).enumerate();
+        for (i, (_, &id)) in carriers.filter(|(_, (marks, _))| **marks & CARRIES != 0) {
             let at = self.missing.partition_point(|(other, _)| *other < id);
             let same = self.missing[at..]
                 .iter()
@@ -250,6 +250,9 @@ impl Gauges {
         }
     }
 }
+
+/// The mark of a particle that carries a gauge.
+const CARRIES: u32 = 1;
 
 /// Gauges that a task reads at most.
 const AT_ONCE: usize = 16;

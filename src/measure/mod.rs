@@ -5,16 +5,31 @@
 //! is told by distance and then by id. Of a model with symmetry planes they report the whole, see
 //! [`Whole`].
 
+mod attached;
+mod bar;
 mod bodies;
+mod debris;
+mod figure;
+mod frame;
+mod front;
 mod gauges;
 mod kept;
+mod mask;
+mod matter;
+mod plate;
 mod reading;
+mod remains;
+mod target;
+mod voxels;
 mod whole;
 mod witness;
+mod zone;
 
 pub use bodies::{BodyFigures, bodies};
+pub use figure::{Distribution, Figure, Findings, Told};
 pub use gauges::{GaugeRow, Gauges};
-pub use kept::Measures;
+pub use kept::{Measures, findings, mark_zones, remember};
+pub use matter::Matter;
 pub use reading::Reading;
 pub use whole::Whole;
 pub use witness::{Crossing, Witnesses, whole_passed};

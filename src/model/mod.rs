@@ -47,7 +47,9 @@ pub use gauge::{Cadence, Gauge, Witness};
 pub use grading::{Focus, Grading};
 pub use initial::{Heat, Initial};
 pub use load::{Loads, VelocityLoad};
-pub use measure::MeasureOptions;
+pub use measure::{
+    Bar, Debris, FrontLine, Measure, MeasureKind, MeasureOptions, Slab, Zone, ZonePlace,
+};
 pub use motion::Motion;
 pub use numerical_limits::{NumericalFailurePolicy, NumericalLimits};
 pub use region::Region;
@@ -130,6 +132,14 @@ impl Case {
             .chain(absorbers)
             .chain(surfaces)
             .map(String::as_str)
+    }
+
+    /// Density of a body's matter at rest (kg/m³): what it states, or that of its material.
+    #[must_use]
+    pub fn density_of(&self, body: usize) -> f64 {
+        let body = &self.bodies[body];
+        let reference = || self.materials[body.material].reference_density;
+        body.density.unwrap_or_else(reference)
     }
 
     /// The meshes of bodies and of rigid surfaces, with the names of these.

@@ -14,7 +14,7 @@ use super::set_aside::{self, SET_ASIDE, SetAside};
 use super::{OutputError, Phase, RunFolder, Status, files, on_root, series, write_atomically};
 
 /// Files that a restart changes before it has a checkpoint.
-const CHANGED: [&str; 13] = [
+const CHANGED: [&str; 15] = [
     "history.csv",
     "contacts.csv",
     "loads.csv",
@@ -23,6 +23,8 @@ const CHANGED: [&str; 13] = [
     "fragments.csv",
     "bodies.csv",
     "gauges.csv",
+    "measures.csv",
+    "distributions.csv",
     "witness.csv",
     "crossings.csv",
     "performance.csv",

@@ -242,6 +242,10 @@ paths! {
     bodies: "bodies.csv";
     /// Table of gauges.
     gauges: "gauges.csv";
+    /// Table of what measures tell.
+    measures: "measures.csv";
+    /// Table of profiles and other distributions that measures tell.
+    distributions: "distributions.csv";
     /// Table of what has passed witness planes.
     witness: "witness.csv";
     /// Table of who has passed them, where and when.

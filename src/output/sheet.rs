@@ -1,5 +1,7 @@
 //! Comma-separated values: lines to write, and tables that were read.
 
+use std::collections::HashMap;
+
 use csv::{Reader, ReaderBuilder, StringRecord, Trim, WriterBuilder};
 
 /// What a line with the units of the columns begins with.
@@ -74,6 +76,53 @@ impl Sheet {
         };
         sheet.units.resize(sheet.names.len(), String::new());
         Ok(sheet)
+    }
+
+    /// Of a table with a figure in each row (`time, measure, …, figure, value, …, unit`) that with a
+    /// row for each time and a column `MEASURE.FIGURE` for each figure; any other one as it is.
+    #[must_use]
+    pub fn widened(self) -> Self {
+        let wanted = ["time", "measure", "figure", "value", "unit"];
+        let places = wanted.map(|name| self.names.iter().position(|own| own == name));
+        let [
+            Some(time),
+            Some(measure),
+            Some(figure),
+            Some(value),
+            Some(unit),
+        ] = places
+        else {
+            return self;
+        };
+        let mut wide = Self {
+            names: vec![self.names[time].clone()],
+            units: vec![self.units[time].clone()],
+            rows: Vec::new(),
+        };
+        let mut columns = HashMap::new();
+        for (line, cells) in &self.rows {
+            if cells.len() < self.names.len() {
+                continue;
+            }
+            let name = format!("{}.{}", cells[measure], cells[figure]);
+            let at = *columns.entry(name).or_insert_with_key(|name| {
+                wide.names.push(name.clone());
+                wide.units.push(cells[unit].clone());
+                wide.names.len() - 1
+            });
+            let is_new = |last: &(usize, Vec<String>)| last.1[0] != cells[time];
+            if wide.rows.last().is_none_or(is_new) {
+                wide.rows.push((*line, vec![cells[time].clone()]));
+            }
+            if let Some((_, row)) = wide.rows.last_mut() {
+                row.resize(row.len().max(at + 1), String::new());
+                row[at].clone_from(&cells[value]);
+            }
+        }
+        let columns = wide.names.len();
+        let rows = wide.rows.iter_mut();
+        rows.for_each(|(_, row)| row.resize(columns, String::new()));
+        wide
     }
 
     /// The table as a file holds it: units, names, rows.
@@ -157,5 +206,18 @@ mod tests {
         let rows = rows.map(|(line, cells)| (line, cells.into_iter().map(str::to_owned).collect()));
         assert_eq!(sheet.rows, rows);
         assert!(Sheet::parse("# only this\n").unwrap_err().contains("empty"));
+    }
+
+    #[test]
+    fn figures_in_rows_become_columns() {
+        let text = "# units: s,-,-,-,-,-\ntime,measure,kind,figure,value,unit\n\
+            0,p,plate,hole,1,m\n0,p,plate,verdict,held,\n1,p,plate,hole,2,m\n1,q,bar,length,3,m\n1";
+        let wide = Sheet::parse(text).unwrap().widened();
+        assert_eq!(wide.names, ["time", "p.hole", "p.verdict", "q.length"]);
+        assert_eq!(wide.units, ["s", "m", "", "m"]);
+        let rows: Vec<_> = wide.rows.iter().map(|(_, row)| row.join("|")).collect();
+        assert_eq!(rows, ["0|1|held|", "1|2||3"]);
+        let other = Sheet::parse("time,a\n0,1\n").unwrap();
+        assert_eq!(other.clone().widened(), other);
     }
 }

@@ -136,8 +136,8 @@ particle_fields! {
     peak_strain_rate: Scalar,             "1/s",    State,    -,              OnDemand, PEAK_STRAIN_RATE;
     /// When pressure first passed the threshold of arrival; zero before.
     arrival_time: Scalar,                 "s",      State,    -,              OnDemand, ARRIVAL;
-    /// Whether it carries a gauge (1).
-    gauge_carrier: Index,                 "",       State,    -,              Never,    CARRIERS;
+    /// Whether it carries a gauge (bit 0), and the moving regions that it began in (from bit 1 on).
+    measure_marks: Index,                 "",       State,    -,              Never,    CARRIERS;
     /// Witness planes that it is beyond: a set of bits, in the input's order.
     witness_sides: Index,                 "",       State,    -,              Never,    WITNESSES;
     /// Velocity gradient, row i column j is the derivative of velocity i along j.

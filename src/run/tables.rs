@@ -1,12 +1,13 @@
 //! The tables of a run.
 
 use super::columns::{
-    ABSORBED, BODIES, CONTACTS, CROSSINGS, DEPARTED, DEPARTURE, FAILURE, GAUGES, HISTORY, LOADS,
-    PERFORMANCE, REMOVED, WITNESS, absorbed, body_row, columns, contact, crossing_row, departed,
-    departure, failure, gauge_row, history, load_row, performance, removed, witness_row,
+    ABSORBED, BODIES, CONTACTS, CROSSINGS, DEPARTED, DEPARTURE, DISTRIBUTIONS, FAILURE, GAUGES,
+    HISTORY, LOADS, MEASURES, PERFORMANCE, REMOVED, WITNESS, absorbed, bin_row, body_row, columns,
+    contact, crossing_row, departed, departure, failure, figure_row, gauge_row, history, load_row,
+    performance, removed, witness_row,
 };
 use super::load::Load;
-use crate::measure::{BodyFigures, Crossing, GaugeRow};
+use crate::measure::{BodyFigures, Crossing, Findings, GaugeRow};
 use crate::model::{Case, NumericalFailurePolicy, SphForm};
 use crate::output::{Column, OutputError, RunFolder, Table, Value, fragments};
 use crate::step::{RunState, Simulation};
@@ -20,6 +21,8 @@ pub struct Tables {
     departed: Option<Table>,
     fragments: Option<Table>,
     bodies: Option<Table>,
+    /// Figures of measures, and their distributions.
+    measures: Option<[Table; 2]>,
     gauges: Option<Table>,
     /// What has passed witness planes, and who.
     witnesses: Option<[Table; 2]>,
@@ -95,6 +98,16 @@ impl Tables {
                 .transpose()?,
             bodies: (case.measure.bodies)
                 .then(|| open(&folder.bodies(), &columns(BODIES), "time", time))
+                .transpose()?,
+            measures: (!case.measure.measures.is_empty())
+                .then(|| {
+                    let figures = open(&folder.measures(), &columns(MEASURES), "time", time)?;
+                    let others = &columns(DISTRIBUTIONS);
+                    Ok([
+                        figures,
+                        open(&folder.distributions(), others, "time", time)?,
+                    ])
+                })
                 .transpose()?,
             gauges: (simulation.gauges().any())
                 .then(|| open(&folder.gauges(), &of_gauges, "step", step))
@@ -210,6 +223,29 @@ impl Tables {
         }))
     }
 
+    /// Writes what measures find now.
+    pub fn write_findings(
+        &mut self,
+        simulation: &Simulation,
+        found: &[Findings],
+    ) -> Result<(), OutputError> {
+        let Some([figures, distributions]) = &mut self.measures else {
+            return Ok(());
+        };
+        let (case, time) = (&simulation.case, simulation.state.time);
+        let all = || case.measure.measures.iter().zip(found);
+        figures.rows(all().flat_map(|(measure, found)| {
+            let row = |figure| figure_row(time, measure, figure, case.dimension);
+            found.figures.iter().map(row).collect::<Vec<_>>()
+        }))?;
+        distributions.rows(all().flat_map(|(measure, found)| {
+            found.distributions.iter().flat_map(move |distribution| {
+                let row = |bin: &[f64; 3]| bin_row(time, measure, distribution, *bin);
+                distribution.bins.iter().map(row).collect::<Vec<_>>()
+            })
+        }))
+    }
+
     /// Writes who has passed witness planes.
     pub fn write_crossings(
         &mut self,
@@ -238,7 +274,7 @@ impl Tables {
             &self.bodies,
             &self.gauges,
         ];
-        let witnesses = self.witnesses.iter().flatten();
+        let witnesses = self.witnesses.iter().chain(&self.measures).flatten();
         let mut all = always
             .into_iter()
             .chain(some.into_iter().flatten())

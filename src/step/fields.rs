@@ -21,10 +21,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
         (Owner::SURFACE_FRICTION, case.loads.has_friction()),
         (Owner::FAILURE, case.may_fail()),
         (Owner::YIELD, case.may_yield()),
-        (
-            Owner::CARRIERS,
-            case.measure.gauges.iter().any(|gauge| gauge.moves),
-        ),
+        (Owner::CARRIERS, case.measure.marks_particles()),
         (Owner::WITNESSES, !case.measure.witnesses.is_empty()),
         (Owner::BALSARA, sph.balsara),
         (Owner::CONDUCTION, sph.conduction > 0.0),

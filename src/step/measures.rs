@@ -3,7 +3,9 @@
 use super::simulation::Simulation;
 use crate::comm::Comm;
 use crate::diagnose::Passed;
-use crate::measure::{self, BodyFigures, Crossing, GaugeRow, Gauges, Whole, whole_passed};
+use crate::measure::{
+    self, BodyFigures, Crossing, Findings, GaugeRow, Gauges, Matter, Whole, whole_passed,
+};
 use crate::model::Cadence;
 
 impl Simulation {
@@ -16,6 +18,14 @@ impl Simulation {
     /// From what is computed to the whole.
     fn whole(&self) -> Whole<'_> {
         Whole::new(self.halo.mirrors())
+    }
+
+    /// What the measures of the case find now, in their order, right after a step. Collective.
+    pub fn measure(&mut self, comm: &Comm) -> Vec<Findings> {
+        let mirrors = self.halo.mirrors();
+        let matter = Matter::of(&self.case, mirrors, &self.particles);
+        let remembered = &mut self.state.remembered;
+        measure::findings(self.state.time, remembered, &self.particles, &matter, comm)
     }
 
     /// The gauges of the case.
@@ -39,6 +49,10 @@ impl Simulation {
         let gauges = &self.measures.gauges;
         self.state.gauge_carriers = gauges.choose(&self.case, there.0, there.1, comm);
         gauges.mark(&mut self.particles, &self.state.gauge_carriers);
+        measure::mark_zones(&self.case, &mut self.particles);
+        let mirrors = self.halo.mirrors();
+        let matter = Matter::of(&self.case, mirrors, &self.particles);
+        self.state.remembered = measure::remember(&matter, comm);
         if self.measures.witnesses.any() {
             self.measures.witnesses.begin(&mut self.particles);
         }

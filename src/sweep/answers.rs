@@ -17,11 +17,14 @@ const KEYS: &[&str] = &[
     "body_a",
     "body_b",
     "gauge",
+    "measure",
+    "distribution",
+    "from",
 ];
 /// Columns that are no answers.
 const OF_THE_ROW: &[&str] = &["step", "time"];
 /// Tables whose last rows are answers, if nothing else is asked for.
-const USUAL: &[&str] = &["bodies", "fragments"];
+const USUAL: &[&str] = &["bodies", "fragments", "measures"];
 
 /// An answer as it stands in the table, and its unit; empty for none.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -51,7 +54,7 @@ pub fn of_run(folder: &RunFolder) -> Result<Answers, OutputError> {
             .into_owned();
         let text = text(&path)?;
         let sheet = Sheet::parse(&text).map_err(|reason| OutputError::damaged(&path, reason))?;
-        add_rows(&mut answers, &stem, &sheet);
+        add_rows(&mut answers, &stem, &sheet.widened());
     }
     let path = folder.summary();
     let summary: Json = serde_json::from_slice(&read_small(&path)?)

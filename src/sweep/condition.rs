@@ -12,16 +12,28 @@ enum Compared {
     Different,
 }
 
+/// Verdicts of plates that have failed, as designers of shields count them.
+const FAILED: [&str; 2] = ["detached spall", "perforated"];
+
 /// A question whose answer is yes or no.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Condition {
+pub enum Condition {
+    /// Whether an answer compares with something.
+    Compares(Comparison),
+    /// Whether a plate has failed: that of a name, or the only one.
+    Failed(Option<String>),
+}
+
+/// An answer and what it is compared with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
     name: String,
     compared: Compared,
     with: String,
 }
 
 impl Condition {
-    /// Reads `NAME<NUMBER`, `NAME>NUMBER`, `NAME==WORD` or `NAME!=WORD`.
+    /// Reads `NAME<NUMBER`, `NAME>NUMBER`, `NAME==WORD` or `NAME!=WORD`, `failed` or `failed PLATE`.
     ///
     /// # Errors
     /// What is wrong.
@@ -33,24 +45,33 @@ impl Condition {
             (">", Compared::Above),
         ];
         let text = text.trim();
+        if let Some(rest) = text.strip_prefix("failed") {
+            let name = rest.trim();
+            if rest.is_empty() {
+                return Ok(Self::Failed(None));
+            }
+            if rest.starts_with(' ') && !name.contains(['<', '>', '=']) {
+                return Ok(Self::Failed(Some(name.to_owned())));
+            }
+        }
         let found = signs.iter().find_map(|&(sign, compared)| {
             let (name, with) = text.split_once(sign)?;
             Some((name.trim(), compared, with.trim()))
         });
         let Some((name, compared, with)) = found.filter(|(name, _, _)| !name.is_empty()) else {
             return Err(format!(
-                "`{text}` is no condition, such as `bodies.sphere.largest_temperature>900 K` or \
-                 `history.interpenetrated==0`"
+                "`{text}` is no condition, such as `failed`, \
+                 `bodies.sphere.largest_temperature>900 K` or `history.interpenetrated==0`"
             ));
         };
         if matches!(compared, Compared::Below | Compared::Above) {
             units::parse(with)?;
         }
-        Ok(Self {
+        Ok(Self::Compares(Comparison {
             name: name.to_owned(),
             compared,
             with: with.to_owned(),
-        })
+        }))
     }
 
     /// Whether it holds.
@@ -58,6 +79,31 @@ impl Condition {
     /// # Errors
     /// That the run has no such answer, or one that cannot be compared.
     pub fn holds(&self, answers: &Answers) -> Result<bool, String> {
+        match self {
+            Self::Compares(comparison) => comparison.holds(answers),
+            Self::Failed(name) => has_failed(name.as_deref(), answers),
+        }
+    }
+}
+
+/// Whether a plate has failed: that of a name, or the only one.
+fn has_failed(name: Option<&str>, answers: &Answers) -> Result<bool, String> {
+    let verdicts = answers.iter().filter_map(|(answer, told)| {
+        let plate = answer.strip_prefix("measures.")?.strip_suffix(".verdict")?;
+        Some((plate, told.text.as_str()))
+    });
+    let wanted = verdicts.filter(|(plate, _)| name.is_none_or(|name| name == *plate));
+    match wanted.collect::<Vec<_>>()[..] {
+        [(_, verdict)] => Ok(FAILED.contains(&verdict)),
+        [] => Err("the run has no verdict on such a plate".to_owned()),
+        [(first, _), ..] => Err(format!(
+            "the run has verdicts on several plates: name one, as in `failed {first}`"
+        )),
+    }
+}
+
+impl Comparison {
+    fn holds(&self, answers: &Answers) -> Result<bool, String> {
         let Some(answer) = answers.get(&self.name) else {
             return Err(format!("the run has no answer `{}`", self.name));
         };
@@ -104,6 +150,15 @@ mod tests {
         assert_eq!(holds("a.b>1 mm", "a.b", "0.0005"), Ok(false));
         assert_eq!(holds("a==0", "a", "0.0"), Ok(true));
         assert_eq!(holds("a!=held", "a", "held"), Ok(false));
+    }
+
+    #[test]
+    fn plates_have_failed_by_their_verdicts() {
+        let name = "measures.wall.verdict";
+        assert_eq!(holds("failed", name, "detached spall"), Ok(true));
+        assert_eq!(holds("failed wall", name, "attached spall"), Ok(false));
+        assert!(holds("failed bumper", name, "held").is_err());
+        assert_eq!(holds("failed_mass>1", "failed_mass", "2"), Ok(true));
     }
 
     #[test]

@@ -88,7 +88,17 @@ fn distance(a: Option<&String>, b: Option<&String>) -> f64 {
 }
 
 /// Columns that tell rows of one time apart, beside those of bodies.
-const NAMES: [&str; 5] = ["load", "gauge", "witness", "direction", "id"];
+const NAMES: [&str; 9] = [
+    "load",
+    "gauge",
+    "witness",
+    "direction",
+    "id",
+    "measure",
+    "figure",
+    "distribution",
+    "from",
+];
 
 fn parse(text: &str) -> Result<Table, String> {
     let sheet = Sheet::parse(text)?;

@@ -13,7 +13,7 @@ const END: u64 = 1 << 16;
 /// Bytes of its beginning, where units and names of the columns stand.
 const BEGIN: u64 = 1 << 14;
 
-/// Names and figures of what a run has measured: of bodies, witness planes and gauges at the last
+/// Names and figures of what a run has measured: of bodies, measures, witness planes and gauges at the last
 /// time of their tables.
 pub fn last_figures(folder: &RunFolder) -> Vec<(String, String)> {
     let mut lines = Vec::new();
@@ -22,6 +22,9 @@ pub fn last_figures(folder: &RunFolder) -> Vec<(String, String)> {
             "body",
             &["mass", "velocity", "kinetic_energy", "failed_mass"],
         ));
+    }
+    if let Some(last) = Last::of(&folder.measures()) {
+        lines.extend(last.figures());
     }
     if let Some(mut last) = Last::of(&folder.witness()) {
         last.keep(|last, row| last.number(row, "particles") > 0.0);
@@ -107,6 +110,29 @@ impl Last {
         if many {
             let left = self.sheet.rows.len() - MOST;
             lines.push((format!("{of} …"), format!("{left} more in the table")));
+        }
+        lines
+    }
+
+    /// A line for each measure with its figures and their units.
+    fn figures(&self) -> Vec<(String, String)> {
+        let mut lines: Vec<(String, String)> = Vec::new();
+        for row in 0..self.sheet.rows.len() {
+            let cell = |name: &str| self.cell(row, name);
+            let of = format!("{} {}", cell("kind"), cell("measure"));
+            let words = cell("figure").replace('_', " ");
+            let value = match cell("value").parse::<f64>() {
+                Ok(value) if value.is_nan() => continue,
+                Ok(value) => format!("{words} {}", shown(value, cell("unit"))),
+                Err(_) => cell("value").to_owned(),
+            };
+            match lines.last_mut().filter(|(name, _)| *name == of) {
+                Some((_, told)) => {
+                    told.push_str(", ");
+                    told.push_str(&value);
+                }
+                None => lines.push((of, value)),
+            }
         }
         lines
     }

@@ -3,8 +3,10 @@
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::SidesParams;
 use super::short::NormalParams;
-use crate::input::quantity::{Length, Placed, Pressure, Time};
+use crate::input::quantity::{ArealMass, Length, Placed, Pressure, Time};
+use crate::model::Include;
 
 tables! {
     /// `[[gauge]]`
@@ -38,11 +40,101 @@ tables! {
     }
 }
 
+tables! {
+    /// `[[measure.plate]]` and `[[measure.target]]`
+    SlabParams {
+        /// Name in tables; that of the body if absent.
+        name: Option<Spanned<String>>,
+        /// Name of the body.
+        body: Spanned<String>,
+        /// Direction out of the face that is struck; told by what moves towards it if absent.
+        normal: Option<Spanned<NormalParams>>,
+        /// What can remain of it; of a plate what is intact, of a target all if absent.
+        include: Option<Include>,
+    }
+
+    /// `[[measure.bar]]`
+    BarParams {
+        /// Name in tables; that of the body if absent.
+        name: Option<Spanned<String>>,
+        /// Name of the body.
+        body: Spanned<String>,
+        /// Direction to its foot; told by how it moves if absent.
+        foot: Option<Spanned<NormalParams>>,
+    }
+
+    /// `[[measure.debris]]`
+    DebrisParams {
+        /// Name in tables.
+        name: Option<Spanned<String>>,
+        /// Name of the plate or target that it leaves; what remains of that is no debris.
+        of: Option<Spanned<String>>,
+        /// Direction of flight.
+        direction: Spanned<NormalParams>,
+        /// A point of the plane beyond which it is; of the face of that plate, or the origin, if absent.
+        point: Option<Spanned<Vec<Placed<Length>>>>,
+        /// Names of the bodies whose matter it may be; all that deform if absent.
+        bodies: Option<Spanned<Vec<Spanned<String>>>>,
+        /// Areal mass of the outline.
+        outline: Option<Placed<ArealMass>>,
+    }
+
+    /// `[[measure.region]]`
+    ZoneParams {
+        /// Name in tables.
+        name: Option<Spanned<String>>,
+        /// Smallest coordinates.
+        above: Option<Spanned<SidesParams>>,
+        /// Largest coordinates.
+        below: Option<Spanned<SidesParams>>,
+        /// Centre of a ball, in place of sides.
+        centre: Option<Spanned<Vec<Placed<Length>>>>,
+        /// Radius of the ball.
+        radius: Option<Placed<Length>>,
+        /// Whether it is what begins there and moves; fixed in space if absent.
+        moves: Option<bool>,
+        /// Name of the body whose matter it reads; all that deform if absent.
+        body: Option<Spanned<String>>,
+        /// Names of what it reads.
+        fields: Option<Spanned<Vec<Spanned<String>>>>,
+    }
+
+    /// `[[measure.front]]`
+    FrontParams {
+        /// Name in tables.
+        name: Option<Spanned<String>>,
+        /// Where the line begins.
+        from: Spanned<Vec<Placed<Length>>>,
+        /// Where it ends.
+        to: Spanned<Vec<Placed<Length>>>,
+        /// How far from the line matter counts; 1.5 spacings if absent.
+        radius: Option<Placed<Length>>,
+        /// Pressure of the front; half the largest on the line if absent.
+        pressure: Option<Placed<Pressure>>,
+    }
+}
+
 optional_tables! {
     /// `[measure]`
     MeasureParams {
         /// Whether `bodies.csv` is written; it is if absent.
         bodies: Option<bool>,
+        /// Whether plates, targets and bars are found by their shapes; they are if absent.
+        usual: Option<bool>,
+        /// Time between rows of `measures.csv`; a fiftieth of the run if absent.
+        every: Option<Placed<Time>>,
+        /// Plates.
+        plate: Vec<Spanned<SlabParams>>,
+        /// Targets.
+        target: Vec<Spanned<SlabParams>>,
+        /// Bars.
+        bar: Vec<Spanned<BarParams>>,
+        /// Debris.
+        debris: Vec<Spanned<DebrisParams>>,
+        /// Regions.
+        region: Vec<Spanned<ZoneParams>>,
+        /// Fronts.
+        front: Vec<Spanned<FrontParams>>,
         /// Pressure that counts as the arrival of a shock; that of each material if absent.
         arrival_pressure: Option<Placed<Pressure>>,
     }

@@ -4,6 +4,7 @@ use toml::Spanned;
 
 use super::check::{Allowed, number, optional, whole};
 use super::loads::given_name;
+use super::measures::measures;
 use super::shapes::vector;
 use super::surfaces::unit_vector;
 use crate::input::names;
@@ -14,6 +15,9 @@ use crate::particles::gauge_names;
 
 /// What a gauge reads that names nothing.
 const USUAL: [&str; 3] = ["pressure", "density", "velocity"];
+
+/// Rows of `measures.csv` of a run that does not say when it has them.
+const ROWS: f64 = 50.0;
 
 /// What is measured in a case that is whole but for that.
 pub fn measure(
@@ -43,8 +47,11 @@ pub fn measure(
         unique(taken, "witness plane", &found.name, own, table)?;
         witnesses.push(found);
     }
+    let every = optional(params.every.as_ref(), "every", Allowed::Positive)?;
     Ok(MeasureOptions {
         bodies: params.bodies.unwrap_or(true),
+        every: every.unwrap_or(case.run.end_time / ROWS),
+        measures: measures(case, params)?,
         arrival_pressure: optional(arrival, "arrival_pressure", Allowed::Positive)?,
         gauges,
         witnesses,
@@ -52,7 +59,7 @@ pub fn measure(
 }
 
 /// Refuses a name that another one has, and one that cannot stand in tables.
-fn unique<T>(
+pub fn unique<T>(
     taken: bool,
     what: &str,
     name: &str,
@@ -94,25 +101,29 @@ fn gauge(case: &Case, table: &Spanned<GaugeParams>, number_of: usize) -> Result<
             .as_ref()
             .map(|name| body(case, name))
             .transpose()?,
-        fields: fields(params)?,
+        fields: fields(params.fields.as_ref(), params.along.is_none())?,
         along: along.transpose()?,
         every: every(params)?,
     })
 }
 
-fn body(case: &Case, name: &Spanned<String>) -> Result<usize, Diagnostic> {
+pub fn body(case: &Case, name: &Spanned<String>) -> Result<usize, Diagnostic> {
     case.body_named(name.get_ref()).ok_or_else(|| {
         let known = case.bodies.iter().map(|body| body.name.as_str());
         Diagnostic::unknown(name.span(), "body", name.get_ref(), known)
     })
 }
 
-fn fields(params: &GaugeParams) -> Result<Vec<String>, Diagnostic> {
-    let Some(fields) = &params.fields else {
+/// What is read that a key names; `needs_any` of them.
+pub fn fields(
+    fields: Option<&Spanned<Vec<Spanned<String>>>>,
+    needs_any: bool,
+) -> Result<Vec<String>, Diagnostic> {
+    let Some(fields) = fields else {
         return Ok(USUAL.map(str::to_owned).to_vec());
     };
-    if fields.get_ref().is_empty() && params.along.is_none() {
-        return Err(Diagnostic::new(fields.span(), "the gauge reads nothing"));
+    if fields.get_ref().is_empty() && needs_any {
+        return Err(Diagnostic::new(fields.span(), "nothing is read"));
     }
     for (n, field) in fields.get_ref().iter().enumerate() {
         let name = field.get_ref();

@@ -13,6 +13,7 @@ mod lattice;
 mod loads;
 mod materials;
 mod measure;
+mod measures;
 mod meshes;
 mod motion;
 mod numerical_limits;
@@ -24,6 +25,7 @@ mod strength;
 mod stress_points;
 mod surfaces;
 mod touch;
+mod usual;
 
 use std::ops::Range;
 use std::path::Path;

@@ -37,7 +37,7 @@ impl Table {
     /// # Errors
     /// What is wrong, and in which line.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let Sheet { names, units, rows } = Sheet::parse(text)?;
+        let Sheet { names, units, rows } = Sheet::parse(text)?.widened();
         if rows.is_empty() {
             return Err("it has no rows yet".to_owned());
         }

@@ -26,6 +26,23 @@ impl Driver<'_> {
         })
     }
 
+    /// What the measures find after a step that began at time `before` (s), if it is their turn.
+    pub(super) fn write_findings(&mut self, comm: &Comm, before: f64) -> Result<(), OutputError> {
+        let (step, now) = (self.simulation.state.step, self.simulation.state.time);
+        let options = &self.simulation.case.measure;
+        let due = step == 0
+            || self.simulation.is_finished()
+            || Schedule::new(Some(options.every)).is_due(before, now);
+        if options.measures.is_empty() || !due {
+            return Ok(());
+        }
+        let found = self.simulation.measure(comm);
+        on_root(comm, || match &mut self.tables {
+            Some(tables) => tables.write_findings(&self.simulation, &found),
+            None => Ok(()),
+        })
+    }
+
     /// Who has passed witness planes since the last time.
     pub(super) fn write_crossings(&mut self, comm: &Comm) -> Result<(), OutputError> {
         let crossings = self.simulation.join_crossings(comm);

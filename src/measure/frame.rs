@@ -1,0 +1,55 @@
+//! A plane and its normal: coordinates across it and along it.
+
+use crate::numerics::vector::{cross, dot};
+
+/// Two unit vectors in a plane, and its normal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame {
+    axes: [[f64; 3]; 3],
+}
+
+impl Frame {
+    /// About a unit normal; along an axis its vectors are axes, too.
+    #[must_use]
+    pub fn new(normal: &[f64; 3]) -> Self {
+        let least = (1..3).fold(0, |least, a| {
+            if normal[a].abs() < normal[least].abs() {
+                a
+            } else {
+                least
+            }
+        });
+        let across: [f64; 3] =
+            std::array::from_fn(|a| f64::from(u8::from(a == least)) - normal[least] * normal[a]);
+        let length = dot(&across, &across).sqrt();
+        let first = across.map(|c| c / length);
+        Self {
+            axes: [first, cross(normal, &first), *normal],
+        }
+    }
+
+    /// Coordinates (m) of a place or components of a vector: two across the normal, one along it.
+    #[must_use]
+    pub fn turned(&self, x: &[f64; 3]) -> [f64; 3] {
+        self.axes.map(|axis| dot(&axis, x))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_right_handed_and_keep_axes() {
+        for normal in [[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [0.6, 0.0, 0.8]] {
+            let [u, w, n] = Frame::new(&normal).axes;
+            assert_eq!(n, normal);
+            let turned = cross(&u, &w);
+            for a in 0..3 {
+                assert!((turned[a] - n[a]).abs() < 1e-15, "{u:?} {w:?} {n:?}");
+            }
+        }
+        let x = Frame::new(&[0.0, 0.0, 1.0]).turned(&[1.0, 2.0, 3.0]);
+        assert_eq!(x, [1.0, 2.0, 3.0]);
+    }
+}

@@ -1,0 +1,179 @@
+//! What hangs together of a body that is struck, where matter has yielded.
+//!
+//! A window is laid about all matter of the body that has flowed; in it the largest piece is what remains. What lies
+//! beside the window has not flowed and remains, too.
+
+use super::attached::Attached;
+use super::frame::Frame;
+use super::matter::{Matter, raise};
+use super::voxels::{Grain, Voxels, Window};
+use crate::comm::Comm;
+use crate::model::{Include, Slab};
+
+/// Matter has flowed beyond this plastic strain: some elastic and plastic waves do not count.
+const FLOWED: f64 = 0.05;
+
+/// The window reaches this many voxels, and this part of its width, beyond matter that has flowed.
+const MARGIN: (f64, f64) = (4.0, 0.1);
+
+/// Lips and bulges are looked for as far from the faces as half the width of the window, at most this many
+/// thicknesses and [`MARGIN`].
+const LIPS: f64 = 8.0;
+
+/// Whether a place belongs to what remains.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Belongs {
+    /// It lies in it.
+    Yes,
+    /// It lies beside it, within a voxel.
+    Nearly,
+    /// It does not.
+    No,
+}
+
+/// What remains of a slab.
+#[derive(Debug)]
+pub struct Remains {
+    frame: Frame,
+    /// Nothing if no matter has flowed.
+    attached: Option<Attached>,
+    /// Heights (m) between which what lies beside the window remains.
+    between: [f64; 2],
+    /// Height (m) below which all remains that lies above the rear face, and that face.
+    untouched: [f64; 2],
+}
+
+impl Remains {
+    /// Finds it. Collective.
+    #[must_use]
+    pub fn find(slab: &Slab, matter: &Matter, comm: &Comm) -> Self {
+        let frame = Frame::new(&slab.normal);
+        let yields = {
+            let material = matter.case.bodies[slab.body].material;
+            matter.case.materials[material].strength.yields()
+        };
+        let (low, high) = (slab.rear - slab.spacing, slab.front + slab.spacing);
+        let reach = matter.largest::<6>(comm, |i, most| {
+            let flowed = !yields || matter.plastic_strain[i] >= FLOWED || matter.has_failed(i);
+            if matter.body_of(i) != slab.body || !flowed {
+                return;
+            }
+            for (x, _) in matter.images(i) {
+                let place = frame.turned(&x);
+                if low <= place[2] && place[2] <= high {
+                    for a in 0..3 {
+                        raise(&mut most[a], place[a]);
+                        raise(&mut most[3 + a], -place[a]);
+                    }
+                }
+            }
+        });
+        let mut remains = Self {
+            frame,
+            attached: None,
+            between: [f64::NEG_INFINITY, f64::INFINITY],
+            untouched: [f64::INFINITY, slab.rear],
+        };
+        if reach[0].is_finite() {
+            let (window, beyond) = window(slab, &reach);
+            let voxels = Voxels::new(window);
+            voxels.fill(matter.len(), |i, tell| {
+                let belongs = slab.include == Include::All || !matter.has_failed(i);
+                if matter.body_of(i) == slab.body && belongs {
+                    let (volume, size) = (matter.volume(i), matter.size(i));
+                    for (x, _) in matter.images(i) {
+                        let place = frame.turned(&x);
+                        tell(Grain {
+                            place,
+                            volume,
+                            size,
+                        });
+                    }
+                }
+            });
+            let fractions = voxels.sum(comm);
+            remains.between = [slab.rear - beyond, slab.front + beyond];
+            remains.untouched = [window.lower[2], slab.rear];
+            remains.attached = Some(Attached::new(window, fractions));
+        }
+        remains
+    }
+
+    /// What of it lies in the window, if matter has flowed.
+    #[must_use]
+    pub fn attached(&self) -> Option<&Attached> {
+        self.attached.as_ref()
+    }
+
+    /// Height (m) of a place (m) along the normal.
+    #[must_use]
+    pub fn height(&self, x: &[f64; 3]) -> f64 {
+        self.frame.turned(x)[2]
+    }
+
+    /// Whether a place (m) that lies behind the body lies below what remains of it, too.
+    #[must_use]
+    pub fn is_behind(&self, x: &[f64; 3]) -> bool {
+        let place = self.frame.turned(x);
+        let there = self.attached.as_ref();
+        let voxel = there.and_then(|attached| Some((attached, attached.window.voxel(&place)?)));
+        voxel.is_none_or(|(attached, voxel)| attached.is_below(voxel))
+    }
+
+    /// Whether a particle of the body at a place (m) belongs to it.
+    #[must_use]
+    pub fn holds(&self, x: &[f64; 3]) -> Belongs {
+        let Some(attached) = &self.attached else {
+            return Belongs::Yes;
+        };
+        let place = self.frame.turned(x);
+        if let Some(voxel) = attached.window.voxel(&place) {
+            return if attached.holds(voxel) {
+                Belongs::Yes
+            } else if attached.holds_near(voxel) {
+                Belongs::Nearly
+            } else {
+                Belongs::No
+            };
+        }
+        let window = &attached.window;
+        #[expect(clippy::cast_precision_loss, reason = "counts are small")]
+        let beside = (0..2).any(|a| {
+            let at = (place[a] - window.lower[a]) / window.edge;
+            at < 0.0 || at >= window.counts[a] as f64
+        });
+        let [low, high] = self.between;
+        let [top, rear] = self.untouched;
+        let below = rear <= place[2] && place[2] < top;
+        if below || beside && low <= place[2] && place[2] <= high {
+            Belongs::Yes
+        } else {
+            Belongs::No
+        }
+    }
+}
+
+/// The window about matter that has flowed within some reach (m), and how far it goes beyond the
+/// faces (m).
+fn window(slab: &Slab, reach: &[f64; 6]) -> (Window, f64) {
+    let (voxels, part) = MARGIN;
+    let width = (0..2).fold(0.0, |most: f64, a| most.max(reach[a] + reach[3 + a]));
+    let margin = voxels * slab.spacing + part * width;
+    let beyond = (0.5 * width).min(LIPS * slab.thickness()) + margin;
+    let (mut lower, mut upper) = ([0.0; 3], [0.0; 3]);
+    for a in 0..2 {
+        (lower[a], upper[a]) = (-reach[3 + a] - margin, reach[a] + margin);
+    }
+    upper[2] = slab.front + beyond;
+    // A thick target has nothing to tell below what has flowed.
+    let deepest = -reach[5] - margin;
+    lower[2] = if deepest > slab.rear {
+        deepest
+    } else {
+        slab.rear - beyond
+    };
+    // A face between two voxels.
+    let depth = ((slab.front - lower[2]) / slab.spacing).ceil();
+    lower[2] = slab.front - depth * slab.spacing;
+    (Window::new(lower, upper, slab.spacing), beyond)
+}
