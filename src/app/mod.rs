@@ -6,6 +6,7 @@ pub mod compare;
 mod fragments;
 pub mod info;
 mod materials;
+mod measure;
 pub mod plot;
 mod restart;
 pub mod results;
@@ -32,6 +33,7 @@ use crate::run::{launch, say};
   whipple info runs/quarter
   whipple plot runs/quarter --panels
   whipple fragments runs/quarter
+  whipple measure runs/quarter
   mpirun -n 4 whipple restart runs/quarter --set run.end_time=0.3us
   whipple sweep inputs/quarter-impact --vary body.sphere.velocity=\"3..9 km/s\"
 
@@ -54,6 +56,7 @@ enum Command {
     Plot(Box<plot::PlotArgs>),
     Info(info::InfoArgs),
     Fragments(fragments::FragmentsArgs),
+    Measure(measure::MeasureArgs),
     Materials(materials::MaterialsArgs),
     Sweep(sweep::SweepArgs),
     Converge(sweep::ConvergeArgs),
@@ -89,6 +92,7 @@ pub fn main() -> ExitCode {
         ),
         Command::Info(args) => info::run(&args),
         Command::Fragments(args) => fragments::run(&args),
+        Command::Measure(args) => measure::run(&args),
         Command::Materials(args) => materials::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Converge(args) => sweep::converge(&args),

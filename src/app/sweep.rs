@@ -54,7 +54,7 @@ Examples:
   whipple sweep inputs/quarter-impact --vary body.sphere.velocity=\"3..9/4 km/s\" \\
       --answers history.kinetic_energy
   whipple sweep shield.toml --vary body.bumper.shape.box.size.2=\"1, 2 mm\" \\
-      --vary body.sphere.velocity=\"2..8 km/s\" --bisect \"bodies.wall.failed_mass>1 mg\"
+      --vary body.sphere.velocity=\"2..8 km/s\" --bisect \"failed wall\"
   whipple sweep sweeps/shield                             # goes on
 
 A bisection finds where in the range of the last key its condition changes: an answer compared, as in \

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::reason::Reason;
+use super::remembered::Remembered;
 use super::taken_out::Removed;
 use crate::contact::{PairExtremes, PairSums, SurfaceForces};
 use crate::loads::Loads;
@@ -90,16 +91,6 @@ pub struct LoadState {
     /// Its time integral (J).
     #[serde(default)]
     pub heat: f64,
-}
-
-/// What a measure remembers from the start and from its last row.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Remembered {
-    /// Momentum (kg m/s) towards its face at the start of what strikes a plate or a target.
-    pub impulse: Option<f64>,
-    /// Time (s) and position (m) of a front.
-    pub front: Option<[f64; 2]>,
 }
 
 /// What has passed a witness plane in one direction so far (SI).

@@ -117,16 +117,14 @@ impl Attached {
         self.mask(|runs| !runs.iter().any(within))
     }
 
-    /// Whether what it leaves open leads from above it to below it, elsewhere than along the border of the
-    /// window.
+    /// Whether what it leaves open leads from above it to below it, elsewhere than around its rim.
     #[must_use]
     pub fn is_open(&self) -> bool {
         let [rows, across, depth] = self.window.counts;
         let (mut runs, mut columns) = (Vec::new(), vec![0]);
-        for column in 0..rows * across {
-            let (i, j) = (column / across, column % across);
-            let at_border = i == 0 || j == 0 || i + 1 == rows || j + 1 == across;
-            let mut filled = vec![at_border; depth];
+        let around = self.open().at_border();
+        for (column, &is_around) in around.iter().enumerate().take(rows * across) {
+            let mut filled = vec![is_around; depth];
             for run in self.column(column) {
                 filled[run.begin as usize..run.end as usize].fill(true);
             }

@@ -47,7 +47,7 @@ fn impulse(slab: &Slab, matter: &Matter, comm: &Comm) -> f64 {
         }
     });
     // A face that is its own mirror image is struck along symmetry planes.
-    whole::Whole::new(matter.mirrors).sum(sum)
+    whole::Whole::new(&matter.mirrors).sum(sum)
 }
 
 /// What measures remember of the start. Collective.
@@ -80,12 +80,12 @@ pub fn mark_zones(case: &Case, particles: &mut ParticleStore) {
 }
 
 /// What all measures of the case find at a time (s), in their order; `particles` are those of the matter,
-/// which regions read. Collective.
+/// which regions read: without them these find nothing. Collective.
 #[must_use]
 pub fn findings(
     time: f64,
     remembered: &mut Vec<Remembered>,
-    particles: &ParticleStore,
+    particles: Option<&ParticleStore>,
     matter: &Matter,
     comm: &Comm,
 ) -> Vec<Findings> {
@@ -121,7 +121,9 @@ pub fn findings(
                 let impulse = struck.and_then(|k| remembered[k].impulse);
                 debris::debris(debris, left, impulse, matter, comm)
             }
-            MeasureKind::Zone(zone) => zone::zone(zone, particles, matter, comm),
+            MeasureKind::Zone(zone) => particles.map_or_else(Findings::default, |particles| {
+                zone::zone(zone, particles, matter, comm)
+            }),
             MeasureKind::Front(line) => {
                 front::front(line, time, &mut remembered[k].front, matter, comm)
             }

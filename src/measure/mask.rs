@@ -44,6 +44,23 @@ impl Mask {
         self.only(largest(self.parts().iter().filter(inside)))
     }
 
+    /// Which cells belong to parts that reach the border, and all others there.
+    #[must_use]
+    pub fn at_border(&self) -> Vec<bool> {
+        let [rows, across] = self.counts;
+        let at_border = |cell: usize| {
+            let (i, j) = (cell / across, cell % across);
+            i == 0 || j == 0 || i + 1 == rows || j + 1 == across
+        };
+        let mut all: Vec<bool> = (0..self.cells.len()).map(at_border).collect();
+        for part in self.parts().iter().filter(|part| part.at_border) {
+            for &cell in &part.cells {
+                all[cell as usize] = true;
+            }
+        }
+        all
+    }
+
     /// The largest of its parts; of several as large the first.
     #[must_use]
     pub fn largest_part(&self) -> Self {
@@ -152,6 +169,8 @@ mod tests {
         assert_eq!(mask.part_of(1).count(), 0);
         assert_eq!(mask.inverse().largest_inside().count(), 1);
         assert_eq!(mask.cells().next(), Some(0));
+        // A border of 24 cells, and no part that reaches from there inwards.
+        assert_eq!(mask.at_border().iter().filter(|is| **is).count(), 24);
     }
 
     #[test]

@@ -16,7 +16,7 @@ pub struct Matter<'a> {
     /// The case, of which bodies and materials are used.
     pub case: &'a Case,
     /// Its symmetry planes.
-    pub mirrors: &'a Mirrors,
+    pub mirrors: Mirrors,
     /// Indices of bodies.
     pub body: &'a [u32],
     /// Positions (m).
@@ -45,7 +45,7 @@ impl<'a> Matter<'a> {
         let held = |values: &'a [f64]| &values[..owned.min(values.len())];
         Self {
             case,
-            mirrors,
+            mirrors: *mirrors,
             body: &particles.body[..owned],
             position: &particles.position[..owned],
             velocity: &particles.velocity[..owned],
@@ -186,4 +186,10 @@ impl<'a> Matter<'a> {
 /// Raises a largest value.
 pub fn raise(most: &mut f64, value: f64) {
     *most = if value > *most { value } else { *most };
+}
+
+/// The symmetry planes of a case.
+#[must_use]
+pub fn mirrors(case: &Case) -> Mirrors {
+    Mirrors::new(&case.symmetry)
 }

@@ -74,7 +74,7 @@ impl Left {
                 }
                 return;
             }
-            match remains.holds(x) {
+            match remains.holds(i) {
                 Belongs::Yes => {}
                 Belongs::Nearly => sums[2].add(mass),
                 Belongs::No if height > middle => sums[0].add(mass),
@@ -83,11 +83,11 @@ impl Left {
         });
         let [speed] = matter.largest::<1>(comm, |i, most| {
             let is_its = matter.body_of(i) == slab.body;
-            if is_its && remains.holds(&matter.position[i]) == Belongs::Yes {
+            if is_its && remains.holds(i) == Belongs::Yes {
                 raise(&mut most[0], -dot(&slab.normal, &matter.velocity[i]));
             }
         });
-        let whole = super::Whole::new(matter.mirrors);
+        let whole = super::Whole::new(&matter.mirrors);
         let [front, rear, doubtful, passed] = sums.map(|sum| whole.sum(sum));
         Self {
             front,

@@ -3,6 +3,8 @@
 //! A window is laid about all matter of the body that has flowed; in it the largest piece is what remains. What lies
 //! beside the window has not flowed and remains, too.
 
+use rayon::prelude::*;
+
 use super::attached::Attached;
 use super::frame::Frame;
 use super::matter::{Matter, raise};
@@ -41,6 +43,8 @@ pub struct Remains {
     between: [f64; 2],
     /// Height (m) below which all remains that lies above the rear face, and that face.
     untouched: [f64; 2],
+    /// Which particles of the body belong to it; of other bodies none does.
+    belongs: Vec<Belongs>,
 }
 
 impl Remains {
@@ -73,6 +77,7 @@ impl Remains {
             attached: None,
             between: [f64::NEG_INFINITY, f64::INFINITY],
             untouched: [f64::INFINITY, slab.rear],
+            belongs: Vec::new(),
         };
         if reach[0].is_finite() {
             let (window, beyond) = window(slab, &reach);
@@ -96,6 +101,12 @@ impl Remains {
             remains.untouched = [window.lower[2], slab.rear];
             remains.attached = Some(Attached::new(window, fractions));
         }
+        let particles = (0..matter.len()).into_par_iter();
+        let belongs = |i: usize| match matter.body_of(i) == slab.body {
+            true => remains.place(&matter.position[i]),
+            false => Belongs::No,
+        };
+        remains.belongs = particles.map(belongs).collect();
         remains
     }
 
@@ -120,9 +131,14 @@ impl Remains {
         voxel.is_none_or(|(attached, voxel)| attached.is_below(voxel))
     }
 
-    /// Whether a particle of the body at a place (m) belongs to it.
+    /// Whether a particle belongs to it.
     #[must_use]
-    pub fn holds(&self, x: &[f64; 3]) -> Belongs {
+    pub fn holds(&self, i: usize) -> Belongs {
+        self.belongs[i]
+    }
+
+    /// Whether a particle of the body at a place (m) belongs to it.
+    fn place(&self, x: &[f64; 3]) -> Belongs {
         let Some(attached) = &self.attached else {
             return Belongs::Yes;
         };

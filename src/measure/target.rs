@@ -121,14 +121,14 @@ pub fn target(slab: &Slab, remains: &Remains, matter: &Matter, comm: &Comm) -> F
     };
     let [loose, doubtful] = matter.sums::<2>(comm, |i, sums| {
         if matter.body_of(i) == slab.body {
-            match remains.holds(&matter.position[i]) {
+            match remains.holds(i) {
                 Belongs::Yes => {}
                 Belongs::Nearly => sums[1].add(matter.mass[i]),
                 Belongs::No => sums[0].add(matter.mass[i]),
             }
         }
     });
-    let whole = super::Whole::new(matter.mirrors);
+    let whole = super::Whole::new(&matter.mirrors);
     let length = |name, value: f64| Figure::number(name, value, "m");
     Findings {
         figures: vec![

@@ -213,16 +213,26 @@ impl Voxels {
             for (j, w) in along[1].inside(counts[1]) {
                 let column = (i * counts[1] + j) * counts[2];
                 let across = full * u * w;
+                // Those that share a word go out together.
+                let (mut at, mut all) = (usize::MAX, 0);
                 for (k, n) in along[2].inside(counts[2]) {
                     #[expect(clippy::cast_possible_truncation, reason = "16 bits")]
                     let share = (across * n + 0.5).min(f64::from(u16::MAX)) as i64;
-                    if share > 0 {
-                        let at = column + k;
-                        let word = &self.words[at / IN_WORD];
-                        word.fetch_add(share << (16 * (at % IN_WORD)), Relaxed);
+                    let (word, place) = ((column + k) / IN_WORD, (column + k) % IN_WORD);
+                    if word != at {
+                        self.put(at, all);
+                        (at, all) = (word, 0);
                     }
+                    all += share << (16 * place);
                 }
+                self.put(at, all);
             }
+        }
+    }
+
+    fn put(&self, word: usize, shares: i64) {
+        if shares != 0 {
+            self.words[word].fetch_add(shares, Relaxed);
         }
     }
 

@@ -14,6 +14,7 @@ pub mod h5;
 mod history;
 mod lock;
 mod log;
+pub mod measures;
 pub mod post_mortem;
 mod quantity;
 mod rows;

@@ -1,8 +1,7 @@
 //! The columns of the tables of a run, and rows of them.
 
 use super::load::Load;
-use crate::measure::{BodyFigures, Crossing, Distribution, Figure, GaugeRow, Told};
-use crate::model::Measure;
+use crate::measure::{BodyFigures, Crossing, GaugeRow};
 use crate::output::{Column, Value, unit_of_model};
 use crate::step::{LoadState, PairState, Passed, Removed, RunState};
 
@@ -52,24 +51,6 @@ impl Cells<'_> for Option<f64> {
 impl Cells<'_> for Option<u64> {
     fn add(self, row: &mut Vec<Value>) {
         row.push(self.map_or(Value::Word(""), Value::Count));
-    }
-}
-
-/// A number that may be unknown: an empty cell.
-struct Blank(Option<f64>);
-
-impl Cells<'_> for Blank {
-    fn add(self, row: &mut Vec<Value>) {
-        row.push(self.0.map_or(Value::Word(""), Value::Real));
-    }
-}
-
-impl Cells<'_> for Told {
-    fn add(self, row: &mut Vec<Value>) {
-        row.push(match self {
-            Self::Number(number) => Value::Real(number),
-            Self::Word(word) => Value::Word(word),
-        });
     }
 }
 
@@ -229,29 +210,6 @@ tables! {
         "largest_pressure", "Pa", body.pressures[1];
         "largest_temperature", "K", body.temperature;
         "largest_plastic_strain", "", body.plastic_strain;
-    }
-
-    /// A figure of a measure.
-    MEASURES, figure_row(time: f64, measure: &'a Measure, figure: &'a Figure, dimension: usize) {
-        "time", "s", time;
-        "measure", "", measure.name.as_str();
-        "kind", "", measure.kind.word();
-        "figure", "", &*figure.name;
-        "value", "", figure.value;
-        "uncertainty", "", Blank(figure.uncertainty);
-        "unit", "", unit_of_model(figure.unit, dimension);
-    }
-
-    /// A bin of a distribution of a measure.
-    DISTRIBUTIONS, bin_row(time: f64, measure: &'a Measure, all: &'a Distribution, bin: [f64; 3]) {
-        "time", "s", time;
-        "measure", "", measure.name.as_str();
-        "distribution", "", all.name;
-        "from", "", bin[0];
-        "to", "", bin[1];
-        "unit_along", "", all.along;
-        "value", "", bin[2];
-        "unit", "", all.unit;
     }
 
     /// What of a row of a gauge comes before its readings.

@@ -114,8 +114,7 @@ impl<'a> Driver<'a> {
         );
         if restarted.is_none() {
             driver.write_row(comm)?;
-            driver.write_gauges(comm, 0.0)?;
-            driver.write_findings(comm, 0.0)?;
+            driver.write_measures(comm, 0.0)?;
             let tells = driver.simulation.case.fragments.is_some();
             driver.write_snapshot(comm, tells)?;
         }
@@ -232,8 +231,7 @@ impl<'a> Driver<'a> {
 
     /// Whatever is due after a step that began at time `before` (s).
     fn write(&mut self, comm: &Comm, before: f64) -> Result<(), OutputError> {
-        self.write_gauges(comm, before)?;
-        self.write_findings(comm, before)?;
+        self.write_measures(comm, before)?;
         for text in self.departures.notices(&self.simulation) {
             self.log(comm, &text);
         }

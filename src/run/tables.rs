@@ -1,15 +1,16 @@
 //! The tables of a run.
 
+use std::path::Path;
+
 use super::columns::{
-    ABSORBED, BODIES, CONTACTS, CROSSINGS, DEPARTED, DEPARTURE, DISTRIBUTIONS, FAILURE, GAUGES,
-    HISTORY, LOADS, MEASURES, PERFORMANCE, REMOVED, WITNESS, absorbed, bin_row, body_row, columns,
-    contact, crossing_row, departed, departure, failure, figure_row, gauge_row, history, load_row,
-    performance, removed, witness_row,
+    ABSORBED, BODIES, CONTACTS, CROSSINGS, DEPARTED, DEPARTURE, FAILURE, GAUGES, HISTORY, LOADS,
+    PERFORMANCE, REMOVED, WITNESS, absorbed, body_row, columns, contact, crossing_row, departed,
+    departure, failure, gauge_row, history, load_row, performance, removed, witness_row,
 };
 use super::load::Load;
 use crate::measure::{BodyFigures, Crossing, Findings, GaugeRow};
 use crate::model::{Case, NumericalFailurePolicy, SphForm};
-use crate::output::{Column, OutputError, RunFolder, Table, Value, fragments};
+use crate::output::{Column, OutputError, RunFolder, Table, Value, fragments, measures};
 use crate::step::{RunState, Simulation};
 
 /// The tables of a run, written by rank 0.
@@ -51,6 +52,34 @@ fn of_history(case: &Case, departs: bool) -> Vec<Column> {
     all
 }
 
+/// Starts a table, or goes on with it after the last value of a column.
+fn open(
+    path: &Path,
+    columns: &[Column],
+    key: &str,
+    last: Option<f64>,
+) -> Result<Table, OutputError> {
+    match last {
+        Some(last) => Table::resume(path, columns, key, last),
+        None => Table::create(path, columns),
+    }
+}
+
+/// The tables of what measures find, if the case has any, after a time (s).
+fn of_measures(
+    folder: &RunFolder,
+    case: &Case,
+    time: Option<f64>,
+) -> Result<Option<[Table; 2]>, OutputError> {
+    if case.measure.measures.is_empty() {
+        return Ok(None);
+    }
+    let figures = open(&folder.measures(), &measures::of_figures(), "time", time)?;
+    let others = measures::of_distributions();
+    let distributions = open(&folder.distributions(), &others, "time", time)?;
+    Ok(Some([figures, distributions]))
+}
+
 impl Tables {
     /// Starts the tables of a run of `case`, or goes on with them after the state `resume`.
     pub fn open(
@@ -59,11 +88,6 @@ impl Tables {
         resume: Option<&RunState>,
     ) -> Result<Self, OutputError> {
         let case = &simulation.case;
-        let open =
-            |path: &std::path::Path, columns: &[Column], key: &str, last: Option<f64>| match last {
-                Some(last) => Table::resume(path, columns, key, last),
-                None => Table::create(path, columns),
-            };
         #[allow(clippy::cast_precision_loss, reason = "steps fit a double")]
         let step = resume.map(|state| state.step as f64);
         let time = resume.map(|state| state.time);
@@ -99,16 +123,7 @@ impl Tables {
             bodies: (case.measure.bodies)
                 .then(|| open(&folder.bodies(), &columns(BODIES), "time", time))
                 .transpose()?,
-            measures: (!case.measure.measures.is_empty())
-                .then(|| {
-                    let figures = open(&folder.measures(), &columns(MEASURES), "time", time)?;
-                    let others = &columns(DISTRIBUTIONS);
-                    Ok([
-                        figures,
-                        open(&folder.distributions(), others, "time", time)?,
-                    ])
-                })
-                .transpose()?,
+            measures: of_measures(folder, case, time)?,
             gauges: (simulation.gauges().any())
                 .then(|| open(&folder.gauges(), &of_gauges, "step", step))
                 .transpose()?,
@@ -234,16 +249,8 @@ impl Tables {
         };
         let (case, time) = (&simulation.case, simulation.state.time);
         let all = || case.measure.measures.iter().zip(found);
-        figures.rows(all().flat_map(|(measure, found)| {
-            let row = |figure| figure_row(time, measure, figure, case.dimension);
-            found.figures.iter().map(row).collect::<Vec<_>>()
-        }))?;
-        distributions.rows(all().flat_map(|(measure, found)| {
-            found.distributions.iter().flat_map(move |distribution| {
-                let row = |bin: &[f64; 3]| bin_row(time, measure, distribution, *bin);
-                distribution.bins.iter().map(row).collect::<Vec<_>>()
-            })
-        }))
+        figures.rows(measures::figures(time, all(), case.dimension))?;
+        distributions.rows(measures::distributions(time, all()))
     }
 
     /// Writes who has passed witness planes.

@@ -25,7 +25,13 @@ impl Simulation {
         let mirrors = self.halo.mirrors();
         let matter = Matter::of(&self.case, mirrors, &self.particles);
         let remembered = &mut self.state.remembered;
-        measure::findings(self.state.time, remembered, &self.particles, &matter, comm)
+        measure::findings(
+            self.state.time,
+            remembered,
+            Some(&self.particles),
+            &matter,
+            comm,
+        )
     }
 
     /// The gauges of the case.

@@ -4,7 +4,7 @@ use toml::Spanned;
 
 use super::check::{Allowed, optional};
 use super::loads::given_name;
-use super::measure::{body, fields, unique};
+use super::named::{body, fields, unique};
 use super::region::region;
 use super::shapes::vector;
 use super::surfaces::unit_vector;
@@ -14,7 +14,8 @@ use crate::input::schema::{
 };
 use crate::input::source::Diagnostic;
 use crate::model::{
-    Bar, Case, Debris, FrontLine, Include, Measure, MeasureKind, Slab, SphForm, Zone, ZonePlace,
+    Bar, Case, Debris, FrontLine, Include, Measure, MeasureKind, Slab, SphForm, Vec3, Zone,
+    ZonePlace,
 };
 
 /// The outline of debris has this part of the areal mass of the plate that it left.
@@ -213,7 +214,7 @@ impl Reader<'_> {
 
     /// What leaves a plate or target in a direction, as far as it struck it or is of it.
     fn leaving(&self, of: usize, slab: &Slab, direction: [f64; 3]) -> Debris {
-        let rears = usual::dot(&slab.normal, &direction) < 0.0;
+        let rears = Vec3::from(slab.normal).dot(&Vec3::from(direction)) < 0.0;
         let height = if rears { slab.rear } else { slab.front };
         let bodies = slab.before.clone();
         let areal = if matches!(self.found[of].kind, MeasureKind::Plate(_)) {

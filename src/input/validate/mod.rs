@@ -16,6 +16,7 @@ mod measure;
 mod measures;
 mod meshes;
 mod motion;
+mod named;
 mod numerical_limits;
 mod particles;
 mod region;

@@ -6,8 +6,13 @@ use crate::model::Cadence;
 use crate::output::{OutputError, Schedule, on_root};
 
 impl Driver<'_> {
-    /// What the gauges read whose turn it is after a step that began at time `before` (s).
-    pub(super) fn write_gauges(&mut self, comm: &Comm, before: f64) -> Result<(), OutputError> {
+    /// What gauges and measures tell whose turn it is after a step that began at time `before` (s).
+    pub(super) fn write_measures(&mut self, comm: &Comm, before: f64) -> Result<(), OutputError> {
+        self.write_gauges(comm, before)?;
+        self.write_findings(comm, before)
+    }
+
+    fn write_gauges(&mut self, comm: &Comm, before: f64) -> Result<(), OutputError> {
         if !self.simulation.gauges().any() {
             return Ok(());
         }
@@ -26,8 +31,7 @@ impl Driver<'_> {
         })
     }
 
-    /// What the measures find after a step that began at time `before` (s), if it is their turn.
-    pub(super) fn write_findings(&mut self, comm: &Comm, before: f64) -> Result<(), OutputError> {
+    fn write_findings(&mut self, comm: &Comm, before: f64) -> Result<(), OutputError> {
         let (step, now) = (self.simulation.state.step, self.simulation.state.time);
         let options = &self.simulation.case.measure;
         let due = step == 0

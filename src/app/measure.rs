@@ -1,0 +1,328 @@
+//! `whipple measure`: what the measures of a case tell of its snapshots, by the code of the run itself.
+
+use std::path::{Path, PathBuf};
+
+use super::results::ResultsError;
+use crate::comm::Comm;
+use crate::input::{self, InputError};
+use crate::measure::{Findings, Matter, Told, findings, mirrors, remember};
+use crate::model::readable::{one_line, shown};
+use crate::model::{Case, Measure, MeasureKind};
+use crate::output::h5::Content;
+use crate::output::h5::read::{ReadError, SnapshotFile};
+use crate::output::{OutputError, RunFolder, measures, write_atomically};
+use crate::plot::{PlotError, Wanted, choose, parse_quantity, snapshots};
+use crate::run::exit::EXIT_INPUT;
+use crate::run::say::{say, seconds, warn};
+
+/// Tell the measures of a run's snapshots: holes, craters, verdicts, debris
+///
+/// The measures are those of the case, which --set changes. Regions are told by the run alone.
+#[derive(Debug, Clone, clap::Args)]
+#[command(after_help = "Examples:
+  whipple measure runs/impact
+  whipple measure runs/impact --at 5us
+  whipple measure runs/impact --all --csv measures.csv
+  whipple measure runs/impact --set 'measure.plate=[{ body = \"wall\", include = \"all\" }]'")]
+pub struct MeasureArgs {
+    /// Run folder, or snapshot (.vtkhdf)
+    #[arg(value_name = "FILE_OR_RUN")]
+    pub path: PathBuf,
+
+    /// Snapshot of the run nearest to a time, as in 5us [default: the last one]
+    #[arg(long, visible_alias = "time", value_name = "TIME", group = "which")]
+    pub at: Option<String>,
+
+    /// Snapshot of the run by number, from 0
+    #[arg(long, visible_alias = "index", value_name = "K", group = "which")]
+    pub snapshot: Option<usize>,
+
+    /// All snapshots of the run; the last one is shown
+    #[arg(long, group = "which")]
+    pub all: bool,
+
+    /// Change a key of the case's `measure`
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+
+    /// Write the rows of measures.csv
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+}
+
+/// Why the measures of a snapshot cannot be told.
+#[derive(Debug, thiserror::Error)]
+pub enum MeasureError {
+    /// No snapshot is found.
+    #[error(transparent)]
+    Choice(#[from] PlotError),
+    /// The path is nothing of ours.
+    #[error(transparent)]
+    Results(#[from] ResultsError),
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// The snapshot's case cannot be read.
+    #[error(transparent)]
+    Case(#[from] InputError),
+    /// What a snapshot says of itself makes no sense, or it says too little.
+    #[error("{} cannot be taken: {reason}", path.display())]
+    Snapshot {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+}
+
+/// Runs the command; returns the exit code.
+pub fn run(args: &MeasureArgs) -> u8 {
+    match tell(args) {
+        Ok(text) => {
+            say(text.trim_end());
+            0
+        }
+        Err(error) => {
+            warn(&format!("error: {error}"));
+            EXIT_INPUT
+        }
+    }
+}
+
+fn tell(args: &MeasureArgs) -> Result<String, MeasureError> {
+    let (first, paths) = chosen(args)?;
+    let comm = Comm::solo();
+    let mut remembered = match &first {
+        Some(path) => {
+            let first = Loaded::read(path, &args.set)?;
+            remember(&first.matter(), &comm)
+        }
+        None => Vec::new(),
+    };
+    let mut rows = Vec::new();
+    let mut text = String::new();
+    for path in &paths {
+        let loaded = Loaded::read(path, &args.set)?;
+        let matter = loaded.matter();
+        let found = findings(loaded.time, &mut remembered, None, &matter, &comm);
+        let all = || loaded.case.measure.measures.iter().zip(&found);
+        let table = measures::figures(loaded.time, all(), loaded.case.dimension);
+        rows.extend(table.map(|row| row.into_iter().map(Cell::from).collect::<Vec<_>>()));
+        text = report(&loaded, all());
+    }
+    if let Some(path) = &args.csv {
+        let rows: Vec<Vec<_>> = rows
+            .iter()
+            .map(|row| row.iter().map(Cell::value).collect())
+            .collect();
+        write_atomically(path, &measures::table(&rows))?;
+        say(&format!("wrote {}", one_line(&path.display().to_string())));
+    }
+    Ok(text)
+}
+
+/// A cell that outlives its snapshot.
+enum Cell {
+    Real(f64),
+    Count(u64),
+    Word(String),
+}
+
+impl From<crate::output::Value<'_>> for Cell {
+    fn from(value: crate::output::Value) -> Self {
+        match value {
+            crate::output::Value::Real(real) => Self::Real(real),
+            crate::output::Value::Count(count) => Self::Count(count),
+            crate::output::Value::Word(word) => Self::Word(word.to_owned()),
+        }
+    }
+}
+
+impl Cell {
+    fn value(&self) -> crate::output::Value<'_> {
+        match self {
+            Self::Real(real) => crate::output::Value::Real(*real),
+            Self::Count(count) => crate::output::Value::Count(*count),
+            Self::Word(word) => crate::output::Value::Word(word),
+        }
+    }
+}
+
+/// The first snapshot of a run, and those that are asked for.
+fn chosen(args: &MeasureArgs) -> Result<(Option<PathBuf>, Vec<PathBuf>), MeasureError> {
+    if !args.path.is_dir() {
+        if args.at.is_some() || args.snapshot.is_some() || args.all {
+            let choice = "--at, --snapshot and --all choose among the snapshots of a run: give its \
+                          folder";
+            return Err(PlotError::Options(choice).into());
+        }
+        return Ok((None, vec![args.path.clone()]));
+    }
+    let folder = RunFolder::at(&args.path);
+    let found = snapshots(folder.path())?;
+    let first = choose(&found, &Wanted::Indices(vec![0]))?.pop();
+    if args.all {
+        return Ok((first, found.into_iter().map(|found| found.1).collect()));
+    }
+    let wanted = match (&args.at, args.snapshot) {
+        (Some(time), _) => Wanted::Times(vec![parse_quantity(time, "s")?]),
+        (None, Some(index)) => Wanted::Indices(vec![index]),
+        (None, None) => Wanted::Last,
+    };
+    Ok((first, choose(&found, &wanted)?))
+}
+
+/// A field that the measures of a case need and a snapshot does not have.
+fn lacks(case: &Case, has: impl Fn(&str) -> bool) -> Option<&'static str> {
+    let mut measures = case.measure.measures.iter();
+    let follows = measures.any(|measure| matches!(measure.kind, MeasureKind::Front(_)));
+    let needed = [
+        ("body", true),
+        ("mass", true),
+        ("velocity", true),
+        ("density", true),
+        ("plastic_strain", case.may_yield()),
+        ("damage", case.may_fail()),
+        ("pressure", follows),
+    ];
+    let mut missing = needed.iter().filter(|(field, needs)| *needs && !has(field));
+    missing.next().map(|(field, _)| *field)
+}
+
+/// Particles of a snapshot, but for frozen ones, and its case.
+struct Loaded {
+    case: Case,
+    /// Time (s).
+    time: f64,
+    body: Vec<u32>,
+    position: Vec<[f64; 3]>,
+    velocity: Vec<[f64; 3]>,
+    mass: Vec<f64>,
+    density: Vec<f64>,
+    pressure: Vec<f64>,
+    plastic_strain: Vec<f64>,
+    damage: Vec<f64>,
+}
+
+impl Loaded {
+    fn read(path: &Path, set: &[String]) -> Result<Self, MeasureError> {
+        let wrong = |reason: String| MeasureError::Snapshot {
+            path: path.to_owned(),
+            reason,
+        };
+        let text = Content::open(path)?.text("/whipple/input")?;
+        let case = input::parse(&path.display().to_string(), &text, set)?;
+        let told = |error: ReadError| wrong(error.to_string());
+        let file = SnapshotFile::open(path).map_err(told)?;
+        let names = file.names().map_err(told)?;
+        let has = |field: &str| names.iter().any(|name| name == field);
+        if has("stress_mass") {
+            return Err(wrong(
+                "it has stress points, which hold the state of the particles".to_owned(),
+            ));
+        }
+        if let Some(field) = lacks(&case, has) {
+            return Err(wrong(format!(
+                "it does not tell the {field} of its particles: name it in `output.fields` of the \
+                 run"
+            )));
+        }
+        let count = file.particles();
+        let field = |name: &str, components: usize| {
+            if !has(name) {
+                return Ok(vec![0.0; count * components]);
+            }
+            match file.components(name).map_err(told)? {
+                found if found == components => file.values(name, 0..count).map_err(told),
+                found => Err(wrong(format!("its field {name} has {found} components"))),
+            }
+        };
+        let bodies = case.bodies.len();
+        let index = |value: f64| {
+            let known = (0_u32..).take(bodies).find(|&b| f64::from(b) == value);
+            known.ok_or_else(|| wrong(format!("body {value} of {bodies} bodies")))
+        };
+        let body = field("body", 1)?.into_iter().map(index);
+        let mut loaded = Self {
+            time: file.time().map_err(told)?,
+            body: body.collect::<Result<_, _>>()?,
+            position: file.points(0..count).map_err(told)?,
+            velocity: field("velocity", 3)?.as_chunks::<3>().0.to_vec(),
+            mass: field("mass", 1)?,
+            density: field("density", 1)?,
+            pressure: field("pressure", 1)?,
+            plastic_strain: field("plastic_strain", 1)?,
+            damage: field("damage", 1)?,
+            case,
+        };
+        loaded.leave_out(&field("frozen", 1)?);
+        Ok(loaded)
+    }
+
+    /// Frozen particles are of the model no more.
+    fn leave_out(&mut self, frozen: &[f64]) {
+        if frozen.iter().all(|&is| is == 0.0) {
+            return;
+        }
+        fn keep<T: Copy>(values: &mut Vec<T>, frozen: &[f64]) {
+            let kept = values.iter().zip(frozen).filter(|(_, is)| **is == 0.0);
+            *values = kept.map(|(&value, _)| value).collect();
+        }
+        keep(&mut self.body, frozen);
+        keep(&mut self.position, frozen);
+        keep(&mut self.velocity, frozen);
+        for values in [
+            &mut self.mass,
+            &mut self.density,
+            &mut self.pressure,
+            &mut self.plastic_strain,
+            &mut self.damage,
+        ] {
+            keep(values, frozen);
+        }
+    }
+
+    fn matter(&self) -> Matter<'_> {
+        Matter {
+            case: &self.case,
+            mirrors: mirrors(&self.case),
+            body: &self.body,
+            position: &self.position,
+            velocity: &self.velocity,
+            mass: &self.mass,
+            stress_mass: &[],
+            density: &self.density,
+            pressure: &self.pressure,
+            plastic_strain: &self.plastic_strain,
+            damage: &self.damage,
+        }
+    }
+}
+
+/// The figures of a snapshot, a line for each.
+fn report<'a>(loaded: &Loaded, found: impl Iterator<Item = (&'a Measure, &'a Findings)>) -> String {
+    use std::fmt::Write as _;
+    let title = one_line(&loaded.case.title);
+    let mut text = format!("{title} at {}\n", seconds(loaded.time));
+    for (measure, found) in found {
+        if found.figures.is_empty() {
+            let _ = writeln!(text, "{}: told by the run alone", measure.name);
+            continue;
+        }
+        let _ = writeln!(text, "{} ({})", measure.name, measure.kind.word());
+        for figure in &found.figures {
+            let unit = crate::output::unit_of_model(figure.unit, loaded.case.dimension);
+            let value = match figure.value {
+                Told::Number(number) if number.is_nan() => "–".to_owned(),
+                Told::Number(number) => shown(number, unit),
+                Told::Word(word) => word.to_owned(),
+            };
+            let doubt = figure.uncertainty.filter(|doubt| doubt.is_finite());
+            let doubt = doubt.filter(|_| value != "–");
+            let doubt = doubt.map_or(String::new(), |doubt| format!(" ± {}", shown(doubt, unit)));
+            let name = figure.name.replace('_', " ");
+            let _ = writeln!(text, "  {name:<26} {value}{doubt}");
+        }
+    }
+    text
+}
