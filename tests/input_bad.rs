@@ -166,6 +166,10 @@ fn overridden(key: &Key, value: &str) -> String {
         .replace("surface.", "surface.0.")
         .replace("gauge.", "gauge.0.")
         .replace("witness.", "witness.0.");
+    let measures = ["plate", "target", "bar", "debris", "region", "front"];
+    let path = measures.iter().fold(path, |path, kind| {
+        path.replace(&format!("measure.{kind}."), &format!("measure.{kind}.0."))
+    });
     // Keys below `touch` and the like end with the same words.
     let path = path.replace("load.0.body.0.", "load.0.body.");
     let set = format!("{path}={value}");

@@ -17,7 +17,35 @@ pub struct Outline {
     pub cell: f64,
 }
 
-/// The largest part of the debris, seen from the side, that has the areal mass of the outline.
+/// Cells along the flight and across it, of a cloud that begins at a height (m).
+struct Cells {
+    begin: f64,
+    edge: f64,
+    rows: usize,
+    /// Cells to one side of the axis.
+    half: usize,
+}
+
+impl Cells {
+    /// The cell of a height and a place across (m).
+    fn at(&self, height: f64, across: f64) -> Option<usize> {
+        #[expect(clippy::cast_precision_loss, reason = "counts are small")]
+        let [rows, half] = [self.rows, self.half].map(|count| count as f64);
+        let row = (height - self.begin) / self.edge;
+        let column = across / self.edge + half;
+        let inside = row >= 0.0 && row < rows && column >= 0.0 && column < 2.0 * half;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "inside"
+        )]
+        let cell = || row as usize * 2 * self.half + column as usize;
+        inside.then(cell)
+    }
+}
+
+/// The largest part of the debris, seen from the side, that has the areal mass of the outline: between two
+/// heights and as far from the axis as a radius (m), of particles of a mean mass (kg).
 pub fn outline(
     view: &View,
     comm: &Comm,
@@ -28,46 +56,37 @@ pub fn outline(
     let debris = view.debris;
     let length = heights[1] - heights[0];
     let least = (LEAST * mass_of_one / debris.outline).sqrt();
-    let cell = debris.spacing.max(length / CELLS).max(least);
+    let edge = debris.spacing.max(length / CELLS).max(least);
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "positive, and cut"
     )]
-    let count = |size: f64| (size / cell).ceil().clamp(1.0, 4.0 * CELLS) as usize;
-    let (rows, half) = (count(length), count(radius));
-    let across = 2 * half;
+    let count = |size: f64| (size / edge).ceil().clamp(1.0, 4.0 * CELLS) as usize;
+    let cells = Cells {
+        begin: heights[0],
+        edge,
+        rows: count(length),
+        half: count(radius),
+    };
+    let across = 2 * cells.half;
     // Whole numbers of 2⁻³⁰ of what makes the outline.
-    let full = debris.outline * cell * cell;
+    let full = debris.outline * edge * edge;
     let scale = f64::from(1 << 30);
-    let counts = view.matter.counts(comm, rows * across, |i, counts| {
-        if !view.is_debris[i] {
-            return;
-        }
-        #[expect(clippy::cast_possible_truncation, reason = "some particles in a cell")]
-        let share = (view.matter.mass[i] / full * scale).round() as i64;
-        for flight in view.flights(i) {
-            let at = [
-                (flight.height - heights[0]) / cell,
-                flight.across[0] / cell + f64::from(u32::try_from(half).unwrap_or(u32::MAX)),
-            ];
-            #[expect(clippy::cast_precision_loss, reason = "small")]
-            let inside =
-                at[0] >= 0.0 && at[0] < rows as f64 && at[1] >= 0.0 && at[1] < across as f64;
-            if inside {
-                #[expect(
-                    clippy::cast_possible_truncation,
-                    clippy::cast_sign_loss,
-                    reason = "inside"
-                )]
-                let [row, column] = at.map(|at| at as usize);
-                counts[row * across + column] += share;
+    let counts = view.matter.counts(comm, cells.rows * across, |i, counts| {
+        if view.is_debris[i] {
+            #[expect(clippy::cast_possible_truncation, reason = "some particles in a cell")]
+            let share = (view.matter.mass[i] / full * scale).round() as i64;
+            for flight in view.flights(i) {
+                if let Some(cell) = cells.at(flight.height, flight.across[0]) {
+                    counts[cell] += share;
+                }
             }
         }
     });
     #[expect(clippy::cast_precision_loss, reason = "rounded once")]
-    let cells = counts.iter().map(|&count| count as f64 >= scale).collect();
-    let part = Mask::new([rows, across], cells).largest_part();
+    let seen = counts.iter().map(|&count| count as f64 >= scale).collect();
+    let part = Mask::new([cells.rows, across], seen).largest_part();
     let (mut lower, mut upper) = ([usize::MAX; 2], [0; 2]);
     for found in part.cells() {
         for (a, at) in [found / across, found % across].into_iter().enumerate() {
@@ -76,10 +95,10 @@ pub fn outline(
         }
     }
     #[expect(clippy::cast_precision_loss, reason = "small")]
-    let [length, width] = std::array::from_fn(|a| upper[a].saturating_sub(lower[a]) as f64 * cell);
+    let [length, width] = std::array::from_fn(|a| upper[a].saturating_sub(lower[a]) as f64 * edge);
     Outline {
         length,
         width,
-        cell,
+        cell: edge,
     }
 }

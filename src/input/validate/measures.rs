@@ -329,9 +329,10 @@ impl Reader<'_> {
             (None, sides) if params.centre.is_none() => {
                 ZonePlace::Sides(region(sides, self.case.dimension, spacing)?)
             }
-            _ => {
+            (radius, _) => {
                 let title = "a region has sides, or a `centre` and a `radius`";
-                return Err(Diagnostic::new(table.span(), title));
+                let at = radius.as_ref().map_or(table.span(), Spanned::span);
+                return Err(Diagnostic::new(at, title));
             }
         };
         let mark = params.moves.unwrap_or(false).then_some(self.marks + 1);
