@@ -264,10 +264,6 @@ impl Loaded {
         if frozen.iter().all(|&is| is == 0.0) {
             return;
         }
-        fn keep<T: Copy>(values: &mut Vec<T>, frozen: &[f64]) {
-            let kept = values.iter().zip(frozen).filter(|(_, is)| **is == 0.0);
-            *values = kept.map(|(&value, _)| value).collect();
-        }
         keep(&mut self.body, frozen);
         keep(&mut self.position, frozen);
         keep(&mut self.velocity, frozen);
@@ -297,6 +293,12 @@ impl Loaded {
             damage: &self.damage,
         }
     }
+}
+
+/// Leaves out what is frozen.
+fn keep<T: Copy>(values: &mut Vec<T>, frozen: &[f64]) {
+    let kept = values.iter().zip(frozen).filter(|(_, is)| **is == 0.0);
+    *values = kept.map(|(&value, _)| value).collect();
 }
 
 /// The figures of a snapshot, a line for each.

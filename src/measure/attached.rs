@@ -238,6 +238,7 @@ fn largest(window: &Window, runs: &[Run], columns: &[usize]) -> Vec<bool> {
 }
 
 #[cfg(test)]
+#[allow(clippy::cast_precision_loss, reason = "small numbers")]
 mod tests {
     use super::*;
 

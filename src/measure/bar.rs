@@ -15,7 +15,7 @@ const MOST: f64 = 512.0;
 const FOOT: usize = 2;
 
 /// Whole numbers in which volume is counted: so many in a cube of the spacing.
-const UNIT: f64 = (1_u64 << 30) as f64;
+const UNIT: f64 = 1_073_741_824.0;
 
 /// Diameters (m) of circles with the areas of slices, from the head to the foot.
 fn diameters(

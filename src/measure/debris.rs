@@ -142,7 +142,7 @@ fn cloud(view: &View, sums: &Sums, comm: &Comm) -> (Vec<Figure>, Vec<Distributio
     let (heights, [lowest, highest]) = spread(|flight| flight.height);
     let (radii, [_, farthest]) = spread(|flight| flight.radius);
     let (velocities, _) = spread(|flight| flight.axial);
-    let (angles, _) = spread(|flight| flight.angle);
+    let (angles, _) = spread(Flight::angle);
     let seen = outline(
         view,
         comm,
@@ -180,7 +180,7 @@ fn cloud(view: &View, sums: &Sums, comm: &Comm) -> (Vec<Figure>, Vec<Distributio
     let speeds = view.spread(comm, widened([0.0, fastest]), SPEEDS, sums.mass, |flight| {
         flight.speed
     });
-    let by_angle = view.spread(comm, [0.0, 180.0], ANGLES, sums.mass, |flight| flight.angle);
+    let by_angle = view.spread(comm, [0.0, 180.0], ANGLES, sums.mass, Flight::angle);
     let distributions = vec![
         speeds.distribution("mass_by_speed", "m/s"),
         by_angle.distribution("mass_by_angle", "deg"),

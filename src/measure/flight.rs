@@ -11,7 +11,7 @@ use crate::model::{Debris, Slab};
 use crate::numerics::vector::{dot, norm};
 
 /// All mass, in whole numbers.
-const UNIT: f64 = (1_u64 << 44) as f64;
+const UNIT: f64 = 17_592_186_044_416.0;
 
 /// How a particle's image flies.
 #[derive(Clone, Copy)]
@@ -28,8 +28,16 @@ pub struct Flight {
     pub radial: f64,
     /// Speed (m/s).
     pub speed: f64,
+    /// Velocity across the flight (m/s).
+    pub lateral: f64,
+}
+
+impl Flight {
     /// Angle of the velocity to the direction (°).
-    pub angle: f64,
+    #[must_use]
+    pub fn angle(&self) -> f64 {
+        libm::atan2(self.lateral, self.axial).to_degrees()
+    }
 }
 
 /// What is debris, and how it is looked at.
@@ -65,10 +73,10 @@ impl View<'_> {
         self.matter.images(i).map(move |(x, v)| {
             let (place, way) = (self.frame.turned(&x), self.frame.turned(&v));
             let across = [place[0] - self.axis[0], place[1] - self.axis[1]];
-            let radius = libm::hypot(across[0], across[1]);
+            let radius = (across[0] * across[0] + across[1] * across[1]).sqrt();
             let sideways = across[0] * way[0] + across[1] * way[1];
             let radial = if radius > 0.0 { sideways / radius } else { 0.0 };
-            let lateral = libm::hypot(way[0], way[1]);
+            let lateral = (way[0] * way[0] + way[1] * way[1]).sqrt();
             Flight {
                 height: place[2] - base,
                 across,
@@ -76,7 +84,7 @@ impl View<'_> {
                 axial: way[2],
                 radial,
                 speed: norm(&v),
-                angle: libm::atan2(lateral, way[2]).to_degrees(),
+                lateral,
             }
         })
     }

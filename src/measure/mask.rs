@@ -149,6 +149,7 @@ fn largest<'a>(parts: impl Iterator<Item = &'a Part>) -> Option<&'a Part> {
 }
 
 #[cfg(test)]
+#[allow(clippy::cast_precision_loss, reason = "small numbers")]
 mod tests {
     use super::*;
 

@@ -64,6 +64,12 @@ impl<'a> Matter<'a> {
         self.body.len()
     }
 
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.body.is_empty()
+    }
+
     /// Index of a particle's body.
     #[must_use]
     pub fn body_of(&self, i: usize) -> usize {

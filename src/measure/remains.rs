@@ -102,9 +102,12 @@ impl Remains {
             remains.attached = Some(Attached::new(window, fractions));
         }
         let particles = (0..matter.len()).into_par_iter();
-        let belongs = |i: usize| match matter.body_of(i) == slab.body {
-            true => remains.place(&matter.position[i]),
-            false => Belongs::No,
+        let belongs = |i: usize| {
+            if matter.body_of(i) == slab.body {
+                remains.place(&matter.position[i])
+            } else {
+                Belongs::No
+            }
         };
         remains.belongs = particles.map(belongs).collect();
         remains

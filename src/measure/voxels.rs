@@ -253,6 +253,7 @@ impl Voxels {
 }
 
 #[cfg(test)]
+#[allow(clippy::cast_precision_loss, reason = "small numbers")]
 mod tests {
     use super::*;
 
@@ -262,7 +263,7 @@ mod tests {
         let voxels = Voxels::new(window);
         // Three spacings to two voxels, and a face at z = 6.5, in the middle of a voxel.
         let (spacing, layers) = (2.0 / 3.0, 13_usize);
-        let places = |k: usize| (k as f64 + 0.5) * spacing - 2.1666666666666665;
+        let places = |k: usize| (k as f64 + 0.5) * spacing - 13.0 / 6.0;
         let count = 21 * 21 * layers;
         voxels.fill(count, |i, tell| {
             let [x, y, z] = [i % 21, i / 21 % 21, i / 441].map(places);

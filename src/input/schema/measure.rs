@@ -121,7 +121,7 @@ optional_tables! {
         bodies: Option<bool>,
         /// Whether plates, targets and bars are found by their shapes; they are if absent.
         usual: Option<bool>,
-        /// Time between rows of `measures.csv`; a twentieth of the run if absent.
+        /// Time between rows of `measures.csv`; a tenth of the run if absent.
         every: Option<Placed<Time>>,
         /// Plates.
         plate: Vec<Spanned<SlabParams>>,

@@ -13,7 +13,7 @@ use crate::input::source::Diagnostic;
 use crate::model::{Cadence, Case, Gauge, MeasureOptions, SphForm, SymmetryPlane, Witness};
 
 /// Rows of `measures.csv` of a run that does not say when it has them.
-const ROWS: f64 = 20.0;
+const ROWS: f64 = 10.0;
 
 /// What is measured in a case that is whole but for that.
 pub fn measure(
