@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Measures contact on small cases and writes the tables of the book's page on choosing a contact, and
-# its pictures. A quarter of an hour on two cores, half of it for sliding blocks.
+# its pictures. Twenty minutes on two cores, a third of them for sliding blocks.
 #
 #   jobs/contact-lab.sh [FOLDER [PICTURES]]      FOLDER: of runs and table.md, target/contact-lab by
 #                                                default; PICTURES: docs/src/images by default
@@ -102,7 +102,21 @@ geometries() {
     [ ! -f "$seam" ] || measure "$mode: seam" contact-lab/seam.toml "$mode_is"
 }
 
-# The same in three dimensions.
+# Of the same in three dimensions those that ask for no particle in a certain place, in terms of `try`.
+bulks() {
+    local tungsten='material.tungsten={ library = "tungsten" }'
+    try 'corner on a sphere' "$ball" "$(solid above 0 0 0 6 6 6)" \
+        'body.above.velocity=["-4.0415 km/s", "-4.0415 km/s", "-4.0415 km/s"]'
+    try 'edge on edge' "$(solid below -8 -1 -8 8 1 0)" "$(solid above -1 -8 0 1 8 8)"
+    try 'sphere'
+    try 'sphere, 30°' 'body.above.velocity=["3.5 km/s", 0, "-6.062 km/s"]'
+    try 'sphere, 60°' 'body.above.velocity=["6.062 km/s", 0, "-3.5 km/s"]'
+    try 'sphere on tungsten' "$tungsten" body.below.material=tungsten
+    try 'tungsten on aluminium' "$tungsten" body.above.material=tungsten
+    try 'copper on copper' 'material.aluminium={ library = "copper" }'
+}
+
+# On cubic lattices.
 solids() {
     local mode_is=contact.mode=$1 name=$1
     try() { local what=$1; shift; measure "$name: $what, solid" contact-lab/solid.toml "$mode_is" "$@"; }
@@ -114,25 +128,34 @@ solids() {
     try 'one particle on a bridge' "$(one 0.5 0)"
     try 'one on one' "$(one 0 0)" "$(solid below 0 0 -1 1 1 0)"
     try 'one on one, aside' "$(one 0.25 0.1)" "$(solid below 0 0 -1 1 1 0)"
-    try 'corner on a sphere' "$ball" "$(solid above 0 0 0 6 6 6)" \
-        'body.above.velocity=["-4.0415 km/s", "-4.0415 km/s", "-4.0415 km/s"]'
-    try 'edge on edge' "$(solid below -8 -1 -8 8 1 0)" "$(solid above -1 -8 0 1 8 8)"
     try 'sheet on sheet, edges' "$(solid below -8 0 -8 8 1 0)" "$(solid above 0 -8 0 1 8 8)"
     try 'sheet on edge' "$(solid below -8 -1 -8 8 1 0)" "$(solid above -6 -6 0 6 6 1)"
     try 'sheet on sheet' "$(solid below -8 -8 -1 8 8 0)" "$(solid above -6 -6 0 6 6 1)"
-    try 'sphere'
-    try 'sphere, 30°' 'body.above.velocity=["3.5 km/s", 0, "-6.062 km/s"]'
-    try 'sphere, 60°' 'body.above.velocity=["6.062 km/s", 0, "-3.5 km/s"]'
+    bulks
     try 'sphere on a lattice at 45°' "$plate" 'body.above.touch={ body = "below", direction = "-z" }'
-    try 'sphere on tungsten' "$tungsten" body.below.material=tungsten
     try 'one particle on tungsten' "$tungsten" body.below.material=tungsten "$(one 0 0)"
     try 'one on one of tungsten' "$tungsten" body.below.material=tungsten "$(one 0 0)" \
         "$(solid below 0 0 -1 1 1 0)"
-    try 'tungsten on aluminium' "$tungsten" body.above.material=tungsten
-    try 'copper on copper' 'material.aluminium={ library = "copper" }'
     try 'one on one of copper' 'material.aluminium={ library = "copper" }' "$(one 0 0)" \
         "$(solid below 0 0 -1 1 1 0)"
     measure "$name: seam, solid" contact-lab/seam-solid.toml "$mode_is"
+}
+
+# Glass on glass, each seed a filling of its own, and glass on the cubic lattice.
+glasses() {
+    local mode_is=contact.mode=$1 name glass seed
+    glass() { echo "body.$1.lattice={ kind = \"glass\", seed = $2 }"; }
+    try() { local what=$1; shift; measure "$name: $what" contact-lab/solid.toml "$mode_is" "$@" "${glass[@]}"; }
+    for seed in 1 2 3; do
+        name="$1, glass on glass $seed"
+        glass=("$(glass above $seed)" "$(glass below $((seed + 10)))")
+        bulks
+        measure "$name: seam" contact-lab/seam-solid.toml "$mode_is" "$(glass above $seed)" \
+            "$(glass left $((seed + 10)))" "$(glass right $((seed + 20)))"
+        name="$1, glass on cubic $seed" glass=("$(glass above $seed)")
+        bulks
+        measure "$name: seam" contact-lab/seam-solid.toml "$mode_is" "${glass[@]}"
+    done
 }
 
 for mode in overlap potential penalty; do
@@ -140,6 +163,8 @@ for mode in overlap potential penalty; do
     geometries "$mode"
     heading "In three dimensions, \`$mode\`"
     solids "$mode"
+    heading "Glass, \`$mode\`"
+    glasses "$mode"
 done
 
 heading 'Stiffness, core and time step of `overlap`'

