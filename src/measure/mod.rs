@@ -6,6 +6,8 @@
 //! [`Whole`].
 
 mod bodies;
+mod gauge_reader;
+mod gauge_shares;
 mod gauges;
 mod kept;
 mod reading;

@@ -136,6 +136,8 @@ impl<'a> Driver<'a> {
             Err(message) => {
                 self.progress.finish();
                 self.log(comm, &format!("failed: {message}"));
+                // What led to it is worth having; whether that can be written changes nothing.
+                let _ = self.tables.as_mut().map(Tables::write_records);
                 let state = &self.simulation.state;
                 fail(comm, folder, &message, state.step, state.time)
             }
@@ -329,7 +331,7 @@ impl<'a> Driver<'a> {
         let begun = Instant::now();
         self.write_crossings(comm)?;
         // Rows before this checkpoint are not written again once it is there.
-        on_root(comm, || self.tables.as_ref().map_or(Ok(()), Tables::sync))?;
+        on_root(comm, || self.tables.as_mut().map_or(Ok(()), Tables::sync))?;
         let folder = self.folder.checkpoints();
         self.simulation.join_extremes(comm);
         let rows = &mut self.rows;
