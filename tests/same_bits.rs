@@ -227,6 +227,45 @@ fn gauges_and_witness_planes_on_any_ranks_and_through_a_restart() {
     }
 }
 
+/// Gauges in so many places that some read particles of several ranks, and that their readings go into
+/// files of their own, which restarts cut elsewhere.
+#[test]
+fn many_gauges_on_any_ranks_and_through_a_restart() {
+    let (_keep, at) = folder();
+    let place = |k: usize| {
+        let [x, y, z] = [
+            0.012 * k as f64,
+            0.03 * (k % 4) as f64,
+            0.1 - 0.05 * (k % 5) as f64,
+        ];
+        let every = 1 + k % 3;
+        format!("{{ at = [\"{x} mm\", \"{y} mm\", \"{z} mm\"], every_steps = {every} }}")
+    };
+    let gauges: Vec<String> = (0..120).map(place).collect();
+    let gauges = format!("gauge=[{}]", gauges.join(", "));
+    let mut case = QUARTER.to_vec();
+    for set in ["run.end_time=0.06us", &gauges] {
+        case.extend(["--set", set]);
+    }
+    let (one, stopped) = (at("one"), at("stopped"));
+    run(1, 2, &case, &[], &one);
+    for (ranks, axis) in [(2, "x"), (3, "z"), (5, "x")] {
+        let other = at(&format!("{ranks}{axis}"));
+        let axis = format!("domain.axis={axis}");
+        run(ranks, 1, &case, &["--set", &axis], &other);
+        assert_same(&one, &other, &format!("{ranks} ranks, {axis}"));
+    }
+    assert_same_in_legs(&case, &[2, 3], &["0.03us"], &one, &stopped);
+    let [a, b] = [&one, &stopped].map(|run| {
+        assert!(!run.join("gauges.csv").exists());
+        let run = whipple::output::RunFolder::at(run);
+        let sheet = whipple::output::gauge_records::sheet(&run, None);
+        sheet.expect("files").expect("readings")
+    });
+    assert!(a.rows.len() > 1000, "{}", a.rows.len());
+    assert_eq!(a.text(), b.text());
+}
+
 #[test]
 fn penalty_with_friction_on_any_ranks_and_through_a_restart() {
     let (_keep, at) = folder();

@@ -132,3 +132,43 @@ fn files(folder: &RunFolder) -> Result<Vec<PathBuf>, OutputError> {
     let found = folder.gauge_files()?.into_iter();
     Ok(found.map(|(_, path)| path).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn readings_come_back_in_order_from_several_files() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = RunFolder::at(place.path());
+        assert_eq!(sheet(&folder, None).unwrap(), None);
+        let names = ["step", "time", "gauge", "coverage", "pressure"];
+        let columns = names.map(|name| Column::new(name, "")).to_vec();
+        let gauges = ["front", "rear"].map(str::to_owned);
+        let mut records = GaugeRecords::new(&folder, columns, gauges.to_vec());
+        records.write().unwrap();
+        for step in 0..7_u32 {
+            let now = (step.into(), 0.5 * f64::from(step));
+            for gauge in 0..2 {
+                let numbers = [1.0, f64::from(10 * step + gauge)];
+                records.add(now, gauge, numbers.into_iter());
+            }
+            records.write_much().unwrap();
+            if step == 3 {
+                records.write().unwrap();
+            }
+        }
+        assert_eq!(folder.gauge_files().unwrap().len(), 1);
+        records.write().unwrap();
+        let steps = folder.gauge_files().unwrap().into_iter().map(|file| file.0);
+        assert_eq!(steps.collect::<Vec<_>>(), [3, 6]);
+        let all = sheet(&folder, None).unwrap().unwrap();
+        assert_eq!(all.rows.len(), 14);
+        assert_eq!(all.rows[9].1, ["4", "2.0", "rear", "1.0", "41.0"]);
+        let rear = sheet(&folder, Some(&gauges[1..])).unwrap().unwrap();
+        assert!(rear.rows.len() == 7 && rear.rows[6].1[4] == "61.0");
+        let last = last_rows(&folder).unwrap().unwrap();
+        assert_eq!(last.rows.len(), 2);
+        assert_eq!(last.rows[1].1[4], "61.0");
+    }
+}

@@ -184,5 +184,20 @@ mod tests {
         let lines = last_figures(&run);
         assert_eq!(lines[2].0, "witness a b forwards");
         assert_eq!(lines.len(), 3);
+        std::fs::write(
+            run.gauges(),
+            "# units: s,-,-,Pa,kg/m^3\ntime,gauge,coverage,pressure,density\n\
+             0.5,inside,1.0,2e9,2785\n0.5,void,0.0,NaN,NaN\n0.5,density,0.5,,2785\n",
+        )
+        .unwrap();
+        let told: Vec<String> = last_figures(&run).into_iter().map(|line| line.1).collect();
+        assert_eq!(
+            told[3..],
+            [
+                "pressure 2 GPa",
+                "nothing to read: no matter is there",
+                "density 2785 kg/m^3"
+            ]
+        );
     }
 }
