@@ -125,11 +125,7 @@ impl Reader {
     /// from the gauge as the particle is from the image of the gauge.
     pub fn find(&self, matter: &Matter, means: &Means, Scratch { near, search }: &mut Scratch) {
         near.clear();
-        let Matter {
-            case,
-            particles,
-            lists,
-        } = *matter;
+        let lists = matter.lists;
         if self.gauge.moves {
             near.extend(self.place.map(|i| Near {
                 i,
@@ -139,33 +135,49 @@ impl Reader {
             }));
             return;
         }
-        let images = lists.images();
-        // Most particles are as large as the one before.
-        let (mut length, mut kernel) = (f64::NAN, means.kernel.of_length(1.0));
         for code in std::iter::once(0).chain(means.mirrors.codes()) {
             let at = means.mirrors.reflect_position(&self.gauge.at, code);
             for group in 0..lists.groups.count() {
-                for &index in search.own(lists, group, &at) {
-                    let i = images[index as usize].base();
-                    if !reads(case, self.gauge.body, particles.body[i]) {
-                        continue;
-                    }
-                    let h = particles.smoothing_length[i];
-                    if h.to_bits() != length.to_bits() {
-                        (length, kernel) = (h, means.kernel.of_length(h));
-                    }
-                    let distance = norm(&minus(&particles.position[i], &at));
-                    let volume = particles.mass[i] / particles.density[i];
-                    let weight = volume * kernel.value(distance);
-                    if weight > 0.0 {
-                        near.push(Near {
-                            i,
-                            code,
-                            weight,
-                            listed: [group, index as usize],
-                        });
-                    }
-                }
+                let places = search.own(lists, group, &at);
+                self.weigh(matter, means, (group, places), (code, &at), near);
+            }
+        }
+    }
+
+    /// Those of some places in a group that have a weight at the image of the gauge.
+    fn weigh(
+        &self,
+        matter: &Matter,
+        means: &Means,
+        (group, places): (usize, &[u32]),
+        (code, at): (u8, &[f64; 3]),
+        near: &mut Vec<Near>,
+    ) {
+        let (particles, images) = (matter.particles, matter.lists.images());
+        let sequence = matter.lists.sequence();
+        let any = self.gauge.body.is_none() && !matter.lists.groups.rigid[group];
+        // Most particles are as large as the one before.
+        let (mut length, mut kernel) = (f64::NAN, means.kernel.of_length(1.0));
+        for &index in places {
+            let index = index as usize;
+            let i = images[index].base();
+            if !any && !reads(matter.case, self.gauge.body, particles.body[i]) {
+                continue;
+            }
+            let h = particles.smoothing_length[i];
+            if h.to_bits() != length.to_bits() {
+                (length, kernel) = (h, means.kernel.of_length(h));
+            }
+            // The position of the particle, where the search has just read it.
+            let distance = norm(&minus(&sequence.position(index), at));
+            let weight = particles.mass[i] / particles.density[i] * kernel.value(distance);
+            if weight > 0.0 {
+                near.push(Near {
+                    i,
+                    code,
+                    weight,
+                    listed: [group, index],
+                });
             }
         }
     }

@@ -306,12 +306,19 @@ impl Sequence {
         });
     }
 
+    /// The position of an image (m).
+    #[inline]
+    #[must_use]
+    pub fn position(&self, index: usize) -> [f64; 3] {
+        [0, 1, 2].map(|a| self.coordinates[a][index])
+    }
+
     /// What the canonical order of a group goes by before ids and image codes: the column of an image, and
     /// where it is along that.
     #[must_use]
     pub fn rank_in_order(&self, group: usize, index: usize) -> [u64; 2] {
         let grid = &self.groups[group].grid;
-        let position = [0, 1, 2].map(|a| self.coordinates[a][index]);
+        let position = self.position(index);
         let [first, second] = grid.column(&position).map(u64::from);
         [first << 32 | second, ordered(position[grid.along])]
     }

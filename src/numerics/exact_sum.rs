@@ -82,7 +82,7 @@ const SPLIT: std::ops::RangeInclusive<u64> = 140..=2000;
 const SPLIT_BITS: u64 = 45;
 
 /// Splits after which what is left of terms is added one by one.
-const SPLITS: usize = 3;
+const SPLITS: usize = 4;
 
 /// The exact sum of any number of doubles.
 #[derive(Debug, Clone)]
@@ -161,7 +161,7 @@ impl ExactSum {
             self.add(sum);
         }
         if !split.is_done {
-            for &term in rest.as_flattened() {
+            for &term in rest.as_flattened().iter().filter(|term| **term != 0.0) {
                 self.add(term);
             }
         }

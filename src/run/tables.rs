@@ -51,6 +51,20 @@ fn of_history(case: &Case, departs: bool) -> Vec<Column> {
     all
 }
 
+/// The columns of what gauges read.
+fn of_gauges(simulation: &Simulation) -> Vec<Column> {
+    let mut all = columns(simulation.case.dimension, GAUGES);
+    let readings = simulation.gauges().columns();
+    all.extend(readings.map(|(name, unit)| Column::new(&name, unit)));
+    all
+}
+
+/// Records of the gauges of a case.
+fn records(folder: &RunFolder, case: &Case, columns: Vec<Column>) -> GaugeRecords {
+    let gauges = case.measure.gauges.iter();
+    GaugeRecords::new(folder, columns, gauges.map(|g| g.name.clone()).collect())
+}
+
 impl Tables {
     /// Starts the tables of a run of `case`, or goes on with them after the state `resume`.
     pub fn open(
@@ -72,9 +86,7 @@ impl Tables {
             case.domain.keep.is_some() || resume.is_some_and(|state| !state.departed.is_empty());
         let of_history = of_history(case, departs);
         let of_departed = [columns(REMOVED), columns(DEPARTURE)].concat();
-        let mut of_gauges = columns(GAUGES);
-        let readings = simulation.gauges().columns();
-        of_gauges.extend(readings.map(|(name, unit)| Column::new(&name, unit)));
+        let of_gauges = of_gauges(simulation);
         let many = case.measure.gauges.len() >= gauge_records::MANY;
         let has_loads = case.load_names().next().is_some();
         let removes = case.numerical_limits.policy != NumericalFailurePolicy::Stop
@@ -103,10 +115,7 @@ impl Tables {
             gauges: (simulation.gauges().any() && !many)
                 .then(|| open(&folder.gauges(), &of_gauges, "step", step))
                 .transpose()?,
-            gauge_records: many.then(|| {
-                let gauges = case.measure.gauges.iter();
-                GaugeRecords::new(folder, of_gauges, gauges.map(|g| g.name.clone()).collect())
-            }),
+            gauge_records: many.then(|| records(folder, case, of_gauges)),
             witnesses: (!case.measure.witnesses.is_empty())
                 .then(|| {
                     let passed = open(&folder.witness(), &columns(WITNESS), "time", time)?;
@@ -245,7 +254,8 @@ impl Tables {
         }))
     }
 
-    /// Writes what many gauges have read and what waits in memory.
+    /// Writes what many gauges have read and what waits in memory: also of a run that fails, since what led
+    /// to it is worth having.
     pub fn write_records(&mut self) -> Result<(), OutputError> {
         self.gauge_records
             .as_mut()
