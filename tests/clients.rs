@@ -144,7 +144,8 @@ fn the_recipes_of_the_book_draw_something() {
     let Some(python) = python() else { return };
     let folder = tempfile::tempdir().expect("a temporary folder");
     let run = folder.path().join("runs/quarter-impact");
-    let options = ["--set", "spacing=0.05 mm", "--until", "0.04us"];
+    let sets = ["--set", "spacing=0.05 mm", "--set", "fragments={}"];
+    let options = [&sets[..], &["--until", "0.04us"]].concat();
     simulate("1", "quarter-impact", &options, &run);
 
     let book = root().join("docs/src");

@@ -72,8 +72,31 @@ fn terms() -> impl Strategy<Value = Vec<f64>> {
     })
 }
 
+/// Terms of a few magnitudes, as those of particles, up to several blocks.
+fn many_terms() -> impl Strategy<Value = Vec<f64>> {
+    let term = (-1.0..1.0f64, -8i32..8).prop_map(|(x, n)| libm::ldexp(x, 12 * n));
+    (prop::collection::vec(term, 0..900), -1000i32..900).prop_map(|(mut terms, n)| {
+        for term in &mut terms {
+            *term = libm::ldexp(*term, n);
+        }
+        terms
+    })
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn terms_at_once_are_terms_one_by_one(any in terms(), many in many_terms()) {
+        for terms in [any, many] {
+            let mut all = ExactSum::new();
+            all.add_all(&terms);
+            let mut one_by_one = sum_of(&terms);
+            all.normalise();
+            one_by_one.normalise();
+            prop_assert_eq!(all.limbs(), one_by_one.limbs());
+        }
+    }
 
     #[test]
     fn agrees_with_xsum(terms in terms()) {

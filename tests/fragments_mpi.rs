@@ -7,6 +7,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use whipple::output::binary_table::BinaryTable;
+
 use cli_support::WHIPPLE;
 
 /// An impact that comes apart, in a quarter of a model.
@@ -45,7 +47,7 @@ fn alone(arguments: &[&str]) -> (i32, String) {
     (output.status.code().unwrap_or(-1), text)
 }
 
-/// All tables of fragments of a run, by name.
+/// All tables of fragments of a run, by name; those of HDF5 as text.
 fn tables(run: &Path) -> BTreeMap<String, String> {
     let mut files: Vec<_> = fs::read_dir(run.join("fragments"))
         .expect("there are tables")
@@ -54,6 +56,11 @@ fn tables(run: &Path) -> BTreeMap<String, String> {
     files.push(run.join("fragments.csv"));
     let read = |path: std::path::PathBuf| {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if path.extension().is_some_and(|ending| ending == "h5") {
+            let table = BinaryTable::open(&path).unwrap();
+            let sheet = table.sheet(0..table.rows(), None).unwrap();
+            return (name, String::from_utf8(sheet.text()).unwrap());
+        }
         (name, fs::read_to_string(path).unwrap())
     };
     files.into_iter().map(read).collect()
@@ -137,6 +144,7 @@ fn tables_are_the_same_on_any_ranks_through_a_restart_and_from_snapshots() {
         ]);
         assert_eq!(code, 0, "{text}");
         assert!(fs::read_to_string(&csv).unwrap() == *table, "{stem}");
+        assert!(wanted[&format!("{stem}.h5")] == *table, "{stem}");
         compared += 1;
     }
     assert!(compared >= 3);

@@ -88,6 +88,36 @@ fn the_small_cases() {
     }
 }
 
+/// Every folder of `inputs/` has a case that can be read, and a README.
+#[test]
+fn all_ready_cases_are_sound() {
+    let inputs = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs");
+    let mut count = 0;
+    for entry in std::fs::read_dir(inputs).unwrap() {
+        let folder = entry.unwrap().path();
+        assert!(folder.join("README.md").is_file(), "{folder:?}");
+        load(&folder.join("case.toml"), &[]).unwrap_or_else(|error| panic!("{error}"));
+        count += 1;
+    }
+    assert!(count >= 21, "{count}");
+}
+
+#[test]
+fn impacts_of_plates_and_targets() {
+    for (name, expected) in [
+        ("hiermaier-1997", &[32_404, 2_034][..]),
+        ("crater", &[106_744, 525]),
+        ("whipple-shield", &[19_125, 66_225, 3_637]),
+    ] {
+        let case = ready(name, &[]);
+        for (count, about) in particles(&case).iter().zip(expected) {
+            assert!(count.abs_diff(*about) * 50 < *about, "{name}: {count}");
+        }
+        let said = warnings(&case);
+        assert!(said.is_empty(), "{name}: {said:?}");
+    }
+}
+
 #[test]
 fn overrides_reach_every_place() {
     let case = ready(

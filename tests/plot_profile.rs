@@ -521,6 +521,7 @@ fn forces_are_drawn_for_each_pair_or_one() {
     std::fs::write(&path, rows).unwrap();
     let chart = |pair: Option<[&str; 2]>, y: &str| {
         let tables = Tables {
+            gauges: Vec::new(),
             title: String::new(),
             tables: vec![("contacts".to_owned(), path.clone())],
             columns: Columns::parse(&format!("time:{y}")).unwrap(),

@@ -49,11 +49,13 @@ q  | inputs/bar-impact | run.max_steps=150
    | inputs/contact-lab/seam.toml | run.max_steps=80
    | inputs/contact-lab/solid.toml | run.max_steps=40
    | inputs/contact-lab/seam-solid.toml | run.max_steps=40
+   | inputs/crater | spacing=0.8mm body.target.spacing.inner=0.8mm run.max_steps=60
 q  | inputs/dam-break | spacing=0.73cm run.max_steps=150
 q  | inputs/elastic-impact | spacing=0.12mm run.max_steps=60
 q  | inputs/flyer-plate | run.max_steps=150
 r  | inputs/hertz-cylinder | spacing=0.6mm
    | inputs/hertz-disc | spacing=0.5mm
+   | inputs/hiermaier-1997 | spacing=1mm body.plate.spacing.inner=1mm body.plate.spacing.outer=2mm run.max_steps=80
    | inputs/noh | run.max_steps=300
    | inputs/punch | run.max_steps=60
 q  | inputs/quarter-impact | spacing=0.05mm
@@ -64,6 +66,7 @@ q  | inputs/quarter-impact | spacing=0.05mm
 qr | inputs/tension-strip | run.max_steps=120
    | inputs/wave-pulse |
    | inputs/wave-step | sph.smoothing=1.2
+   | inputs/whipple-shield | spacing=0.4mm body.bumper.spacing.inner=0.4mm run.max_steps=60
 qr | tests/common/loaded.toml | run.max_steps=60
 qr | tests/common/absorbed.toml |
 qr | tests/common/torn.toml |

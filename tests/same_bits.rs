@@ -191,7 +191,7 @@ fn stop_and_restart_on_other_ranks() {
 }
 
 /// Gauges that are fixed, on a plane of symmetry, in the void, carried; planes that the sphere and the
-/// plate pass: every table on any ranks and through restarts between their rows.
+/// plate pass; measures of a plate, its debris, regions, a front and a bar: every table on any ranks and through restarts between their rows.
 #[test]
 fn gauges_and_witness_planes_on_any_ranks_and_through_a_restart() {
     let (_keep, at) = folder();
@@ -203,6 +203,10 @@ fn gauges_and_witness_planes_on_any_ranks_and_through_a_restart() {
          { at = [\"1 mm\", \"1 mm\", \"2 mm\"], every_steps = 3 }, \
          { at = [0, 0, \"0.5 mm\"], moves = true, body = \"sphere\", fields = [\"peak_pressure\", \"temperature\"] }]",
         "witness=[{ normal = \"-z\" }, { normal = \"-z\", point = [0, 0, \"-0.12 mm\"] }]",
+        "measure.every=0.01us",
+        "measure.region=[{ below = { z = \"-0.05 mm\" }, moves = true }, { centre = [0, 0, 0], radius = \"0.2 mm\" }]",
+        "measure.front=[{ from = [0, 0, \"0.5 mm\"], to = [0, 0, \"-0.2 mm\"] }]",
+        "measure.bar=[{ body = \"sphere\", foot = \"-z\" }]",
     ] {
         case.extend(["--set", set]);
     }
@@ -221,10 +225,56 @@ fn gauges_and_witness_planes_on_any_ranks_and_through_a_restart() {
         assert_same(&one, &other, &format!("{ranks} ranks, {axis}"));
     }
     assert_same_in_legs(&case, &[2, 1, 3], &["0.03us", "0.07us"], &one, &stopped);
-    for table in ["gauges.csv", "witness.csv", "crossings.csv", "bodies.csv"] {
+    for table in [
+        "gauges.csv",
+        "witness.csv",
+        "crossings.csv",
+        "bodies.csv",
+        "measures.csv",
+        "distributions.csv",
+    ] {
         let [a, b] = [&one, &stopped].map(|run| std::fs::read(run.join(table)).expect("a table"));
         assert!(a == b && a.len() > 1000, "{table}");
     }
+}
+
+/// Gauges in so many places that some read particles of several ranks, and that their readings go into
+/// files of their own, which restarts cut elsewhere.
+#[test]
+fn many_gauges_on_any_ranks_and_through_a_restart() {
+    let (_keep, at) = folder();
+    let place = |k: i32| {
+        let [x, y, z] = [
+            0.012 * f64::from(k),
+            0.03 * f64::from(k % 4),
+            0.1 - 0.05 * f64::from(k % 5),
+        ];
+        let every = 1 + k % 3;
+        format!("{{ at = [\"{x} mm\", \"{y} mm\", \"{z} mm\"], every_steps = {every} }}")
+    };
+    let gauges: Vec<String> = (0..120).map(place).collect();
+    let gauges = format!("gauge=[{}]", gauges.join(", "));
+    let mut case = QUARTER.to_vec();
+    for set in ["run.end_time=0.06us", &gauges] {
+        case.extend(["--set", set]);
+    }
+    let (one, stopped) = (at("one"), at("stopped"));
+    run(1, 2, &case, &[], &one);
+    for (ranks, axis) in [(2, "x"), (3, "z"), (5, "x")] {
+        let other = at(&format!("{ranks}{axis}"));
+        let axis = format!("domain.axis={axis}");
+        run(ranks, 1, &case, &["--set", &axis], &other);
+        assert_same(&one, &other, &format!("{ranks} ranks, {axis}"));
+    }
+    assert_same_in_legs(&case, &[2, 3], &["0.03us"], &one, &stopped);
+    let [a, b] = [&one, &stopped].map(|run| {
+        assert!(!run.join("gauges.csv").exists());
+        let run = whipple::output::RunFolder::at(run);
+        let sheet = whipple::output::gauge_records::sheet(&run, None);
+        sheet.expect("files").expect("readings")
+    });
+    assert!(a.rows.len() > 1000, "{}", a.rows.len());
+    assert_eq!(a.text(), b.text());
 }
 
 #[test]

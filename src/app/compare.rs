@@ -11,7 +11,7 @@ use super::results::{Results, ResultsError};
 use crate::model::readable::one_line;
 use crate::output::checkpoint;
 use crate::output::h5::Content;
-use crate::output::{RunFolder, read_regular};
+use crate::output::{RunFolder, gauge_records, read_regular};
 use crate::run::exit::EXIT_INPUT;
 use crate::run::say::{say, warn};
 
@@ -147,6 +147,9 @@ fn runs(a: &RunFolder, b: &RunFolder, report: &mut Report) -> Result<(), Results
         let (a, b) = (a.path().join(&name), b.path().join(&name));
         tables::compare(&name, &read(&a)?, &read(&b)?, report);
     }
+    if let (Some(a), Some(b)) = (records(a)?, records(b)?) {
+        tables::compare("gauges", &a, &b, report);
+    }
     let names = |folder: &RunFolder| -> Result<BTreeSet<String>, ResultsError> {
         let files = folder.snapshot_files()?;
         Ok(files.iter().map(|path| name_of(path)).collect())
@@ -181,6 +184,12 @@ fn in_both(a: &BTreeSet<String>, b: &BTreeSet<String>, report: &mut Report) -> V
         }
     }
     a.intersection(b).cloned().collect()
+}
+
+/// What many gauges have read, as the table that a few would have, however it is cut into files.
+fn records(folder: &RunFolder) -> Result<Option<String>, ResultsError> {
+    let sheet = gauge_records::sheet(folder, None)?;
+    Ok(sheet.map(|sheet| String::from_utf8_lossy(&sheet.text()).into_owned()))
 }
 
 fn name_of(path: &Path) -> String {

@@ -10,7 +10,8 @@ use crate::fragments::{Census, Fragment, Rule, find_alone};
 use crate::input;
 use crate::model::readable::{one_line, shown, shown_vector};
 use crate::model::{FragmentOptions, Include};
-use crate::output::{OutputError, RunFolder, fragments, write_atomically};
+use crate::output::fragments::FragmentTable;
+use crate::output::{OutputError, RunFolder, write_atomically};
 use crate::plot::{PlotError, Wanted, choose, parse_quantity, snapshots};
 use crate::run::exit::EXIT_INPUT;
 use crate::run::say::{counted, say, seconds, warn};
@@ -64,6 +65,10 @@ pub struct FragmentsArgs {
     /// Write the table of all fragments, as a run does into its folder `fragments`
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
+
+    /// Write the same table as HDF5
+    #[arg(long, value_name = "FILE")]
+    pub hdf5: Option<PathBuf>,
 }
 
 /// Why the fragments of a snapshot cannot be told.
@@ -95,6 +100,7 @@ pub enum FragmentsError {
 const LISTED: usize = 10;
 
 /// Runs the command; returns the exit code.
+#[must_use]
 pub fn run(args: &FragmentsArgs) -> u8 {
     match tell(args) {
         Ok(text) => {
@@ -108,7 +114,11 @@ pub fn run(args: &FragmentsArgs) -> u8 {
     }
 }
 
-fn tell(args: &FragmentsArgs) -> Result<String, FragmentsError> {
+/// Tells the fragments, and writes the tables that are asked for.
+///
+/// # Errors
+/// [`FragmentsError`] if there is no such snapshot, or if it cannot be read or a table not written.
+pub fn tell(args: &FragmentsArgs) -> Result<String, FragmentsError> {
     if args.link.is_some_and(|link| !(1.0..=4.0).contains(&link)) {
         return Err(FragmentsError::Link);
     }
@@ -118,15 +128,23 @@ fn tell(args: &FragmentsArgs) -> Result<String, FragmentsError> {
         warn(&format!("warning: {missing}"));
     }
     let options = options(args, loaded.options);
+    if let Some(doubt) = options.doubt(loaded.dimension) {
+        warn(&format!("warning: {doubt}"));
+    }
     let rule = Rule::new(&options, loaded.dimension);
     let included = loaded.included(options.include);
     let matter = loaded.matter(&included);
     let census = find_alone(&matter, &loaded.symmetry, &rule);
     let bodies: Vec<&str> = loaded.bodies.iter().map(String::as_str).collect();
+    let table = FragmentTable::new(&census, &bodies, loaded.dimension);
+    let wrote = |path: &Path| say(&format!("wrote {}", one_line(&path.display().to_string())));
     if let Some(path) = &args.csv {
-        let table = fragments::table(&census, &bodies, loaded.dimension);
-        write_atomically(path, &table)?;
-        say(&format!("wrote {}", one_line(&path.display().to_string())));
+        write_atomically(path, &table.text())?;
+        wrote(path);
+    }
+    if let Some(path) = &args.hdf5 {
+        table.write_hdf5(path)?;
+        wrote(path);
     }
     Ok(report(&loaded, &census, &options))
 }

@@ -3,7 +3,7 @@
 mod bench;
 mod check;
 pub mod compare;
-mod fragments;
+pub mod fragments;
 pub mod info;
 mod materials;
 mod measure;

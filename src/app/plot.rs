@@ -30,6 +30,7 @@ use out::{is_png, target, write};
   whipple plot runs/dam --front water --points martin-moyce.csv
   whipple plot runs/impact --front plate --along -z
   whipple plot runs/impact/contacts.csv --pair plate,sphere
+  whipple plot runs/impact --gauges front,rear --xy time:normal_stress
   whipple plot errors.csv --xy spacing:error --log xy")]
 #[expect(
     clippy::struct_excessive_bools,
@@ -181,6 +182,14 @@ pub struct PlotArgs {
         "which", "field", "section", "drawn_as", "thickness", "no_mirror", "panels", "history", "profile", "front",
     ])]
     pub pair: Option<String>,
+
+    /// Draw what gauges of a run have read, those of these names, against time: their pressure, or what
+    /// --xy says
+    #[arg(long, value_name = "NAME", value_delimiter = ',', conflicts_with_all = [
+        "which", "field", "section", "drawn_as", "thickness", "no_mirror", "panels", "history", "profile", "front",
+        "pair",
+    ])]
+    pub gauges: Vec<String>,
 
     /// Draw how far a body reaches along an axis over time, and write it as a table: the largest
     /// coordinate of its largest piece, of particles within one and a half spacings; against the

@@ -16,6 +16,7 @@ use rayon::prelude::*;
 
 use crate::model::{self, Case, Motion};
 use crate::numerics::exact_sum::ExactSum;
+use crate::numerics::gathered_sums::GatheredSums;
 use crate::numerics::vector::cross;
 use crate::particles::{GRAIN, ParticleStore};
 
@@ -288,30 +289,26 @@ impl Loads {
         terms: impl Fn(usize) -> [f64; N] + Sync,
     ) -> [ExactSum; N] {
         let owned = particles.owned();
-        let none = || std::array::from_fn(|_| ExactSum::default());
-        let of_chunk = |mut sums: [ExactSum; N], chunk: usize| {
+        let of_chunk = |mut sums: GatheredSums<N>, chunk: usize| {
             for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(owned) {
                 if !meant(i) || self.has_motions() && self.is_rigid(particles.load[i]) {
                     continue;
                 }
-                for (sum, term) in sums.iter_mut().zip(terms(i)) {
-                    sum.add(term);
-                }
+                sums.add(&terms(i));
             }
             sums
         };
-        let merge = |mut sums: [ExactSum; N], others: [ExactSum; N]| {
-            for (sum, other) in sums.iter_mut().zip(&others) {
-                sum.merge(other);
-            }
+        let merge = |mut sums: GatheredSums<N>, others: GatheredSums<N>| {
+            sums.merge(others);
             sums
         };
-        (0..owned.div_ceil(GRAIN))
+        let all = (0..owned.div_ceil(GRAIN))
             .into_par_iter()
             // same bits in any order: exact sums are integers
-            .fold(none, of_chunk)
+            .fold(GatheredSums::default, of_chunk)
             // same bits in any order, as above
-            .reduce(none, merge)
+            .reduce(GatheredSums::default, merge);
+        all.into_sums()
     }
 
     /// Adds the torque of gravity on what is no part of a rigid body to `torque`.

@@ -93,6 +93,22 @@ impl Material {
         Some(thermal.temperature(matter, specific_energy))
     }
 
+    /// [`Self::temperature`] of a batch.
+    #[must_use]
+    pub fn temperatures(&self, density: &Lanes, energy: &Lanes, damage: &Lanes) -> Option<Lanes> {
+        let thermal = self.thermal.as_ref()?;
+        let response = (self.eos).response(self.reference_density, density, energy);
+        let mut point = PointBatch {
+            density: *density,
+            specific_energy: *energy,
+            pressure: response.pressure,
+            damage: *damage,
+            ..PointBatch::ZERO
+        };
+        self.failure.limit_tension(&mut point);
+        Some(thermal.temperatures(density, energy, &point.pressure, &response))
+    }
+
     /// Specific energy (J/kg) at a density (kg/m³) and temperature (K) of matter without damage, if
     /// the material has thermal constants: [`Self::temperature`] of it is that temperature.
     #[must_use]

@@ -7,6 +7,7 @@ use crate::comm::Comm;
 use crate::material::FAILED;
 use crate::model::{Case, edge};
 use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
+use crate::numerics::gathered_sums::GatheredSums;
 use crate::numerics::ordered::{disordered, ordered};
 use crate::numerics::vector::{cross, norm};
 use crate::particles::{GRAIN, ParticleStore};
@@ -60,85 +61,91 @@ const SUMS: usize = 16;
 /// either sign, temperature, plastic strain.
 const EXTREMES: usize = 17;
 
+/// Extremes that hang on the size of a particle.
+const SIZED: usize = 6;
+
 /// What some particles of a body come to.
-#[derive(Clone)]
 struct Part {
-    sums: [ExactSum; SUMS],
+    sums: GatheredSums<SUMS>,
     extremes: [f64; EXTREMES],
 }
 
 impl Part {
     fn new() -> Self {
         Self {
-            sums: std::array::from_fn(|_| ExactSum::default()),
+            sums: GatheredSums::default(),
             extremes: [f64::NEG_INFINITY; EXTREMES],
         }
     }
 
-    fn join(&mut self, other: &Self) {
-        for (sum, other) in self.sums.iter_mut().zip(&other.sums) {
-            sum.merge(other);
-        }
+    fn join(&mut self, other: Self) {
+        self.sums.merge(other.sums);
         for (most, &other) in self.extremes.iter_mut().zip(&other.extremes) {
             *most = most.max(other);
         }
     }
 
-    /// Takes particle `i` of the store in.
-    fn add(&mut self, case: &Case, particles: &ParticleStore, i: usize) {
+    /// Takes particle `i` of the store in, of a temperature (K) if it has one.
+    fn add(&mut self, case: &Case, particles: &ParticleStore, i: usize, temperature: f64) {
         let (m, thermal) = (particles.mass[i], particles.thermal_mass(i));
         let (x, v) = (&particles.position[i], &particles.velocity[i]);
         let (density, energy) = (particles.density[i], particles.specific_energy[i]);
         let damage = particles.damage.get(i).copied().unwrap_or_default();
         let work = particles.plastic_energy.get(i).copied();
         let material = &case.materials[case.bodies[particles.body[i] as usize].material];
-        let temperature = reading::temperature(case, particles, i);
         let melting = material.thermal.as_ref();
         let melting = melting.and_then(|t| t.constants().melting_temperature);
-        let molten = temperature.zip(melting).is_some_and(|(t, at)| t >= at);
+        let molten = melting.is_some_and(|melting| temperature >= melting);
         let (turn, speed) = (cross(x, v), norm(v));
         let mass_if = |yes: bool| if yes { thermal } else { 0.0 };
-        let sums = [
-            [m, m * v[0], m * v[1], m * v[2]],
-            [
-                m * turn[0],
-                m * turn[1],
-                m * turn[2],
-                0.5 * m * speed * speed,
-            ],
-            [
-                thermal * energy,
-                thermal * work.unwrap_or_default(),
-                mass_if(damage >= FAILED),
-                mass_if(molten),
-            ],
-            [m * x[0], m * x[1], m * x[2], 1.0],
-        ];
-        for (sum, term) in self.sums.iter_mut().zip(sums.as_flattened()) {
-            sum.add(*term);
-        }
-        let half = 0.5 * edge(thermal / density, case.dimension);
+        self.sums.add(&[
+            m,
+            m * v[0],
+            m * v[1],
+            m * v[2],
+            m * turn[0],
+            m * turn[1],
+            m * turn[2],
+            0.5 * m * speed * speed,
+            thermal * energy,
+            thermal * work.unwrap_or_default(),
+            mass_if(damage >= FAILED),
+            mass_if(molten),
+            m * x[0],
+            m * x[1],
+            m * x[2],
+            1.0,
+        ]);
+        self.reach(x, thermal / density, case.dimension);
         let pressure = particles.pressure[i];
-        let extremes = [
-            &x.map(|c| c + half)[..],
-            &x.map(|c| half - c),
-            v,
-            &v.map(|c| -c),
-            &[speed, pressure, -pressure],
-            &[
-                temperature.unwrap_or(f64::NEG_INFINITY),
-                particles.plastic_strain[i],
-            ],
-        ];
-        for (most, &value) in self.extremes.iter_mut().zip(extremes.into_iter().flatten()) {
-            // What is no number has been refused by the choice of the step; zero has one sign.
-            *most = if value > *most { value + 0.0 } else { *most };
+        let extremes = [v, &v.map(|c| -c), &[speed, pressure, -pressure]];
+        let last = [temperature, particles.plastic_strain[i]];
+        let values = extremes.into_iter().flatten().chain(&last);
+        for (most, &value) in self.extremes[SIZED..].iter_mut().zip(values) {
+            raise(most, value);
+        }
+    }
+
+    /// Takes in how far a particle at `x` (m) of a volume (mᵈ) reaches.
+    fn reach(&mut self, x: &[f64; 3], volume: f64, dimension: usize) {
+        let (upper, lower) = self.extremes[..SIZED].split_at(3);
+        let room = (0..3).map(|a| (upper[a] - x[a]).min(lower[a] + x[a]));
+        let room = 2.0 * room.fold(f64::INFINITY, f64::min);
+        // The root is taken of those alone that may reach beyond all others so far, to more than rounding.
+        let within = (1..dimension).fold(room, |power, _| power * room);
+        if room > 0.0 && within > 1.1 * volume {
+            return;
+        }
+        let half = 0.5 * edge(volume, dimension);
+        for a in 0..3 {
+            raise(&mut self.extremes[a], x[a] + half);
+            raise(&mut self.extremes[3 + a], half - x[a]);
         }
     }
 
     /// The figures of the whole, of the sums of all ranks.
-    fn figures(&self, whole: Whole) -> BodyFigures {
-        let sums: [f64; SUMS] = std::array::from_fn(|k| self.sums[k].value());
+    fn figures(&mut self, whole: Whole) -> BodyFigures {
+        let sums = self.sums.sums().each_ref().map(ExactSum::value);
         let three = |first: usize| [sums[first], sums[first + 1], sums[first + 2]];
         let most = |k: usize| match self.extremes[k] {
             f64::NEG_INFINITY => f64::NAN,
@@ -190,15 +197,20 @@ pub fn bodies(
     comm: &Comm,
 ) -> Vec<BodyFigures> {
     let owned = particles.owned();
-    let none = || vec![Part::new(); case.bodies.len()];
+    let none = || case.bodies.iter().map(|_| Part::new()).collect::<Vec<_>>();
     let of_chunk = |mut parts: Vec<Part>, chunk: usize| {
-        for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(owned) {
-            parts[particles.body[i] as usize].add(case, particles, i);
+        let first = chunk * GRAIN;
+        let mut temperatures = [0.0; GRAIN];
+        let temperatures = &mut temperatures[..GRAIN.min(owned - first)];
+        reading::temperatures(case, particles, first, temperatures);
+        for (k, &temperature) in temperatures.iter().enumerate() {
+            let i = first + k;
+            parts[particles.body[i] as usize].add(case, particles, i, temperature);
         }
         parts
     };
     let join = |mut parts: Vec<Part>, others: Vec<Part>| {
-        for (part, other) in parts.iter_mut().zip(&others) {
+        for (part, other) in parts.iter_mut().zip(others) {
             part.join(other);
         }
         parts
@@ -210,9 +222,11 @@ pub fn bodies(
         // same bits in any order, as above
         .reduce(none, join);
     let mut limbs = Vec::new();
-    gather_limbs(parts.iter_mut().flat_map(|part| &mut part.sums), &mut limbs);
+    let sums = parts.iter_mut().flat_map(|part| part.sums.sums());
+    gather_limbs(sums, &mut limbs);
     comm.sum_i64(&mut limbs);
-    scatter_limbs(parts.iter_mut().flat_map(|part| &mut part.sums), &limbs);
+    let sums = parts.iter_mut().flat_map(|part| part.sums.sums());
+    scatter_limbs(sums, &limbs);
     let extremes = parts.iter().flat_map(|part| part.extremes);
     let mut words: Vec<u64> = extremes.map(ordered).collect();
     comm.max_u64(&mut words);
@@ -220,5 +234,11 @@ pub fn bodies(
     for (most, &word) in extremes.zip(&words) {
         *most = disordered(word);
     }
-    parts.iter().map(|part| part.figures(whole)).collect()
+    parts.iter_mut().map(|part| part.figures(whole)).collect()
+}
+
+/// Raises an extreme to a value beyond it. What is no number has been refused by the choice of the step;
+/// zero has one sign.
+fn raise(most: &mut f64, value: f64) {
+    *most = if value > *most { value + 0.0 } else { *most };
 }

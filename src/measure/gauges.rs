@@ -1,50 +1,33 @@
 //! Gauges: what matter holds at a place, fixed in space or carried along.
 //!
-//! A fixed gauge reads the mean of the matter about it, weighted with kernel and volume (Shepard):
-//! `Σ V_j W_j f_j / Σ V_j W_j`, of all images in whose support it is. The sum below, its *coverage*,
-//! is about one inside of matter, half at a face and zero in the void, where there is nothing to read.
-//! Each rank adds its own particles, found by the columns of the neighbour search.
+//! Each rank reads what its own particles give; what particles of several ranks give to one gauge is
+//! joined in [`super::gauge_shares`].
 
 use rayon::prelude::*;
 
-use super::reading::{MOST, Reading, along, stress};
+use super::gauge_reader::{FIRST, Matter, Means, Reader, Scratch, reads};
+use super::gauge_shares::Shares;
+use super::reading::Reading;
 use crate::comm::Comm;
 use crate::domain::Mirrors;
 use crate::model::{Cadence, Case, Gauge};
 use crate::neighbours::Lists;
-use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use crate::numerics::kernel::Kernel;
-use crate::numerics::vector::{minus, norm, square};
 use crate::particles::ParticleStore;
 
 /// The gauges of a case.
 #[derive(Debug)]
 pub struct Gauges {
-    kernel: Kernel,
-    mirrors: Mirrors,
+    means: Means,
     /// What any of them reads, with the first column of each.
     readings: Vec<(Reading, usize)>,
     /// Column of the normal stress, if any reads it.
     along: Option<usize>,
     columns: usize,
     readers: Vec<Reader>,
-    limbs: Vec<i64>,
+    shares: Shares,
     /// Carried ids that are looked for, with their gauges.
     missing: Vec<(u64, usize)>,
-}
-
-/// What one gauge needs from reading to reading.
-#[derive(Debug)]
-struct Reader {
-    gauge: Gauge,
-    /// Its readings, with the first column of each.
-    readings: Vec<(Reading, usize)>,
-    /// Place in the store of the particle that carries it, as far as this rank knows.
-    place: Option<usize>,
-    /// Whether it reads now.
-    due: bool,
-    /// Coverage, position, then its readings and the normal stress, each times its weight.
-    sums: Vec<ExactSum>,
 }
 
 /// What a gauge has read.
@@ -59,9 +42,6 @@ pub struct GaugeRow {
     /// By column; nothing where the gauge does not read it. Not a number without matter.
     pub values: Vec<Option<f64>>,
 }
-
-/// Sums of a gauge before its readings.
-const FIRST: usize = 4;
 
 impl Gauges {
     /// Those of a case.
@@ -82,29 +62,16 @@ impl Gauges {
         let along = gauges.iter().any(|gauge| gauge.along.is_some());
         let along = along.then_some(columns);
         columns += usize::from(along.is_some());
-        let reader = |gauge: &Gauge| {
-            let own = |(reading, _): &&(Reading, usize)| {
-                gauge.fields.iter().any(|name| name == reading.name())
-            };
-            let readings: Vec<_> = readings.iter().filter(own).copied().collect();
-            let numbers: usize = readings.iter().map(|(r, _)| r.endings().len()).sum();
-            let sums = FIRST + numbers + usize::from(gauge.along.is_some());
-            Reader {
-                gauge: gauge.clone(),
-                readings,
-                place: None,
-                due: false,
-                sums: vec![ExactSum::default(); sums],
-            }
-        };
         Self {
-            kernel: Kernel::new(case.dimension),
-            mirrors: Mirrors::new(&case.symmetry),
-            readers: gauges.iter().map(reader).collect(),
+            means: Means {
+                kernel: Kernel::new(case.dimension),
+                mirrors: Mirrors::new(&case.symmetry),
+            },
+            readers: gauges.iter().map(|g| Reader::new(g, &readings)).collect(),
             readings,
             along,
             columns,
-            limbs: Vec::new(),
+            shares: Shares::default(),
             missing: Vec::new(),
         }
     }
@@ -129,7 +96,7 @@ impl Gauges {
     #[must_use]
     pub fn memory(&self) -> usize {
         let sums = self.readers.iter().map(|reader| reader.sums.capacity());
-        size_of::<ExactSum>() * sums.sum::<usize>() + 8 * self.limbs.capacity()
+        8 * sums.sum::<usize>() + self.shares.memory()
     }
 
     /// The particles that carry gauges, in their order: nearest at the start of the body that the
@@ -187,25 +154,24 @@ impl Gauges {
             return Vec::new();
         }
         self.find_carriers(particles, carriers);
-        let means = (&self.kernel, &self.mirrors);
-        // Each gauge has its own sums: nothing depends on threads.
-        (self.readers.par_iter_mut().with_max_len(AT_ONCE))
+        let matter = Matter {
+            case,
+            particles,
+            lists,
+        };
+        let means = &self.means;
+        // Each gauge has its own sums, in canonical order: nothing depends on threads.
+        (self.readers.par_iter_mut().with_min_len(AT_ONCE))
             .filter(|reader| reader.due)
-            .for_each(|reader| reader.add(case, particles, lists, means));
-        let due = |reader: &&mut Reader| reader.due;
-        let mut limbs = std::mem::take(&mut self.limbs);
-        limbs.clear();
-        let sums = self.readers.iter_mut().filter(due);
-        gather_limbs(sums.flat_map(|reader| &mut reader.sums), &mut limbs);
-        comm.sum_i64(&mut limbs);
-        let sums = self.readers.iter_mut().filter(due);
-        scatter_limbs(sums.flat_map(|reader| &mut reader.sums), &limbs);
-        self.limbs = limbs;
+            .for_each_init(Scratch::default, |scratch, reader| {
+                reader.sum(&matter, means, scratch);
+            });
+        self.shares.join(&mut self.readers, &matter, means, comm);
         let columns = (self.columns, self.along);
-        let readers = self.readers.iter_mut().enumerate();
+        let readers = self.readers.iter().enumerate();
         readers
             .filter(|(_, reader)| reader.due)
-            .map(|(gauge, reader)| reader.take(gauge, columns))
+            .map(|(gauge, reader)| row(reader, gauge, columns))
             .collect()
     }
 
@@ -254,111 +220,36 @@ impl Gauges {
 /// The mark of a particle that carries a gauge.
 const CARRIES: u32 = 1;
 
-/// Gauges that a task reads at most.
+/// Gauges that a task reads at least.
 const AT_ONCE: usize = 16;
 
-impl Reader {
-    /// Adds what this rank's particles give, and their images behind symmetry planes: all of them, where the
-    /// search has those alone that some particle sees. An image is as far from the gauge as the particle is
-    /// from the image of the gauge.
-    fn add(
-        &mut self,
-        case: &Case,
-        particles: &ParticleStore,
-        lists: &Lists,
-        (kernel, mirrors): (&Kernel, &Mirrors),
-    ) {
-        if self.gauge.moves {
-            if let Some(i) = self.place {
-                self.add_particle(case, particles, (i, 0), 1.0);
-            }
-            return;
-        }
-        for code in std::iter::once(0).chain(mirrors.codes()) {
-            let at = mirrors.reflect_position(&self.gauge.at, code);
-            lists.near_point(&at, None, |index| {
-                let image = lists.images()[index];
-                let i = image.base();
-                let own = image.code() == 0 && i < particles.owned();
-                if !own || !reads(case, self.gauge.body, particles.body[i]) {
-                    return;
-                }
-                let distance = norm(&minus(&particles.position[i], &at));
-                let volume = particles.mass[i] / particles.density[i];
-                let weight = volume * kernel.value(distance, particles.smoothing_length[i]);
-                if weight > 0.0 {
-                    self.add_particle(case, particles, (i, code), weight);
-                }
-            });
+/// What the sums of a gauge say, among so many columns and with that of the normal stress.
+fn row(reader: &Reader, gauge: usize, (columns, along): (usize, Option<usize>)) -> GaugeRow {
+    let (first, rest) = reader.sums.split_at(FIRST);
+    let coverage = first[0];
+    let mut means = rest.iter().map(|sum| sum / coverage);
+    let mut values = vec![None; columns];
+    for (reading, column) in &reader.readings {
+        let places = &mut values[*column..*column + reading.endings().len()];
+        for (value, mean) in places.iter_mut().zip(&mut means) {
+            *value = Some(mean);
         }
     }
-
-    /// Adds an image of a particle.
-    fn add_particle(
-        &mut self,
-        case: &Case,
-        particles: &ParticleStore,
-        (i, code): (usize, u8),
-        weight: f64,
-    ) {
-        let (first, rest) = self.sums.split_at_mut(FIRST);
-        first[0].add(weight);
-        if self.gauge.moves {
-            for (sum, x) in first[1..].iter_mut().zip(particles.position[i]) {
-                sum.add(x);
-            }
-        }
-        let mut sums = rest.iter_mut();
-        for (reading, _) in &self.readings {
-            let values: [f64; MOST] = reading.read(case, particles, i, code);
-            let own = values[..reading.endings().len()].iter();
-            for (value, sum) in own.zip(&mut sums) {
-                sum.add(weight * value);
-            }
-        }
-        if let (Some(normal), Some(sum)) = (&self.gauge.along, sums.next()) {
-            sum.add(weight * along(&stress(particles, i, code), normal));
-        }
+    if let (Some(column), Some(_)) = (along, reader.gauge.along) {
+        values[column] = means.next();
     }
-
-    /// What the sums of all ranks say, among so many columns and with that of the normal stress;
-    /// forgets them.
-    fn take(&mut self, gauge: usize, (columns, along): (usize, Option<usize>)) -> GaugeRow {
-        let mut sums = self.sums.iter_mut().map(std::mem::take);
-        let mut next = || sums.next().map_or(0.0, |sum| sum.value());
-        let coverage = next();
-        let carried = [next(), next(), next()];
-        let mut values = vec![None; columns];
-        for (reading, column) in &self.readings {
-            for k in 0..reading.endings().len() {
-                values[column + k] = Some(next() / coverage);
-            }
-        }
-        if let (Some(column), Some(_)) = (along, self.gauge.along) {
-            values[column] = Some(next() / coverage);
-        }
-        let position = match (self.gauge.moves, coverage > 0.0) {
-            (false, _) => self.gauge.at,
-            (true, true) => carried,
-            // Its particle has been taken out.
-            (true, false) => [f64::NAN; 3],
-        };
-        GaugeRow {
-            gauge,
-            position,
-            coverage,
-            values,
-        }
+    let position = match (reader.gauge.moves, coverage > 0.0) {
+        (false, _) => reader.gauge.at,
+        (true, true) => [first[1], first[2], first[3]],
+        // Its particle has been taken out.
+        (true, false) => [f64::NAN; 3],
+    };
+    GaugeRow {
+        gauge,
+        position,
+        coverage,
+        values,
     }
-}
-
-/// Whether a gauge for a body, or for all that deform, reads particles of a body.
-fn reads(case: &Case, wanted: Option<usize>, body: u32) -> bool {
-    let body = body as usize;
-    wanted.map_or_else(
-        || case.bodies[body].rigid.is_none(),
-        |wanted| wanted == body,
-    )
 }
 
 /// Bits of the square of the distance of this rank's nearest particle, and its id.
@@ -367,13 +258,12 @@ fn nearest(gauge: &Gauge, case: &Case, particles: &ParticleStore, lists: &Lists)
     let mut range = 2.0 * lists.longest();
     // Each rank looks as far as it has particles: twice as far each time.
     for _ in 0..DOUBLINGS {
-        lists.near_point(&gauge.at, Some(range), |index| {
+        lists.near_point(&gauge.at, range, |index, square| {
             let image = lists.images()[index];
             let i = image.base();
             let own = image.code() == 0 && i < particles.owned();
             if own && reads(case, gauge.body, particles.body[i]) {
-                let distance = square(&minus(&particles.position[i], &gauge.at));
-                best = best.min([distance.to_bits(), particles.id[i]]);
+                best = best.min([square.to_bits(), particles.id[i]]);
             }
         });
         if best[0] != u64::MAX {

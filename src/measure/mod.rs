@@ -13,6 +13,8 @@ mod figure;
 mod flight;
 mod frame;
 mod front;
+mod gauge_reader;
+mod gauge_shares;
 mod gauges;
 mod kept;
 mod mask;

@@ -1,6 +1,7 @@
 //! What can be read of a particle: a field of the table, or what follows from some.
 
 use crate::domain::Mirrors;
+use crate::material::LANES;
 use crate::model::Case;
 use crate::particles::{
     FIELDS, FieldInfo, FieldKind, Mirror, ParticleStore, STRESS, TEMPERATURE, VON_MISES_STRESS,
@@ -17,6 +18,17 @@ pub enum Reading {
     VonMises,
     /// Temperature; not a number without thermal constants.
     Temperature,
+}
+
+/// An image of a particle that a gauge reads.
+#[derive(Debug, Clone, Copy)]
+pub struct Near {
+    pub i: usize,
+    pub code: u8,
+    /// `V W`, or one.
+    pub weight: f64,
+    /// Where it stands in the lists: group and place.
+    pub listed: [usize; 2],
 }
 
 /// Most numbers of a reading.
@@ -98,6 +110,41 @@ impl Reading {
     }
 }
 
+impl Reading {
+    /// Adds the numbers of some images, each times its weight, to as many sums.
+    pub fn add_up(self, case: &Case, particles: &ParticleStore, near: &[Near], sums: &mut [f64]) {
+        match (self, &mut *sums) {
+            (Self::Field(field), [sum]) => {
+                let values: &[f64] = bytemuck::cast_slice(particles.bytes(field.id));
+                // What a case does not hold is zero.
+                if !values.is_empty() {
+                    *sum = near
+                        .iter()
+                        .fold(*sum, |sum, n| sum + n.weight * values[n.i]);
+                }
+            }
+            (Self::Field(field), [x, y, z]) if near.iter().all(|one| one.code == 0) => {
+                let values: &[f64] = bytemuck::cast_slice(particles.bytes(field.id));
+                let values = values.as_chunks::<3>().0;
+                for one in near.iter().filter(|_| !values.is_empty()) {
+                    let value = &values[one.i];
+                    *x += one.weight * value[0];
+                    *y += one.weight * value[1];
+                    *z += one.weight * value[2];
+                }
+            }
+            _ => {
+                for one in near {
+                    let values = self.read(case, particles, one.i, one.code);
+                    for (sum, value) in sums.iter_mut().zip(values) {
+                        *sum += one.weight * value;
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// The image of a field's numbers.
 fn reflect(rule: Mirror, all: &mut [f64; MOST], code: u8) {
     match rule {
@@ -146,6 +193,30 @@ pub fn temperature(case: &Case, particles: &ParticleStore, i: usize) -> Option<f
     let material = &case.materials[case.bodies[particles.body[i] as usize].material];
     let damage = particles.damage.get(i).copied().unwrap_or_default();
     material.temperature(particles.density[i], particles.specific_energy[i], damage)
+}
+
+/// Temperatures (K) of the owned particles from `first` on; minus infinity where a material has no
+/// thermal constants.
+pub fn temperatures(case: &Case, particles: &ParticleStore, first: usize, all: &mut [f64]) {
+    let material = |i: usize| case.bodies[particles.body[i] as usize].material;
+    for (eight, all) in all.chunks_mut(LANES).enumerate() {
+        let first = first + eight * LANES;
+        let end = first + all.len();
+        if all.len() < LANES || (first..end).any(|i| material(i) != material(first)) {
+            for (k, one) in all.iter_mut().enumerate() {
+                *one = temperature(case, particles, first + k).unwrap_or(f64::NEG_INFINITY);
+            }
+            continue;
+        }
+        let lanes =
+            |field: &[f64]| std::array::from_fn(|k| field.get(first + k).map_or(0.0, |x| *x));
+        let told = case.materials[material(first)].temperatures(
+            &lanes(&particles.density),
+            &lanes(&particles.specific_energy),
+            &lanes(&particles.damage),
+        );
+        all.copy_from_slice(&told.unwrap_or([f64::NEG_INFINITY; LANES]));
+    }
 }
 
 #[cfg(test)]

@@ -43,3 +43,41 @@ impl Default for FragmentOptions {
         }
     }
 }
+
+/// Shortest link that links the neighbours of a particle of a cubic filling with each other, √2 spacings
+/// apart.
+const DIAGONAL: f64 = 1.42;
+
+impl FragmentOptions {
+    /// What looks like a mistake in a model of so many dimensions, if anything does.
+    #[must_use]
+    pub fn doubt(&self, dimension: usize) -> Option<String> {
+        if self.link >= DIAGONAL || self.bridges || dimension == 1 {
+            return None;
+        }
+        Some(format!(
+            "a link of {} spacings is shorter than {DIAGONAL}: neighbours of a particle in a cubic filling are not \
+             linked with each other, so that each particle is a bridge and all is dust, unless `bridges` is true",
+            self.link
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_link_shorter_than_the_diagonal_is_doubtful() {
+        let of = |link, bridges| FragmentOptions {
+            link,
+            bridges,
+            ..FragmentOptions::default()
+        };
+        let doubt = of(1.4, false).doubt(3).unwrap();
+        assert!(doubt.contains("a link of 1.4 spacings"), "{doubt}");
+        assert_eq!(of(1.4, false).doubt(1), None);
+        assert_eq!(of(1.4, true).doubt(2), None);
+        assert_eq!(of(1.42, false).doubt(3), None);
+    }
+}

@@ -119,13 +119,18 @@ impl Lists {
         r[0] * r[0] + r[1] * r[1] + r[2] * r[2] < range * range
     }
 
-    /// Calls `visit` with the place of each image that is nearer than `range` (m) to a point (m), or
-    /// than the longest support of its group without a range.
-    pub fn near_point(&self, point: &[f64; 3], range: Option<f64>, mut visit: impl FnMut(usize)) {
-        for (group, lengths) in self.lengths.iter().enumerate() {
-            let range = range.unwrap_or(SUPPORT * lengths.longest);
+    /// Calls `visit`, in canonical order, with the place of each image that is nearer than `range` (m) to a
+    /// point (m), and with the square of its distance (m²).
+    pub fn near_point(&self, point: &[f64; 3], range: f64, mut visit: impl FnMut(usize, f64)) {
+        for group in 0..self.lengths.len() {
             self.sequence.near_point(group, point, range, &mut visit);
         }
+    }
+
+    /// The longest support in a group (m), and whether it is that of all particles of the case.
+    pub(super) fn support(&self, group: usize) -> (f64, bool) {
+        let uniform = self.sequence.smoothing_lengths().is_empty();
+        (SUPPORT * self.lengths[group].longest, uniform)
     }
 
     /// The longest smoothing length (m).

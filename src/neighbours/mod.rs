@@ -15,6 +15,7 @@ mod lists;
 mod motion;
 mod near;
 mod pairs;
+mod point;
 mod sequence;
 mod sort;
 
@@ -29,4 +30,5 @@ pub use kinds::Kinds;
 pub use lists::Lists;
 pub use motion::MotionRecord;
 pub use pairs::PairList;
+pub use point::PointSearch;
 pub use sequence::Sequence;

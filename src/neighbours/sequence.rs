@@ -11,6 +11,7 @@ use super::facts::{IMAGE, ImageFacts};
 use super::group::Group;
 use super::sort::{SCRATCH_WORDS, Sorter, Targets, Walls};
 use crate::numerics::lanes::{LANES, Lanes};
+use crate::numerics::ordered::ordered;
 use crate::particles::{Image, Scatter, resize};
 
 /// The sorted images. Buffers are kept from step to step.
@@ -279,13 +280,13 @@ impl Sequence {
     }
 
     /// Calls `visit`, in canonical order, with the place of each image of a group that is nearer than
-    /// `range` (m) to a point (m).
+    /// `range` (m) to a point (m), and the square of its distance (m²).
     pub fn near_point(
         &self,
         group: usize,
         point: &[f64; 3],
         range: f64,
-        mut visit: impl FnMut(usize),
+        mut visit: impl FnMut(usize, f64),
     ) {
         let along = self.along(group);
         self.columns_near(group, point, point, range, |_, column| {
@@ -297,11 +298,29 @@ impl Sequence {
                 }
                 let apart = |a: usize| self.coordinates[a][index] - point[a];
                 let [x, y, z] = [apart(0), apart(1), apart(2)];
-                if x * x + y * y + z * z < range * range {
-                    visit(index);
+                let square = x * x + y * y + z * z;
+                if square < range * range {
+                    visit(index, square);
                 }
             }
         });
+    }
+
+    /// The position of an image (m).
+    #[inline]
+    #[must_use]
+    pub fn position(&self, index: usize) -> [f64; 3] {
+        [0, 1, 2].map(|a| self.coordinates[a][index])
+    }
+
+    /// What the canonical order of a group goes by before ids and image codes: the column of an image, and
+    /// where it is along that.
+    #[must_use]
+    pub fn rank_in_order(&self, group: usize, index: usize) -> [u64; 2] {
+        let grid = &self.groups[group].grid;
+        let position = self.position(index);
+        let [first, second] = grid.column(&position).map(u64::from);
+        [first << 32 | second, ordered(position[grid.along])]
     }
 
     /// First place of a column whose position along it is not below `from` (m). `hint` is a place

@@ -31,6 +31,9 @@
 //! summed if each has called [`ExactSum::normalise`] before. The top limb ends the range: 2⁴⁵
 //! terms of the largest magnitude fit, and correspondingly more smaller ones.
 
+use super::dispatch::{Vectorised, instructions};
+use super::lanes::{LANES, Lanes};
+
 /// Bits of a digit.
 const DIGIT_BITS: u32 = 32;
 
@@ -66,6 +69,20 @@ const NOT_FINITE: u64 = 0x7ff;
 
 /// Position of the lowest bit of the largest double.
 const LARGEST_SHIFT: usize = 2045;
+
+/// Terms that [`ExactSum::add_all`] splits at once.
+pub(super) const BLOCK: usize = 256;
+
+/// Biased exponents of the largest terms that it can split: neither the numbers by which it rounds nor the
+/// units to which leave the normal range.
+const SPLIT: std::ops::RangeInclusive<u64> = 140..=2000;
+
+/// Bits that a split takes off the top of all terms: of 53 that a double has those that 256 terms need are room
+/// for carries, and another that of the rounding.
+const SPLIT_BITS: u64 = 45;
+
+/// Splits after which what is left of terms is added one by one.
+const SPLITS: usize = 4;
 
 /// The exact sum of any number of doubles.
 #[derive(Debug, Clone)]
@@ -120,6 +137,34 @@ impl ExactSum {
         self.limbs[first] += signed(low.cast_signed() & DIGIT_MASK);
         self.limbs[first + 1] += signed((low >> DIGIT_BITS).cast_signed());
         self.limbs[first + 2] += signed(high.cast_signed());
+    }
+
+    /// Adds terms, without rounding, faster than one by one.
+    ///
+    /// Of a block of terms of at most 2ᵉ the parts that are multiples of 2ᵉ⁻⁴⁴ are added as doubles: 256 of them
+    /// lose no bit. What is left is at most 2ᵉ⁻⁴⁵, and is split the same way, until nothing is (the idea of
+    /// Rump, Ogita & Oishi (2008), SIAM J. Sci. Comput. 31, 189, with the sums of the parts kept whole).
+    pub fn add_all(&mut self, terms: &[f64]) {
+        for block in terms.chunks(BLOCK) {
+            self.add_block(block);
+        }
+    }
+
+    fn add_block(&mut self, block: &[f64]) {
+        let mut rest = [0.0; BLOCK];
+        rest[..block.len()].copy_from_slice(block);
+        let rest = rest[..block.len().next_multiple_of(LANES)]
+            .as_chunks_mut()
+            .0;
+        let split = instructions().run(Split { terms: rest });
+        for &sum in &split.sums[..split.count] {
+            self.add(sum);
+        }
+        if !split.is_done {
+            for &term in rest.as_flattened().iter().filter(|term| **term != 0.0) {
+                self.add(term);
+            }
+        }
     }
 
     /// Adds all terms of another sum.
@@ -188,6 +233,68 @@ impl ExactSum {
             MINUS_INFINITY
         };
         self.limbs[counter] += 1;
+    }
+}
+
+/// Takes multiples of ever smaller units off all terms.
+struct Split<'a> {
+    terms: &'a mut [[f64; LANES]],
+}
+
+/// Sums of the multiples, one for each unit, and whether nothing is left of the terms.
+struct Parts {
+    sums: [f64; SPLITS],
+    count: usize,
+    is_done: bool,
+}
+
+impl Vectorised for Split<'_> {
+    type Output = Parts;
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) -> Parts {
+        let mut parts = Parts {
+            sums: [0.0; SPLITS],
+            count: 0,
+            is_done: false,
+        };
+        let zero = V::splat(0.0);
+        // A term minus itself is no number where the term is not finite.
+        let (mut most, mut odd) = (zero, zero);
+        for eight in &*self.terms {
+            let terms = V::read(eight);
+            most = most.max(terms.max(zero.sub(terms)));
+            odd = odd.add(terms.sub(terms));
+        }
+        let is_finite = odd.store().0.iter().all(|&odd| odd == 0.0);
+        let largest = most.store().0.into_iter().fold(0.0, f64::max);
+        let exponent = largest.to_bits() >> FRACTION_BITS;
+        parts.is_done = is_finite && largest == 0.0;
+        if parts.is_done || !is_finite || !SPLIT.contains(&exponent) {
+            return parts;
+        }
+        // 1.5 × 2⁵² units of 2^(e − 44), with all terms at most 2^e.
+        let mut rounder = exponent + 9;
+        for sum in &mut parts.sums {
+            let unit = V::splat(f64::from_bits((rounder << FRACTION_BITS) | 1 << 51));
+            let (mut multiples, mut left) = (zero, zero);
+            for eight in &mut *self.terms {
+                let terms = V::read(eight);
+                let multiple = terms.add(unit).sub(unit);
+                let rest = terms.sub(multiple);
+                multiples = multiples.add(multiple);
+                left = left.max(rest.max(zero.sub(rest)));
+                *eight = rest.store().0;
+            }
+            *sum = multiples.store().0.iter().sum();
+            parts.count += 1;
+            parts.is_done = left.store().0.iter().all(|&left| left == 0.0);
+            if parts.is_done {
+                break;
+            }
+            rounder -= SPLIT_BITS;
+        }
+        parts
     }
 }
 

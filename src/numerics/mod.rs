@@ -2,6 +2,7 @@
 
 pub mod dispatch;
 pub mod exact_sum;
+pub mod gathered_sums;
 pub mod kernel;
 pub mod lane_matrix;
 pub mod lanes;

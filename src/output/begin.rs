@@ -9,7 +9,7 @@ use crate::comm::Comm;
 use super::checkpoint::{self, step_of};
 use super::files::names_in;
 use super::lock::{LOCK, RunLock};
-use super::run_folder::{FILES, FRAGMENTS_ENDING, SNAPSHOT_ENDING, STATUS, TROUBLE};
+use super::run_folder::{FILES, FRAGMENTS_ENDING, HDF5_ENDING, SNAPSHOT_ENDING, STATUS, TROUBLE};
 use super::set_aside::{self, SET_ASIDE, SetAside};
 use super::{OutputError, Phase, RunFolder, Status, files, on_root, series, write_atomically};
 
@@ -163,7 +163,11 @@ impl RunFolder {
                 place.take(&path)?;
             }
         }
-        for (other, path) in self.fragment_files()? {
+        for (other, path) in self
+            .fragment_files()?
+            .into_iter()
+            .chain(self.gauge_files()?)
+        {
             if other > step {
                 place.take(&path)?;
             }
@@ -239,7 +243,13 @@ impl RunFolder {
         for (_, path) in checkpoint::list(&self.checkpoints())?.iter().rev() {
             checkpoint::discard(path)?;
         }
-        for folder in [self.checkpoints(), self.snapshots(), self.fragment_tables()] {
+        let folders = [
+            self.checkpoints(),
+            self.snapshots(),
+            self.fragment_tables(),
+            self.gauge_records(),
+        ];
+        for folder in folders {
             for path in names_in(&folder)? {
                 if is_ours(&path) {
                     files::remove(&path)?;
@@ -265,6 +275,7 @@ fn is_ours(path: &Path) -> bool {
     let name = Path::new(name.strip_suffix(".old").unwrap_or(name));
     step_of(name, SNAPSHOT_ENDING).is_some()
         || step_of(name, FRAGMENTS_ENDING).is_some()
+        || step_of(name, HDF5_ENDING).is_some()
         || step_of(name, "").is_some()
         || checkpoint::is_damaged(name)
         || name.extension().is_some_and(|e| e == "series")

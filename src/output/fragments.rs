@@ -1,6 +1,8 @@
 //! Tables of fragments: `fragments.csv`, a row for each time, and one of all fragments at a time.
 
-use super::{Column, Table, Value, unit_of_model};
+use std::path::Path;
+
+use super::{Column, OutputError, Table, Value, binary_table, unit_of_model};
 use crate::fragments::{Census, Fragment};
 
 /// The columns of `fragments.csv` in a model of so many dimensions.
@@ -45,23 +47,44 @@ pub fn row(step: u64, time: f64, census: &Census) -> Vec<Value<'static>> {
     ]
 }
 
-/// The table of all fragments of a model with some bodies, as its file holds it: the heaviest first.
-#[must_use]
-pub fn table(census: &Census, bodies: &[&str], dimension: usize) -> Vec<u8> {
-    let by_size = ranks_by_size(&census.fragments);
-    let mut before = 0;
-    let rows = census
-        .fragments
-        .iter()
-        .zip(by_size)
-        .map(|(fragment, by_size)| {
+/// The table of all fragments of a model: the heaviest first.
+#[derive(Debug)]
+pub struct FragmentTable {
+    columns: Vec<Column>,
+    rows: Vec<Vec<Value<'static>>>,
+}
+
+impl FragmentTable {
+    /// Of a model with some bodies.
+    #[must_use]
+    pub fn new(census: &Census, bodies: &[&str], dimension: usize) -> Self {
+        let by_size = ranks_by_size(&census.fragments);
+        let mut before = 0;
+        let rows = census.fragments.iter().zip(by_size);
+        let rows = rows.map(|(fragment, by_size)| {
             before += fragment.copies;
             cells(fragment, [before, by_size])
         });
-    Table::whole(
-        &columns_of_all(bodies, dimension),
-        &rows.collect::<Vec<_>>(),
-    )
+        Self {
+            rows: rows.collect(),
+            columns: columns_of_all(bodies, dimension),
+        }
+    }
+
+    /// As its file of text holds it.
+    #[must_use]
+    pub fn text(&self) -> Vec<u8> {
+        Table::whole(&self.columns, &self.rows)
+    }
+
+    /// Writes it as HDF5, with the columns of the text.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`], [`OutputError::Hdf5`].
+    pub fn write_hdf5(&self, path: &Path) -> Result<(), OutputError> {
+        let cells = binary_table::by_column(self.columns.len(), self.rows.iter().cloned());
+        binary_table::write(path, &self.columns, &cells, &[])
+    }
 }
 
 fn columns_of_all(bodies: &[&str], dimension: usize) -> Vec<Column> {

@@ -5,11 +5,13 @@
 //! particle ids ([`Rows`]), whatever the ranks. [`h5`] is the only module that names HDF5.
 
 mod begin;
+pub mod binary_table;
 pub mod checkpoint;
 mod digest;
 mod error;
 mod files;
 pub mod fragments;
+pub mod gauge_records;
 pub mod h5;
 mod history;
 mod lock;

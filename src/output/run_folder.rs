@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::checkpoint::{self, step_of};
 use super::files::names_in;
+use super::fragments::FragmentTable;
 use super::{OutputError, files, snapshot, write_json};
 
 pub(super) const STATUS: &str = "status.json";
@@ -15,6 +16,8 @@ const SNAPSHOTS: &str = "snapshots";
 const CHECKPOINTS: &str = "checkpoints";
 const FRAGMENTS: &str = "fragments";
 pub(super) const FRAGMENTS_ENDING: &str = ".csv";
+const GAUGES: &str = "gauges";
+pub(super) const HDF5_ENDING: &str = ".h5";
 pub(super) const TROUBLE: &str = "trouble";
 pub(super) const SNAPSHOT_ENDING: &str = ".vtkhdf";
 
@@ -157,30 +160,47 @@ impl RunFolder {
     /// The path of the table of all fragments at a step.
     #[must_use]
     pub fn fragment_table(&self, step: u64) -> PathBuf {
-        self.fragment_tables()
-            .join(format!("step-{step:08}{FRAGMENTS_ENDING}"))
+        in_steps(&self.fragment_tables(), step, FRAGMENTS_ENDING)
     }
 
-    /// Writes the table of all fragments at a step. Rank 0's alone.
+    /// The path of the same as HDF5.
+    #[must_use]
+    pub fn fragment_hdf5(&self, step: u64) -> PathBuf {
+        in_steps(&self.fragment_tables(), step, HDF5_ENDING)
+    }
+
+    /// The path of what many gauges have read up to a step.
+    #[must_use]
+    pub fn gauge_record(&self, step: u64) -> PathBuf {
+        in_steps(&self.gauge_records(), step, HDF5_ENDING)
+    }
+
+    /// Writes the table of all fragments at a step, as text and as HDF5. Rank 0's alone.
     ///
     /// # Errors
-    /// [`OutputError::Io`].
-    pub fn write_fragments(&self, step: u64, table: &[u8]) -> Result<(), OutputError> {
+    /// [`OutputError::Io`], [`OutputError::Hdf5`].
+    pub fn write_fragments(&self, step: u64, table: &FragmentTable) -> Result<(), OutputError> {
         let folder = self.fragment_tables();
         fs::create_dir_all(&folder).map_err(OutputError::io("create the folder", &folder))?;
-        files::write_atomically(&self.fragment_table(step), table)
+        table.write_hdf5(&self.fragment_hdf5(step))?;
+        files::write_atomically(&self.fragment_table(step), &table.text())
     }
 
-    /// The tables of all fragments that there are, with their steps and in the order of these.
+    /// The tables of all fragments that there are, of text and of HDF5, with their steps and in the order
+    /// of these.
     ///
     /// # Errors
     /// [`OutputError::Io`].
     pub fn fragment_files(&self) -> Result<Vec<(u64, PathBuf)>, OutputError> {
-        let found = names_in(&self.fragment_tables())?.into_iter();
-        let step = |path: PathBuf| Some((step_of(&path, FRAGMENTS_ENDING)?, path));
-        let mut found: Vec<_> = found.filter_map(step).collect();
-        found.sort_unstable();
-        Ok(found)
+        by_steps(&self.fragment_tables(), &[FRAGMENTS_ENDING, HDF5_ENDING])
+    }
+
+    /// What many gauges have read, file after file, with their last steps.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`].
+    pub fn gauge_files(&self) -> Result<Vec<(u64, PathBuf)>, OutputError> {
+        by_steps(&self.gauge_records(), &[HDF5_ENDING])
     }
 
     /// The index of the snapshots.
@@ -201,6 +221,22 @@ impl RunFolder {
         found.sort_by_key(|path| step_of(path, SNAPSHOT_ENDING));
         Ok(found)
     }
+}
+
+/// The file of a step in a folder of such.
+fn in_steps(folder: &Path, step: u64, ending: &str) -> PathBuf {
+    folder.join(format!("step-{step:08}{ending}"))
+}
+
+/// The files of steps in a folder, with their steps and in the order of these.
+fn by_steps(folder: &Path, endings: &[&str]) -> Result<Vec<(u64, PathBuf)>, OutputError> {
+    let step = |path: &PathBuf| endings.iter().find_map(|ending| step_of(path, ending));
+    let found = names_in(folder)?.into_iter();
+    let mut found: Vec<_> = found
+        .filter_map(|path| Some((step(&path)?, path)))
+        .collect();
+    found.sort_unstable();
+    Ok(found)
 }
 
 /// Declares what stands in the folder of a run: how it is asked for, and its name.
@@ -269,6 +305,8 @@ paths! {
     checkpoints: CHECKPOINTS;
     /// The folder of tables of all fragments.
     fragment_tables: FRAGMENTS;
+    /// The folder of what many gauges have read.
+    gauge_records: GAUGES;
 }
 
 #[cfg(test)]

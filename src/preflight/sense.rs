@@ -37,6 +37,8 @@ pub fn warnings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
     weight_on_zones(case, found);
     viscosity_for_step(case, found);
     times(case, found);
+    let told = case.fragments.as_ref();
+    found.extend(told.and_then(|options| options.doubt(case.dimension)));
 }
 
 fn unused_materials(case: &Case, found: &mut Vec<String>) {

@@ -3,7 +3,8 @@
 use super::tables::Tables;
 use crate::comm::Comm;
 use crate::model::FragmentOptions;
-use crate::output::{OutputError, RunFolder, Schedule, fragments, on_root};
+use crate::output::fragments::{self, FragmentTable};
+use crate::output::{OutputError, RunFolder, Schedule, on_root};
 use crate::step::Simulation;
 
 /// Whether fragments are told after a step between two times (s), after which a snapshot may be due,
@@ -30,7 +31,7 @@ pub fn take(
         let (case, state) = (&simulation.case, &simulation.state);
         on_root(comm, || {
             let bodies: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();
-            let table = fragments::table(&census, &bodies, case.dimension);
+            let table = FragmentTable::new(&census, &bodies, case.dimension);
             folder.write_fragments(state.step, &table)?;
             let row = fragments::row(state.step, state.time, &census);
             tables.map_or(Ok(()), |tables| tables.write_fragments(&row))

@@ -22,9 +22,9 @@ use crate::comm::Comm;
 use crate::model::NumericalFailurePolicy;
 use crate::output::snapshot::{self, Quantity};
 use crate::output::{
-    Log, OutputError, Phase, Rows, RunFolder, Schedule, Status, agree, on_root, series, write_json,
+    Log, OutputError, Phase, Rows, RunFolder, Schedule, Status, agree, checkpoint, on_root,
+    post_mortem, series, write_json,
 };
-use crate::output::{checkpoint, post_mortem};
 use crate::step::{self, Simulation, StepError, Timers};
 
 /// One rank's part of a run in its folder.
@@ -123,7 +123,6 @@ impl<'a> Driver<'a> {
 
     /// Steps to the end of the case or to a stop; returns the exit code. Collective.
     pub fn run(mut self, comm: &Comm) -> u8 {
-        let folder = self.folder;
         match self.advance(comm) {
             Ok(End::Finished) => self.close(comm, Phase::Finished, None, 0),
             Ok(End::Until) => {
@@ -136,8 +135,9 @@ impl<'a> Driver<'a> {
             Err(message) => {
                 self.progress.finish();
                 self.log(comm, &format!("failed: {message}"));
+                let _ = self.tables.as_mut().map(Tables::write_records);
                 let state = &self.simulation.state;
-                fail(comm, folder, &message, state.step, state.time)
+                fail(comm, self.folder, &message, state.step, state.time)
             }
         }
     }
@@ -329,7 +329,7 @@ impl<'a> Driver<'a> {
         let begun = Instant::now();
         self.write_crossings(comm)?;
         // Rows before this checkpoint are not written again once it is there.
-        on_root(comm, || self.tables.as_ref().map_or(Ok(()), Tables::sync))?;
+        on_root(comm, || self.tables.as_mut().map_or(Ok(()), Tables::sync))?;
         let folder = self.folder.checkpoints();
         self.simulation.join_extremes(comm);
         let rows = &mut self.rows;

@@ -10,6 +10,7 @@ use super::columns::{
 use super::load::Load;
 use crate::measure::{BodyFigures, Crossing, Findings, GaugeRow};
 use crate::model::{Case, NumericalFailurePolicy, SphForm};
+use crate::output::gauge_records::{self, GaugeRecords};
 use crate::output::{Column, OutputError, RunFolder, Table, Value, fragments, measures};
 use crate::step::{RunState, Simulation};
 
@@ -25,6 +26,8 @@ pub struct Tables {
     /// Figures of measures, and their distributions.
     measures: Option<[Table; 2]>,
     gauges: Option<Table>,
+    /// The same of many gauges.
+    gauge_records: Option<GaugeRecords>,
     /// What has passed witness planes, and who.
     witnesses: Option<[Table; 2]>,
     performance: Table,
@@ -80,6 +83,20 @@ fn of_measures(
     Ok(Some([figures, distributions]))
 }
 
+/// The columns of what gauges read.
+fn of_gauges(simulation: &Simulation) -> Vec<Column> {
+    let mut all = columns(simulation.case.dimension, GAUGES);
+    let readings = simulation.gauges().columns();
+    all.extend(readings.map(|(name, unit)| Column::new(&name, unit)));
+    all
+}
+
+/// Records of the gauges of a case.
+fn records(folder: &RunFolder, case: &Case, columns: Vec<Column>) -> GaugeRecords {
+    let gauges = case.measure.gauges.iter();
+    GaugeRecords::new(folder, columns, gauges.map(|g| g.name.clone()).collect())
+}
+
 impl Tables {
     /// Starts the tables of a run of `case`, or goes on with them after the state `resume`.
     pub fn open(
@@ -96,9 +113,8 @@ impl Tables {
             case.domain.keep.is_some() || resume.is_some_and(|state| !state.departed.is_empty());
         let of_history = of_history(case, departs);
         let of_departed = [columns(REMOVED), columns(DEPARTURE)].concat();
-        let mut of_gauges = columns(GAUGES);
-        let readings = simulation.gauges().columns();
-        of_gauges.extend(readings.map(|(name, unit)| Column::new(&name, unit)));
+        let of_gauges = of_gauges(simulation);
+        let many = case.measure.gauges.len() >= gauge_records::MANY;
         let has_loads = case.load_names().next().is_some();
         let removes = case.numerical_limits.policy != NumericalFailurePolicy::Stop
             || resume.is_some_and(|state| !state.removed.is_empty());
@@ -124,9 +140,10 @@ impl Tables {
                 .then(|| open(&folder.bodies(), &columns(BODIES), "time", time))
                 .transpose()?,
             measures: of_measures(folder, case, time)?,
-            gauges: (simulation.gauges().any())
+            gauges: (simulation.gauges().any() && !many)
                 .then(|| open(&folder.gauges(), &of_gauges, "step", step))
                 .transpose()?,
+            gauge_records: many.then(|| records(folder, case, of_gauges)),
             witnesses: (!case.measure.witnesses.is_empty())
                 .then(|| {
                     let passed = open(&folder.witness(), &columns(WITNESS), "time", time)?;
@@ -226,12 +243,22 @@ impl Tables {
         simulation: &Simulation,
         read: &[GaugeRow],
     ) -> Result<(), OutputError> {
+        let state = &simulation.state;
+        if let Some(records) = &mut self.gauge_records {
+            for gauge in read {
+                let values = gauge.values.iter().map(|value| value.unwrap_or(f64::NAN));
+                let numbers = gauge.position.into_iter().chain([gauge.coverage]);
+                let number = u32::try_from(gauge.gauge).unwrap_or(u32::MAX);
+                records.add((state.step, state.time), number, numbers.chain(values));
+            }
+            return records.write_much();
+        }
         let Some(table) = &mut self.gauges else {
             return Ok(());
         };
         let gauges = &simulation.case.measure.gauges;
         table.rows(read.iter().map(|gauge| {
-            let mut row = gauge_row(&simulation.state, &gauges[gauge.gauge].name, gauge);
+            let mut row = gauge_row(state, &gauges[gauge.gauge].name, gauge);
             let values = gauge.values.iter();
             row.extend(values.map(|value| value.map_or(Value::Word(""), Value::Real)));
             row
@@ -270,8 +297,17 @@ impl Tables {
         }))
     }
 
+    /// Writes what many gauges have read and what waits in memory: also of a run that fails, since what led
+    /// to it is worth having.
+    pub fn write_records(&mut self) -> Result<(), OutputError> {
+        self.gauge_records
+            .as_mut()
+            .map_or(Ok(()), GaugeRecords::write)
+    }
+
     /// Brings all rows written so far to the disk.
-    pub fn sync(&self) -> Result<(), OutputError> {
+    pub fn sync(&mut self) -> Result<(), OutputError> {
+        self.write_records()?;
         let always = [&self.history, &self.contacts, &self.performance];
         let some = [
             &self.loads,

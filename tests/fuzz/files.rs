@@ -1,4 +1,4 @@
-//! Checkpoints and snapshots that are sound as HDF5 files and as their digests say, with content
+//! Checkpoints, snapshots and tables that are sound as HDF5 files and as their digests say, with content
 //! that no run writes: other types and shapes, links, filters, other files, values.
 
 use std::fs;
@@ -12,11 +12,13 @@ use crate::changes::{self, Change, Kind, Shape, Store};
 use crate::guard;
 use crate::random::Random;
 use crate::{Budget, Met, folder, random};
+use whipple::app::fragments::{self, FragmentsArgs};
 use whipple::app::plot::PlotArgs;
 use whipple::app::{compare::compare, info::describe, plot};
 use whipple::comm::Comm;
 use whipple::input::parse;
-use whipple::output::{Rows, checkpoint, snapshot};
+use whipple::output::binary_table::{self, BinaryTable, Cells};
+use whipple::output::{Column, Rows, checkpoint, snapshot};
 use whipple::particles::ParticleStore;
 use whipple::step::{RunState, Simulation};
 
@@ -38,6 +40,7 @@ load = [{ body = "b", above.y = "4.5 mm", velocity = { y = 0 } }]
 pub enum Which {
     Checkpoint,
     Snapshot,
+    Table,
 }
 
 /// A file as a line.
@@ -61,7 +64,7 @@ pub struct Bench {
     /// Particles in each.
     pub rows: usize,
     /// Datasets and groups of each kind of file.
-    places: [Vec<String>; 2],
+    places: [Vec<String>; 3],
 }
 
 impl Bench {
@@ -92,7 +95,9 @@ impl Bench {
         let fields = snapshot::quantities(&[]).unwrap();
         snapshot::write(&comm, &path, particles, &meta, &fields, &mut rows).unwrap();
         let state = checkpoint::state_file(&sound);
-        let places = [state.as_path(), &path].map(places);
+        let table = place.path().join("sound.h5");
+        write_table(&table, particles.owned());
+        let places = [state.as_path(), &path, &table].map(places);
         fs::create_dir(place.path().join("changed")).unwrap();
         fs::copy(&state, place.path().join("changed/other.h5")).unwrap();
         Self {
@@ -118,6 +123,7 @@ impl Bench {
         let (name, sound) = match recipe.file {
             Which::Checkpoint => ("state.h5", checkpoint::state_file(&self.sound)),
             Which::Snapshot => ("state.vtkhdf", self.place.path().join("sound.vtkhdf")),
+            Which::Table => ("table.h5", self.place.path().join("sound.h5")),
         };
         let path = self.changed(name);
         fs::copy(&sound, &path).unwrap();
@@ -130,6 +136,9 @@ impl Bench {
         let line = serde_json::to_string(recipe).unwrap();
         let _watch = guard::watch(&line);
         let said = |result: Result<String, String>| result.unwrap_or_else(|error| error);
+        if recipe.file == Which::Table {
+            return (vec![said(read_table(&path))], refused);
+        }
         let mut messages = vec![
             said(
                 describe(&path)
@@ -149,9 +158,10 @@ impl Bench {
         ];
         messages.push(match recipe.file {
             Which::Checkpoint => restart(path.parent().unwrap()),
-            Which::Snapshot => said(draw(&path).map(|()| "drawn".to_owned())),
+            _ => said(draw(&path).map(|()| "drawn".to_owned())),
         });
         if recipe.file == Which::Snapshot {
+            messages.push(said(tell_fragments(&path)));
             messages.push(begin(&path));
         }
         (messages, refused)
@@ -180,6 +190,11 @@ impl Bench {
                     ("/whipple", "step"),
                     ("/run", "threads"),
                 ],
+            ),
+            Which::Table => (
+                &["/", "/table"],
+                &["/columns", "/words"],
+                &[("/table/pressure", "unit")],
             ),
         };
         let mut pick = |list: &[&str]| list[random.below(list.len())].to_owned();
@@ -216,7 +231,7 @@ impl Bench {
                 Change::Text(text, random.below(1 << 20), random.below(12), by)
             }
             18 => match which {
-                Which::Snapshot => Change::Value(at, random.below(200), odd(random)),
+                Which::Snapshot | Which::Table => Change::Value(at, random.below(200), odd(random)),
                 Which::Checkpoint if random.below(6) == 0 => Change::Cut(random.below(400)),
                 Which::Checkpoint => {
                     let value = VALUES[random.below(VALUES.len())];
@@ -394,6 +409,40 @@ fn begin(path: &Path) -> String {
     }
 }
 
+/// A table of what two gauges have read.
+fn write_table(path: &Path, rows: usize) {
+    let columns = [("step", ""), ("gauge", ""), ("pressure", "Pa")];
+    let columns = columns.map(|(name, unit)| Column::new(name, unit));
+    let cells = [
+        Cells::Counts((0..rows as u64).collect()),
+        Cells::Words((0..rows).map(|row| u32::from(row % 2 == 1)).collect()),
+        Cells::Reals(vec![0.5; rows]),
+    ];
+    let words = ["front", "rear"].map(str::to_owned);
+    binary_table::write(path, &columns, &cells, &words).unwrap();
+}
+
+/// Reads all of a table; gives the message.
+fn read_table(path: &Path) -> Result<String, String> {
+    let table = BinaryTable::open(path).map_err(|e| e.to_string())?;
+    let sheet = table.sheet(0..table.rows(), None);
+    sheet.map_err(|e| e.to_string()).map(|_| "read".to_owned())
+}
+
+#[derive(Parser)]
+struct FragmentsCli {
+    #[command(flatten)]
+    args: FragmentsArgs,
+}
+
+/// Tells the fragments of a snapshot; gives the message.
+fn tell_fragments(path: &Path) -> Result<String, String> {
+    let words = ["fragments", path.to_str().unwrap()];
+    let cli = FragmentsCli::try_parse_from(words).map_err(|e| e.to_string())?;
+    let told = fragments::tell(&cli.args);
+    told.map_err(|e| e.to_string()).map(|_| "told".to_owned())
+}
+
 #[derive(Parser)]
 struct Cli {
     #[command(flatten)]
@@ -432,7 +481,7 @@ fn keep(recipe: &Recipe) {
 }
 
 #[test]
-fn no_checkpoint_and_no_snapshot_makes_a_reader_panic() {
+fn no_file_makes_a_reader_panic() {
     let budget = Budget::new(300);
     let mut random = random(&budget);
     let bench = Bench::new();
@@ -443,6 +492,11 @@ fn no_checkpoint_and_no_snapshot_makes_a_reader_panic() {
         assert!(ends.contains(&&*messages[0]), "{messages:?}");
         assert!(ends.contains(&&*messages[3]), "{messages:?}");
     }
+    let sound = Recipe {
+        file: Which::Table,
+        changes: Vec::new(),
+    };
+    assert_eq!(bench.attempt(&sound).0, ["read"]);
     let mut seeds = kept();
     let (begun, mut done, mut refused, mut met) = (seeds.len(), 0, 0, Met::default());
     while done < begun || budget.allows(done) {
@@ -483,7 +537,7 @@ impl Bench {
     /// Another recipe: a known one with a change less or more, or a new one.
     fn vary(&self, seeds: &[Recipe], random: &mut Random) -> Recipe {
         let fresh = Recipe {
-            file: [Which::Checkpoint, Which::Snapshot][random.below(2)],
+            file: [Which::Checkpoint, Which::Snapshot, Which::Table][random.below(3)],
             changes: Vec::new(),
         };
         let mut recipe = match seeds {

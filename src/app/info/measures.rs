@@ -5,7 +5,7 @@ use std::io::{Read as _, Seek as _, SeekFrom};
 use std::path::Path;
 
 use crate::model::readable::{shown, shown_vector};
-use crate::output::{RunFolder, Sheet};
+use crate::output::{RunFolder, Sheet, gauge_records};
 
 /// Bytes of the end of a table that are read: the rows of the last time of some hundred bodies.
 const END: u64 = 1 << 16;
@@ -31,7 +31,8 @@ pub fn last_figures(folder: &RunFolder) -> Vec<(String, String)> {
         let passed = ["mass", "momentum", "kinetic_energy"];
         lines.extend(last.lines("witness", &passed));
     }
-    if let Some(last) = Last::of(&folder.gauges()) {
+    let many = gauge_records::last_rows(folder).ok().flatten();
+    if let Some(last) = Last::of(&folder.gauges()).or(many.and_then(Last::of_sheet)) {
         let reads = ["pressure", "velocity", "normal_stress"];
         lines.extend(last.lines("gauge", &reads));
     }
@@ -63,7 +64,11 @@ impl Last {
             let whole = end.iter().position(|&byte| byte == b'\n')?;
             text.extend_from_slice(&end[whole + 1..]);
         }
-        let mut sheet = Sheet::parse(std::str::from_utf8(&text).ok()?).ok()?;
+        Self::of_sheet(Sheet::parse(std::str::from_utf8(&text).ok()?).ok()?)
+    }
+
+    /// Of a table, if it has rows.
+    fn of_sheet(mut sheet: Sheet) -> Option<Self> {
         let columns = sheet.names.len();
         sheet.rows.retain(|(_, cells)| cells.len() == columns);
         let time = sheet.names.iter().position(|name| name == "time")?;
@@ -103,8 +108,16 @@ impl Last {
                 let longer = format!("{name} {}", self.cell(row, more));
                 longer.trim_end().clone_into(&mut name);
             }
-            let figures = figures.iter().filter_map(|figure| self.figure(row, figure));
-            (name, figures.collect::<Vec<_>>().join(", "))
+            let told: Vec<_> = (figures.iter())
+                .filter_map(|figure| self.figure(row, figure))
+                .collect();
+            let told = match self.figure(row, "coverage") {
+                _ if !told.is_empty() => told.join(", "),
+                Some(_) if self.number(row, "coverage") > 0.0 => self.readings(row),
+                Some(_) => "nothing to read: no matter is there".to_owned(),
+                None => String::new(),
+            };
+            (name, told)
         };
         let mut lines: Vec<_> = rows.map(line).collect();
         if many {
@@ -135,6 +148,14 @@ impl Last {
             }
         }
         lines
+    }
+
+    /// The first numbers that a gauge has read.
+    fn readings(&self, row: usize) -> String {
+        let names = self.sheet.names.iter();
+        let read = names.skip_while(|name| *name != "coverage").skip(1);
+        let told = read.filter_map(|name| self.figure(row, name)).take(3);
+        told.collect::<Vec<_>>().join(", ")
     }
 
     /// A figure or a vector with its unit, if the row has it.
@@ -189,5 +210,20 @@ mod tests {
         let lines = last_figures(&run);
         assert_eq!(lines[2].0, "witness a b forwards");
         assert_eq!(lines.len(), 3);
+        std::fs::write(
+            run.gauges(),
+            "# units: s,-,-,Pa,kg/m^3\ntime,gauge,coverage,pressure,density\n\
+             0.5,inside,1.0,2e9,2785\n0.5,void,0.0,NaN,NaN\n0.5,density,0.5,,2785\n",
+        )
+        .unwrap();
+        let told: Vec<String> = last_figures(&run).into_iter().map(|line| line.1).collect();
+        assert_eq!(
+            told[3..],
+            [
+                "pressure 2 GPa",
+                "nothing to read: no matter is there",
+                "density 2785 kg/m^3"
+            ]
+        );
     }
 }

@@ -20,6 +20,7 @@ pub fn columns(args: &PlotArgs) -> Result<Option<String>, PlotError> {
     let columns = match (&args.xy, &args.pair) {
         (Some(columns), _) => columns,
         (None, Some(_)) => "time:force_x,force_y,force_z",
+        (None, None) if !args.gauges.is_empty() => PRESSURE,
         (None, None) if is(args, CROSSINGS) => return widest(&args.source).map(Some),
         (None, None) => match USUAL.iter().find(|(table, _)| is(args, table)) {
             Some((_, columns)) => columns,
@@ -40,12 +41,20 @@ fn is(args: &PlotArgs, table: &str) -> bool {
 }
 
 /// What is drawn of tables of a run if nothing is asked for.
-const USUAL: [(&str, &str); 4] = [
+const USUAL: [(&str, &str); 5] = [
     (CONTACTS, "time:force"),
     ("bodies.csv", "time:kinetic_energy"),
-    ("gauges.csv", "time:pressure"),
+    (GAUGES, PRESSURE),
+    (GAUGE_RECORDS, PRESSURE),
     ("witness.csv", "time:mass"),
 ];
+
+/// What is drawn of gauges.
+const PRESSURE: &str = "time:pressure";
+
+/// The table of a run that tells what its gauges have read, and the folder that does of many.
+const GAUGES: &str = "gauges.csv";
+const GAUGE_RECORDS: &str = "gauges";
 
 /// The table of a run that tells who has passed witness planes.
 const CROSSINGS: &str = "crossings.csv";
@@ -132,15 +141,20 @@ pub fn draw_front(args: &PlotArgs, body: &str) -> Result<(), PlotError> {
 }
 
 pub fn draw_tables(args: &PlotArgs, columns: &str) -> Result<(), PlotError> {
-    let of_run = if args.pair.is_some() {
-        CONTACTS
-    } else {
-        HISTORY
-    };
-    let tables = places(args).map(|place| (name(place), table(place, of_run)));
+    let tables = places(args).map(|place| {
+        let of_run = match (&args.pair, &args.gauges[..]) {
+            (Some(_), _) => CONTACTS,
+            (None, []) => HISTORY,
+            _ if place.join(GAUGE_RECORDS).is_dir() => GAUGE_RECORDS,
+            _ => GAUGES,
+        };
+        (name(place), table(place, of_run))
+    });
     let mut picture = format!("xy-{}", columns.replace([':', ','], "-"));
     if let Some(pair) = &args.pair {
         picture = format!("{picture}-{}", pair.replace(',', "-"));
+    } else if !args.gauges.is_empty() {
+        picture = format!("gauges-{picture}");
     }
     let chart = tables_of(args, tables.collect(), Columns::parse(columns)?)?;
     draw(args, &chart, &format!("{picture}.png"))
@@ -163,6 +177,7 @@ fn tables_of(
         tables,
         columns,
         pair: args.pair.as_ref().map(pair).transpose()?,
+        gauges: args.gauges.clone(),
         label: None,
         points: points.collect::<Result<_, _>>()?,
         spans: [args.view.clone(), args.range.clone()],
@@ -178,7 +193,7 @@ fn draw(args: &PlotArgs, tables: &Tables, picture: &str) -> Result<(), PlotError
 
 /// A table of a run, or a table itself.
 fn table(place: &Path, of_run: &str) -> PathBuf {
-    if place.is_dir() {
+    if place.is_dir() && !place.ends_with(GAUGE_RECORDS) {
         place.join(of_run)
     } else {
         place.to_owned()

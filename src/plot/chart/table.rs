@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::input;
-use crate::output::Sheet;
+use crate::output::{RunFolder, Sheet, gauge_records};
 use crate::plot::PlotError;
 
 /// Longest file that is read as a table (bytes).
@@ -32,16 +32,52 @@ impl Table {
         Self::parse(&text).map_err(|reason| wrong(path, reason))
     }
 
+    /// Reads a table, of which the rows of some gauges alone count if any are named; of a folder what many
+    /// gauges have read.
+    ///
+    /// # Errors
+    /// As [`Self::read`], and for gauges that it does not know.
+    pub fn read_of(path: &Path, gauges: &[String]) -> Result<Self, PlotError> {
+        let failed = |reason: String| wrong(path, reason);
+        let only = (!gauges.is_empty()).then_some(gauges);
+        let mut table = if path.is_dir() {
+            let folder = RunFolder::at(path.parent().unwrap_or(path));
+            let read = gauge_records::sheet(&folder, only);
+            let sheet = read.map_err(|e| failed(e.to_string()))?;
+            let sheet = sheet.ok_or_else(|| failed("no gauges have read into it".to_owned()))?;
+            Self::of(sheet)
+        } else {
+            Self::read(path)?
+        };
+        if let Some(gauges) = only {
+            let at = table.place("gauge").map_err(failed)?;
+            let known =
+                |gauge: &&String| table.rows.iter().any(|(_, row)| row.get(at) == Some(gauge));
+            if let Some(unknown) = gauges.iter().find(|gauge| !known(gauge)) {
+                return Err(failed(format!("it has no gauge {unknown}")));
+            }
+            let is_wanted = |cell: &String| gauges.contains(cell);
+            table
+                .rows
+                .retain(|(_, row)| row.get(at).is_some_and(is_wanted));
+        }
+        Ok(table)
+    }
+
     /// Takes a table apart.
     ///
     /// # Errors
     /// What is wrong, and in which line.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let Sheet { names, units, rows } = Sheet::parse(text)?.widened();
-        if rows.is_empty() {
+        let sheet = Sheet::parse(text)?.widened();
+        if sheet.rows.is_empty() {
             return Err("it has no rows yet".to_owned());
         }
-        Ok(Self { names, units, rows })
+        Ok(Self::of(sheet))
+    }
+
+    fn of(Sheet { names, units, rows }: Sheet) -> Self {
+        Self { names, units, rows }
     }
 
     /// The numbers of a column; an empty cell is none.

@@ -79,6 +79,8 @@ pub struct Tables {
     pub columns: Columns,
     /// The pair of bodies whose rows are drawn; all pairs if absent.
     pub pair: Option<[String; 2]>,
+    /// The gauges whose rows are drawn; all if absent.
+    pub gauges: Vec<String>,
     /// What the upward axis is called, if not by its columns.
     pub label: Option<String>,
     /// Measured points.
@@ -105,7 +107,7 @@ impl Tables {
         };
         for (k, (name, path)) in self.tables.iter().enumerate() {
             let failed = |reason: String| wrong(path, reason);
-            let table = Table::read(path)?;
+            let table = Table::read_of(path, &self.gauges)?;
             let drawn: Vec<&str> = self.drawn().collect();
             let all = series(&table, &drawn, self.pair.as_ref()).map_err(failed)?;
             if k == 0 {

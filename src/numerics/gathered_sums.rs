@@ -1,0 +1,95 @@
+//! Several exact sums of terms that come together, such as those of one particle after the other.
+
+use super::exact_sum::{BLOCK, ExactSum};
+
+/// Powers of two would have all of a particle's terms in the same lines of the cache.
+const STRIDE: usize = BLOCK + 8;
+
+/// Exact sums of `N` quantities: terms wait until there are enough to be added at once.
+#[derive(Debug, Clone)]
+pub struct GatheredSums<const N: usize> {
+    sums: [ExactSum; N],
+    /// [`BLOCK`] terms of each quantity, [`STRIDE`] from those of the one before.
+    waiting: Vec<f64>,
+    count: usize,
+}
+
+impl<const N: usize> Default for GatheredSums<N> {
+    fn default() -> Self {
+        Self {
+            sums: std::array::from_fn(|_| ExactSum::default()),
+            waiting: vec![0.0; N * STRIDE],
+            count: 0,
+        }
+    }
+}
+
+impl<const N: usize> GatheredSums<N> {
+    /// Adds a term to each sum.
+    #[inline]
+    pub fn add(&mut self, terms: &[f64; N]) {
+        let places = self.waiting[self.count..].iter_mut().step_by(STRIDE);
+        for (place, term) in places.zip(terms) {
+            *place = *term;
+        }
+        self.count += 1;
+        if self.count == BLOCK {
+            self.add_waiting();
+        }
+    }
+
+    /// Adds all terms of other sums.
+    pub fn merge(&mut self, mut other: Self) {
+        other.add_waiting();
+        for (sum, other) in self.sums.iter_mut().zip(&other.sums) {
+            sum.merge(other);
+        }
+    }
+
+    /// The sums, of all terms so far.
+    pub fn sums(&mut self) -> &mut [ExactSum; N] {
+        self.add_waiting();
+        &mut self.sums
+    }
+
+    /// The sums, of all terms.
+    #[must_use]
+    pub fn into_sums(mut self) -> [ExactSum; N] {
+        self.add_waiting();
+        self.sums
+    }
+
+    fn add_waiting(&mut self) {
+        let count = std::mem::take(&mut self.count);
+        for (sum, terms) in self.sums.iter_mut().zip(self.waiting.chunks(STRIDE)) {
+            sum.add_all(&terms[..count]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gathered_sums_are_those_of_their_terms() {
+        let term = |i: u32| {
+            let x = f64::from(i) - 300.0;
+            [1.0 / x, x * 1e-40, x * x * x * 1e200]
+        };
+        let mut gathered = [GatheredSums::default(), GatheredSums::default()];
+        let mut plain: [ExactSum; 3] = std::array::from_fn(|_| ExactSum::default());
+        for i in 0..777 {
+            let terms = if i == 300 { [0.0; 3] } else { term(i) };
+            gathered[usize::from(i % 3 == 0)].add(&terms);
+            for (sum, term) in plain.iter_mut().zip(terms) {
+                sum.add(term);
+            }
+        }
+        let [mut all, other] = gathered;
+        all.merge(other);
+        for (sum, plain) in all.into_sums().iter().zip(&plain) {
+            assert_eq!(sum.value().to_bits(), plain.value().to_bits());
+        }
+    }
+}
