@@ -52,26 +52,7 @@ impl Remains {
     #[must_use]
     pub fn find(slab: &Slab, matter: &Matter, comm: &Comm) -> Self {
         let frame = Frame::new(&slab.normal);
-        let yields = {
-            let material = matter.case.bodies[slab.body].material;
-            matter.case.materials[material].strength.yields()
-        };
-        let (low, high) = (slab.rear - slab.spacing, slab.front + slab.spacing);
-        let reach = matter.largest::<6>(comm, |i, most| {
-            let flowed = !yields || matter.plastic_strain[i] >= FLOWED || matter.has_failed(i);
-            if matter.body_of(i) != slab.body || !flowed {
-                return;
-            }
-            for (x, _) in matter.images(i) {
-                let place = frame.turned(&x);
-                if low <= place[2] && place[2] <= high {
-                    for a in 0..3 {
-                        raise(&mut most[a], place[a]);
-                        raise(&mut most[3 + a], -place[a]);
-                    }
-                }
-            }
-        });
+        let reach = flowed(slab, &frame, matter, comm);
         let mut remains = Self {
             frame,
             attached: None,
@@ -170,6 +151,29 @@ impl Remains {
             Belongs::No
         }
     }
+}
+
+/// How far (m) matter of the body that has flowed reaches between its faces, along the axes of the frame and
+/// against them; −∞ if none has. Of a body that cannot yield all has flowed. Collective.
+fn flowed(slab: &Slab, frame: &Frame, matter: &Matter, comm: &Comm) -> [f64; 6] {
+    let material = matter.case.bodies[slab.body].material;
+    let yields = matter.case.materials[material].strength.yields();
+    let (low, high) = (slab.rear - slab.spacing, slab.front + slab.spacing);
+    matter.largest::<6>(comm, |i, most| {
+        let flowed = !yields || matter.plastic_strain[i] >= FLOWED || matter.has_failed(i);
+        if matter.body_of(i) != slab.body || !flowed {
+            return;
+        }
+        for (x, _) in matter.images(i) {
+            let place = frame.turned(&x);
+            if low <= place[2] && place[2] <= high {
+                for a in 0..3 {
+                    raise(&mut most[a], place[a]);
+                    raise(&mut most[3 + a], -place[a]);
+                }
+            }
+        }
+    })
 }
 
 /// The window about matter that has flowed within some reach (m), and how far it goes beyond the

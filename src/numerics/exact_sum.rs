@@ -292,7 +292,7 @@ impl Vectorised for Split<'_> {
             if parts.is_done {
                 break;
             }
-            rounder -= SPLIT_BITS;
+            rounder = rounder.saturating_sub(SPLIT_BITS);
         }
         parts
     }

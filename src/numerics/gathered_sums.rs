@@ -9,8 +9,9 @@ const STRIDE: usize = BLOCK + 8;
 #[derive(Debug, Clone)]
 pub struct GatheredSums<const N: usize> {
     sums: [ExactSum; N],
-    /// [`BLOCK`] terms of each quantity, [`STRIDE`] from those of the one before.
-    waiting: Vec<f64>,
+    /// [`BLOCK`] terms of each quantity, [`STRIDE`] from those of the one before; in place, since steps add
+    /// sums and may not allocate.
+    waiting: [[f64; STRIDE]; N],
     count: usize,
 }
 
@@ -18,7 +19,7 @@ impl<const N: usize> Default for GatheredSums<N> {
     fn default() -> Self {
         Self {
             sums: std::array::from_fn(|_| ExactSum::default()),
-            waiting: vec![0.0; N * STRIDE],
+            waiting: [[0.0; STRIDE]; N],
             count: 0,
         }
     }
@@ -28,9 +29,8 @@ impl<const N: usize> GatheredSums<N> {
     /// Adds a term to each sum.
     #[inline]
     pub fn add(&mut self, terms: &[f64; N]) {
-        let places = self.waiting[self.count..].iter_mut().step_by(STRIDE);
-        for (place, term) in places.zip(terms) {
-            *place = *term;
+        for (waiting, term) in self.waiting.iter_mut().zip(terms) {
+            waiting[self.count] = *term;
         }
         self.count += 1;
         if self.count == BLOCK {
@@ -61,7 +61,7 @@ impl<const N: usize> GatheredSums<N> {
 
     fn add_waiting(&mut self) {
         let count = std::mem::take(&mut self.count);
-        for (sum, terms) in self.sums.iter_mut().zip(self.waiting.chunks(STRIDE)) {
+        for (sum, terms) in self.sums.iter_mut().zip(&self.waiting) {
             sum.add_all(&terms[..count]);
         }
     }
