@@ -44,7 +44,7 @@ impl Cells {
     }
 }
 
-/// The largest part of the debris, seen from the side, that has the areal mass of the outline: between two
+/// Extents of where the debris, seen from the side, has the areal mass of the outline: between two
 /// heights and as far from the axis as a radius (m), of particles of a mean mass (kg).
 pub fn outline(
     view: &View,
@@ -86,9 +86,9 @@ pub fn outline(
     });
     #[expect(clippy::cast_precision_loss, reason = "rounded once")]
     let seen = counts.iter().map(|&count| count as f64 >= scale).collect();
-    let part = Mask::new([cells.rows, across], seen).largest_part();
+    let seen = Mask::new([cells.rows, across], seen);
     let (mut lower, mut upper) = ([usize::MAX; 2], [0; 2]);
-    for found in part.cells() {
+    for found in seen.cells() {
         for (a, at) in [found / across, found % across].into_iter().enumerate() {
             lower[a] = lower[a].min(at);
             upper[a] = upper[a].max(at + 1);
