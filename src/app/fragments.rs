@@ -100,6 +100,7 @@ pub enum FragmentsError {
 const LISTED: usize = 10;
 
 /// Runs the command; returns the exit code.
+#[must_use]
 pub fn run(args: &FragmentsArgs) -> u8 {
     match tell(args) {
         Ok(text) => {
