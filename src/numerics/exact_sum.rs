@@ -75,7 +75,7 @@ pub(super) const BLOCK: usize = 256;
 
 /// Biased exponents of the largest terms that it can split: neither the numbers by which it rounds nor the
 /// units to which leave the normal range.
-const SPLIT: std::ops::RangeInclusive<u64> = 140..=2000;
+const SPLIT: std::ops::RangeInclusive<u64> = 200..=2000;
 
 /// Bits that a split takes off the top of all terms: of 53 that a double has those that 256 terms need are room
 /// for carries, and another that of the rounding.
