@@ -242,7 +242,7 @@ shape.box = { size = ["0.5 mm", "0.6 mm", "0.5 mm"], centre = ["-4 mm", "0 mm", 
 name = "splinter"
 material = "aluminium"
 lattice = "cubic"
-shape.box = { lower = ["-3 mm", "0.28 mm", "-2 mm"], upper = ["-2.9 mm", "0.38 mm", "-1.9 mm"] }
+shape.box = { lower = ["-3 mm", "0.2955 mm", "-2 mm"], upper = ["-2.9 mm", "0.3955 mm", "-1.9 mm"] }
 velocity = ["0 km/s", "-1 km/s", "0 km/s"]
 
 # Viscosity would stop it before the plane.
