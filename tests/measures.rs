@@ -92,6 +92,12 @@ fn move_all(simulation: &mut Simulation, turn: &nalgebra::Matrix3<f64>, shift: V
         particles.position[i] = x.into();
         particles.velocity[i] = (turn * Vec3::from(particles.velocity[i])).into();
     }
+    for body in &mut simulation.case.bodies {
+        let mut solid = body.shape.solid(3);
+        solid.rotate(turn, &Vec3::zeros());
+        solid.translate(&shift);
+        body.shape = Shape::Solid(solid);
+    }
     let way = |n: &mut [f64; 3]| *n = (turn * Vec3::from(*n)).into();
     let place = |x: &mut [f64; 3]| *x = (turn * Vec3::from(*x) + shift).into();
     for measure in &mut simulation.case.measure.measures {
@@ -486,4 +492,53 @@ fn a_front_is_followed() {
             is(&found, "speed", 5.0 * D / 1e-7);
         }
     }
+}
+
+/// A plate that is turned, with a hole that it is made with: its face is its own, and that hole is none.
+#[test]
+fn turned_and_pierced_plates_are_plates() {
+    let text = r#"
+dimension = 3
+spacing = "0.1 mm"
+run.end_time = "1 us"
+[material.metal]
+library = "aluminium-2024"
+[[body]]
+name = "ball"
+material = "metal"
+shape.sphere = { centre = [0, 0, "2 mm"], radius = "0.4 mm" }
+velocity = [0, 0, "-3 km/s"]
+[[body]]
+name = "panel"
+material = "metal"
+lattice = "cubic"
+[body.shape]
+turn = { axis = "x", angle = "30 deg" }
+difference = [
+    { box = { lower = ["-2 mm", "-2 mm", "-0.2 mm"], upper = ["2 mm", "2 mm", "0.2 mm"] } },
+    { cylinder = { axis = "z", radius = "0.4 mm", length = "1 mm", centre = ["1.3 mm", "1.3 mm", 0] } },
+]
+"#;
+    let case = whipple::input::parse("case", text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let MeasureKind::Plate(slab) = &case.measure.measures[0].kind else {
+        panic!("{:?}", case.measure.measures);
+    };
+    let normal = [0.0, -0.5, 0.75_f64.sqrt()];
+    for (a, b) in slab.normal.iter().zip(normal) {
+        assert!((a - b).abs() < 1e-12, "{:?}", slab.normal);
+    }
+    assert!((slab.thickness() - 4.0 * D).abs() < 1e-12);
+    let mut simulation = start(case);
+    deform(&mut simulation, 1, |x| Some((x, STILL)));
+    let found = measure(&mut simulation);
+    assert_eq!(told(&found, "verdict"), Told::Word("held"));
+    assert_eq!(number(&found, "hole_diameter"), 0.0);
+    // A hole is shot through its middle.
+    deform(&mut simulation, 1, |[x, y, z]| {
+        let along = 0.75_f64.sqrt() * y + 0.5 * z;
+        (x.hypot(along) < 6.0).then_some(([x, y + 15.0, z - 26.0], STILL))
+    });
+    let found = measure(&mut simulation);
+    assert_eq!(told(&found, "verdict"), Told::Word("perforated"));
+    is(&found, "hole_diameter", 12.0 * D);
 }

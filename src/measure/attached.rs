@@ -23,6 +23,8 @@ pub struct Attached {
     runs: Vec<Run>,
     /// Where the runs of each column begin, and those of the last end.
     columns: Vec<usize>,
+    /// Columns that have not held the body at the start: beside its rim, and in holes that it is made with.
+    outside: Vec<bool>,
 }
 
 /// Adds the runs of a column.
@@ -44,9 +46,10 @@ fn add_runs(column: impl Iterator<Item = bool>, runs: &mut Vec<Run>) {
 }
 
 impl Attached {
-    /// The largest piece; of several as large that which comes first.
+    /// The largest piece of a body that at the start has left some columns out; of several as large that which
+    /// comes first.
     #[must_use]
-    pub fn new(window: Window, fractions: Vec<u16>) -> Self {
+    pub fn new(window: Window, fractions: Vec<u16>, outside: Vec<bool>) -> Self {
         let mut runs = Vec::new();
         let mut columns = vec![0];
         for column in fractions.chunks_exact(window.depth()) {
@@ -66,6 +69,7 @@ impl Attached {
             fractions,
             runs: own,
             columns: begins,
+            outside,
         }
     }
 
@@ -93,28 +97,41 @@ impl Attached {
 
     fn mask(&self, yes: impl Fn(&[Run]) -> bool) -> Mask {
         let columns = 0..self.window.counts[0] * self.window.counts[1];
-        let values = columns.map(|column| yes(self.column(column))).collect();
+        let inside = |column: usize| !self.outside[column] && yes(self.column(column));
+        let values = columns.map(inside).collect();
         Mask::new([self.window.counts[0], self.window.counts[1]], values)
     }
 
-    /// Columns that hold none of it.
+    /// Columns of the body that hold none of it.
     #[must_use]
     pub fn open(&self) -> Mask {
         self.mask(<[Run]>::is_empty)
     }
 
-    /// Columns that hold none of it from one height (m) of the last coordinate to another.
+    /// Columns of the body that hold none of it from one height (m) of the last coordinate to another.
     #[must_use]
     pub fn open_between(&self, low: f64, high: f64) -> Mask {
+        let within = self.between(low, high);
+        self.mask(|runs| !runs.iter().any(&within))
+    }
+
+    /// Columns of the body that hold some of it there.
+    #[must_use]
+    pub fn filled_between(&self, low: f64, high: f64) -> Mask {
+        let within = self.between(low, high);
+        self.mask(|runs| runs.iter().any(&within))
+    }
+
+    /// Whether a run has voxels whose middles lie between two heights (m); at least that which holds the middle of
+    /// both.
+    fn between(&self, low: f64, high: f64) -> impl Fn(&Run) -> bool {
         let place = |height: f64| (height - self.window.lower[2]) / self.window.edge;
-        // Voxels whose middles lie between; at least the one that holds the middle of both.
         let (mut first, mut last) = ((place(low) - 0.5).ceil(), (place(high) - 0.5).floor());
         if last < first {
             first = place(0.5 * (low + high)).floor();
             last = first;
         }
-        let within = |run: &Run| f64::from(run.begin) <= last && f64::from(run.end) > first;
-        self.mask(|runs| !runs.iter().any(within))
+        move |run| f64::from(run.begin) <= last && f64::from(run.end) > first
     }
 
     /// Whether what it leaves open leads from above it to below it, elsewhere than around its rim.
@@ -124,7 +141,7 @@ impl Attached {
         let (mut runs, mut columns) = (Vec::new(), vec![0]);
         let around = self.open().at_border();
         for (column, &is_around) in around.iter().enumerate().take(rows * across) {
-            let mut filled = vec![is_around; depth];
+            let mut filled = vec![is_around || self.outside[column]; depth];
             for run in self.column(column) {
                 filled[run.begin as usize..run.end as usize].fill(true);
             }
@@ -154,6 +171,12 @@ impl Attached {
     #[must_use]
     pub fn parted(&self) -> Mask {
         self.mask(|runs| runs.windows(2).any(|pair| pair[1].begin >= pair[0].end + 2))
+    }
+
+    /// Whether a column has held the body at the start.
+    #[must_use]
+    pub fn is_of_body(&self, column: usize) -> bool {
+        !self.outside[column]
     }
 
     /// Where it ends in each column, upwards and downwards (m): where the fraction passes a half.
@@ -249,7 +272,7 @@ mod tests {
         assert_eq!(window.counts, counts);
         let all = (0..n * m * d).map(|v| [v / (m * d), v / d % m, v % d]);
         let fractions = all.map(|v| if yes(v) { UNIT } else { 0 }).collect();
-        Attached::new(window, fractions)
+        Attached::new(window, fractions, vec![false; n * m])
     }
 
     #[test]

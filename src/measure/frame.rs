@@ -33,6 +33,12 @@ impl Frame {
     pub fn turned(&self, x: &[f64; 3]) -> [f64; 3] {
         self.axes.map(|axis| dot(&axis, x))
     }
+
+    /// The place (m) of coordinates (m).
+    #[must_use]
+    pub fn back(&self, place: &[f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|a| (0..3).map(|k| place[k] * self.axes[k][a]).sum())
+    }
 }
 
 #[cfg(test)]
@@ -51,5 +57,10 @@ mod tests {
         }
         let x = Frame::new(&[0.0, 0.0, 1.0]).turned(&[1.0, 2.0, 3.0]);
         assert_eq!(x, [1.0, 2.0, 3.0]);
+        let frame = Frame::new(&[0.6, 0.0, 0.8]);
+        let again = frame.back(&frame.turned(&[1.0, 2.0, 3.0]));
+        for (a, b) in again.into_iter().zip([1.0, 2.0, 3.0]) {
+            assert!((a - b).abs() < 1e-14);
+        }
     }
 }

@@ -30,13 +30,6 @@ impl Mask {
         self.cells.iter().filter(|&&is| is).count()
     }
 
-    /// The other cells.
-    #[must_use]
-    pub fn inverse(&self) -> Self {
-        let cells = self.cells.iter().map(|is| !is).collect();
-        Self::new(self.counts, cells)
-    }
-
     /// The largest of the parts that share sides and do not reach the border; of several as large the first.
     #[must_use]
     pub fn largest_inside(&self) -> Self {
@@ -168,7 +161,8 @@ mod tests {
         assert_eq!(mask.largest_part().count(), 8);
         assert_eq!(mask.part_of(36).count(), 2);
         assert_eq!(mask.part_of(1).count(), 0);
-        assert_eq!(mask.inverse().largest_inside().count(), 1);
+        let others = mask.cells.iter().map(|is| !is).collect();
+        assert_eq!(Mask::new(mask.counts, others).largest_inside().count(), 1);
         assert_eq!(mask.cells().next(), Some(0));
         // A border of 24 cells, and no part that reaches from there inwards.
         assert_eq!(mask.at_border().iter().filter(|is| **is).count(), 24);

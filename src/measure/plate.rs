@@ -198,8 +198,8 @@ impl Shape {
         let at_middle = inside(attached.open_between(middle, middle));
         let (above, below) = (slab.front + 0.25 * edge, slab.rear - 0.25 * edge);
         let raised = [
-            attached.open_between(above, f64::MAX).inverse(),
-            attached.open_between(f64::MIN, below).inverse(),
+            attached.filled_between(above, f64::MAX),
+            attached.filled_between(f64::MIN, below),
         ];
         let is_hole = is_open && diameter(hole.count(), edge) >= LEAST * edge;
         let width = |mask: &Mask| {

@@ -80,7 +80,11 @@ impl Remains {
             let fractions = voxels.sum(comm);
             remains.between = [slab.rear - beyond, slab.front + beyond];
             remains.untouched = [window.lower[2], slab.rear];
-            remains.attached = Some(Attached::new(window, fractions));
+            remains.attached = Some(Attached::new(
+                window,
+                fractions,
+                outside(slab, &frame, &window, matter),
+            ));
         }
         let particles = (0..matter.len()).into_par_iter();
         let belongs = |i: usize| {
@@ -174,6 +178,30 @@ fn flowed(slab: &Slab, frame: &Frame, matter: &Matter, comm: &Comm) -> [f64; 6] 
             }
         }
     })
+}
+
+/// Columns of a window in whose middle, half way between the faces, the body has not been at the start.
+fn outside(slab: &Slab, frame: &Frame, window: &Window, matter: &Matter) -> Vec<bool> {
+    let solid = matter.case.bodies[slab.body]
+        .shape
+        .solid(matter.case.dimension);
+    let height = 0.5 * (slab.front + slab.rear);
+    // The outermost voxels of a filling may be less than half full.
+    let margin = window.edge.min(0.25 * slab.thickness());
+    let across = window.counts[1];
+    let columns = (0..window.counts[0] * across).into_par_iter();
+    let is_outside = |column: usize| {
+        #[expect(clippy::cast_precision_loss, reason = "counts are small")]
+        let [u, w] = [column / across, column % across].map(|at| at as f64 + 0.5);
+        let [first, second, _] = window.lower;
+        let place = [first + u * window.edge, second + w * window.edge, height];
+        let x = frame.back(&place);
+        let above = matter
+            .mirrors
+            .reflect_position(&x, matter.mirrors.beyond(&x));
+        solid.distance(&above.into()) > -margin
+    };
+    columns.map(is_outside).collect()
 }
 
 /// The window about matter that has flowed within some reach (m), and how far it goes beyond the

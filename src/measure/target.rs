@@ -38,11 +38,13 @@ impl Crater {
 
     fn of(slab: &Slab, attached: &Attached) -> Self {
         let edge = attached.window.edge;
-        // A column without matter is as deep as the target.
-        let depths: Vec<f64> = attached
-            .ends()
-            .map(|ends| ends.map_or(slab.thickness(), |[_, top]| slab.front - top))
-            .collect();
+        // A column of the target without matter is as deep as it.
+        let depth = |(column, ends): (usize, Option<[f64; 2]>)| match ends {
+            _ if !attached.is_of_body(column) => 0.0,
+            Some([_, top]) => slab.front - top,
+            None => slab.thickness(),
+        };
+        let depths: Vec<f64> = attached.ends().enumerate().map(depth).collect();
         let deepest = depths
             .iter()
             .enumerate()

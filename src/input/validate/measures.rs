@@ -158,7 +158,11 @@ impl Reader<'_> {
         let index = self.deforming(&params.body)?;
         let foot = match &params.foot {
             Some(foot) => self.direction("foot", foot, true)?,
-            None => usual::foot(self.case, index),
+            None => usual::foot(self.case, index).ok_or_else(|| {
+                let title = "the body has no axis of its own that would be a bar's";
+                Diagnostic::new(params.body.span(), title)
+                    .help("give its `foot`, as in `foot = \"-z\"`")
+            })?,
         };
         let name = self.name_or_body(params.name.as_ref(), index);
         let kind = MeasureKind::Bar(Bar {
