@@ -99,53 +99,23 @@ fn tell(args: &MeasureArgs) -> Result<String, MeasureError> {
         }
         None => Vec::new(),
     };
-    let mut rows = Vec::new();
+    let mut told = Vec::new();
     let mut text = String::new();
     for path in &paths {
         let loaded = Loaded::read(path, &args.set)?;
-        let matter = loaded.matter();
-        let found = findings(loaded.time, &mut remembered, None, &matter, &comm);
-        let all = || loaded.case.measure.measures.iter().zip(&found);
-        let table = measures::figures(loaded.time, all(), loaded.case.dimension);
-        rows.extend(table.map(|row| row.into_iter().map(Cell::from).collect::<Vec<_>>()));
-        text = report(&loaded, all());
+        let found = findings(loaded.time, &mut remembered, None, &loaded.matter(), &comm);
+        text = report(&loaded, loaded.case.measure.measures.iter().zip(&found));
+        told.push((loaded.case, loaded.time, found));
     }
     if let Some(path) = &args.csv {
-        let rows: Vec<Vec<_>> = rows
-            .iter()
-            .map(|row| row.iter().map(Cell::value).collect())
-            .collect();
-        write_atomically(path, &measures::table(&rows))?;
+        let rows = told.iter().flat_map(|(case, time, found)| {
+            let all = case.measure.measures.iter().zip(found);
+            measures::figures(*time, all, case.dimension)
+        });
+        write_atomically(path, &measures::table(&rows.collect::<Vec<_>>()))?;
         say(&format!("wrote {}", one_line(&path.display().to_string())));
     }
     Ok(text)
-}
-
-/// A cell that outlives its snapshot.
-enum Cell {
-    Real(f64),
-    Count(u64),
-    Word(String),
-}
-
-impl From<crate::output::Value<'_>> for Cell {
-    fn from(value: crate::output::Value) -> Self {
-        match value {
-            crate::output::Value::Real(real) => Self::Real(real),
-            crate::output::Value::Count(count) => Self::Count(count),
-            crate::output::Value::Word(word) => Self::Word(word.to_owned()),
-        }
-    }
-}
-
-impl Cell {
-    fn value(&self) -> crate::output::Value<'_> {
-        match self {
-            Self::Real(real) => crate::output::Value::Real(*real),
-            Self::Count(count) => crate::output::Value::Count(*count),
-            Self::Word(word) => crate::output::Value::Word(word),
-        }
-    }
 }
 
 /// The first snapshot of a run, and those that are asked for.

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::matter::raise;
 use super::{Whole, reading};
 use crate::comm::Comm;
 use crate::material::FAILED;
@@ -235,10 +236,4 @@ pub fn bodies(
         *most = disordered(word);
     }
     parts.iter_mut().map(|part| part.figures(whole)).collect()
-}
-
-/// Raises an extreme to a value beyond it. What is no number has been refused by the choice of the step;
-/// zero has one sign.
-fn raise(most: &mut f64, value: f64) {
-    *most = if value > *most { value + 0.0 } else { *most };
 }

@@ -76,7 +76,7 @@ fn read(line: &FrontLine, matter: &Matter, comm: &Comm) -> Line {
     let chunks = (0..matter.len().div_ceil(GRAIN)).into_par_iter();
     // same bits in any order: some value among all
     let most = chunks.fold(none, of_chunk).reduce(none, join);
-    let mut words: Vec<u64> = most.iter().map(|&most| ordered(most + 0.0)).collect();
+    let mut words: Vec<u64> = most.iter().map(|&most| ordered(most)).collect();
     comm.max_u64(&mut words);
     let mut pressures: Vec<f64> = words.into_iter().map(disordered).collect();
     let arrived = pressures.pop().is_some_and(|most| most >= 1.0);

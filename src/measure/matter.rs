@@ -157,7 +157,7 @@ impl<'a> Matter<'a> {
         let chunks = (0..self.len().div_ceil(GRAIN)).into_par_iter();
         // same bits in any order: some value among all
         let most = chunks.fold(none, of_chunk).reduce(none, join);
-        let mut words = most.map(|value| ordered(value + 0.0));
+        let mut words = most.map(ordered);
         comm.max_u64(&mut words);
         words.map(disordered)
     }
@@ -189,9 +189,9 @@ impl<'a> Matter<'a> {
     }
 }
 
-/// Raises a largest value.
+/// Raises a largest value. What is no number has been refused by the choice of the step; zero has one sign.
 pub fn raise(most: &mut f64, value: f64) {
-    *most = if value > *most { value } else { *most };
+    *most = if value > *most { value + 0.0 } else { *most };
 }
 
 /// The symmetry planes of a case.

@@ -96,7 +96,7 @@ pub fn zone(zone: &Zone, particles: &ParticleStore, matter: &Matter, comm: &Comm
     gather_limbs(all.sums.iter_mut(), &mut limbs);
     comm.sum_i64(&mut limbs);
     scatter_limbs(all.sums.iter_mut(), &limbs);
-    let mut words: Vec<u64> = all.most.iter().map(|&most| ordered(most + 0.0)).collect();
+    let mut words: Vec<u64> = all.most.iter().map(|&most| ordered(most)).collect();
     comm.max_u64(&mut words);
     let most: Vec<f64> = words.into_iter().map(disordered).collect();
     let mass = all.sums[0].value();
