@@ -361,12 +361,12 @@ const IN_OVERRIDES: &[(&str, &str, usize)] = &[
     (
         "material.metal.failure.spall={}",
         "the key `pressure` is missing",
-        22,
+        30,
     ),
     (
         "material.metal.failure.spall.pressure=1 GPa",
         "`pressure` must be zero or negative",
-        31,
+        39,
     ),
     (
         "material.metal.eos={linear={}}",

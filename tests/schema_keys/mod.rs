@@ -41,15 +41,22 @@ pub fn keys() -> Vec<Key> {
     found
 }
 
+/// Macros of laws, and the tables whose keys they are.
+const LAWS: [(&str, &str); 2] = [
+    ("strength_laws", "StrengthParams"),
+    ("failure_laws", "FailureParams"),
+];
+
 /// Reads declarations such as `Table { key: Type, }`, one key a line, and those of laws, `law:
 /// Table => Law { key: Type, Range; }`.
 fn read_tables(source: &str, tables: &mut BTreeMap<String, Vec<(String, String)>>) {
     let mut table = None;
-    let mut strength = false;
+    let mut laws = None;
     let is_word = |text: &str| text.chars().all(|c| c.is_alphanumeric() || c == '_');
     for line in source.lines().map(str::trim) {
         if line.starts_with("macro_rules! ") {
-            strength = line.contains(" strength_laws ");
+            let named = |(of, _): &&(&str, &str)| line.contains(&format!(" {of} "));
+            laws = LAWS.iter().find(named).map(|(_, table)| *table);
         }
         if let Some((row, _)) = line.split_once(" => ")
             && let Some((law, name)) = row.split_once(": ")
@@ -57,19 +64,19 @@ fn read_tables(source: &str, tables: &mut BTreeMap<String, Vec<(String, String)>
         {
             tables.insert(name.to_owned(), Vec::new());
             table = Some(name.to_owned());
-            if strength {
-                let all = tables.entry("StrengthParams".to_owned()).or_default();
+            if let Some(laws) = laws {
+                let all = tables.entry(laws.to_owned()).or_default();
                 all.push((law.to_owned(), name.to_owned()));
             }
         } else if let Some(name) = line.strip_suffix(" {")
             && name.chars().all(char::is_alphanumeric)
         {
-            tables.insert(name.to_owned(), Vec::new());
+            tables.entry(name.to_owned()).or_default();
             table = Some(name.to_owned());
         } else if line.starts_with('}') {
             table = None;
         } else if let (Some(name), Some((key, kind))) = (&table, line.split_once(": "))
-            && !line.starts_with(['/', '#'])
+            && !line.starts_with(['/', '#', '$'])
         {
             let key = key.trim_start_matches("r#").to_owned();
             let range = kind

@@ -49,7 +49,9 @@ pub fn failure(
         Some(OrNone::None) => Failure::NONE,
         Some(OrNone::Table(params)) => laws(params, &base)?,
     };
-    failure.manner.dimension = u8::try_from(dimension).unwrap_or(3);
+    if !failure.is_none() {
+        failure.manner.dimension = u8::try_from(dimension).unwrap_or(3);
+    }
     if let Some(table) = table
         && let OrNone::Table(params) = table.get_ref()
     {
@@ -140,27 +142,27 @@ fn check(
         }
     }
     if manner.scatter > 0.0 && failure.johnson_cook.is_none() && failure.plastic_strain.is_none() {
-        let at = params
-            .scatter
-            .as_ref()
-            .map_or_else(|| table.span(), Spanned::span);
+        let at = (params.scatter.as_ref()).map_or_else(|| table.span(), Spanned::span);
         let title = "no failure strain that could scatter";
         return Err(Diagnostic::new(at, title).help("`johnson_cook` and `plastic_strain` have one"));
     }
-    if failure.grady_kipp.is_some() && strength.shear_modulus() == 0.0 {
-        let title = "cracks grow in solids, and this material has no shear modulus";
-        return Err(Diagnostic::new(table.span(), title));
-    }
-    if manner.effect == Effect::Scaled
-        && matches!(strength, Strength::NeoHookean(_) | Strength::Viscous(_))
-    {
-        let title = "stress that fades with damage needs a strength that is elastic, or elastic and plastic";
-        return Err(Diagnostic::new(table.span(), title));
-    }
+    let strengths = against_strength(failure, strength);
+    strengths.map_or(Ok(()), |title| Err(Diagnostic::new(table.span(), title)))
+}
+
+/// Why a strength cannot fail that way.
+fn against_strength(failure: &Failure, strength: &Strength) -> Option<&'static str> {
+    let unscaled = matches!(strength, Strength::NeoHookean(_) | Strength::Viscous(_));
     let strains = failure.johnson_cook.is_some() || failure.plastic_strain.is_some();
-    if strains && !strength.yields() {
-        let title = "a failure strain is a plastic one, and this material does not yield";
-        return Err(Diagnostic::new(table.span(), title));
+    if failure.grady_kipp.is_some() && strength.shear_modulus() == 0.0 {
+        Some("cracks grow in solids, and this material has no shear modulus")
+    } else if failure.manner.effect == Effect::Scaled && unscaled {
+        Some(
+            "stress that fades with damage needs a strength that is elastic, or elastic and plastic",
+        )
+    } else if strains && !strength.yields() {
+        Some("a failure strain is a plastic one, and this material does not yield")
+    } else {
+        None
     }
-    Ok(())
 }

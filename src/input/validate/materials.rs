@@ -1,5 +1,7 @@
 //! Materials: from the library with single values changed, or inline.
 
+use std::ops::Range;
+
 use toml::Spanned;
 
 use super::check::{Allowed, optional};
@@ -78,17 +80,26 @@ fn material(
         failure,
         thermal,
     };
-    let Some(key) = missing_heat(&material) else {
-        return Ok(material);
-    };
-    let strength = material.strength.needs_temperature();
-    let (law, at) = if strength {
+    match missing_heat(&material) {
+        None => Ok(material),
+        Some(key) => Err(heat_diagnostic(&material, key, name.span(), params)),
+    }
+}
+
+/// Says that a law follows the temperature and has no `key`.
+fn heat_diagnostic(
+    material: &Material,
+    key: &str,
+    name: Range<usize>,
+    params: &MaterialParams,
+) -> Diagnostic {
+    let (law, at) = if material.strength.needs_temperature() {
         ("strength", params.strength.as_ref().map(Spanned::span))
     } else {
-        ("failure", given.map(Spanned::span))
+        ("failure", params.failure.as_ref().map(Spanned::span))
     };
     let title = format!("this {law} follows the temperature and needs `{key}`");
-    Err(Diagnostic::new(at.unwrap_or_else(|| name.span()), title))
+    Diagnostic::new(at.unwrap_or(name), title)
 }
 
 /// The key without which a strength or a failure that follows the temperature cannot.

@@ -36,13 +36,11 @@
 //! so that sums cannot tell less. Without an end, the volume m/ρ by which a particle counts in its
 //! neighbours' sums grows for ever, and their gradients with it.
 
+use super::failure::{Effect, FAILED, Manner, Molten};
 use super::principal_tension::largest;
-use super::{Conditions, Effect, LANES, Lanes, Manner, Molten, PointBatch};
+use super::{Conditions, LANES, Lanes, PointBatch};
 use crate::material::{at_least, at_most};
 use crate::numerics::principal::principal;
-
-/// Damage of matter that has failed.
-pub(crate) const FAILED: f64 = 1.0;
 
 /// Least density of failed matter, over that of the reference state.
 const SPRAY: f64 = 0.1;

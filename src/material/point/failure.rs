@@ -2,9 +2,11 @@
 
 use serde::Deserialize;
 
-use super::damage::FAILED;
 use crate::material::declare::{Constants, Value};
 use crate::numerics::counter::exponential;
+
+/// Damage of matter that has failed.
+pub(crate) const FAILED: f64 = 1.0;
 
 /// What failed matter has lost.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]

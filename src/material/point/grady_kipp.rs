@@ -27,7 +27,7 @@
 
 use serde::Deserialize;
 
-use super::damage::FAILED;
+use super::failure::FAILED;
 use super::principal_tension::{largest, may_exceed};
 use super::{Conditions, LANES, Law, PointBatch};
 use crate::material::{at_least, at_most};

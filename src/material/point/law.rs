@@ -1,6 +1,7 @@
 //! What a law of the material point is, and how those of a material act together.
 
-use super::{LANES, Lanes, Manner, PointBatch};
+use super::failure::Manner;
+use super::{LANES, Lanes, PointBatch};
 use crate::material::ThermalConstants;
 use crate::material::declare::Listed;
 

@@ -1,7 +1,7 @@
 //! Failure by the largest principal stress (Rankine): matter has failed once a principal stress,
 //! tension positive, exceeds the limit.
 
-use super::damage::FAILED;
+use super::failure::FAILED;
 use super::principal_tension::{largest, may_exceed};
 use super::{Conditions, LANES, Law, PointBatch};
 

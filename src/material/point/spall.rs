@@ -15,7 +15,7 @@
 
 use serde::Deserialize;
 
-use super::damage::FAILED;
+use super::failure::FAILED;
 use super::{Conditions, LANES, Law, PointBatch};
 use crate::material::at_least;
 
