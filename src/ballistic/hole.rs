@@ -68,13 +68,13 @@ pub fn all(pair: &Pair, shot: &Shot) -> [f64; 4] {
 mod tests {
     use super::*;
 
-    /// 2017 on 6061 at 6.7 km/s: values computed apart from this code.
+    /// Aluminium on aluminium at 6.7 km/s: values computed apart from this code to two decimals.
     #[test]
     fn three_fits_at_6_7_kilometres_a_second() {
         let shot = Shot {
             speed: 6.7e3,
             angle: 0.0,
-            density: 2790.0,
+            density: 2700.0,
         };
         let table = [
             (0.026, [1.16, 1.30, 1.07]),
@@ -95,7 +95,7 @@ mod tests {
             let found = all(&pair, &shot).map(|hole| hole / 0.01);
             for (found, expected) in found.iter().zip(expected) {
                 assert!(
-                    (found - expected).abs() < 0.011,
+                    (found - expected).abs() < 0.006,
                     "{share}: {found} {expected}"
                 );
             }

@@ -108,6 +108,7 @@ mod tests {
         let text = |more: &str| {
             format!(
                 "dimension = 3\nspacing = \"1 mm\"\nrun.end_time = \"1 us\"\n\
+                 [material.copper]\nlibrary = \"copper\"\n\
                  [contact]\nmode = \"overlap\"\n\
                  [[body]]\nname = \"still\"\nmaterial = \"copper\"\n\
                  shape.sphere = {{ centre = [0, 0, 0], radius = \"3 mm\" }}\n\
