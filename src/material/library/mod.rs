@@ -28,10 +28,13 @@ macro_rules! records {
     };
 }
 
+mod alloys;
 mod fluids;
 mod impact;
+mod metal;
 mod metals;
 mod paper;
+mod polymers;
 
 /// What a record makes its material from.
 struct Parts {
@@ -45,10 +48,12 @@ struct Parts {
 /// All records, sorted by name.
 fn records() -> Vec<&'static Record> {
     let lists = [
+        alloys::RECORDS,
         fluids::RECORDS,
         impact::RECORDS,
         metals::RECORDS,
         paper::RECORDS,
+        polymers::RECORDS,
     ];
     let mut all: Vec<&Record> = lists.into_iter().flatten().collect();
     all.sort_by_key(|record| record.name);
