@@ -123,7 +123,7 @@ fn a_temperature_is_an_energy_with_its_pressure() {
 fn torn_matter_has_the_temperature_that_it_is_given() {
     let case = inline(
         "dimension = 1\nspacing = \"1 mm\"\n[run]\nend_time = \"1 us\"\n\
-         [material.copper]\nlibrary = \"copper-johnson-cook\"\nspall.pressure = \"-1 GPa\"\n\
+         [material.copper]\nlibrary = \"copper-johnson-cook\"\nfailure.spall.pressure = \"-1 GPa\"\n\
          [[body]]\nname = \"bar\"\nmaterial = \"copper\"\nshape.box.size = [\"9 mm\"]\n\
          density = \"8.5 g/cm^3\"\ntemperature = \"500 K\"\n",
     );

@@ -136,7 +136,7 @@ fn overrides_reach_every_place() {
             "sph.smoothing_length_max=1.5",
             "symmetry=[]",
             "material.aluminium.strength=none",
-            "material.aluminium.spall=none",
+            "material.aluminium.failure.spall=none",
             "material.aluminium.density=2.8 g/cm^3",
             "domain.axis=y",
             "time_step.max=1 ns",
@@ -270,7 +270,7 @@ fn a_gas_a_liquid_a_rubber_and_a_hot_metal() {
         library = "copper"
         strength.johnson_cook = { a = "90 MPa", b = "292 MPa", n = 0.31, c = 0.025, m = 1.09 }
         thermal = { specific_heat = "383 J/(kg K)", melting_temperature = "1356 K" }
-        spall.pressure = "-1 GPa"
+        failure.spall.pressure = "-1 GPa"
         [[body]]
         name = "left"
         material = "gas"

@@ -359,12 +359,12 @@ const IN_OVERRIDES: &[(&str, &str, usize)] = &[
         25,
     ),
     (
-        "material.metal.spall={}",
+        "material.metal.failure.spall={}",
         "the key `pressure` is missing",
         22,
     ),
     (
-        "material.metal.spall.pressure=1 GPa",
+        "material.metal.failure.spall.pressure=1 GPa",
         "`pressure` must be zero or negative",
         31,
     ),

@@ -15,6 +15,7 @@ const CONSTANTS: ThermalConstants = ThermalConstants {
     specific_heat: 875.0,
     reference_temperature: 300.0,
     melting_temperature: Some(775.0),
+    taylor_quinney: 1.0,
 };
 const JC: JohnsonCook = JohnsonCook {
     shear_modulus: 27.6e9,

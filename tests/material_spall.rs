@@ -46,8 +46,8 @@ fn constants_tell_the_choice() {
     for (after, word) in MODES.into_iter().zip(["failed", "recompacts", "hold"]) {
         let constants = metal(after).constants();
         let found = |key: &str| constants.iter().find(|c| c.key == key).unwrap().value;
-        assert_eq!(found("spall.after"), Value::Word(word));
-        assert_eq!(found("spall.pressure"), Value::Number(LIMIT, "Pa"));
+        assert_eq!(found("failure.spall.after"), Value::Word(word));
+        assert_eq!(found("failure.spall.pressure"), Value::Number(LIMIT, "Pa"));
     }
 }
 

@@ -9,6 +9,7 @@ const CONSTANTS: ThermalConstants = ThermalConstants {
     specific_heat: 875.0,
     reference_temperature: 300.0,
     melting_temperature: None,
+    taylor_quinney: 1.0,
 };
 
 #[test]
@@ -84,6 +85,7 @@ fn a_gas_has_the_temperature_of_its_energy() {
         specific_heat: gas.reference_energy(rho0) / 293.15,
         reference_temperature: 293.15,
         melting_temperature: None,
+        taylor_quinney: 1.0,
     };
     let thermal = Thermal::new(constants, rho0, &eos);
     for ratio in [1e-4, 0.6, 1.0, 4.0, 20.0] {

@@ -55,7 +55,7 @@ end_time = "1 ms"
 
 [material.aluminium]
 library = "aluminium-2024"
-spall.pressure = "-1 kPa"
+failure.spall.pressure = "-1 kPa"
 
 [[body]]
 name = "below"

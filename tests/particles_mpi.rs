@@ -19,7 +19,7 @@ fields = ["mass", "velocity", "density", "specific_energy", "deviatoric_stress",
     "damage", "failure_energy", "hourglass_displacement"]
 [material.copper]
 library = "copper-johnson-cook"
-spall.pressure = "-1.2 GPa"
+failure.spall.pressure = "-1.2 GPa"
 [[body]]
 name = "ball"
 material = "copper"

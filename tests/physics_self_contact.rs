@@ -110,7 +110,7 @@ fn torn(right: bool, contact: &str) -> Simulation {
     };
     let mut text = format!(
         "dimension = 2\nspacing = \"1 mm\"\nrun.end_time = \"5 ms\"\n{contact}\n{SOFT}\
-         spall = {{ pressure = \"0 Pa\", after = \"hold\" }}\n{}{}",
+         failure.spall = {{ pressure = \"0 Pa\", after = \"hold\" }}\n{}{}",
         block("bar", -12.0, 12.0),
         load("above.x = 0", 1.0)
     );

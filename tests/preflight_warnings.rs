@@ -203,16 +203,16 @@ fn values_that_no_run_has_a_use_for_are_told() {
         &["`friction` is 100: dry rubber has about 1, and clean metals in vacuum weld beyond 2"],
     );
     assert_told(&["contact.friction=1"], &[]);
-    let spall = "material.metal.spall.pressure=\"0 Pa\"";
+    let spall = "material.metal.failure.spall.pressure=\"0 Pa\"";
     assert_told(
         &[spall],
         &[
-            "`metal` bears no tension and fails for good at the first of it: give `spall.pressure` \
-             what it bears, or `spall.after` as \"recompacts\" or \"hold\"",
+            "`metal` bears no tension and fails for good at the first of it: give `failure.spall.pressure` \
+             what it bears, or `failure.spall.after` as \"recompacts\" or \"hold\"",
         ],
     );
-    assert_told(&[spall, "material.metal.spall.after=hold"], &[]);
-    assert_told(&["material.metal.spall.pressure=\"-1 GPa\""], &[]);
+    assert_told(&[spall, "material.metal.failure.spall.after=hold"], &[]);
+    assert_told(&["material.metal.failure.spall.pressure=\"-1 GPa\""], &[]);
     assert_told(
         &["sph.alpha=0.05"],
         &[

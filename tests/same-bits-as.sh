@@ -145,9 +145,9 @@ others() {
     done < <("$old" materials | awk '$2 ~ /^[0-9.]+$/ { print $1 }')
     cat <<'END'
 q  | inputs/contact-lab/solid.toml | spacing=0.2mm material.aluminium.library=copper-johnson-cook output.fields=["temperature","von_mises_stress"]
-   | inputs/contact-lab/solid.toml | spacing=0.2mm material.aluminium.spall.pressure=-1GPa material.aluminium.strength=none
-q  | inputs/quarter-impact | spacing=0.05mm material.aluminium.spall.after=recompacts sph.form=corrected
-   | inputs/quarter-impact | spacing=0.05mm material.aluminium.spall.after=hold
+   | inputs/contact-lab/solid.toml | spacing=0.2mm material.aluminium.failure.spall.pressure=-1GPa material.aluminium.strength=none
+q  | inputs/quarter-impact | spacing=0.05mm material.aluminium.failure.spall.after=recompacts sph.form=corrected
+   | inputs/quarter-impact | spacing=0.05mm material.aluminium.failure.spall.after=hold
    | inputs/contact-lab/seam.toml | contact.pair=[{bodies=["left","right"],mode="kernel"},{bodies=["left","above"],mode="penalty",friction=0.3}]
 q  | inputs/contact-lab/seam.toml | contact.pair=[{bodies=["left","right"],friction=0.3},{bodies=["right","above"],mode="potential"}] run.max_steps=60
    | inputs/contact-lab/seam.toml | body.above.lattice=rings body.left.lattice={kind="hexagonal",angle="20deg"}

@@ -145,7 +145,7 @@ fn every_contact_mode_variable_h_and_options() {
         ["sph.conduction=1", "run.end_time=0.05us"],
         ["sph.xsph=0.5", "run.end_time=0.1us"],
         [
-            "material.aluminium.spall.after=recompacts",
+            "material.aluminium.failure.spall.after=recompacts",
             "sph.form=corrected",
         ],
     ] {

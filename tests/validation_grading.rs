@@ -87,7 +87,7 @@ run.end_time = "4 us"
 time_step = {{ courant = 0.65, force = 0.2, contact = 1.0 }}
 [material.a]
 library = "aluminium-2024"
-spall.pressure = "-1.2 GPa"
+failure.spall.pressure = "-1.2 GPa"
 [[symmetry]]
 axis = "x"
 [[symmetry]]

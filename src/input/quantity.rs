@@ -31,6 +31,8 @@ const NAMES: &[(Powers, &str)] = &[
     (Mass::POWERS, Mass::NAME),
     (Acceleration::POWERS, Acceleration::NAME),
     (ArealMass::POWERS, ArealMass::NAME),
+    (FractureEnergy::POWERS, FractureEnergy::NAME),
+    (NumberDensity::POWERS, NumberDensity::NAME),
     ([1, 1, -2, 0, 0], "a force"),
     ([2, 1, -2, 0, 0], "an energy"),
 ];
@@ -82,6 +84,10 @@ kinds! {
     ArealMass = [-2, 1, 0, 0, 0], "an areal mass", "0.5 kg/m^2", 1e9 "that of hundreds of kilometres of rock";
     /// Pascals: pressures, stresses and moduli.
     Pressure = [-1, 1, -2, 0, 0], "a pressure or modulus", "0.26 GPa", 1e17 "more than the pressure in the middle of the Sun";
+    /// Joules in a square metre.
+    FractureEnergy = [0, 1, -2, 0, 0], "an energy of an area", "12 kJ/m^2", 1e12 "more than any matter takes to break";
+    /// In a cubic metre.
+    NumberDensity = [-3, 0, 0, 0, 0], "a number in a volume", "4e35/m^3", 1e150 "more than any volume holds";
     /// Radians.
     Angle = [0, 0, 0, 0, 1], "an angle", "30 deg", 1e6 "more turns than an angle keeps digits for";
     /// Radians in a second.

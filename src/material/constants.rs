@@ -33,7 +33,8 @@ impl Material {
             Some((law, rows)) => list.extend(group(&format!("strength.{law}"), rows)),
         }
         for (law, rows) in self.failure.constants() {
-            list.extend(group(law, rows));
+            let dot = if law.is_empty() { "" } else { "." };
+            list.extend(group(&format!("failure{dot}{law}"), rows));
         }
         if let Some(thermal) = &self.thermal {
             list.extend(group("thermal", heat(thermal.constants())));
@@ -49,7 +50,8 @@ fn constant(key: &str, value: Value) -> Constant {
     }
 }
 
-fn group(law: &str, rows: Constants) -> impl Iterator<Item = Constant> {
+fn group(law: &str, rows: Constants) -> impl Iterator<Item = Constant> + use<> {
+    let law = law.to_owned();
     rows.into_iter()
         .map(move |(key, value)| constant(&format!("{law}.{key}"), value))
 }
@@ -80,5 +82,9 @@ fn heat(constants: &ThermalConstants) -> Constants {
     ];
     let melting = constants.melting_temperature;
     rows.extend(melting.map(|t| ("melting_temperature", Value::Number(t, "K"))));
+    if constants.taylor_quinney < 1.0 {
+        let share = Value::Number(constants.taylor_quinney, "");
+        rows.push(("taylor_quinney", share));
+    }
     rows
 }

@@ -69,8 +69,8 @@ impl Material {
         }
     }
 
-    /// Temperature (K) at a density (kg/m³), specific energy (J/kg) and damage, if the material has
-    /// thermal constants.
+    /// Temperature (K) at a density (kg/m³), [thermal energy](Self::thermal_energy) (J/kg) and
+    /// damage, if the material has thermal constants.
     #[must_use]
     pub fn temperature(&self, density: f64, specific_energy: f64, damage: f64) -> Option<f64> {
         let thermal = self.thermal.as_ref()?;
@@ -91,6 +91,27 @@ impl Material {
         self.failure.limit_tension(&mut point);
         let matter = density + thermal::opening(point.pressure[0] - at.pressure, at.dp_drho);
         Some(thermal.temperature(matter, specific_energy))
+    }
+
+    /// Specific energy (J/kg) without what plastic work (J/kg) has stored in the matter otherwise
+    /// than as heat: what temperatures follow.
+    #[inline(always)]
+    #[must_use]
+    pub fn thermal_energy(&self, specific_energy: f64, plastic_energy: f64) -> f64 {
+        let heat = |thermal: &Thermal| thermal.constants().taylor_quinney;
+        let stored = 1.0 - self.thermal.as_ref().map_or(1.0, heat);
+        specific_energy - stored * plastic_energy
+    }
+
+    /// [`Self::thermal_energy`] of a batch.
+    #[inline(always)]
+    #[must_use]
+    pub fn thermal_energies(&self, energy: &Lanes, plastic_energy: &Lanes) -> Lanes {
+        let mut thermal = *energy;
+        for k in 0..LANES {
+            thermal[k] = self.thermal_energy(energy[k], plastic_energy[k]);
+        }
+        thermal
     }
 
     /// [`Self::temperature`] of a batch.
@@ -160,23 +181,53 @@ impl Material {
             .response(rho0, &batch.density, &batch.specific_energy);
         batch.pressure = response.pressure;
         self.failure.limit_tension(batch);
-        let mut now = Conditions::new(dt, rho0, self.strength.shear_modulus());
-        if ALL && self.strength.needs_temperature() {
+        let moduli = [self.strength.shear_modulus(), self.eos.bulk_modulus(rho0)];
+        let mut now = Conditions::new(dt, rho0, moduli);
+        now.manner = self.failure.manner;
+        if ALL && self.needs_temperature() {
             self.set_temperatures(batch, &response, &mut now);
         }
+        let strain = batch.plastic_strain;
         self.strength.act::<ALL>(batch, &mut now, &self.failure);
         if ALL && self.failure.follows_state() {
+            for k in 0..LANES {
+                now.plastic_increment[k] = batch.plastic_strain[k] - strain[k];
+            }
             let bulk_modulus = self.bulk_modulus(batch, &response);
             self.failure.fail(batch, &mut now, &bulk_modulus);
         }
         self.set_sound_speed(batch, &response, &now.shear_modulus);
     }
 
+    /// Whether a law follows the temperature.
+    #[must_use]
+    pub fn needs_temperature(&self) -> bool {
+        self.strength.needs_temperature() || self.failure.needs_temperature()
+    }
+
+    /// Whether a law asks who and how large a particle is, or what plastic work it has taken.
+    #[must_use]
+    pub fn asks(&self) -> bool {
+        let heat = |thermal: &Thermal| thermal.constants().taylor_quinney;
+        let stores = self
+            .thermal
+            .as_ref()
+            .is_some_and(|thermal| heat(thermal) < 1.0);
+        self.failure.asks_identity() || self.needs_temperature() && stores
+    }
+
+    /// Whether a law needs the melting temperature of the thermal constants.
+    #[must_use]
+    pub fn needs_melting(&self) -> bool {
+        self.strength.needs_melting() || self.failure.needs_melting()
+    }
+
     /// Temperatures (K) of a batch after the largest tension, and the constants they are judged by.
     fn set_temperatures(&self, batch: &PointBatch, response: &eos::Response, now: &mut Conditions) {
         if let Some(thermal) = &self.thermal {
-            let (rho, e) = (&batch.density, &batch.specific_energy);
-            now.temperature = thermal.temperatures(rho, e, &batch.pressure, response);
+            let rho = &batch.density;
+            let e = self.thermal_energies(&batch.specific_energy, &batch.plastic_energy);
+            now.temperature = thermal.temperatures(rho, &e, &batch.pressure, response);
             now.thermal = *thermal.constants();
         }
     }

@@ -6,10 +6,16 @@
 mod batch;
 mod damage;
 mod elastic;
+mod failure;
+mod grady_kipp;
 mod jaumann;
 mod johnson_cook;
+mod johnson_cook_failure;
 mod law;
 mod neo_hookean;
+mod plastic_strain;
+mod principal_stress;
+mod principal_tension;
 mod radial_return;
 mod spall;
 mod steinberg_guinan;
@@ -22,10 +28,16 @@ pub use batch::{LANES, Lanes, PointBatch, PointField};
 pub(crate) use damage::FAILED;
 pub(super) use damage::limit_expansion;
 pub use elastic::Elastic;
+use failure::failure_laws;
+pub use failure::{Effect, Manner, Molten};
+pub use grady_kipp::{Crosses, Flaws, GradyKipp};
 pub use johnson_cook::JohnsonCook;
+pub use johnson_cook_failure::{JohnsonCookFailure, RateForm};
+use law::strength_laws;
 pub use law::{Conditions, Contradiction, Law};
-use law::{failure_laws, strength_laws};
 pub use neo_hookean::NeoHookean;
+pub use plastic_strain::PlasticStrain;
+pub use principal_stress::PrincipalStress;
 pub use spall::{AfterSpall, Spall};
 pub use steinberg_guinan::SteinbergGuinan;
 pub use viscous::Viscous;
@@ -34,7 +46,8 @@ pub use von_mises::VonMises;
 /// Passes the fields of a material point to the macro `$then`, after `$more`: name, kind and role
 /// of each. `Given` is taken from the particle, `State` is taken and written back, and `Answer` is
 /// written back. `Memory` is state of failure: the same as `State` where a material of the case
-/// has a law that changes it, zero elsewhere.
+/// has a law that changes it, zero elsewhere. `Known` is given where a material of the case has a
+/// law that asks for it.
 macro_rules! point_fields {
     ($then:ident $($more:tt)*) => {
         $then! {
@@ -53,6 +66,16 @@ macro_rules! point_fields {
             damage: Scalar, Memory;
             /// Elastic energy that failure has released so far (J/kg).
             failure_energy: Scalar, Memory;
+            /// How far matter that softens before it fails is on its way to the onset of that.
+            failure_onset: Scalar, Memory;
+            /// Flaws that have become active.
+            flaws: Scalar, Memory;
+            /// Where the next flaw becomes active; zero if none has been drawn.
+            next_flaw: Scalar, Memory;
+            /// Identity.
+            id: Id, Known;
+            /// Mass (kg).
+            mass: Scalar, Known;
             /// Pressure, compression positive (Pa).
             pressure: Scalar, Answer;
             /// Longitudinal sound speed (m/s).
@@ -82,4 +105,12 @@ strength_laws! {
 failure_laws! {
     /// Largest tension.
     spall: Spall;
+    /// Largest principal stress.
+    principal_stress: PrincipalStress;
+    /// Largest plastic strain.
+    plastic_strain: PlasticStrain;
+    /// Ductile damage of Johnson and Cook.
+    johnson_cook: JohnsonCookFailure;
+    /// Cracks that grow from flaws.
+    grady_kipp: GradyKipp;
 }

@@ -38,6 +38,9 @@ pub struct ThermalConstants {
     pub reference_temperature: f64,
     /// Melting temperature (K), if there is one.
     pub melting_temperature: Option<f64>,
+    /// Share of plastic work that becomes heat (Taylor & Quinney 1934, Proc. R. Soc. A 143, 307);
+    /// the rest is stored in the lattice and heats nothing.
+    pub taylor_quinney: f64,
 }
 
 impl ThermalConstants {
@@ -46,6 +49,7 @@ impl ThermalConstants {
         specific_heat: f64::INFINITY,
         reference_temperature: 0.0,
         melting_temperature: None,
+        taylor_quinney: 1.0,
     };
 }
 

@@ -191,8 +191,7 @@ fn von_mises(s: &[f64; 6]) -> f64 {
 #[must_use]
 pub fn temperature(case: &Case, particles: &ParticleStore, i: usize) -> Option<f64> {
     let material = &case.materials[case.bodies[particles.body[i] as usize].material];
-    let damage = particles.damage.get(i).copied().unwrap_or_default();
-    material.temperature(particles.density[i], particles.specific_energy[i], damage)
+    particles.temperature(material, i)
 }
 
 /// Temperatures (K) of the owned particles from `first` on; minus infinity where a material has no
@@ -210,9 +209,13 @@ pub fn temperatures(case: &Case, particles: &ParticleStore, first: usize, all: &
         }
         let lanes =
             |field: &[f64]| std::array::from_fn(|k| field.get(first + k).map_or(0.0, |x| *x));
-        let told = case.materials[material(first)].temperatures(
+        let material = &case.materials[material(first)];
+        let told = material.temperatures(
             &lanes(&particles.density),
-            &lanes(&particles.specific_energy),
+            &material.thermal_energies(
+                &lanes(&particles.specific_energy),
+                &lanes(&particles.plastic_energy),
+            ),
             &lanes(&particles.damage),
         );
         all.copy_from_slice(&told.unwrap_or([f64::NEG_INFINITY; LANES]));

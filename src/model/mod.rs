@@ -182,6 +182,18 @@ impl Case {
         bodies.any(|body| self.materials[body.material].failure.has_memory())
     }
 
+    /// Whether failure of matter of the case changes this field.
+    #[must_use]
+    pub fn fails_with(&self, field: &str) -> bool {
+        let mut bodies = self.bodies.iter();
+        bodies.any(|body| {
+            self.materials[body.material]
+                .failure
+                .state()
+                .any(|name| name == field)
+        })
+    }
+
     /// Whether matter of the case may yield.
     #[must_use]
     pub fn may_yield(&self) -> bool {

@@ -196,10 +196,9 @@ fn von_mises(s: &[f64; 6]) -> f64 {
 /// Temperature (K) of an owned particle.
 fn temperature(case: &Case, particles: &ParticleStore, i: usize) -> f64 {
     let body = case.bodies.get(particles.body[i] as usize);
-    let damage = particles.damage.get(i).copied().unwrap_or_default();
     let material = body.and_then(|body| case.materials.get(body.material));
     material
-        .and_then(|m| m.temperature(particles.density[i], particles.specific_energy[i], damage))
+        .and_then(|material| particles.temperature(material, i))
         .unwrap_or(f64::NAN)
 }
 

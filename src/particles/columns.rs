@@ -165,6 +165,10 @@ bitflags! {
         const WITNESSES = 1 << 22;
         /// Gauges that particles carry.
         const CARRIERS = 1 << 23;
+        /// Materials that soften before they fail.
+        const SOFTENING = 1 << 24;
+        /// Materials whose flaws grow to cracks.
+        const FLAWS = 1 << 25;
         /// Records that a particle keeps because snapshots are to show them.
         const PEAKS = Self::PEAK_PRESSURE.bits() | Self::PEAK_TENSION.bits()
             | Self::PEAK_TEMPERATURE.bits() | Self::PEAK_STRAIN_RATE.bits() | Self::ARRIVAL.bits();

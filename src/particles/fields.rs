@@ -122,6 +122,12 @@ particle_fields! {
     damage: Scalar,                       "",       State,    -,              IfHeld,   FAILURE;
     /// Elastic energy that tension and shear held when the matter failed.
     failure_energy: Scalar,               "J/kg",   State,    -,              OnDemand, FAILURE;
+    /// How far matter that softens before it fails is on its way to the onset of that.
+    failure_onset: Scalar,                "",       State,    -,              OnDemand, SOFTENING;
+    /// Flaws that have become active.
+    flaws: Scalar,                        "",       State,    -,              OnDemand, FLAWS;
+    /// Where the next flaw becomes active, as flaws expected; zero if none has been drawn.
+    next_flaw: Scalar,                    "",       State,    -,              Never,    FLAWS;
     /// Plastic work on the matter so far.
     plastic_energy: Scalar,               "J/kg",   State,    -,              OnDemand, YIELD;
     /// Largest pressure so far, compression positive; zero under tension alone.

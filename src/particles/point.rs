@@ -6,15 +6,21 @@ use super::fields::{FIELDS, FieldId};
 use super::scatter::Scatter;
 use crate::material::{FAILED, LANES, PointBatch, PointField, point_fields, point_lanes};
 
-/// Copies a field into a batch if its role says so; a memory that no particle has is zero.
+/// Copies a field into a batch if its role says so; a memory that no particle has is zero, and so is
+/// what no material asks for.
 macro_rules! gather {
-    (Answer $to:expr, $k:ident, $from:expr, $i:ident) => {};
-    (Memory $to:expr, $k:ident, $from:expr, $i:ident) => {
+    (Answer $asked:expr, $to:expr, $k:ident, $from:expr, $i:ident) => {};
+    (Known $asked:expr, $to:expr, $k:ident, $from:expr, $i:ident) => {
+        if $asked && !$from.is_empty() {
+            $to.set_lane($k, $from.slot($i))
+        }
+    };
+    (Memory $asked:expr, $to:expr, $k:ident, $from:expr, $i:ident) => {
         if !$from.is_empty() {
             $to.set_lane($k, $from.slot($i))
         }
     };
-    ($role:ident $to:expr, $k:ident, $from:expr, $i:ident) => {
+    ($role:ident $asked:expr, $to:expr, $k:ident, $from:expr, $i:ident) => {
         $to.set_lane($k, $from.slot($i))
     };
 }
@@ -22,6 +28,7 @@ macro_rules! gather {
 /// Copies a field out of a batch if its role says so.
 macro_rules! store {
     (Given $to:expr, $i:ident, $k:ident, $from:expr) => {};
+    (Known $to:expr, $i:ident, $k:ident, $from:expr) => {};
     (Memory $to:expr, $i:ident, $k:ident, $from:expr) => {
         if !$to.is_empty() {
             *$to.slot($i) = $from.lane($k)
@@ -64,6 +71,8 @@ macro_rules! points {
             pub heating: &'a [f64],
             /// Work of the step, for the balance between ranks.
             pub work: Scatter<'a, u32>,
+            /// Whether a material asks for what only some laws must know.
+            pub asks: bool,
             $( $(#[doc = $doc])+ pub $name: Scatter<'a, <point_lanes!($kind) as PointField>::Value>, )+
         }
 
@@ -95,7 +104,7 @@ macro_rules! points {
                 let mut batch = PointBatch::ZERO;
                 for (k, &i) in base.iter().enumerate() {
                     // SAFETY: by this function's contract; no reference outlives its statement.
-                    unsafe { $( gather!($role batch.$name, k, self.$name, i); )+ }
+                    unsafe { $( gather!($role self.asks, batch.$name, k, self.$name, i); )+ }
                 }
                 batch
             }
@@ -121,6 +130,7 @@ macro_rules! points {
                     body: &$d particles.body,
                     heating: &$d particles.d_specific_energy_dt,
                     work: $crate::particles::Scatter::new(&mut $d particles.work),
+                    asks: false,
                     $( $name: $crate::particles::Scatter::new(&mut $d particles.$name), )+
                 }
             };

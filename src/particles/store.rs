@@ -6,12 +6,22 @@ use super::arrays::SCRATCH_WORDS;
 use super::columns::{HaloPhase, Life, Owner};
 use super::fields::{FIELDS, FieldInfo, ParticleStore};
 use super::select::Select;
+use crate::material::Material;
 
 impl ParticleStore {
     /// Number of particles this rank owns.
     #[must_use]
     pub fn owned(&self) -> usize {
         self.owned
+    }
+
+    /// Temperature (K) of particle `i` of this material, if that has thermal constants.
+    #[must_use]
+    pub fn temperature(&self, material: &Material, i: usize) -> Option<f64> {
+        let held = |field: &[f64]| field.get(i).copied().unwrap_or_default();
+        let work = held(&self.plastic_energy);
+        let energy = material.thermal_energy(self.specific_energy[i], work);
+        material.temperature(self.density[i], energy, held(&self.damage))
     }
 
     /// Number of halo particles.

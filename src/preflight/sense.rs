@@ -55,8 +55,8 @@ fn unbearing_materials(case: &Case, found: &mut Vec<String>) {
         let spall = material.failure.spall;
         if spall.is_some_and(|s| s.pressure == 0.0 && s.after == AfterSpall::Failed) {
             found.push(format!(
-                "`{}` bears no tension and fails for good at the first of it: give `spall.pressure` \
-                 what it bears, or `spall.after` as \"recompacts\" or \"hold\"",
+                "`{}` bears no tension and fails for good at the first of it: give `failure.spall.pressure` \
+                 what it bears, or `failure.spall.after` as \"recompacts\" or \"hold\"",
                 material.name
             ));
         }

@@ -77,11 +77,12 @@ impl Show for () {
 
 impl<'a> MaterialUpdate<'a> {
     pub(super) fn new(
-        (points, records): (MaterialPoints<'a>, Records<'a>),
+        (mut points, records): (MaterialPoints<'a>, Records<'a>),
         sums: &'a Sums,
         lists: &'a Lists,
         step: &Step,
     ) -> Self {
+        points.asks = sums.asks;
         Self {
             images: lists.images(),
             materials: &sums.materials,
@@ -258,6 +259,14 @@ impl<'a> MaterialUpdate<'a> {
         let half = 0.5 * self.dt;
         for (k, &i) in base.iter().enumerate() {
             batch.specific_energy[k] += half * self.points.heating[i];
+        }
+        if self.points.asks
+            && let Some(recording) = &self.recording
+        {
+            for (k, &i) in base.iter().enumerate() {
+                // SAFETY: as above.
+                batch.plastic_energy[k] = unsafe { recording.plastic_energy(i) };
+            }
         }
         batch
     }

@@ -55,12 +55,30 @@ impl<'a> Recording<'a> {
                 raise(&records.peak_tension, i, || -pressure);
                 raise(&records.peak_strain_rate, i, || strain_rate(before, k));
                 raise(&records.peak_temperature, i, || {
-                    let point = (after.density[k], after.specific_energy[k], after.damage[k]);
-                    let temperature = self.materials[own].temperature(point.0, point.1, point.2);
+                    let material = &self.materials[own];
+                    let work = self.plastic_energy(i);
+                    let energy = material.thermal_energy(after.specific_energy[k], work);
+                    let temperature =
+                        material.temperature(after.density[k], energy, after.damage[k]);
                     temperature.unwrap_or_default()
                 });
                 self.arrive(i, pressure > self.arrival[own]);
             }
+        }
+    }
+
+    /// Plastic work (J/kg) so far of particle `i`.
+    ///
+    /// # Safety
+    /// No other thread may write the records of this particle.
+    #[inline(always)]
+    pub unsafe fn plastic_energy(&self, i: usize) -> f64 {
+        let work = &self.records.plastic_energy;
+        if work.is_empty() {
+            0.0
+        } else {
+            // SAFETY: by this function's contract.
+            unsafe { *work.slot(i) }
         }
     }
 

@@ -22,6 +22,8 @@ pub(super) struct Sums {
     pub terms: Terms,
     pub materials: Vec<Material>,
     pub material_of_body: Vec<usize>,
+    /// Whether one of these asks for what only some laws must know.
+    pub asks: bool,
     /// Pressure (Pa) that counts as arrived, by material.
     pub arrival: Vec<f64>,
     /// What mirror images exert, by chunk.
@@ -94,6 +96,7 @@ impl Sums {
                 .map(|material| case.measure.arrival_of(material))
                 .collect(),
             material_of_body: case.bodies.iter().map(|b| b.material).collect(),
+            asks: case.materials.iter().any(Material::asks),
             from_mirrors: Vec::new(),
             uncorrected: 0,
         }

@@ -67,8 +67,7 @@ fn temperatures(case: &Case, particles: &ParticleStore) -> Vec<f64> {
     }
     let of = |i: usize| {
         let material = &case.materials[case.bodies[particles.body[i] as usize].material];
-        let damage = particles.damage.get(i).copied().unwrap_or_default();
-        material.temperature(particles.density[i], particles.specific_energy[i], damage)
+        particles.temperature(material, i)
     };
     let all = (0..particles.owned()).into_par_iter();
     all.map(|i| of(i).unwrap_or(f64::NAN)).collect()

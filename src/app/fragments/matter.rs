@@ -260,15 +260,25 @@ fn temperatures(
     if !(reader.has("density") && reader.has("specific_energy")) {
         return unknown("the snapshot has neither them nor density and specific energy".into());
     }
+    let stores = |m: &crate::material::Material| m.thermal_energy(0.0, 1.0) != 0.0;
+    let stores = case.materials.iter().any(stores);
+    if stores && !reader.has("plastic_energy") {
+        return unknown("the snapshot has neither them nor `plastic_energy`".into());
+    }
     let (density, energy) = (
         reader.field("density", 1)?,
         reader.field("specific_energy", 1)?,
     );
+    let work = if stores {
+        reader.field("plastic_energy", 1)?
+    } else {
+        vec![0.0; body.len()]
+    };
     let of = |i: usize| {
         let body = case.bodies.get(body[i] as usize)?;
-        case.materials
-            .get(body.material)?
-            .temperature(density[i], energy[i], damage[i])
+        let material = case.materials.get(body.material)?;
+        let energy = material.thermal_energy(energy[i], work[i]);
+        material.temperature(density[i], energy, damage[i])
     };
     let values = (0..body.len()).map(|i| of(i).unwrap_or(f64::NAN));
     Ok((values.collect(), None))

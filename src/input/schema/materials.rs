@@ -5,10 +5,10 @@ use toml::Spanned;
 
 use crate::input::forms::OrNone;
 use crate::input::quantity::{
-    Density, PerPressure, PerTemperature, Placed, Pressure, Rate, SpecificEnergy, SpecificHeat,
-    Temperature, Velocity, Viscosity,
+    Density, FractureEnergy, NumberDensity, PerPressure, PerTemperature, Placed, Pressure, Rate,
+    SpecificEnergy, SpecificHeat, Temperature, Velocity, Viscosity,
 };
-use crate::material::{AfterSpall, LinearForm};
+use crate::material::{AfterSpall, Crosses, Effect, Flaws, LinearForm, Molten, RateForm};
 
 optional_tables! {
     /// `[material.NAME]`: from the library, or inline, or single values changed.
@@ -21,8 +21,8 @@ optional_tables! {
         eos: Option<Spanned<EosParams>>,
         /// Resistance to shear.
         strength: Option<Spanned<OrNone<StrengthParams>>>,
-        /// Largest tension.
-        spall: Option<Spanned<OrNone<SpallParams>>>,
+        /// How it fails.
+        failure: Option<Spanned<OrNone<FailureParams>>>,
         /// Temperature.
         thermal: Option<Spanned<ThermalParams>>,
     }
@@ -115,6 +115,8 @@ optional_tables! {
         reference_temperature: Option<Placed<Temperature>>,
         /// Melting temperature.
         melting_temperature: Option<Placed<Temperature>>,
+        /// Share of plastic work that becomes heat.
+        taylor_quinney: Option<Spanned<f64>>,
     }
 }
 
@@ -195,17 +197,63 @@ macro_rules! strength_laws {
 }
 pub(in crate::input) use strength_laws;
 
-/// Passes the laws of failure to the macro `$then`, in the same form; each is a key of
-/// [`MaterialParams`]. A `Word` is a choice with a default of its own.
+/// Passes the laws of failure to the macro `$then`, in the same form. A `Word` is a choice with a
+/// default of its own.
 macro_rules! failure_laws {
     ($then:ident) => {
         $then! {
-            /// `spall`: largest tension.
+            /// `failure.spall`: largest tension.
             spall: SpallParams => Spall {
                 /// Lowest pressure.
                 pressure: Placed<Pressure>, NotPositive;
                 /// What becomes of matter beyond it.
                 after: Spanned<AfterSpall>, Word;
+            }
+            /// `failure.principal_stress`: largest principal stress.
+            principal_stress: PrincipalStressParams => PrincipalStress {
+                /// Largest tension in any direction.
+                limit: Placed<Pressure>, Positive;
+            }
+            /// `failure.plastic_strain`: largest plastic strain.
+            plastic_strain: PlasticStrainParams => PlasticStrain {
+                /// Plastic strain of failure.
+                limit: Spanned<f64>, Positive;
+            }
+            /// `failure.johnson_cook`: ductile damage.
+            johnson_cook: JohnsonCookFailureParams => JohnsonCookFailure {
+                /// D₁.
+                d1: Spanned<f64>, Any;
+                /// D₂.
+                d2: Spanned<f64>, Any;
+                /// D₃.
+                d3: Spanned<f64>, Any;
+                /// D₄.
+                d4: Spanned<f64>, Any, or 0.0;
+                /// D₅.
+                d5: Spanned<f64>, Any, or 0.0;
+                /// Reference strain rate.
+                reference_rate: Placed<Rate>, Positive, or 1.0;
+                /// How the failure strain follows the rate.
+                rate_form: Spanned<RateForm>, Word;
+                /// Least failure strain.
+                least_strain: Spanned<f64>, Positive, or 0.01;
+                /// Mean tension at which the least strain is enough.
+                spall_stress: Placed<Pressure>, NotNegative, or 0.0;
+            }
+            /// `failure.grady_kipp`: cracks that grow from flaws.
+            grady_kipp: GradyKippParams => GradyKipp {
+                /// Weibull's coefficient.
+                k: Placed<NumberDensity>, Positive;
+                /// Weibull's exponent.
+                m: Spanned<f64>, Positive;
+                /// Crack speed over the sound speed.
+                crack_speed: Spanned<f64>, Positive, or 0.4;
+                /// What a crack crosses.
+                crosses: Spanned<Crosses>, Word;
+                /// How many flaws are active.
+                flaws: Spanned<Flaws>, Word;
+                /// Flaws of a particle.
+                most_flaws: Spanned<f64>, NotNegative, or 0.0;
             }
         }
     };
@@ -235,3 +283,25 @@ macro_rules! strength_table {
     };
 }
 strength_laws!(strength_table);
+
+macro_rules! failure_table {
+    ($( $(#[$doc:meta])+ $law:ident: $table:ident => $made:ident { $($keys:tt)+ } )+) => {
+        optional_tables! {
+            /// `failure`: any of these laws, and what they have in common.
+            FailureParams {
+                $( $(#[$doc])+ $law: Option<Spanned<OrNone<$table>>>, )+
+                /// What failed matter has lost.
+                effect: Option<Spanned<Effect>>,
+                /// Energy that opens a crack.
+                fracture_energy: Option<Placed<FractureEnergy>>,
+                /// Weibull modulus of failure strains.
+                scatter: Option<Spanned<f64>>,
+                /// Of draws.
+                seed: Option<Spanned<u32>>,
+                /// What molten matter does.
+                molten: Option<Spanned<Molten>>,
+            }
+        }
+    };
+}
+failure_laws!(failure_table);

@@ -1,12 +1,11 @@
 //! Materials: from the library with single values changed, or inline.
 
-use std::ops::Range;
-
 use toml::Spanned;
 
 use super::check::{Allowed, optional};
 use super::eos::eos;
-use super::strength::{failure, strength};
+use super::failure::failure;
+use super::strength::strength;
 use crate::input::forms::Named;
 use crate::input::names;
 use crate::input::schema::{MaterialParams, ThermalParams};
@@ -19,8 +18,13 @@ const ROOM: f64 = 300.0;
 /// Names and materials in the order of the input.
 pub fn materials(
     params: &Named<MaterialParams>,
+    dimension: usize,
 ) -> Result<(Vec<String>, Vec<Material>), Diagnostic> {
-    let materials: Result<_, _> = params.0.iter().map(|(n, t)| material(n, t)).collect();
+    let materials: Result<_, _> = params
+        .0
+        .iter()
+        .map(|(n, t)| material(n, t, dimension))
+        .collect();
     let names = params.0.iter().map(|(name, _)| name.get_ref().clone());
     Ok((names.collect(), materials?))
 }
@@ -28,6 +32,7 @@ pub fn materials(
 fn material(
     name: &Spanned<String>,
     table: &Spanned<MaterialParams>,
+    dimension: usize,
 ) -> Result<Material, Diagnostic> {
     names::check(name, "material")?;
     let params = table.get_ref();
@@ -63,36 +68,39 @@ fn material(
         reference_density,
         &eos,
     )?;
+    let (given, known) = (params.failure.as_ref(), base.map(|b| &b.failure));
+    let failure = failure(given, known, &strength, dimension)?;
     let material = Material {
         name: name.get_ref().clone(),
         reference_density,
         eos,
         strength,
-        failure: failure(params, base.map(|b| &b.failure))?,
+        failure,
         thermal,
     };
-    match (&params.strength, missing_heat(&material)) {
-        (_, None) => Ok(material),
-        (Some(table), Some(key)) => Err(heat_diagnostic(table.span(), key)),
-        (None, Some(key)) => Err(heat_diagnostic(name.span(), key)),
-    }
+    let Some(key) = missing_heat(&material) else {
+        return Ok(material);
+    };
+    let strength = material.strength.needs_temperature();
+    let (law, at) = if strength {
+        ("strength", params.strength.as_ref().map(Spanned::span))
+    } else {
+        ("failure", given.map(Spanned::span))
+    };
+    let title = format!("this {law} follows the temperature and needs `{key}`");
+    Err(Diagnostic::new(at.unwrap_or_else(|| name.span()), title))
 }
 
-/// The key without which a strength that follows the temperature cannot.
+/// The key without which a strength or a failure that follows the temperature cannot.
 fn missing_heat(material: &Material) -> Option<&'static str> {
     let melting = |thermal: &Thermal| thermal.constants().melting_temperature.is_some();
     match &material.thermal {
-        None if material.strength.needs_temperature() => Some("thermal.specific_heat"),
-        Some(thermal) if material.strength.needs_melting() && !melting(thermal) => {
+        None if material.needs_temperature() => Some("thermal.specific_heat"),
+        Some(thermal) if material.needs_melting() && !melting(thermal) => {
             Some("thermal.melting_temperature")
         }
         _ => None,
     }
-}
-
-fn heat_diagnostic(at: Range<usize>, key: &str) -> Diagnostic {
-    let title = format!("this strength follows the temperature and needs `{key}`");
-    Diagnostic::new(at, title)
 }
 
 /// Thermal constants, with the cold curve of this material's own equation of state.
@@ -121,6 +129,11 @@ fn thermal(
                 specific_heat: required!(params.specific_heat, base, Positive, &table.span()),
                 reference_temperature,
                 melting_temperature: given.or(base.and_then(|b| b.melting_temperature)),
+                taylor_quinney: number!(
+                    params.taylor_quinney,
+                    or base.map_or(1.0, |b| b.taylor_quinney),
+                    Within(0.0, 1.0)
+                ),
             })
         }
     };

@@ -6,10 +6,12 @@ mod absorbers;
 mod bodies;
 mod contact;
 mod eos;
+mod failure;
 mod fragments;
 mod grading;
 mod initial;
 mod lattice;
+mod laws;
 mod loads;
 mod materials;
 mod measure;
@@ -56,7 +58,7 @@ const MOST_OVERLAP: f64 = 0.5;
 pub fn case(mut params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     let dimension = dimension(&params.dimension)?;
     let symmetry = symmetry(&params.symmetry, dimension)?;
-    let (names, mut materials) = materials::materials(&params.material)?;
+    let (names, mut materials) = materials::materials(&params.material, dimension)?;
     let (sph, smoothing) = sph(&params.sph)?;
     let mut bodies = bodies::Reader {
         dimension,

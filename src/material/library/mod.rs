@@ -107,5 +107,6 @@ fn heat(specific_heat: f64, reference: f64, melting: Option<f64>) -> ThermalCons
         specific_heat,
         reference_temperature: reference,
         melting_temperature: melting,
+        taylor_quinney: 1.0,
     }
 }

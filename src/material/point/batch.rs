@@ -13,6 +13,9 @@ macro_rules! point_lanes {
     (Scalar) => {
         $crate::material::Lanes
     };
+    (Id) => {
+        [u64; $crate::material::LANES]
+    };
     (Symmetric) => {
         [$crate::material::Lanes; 6]
     };
@@ -30,11 +33,16 @@ macro_rules! point_batch {
         #[repr(align(64))]
         pub struct PointBatch {
             $( $(#[doc = $doc])+ pub $name: point_lanes!($kind), )+
+            /// Plastic work so far (J/kg), of which particles keep a record, if a material asks.
+            pub plastic_energy: Lanes,
         }
 
         impl PointBatch {
             /// All numbers zero.
-            pub const ZERO: Self = Self { $( $name: <point_lanes!($kind)>::ZERO, )+ };
+            pub const ZERO: Self = Self {
+                $( $name: <point_lanes!($kind)>::ZERO, )+
+                plastic_energy: [0.0; LANES],
+            };
         }
     };
 }
@@ -63,6 +71,21 @@ impl PointField for Lanes {
 
     #[inline(always)]
     fn set_lane(&mut self, k: usize, value: &f64) {
+        self[k] = *value;
+    }
+}
+
+impl PointField for [u64; LANES] {
+    type Value = u64;
+    const ZERO: Self = [0; LANES];
+
+    #[inline(always)]
+    fn lane(&self, k: usize) -> u64 {
+        self[k]
+    }
+
+    #[inline(always)]
+    fn set_lane(&mut self, k: usize, value: &u64) {
         self[k] = *value;
     }
 }

@@ -1,24 +1,45 @@
 //! What damage does, whichever law of failure advances it.
 //!
-//! Matter whose damage has reached one has failed: it bears pressure and nothing else. In the same
-//! step it lets go of the tension and the shear that it held, whose elastic energy stays in it as
-//! heat and is told by
+//! Matter whose damage D has reached one has failed. With the usual [`Manner`] it bears pressure and
+//! nothing else; where damage scales, shear and tension are `1 − D` of those of the matter between
+//! the cracks already before. What damage takes in a step it takes of the stress at the end of that
+//! step, whose elastic energy stays in the matter as heat and is told by
 //!
 //! ```text
-//! Δe = p²/(2 K ρ) + S:S/(4 G ρ)        (p < 0)
+//! Δe = [p²/(2 K ρ) + S:S/(4 G ρ)] ΔD/(1 − D)²        (p < 0 in the first term)
 //! ```
 //!
-//! with the moduli of that moment. This is exact where they are constant and strains small, and
-//! neglects that both change with the strain otherwise. What damage below one does is a matter of
-//! the law.
+//! with the stress and the moduli of that moment; for matter that fails at once ΔD = 1 and D = 0.
+//! This is exact where moduli are constant and strains small, and neglects that both change with
+//! the strain otherwise.
+//!
+//! **Softening.** With a fracture energy `G_f` (J/m²) a law of failure tells the onset of it, not
+//! its end: from then on
+//!
+//! ```text
+//! dD/dt = L ⟨σ̄ : D⟩/(2 G_f)
+//! ```
+//!
+//! where σ̄ is the stress of the matter between the cracks, without its pressure in compression, D
+//! the rate of deformation and L the size of the particle. Whatever the path, the matter of a
+//! particle has taken `∫ (1 − D) σ̄ : D dt = G_f/L` when it has failed, that is `G_f` over the area
+//! of a crack through it, however large particles are: crack bands of Bažant & Oh (1983), *Crack
+//! band theory for fracture of concrete*, Mater. Struct. 16, 155.
+//!
+//! Where tension alone is lost, the principal stresses of failed matter are zero at most: it still
+//! bears pressure in the other directions, and shear. The strain of open cracks is in the density
+//! and not in the matter, so the pressure of the equation of state is that of closed ones; with open
+//! ones it is the largest principal value of S, for which no direction is pulled.
 //!
 //! Spray that flies apart is grains and void. Its density follows the velocity gradient, down to a tenth of
 //! the reference state's: a particle alone has .145 of that by its own kernel (three dimensions, h = 1.3 Δp),
 //! so that sums cannot tell less. Without an end, the volume m/ρ by which a particle counts in its
 //! neighbours' sums grows for ever, and their gradients with it.
 
-use super::{Conditions, LANES, Lanes, PointBatch};
+use super::principal_tension::largest;
+use super::{Conditions, Effect, LANES, Lanes, Manner, Molten, PointBatch};
 use crate::material::{at_least, at_most};
+use crate::numerics::principal::principal;
 
 /// Damage of matter that has failed.
 pub(crate) const FAILED: f64 = 1.0;
@@ -36,29 +57,81 @@ pub(in crate::material) fn limit_expansion(point: &mut PointBatch, reference_den
     }
 }
 
-/// Failed matter bears no tension.
+/// Failed matter bears no tension, damaged matter what damage leaves of it.
 #[inline(always)]
-pub(super) fn limit_tension(point: &mut PointBatch) {
+pub(super) fn limit_tension(point: &mut PointBatch, manner: &Manner) {
+    if manner.effect == Effect::Scaled {
+        for k in 0..LANES {
+            if point.pressure[k] < 0.0 {
+                point.pressure[k] *= 1.0 - manner.taken(point.damage[k]);
+            }
+        }
+    }
+    let tension_lost = manner.effect == Effect::TensionLost;
     for k in 0..LANES {
         if point.damage[k] >= FAILED {
-            point.pressure[k] = at_least(point.pressure[k], 0.0);
+            // Open cracks are in no equation of state: what shear holds tells the pressure with it.
+            let least = if tension_lost {
+                largest(point, k) + point.pressure[k]
+            } else {
+                0.0
+            };
+            point.pressure[k] = at_least(point.pressure[k], least);
         }
     }
 }
 
-/// Failed matter has no stiffness in shear and no flow stress, so that no plastic strain is counted.
+/// Failed matter has no stiffness in shear and no flow stress, so that no plastic strain is counted;
+/// damaged matter has what damage leaves of both.
 #[inline(always)]
 pub(super) fn soften(point: &PointBatch, now: &mut Conditions) {
+    if now.manner.effect == Effect::TensionLost {
+        return;
+    }
     for k in 0..LANES {
-        if point.damage[k] >= FAILED {
-            now.shear_modulus[k] = 0.0;
-            now.softening[k] = 0.0;
+        let kept = 1.0 - now.manner.taken(point.damage[k]);
+        now.kept[k] = kept;
+        now.shear_modulus[k] *= kept;
+        now.softening[k] *= kept;
+    }
+}
+
+/// Matter at the melting temperature fails as soon as nothing presses it, if the material follows
+/// the temperature.
+#[inline(always)]
+pub(super) fn melt(point: &mut PointBatch, now: &Conditions) {
+    let melting = now.thermal.melting_temperature;
+    let Some(melting) = melting.filter(|_| now.manner.molten == Molten::Fails) else {
+        return;
+    };
+    for k in 0..LANES {
+        if now.temperature[k] >= melting && point.pressure[k] <= 0.0 {
+            point.damage[k] = FAILED;
         }
     }
 }
 
-/// Matter that has failed lets go, `before` (damage) or in this step; `bulk_modulus` is that of the
-/// state (Pa). NaN stays NaN.
+/// Advances the damage of matter that softens.
+#[inline(never)]
+pub(super) fn open_cracks(point: &mut PointBatch, now: &Conditions) {
+    for k in 0..LANES {
+        if !(point.failure_onset[k] >= 1.0 && point.damage[k] < FAILED) {
+            continue;
+        }
+        let l = |c: usize| point.velocity_gradient[c][k];
+        let s = |c: usize| point.deviatoric_stress[c][k];
+        let normal = s(0) * l(0) + s(1) * l(4) + s(2) * l(8);
+        let shear = s(3) * (l(1) + l(3)) + s(4) * (l(2) + l(6)) + s(5) * (l(5) + l(7));
+        let tension = at_least(-point.pressure[k], 0.0);
+        let power = (normal + shear + tension * (l(0) + l(4) + l(8))) / now.kept[k];
+        let spent = now.size(point, k) * at_least(power, 0.0) * now.dt;
+        let damage = point.damage[k] + spent / (2.0 * now.manner.fracture_energy);
+        point.damage[k] = at_most(damage, FAILED);
+    }
+}
+
+/// Matter lets go of what damage has taken since `before`, or of all that failed matter does not
+/// bear; `bulk_modulus` is that of the state (Pa). NaN stays NaN.
 #[inline(always)]
 pub(super) fn let_go(
     point: &mut PointBatch,
@@ -66,26 +139,87 @@ pub(super) fn let_go(
     before: &Lanes,
     bulk_modulus: &Lanes,
 ) {
+    if now.manner.effect == Effect::TensionLost {
+        lose_tension(point, now, bulk_modulus);
+        return;
+    }
     for k in 0..LANES {
-        if point.damage[k] < FAILED {
+        let taken = now.manner.taken(point.damage[k]);
+        if taken <= 0.0 {
             continue;
         }
-        let (s, p) = (&mut point.deviatoric_stress, point.pressure[k]);
-        if before[k] < FAILED {
+        let had = now.manner.taken(before[k]);
+        let s = &mut point.deviatoric_stress;
+        let p = point.pressure[k];
+        if had < taken {
             let tension = at_most(p, 0.0);
-            let diagonal = s[0][k] * s[0][k] + s[1][k] * s[1][k] + s[2][k] * s[2][k];
-            let shear = s[3][k] * s[3][k] + s[4][k] * s[4][k] + s[5][k] * s[5][k];
-            let of_volume = tension * tension / (2.0 * bulk_modulus[k]);
+            let square = tensor_square(&s.each_ref().map(|component| component[k]));
+            let of_volume = tension * tension / (2.0 * bulk_modulus[k] * (1.0 - had));
             let of_shape = match now.shear_modulus[k] {
                 0.0 => 0.0,
-                g => (diagonal + 2.0 * shear) / (4.0 * g),
+                g => square / (4.0 * g),
             };
-            point.failure_energy[k] += (of_volume + of_shape) / point.density[k];
+            let share = (taken - had) / (1.0 - had);
+            point.failure_energy[k] += share * (of_volume + of_shape) / point.density[k];
+        } else if taken < 1.0 {
+            continue;
         }
-        point.pressure[k] = at_least(p, 0.0);
+        let left = if had < 1.0 {
+            (1.0 - taken) / (1.0 - had)
+        } else {
+            0.0
+        };
         for component in s.iter_mut() {
-            component[k] *= 0.0;
+            component[k] *= left;
         }
-        now.shear_modulus[k] = 0.0;
+        if p < 0.0 {
+            point.pressure[k] = if left == 0.0 { 0.0 } else { p * left };
+        }
+        now.shear_modulus[k] *= left;
+    }
+}
+
+/// `S : S` of `xx yy zz xy xz yz`.
+#[inline(always)]
+fn tensor_square(s: &[f64; 6]) -> f64 {
+    let diagonal = s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
+    diagonal + 2.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5])
+}
+
+/// Failed matter lets go of its principal tensions, in their own directions.
+#[inline(never)]
+fn lose_tension(point: &mut PointBatch, now: &mut Conditions, bulk_modulus: &Lanes) {
+    for k in 0..LANES {
+        if point.damage[k].is_nan() || point.damage[k] < FAILED {
+            continue;
+        }
+        let s = &mut point.deviatoric_stress;
+        let held = s.each_ref().map(|component| component[k]);
+        let (values, n) = principal(&held);
+        let p = point.pressure[k];
+        let kept = values.map(|value| at_most(value - p, 0.0));
+        if (0..3).all(|a| kept[a].to_bits() == (values[a] - p).to_bits()) {
+            continue;
+        }
+        let pressure = -(kept[0] + kept[1] + kept[2]) / 3.0;
+        let of = |i: usize, j: usize| {
+            let parts = [0, 1, 2].map(|a| (kept[a] + pressure) * n[i][a] * n[j][a]);
+            parts[0] + parts[1] + parts[2]
+        };
+        let left = [of(0, 0), of(1, 1), of(2, 2), of(0, 1), of(0, 2), of(1, 2)];
+        let g = now.shear_modulus[k];
+        let of_shape = if g > 0.0 {
+            (tensor_square(&held) - tensor_square(&left)) / (4.0 * g)
+        } else {
+            0.0
+        };
+        let square = |p: f64| at_most(p, 0.0) * at_most(p, 0.0);
+        let of_volume = (square(p) - square(pressure)) / (2.0 * bulk_modulus[k]);
+        let released = at_least(of_volume + of_shape, 0.0);
+        point.failure_energy[k] += released / point.density[k];
+        point.pressure[k] = pressure;
+        for (component, value) in s.iter_mut().zip(left) {
+            component[k] = value;
+        }
     }
 }

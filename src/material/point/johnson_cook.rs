@@ -112,7 +112,7 @@ impl Law for JohnsonCook {
         }
         for k in 0..LANES {
             let before = point.plastic_strain[k];
-            radial_return::return_lane(point, k, self.shear_modulus, |increment| {
+            radial_return::return_lane(point, k, now.shear_modulus[k], |increment| {
                 let [y, by_strain, by_log] =
                     self.hardened(before + increment, increment / now.dt, now.softening[k]);
                 [y, by_strain + by_log / increment]

@@ -71,8 +71,8 @@ impl Law for Spall {
     }
 
     #[inline(always)]
-    fn limit_tension(&self, point: &mut PointBatch) {
-        if self.after == AfterSpall::Hold {
+    fn limit_tension(&self, point: &mut PointBatch, softens: bool) {
+        if softens || self.after == AfterSpall::Hold {
             for k in 0..LANES {
                 point.pressure[k] = at_least(point.pressure[k], self.pressure);
             }
@@ -83,10 +83,13 @@ impl Law for Spall {
     #[inline(always)]
     fn fail(&self, point: &mut PointBatch, now: &Conditions) {
         let recovers = self.after == AfterSpall::Recompacts;
+        let softens = now.manner.softens();
         for k in 0..LANES {
+            // Where matter softens, pressure is held at the limit, of which damage takes a share.
             let p = point.pressure[k];
+            let held = softens && p <= self.pressure * now.kept[k];
             let dense = point.density[k] >= now.reference_density;
-            if p < self.pressure {
+            if held || p < self.pressure {
                 point.damage[k] = FAILED;
             } else if recovers && dense && p > 0.0 && p >= -self.pressure {
                 point.damage[k] = 0.0;

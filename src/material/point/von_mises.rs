@@ -38,12 +38,12 @@ impl Law for VonMises {
         if now.dt == 0.0 {
             return;
         }
-        let three_g = 3.0 * self.shear_modulus;
         let s = &mut point.deviatoric_stress;
         for k in 0..LANES {
             let diagonal = s[0][k] * s[0][k] + s[1][k] * s[1][k] + s[2][k] * s[2][k];
             let shear = s[3][k] * s[3][k] + s[4][k] * s[4][k] + s[5][k] * s[5][k];
             let q = (1.5 * (diagonal + 2.0 * shear)).sqrt();
+            let three_g = 3.0 * now.shear_modulus[k];
             let (soft, before) = (now.softening[k], point.plastic_strain[k]);
             let excess = q - soft * (self.yield_stress + self.hardening_modulus * before);
             let stiffness = three_g + soft * self.hardening_modulus;

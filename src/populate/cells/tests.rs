@@ -9,9 +9,10 @@
 
 use super::forces::{REACH, Sites};
 use super::relax::step;
-use super::tile::{GLASS_EDGES, Tile, split_mix};
+use super::tile::{GLASS_EDGES, Tile};
 use super::*;
 use crate::model::{Axis, Body, Focus, Grading, LatticeKind, Shape, SymmetryPlane, Vec3};
+use crate::numerics::counter::split_mix;
 use crate::numerics::kernel::Kernel;
 
 mod harmonics;

@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::sync::OnceLock;
 
 use crate::model::{LatticeKind, Vec3, rotation};
+use crate::numerics::counter::split_mix;
 
 /// Sites of the shipped tiles: 16³ in three dimensions, 64² in two, as 16-bit fractions of an edge;
 /// any first ones of them are spread evenly.
@@ -177,14 +178,4 @@ pub(in crate::populate) fn drawn(seed: u64, dimension: usize) -> (nalgebra::Matr
     );
     let mirror = v * v.transpose() * 2.0 - nalgebra::Matrix3::identity();
     (mirror * rotation(&Vec3::z(), angle), shift)
-}
-
-/// The next word of a counter generator (Steele, Lea & Flood 2014, "Fast splittable pseudorandom
-/// number generators").
-pub(super) fn split_mix(state: &mut u64) -> u64 {
-    *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    let mut z = *state;
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    z ^ (z >> 31)
 }

@@ -1,0 +1,279 @@
+//! How a material fails: its laws of failure together, and what they have in common.
+
+use serde::Deserialize;
+
+use super::damage::FAILED;
+use crate::material::declare::{Constants, Value};
+use crate::numerics::counter::exponential;
+
+/// What failed matter has lost.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Effect {
+    /// All but pressure, once damage is one: it has neither shear nor tension.
+    #[default]
+    StrengthLost,
+    /// The same, but shear and tension fade as damage grows: they scale with `1 − D`.
+    Scaled,
+    /// Tension alone, once damage is one: its largest principal stresses are zero at most.
+    TensionLost,
+}
+
+impl Effect {
+    /// Its name in the input.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::StrengthLost => "strength_lost",
+            Self::Scaled => "scaled",
+            Self::TensionLost => "tension_lost",
+        }
+    }
+}
+
+/// What molten matter does where the material follows the temperature and may fail.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Molten {
+    /// It fails as soon as nothing presses it.
+    #[default]
+    Fails,
+    /// It bears tension as solid matter does.
+    Holds,
+}
+
+impl Molten {
+    /// Its name in the input.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fails => "fails",
+            Self::Holds => "holds",
+        }
+    }
+}
+
+/// What the laws of failure of a material have in common.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Manner {
+    /// What failed matter has lost.
+    pub effect: Effect,
+    /// Energy that opens a crack, `G_f` (J/m²): from its strength on, matter softens until it has
+    /// taken this. Zero if it fails at once.
+    pub fracture_energy: f64,
+    /// Weibull modulus by which the failure strains of particles scatter; zero if they do not.
+    pub scatter: f64,
+    /// What draws of scatter and flaws begin with.
+    pub seed: u32,
+    /// What molten matter does.
+    pub molten: Molten,
+    /// Dimension of the model: by it the mass of a particle tells its size.
+    pub dimension: u8,
+}
+
+impl Manner {
+    /// That of a material whose case says nothing else.
+    pub const USUAL: Self = Self {
+        effect: Effect::StrengthLost,
+        fracture_energy: 0.0,
+        scatter: 0.0,
+        seed: 1,
+        molten: Molten::Fails,
+        dimension: 3,
+    };
+
+    /// Whether matter that has reached its strength softens before it has failed.
+    #[inline(always)]
+    #[must_use]
+    pub fn softens(&self) -> bool {
+        self.fracture_energy > 0.0
+    }
+
+    /// What damage takes of shear and tension.
+    #[inline(always)]
+    #[must_use]
+    pub fn taken(&self, damage: f64) -> f64 {
+        if damage >= FAILED {
+            1.0
+        } else if self.effect == Effect::Scaled {
+            damage
+        } else {
+            0.0
+        }
+    }
+
+    /// By how much the failure strain of the particle `id` is larger than that of the law: drawn
+    /// from Weibull's distribution of median one (Weibull 1951, J. Appl. Mech. 18, 293).
+    #[inline(always)]
+    #[must_use]
+    pub fn strain_factor(&self, id: u64) -> f64 {
+        if self.scatter > 0.0 {
+            let drawn = exponential([u64::from(self.seed), SCATTER, id]);
+            libm::pow(drawn / std::f64::consts::LN_2, 1.0 / self.scatter)
+        } else {
+            1.0
+        }
+    }
+
+    /// What differs from the usual, by the keys of the input.
+    pub(super) fn constants(&self) -> Constants {
+        let usual = Self::USUAL;
+        let rows = [
+            (
+                self.effect != usual.effect,
+                ("effect", Value::Word(self.effect.name())),
+            ),
+            (
+                self.softens(),
+                (
+                    "fracture_energy",
+                    Value::Number(self.fracture_energy, "J/m^2"),
+                ),
+            ),
+            (
+                self.scatter > 0.0,
+                ("scatter", Value::Number(self.scatter, "")),
+            ),
+            (
+                self.seed != usual.seed,
+                ("seed", Value::Number(f64::from(self.seed), "")),
+            ),
+            (
+                self.molten != usual.molten,
+                ("molten", Value::Word(self.molten.name())),
+            ),
+        ];
+        let told = rows.into_iter().filter(|(differs, _)| *differs);
+        told.map(|(_, row)| row).collect()
+    }
+}
+
+impl Default for Manner {
+    fn default() -> Self {
+        Self::USUAL
+    }
+}
+
+/// Key of the draws that scatter failure strains.
+const SCATTER: u64 = 0x5343_4154;
+
+/// Makes [`Failure`](super::Failure) of its table.
+macro_rules! failure_laws {
+    ($( $(#[doc = $doc:literal])+ $key:ident: $law:ident; )+) => {
+        /// How a material fails.
+        #[derive(Debug, Clone, Copy, Default, PartialEq)]
+        pub struct Failure {
+            $( $(#[doc = $doc])+ pub $key: Option<$law>, )+
+            /// What these have in common.
+            pub manner: Manner,
+        }
+
+        impl Failure {
+            /// Never.
+            pub const NONE: Self = Self { $( $key: None, )+ manner: Manner::USUAL };
+
+            /// Whether the material never fails.
+            #[must_use]
+            pub fn is_none(&self) -> bool {
+                true $( && self.$key.is_none() )+
+            }
+
+            /// Fields of the point that the laws change.
+            pub fn state(&self) -> impl Iterator<Item = &'static str> {
+                let laws = [$( self.$key.as_ref().map_or(&[][..], |law| law.state()), )+];
+                let fades = self.manner.softens() && self.follows_state();
+                let own: &[_] = if fades { &["failure_onset"] } else { &[] };
+                laws.into_iter().flatten().chain(own).copied()
+            }
+
+            /// Whether a law changes the state, so that what has failed stays so.
+            #[must_use]
+            pub fn has_memory(&self) -> bool {
+                self.state().next().is_some()
+            }
+
+            /// Whether a law asks who and how large a particle is.
+            #[must_use]
+            pub fn asks_identity(&self) -> bool {
+                self.manner.softens() || self.manner.scatter > 0.0
+                    $( || $law::ASKS_IDENTITY && self.$key.is_some() )+
+            }
+
+            /// Whether a law follows the temperature.
+            #[must_use]
+            pub fn needs_temperature(&self) -> bool {
+                false $( || self.$key.is_some_and(|law| law.needs_temperature()) )+
+            }
+
+            /// Whether a law needs the melting temperature of the thermal constants.
+            #[must_use]
+            pub fn needs_melting(&self) -> bool {
+                false $( || $law::NEEDS_MELTING && self.$key.is_some_and(|law| law.needs_temperature()) )+
+            }
+
+            /// Keys of the laws in the input and their constants; those that the laws have in common
+            /// have an empty key.
+            #[must_use]
+            pub fn constants(&self) -> Vec<(&'static str, $crate::material::Constants)> {
+                let laws = [$( self.$key.map(|law| (stringify!($key), law.constants())), )+];
+                let laws = laws.into_iter().flatten();
+                laws.chain([("", self.manner.constants())]).collect()
+            }
+
+            #[inline(always)]
+            pub(in crate::material) fn follows_state(&self) -> bool {
+                false $( || $law::FOLLOWS_STATE && self.$key.is_some_and(|law| law.follows_state()) )+
+            }
+
+            /// Stage 1.
+            #[inline(always)]
+            pub(in crate::material) fn limit_tension(&self, point: &mut PointBatch) {
+                let softens = self.manner.softens();
+                $( if let Some(law) = &self.$key {
+                    law.limit_tension(point, softens);
+                } )+
+                if self.follows_state() {
+                    damage::limit_tension(point, &self.manner);
+                }
+            }
+
+            /// Stage 2.
+            #[inline(always)]
+            pub(super) fn soften(&self, point: &PointBatch, now: &mut Conditions) {
+                $( if let Some(law) = &self.$key {
+                    law.soften(point, now);
+                } )+
+                if self.follows_state() {
+                    damage::soften(point, now);
+                }
+            }
+
+            /// Stage 5, with the bulk modulus of the state (Pa).
+            #[inline(always)]
+            pub(in crate::material) fn fail(
+                &self,
+                point: &mut PointBatch,
+                now: &mut Conditions,
+                bulk_modulus: &Lanes,
+            ) {
+                let before = point.damage;
+                if now.dt != 0.0 {
+                    let softens = self.manner.softens();
+                    if softens {
+                        std::mem::swap(&mut point.damage, &mut point.failure_onset);
+                    }
+                    $( if let Some(law) = &self.$key {
+                        law.fail(point, now);
+                    } )+
+                    if softens {
+                        std::mem::swap(&mut point.damage, &mut point.failure_onset);
+                        damage::open_cracks(point, now);
+                    }
+                    damage::melt(point, now);
+                }
+                damage::let_go(point, now, &before, bulk_modulus);
+            }
+        }
+    };
+}
+pub(super) use failure_laws;

@@ -1,0 +1,24 @@
+//! The largest principal stress of a point.
+
+use super::PointBatch;
+use super::radial_return::equivalent_stress;
+use crate::numerics::principal::principal;
+
+/// Whether the largest principal stress of lane `k` can exceed a limit (Pa): it lies at most two
+/// thirds of the equivalent stress above the mean.
+#[inline(always)]
+pub(super) fn may_exceed(point: &PointBatch, k: usize, limit: f64) -> bool {
+    equivalent_stress(point, k) * (2.0 / 3.0) - point.pressure[k] > limit
+}
+
+/// Largest principal stress (Pa) of lane `k`, tension positive.
+#[inline(always)]
+pub(super) fn largest(point: &PointBatch, k: usize) -> f64 {
+    let s = point
+        .deviatoric_stress
+        .each_ref()
+        .map(|component| component[k]);
+    let ([a, b, c], _) = principal(&s);
+    let ab = if b > a { b } else { a };
+    (if c > ab { c } else { ab }) - point.pressure[k]
+}
