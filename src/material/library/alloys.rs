@@ -176,13 +176,13 @@ const AL_2017: Metal = Metal {
     ..AL_2024
 };
 
-const AL_5083: Metal = Metal {
+pub(super) const AL_5083: Metal = Metal {
     density: 2700.0,
     shear_modulus: 26.9e9,
     ..AL_6061
 };
 
-const AL_7075: Metal = Metal {
+pub(super) const AL_7075: Metal = Metal {
     density: 2804.0,
     shear_modulus: 26.7e9,
     hugoniot: [5200.0, 1.36, 2.20, 0.48],
@@ -196,14 +196,14 @@ const LEAD: Metal = Metal {
     curvature: [0.8506, -1.64],
 };
 
-const WELDOX_460E: Metal = Metal {
+pub(super) const WELDOX_460E: Metal = Metal {
     density: 7850.0,
     shear_modulus: 75.2e9,
     hugoniot: [4578.0, 1.33, 1.67, 0.0],
     curvature: [0.0; 2],
 };
 
-const TI_6AL_4V: Metal = Metal {
+pub(super) const TI_6AL_4V: Metal = Metal {
     density: 4419.0,
     shear_modulus: 42.4e9,
     hugoniot: [5130.0, 1.028, 1.23, 0.0],

@@ -2,7 +2,7 @@
 
 use super::Parts;
 use crate::material::{
-    Eos, JohnsonCook, MieGruneisen, SteinbergGuinan, Strength, ThermalConstants, VonMises,
+    Eos, Failure, JohnsonCook, MieGruneisen, SteinbergGuinan, Strength, ThermalConstants, VonMises,
 };
 
 /// Density (kg/m³), shear modulus (Pa) and Hugoniot.
@@ -32,6 +32,7 @@ impl Metal {
             }),
             strength,
             thermal: Some(thermal),
+            failure: Failure::NONE,
         }
     }
 }

@@ -163,7 +163,7 @@ pub(super) const AL_6061: Metal = Metal {
     curvature: [0.0; 2],
 };
 
-const COPPER: Metal = Metal {
+pub(super) const COPPER: Metal = Metal {
     density: 8930.0,
     shear_modulus: 47.7e9,
     hugoniot: [3940.0, 1.489, 2.02, 0.47],
@@ -177,7 +177,7 @@ const STEEL_304: Metal = Metal {
     curvature: [0.0; 2],
 };
 
-const STEEL_4340: Metal = Metal {
+pub(super) const STEEL_4340: Metal = Metal {
     density: 7830.0,
     shear_modulus: 77.5e9,
     hugoniot: [3574.0, 1.92, 1.69, 0.0],

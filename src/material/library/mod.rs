@@ -1,7 +1,7 @@
 //! Ready materials, each number with its source.
 //!
-//! No record has a spall cut-off: spall strengths depend on the rate of the load, so a case
-//! states its own.
+//! Only records of `ductile` fail, by plastic strain. No record has a spall cut-off: spall strengths
+//! depend on the rate of the load, so a case states its own.
 
 use super::{Eos, Failure, Material, Strength, Thermal, ThermalConstants};
 
@@ -29,6 +29,7 @@ macro_rules! records {
 }
 
 mod alloys;
+mod ductile;
 mod fluids;
 mod impact;
 mod metal;
@@ -43,12 +44,14 @@ struct Parts {
     eos: Eos,
     strength: Strength,
     thermal: Option<ThermalConstants>,
+    failure: Failure,
 }
 
 /// All records, sorted by name.
 fn records() -> Vec<&'static Record> {
     let lists = [
         alloys::RECORDS,
+        ductile::RECORDS,
         fluids::RECORDS,
         impact::RECORDS,
         metals::RECORDS,
@@ -78,7 +81,7 @@ pub fn find(name: &str) -> Option<Material> {
             thermal: parts.thermal.map(heat),
             eos: parts.eos,
             strength: parts.strength,
-            failure: Failure::NONE,
+            failure: parts.failure,
         }
     })
 }
