@@ -32,5 +32,6 @@ pub mod diagnose;
 pub mod measure;
 pub mod output;
 
+pub mod ballistic;
 pub mod exact;
 pub mod plot;

@@ -18,7 +18,7 @@ use source::{Source, sources, src};
 
 /// Every module, in the order in which data flows.
 const MODULES: &str = "app run sweep input model preflight populate numerics material particles comm domain fragments \
-     neighbours loads contact sph step diagnose measure output exact plot";
+     neighbours loads contact sph step diagnose measure output ballistic exact plot";
 
 /// The modules on top, and who may name them.
 const ON_TOP: &[(&str, &str)] = &[
@@ -92,6 +92,11 @@ const FORBIDDEN: &[(&str, &str)] = &[
     ("measure", "loads contact sph output input plot step"),
     ("step", "output input plot"),
     ("output", "sph plot"),
+    (
+        "ballistic",
+        "input model populate numerics material particles comm domain fragments neighbours loads \
+         contact sph step diagnose measure output exact plot",
+    ),
     ("exact", "particles comm domain output input step"),
     ("plot", "comm step"),
 ];
@@ -116,11 +121,10 @@ const CALLERS_OF_COMM: &str =
 
 /// Rooms whose results must have the same bits on any ranks, threads and hosts.
 const PHYSICS: &str = "numerics populate material particles domain fragments neighbours loads contact sph step diagnose \
-     measure exact";
+     measure ballistic exact";
 
 /// Physics modules that have no business with clocks at all (`step` times its phases).
-const TIMELESS: &str =
-    "numerics populate material particles fragments neighbours loads contact sph measure exact";
+const TIMELESS: &str = "numerics populate material particles fragments neighbours loads contact sph measure ballistic exact";
 
 /// Functions of `f64` whose bits depend on the host's libm; the `libm` crate has them all.
 const HOST_MATHEMATICS: &str = "exp exp2 exp_m1 ln ln_1p log2 log10 powf sin cos tan asin acos atan atan2 sinh cosh tanh \

@@ -5,6 +5,7 @@ mod check;
 pub mod compare;
 pub mod fragments;
 pub mod info;
+mod limit;
 mod materials;
 mod measure;
 pub mod plot;
@@ -36,6 +37,7 @@ use crate::run::{launch, say};
   whipple measure runs/quarter
   mpirun -n 4 whipple restart runs/quarter --set run.end_time=0.3us
   whipple sweep inputs/quarter-impact --vary body.sphere.velocity=\"3..9 km/s\"
+  whipple limit nno --bumper 1.2mm --wall 3.2mm --gap 100mm --yield 40ksi
 
 For work on the program itself: `whipple compare` tells whether two results agree to the last bit,
 `whipple bench` measures how fast it steps on this machine.
@@ -58,6 +60,7 @@ enum Command {
     Fragments(fragments::FragmentsArgs),
     Measure(measure::MeasureArgs),
     Materials(materials::MaterialsArgs),
+    Limit(limit::LimitArgs),
     Sweep(sweep::SweepArgs),
     Converge(sweep::ConvergeArgs),
     #[command(hide = true)]
@@ -94,6 +97,7 @@ pub fn main() -> ExitCode {
         Command::Fragments(args) => fragments::run(&args),
         Command::Measure(args) => measure::run(&args),
         Command::Materials(args) => materials::run(&args),
+        Command::Limit(args) => limit::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Converge(args) => sweep::converge(&args),
         Command::Compare(args) => compare::run(&args),

@@ -13,6 +13,7 @@ mod plan;
 mod point;
 mod queue;
 mod richardson;
+mod shots;
 mod table;
 mod values;
 
@@ -25,6 +26,8 @@ pub use converge::Converged;
 pub use definition::Definition;
 pub use plan::WITHIN;
 pub use queue::Launch;
+pub use shots::{Shot, shots};
+pub use values::Values;
 
 use crate::input::InputError;
 use crate::model::readable::printable;

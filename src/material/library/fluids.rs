@@ -1,7 +1,7 @@
 //! Liquids and gases.
 
 use super::{Parts, heat};
-use crate::material::{Eos, IdealGas, Strength, Tait, Viscous};
+use crate::material::{Eos, Failure, IdealGas, Strength, Tait, Viscous};
 
 const ATMOSPHERE: &str = "U.S. Standard Atmosphere (1976), sea level";
 const DIATOMIC: &str = "ideal gas of two atoms: γ = 7/5, c_v = R/(γ − 1) with R = 287.053 J/(kg K)";
@@ -21,6 +21,7 @@ records! {
                 }),
             strength: Strength::None,
             thermal: Some(heat(717.63, 288.15, None)),
+            failure: Failure::NONE,
         },
         &[
             ("eos.ideal_gas.gamma", DIATOMIC),
@@ -37,6 +38,7 @@ records! {
                     viscosity: 1.002e-3,
                 }),
             thermal: None,
+            failure: Failure::NONE,
         },
         &[("eos.tait.gamma", COLE), ("", WATER)];
 }

@@ -3,10 +3,8 @@
 //! Von Mises strengths are the initial yield stress Y₀ of the Steinberg–Guinan model, kept
 //! constant.
 
-use super::{Parts, heat};
-use crate::material::{
-    Eos, JohnsonCook, MieGruneisen, SteinbergGuinan, Strength, ThermalConstants, VonMises,
-};
+use super::heat;
+use super::metal::{Metal, jc, sg, von_mises};
 
 const UINTAH: &str = "Steinberg-Guinan constants in Uintah, citing Steinberg, UCRL-MA-106439";
 const STEINBERG: &str =
@@ -151,112 +149,44 @@ records! {
         ];
 }
 
-/// Density (kg/m³), shear modulus (Pa) and Hugoniot.
-#[derive(Clone, Copy)]
-struct Metal {
-    density: f64,
-    shear_modulus: f64,
-    /// `[c₀ (m/s), s₁, γ₀, b]`
-    hugoniot: [f64; 4],
-}
-
-const AL_2024: Metal = Metal {
+pub(super) const AL_2024: Metal = Metal {
     density: 2785.0,
     shear_modulus: 28.6e9,
     hugoniot: [5328.0, 1.338, 2.00, 0.48],
+    curvature: [0.0; 2],
 };
 
-const AL_6061: Metal = Metal {
+pub(super) const AL_6061: Metal = Metal {
     density: 2703.0,
     shear_modulus: 27.6e9,
     hugoniot: [5240.0, 1.40, 1.97, 0.48],
+    curvature: [0.0; 2],
 };
 
-const COPPER: Metal = Metal {
+pub(super) const COPPER: Metal = Metal {
     density: 8930.0,
     shear_modulus: 47.7e9,
     hugoniot: [3940.0, 1.489, 2.02, 0.47],
+    curvature: [0.0; 2],
 };
 
 const STEEL_304: Metal = Metal {
     density: 7900.0,
     shear_modulus: 77.0e9,
     hugoniot: [4570.0, 1.49, 1.93, 0.50],
+    curvature: [0.0; 2],
 };
 
-const STEEL_4340: Metal = Metal {
+pub(super) const STEEL_4340: Metal = Metal {
     density: 7830.0,
     shear_modulus: 77.5e9,
     hugoniot: [3574.0, 1.92, 1.69, 0.0],
+    curvature: [0.0; 2],
 };
 
 const TUNGSTEN: Metal = Metal {
     density: 19300.0,
     shear_modulus: 160.0e9,
     hugoniot: [4030.0, 1.237, 1.67, 0.38],
+    curvature: [0.0; 2],
 };
-
-impl Metal {
-    fn with(&self, strength: Strength, thermal: ThermalConstants) -> Parts {
-        let [c0, s1, gamma0, b] = self.hugoniot;
-        Parts {
-            density: self.density,
-            eos: Eos::MieGruneisen(MieGruneisen {
-                c0,
-                s1,
-                s2: 0.0,
-                s3: 0.0,
-                gamma0,
-                b,
-            }),
-            strength,
-            thermal: Some(thermal),
-        }
-    }
-}
-
-fn von_mises(metal: &Metal, yield_stress: f64, thermal: ThermalConstants) -> Parts {
-    let law = VonMises {
-        shear_modulus: metal.shear_modulus,
-        yield_stress,
-        hardening_modulus: 0.0,
-    };
-    metal.with(Strength::VonMises(law), thermal)
-}
-
-/// `[A (Pa), B (Pa), n, C, m]`.
-fn jc(metal: &Metal, [a, b, n, c, m]: [f64; 5], thermal: ThermalConstants) -> Parts {
-    let law = JohnsonCook {
-        shear_modulus: metal.shear_modulus,
-        a,
-        b,
-        n,
-        c,
-        m,
-        reference_rate: 1.0,
-    };
-    metal.with(Strength::JohnsonCook(law), thermal)
-}
-
-/// `[Y₀ (Pa), Y_max (Pa), β, n]` and `[G'_p/G₀ (1/Pa), −G'_T/G₀ (1/K), T_m0 (K), a]`.
-fn sg(
-    metal: &Metal,
-    [yield_stress, max_yield_stress, beta, n]: [f64; 4],
-    [pressure, temperature, melting_temperature, a]: [f64; 4],
-    thermal: ThermalConstants,
-) -> Parts {
-    let law = SteinbergGuinan {
-        shear_modulus: metal.shear_modulus,
-        yield_stress,
-        max_yield_stress,
-        beta,
-        n,
-        initial_strain: 0.0,
-        pressure_coefficient: pressure,
-        temperature_coefficient: temperature,
-        melting_temperature,
-        gamma0: metal.hugoniot[2],
-        a,
-    };
-    metal.with(Strength::SteinbergGuinan(law), thermal)
-}

@@ -1,7 +1,7 @@
 //! Ready materials, each number with its source.
 //!
-//! No record has a spall cut-off: spall strengths depend on the rate of the load, so a case
-//! states its own.
+//! Only records of `ductile` fail, by plastic strain. No record has a spall cut-off: spall strengths
+//! depend on the rate of the load, so a case states its own.
 
 use super::{Eos, Failure, Material, Strength, Thermal, ThermalConstants};
 
@@ -28,10 +28,14 @@ macro_rules! records {
     };
 }
 
+mod alloys;
+mod ductile;
 mod fluids;
 mod impact;
+mod metal;
 mod metals;
 mod paper;
+mod polymers;
 
 /// What a record makes its material from.
 struct Parts {
@@ -40,15 +44,19 @@ struct Parts {
     eos: Eos,
     strength: Strength,
     thermal: Option<ThermalConstants>,
+    failure: Failure,
 }
 
 /// All records, sorted by name.
 fn records() -> Vec<&'static Record> {
     let lists = [
+        alloys::RECORDS,
+        ductile::RECORDS,
         fluids::RECORDS,
         impact::RECORDS,
         metals::RECORDS,
         paper::RECORDS,
+        polymers::RECORDS,
     ];
     let mut all: Vec<&Record> = lists.into_iter().flatten().collect();
     all.sort_by_key(|record| record.name);
@@ -73,7 +81,7 @@ pub fn find(name: &str) -> Option<Material> {
             thermal: parts.thermal.map(heat),
             eos: parts.eos,
             strength: parts.strength,
-            failure: Failure::NONE,
+            failure: parts.failure,
         }
     })
 }

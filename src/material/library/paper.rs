@@ -1,7 +1,7 @@
 //! The seed paper's own materials, and those of classical test cases.
 
 use super::Parts;
-use crate::material::{Elastic, Eos, Linear, LinearForm, NeoHookean, Strength, VonMises};
+use crate::material::{Elastic, Eos, Failure, Linear, LinearForm, NeoHookean, Strength, VonMises};
 
 const BARS: &str = "Vignjevic et al. (2006), section 3.2: E = 2.1 Mbar, ν = .28 (steel), E = .70 \
      Mbar, ν = .33 (aluminium)";
@@ -77,5 +77,6 @@ fn linear(density: f64, bulk_modulus: f64, form: LinearForm, strength: Strength)
         eos: Eos::Linear(Linear { bulk_modulus, form }),
         strength,
         thermal: None,
+        failure: Failure::NONE,
     }
 }

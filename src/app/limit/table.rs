@@ -1,0 +1,165 @@
+//! Tables of an equation, for people and for programs, and of shots beside it.
+
+use std::fmt::Write as _;
+
+use super::laws::Law;
+use crate::output::Sheet;
+use crate::sweep::Shot;
+
+/// A millimetre (m) and a kilometre in a second (m/s).
+const UNITS: [f64; 2] = [1e-3, 1e3];
+
+/// The table that is printed: km/s and mm.
+pub(super) fn text(law: &Law, speeds: &[f64]) -> String {
+    let [mm, km_s] = UNITS;
+    let widths: Vec<usize> = law
+        .names
+        .iter()
+        .map(|n| n.chars().count().max(10))
+        .collect();
+    let mut text = format!("{}\n\n{:>8}", law.subtitle, "km/s");
+    for (name, width) in law.names.iter().zip(&widths) {
+        let _ = write!(text, "  {name:>width$}");
+    }
+    text += "\n";
+    for &speed in speeds {
+        let row = (law.at)(speed);
+        let _ = write!(text, "{:>8}", decimals(speed / km_s, 3));
+        for (value, width) in row.values.iter().zip(&widths) {
+            let _ = write!(text, "  {:>width$}", format!("{:.3} mm", value / mm));
+        }
+        if !row.remark.is_empty() {
+            let _ = write!(text, "  {}", row.remark);
+        }
+        text += "\n";
+    }
+    text + "\n"
+}
+
+/// A number with so many decimals at most.
+fn decimals(number: f64, most: usize) -> String {
+    let text = format!("{number:.most$}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// The table that is written: SI units.
+pub(super) fn sheet(law: &Law, speeds: &[f64]) -> Sheet {
+    let words = |name: &&str| name.replace(" & ", "_").replace(' ', "_").to_lowercase();
+    let mut names = vec!["speed".to_owned()];
+    names.extend(law.names.iter().map(words));
+    names.push("remark".to_owned());
+    let mut units = vec!["m/s".to_owned()];
+    units.extend(law.names.iter().map(|_| "m".to_owned()));
+    units.push(String::new());
+    let row = |&speed: &f64| {
+        let row = (law.at)(speed);
+        let mut cells = vec![format!("{speed:?}")];
+        cells.extend(row.values.iter().map(|value| format!("{value:?}")));
+        cells.push(row.remark.to_owned());
+        cells
+    };
+    Sheet {
+        names,
+        units,
+        rows: speeds.iter().map(row).enumerate().collect(),
+    }
+}
+
+/// Shots beside the limit, a line for each, and how many of them it tells.
+pub(super) fn shots(law: &Law, shots: &[Shot]) -> String {
+    let [mm, km_s] = UNITS;
+    let Some(limit) = law.limit else {
+        return String::new();
+    };
+    let mut text = format!(
+        "{:>8}  {:>10}  {:>8}  {:<6}  {:<8}  folder\n",
+        "km/s", "diameter", "d/d_c", "run", "equation"
+    );
+    let mut told = 0;
+    for shot in shots {
+        let part = shot.diameter / (law.at)(shot.speed).values[limit];
+        let fails = part > 1.0;
+        told += usize::from(fails == shot.failed);
+        let word = |failed| if failed { "failed" } else { "held" };
+        let _ = writeln!(
+            text,
+            "{:>8}  {:>10}  {part:>8.3}  {:<6}  {:<8}  {}",
+            decimals(shot.speed / km_s, 3),
+            format!("{:.3} mm", shot.diameter / mm),
+            word(shot.failed),
+            word(fails),
+            shot.run,
+        );
+    }
+    let _ = writeln!(
+        text,
+        "run and equation agree on {told} of {} shots",
+        shots.len()
+    );
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::laws::{Row, limit};
+    use super::*;
+    use crate::ballistic::{Limit, Regime, Shield};
+
+    /// A millimetre at a kilometre in a second, two at two.
+    fn law() -> Law {
+        let shield = Shield {
+            bumper: 1e-3,
+            wall: 1e-3,
+            gap: 0.1,
+            yield_strength: 3e8,
+            bumper_density: 2700.0,
+            wall_density: 2700.0,
+            stuffing: 0.0,
+        };
+        let flight = crate::ballistic::Shot {
+            speed: 0.0,
+            angle: 0.0,
+            density: 2700.0,
+        };
+        limit(
+            "Straight line",
+            "nobody",
+            "nothing",
+            shield,
+            flight,
+            |_, shot| Limit {
+                diameter: shot.speed * 1e-6,
+                regime: Regime::Shatter,
+            },
+        )
+    }
+
+    #[test]
+    fn tables_have_readable_units_for_people_and_si_for_programs() {
+        let text = text(&law(), &[1000.0, 2500.0]);
+        assert!(text.contains("    1    "), "{text}");
+        assert!(text.contains("2.5           2.500 mm  shatter\n"), "{text}");
+        let sheet = sheet(&law(), &[1000.0, 2500.0]);
+        assert_eq!(sheet.names, ["speed", "critical_diameter", "remark"]);
+        assert_eq!(sheet.units, ["m/s", "m", ""]);
+        assert_eq!(sheet.rows[1].1, ["2500.0", "0.0025", "shatter"]);
+        let Row { values, .. } = (law().at)(2500.0);
+        assert_eq!(values, [2500.0 * 1e-6]);
+    }
+
+    #[test]
+    fn shots_are_told_from_the_equation() {
+        let shot = |diameter, failed| Shot {
+            run: "a".to_owned(),
+            diameter,
+            speed: 1000.0,
+            failed,
+        };
+        let text = shots(
+            &law(),
+            &[shot(0.8e-3, false), shot(1.2e-3, true), shot(1.3e-3, false)],
+        );
+        assert!(text.contains("1.200  failed  failed"), "{text}");
+        assert!(text.ends_with("agree on 2 of 3 shots\n"), "{text}");
+    }
+}

@@ -1,0 +1,56 @@
+//! Plastics of projectiles, sabots and windows: shock states that are measured, strengths in round
+//! numbers.
+
+use super::heat;
+use super::metal::{Metal, von_mises};
+
+const KEPT: &str = "no hardening";
+const ROOM: &str = "300 K, to which the other constants belong";
+const CONSTANT_GAMMA: &str = "no volume dependence of γρ assumed";
+const NYLON: &str = "nylon 6/6 of Steinberg, UCRL-MA-106439 (1996), in Uintah";
+const NYLON_ROUND: &str = "assumed: dry nylon 6/6, E = 3 GPa, ν = .4, yield 80 MPa, melting at 538 K, \
+     round values from no one source";
+const PMMA: &str = "Kinslow (1970), High-Velocity Impact Phenomena, as a public table of Hugoniots \
+     quotes it; Marsh (1980) has 1186 kg/m^3, 2598 m/s, 1.516";
+const PMMA_SHEAR: &str = "ρ c_s² with 1401 m/s of Barker & Hollenbach (1970), J. Appl. Phys. 41, 4208; \
+     not checked against the paper";
+const PMMA_YIELD: &str =
+    "Lucite of Steinberg, UCRL-MA-106439 (1996); not checked against the report";
+
+records! {
+    "nylon", "nylon 6/6, constant yield stress":
+        {
+            let nylon = Metal {
+                density: 1140.0,
+                shear_modulus: 1.07e9,
+                hugoniot: [2208.0, 2.83, 0.7, 0.0],
+                curvature: [-3.18, 1.177],
+            };
+            von_mises(&nylon, 0.08e9, heat(1670.0, 300.0, Some(538.0)))
+        },
+        &[
+            ("strength.von_mises.hardening_modulus", KEPT),
+            ("thermal.reference_temperature", ROOM),
+            ("eos.mie_gruneisen.b", CONSTANT_GAMMA),
+            ("eos", NYLON),
+            ("", NYLON_ROUND),
+        ];
+    "pmma", "PMMA (Plexiglas, Lucite), constant yield stress":
+        {
+            let pmma = Metal {
+                density: 1185.0,
+                shear_modulus: 2.33e9,
+                hugoniot: [2572.0, 1.536, 0.97, 0.0],
+                curvature: [0.0; 2],
+            };
+            von_mises(&pmma, 0.42e9, heat(1469.0, 300.0, None))
+        },
+        &[
+            ("strength.von_mises.hardening_modulus", KEPT),
+            ("strength.von_mises.shear_modulus", PMMA_SHEAR),
+            ("strength", PMMA_YIELD),
+            ("thermal.reference_temperature", ROOM),
+            ("eos.mie_gruneisen.b", CONSTANT_GAMMA),
+            ("", PMMA),
+        ];
+}
