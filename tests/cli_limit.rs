@@ -43,7 +43,7 @@ fn an_equation_is_printed_written_and_drawn() {
 fn what_makes_no_sense_is_refused() {
     let wrong: [(&[&str], &str); 6] = [
         (&["nno", "--bumper", "1.2"], "unit of m"),
-        (&["nno", "--bumper", "-1mm"], "positive"),
+        (&["nno", "--bumper", "0mm"], "positive"),
         (&["nno", "--angle", "90deg"], "below 90 deg"),
         (&["nno", "--speeds", "0, 3 km/s"], "positive"),
         (&["nno", "--plot", "nno.svg"], "svg"),

@@ -192,8 +192,8 @@ mod tests {
             let table = table(name).unwrap();
             assert!(!table.contains("no source"), "{table}");
             let text = format!(
-                "dimension = 1\nspacing = \"1 mm\"\nrun.end_time = \"1 us\"\ncontact.mode = \"none\"\n\
-                 [[body]]\nname = \"b\"\nmaterial = \"{name}\"\nshape.box.size = [\"1 cm\"]\n{table}"
+                "dimension = 3\nspacing = \"1 mm\"\nrun.end_time = \"1 us\"\ncontact.mode = \"none\"\n\
+                 [[body]]\nname = \"b\"\nmaterial = \"{name}\"\nshape.box.size = [\"1 cm\", \"1 cm\", \"1 cm\"]\n{table}"
             );
             let case = parse(name, &text, &[]).unwrap_or_else(|error| panic!("{error}"));
             assert_eq!(Some(&case.materials[0]), library::find(name).as_ref());

@@ -205,58 +205,15 @@ impl Whipple {
 impl Equation {
     /// The equation as a function of the speed, where its answer goes, and what stands beside it.
     pub(super) fn law(&self) -> Result<(Law, &Output, Option<&Beside>), String> {
-        let whipple = |args: &'_ Whipple, stuffing: f64, name, source, holds, limit| {
-            let (shield, shot) = (args.shield(stuffing), args.projectile.shot());
-            laws::limit(name, source, holds, shield, shot, limit)
-        };
         Ok(match self {
-            Self::Nno(args) => {
-                let law = whipple(
-                    args,
-                    0.0,
-                    "New non-optimum equation",
-                    "Christiansen 1993, NASA/TM-2009-214785 eqs. 4-23 to 4-26",
-                    nno::HOLDS,
-                    nno::critical_diameter as laws::Equation,
-                );
-                (law, &args.output, Some(&args.beside))
+            Self::Nno(args) | Self::ModifiedNno(args) | Self::ThinBumper(args) => {
+                (self.limit(args, 0.0), &args.output, Some(&args.beside))
             }
-            Self::ModifiedNno(args) => {
-                let law = whipple(
-                    args,
-                    0.0,
-                    "Modified new non-optimum equation",
-                    "Christiansen & Kerr 2001",
-                    modified_nno::HOLDS,
-                    modified_nno::critical_diameter,
-                );
-                (law, &args.output, Some(&args.beside))
-            }
-            Self::ThinBumper(args) => {
-                let law = whipple(
-                    args,
-                    0.0,
-                    "New non-optimum equation with a thin bumper",
-                    "Reimerdes et al. 2006, Ryan & Christiansen 2011",
-                    thin_bumper::HOLDS,
-                    thin_bumper::critical_diameter,
-                );
-                (law, &args.output, Some(&args.beside))
-            }
-            Self::Stuffed(Stuffed {
-                whipple: args,
-                stuffing,
-            }) => {
-                let law = whipple(
-                    args,
-                    *stuffing,
-                    "Stuffed Whipple shield",
-                    "Christiansen & Kerr 2001, NASA/TM-2009-214785 chapter 4",
-                    stuffed::HOLDS,
-                    stuffed::critical_diameter,
-                );
-                (law, &args.output, Some(&args.beside))
-            }
+            Self::Stuffed(Stuffed { whipple, stuffing }) => (
+                self.limit(whipple, *stuffing),
+                &whipple.output,
+                Some(&whipple.beside),
+            ),
             Self::Sizing(args) => (args.law(), &args.output, None),
             Self::Crater(args) => {
                 if args.wall.is_none() && args.beside.sweep.is_some() {
@@ -266,6 +223,38 @@ impl Equation {
             }
             Self::Hole(args) => (args.law(), &args.output, None),
         })
+    }
+
+    /// The limit equation of a shield.
+    fn limit(&self, args: &Whipple, stuffing: f64) -> Law {
+        let (name, source, holds, equation): (_, _, _, laws::Equation) = match self {
+            Self::ModifiedNno(_) => (
+                "Modified new non-optimum equation",
+                "Christiansen & Kerr 2001",
+                modified_nno::HOLDS,
+                modified_nno::critical_diameter,
+            ),
+            Self::ThinBumper(_) => (
+                "New non-optimum equation with a thin bumper",
+                "Reimerdes et al. 2006, Ryan & Christiansen 2011",
+                thin_bumper::HOLDS,
+                thin_bumper::critical_diameter,
+            ),
+            Self::Stuffed(_) => (
+                "Stuffed Whipple shield",
+                "Christiansen & Kerr 2001, NASA/TM-2009-214785 chapter 4",
+                stuffed::HOLDS,
+                stuffed::critical_diameter,
+            ),
+            _ => (
+                "New non-optimum equation",
+                "Christiansen 1993, NASA/TM-2009-214785 eqs. 4-23 to 4-26",
+                nno::HOLDS,
+                nno::critical_diameter,
+            ),
+        };
+        let (shield, shot) = (args.shield(stuffing), args.projectile.shot());
+        laws::limit(name, source, holds, shield, shot, equation)
     }
 }
 

@@ -39,6 +39,8 @@ const RATE: &str = "1/s, as in Johnson & Cook (1983)";
 const CONSTANT_GAMMA: &str = "no volume dependence of γρ assumed";
 const ALUMINIUM_MELTS: &str = "melting point of pure aluminium, assumed";
 const LIQUIDUS_7075: &str = "liquidus of 7075 (635 °C), assumed";
+const MEYERS: &str = "Meyers (1994), Dynamic Behavior of Materials, as a public table of Hugoniots quotes it: linear, \
+     since the cubic of Steinberg (1996) loses pressure beyond some 170 GPa";
 const LEAD_MELTS: &str = "melting point of lead";
 
 records! {
@@ -131,6 +133,8 @@ records! {
             ("thermal.reference_temperature", ROOM),
             ("thermal.melting_temperature", LEAD_MELTS),
             ("eos.mie_gruneisen.b", CONSTANT_GAMMA),
+            ("eos", MEYERS),
+            ("density", MEYERS),
             ("", UINTAH),
         ];
     "steel-weldox-460e-johnson-cook", "steel Weldox 460 E":
@@ -190,10 +194,10 @@ pub(super) const AL_7075: Metal = Metal {
 };
 
 const LEAD: Metal = Metal {
-    density: 11340.0,
+    density: 11350.0,
     shear_modulus: 8.6e9,
-    hugoniot: [2006.0, 1.429, 2.74, 0.0],
-    curvature: [0.8506, -1.64],
+    hugoniot: [2050.0, 1.46, 2.8, 0.0],
+    curvature: [0.0; 2],
 };
 
 pub(super) const WELDOX_460E: Metal = Metal {

@@ -1,7 +1,7 @@
 //! Ready materials, each number with its source.
 //!
-//! Only records of `ductile` fail, by plastic strain. No record has a spall cut-off: spall strengths
-//! depend on the rate of the load, so a case states its own.
+//! Only records of `ductile` fail. Spall strengths depend on the rate of the load: theirs are those
+//! of plate impacts, and a case may state its own.
 
 use super::{Eos, Failure, Material, Strength, Thermal, ThermalConstants};
 
