@@ -116,6 +116,33 @@ fn branches_of_mie_gruneisen_meet_in_value_and_slope() {
 }
 
 #[test]
+fn thin_matter_has_the_thermal_pressure_of_a_gas() {
+    let metals = [library::find("aluminium-2024"), library::find("steel-304")];
+    for metal in metals.map(Option::unwrap) {
+        let Eos::MieGruneisen(eos) = metal.eos else {
+            panic!("not a Mie–Grüneisen metal");
+        };
+        let rho0 = metal.reference_density;
+        let gamma = |ratio: f64| eos.response(rho0, ratio * rho0, 1e6).dp_de / (ratio * rho0);
+        assert!((gamma(1e-6) - 2.0 / 3.0).abs() < 1e-4);
+        // Between, never below that of the gas, nor far above that of dense matter.
+        for n in 1..100 {
+            let gamma = gamma(f64::from(n) / 100.0);
+            assert!((0.66..1.3 * eos.gamma0).contains(&gamma), "{n} {gamma}");
+            // The slope of the pressure is that of the pressure.
+            let (rho, d) = (f64::from(n) / 100.0 * rho0, 1e-4 * rho0);
+            let at = |rho: f64| eos.response(rho0, rho, 3e6);
+            let slope = (at(rho + d).pressure - at(rho - d).pressure) / (2.0 * d);
+            if n < 99 {
+                assert!((slope / at(rho).dp_drho - 1.0).abs() < 1e-6);
+            }
+        }
+        let near = eos.response(rho0, 0.95 * rho0, 1e6).dp_de / rho0;
+        assert!((near / (eos.gamma0 - 0.05 * eos.b) - 1.0).abs() < 0.01);
+    }
+}
+
+#[test]
 fn strong_compression_gives_finite_growing_pressure() {
     // Beyond the Hugoniot's pole (μ = 2.96 for 2024) and the maximum of the cold part (1.18).
     for name in library::names() {
