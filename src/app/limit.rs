@@ -63,8 +63,8 @@ struct Beside {
     #[arg(long, value_name = "SWEEP")]
     sweep: Option<PathBuf>,
 
-    /// What counts as failed of a run, as in "failed wall" [default: what the sweep bisects, or
-    /// "failed"]
+    /// What counts as failed of a run, as in "failed wall" [default: what the sweep bisects, else
+    /// whether a plate has failed]
     #[arg(long, value_name = "CONDITION", requires = "sweep")]
     failed: Option<String>,
 

@@ -4,6 +4,8 @@
 //! constants were fitted in ([`handbook`]). They know nothing of the engine: designers' curves to lay
 //! beside its answers. `docs/src/theory/ballistic-limits.md` has them with their sources.
 
+#![expect(clippy::doc_markdown, reason = "symbols of formulas stand as on paper")]
+
 pub mod crater;
 pub mod handbook;
 pub mod hole;

@@ -53,7 +53,8 @@ pub(super) fn limit(
         shown(shield.yield_strength, "Pa"),
     );
     if shield.stuffing > 0.0 {
-        subtitle += &format!(", stuffing {}", shown(shield.stuffing, "kg/m^2"));
+        subtitle += ", stuffing ";
+        subtitle += &shown(shield.stuffing, "kg/m^2");
     }
     let at = move |speed: f64| {
         let Limit { diameter, regime } = equation(&shield, &shot.at(speed));
