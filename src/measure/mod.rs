@@ -26,6 +26,7 @@ mod remains;
 mod target;
 mod voxels;
 mod whole;
+mod window;
 mod witness;
 mod zone;
 
