@@ -19,6 +19,7 @@ mod gauges;
 mod kept;
 mod mask;
 mod matter;
+mod near;
 mod outline;
 mod plate;
 mod reading;
