@@ -184,7 +184,9 @@ impl Reader {
                 near.part(found.len(), code, group);
             }
         }
-        near.set(search.found(), |place| images[place as usize].base() as u32);
+        #[expect(clippy::cast_possible_truncation, reason = "particles fit u32")]
+        let particle = |place: u32| images[place as usize].base() as u32;
+        near.set(search.found(), particle);
         for eight in 0..near.eights() {
             let mut square = [0.0; LANES];
             for (square, found) in square.iter_mut().zip(&squares[eight * LANES..]) {

@@ -70,7 +70,7 @@ impl Remains {
                 let counts = matter.body_of(i) == slab.body
                     && (slab.include == Include::All || !matter.has_failed(i));
                 counts.then(|| Grain {
-                    place: halves.place(&frame, matter, i, code),
+                    place: place(&frame, matter, i, code),
                     volume: matter.volume(i),
                 })
             });
@@ -172,11 +172,11 @@ impl Halves {
             codes: codes.filter(|code| code & bits == 0).collect(),
         }
     }
+}
 
-    /// Coordinates (m) of a particle's image.
-    fn place(&self, frame: &Frame, matter: &Matter, i: usize, code: u8) -> [f64; 3] {
-        frame.turned(&matter.mirrors.reflect_position(&matter.position[i], code))
-    }
+/// Coordinates (m) of a particle's image.
+fn place(frame: &Frame, matter: &Matter, i: usize, code: u8) -> [f64; 3] {
+    frame.turned(&matter.mirrors.reflect_position(&matter.position[i], code))
 }
 
 /// How far (m) matter of the body that has flowed reaches between its faces, along the axes of the frame and
@@ -191,7 +191,7 @@ fn flowed(slab: &Slab, frame: &Frame, halves: &Halves, matter: &Matter, comm: &C
             return;
         }
         for &code in &halves.codes {
-            let place = halves.place(frame, matter, i, code);
+            let place = place(frame, matter, i, code);
             if low <= place[2] && place[2] <= high {
                 for a in 0..3 {
                     raise(&mut most[a], place[a]);

@@ -34,7 +34,7 @@ const WORDS: usize = REACH / IN_WORD + 1;
 
 /// Doubles from here on have no fraction, up to twice as much: what is added to it is rounded to a whole number, in
 /// the last bits.
-const WHOLE: f64 = (1_u64 << 52) as f64;
+const WHOLE: f64 = 4_503_599_627_370_496.0;
 
 /// Weights of voxels along one axis, which add up to one: from the first of them.
 struct Weights {

@@ -15,7 +15,7 @@ struct Bin<'a> {
     measure: &'a str,
     distribution: &'a str,
     units: [&'a str; 2],
-    bin: [f64; 3],
+    step: [f64; 3],
 }
 
 /// One chart for each distribution of some tables, with its name: a curve of steps for each measure at each time that
@@ -68,7 +68,7 @@ fn add(charts: &mut Vec<(String, Chart)>, bin: &Bin, name: &str, title: &str) {
             points: Vec::new(),
         });
     }
-    let [from, to, value] = bin.bin;
+    let [from, to, value] = bin.step;
     if let Some(curve) = curves.last_mut() {
         curve.points.extend([[from, value], [to, value]]);
     }
@@ -126,7 +126,7 @@ fn bins(table: &Table) -> Result<Vec<Bin<'_>>, String> {
         measure: measures[k],
         distribution: distributions[k],
         units: [along[k], units[k]],
-        bin: [from[k], to[k], values[k]],
+        step: [from[k], to[k], values[k]],
     };
     Ok((0..table.len()).map(bin).collect())
 }
