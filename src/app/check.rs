@@ -6,13 +6,13 @@ use super::plot::out;
 use crate::comm::Comm;
 use crate::input;
 use crate::model::readable::{short, shown};
-use crate::model::{Body, Case, Quantity, cube};
+use crate::model::{Body, Case, MeasureKind, Quantity, cube};
 use crate::output::{snapshot, unit_of_model};
 use crate::plot::{self, PlotError};
 use crate::populate;
 use crate::preflight::{self, memory};
 use crate::run::exit::EXIT_INPUT;
-use crate::run::say::{say, warn};
+use crate::run::say::{counted, say, warn};
 
 /// Check a case without running it: particles by body, memory, expected steps
 ///
@@ -182,8 +182,34 @@ fn print_report(case: &Case, ranks: usize) {
             ));
         }
     }
+    print_measures(case);
     if let Some(step) = preflight::expected_step(case) {
         let (steps, end) = (case.run.end_time / step, shown(case.run.end_time, "s"));
         say(&format!("  about {} steps to {end}", short(steps.round())));
+    }
+}
+
+/// What the run is going to measure.
+fn print_measures(case: &Case) {
+    let options = &case.measure;
+    let told = options.measures.iter().map(|measure| {
+        let (name, word) = (&measure.name, measure.kind.word());
+        // Debris is called after what it has left, and bodies may be called what they are.
+        match &measure.kind {
+            MeasureKind::Debris(_) => name.clone(),
+            _ if name == word => name.clone(),
+            _ => format!("{name} ({word})"),
+        }
+    });
+    let mut all: Vec<String> = told.collect();
+    let many = [
+        (options.gauges.len(), "gauge"),
+        (options.witnesses.len(), "witness plane"),
+    ];
+    for (count, word) in many.into_iter().filter(|(count, _)| *count > 0) {
+        all.push(counted(count as u64, word));
+    }
+    if !all.is_empty() {
+        say(&format!("  measures: {}", all.join(", ")));
     }
 }

@@ -6,13 +6,14 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use super::results::ResultsError;
+use super::which::Which;
 use crate::fragments::{Census, Fragment, Rule, find_alone};
 use crate::input;
 use crate::model::readable::{one_line, shown, shown_vector};
 use crate::model::{FragmentOptions, Include};
 use crate::output::fragments::FragmentTable;
 use crate::output::{OutputError, RunFolder, write_atomically};
-use crate::plot::{PlotError, Wanted, choose, parse_quantity, snapshots};
+use crate::plot::{PlotError, choose, snapshots};
 use crate::run::exit::EXIT_INPUT;
 use crate::run::say::{counted, say, seconds, warn};
 use matter::Loaded;
@@ -32,13 +33,9 @@ pub struct FragmentsArgs {
     #[arg(value_name = "FILE_OR_RUN")]
     pub path: PathBuf,
 
-    /// Snapshot of the run nearest to a time, as in 5us [default: the last one]
-    #[arg(long, visible_alias = "time", value_name = "TIME", group = "which")]
-    pub at: Option<String>,
-
-    /// Snapshot of the run by number, from 0
-    #[arg(long, visible_alias = "index", value_name = "K", group = "which")]
-    pub snapshot: Option<usize>,
+    /// Which snapshot of a run.
+    #[command(flatten)]
+    pub which: Which,
 
     /// Largest distance of linked particles, over the mean of their sizes at the start [default:
     /// the case's, else 1.5]
@@ -152,20 +149,14 @@ pub fn tell(args: &FragmentsArgs) -> Result<String, FragmentsError> {
 /// The snapshot that is asked for.
 fn chosen(args: &FragmentsArgs) -> Result<PathBuf, FragmentsError> {
     if !args.path.is_dir() {
-        if args.at.is_some() || args.snapshot.is_some() {
+        if args.which.any() {
             let choice = "--at and --snapshot choose among the snapshots of a run: give its folder";
             return Err(PlotError::Options(choice).into());
         }
         return Ok(args.path.clone());
     }
-    let wanted = match (&args.at, args.snapshot) {
-        (Some(time), _) => Wanted::Times(vec![parse_quantity(time, "s")?]),
-        (None, Some(index)) => Wanted::Indices(vec![index]),
-        (None, None) => Wanted::Last,
-    };
-    let folder = RunFolder::at(&args.path);
-    let found = snapshots(folder.path())?;
-    Ok(choose(&found, &wanted)?.remove(0))
+    let found = snapshots(RunFolder::at(&args.path).path())?;
+    Ok(choose(&found, &args.which.wanted()?)?.remove(0))
 }
 
 /// The rule of the case with what the command line changes of it.

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::results::ResultsError;
+use super::which::Which;
 use crate::comm::Comm;
 use crate::input::{self, InputError};
 use crate::measure::{Findings, Matter, Told, findings, mirrors, remember};
@@ -11,7 +12,7 @@ use crate::model::{Case, Measure, MeasureKind};
 use crate::output::h5::Content;
 use crate::output::h5::read::{ReadError, SnapshotFile};
 use crate::output::{OutputError, RunFolder, measures, write_atomically};
-use crate::plot::{PlotError, Wanted, choose, parse_quantity, snapshots};
+use crate::plot::{PlotError, Wanted, choose, snapshots};
 use crate::run::exit::EXIT_INPUT;
 use crate::run::say::{say, seconds, warn};
 
@@ -29,13 +30,9 @@ pub struct MeasureArgs {
     #[arg(value_name = "FILE_OR_RUN")]
     pub path: PathBuf,
 
-    /// Snapshot of the run nearest to a time, as in 5us [default: the last one]
-    #[arg(long, visible_alias = "time", value_name = "TIME", group = "which")]
-    pub at: Option<String>,
-
-    /// Snapshot of the run by number, from 0
-    #[arg(long, visible_alias = "index", value_name = "K", group = "which")]
-    pub snapshot: Option<usize>,
+    /// Which snapshot of a run.
+    #[command(flatten)]
+    pub which: Which,
 
     /// All snapshots of the run; the last one is shown
     #[arg(long, group = "which")]
@@ -121,7 +118,7 @@ fn tell(args: &MeasureArgs) -> Result<String, MeasureError> {
 /// The first snapshot of a run, and those that are asked for.
 fn chosen(args: &MeasureArgs) -> Result<(Option<PathBuf>, Vec<PathBuf>), MeasureError> {
     if !args.path.is_dir() {
-        if args.at.is_some() || args.snapshot.is_some() || args.all {
+        if args.which.any() || args.all {
             let choice = "--at, --snapshot and --all choose among the snapshots of a run: give its \
                           folder";
             return Err(PlotError::Options(choice).into());
@@ -134,12 +131,7 @@ fn chosen(args: &MeasureArgs) -> Result<(Option<PathBuf>, Vec<PathBuf>), Measure
     if args.all {
         return Ok((first, found.into_iter().map(|found| found.1).collect()));
     }
-    let wanted = match (&args.at, args.snapshot) {
-        (Some(time), _) => Wanted::Times(vec![parse_quantity(time, "s")?]),
-        (None, Some(index)) => Wanted::Indices(vec![index]),
-        (None, None) => Wanted::Last,
-    };
-    Ok((first, choose(&found, &wanted)?))
+    Ok((first, choose(&found, &args.which.wanted()?)?))
 }
 
 /// A field that the measures of a case need and a snapshot does not have.

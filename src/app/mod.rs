@@ -13,6 +13,7 @@ mod restart;
 pub mod results;
 mod run;
 mod sweep;
+pub mod which;
 
 use std::ffi::OsString;
 use std::process::ExitCode;

@@ -25,6 +25,7 @@ use out::{is_png, target, write};
   whipple plot state.vtkhdf --section z=0.1mm --view -1:1,-1:1mm
   whipple plot runs/impact --history
   whipple plot runs/impact --fragments --all
+  whipple plot runs/impact --distributions --time 5us,10us
   whipple plot runs/bars --profile stress.xx --at 0.48us --exact
   whipple plot runs/bars --profile velocity.x --with runs/bars-kernel
   whipple plot runs/dam --front water --points martin-moyce.csv
@@ -136,6 +137,13 @@ pub struct PlotArgs {
     ])]
     pub fragments: bool,
 
+    /// Draw what the run's distributions.csv tells instead, one picture each: mass by speed and by angle, profiles of
+    /// craters and bars; of the last time that the run has told them unless others are asked for
+    #[arg(long, conflicts_with_all = [
+        "field", "section", "drawn_as", "thickness", "no_mirror", "panels", "range", "view", "history", "fragments",
+    ])]
+    pub distributions: bool,
+
     /// Draw a field along a line instead: FIELD or FIELD.COMPONENT, as for --field; stress.xx … is
     /// all that matter bears, that by contact too, `material_stress.xx` … without
     #[arg(long, value_name = "FIELD", group = "line", conflicts_with_all = [
@@ -219,6 +227,8 @@ pub fn run(args: &PlotArgs) -> Result<(), PlotError> {
         curves::draw_history(args)
     } else if args.fragments {
         curves::draw_fragments(args)
+    } else if args.distributions || curves::is_distributions(args) {
+        curves::draw_distributions(args)
     } else if let Some(body) = &args.front {
         curves::draw_front(args, body)
     } else if let Some(columns) = curves::columns(args)? {

@@ -1,7 +1,8 @@
 //! The part of a body that hangs together: its largest piece, of voxels that share faces.
 
 use super::mask::Mask;
-use super::voxels::{HALF, UNIT, Window};
+use super::voxels::{HALF, UNIT};
+use super::window::Window;
 use crate::fragments::Sets;
 
 /// Voxels of a column that follow each other.
@@ -18,8 +19,10 @@ struct Run {
 pub struct Attached {
     /// Where it is.
     pub window: Window,
-    /// Fractions by voxel, in [`UNIT`]s.
+    /// Fractions by voxel of the columns that are kept, in [`UNIT`]s.
     fractions: Vec<u16>,
+    /// The kept column that each column is or is the image of.
+    images: Vec<usize>,
     runs: Vec<Run>,
     /// Where the runs of each column begin, and those of the last end.
     columns: Vec<usize>,
@@ -45,23 +48,47 @@ fn add_runs(column: impl Iterator<Item = bool>, runs: &mut Vec<Run>) {
     }
 }
 
+/// Adds what the runs of a column leave out, from its beginning to its end.
+fn add_gaps(column: &[Run], end: u32, gaps: &mut Vec<Run>) {
+    let mut begin = 0;
+    for run in column {
+        if run.begin > begin {
+            gaps.push(Run {
+                begin,
+                end: run.begin,
+            });
+        }
+        begin = run.end;
+    }
+    if begin < end {
+        gaps.push(Run { begin, end });
+    }
+}
+
 impl Attached {
-    /// The largest piece of a body that at the start has left some columns out; of several as large that which
-    /// comes first.
+    /// The largest piece of a body that at the start has left some columns out, of what the columns hold that are
+    /// kept; of several as large that which comes first.
     #[must_use]
-    pub fn new(window: Window, fractions: Vec<u16>, outside: Vec<bool>) -> Self {
-        let mut runs = Vec::new();
-        let mut columns = vec![0];
+    pub fn new(window: Window, fractions: Vec<u16>, outside: &[bool]) -> Self {
+        let (mut kept, mut begins) = (Vec::new(), vec![0]);
         for column in fractions.chunks_exact(window.depth()) {
-            add_runs(column.iter().map(|&f| f >= HALF), &mut runs);
+            if column.iter().any(|&f| f >= HALF) {
+                add_runs(column.iter().map(|&f| f >= HALF), &mut kept);
+            }
+            begins.push(kept.len());
+        }
+        let images: Vec<usize> = window.images().collect();
+        let (mut runs, mut columns) = (Vec::new(), vec![0]);
+        for &image in &images {
+            runs.extend_from_slice(&kept[begins[image]..begins[image + 1]]);
             columns.push(runs.len());
         }
-        let kept = largest(&window, &runs, &columns);
+        let is_largest = largest(&window, &runs, &columns);
         let mut own = Vec::new();
         let mut begins = vec![0];
         for pair in columns.windows(2) {
             let all = pair[0]..pair[1];
-            own.extend(all.filter(|&run| kept[run]).map(|run| runs[run]));
+            own.extend(all.filter(|&run| is_largest[run]).map(|run| runs[run]));
             begins.push(own.len());
         }
         Self {
@@ -69,7 +96,8 @@ impl Attached {
             fractions,
             runs: own,
             columns: begins,
-            outside,
+            outside: images.iter().map(|&image| outside[image]).collect(),
+            images,
         }
     }
 
@@ -137,19 +165,17 @@ impl Attached {
     /// Whether what it leaves open leads from above it to below it, elsewhere than around its rim.
     #[must_use]
     pub fn is_open(&self) -> bool {
-        let [rows, across, depth] = self.window.counts;
+        let depth = u32::try_from(self.window.depth()).unwrap_or(u32::MAX);
         let (mut runs, mut columns) = (Vec::new(), vec![0]);
         let around = self.open().at_border();
-        for (column, &is_around) in around.iter().enumerate().take(rows * across) {
-            let mut filled = vec![is_around || self.outside[column]; depth];
-            for run in self.column(column) {
-                filled[run.begin as usize..run.end as usize].fill(true);
+        for (column, &is_around) in around.iter().enumerate() {
+            if !is_around && !self.outside[column] {
+                add_gaps(self.column(column), depth, &mut runs);
             }
-            add_runs(filled.iter().map(|is| !is), &mut runs);
             columns.push(runs.len());
         }
         let roots = roots(&self.window, &runs, &columns);
-        let above = runs.iter().map(|run| run.end as usize == depth);
+        let above = runs.iter().map(|run| run.end == depth);
         let below = runs.iter().map(|run| run.begin == 0);
         let mut sides = vec![[false; 2]; runs.len()];
         for ((&root, above), below) in roots.iter().zip(above).zip(below) {
@@ -182,7 +208,8 @@ impl Attached {
     /// Where it ends in each column, upwards and downwards (m): where the fraction passes a half.
     pub fn ends(&self) -> impl Iterator<Item = Option<[f64; 2]>> {
         let depth = self.window.depth();
-        (self.fractions.chunks_exact(depth).enumerate()).map(move |(column, fractions)| {
+        (self.images.iter().enumerate()).map(move |(column, image)| {
+            let fractions = &self.fractions[image * depth..(image + 1) * depth];
             let runs = self.column(column);
             let (first, last) = (runs.first()?, runs.last()?);
             let low = first.begin as usize;
@@ -268,11 +295,11 @@ mod tests {
     /// A window of unit voxels, filled where told.
     fn filled(counts: [usize; 3], yes: impl Fn([usize; 3]) -> bool) -> Attached {
         let [n, m, d] = counts;
-        let window = Window::new([0.0; 3], counts.map(|c| c as f64), 1.0);
+        let window = Window::new([0.0; 3], counts.map(|c| c as f64), 1.0, [None; 2]);
         assert_eq!(window.counts, counts);
         let all = (0..n * m * d).map(|v| [v / (m * d), v / d % m, v % d]);
         let fractions = all.map(|v| if yes(v) { UNIT } else { 0 }).collect();
-        Attached::new(window, fractions, vec![false; n * m])
+        Attached::new(window, fractions, &vec![false; n * m])
     }
 
     #[test]

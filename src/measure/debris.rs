@@ -1,8 +1,8 @@
 //! Debris: what flies beyond a plane, where and how fast.
 
+use super::Whole;
 use super::figure::{Distribution, Figure, Findings};
-use super::flight::{Flight, View, is_debris};
-use super::frame::Frame;
+use super::flight::{ANGLE, AXIAL, HEIGHT, NUMBERS, RADIUS, SPEED, Scale, View};
 use super::matter::Matter;
 use super::outline::outline;
 use super::remains::Remains;
@@ -29,35 +29,32 @@ struct Sums {
 }
 
 impl Sums {
-    /// Finds the axis of the view, and the sums.
+    /// Finds the axis of the view, and the sums. Collective.
     fn find(view: &mut View, comm: &Comm) -> Self {
-        let frame = view.frame;
-        let [mass, u, w] = view.matter.sums::<3>(comm, |i, sums| {
+        let matter = view.matter;
+        let whole = Whole::new(&matter.mirrors);
+        let [part, x, y, z] = matter.sums::<4>(comm, |i, sums| {
             if view.is_debris[i] {
-                let m = view.matter.mass[i];
-                for (x, _) in view.matter.images(i) {
-                    let place = frame.turned(&x);
-                    sums[0].add(m);
-                    sums[1].add(m * place[0]);
-                    sums[2].add(m * place[1]);
-                }
+                let (m, [x, y, z]) = (matter.mass[i], matter.position[i]);
+                sums.add(&[m, m * x, m * y, m * z]);
             }
         });
-        view.axis = [u / mass, w / mass];
+        let middle = whole.mean_position([x, y, z].map(|c| c / part));
+        let [u, w, _] = view.frame.turned(&middle);
+        view.axis = [u, w];
         let view = &*view;
-        let [count, momentum, radial, kinetic] = view.matter.sums::<4>(comm, |i, sums| {
+        let sums = matter.sums::<4>(comm, |i, sums| {
             if view.is_debris[i] {
-                let m = view.matter.mass[i];
+                let m = matter.mass[i];
                 for flight in view.flights(i) {
-                    sums[0].add(1.0);
-                    sums[1].add(m * flight.axial);
-                    sums[2].add(m * flight.radial);
-                    sums[3].add(0.5 * m * square(&[flight.speed, 0.0, 0.0]));
+                    let kinetic = 0.5 * m * square(&[flight.speed, 0.0, 0.0]);
+                    sums.add(&[1.0, m * flight.axial, m * flight.radial, kinetic]);
                 }
             }
         });
+        let [count, momentum, radial, kinetic] = sums.map(|sum| view.alike() * sum);
         Self {
-            mass,
+            mass: whole.sum(part),
             count,
             momentum,
             radial,
@@ -95,13 +92,7 @@ pub fn debris(
     matter: &Matter,
     comm: &Comm,
 ) -> Findings {
-    let mut view = View {
-        debris,
-        matter,
-        frame: Frame::new(&debris.direction),
-        axis: [0.0; 2],
-        is_debris: is_debris(debris, of, matter),
-    };
+    let mut view = View::new(debris, of, matter);
     let sums = Sums::find(&mut view, comm);
     let number = Figure::number;
     let mut figures = vec![
@@ -132,17 +123,10 @@ pub fn debris(
 /// Extents, velocities and outline of debris that there is.
 fn cloud(view: &View, sums: &Sums, comm: &Comm) -> (Vec<Figure>, Vec<Distribution>) {
     let number = Figure::number;
-    let spread = |of: fn(&Flight) -> f64| {
-        let range = view.range(comm, of);
-        (
-            view.spread(comm, widened(range), BINS, sums.mass, of),
-            range,
-        )
-    };
-    let (heights, [lowest, highest]) = spread(|flight| flight.height);
-    let (radii, [_, farthest]) = spread(|flight| flight.radius);
-    let (velocities, _) = spread(|flight| flight.axial);
-    let (angles, _) = spread(Flight::angle);
+    let ranges = view.ranges(comm);
+    let [[lowest, highest], [_, farthest]] = [ranges[HEIGHT], ranges[RADIUS]];
+    let [heights, radii, velocities, angles, by_speed, by_angle] =
+        view.spreads(comm, scales(&ranges), sums.mass);
     let seen = outline(
         view,
         comm,
@@ -176,16 +160,33 @@ fn cloud(view: &View, sums: &Sums, comm: &Comm) -> (Vec<Figure>, Vec<Distributio
         size("outline_width", seen.width),
         number("outline_ratio", ratio, "").within(doubt),
     ];
-    let [_, fastest] = view.range(comm, |flight| flight.speed);
-    let speeds = view.spread(comm, widened([0.0, fastest]), SPEEDS, sums.mass, |flight| {
-        flight.speed
-    });
-    let by_angle = view.spread(comm, [0.0, 180.0], ANGLES, sums.mass, Flight::angle);
     let distributions = vec![
-        speeds.distribution("mass_by_speed", "m/s"),
+        by_speed.distribution("mass_by_speed", "m/s"),
         by_angle.distribution("mass_by_angle", "deg"),
     ];
     (figures, distributions)
+}
+
+/// What mass is told by, of numbers between such limits.
+fn scales(ranges: &[[f64; 2]; NUMBERS]) -> [Scale; 6] {
+    let between = |number: usize| Scale {
+        number,
+        range: widened(ranges[number]),
+        bins: BINS,
+    };
+    let by_speed = Scale {
+        number: SPEED,
+        range: widened([0.0, ranges[SPEED][1]]),
+        bins: SPEEDS,
+    };
+    let by_angle = Scale {
+        number: ANGLE,
+        range: [0.0, 180.0],
+        bins: ANGLES,
+    };
+    let all = [HEIGHT, RADIUS, AXIAL, ANGLE].map(between);
+    let [heights, radii, velocities, angles] = all;
+    [heights, radii, velocities, angles, by_speed, by_angle]
 }
 
 /// Limits that are not the same.

@@ -1,5 +1,6 @@
 //! A plane and its normal: coordinates across it and along it.
 
+use crate::domain::Mirrors;
 use crate::numerics::vector::{cross, dot};
 
 /// Two unit vectors in a plane, and its normal.
@@ -34,6 +35,23 @@ impl Frame {
         self.axes.map(|axis| dot(&axis, x))
     }
 
+    /// Where symmetry planes cut the two vectors across the normal (m) that are normal to them, and the bits of
+    /// these planes in the codes of images.
+    #[must_use]
+    pub fn planes(&self, mirrors: &Mirrors) -> ([Option<f64>; 2], u8) {
+        let (mut planes, mut bits) = ([None; 2], 0);
+        for (plane, axis) in planes.iter_mut().zip(&self.axes) {
+            for a in 0..3 {
+                let is_normal = (0..3).all(|b| b == a || axis[b] == 0.0);
+                if let Some(place) = mirrors.plane(a).filter(|_| is_normal) {
+                    *plane = Some(axis[a] * place);
+                    bits |= 1 << a;
+                }
+            }
+        }
+        (planes, bits)
+    }
+
     /// The place (m) of coordinates (m).
     #[must_use]
     pub fn back(&self, place: &[f64; 3]) -> [f64; 3] {
@@ -44,6 +62,22 @@ impl Frame {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::{Axis, SymmetryPlane};
+
+    #[test]
+    fn planes_across_a_normal_are_told() {
+        let plane = |axis, position| SymmetryPlane { axis, position };
+        let mirrors = Mirrors::new(&[plane(Axis::X, 2.0), plane(Axis::Z, 3.0)]);
+        let planes = |normal| Frame::new(&normal).planes(&mirrors);
+        let [u, w, _] = Frame::new(&[0.0, -1.0, 0.0]).axes;
+        assert_eq!(
+            planes([0.0, -1.0, 0.0]),
+            ([Some(2.0 * u[0]), Some(3.0 * w[2])], 0b101)
+        );
+        assert_eq!(planes([1.0, 0.0, 0.0]).1, 0b100);
+        assert_eq!(planes([0.8, 0.6, 0.0]).1, 0b100);
+        assert_eq!(planes([0.8, 0.0, 0.6]), ([None; 2], 0));
+    }
 
     #[test]
     fn frames_are_right_handed_and_keep_axes() {

@@ -4,14 +4,16 @@
 //! `Σ V_j W_j f_j / Σ V_j W_j`, of all images in whose support it is. The sum below, its *coverage*,
 //! is about one inside of matter, half at a face and zero in the void, where there is nothing to read.
 //! Terms are added in canonical order, the images behind each set of symmetry planes after the
-//! particles themselves: a pure function of the state.
+//! particles themselves, to eight sums in turn and these in a fixed order: a pure function of the state.
 
-use super::reading::{Near, Reading, along, stress};
+use super::near::{LaneSum, Near, One};
+use super::reading::{Reading, along, stress};
 use crate::domain::Mirrors;
 use crate::model::{Case, Gauge};
-use crate::neighbours::{Lists, PointSearch};
+use crate::neighbours::{Lists, PointSearch, Sequence};
+use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::kernel::Kernel;
-use crate::numerics::vector::{minus, norm};
+use crate::numerics::lanes::{LANES, Lanes};
 use crate::particles::ParticleStore;
 
 /// Sums of a gauge before its readings: coverage and position, the latter of a carried gauge alone.
@@ -35,8 +37,10 @@ pub struct Means {
 #[derive(Debug, Default)]
 pub struct Scratch {
     /// What it reads.
-    pub near: Vec<Near>,
+    pub near: Near,
     search: PointSearch,
+    /// Squares of the distances of what the search has found (m²).
+    squares: Vec<f64>,
 }
 
 /// What one gauge needs from reading to reading.
@@ -75,32 +79,44 @@ impl Reader {
 
     /// Adds up what this rank's particles give.
     pub fn sum(&mut self, matter: &Matter, means: &Means, scratch: &mut Scratch) {
-        self.find(matter, means, scratch);
-        let near = &scratch.near;
-        self.met = !near.is_empty();
+        instructions().run(Sum {
+            reader: self,
+            matter,
+            means,
+            scratch,
+        });
+    }
+
+    /// Adds up what has been found.
+    #[inline(always)]
+    fn add_up<V: Lanes>(&mut self, matter: &Matter, near: &Near) {
+        self.met = near.len() > 0;
         self.sums.fill(0.0);
-        self.sums[0] = near.iter().map(|one| one.weight).fold(0.0, |a, b| a + b);
+        self.sums[0] = near.coverage::<V>();
         let particles = matter.particles;
         if self.gauge.moves
-            && let [carrier] = &near[..]
+            && let Some(carrier) = near.iter().next()
         {
             self.sums[1..FIRST].copy_from_slice(&particles.position[carrier.i]);
         }
         let mut rest = &mut self.sums[FIRST..];
         for (reading, _) in &self.readings {
             let (sums, others) = rest.split_at_mut(reading.endings().len());
-            reading.add_up(matter.case, particles, near, sums);
+            reading.add_up::<V>(matter.case, particles, near, sums);
             rest = others;
         }
         if let (Some(normal), [sum, ..]) = (&self.gauge.along, rest) {
-            for one in near {
-                *sum += one.weight * along(&stress(particles, one.i, one.code), normal);
+            let mut lanes = LaneSum::default();
+            for (k, one) in near.iter().enumerate() {
+                let stress = stress(particles, one.i, one.code);
+                lanes.add(k, one.weight * along(&stress, normal));
             }
+            *sum = lanes.total();
         }
     }
 
     /// The terms of one image, as many as there are sums, in their order.
-    pub fn terms(&self, matter: &Matter, one: &Near, terms: &mut Vec<f64>) {
+    pub fn terms(&self, matter: &Matter, one: &One, terms: &mut Vec<f64>) {
         let particles = matter.particles;
         terms.clear();
         terms.push(one.weight);
@@ -120,66 +136,189 @@ impl Reader {
         }
     }
 
-    /// This rank's particles and their images behind symmetry planes that the gauge reads, in canonical
-    /// order: all of them, where the search has those alone that some particle sees. An image is as far
-    /// from the gauge as the particle is from the image of the gauge.
-    pub fn find(&self, matter: &Matter, means: &Means, Scratch { near, search }: &mut Scratch) {
-        near.clear();
+    /// Finds this rank's particles and their images behind symmetry planes that the gauge reads, in canonical
+    /// order.
+    pub fn find(&self, matter: &Matter, means: &Means, scratch: &mut Scratch) {
+        instructions().run(Find {
+            reader: self,
+            matter,
+            means,
+            scratch,
+        });
+    }
+
+    /// Of all of them, where the search has those alone that some particle sees. An image is as far from the gauge
+    /// as the particle is from the image of the gauge.
+    #[inline(always)]
+    fn find_in<V: Lanes>(&self, matter: &Matter, means: &Means, scratch: &mut Scratch) {
+        let Scratch {
+            near,
+            search,
+            squares,
+        } = scratch;
         let lists = matter.lists;
+        near.clear();
         if self.gauge.moves {
-            near.extend(self.place.map(|i| Near {
-                i,
-                code: 0,
-                weight: 1.0,
-                listed: [0; 2],
-            }));
+            if let Some(i) = self.place {
+                near.set_carrier(i);
+            }
             return;
         }
+        search.begin();
+        squares.clear();
+        let images = lists.images();
+        let weights = Weights::<V>::new(&means.kernel, matter.particles);
         for code in std::iter::once(0).chain(means.mirrors.codes()) {
             let at = means.mirrors.reflect_position(&self.gauge.at, code);
             for group in 0..lists.groups.count() {
-                let places = search.own(lists, group, &at);
-                self.weigh(matter, means, (group, places), (code, &at), near);
+                let begin = search.found().len();
+                search.own(lists, group, &at);
+                if self.gauge.body.is_some() || lists.groups.rigid[group] {
+                    let body = |place: u32| matter.particles.body[images[place as usize].base()];
+                    search.keep(begin, |place| {
+                        reads(matter.case, self.gauge.body, body(place))
+                    });
+                }
+                let found = search.found();
+                squares_of::<V>(lists.sequence(), &found[begin..], &at, squares);
+                near.part(found.len(), code, group);
             }
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "particles fit u32")]
+        let particle = |place: u32| images[place as usize].base() as u32;
+        near.set(search.found(), particle);
+        for eight in 0..near.eights() {
+            let mut square = [0.0; LANES];
+            for (square, found) in square.iter_mut().zip(&squares[eight * LANES..]) {
+                *square = *found;
+            }
+            let found = weights.of(near.eight(eight), V::read(&square));
+            near.weigh(&found);
+        }
+        near.end();
+    }
+}
+
+/// Adds the squares of the distances (m²) from places in the lists to a point (m) to others.
+#[inline(always)]
+fn squares_of<V: Lanes>(
+    sequence: &Sequence,
+    places: &[u32],
+    point: &[f64; 3],
+    squares: &mut Vec<f64>,
+) {
+    let [x, y, z] = [V::splat(point[0]), V::splat(point[1]), V::splat(point[2])];
+    for places in places.chunks(LANES) {
+        let mut all = [[0.0; LANES]; 3];
+        for (k, &place) in places.iter().enumerate() {
+            let position = sequence.position(place as usize);
+            for a in 0..3 {
+                all[a][k] = position[a];
+            }
+        }
+        let x = V::read(&all[0]).sub(x);
+        let y = V::read(&all[1]).sub(y);
+        let z = V::read(&all[2]).sub(z);
+        let square = z.mul_add(z, y.mul_add(y, x.mul(x))).store().0;
+        squares.extend_from_slice(&square[..places.len()]);
+    }
+}
+
+/// Finds and adds up.
+struct Sum<'a> {
+    reader: &'a mut Reader,
+    matter: &'a Matter<'a>,
+    means: &'a Means,
+    scratch: &'a mut Scratch,
+}
+
+impl Vectorised for Sum<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) {
+        self.reader
+            .find_in::<V>(self.matter, self.means, self.scratch);
+        self.reader.add_up::<V>(self.matter, &self.scratch.near);
+    }
+}
+
+/// Finds alone.
+struct Find<'a> {
+    reader: &'a Reader,
+    matter: &'a Matter<'a>,
+    means: &'a Means,
+    scratch: &'a mut Scratch,
+}
+
+impl Vectorised for Find<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) {
+        self.reader
+            .find_in::<V>(self.matter, self.means, self.scratch);
+    }
+}
+
+/// Weights of particles, most of which are as large as the first.
+struct Weights<'a, V> {
+    kernel: &'a Kernel,
+    particles: &'a ParticleStore,
+    length: V,
+    inverse: V,
+    height: V,
+}
+
+impl<'a, V: Lanes> Weights<'a, V> {
+    #[inline(always)]
+    fn new(kernel: &'a Kernel, particles: &'a ParticleStore) -> Self {
+        let first = particles.smoothing_length.first().copied();
+        let length = V::splat(first.unwrap_or(1.0));
+        let (inverse, height) = Self::shape(kernel, length);
+        Self {
+            kernel,
+            particles,
+            length,
+            inverse,
+            height,
         }
     }
 
-    /// Those of some places in a group that have a weight at the image of the gauge.
-    fn weigh(
-        &self,
-        matter: &Matter,
-        means: &Means,
-        (group, places): (usize, &[u32]),
-        (code, at): (u8, &[f64; 3]),
-        near: &mut Vec<Near>,
-    ) {
-        let (particles, images) = (matter.particles, matter.lists.images());
-        let sequence = matter.lists.sequence();
-        let any = self.gauge.body.is_none() && !matter.lists.groups.rigid[group];
-        // Most particles are as large as the one before.
-        let (mut length, mut kernel) = (f64::NAN, means.kernel.of_length(1.0));
-        for &index in places {
-            let index = index as usize;
-            let i = images[index].base();
-            if !any && !reads(matter.case, self.gauge.body, particles.body[i]) {
-                continue;
-            }
-            let h = particles.smoothing_length[i];
-            if h.to_bits() != length.to_bits() {
-                (length, kernel) = (h, means.kernel.of_length(h));
-            }
-            // The position of the particle, where the search has just read it.
-            let distance = norm(&minus(&sequence.position(index), at));
-            let weight = particles.mass[i] / particles.density[i] * kernel.value(distance);
-            if weight > 0.0 {
-                near.push(Near {
-                    i,
-                    code,
-                    weight,
-                    listed: [group, index],
-                });
-            }
+    /// `1/h` and `σ_d/h^d`.
+    #[inline(always)]
+    fn shape(kernel: &Kernel, h: V) -> (V, V) {
+        let inverse = V::splat(1.0).div(h);
+        let mut height = V::splat(kernel.normalisation());
+        for _ in 0..kernel.dimension() {
+            height = height.mul(inverse);
         }
+        (inverse, height)
+    }
+
+    /// `m/ρ W(r)` of eight particles with the squares of their distances (m²).
+    #[inline(always)]
+    fn of(&self, particles: &[u32; LANES], square: V) -> [f64; LANES] {
+        let (mut length, mut mass, mut density) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for (k, &i) in particles.iter().enumerate() {
+            let i = i as usize;
+            length[k] = self.particles.smoothing_length[i];
+            mass[k] = self.particles.mass[i];
+            density[k] = self.particles.density[i];
+        }
+        let h = V::read(&length);
+        let same = h.less_than(self.length) | self.length.less_than(h) == 0;
+        let (inverse, height) = if same {
+            (self.inverse, self.height)
+        } else {
+            Self::shape(self.kernel, h)
+        };
+        let (zero, q) = (V::splat(0.0), square.sqrt().mul(inverse));
+        let a = V::splat(2.0).sub(q).max(zero);
+        let b = V::splat(1.0).sub(q).max(zero);
+        let cubes = V::splat(0.25).mul(a.mul(a).mul(a)).sub(b.mul(b).mul(b));
+        let volume = V::read(&mass).div(V::read(&density));
+        volume.mul(height.mul(cubes)).store().0
     }
 }
 

@@ -4,7 +4,7 @@
 //! particles near a gauge, their terms are put in canonical order and added as one rank would.
 
 use super::gauge_reader::{Matter, Means, Reader, Scratch};
-use super::reading::Near;
+use super::near::{LaneSum, One};
 use crate::comm::Comm;
 
 /// Memory to join readings over ranks.
@@ -24,8 +24,7 @@ impl Shares {
     /// Bytes allocated.
     pub fn memory(&self) -> usize {
         let words = [&self.words, &self.counts, &self.all].map(Vec::capacity);
-        8 * (words.iter().sum::<usize>() + self.terms.capacity())
-            + size_of::<Near>() * self.scratch.near.capacity()
+        8 * (words.iter().sum::<usize>() + self.terms.capacity()) + self.scratch.near.memory()
     }
 
     /// Makes the sums of all readers that are due those of all ranks. Collective.
@@ -74,9 +73,9 @@ impl Shares {
             readers[k].find(matter, means, &mut self.scratch);
             let near = &self.scratch.near;
             self.counts.push(near.len() as u64);
-            for one in near {
-                self.words.extend(key(matter, one));
-                readers[k].terms(matter, one, &mut self.terms);
+            for one in near.iter() {
+                self.words.extend(key(matter, &one));
+                readers[k].terms(matter, &one, &mut self.terms);
                 self.words
                     .extend(self.terms.iter().map(|term| term.to_bits()));
             }
@@ -113,7 +112,7 @@ impl Shares {
 }
 
 /// What canonical order goes by: first the planes that an image is behind.
-fn key(matter: &Matter, one: &Near) -> [u64; KEY] {
+fn key(matter: &Matter, one: &One) -> [u64; KEY] {
     let [group, index] = one.listed;
     let [column, along] = matter.lists.sequence().rank_in_order(group, index);
     let first = u64::from(one.code) << 32 | group as u64;
@@ -124,11 +123,12 @@ fn key(matter: &Matter, one: &Near) -> [u64; KEY] {
 fn add_in_order(words: &[u64], sums: &mut [f64]) {
     let mut rows: Vec<&[u64]> = words.chunks_exact(KEY + sums.len()).collect();
     rows.sort_unstable_by_key(|row| &row[..KEY]);
-    sums.fill(0.0);
-    for row in rows {
-        for (sum, &bits) in sums.iter_mut().zip(&row[KEY..]) {
-            *sum += f64::from_bits(bits);
+    for (c, sum) in sums.iter_mut().enumerate() {
+        let mut lanes = LaneSum::default();
+        for (k, row) in rows.iter().enumerate() {
+            lanes.add(k, f64::from_bits(row[KEY + c]));
         }
+        *sum = lanes.total();
     }
 }
 

@@ -160,12 +160,15 @@ impl Gauges {
             lists,
         };
         let means = &self.means;
+        let mut due: Vec<&mut Reader> = self.readers.iter_mut().filter(|r| r.due).collect();
+        due.sort_by_cached_key(|reader| lists.order_of(&reader.gauge.at));
         // Each gauge has its own sums, in canonical order: nothing depends on threads.
-        (self.readers.par_iter_mut().with_min_len(AT_ONCE))
-            .filter(|reader| reader.due)
-            .for_each_init(Scratch::default, |scratch, reader| {
+        (due.into_par_iter().with_min_len(AT_ONCE)).for_each_init(
+            Scratch::default,
+            |scratch, reader| {
                 reader.sum(&matter, means, scratch);
-            });
+            },
+        );
         self.shares.join(&mut self.readers, &matter, means, comm);
         let columns = (self.columns, self.along);
         let readers = self.readers.iter().enumerate();

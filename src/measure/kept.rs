@@ -43,7 +43,7 @@ fn impulse(slab: &Slab, matter: &Matter, comm: &Comm) -> f64 {
     let [sum] = matter.sums::<1>(comm, |i, sums| {
         let body = matter.body_of(i);
         if body != slab.body && slab.before.contains(&body) {
-            sums[0].add(-matter.mass[i] * dot(&slab.normal, &matter.velocity[i]));
+            sums.add(&[-matter.mass[i] * dot(&slab.normal, &matter.velocity[i])]);
         }
     });
     // A face that is its own mirror image is struck along symmetry planes.

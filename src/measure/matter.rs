@@ -6,7 +6,8 @@ use crate::comm::Comm;
 use crate::domain::Mirrors;
 use crate::material::FAILED;
 use crate::model::{Case, edge};
-use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
+use crate::numerics::exact_sum::{gather_limbs, scatter_limbs};
+use crate::numerics::gathered_sums::GatheredSums;
 use crate::numerics::ordered::{disordered, ordered};
 use crate::particles::{GRAIN, ParticleStore};
 
@@ -111,24 +112,24 @@ impl<'a> Matter<'a> {
     pub fn sums<const N: usize>(
         &self,
         comm: &Comm,
-        tell: impl Fn(usize, &mut [ExactSum; N]) + Sync,
+        tell: impl Fn(usize, &mut GatheredSums<N>) + Sync,
     ) -> [f64; N] {
-        let none = || std::array::from_fn(|_| ExactSum::default());
-        let of_chunk = |mut sums: [ExactSum; N], chunk: usize| {
+        let of_chunk = |mut sums: GatheredSums<N>, chunk: usize| {
             for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(self.len()) {
                 tell(i, &mut sums);
             }
             sums
         };
-        let join = |mut sums: [ExactSum; N], others: [ExactSum; N]| {
-            for (sum, other) in sums.iter_mut().zip(&others) {
-                sum.merge(other);
-            }
+        let join = |mut sums: GatheredSums<N>, others: GatheredSums<N>| {
+            sums.merge(others);
             sums
         };
         let chunks = (0..self.len().div_ceil(GRAIN)).into_par_iter();
         // same bits in any order: exact sums
-        let mut sums = chunks.fold(none, of_chunk).reduce(none, join);
+        let sums = chunks
+            .fold(GatheredSums::default, of_chunk)
+            .reduce(GatheredSums::default, join);
+        let mut sums = sums.into_sums();
         let mut limbs = Vec::new();
         gather_limbs(sums.iter_mut(), &mut limbs);
         comm.sum_i64(&mut limbs);

@@ -19,6 +19,7 @@ mod gauges;
 mod kept;
 mod mask;
 mod matter;
+mod near;
 mod outline;
 mod plate;
 mod reading;
@@ -26,6 +27,7 @@ mod remains;
 mod target;
 mod voxels;
 mod whole;
+mod window;
 mod witness;
 mod zone;
 

@@ -3,6 +3,7 @@
 use super::flight::View;
 use super::mask::Mask;
 use crate::comm::Comm;
+use crate::numerics::vector::dot;
 
 /// Most cells of the outline along the flight.
 const CELLS: f64 = 192.0;
@@ -70,6 +71,7 @@ pub fn outline(
         half: count(radius),
     };
     let across = 2 * cells.half;
+    let base = dot(&debris.direction, &debris.point);
     // Whole numbers of 2⁻³⁰ of what makes the outline.
     let full = debris.outline * edge * edge;
     let scale = f64::from(1 << 30);
@@ -77,8 +79,9 @@ pub fn outline(
         if view.is_debris[i] {
             #[expect(clippy::cast_possible_truncation, reason = "some particles in a cell")]
             let share = (view.matter.mass[i] / full * scale).round() as i64;
-            for flight in view.flights(i) {
-                if let Some(cell) = cells.at(flight.height, flight.across[0]) {
+            for (x, _) in view.matter.images(i) {
+                let [u, _, along] = view.frame.turned(&x);
+                if let Some(cell) = cells.at(along - base, u - view.axis[0]) {
                     counts[cell] += share;
                 }
             }

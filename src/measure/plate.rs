@@ -67,18 +67,20 @@ impl Left {
         let behind = slab.rear - slab.spacing;
         let sums = matter.sums::<4>(comm, |i, sums| {
             let (body, mass, x) = (matter.body_of(i), matter.mass[i], &matter.position[i]);
-            let height = remains.height(x);
             if body != slab.body {
-                if slab.before.contains(&body) && height < behind && remains.is_behind(x) {
-                    sums[3].add(mass);
+                let passed = slab.before.contains(&body)
+                    && remains.height(x) < behind
+                    && remains.is_behind(x);
+                if passed {
+                    sums.add(&[0.0, 0.0, 0.0, mass]);
                 }
                 return;
             }
             match remains.holds(i) {
                 Belongs::Yes => {}
-                Belongs::Nearly => sums[2].add(mass),
-                Belongs::No if height > middle => sums[0].add(mass),
-                Belongs::No => sums[1].add(mass),
+                Belongs::Nearly => sums.add(&[0.0, 0.0, mass, 0.0]),
+                Belongs::No if remains.height(x) > middle => sums.add(&[mass, 0.0, 0.0, 0.0]),
+                Belongs::No => sums.add(&[0.0, mass, 0.0, 0.0]),
             }
         });
         let [speed] = matter.largest::<1>(comm, |i, most| {

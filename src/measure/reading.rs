@@ -1,8 +1,10 @@
 //! What can be read of a particle: a field of the table, or what follows from some.
 
+use super::near::{LaneSum, Near};
 use crate::domain::Mirrors;
 use crate::material::LANES;
 use crate::model::Case;
+use crate::numerics::lanes::Lanes as Vector;
 use crate::particles::{
     FIELDS, FieldInfo, FieldKind, Mirror, ParticleStore, STRESS, TEMPERATURE, VON_MISES_STRESS,
 };
@@ -18,17 +20,6 @@ pub enum Reading {
     VonMises,
     /// Temperature; not a number without thermal constants.
     Temperature,
-}
-
-/// An image of a particle that a gauge reads.
-#[derive(Debug, Clone, Copy)]
-pub struct Near {
-    pub i: usize,
-    pub code: u8,
-    /// `V W`, or one.
-    pub weight: f64,
-    /// Where it stands in the lists: group and place.
-    pub listed: [usize; 2],
 }
 
 /// Most numbers of a reading.
@@ -111,34 +102,40 @@ impl Reading {
 }
 
 impl Reading {
-    /// Adds the numbers of some images, each times its weight, to as many sums.
-    pub fn add_up(self, case: &Case, particles: &ParticleStore, near: &[Near], sums: &mut [f64]) {
-        match (self, &mut *sums) {
+    /// Sums of the numbers of some images, each times its weight.
+    #[inline(always)]
+    pub fn add_up<V: Vector>(
+        self,
+        case: &Case,
+        particles: &ParticleStore,
+        near: &Near,
+        sums: &mut [f64],
+    ) {
+        match (self, sums) {
             (Self::Field(field), [sum]) => {
                 let values: &[f64] = bytemuck::cast_slice(particles.bytes(field.id));
                 // What a case does not hold is zero.
                 if !values.is_empty() {
-                    *sum = near
-                        .iter()
-                        .fold(*sum, |sum, n| sum + n.weight * values[n.i]);
+                    [*sum] = near.sums::<V, 1>(|i| [values[i]]);
                 }
             }
-            (Self::Field(field), [x, y, z]) if near.iter().all(|one| one.code == 0) => {
+            (Self::Field(field), [x, y, z]) if !near.any_behind() => {
                 let values: &[f64] = bytemuck::cast_slice(particles.bytes(field.id));
                 let values = values.as_chunks::<3>().0;
-                for one in near.iter().filter(|_| !values.is_empty()) {
-                    let value = &values[one.i];
-                    *x += one.weight * value[0];
-                    *y += one.weight * value[1];
-                    *z += one.weight * value[2];
+                if !values.is_empty() {
+                    [*x, *y, *z] = near.sums::<V, 3>(|i| values[i]);
                 }
             }
-            _ => {
-                for one in near {
+            (_, sums) => {
+                let mut lanes = [LaneSum::default(); MOST];
+                for (k, one) in near.iter().enumerate() {
                     let values = self.read(case, particles, one.i, one.code);
-                    for (sum, value) in sums.iter_mut().zip(values) {
-                        *sum += one.weight * value;
+                    for (lanes, value) in lanes.iter_mut().zip(values) {
+                        lanes.add(k, one.weight * value);
                     }
+                }
+                for (sum, lanes) in sums.iter_mut().zip(&lanes) {
+                    *sum = lanes.total();
                 }
             }
         }

@@ -8,8 +8,10 @@ use rayon::prelude::*;
 use super::attached::Attached;
 use super::frame::Frame;
 use super::matter::{Matter, raise};
-use super::voxels::{Grain, Voxels, Window};
+use super::voxels::{Grain, Voxels};
+use super::window::Window;
 use crate::comm::Comm;
+use crate::domain::Mirrors;
 use crate::model::{Include, Slab};
 
 /// Matter has flowed beyond this plastic strain: some elastic and plastic waves do not count.
@@ -52,7 +54,8 @@ impl Remains {
     #[must_use]
     pub fn find(slab: &Slab, matter: &Matter, comm: &Comm) -> Self {
         let frame = Frame::new(&slab.normal);
-        let reach = flowed(slab, &frame, matter, comm);
+        let halves = Halves::new(&frame, &matter.mirrors);
+        let reach = flowed(slab, &frame, &halves, matter, comm);
         let mut remains = Self {
             frame,
             attached: None,
@@ -61,21 +64,15 @@ impl Remains {
             belongs: Vec::new(),
         };
         if reach[0].is_finite() {
-            let (window, beyond) = window(slab, &reach);
+            let (window, beyond) = window(slab, &halves, &reach);
             let voxels = Voxels::new(window);
-            voxels.fill(matter.len(), |i, tell| {
-                let belongs = slab.include == Include::All || !matter.has_failed(i);
-                if matter.body_of(i) == slab.body && belongs {
-                    let (volume, size) = (matter.volume(i), matter.size(i));
-                    for (x, _) in matter.images(i) {
-                        let place = frame.turned(&x);
-                        tell(Grain {
-                            place,
-                            volume,
-                            size,
-                        });
-                    }
-                }
+            voxels.fill(matter.len(), &halves.codes, |i, code| {
+                let counts = matter.body_of(i) == slab.body
+                    && (slab.include == Include::All || !matter.has_failed(i));
+                counts.then(|| Grain {
+                    place: place(&frame, matter, i, code),
+                    volume: matter.volume(i),
+                })
             });
             let fractions = voxels.sum(comm);
             remains.between = [slab.rear - beyond, slab.front + beyond];
@@ -83,7 +80,7 @@ impl Remains {
             remains.attached = Some(Attached::new(
                 window,
                 fractions,
-                outside(slab, &frame, &window, matter),
+                &outside(slab, &frame, &window, matter),
             ));
         }
         let particles = (0..matter.len()).into_par_iter();
@@ -157,19 +154,44 @@ impl Remains {
     }
 }
 
+/// Symmetry planes that run along the normal, across one of the axes of its frame: what is behind them is not
+/// looked at.
+struct Halves {
+    /// Where they are on the first two axes (m).
+    planes: [Option<f64>; 2],
+    /// Codes of images behind other planes, and of the particle itself.
+    codes: Vec<u8>,
+}
+
+impl Halves {
+    fn new(frame: &Frame, mirrors: &Mirrors) -> Self {
+        let (planes, bits) = frame.planes(mirrors);
+        let codes = std::iter::once(0).chain(mirrors.codes());
+        Self {
+            planes,
+            codes: codes.filter(|code| code & bits == 0).collect(),
+        }
+    }
+}
+
+/// Coordinates (m) of a particle's image.
+fn place(frame: &Frame, matter: &Matter, i: usize, code: u8) -> [f64; 3] {
+    frame.turned(&matter.mirrors.reflect_position(&matter.position[i], code))
+}
+
 /// How far (m) matter of the body that has flowed reaches between its faces, along the axes of the frame and
 /// against them; −∞ if none has. Of a body that cannot yield all has flowed. Collective.
-fn flowed(slab: &Slab, frame: &Frame, matter: &Matter, comm: &Comm) -> [f64; 6] {
+fn flowed(slab: &Slab, frame: &Frame, halves: &Halves, matter: &Matter, comm: &Comm) -> [f64; 6] {
     let material = matter.case.bodies[slab.body].material;
     let yields = matter.case.materials[material].strength.yields();
     let (low, high) = (slab.rear - slab.spacing, slab.front + slab.spacing);
-    matter.largest::<6>(comm, |i, most| {
+    let mut reach = matter.largest::<6>(comm, |i, most| {
         let flowed = !yields || matter.plastic_strain[i] >= FLOWED || matter.has_failed(i);
         if matter.body_of(i) != slab.body || !flowed {
             return;
         }
-        for (x, _) in matter.images(i) {
-            let place = frame.turned(&x);
+        for &code in &halves.codes {
+            let place = place(frame, matter, i, code);
             if low <= place[2] && place[2] <= high {
                 for a in 0..3 {
                     raise(&mut most[a], place[a]);
@@ -177,10 +199,17 @@ fn flowed(slab: &Slab, frame: &Frame, matter: &Matter, comm: &Comm) -> [f64; 6] 
                 }
             }
         }
-    })
+    });
+    for (a, plane) in halves.planes.iter().enumerate() {
+        if let Some(plane) = plane {
+            let farthest = (reach[a] - plane).max(reach[3 + a] + plane);
+            (reach[a], reach[3 + a]) = (plane + farthest, farthest - plane);
+        }
+    }
+    reach
 }
 
-/// Columns of a window in whose middle, half way between the faces, the body has not been at the start.
+/// Which kept columns of a window the body has not been in at the start, half way between the faces.
 fn outside(slab: &Slab, frame: &Frame, window: &Window, matter: &Matter) -> Vec<bool> {
     let solid = matter.case.bodies[slab.body]
         .shape
@@ -188,14 +217,10 @@ fn outside(slab: &Slab, frame: &Frame, window: &Window, matter: &Matter) -> Vec<
     let height = 0.5 * (slab.front + slab.rear);
     // The outermost voxels of a filling may be less than half full.
     let margin = window.edge.min(0.25 * slab.thickness());
-    let across = window.counts[1];
-    let columns = (0..window.counts[0] * across).into_par_iter();
+    let columns = (0..window.kept().iter().product()).into_par_iter();
     let is_outside = |column: usize| {
-        #[expect(clippy::cast_precision_loss, reason = "counts are small")]
-        let [u, w] = [column / across, column % across].map(|at| at as f64 + 0.5);
-        let [first, second, _] = window.lower;
-        let place = [first + u * window.edge, second + w * window.edge, height];
-        let x = frame.back(&place);
+        let [u, w] = window.middle(column);
+        let x = frame.back(&[u, w, height]);
         let above = matter
             .mirrors
             .reflect_position(&x, matter.mirrors.beyond(&x));
@@ -206,7 +231,7 @@ fn outside(slab: &Slab, frame: &Frame, window: &Window, matter: &Matter) -> Vec<
 
 /// The window about matter that has flowed within some reach (m), and how far it goes beyond the
 /// faces (m).
-fn window(slab: &Slab, reach: &[f64; 6]) -> (Window, f64) {
+fn window(slab: &Slab, halves: &Halves, reach: &[f64; 6]) -> (Window, f64) {
     let (voxels, part) = MARGIN;
     let width = (0..2).fold(0.0, |most: f64, a| most.max(reach[a] + reach[3 + a]));
     let margin = voxels * slab.spacing + part * width;
@@ -226,5 +251,6 @@ fn window(slab: &Slab, reach: &[f64; 6]) -> (Window, f64) {
     // A face between two voxels.
     let depth = ((slab.front - lower[2]) / slab.spacing).ceil();
     lower[2] = slab.front - depth * slab.spacing;
-    (Window::new(lower, upper, slab.spacing), beyond)
+    let window = Window::new(lower, upper, slab.spacing, halves.planes);
+    (window, beyond)
 }

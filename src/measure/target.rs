@@ -125,8 +125,8 @@ pub fn target(slab: &Slab, remains: &Remains, matter: &Matter, comm: &Comm) -> F
         if matter.body_of(i) == slab.body {
             match remains.holds(i) {
                 Belongs::Yes => {}
-                Belongs::Nearly => sums[1].add(matter.mass[i]),
-                Belongs::No => sums[0].add(matter.mass[i]),
+                Belongs::Nearly => sums.add(&[0.0, matter.mass[i]]),
+                Belongs::No => sums.add(&[matter.mass[i], 0.0]),
             }
         }
     });

@@ -127,6 +127,13 @@ impl Lists {
         }
     }
 
+    /// What points (m) are best ordered by that are looked up one after the other: their column, and how far along
+    /// it they are, by the first group.
+    #[must_use]
+    pub fn order_of(&self, point: &[f64; 3]) -> [u64; 2] {
+        self.sequence.order_of(0, point)
+    }
+
     /// The longest support in a group (m), and whether it is that of all particles of the case.
     pub(super) fn support(&self, group: usize) -> (f64, bool) {
         let uniform = self.sequence.smoothing_lengths().is_empty();

@@ -8,10 +8,11 @@ use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::kernel::SUPPORT;
 use crate::numerics::lanes::{LANES, Lanes as Vector};
 
-/// Memory of searches.
+/// Memory of searches, and what they have found.
 #[derive(Debug, Clone)]
 pub struct PointSearch {
     places: Vec<u32>,
+    used: usize,
     hints: [usize; 64],
 }
 
@@ -19,6 +20,7 @@ impl Default for PointSearch {
     fn default() -> Self {
         Self {
             places: Vec::new(),
+            used: 0,
             hints: [0; 64],
         }
     }
@@ -32,16 +34,37 @@ struct Work<'a> {
 }
 
 impl PointSearch {
-    /// The places in the lists, in canonical order, of those particles of this rank and group, and no others,
-    /// in whose support a point (m) may be.
-    pub fn own(&mut self, lists: &Lists, group: usize, point: &[f64; 3]) -> &[u32] {
-        let used = instructions().run(Work {
+    /// Forgets what was found.
+    pub fn begin(&mut self) {
+        self.used = 0;
+    }
+
+    /// Places in the lists of what was found, in canonical order search after search.
+    #[must_use]
+    pub fn found(&self) -> &[u32] {
+        &self.places[..self.used]
+    }
+
+    /// Finds those particles of this rank and group, and no others, in whose support a point (m) may be.
+    pub fn own(&mut self, lists: &Lists, group: usize, point: &[f64; 3]) {
+        self.used = instructions().run(Work {
             lists,
             group,
             point,
             search: self,
         });
-        &self.places[..used]
+    }
+
+    /// Keeps those found from `begin` on whose places are `wanted`.
+    pub fn keep(&mut self, begin: usize, wanted: impl Fn(u32) -> bool) {
+        let mut end = begin;
+        for at in begin..self.used {
+            if wanted(self.places[at]) {
+                self.places[end] = self.places[at];
+                end += 1;
+            }
+        }
+        self.used = end;
     }
 }
 
@@ -50,7 +73,11 @@ impl Vectorised for Work<'_> {
 
     #[inline(always)]
     fn run<V: Vector>(self) -> usize {
-        let PointSearch { places, hints } = self.search;
+        let PointSearch {
+            places,
+            used,
+            hints,
+        } = self.search;
         let sequence = self.lists.sequence();
         let (longest, uniform) = self.lists.support(self.group);
         let far = V::splat(longest * INFLATION);
@@ -61,7 +88,7 @@ impl Vectorised for Work<'_> {
                 V::read(eight.lengths).mul(V::splat(SUPPORT * INFLATION))
             }
         };
-        let mut used = 0;
+        let mut used = *used;
         let found = |first: usize, bits: u8, eight: &Eight| {
             let own = bits & own(eight.special);
             used = push_places(places, used, first, own);

@@ -317,9 +317,13 @@ impl Sequence {
     /// where it is along that.
     #[must_use]
     pub fn rank_in_order(&self, group: usize, index: usize) -> [u64; 2] {
+        self.order_of(group, &self.position(index))
+    }
+
+    /// The same of a position (m).
+    pub(super) fn order_of(&self, group: usize, position: &[f64; 3]) -> [u64; 2] {
         let grid = &self.groups[group].grid;
-        let position = self.position(index);
-        let [first, second] = grid.column(&position).map(u64::from);
+        let [first, second] = grid.column(position).map(u64::from);
         [first << 32 | second, ordered(position[grid.along])]
     }
 

@@ -27,6 +27,7 @@ mod units;
 
 pub use canvas::{Canvas, Rgb};
 pub use chart::curves::{Chart, Curve, Quantity};
+pub use chart::distributions::distributions;
 pub use chart::fragments::{By, cumulative, tables_of_run};
 pub use chart::history::energies;
 pub use chart::profile::{Along, ProfileRequest, Profiles};

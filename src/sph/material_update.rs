@@ -263,10 +263,8 @@ impl<'a> MaterialUpdate<'a> {
         if self.points.asks
             && let Some(recording) = &self.recording
         {
-            for (k, &i) in base.iter().enumerate() {
-                // SAFETY: as above.
-                batch.plastic_energy[k] = unsafe { recording.plastic_energy(i) };
-            }
+            // SAFETY: as above.
+            batch.plastic_energy = unsafe { recording.plastic_energy(base) };
         }
         batch
     }

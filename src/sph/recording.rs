@@ -3,6 +3,8 @@
 use super::step::Step;
 use super::sums::Sums;
 use crate::material::{FAILED, LANES, Material, PointBatch};
+use crate::numerics::dispatch::{Vectorised, instructions};
+use crate::numerics::lanes::Lanes;
 use crate::particles::{Records, Scatter};
 
 /// Books updates in the records of particles.
@@ -37,96 +39,138 @@ impl<'a> Recording<'a> {
     pub unsafe fn book(
         &self,
         own: usize,
-        [before, after]: [&PointBatch; 2],
+        points: [&PointBatch; 2],
         lanes: u8,
         particles: &[usize; LANES],
     ) {
-        let records = &self.records;
-        for k in (0..LANES).filter(|k| lanes >> k & 1 == 1) {
-            let (i, pressure) = (particles[k], after.pressure[k]);
-            // SAFETY: by this function's contract; no reference outlives its statement.
-            unsafe {
-                add(&records.plastic_energy, i, || {
-                    plastic_work(before, after, k)
-                });
-                if raise(&records.peak_pressure, i, || pressure) {
-                    *records.peak_pressure_time.slot(i) = self.time;
-                }
-                raise(&records.peak_tension, i, || -pressure);
-                raise(&records.peak_strain_rate, i, || strain_rate(before, k));
-                raise(&records.peak_temperature, i, || {
-                    let material = &self.materials[own];
-                    let work = self.plastic_energy(i);
-                    let energy = material.thermal_energy(after.specific_energy[k], work);
-                    let temperature =
-                        material.temperature(after.density[k], energy, after.damage[k]);
-                    temperature.unwrap_or_default()
-                });
-                self.arrive(i, pressure > self.arrival[own]);
-            }
-        }
+        let booking = Booking {
+            recording: self,
+            own,
+            points,
+            lanes,
+            particles,
+        };
+        instructions().run(booking);
     }
 
-    /// Plastic work (J/kg) so far of particle `i`.
+    /// Plastic work (J/kg) so far of eight particles; zero where it is not kept.
     ///
     /// # Safety
-    /// No other thread may write the records of this particle.
+    /// No other thread may write the records of these particles.
     #[inline(always)]
-    pub unsafe fn plastic_energy(&self, i: usize) -> f64 {
+    pub unsafe fn plastic_energy(&self, particles: &[usize; LANES]) -> [f64; LANES] {
         let work = &self.records.plastic_energy;
         if work.is_empty() {
-            0.0
-        } else {
-            // SAFETY: by this function's contract.
-            unsafe { *work.slot(i) }
+            return [0.0; LANES];
+        }
+        // SAFETY: by this function's contract.
+        particles.map(|i| unsafe { *work.slot(i) })
+    }
+}
+
+/// One update that is booked. Whoever makes it has the records of its particles alone.
+struct Booking<'a> {
+    recording: &'a Recording<'a>,
+    own: usize,
+    points: [&'a PointBatch; 2],
+    lanes: u8,
+    particles: &'a [usize; LANES],
+}
+
+impl Vectorised for Booking<'_> {
+    type Output = ();
+
+    /// Each record by itself: what is not kept costs nothing, and the numbers of eight points are told at once.
+    #[inline(always)]
+    fn run<V: Lanes>(self) {
+        let (records, time) = (&self.recording.records, self.recording.time);
+        let [before, after] = self.points;
+        if !records.plastic_energy.is_empty() {
+            self.book_work();
+        }
+        if !records.peak_pressure.is_empty() {
+            self.raise(&records.peak_pressure, &after.pressure, |i| {
+                // SAFETY: as of [`Recording::book`].
+                unsafe { *records.peak_pressure_time.slot(i) = time };
+            });
+        }
+        if !records.peak_tension.is_empty() {
+            let tension = V::splat(0.0).sub(V::read(&after.pressure));
+            self.raise(&records.peak_tension, &tension.store().0, |_| ());
+        }
+        if !records.peak_strain_rate.is_empty() {
+            let rates = strain_rates::<V>(before);
+            self.raise(&records.peak_strain_rate, &rates, |_| ());
+        }
+        if !records.peak_temperature.is_empty() {
+            let material = &self.recording.materials[self.own];
+            // SAFETY: as of [`Recording::book`].
+            let work = unsafe { self.recording.plastic_energy(self.particles) };
+            let energy = material.thermal_energies(&after.specific_energy, &work);
+            let told = material.temperatures(&after.density, &energy, &after.damage);
+            if let Some(told) = told {
+                self.raise(&records.peak_temperature, &told, |_| ());
+            }
+        }
+        if !records.arrival_time.is_empty() {
+            self.arrive(&after.pressure);
         }
     }
+}
 
-    /// Notes that pressure has arrived at particle `i`, if it has not before.
-    ///
-    /// # Safety
-    /// As of [`Self::book`].
+impl Booking<'_> {
+    /// Calls `book` with each lane that is booked and its particle.
     #[inline(always)]
-    unsafe fn arrive(&self, i: usize, arrived: bool) {
-        let times = &self.records.arrival_time;
-        if arrived && !times.is_empty() {
-            // SAFETY: by this function's contract; no reference outlives its statement.
-            let time = unsafe { times.slot(i) };
-            if *time == 0.0 {
-                *time = self.time;
+    fn each(&self, mut book: impl FnMut(usize, usize)) {
+        for (k, &i) in self.particles.iter().enumerate() {
+            if self.lanes >> k & 1 == 1 {
+                book(k, i);
             }
         }
     }
-}
 
-/// Adds to a record, if it is kept.
-///
-/// # Safety
-/// No other thread may read or write it.
-#[inline(always)]
-unsafe fn add(record: &Scatter<f64>, i: usize, more: impl FnOnce() -> f64) {
-    if !record.is_empty() {
-        // SAFETY: by this function's contract.
-        unsafe { *record.slot(i) += more() };
+    /// Adds plastic work.
+    #[inline(always)]
+    fn book_work(&self) {
+        let [before, after] = self.points;
+        let work = &self.recording.records.plastic_energy;
+        self.each(|k, i| {
+            let more = plastic_work(before, after, k);
+            if more != 0.0 {
+                // SAFETY: as of [`Recording::book`].
+                unsafe { *work.slot(i) += more };
+            }
+        });
     }
-}
 
-/// Raises a record, if it is kept; whether it was raised.
-///
-/// # Safety
-/// No other thread may read or write it.
-#[inline(always)]
-unsafe fn raise(record: &Scatter<f64>, i: usize, value: impl FnOnce() -> f64) -> bool {
-    if record.is_empty() {
-        return false;
+    /// Raises a record to values, and calls `raised` with the particles where it does.
+    #[inline(always)]
+    fn raise(&self, record: &Scatter<f64>, values: &[f64; LANES], raised: impl Fn(usize)) {
+        self.each(|k, i| {
+            // SAFETY: as of [`Recording::book`].
+            let record = unsafe { record.slot(i) };
+            if values[k] > *record {
+                *record = values[k];
+                raised(i);
+            }
+        });
     }
-    // SAFETY: by this function's contract.
-    let (record, value) = (unsafe { record.slot(i) }, value());
-    let raised = value > *record;
-    if raised {
-        *record = value;
+
+    /// Notes that pressure has arrived where it has not before.
+    #[inline(always)]
+    fn arrive(&self, pressure: &[f64; LANES]) {
+        let times = &self.recording.records.arrival_time;
+        let arrival = self.recording.arrival[self.own];
+        self.each(|k, i| {
+            if pressure[k] > arrival {
+                // SAFETY: as of [`Recording::book`].
+                let time = unsafe { times.slot(i) };
+                if *time == 0.0 {
+                    *time = self.recording.time;
+                }
+            }
+        });
     }
-    raised
 }
 
 /// Plastic work (J/kg) of an update at point `k`: equivalent stress on the yield surface times the
@@ -148,20 +192,25 @@ fn plastic_work(before: &PointBatch, after: &PointBatch, k: usize) -> f64 {
     (1.5 * (normal + 2.0 * shear)).sqrt() * strain / after.density[k]
 }
 
-/// Equivalent strain rate `√(2/3 d':d')` (1/s) at point `k`, of the deviatoric rate of deformation
-/// `d'` in the middle of the step.
-fn strain_rate(point: &PointBatch, k: usize) -> f64 {
-    let l = |c: usize| point.velocity_gradient[c][k];
-    let mean = (l(0) + l(4) + l(8)) / 3.0;
-    let normal = [l(0) - mean, l(4) - mean, l(8) - mean];
-    let shear = [l(1) + l(3), l(2) + l(6), l(5) + l(7)];
-    let square = |v: [f64; 3]| v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-    (2.0 / 3.0 * (square(normal) + 0.5 * square(shear))).sqrt()
+/// Equivalent strain rates `√(2/3 d':d')` (1/s), of the deviatoric rates of deformation `d'` in the middle of
+/// the step.
+#[inline(always)]
+fn strain_rates<V: Lanes>(points: &PointBatch) -> [f64; LANES] {
+    let l = &points.velocity_gradient;
+    let [xx, yy, zz] = [V::read(&l[0]), V::read(&l[4]), V::read(&l[8])];
+    let mean = xx.add(yy).add(zz).div(V::splat(3.0));
+    let square = |a: V, b: V, c: V| a.mul(a).add(b.mul(b)).add(c.mul(c));
+    let normal = square(xx.sub(mean), yy.sub(mean), zz.sub(mean));
+    let both = |a: usize, b: usize| V::read(&l[a]).add(V::read(&l[b]));
+    let shear = square(both(1, 3), both(2, 6), both(5, 7));
+    let all = normal.add(V::splat(0.5).mul(shear));
+    V::splat(2.0 / 3.0).mul(all).sqrt().store().0
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::lanes::F64x8;
 
     #[test]
     fn work_and_rates_are_those_of_uniaxial_and_simple_shear() {
@@ -171,8 +220,9 @@ mod tests {
             point.velocity_gradient[c][0] = l;
         }
         point.velocity_gradient[1][1] = 3.0;
-        assert!((strain_rate(&point, 0) - 2.0).abs() < 1e-15);
-        assert!((strain_rate(&point, 1) - 3.0_f64.sqrt()).abs() < 1e-15);
+        let rates = strain_rates::<F64x8>(&point);
+        assert!((rates[0] - 2.0).abs() < 1e-15);
+        assert!((rates[1] - 3.0_f64.sqrt()).abs() < 1e-15);
 
         let mut after = point;
         after.density = [2.0; LANES];

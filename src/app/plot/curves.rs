@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use crate::output::RunFolder;
 use crate::plot::{
-    By, Columns, Direction, PlotError, Points, Tables, choose, cumulative, energies, front,
-    parse_pair, snapshots, tables_of_run, title, widest,
+    By, Columns, Direction, PlotError, Points, Tables, choose, cumulative, distributions, energies,
+    front, parse_pair, snapshots, tables_of_run, title, widest,
 };
 use crate::run::say::seconds;
 
@@ -62,6 +62,9 @@ const CROSSINGS: &str = "crossings.csv";
 /// The table of a run that tells its pairs of bodies apart.
 const CONTACTS: &str = "contacts.csv";
 
+/// The table of a run that tells profiles, and mass by speed and by angle.
+const DISTRIBUTIONS: &str = "distributions.csv";
+
 /// The table of a run that its energies are in.
 const HISTORY: &str = "history.csv";
 
@@ -94,17 +97,39 @@ pub fn draw_fragments(args: &PlotArgs) -> Result<(), PlotError> {
     for by in By::ALL {
         let chart = cumulative(&tables, by, &title_of(&args.source))?;
         let picture = format!("fragments-{}.png", by.name());
-        let path = match &args.out {
-            // One name is no name of two pictures.
-            Some(out) if is_png(out) => {
-                let stem = out.file_stem().unwrap_or_default().to_string_lossy();
-                out.with_file_name(format!("{stem}-{}.png", by.name()))
-            }
-            _ => target(args, &picture),
-        };
+        let path = beside(args, &picture, by.name());
         write(&chart.draw(args.width)?, &path)?;
     }
     Ok(())
+}
+
+/// Whether the source is the table of distributions, and no columns of it are named.
+pub fn is_distributions(args: &PlotArgs) -> bool {
+    is(args, DISTRIBUTIONS) && args.xy.is_none()
+}
+
+/// Draws each distribution of the runs.
+pub fn draw_distributions(args: &PlotArgs) -> Result<(), PlotError> {
+    let tables = places(args).map(|place| (name(place), table(place, DISTRIBUTIONS)));
+    let tables: Vec<_> = tables.collect();
+    let charts = distributions(&tables, &wanted(args)?, &title_of(&args.source), seconds)?;
+    for (distribution, chart) in charts {
+        let stem = distribution.replace('_', "-");
+        let path = beside(args, &format!("{stem}.png"), &stem);
+        write(&chart.draw(args.width)?, &path)?;
+    }
+    Ok(())
+}
+
+/// Where one of several pictures goes: one name is no name of several.
+fn beside(args: &PlotArgs, picture: &str, suffix: &str) -> PathBuf {
+    match &args.out {
+        Some(out) if is_png(out) => {
+            let stem = out.file_stem().unwrap_or_default().to_string_lossy();
+            out.with_file_name(format!("{stem}-{suffix}.png"))
+        }
+        _ => target(args, picture),
+    }
 }
 
 /// Writes the table of each run beside the picture, or into the run's pictures.

@@ -1,6 +1,7 @@
 //! Charts: curves over common axes, from tables and from snapshots along a line.
 
 pub mod curves;
+pub mod distributions;
 pub mod exact;
 pub mod fragments;
 pub mod history;

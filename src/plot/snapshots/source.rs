@@ -59,7 +59,7 @@ pub fn snapshots(folder: &Path) -> Result<Vec<(f64, PathBuf)>, PlotError> {
 ///
 /// # Errors
 /// [`PlotError::Index`] if there is no snapshot of some number.
-pub fn choose(found: &[(f64, PathBuf)], wanted: &Wanted) -> Result<Vec<PathBuf>, PlotError> {
+pub fn choose<T: Clone>(found: &[(f64, T)], wanted: &Wanted) -> Result<Vec<T>, PlotError> {
     let last = found.len() - 1;
     let mut chosen = match wanted {
         Wanted::Last => vec![last],
