@@ -190,6 +190,59 @@ fn stop_and_restart_on_other_ranks() {
     assert_same(&last(&reference), &last(&elsewhere), "restart elsewhere");
 }
 
+/// Ductile damage that softens and scatters, cracks from drawn flaws, and lost tension: mass, damage,
+/// flaws and fragments on any ranks, and through restarts in the middle of the break-up.
+#[test]
+fn failure_on_any_ranks_and_through_restarts() {
+    let ductile = "material.aluminium.failure={ spall.pressure = \"-1.2 GPa\", \
+        johnson_cook = { d1 = 0.13, d2 = 0.13, d3 = -1.5, d4 = 0.011 }, \
+        fracture_energy = \"10 kJ/m^2\", scatter = 20 }";
+    let flaws = "material.aluminium.failure={ grady_kipp = { k = \"1e32/m^3\", m = 9 }, seed = 3 }";
+    let tension = "material.aluminium.failure={ principal_stress.limit = \"1 GPa\", effect = \"tension_lost\" }";
+    let elastic = "material.aluminium.strength={ elastic = { shear_modulus = \"28.6 GPa\" } }";
+    let yielding = "material.aluminium.strength={ von_mises = { shear_modulus = \"28.6 GPa\", yield_stress = \"0.26 GPa\" } }";
+    let fields = |names: &str| format!("output.fields=[\"damage\", \"failure_energy\", {names}]");
+    for (name, failure, strength, shown) in [
+        (
+            "ductile",
+            ductile,
+            yielding,
+            fields("\"failure_onset\", \"plastic_strain\""),
+        ),
+        ("flaws", flaws, elastic, fields("\"flaws\"")),
+        (
+            "tension",
+            tension,
+            yielding,
+            fields("\"deviatoric_stress\""),
+        ),
+    ] {
+        let (_keep, at) = folder();
+        let mut case = QUARTER.to_vec();
+        for set in [
+            failure,
+            strength,
+            &shown,
+            "run.end_time=0.1us",
+            "fragments={}",
+        ] {
+            case.extend(["--set", set]);
+        }
+        let one = at("one");
+        run(1, 2, &case, &[], &one);
+        let history = std::fs::read_to_string(one.join("history.csv")).expect("the table");
+        let failed = column(&history, "failed_mass").pop().expect("a row");
+        assert!(failed.parse::<f64>().expect("a number") > 0.0, "{name}");
+        for ranks in [2, 3, 5] {
+            let other = at(&format!("{ranks}"));
+            run(ranks, 1, &case, &[], &other);
+            assert_same(&one, &other, &format!("{name} on {ranks} ranks"));
+        }
+        let stops = ["0.03us", "0.06us"];
+        assert_same_in_legs(&case, &[3, 1, 5], &stops, &one, &at("legs"));
+    }
+}
+
 /// Gauges that are fixed, on a plane of symmetry, in the void, carried; planes that the sphere and the
 /// plate pass; measures of a plate, its debris, regions, a front and a bar: every table on any ranks and through restarts between their rows.
 #[test]
