@@ -51,6 +51,7 @@ Aluminium sphere at 7 km/s on an aluminium plate (3-D): sound
   sphere                  228 particles of aluminium, spacing 0.05 mm, h 0.065 mm, 7.8744e-8 kg (each 0.79 % less than its cell)
                    begins with velocity [0, 0, -7] km/s
   all                    3056 particles, about 39 MB a rank on 1 rank
+  measures: plate, plate-debris
   about 59 steps to 0.2 us
 ";
     assert_eq!(said, expected);

@@ -42,7 +42,7 @@ fn all_that_leaves_is_booked_to_rounding() {
         let mut simulation = start(bursting(form));
         let first = simulation.state.totals;
         let particles = simulation.particles.owned() as u64;
-        advance(&mut simulation, 300);
+        advance(&mut simulation, 400);
         let state = &simulation.state;
         let gone = &state.departed[0];
         let left = simulation.particles.owned() as u64;
