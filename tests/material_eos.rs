@@ -128,17 +128,21 @@ fn thin_matter_has_the_thermal_pressure_of_a_gas() {
         // Between, never below that of the gas, nor far above that of dense matter.
         for n in 1..100 {
             let gamma = gamma(f64::from(n) / 100.0);
-            assert!((0.66..1.3 * eos.gamma0).contains(&gamma), "{n} {gamma}");
+            assert!((0.66..1.5 * eos.gamma0).contains(&gamma), "{n} {gamma}");
             // The slope of the pressure is that of the pressure.
             let (rho, d) = (f64::from(n) / 100.0 * rho0, 1e-4 * rho0);
             let at = |rho: f64| eos.response(rho0, rho, 3e6);
             let slope = (at(rho + d).pressure - at(rho - d).pressure) / (2.0 * d);
-            if n < 99 {
+            // But for the corners.
+            if ![75, 99].contains(&n) {
                 assert!((slope / at(rho).dp_drho - 1.0).abs() < 1e-6);
             }
         }
-        let near = eos.response(rho0, 0.95 * rho0, 1e6).dp_de / rho0;
-        assert!((near / (eos.gamma0 - 0.05 * eos.b) - 1.0).abs() < 0.01);
+        // Dense matter has the law's own.
+        for ratio in [0.75, 0.9, 1.0] {
+            let found = eos.response(rho0, ratio * rho0, 1e6).dp_de / rho0;
+            assert!((found / (eos.gamma0 + (ratio - 1.0) * eos.b) - 1.0).abs() < 1e-14);
+        }
     }
 }
 

@@ -117,8 +117,8 @@ fn run(spall: &str) -> Outcome {
 #[test]
 fn a_scab_of_the_flyers_thickness_flies_off_with_its_momentum() {
     let whole = run("");
-    let failed = run("spall.pressure = \"-1.2 GPa\"");
-    let hold = run("spall = { pressure = \"-1.2 GPa\", after = \"hold\" }");
+    let failed = run("failure.spall.pressure = \"-1.2 GPa\"");
+    let hold = run("failure.spall = { pressure = \"-1.2 GPa\", after = \"hold\" }");
     println!("whole {whole:?}\nfailed {failed:?}\nhold {hold:?}");
     // Releases spread over some spacings, and so does what fails: the gap opens at one end of it, half
     // of it (of three h in all) from its middle.

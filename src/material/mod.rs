@@ -89,8 +89,45 @@ impl Material {
             ..PointBatch::ZERO
         };
         self.failure.limit_tension(&mut point);
-        let matter = density + thermal::opening(point.pressure[0] - at.pressure, at.dp_drho);
+        let limited = point.pressure[0];
+        let matter = if limited > at.pressure {
+            self.torn_density(density, specific_energy, limited)
+        } else {
+            density
+        };
         Some(thermal.temperature(matter, specific_energy))
+    }
+
+    /// Density (kg/m³) of the matter between voids, whose pressure a cut-off has raised to `limited`
+    /// (Pa).
+    #[inline(always)]
+    fn torn_density(&self, density: f64, energy: f64, limited: f64) -> f64 {
+        let from = self.eos.linear_density(self.reference_density, density);
+        let at = self.eos.at(self.reference_density, from, energy);
+        from + thermal::opening(limited - at.pressure, at.dp_drho)
+    }
+
+    /// Temperatures (K) of a batch whose pressure was limited from that of `response`: that of the
+    /// matter, not of the voids in it.
+    #[inline(always)]
+    fn torn_temperatures(
+        &self,
+        thermal: &Thermal,
+        [density, energy]: [&Lanes; 2],
+        limited: &Lanes,
+        response: &eos::Response,
+    ) -> Lanes {
+        let mut temperature = [0.0; LANES];
+        for k in 0..LANES {
+            let (rho, e) = (density[k], energy[k]);
+            let matter = if limited[k] > response.pressure[k] {
+                self.torn_density(rho, e, limited[k])
+            } else {
+                rho
+            };
+            temperature[k] = thermal.temperature(matter, e);
+        }
+        temperature
     }
 
     /// Specific energy (J/kg) without what plastic work (J/kg) has stored in the matter otherwise
@@ -127,7 +164,7 @@ impl Material {
             ..PointBatch::ZERO
         };
         self.failure.limit_tension(&mut point);
-        Some(thermal.temperatures(density, energy, &point.pressure, &response))
+        Some(self.torn_temperatures(thermal, [density, energy], &point.pressure, &response))
     }
 
     /// Specific energy (J/kg) at a density (kg/m³) and temperature (K) of matter without damage, if
@@ -227,7 +264,8 @@ impl Material {
         if let Some(thermal) = &self.thermal {
             let rho = &batch.density;
             let e = self.thermal_energies(&batch.specific_energy, &batch.plastic_energy);
-            now.temperature = thermal.temperatures(rho, &e, &batch.pressure, response);
+            let state = [rho, &e];
+            now.temperature = self.torn_temperatures(thermal, state, &batch.pressure, response);
             now.thermal = *thermal.constants();
         }
     }

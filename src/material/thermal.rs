@@ -8,8 +8,8 @@
 //! *Physics of shock waves*, XI §§3–5. Heat of melting and vaporisation is not part of it, and T is
 //! never below zero.
 
-use super::eos::{Eos, Response};
-use super::{LANES, Lanes, at_least, at_most};
+use super::eos::Eos;
+use super::{at_least, at_most};
 
 /// The cold curve is held constant beyond these relative volumes ρ₀/ρ.
 const VOLUMES: [f64; 2] = [0.2, 2.0];
@@ -112,23 +112,6 @@ impl Thermal {
             (e - self.cold_energy(rho)) / self.constants.specific_heat,
             0.0,
         )
-    }
-
-    /// Temperatures (K) of a batch whose pressure was limited from that of `response`.
-    pub(super) fn temperatures(
-        &self,
-        rho: &Lanes,
-        e: &Lanes,
-        limited: &Lanes,
-        response: &Response,
-    ) -> Lanes {
-        let mut temperature = [0.0; LANES];
-        for k in 0..LANES {
-            let excess = limited[k] - response.pressure[k];
-            let matter = rho[k] + opening(excess, response.dp_drho[k]);
-            temperature[k] = self.temperature(matter, e[k]);
-        }
-        temperature
     }
 }
 

@@ -14,18 +14,11 @@
 //!
 //! # Expansion
 //!
-//! LS-DYNA keeps `f = γ₀ + b μ` in expansion too, which is no more than its slope at `μ = 0`. Spray
-//! of a tenth of the reference density would then have the thermal pressure of dense matter, and
-//! would be heated by `exp(γ₀ ρ₀ (1/ρ₁ − 1/ρ₂))` as it is pressed from ρ₁ to ρ₂: 2·10⁶ times from
-//! .1 to .38. So
-//!
-//! ```text
-//! f = γ₀ + b μ + c₂ μ² + c₃ μ³,    c₃ = Γ + b − 2γ₀,    c₂ = Γ + 2b − 3γ₀
-//! ```
-//!
-//! which has the same value and slope at `μ = 0` and is the thermal pressure of a monatomic gas,
-//! `Γ ρ e` with Γ = 2/3, where matter is thin (γ₀ if that is less): the limits of Tillotson's kind.
-//! Within a strain of 5 % it differs by less than one hundredth.
+//! LS-DYNA keeps `f = γ₀ + b μ` in all expansion, and so does this down to [`DENSE`] of the
+//! reference density. Spray of a tenth of it would then have the thermal pressure of dense matter,
+//! and would be heated by `exp(γ₀ ρ₀ (1/ρ₁ − 1/ρ₂))` as it is pressed from ρ₁ to ρ₂: 2·10⁶ times from
+//! .1 to .38. So below, f is the cubic of the same value and slope there that ends in the thermal
+//! pressure of a monatomic gas, `Γ ρ e` with Γ = 2/3 (γ₀ if that is less), where matter is thin.
 //!
 //! # Strong compression
 //!
@@ -41,6 +34,9 @@ use crate::material::{at_least, at_most};
 
 /// Grüneisen parameter of a monatomic gas.
 const THIN: f64 = 2.0 / 3.0;
+/// Density down to which pressure is linear in density, over that of the reference state. Matter
+/// that bears no more tension than solids do is denser.
+pub const DENSE: f64 = 0.75;
 
 /// Smallest value of the Hugoniot denominator D.
 pub const SMALLEST_DENOMINATOR: f64 = 0.1;
@@ -123,25 +119,28 @@ impl MieGruneisen {
         let dcold = if compressed { dcold } else { 1.0 };
 
         let c0_squared = self.c0 * self.c0;
-        let (f, df) = self.thermal(at_most(mu, 0.0));
         let linear = self.gamma0 + self.b * mu;
-        let dp_de = rho0 * if compressed { linear } else { f };
+        let (f, df) = self.thin(mu);
+        let dense = mu >= DENSE - 1.0;
+        let dp_de = rho0 * if dense { linear } else { f };
         PointResponse {
             pressure: rho0 * c0_squared * cold + dp_de * e,
-            dp_drho: c0_squared * dcold + if compressed { self.b } else { df } * e,
+            dp_drho: c0_squared * dcold + if dense { self.b } else { df } * e,
             dp_de,
         }
     }
 
-    /// `f` of expansion and `df/dμ`.
+    /// `f` of thin matter and `df/dμ`: Hermite's cubic in `t = (1 + μ)/DENSE`.
     #[inline(always)]
-    fn thermal(&self, mu: f64) -> (f64, f64) {
-        let (gamma, b, thin) = (self.gamma0, self.b, at_most(self.gamma0, THIN));
-        let cubic = thin + b - 2.0 * gamma;
-        let square = thin + 2.0 * b - 3.0 * gamma;
-        let f = gamma + mu * (b + mu * (square + mu * cubic));
-        let df = b + mu * (2.0 * square + 3.0 * mu * cubic);
-        (f, df)
+    fn thin(&self, mu: f64) -> (f64, f64) {
+        let end = self.gamma0 + self.b * (DENSE - 1.0);
+        let (first, last) = (at_most(self.gamma0, THIN) * DENSE, self.b * DENSE);
+        let square = 3.0 * end - 2.0 * first - last;
+        let cubic = first + last - 2.0 * end;
+        let t = (1.0 + mu) / DENSE;
+        let f = t * (first + t * (square + t * cubic));
+        let df = first + t * (2.0 * square + 3.0 * t * cubic);
+        (f, df / DENSE)
     }
 
     /// N and dN/dμ.

@@ -71,6 +71,17 @@ impl Eos {
         }
     }
 
+    /// The density (kg/m³) from which pressure is linear up to that of torn matter, for matter of the mean
+    /// density `rho`.
+    #[inline(always)]
+    #[must_use]
+    pub fn linear_density(&self, rho0: f64, rho: f64) -> f64 {
+        match self {
+            Self::MieGruneisen(_) => super::at_least(rho, mie_gruneisen::DENSE * rho0),
+            _ => rho,
+        }
+    }
+
     /// Pressure and derivatives at one state: reference density and density (kg/m³), specific
     /// energy (J/kg).
     #[must_use]
