@@ -16,7 +16,7 @@ use rayon::prelude::*;
 
 use crate::model::{self, Case, Motion};
 use crate::numerics::exact_sum::ExactSum;
-use crate::numerics::gathered_sums::GatheredSums;
+use crate::numerics::gathered_sums::{self, GatheredSums};
 use crate::numerics::vector::cross;
 use crate::particles::{GRAIN, ParticleStore};
 
@@ -298,17 +298,13 @@ impl Loads {
             }
             sums
         };
-        let merge = |mut sums: GatheredSums<N>, others: GatheredSums<N>| {
-            sums.merge(others);
-            sums
-        };
-        let all = (0..owned.div_ceil(GRAIN))
+        (0..owned.div_ceil(GRAIN))
             .into_par_iter()
             // same bits in any order: exact sums are integers
             .fold(GatheredSums::default, of_chunk)
+            .map(GatheredSums::into_sums)
             // same bits in any order, as above
-            .reduce(GatheredSums::default, merge);
-        all.into_sums()
+            .reduce(gathered_sums::none, gathered_sums::merged)
     }
 
     /// Adds the torque of gravity on what is no part of a rigid body to `torque`.

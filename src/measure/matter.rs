@@ -7,7 +7,7 @@ use crate::domain::Mirrors;
 use crate::material::FAILED;
 use crate::model::{Case, edge};
 use crate::numerics::exact_sum::{gather_limbs, scatter_limbs};
-use crate::numerics::gathered_sums::GatheredSums;
+use crate::numerics::gathered_sums::{self, GatheredSums};
 use crate::numerics::ordered::{disordered, ordered};
 use crate::particles::{GRAIN, ParticleStore};
 
@@ -120,16 +120,12 @@ impl<'a> Matter<'a> {
             }
             sums
         };
-        let join = |mut sums: GatheredSums<N>, others: GatheredSums<N>| {
-            sums.merge(others);
-            sums
-        };
         let chunks = (0..self.len().div_ceil(GRAIN)).into_par_iter();
         // same bits in any order: exact sums
-        let sums = chunks
+        let mut sums = chunks
             .fold(GatheredSums::default, of_chunk)
-            .reduce(GatheredSums::default, join);
-        let mut sums = sums.into_sums();
+            .map(GatheredSums::into_sums)
+            .reduce(gathered_sums::none, gathered_sums::merged);
         let mut limbs = Vec::new();
         gather_limbs(sums.iter_mut(), &mut limbs);
         comm.sum_i64(&mut limbs);

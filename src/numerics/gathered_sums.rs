@@ -67,6 +67,22 @@ impl<const N: usize> GatheredSums<N> {
     }
 }
 
+/// Sums of no terms.
+#[must_use]
+pub fn none<const N: usize>() -> [ExactSum; N] {
+    std::array::from_fn(|_| ExactSum::default())
+}
+
+/// Sums of the terms of both: for `reduce`, which passes values.
+#[must_use]
+#[allow(clippy::needless_pass_by_value)]
+pub fn merged<const N: usize>(mut sums: [ExactSum; N], others: [ExactSum; N]) -> [ExactSum; N] {
+    for (sum, other) in sums.iter_mut().zip(&others) {
+        sum.merge(other);
+    }
+    sums
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -119,6 +119,10 @@ pub fn fail(comm: &Comm, folder: &RunFolder, message: &str, step: u64, time: f64
     EXIT_FAILED
 }
 
+/// Stack of a thread (bytes): exact sums are large, and tasks that wait for each other lie on top of
+/// each other. What no thread touches takes no memory.
+const STACK: usize = 16 << 20;
+
 fn start_threads(comm: &Comm, wanted: Option<usize>) {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = wanted.unwrap_or_else(|| default_threads(comm, cores));
@@ -131,6 +135,7 @@ fn start_threads(comm: &Comm, wanted: Option<usize>) {
     }
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
+        .stack_size(STACK)
         .use_current_thread()
         .build_global();
     // Without a pool of its own rayon uses all cores, which is right, if not what was asked.
