@@ -70,7 +70,9 @@ macro_rules! point_fields {
             failure_onset: Scalar, Memory;
             /// Flaws that have become active.
             flaws: Scalar, Memory;
-            /// Where the next flaw becomes active; zero if none has been drawn.
+            /// Strain at which the weakest flaw becomes active; zero if none has been drawn.
+            first_flaw: Scalar, Memory;
+            /// Strain at which the next flaw becomes active; zero if none has been drawn.
             next_flaw: Scalar, Memory;
             /// Identity.
             id: Id, Known;

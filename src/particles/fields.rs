@@ -126,7 +126,9 @@ particle_fields! {
     failure_onset: Scalar,                "",       State,    -,              OnDemand, SOFTENING;
     /// Flaws that have become active.
     flaws: Scalar,                        "",       State,    -,              OnDemand, FLAWS;
-    /// Where the next flaw becomes active, as flaws expected; zero if none has been drawn.
+    /// Strain at which the weakest flaw becomes active; zero if none has been drawn.
+    first_flaw: Scalar,                   "",       State,    -,              Never,    FLAWS;
+    /// Strain at which the next flaw becomes active; zero if none has been drawn.
     next_flaw: Scalar,                    "",       State,    -,              Never,    FLAWS;
     /// Plastic work on the matter so far.
     plastic_energy: Scalar,               "J/kg",   State,    -,              OnDemand, YIELD;

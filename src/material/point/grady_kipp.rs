@@ -106,32 +106,48 @@ law! {
 }
 
 impl GradyKipp {
-    /// Active flaws of lane `k` at `x = k V ε^m`; those that are newly active are counted.
+    /// Draws the weakest flaw of lane `k`, if that has not been done: `scale` is `k V`.
     #[inline(always)]
-    fn activate(&self, point: &mut PointBatch, k: usize, x: f64, seed: u32) -> f64 {
-        if self.flaws == Flaws::Continuous {
-            point.flaws[k] = at_least(point.flaws[k], x);
-            return point.flaws[k];
+    fn begin(&self, point: &mut PointBatch, k: usize, scale: f64, seed: u32) {
+        if self.flaws == Flaws::Drawn && point.first_flaw[k] == 0.0 {
+            let x = flaw(seed, point.id[k], 0.0);
+            point.first_flaw[k] = libm::pow(x / scale, 1.0 / self.m);
+            point.next_flaw[k] = point.first_flaw[k];
         }
-        let draw = |number: f64| {
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 1000 at most
-            let number = number as u64;
-            exponential([u64::from(seed), FLAWS, point.id[k], number])
-        };
-        let (mut n, mut next) = (point.flaws[k], point.next_flaw[k]);
-        if next == 0.0 {
-            next = draw(0.0);
-        }
-        while x >= next && n < DRAWN {
-            n += 1.0;
-            next += draw(n);
-        }
-        if n >= DRAWN {
-            n = at_least(n, x);
-        }
-        (point.flaws[k], point.next_flaw[k]) = (n, next);
-        n
     }
+
+    /// Active flaws of lane `k` at a strain; those that are newly active are counted.
+    #[inline(always)]
+    fn activate(
+        &self,
+        point: &mut PointBatch,
+        k: usize,
+        strain: f64,
+        scale: f64,
+        seed: u32,
+    ) -> f64 {
+        let x = |strain: f64| scale * libm::pow(strain, self.m);
+        if self.flaws == Flaws::Continuous || point.flaws[k] >= DRAWN {
+            point.flaws[k] = at_least(point.flaws[k], x(strain));
+        } else if strain >= point.next_flaw[k] {
+            let (now, mut next, mut n) = (x(strain), x(point.next_flaw[k]), point.flaws[k]);
+            while now >= next && n < DRAWN {
+                n += 1.0;
+                next += flaw(seed, point.id[k], n);
+            }
+            point.flaws[k] = n;
+            point.next_flaw[k] = libm::pow(next / scale, 1.0 / self.m);
+        }
+        point.flaws[k]
+    }
+}
+
+/// How much later than the one before the flaw of this number becomes active, in flaws expected.
+#[inline(always)]
+fn flaw(seed: u32, id: u64, number: f64) -> f64 {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 1000 at most
+    let number = number as u64;
+    exponential([u64::from(seed), FLAWS, id, number])
 }
 
 impl Law for GradyKipp {
@@ -140,6 +156,7 @@ impl Law for GradyKipp {
         "damage",
         "failure_energy",
         "flaws",
+        "first_flaw",
         "next_flaw",
     ];
     const FOLLOWS_STATE: bool = true;
@@ -154,25 +171,23 @@ impl Law for GradyKipp {
         let longitudinal = ((bulk + g * (4.0 / 3.0)) / now.reference_density).sqrt();
         for k in 0..LANES {
             let damage = point.damage[k];
-            if !(damage < FAILED && may_exceed(point, k, 0.0)) {
-                continue;
-            }
-            let strain = largest(point, k) / (now.kept[k] * young);
-            if strain <= 0.0 {
+            let stiffness = now.kept[k] * young;
+            if damage >= FAILED || !may_exceed(point, k, point.first_flaw[k] * stiffness) {
                 continue;
             }
             let size = now.size(point, k);
-            let volume = size * size * size;
-            let x = self.k * volume * libm::pow(strain, self.m);
-            let n = self.activate(point, k, x, now.manner.seed);
-            // The weakest flaw stays active while the strain is that of it.
-            let first = match self.flaws {
-                Flaws::Continuous => 0.0,
-                Flaws::Drawn => exponential([u64::from(now.manner.seed), FLAWS, point.id[k], 0]),
-            };
-            if n == 0.0 || x < first {
+            let (scale, seed) = (self.k * size * size * size, now.manner.seed);
+            self.begin(point, k, scale, seed);
+            // The weakest flaw is active as long as the strain is that of it.
+            let first = point.first_flaw[k];
+            if !may_exceed(point, k, first * stiffness) {
                 continue;
             }
+            let strain = largest(point, k) / stiffness;
+            if strain <= 0.0 || strain < first {
+                continue;
+            }
+            let n = self.activate(point, k, strain, scale, seed);
             let reach = match self.crosses {
                 Crosses::Particle => size * RADIUS,
                 Crosses::Support => size * SUPPORT,
