@@ -5,6 +5,9 @@ use super::sets::Sets;
 use crate::comm::Comm;
 use crate::domain::Halo;
 
+/// Mark of sets that another rank may have joined with some of its own.
+pub(super) const TOUCHES: u32 = 1 << 31;
+
 /// What hangs together with a particle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Member {
@@ -94,6 +97,12 @@ impl Labels {
         }
         rows.sort_unstable();
         rows.dedup();
+        for i in 0..owned {
+            let set = sets.set(place(i));
+            if set.root == place(i) && set.marks & TOUCHES != 0 {
+                crossing.push((set.root, 0));
+            }
+        }
         crossing.sort_unstable();
         crossing.dedup();
         rows.extend(crossing.iter().map(|&(root, _)| {
@@ -101,7 +110,7 @@ impl Labels {
             Row {
                 label: set.label,
                 other: set.label,
-                marks: set.marks.into(),
+                marks: (set.marks & !TOUCHES).into(),
                 count: set.count.into(),
             }
         }));
@@ -134,7 +143,7 @@ impl Members {
         let crossing = (self.crossing).binary_search_by_key(&set.root, |(root, _)| *root);
         Member {
             label: set.label,
-            planes: set.marks,
+            planes: set.marks & !TOUCHES,
             count: crossing.map_or(set.count.into(), |at| self.crossing[at].1),
             crosses: crossing.is_ok(),
         }

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::bridges::is_bridge;
 use super::grid::{Grid, Place, distance_squared, grids};
-use super::labels::Labels;
+use super::labels::{Labels, TOUCHES};
 use super::matter::{Matter, Rule, Surroundings, link_reach};
 use super::sets::Sets;
 use crate::comm::Comm;
@@ -221,8 +221,8 @@ impl<'a> Links<'a> {
         let is_bridge = |place: &Place| bridges[place.image.base()] != 0;
         self.receivers(|place, neighbours| {
             let own = whole(place.image.base());
-            let firm = neighbours.iter().map(|&k| self.place(k));
-            let firm = firm.filter(|other| !is_bridge(other));
+            let near = neighbours.iter().map(|&k| self.place(k));
+            let firm = near.clone().filter(|other| !is_bridge(other));
             if is_bridge(place) {
                 let order = |a: &&Place, b: &&Place| {
                     let key = |other: &Place| {
@@ -243,6 +243,11 @@ impl<'a> Links<'a> {
                 if code != 0 {
                     sets.mark(own, code.into());
                 }
+            }
+            // A bridge of another rank may be joined with this one, which that rank alone knows.
+            let is_far = |other: &Place| other.image.base() >= self.matter.owned;
+            if near.clone().any(|other| is_bridge(other) && is_far(other)) {
+                sets.mark(own, TOUCHES);
             }
         });
     }
