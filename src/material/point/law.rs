@@ -28,7 +28,7 @@ pub struct Contradiction {
 /// Damage of one is failure, whichever law has brought it. At the end of stage 5 of the same step
 /// failed matter lets go of tension and shear; in all later ones it has no tension after stage 1,
 /// and neither shear modulus nor flow stress after stage 2. What damage takes before, and what
-/// failed matter keeps, is the [`Manner`](super::Manner) of failure of the material. At last the
+/// failed matter keeps, is the [`Manner`] of failure of the material. At last the
 /// sound speed follows. With a step of zero no stage may change the state.
 pub trait Law: Listed {
     /// Fields of the point that the law changes.
