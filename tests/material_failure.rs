@@ -168,6 +168,7 @@ fn damage_adds_up_to_one_at_the_failure_strain() {
             "{}",
             points.plastic_strain[0]
         );
+        assert_eq!(points.damage, [1.0; LANES]);
         assert_eq!(equivalent(&points), 0.0);
         // The elastic energy of the yield stress.
         let held = YIELD * YIELD / (6.0 * G) / points.density[0];

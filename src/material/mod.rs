@@ -135,9 +135,15 @@ impl Material {
     #[inline(always)]
     #[must_use]
     pub fn thermal_energy(&self, specific_energy: f64, plastic_energy: f64) -> f64 {
+        specific_energy - self.stored_share() * plastic_energy
+    }
+
+    /// Share of plastic work that is stored in the matter otherwise than as heat.
+    #[inline(always)]
+    #[must_use]
+    pub fn stored_share(&self) -> f64 {
         let heat = |thermal: &Thermal| thermal.constants().taylor_quinney;
-        let stored = 1.0 - self.thermal.as_ref().map_or(1.0, heat);
-        specific_energy - stored * plastic_energy
+        1.0 - self.thermal.as_ref().map_or(1.0, heat)
     }
 
     /// [`Self::thermal_energy`] of a batch.
@@ -245,12 +251,7 @@ impl Material {
     /// Whether a law asks who and how large a particle is, or what plastic work it has taken.
     #[must_use]
     pub fn asks(&self) -> bool {
-        let heat = |thermal: &Thermal| thermal.constants().taylor_quinney;
-        let stores = self
-            .thermal
-            .as_ref()
-            .is_some_and(|thermal| heat(thermal) < 1.0);
-        self.failure.asks_identity() || self.needs_temperature() && stores
+        self.failure.asks_identity() || self.needs_temperature() && self.stored_share() > 0.0
     }
 
     /// Whether a law needs the melting temperature of the thermal constants.

@@ -51,6 +51,20 @@ impl ThermalConstants {
         melting_temperature: None,
         taylor_quinney: 1.0,
     };
+
+    /// Homologous temperature `(T − T₀)/(T_m − T₀)` of Johnson and Cook's laws, between 0 and 1; 0
+    /// without a melting temperature.
+    #[inline(always)]
+    #[must_use]
+    pub fn homologous(&self, temperature: f64) -> f64 {
+        let cold = self.reference_temperature;
+        let melting = self.melting_temperature.unwrap_or(f64::INFINITY);
+        if temperature > cold {
+            at_most((temperature - cold) / (melting - cold), 1.0)
+        } else {
+            0.0
+        }
+    }
 }
 
 impl Thermal {

@@ -260,8 +260,7 @@ fn temperatures(
     if !(reader.has("density") && reader.has("specific_energy")) {
         return unknown("the snapshot has neither them nor density and specific energy".into());
     }
-    let stores = |m: &crate::material::Material| m.thermal_energy(0.0, 1.0) != 0.0;
-    let stores = case.materials.iter().any(stores);
+    let stores = (case.materials.iter()).any(|material| material.stored_share() > 0.0);
     if stores && !reader.has("plastic_energy") {
         return unknown("the snapshot has neither them nor `plastic_energy`".into());
     }

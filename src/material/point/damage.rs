@@ -109,6 +109,14 @@ pub(super) fn melt(point: &mut PointBatch, now: &Conditions) {
     }
 }
 
+/// What has failed cannot fail more, however far a step has taken it.
+#[inline(always)]
+pub(super) fn end(point: &mut PointBatch) {
+    for damage in &mut point.damage {
+        *damage = at_most(*damage, FAILED);
+    }
+}
+
 /// Advances the damage of matter that softens.
 #[inline(never)]
 pub(super) fn open_cracks(point: &mut PointBatch, now: &Conditions) {
@@ -123,8 +131,7 @@ pub(super) fn open_cracks(point: &mut PointBatch, now: &Conditions) {
         let tension = at_least(-point.pressure[k], 0.0);
         let power = (normal + shear + tension * (l(0) + l(4) + l(8))) / now.kept[k];
         let spent = now.size(point, k) * at_least(power, 0.0) * now.dt;
-        let damage = point.damage[k] + spent / (2.0 * now.manner.fracture_energy);
-        point.damage[k] = at_most(damage, FAILED);
+        point.damage[k] += spent / (2.0 * now.manner.fracture_energy);
     }
 }
 

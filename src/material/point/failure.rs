@@ -272,6 +272,7 @@ macro_rules! failure_laws {
                         damage::open_cracks(point, now);
                     }
                     damage::melt(point, now);
+                    damage::end(point);
                 }
                 damage::let_go(point, now, &before, bulk_modulus);
             }

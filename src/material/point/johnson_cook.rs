@@ -51,12 +51,9 @@ impl JohnsonCook {
 
     /// `1 − T*^m`.
     fn softening(&self, temperature: f64, thermal: &ThermalConstants) -> f64 {
-        let cold = thermal.reference_temperature;
-        let melting = thermal.melting_temperature.unwrap_or(f64::INFINITY);
-        if temperature >= melting {
-            0.0
-        } else if temperature > cold {
-            1.0 - libm::pow((temperature - cold) / (melting - cold), self.m)
+        let homologous = thermal.homologous(temperature);
+        if homologous > 0.0 {
+            1.0 - libm::pow(homologous, self.m)
         } else {
             1.0
         }

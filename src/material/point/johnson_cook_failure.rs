@@ -25,7 +25,7 @@ use serde::Deserialize;
 
 use super::radial_return::equivalent_stress;
 use super::{Conditions, LANES, Law, PointBatch};
-use crate::material::{ThermalConstants, at_least, at_most};
+use crate::material::{ThermalConstants, at_least};
 
 /// Triaxiality below which nothing is damaged.
 const CUT_OFF: f64 = -1.0 / 3.0;
@@ -127,13 +127,7 @@ impl JohnsonCookFailure {
 
     #[inline(always)]
     fn heat_factor(&self, temperature: f64, thermal: &ThermalConstants) -> f64 {
-        let cold = thermal.reference_temperature;
-        match thermal.melting_temperature {
-            Some(melting) if temperature > cold => {
-                1.0 + self.d5 * at_most((temperature - cold) / (melting - cold), 1.0)
-            }
-            _ => 1.0,
-        }
+        1.0 + self.d5 * thermal.homologous(temperature)
     }
 }
 
