@@ -14,6 +14,8 @@ const INTERPENETRATION_DISTANCE: f64 = 0.28;
 /// Where contact forces go, and what of the particles the sums need.
 pub(super) struct Books<'a> {
     pub acceleration: Scatter<'a, [f64; 3]>,
+    /// That by stress and viscosity.
+    pub viscous: Scatter<'a, [f64; 3]>,
     pub energy: Scatter<'a, f64>,
     pub stiffness: Scatter<'a, f64>,
     pub heating: Scatter<'a, f64>,
@@ -30,7 +32,6 @@ pub(super) struct Books<'a> {
     pub enclosed_limit: f64,
     /// Safety factor of the contact step.
     pub safety: f64,
-    pub friction: bool,
 }
 
 impl Books<'_> {
@@ -61,9 +62,10 @@ impl Books<'_> {
         let (i, mass) = (contact.particle, self.mass[contact.particle]);
         let per_mass = 1.0 / mass;
         // SAFETY: a particle is receiver in one task, and each thread has its own tasks.
-        let (acceleration, energy, stiffness, heating, approach, work) = unsafe {
+        let (acceleration, viscous, energy, stiffness, heating, approach, work) = unsafe {
             (
                 self.acceleration.slot(i),
+                self.viscous.slot(i),
                 self.energy.slot(i),
                 self.stiffness.slot(i),
                 self.heating.slot(i),
@@ -73,17 +75,16 @@ impl Books<'_> {
         };
         for a in 0..3 {
             acceleration[a] += contact.force[a] * per_mass;
+            viscous[a] += contact.drag[a] * per_mass;
         }
         let more = u32::try_from(FOREIGN_WORK * contact.neighbours);
         *work = work.saturating_add(more.unwrap_or(u32::MAX));
         *energy += contact.energy;
         *stiffness += contact.stiffness;
-        if self.friction {
-            *heating += contact.heat * per_mass;
-            // A step of m/c is stable: as if it were that of a spring, 2 √(m/k).
-            let rate = contact.dashpot * per_mass;
-            *stiffness += 4.0 * mass * (rate * rate);
-        }
+        *heating += (contact.heat + contact.drag_heat) * per_mass;
+        // A step of m/c is stable: as if it were that of a spring, 2 √(m/k).
+        let rate = contact.dashpot * per_mass;
+        *stiffness += 4.0 * mass * (rate * rate);
         *approach = approach.max(contact.approach);
     }
 }

@@ -13,7 +13,9 @@ pub struct ContactForce {
     pub neighbours: usize,
     /// Force (N).
     pub force: [f64; 3],
-    /// The part of `force` that images behind symmetry planes exert (N).
+    /// Force of the viscosity of contact, which is no part of `force` (N).
+    pub drag: [f64; 3],
+    /// The part of both that images behind symmetry planes exert (N).
     pub from_mirrors: [f64; 3],
     /// Its share of the contact energy (J).
     pub energy: f64,
@@ -23,6 +25,8 @@ pub struct ContactForce {
     pub dashpot: f64,
     /// Its share of the heat by friction and damping (W).
     pub heat: f64,
+    /// Its share of the heat by viscosity (W).
+    pub drag_heat: f64,
     /// Smallest distance to a foreign particle in mean spacings.
     pub closest: f64,
     /// Largest approach speed `|μ|` towards a foreign particle (m/s).
@@ -36,7 +40,7 @@ pub struct BodyForce {
     pub particle: usize,
     /// The body of the particle, and the other.
     pub bodies: [usize; 2],
-    /// Force (N).
+    /// Force, with that of viscosity (N).
     pub force: [f64; 3],
     /// Share of the contact energy (J).
     pub energy: f64,
@@ -113,11 +117,13 @@ impl<'a> Receiver<'a> {
                 particle: i.base,
                 neighbours,
                 force: [0.0; 3],
+                drag: [0.0; 3],
                 from_mirrors: [0.0; 3],
                 energy: 0.0,
                 stiffness: 0.0,
                 dashpot: 0.0,
                 heat: 0.0,
+                drag_heat: 0.0,
                 closest: f64::INFINITY,
                 approach: 0.0,
             },
@@ -153,6 +159,26 @@ impl<'a> Receiver<'a> {
         let body = self.by(other.body);
         body.energy += energy;
         body.heat += heat;
+        for a in 0..3 {
+            body.force[a] += force[a];
+        }
+    }
+
+    /// Viscosity of the pair with `other`, which approaches: `drag` (N).
+    #[inline]
+    pub fn brake(&mut self, other: &Party, separation: &Separation, drag: f64, pair: &Pair) {
+        let force = separation.along(drag);
+        for a in 0..3 {
+            self.sum.drag[a] += force[a];
+            if other.code != 0 {
+                self.sum.from_mirrors[a] += force[a];
+            }
+        }
+        let approach = -separation.rate / separation.distance;
+        self.sum.drag_heat += pair.heat_share * (drag * approach);
+        // Its matrix has the two on its diagonal and off it.
+        self.sum.dashpot += 2.0 * drag / approach;
+        let body = self.by(other.body);
         for a in 0..3 {
             body.force[a] += force[a];
         }

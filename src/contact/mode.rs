@@ -86,8 +86,11 @@ pub(crate) struct Meeting<'a, M: Mode> {
 
 /// What a pair does to its first particle.
 pub(crate) struct PairForce {
-    /// Force (N).
+    /// Force of the energy, and friction (N).
     pub force: [f64; 3],
+    /// What the viscosity of the contact pushes along the line between the two (N): positive pushes
+    /// i away from j.
+    pub drag: f64,
     /// Its half of the energy (J).
     pub energy: f64,
     /// What friction rests on from the side of each (N).
@@ -160,6 +163,9 @@ impl TaskForces {
                     heat = friction.heat;
                 }
                 on.add(&j, &pair.force, pair.energy, heat);
+                if pair.drag > 0.0 {
+                    on.brake(&j, &meeting.separation, pair.drag, meeting.pair);
+                }
             }
             if let Some(friction) = friction {
                 on.sum.stiffness += friction.stiffness;

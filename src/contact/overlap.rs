@@ -20,6 +20,10 @@ use crate::populate;
 pub use measure::{Fraction, OFFSET_LIMIT, fraction, initial_offset};
 use measure::{Measured, weigh};
 
+/// What the core's viscosity is of the mass of a pair, its approach squared and its depth, over its
+/// radius.
+const CORE_VISCOSITY: f64 = 5.0;
+
 /// Constants of an ordered pair of bodies.
 #[derive(Debug, Clone, Default)]
 pub struct OverlapPair {
@@ -31,6 +35,8 @@ pub struct OverlapPair {
     pub core_modulus: f64,
     /// Radius of the core (m).
     pub core_radius: f64,
+    /// Viscosity of the core over volume: `μ' B/r_c` for the mass `μ' V̄` of a pair (kg/m⁴).
+    pub core_viscosity: f64,
     /// Whether forces but those of the core act along the normals of the surfaces.
     pub along_normal: bool,
 }
@@ -62,6 +68,8 @@ impl Constants for Overlap {
             touching: populate::touching_value(a, b, of.case.dimension),
             core_modulus: self.core_stiffness * core_scale(of.case, of.indices),
             core_radius: self.core_radius * of.pair.spacing,
+            core_viscosity: 0.5 * CORE_VISCOSITY * meeting_density(of.case, of.indices)
+                / (self.core_radius * of.pair.spacing),
             along_normal: self.direction == ContactDirection::Normal,
         }
     }
@@ -70,16 +78,24 @@ impl Constants for Overlap {
 /// What the core of two bodies is as stiff as (Pa): `max(M, .85 ρ v²)` with v (m/s) the largest
 /// speed against each other that the case states. M and ρ are harmonic means of moduli and
 /// densities, as the mass of two particles that meet head-on is; what is rigid counts as infinite.
-fn core_scale(case: &Case, [a, b]: [usize; 2]) -> f64 {
+fn core_scale(case: &Case, bodies: [usize; 2]) -> f64 {
+    let modulus = harmonic_mean(case, bodies, |body| {
+        case.materials[body.material].p_wave_modulus()
+    });
+    let speed = case.closing_speed(bodies[0], bodies[1]);
+    modulus.max(0.85 * meeting_density(case, bodies) * speed * speed)
+}
+
+/// Harmonic mean of two bodies' densities (kg/m³).
+fn meeting_density(case: &Case, bodies: [usize; 2]) -> f64 {
+    harmonic_mean(case, bodies, |body| case.initial_density(body))
+}
+
+/// That of a value of two bodies; what is rigid counts as infinite.
+fn harmonic_mean(case: &Case, [a, b]: [usize; 2], value: impl Fn(&Body) -> f64) -> f64 {
     let bodies = [&case.bodies[a], &case.bodies[b]];
-    let harmonic_mean = |value: &dyn Fn(&Body) -> f64| {
-        let soft = bodies.iter().filter(|body| body.rigid.is_none());
-        2.0 / soft.map(|body| 1.0 / value(body)).sum::<f64>()
-    };
-    let modulus = harmonic_mean(&|body| case.materials[body.material].p_wave_modulus());
-    let density = harmonic_mean(&|body| case.initial_density(body));
-    let speed = case.closing_speed(a, b);
-    modulus.max(0.85 * density * speed * speed)
+    let soft = bodies.into_iter().filter(|body| body.rigid.is_none());
+    2.0 / soft.map(|body| 1.0 / value(body)).sum::<f64>()
 }
 
 #[inline(always)]
@@ -146,7 +162,7 @@ impl Mode for Overlap {
         if !pressed && distance >= own.core_radius {
             return None;
         }
-        let (mut bulk, mut core, mut energy) = (0.0, 0.0, 0.0);
+        let (mut bulk, mut core, mut energy, mut drag) = (0.0, 0.0, 0.0, 0.0);
         let back = view.table.overlap(j.kind, i.kind);
         if pressed {
             let slope = -pair.kernel.slope(distance);
@@ -160,8 +176,11 @@ impl Mode for Overlap {
         }
         let depth = 1.0 - distance / own.core_radius;
         if depth > 0.0 {
-            let stress = own.core_modulus * (0.5 * (i.volume + j.volume));
+            let volume = 0.5 * (i.volume + j.volume);
+            let stress = own.core_modulus * volume;
             core = stress * depth / own.core_radius;
+            let approach = (-separation.rate / distance).max(0.0);
+            drag = own.core_viscosity * volume * depth * (approach * approach);
             // Half of the pair's energy stands on each side.
             energy += 0.25 * stress * (depth * depth);
             *stiffness += 2.0 * stress / (own.core_radius * own.core_radius);
@@ -176,6 +195,7 @@ impl Mode for Overlap {
         };
         Some(PairForce {
             force,
+            drag,
             energy,
             loads: [
                 own_force(view, [i, j], separation, here),

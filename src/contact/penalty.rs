@@ -131,6 +131,7 @@ impl Mode for Penalty {
         }
         Some(PairForce {
             force,
+            drag: 0.0,
             energy,
             loads: [0.5 * size; 2],
         })

@@ -185,6 +185,7 @@ impl Contact {
         fill(&mut particles.contact_stiffness, 0.0);
         let books = Books {
             acceleration: Scatter::new(&mut particles.contact_acceleration),
+            viscous: Scatter::new(&mut particles.acceleration),
             energy: Scatter::new(&mut particles.contact_energy),
             stiffness: Scatter::new(&mut particles.contact_stiffness),
             heating: Scatter::new(&mut particles.d_specific_energy_dt),
@@ -199,7 +200,6 @@ impl Contact {
             excess: &particles.contact_excess,
             enclosed_limit: self.enclosed_limit,
             safety: self.safety,
-            friction: self.table.has_friction(),
         };
         let (tasks, threads) = (&self.tasks, self.parts.len());
         let parts = self.parts.par_iter_mut().enumerate();

@@ -68,6 +68,7 @@ impl Mode for Potential {
             let force = strength * n * (steeper - own.floor) * slope;
             PairForce {
                 force: meeting.along(force, own.along_normal),
+                drag: 0.0,
                 energy: 0.5 * strength * rise,
                 loads: [0.0; 2],
             }

@@ -341,11 +341,11 @@ impl Loads {
                 let Some(by) = prescribed.by[a] else { continue };
                 let middle = prescribed.middle[a];
                 let change = if first { middle - v[a] } else { v[a] - middle };
+                let forces = particles.acceleration[i][a] + contact[a];
                 let impulse = if prescribed.rigid {
-                    -mass * (half * contact[a])
+                    -mass * (half * forces)
                 } else {
-                    let forces = particles.acceleration[i][a] + (contact[a] + self.gravity[a]);
-                    mass * (change - half * forces)
+                    mass * (change - half * (forces + self.gravity[a]))
                 };
                 let work = impulse * (0.5 * (v[a] + middle));
                 let sums = &mut self.sums[usize::from(by)];

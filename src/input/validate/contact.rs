@@ -15,16 +15,18 @@ use crate::model::{ContactMode, ContactPair, SelfContact, SphForm};
 /// The default mode, the pairs, and contact of bodies with themselves.
 type Contacts = (ContactMode, Vec<ContactPair>, Option<SelfContact>);
 
-/// The default mode and the pairs, and self-contact; a pair takes what it does not give from the
-/// default.
+/// The default mode and the pairs, and self-contact, which what `tears` has without being asked
+/// for; a pair takes what it does not give from the default.
 pub fn contacts(
     params: &ContactParams,
     bodies: &[Spanned<BodyParams>],
     form: SphForm,
     ratio: f64,
+    tears: bool,
 ) -> Result<Contacts, Diagnostic> {
     let default = params.choice(&Choice::default(), form)?;
-    let own = self_contact(params, ratio, &default)?;
+    let tears = tears && form != SphForm::StressPoints;
+    let own = self_contact(params, ratio, &default, tears)?;
     let modes = params.pair.iter().map(|pair| pair.mode);
     let mut modes = modes.chain([None]).map(|mode| default.of(mode));
     if own.is_none() && !modes.any(|mode| mode.resistance().is_some()) {
@@ -80,20 +82,25 @@ fn self_contact(
     params: &ContactParams,
     ratio: f64,
     default: &Choice,
+    tears: bool,
 ) -> Result<Option<SelfContact>, Diagnostic> {
+    let modes = params.pair.iter().map(|pair| pair.mode);
+    let mut modes = modes.chain([None]).map(|mode| default.of(mode));
+    let joined = modes.any(|mode| mode == ContactMode::Kernel);
+    let overlap = default.laws.overlap;
     let Some(given) = &params.self_contact else {
-        return Ok(None);
+        let usual = tears && !joined && matches!(default.mode(), ContactMode::Overlap(_));
+        return Ok(usual.then_some(SelfContact {
+            overlap,
+            folds: None,
+        }));
     };
     let folds = match given.get_ref() {
         SelfContactParams::Is(false) => return Ok(None),
         SelfContactParams::Is(true) => None,
         SelfContactParams::With(table) => table.folds.as_ref(),
     };
-    let modes = params.pair.iter().map(|pair| pair.mode);
-    if modes
-        .chain([None])
-        .any(|mode| default.of(mode) == ContactMode::Kernel)
-    {
+    if joined {
         let title = "self-contact knows no bodies that are joined by `kernel` contact";
         return Err(Diagnostic::new(given.span(), title)
             .help("take another mode for all pairs, or leave `self_contact` out"));
@@ -111,10 +118,7 @@ fn self_contact(
             Some(spacings)
         }
     };
-    Ok(Some(SelfContact {
-        overlap: default.laws.overlap,
-        folds,
-    }))
+    Ok(Some(SelfContact { overlap, folds }))
 }
 
 /// A rigid body has no stress that could join the sums of another, and no sums that could tell its

@@ -74,8 +74,9 @@ pub fn case(mut params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         materials.push(bodies::no_material());
     }
     let length_unit = length_unit(&params, &bodies);
+    let tears = may_tear(&bodies, &materials);
     let (default_contact, contacts, self_contact) =
-        contact::contacts(&params.contact, &params.body, sph.form, smoothing)?;
+        contact::contacts(&params.contact, &params.body, sph.form, smoothing, tears)?;
     let loads = loads::Reader {
         dimension,
         bodies: &mut bodies,
@@ -121,6 +122,13 @@ fn complete(case: &mut Case, params: &CaseParams) -> Result<(), Diagnostic> {
     stress_points::check(case, params.sph.form.as_ref().map(Spanned::span))?;
     check_moduli(case, &params.body)?;
     check_overlaps(case, &params.body)
+}
+
+/// Whether bodies may come apart into what can meet again.
+fn may_tear(bodies: &[Body], materials: &[Material]) -> bool {
+    let soft = bodies.iter().filter(|body| body.rigid.is_none());
+    let mut materials = soft.map(|body| &materials[body.material]);
+    materials.clone().all(|m| m.p_wave_modulus() > 0.0) && materials.any(|m| m.failure.has_memory())
 }
 
 /// Contact scales with a modulus, which a gas has only at a reference pressure.
