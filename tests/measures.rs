@@ -251,6 +251,22 @@ fn plates_are_judged() {
     assert_eq!(told(&found, "verdict"), Told::Word("held"));
     assert_eq!(number(&found, "hole_diameter"), 0.0);
     assert!((number(&found, "rear_speed") - 10.0).abs() < 0.1);
+    // What lies loose in the bulge has not left to the rear, however deep the bulge is.
+    let mut loose = plate(|[x, y, z]| {
+        let deep = 10.0 * (1.0 - (x * x + y * y) / 225.0).max(0.0);
+        let up = if z > -1.0 && x.hypot(y) < 6.0 {
+            3.5
+        } else {
+            0.0
+        };
+        Some(([x, y, z - deep + up], STILL))
+    });
+    let found = measure(&mut loose);
+    assert_eq!(told(&found, "verdict"), Told::Word("held"));
+    assert_eq!(number(&found, "rear_mass"), 0.0);
+    let layer = PI * 36.0 * D.powi(3) * loose.case.density_of(1);
+    let front = number(&found, "front_mass");
+    assert!((front / layer - 1.0).abs() < 0.1, "{front} for {layer}");
     // The ball is behind it, though nothing is open.
     let mut passed = plate(|_| None);
     deform(&mut passed, 0, |[x, y, z]| Some(([x, y, z - 30.0], STILL)));

@@ -79,8 +79,11 @@ impl Left {
             match remains.holds(i) {
                 Belongs::Yes => {}
                 Belongs::Nearly => sums.add(&[0.0, 0.0, mass, 0.0]),
-                Belongs::No if remains.height(x) > middle => sums.add(&[mass, 0.0, 0.0, 0.0]),
-                Belongs::No => sums.add(&[0.0, mass, 0.0, 0.0]),
+                // What lies in the crater of a plate that is bent has not left to the rear.
+                Belongs::No if remains.height(x) <= middle && remains.is_behind(x) => {
+                    sums.add(&[0.0, mass, 0.0, 0.0]);
+                }
+                Belongs::No => sums.add(&[mass, 0.0, 0.0, 0.0]),
             }
         });
         let [speed] = matter.largest::<1>(comm, |i, most| {
