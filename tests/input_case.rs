@@ -99,7 +99,7 @@ fn all_ready_cases_are_sound() {
         load(&folder.join("case.toml"), &[]).unwrap_or_else(|error| panic!("{error}"));
         count += 1;
     }
-    assert!(count >= 26, "{count}");
+    assert!(count >= 27, "{count}");
 }
 
 #[test]
