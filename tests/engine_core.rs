@@ -46,7 +46,7 @@ fn bounce(dimension: usize, materials: [usize; 2], speed: f64, aside: f64) -> Bo
     let mut closest = f64::INFINITY;
     let mut heat = 0.0;
     let dt = 2e-4 * SPACING / speed;
-    let mut forces = forces(&mut world);
+    let mut forces = forces_on(&mut world);
     loop {
         kick(&mut world, &forces, 0.5 * dt);
         for i in 0..2 {
@@ -54,9 +54,9 @@ fn bounce(dimension: usize, materials: [usize; 2], speed: f64, aside: f64) -> Bo
                 world.shift(i, a, dt * world.motion[i].velocity[a]);
             }
         }
-        forces = self::forces(&mut world);
+        forces = forces_on(&mut world);
         kick(&mut world, &forces, 0.5 * dt);
-        heat += dt * forces.iter().map(|f| f.drag_heat).sum::<f64>();
+        heat += dt * forces.iter().map(|f| f.heat).sum::<f64>();
         let (_, way, rate) = relative(&world);
         closest = norm(&way).min(closest * SPACING) / SPACING;
         if dot(&way, &rate) > 0.0 && norm(&way) > 3.0 * SPACING {
@@ -70,7 +70,7 @@ fn bounce(dimension: usize, materials: [usize; 2], speed: f64, aside: f64) -> Bo
     }
 }
 
-fn forces(world: &mut World) -> Vec<ContactForce> {
+fn forces_on(world: &mut World) -> Vec<ContactForce> {
     let lists = world.lists();
     world.forces(&lists).0
 }

@@ -81,7 +81,7 @@ impl Books<'_> {
         *work = work.saturating_add(more.unwrap_or(u32::MAX));
         *energy += contact.energy;
         *stiffness += contact.stiffness;
-        *heating += (contact.heat + contact.drag_heat) * per_mass;
+        *heating += contact.heat * per_mass;
         // A step of m/c is stable: as if it were that of a spring, 2 √(m/k).
         let rate = contact.dashpot * per_mass;
         *stiffness += 4.0 * mass * (rate * rate);

@@ -23,10 +23,8 @@ pub struct ContactForce {
     pub stiffness: f64,
     /// Damping for the time step (N s/m).
     pub dashpot: f64,
-    /// Its share of the heat by friction and damping (W).
+    /// Its share of the heat by friction, damping and viscosity (W).
     pub heat: f64,
-    /// Its share of the heat by viscosity (W).
-    pub drag_heat: f64,
     /// Smallest distance to a foreign particle in mean spacings.
     pub closest: f64,
     /// Largest approach speed `|μ|` towards a foreign particle (m/s).
@@ -123,7 +121,6 @@ impl<'a> Receiver<'a> {
                 stiffness: 0.0,
                 dashpot: 0.0,
                 heat: 0.0,
-                drag_heat: 0.0,
                 closest: f64::INFINITY,
                 approach: 0.0,
             },
@@ -152,16 +149,10 @@ impl<'a> Receiver<'a> {
         self.sum.heat += heat;
         for a in 0..3 {
             self.sum.force[a] += force[a];
-            if other.code != 0 {
-                self.sum.from_mirrors[a] += force[a];
-            }
         }
-        let body = self.by(other.body);
+        let body = self.exert(other, force);
         body.energy += energy;
         body.heat += heat;
-        for a in 0..3 {
-            body.force[a] += force[a];
-        }
     }
 
     /// Viscosity of the pair with `other`, which approaches: `drag` (N).
@@ -170,18 +161,27 @@ impl<'a> Receiver<'a> {
         let force = separation.along(drag);
         for a in 0..3 {
             self.sum.drag[a] += force[a];
-            if other.code != 0 {
+        }
+        let approach = separation.approach();
+        self.sum.heat += pair.heat_share * (drag * approach);
+        // Its matrix has the two on its diagonal and off it.
+        self.sum.dashpot += 2.0 * drag / approach;
+        self.exert(other, &force);
+    }
+
+    /// Books a force (N) of `other` by where that stands and by its body; gives what is by this body.
+    #[inline]
+    fn exert(&mut self, other: &Party, force: &[f64; 3]) -> &mut BodyForce {
+        if other.code != 0 {
+            for a in 0..3 {
                 self.sum.from_mirrors[a] += force[a];
             }
         }
-        let approach = -separation.rate / separation.distance;
-        self.sum.drag_heat += pair.heat_share * (drag * approach);
-        // Its matrix has the two on its diagonal and off it.
-        self.sum.dashpot += 2.0 * drag / approach;
         let body = self.by(other.body);
         for a in 0..3 {
             body.force[a] += force[a];
         }
+        body
     }
 
     /// What is by one body, which few others are.

@@ -179,7 +179,7 @@ impl Mode for Overlap {
             let volume = 0.5 * (i.volume + j.volume);
             let stress = own.core_modulus * volume;
             core = stress * depth / own.core_radius;
-            let approach = (-separation.rate / distance).max(0.0);
+            let approach = separation.approach().max(0.0);
             drag = own.core_viscosity * volume * depth * (approach * approach);
             // Half of the pair's energy stands on each side.
             energy += 0.25 * stress * (depth * depth);

@@ -108,6 +108,12 @@ impl Separation {
         Self { r, distance, rate }
     }
 
+    /// Speed of approach along the line between the two (m/s), negative for receding pairs.
+    #[inline(always)]
+    pub fn approach(&self) -> f64 {
+        -self.rate / self.distance
+    }
+
     /// Raises `largest` to the approach speed `|μ_ij|` of the viscosity, zero for receding pairs
     /// (m/s): foreign pairs limit the time step as those inside a body do.
     #[inline(always)]
