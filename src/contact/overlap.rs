@@ -24,6 +24,13 @@ use measure::{Measured, weigh};
 /// radius.
 const CORE_VISCOSITY: f64 = 5.0;
 
+/// What the viscosity of an isolated particle is of the density of a pair, its approach squared and
+/// the slope of its kernel over both volumes.
+const ISOLATED_VISCOSITY: f64 = 20.0;
+
+/// The excess of both sides at which that viscosity is whole.
+const WHOLE_EXCESS: f64 = 0.1;
+
 /// Constants of an ordered pair of bodies.
 #[derive(Debug, Clone, Default)]
 pub struct OverlapPair {
@@ -37,6 +44,8 @@ pub struct OverlapPair {
     pub core_radius: f64,
     /// Viscosity of the core over volume: `μ' B/r_c` for the mass `μ' V̄` of a pair (kg/m⁴).
     pub core_viscosity: f64,
+    /// Viscosity of isolated particles over excess, both volumes and slope: `ρ' B/E_0` (kg/m³).
+    pub isolated_viscosity: f64,
     /// Whether forces but those of the core act along the normals of the surfaces.
     pub along_normal: bool,
 }
@@ -70,6 +79,8 @@ impl Constants for Overlap {
             core_radius: self.core_radius * of.pair.spacing,
             core_viscosity: 0.5 * CORE_VISCOSITY * meeting_density(of.case, of.indices)
                 / (self.core_radius * of.pair.spacing),
+            isolated_viscosity: ISOLATED_VISCOSITY * meeting_density(of.case, of.indices)
+                / WHOLE_EXCESS,
             along_normal: self.direction == ContactDirection::Normal,
         }
     }
@@ -141,6 +152,7 @@ impl Mode for Overlap {
             touching: particles.touching_value[base],
             slope: particles.contact_slope[base],
             current: 0.0,
+            isolation: particles.isolation[base],
         }
     }
 
@@ -169,6 +181,7 @@ impl Mode for Overlap {
             let pressure = slope_of_energy(here, own) + slope_of_energy(there, back);
             bulk = i.volume * j.volume * pressure * slope;
             *stiffness += bulk_stiffness(meeting, slope);
+            drag = isolated_drag(meeting, slope);
             if here.excess > 0.0 {
                 let share = j.volume * pair.kernel.value(distance) * own.modulus;
                 energy += 0.5 * i.volume * (here.excess * here.excess) * share / here.fraction;
@@ -180,7 +193,7 @@ impl Mode for Overlap {
             let stress = own.core_modulus * volume;
             core = stress * depth / own.core_radius;
             let approach = separation.approach().max(0.0);
-            drag = own.core_viscosity * volume * depth * (approach * approach);
+            drag += own.core_viscosity * volume * depth * (approach * approach);
             // Half of the pair's energy stands on each side.
             energy += 0.25 * stress * (depth * depth);
             *stiffness += 2.0 * stress / (own.core_radius * own.core_radius);
@@ -252,6 +265,20 @@ fn own_force(
     let depth = (1.0 - separation.distance / own.core_radius).max(0.0);
     let stress = own.core_modulus * (0.5 * (i.volume + j.volume));
     bulk + 0.5 * stress * depth / own.core_radius
+}
+
+/// `B ρ' ṙ² V_i V_j |∇W_ij| min(1, (E_i + E_j)/E_0) min(1, λ_i + λ_j)` of a pair that approaches (N).
+#[inline(always)]
+fn isolated_drag(meeting: &Meeting<Overlap>, slope: f64) -> f64 {
+    let (here, there) = (&meeting.here, &meeting.there);
+    let isolation = here.isolation + there.isolation;
+    if isolation == 0.0 {
+        return 0.0;
+    }
+    let share = isolation.min(1.0) * (here.excess + there.excess).min(WHOLE_EXCESS);
+    let approach = meeting.separation.approach().max(0.0);
+    let volumes = meeting.i.volume * meeting.j.volume;
+    meeting.own.isolated_viscosity * share * volumes * slope * (approach * approach)
 }
 
 /// A pair's part of `k_i = 2 M V_i Σ_j V_j [(g_i + g_j)|∇W_ij| + (E_i + E_j)|W″_ij|]` (N/m), with

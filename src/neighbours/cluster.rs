@@ -37,7 +37,7 @@ impl Cluster {
     }
 
     /// The receivers without repetitions.
-    pub(super) fn valid(&self) -> &[u32] {
+    pub(crate) fn valid(&self) -> &[u32] {
         &self.receivers[..self.lanes]
     }
 }

@@ -210,6 +210,8 @@ particle_fields! {
     touching_value: Scalar,               "",       Scratch,  CONTACT,        Never,    CONTACT;
     /// Sum of kernel gradients over foreign volume where there is excess, for the time step.
     contact_slope: Scalar,                "1/m",    Scratch,  CONTACT,        Never,    CONTACT;
+    /// How much matter of its own body a particle in contact lacks: 1 alone, 0 with a corner's or more.
+    isolation: Scalar,                    "",       Scratch,  CONTACT,        OnDemand, CONTACT;
     /// Normal of contact as the particle sees it, times the square of the foreign fraction.
     contact_normal: Vector,               "",       Scratch,  CONTACT,        Never,    FRICTION;
     /// Friction and damping of the particle against what it lies on.

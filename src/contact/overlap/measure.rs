@@ -6,7 +6,7 @@ use super::constants;
 use crate::contact::mode::{Found, Scene, fill, for_each_chunk};
 use crate::contact::view::{ContactView, Separation};
 use crate::model::{ContactClass, Overlap};
-use crate::neighbours::CHUNKS_AT_ONCE;
+use crate::neighbours::{CHUNKS_AT_ONCE, Chunk};
 use crate::numerics::vector::norm;
 use crate::particles::Scatter;
 
@@ -32,11 +32,15 @@ pub struct Fraction {
     pub slope: f64,
     /// `Σ V_j W_ij` with current volumes, those of voids left out.
     pub current: f64,
+    /// How far the own matter about it is from that of half a space, see [`isolation`].
+    pub isolation: f64,
 }
 
 /// What overlap contact measures of one particle.
 pub(crate) struct Measured {
     pub particle: usize,
+    /// Its place in the sequence.
+    place: u32,
     pub fraction: Fraction,
     /// For how long it has been enclosed after this step (s).
     enclosed: f64,
@@ -106,7 +110,7 @@ pub(super) fn weigh(found: &mut Found<Overlap>, scene: &Scene) {
         found,
         scene.lists,
         ContactClass::Overlap,
-        |found, list, _| {
+        |found, list, own| {
             found.extend(list.iter().map(|(index, neighbours)| {
                 let particle = view.images[index as usize].base();
                 let offset = view.particles.touch_relief[particle];
@@ -114,6 +118,7 @@ pub(super) fn weigh(found: &mut Found<Overlap>, scene: &Scene) {
                 let is_enclosed = fraction.current > ENCLOSED_FRACTION;
                 Measured {
                     particle,
+                    place: index,
                     fraction,
                     enclosed: if is_enclosed {
                         view.particles.enclosed_time[particle] + scene.dt
@@ -127,8 +132,54 @@ pub(super) fn weigh(found: &mut Found<Overlap>, scene: &Scene) {
                     },
                 }
             }));
+            isolate(&view, found, own);
         },
     );
+}
+
+/// Measures how isolated the receivers in contact are, from the lists of their own bodies.
+fn isolate(view: &ContactView, found: &mut [Measured], own: &Chunk) {
+    // What bears stress elsewhere has its stress points in these lists.
+    let groups = &view.table.groups;
+    let is_elsewhere = groups.count() > groups.of_bodies;
+    if is_elsewhere || found.iter().all(|measured| measured.fraction.excess == 0.0) {
+        return;
+    }
+    // Both stand in the same order.
+    let mut wanted = found.iter_mut().peekable();
+    for (cluster, neighbours, _) in own.iter() {
+        for &place in cluster.valid() {
+            if let Some(measured) = wanted.next_if(|measured| measured.place == place) {
+                let fraction = &mut measured.fraction;
+                if fraction.excess > 0.0 {
+                    fraction.isolation = isolation(view, place, neighbours, fraction.touching);
+                }
+            }
+        }
+    }
+}
+
+/// `λ_i = ⟨1 − 2 Σ V_j W_ij/C̄_i⟩₊` over the neighbours in its own body: 0 where these fill half as much
+/// of its support as a body in touch does, 1 where there are none. Rigid bodies are not isolated.
+fn isolation(view: &ContactView, index: u32, own: &[u32], touching: f64) -> f64 {
+    let i = view.party(index);
+    let groups = &view.table.groups;
+    if groups.rigid[groups.of_body[i.body]] {
+        return 0.0;
+    }
+    let half = 0.5 * touching;
+    let mut left = half;
+    for &other in own {
+        if other != index {
+            let j = view.party(other);
+            let distance = Separation::between(&i, &j).distance;
+            left -= j.volume * view.table.pair(i.kind, j.kind).kernel.value(distance);
+            if left <= 0.0 {
+                return 0.0;
+            }
+        }
+    }
+    left / half
 }
 
 /// Stores what has been measured; nothing of particles without foreign neighbours.
@@ -139,6 +190,7 @@ pub(super) fn store(found: &Found<Overlap>, scene: &mut Scene) {
         &mut particles.foreign_fraction,
         &mut particles.contact_excess,
         &mut particles.enclosed_time,
+        &mut particles.isolation,
     ] {
         fill(field, 0.0);
     }
@@ -150,6 +202,7 @@ pub(super) fn store(found: &Found<Overlap>, scene: &mut Scene) {
         &mut particles.contact_modulus,
         &mut particles.touching_value,
         &mut particles.contact_slope,
+        &mut particles.isolation,
     ]
     .map(|field| Scatter::new(field));
     let friction = scene.table.has_friction();
@@ -163,6 +216,7 @@ pub(super) fn store(found: &Found<Overlap>, scene: &mut Scene) {
             f.modulus,
             f.touching,
             f.slope,
+            f.isolation,
         ];
         // SAFETY: a particle is receiver in one task, and each thread has its own tasks.
         unsafe {
