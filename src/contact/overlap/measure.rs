@@ -32,7 +32,7 @@ pub struct Fraction {
     pub slope: f64,
     /// `Σ V_j W_ij` with current volumes, those of voids left out.
     pub current: f64,
-    /// How far the own matter about it is from that of half a space, see [`isolation`].
+    /// How much matter of its own body it lacks: `λ_i = ⟨1 − 2 Σ V_j W_ij/C̄_i⟩₊` over those of its body.
     pub isolation: f64,
 }
 
