@@ -305,7 +305,7 @@ fn softening_takes_the_fracture_energy() {
                 work -= p * 3e4 * dt;
                 tension.push(-points.pressure[0]);
             }
-            onset |= points.failure_onset[0] >= 1.0;
+            onset |= points.pressure[0] <= -1e9;
             if points.damage[0] >= 1.0 {
                 break;
             }
@@ -321,6 +321,36 @@ fn softening_takes_the_fracture_energy() {
         assert!((tension[tension.len() / 2] / 0.5e9 - 1.0).abs() < 0.01);
         assert_eq!(points.pressure, [0.0; LANES]);
     }
+}
+
+/// At the limit of tension expansion opens cracks. Shear does not, nor does tension below what damage
+/// has left of the limit.
+#[test]
+fn shear_opens_no_cracks_of_spall() {
+    let mut metal = metal();
+    metal.failure.spall = Some(Spall {
+        pressure: -1e9,
+        after: AfterSpall::Failed,
+    });
+    metal.failure.manner.fracture_energy = 1e4;
+    metal.failure.manner.effect = Effect::Scaled;
+    let mut points = batch(RHO, 0.0);
+    points.mass = [RHO * 1e-12; LANES];
+    let (opens, closes) = (Matrix3::identity() * 1e4, Matrix3::identity() * -1e4);
+    let mut shear = Matrix3::zeros();
+    shear[(0, 1)] = 1e5;
+    let dt = 1e-9;
+    while points.damage[0] < 0.3 {
+        step(&metal, &mut points, &opens, dt);
+    }
+    let damage = points.damage;
+    for l in [closes, shear, closes] {
+        for _ in 0..100 {
+            step(&metal, &mut points, &l, dt);
+        }
+        assert_eq!(points.damage, damage);
+    }
+    assert!(points.plastic_strain[0] > 5e-3);
 }
 
 /// Sheared beyond its failure strain, metal softens and takes the same energy; unloaded in between,

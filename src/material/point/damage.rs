@@ -129,10 +129,16 @@ pub(super) fn open_cracks(point: &mut PointBatch, now: &Conditions) {
         let normal = s(0) * l(0) + s(1) * l(4) + s(2) * l(8);
         let shear = s(3) * (l(1) + l(3)) + s(4) * (l(2) + l(6)) + s(5) * (l(5) + l(7));
         let tension = at_least(-point.pressure[k], 0.0);
-        let power = (normal + shear + tension * (l(0) + l(4) + l(8))) / now.kept[k];
-        let spent = now.size(point, k) * at_least(power, 0.0) * now.dt;
-        point.damage[k] += spent / (2.0 * now.manner.fracture_energy);
+        let power = normal + shear + tension * (l(0) + l(4) + l(8));
+        spend(point, k, power, now);
     }
+}
+
+/// Damages one lane by the power of its stress (W/m³) that opens cracks.
+#[inline(always)]
+pub(super) fn spend(point: &mut PointBatch, k: usize, power: f64, now: &Conditions) {
+    let spent = now.size(point, k) * at_least(power / now.kept[k], 0.0) * now.dt;
+    point.damage[k] += spent / (2.0 * now.manner.fracture_energy);
 }
 
 /// Matter lets go of what damage has taken since `before`, or of all that failed matter does not

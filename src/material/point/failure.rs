@@ -270,6 +270,9 @@ macro_rules! failure_laws {
                     if softens {
                         std::mem::swap(&mut point.damage, &mut point.failure_onset);
                         damage::open_cracks(point, now);
+                        $( if let Some(law) = &self.$key {
+                            law.open(point, now);
+                        } )+
                     }
                     damage::melt(point, now);
                     damage::end(point);

@@ -96,6 +96,10 @@ pub trait Law: Listed {
     /// how far it is on its way to the onset of that.
     #[inline(always)]
     fn fail(&self, _point: &mut PointBatch, _now: &Conditions) {}
+
+    /// Advances the damage of matter that softens, beside that of matter beyond the onset.
+    #[inline(always)]
+    fn open(&self, _point: &mut PointBatch, _now: &Conditions) {}
 }
 
 /// What the laws of an update have in common and tell each other.

@@ -16,7 +16,7 @@
 use serde::Deserialize;
 
 use super::failure::FAILED;
-use super::{Conditions, LANES, Law, PointBatch};
+use super::{Conditions, LANES, Law, PointBatch, damage};
 use crate::material::at_least;
 
 /// What becomes of matter beyond the limit of [`Spall`].
@@ -83,16 +83,33 @@ impl Law for Spall {
     #[inline(always)]
     fn fail(&self, point: &mut PointBatch, now: &Conditions) {
         let recovers = self.after == AfterSpall::Recompacts;
-        let softens = now.manner.softens();
         for k in 0..LANES {
-            // Where matter softens, pressure is held at the limit, of which damage takes a share.
             let p = point.pressure[k];
-            let held = softens && p <= self.pressure * now.kept[k];
             let dense = point.density[k] >= now.reference_density;
-            if held || p < self.pressure {
+            if p < self.pressure {
                 point.damage[k] = FAILED;
             } else if recovers && dense && p > 0.0 && p >= -self.pressure {
                 point.damage[k] = 0.0;
+            }
+        }
+    }
+    /// Where matter softens, pressure is held at the limit, of which damage takes a share; while it is,
+    /// expansion opens cracks. Shear opens none: matter at the limit flows as it did before.
+    #[inline(always)]
+    fn open(&self, point: &mut PointBatch, now: &Conditions) {
+        if !self.follows_state() {
+            return;
+        }
+        for k in 0..LANES {
+            let p = point.pressure[k];
+            if p <= self.pressure * now.kept[k] && point.damage[k] < FAILED {
+                let expansion = [0, 4, 8].map(|c| point.velocity_gradient[c][k]);
+                damage::spend(
+                    point,
+                    k,
+                    -p * (expansion[0] + expansion[1] + expansion[2]),
+                    now,
+                );
             }
         }
     }
