@@ -139,17 +139,16 @@ impl Thermal {
     #[inline(always)]
     #[must_use]
     pub fn temperatures(&self, rho: &Lanes, e: &Lanes) -> Lanes {
-        let places = rho.map(|rho| self.place(rho));
-        let mut ends = [[[0.0; LANES]; 2]; 2];
+        let mut places = [0.0; LANES];
+        for k in 0..LANES {
+            places[k] = self.place(rho[k]);
+        }
+        let (mut e0, mut d0, mut e1, mut d1) =
+            ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
         let mut t = [0.0; LANES];
         for k in 0..LANES {
-            let (own, part) = self.interval(places[k]);
-            for (ends, own) in ends.iter_mut().flatten().zip(own.iter().flatten()) {
-                ends[k] = *own;
-            }
-            t[k] = part;
+            ([[e0[k], d0[k]], [e1[k], d1[k]]], t[k]) = self.interval(places[k]);
         }
-        let [[e0, d0], [e1, d1]] = &ends;
         let mut all = [0.0; LANES];
         for k in 0..LANES {
             let cold = between([[e0[k], d0[k]], [e1[k], d1[k]]], t[k]);

@@ -148,8 +148,11 @@ impl Booking<'_> {
     /// Raises a record to values, and calls `raised` with the particles where it does. Mostly it does nowhere.
     #[inline(always)]
     fn raise<V: Lanes>(&self, record: &Scatter<f64>, values: V, raised: impl Fn(usize)) {
-        // SAFETY: as of [`Recording::book`].
-        let held = self.particles.map(|i| unsafe { *record.slot(i) });
+        let mut held = [0.0; LANES];
+        for k in 0..LANES {
+            // SAFETY: as of [`Recording::book`].
+            held[k] = unsafe { *record.slot(self.particles[k]) };
+        }
         let mut above = V::read(&held).less_than(values) & self.lanes;
         if above == 0 {
             return;
