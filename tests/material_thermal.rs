@@ -3,7 +3,10 @@
 mod material_support;
 
 use material_support::{aluminium, equations_of_state, material};
-use whipple::material::{Eos, IdealGas, Linear, LinearForm, Strength, Thermal, ThermalConstants};
+use whipple::material::{
+    AfterSpall, Eos, IdealGas, Linear, LinearForm, PointBatch, Spall, Strength, Thermal,
+    ThermalConstants,
+};
 
 const CONSTANTS: ThermalConstants = ThermalConstants {
     specific_heat: 875.0,
@@ -69,6 +72,39 @@ fn an_isentrope_of_a_mie_gruneisen_solid_follows_its_parameter() {
     let (rho, u) = (rho0 / (1.0 - 2.0e3 / 8.0e3), 2.0e3);
     let hot = metal.temperature(rho, 0.5 * u * u, 0.0).unwrap();
     assert!((800.0..1400.0).contains(&hot), "{hot} K");
+}
+
+#[test]
+fn temperatures_after_an_update_are_those_of_the_state() {
+    let rho0 = 2785.0;
+    let mut metal = material(rho0, Eos::MieGruneisen(aluminium()), Strength::None);
+    let work = [2e4; 8];
+    for (after, share) in [(AfterSpall::Hold, 1.0), (AfterSpall::Failed, 0.9)] {
+        metal.failure.spall = Some(Spall {
+            pressure: -1.2e9,
+            after,
+        });
+        let constants = ThermalConstants {
+            taylor_quinney: share,
+            ..CONSTANTS
+        };
+        metal.thermal = Some(Thermal::new(constants, rho0, &metal.eos));
+        for ratio in [1.3, 1.0, 0.97, 0.9, 0.5] {
+            let mut points = PointBatch::ZERO;
+            for (k, part) in (0_u8..8).map(f64::from).enumerate() {
+                points.density[k] = rho0 * ratio * (1.0 + 1e-3 * part);
+                points.specific_energy[k] = 3e4 * part;
+                points.damage[k] = f64::from(k > 5);
+            }
+            let untorn = metal.update(&mut points, 1e-9);
+            let told = metal.updated_temperatures(&points, &work, &untorn).unwrap();
+            for k in 0..8 {
+                let energy = metal.thermal_energy(points.specific_energy[k], work[k]);
+                let alone = metal.temperature(points.density[k], energy, points.damage[k]);
+                assert_eq!(told[k].to_bits(), alone.unwrap().to_bits(), "{ratio}, {k}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -107,27 +107,23 @@ impl Material {
         from + thermal::opening(limited - at.pressure, at.dp_drho)
     }
 
-    /// Temperatures (K) of a batch whose pressure was limited from that of `response`: that of the
-    /// matter, not of the voids in it.
+    /// Temperatures (K) of a batch whose pressure was limited from `untorn` (Pa): that of the matter, not of
+    /// the voids in it.
     #[inline(always)]
     fn torn_temperatures(
         &self,
         thermal: &Thermal,
         [density, energy]: [&Lanes; 2],
         limited: &Lanes,
-        response: &eos::Response,
+        untorn: &Lanes,
     ) -> Lanes {
-        let mut temperature = [0.0; LANES];
+        let mut matter = *density;
         for k in 0..LANES {
-            let (rho, e) = (density[k], energy[k]);
-            let matter = if limited[k] > response.pressure[k] {
-                self.torn_density(rho, e, limited[k])
-            } else {
-                rho
-            };
-            temperature[k] = thermal.temperature(matter, e);
+            if limited[k] > untorn[k] {
+                matter[k] = self.torn_density(density[k], energy[k], limited[k]);
+            }
         }
-        temperature
+        thermal.temperatures(&matter, energy)
     }
 
     /// Specific energy (J/kg) without what plastic work (J/kg) has stored in the matter otherwise
@@ -162,15 +158,46 @@ impl Material {
     pub fn temperatures(&self, density: &Lanes, energy: &Lanes, damage: &Lanes) -> Option<Lanes> {
         let thermal = self.thermal.as_ref()?;
         let response = (self.eos).response(self.reference_density, density, energy);
+        let state = [density, energy];
+        let limited = self.limited(state, damage, &response.pressure);
+        Some(self.torn_temperatures(thermal, state, &limited, &response.pressure))
+    }
+
+    /// [`Self::temperatures`] of a batch right after its [update](Self::update), which has told `untorn`: most need
+    /// no equation of state any more.
+    #[inline(always)]
+    #[must_use]
+    pub fn updated_temperatures(
+        &self,
+        after: &PointBatch,
+        plastic_energy: &Lanes,
+        untorn: &Lanes,
+    ) -> Option<Lanes> {
+        let thermal = self.thermal.as_ref()?;
+        let energy = self.thermal_energies(&after.specific_energy, plastic_energy);
+        if energy != after.specific_energy {
+            return self.temperatures(&after.density, &energy, &after.damage);
+        }
+        let state = [&after.density, &energy];
+        if untorn.iter().all(|&pressure| pressure >= 0.0) {
+            // No tension that failure could limit.
+            return Some(thermal.temperatures(state[0], state[1]));
+        }
+        let limited = self.limited(state, &after.damage, untorn);
+        Some(self.torn_temperatures(thermal, state, &limited, untorn))
+    }
+
+    /// Pressures (Pa) of a batch after the largest tension, from those of the equation of state.
+    fn limited(&self, [density, energy]: [&Lanes; 2], damage: &Lanes, untorn: &Lanes) -> Lanes {
         let mut point = PointBatch {
             density: *density,
             specific_energy: *energy,
-            pressure: response.pressure,
+            pressure: *untorn,
             damage: *damage,
             ..PointBatch::ZERO
         };
         self.failure.limit_tension(&mut point);
-        Some(self.torn_temperatures(thermal, [density, energy], &point.pressure, &response))
+        point.pressure
     }
 
     /// Specific energy (J/kg) at a density (kg/m³) and temperature (K) of matter without damage, if
@@ -191,30 +218,31 @@ impl Material {
         Some(energy)
     }
 
-    /// Advances a batch of points by `dt` (s).
+    /// Advances a batch of points by `dt` (s), and tells the pressures (Pa) of the equation of state, which
+    /// failure may limit.
     ///
     /// With `dt = 0` elastic stress, plastic strain and damage stay as they are, to the last bit,
     /// and all that follows from the given state (pressure, sound speed, viscous stress) becomes that
     /// of it.
     #[inline(always)]
-    pub fn update(&self, batch: &mut PointBatch, dt: f64) {
+    pub fn update(&self, batch: &mut PointBatch, dt: f64) -> Lanes {
         if self.strength.follows_state() || self.failure.follows_state() {
-            self.update_from_state(batch, dt);
+            self.update_from_state(batch, dt)
         } else {
-            self.compose::<false>(batch, dt);
+            self.compose::<false>(batch, dt)
         }
     }
 
     /// [`Self::update`] with laws that follow the state. A function of its own: inside the other,
     /// these laws slow down those that have no need of them.
     #[inline(never)]
-    fn update_from_state(&self, batch: &mut PointBatch, dt: f64) {
-        self.compose::<true>(batch, dt);
+    fn update_from_state(&self, batch: &mut PointBatch, dt: f64) -> Lanes {
+        self.compose::<true>(batch, dt)
     }
 
     /// All laws in their order; without `ALL`, only those that do not follow the state.
     #[inline(always)]
-    fn compose<const ALL: bool>(&self, batch: &mut PointBatch, dt: f64) {
+    fn compose<const ALL: bool>(&self, batch: &mut PointBatch, dt: f64) -> Lanes {
         let rho0 = self.reference_density;
         if ALL && self.failure.follows_state() {
             point::limit_expansion(batch, rho0);
@@ -240,6 +268,7 @@ impl Material {
             self.failure.fail(batch, &mut now, &bulk_modulus);
         }
         self.set_sound_speed(batch, &response, &now.shear_modulus);
+        response.pressure
     }
 
     /// Whether a law follows the temperature.
@@ -266,7 +295,8 @@ impl Material {
             let rho = &batch.density;
             let e = self.thermal_energies(&batch.specific_energy, &batch.plastic_energy);
             let state = [rho, &e];
-            now.temperature = self.torn_temperatures(thermal, state, &batch.pressure, response);
+            now.temperature =
+                self.torn_temperatures(thermal, state, &batch.pressure, &response.pressure);
             now.thermal = *thermal.constants();
         }
     }

@@ -9,7 +9,7 @@
 //! never below zero.
 
 use super::eos::Eos;
-use super::{at_least, at_most};
+use super::{LANES, Lanes, at_least, at_most};
 
 /// The cold curve is held constant beyond these relative volumes ρ₀/ρ.
 const VOLUMES: [f64; 2] = [0.2, 2.0];
@@ -104,19 +104,26 @@ impl Thermal {
     /// Energy of the cold curve (J/kg) at density `rho` (kg/m³).
     #[must_use]
     pub fn cold_energy(&self, rho: f64) -> f64 {
-        let v = at_most(
-            at_least(self.reference_density / rho, VOLUMES[0]),
-            VOLUMES[1],
-        );
-        let place = (v - VOLUMES[0]) / width();
+        let (ends, t) = self.interval(self.place(rho));
+        between(ends, t)
+    }
+
+    /// Place in the table of density `rho` (kg/m³), in intervals.
+    #[inline(always)]
+    fn place(&self, rho: f64) -> f64 {
+        let v = at_least(self.reference_density / rho, VOLUMES[0]);
+        (at_most(v, VOLUMES[1]) - VOLUMES[0]) / width()
+    }
+
+    /// Both ends of the interval of a place, and how far in it that is.
+    #[inline(always)]
+    fn interval(&self, place: f64) -> ([[f64; 2]; 2], f64) {
         // NaN has the interval 0 and stays in `t`.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // within the table
         let n = (place as u32).min(INTERVALS - 1);
         let t = place - f64::from(n);
         let n = n as usize;
-        let ([e0, d0], [e1, d1]) = (self.cold[n], self.cold[n + 1]);
-        let (s, rise) = (1.0 - t, e1 - e0);
-        e0 * s + e1 * t + t * s * ((d0 - rise) * s - (d1 - rise) * t)
+        ([self.cold[n], self.cold[n + 1]], t)
     }
 
     /// Temperature (K) at density `rho` (kg/m³) and specific energy `e` (J/kg).
@@ -127,6 +134,35 @@ impl Thermal {
             0.0,
         )
     }
+
+    /// [`Self::temperature`] of a batch: loops of their own for what vectors do and for the table.
+    #[inline(always)]
+    #[must_use]
+    pub fn temperatures(&self, rho: &Lanes, e: &Lanes) -> Lanes {
+        let mut places = [0.0; LANES];
+        for k in 0..LANES {
+            places[k] = self.place(rho[k]);
+        }
+        let (mut e0, mut d0, mut e1, mut d1) =
+            ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        let mut t = [0.0; LANES];
+        for k in 0..LANES {
+            ([[e0[k], d0[k]], [e1[k], d1[k]]], t[k]) = self.interval(places[k]);
+        }
+        let mut all = [0.0; LANES];
+        for k in 0..LANES {
+            let cold = between([[e0[k], d0[k]], [e1[k], d1[k]]], t[k]);
+            all[k] = at_least((e[k] - cold) / self.constants.specific_heat, 0.0);
+        }
+        all
+    }
+}
+
+/// Energy (J/kg) at `t` between two nodes with their slopes, by Hermite's cubic.
+#[inline(always)]
+fn between([[e0, d0], [e1, d1]]: [[f64; 2]; 2], t: f64) -> f64 {
+    let (s, rise) = (1.0 - t, e1 - e0);
+    e0 * s + e1 * t + t * s * ((d0 - rise) * s - (d1 - rise) * t)
 }
 
 /// How much denser (kg/m³) than its mean torn matter is, whose pressure a cut-off has raised by

@@ -10,7 +10,7 @@ use super::near::{LaneSum, Near, One};
 use super::reading::{Reading, along, stress};
 use crate::domain::Mirrors;
 use crate::model::{Case, Gauge};
-use crate::neighbours::{Lists, PointSearch, Sequence};
+use crate::neighbours::{Lists, PointSearch};
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::kernel::Kernel;
 use crate::numerics::lanes::{LANES, Lanes};
@@ -39,8 +39,6 @@ pub struct Scratch {
     /// What it reads.
     pub near: Near,
     search: PointSearch,
-    /// Squares of the distances of what the search has found (m²).
-    squares: Vec<f64>,
 }
 
 /// What one gauge needs from reading to reading.
@@ -151,11 +149,7 @@ impl Reader {
     /// as the particle is from the image of the gauge.
     #[inline(always)]
     fn find_in<V: Lanes>(&self, matter: &Matter, means: &Means, scratch: &mut Scratch) {
-        let Scratch {
-            near,
-            search,
-            squares,
-        } = scratch;
+        let Scratch { near, search } = scratch;
         let lists = matter.lists;
         near.clear();
         if self.gauge.moves {
@@ -165,7 +159,6 @@ impl Reader {
             return;
         }
         search.begin();
-        squares.clear();
         let images = lists.images();
         let weights = Weights::<V>::new(&means.kernel, matter.particles);
         for code in std::iter::once(0).chain(means.mirrors.codes()) {
@@ -179,48 +172,18 @@ impl Reader {
                         reads(matter.case, self.gauge.body, body(place))
                     });
                 }
-                let found = search.found();
-                squares_of::<V>(lists.sequence(), &found[begin..], &at, squares);
-                near.part(found.len(), code, group);
+                near.part(search.found().len(), code, group);
             }
         }
         #[expect(clippy::cast_possible_truncation, reason = "particles fit u32")]
         let particle = |place: u32| images[place as usize].base() as u32;
         near.set(search.found(), particle);
         for eight in 0..near.eights() {
-            let mut square = [0.0; LANES];
-            for (square, found) in square.iter_mut().zip(&squares[eight * LANES..]) {
-                *square = *found;
-            }
-            let found = weights.of(near.eight(eight), V::read(&square));
+            let square = V::read(search.squares(eight * LANES));
+            let found = weights.of(near.eight(eight), square);
             near.weigh(&found);
         }
         near.end();
-    }
-}
-
-/// Adds the squares of the distances (m²) from places in the lists to a point (m) to others.
-#[inline(always)]
-fn squares_of<V: Lanes>(
-    sequence: &Sequence,
-    places: &[u32],
-    point: &[f64; 3],
-    squares: &mut Vec<f64>,
-) {
-    let [x, y, z] = [V::splat(point[0]), V::splat(point[1]), V::splat(point[2])];
-    for places in places.chunks(LANES) {
-        let mut all = [[0.0; LANES]; 3];
-        for (k, &place) in places.iter().enumerate() {
-            let position = sequence.position(place as usize);
-            for a in 0..3 {
-                all[a][k] = position[a];
-            }
-        }
-        let x = V::read(&all[0]).sub(x);
-        let y = V::read(&all[1]).sub(y);
-        let z = V::read(&all[2]).sub(z);
-        let square = z.mul_add(z, y.mul_add(y, x.mul(x))).store().0;
-        squares.extend_from_slice(&square[..places.len()]);
     }
 }
 

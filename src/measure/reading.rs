@@ -119,12 +119,17 @@ impl Reading {
                     [*sum] = near.sums::<V, 1>(|i| [values[i]]);
                 }
             }
-            (Self::Field(field), [x, y, z]) if !near.any_behind() => {
+            (Self::Field(field), [x, y, z]) => {
                 let values: &[f64] = bytemuck::cast_slice(particles.bytes(field.id));
                 let values = values.as_chunks::<3>().0;
-                if !values.is_empty() {
-                    [*x, *y, *z] = near.sums::<V, 3>(|i| values[i]);
+                if values.is_empty() {
+                    return;
                 }
+                [*x, *y, *z] = if near.any_behind() {
+                    sums_of_images(field.mirror, values, near)
+                } else {
+                    near.sums::<V, 3>(|i| values[i])
+                };
             }
             (_, sums) => {
                 let mut lanes = [LaneSum::default(); MOST];
@@ -140,6 +145,22 @@ impl Reading {
             }
         }
     }
+}
+
+/// Sums of vectors of images, some of which stand behind symmetry planes, each times its weight.
+fn sums_of_images(rule: Mirror, values: &[[f64; 3]], near: &Near) -> [f64; 3] {
+    let mut lanes = [LaneSum::default(); 3];
+    for (k, one) in near.iter().enumerate() {
+        let own = &values[one.i];
+        let image = match rule {
+            Mirror::Vector => Mirrors::reflect_vector(own, one.code),
+            _ => *own,
+        };
+        for (lanes, value) in lanes.iter_mut().zip(image) {
+            lanes.add(k, one.weight * value);
+        }
+    }
+    lanes.map(|lanes| lanes.total())
 }
 
 /// The image of a field's numbers.

@@ -153,7 +153,7 @@ impl Lister<'_> {
                 let both = V::read(eight.lengths).add(V::splat(own));
                 both.max(V::splat(self.least)).mul(V::splat(self.inflation))
             },
-            |first, bits, eight| {
+            |first, bits, eight, _| {
                 special |= u64::from_le_bytes(*eight.special) & SPREAD[bits as usize];
                 self.used = push_places(self.list, self.used, first, bits);
             },

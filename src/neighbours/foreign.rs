@@ -179,7 +179,7 @@ impl Candidates {
             if range == 0.0 {
                 continue;
             }
-            let mut push = |first, bits, _: &Eight| {
+            let mut push = |first, bits, _: &Eight, _| {
                 self.used = push_places(&mut self.indices, self.used, first, bits);
             };
             let bounds = (&cluster.lower, &cluster.upper);

@@ -7,8 +7,9 @@ use crate::numerics::lanes::{LANES, Lanes};
 /// never drops a pair with a contribution.
 pub(super) const INFLATION: f64 = 1.0 + 1e-9;
 
-/// Calls `found` with each eight images of a group that stand by a box, the index of the first, and
-/// a bit for each of them that is nearer than `range` (m), which is nowhere more than `far`.
+/// Calls `found` with each eight images of a group that stand by a box, the index of the first, a bit for
+/// each of them that is nearer than `range` (m), which is nowhere more than `far`, and the squares of their
+/// distances (m²).
 /// `hints` are where the last box nearby began to read columns, by the last bits of their indices.
 #[inline(always)]
 pub(super) fn near_box<V: Lanes>(
@@ -18,7 +19,7 @@ pub(super) fn near_box<V: Lanes>(
     far: f64,
     hints: &mut [usize; 64],
     range: impl Fn(&Eight) -> V,
-    mut found: impl FnMut(usize, u8, &Eight),
+    mut found: impl FnMut(usize, u8, &Eight, V),
 ) {
     let (low, high) = (lower.map(V::splat), upper.map(V::splat));
     let along = sequence.along(group);
@@ -43,7 +44,7 @@ pub(super) fn near_box<V: Lanes>(
             if left < LANES {
                 bits &= (1 << left) - 1;
             }
-            found(first, bits, &eight);
+            found(first, bits, &eight, square);
             first += LANES;
         }
     });
@@ -64,6 +65,22 @@ pub(super) fn push_places(list: &mut Vec<u32>, used: usize, first: usize, bits: 
     }
     list[used..used + LANES].copy_from_slice(&indices);
     used + bits.count_ones() as usize
+}
+
+/// Writes the numbers of a vector's set bits at `list[used..]`, as [`push_places`] does with places.
+#[inline(always)]
+pub(super) fn push_numbers(list: &mut Vec<f64>, used: usize, numbers: &[f64; LANES], bits: u8) {
+    // Whoever reads them by eights reads as far beyond the last one.
+    if list.len() < used + 2 * LANES {
+        list.resize(used + used / 4 + 512, 0.0);
+    }
+    let offsets = OFFSETS[bits as usize];
+    let mut chosen = [0.0; LANES];
+    for k in 0..LANES {
+        // The mask spares a look at the bound.
+        chosen[k] = numbers[usize::from(offsets[k]) & (LANES - 1)];
+    }
+    list[used..used + LANES].copy_from_slice(&chosen);
 }
 
 /// Lists fill most of a rank's memory beside the particles: they grow by a quarter only.

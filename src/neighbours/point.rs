@@ -2,7 +2,7 @@
 
 use super::facts::IMAGE;
 use super::lists::Lists;
-use super::near::{INFLATION, near_box, push_places};
+use super::near::{INFLATION, near_box, push_numbers, push_places};
 use super::sequence::Eight;
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::kernel::SUPPORT;
@@ -12,6 +12,8 @@ use crate::numerics::lanes::{LANES, Lanes as Vector};
 #[derive(Debug, Clone)]
 pub struct PointSearch {
     places: Vec<u32>,
+    /// Squares of their distances (m²).
+    squares: Vec<f64>,
     used: usize,
     hints: [usize; 64],
 }
@@ -20,6 +22,7 @@ impl Default for PointSearch {
     fn default() -> Self {
         Self {
             places: Vec::new(),
+            squares: Vec::new(),
             used: 0,
             hints: [0; 64],
         }
@@ -45,6 +48,17 @@ impl PointSearch {
         &self.places[..self.used]
     }
 
+    /// Squares of the distances (m²) of eight of what was found from `first` on, beyond the last one whatever.
+    ///
+    /// # Panics
+    /// If nothing stands at `first`.
+    #[inline(always)]
+    #[must_use]
+    pub fn squares(&self, first: usize) -> &[f64; LANES] {
+        let squares = self.squares[first..].first_chunk();
+        squares.expect("the array is padded")
+    }
+
     /// Finds those particles of this rank and group, and no others, in whose support a point (m) may be.
     pub fn own(&mut self, lists: &Lists, group: usize, point: &[f64; 3]) {
         self.used = instructions().run(Work {
@@ -61,6 +75,7 @@ impl PointSearch {
         for at in begin..self.used {
             if wanted(self.places[at]) {
                 self.places[end] = self.places[at];
+                self.squares[end] = self.squares[at];
                 end += 1;
             }
         }
@@ -75,6 +90,7 @@ impl Vectorised for Work<'_> {
     fn run<V: Vector>(self) -> usize {
         let PointSearch {
             places,
+            squares,
             used,
             hints,
         } = self.search;
@@ -89,9 +105,12 @@ impl Vectorised for Work<'_> {
             }
         };
         let mut used = *used;
-        let found = |first: usize, bits: u8, eight: &Eight| {
+        let found = |first: usize, bits: u8, eight: &Eight, square: V| {
             let own = bits & own(eight.special);
-            used = push_places(places, used, first, own);
+            if own != 0 {
+                push_numbers(squares, used, &square.store().0, own);
+                used = push_places(places, used, first, own);
+            }
         };
         let bounds = (self.point, self.point);
         near_box(

@@ -209,7 +209,7 @@ impl<'a> MaterialUpdate<'a> {
             }
             let own = material(k);
             let mut after = before;
-            self.materials[own].update(&mut after, self.dt);
+            let untorn = self.materials[own].update(&mut after, self.dt);
             let mut lanes = 0_u8;
             for lane in k..cluster.lanes {
                 if material(lane) == own {
@@ -220,7 +220,7 @@ impl<'a> MaterialUpdate<'a> {
             done |= lanes;
             if let Some(recording) = &self.recording {
                 // SAFETY: the particles belong to this cluster alone, and this thread has it.
-                unsafe { recording.book(own, [&before, &after], lanes, base) };
+                unsafe { recording.book(own, [&before, &after], &untorn, lanes, base) };
             }
             let updated = Updated {
                 before: &before,

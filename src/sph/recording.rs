@@ -2,7 +2,7 @@
 
 use super::step::Step;
 use super::sums::Sums;
-use crate::material::{FAILED, LANES, Material, PointBatch};
+use crate::material::{FAILED, LANES, Lanes as Numbers, Material, PointBatch};
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::lanes::Lanes;
 use crate::particles::{Records, Scatter};
@@ -28,8 +28,8 @@ impl<'a> Recording<'a> {
         })
     }
 
-    /// Books what an update has made of points of the material `own`: bit k of `lanes` is set if
-    /// lane k is one of them, particle `particles[k]`.
+    /// Books what an update has made of points of the material `own` and told of them, `untorn`: bit k of
+    /// `lanes` is set if lane k is one of them, particle `particles[k]`.
     ///
     /// A function of its own: inside the sweep it slows down cases without records.
     ///
@@ -40,6 +40,7 @@ impl<'a> Recording<'a> {
         &self,
         own: usize,
         points: [&PointBatch; 2],
+        untorn: &Numbers,
         lanes: u8,
         particles: &[usize; LANES],
     ) {
@@ -47,6 +48,7 @@ impl<'a> Recording<'a> {
             recording: self,
             own,
             points,
+            untorn,
             lanes,
             particles,
         };
@@ -73,6 +75,8 @@ struct Booking<'a> {
     recording: &'a Recording<'a>,
     own: usize,
     points: [&'a PointBatch; 2],
+    /// Pressures (Pa) of the equation of state.
+    untorn: &'a Numbers,
     lanes: u8,
     particles: &'a [usize; LANES],
 }
@@ -89,31 +93,29 @@ impl Vectorised for Booking<'_> {
             self.book_work();
         }
         if !records.peak_pressure.is_empty() {
-            self.raise(&records.peak_pressure, &after.pressure, |i| {
+            self.raise(&records.peak_pressure, V::read(&after.pressure), |i| {
                 // SAFETY: as of [`Recording::book`].
                 unsafe { *records.peak_pressure_time.slot(i) = time };
             });
         }
         if !records.peak_tension.is_empty() {
             let tension = V::splat(0.0).sub(V::read(&after.pressure));
-            self.raise(&records.peak_tension, &tension.store().0, |_| ());
+            self.raise(&records.peak_tension, tension, |_| ());
         }
         if !records.peak_strain_rate.is_empty() {
             let rates = strain_rates::<V>(before);
-            self.raise(&records.peak_strain_rate, &rates, |_| ());
+            self.raise(&records.peak_strain_rate, rates, |_| ());
         }
         if !records.peak_temperature.is_empty() {
             let material = &self.recording.materials[self.own];
             // SAFETY: as of [`Recording::book`].
             let work = unsafe { self.recording.plastic_energy(self.particles) };
-            let energy = material.thermal_energies(&after.specific_energy, &work);
-            let told = material.temperatures(&after.density, &energy, &after.damage);
-            if let Some(told) = told {
-                self.raise(&records.peak_temperature, &told, |_| ());
+            if let Some(told) = material.updated_temperatures(after, &work, self.untorn) {
+                self.raise(&records.peak_temperature, V::read(&told), |_| ());
             }
         }
         if !records.arrival_time.is_empty() {
-            self.arrive(&after.pressure);
+            self.arrive(V::read(&after.pressure));
         }
     }
 }
@@ -143,33 +145,44 @@ impl Booking<'_> {
         });
     }
 
-    /// Raises a record to values, and calls `raised` with the particles where it does.
+    /// Raises a record to values, and calls `raised` with the particles where it does. Mostly it does nowhere.
     #[inline(always)]
-    fn raise(&self, record: &Scatter<f64>, values: &[f64; LANES], raised: impl Fn(usize)) {
-        self.each(|k, i| {
+    fn raise<V: Lanes>(&self, record: &Scatter<f64>, values: V, raised: impl Fn(usize)) {
+        let mut held = [0.0; LANES];
+        for k in 0..LANES {
             // SAFETY: as of [`Recording::book`].
-            let record = unsafe { record.slot(i) };
-            if values[k] > *record {
-                *record = values[k];
-                raised(i);
-            }
-        });
+            held[k] = unsafe { *record.slot(self.particles[k]) };
+        }
+        let mut above = V::read(&held).less_than(values) & self.lanes;
+        if above == 0 {
+            return;
+        }
+        let values = values.store().0;
+        while above != 0 {
+            let k = above.trailing_zeros() as usize;
+            above &= above - 1;
+            let i = self.particles[k];
+            // SAFETY: as of [`Recording::book`].
+            unsafe { *record.slot(i) = values[k] };
+            raised(i);
+        }
     }
 
     /// Notes that pressure has arrived where it has not before.
     #[inline(always)]
-    fn arrive(&self, pressure: &[f64; LANES]) {
+    fn arrive<V: Lanes>(&self, pressure: V) {
         let times = &self.recording.records.arrival_time;
-        let arrival = self.recording.arrival[self.own];
-        self.each(|k, i| {
-            if pressure[k] > arrival {
-                // SAFETY: as of [`Recording::book`].
-                let time = unsafe { times.slot(i) };
-                if *time == 0.0 {
-                    *time = self.recording.time;
-                }
+        let arrival = V::splat(self.recording.arrival[self.own]);
+        let mut above = arrival.less_than(pressure) & self.lanes;
+        while above != 0 {
+            let k = above.trailing_zeros() as usize;
+            above &= above - 1;
+            // SAFETY: as of [`Recording::book`].
+            let time = unsafe { times.slot(self.particles[k]) };
+            if *time == 0.0 {
+                *time = self.recording.time;
             }
-        });
+        }
     }
 }
 
@@ -195,7 +208,7 @@ fn plastic_work(before: &PointBatch, after: &PointBatch, k: usize) -> f64 {
 /// Equivalent strain rates `√(2/3 d':d')` (1/s), of the deviatoric rates of deformation `d'` in the middle of
 /// the step.
 #[inline(always)]
-fn strain_rates<V: Lanes>(points: &PointBatch) -> [f64; LANES] {
+fn strain_rates<V: Lanes>(points: &PointBatch) -> V {
     let l = &points.velocity_gradient;
     let [xx, yy, zz] = [V::read(&l[0]), V::read(&l[4]), V::read(&l[8])];
     let mean = xx.add(yy).add(zz).div(V::splat(3.0));
@@ -204,7 +217,7 @@ fn strain_rates<V: Lanes>(points: &PointBatch) -> [f64; LANES] {
     let both = |a: usize, b: usize| V::read(&l[a]).add(V::read(&l[b]));
     let shear = square(both(1, 3), both(2, 6), both(5, 7));
     let all = normal.add(V::splat(0.5).mul(shear));
-    V::splat(2.0 / 3.0).mul(all).sqrt().store().0
+    V::splat(2.0 / 3.0).mul(all).sqrt()
 }
 
 #[cfg(test)]
@@ -220,7 +233,7 @@ mod tests {
             point.velocity_gradient[c][0] = l;
         }
         point.velocity_gradient[1][1] = 3.0;
-        let rates = strain_rates::<F64x8>(&point);
+        let rates = strain_rates::<F64x8>(&point).store().0;
         assert!((rates[0] - 2.0).abs() < 1e-15);
         assert!((rates[1] - 3.0_f64.sqrt()).abs() < 1e-15);
 
