@@ -23,7 +23,8 @@
 //! where σ̄ is the stress of the matter between the cracks, without its pressure in compression, D
 //! the rate of deformation and L the size of the particle. Whatever the path, the matter of a
 //! particle has taken `∫ (1 − D) σ̄ : D dt = G_f/L` when it has failed, that is `G_f` over the area
-//! of a crack through it, however large particles are: crack bands of Bažant & Oh (1983), *Crack
+//! of a crack through it, however large particles are; at a limit of tension expansion alone counts, while
+//! the limit holds the pressure ([`Spall`](super::Spall)). Crack bands of Bažant & Oh (1983), *Crack
 //! band theory for fracture of concrete*, Mater. Struct. 16, 155.
 //!
 //! Where tension alone is lost, the principal stresses of failed matter are zero at most: it still

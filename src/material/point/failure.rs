@@ -183,8 +183,7 @@ macro_rules! failure_laws {
             /// Fields of the point that the laws change.
             pub fn state(&self) -> impl Iterator<Item = &'static str> {
                 let laws = [$( self.$key.as_ref().map_or(&[][..], |law| law.state()), )+];
-                let fades = self.manner.softens() && self.follows_state();
-                let own: &[_] = if fades { &["failure_onset"] } else { &[] };
+                let own: &[_] = if self.has_onset() { &["failure_onset"] } else { &[] };
                 laws.into_iter().flatten().chain(own).copied()
             }
 
@@ -220,6 +219,12 @@ macro_rules! failure_laws {
                 let laws = [$( self.$key.map(|law| (stringify!($key), law.constants())), )+];
                 let laws = laws.into_iter().flatten();
                 laws.chain([("", self.manner.constants())]).collect()
+            }
+
+            /// Whether matter softens from an onset on.
+            fn has_onset(&self) -> bool {
+                self.manner.softens()
+                    && (false $( || $law::HAS_ONSET && self.$key.is_some_and(|law| law.follows_state()) )+)
             }
 
             #[inline(always)]

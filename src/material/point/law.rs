@@ -41,6 +41,8 @@ pub trait Law: Listed {
     /// function of their own: inside that of the others they slow down those that have no need of
     /// them.
     const FOLLOWS_STATE: bool = false;
+    /// Whether matter that softens does so from an onset of this law on, and not while it is at a limit.
+    const HAS_ONSET: bool = true;
     /// Whether the law asks who and how large a particle is.
     const ASKS_IDENTITY: bool = false;
 

@@ -57,6 +57,7 @@ law! {
 impl Law for Spall {
     const STATE: &'static [&'static str] = &["deviatoric_stress", "damage", "failure_energy"];
     const FOLLOWS_STATE: bool = true;
+    const HAS_ONSET: bool = false;
 
     fn state(&self) -> &'static [&'static str] {
         match self.after {
