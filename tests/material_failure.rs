@@ -305,7 +305,7 @@ fn softening_takes_the_fracture_energy() {
                 work -= p * 3e4 * dt;
                 tension.push(-points.pressure[0]);
             }
-            onset |= points.pressure[0] <= -1e9;
+            onset |= points.damage[0] > 0.0;
             if points.damage[0] >= 1.0 {
                 break;
             }
@@ -338,19 +338,19 @@ fn shear_opens_no_cracks_of_spall() {
     points.mass = [RHO * 1e-12; LANES];
     let (opens, closes) = (Matrix3::identity() * 1e4, Matrix3::identity() * -1e4);
     let mut shear = Matrix3::zeros();
-    shear[(0, 1)] = 1e5;
+    shear[(0, 1)] = 1e6;
     let dt = 1e-9;
     while points.damage[0] < 0.3 {
         step(&metal, &mut points, &opens, dt);
     }
     let damage = points.damage;
-    for l in [closes, shear, closes] {
+    for l in [shear, closes, shear] {
         for _ in 0..100 {
             step(&metal, &mut points, &l, dt);
         }
         assert_eq!(points.damage, damage);
     }
-    assert!(points.plastic_strain[0] > 5e-3);
+    assert!(points.plastic_strain[0] > 0.05);
 }
 
 /// Sheared beyond its failure strain, metal softens and takes the same energy; unloaded in between,
