@@ -323,6 +323,37 @@ fn softening_takes_the_fracture_energy() {
     }
 }
 
+/// Tension counts once where both a failure strain and the limit of tension have been reached.
+#[test]
+fn two_laws_take_the_fracture_energy_once() {
+    let (energy, size) = (1e4, 0.2e-3);
+    let mut metal = metal();
+    metal.failure.spall = Some(Spall {
+        pressure: -1e9,
+        after: AfterSpall::Failed,
+    });
+    metal.failure.johnson_cook = Some(ductile([0.1, 0.0, 0.0, 0.0, 0.0]));
+    metal.failure.manner.fracture_energy = energy;
+    metal.failure.manner.effect = Effect::Scaled;
+    let mut points = batch(RHO, 0.0);
+    points.mass = [RHO * size * size * size; LANES];
+    points.failure_onset = [1.0; LANES];
+    points.pressure = [0.0; LANES];
+    let dt = 1e-9;
+    let mut work = 0.0;
+    while points.damage[0] < 1.0 {
+        let before = points.pressure[0];
+        step(&metal, &mut points, &(Matrix3::identity() * 1e4), dt);
+        work -= 0.5 * (before + points.pressure[0]) * 3e4 * dt;
+        assert!(work < 1e12);
+    }
+    assert!(
+        (work * size / energy - 1.0).abs() < 0.01,
+        "{}",
+        work * size / energy
+    );
+}
+
 /// At the limit of tension expansion opens cracks. Shear does not, nor does tension below what damage
 /// has left of the limit.
 #[test]

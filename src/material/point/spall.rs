@@ -94,8 +94,10 @@ impl Law for Spall {
             }
         }
     }
+
     /// Where matter softens, pressure is held at the limit, of which damage takes a share; while it is,
-    /// expansion opens cracks. Shear opens none: matter at the limit flows as it did before.
+    /// expansion opens cracks. Shear opens none: matter at the limit flows as it did before. Beyond the
+    /// onset of another law all work counts already.
     #[inline(always)]
     fn open(&self, point: &mut PointBatch, now: &Conditions) {
         if !self.follows_state() {
@@ -103,14 +105,10 @@ impl Law for Spall {
         }
         for k in 0..LANES {
             let p = point.pressure[k];
-            if p <= self.pressure * now.kept[k] && point.damage[k] < FAILED {
-                let expansion = [0, 4, 8].map(|c| point.velocity_gradient[c][k]);
-                damage::spend(
-                    point,
-                    k,
-                    -p * (expansion[0] + expansion[1] + expansion[2]),
-                    now,
-                );
+            let held = p <= self.pressure * now.kept[k];
+            if held && point.failure_onset[k] < 1.0 && point.damage[k] < FAILED {
+                let [xx, yy, zz] = [0, 4, 8].map(|c| point.velocity_gradient[c][k]);
+                damage::spend(point, k, -p * (xx + yy + zz), now);
             }
         }
     }
