@@ -7,6 +7,8 @@ use common::{body, case, sphere_on_plate};
 use whipple::comm::Comm;
 use whipple::contact::overlap::{self, OFFSET_LIMIT, initial_offset};
 use whipple::model::{Axis, Body, Case, LatticeKind, Shape, Vec3};
+use whipple::numerics::vector::norm;
+use whipple::particles::ParticleStore;
 use whipple::populate;
 use whipple::step::Simulation;
 
@@ -147,4 +149,36 @@ fn relief_is_capped_and_counted() {
     assert!(capped > 20);
     assert_eq!(simulation.state.capped_reliefs, capped);
     assert!(simulation.state.contact_energy > 0.0);
+}
+
+/// A particle in a vacancy of a foreign lattice has room; one between its sites is enclosed.
+#[test]
+fn a_vacancy_is_room() {
+    let bodies = vec![
+        block([-4.5; 3], [4.5; 3], 1.0),
+        block([10.0, -0.5, -0.5], [11.0, 0.5, 0.5], 1.0),
+    ];
+    let mut simulation = start(case(3, bodies, 1.0));
+    let particles = &mut simulation.particles;
+    let at = |particles: &ParticleStore, place: [f64; 3]| {
+        let distance = |i: usize| {
+            norm(&std::array::from_fn(|a| {
+                particles.position[i][a] - place[a]
+            }))
+        };
+        (0..particles.owned())
+            .find(|&i| distance(i) < 0.1 * SPACING)
+            .unwrap()
+    };
+    let speck = at(particles, [10.5 * SPACING, 0.0, 0.0]);
+    let middle = at(particles, [0.0; 3]);
+    particles.position[middle] = [0.0, 0.0, 20.0 * SPACING];
+    let mut enclosed = |aside: f64| {
+        simulation.particles.position[speck] = [aside * SPACING; 3];
+        simulation.advance(&Comm::solo()).unwrap();
+        assert!(simulation.particles.foreign_fraction[speck] > 0.5);
+        simulation.particles.enclosed_time[speck]
+    };
+    assert_eq!(enclosed(0.0), 0.0);
+    assert!(enclosed(2.5) > 0.0);
 }

@@ -4,9 +4,10 @@ mod material_support;
 
 use material_support::{aluminium, equations_of_state, material};
 use whipple::material::{
-    AfterSpall, Eos, IdealGas, Linear, LinearForm, PointBatch, Spall, Strength, Thermal,
+    AfterSpall, Eos, IdealGas, LANES, Linear, LinearForm, PointBatch, Spall, Strength, Thermal,
     ThermalConstants,
 };
+use whipple::numerics::lanes::{F64x8, Lanes};
 
 const CONSTANTS: ThermalConstants = ThermalConstants {
     specific_heat: 875.0,
@@ -29,6 +30,28 @@ fn the_reference_state_has_the_reference_temperature() {
         assert!((thermal.temperature(rho0, e + 875.0) - 301.0).abs() < bound);
         assert!(thermal.temperature(rho0, e - 1e9) == 0.0);
         assert!(thermal.temperature(f64::NAN, e).is_nan());
+    }
+}
+
+#[test]
+fn no_temperature_is_above_that_of_the_least_cold_energy() {
+    for (rho0, eos) in equations_of_state() {
+        let thermal = Thermal::new(CONSTANTS, rho0, &eos);
+        let reference = eos.reference_energy(rho0);
+        let (mut least, mut range) = (f64::INFINITY, 0.0_f64);
+        for n in 0..20_000 {
+            let rho = rho0 * (0.4 + 2.5e-4 * f64::from(n));
+            for above in [0.0, 1e6] {
+                let e = reference + above;
+                let told = thermal.temperature(rho, e);
+                let most = thermal.most::<F64x8>(&[e; LANES]).store().0[0];
+                assert!(told <= most, "{told} for {most} at {rho}: {eos:?}");
+                least = least.min(most - told);
+                range = range.max(most);
+            }
+        }
+        // And it is close to them, where the curve is lowest.
+        assert!(least <= 1e-4 * range, "{least} of {range}: {eos:?}");
     }
 }
 

@@ -274,6 +274,18 @@ fn plates_are_judged() {
     let ball = passed.case.density_of(0) * 4.0 / 3.0 * PI * (4.0 * D).powi(3);
     let mass = number(&measure(&mut passed), "passed_mass");
     assert!((mass / ball - 1.0).abs() < 0.05);
+    // What flies past the rim has not gone through, wherever it is by then; what came through and flies
+    // outward has.
+    for (x, sideways, through) in [(40.0, 0.0, false), (10.0, -1.0, false), (40.0, 1.0, true)] {
+        let mut flown = plate(|_| None);
+        deform(&mut flown, 0, |[a, b, c]| {
+            Some(([a + x, b, c - 50.0], [30.0 * sideways, 0.0, -45.0]))
+        });
+        let found = measure(&mut flown);
+        let word = if through { "perforated" } else { "held" };
+        assert_eq!(told(&found, "verdict"), Told::Word(word), "{x} {sideways}");
+        assert_eq!(number(&found, "passed_mass") > 0.0, through, "{x}");
+    }
 }
 
 /// A half ball of radius 8 thrown out of a block of 40 × 40 × 16 spacings.

@@ -10,6 +10,7 @@
 
 use super::eos::Eos;
 use super::{LANES, Lanes, at_least, at_most};
+use crate::numerics::lanes as numerics;
 
 /// The cold curve is held constant beyond these relative volumes ρ₀/ρ.
 const VOLUMES: [f64; 2] = [0.2, 2.0];
@@ -27,6 +28,8 @@ pub struct Thermal {
     reference_density: f64,
     /// `e_c` (J/kg) and its slope by interval, `de_c/dn`, at each node.
     cold: Vec<[f64; 2]>,
+    /// What `e_c` (J/kg) is nowhere below.
+    least_cold: f64,
 }
 
 /// What a user states of a material's heat.
@@ -91,6 +94,7 @@ impl Thermal {
         Self {
             constants,
             reference_density: rho0,
+            least_cold: least(&cold),
             cold,
         }
     }
@@ -135,6 +139,15 @@ impl Thermal {
         )
     }
 
+    /// Temperatures (K) that those of a batch with specific energies `e` (J/kg) are not above, at any density: those at
+    /// the least cold energy.
+    #[inline(always)]
+    #[must_use]
+    pub fn most<V: numerics::Lanes>(&self, e: &Lanes) -> V {
+        let above = V::read(e).sub(V::splat(self.least_cold));
+        above.div(V::splat(self.constants.specific_heat))
+    }
+
     /// [`Self::temperature`] of a batch: loops of their own for what vectors do and for the table.
     #[inline(always)]
     #[must_use]
@@ -156,6 +169,19 @@ impl Thermal {
         }
         all
     }
+}
+
+/// What the cubics between all nodes are nowhere below: a cubic lies within its Bézier points, here those of an
+/// interval, less some units of their last place.
+fn least(nodes: &[[f64; 2]]) -> f64 {
+    let points = nodes.windows(2).flat_map(|pair| {
+        let [[e0, d0], [e1, d1]] = [pair[0], pair[1]];
+        [e0, e0 + d0 / 3.0, e1 - d1 / 3.0, e1]
+    });
+    let (least, size) = points.fold((f64::INFINITY, 0.0), |(least, size): (f64, f64), e| {
+        (least.min(e), size.max(e.abs()))
+    });
+    least - 1e-12 * size
 }
 
 /// Energy (J/kg) at `t` between two nodes with their slopes, by Hermite's cubic.

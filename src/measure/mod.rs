@@ -11,6 +11,7 @@ mod bodies;
 mod debris;
 mod figure;
 mod flight;
+mod footprint;
 mod frame;
 mod front;
 mod gauge_reader;

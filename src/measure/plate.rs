@@ -55,7 +55,7 @@ struct Left {
     rear: f64,
     /// What lies within a voxel of what remains.
     doubtful: f64,
-    /// Mass of what struck that is behind the plate.
+    /// Mass of what struck that is behind the plate and has not flown past its rim.
     passed: f64,
     /// Largest speed (m/s) of what remains towards the rear.
     speed: f64,
@@ -65,12 +65,14 @@ impl Left {
     fn find(slab: &Slab, remains: &Remains, matter: &Matter, comm: &Comm) -> Self {
         let middle = 0.5 * (slab.front + slab.rear);
         let behind = slab.rear - slab.spacing;
+        let footprint = remains.footprint(slab, matter);
         let sums = matter.sums::<4>(comm, |i, sums| {
             let (body, mass, x) = (matter.body_of(i), matter.mass[i], &matter.position[i]);
             if body != slab.body {
                 let passed = slab.before.contains(&body)
                     && remains.height(x) < behind
-                    && remains.is_behind(x);
+                    && remains.is_behind(x)
+                    && footprint.let_through(x, &matter.velocity[i]);
                 if passed {
                     sums.add(&[0.0, 0.0, 0.0, mass]);
                 }

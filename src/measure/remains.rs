@@ -6,6 +6,7 @@
 use rayon::prelude::*;
 
 use super::attached::Attached;
+use super::footprint::Footprint;
 use super::frame::Frame;
 use super::matter::{Matter, raise};
 use super::voxels::{Grain, Voxels};
@@ -99,6 +100,12 @@ impl Remains {
     #[must_use]
     pub fn attached(&self) -> Option<&Attached> {
         self.attached.as_ref()
+    }
+
+    /// Where the body of the slab has stood at the start.
+    #[must_use]
+    pub fn footprint(&self, slab: &Slab, matter: &Matter) -> Footprint {
+        Footprint::new(slab, &self.frame, slab.spacing, matter)
     }
 
     /// Height (m) of a place (m) along the normal.
@@ -209,23 +216,11 @@ fn flowed(slab: &Slab, frame: &Frame, halves: &Halves, matter: &Matter, comm: &C
     reach
 }
 
-/// Which kept columns of a window the body has not been in at the start, half way between the faces.
+/// Which kept columns of a window the body has not been in at the start.
 fn outside(slab: &Slab, frame: &Frame, window: &Window, matter: &Matter) -> Vec<bool> {
-    let solid = matter.case.bodies[slab.body]
-        .shape
-        .solid(matter.case.dimension);
-    let height = 0.5 * (slab.front + slab.rear);
-    // The outermost voxels of a filling may be less than half full.
-    let margin = window.edge.min(0.25 * slab.thickness());
+    let footprint = Footprint::new(slab, frame, window.edge, matter);
     let columns = (0..window.kept().iter().product()).into_par_iter();
-    let is_outside = |column: usize| {
-        let [u, w] = window.middle(column);
-        let x = frame.back(&[u, w, height]);
-        let above = matter
-            .mirrors
-            .reflect_position(&x, matter.mirrors.beyond(&x));
-        solid.distance(&above.into()) > -margin
-    };
+    let is_outside = |column: usize| !footprint.holds(window.middle(column));
     columns.map(is_outside).collect()
 }
 

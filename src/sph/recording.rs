@@ -107,12 +107,7 @@ impl Vectorised for Booking<'_> {
             self.raise(&records.peak_strain_rate, rates, |_| ());
         }
         if !records.peak_temperature.is_empty() {
-            let material = &self.recording.materials[self.own];
-            // SAFETY: as of [`Recording::book`].
-            let work = unsafe { self.recording.plastic_energy(self.particles) };
-            if let Some(told) = material.updated_temperatures(after, &work, self.untorn) {
-                self.raise(&records.peak_temperature, V::read(&told), |_| ());
-            }
+            self.book_temperature::<V>();
         }
         if !records.arrival_time.is_empty() {
             self.arrive(V::read(&after.pressure));
@@ -145,15 +140,41 @@ impl Booking<'_> {
         });
     }
 
-    /// Raises a record to values, and calls `raised` with the particles where it does. Mostly it does nowhere.
+    /// Raises the temperatures. Matter that has cooled down since its shock is told by its energy alone.
     #[inline(always)]
-    fn raise<V: Lanes>(&self, record: &Scatter<f64>, values: V, raised: impl Fn(usize)) {
+    fn book_temperature<V: Lanes>(&self) {
+        let (record, after) = (&self.recording.records.peak_temperature, self.points[1]);
+        let material = &self.recording.materials[self.own];
+        let Some(thermal) = &material.thermal else {
+            return;
+        };
+        // Stored energy heats nothing, so all of the energy is a bound, too.
+        let most: V = thermal.most(&after.specific_energy);
+        if self.above(record, most) == 0 {
+            return;
+        }
+        // SAFETY: as of [`Recording::book`].
+        let work = unsafe { self.recording.plastic_energy(self.particles) };
+        if let Some(told) = material.updated_temperatures(after, &work, self.untorn) {
+            self.raise(record, V::read(&told), |_| ());
+        }
+    }
+
+    /// Which lanes have values above a record.
+    #[inline(always)]
+    fn above<V: Lanes>(&self, record: &Scatter<f64>, values: V) -> u8 {
         let mut held = [0.0; LANES];
         for k in 0..LANES {
             // SAFETY: as of [`Recording::book`].
             held[k] = unsafe { *record.slot(self.particles[k]) };
         }
-        let mut above = V::read(&held).less_than(values) & self.lanes;
+        V::read(&held).less_than(values) & self.lanes
+    }
+
+    /// Raises a record to values, and calls `raised` with the particles where it does. Mostly it does nowhere.
+    #[inline(always)]
+    fn raise<V: Lanes>(&self, record: &Scatter<f64>, values: V, raised: impl Fn(usize)) {
+        let mut above = self.above(record, values);
         if above == 0 {
             return;
         }

@@ -10,7 +10,7 @@ use crate::neighbours::{CHUNKS_AT_ONCE, Chunk};
 use crate::numerics::vector::norm;
 use crate::particles::Scatter;
 
-/// A particle whose foreign fraction with current volumes exceeds this is enclosed.
+/// A particle is enclosed whose foreign fraction with current volumes exceeds this, unless there is room for it.
 const ENCLOSED_FRACTION: f64 = 0.5;
 
 /// Largest touching value plus initial overlap offset: beyond it a particle counts as inside the
@@ -132,31 +132,57 @@ pub(super) fn weigh(found: &mut Found<Overlap>, scene: &Scene) {
                     },
                 }
             }));
-            isolate(&view, found, own);
+            look_at_own(&view, found, own);
         },
     );
 }
 
-/// Measures how isolated the receivers in contact are, from the lists of their own bodies.
-fn isolate(view: &ContactView, found: &mut [Measured], own: &Chunk) {
+/// Measures how isolated the receivers in contact are and whether the enclosed ones have room, from the lists of their
+/// own bodies.
+fn look_at_own(view: &ContactView, found: &mut [Measured], own: &Chunk) {
     // What bears stress elsewhere has its stress points in these lists.
     let groups = &view.table.groups;
     let is_elsewhere = groups.count() > groups.of_bodies;
-    if is_elsewhere || found.iter().all(|measured| measured.fraction.excess == 0.0) {
+    let needs = |measured: &Measured| measured.fraction.excess > 0.0 || measured.enclosed > 0.0;
+    if is_elsewhere || !found.iter().any(needs) {
         return;
     }
     // Both stand in the same order.
     let mut wanted = found.iter_mut().peekable();
     for (cluster, neighbours, _) in own.iter() {
         for &place in cluster.valid() {
-            if let Some(measured) = wanted.next_if(|measured| measured.place == place) {
-                let fraction = &mut measured.fraction;
-                if fraction.excess > 0.0 {
-                    fraction.isolation = isolation(view, place, neighbours, fraction.touching);
-                }
+            let Some(measured) = wanted.next_if(|measured| measured.place == place) else {
+                continue;
+            };
+            let fraction = &mut measured.fraction;
+            if fraction.excess > 0.0 {
+                fraction.isolation = isolation(view, place, neighbours, fraction.touching);
+            }
+            if measured.enclosed > 0.0 && has_room(view, place, neighbours, fraction.current) {
+                measured.enclosed = 0.0;
             }
         }
     }
+}
+
+/// Whether its own and foreign matter (the fraction `current`) together leave room for a particle: with half of itself
+/// they fill its support at most once. A particle in a vacancy of a foreign lattice has room, one between
+/// sites has none.
+fn has_room(view: &ContactView, index: u32, own: &[u32], current: f64) -> bool {
+    let i = view.party(index);
+    let mut filled = current;
+    for &other in own {
+        let j = view.party(other);
+        let distance = Separation::between(&i, &j).distance;
+        let kernel = view.table.pair(i.kind, j.kind).kernel.value(distance);
+        let matter = j.volume * view.table.expansion(j.body);
+        let share = view.motion[other as usize].volume.min(matter) * kernel;
+        filled += if other == index { 0.5 * share } else { share };
+        if filled > 1.0 {
+            return false;
+        }
+    }
+    true
 }
 
 /// `λ_i = ⟨1 − 2 Σ V_j W_ij/C̄_i⟩₊` over the neighbours in its own body: 0 where these fill half as much
