@@ -9,6 +9,7 @@ use common::random::Random;
 use proptest::prelude::*;
 use whipple::model::ContactClass;
 use whipple::neighbours::{Chunk, ForeignLists, ForeignTable, Kinds, PairList};
+use whipple::numerics::ordered::ordered;
 use whipple::particles::Image;
 
 fn recipe() -> impl Strategy<Value = Recipe> {
@@ -39,6 +40,22 @@ fn recipe() -> impl Strategy<Value = Recipe> {
         )
 }
 
+/// What an image is ordered by: group, cell across, position along the column as bits that order so, id, code.
+type Key = (usize, [u32; 2], u64, u64, u8);
+
+fn key(cloud: &Cloud, image: Image) -> Key {
+    let (group, x) = (cloud.group(image.base()), cloud.place(image));
+    let grid = &cloud.grids[group];
+    let along = ordered(x[grid.along]);
+    (
+        group,
+        grid.cells(&x),
+        along,
+        cloud.id[image.base()],
+        image.code(),
+    )
+}
+
 fn square_of_distance(found: &Found, a: u32, b: u32) -> f64 {
     let [a, b] = [a, b].map(|place| found.motion[place as usize].position);
     (0..3).map(|k| (a[k] - b[k]).powi(2)).sum()
@@ -64,7 +81,11 @@ fn check_clusters(cloud: &Cloud, found: &Found) {
 
 fn check_own_lists(cloud: &Cloud, found: &Found) {
     for (cluster, list, among) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
-        assert!(list.is_sorted_by(|a, b| a < b), "once each, in order");
+        let key_of = |place: &u32| key(cloud, found.sequence.images()[*place as usize]);
+        assert!(
+            list.is_sorted_by(|a, b| key_of(a) < key_of(b)),
+            "once each, in order"
+        );
         let images = || list.iter().map(|&j| found.sequence.images()[j as usize]);
         assert_eq!(among.mirrors, images().any(|image| image.code() != 0));
         let moves = |image: Image| cloud.velocity[image.base()] != cloud.velocity[0];
@@ -82,7 +103,8 @@ fn check_own_lists(cloud: &Cloud, found: &Found) {
                 |j: &u32| square_of_distance(found, receiver, *j) < (h(receiver) + h(*j)).powi(2);
             // All of the group one by one, in canonical order.
             let places = group.clone().map(|place| u32::try_from(place).unwrap());
-            let reference: Vec<u32> = places.filter(is_near).collect();
+            let mut reference: Vec<u32> = places.filter(is_near).collect();
+            reference.sort_by_key(key_of);
             let inside: Vec<u32> = list.iter().copied().filter(is_near).collect();
             assert_eq!(inside, reference);
         }
@@ -143,7 +165,7 @@ fn check_foreign_lists(cloud: &Cloud, found: &Found, table: &ForeignTable) {
                 continue;
             }
             let row = body(receiver) * table.kinds.count();
-            let list: Vec<u32> = places
+            let mut list: Vec<u32> = places
                 .clone()
                 .filter(|&j| {
                     let pair = row + body(j);
@@ -151,6 +173,7 @@ fn check_foreign_lists(cloud: &Cloud, found: &Found, table: &ForeignTable) {
                         && square_of_distance(found, receiver, j) < table.reach2[pair]
                 })
                 .collect();
+            list.sort_by_key(|&place| key(cloud, images[place as usize]));
             if !list.is_empty() {
                 expected.insert(receiver, list);
             }
@@ -163,16 +186,18 @@ fn check_foreign_lists(cloud: &Cloud, found: &Found, table: &ForeignTable) {
 /// The order of the engine against a plain sort by (group, column, along, id, code).
 fn check_order(cloud: &Cloud, found: &Found) {
     let mut images = cloud.images();
-    let column = |group: usize, x: &[f64; 3]| cloud.grids[group].column(x);
-    images.sort_by(|&a, &b| {
-        let (x, y) = (cloud.place(a), cloud.place(b));
-        let groups = (cloud.group(a.base()), cloud.group(b.base()));
-        let along = cloud.grids[groups.0].along;
-        (groups.0, column(groups.0, &x))
-            .cmp(&(groups.1, column(groups.1, &y)))
-            .then(x[along].total_cmp(&y[along]))
-            .then(cloud.id[a.base()].cmp(&cloud.id[b.base()]))
-            .then(a.code().cmp(&b.code()))
+    let mut first = BTreeMap::new();
+    for &image in &images {
+        let (group, cells, ..) = key(cloud, image);
+        let least = first.entry(group).or_insert(cells);
+        for k in 0..2 {
+            least[k] = least[k].min(cells[k]);
+        }
+    }
+    images.sort_by_key(|&image| {
+        let (group, cells, along, id, code) = key(cloud, image);
+        let column = [0, 1].map(|k| cloud.grids[group].after(k, first[&group][k], cells[k]));
+        (group, column, along, id, code)
     });
     assert_eq!(found.sequence.images(), images);
 }

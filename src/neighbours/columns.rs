@@ -4,16 +4,20 @@
 //! the order of neighbours is a pure function of their current positions.
 
 /// Columns of one group of bodies, along one axis and square across it.
+///
+/// Space across is cut into cells without end; cells that are a whole number of [periods](Self::period) apart
+/// share a column, so that debris which spreads takes no more columns than the bodies that it comes from. Whoever
+/// looks for what is near visits cells, not columns, so results do not depend on the periods.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColumnGrid {
     /// Axis along the columns (0, 1, 2).
     pub along: usize,
     /// The two axes across.
     pub across: [usize; 2],
-    /// Lower corner across (m).
+    /// Where the cell [`MIDDLE`] begins (m).
     origin: [f64; 2],
-    /// Number of columns along each axis across; positions beyond share the outermost ones.
-    counts: [u32; 2],
+    /// One less than the periods, which are powers of two.
+    masks: [u32; 2],
     inverse_width: f64,
 }
 
@@ -21,11 +25,13 @@ pub struct ColumnGrid {
 const WIDTH_IN_SPACINGS: f64 = 2.0;
 /// Where a column begins, in particle spacings before the first site.
 const PHASE: f64 = 0.25;
-/// How far beyond its initial box a group has columns of its own, in sizes of that box.
-const MARGIN: f64 = 4.0;
-/// Columns along an axis across, at most: runaways in opposite corners make a rank lay out all of
-/// them.
-const MAX_COUNT: f64 = 4096.0;
+/// The cell in which a group begins; positions more than so many away share the outermost cells.
+const MIDDLE: f64 = 2_147_483_648.0;
+/// A period is this many times as wide as the group at the start, at least.
+const PERIOD: f64 = 4.0;
+/// Fewest and most columns of a period: many more than a support and a cluster reach over, and few
+/// enough that all of them fit a [`u16`].
+const COLUMNS: (f64, f64) = (256.0, 4096.0);
 
 impl ColumnGrid {
     /// Grid for a group that starts in the box `lower..upper` (m) with particle spacing
@@ -38,58 +44,86 @@ impl ColumnGrid {
             _ => [0, 1],
         };
         let width = WIDTH_IN_SPACINGS * spacing;
-        let size = (0..3).map(|a| upper[a] - lower[a]).fold(spacing, f64::max);
-        let mut origin = [0.0; 2];
-        let mut counts = [1; 2];
-        for k in 0..2 {
-            let (low, high) = (lower[across[k]], upper[across[k]]);
-            let inside = ((high - low) / width + 1.0).ceil();
-            let margin = (MARGIN * size / width).ceil();
-            let margin = margin.min((0.5 * (MAX_COUNT - inside)).floor()).max(0.0);
-            let count = (inside + 2.0 * margin).clamp(1.0, MAX_COUNT);
-            // Sites stand at `low` and whole or half spacings from it: no column begins there.
-            origin[k] = low - PHASE * spacing - margin * width;
+        let period = |axis: usize| {
+            let inside = (upper[axis] - lower[axis]) / width + 1.0;
+            let columns = (PERIOD * inside).clamp(COLUMNS.0, COLUMNS.1);
             #[allow(
                 clippy::cast_possible_truncation,
                 clippy::cast_sign_loss,
                 reason = "clamped"
             )]
-            {
-                counts[k] = count as u32;
-            }
-        }
+            (columns as u32).next_power_of_two()
+        };
         Self {
             along,
             across,
-            origin,
-            counts,
+            // Sites stand at `lower` and whole or half spacings from it: no column begins there.
+            origin: across.map(|axis| lower[axis] - PHASE * spacing),
+            masks: across.map(|axis| period(axis) - 1),
             inverse_width: 1.0 / width,
         }
     }
 
-    /// Index along the k-th axis across of the column that holds coordinate `x` (m).
-    #[inline]
+    /// Columns along the k-th axis across, after which they come again.
+    #[inline(always)]
     #[must_use]
-    pub fn index(&self, k: usize, x: f64) -> u32 {
-        let cell = (x - self.origin[k]) * self.inverse_width;
-        let last = f64::from(self.counts[k] - 1);
+    pub fn period(&self, k: usize) -> u32 {
+        self.masks[k] + 1
+    }
+
+    /// How many columns after that of the cell `first` along the k-th axis across the column of another cell stands.
+    #[inline(always)]
+    #[must_use]
+    pub fn after(&self, k: usize, first: u32, cell: u32) -> usize {
+        (cell.wrapping_sub(first) & self.masks[k]) as usize
+    }
+
+    /// Index along the k-th axis across of the cell that holds coordinate `x` (m); it never falls with `x`.
+    #[inline(always)]
+    #[must_use]
+    pub fn cell(&self, k: usize, x: f64) -> u32 {
+        let place = (x - self.origin[k]) * self.inverse_width + MIDDLE;
         #[allow(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "clamped"
+            reason = "casts saturate"
         )]
         {
-            cell.clamp(0.0, last) as u32
+            place as u32
         }
     }
 
-    /// Both indices of the column that holds a position.
-    #[inline]
+    /// Both indices of the cell that holds a position (m).
+    #[inline(always)]
     #[must_use]
-    pub fn column(&self, position: &[f64; 3]) -> [u32; 2] {
+    pub fn cells(&self, position: &[f64; 3]) -> [u32; 2] {
         [
-            self.index(0, position[self.across[0]]),
-            self.index(1, position[self.across[1]]),
+            self.cell(0, position[self.across[0]]),
+            self.cell(1, position[self.across[1]]),
         ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_do_not_end_and_columns_come_again() {
+        let grid = ColumnGrid::new([0.0; 3], [0.1, 1.0, 9.0], 0.01, 2);
+        assert_eq!([grid.period(0), grid.period(1)], [256, 256]);
+        assert_eq!(ColumnGrid::new([0.0; 3], [9.0; 3], 0.01, 2).period(0), 2048);
+        let first = grid.cell(0, 0.0);
+        assert_eq!(grid.cell(0, 0.0149), first);
+        assert_eq!(grid.cell(0, 0.0151), first + 1);
+        assert_eq!(grid.cell(0, -0.0051), first - 1);
+        assert_eq!(grid.cell(0, -0.005 + 256.5 * 0.02), first + 256);
+        assert_eq!(grid.after(0, first, first + 259), 3);
+        assert_eq!(grid.after(0, first, first - 1), 255);
+        for far in [1e9, 1e300, f64::INFINITY] {
+            assert_eq!(grid.cell(0, far), u32::MAX);
+            assert_eq!(grid.cell(0, -far), 0);
+        }
+        assert_eq!(grid.cell(0, f64::NAN), 0);
     }
 }

@@ -1,8 +1,8 @@
 //! All particles and images of a rank in canonical order.
 //!
 //! Owned, halo and mirror particles merge into one sorted sequence for each group of bodies.
-//! The order is that of (column, position along the column, id, image code): a pure function of
-//! the images themselves, so each receiver meets its neighbours in the same order on any ranks.
+//! Each receiver meets its neighbours in the order of (cell across, position along the column, id, image
+//! code): a pure function of the images themselves, so it is the same on any ranks.
 
 use std::ops::Range;
 
@@ -53,6 +53,7 @@ impl Sequence {
                 lower: [0.0; 3],
                 upper: [0.0; 3],
                 first: [0; 2],
+                last: [0; 2],
                 size: [0; 2],
                 columns: 0..0,
                 images: 0..0,
@@ -236,7 +237,7 @@ impl Sequence {
         }
     }
 
-    /// Calls `visit`, in canonical order, with the columns of a group that have images within
+    /// Calls `visit`, in canonical order of the cells, with the columns of a group that have images within
     /// `range` (m) of the box `lower..=upper` (m) as far as the directions across tell: two
     /// indices across and the indices of the column.
     #[inline(always)]
@@ -255,25 +256,27 @@ impl Sequence {
             return;
         }
         let grid = &group.grid;
-        let indices = |k: usize| {
+        // No column twice: no range is longer than a period.
+        let cells = |k: usize| {
             let axis = grid.across[k];
-            let low = grid.index(k, lower[axis] - range).max(group.first[k]) - group.first[k];
-            let high = grid.index(k, upper[axis] + range) + 1;
-            let end = (high.saturating_sub(group.first[k]) as usize).min(group.size[k]);
-            low as usize..end
+            let low = grid.cell(k, lower[axis] - range).max(group.first[k]);
+            let high = grid.cell(k, upper[axis] + range).min(group.last[k]);
+            low..=high.min(low.saturating_add(grid.period(k) - 1))
         };
         let [a, b] = grid.across;
-        let second = indices(1);
-        for first in indices(0) {
+        let second = cells(1);
+        for first in cells(0) {
+            let row = grid.after(0, group.first[0], first);
             for other in second.clone() {
-                let column = group.columns.start + first * group.size[1] + other;
+                let place = grid.after(1, group.first[1], other);
+                let column = group.columns.start + row * group.size[1] + place;
                 let (start, end) = (
                     self.starts[column] as usize,
                     self.starts[column + 1] as usize,
                 );
                 let gap = self.walls[column].gap([lower[a], lower[b]], [upper[a], upper[b]]);
                 if start < end && gap < range * range {
-                    visit([first, other], start..end);
+                    visit([row, place], start..end);
                 }
             }
         }
@@ -323,7 +326,7 @@ impl Sequence {
     /// The same of a position (m).
     pub(super) fn order_of(&self, group: usize, position: &[f64; 3]) -> [u64; 2] {
         let grid = &self.groups[group].grid;
-        let [first, second] = grid.column(position).map(u64::from);
+        let [first, second] = grid.cells(position).map(u64::from);
         [first << 32 | second, ordered(position[grid.along])]
     }
 

@@ -22,7 +22,7 @@ struct Entry {
     padding: u32,
 }
 
-/// Group and column of an image.
+/// Group of an image and the last bits of its cell, which tell its column.
 #[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 struct Column {
@@ -211,12 +211,12 @@ impl Sorter {
                         (group, extent) = (facts.group, Extent::EMPTY);
                     }
                     extent.include(&facts.position, &facts.position);
-                    let column = grids[facts.group].grid.column(&facts.position);
-                    #[allow(clippy::cast_possible_truncation, reason = "few groups and columns")]
+                    let cells = grids[facts.group].grid.cells(&facts.position);
+                    #[allow(clippy::cast_possible_truncation, reason = "few groups, short periods")]
                     {
                         *slot = Column {
                             group: facts.group as u32,
-                            across: column.map(|index| index as u16),
+                            across: cells.map(|cell| cell as u16),
                         };
                     }
                 }
