@@ -169,7 +169,7 @@ fn overrides_reach_every_place() {
         case.materials[0].reference_density.to_bits(),
         2800f64.to_bits()
     );
-    assert_eq!(case.domain.axis, Some(Axis::Y));
+    assert_eq!(case.domain.axes, [Some(Axis::Y), None, None]);
     assert_eq!(case.time_step.max.to_bits(), 1e-9f64.to_bits());
     assert_eq!(case.output.fields, ["pressure"]);
 }
