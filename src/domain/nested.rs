@@ -16,8 +16,8 @@ pub trait Decomposition {
 /// Space cut into slabs normal to the axis of level 0, each of these into slabs normal to the axis
 /// of level 1, and so on; each rank owns one of the last level, which may be empty.
 ///
-/// The number of ranks tells how many slabs a slab is cut into ([`Slab::parts`]): all levels cut
-/// about as often, and ranks are shared out as evenly as integers allow. Ranks are numbered in the
+/// The number of ranks alone tells how many slabs a slab is cut into: all levels cut about as often,
+/// and ranks are shared out as evenly as integers allow. Ranks are numbered in the
 /// order of the slabs, depth first, so those of the last axis follow each other. Between ranks r and
 /// r + 1 there is one face, of the level where their slabs part: as many faces as ranks, less one.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,7 +34,7 @@ pub struct NestedSlabs {
 pub(super) struct Slab {
     first: usize,
     end: usize,
-    /// Levels that cut it, at least one.
+    /// Levels that cut it.
     levels: usize,
 }
 

@@ -109,7 +109,7 @@ impl Outset {
         Forecast::new(case, comm, ends, self.axes)
     }
 
-    /// The same where it takes no forecast.
+    /// [`Self::levels`] where they take no forecast.
     #[must_use]
     pub fn known_levels(&self, case: &Case, ranks: usize) -> Option<usize> {
         let few = (ranks < FEW_RANKS).then_some(1);
@@ -146,7 +146,8 @@ impl Outset {
     }
 }
 
-/// Ranks below which one level is enough, whatever the halo: slabs of a third of a model, or so.
+/// Ranks below which one level is enough, whatever the halo: eight are the first that three levels cut
+/// alike, and fewer save little by boxes, which take more messages.
 const FEW_RANKS: usize = 8;
 
 /// The named axes, then the others by length (m), longest first.
