@@ -44,7 +44,7 @@ impl Outset {
         (!boxes.is_empty()).then(|| Self {
             boxes,
             longest,
-            axes: axes(&case.domain.axes, length),
+            axes: axes(case.domain.axes, length),
         })
     }
 
@@ -151,7 +151,7 @@ impl Outset {
 const FEW_RANKS: usize = 8;
 
 /// The named axes, then the others by length (m), longest first.
-fn axes(named: &[Option<Axis>; 3], length: impl Fn(usize) -> f64) -> [usize; 3] {
+fn axes(named: [Option<Axis>; 3], length: impl Fn(usize) -> f64) -> [usize; 3] {
     let mut axes = [0, 1, 2];
     let place = |axis: usize| {
         named

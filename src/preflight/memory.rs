@@ -54,6 +54,7 @@ pub fn of_rank(case: &Case, comm: &Comm, ranks: usize) -> f64 {
 
 /// Of so many ranks at the start, from one count of all particles along each axis. `None` for a case
 /// without particles. Collective.
+#[allow(clippy::cast_precision_loss, reason = "an estimate")]
 fn fullest(case: &Case, comm: &Comm, ranks: usize) -> Option<Fullest> {
     let outset = Outset::new(case)?;
     if outset.known_levels(case, ranks) == Some(1) {
