@@ -12,9 +12,7 @@ use common::random::Random;
 use common::ranks::on_each;
 use common::sentinel::{id, mix, sentinel};
 use whipple::comm::{Comm, Exchange, waited};
-use whipple::domain::{
-    Decomposition, Halo, Histogram, Migration, Mirrors, RankSpeeds, Slabs, balance,
-};
+use whipple::domain::{Balance, Decomposition, Halo, Migration, Mirrors, NestedSlabs, RankSpeeds};
 use whipple::model::{Axis, Overlap, SelfContact, SymmetryPlane};
 use whipple::particles::{
     FIELDS, FieldInfo, HaloPhase, Image, ParticleStore, SCRATCH_WORDS, Select,
@@ -96,12 +94,16 @@ fn scattered(comm: &Comm, seed: u64) -> ParticleStore {
     particles
 }
 
-/// Slabs at random places, some empty; every third round, all ranks but one are.
-fn random_slabs(comm: &Comm, axis: usize, random: &mut Random) -> Slabs {
+/// Slabs of one to three levels along random axes at random places, some empty or thinner than any
+/// reach; every third round, all ranks but one are.
+fn random_slabs(comm: &Comm, axis: usize, random: &mut Random) -> NestedSlabs {
+    let (levels, turned) = (1 + random.below(3), random.below(2));
+    let others = [(axis + 1) % 3, (axis + 2) % 3];
+    let axes = [axis, others[turned], others[1 - turned]];
     let mut faces: Vec<f64> = (1..comm.size())
         .map(|_| random.within(-0.2 * LENGTH, 1.2 * LENGTH))
         .collect();
-    match random.below(3) {
+    match random.below(4) {
         0 => {
             let lone = random.below(comm.size());
             for (rank, face) in faces.iter_mut().enumerate() {
@@ -109,14 +111,16 @@ fn random_slabs(comm: &Comm, axis: usize, random: &mut Random) -> Slabs {
             }
         }
         1 if faces.len() > 1 => faces[1] = faces[0],
+        2 => faces
+            .iter_mut()
+            .for_each(|face| *face = 0.5 * LENGTH + 0.01 * *face),
         _ => {}
     }
-    faces.sort_by(f64::total_cmp);
-    Slabs::new(axis, faces)
+    NestedSlabs::of_any(axes, levels, faces)
 }
 
 /// Every particle is on the rank that owns its place, whole; together they are all there.
-fn check_owners(comm: &Comm, slabs: &Slabs, particles: &ParticleStore, round: u64) {
+fn check_owners(comm: &Comm, slabs: &NestedSlabs, particles: &ParticleStore, round: u64) {
     let numbers = numbers();
     for slot in 0..particles.owned() {
         let k = numbers[&particles.id[slot]];
@@ -162,7 +166,12 @@ fn migrate_in_rounds_of(comm: &Comm, most: usize) {
     for round in 1..30 {
         next_round(&mut particles, round, &mut own);
         let slabs = random_slabs(comm, random.below(3), &mut random);
-        migration.migrate(comm, &slabs, &mut particles);
+        // All, some or none are near enough for the short way.
+        let near: Vec<usize> = (0..comm.size())
+            .filter(|other| other.abs_diff(comm.rank()) < usize::try_from(round % 5).unwrap())
+            .filter(|&other| other != comm.rank())
+            .collect();
+        migration.migrate(comm, &slabs, &mut particles, &near);
         check_owners(comm, &slabs, &particles, round);
         filled_again |= was_empty && particles.owned() > 0;
         was_empty |= particles.owned() == 0;
@@ -184,7 +193,7 @@ fn migration_carries_every_field_by_any_distance() {
 /// list of all particles.
 fn needed(
     comm: &Comm,
-    slabs: &Slabs,
+    slabs: &NestedSlabs,
     mirrors: &Mirrors,
     round: u64,
     reach: impl Fn(u64) -> f64,
@@ -265,13 +274,13 @@ fn exchange_halos(comm: &Comm) {
                 })
                 .collect();
             let mirrors = Mirrors::new(&planes);
-            let mut halo = Halo::new(axis, mirrors);
+            let mut halo = Halo::new(mirrors);
             // The same halo is used again with more particles and with fewer.
             for scale in [0.4, 2.0, 0.1] {
                 round += 1;
                 next_round(&mut particles, round, &mut own);
                 let slabs = random_slabs(comm, axis, &mut random);
-                migration.migrate(comm, &slabs, &mut particles);
+                migration.migrate(comm, &slabs, &mut particles, halo.peers());
                 for slot in 0..particles.owned() {
                     let k = numbers[&particles.id[slot]];
                     set(&mut particles, slot, k, round, |_| true);
@@ -309,7 +318,7 @@ fn exchange_halos(comm: &Comm) {
 fn halos_carry_every_field_of_every_image_in_reach() {
     on_each(
         "halos_carry_every_field_of_every_image_in_reach",
-        &[1, 3, 5],
+        &[1, 3, 5, 8],
         exchange_halos,
     );
 }
@@ -382,9 +391,13 @@ fn messages_of_any_size_between_any_ranks() {
 }
 
 fn balance_work(comm: &Comm) {
+    (1..=3).for_each(|levels| balance_work_in(comm, levels));
+}
+
+fn balance_work_in(comm: &Comm, levels: usize) {
     let mut particles = scattered(comm, 31);
     let mut migration = Migration::default();
-    let mut histogram = Histogram::default();
+    let mut balance = Balance::default();
     let rank_speeds = RankSpeeds::default();
     let numbers = numbers();
     for round in 1..12_u64 {
@@ -401,24 +414,19 @@ fn balance_work(comm: &Comm) {
             particles.work[slot] = work(k);
         }
         let axis = usize::try_from(round % 3).unwrap();
-        let before = Slabs::new(axis, vec![f64::INFINITY; comm.size() - 1]);
+        let axes = [axis, (axis + 1) % 3, (axis + 2) % 3];
+        let mut slabs = NestedSlabs::on_first(axes, levels, comm.size());
         let positions = &particles.position[..particles.owned()];
-        let slabs = balance(
-            comm,
-            &before,
-            positions,
-            &particles.work,
-            &mut histogram,
-            &rank_speeds,
-        );
+        let all = (positions, particles.work.as_slice());
+        balance.cut(comm, &mut slabs, all, &rank_speeds);
         // The same faces everywhere.
         let mut faces = Vec::new();
         let mine: Vec<u64> = slabs.faces().iter().map(|face| face.to_bits()).collect();
         comm.all_gather_u64(&mine, &mut faces);
         assert!(faces.chunks(mine.len().max(1)).all(|theirs| theirs == mine));
-        assert!(slabs.faces().is_sorted());
+        assert!(slabs.is_sorted());
 
-        migration.migrate(comm, &slabs, &mut particles);
+        migration.migrate(comm, &slabs, &mut particles, &[]);
         let share = |k: u64| u64::from(work(k).max(1));
         let mine: u64 = particles.id[..particles.owned()]
             .iter()
@@ -430,30 +438,32 @@ fn balance_work(comm: &Comm) {
             10 => assert!(mine == 0 || mine == total),
             11 => assert!(comm.size() == 1 || mine <= total / 2 + total / 10),
             // A face is off by half of what stands in its plane, which is a particle or two (and
-            // those beyond the end of the box, who share the last).
-            _ => assert!(mine < even + 2500, "round {round}: {mine} of {total}"),
+            // those beyond the end of the box, who share the last), once a level.
+            _ => assert!(
+                mine < even + 2500 * levels as u64,
+                "round {round}: {mine} of {total}"
+            ),
         }
     }
     // Nobody anywhere: the faces stay.
-    let slabs = Slabs::new(0, vec![1.0; comm.size() - 1]);
-    assert_eq!(
-        balance(comm, &slabs, &[], &[], &mut histogram, &rank_speeds),
-        slabs
-    );
+    let mut slabs = NestedSlabs::of_any([0, 1, 2], levels, vec![1.0; comm.size() - 1]);
+    let before = slabs.clone();
+    balance.cut(comm, &mut slabs, (&[], &[]), &rank_speeds);
+    assert_eq!(slabs, before);
 }
 
 /// Rank 0 takes twice as long for the same work: after some balances it has half of what each
 /// other rank has; a measurement too short to mean anything changes nothing.
 fn balance_paces(comm: &Comm) {
-    let (mut histogram, mut rank_speeds) = (Histogram::default(), RankSpeeds::default());
+    let (mut balance, mut rank_speeds) = (Balance::default(), RankSpeeds::default());
     let positions: Vec<[f64; 3]> = (0..1000)
         .filter(|k| k % comm.size() == comm.rank())
         .map(|k| [0.001 * f64::from(u32::try_from(k).unwrap()), 0.0, 0.0])
         .collect();
-    let slabs = Slabs::new(0, vec![f64::INFINITY; comm.size() - 1]);
+    let mut slabs = NestedSlabs::on_first([0, 1, 2], 1, comm.size());
     let work = vec![1; positions.len()];
     let mut faces = |rank_speeds: &RankSpeeds| {
-        let slabs = balance(comm, &slabs, &positions, &work, &mut histogram, rank_speeds);
+        balance.cut(comm, &mut slabs, (&positions, &work), rank_speeds);
         slabs.faces().to_vec()
     };
     let even = faces(&rank_speeds);
@@ -570,11 +580,13 @@ fn waiting_in_a_phase_is_no_work() {
 /// Steps of cases with all there is: every rank holds what one rank alone
 /// computes, to the last bit.
 fn step_together(comm: &Comm) {
-    let cases = CASES.map(|case| [Axis::X, Axis::Z].map(|axis| (case, axis)));
-    for (case, axis) in cases.into_iter().flatten() {
+    let cuts = [(Axis::X, 1), (Axis::Z, 2)];
+    let cases = CASES.map(|case| cuts.map(|(axis, levels)| (case, axis, levels)));
+    for (case, axis, levels) in cases.into_iter().flatten() {
         let case = || {
             let mut case = case();
-            case.domain.axis = Some(axis);
+            case.domain.axes[0] = Some(axis);
+            case.domain.levels = Some(levels.min(case.dimension));
             case.domain.balance_every = 4;
             case
         };
@@ -592,7 +604,10 @@ fn step_together(comm: &Comm) {
         let share = Outcome::of(&together);
         assert_eq!(share.state, alone.state);
         for (id, row) in &share.rows {
-            assert!(alone.rows[id] == *row, "particle {id} along {axis:?}");
+            assert!(
+                alone.rows[id] == *row,
+                "particle {id} along {axis:?}, levels {levels}"
+            );
         }
         let mut count = [share.rows.len() as u64];
         comm.sum_u64(&mut count);

@@ -138,7 +138,8 @@ fn overrides_reach_every_place() {
             "material.aluminium.strength=none",
             "material.aluminium.failure.spall=none",
             "material.aluminium.density=2.8 g/cm^3",
-            "domain.axis=y",
+            "domain.axes=[\"y\", \"x\"]",
+            "domain.levels=2",
             "time_step.max=1 ns",
             "output.fields=[\"pressure\"]",
         ],
@@ -169,7 +170,11 @@ fn overrides_reach_every_place() {
         case.materials[0].reference_density.to_bits(),
         2800f64.to_bits()
     );
-    assert_eq!(case.domain.axis, Some(Axis::Y));
+    assert_eq!(case.domain.axes, [Some(Axis::Y), Some(Axis::X), None]);
+    assert_eq!(case.domain.levels, Some(2));
+    let usual = ready("quarter-impact", &["domain.axis=y", "domain.levels=auto"]).domain;
+    assert_eq!(usual.axes, [Some(Axis::Y), None, None]);
+    assert_eq!(usual.levels, None);
     assert_eq!(case.time_step.max.to_bits(), 1e-9f64.to_bits());
     assert_eq!(case.output.fields, ["pressure"]);
 }

@@ -754,6 +754,10 @@ fn shapes_fit_the_dimension() {
     let hexagonal = message(&row, &["body.a.lattice=hexagonal"]);
     assert!(hexagonal.contains("`lattice` must be \"cubic\""));
     assert!(message(&row, &["domain.axis=y"]).contains("a 1-dimensional case has no y axis"));
+    let both = ["domain.axis=x", "domain.axes=[\"x\"]"];
+    assert!(message(&row, &both).contains("`axis` and `axes` both say"));
+    let two = message(&row, &["domain.levels=2"]);
+    assert!(two.contains("`levels` must be \"auto\" or a whole number from 1 to 1"));
 }
 
 #[test]

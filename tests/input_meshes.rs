@@ -168,11 +168,7 @@ fn slabs_make_up_the_whole() {
         let whole: Vec<_> = populate::sites(body, 3, &[], None).collect();
         let mut parts = Vec::new();
         for (lower, upper) in [(-9.0, -2e-4), (-2e-4, 3e-4), (3e-4, 9.0)] {
-            let slab = populate::Slab {
-                axis: 0,
-                lower,
-                upper,
-            };
+            let slab = populate::Brick::slab(0, lower, upper);
             parts.extend(populate::sites(body, 3, &[], Some(slab)));
         }
         parts.sort_by_key(|site| site.index);

@@ -11,7 +11,7 @@ use std::path::Path;
 use whipple::input::parse;
 use whipple::model::{Body, Case, Quantity, Sizes};
 use whipple::neighbours::Kinds;
-use whipple::populate::{self, Share, Slab, Wanted};
+use whipple::populate::{self, Brick, Share, Wanted};
 
 /// A case with one body of some particles.
 fn text(particles: &str, more: &str) -> String {
@@ -304,11 +304,7 @@ fn sites_are_those_of_any_slabs_and_planes() {
     let mut last = None;
     for slab in [[-1.0, 5e-3], [5e-3, 6e-3], [6e-3, 6e-3], [6e-3, 1.0]] {
         let [lower, upper] = slab;
-        let slab = Slab {
-            axis: 2,
-            lower,
-            upper,
-        };
+        let slab = Brick::slab(2, lower, upper);
         let sites: Vec<_> = populate::sites(body, 3, &case.symmetry, Some(slab)).collect();
         let count = populate::count(body, 3, &case.symmetry, Some(slab));
         assert_eq!(sites.len() as u64, count);

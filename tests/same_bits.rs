@@ -791,3 +791,89 @@ fn a_graded_plate() {
     assert_same(&one, &three, "three ranks");
     assert_same_in_legs(&graded, &[2, 3], &["0.1us"], &one, &stopped);
 }
+
+/// Slabs of slabs of any levels and axes, balanced or not.
+#[test]
+fn slabs_of_slabs_on_any_ranks() {
+    let (_keep, at) = folder();
+    let reference = at("reference");
+    run(1, 2, QUARTER, &[], &reference);
+    // On two ranks all levels are the same.
+    for (ranks, levels, axes) in [
+        (1, 3, "[]"),
+        (2, 3, "[]"),
+        (3, 2, "[\"y\"]"),
+        (3, 3, "[\"z\", \"x\"]"),
+        (5, 2, "[]"),
+        (5, 3, "[\"x\", \"y\", \"z\"]"),
+        (8, 1, "[\"x\"]"),
+        (8, 2, "[\"z\", \"y\"]"),
+        (8, 3, "[]"),
+    ] {
+        let what = format!("{ranks} ranks, {levels} levels along {axes}");
+        let other = at(&what);
+        let levels = format!("domain.levels={levels}");
+        let axes = format!("domain.axes={axes}");
+        let balance = format!("domain.balance_every={}", 7 * (ranks % 2));
+        let more = ["--set", &levels, "--set", &axes, "--set", &balance];
+        run(ranks, 1, QUARTER, &more, &other);
+        assert_same(&reference, &other, &what);
+    }
+}
+
+/// From slabs of slabs to others, and to slabs.
+#[test]
+fn a_restart_onto_another_decomposition() {
+    let (_keep, at) = folder();
+    let (reference, stopped) = (at("reference"), at("stopped"));
+    run(1, 2, QUARTER, &[], &reference);
+    let more = ["--set", "domain.levels=3", "--until", "0.05us"];
+    run(8, 1, QUARTER, &more, &stopped);
+    let path = stopped.to_str().expect("a plain path");
+    for (ranks, set, stop) in [
+        (3, "domain.levels=2", Some("0.1us")),
+        (5, "domain.axes=[\"x\", \"z\"]", Some("0.15us")),
+        (2, "domain.levels=1", None),
+    ] {
+        let mut again = vec!["restart", path, "--poison", "-t", "1", "--set", set];
+        again.extend(stop.into_iter().flat_map(|stop| ["--until", stop]));
+        must(&whipple(ranks, &again), 0);
+    }
+    assert_same(&reference, &stopped, "three restarts");
+}
+
+/// Cubes that fly past others, and glass, in slabs of slabs: some run empty, and sites are fitted by
+/// the ranks whose boxes they are in.
+#[test]
+fn debris_and_glass_in_slabs_of_slabs() {
+    let (_keep, at) = folder();
+    let case = at("flyby.toml");
+    std::fs::write(&case, FLYBY).expect("the case is written");
+    let flyby = vec![case.to_str().expect("a plain path")];
+    let mut glass = QUARTER.to_vec();
+    for set in [
+        "body.sphere.lattice=glass",
+        "body.plate.lattice=glass",
+        "run.end_time=0.05us",
+    ] {
+        glass.extend(["--set", set]);
+    }
+    for (name, case) in [("flyby", flyby), ("glass", glass)] {
+        let one = at(&format!("{name} 1"));
+        run(1, 2, &case, &[], &one);
+        for (ranks, levels, balance) in [(5, 2, 0), (8, 3, 3)] {
+            let what = format!("{name} on {ranks} ranks, {levels} levels");
+            let other = at(&what);
+            let levels = format!("domain.levels={levels}");
+            let balance = format!("domain.balance_every={balance}");
+            run(
+                ranks,
+                1,
+                &case,
+                &["--set", &levels, "--set", &balance],
+                &other,
+            );
+            assert_same(&one, &other, &what);
+        }
+    }
+}

@@ -10,13 +10,14 @@ use crate::particles::{HaloPhase, Image, ParticleStore};
 
 /// Halo lists and buffers, kept from step to step.
 pub struct Halo {
-    axis: usize,
     rank: usize,
     mirrors: Mirrors,
     exchange: Exchange,
     words: Vec<u64>,
     extents: Vec<Extent>,
-    /// Those of the peers.
+    /// The ranks to talk to, ascending.
+    peers: Vec<usize>,
+    /// Their extents.
     theirs: Vec<Extent>,
     /// For each peer, the particles it needs and the codes of the images that it needs of each
     /// (a set of eight bits).
@@ -27,7 +28,7 @@ pub struct Halo {
     own: Vec<Image>,
     /// Halo particles of lower ranks with their images, [`Self::own`], those of higher ranks.
     others: Vec<Image>,
-    /// How many of them stand below this rank's slab or a plane.
+    /// How many of them are of lower ranks or stand behind a plane.
     below: usize,
     /// What the tasks found, one after the other: see [`Found`].
     found: Vec<Vec<Found>>,
@@ -37,16 +38,16 @@ pub struct Halo {
 const SHARE: usize = 4096;
 
 impl Halo {
-    /// Halo of slabs along `axis`.
+    /// Halo with images behind planes.
     #[must_use]
-    pub fn new(axis: usize, mirrors: Mirrors) -> Self {
+    pub fn new(mirrors: Mirrors) -> Self {
         Self {
-            axis,
             rank: 0,
             mirrors,
             exchange: Exchange::default(),
             words: Vec::new(),
             extents: Vec::new(),
+            peers: Vec::new(),
             theirs: Vec::new(),
             sends: Vec::new(),
             received: Vec::new(),
@@ -181,8 +182,15 @@ impl Halo {
         &self.others
     }
 
-    /// How many of [`Self::others`], the first ones, stand below this rank's own particles: a
-    /// hint for their sort.
+    /// The ranks with which particles are exchanged since the last [`Self::post_motion`], ascending:
+    /// each names this one too.
+    #[must_use]
+    pub fn peers(&self) -> &[usize] {
+        &self.peers
+    }
+
+    /// How many of [`Self::others`], the first ones, stand below this rank's own particles as far as
+    /// ranks tell: a hint for their sort.
     #[must_use]
     pub fn below(&self) -> usize {
         self.below
@@ -207,7 +215,7 @@ impl Halo {
             |(particles, codes): &(Vec<u32>, Vec<u8>)| 4 * particles.capacity() + codes.capacity();
         let found = |found: &Vec<Found>| size_of::<Found>() * found.capacity();
         self.exchange.memory()
-            + 8 * (self.words.capacity() + self.received.capacity())
+            + 8 * (self.words.capacity() + self.received.capacity() + self.peers.capacity())
             + size_of::<Extent>() * (self.extents.capacity() + self.theirs.capacity())
             + size_of::<Image>() * (self.own.capacity() + self.others.capacity())
             + self.sends.iter().map(send).sum::<usize>()
@@ -220,45 +228,31 @@ impl Halo {
         particles: &ParticleStore,
         reach: &(impl Fn(&ParticleStore, usize) -> f64 + Sync),
     ) {
-        let axis = self.axis;
         let mine = (particles.position.par_chunks(SHARE).enumerate())
             .map(|(task, positions)| {
                 let mut part = Extent::EMPTY;
                 for (k, position) in positions.iter().enumerate() {
-                    part.lower = part.lower.min(position[axis]);
-                    part.upper = part.upper.max(position[axis]);
-                    part.reach = part.reach.max(reach(particles, task * SHARE + k));
+                    part.add(position, reach(particles, task * SHARE + k));
                 }
                 part
             })
             // same bits in any order: smallest and largest numbers
             .reduce(|| Extent::EMPTY, Extent::join);
-        let words = [mine.lower, mine.upper, mine.reach].map(f64::to_bits);
-        comm.all_gather_u64(&words, &mut self.words);
+        comm.all_gather_u64(&mine.write(), &mut self.words);
         self.extents.clear();
-        self.extents
-            .extend(self.words.chunks_exact(Extent::WORDS).map(|word| Extent {
-                lower: f64::from_bits(word[0]),
-                upper: f64::from_bits(word[1]),
-                reach: f64::from_bits(word[2]),
-            }));
+        let words = self.words.chunks_exact(Extent::WORDS);
+        self.extents.extend(words.map(Extent::read));
     }
 
     /// Peers are the ranks whose particles may stand within reach of this rank's, by a test that
-    /// both sides answer alike. Images behind planes are never nearer than their particles.
+    /// both sides answer alike.
     fn find_peers(&mut self, comm: &Comm) {
         let me = comm.rank();
-        let mine = self.extents[me];
-        let extents = &self.extents;
-        self.exchange.set_peers((0..comm.size()).filter(|&other| {
-            let theirs = extents[other];
-            if other == me || mine.is_empty() || theirs.is_empty() {
-                return false;
-            }
-            let range = mine.reach + theirs.reach;
-            let gap = (theirs.lower - mine.upper).max(mine.lower - theirs.upper);
-            gap <= range
-        }));
+        let (extents, mine) = (&self.extents, self.extents[me]);
+        let is_peer = |&other: &usize| other != me && mine.may_need(&extents[other]);
+        self.peers.clear();
+        self.peers.extend((0..comm.size()).filter(is_peer));
+        self.exchange.set_peers(self.peers.iter().copied());
     }
 
     /// Fills the lists of particles and images to send, and those of this rank's own images that
@@ -282,15 +276,10 @@ impl Halo {
             return;
         }
         self.theirs.clear();
-        let ranks = (0..peers).map(|k| self.exchange.rank(k));
-        self.theirs.extend(ranks.map(|rank| self.extents[rank]));
-        let farthest = self.farthest();
-        let finder = Finder {
-            axis: self.axis,
-            mirrors: &self.mirrors,
-            mine: self.extents[comm.rank()],
-            theirs: &self.theirs,
-        };
+        let extents = &self.extents;
+        self.theirs
+            .extend(self.peers.iter().map(|&rank| extents[rank]));
+        let finder = Finder::new(&self.mirrors, extents[comm.rank()], &self.theirs);
         let tasks = particles.position.len().div_ceil(SHARE);
         self.found.resize(tasks, Vec::new());
         (&mut self.found, particles.position.par_chunks(SHARE))
@@ -300,7 +289,7 @@ impl Halo {
                 found.clear();
                 for (k, position) in positions.iter().enumerate() {
                     let i = task * SHARE + k;
-                    finder.find(i, position, reach(particles, i) + farthest, found);
+                    finder.find(i, position, reach(particles, i), found);
                 }
             });
         for entry in self.found.iter().flatten() {
@@ -314,10 +303,5 @@ impl Halo {
                 needs.push(entry.needs);
             }
         }
-    }
-
-    /// The largest reach of any particle (m).
-    fn farthest(&self) -> f64 {
-        self.extents.iter().map(|e| e.reach).fold(0.0, f64::max)
     }
 }

@@ -1,6 +1,6 @@
 //! Particles move to the rank that owns their position, by any distance.
 
-use super::slabs::Decomposition;
+use super::nested::Decomposition;
 use crate::comm::{Comm, Exchange, Traffic};
 use crate::particles::{FieldInfo, ParticleStore};
 
@@ -15,7 +15,8 @@ const PART: usize = 32;
 pub struct Migration {
     round: usize,
     exchange: Exchange,
-    leaving: Vec<Vec<u32>>,
+    /// Who leaves: how many ranks the owner is ahead, round and round, and the particle.
+    leaving: Vec<[u32; 2]>,
     gone: Vec<u32>,
     moves: Vec<(u32, u32)>,
     counts: Vec<u64>,
@@ -43,83 +44,109 @@ impl Migration {
         }
     }
 
-    /// Sends every owned particle to the owner of its position. Drops the halo; the order of
-    /// the store changes. Collective.
+    /// Sends every owned particle to the owner of its position. `near` are ranks (ascending) that all
+    /// name each other: where nobody goes to another and no round is full, they alone talk. Drops
+    /// the halo; the order of the store changes. Collective.
     pub fn migrate(
         &mut self,
         comm: &Comm,
         owners: &impl Decomposition,
         particles: &mut ParticleStore,
+        near: &[usize],
     ) {
         let (rank, size) = (comm.rank(), comm.size());
         if size == 1 {
             return;
         }
-        self.leaving.resize(size, Vec::new());
-        self.find_leaving(rank, owners, particles);
-        let leaving: usize = self.leaving.iter().map(Vec::len).sum();
+        self.find_leaving(comm, owners, particles);
         let most = self.round.max(particles.owned() / PART);
-        let mut rounds = [leaving.div_ceil(most) as u64];
-        comm.max_u64(&mut rounds);
-        for round in 0..rounds[0] {
+        let is_near = |to: &[u32; 2]| near.binary_search(&rank_ahead(rank, to[0], size)).is_ok();
+        let is_far = self.leaving.iter().any(|to| !is_near(to));
+        let mut vote = [self.leaving.len().div_ceil(most) as u64, u64::from(is_far)];
+        comm.max_u64(&mut vote);
+        let [rounds, is_far] = vote;
+        if rounds == 1 && is_far == 0 {
+            self.exchange.set_peers(near.iter().copied());
+            self.swap(comm, particles, false);
+            return;
+        }
+        for round in 0..rounds {
             if round > 0 {
-                self.find_leaving(rank, owners, particles);
+                self.find_leaving(comm, owners, particles);
             }
-            self.limit_round(rank, most);
-            self.counts.clear();
-            self.counts
-                .extend(self.leaving.iter().map(|list| list.len() as u64));
-            comm.all_to_all_u64(&self.counts, &mut self.arrivals);
-            self.swap(comm, particles);
+            // The next rank's first, so that no rank is sent to by all at once.
+            self.leaving.truncate(most);
+            self.tell_counts(comm);
+            self.swap(comm, particles, true);
         }
     }
 
+    /// Lists who leaves, by owner from the next rank on, and then by place in the store.
     fn find_leaving(
         &mut self,
-        rank: usize,
+        comm: &Comm,
         owners: &impl Decomposition,
         particles: &ParticleStore,
     ) {
-        self.leaving.iter_mut().for_each(Vec::clear);
+        let (rank, size) = (comm.rank(), comm.size());
+        let region = owners.region(rank);
+        self.leaving.clear();
         for (i, position) in particles.position[..particles.owned()].iter().enumerate() {
+            if region.holds(position) {
+                continue;
+            }
             let owner = owners.owner(position);
             if owner != rank {
+                let ahead = (owner + size - rank) % size;
                 #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
-                self.leaving[owner].push(i as u32);
+                self.leaving.push([ahead as u32, i as u32]);
             }
         }
+        self.leaving.sort_unstable();
     }
 
-    /// Keeps what fits a round, the next rank's first, so that no rank is sent to by all at once.
-    fn limit_round(&mut self, rank: usize, mut room: usize) {
-        let (before, after) = self.leaving.split_at_mut(rank);
-        for list in after.iter_mut().chain(before) {
-            list.truncate(room);
-            room -= list.len();
+    /// Tells all ranks how many particles they get, and makes peers of those that get any or send
+    /// some. Collective.
+    fn tell_counts(&mut self, comm: &Comm) {
+        let (rank, size) = (comm.rank(), comm.size());
+        self.counts.clear();
+        self.counts.resize(size, 0);
+        for [ahead, _] in &self.leaving {
+            self.counts[rank_ahead(rank, *ahead, size)] += 1;
         }
+        comm.all_to_all_u64(&self.counts, &mut self.arrivals);
+        let peers = (0..size).filter(|&r| self.counts[r] > 0 || self.arrivals[r] > 0);
+        self.exchange.set_peers(peers);
     }
 
-    fn swap(&mut self, comm: &Comm, particles: &mut ParticleStore) {
-        let peers = (0..comm.size()).filter(|&r| self.counts[r] > 0 || self.arrivals[r] > 0);
-        self.exchange.set_peers(peers);
+    /// Sends those that leave to the peers, of whom one knows how many they send or hears it.
+    fn swap(&mut self, comm: &Comm, particles: &mut ParticleStore, is_known: bool) {
         let size = particles.bytes_per_particle(FieldInfo::leaves);
-        let mut arriving = 0;
+        self.gone.clear();
+        self.gone.extend(self.leaving.iter().map(|[_, i]| i));
         for k in 0..self.exchange.peers() {
             let peer = self.exchange.rank(k);
+            let ahead = (peer + comm.size() - comm.rank()) % comm.size();
+            let start = self.leaving.partition_point(|to| (to[0] as usize) < ahead);
+            let end = self.leaving.partition_point(|to| to[0] as usize <= ahead);
             particles.pack(
                 FieldInfo::leaves,
-                &self.leaving[peer],
+                &self.gone[start..end],
                 self.exchange.outgoing(k),
             );
-            let count = usize::try_from(self.arrivals[peer]).expect("a count fits memory");
-            self.exchange.expect(k, count * size);
-            arriving += count;
+            if is_known {
+                let count = usize::try_from(self.arrivals[peer]).expect("a count fits memory");
+                self.exchange.expect(k, count * size);
+            }
+        }
+        if !is_known {
+            self.exchange.post_sizes(comm);
         }
         self.exchange.post(comm);
-        self.gone.clear();
-        self.gone.extend(self.leaving.iter().flatten());
         particles.remove(&mut self.gone, &mut self.moves);
         let mut first = particles.owned();
+        let incoming = (0..self.exchange.peers()).map(|k| self.exchange.incoming(k).len());
+        let arriving = incoming.sum::<usize>() / size;
         particles.resize_owned(first + arriving);
         self.exchange.wait();
         for k in 0..self.exchange.peers() {
@@ -139,11 +166,15 @@ impl Migration {
     /// Bytes allocated.
     #[must_use]
     pub fn memory(&self) -> usize {
-        let leaving: usize = self.leaving.iter().map(Vec::capacity).sum();
         let words = [&self.counts, &self.arrivals].map(Vec::capacity);
         self.exchange.memory()
-            + 4 * (leaving + self.gone.capacity())
-            + 8 * self.moves.capacity()
+            + 4 * self.gone.capacity()
+            + 8 * (self.leaving.capacity() + self.moves.capacity())
             + 8 * words.iter().sum::<usize>()
     }
+}
+
+/// The rank so many ahead, round and round.
+fn rank_ahead(rank: usize, ahead: u32, size: usize) -> usize {
+    (rank + ahead as usize) % size
 }

@@ -1,22 +1,26 @@
-//! Which rank owns what: slabs, migration, halo exchange, balance, mirror images.
+//! Which rank owns what: slabs of slabs, migration, halo exchange, balance, mirror images.
 
 mod balance;
+mod forecast;
 mod halo;
+mod histogram;
 mod migrate;
 mod mirrors;
 mod needs;
+mod nested;
 mod outset;
 mod partition;
 mod rank_speed;
-mod slabs;
 mod span;
 
-pub use balance::{Cumulative, Histogram, balance};
+pub use balance::Balance;
+pub use forecast::{Forecast, Fullest, reach};
 pub use halo::Halo;
+pub use histogram::{Cumulative, Histogram};
 pub use migrate::Migration;
 pub use mirrors::{MirrorForce, Mirrors};
+pub use nested::{Decomposition, NestedSlabs};
 pub use outset::Outset;
 pub use partition::Partition;
 pub use rank_speed::RankSpeeds;
-pub use slabs::{Decomposition, Slabs};
 pub(crate) use span::Span;

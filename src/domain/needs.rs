@@ -2,39 +2,92 @@
 
 use super::mirrors::{Mirrors, codes};
 
-/// What a rank tells all others before the exchange.
-#[derive(Debug, Clone, Copy)]
+/// The box around a rank's particles, and how far these reach: what it tells all others before the
+/// exchange.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Extent {
-    /// Smallest and largest coordinate of its particles along the slab axis (m).
-    pub(super) lower: f64,
-    pub(super) upper: f64,
+    /// Smallest and largest coordinates of its particles (m).
+    pub(super) lower: [f64; 3],
+    pub(super) upper: [f64; 3],
     /// Largest reach of its particles (m).
     pub(super) reach: f64,
 }
 
+/// Distances that differ by this factor are the same but for rounding.
+const ROUNDING: f64 = 1.0 + 1e-12;
+
 impl Extent {
-    pub(super) const WORDS: usize = 3;
+    pub(super) const WORDS: usize = 7;
     pub(super) const EMPTY: Self = Self {
-        lower: f64::INFINITY,
-        upper: f64::NEG_INFINITY,
+        lower: [f64::INFINITY; 3],
+        upper: [f64::NEG_INFINITY; 3],
         reach: 0.0,
     };
 
+    #[inline]
+    pub(super) fn add(&mut self, position: &[f64; 3], reach: f64) {
+        for (a, &x) in position.iter().enumerate() {
+            self.lower[a] = self.lower[a].min(x);
+            self.upper[a] = self.upper[a].max(x);
+        }
+        self.reach = self.reach.max(reach);
+    }
+
     pub(super) fn join(self, other: Self) -> Self {
         Self {
-            lower: self.lower.min(other.lower),
-            upper: self.upper.max(other.upper),
+            lower: std::array::from_fn(|a| self.lower[a].min(other.lower[a])),
+            upper: std::array::from_fn(|a| self.upper[a].max(other.upper[a])),
             reach: self.reach.max(other.reach),
         }
     }
 
-    pub(super) fn is_empty(&self) -> bool {
-        self.lower > self.upper
+    pub(super) fn write(&self) -> [u64; Self::WORDS] {
+        let [x, y, z] = self.lower;
+        let [u, v, w] = self.upper;
+        [x, y, z, u, v, w, self.reach].map(f64::to_bits)
     }
 
-    fn distance(&self, x: f64) -> f64 {
-        (self.lower - x).max(x - self.upper).max(0.0)
+    pub(super) fn read(words: &[u64]) -> Self {
+        let number = |k: usize| f64::from_bits(words[k]);
+        Self {
+            lower: std::array::from_fn(number),
+            upper: std::array::from_fn(|a| number(3 + a)),
+            reach: number(6),
+        }
     }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.lower[0] > self.upper[0]
+    }
+
+    /// Whether particles of the two may be within each other's reach; whoever asks gets the same
+    /// answer. Images behind planes are never nearer than their particles.
+    pub(super) fn may_need(&self, other: &Self) -> bool {
+        if self.is_empty() || other.is_empty() {
+            return false;
+        }
+        let gap = |a: usize| {
+            let gap = (other.lower[a] - self.upper[a]).max(self.lower[a] - other.upper[a]);
+            gap.max(0.0)
+        };
+        is_within([0, 1, 2].map(gap), self.reach + other.reach)
+    }
+
+    /// Whether a place (m) is within a range (m) of the box.
+    #[inline]
+    fn is_near(&self, place: &[f64; 3], range: f64) -> bool {
+        let gap = |a: usize| {
+            let gap = (self.lower[a] - place[a]).max(place[a] - self.upper[a]);
+            gap.max(0.0)
+        };
+        is_within([0, 1, 2].map(gap), range)
+    }
+}
+
+#[inline]
+fn is_within(gaps: [f64; 3], range: f64) -> bool {
+    let [x, y, z] = gaps.map(|gap| gap * gap);
+    x + y + z <= range * range * ROUNDING
 }
 
 /// A particle that a rank needs (this rank itself, or the peer of an index), and the codes of the
@@ -48,43 +101,98 @@ pub(super) struct Found {
 
 /// `Found::peer` of this rank itself.
 pub(super) const MYSELF: u16 = u16::MAX;
+
 /// Tells who needs a particle.
 pub(super) struct Finder<'a> {
-    pub(super) axis: usize,
-    pub(super) mirrors: &'a Mirrors,
-    pub(super) mine: Extent,
-    pub(super) theirs: &'a [Extent],
+    mirrors: &'a Mirrors,
+    mine: Extent,
+    theirs: &'a [Extent],
+    /// Largest reach of all ranks that may need a particle, this one too (m).
+    farthest: f64,
+    /// The box between the peers: along each axis those beside it begin there (m), infinite where
+    /// there are none.
+    between: [[f64; 3]; 2],
 }
 
-impl Finder<'_> {
-    /// Notes who needs particle `i` at `position` or its images, within `range` (m).
+impl<'a> Finder<'a> {
+    pub(super) fn new(mirrors: &'a Mirrors, mine: Extent, theirs: &'a [Extent]) -> Self {
+        let mut between = [[f64::NEG_INFINITY; 3], [f64::INFINITY; 3]];
+        let mut farthest = mine.reach;
+        for there in theirs {
+            farthest = farthest.max(there.reach);
+            let before = |a: usize| (mine.lower[a] - there.upper[a], 0, a);
+            let beyond = |a: usize| (there.lower[a] - mine.upper[a], 1, a);
+            let sides = (0..3).flat_map(|a| [before(a), beyond(a)]);
+            let (_, side, a) = sides
+                .max_by(|(gap, ..), (other, ..)| gap.total_cmp(other))
+                .expect("there are six sides");
+            // Its particles are not nearer than this side of them.
+            if side == 0 {
+                between[0][a] = between[0][a].max(there.upper[a]);
+            } else {
+                between[1][a] = between[1][a].min(there.lower[a]);
+            }
+        }
+        Self {
+            mirrors,
+            mine,
+            theirs,
+            farthest,
+            between,
+        }
+    }
+
+    /// Notes who needs particle `i` at `position` (m) or its images, which reaches so far (m).
     #[inline]
-    pub(super) fn find(&self, i: usize, position: &[f64; 3], range: f64, found: &mut Vec<Found>) {
+    pub(super) fn find(&self, i: usize, position: &[f64; 3], reach: f64, found: &mut Vec<Found>) {
+        let range = reach + self.farthest;
         let near = self.mirrors.near(position, range);
-        let mut note = |peer: u16, there: &Extent, own: bool| {
-            let mut needs = 0;
-            for code in codes(near, own) {
-                let image = self.mirrors.reflect_position(position, code);
-                if there.distance(image[self.axis]) <= range {
-                    needs |= 1 << code;
-                }
-            }
-            if needs != 0 {
-                #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
-                let particle = i as u32;
-                found.push(Found {
-                    particle,
-                    needs,
-                    peer,
-                });
-            }
-        };
         if near != 0 {
-            note(MYSELF, &self.mine, false);
+            note(
+                self,
+                (i, position),
+                (MYSELF, &self.mine),
+                (near, reach),
+                found,
+            );
         }
-        for (k, there) in self.theirs.iter().enumerate() {
-            #[allow(clippy::cast_possible_truncation, reason = "few ranks are neighbours")]
-            note(k as u16, there, true);
+        let [lower, upper] = &self.between;
+        let is_deep = |a: usize| {
+            let depth = (position[a] - lower[a]).min(upper[a] - position[a]);
+            depth > range * ROUNDING
+        };
+        if (0..3).all(is_deep) {
+            return;
         }
+        for (peer, there) in (0..).zip(self.theirs) {
+            note(self, (i, position), (peer, there), (near, reach), found);
+        }
+    }
+}
+
+/// Notes which images of a particle a rank needs, if any.
+#[inline]
+fn note(
+    finder: &Finder,
+    (i, position): (usize, &[f64; 3]),
+    (peer, there): (u16, &Extent),
+    (near, reach): (u8, f64),
+    found: &mut Vec<Found>,
+) {
+    let mut needs = 0;
+    for code in codes(near, peer != MYSELF) {
+        let image = finder.mirrors.reflect_position(position, code);
+        if there.is_near(&image, reach + there.reach) {
+            needs |= 1 << code;
+        }
+    }
+    if needs != 0 {
+        #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
+        let particle = i as u32;
+        found.push(Found {
+            particle,
+            needs,
+            peer,
+        });
     }
 }

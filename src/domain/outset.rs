@@ -1,24 +1,27 @@
 //! Where the particles of a case stand before its first step.
 
-use super::balance::Histogram;
+use super::balance::{Balance, split_slab};
+use super::forecast::{Forecast, share_of};
+use super::histogram::Histogram;
+use super::nested::{Decomposition, NestedSlabs};
 use super::rank_speed::RankSpeeds;
-use super::slabs::Slabs;
 use crate::comm::Comm;
 use crate::model::{Axis, Case};
-use crate::populate::{self, Share};
+use crate::populate;
 
 /// The ends of boxes along all axes (m).
 type Ends = ([f64; 3], [f64; 3]);
 
-/// The boxes of all bodies, and the axis along which slabs are cut.
+/// The boxes of all bodies, and the axes along which slabs are cut.
 #[derive(Debug, Clone)]
 pub struct Outset {
     /// Boxes of the sites (m), by body, cut at the symmetry planes.
     pub boxes: Vec<Ends>,
     /// The axis along which the case is longest (0, 1, 2).
     pub longest: usize,
-    /// The axis of the slabs: the longest one, unless the case names another.
-    pub axis: usize,
+    /// The axes of slabs, of slabs of these and so on: those that the case names, then the longest
+    /// of the others.
+    pub axes: [usize; 3],
 }
 
 impl Outset {
@@ -41,7 +44,7 @@ impl Outset {
         (!boxes.is_empty()).then(|| Self {
             boxes,
             longest,
-            axis: case.domain.axis.map_or(longest, Axis::index),
+            axes: axes(case.domain.axes, length),
         })
     }
 
@@ -80,30 +83,84 @@ impl Outset {
     /// still to be summed.
     pub fn count(&self, case: &Case, comm: &Comm, ranks: usize, histogram: &mut Histogram) {
         let (lower, upper) = Self::join(self.boxes.iter().copied());
-        histogram.reset(lower[self.axis], upper[self.axis], ranks);
+        let axis = self.axes[0];
+        histogram.reset(lower[axis], upper[axis], ranks);
         let share = share_of(comm);
         let (dimension, planes) = (case.dimension, &case.symmetry);
         for body in &case.bodies {
-            populate::tally(body, dimension, planes, self.axis, share, |x, count| {
+            populate::tally(body, dimension, planes, axis, share, |x, count| {
                 histogram.add(x, count);
             });
         }
     }
 
+    /// How many levels of slabs so many ranks get: as many as the case says, or those of the smallest
+    /// halo. Collective.
+    #[must_use]
+    pub fn levels(&self, case: &Case, comm: &Comm, ranks: usize) -> usize {
+        self.known_levels(case, ranks)
+            .unwrap_or_else(|| self.forecast(case, comm).levels(ranks))
+    }
+
+    /// What ranks would own and receive. Collective.
+    #[must_use]
+    pub fn forecast(&self, case: &Case, comm: &Comm) -> Forecast {
+        let ends = Self::join(self.boxes.iter().copied());
+        Forecast::new(case, comm, ends, self.axes)
+    }
+
+    /// [`Self::levels`] where they take no forecast.
+    #[must_use]
+    pub fn known_levels(&self, case: &Case, ranks: usize) -> Option<usize> {
+        let few = (ranks < FEW_RANKS).then_some(1);
+        case.domain.levels.or(few)
+    }
+
     /// Slabs with an even number of particles, of which none is created. Collective.
-    pub fn slabs(&self, case: &Case, comm: &Comm, histogram: &mut Histogram) -> Slabs {
-        if comm.size() == 1 {
-            return Slabs::new(self.axis, Vec::new());
+    pub(super) fn slabs(&self, case: &Case, comm: &Comm, balance: &mut Balance) -> NestedSlabs {
+        let ranks = comm.size();
+        let mut slabs = NestedSlabs::on_first(self.axes, 1, ranks);
+        if ranks == 1 {
+            return slabs;
         }
-        self.count(case, comm, comm.size(), histogram);
-        Slabs::new(self.axis, histogram.split(comm, &RankSpeeds::default()))
+        self.count(case, comm, ranks, &mut balance.histogram);
+        balance.histogram.sum(comm);
+        let (whole, even) = (slabs.whole(), RankSpeeds::default());
+        split_slab(&balance.histogram, (0, whole), slabs.faces_mut(), |rank| {
+            even.below(rank, ranks)
+        });
+        let levels = self.levels(case, comm, ranks);
+        if levels == 1 {
+            return slabs;
+        }
+        // Each rank counts for all what one slab has.
+        let brick = slabs.region(comm.rank());
+        let mut places = Vec::new();
+        for body in &case.bodies {
+            let of = (body, case.dimension, case.symmetry.as_slice());
+            populate::places(of, brick, |position| places.push(*position));
+        }
+        let mut nested = NestedSlabs::on_first(self.axes, levels, ranks);
+        balance.cut(comm, &mut nested, (&places, &vec![1; places.len()]), &even);
+        nested
     }
 }
 
-/// The lattice rows that a process counts.
-fn share_of(comm: &Comm) -> Share {
-    Share {
-        part: comm.rank(),
-        parts: comm.size(),
-    }
+/// Ranks below which one level is enough, whatever the halo: eight are the first that three levels cut
+/// alike, and fewer save little by boxes, which take more messages.
+const FEW_RANKS: usize = 8;
+
+/// The named axes, then the others by length (m), longest first.
+fn axes(named: [Option<Axis>; 3], length: impl Fn(usize) -> f64) -> [usize; 3] {
+    let mut axes = [0, 1, 2];
+    let place = |axis: usize| {
+        named
+            .iter()
+            .position(|name| name.map(Axis::index) == Some(axis))
+    };
+    axes.sort_by(|&a, &b| {
+        let by_name = place(a).unwrap_or(3).cmp(&place(b).unwrap_or(3));
+        by_name.then(length(b).total_cmp(&length(a)))
+    });
+    axes
 }

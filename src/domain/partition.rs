@@ -1,18 +1,19 @@
 //! Who owns which particles, kept even while they move.
 
-use super::balance::{Histogram, balance};
+use super::balance::Balance;
+use super::halo::Halo;
 use super::migrate::Migration;
+use super::nested::NestedSlabs;
 use super::outset::Outset;
 use super::rank_speed::RankSpeeds;
-use super::slabs::Slabs;
 use crate::comm::{Comm, Traffic};
 use crate::model::Case;
 use crate::particles::ParticleStore;
 
-/// The slabs of a run, and what their balance and the moves between them need.
+/// The slabs of a run, of one level or more, and what their balance and the moves between them need.
 pub struct Partition {
-    slabs: Slabs,
-    histogram: Histogram,
+    slabs: NestedSlabs,
+    balance: Balance,
     rank_speeds: RankSpeeds,
     migration: Migration,
     /// Steps between two balances; zero for none.
@@ -23,20 +24,23 @@ impl Partition {
     /// Slabs with an even number of particles, of which none is created. Collective.
     #[must_use]
     pub fn new(case: &Case, comm: &Comm, outset: &Outset) -> Self {
-        let mut histogram = Histogram::default();
-        Self {
-            slabs: outset.slabs(case, comm, &mut histogram),
-            histogram,
-            ..Self::none(case, comm, outset)
-        }
+        let mut balance = Balance::default();
+        let slabs = outset.slabs(case, comm, &mut balance);
+        Self::with(slabs, balance, case)
     }
 
     /// All particles on the first rank, until they are [dealt](Self::deal).
     #[must_use]
     pub fn none(case: &Case, comm: &Comm, outset: &Outset) -> Self {
+        let levels = outset.levels(case, comm, comm.size());
+        let slabs = NestedSlabs::on_first(outset.axes, levels, comm.size());
+        Self::with(slabs, Balance::default(), case)
+    }
+
+    fn with(slabs: NestedSlabs, balance: Balance, case: &Case) -> Self {
         Self {
-            slabs: Slabs::new(outset.axis, vec![f64::INFINITY; comm.size() - 1]),
-            histogram: Histogram::default(),
+            slabs,
+            balance,
             rank_speeds: RankSpeeds::default(),
             migration: Migration::default(),
             every: case.domain.balance_every,
@@ -45,7 +49,7 @@ impl Partition {
 
     /// The slabs.
     #[must_use]
-    pub fn slabs(&self) -> &Slabs {
+    pub fn slabs(&self) -> &NestedSlabs {
         &self.slabs
     }
 
@@ -69,26 +73,23 @@ impl Partition {
     /// Deals any shares of all particles to the ranks. Collective.
     pub fn deal(&mut self, comm: &Comm, particles: &mut ParticleStore) {
         self.cut(comm, particles);
-        self.migrate(comm, particles);
+        self.migration.migrate(comm, &self.slabs, particles, &[]);
         // Its buffers have carried whole shares of the model; never again so much.
         self.migration = Migration::default();
     }
 
     fn cut(&mut self, comm: &Comm, particles: &ParticleStore) {
-        self.slabs = balance(
-            comm,
-            &self.slabs,
-            &particles.position[..particles.owned()],
-            &particles.work,
-            &mut self.histogram,
-            &self.rank_speeds,
-        );
+        let positions = &particles.position[..particles.owned()];
+        let all = (positions, particles.work.as_slice());
+        self.balance
+            .cut(comm, &mut self.slabs, all, &self.rank_speeds);
     }
 
-    /// Sends every particle to the rank whose slab it is in. Drops the halo; the order of the store
-    /// changes. Collective.
-    pub fn migrate(&mut self, comm: &Comm, particles: &mut ParticleStore) {
-        self.migration.migrate(comm, &self.slabs, particles);
+    /// Sends every particle to the rank whose slab it is in, among the peers of the last `halo`
+    /// if no particle goes farther. Drops the halo; the order of the store changes. Collective.
+    pub fn migrate(&mut self, comm: &Comm, particles: &mut ParticleStore, halo: &Halo) {
+        self.migration
+            .migrate(comm, &self.slabs, particles, halo.peers());
     }
 
     /// Messages and bytes sent so far.
@@ -100,6 +101,9 @@ impl Partition {
     /// Bytes allocated.
     #[must_use]
     pub fn memory(&self) -> usize {
-        self.migration.memory() + self.histogram.memory() + self.rank_speeds.memory()
+        self.migration.memory()
+            + self.balance.memory()
+            + self.rank_speeds.memory()
+            + 8 * self.slabs.faces().len()
     }
 }

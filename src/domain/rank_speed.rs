@@ -64,13 +64,14 @@ impl RankSpeeds {
         }));
     }
 
-    /// The part of all work that ranks up to and with `rank` are to have, of `ranks`.
+    /// The part of all work that ranks below `rank` are to have, of `ranks`.
     #[allow(clippy::cast_precision_loss, reason = "few ranks")]
-    pub(super) fn up_to(&self, rank: usize, ranks: usize) -> f64 {
+    pub(super) fn below(&self, rank: usize, ranks: usize) -> f64 {
         if self.sums.len() != ranks {
-            return (rank + 1) as f64 / ranks as f64;
+            return rank as f64 / ranks as f64;
         }
-        self.sums[rank] / self.sums[ranks - 1]
+        let before = rank.checked_sub(1).map_or(0.0, |last| self.sums[last]);
+        before / self.sums[ranks - 1]
     }
 
     /// Bytes allocated.
@@ -87,8 +88,9 @@ mod tests {
     #[test]
     fn all_are_equal_until_something_was_measured() {
         let rank_speeds = RankSpeeds::default();
-        assert!((rank_speeds.up_to(0, 4) - 0.25).abs() < 1e-15);
-        assert!((rank_speeds.up_to(2, 4) - 0.75).abs() < 1e-15);
+        assert!(rank_speeds.below(0, 4).abs() < 1e-15);
+        assert!((rank_speeds.below(1, 4) - 0.25).abs() < 1e-15);
+        assert!((rank_speeds.below(3, 4) - 0.75).abs() < 1e-15);
     }
 
     #[test]
@@ -96,6 +98,6 @@ mod tests {
         let mut rank_speeds = RankSpeeds::default();
         rank_speeds.measure(&Comm::solo(), 1000, 1.0);
         rank_speeds.measure(&Comm::solo(), 1000, 2.0);
-        assert!((rank_speeds.up_to(0, 1) - 1.0).abs() < 1e-15);
+        assert!((rank_speeds.below(1, 1) - 1.0).abs() < 1e-15);
     }
 }

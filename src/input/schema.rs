@@ -267,8 +267,12 @@ optional_tables! {
 
     /// `[domain]`
     DomainParams {
-        /// Axis of the slabs.
+        /// The first of `axes`, if it alone is said.
         axis: Option<Spanned<Axis>>,
+        /// Axes of the slabs, of the slabs of these, and so on.
+        axes: Option<Spanned<Vec<Spanned<Axis>>>>,
+        /// How many of them there are at most.
+        levels: Option<Spanned<LevelsParams>>,
         /// Steps between two balances.
         balance_every: Option<Spanned<i64>>,
         /// The box of interest; everything if absent.

@@ -90,8 +90,10 @@ pub struct TimeStepOptions {
 /// Distribution over ranks, which never touches results, and the box of interest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DomainOptions {
-    /// Axis of the slabs; the longest one when absent.
-    pub axis: Option<Axis>,
+    /// Levels of slabs; chosen by the halo when absent.
+    pub levels: Option<usize>,
+    /// Axes of the slabs by level; the longest of the others when absent.
+    pub axes: [Option<Axis>; 3],
     /// Steps between two balances of the work; 0 keeps the first faces.
     pub balance_every: u64,
     /// What of space is of interest: particles that leave it are taken out; everything if absent.

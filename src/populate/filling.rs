@@ -57,6 +57,14 @@ impl Filling {
         }
     }
 
+    /// Tells where they stand before they are fitted (m).
+    pub fn places(self, cuts: Vec<Cut>, mut tell: impl FnMut(&[f64; 3])) {
+        match self {
+            Self::Cells(cells) => cells.places(&cuts, tell),
+            _ => self.sites(cuts, 1.0).for_each(|site| tell(&site.position)),
+        }
+    }
+
     /// How many there are.
     pub fn count(&self, cuts: &[Cut]) -> u64 {
         match self {

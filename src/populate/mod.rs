@@ -1,8 +1,9 @@
 //! Shape × lattice → particle sites, by pure functions of the body.
 //!
-//! Nothing here depends on ranks: each rank asks for the sites of its own slab, and the union over
-//! any slabs is the whole body with the same bits and the same indices.
+//! Nothing here depends on ranks: each rank asks for the sites of its own brick, and the union over
+//! any bricks is the whole body with the same bits and the same indices.
 
+mod brick;
 mod cells;
 mod extremes;
 mod filling;
@@ -18,6 +19,7 @@ mod stress_points;
 mod tally;
 mod touch;
 
+pub use brick::Brick;
 pub use overlap::{Overlap, overlap};
 pub use sample::sample;
 pub use stress_points::{StressSite, stress_count, stress_index_end, stress_sites};
@@ -66,17 +68,6 @@ pub struct Site {
     pub share: f64,
 }
 
-/// The part of space `lower ≤ x < upper` on one axis (m).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Slab {
-    /// 0, 1 or 2.
-    pub axis: usize,
-    /// Smallest coordinate, included (m).
-    pub lower: f64,
-    /// Largest coordinate, excluded (m).
-    pub upper: f64,
-}
-
 /// What a [`search`] is for.
 #[derive(Debug, Clone, Copy)]
 pub struct Wanted {
@@ -97,25 +88,40 @@ pub struct Share {
     pub parts: usize,
 }
 
-/// The sites of a body above all symmetry planes and, if given, in a slab, in the order of their
+/// The sites of a body above all symmetry planes and, if given, in a brick, in the order of their
 /// index.
 ///
-/// Only what of the filling meets the slab is visited; inside a row of a lattice no site is tested.
-/// Slabs part fitted sites by where they stand before they are fitted.
+/// Only what of the filling meets the brick is visited; inside a row of a lattice no site is tested.
+/// Bricks part fitted sites by where they stand before they are fitted.
 pub fn sites(
     body: &Body,
     dimension: usize,
     symmetry: &[SymmetryPlane],
-    slab: Option<Slab>,
+    brick: Option<Brick>,
 ) -> impl Iterator<Item = Site> + use<> {
     let filling = Filling::of(body, dimension, symmetry);
-    filling.sites(cuts(symmetry, slab), particle_volume(body, dimension))
+    filling.sites(cuts(symmetry, brick), particle_volume(body, dimension))
+}
+
+/// Tells where the [`sites`] of a body (in a dimension, above all symmetry planes) in a brick stand (m)
+/// before they are fitted.
+pub fn places(
+    (body, dimension, symmetry): (&Body, usize, &[SymmetryPlane]),
+    brick: Brick,
+    tell: impl FnMut(&[f64; 3]),
+) {
+    Filling::of(body, dimension, symmetry).places(cuts(symmetry, Some(brick)), tell);
 }
 
 /// How many [`sites`] there are, without visiting each, and of layers that are alike only one.
 #[must_use]
-pub fn count(body: &Body, dimension: usize, symmetry: &[SymmetryPlane], slab: Option<Slab>) -> u64 {
-    Filling::of(body, dimension, symmetry).count(&cuts(symmetry, slab))
+pub fn count(
+    body: &Body,
+    dimension: usize,
+    symmetry: &[SymmetryPlane],
+    brick: Option<Brick>,
+) -> u64 {
+    Filling::of(body, dimension, symmetry).count(&cuts(symmetry, brick))
 }
 
 /// Tells the coordinates on an axis (m) of a share of the [`sites`] of a body above all symmetry
@@ -239,8 +245,8 @@ pub fn shares(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> f64 
     Filling::of(body, dimension, symmetry).shares(&cuts(symmetry, None))
 }
 
-/// Whether sites end elsewhere than where slabs are cut: particles may begin a spacing outside the
-/// slab whose sites they are.
+/// Whether sites end elsewhere than where bricks are cut: particles may begin a spacing outside the
+/// brick whose sites they are.
 #[must_use]
 pub fn moves_sites(body: &Body) -> bool {
     body.lattice.kind == LatticeKind::Glass

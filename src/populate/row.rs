@@ -1,11 +1,11 @@
-//! The parts of lattice rows that lie in a body and in a slab.
+//! The parts of lattice rows that lie in a body and in a brick.
 //!
 //! Shape and hole are convex and a coordinate is monotone along a row, so what is left of a row is
 //! one run of indices, or two beside the hole.
 
 use std::ops::Range;
 
-use super::Slab;
+use super::Brick;
 use super::lattice::Stack;
 use crate::model::SymmetryPlane;
 
@@ -24,7 +24,7 @@ impl Row {
     }
 }
 
-/// The part of an axis that a symmetry plane or a slab leaves.
+/// The part of an axis that a symmetry plane or two sides of a brick leave.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cut {
     axis: usize,
@@ -35,24 +35,33 @@ pub(super) struct Cut {
     upper: f64,
 }
 
-/// What all symmetry planes and a slab leave.
-pub(super) fn cuts(symmetry: &[SymmetryPlane], slab: Option<Slab>) -> Vec<Cut> {
+/// What all symmetry planes and a brick leave.
+pub(super) fn cuts(symmetry: &[SymmetryPlane], brick: Option<Brick>) -> Vec<Cut> {
     let planes = symmetry.iter().map(|plane| Cut {
         axis: plane.axis.index(),
         lower: plane.position,
         is_plane: true,
         upper: f64::INFINITY,
     });
-    let slab = slab.map(|slab| Cut {
-        axis: slab.axis,
-        lower: slab.lower,
-        is_plane: false,
-        upper: slab.upper,
-    });
-    planes.chain(slab).collect()
+    let mut cuts: Vec<Cut> = planes.collect();
+    if let Some(Brick { lower, upper }) = brick {
+        let sides = (0..3).map(|axis| Cut {
+            axis,
+            lower: lower[axis],
+            is_plane: false,
+            upper: upper[axis],
+        });
+        cuts.extend(sides.filter(Cut::is_any));
+    }
+    cuts
 }
 
 impl Cut {
+    /// Whether it cuts anything off.
+    fn is_any(&self) -> bool {
+        self.lower > f64::NEG_INFINITY || self.upper < f64::INFINITY
+    }
+
     fn is_below(&self, x: f64) -> bool {
         x < self.lower || (self.is_plane && x == self.lower)
     }
@@ -61,7 +70,7 @@ impl Cut {
         x >= self.upper
     }
 
-    /// The same with slabs wider by a length (m) on both sides.
+    /// The same with bricks wider by a length (m) on both sides.
     pub fn widened(&self, by: f64) -> Self {
         let by = if self.is_plane { 0.0 } else { by };
         Self {

@@ -8,7 +8,7 @@
 //! no stress.
 
 use super::lattice::Stack;
-use super::{Slab, row};
+use super::{Brick, row};
 use crate::model::{Body, SymmetryPlane};
 
 /// One stress point.
@@ -38,12 +38,12 @@ enum Beside {
     Image(usize, f64),
 }
 
-/// The stress points of a body above all symmetry planes or on them and, if given, in a slab.
+/// The stress points of a body above all symmetry planes or on them and, if given, in a brick.
 pub fn stress_sites(
     body: &Body,
     dimension: usize,
     symmetry: &[SymmetryPlane],
-    slab: Option<Slab>,
+    brick: Option<Brick>,
 ) -> impl Iterator<Item = StressSite> + use<> {
     let grid = Grid {
         stack: Stack::new(body, dimension),
@@ -52,17 +52,8 @@ pub fn stress_sites(
         rigid: body.rigid.is_some(),
     };
     // A point belongs to the particle below it, half a pitch away.
-    let wide = slab.map(|slab| Slab {
-        lower: slab.lower - body.lattice.spacing,
-        upper: slab.upper + body.lattice.spacing,
-        ..slab
-    });
-    let within = move |site: &StressSite| {
-        slab.is_none_or(|slab| {
-            let x = site.position[slab.axis];
-            slab.lower <= x && x < slab.upper
-        })
-    };
+    let wide = brick.map(|brick| brick.widened(body.lattice.spacing));
+    let within = move |site: &StressSite| brick.is_none_or(|brick| brick.holds(&site.position));
     row::rows(grid.stack, row::cuts(symmetry, wide))
         .flat_map(|row| row.range().map(move |i| [i, row.j, row.k]))
         .flat_map(move |site| {
@@ -82,9 +73,9 @@ pub fn stress_count(
     body: &Body,
     dimension: usize,
     symmetry: &[SymmetryPlane],
-    slab: Option<Slab>,
+    brick: Option<Brick>,
 ) -> u64 {
-    stress_sites(body, dimension, symmetry, slab).count() as u64
+    stress_sites(body, dimension, symmetry, brick).count() as u64
 }
 
 /// One more than the largest [`StressSite::index`] that the body can have; saturates at `u64::MAX`.

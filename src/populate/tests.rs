@@ -7,6 +7,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::model::{Initial, Lattice, LatticeKind, Shape, Vec3};
 
+mod bricks;
 mod counts;
 mod shells;
 mod touch;
@@ -305,11 +306,7 @@ fn rings_follow_the_outline() {
         whole.sort_unstable();
         let mut parts: Vec<_> = [f64::NEG_INFINITY, -0.7, sites[7].position[0], f64::INFINITY]
             .windows(2)
-            .map(|w| Slab {
-                axis: 0,
-                lower: w[0],
-                upper: w[1],
-            })
+            .map(|w| Brick::slab(0, w[0], w[1]))
             .flat_map(|slab| bits(super::sites(&body, dimension, &[], Some(slab))))
             .collect();
         parts.sort_unstable();
@@ -357,7 +354,7 @@ proptest! {
         faces.extend([f64::NEG_INFINITY, f64::INFINITY]);
         faces.sort_by(f64::total_cmp);
         let mut union: Vec<_> = faces.windows(2).flat_map(|w| {
-            let slab = Slab { axis, lower: w[0], upper: w[1] };
+            let slab = Brick::slab(axis, w[0], w[1]);
             assert!(sites(&body, 3, planes, Some(slab))
                 .all(|s| w[0] <= s.position[axis] && s.position[axis] < w[1]));
             bits(sites(&body, 3, planes, Some(slab)))
@@ -371,11 +368,7 @@ proptest! {
 #[test]
 fn a_slab_of_a_huge_body_is_cheap() {
     let body = body(block([0.0; 3], [1e4; 3]), LatticeKind::Cubic, 1.0, 0.0);
-    let slab = Slab {
-        axis: 2,
-        lower: 10.0,
-        upper: 11.0,
-    };
+    let slab = Brick::slab(2, 10.0, 11.0);
     assert_eq!(count(&body, 3, &[], Some(slab)), 100_000_000);
     assert_eq!(index_end(&body, 3), 1_000_000_000_000);
 }

@@ -4,9 +4,8 @@ use std::path::Path;
 
 use crate::comm::Comm;
 use crate::contact::ContactTable;
-use crate::domain::{Histogram, Outset};
+use crate::domain::{Fullest, Histogram, Outset, reach};
 use crate::model::{Case, SphForm};
-use crate::numerics::kernel::SUPPORT;
 use crate::populate;
 use crate::step::bytes_of_options;
 
@@ -53,28 +52,35 @@ pub fn of_rank(case: &Case, comm: &Comm, ranks: usize) -> f64 {
     process + points * (fullest.owned * owned + fullest.halo * (HALO + halo_options))
 }
 
-/// The most particles that a rank has at the start.
-struct Fullest {
-    owned: f64,
-    halo: f64,
-}
-
-/// Of so many ranks, from one count of all particles along the axis of the slabs. `None` for a case
+/// Of so many ranks at the start, from one count of all particles along each axis. `None` for a case
 /// without particles. Collective.
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
 fn fullest(case: &Case, comm: &Comm, ranks: usize) -> Option<Fullest> {
+    let outset = Outset::new(case)?;
+    if outset.known_levels(case, ranks) == Some(1) {
+        return Some(fullest_slab(case, &outset, comm, ranks));
+    }
+    let forecast = outset.forecast(case, comm);
+    let known = outset.known_levels(case, ranks);
+    let levels = known.unwrap_or_else(|| forecast.levels(ranks));
+    let fullest = forecast.fullest(levels, ranks);
+    let even = forecast.total() / ranks as f64;
+    Some(Fullest {
+        owned: fullest.owned.max(even * uneven(case)),
+        ..fullest
+    })
+}
+
+/// Of so many ranks in slabs of one level, from one count along their axis. Collective.
+#[allow(clippy::cast_precision_loss, reason = "an estimate")]
+fn fullest_slab(case: &Case, outset: &Outset, comm: &Comm, ranks: usize) -> Fullest {
     let mut histogram = Histogram::default();
-    Outset::new(case)?.count(case, comm, ranks, &mut histogram);
+    outset.count(case, comm, ranks, &mut histogram);
     histogram.sum(comm);
-    let count = histogram.cumulate();
+    let count = histogram.cumulate(0);
     let even = count.total() as f64 / ranks as f64;
     let face = |k: usize| count.plane(even * k as f64);
-    // Half of the sum of two supports is what reaches across a face.
-    let reach = case
-        .bodies
-        .iter()
-        .map(|body| SUPPORT * body.longest_smoothing_length());
-    let reach = reach.fold(0.0, f64::max);
+    let reach = reach(case);
     let mut most = [0, 0];
     for rank in 0..ranks {
         let [lower, upper] = [face(rank), face(rank + 1)];
@@ -88,15 +94,19 @@ fn fullest(case: &Case, comm: &Comm, ranks: usize) -> Option<Fullest> {
         let owned = count.below(upper, 0.0) - count.below(lower, 0.0);
         most = [most[0].max(owned), most[1].max(halo)];
     }
-    let uneven = if case.domain.balance_every == 0 {
+    Fullest {
+        owned: (even * uneven(case)).max(most[0] as f64),
+        halo: most[1] as f64,
+    }
+}
+
+/// By how much the share of a rank may rise.
+fn uneven(case: &Case) -> f64 {
+    if case.domain.balance_every == 0 {
         1.0
     } else {
         UNEVEN
-    };
-    Some(Fullest {
-        owned: (even * uneven).max(most[0] as f64),
-        halo: most[1] as f64,
-    })
+    }
 }
 
 /// Why the ranks have not the memory that they will take, if they have not. Collective; the same on
@@ -209,8 +219,9 @@ fn left(folder: &Path, [limit, used, files]: [&str; 3]) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::domain::{Balance, Decomposition, NestedSlabs, RankSpeeds};
     use crate::input;
-    use crate::populate::visits;
+    use crate::populate::{Brick, visits};
     use crate::preflight::{approaches, warnings};
 
     fn quarter(spacing: &str) -> Case {
@@ -224,7 +235,9 @@ mod tests {
         let solo = Comm::solo();
         let case = quarter("0.005mm");
         let visits_of = |ranks| visits::of(|| of_rank(&case, &solo, ranks));
-        let few = visits_of(2);
+        // With one level rows are looked at along its axis alone.
+        assert!(visits_of(2) < visits_of(8));
+        let few = visits_of(8);
         assert_eq!(few, visits_of(10_000));
         assert!(few < 100_000, "{few} rows");
         // All that `check` does, with eight times as many particles each time.
@@ -270,6 +283,44 @@ mod tests {
         assert_eq!(fullest.halo, halo.into_iter().fold(0.0, f64::max));
         let even = x.len() as f64 / 4.0;
         assert_eq!(fullest.owned, 1.05 * even);
+    }
+
+    /// Slabs of slabs hold what is forecast, but for bodies that are no boxes, and so do their halos.
+    #[test]
+    #[allow(clippy::cast_precision_loss, reason = "counts of thousands")]
+    fn the_forecast_is_that_of_a_walk() {
+        let case = quarter("0.02mm");
+        let sites = |body| populate::sites(body, 3, &case.symmetry, None);
+        let sites = case.bodies.iter().flat_map(sites);
+        let places: Vec<[f64; 3]> = sites.map(|site| site.position).collect();
+        let (solo, even) = (Comm::solo(), RankSpeeds::default());
+        let outset = Outset::new(&case).unwrap();
+        let forecast = outset.forecast(&case, &solo);
+        assert_eq!(forecast.total(), places.len() as f64);
+        for (ranks, levels) in [(8, 1), (8, 2), (8, 3), (30, 2), (60, 3)] {
+            let mut slabs = NestedSlabs::on_first(outset.axes, levels, ranks);
+            let work = vec![1; places.len()];
+            Balance::default().cut(&solo, &mut slabs, (&places, &work), &even);
+            let count = |brick: Brick| places.iter().filter(|x| brick.holds(x)).count() as f64;
+            let mut most = Fullest::default();
+            for rank in 0..ranks {
+                let brick = slabs.region(rank);
+                let owned = count(brick);
+                most.owned = most.owned.max(owned);
+                most.halo = most.halo.max(count(brick.widened(reach(&case))) - owned);
+            }
+            let told = forecast.fullest(levels, ranks);
+            println!("{ranks} ranks, {levels} levels: {told:?}, in truth {most:?}");
+            assert!(
+                (told.halo / most.halo - 1.0).abs() < 0.25,
+                "{ranks} {levels}"
+            );
+            assert!(
+                (told.owned / most.owned - 1.0).abs() < 0.25,
+                "{ranks} {levels}"
+            );
+        }
+        assert!(forecast.levels(10_000) > 1);
     }
 
     #[test]

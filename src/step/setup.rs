@@ -13,18 +13,18 @@ use crate::contact::{Connectivity, Contact};
 use crate::diagnose::{
     LoadState, PairState, Passed, Removed, RunState, StepSums, Worst, angular_momentum_scale,
 };
-use crate::domain::{Halo, Mirrors, Outset, Partition};
+use crate::domain::{Decomposition, Halo, Mirrors, Outset, Partition};
 use crate::fragments::Labels;
 use crate::loads::{Absorption, Goal, Loads, Prescribe};
 use crate::measure::Measures;
 use crate::model::{Body, Case, SphForm, edge};
 use crate::neighbours::Lists;
 use crate::particles::{Image, ParticleStore};
-use crate::populate::{self, Slab};
+use crate::populate::{self, Brick};
 use crate::sph::Sph;
 
 impl Simulation {
-    /// Fills the bodies of a case, each rank its own slab, and evaluates the first forces.
+    /// Fills the bodies of a case, each rank its own brick, and evaluates the first forces.
     /// Collective.
     ///
     /// # Errors
@@ -86,7 +86,7 @@ impl Simulation {
             step_control: StepControl::new(&case, table, comm),
             lists: Lists::new(&case, table.groups.clone(), outset),
             partition,
-            halo: Halo::new(outset.axis, Mirrors::new(&case.symmetry)),
+            halo: Halo::new(Mirrors::new(&case.symmetry)),
             sph: Sph::new(&case),
             loads: Loads::new(&case),
             sums: StepSums::new(table),
@@ -105,25 +105,19 @@ impl Simulation {
         }
     }
 
-    /// Creates the particles of this rank's slab, and no others.
+    /// Creates the particles of this rank's brick, and no others.
     fn populate(&mut self, comm: &Comm) -> Result<(), SetupError> {
-        let slabs = self.partition.slabs();
-        let (lower, upper) = slabs.range(comm.rank());
-        let slab = Slab {
-            axis: slabs.axis,
-            lower,
-            upper,
-        };
+        let brick = self.partition.slabs().region(comm.rank());
         let case = &self.case;
         let stressed = case.sph.form == SphForm::StressPoints;
         let count = |body| {
             let (dimension, planes) = (case.dimension, &case.symmetry);
             let points = if stressed {
-                populate::stress_count(body, dimension, planes, Some(slab))
+                populate::stress_count(body, dimension, planes, Some(brick))
             } else {
                 0
             };
-            points + populate::count(body, dimension, planes, Some(slab))
+            points + populate::count(body, dimension, planes, Some(brick))
         };
         let total: u64 = case.bodies.iter().map(count).sum();
         limit_count(comm, total)?;
@@ -135,7 +129,7 @@ impl Simulation {
         for (b, body) in case.bodies.iter().enumerate() {
             // Heat and plastic strain of bodies with stress points are those of the points.
             let start = Start::new(case, b, !stressed);
-            for site in populate::sites(body, case.dimension, &case.symmetry, Some(slab)) {
+            for site in populate::sites(body, case.dimension, &case.symmetry, Some(brick)) {
                 let particles = &mut self.particles;
                 let id = first_id + site.index;
                 let sound = start.put(particles, i, id, (site.position, site.index));
@@ -159,14 +153,14 @@ impl Simulation {
             first_id = beyond(first_id, populate::index_end(body, case.dimension))?;
         }
         if stressed {
-            i = self.populate_stress_points(i, first_id, slab, &mut unsound)?;
+            i = self.populate_stress_points(i, first_id, brick, &mut unsound)?;
         }
         debug_assert_eq!(i, self.particles.owned());
         self.deal_moved(comm);
         all_sound(comm, unsound)
     }
 
-    /// Hands particles that begin outside of their slab to its owner, if there can be such.
+    /// Hands particles that begin outside of their brick to its owner, if there can be such.
     /// Collective.
     fn deal_moved(&mut self, comm: &Comm) {
         if self.case.bodies.iter().any(populate::moves_sites) {
@@ -174,19 +168,19 @@ impl Simulation {
         }
     }
 
-    /// Creates the stress points of a slab from place `i` of the store and `first_id` on, and books the
+    /// Creates the stress points of a brick from place `i` of the store and `first_id` on, and books the
     /// first that begins out of range; gives the place after the last.
     fn populate_stress_points(
         &mut self,
         mut i: usize,
         mut first_id: u64,
-        slab: Slab,
+        brick: Brick,
         unsound: &mut Option<(u64, String)>,
     ) -> Result<usize, SetupError> {
         let (case, particles) = (&self.case, &mut self.particles);
         for (b, body) in case.bodies.iter().enumerate() {
             let start = Start::new(case, b, true);
-            for site in populate::stress_sites(body, case.dimension, &case.symmetry, Some(slab)) {
+            for site in populate::stress_sites(body, case.dimension, &case.symmetry, Some(brick)) {
                 let id = first_id + site.index;
                 if let Err(why) = start.put(particles, i, id, (site.position, site.index)) {
                     unsound.get_or_insert((id, why));

@@ -86,7 +86,8 @@ impl Simulation {
         self.timers.lap(Phase::Integrate);
         self.balance(comm);
         self.timers.lap(Phase::Balance);
-        self.partition.migrate(comm, &mut self.particles);
+        self.partition
+            .migrate(comm, &mut self.particles, &self.halo);
         self.timers.lap(Phase::Migrate);
         self.evaluate(comm, dt);
         let candidate = self.kick(dt);

@@ -59,7 +59,8 @@ pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
             max: f64::INFINITY,
         },
         domain: DomainOptions {
-            axis: None,
+            levels: None,
+            axes: [None; 3],
             balance_every: 20,
             keep: None,
         },

@@ -63,7 +63,8 @@ pub fn case() -> Case {
             max: f64::INFINITY,
         },
         domain: DomainOptions {
-            axis: None,
+            levels: None,
+            axes: [None; 3],
             balance_every: 10,
             keep: None,
         },

@@ -4,6 +4,11 @@
 use serde::Deserialize;
 
 choices! {
+    /// What the program chooses.
+    AutoWord {
+        /// Whatever is best.
+        Auto,
+    }
     /// Side of a surface.
     SideName {
         /// Outside, as of a punch.

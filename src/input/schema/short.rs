@@ -7,7 +7,7 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer, StrDeserial
 use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use toml::Spanned;
 
-use super::choices::{AxisWord, Direction};
+use super::choices::{AutoWord, AxisWord, Direction};
 use super::{Point, TurnsTable};
 use crate::input::quantity::{Angle, AngularRate, Extent, Length, Placed, Quantity};
 use crate::model::{Axis, LatticeKind};
@@ -105,6 +105,22 @@ typed_as! {
             fit: table.fit,
             seed: table.seed,
         };
+    }
+}
+
+/// `"auto"`, or a number of levels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LevelsParams {
+    /// Those of the smallest halo.
+    Auto(AutoWord),
+    /// As many.
+    Number(f64),
+}
+
+typed_as! {
+    LevelsParams: "\"auto\", 1, 2 or 3" {
+        word: LevelsParams::Auto;
+        number: LevelsParams::Number;
     }
 }
 

@@ -54,7 +54,7 @@ impl Allowed {
     }
 }
 
-fn out_of_range(at: Range<usize>, key: &str, allowed: &str) -> Diagnostic {
+pub fn out_of_range(at: Range<usize>, key: &str, allowed: &str) -> Diagnostic {
     Diagnostic::new(at, format!("`{key}` must be {allowed}")).label("out of range")
 }
 

@@ -5,6 +5,7 @@ pub(super) mod check;
 mod absorbers;
 mod bodies;
 mod contact;
+mod domain;
 mod eos;
 mod failure;
 mod fragments;
@@ -42,13 +43,12 @@ use super::source::Diagnostic;
 use crate::material::Material;
 use crate::model::readable::Readable;
 use crate::model::{
-    Axis, Body, Case, ContactMode, DomainOptions, MeasureOptions, NumericalLimits, OutputOptions,
-    RunControl, SmoothingLength, SphForm, SphOptions, SymmetryPlane, TimeStepOptions,
+    Axis, Body, Case, ContactMode, MeasureOptions, NumericalLimits, OutputOptions, RunControl,
+    SmoothingLength, SphForm, SphOptions, SymmetryPlane, TimeStepOptions,
 };
 use crate::particles::{FIELDS, FieldId, TEMPERATURE, snapshot_names};
 use crate::populate::overlap;
 use check::{Allowed, number, whole};
-use region::KeepReader;
 use toml::Spanned;
 
 /// Overlaps up to this may be those of curved faces on a lattice (spacings).
@@ -86,7 +86,7 @@ pub fn case(mut params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     }
     .all(&params)?;
     let time_step = time_step(&params.time_step, &sph, &bodies, &materials)?;
-    let domain = domain(&params, dimension, &bodies, &symmetry, &length_unit)?;
+    let domain = domain::domain(&params, dimension, &bodies, &symmetry, &length_unit)?;
     check_temperature(&materials, &params.output)?;
     let mut case = Case {
         title: names::title(params.title.take())?,
@@ -307,33 +307,6 @@ fn time_step(
     };
     let max = diffusion.fold(given.max, f64::min);
     Ok(TimeStepOptions { max, ..given })
-}
-
-fn domain(
-    case: &CaseParams,
-    dimension: usize,
-    bodies: &[Body],
-    symmetry: &[SymmetryPlane],
-    length_unit: &Readable,
-) -> Result<DomainOptions, Diagnostic> {
-    let params = &case.domain;
-    let axis = params.axis.as_ref().map(|name| axis(name, dimension));
-    let spacing = case.spacing.as_ref().map(|spacing| spacing.get_ref().si);
-    let reader = KeepReader {
-        dimension,
-        bodies,
-        symmetry,
-        length_unit,
-    };
-    let keep = params
-        .keep
-        .as_ref()
-        .map(|table| reader.read(table, spacing));
-    Ok(DomainOptions {
-        axis: axis.transpose()?,
-        balance_every: whole(params.balance_every.as_ref(), "balance_every", 25, 0)?,
-        keep: keep.transpose()?,
-    })
 }
 
 fn run(params: &RunParams) -> Result<RunControl, Diagnostic> {

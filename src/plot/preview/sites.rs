@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::image::Image;
 use super::panel::Panel;
 use crate::model::{Body, Case, edge};
-use crate::populate::{self, Slab};
+use crate::populate::{self, Brick};
 
 /// Particles that pictures are made of at most, about; of more every few layers are taken.
 const MOST: f64 = 3e7;
@@ -58,16 +58,12 @@ impl Layers {
     }
 
     /// Those that are looked at.
-    fn slabs(&self) -> impl Iterator<Item = (usize, Slab)> {
+    fn slabs(&self) -> impl Iterator<Item = (usize, Brick)> {
         let first = (0..self.count).step_by(usize::try_from(self.every).unwrap_or(usize::MAX));
         first.map(|k| {
             let lower = self.lower + self.spacing * k as f64;
-            let slab = Slab {
-                axis: self.axis,
-                lower,
-                upper: self.lower + self.spacing * (k + 1) as f64,
-            };
-            (self.body, slab)
+            let upper = self.lower + self.spacing * (k + 1) as f64;
+            (self.body, Brick::slab(self.axis, lower, upper))
         })
     }
 }
@@ -77,7 +73,7 @@ impl Layers {
 fn draw(
     case: &Case,
     panels: &[Panel],
-    slabs: &[(usize, Slab)],
+    slabs: &[(usize, Brick)],
     larger: f64,
     shows: impl Fn(&Body, &[f64; 3], f64) -> bool + Sync,
 ) -> Vec<Image> {
@@ -89,7 +85,7 @@ fn draw(
             .map(|panel| Image::new(*panel, height))
             .collect()
     };
-    let add = |mut images: Vec<Image>, &(body, slab): &(usize, Slab)| {
+    let add = |mut images: Vec<Image>, &(body, slab): &(usize, Brick)| {
         let of = &case.bodies[body];
         let spacing = larger * of.lattice.spacing;
         for site in populate::sites(of, case.dimension, &case.symmetry, Some(slab)) {
@@ -147,11 +143,7 @@ pub fn section(case: &Case, panel: &Panel) -> Image {
         let lower = position - if on_mirror { 0.0 } else { reach };
         // A layer at the very side is taken once whatever rounding does.
         let nudge = 1e-6 * spacing;
-        Slab {
-            axis,
-            lower: lower - nudge,
-            upper: lower + 2.0 * reach - nudge,
-        }
+        Brick::slab(axis, lower - nudge, lower + 2.0 * reach - nudge)
     };
     let bodies = case.bodies.iter().enumerate();
     let slabs: Vec<_> = bodies.map(|(index, body)| (index, slab(body))).collect();

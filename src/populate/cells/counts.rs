@@ -63,6 +63,13 @@ impl Cells {
         sum
     }
 
+    /// Tells where they stand before they are fitted (m).
+    pub fn places(&self, cuts: &[Cut], mut tell: impl FnMut(&[f64; 3])) {
+        for block in self.all_blocks(cuts) {
+            self.tell_sites(block, cuts, |site| tell(&site.position));
+        }
+    }
+
     /// Tells the coordinates on an axis (m) of one of several shares of the sites, those of whole
     /// tiles to a rounding error.
     #[allow(clippy::cast_precision_loss)] // far fewer than 2^52

@@ -250,20 +250,12 @@ fn a_rank_visits_its_part_only() {
             }
         }
         for axis in [1, 2] {
-            let slab = Slab {
-                axis,
-                lower: 0.1,
-                upper: 0.225,
-            };
+            let slab = Brick::slab(axis, 0.1, 0.225);
             let own = visits::of(|| count(&ball, 3, &[], Some(slab)));
             assert!(own * 15 < all, "{kind:?} {axis}: {own} of {all}");
         }
         // Along the rows each has a piece of the slab, unless it is cut away by a plane.
-        let slab = Slab {
-            axis: 0,
-            lower: 0.1,
-            upper: 0.225,
-        };
+        let slab = Brick::slab(0, 0.1, 0.225);
         let own = visits::of(|| count(&ball, 3, &planes(), Some(slab)));
         assert!(own <= all / 2 + counts[2], "{kind:?}: {own} of {all}");
     }

@@ -79,11 +79,7 @@ fn slabs_of_shells_add_up() {
         faces.sort_by(f64::total_cmp);
         let mut union = Vec::new();
         for pair in faces.windows(2) {
-            let slab = Some(Slab {
-                axis,
-                lower: pair[0],
-                upper: pair[1],
-            });
+            let slab = Some(Brick::slab(axis, pair[0], pair[1]));
             let part = bits(sites(&body, 3, &[], slab));
             assert_eq!(part.len() as u64, count(&body, 3, &[], slab));
             union.extend(part);

@@ -23,11 +23,7 @@ fn slabs_add_up(body: &Body) {
     let faces = [f64::NEG_INFINITY, -14.0, -12.0, -4.0, 1.5, f64::INFINITY];
     for pair in faces.windows(2) {
         let (lower, upper) = (pair[0], pair[1]);
-        let slab = Some(populate::Slab {
-            axis: 0,
-            lower,
-            upper,
-        });
+        let slab = Some(populate::Brick::slab(0, lower, upper));
         let before = parts.len();
         parts.extend(populate::sites(body, 3, &[], slab));
         let count = (parts.len() - before) as u64;
