@@ -8,12 +8,17 @@ use std::process::Command;
 
 use output_support::{case, id, is_rank, meta, on_ranks, particles, sentinel, sorted_ids};
 use whipple::comm::Comm;
+use whipple::output::h5::read::SnapshotFile;
 use whipple::output::h5::{Content, Element, RowType};
+use whipple::output::snapshot::Form;
 use whipple::output::{Block, OutputError, Rows, checkpoint, snapshot};
 use whipple::particles::{FIELDS, Life, ParticleStore, rows};
 
 /// None, fewer than ranks, uneven, and enough for many rows to travel.
 const TOTALS: [u64; 4] = [0, 1, 7, 1000];
+
+/// Rows of small partitions.
+const PARTITIONS: [u64; 3] = [1, 7, 333];
 
 /// Every quantity there is.
 fn all_quantities() -> Vec<snapshot::Quantity> {
@@ -47,18 +52,26 @@ fn expected(field: usize, total: u64, vtk: bool) -> Vec<u8> {
     all
 }
 
-fn check_snapshot(path: &Path, total: u64) {
+/// Checks a snapshot of so many particles in partitions of so many rows.
+fn check_snapshot(path: &Path, total: u64, rows: u64) {
     let file = Content::open(path).unwrap();
     // VTK counts in signed numbers.
     let signed = |name: &str| file.all::<i64>(&format!("/VTKHDF/{name}")).unwrap();
-    let last = i64::try_from(total).unwrap();
-    for name in ["NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"] {
-        assert_eq!(signed(name), [last]);
+    let mut sizes =
+        vec![i64::try_from(rows.max(1)).unwrap(); usize::try_from(total / rows.max(1)).unwrap()];
+    if total == 0 || !total.is_multiple_of(rows) {
+        sizes.push(i64::try_from(total % rows.max(1)).unwrap());
     }
-    let count: Vec<i64> = (0..=last).collect();
+    for name in ["NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"] {
+        assert_eq!(signed(name), sizes);
+    }
     let all = usize::try_from(total).unwrap();
-    assert_eq!(signed("Connectivity"), count[..all]);
-    assert_eq!(signed("Offsets"), count);
+    let numbers: Vec<i64> = sizes.iter().flat_map(|&n| 0..n).collect();
+    assert_eq!(signed("Connectivity"), numbers);
+    let offsets: Vec<i64> = sizes.iter().flat_map(|&n| 0..=n).collect();
+    assert_eq!(signed("Offsets"), offsets);
+    assert_eq!(file.partitions("/VTKHDF").unwrap(), sizes.len() as u64);
+    assert_eq!(SnapshotFile::open(path).unwrap().particles(), all);
     assert_eq!(file.all::<u8>("/VTKHDF/Types").unwrap(), vec![1; all]);
     let time = file.all::<f64>("/VTKHDF/FieldData/TimeValue").unwrap();
     assert_eq!(time[0].to_bits(), 3.5e-8_f64.to_bits());
@@ -145,19 +158,33 @@ fn snapshots_hold_every_field_in_id_order_on_any_ranks() {
                     &path,
                     &particles,
                     &meta(&case),
-                    &quantities,
+                    &Form::of(&quantities),
                     &mut rows,
                 )
                 .unwrap();
+                for partition_rows in PARTITIONS {
+                    let path = folder.join(format!("{total}-{partition_rows}.vtkhdf"));
+                    let form = Form {
+                        partition_rows,
+                        ..Form::of(&quantities)
+                    };
+                    snapshot::write(comm, &path, &particles, &meta(&case), &form, &mut rows)
+                        .unwrap();
+                }
             }
         });
         if is_rank() {
             return;
         }
         for total in TOTALS {
-            check_snapshot(&folder.path().join(format!("{total}.vtkhdf")), total);
+            check_snapshot(&folder.path().join(format!("{total}.vtkhdf")), total, total);
+            for rows in PARTITIONS {
+                let path = folder.path().join(format!("{total}-{rows}.vtkhdf"));
+                check_snapshot(&path, total, rows);
+            }
         }
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), TOTALS.len());
+        let files = TOTALS.len() * (1 + PARTITIONS.len());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), files);
     }
 }
 
@@ -173,11 +200,11 @@ fn a_lone_rank_without_mpi_writes_the_same() {
             &path,
             &particles,
             &meta(&case),
-            &all_quantities(),
+            &Form::of(&all_quantities()),
             &mut rows,
         )
         .unwrap();
-        check_snapshot(&path, total);
+        check_snapshot(&path, total, total);
         write_checkpoint(&comm, folder.path(), total, total).unwrap();
         check_restored(
             &comm,
@@ -265,9 +292,16 @@ fn fill_disk(comm: &Comm, folder: &Path) {
     let checkpoints = folder.join("checkpoints");
     let checkpoint = checkpoints.join("step-00000001");
     let (meta, mut rows) = (meta(&case), Rows::default());
-    let snapshot = snapshot::write(comm, &path, &particles, &meta, &all_quantities(), &mut rows);
+    let snapshot = snapshot::write(
+        comm,
+        &path,
+        &particles,
+        &meta,
+        &Form::of(&all_quantities()),
+        &mut rows,
+    );
     if snapshot.is_ok() && comm.is_root() {
-        check_snapshot(&path, total);
+        check_snapshot(&path, total, total);
         fs::remove_file(&path).unwrap();
     }
     comm.barrier();

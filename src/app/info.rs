@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::results::{POINT_DATA, Results, ResultsError, component_names};
+use super::results::{GRID, POINT_DATA, Results, ResultsError, component_names};
 use crate::model::readable::one_line;
 use crate::output::checkpoint::{self, FIELDS};
 use crate::output::h5::{Array, Content, Element, RowType};
@@ -99,6 +99,10 @@ fn snapshot(file: &Content, text: &mut Text) -> Result<(), ResultsError> {
     let ranks: u64 = file.number("/run", "ranks")?;
     let threads: u64 = file.number("/run", "threads")?;
     text.entry("ranks x threads", format!("{ranks} x {threads}"));
+    let partitions = file.partitions(GRID)?;
+    if partitions > 1 {
+        text.entry("partitions", partitions);
+    }
     bodies(file, POINT_DATA, &names, text)?;
     heading(text);
     field(file, "/VTKHDF/Points", true, text)?;

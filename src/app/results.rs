@@ -6,6 +6,8 @@ use crate::output::checkpoint;
 use crate::output::h5::Content;
 use crate::output::{OutputError, RunFolder};
 
+/// Group of a snapshot's grid.
+pub const GRID: &str = "/VTKHDF";
 /// Group of a snapshot's particle fields.
 pub const POINT_DATA: &str = "/VTKHDF/PointData";
 

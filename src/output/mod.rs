@@ -17,6 +17,7 @@ mod history;
 mod lock;
 mod log;
 pub mod measures;
+pub mod partitions;
 pub mod post_mortem;
 mod quantity;
 mod rows;

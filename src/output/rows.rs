@@ -47,13 +47,13 @@ impl Block {
         }
     }
 
-    /// The same block for a dataset with one row more, which the last rank holds.
+    /// Whether it holds the end of all rows; of none, whether it is `root`'s.
     #[must_use]
-    pub fn with_one_more(self, last_rank: bool) -> Self {
-        Self {
-            total: self.total + 1,
-            first: self.first,
-            count: self.count + usize::from(last_rank),
+    pub fn closes(self, root: bool) -> bool {
+        if self.total == 0 {
+            root
+        } else {
+            self.count > 0 && self.first + self.count as u64 == self.total
         }
     }
 }

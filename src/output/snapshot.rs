@@ -1,26 +1,26 @@
 //! Snapshots: the particles at one time as a VTKHDF file, for `ParaView`, `h5py` and the plots.
 //!
-//! One `UnstructuredGrid` of version 1.0 in one partition, a vertex for each particle, rows in id
-//! order: the content does not depend on ranks. `/whipple` says what was run; `/run` holds what
-//! does depend on ranks and clocks.
+//! One `UnstructuredGrid` of version 1.0, a vertex for each particle, rows in id order and cut into
+//! partitions of a fixed number: the content does not depend on ranks. `/whipple` says what was
+//! run; `/run` holds what does depend on ranks and clocks.
+
+mod form;
+mod grid;
 
 use std::path::Path;
 
 use crate::comm::Comm;
 use crate::model::Case;
-use crate::particles::{FieldId, FieldKind, Owner, ParticleStore};
+use crate::particles::{FieldKind, Owner, ParticleStore};
 
 use super::h5::{Element, RowType, Writer};
 pub use super::quantity::{Quantity, quantities, quantities_of};
 use super::{COMMIT, OutputError, Rows, VERSION, files, settle, unit_of_model};
+pub use form::Form;
+use grid::{GRID, write_grid};
 
 /// Extension of snapshot files.
 pub const EXTENSION: &str = "vtkhdf";
-
-/// Group of the grid, as VTK wants it.
-const GRID: &str = "/VTKHDF";
-/// VTK's number of a cell that is a single point.
-const VERTEX: u8 = 1;
 
 /// What a snapshot says beside the particles.
 #[derive(Debug, Clone, Copy)]
@@ -49,11 +49,11 @@ pub fn write(
     path: &Path,
     particles: &ParticleStore,
     meta: &Meta,
-    quantities: &[Quantity],
+    form: &Form,
     rows: &mut Rows,
 ) -> Result<(), OutputError> {
     let temporary = files::partial(path);
-    let written = write_file(comm, &temporary, particles, meta, quantities, rows);
+    let written = write_file(comm, &temporary, particles, meta, form, rows);
     settle(comm, written, &temporary, || {
         files::publish(&temporary, path)
     })
@@ -64,13 +64,13 @@ fn write_file(
     path: &Path,
     particles: &ParticleStore,
     meta: &Meta,
-    quantities: &[Quantity],
+    form: &Form,
     rows: &mut Rows,
 ) -> Result<(), OutputError> {
     rows.plan(comm, &particles.id[..particles.owned()])?;
     let file = Writer::create(comm, path)?;
-    write_grid(comm, &file, particles, meta.time, rows)?;
-    for quantity in with_frozen(particles, quantities) {
+    write_grid(comm, &file, particles, meta.time, form, rows)?;
+    for quantity in with_frozen(particles, form.quantities) {
         write_quantity(comm, &file, particles, meta, quantity, rows)?;
     }
     write_meta(comm, &file, meta)?;
@@ -83,63 +83,6 @@ fn with_frozen(particles: &ParticleStore, chosen: &[Quantity]) -> impl Iterator<
     let missing = particles.held(Owner::FREEZE).map(Quantity::Field);
     let missing = missing.filter(move |field| !chosen.iter().any(|q| name(q) == name(field)));
     chosen.iter().copied().chain(missing)
-}
-
-/// Points and their cells.
-fn write_grid(
-    comm: &Comm,
-    file: &Writer,
-    particles: &ParticleStore,
-    time: f64,
-    rows: &mut Rows,
-) -> Result<(), OutputError> {
-    let block = rows.block();
-    let total = [i64::try_from(block.total).unwrap_or(i64::MAX)];
-    file.group(GRID)?;
-    file.vtk_header(GRID, "UnstructuredGrid", [1, 0])?;
-    for name in ["NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"] {
-        file.numbers(&format!("{GRID}/{name}"), Element::I64, &total)?;
-    }
-    let vector = RowType {
-        element: Element::F64,
-        components: 3,
-    };
-    let points = rows.collect(comm, particles.bytes(FieldId::position), vector.bytes());
-    file.rows(&format!("{GRID}/Points"), vector, block, points)?;
-    file.note(&format!("{GRID}/Points"), "unit", "m")?;
-
-    let first = i64::try_from(block.first).unwrap_or(i64::MAX);
-    let mut numbers: Vec<i64> = (first..).take(block.count).collect();
-    let integer = RowType::single(Element::I64);
-    file.rows(
-        &format!("{GRID}/Connectivity"),
-        integer,
-        block,
-        bytemuck::cast_slice(&numbers),
-    )?;
-    let longer = block.with_one_more(comm.rank() + 1 == comm.size());
-    numbers.clear();
-    numbers.extend((first..).take(longer.count));
-    file.rows(
-        &format!("{GRID}/Offsets"),
-        integer,
-        longer,
-        bytemuck::cast_slice(&numbers),
-    )?;
-    let types = vec![VERTEX; block.count];
-    file.rows(
-        &format!("{GRID}/Types"),
-        RowType::single(Element::U8),
-        block,
-        &types,
-    )?;
-    file.group(&format!("{GRID}/PointData"))?;
-    file.group(&format!("{GRID}/FieldData"))?;
-    file.numbers(
-        &format!("{GRID}/FieldData/TimeValue"),
-        Element::F64,
-        &[time],
-    )
 }
 
 fn write_quantity(

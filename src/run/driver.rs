@@ -20,7 +20,7 @@ use super::tables::Tables;
 use super::{announce, census};
 use crate::comm::Comm;
 use crate::model::NumericalFailurePolicy;
-use crate::output::snapshot::{self, Quantity};
+use crate::output::snapshot::{self, Form, Quantity};
 use crate::output::{
     Log, OutputError, Phase, Rows, RunFolder, Schedule, Status, agree, checkpoint, on_root,
     post_mortem, series, write_json,
@@ -303,7 +303,7 @@ impl<'a> Driver<'a> {
         } else {
             Vec::new()
         };
-        let (quantities, rows) = (&self.quantities, &mut self.rows);
+        let (form, rows) = (Form::of(&self.quantities), &mut self.rows);
         self.simulation.with_frozen(|simulation| {
             let meta = snapshot::Meta {
                 case: &simulation.case,
@@ -313,7 +313,7 @@ impl<'a> Driver<'a> {
                 wall_seconds: self.start.elapsed().as_secs_f64(),
                 fragments: &labels,
             };
-            snapshot::write(comm, &path, &simulation.particles, &meta, quantities, rows)
+            snapshot::write(comm, &path, &simulation.particles, &meta, &form, rows)
         })?;
         let state = &self.simulation.state;
         on_root(comm, || {

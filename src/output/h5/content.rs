@@ -142,6 +142,16 @@ impl Content {
         self.values(path, &rows)
     }
 
+    /// How many partitions the points of a grid stand in.
+    ///
+    /// # Errors
+    /// [`OutputError::Hdf5`], also if they cannot be those of its points.
+    pub fn partitions(&self, grid: &str) -> Result<u64, OutputError> {
+        let points = self.numbers(&format!("{grid}/Points"))?.rows;
+        let what = format!("{grid}/NumberOfPoints");
+        self.told(&what, self.gate.partitions(grid, points))
+    }
+
     /// A text dataset.
     ///
     /// # Errors

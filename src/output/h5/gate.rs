@@ -19,7 +19,7 @@ use hdf5_sys::h5p::{H5P_DEFAULT, H5Pget_external_count, H5Pget_layout, H5Pget_nf
 use hdf5_sys::h5t::{H5T_class_t, H5Tget_class, H5Tis_variable_str};
 
 use crate::comm::Comm;
-use crate::output::{Block, OutputError, agree, files, on_root};
+use crate::output::{Block, OutputError, agree, files, on_root, partitions};
 
 use super::transfer::{call, read_rows};
 use super::{Element, Number, RowType, access, explain};
@@ -107,6 +107,21 @@ impl Gate {
             components,
         };
         self.within(dataset, row, rows)
+    }
+
+    /// How many partitions a grid has, if they are those of so many points. Rows stand in one array
+    /// all the same, so that readers of rows need not know which partition a row is in.
+    pub fn partitions(&self, grid: &str, points: u64) -> hdf5::Result<u64> {
+        let found = self.numbers(&format!("{grid}/NumberOfPoints"))?;
+        if found.row != RowType::single(Element::I64) {
+            return Err("its rows are not of one i64 each".into());
+        }
+        partitions::check_count(found.rows)?;
+        let mut sizes = vec![0_i64; found.count()];
+        let all = Block::even(found.rows, 0, 1);
+        found.read(all, bytemuck::cast_slice_mut(&mut sizes))?;
+        partitions::check(&sizes, points)?;
+        Ok(found.rows)
     }
 
     /// All of a dataset of one text, without the zeros at its end.

@@ -8,6 +8,9 @@ use crate::output::{Block, OutputError};
 use super::explain;
 use super::gate::{self, Found, Gate};
 
+/// Group of the grid.
+const GRID: &str = "/VTKHDF";
+
 /// Why a snapshot could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
@@ -42,7 +45,8 @@ impl SnapshotFile {
     /// Opens a snapshot for reading.
     ///
     /// # Errors
-    /// [`ReadError::Open`] if it is no HDF5 file, [`ReadError::Layout`] if it holds no points.
+    /// [`ReadError::Open`] if it is no HDF5 file, [`ReadError::Layout`] if it holds no points, or
+    /// partitions that are not theirs.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let mut snapshot = Self {
             gate: Gate::open(None, path)?,
@@ -55,6 +59,8 @@ impl SnapshotFile {
             return Err(snapshot.layout("/VTKHDF/Points", &reason));
         }
         snapshot.particles = points.count();
+        let partitions = snapshot.gate.partitions(GRID, points.rows);
+        snapshot.told(&format!("{GRID}/NumberOfPoints"), partitions)?;
         Ok(snapshot)
     }
 
