@@ -153,6 +153,41 @@ mod tests {
         }
     }
 
+    /// Of virtual particles: nothing is as large in memory.
+    #[test]
+    fn more_than_four_thousand_million_rows_have_their_places() {
+        for (total, ranks) in [(1 << 32, 7), (5_000_000_001, 10_000), (1 << 40, 100_000)] {
+            let partitions = Partitions::new(total, PARTITION_ROWS);
+            assert_eq!(partitions.sizes().sum::<u64>(), total);
+            assert!(
+                partitions
+                    .sizes()
+                    .all(|n| (1..=PARTITION_ROWS).contains(&n))
+            );
+            let sizes: Vec<i64> = partitions
+                .sizes()
+                .map(|n| i64::try_from(n).unwrap())
+                .collect();
+            assert!(check(&sizes, total).is_ok());
+            let (mut row, mut entry) = (0, 0);
+            for rank in 0..ranks {
+                let block = Block::even(total, rank, ranks);
+                let offsets = partitions.offsets(block, block.closes(rank == 0));
+                assert_eq!((block.first, offsets.first), (row, entry));
+                // The first offset is that of the first row.
+                assert_eq!(partitions.offset(entry), partitions.place(row));
+                row += block.count as u64;
+                entry += offsets.count as u64;
+            }
+            assert_eq!(row, total);
+            assert_eq!(entry, total + partitions.count());
+            let last = partitions.sizes().last().unwrap();
+            assert_eq!(partitions.offset(entry - 1), last);
+        }
+        assert_eq!(Partitions::new(1 << 32, PARTITION_ROWS).count(), 1024);
+        assert_eq!(Partitions::new((1 << 32) + 1, PARTITION_ROWS).count(), 1025);
+    }
+
     #[test]
     fn partitions_that_cannot_be_are_refused() {
         assert!(check(&[0], 0).is_ok());
