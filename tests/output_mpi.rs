@@ -8,9 +8,10 @@ use std::process::Command;
 
 use output_support::{case, id, is_rank, meta, on_ranks, particles, sentinel, sorted_ids};
 use whipple::comm::Comm;
+use whipple::model::Precision;
 use whipple::output::h5::read::SnapshotFile;
 use whipple::output::h5::{Content, Element, RowType};
-use whipple::output::snapshot::Form;
+use whipple::output::snapshot::{Form, Part};
 use whipple::output::{Block, OutputError, Rows, checkpoint, snapshot};
 use whipple::particles::{FIELDS, Life, ParticleStore, rows};
 
@@ -102,6 +103,94 @@ fn check_snapshot(path: &Path, total: u64, rows: u64) {
     assert_eq!(file.text("/whipple/input").unwrap(), case.resolved);
 }
 
+/// What has x above zero: some half of the particles.
+fn halves() -> Part {
+    let mut part = Part::default();
+    part.region.above[0] = 0.0;
+    part
+}
+
+fn part(part: &Part) -> Form<'_> {
+    Form {
+        part,
+        partition_rows: 7,
+        schedule: Some("close"),
+        ..Form::of(&[])
+    }
+}
+
+fn short() -> Form<'static> {
+    Form {
+        precision: Precision::Single,
+        ..Form::of(&[])
+    }
+}
+
+/// Checks a snapshot of a part, and one of short numbers, against the whole.
+fn check_part(folder: &Path, total: u64) {
+    let open = |ending: &str| Content::open(&folder.join(format!("{total}{ending}"))).unwrap();
+    let [whole, part, short] = [".vtkhdf", "-part.vtkhdf", "-short.vtkhdf"].map(open);
+    let vector = whole.array("/VTKHDF/Points").unwrap().row;
+    let points = read_all(&whole, "/VTKHDF/Points", vector, total);
+    let x = points
+        .chunks(24)
+        .map(|point| f64::from_ne_bytes(point[..8].try_into().unwrap()));
+    let kept: Vec<bool> = x.map(|x| x >= 0.0).collect();
+    let count = kept.iter().filter(|kept| **kept).count() as u64;
+    assert!(total < 1000 || (300..700).contains(&count), "{count}");
+    assert_eq!(part.note("/whipple", "part").unwrap(), "above x = 0 m");
+    assert_eq!(part.note("/whipple", "schedule").unwrap(), "close");
+    assert_eq!(whole.note_if_any("/whipple", "part").unwrap(), None);
+    assert_eq!(
+        part.partitions("/VTKHDF").unwrap(),
+        count.div_ceil(7).max(1)
+    );
+    let names = whole.arrays("/VTKHDF/PointData").unwrap().into_iter();
+    let names = names.map(|array| format!("/VTKHDF/PointData/{}", array.name));
+    for path in names.chain(["/VTKHDF/Points".to_owned()]) {
+        let (array, some) = (whole.array(&path).unwrap(), part.array(&path).unwrap());
+        assert_eq!((some.row, some.rows), (array.row, count), "{path}");
+        let all = read_all(&whole, &path, array.row, total);
+        let rows = all.chunks(array.row.bytes()).zip(&kept);
+        let expected: Vec<u8> = rows
+            .filter(|(_, kept)| **kept)
+            .flat_map(|(row, _)| row.to_vec())
+            .collect();
+        assert!(
+            read_all(&part, &path, array.row, count) == expected,
+            "{path} of {total}"
+        );
+
+        let other = short.array(&path).unwrap();
+        assert_eq!(other.unit, array.unit);
+        let bytes = read_all(&short, &path, other.row, total);
+        if array.row.element == Element::F64 {
+            assert_eq!(other.row.element, Element::F32);
+            let long = bytemuck::pod_collect_to_vec::<u8, f64>(&all).into_iter();
+            #[allow(clippy::cast_possible_truncation, reason = "as it is written")]
+            let long = long.map(|value| {
+                if value.is_nan() {
+                    f32::NAN
+                } else {
+                    value as f32
+                }
+            });
+            assert!(
+                bytes == bytemuck::cast_slice::<f32, u8>(&long.collect::<Vec<_>>()),
+                "{path}"
+            );
+        } else {
+            assert_eq!(bytes, all);
+        }
+    }
+    let file = SnapshotFile::open(part.path()).unwrap();
+    assert_eq!(file.part().unwrap().as_deref(), Some("above x = 0 m"));
+    assert_eq!(
+        file.points(0..file.particles()).unwrap().len() as u64,
+        count
+    );
+}
+
 /// A state of any characters and some size.
 fn state() -> String {
     format!("{{\"ρ\": \"{}\"}}", "x".repeat(100_000))
@@ -171,6 +260,15 @@ fn snapshots_hold_every_field_in_id_order_on_any_ranks() {
                     snapshot::write(comm, &path, &particles, &meta(&case), &form, &mut rows)
                         .unwrap();
                 }
+                for (name, form) in [("part", part(&halves())), ("short", short())] {
+                    let path = folder.join(format!("{total}-{name}.vtkhdf"));
+                    let form = Form {
+                        quantities: &quantities,
+                        ..form
+                    };
+                    snapshot::write(comm, &path, &particles, &meta(&case), &form, &mut rows)
+                        .unwrap();
+                }
             }
         });
         if is_rank() {
@@ -182,8 +280,9 @@ fn snapshots_hold_every_field_in_id_order_on_any_ranks() {
                 let path = folder.path().join(format!("{total}-{rows}.vtkhdf"));
                 check_snapshot(&path, total, rows);
             }
+            check_part(folder.path(), total);
         }
-        let files = TOTALS.len() * (1 + PARTITIONS.len());
+        let files = TOTALS.len() * (3 + PARTITIONS.len());
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), files);
     }
 }

@@ -87,6 +87,12 @@ impl Results {
     }
 }
 
+/// What is said of a snapshot of a part of the model where all of it is needed.
+#[must_use]
+pub fn only_part(part: &str) -> String {
+    format!("it holds a part of the model alone ({part}); give a snapshot of all particles")
+}
+
 /// Names of the components of a field of so many; `vtk` for the order that VTK wants.
 #[must_use]
 pub fn component_names(components: usize, vtk: bool) -> &'static [&'static str] {

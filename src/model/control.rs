@@ -124,4 +124,42 @@ pub struct OutputOptions {
     pub history_every: u64,
     /// Names of the snapshot fields; the field table's defaults when empty.
     pub fields: Vec<String>,
+    /// Further snapshots, with schedules of their own.
+    pub snapshots: Vec<SnapshotSchedule>,
+}
+
+impl OutputOptions {
+    /// Names of all fields that snapshots are asked for.
+    pub fn all_fields(&self) -> impl Iterator<Item = &String> {
+        let more = self.snapshots.iter().flat_map(|schedule| &schedule.fields);
+        self.fields.iter().chain(more)
+    }
+}
+
+/// Snapshots beside the usual ones, of a part of the model or of other fields.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SnapshotSchedule {
+    /// Name of its folder.
+    pub name: String,
+    /// Time between them (s); the first and the last state alone if absent.
+    pub every: Option<f64>,
+    /// Names of the fields; the field table's defaults when empty.
+    pub fields: Vec<String>,
+    /// Bodies whose particles it holds; all if absent.
+    pub bodies: Option<Vec<usize>>,
+    /// What of space it holds; all if absent.
+    pub region: Option<Region>,
+    /// Of its numbers.
+    pub precision: Precision,
+}
+
+/// How many digits numbers are written with.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Precision {
+    /// Floating-point numbers of 64 bits.
+    #[default]
+    Double,
+    /// Of 32 bits.
+    Single,
 }

@@ -27,6 +27,7 @@ pub mod series;
 mod set_aside;
 mod sheet;
 pub mod snapshot;
+mod snapshot_folders;
 mod vote;
 
 pub use error::OutputError;

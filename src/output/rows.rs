@@ -104,13 +104,26 @@ impl Rows {
     /// # Panics
     /// If this rank owns 2³² particles or more, which no store can hold.
     pub fn plan(&mut self, comm: &Comm, ids: &[u64]) -> Result<(), OutputError> {
-        let mut total = [ids.len() as u64];
+        let particles = u32::try_from(ids.len()).expect("a rank's particles fit u32");
+        self.plan_of(comm, ids, 0..particles)
+    }
+
+    /// As [`Self::plan`], of some particles alone: the others have no rows. Collective.
+    ///
+    /// # Errors
+    /// [`OutputError::DuplicateId`], the same on every rank.
+    pub fn plan_of(
+        &mut self,
+        comm: &Comm,
+        ids: &[u64],
+        chosen: impl IntoIterator<Item = u32>,
+    ) -> Result<(), OutputError> {
+        self.order.clear();
+        self.order.extend(chosen);
+        self.order.sort_unstable_by_key(|&i| ids[i as usize]);
+        let mut total = [self.order.len() as u64];
         comm.sum_u64(&mut total);
         self.block = Block::even(total[0], comm.rank(), comm.size());
-        let particles = u32::try_from(ids.len()).expect("a rank's particles fit u32");
-        self.order.clear();
-        self.order.extend(0..particles);
-        self.order.sort_unstable_by_key(|&i| ids[i as usize]);
 
         let cuts = find_cuts(comm, total[0], ids, &self.order);
         self.choose_peers(comm, &cuts);
@@ -275,6 +288,18 @@ mod tests {
             sorted,
             [[2, 20, 200], [3, 30, 300], [0, 0, 0], [1, 10, 100]]
         );
+    }
+
+    #[test]
+    fn particles_that_are_not_chosen_have_no_rows() {
+        let (comm, mut rows) = (Comm::solo(), Rows::default());
+        let ids = [7, 7, 0, 3];
+        rows.plan_of(&comm, &ids, [0, 3]).unwrap();
+        assert_eq!(rows.block(), Block::even(2, 0, 1));
+        let bytes = rows.collect(&comm, &[10, 11, 12, 13], 1);
+        assert_eq!(bytes, [13, 10]);
+        rows.plan_of(&comm, &ids, []).unwrap();
+        assert!(rows.collect(&comm, &[10, 11, 12, 13], 1).is_empty());
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The run loop: steps, and what is written between them.
 
 mod measures;
+mod snapshots;
 
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -20,10 +21,10 @@ use super::tables::Tables;
 use super::{announce, census};
 use crate::comm::Comm;
 use crate::model::NumericalFailurePolicy;
-use crate::output::snapshot::{self, Form, Quantity};
+use crate::output::snapshot::Plan;
 use crate::output::{
     Log, OutputError, Phase, Rows, RunFolder, Schedule, Status, agree, checkpoint, on_root,
-    post_mortem, series, write_json,
+    post_mortem, write_json,
 };
 use crate::step::{self, Simulation, StepError, Timers};
 
@@ -36,7 +37,7 @@ pub struct Driver<'a> {
     /// Seconds from the start of MPI to the first step, but for what is written before it.
     set_up: f64,
     watch: Watch,
-    quantities: Vec<Quantity>,
+    plans: Vec<Plan>,
     rows: Rows,
     tables: Option<Tables>,
     log: Log,
@@ -76,7 +77,7 @@ impl<'a> Driver<'a> {
         simulation.poison = args.poison;
         // What set-up took is no part of a step.
         simulation.timers = Timers::default();
-        let quantities = snapshot::quantities_of(&simulation.case, &simulation.particles)?;
+        let plans = Plan::all(&simulation.case, &simulation.particles)?;
         let mut tables = None;
         on_root(comm, || {
             let resume = restarted.is_some().then_some(&simulation.state);
@@ -89,7 +90,7 @@ impl<'a> Driver<'a> {
             start: launch.start,
             set_up,
             watch: Watch::new(launch.signals.clone(), stop, launch.start, args.walltime),
-            quantities,
+            plans,
             rows: Rows::default(),
             tables,
             log: Log::new(&folder.log(), comm.rank()),
@@ -116,7 +117,7 @@ impl<'a> Driver<'a> {
             driver.write_row(comm)?;
             driver.write_measures(comm, 0.0)?;
             let tells = driver.simulation.case.fragments.is_some();
-            driver.write_snapshot(comm, tells)?;
+            driver.write_snapshots(comm, None, tells)?;
         }
         Ok(driver)
     }
@@ -238,7 +239,9 @@ impl<'a> Driver<'a> {
         let finished = self.simulation.is_finished();
         let (now, step) = (self.simulation.state.time, self.simulation.state.step);
         let output = &self.simulation.case.output;
-        let snapshot_due = Schedule::new(output.snapshot_every).is_due(before, now);
+        let mut due = self.plans.iter().map(|plan| plan.is_due(before, now));
+        let usual_due = due.next().unwrap_or_default();
+        let snapshot_due = usual_due || due.any(|is| is);
         let checkpoint_due = Schedule::new(output.checkpoint_every).is_due(before, now)
             || output
                 .checkpoint_every_steps
@@ -249,11 +252,11 @@ impl<'a> Driver<'a> {
             self.write_row(comm)?;
         }
         let options = self.simulation.case.fragments;
-        let census_due = options.is_some_and(|options| {
-            finished || census::is_due(&options, [before, now], snapshot_due)
-        });
+        let census_due = options
+            .is_some_and(|options| finished || census::is_due(&options, [before, now], usual_due));
         if finished || snapshot_due {
-            self.write_snapshot(comm, census_due)?;
+            let step = (!finished).then_some([before, now]);
+            self.write_snapshots(comm, step, census_due)?;
         } else if census_due {
             self.find_fragments(comm, true)?;
         }
@@ -289,39 +292,6 @@ impl<'a> Driver<'a> {
             self.log(comm, &text);
             self.progress.warn(&text);
         }
-        Ok(())
-    }
-
-    /// Writes a snapshot, and the tables of fragments if it `tells`.
-    fn write_snapshot(&mut self, comm: &Comm, tells: bool) -> Result<(), OutputError> {
-        let begun = Instant::now();
-        let path = self.folder.snapshot(self.simulation.state.step);
-        self.simulation.measure_contact_stress(comm);
-        let shows = |quantity: &Quantity| matches!(quantity, Quantity::Fragment);
-        let labels = if tells || self.quantities.iter().any(shows) {
-            self.find_fragments(comm, tells)?
-        } else {
-            Vec::new()
-        };
-        let (form, rows) = (Form::of(&self.quantities), &mut self.rows);
-        self.simulation.with_frozen(|simulation| {
-            let meta = snapshot::Meta {
-                case: &simulation.case,
-                step: simulation.state.step,
-                time: simulation.state.time,
-                threads: rayon::current_num_threads(),
-                wall_seconds: self.start.elapsed().as_secs_f64(),
-                fragments: &labels,
-            };
-            snapshot::write(comm, &path, &simulation.particles, &meta, &form, rows)
-        })?;
-        let state = &self.simulation.state;
-        on_root(comm, || {
-            let name = RunFolder::snapshot_name(state.step);
-            series::add(&self.folder.series(), &name, state.time)
-        })?;
-        self.watch.wrote_snapshot(begun.elapsed());
-        self.log(comm, &format!("snapshot {}", path.display()));
         Ok(())
     }
 

@@ -75,6 +75,7 @@ pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
             checkpoints_kept: 2,
             history_every: 10,
             fields: Vec::new(),
+            snapshots: Vec::new(),
         },
         measure: MeasureOptions::default(),
         resolved: String::new(),

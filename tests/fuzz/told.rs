@@ -85,7 +85,7 @@ fn datasets_of_another_type_shape_or_storage_are_refused() {
             "unexpected shape",
         ),
         (mass(Kind::F64, &[n, 10], Store::Plain), "unexpected shape"),
-        (mass(Kind::F32, &[n], Store::Plain), "none of f64"),
+        (mass(Kind::I16, &[n], Store::Plain), "none of f64"),
         (mass(Kind::Record(9), &[n], Store::Plain), "none of f64"),
         (mass(Kind::LooseList, &[n], Store::Plain), "none of f64"),
         (mass(Kind::Text(8), &[n], Store::Plain), "none of f64"),

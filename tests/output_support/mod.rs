@@ -79,6 +79,7 @@ pub fn case() -> Case {
             checkpoints_kept: 2,
             history_every: 1,
             fields: Vec::new(),
+            snapshots: Vec::new(),
         },
         fragments: None,
         measure: MeasureOptions::default(),

@@ -303,6 +303,10 @@ impl<'a> Tally<'a> {
                     (value, format!("{value:?}"))
                 }
             }
+            Element::F32 => {
+                let value = f32::from_ne_bytes(std::array::from_fn(|k| wide[k]));
+                (value.into(), format!("{value:?}"))
+            }
             #[allow(clippy::cast_precision_loss, reason = "only the size of a difference")]
             _ => (bits as f64, bits.to_string()),
         }

@@ -7,7 +7,7 @@
 //! attributes of one value. Type, shape and place are compared with the length of the file before
 //! memory is taken.
 
-use std::ffi::{CStr, CString, c_int};
+use std::ffi::{CString, c_int};
 use std::path::Path;
 
 use hdf5::{Dataset, Dataspace, Datatype, File, Group, Location};
@@ -220,20 +220,22 @@ impl Found {
     }
 
     /// A text attached to it; empty where there is none.
-    pub fn note_if_any(&self, name: &CStr) -> hdf5::Result<String> {
-        // SAFETY: the dataset is open, and the name ends with a zero.
-        let there = hdf5::sync::sync(|| unsafe { H5Aexists(self.dataset.id(), name.as_ptr()) });
-        if there > 0 {
-            self.note(&name.to_string_lossy())
-        } else {
-            Ok(String::new())
-        }
+    pub fn note_if_any(&self, name: &str) -> hdf5::Result<String> {
+        Ok(note_if_any(&self.dataset, name)?.unwrap_or_default())
     }
 
     /// A text attached to it.
     pub fn note(&self, name: &str) -> hdf5::Result<String> {
         note(&self.dataset, name)
     }
+}
+
+/// A text attached to an object, if there is one of this name.
+pub(super) fn note_if_any(object: &Location, name: &str) -> hdf5::Result<Option<String>> {
+    let text = CString::new(name).map_err(|e| e.to_string())?;
+    // SAFETY: the object is open, and the name ends with a zero.
+    let there = hdf5::sync::sync(|| unsafe { H5Aexists(object.id(), text.as_ptr()) });
+    (there > 0).then(|| note(object, name)).transpose()
 }
 
 /// A text attached to an object.

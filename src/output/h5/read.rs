@@ -11,6 +11,9 @@ use super::gate::{self, Found, Gate};
 /// Group of the grid.
 const GRID: &str = "/VTKHDF";
 
+/// Attribute of `/whipple` that says which part of the model a snapshot holds, if not all of it.
+pub const PART: &str = "part";
+
 /// Why a snapshot could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
@@ -168,6 +171,19 @@ impl SnapshotFile {
     pub fn attribute(&self, group: &str, name: &str) -> Result<String, ReadError> {
         let text = self.gate.group(group).and_then(|g| gate::note(&g, name));
         self.told(&format!("attribute {name} of {group}"), text)
+    }
+
+    /// Which part of the model it holds, if it says that it does not hold all particles.
+    ///
+    /// # Errors
+    /// [`ReadError::Layout`] if that cannot be read.
+    pub fn part(&self) -> Result<Option<String>, ReadError> {
+        let group = "/whipple";
+        let part = self
+            .gate
+            .group(group)
+            .and_then(|g| gate::note_if_any(&g, PART));
+        self.told(&format!("attribute {PART} of {group}"), part)
     }
 
     /// A whole number that is an attribute of a group, such as `dimension` of `/whipple`.

@@ -1,7 +1,9 @@
 //! The grid of a snapshot as VTK wants it: points, and a cell for each, in partitions.
 
 use super::form::Form;
+use super::values::write_values;
 use crate::comm::Comm;
+use crate::model::Precision;
 use crate::output::h5::{Element, RowType, Writer};
 use crate::output::partitions::Partitions;
 use crate::output::{Block, OutputError, Rows};
@@ -28,7 +30,7 @@ pub(super) fn write_grid(
     for name in ["NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"] {
         file.numbers(&format!("{GRID}/{name}"), Element::I64, &sizes)?;
     }
-    write_points(comm, file, particles, rows)?;
+    write_points(comm, file, particles, form.precision, rows)?;
     write_cells(comm, file, partitions, rows)?;
     file.group(&format!("{GRID}/PointData"))?;
     file.group(&format!("{GRID}/FieldData"))?;
@@ -43,6 +45,7 @@ fn write_points(
     comm: &Comm,
     file: &Writer,
     particles: &ParticleStore,
+    precision: Precision,
     rows: &mut Rows,
 ) -> Result<(), OutputError> {
     let vector = RowType {
@@ -51,7 +54,7 @@ fn write_points(
     };
     let (path, block) = (format!("{GRID}/Points"), rows.block());
     let points = rows.collect(comm, particles.bytes(FieldId::position), vector.bytes());
-    file.rows(&path, vector, block, points)?;
+    write_values(file, &path, (vector, precision), block, points)?;
     file.note(&path, "unit", "m")
 }
 

@@ -1,0 +1,48 @@
+//! What is written, as it is typed.
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::KeepParams;
+use crate::input::quantity::{Placed, Time};
+use crate::model::Precision;
+
+optional_tables! {
+    /// `[output]`
+    OutputParams {
+        /// Time between snapshots.
+        snapshot_every: Option<Placed<Time>>,
+        /// Time between checkpoints.
+        checkpoint_every: Option<Placed<Time>>,
+        /// Steps between checkpoints.
+        checkpoint_every_steps: Option<Spanned<i64>>,
+        /// Time of the clock between checkpoints.
+        checkpoint_every_wall: Option<Placed<Time>>,
+        /// How many are kept.
+        checkpoints_kept: Option<Spanned<i64>>,
+        /// Steps between rows of the histories.
+        history_every: Option<Spanned<i64>>,
+        /// Snapshot fields, at least one.
+        fields: Option<Spanned<Vec<Spanned<String>>>>,
+        /// Snapshots with schedules of their own.
+        snapshot: Vec<Spanned<SnapshotParams>>,
+    }
+}
+
+tables! {
+    /// `[[output.snapshot]]`
+    SnapshotParams {
+        /// Name of its folder, as of a body but without dots.
+        name: Spanned<String>,
+        /// Time between snapshots; the first and the last state alone if absent.
+        every: Option<Placed<Time>>,
+        /// Fields, at least one; those of the usual snapshots if absent.
+        fields: Option<Spanned<Vec<Spanned<String>>>>,
+        /// Names of the bodies whose particles it holds; all if absent.
+        bodies: Option<Spanned<Vec<Spanned<String>>>>,
+        /// What of space it holds; all if absent.
+        region: Option<Spanned<KeepParams>>,
+        /// Whether numbers have 64 bits or 32; 64 if absent.
+        precision: Option<Precision>,
+    }
+}
