@@ -5,7 +5,7 @@ use std::path::Path;
 use whipple::input::{load, output_and_run_only, parse};
 use whipple::material::{Strength, library};
 use whipple::model::{
-    Axis, Case, ContactMode, PotentialRange, Precision, Shape, SmoothingLength,
+    Axis, Case, ClockInterval, ContactMode, PotentialRange, Precision, Shape, SmoothingLength,
 };
 use whipple::populate;
 use whipple::preflight::warnings;
@@ -479,4 +479,19 @@ fn snapshots_may_have_schedules_of_their_own() {
         (Precision::Double, None, &None)
     );
     assert_eq!(output.all_fields().count(), 1);
+}
+
+#[test]
+fn checkpoints_may_come_by_what_they_cost() {
+    let every = |more: &[&str]| ready("quarter-impact", more).output.checkpoint_every_wall;
+    assert_eq!(every(&[]), None);
+    let wall = "output.checkpoint_every_wall=";
+    let minutes = format!("{wall}30 min");
+    assert_eq!(every(&[&minutes]), Some(ClockInterval::Fixed(1800.0)));
+    let auto = format!("{wall}auto");
+    let failures = 6.0 * 3600.0;
+    assert_eq!(every(&[&auto]), Some(ClockInterval::Auto { failures }));
+    let day = "output.mean_time_between_failures=24 h";
+    let failures = 24.0 * 3600.0;
+    assert_eq!(every(&[&auto, day]), Some(ClockInterval::Auto { failures }));
 }

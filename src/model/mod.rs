@@ -39,8 +39,8 @@ pub use body::{Body, Lattice, LatticeKind};
 pub use cloud::{Cloud, Quantity, cube, edge};
 pub use contact::*;
 pub use control::{
-    DomainOptions, OutputOptions, Precision, RunControl, SmoothingLength, SnapshotSchedule, SphForm,
-    SphOptions, TimeStepOptions,
+    ClockInterval, DomainOptions, OutputOptions, Precision, RunControl, SmoothingLength,
+    SnapshotSchedule, SphForm, SphOptions, TimeStepOptions,
 };
 pub use formula::{Combination, Formula, Function, Operation, Place, Profile};
 pub use fragments::{FragmentOptions, Include};

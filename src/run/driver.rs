@@ -1,5 +1,6 @@
 //! The run loop: steps, and what is written between them.
 
+mod checkpoints;
 mod measures;
 mod snapshots;
 
@@ -13,18 +14,19 @@ use super::launch::{Launch, STEP, fail};
 use super::load::load;
 use super::notices::Notices;
 use super::options::CommonArgs;
+use super::output_time::OutputTime;
 use super::progress::Progress;
 use super::say::{counted, say, seconds};
 use super::stop::{self, Watch};
-use super::summary::summary;
+use super::summary::{Clock, summary};
 use super::tables::Tables;
 use super::{announce, census};
 use crate::comm::Comm;
 use crate::model::NumericalFailurePolicy;
 use crate::output::snapshot::Plan;
 use crate::output::{
-    Log, OutputError, Phase, Rows, RunFolder, Schedule, Status, agree, checkpoint, on_root,
-    post_mortem, write_json,
+    Log, OutputError, Phase, Rows, RunFolder, Schedule, Status, agree, on_root, post_mortem,
+    write_json,
 };
 use crate::step::{self, Simulation, StepError, Timers};
 
@@ -44,6 +46,7 @@ pub struct Driver<'a> {
     progress: Progress,
     notices: Notices,
     departures: Departures,
+    output_time: OutputTime,
     /// Post-mortems written.
     post_mortems: usize,
 }
@@ -99,6 +102,7 @@ impl<'a> Driver<'a> {
             simulation,
             folder,
             notices: Notices::default(),
+            output_time: OutputTime::default(),
             post_mortems: 0,
         };
         if comm.is_root() {
@@ -114,10 +118,12 @@ impl<'a> Driver<'a> {
             warnings,
         );
         if restarted.is_none() {
+            let begun = Instant::now();
             driver.write_row(comm)?;
             driver.write_measures(comm, 0.0)?;
             let tells = driver.simulation.case.fragments.is_some();
             driver.write_snapshots(comm, None, tells)?;
+            driver.output_time.add(begun);
         }
         Ok(driver)
     }
@@ -166,7 +172,9 @@ impl<'a> Driver<'a> {
             if let Err(error) = self.simulation.advance(comm) {
                 self.handle_failure(comm, error)?;
             }
+            let begun = Instant::now();
             self.write(comm, before).map_err(|e| e.to_string())?;
+            self.output_time.add(begun);
             if let Err(error) = self.simulation.check_gain(comm) {
                 self.handle_failure(comm, error)?;
             }
@@ -295,40 +303,21 @@ impl<'a> Driver<'a> {
         Ok(())
     }
 
-    fn write_checkpoint(&mut self, comm: &Comm) -> Result<(), OutputError> {
-        let begun = Instant::now();
-        self.write_crossings(comm)?;
-        // Rows before this checkpoint are not written again once it is there.
-        on_root(comm, || self.tables.as_mut().map_or(Ok(()), Tables::sync))?;
-        let folder = self.folder.checkpoints();
-        self.simulation.join_extremes(comm);
-        let rows = &mut self.rows;
-        let path = self.simulation.with_frozen(|simulation| {
-            let state = &simulation.state;
-            let text = serde_json::to_string(state).expect("plain numbers");
-            let meta = checkpoint::Meta {
-                step: state.step,
-                time: state.time,
-                state: &text,
-                input: &simulation.case.resolved,
-            };
-            let keep = simulation.case.output.checkpoints_kept;
-            checkpoint::write(comm, &folder, &simulation.particles, &meta, keep, rows)
-        })?;
-        on_root(comm, || self.folder.forget_set_aside())?;
-        self.watch.wrote_checkpoint(begun.elapsed());
-        let text = format!("checkpoint {}", path.display());
-        self.log(comm, &text);
-        Ok(())
-    }
-
     /// The last checkpoint, `summary.json` and `status.json`; gives the exit code.
     fn close(mut self, comm: &Comm, phase: Phase, reason: Option<&str>, code: u8) -> u8 {
         self.progress.finish();
         let folder = self.folder;
+        let begun = Instant::now();
+        let mut output = String::new();
         let closed = self.write_checkpoint(comm).and_then(|()| {
-            let wall = self.start.elapsed().as_secs_f64();
-            let summary = summary(comm, &self.simulation, [wall, self.set_up]);
+            self.output_time.add(begun);
+            let clock = Clock {
+                wall: self.start.elapsed().as_secs_f64(),
+                set_up: self.set_up,
+                output: self.output_time.seconds(comm),
+            };
+            output = clock.output.line(clock.wall);
+            let summary = summary(comm, &self.simulation, &clock);
             on_root(comm, || {
                 write_json(&folder.summary(), &summary)?;
                 self.write_status(phase, reason)
@@ -349,6 +338,7 @@ impl<'a> Driver<'a> {
         if comm.is_root() {
             say(&format!("{text}; results in {}", folder.path().display()));
         }
+        self.log(comm, &output);
         self.log(comm, &text);
         code
     }

@@ -1,10 +1,10 @@
 //! What is written, as it is typed.
 
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
 use super::KeepParams;
-use crate::input::quantity::{Placed, Time};
+use crate::input::quantity::{Placed, Quantity, TextVisitor, Time, expected, quantity};
 use crate::model::Precision;
 
 optional_tables! {
@@ -17,7 +17,9 @@ optional_tables! {
         /// Steps between checkpoints.
         checkpoint_every_steps: Option<Spanned<i64>>,
         /// Time of the clock between checkpoints.
-        checkpoint_every_wall: Option<Placed<Time>>,
+        checkpoint_every_wall: Option<Spanned<ClockParams>>,
+        /// Mean time between failures of the machine, for `"auto"`; 6 h if absent.
+        mean_time_between_failures: Option<Placed<Time>>,
         /// How many are kept.
         checkpoints_kept: Option<Spanned<i64>>,
         /// Steps between rows of the histories.
@@ -44,5 +46,27 @@ tables! {
         region: Option<Spanned<KeepParams>>,
         /// Whether numbers have 64 bits or 32; 64 if absent.
         precision: Option<Precision>,
+    }
+}
+
+/// A time of the clock, or `"auto"`.
+#[derive(Debug, Clone, Copy)]
+pub enum ClockParams {
+    /// By what a checkpoint costs.
+    Auto,
+    /// Always the same.
+    Every(Quantity<Time>),
+}
+
+impl<'de> Deserialize<'de> for ClockParams {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(TextVisitor {
+            expected: || expected::<Time>(" or \"auto\""),
+            takes_numbers: false,
+            read: |text| match text.trim() {
+                "auto" => Ok(Self::Auto),
+                _ => quantity::<Time>(text).map(Self::Every),
+            },
+        })
     }
 }

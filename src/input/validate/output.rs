@@ -2,14 +2,14 @@
 
 use toml::Spanned;
 
-use super::check::{Allowed, optional, whole};
+use super::check::{Allowed, number, optional, whole};
 use super::region::KeepReader;
 use crate::input::names;
 use crate::input::quantity::{Placed, Time};
-use crate::input::schema::{OutputParams, SnapshotParams};
+use crate::input::schema::{ClockParams, OutputParams, SnapshotParams};
 use crate::input::source::Diagnostic;
 use crate::material::Material;
-use crate::model::{OutputOptions, SnapshotSchedule};
+use crate::model::{ClockInterval, OutputOptions, SnapshotSchedule};
 use crate::particles::{FIELDS, FieldId, TEMPERATURE, snapshot_names};
 
 /// A list of names as it is typed.
@@ -40,10 +40,7 @@ impl Reader<'_> {
             checkpoint_every_steps: (params.checkpoint_every_steps.as_ref())
                 .map(|steps| whole(Some(steps), "checkpoint_every_steps", 0, 1))
                 .transpose()?,
-            checkpoint_every_wall: every(
-                params.checkpoint_every_wall.as_ref(),
-                "checkpoint_every_wall",
-            )?,
+            checkpoint_every_wall: clock_interval(params)?,
             checkpoints_kept: usize::try_from(kept).unwrap_or(usize::MAX),
             history_every: whole(params.history_every.as_ref(), "history_every", 10, 1)?,
             fields,
@@ -145,6 +142,32 @@ impl Reader<'_> {
         }
         Ok(())
     }
+}
+
+/// Mean time between failures (s), if nothing is known of the machine: of some thousand nodes.
+const FAILURES: f64 = 6.0 * 3600.0;
+
+fn clock_interval(params: &OutputParams) -> Result<Option<ClockInterval>, Diagnostic> {
+    let failures = params.mean_time_between_failures.as_ref();
+    let key = "mean_time_between_failures";
+    let given = optional(failures, key, Allowed::Positive)?;
+    let every = params.checkpoint_every_wall.as_ref();
+    let auto = matches!(every.map(Spanned::get_ref), Some(ClockParams::Auto));
+    if let (Some(failures), false) = (failures, auto) {
+        let title = format!("`{key}` is for `checkpoint_every_wall = \"auto\"` alone");
+        return Err(Diagnostic::new(failures.span(), title));
+    }
+    let Some(every) = every else { return Ok(None) };
+    Ok(Some(match every.get_ref() {
+        ClockParams::Auto => ClockInterval::Auto {
+            failures: given.unwrap_or(FAILURES),
+        },
+        ClockParams::Every(time) => {
+            let time = Spanned::new(every.span(), *time);
+            let key = "checkpoint_every_wall";
+            ClockInterval::Fixed(number(Some(&time), key, 0.0, Allowed::Positive)?)
+        }
+    }))
 }
 
 fn every(value: Option<&Placed<Time>>, key: &str) -> Result<Option<f64>, Diagnostic> {

@@ -33,6 +33,7 @@ impl Driver<'_> {
                 self.watch.wrote_snapshot(begun.elapsed());
             }
         }
+        self.output_time.snapshots += begun.elapsed();
         Ok(())
     }
 
