@@ -8,7 +8,7 @@ use std::process::Command;
 
 use output_support::{case, id, is_rank, meta, on_ranks, particles, sentinel, sorted_ids};
 use whipple::comm::Comm;
-use whipple::model::Precision;
+use whipple::model::{Precision, Sharing};
 use whipple::output::h5::read::SnapshotFile;
 use whipple::output::h5::{Content, Element, RowType};
 use whipple::output::snapshot::{Form, Part};
@@ -285,6 +285,62 @@ fn snapshots_hold_every_field_in_id_order_on_any_ranks() {
         let files = TOTALS.len() * (3 + PARTITIONS.len());
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), files);
     }
+}
+
+#[test]
+fn few_writers_and_aligned_arrays_write_the_same_rows() {
+    let name = "few_writers_and_aligned_arrays_write_the_same_rows";
+    for (ranks, writers) in [(1, 9), (3, 1), (5, 2)] {
+        let folder = tempfile::tempdir().unwrap();
+        on_ranks(name, ranks, folder.path(), |comm, folder| {
+            let case = case();
+            let mut rows = Rows::new(Sharing {
+                writers: Some(writers),
+                alignment: Some(4096),
+            });
+            for total in TOTALS {
+                let quantities = all_quantities();
+                let form = Form {
+                    partition_rows: 7,
+                    ..Form::of(&quantities)
+                };
+                let path = folder.join(format!("{total}.vtkhdf"));
+                let particles = particles(comm, total);
+                snapshot::write(comm, &path, &particles, &meta(&case), &form, &mut rows).unwrap();
+                assert_eq!(
+                    rows.block().count == 0,
+                    total == 0 || !writes(comm, writers, total)
+                );
+                let state = state();
+                let meta = checkpoint::Meta {
+                    step: total,
+                    time: f64::MIN_POSITIVE / 4.0,
+                    state: &state,
+                    input: &case.resolved,
+                };
+                let path = checkpoint::write(comm, folder, &particles, &meta, 9, &mut rows);
+                check_restored(comm, &path.unwrap(), total);
+            }
+        });
+        if is_rank() {
+            return;
+        }
+        for total in TOTALS {
+            check_snapshot(&folder.path().join(format!("{total}.vtkhdf")), total, 7);
+            let path = folder.path().join(format!("step-{total:08}/state.h5"));
+            let file = hdf5::File::open(path).unwrap();
+            let place = file.dataset("/fields/velocity").unwrap().offset();
+            assert!(
+                total < 1000 || place.unwrap().is_multiple_of(4096),
+                "{place:?}"
+            );
+        }
+    }
+}
+
+/// Whether a rank has rows where so many are spread evenly over some of the ranks.
+fn writes(comm: &Comm, writers: usize, total: u64) -> bool {
+    Block::shared(total, comm.rank(), comm.size(), writers.min(comm.size())).count > 0
 }
 
 #[test]

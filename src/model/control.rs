@@ -126,6 +126,17 @@ pub struct OutputOptions {
     pub fields: Vec<String>,
     /// Further snapshots, with schedules of their own.
     pub snapshots: Vec<SnapshotSchedule>,
+    /// How files of all ranks are written.
+    pub sharing: Sharing,
+}
+
+/// How files of all ranks are written, which never touches what is in them.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Sharing {
+    /// How many ranks write; all if absent.
+    pub writers: Option<usize>,
+    /// Arrays begin at multiples of so many bytes; anywhere if absent.
+    pub alignment: Option<u64>,
 }
 
 impl OutputOptions {

@@ -39,7 +39,7 @@ pub use body::{Body, Lattice, LatticeKind};
 pub use cloud::{Cloud, Quantity, cube, edge};
 pub use contact::*;
 pub use control::{
-    ClockInterval, DomainOptions, OutputOptions, Precision, RunControl, SmoothingLength,
+    ClockInterval, DomainOptions, OutputOptions, Precision, RunControl, Sharing, SmoothingLength,
     SnapshotSchedule, SphForm, SphOptions, TimeStepOptions,
 };
 pub use formula::{Combination, Formula, Function, Operation, Place, Profile};

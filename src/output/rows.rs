@@ -1,4 +1,4 @@
-//! Particles in the order of their ids, in even blocks over the ranks.
+//! Particles in the order of their ids, in even blocks over the ranks that write.
 //!
 //! Ranks own particles in any order. Block boundaries are ids, found by bisection on counts, all
 //! at once; then each field's rows travel straight to their block. No rank ever holds more than
@@ -7,6 +7,7 @@
 use std::ops::Range;
 
 use crate::comm::{Comm, Exchange};
+use crate::model::Sharing;
 
 use super::{OutputError, agree};
 
@@ -30,6 +31,24 @@ impl Block {
     pub fn even(total: u64, rank: usize, ranks: usize) -> Self {
         let first = start(total, rank, ranks);
         let end = start(total, rank + 1, ranks);
+        Self {
+            total,
+            first,
+            count: usize::try_from(end - first).expect("a block fits memory"),
+        }
+    }
+
+    /// The share of `rank` where `writers` of the ranks, evenly spread, have even shares and the
+    /// others none.
+    ///
+    /// # Panics
+    /// If a share is longer than an address.
+    #[must_use]
+    pub fn shared(total: u64, rank: usize, ranks: usize, writers: usize) -> Self {
+        // So many of the writers come before this rank, the first of which is rank 0.
+        let before = |rank: usize| (rank * writers).div_ceil(ranks);
+        let first = start(total, before(rank), writers);
+        let end = start(total, before(rank + 1), writers);
         Self {
             total,
             first,
@@ -74,9 +93,19 @@ struct Peer {
     receive: usize,
 }
 
+/// Most rows of a writer, whose places are counted in `u32`.
+const MOST_ROWS: u64 = 1 << 31;
+
+/// How many of the ranks write so many rows: as many as are asked for, if they can hold them.
+fn writers(asked: Option<usize>, total: u64, ranks: usize) -> usize {
+    let least = usize::try_from(total.div_ceil(MOST_ROWS)).unwrap_or(usize::MAX);
+    asked.unwrap_or(ranks).max(least).clamp(1, ranks)
+}
+
 /// The way of particles to rows in id order. Buffers are kept from one output to the next.
 #[derive(Default)]
 pub struct Rows {
+    sharing: Sharing,
     block: Block,
     /// This rank's particles, by id.
     order: Vec<u32>,
@@ -90,6 +119,21 @@ pub struct Rows {
 }
 
 impl Rows {
+    /// For files that are written so.
+    #[must_use]
+    pub fn new(sharing: Sharing) -> Self {
+        Self {
+            sharing,
+            ..Self::default()
+        }
+    }
+
+    /// How files are written.
+    #[must_use]
+    pub fn sharing(&self) -> Sharing {
+        self.sharing
+    }
+
     /// This rank's block, after [`Self::plan`].
     #[must_use]
     pub fn block(&self) -> Block {
@@ -123,9 +167,13 @@ impl Rows {
         self.order.sort_unstable_by_key(|&i| ids[i as usize]);
         let mut total = [self.order.len() as u64];
         comm.sum_u64(&mut total);
-        self.block = Block::even(total[0], comm.rank(), comm.size());
+        let (total, ranks) = (total[0], comm.size());
+        let writers = writers(self.sharing.writers, total, ranks);
+        let block = |rank: usize| Block::shared(total, rank, ranks, writers);
+        self.block = block(comm.rank());
 
-        let cuts = find_cuts(comm, total[0], ids, &self.order);
+        let starts: Vec<u64> = (0..ranks).map(|rank| block(rank).first).collect();
+        let cuts = find_cuts(comm, &starts, ids, &self.order);
         self.choose_peers(comm, &cuts);
         let placed = self.place(comm, ids);
         agree(comm, placed)
@@ -214,12 +262,12 @@ fn put(bytes: &mut [u8], place: u32, row: &[u8]) {
     bytes[at..at + row.len()].copy_from_slice(row);
 }
 
-/// Where each rank's block starts in this rank's `order`, and its length at the end: bisects for
-/// the largest id of all rows before each block, every boundary at once. Collective.
-fn find_cuts(comm: &Comm, total: u64, ids: &[u64], order: &[u32]) -> Vec<usize> {
+/// Where each rank's block, which `starts` at such a row, starts in this rank's `order`, and its
+/// length at the end: bisects for the largest id of all rows before each block, every boundary at
+/// once. Collective.
+fn find_cuts(comm: &Comm, starts: &[u64], ids: &[u64], order: &[u32]) -> Vec<usize> {
     let ranks = comm.size();
     let up_to = |id: u64| order.partition_point(|&i| ids[i as usize] <= id);
-    let starts: Vec<u64> = (0..ranks).map(|r| start(total, r, ranks)).collect();
     let mut bounds = [
         order.first().map_or(u64::MAX, |&i| ids[i as usize]),
         u64::MAX - order.last().map_or(0, |&i| ids[i as usize]),
@@ -272,6 +320,49 @@ mod tests {
             }
             assert_eq!(next, total);
         }
+    }
+
+    #[test]
+    fn writers_are_spread_evenly_and_have_even_blocks() {
+        for (total, ranks, writers) in [
+            (1000, 7, 3),
+            (1000, 7, 1),
+            (10, 7, 7),
+            (0, 5, 2),
+            (2, 12, 4),
+            (1 << 60, 10_000, 765),
+        ] {
+            let blocks: Vec<Block> = (0..ranks)
+                .map(|rank| Block::shared(total, rank, ranks, writers))
+                .collect();
+            let mut next = 0;
+            for block in &blocks {
+                assert_eq!((block.total, block.first), (total, next));
+                next += block.count as u64;
+            }
+            assert_eq!(next, total);
+            let full = blocks.iter().filter(|block| block.count > 0);
+            let (most, least) = (
+                full.clone().map(|b| b.count).max(),
+                full.clone().map(|b| b.count).min(),
+            );
+            assert!(most.unwrap_or(0) - least.unwrap_or(0) <= 1);
+            assert_eq!(full.count() as u64, total.min(writers as u64));
+            let closing = (0..ranks).filter(|&rank| blocks[rank].closes(rank == 0));
+            assert_eq!(closing.count(), 1);
+        }
+        for rank in 0..5 {
+            assert_eq!(Block::shared(77, rank, 5, 5), Block::even(77, rank, 5));
+        }
+    }
+
+    #[test]
+    fn more_rows_than_a_writer_can_count_have_more_writers() {
+        assert_eq!(writers(None, 10, 4), 4);
+        assert_eq!(writers(Some(9), 10, 4), 4);
+        assert_eq!(writers(Some(1), 1 << 31, 10_000), 1);
+        assert_eq!(writers(Some(1), (1 << 31) + 1, 10_000), 2);
+        assert_eq!(writers(Some(1), 1 << 40, 10_000), 512);
     }
 
     #[test]

@@ -77,7 +77,7 @@ fn write_file(
         Some(chosen) => rows.plan_of(comm, ids, chosen)?,
         None => rows.plan(comm, ids)?,
     }
-    let file = Writer::create(comm, path)?;
+    let file = Writer::create_aligned(comm, path, rows.sharing().alignment)?;
     write_grid(comm, &file, particles, meta.time, form, rows)?;
     for quantity in with_frozen(particles, form.quantities) {
         let what = (quantity, form.precision);

@@ -94,7 +94,7 @@ impl<'a> Driver<'a> {
             set_up,
             watch: Watch::new(launch.signals.clone(), stop, launch.start, args.walltime),
             plans,
-            rows: Rows::default(),
+            rows: Rows::new(simulation.case.output.sharing),
             tables,
             log: Log::new(&folder.log(), comm.rank()),
             progress: Progress::new(comm.is_root(), &simulation.case.run),

@@ -80,6 +80,7 @@ pub fn case() -> Case {
             history_every: 1,
             fields: Vec::new(),
             snapshots: Vec::new(),
+            sharing: whipple::model::Sharing::default(),
         },
         fragments: None,
         measure: MeasureOptions::default(),

@@ -26,6 +26,10 @@ optional_tables! {
         history_every: Option<Spanned<i64>>,
         /// Snapshot fields, at least one.
         fields: Option<Spanned<Vec<Spanned<String>>>>,
+        /// How many ranks write; all if absent.
+        writers: Option<Spanned<i64>>,
+        /// Arrays begin at multiples of so many bytes; anywhere if absent.
+        alignment: Option<Spanned<i64>>,
         /// Snapshots with schedules of their own.
         snapshot: Vec<Spanned<SnapshotParams>>,
     }

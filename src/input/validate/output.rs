@@ -9,7 +9,7 @@ use crate::input::quantity::{Placed, Time};
 use crate::input::schema::{ClockParams, OutputParams, SnapshotParams};
 use crate::input::source::Diagnostic;
 use crate::material::Material;
-use crate::model::{ClockInterval, OutputOptions, SnapshotSchedule};
+use crate::model::{ClockInterval, OutputOptions, Sharing, SnapshotSchedule};
 use crate::particles::{FIELDS, FieldId, TEMPERATURE, snapshot_names};
 
 /// A list of names as it is typed.
@@ -45,6 +45,7 @@ impl Reader<'_> {
             history_every: whole(params.history_every.as_ref(), "history_every", 10, 1)?,
             fields,
             snapshots,
+            sharing: sharing(params)?,
         })
     }
 
@@ -142,6 +143,32 @@ impl Reader<'_> {
         }
         Ok(())
     }
+}
+
+/// Arrays of a file are many, and before each there may be a hole.
+const LARGEST_ALIGNMENT: u64 = 1 << 30;
+
+fn sharing(params: &OutputParams) -> Result<Sharing, Diagnostic> {
+    let writers = params.writers.as_ref();
+    let writers = writers
+        .map(|n| whole(Some(n), "writers", 0, 1))
+        .transpose()?;
+    let alignment = params.alignment.as_ref();
+    let bytes = alignment
+        .map(|n| whole(Some(n), "alignment", 0, 1))
+        .transpose()?;
+    if let (Some(at), Some(bytes)) = (alignment, bytes)
+        && (!bytes.is_power_of_two() || bytes > LARGEST_ALIGNMENT)
+    {
+        let title = format!(
+            "`alignment` must be a power of two of at most {LARGEST_ALIGNMENT} bytes, as 4194304"
+        );
+        return Err(Diagnostic::new(at.span(), title).label("out of range"));
+    }
+    Ok(Sharing {
+        writers: writers.map(|n| usize::try_from(n).unwrap_or(usize::MAX)),
+        alignment: bytes,
+    })
 }
 
 /// Mean time between failures (s), if nothing is known of the machine: of some thousand nodes.
