@@ -86,8 +86,11 @@ results() {
         shift
     done
     name=$(basename "${case%/}")
-    name=${name%.toml}
-    [ "$name" != case ] || name=$(basename "$(dirname "$case")")
+    [ -d "$case" ] || name=${name%.*}
+    # Of case.toml the folder.
+    if [ "$name" = case ] && [ "$(dirname "$case")" != . ]; then
+        name=$(basename "$(dirname "$case")")
+    fi
     printf 'runs/%s' "$name"
 }
 

@@ -86,12 +86,7 @@ pub fn case(mut params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     }
     .all(&params)?;
     let time_step = time_step(&params.time_step, &sph, &bodies, &materials)?;
-    let boxes = KeepReader {
-        dimension,
-        bodies: &bodies,
-        symmetry: &symmetry,
-        length_unit: &length_unit,
-    };
+    let boxes = KeepReader::new(dimension, &bodies, &symmetry, &length_unit);
     let (domain, output) = domain_and_output(&params, &boxes, &materials)?;
     let mut case = Case {
         title: names::title(params.title.take())?,

@@ -51,7 +51,21 @@ pub struct KeepReader<'a> {
     pub length_unit: &'a Readable,
 }
 
-impl KeepReader<'_> {
+impl<'a> KeepReader<'a> {
+    pub fn new(
+        dimension: usize,
+        bodies: &'a [Body],
+        symmetry: &'a [SymmetryPlane],
+        length_unit: &'a Readable,
+    ) -> Self {
+        Self {
+            dimension,
+            bodies,
+            symmetry,
+            length_unit,
+        }
+    }
+
     /// The box of interest, in which all bodies begin that can leave it. Lengths may count a case's own
     /// spacing (m), if it has one.
     pub fn read(

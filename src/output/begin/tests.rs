@@ -29,7 +29,8 @@ fn a_used_folder_is_refused_and_force_clears_only_a_run() {
     write(run.snapshots_of(Some("far")).join("my picture.png"));
     write(path.join("notes.txt"));
     RunFolder::create(&comm, &path, "title = 2", true).unwrap();
-    let left = names_in(&run.snapshots()).unwrap();
+    let mut left = names_in(&run.snapshots()).unwrap();
+    left.sort();
     let far = run.snapshots_of(Some("far"));
     assert_eq!(left, [far.clone(), run.snapshots().join("my picture.png")]);
     assert_eq!(names_in(&far).unwrap(), [far.join("my picture.png")]);

@@ -72,7 +72,8 @@ impl Part {
         self.bodies.is_none() && self.region == Region::OPEN
     }
 
-    /// The owned particles that belong to it; nothing where all do.
+    /// The owned particles that belong to it; nothing where all do. A place that is no number is
+    /// beyond no side, so that runaways are seen.
     #[must_use]
     pub(super) fn chosen(&self, particles: &ParticleStore) -> Option<Vec<u32>> {
         let is_in = |&i: &u32| {
@@ -80,7 +81,7 @@ impl Part {
             let body = particles.body[i] as usize;
             let bodies = self.bodies.as_ref();
             bodies.is_none_or(|bodies| bodies.contains(&body))
-                && self.region.contains(&particles.position[i])
+                && !self.region.is_left_by(&particles.position[i])
         };
         let owned = u32::try_from(particles.owned()).expect("a rank's particles fit u32");
         (!self.is_all()).then(|| (0..owned).filter(is_in).collect())
@@ -130,9 +131,9 @@ mod tests {
         assert!(part.is_all() && part.chosen(&particles).is_none());
         part.bodies = Some(vec![1]);
         assert_eq!(part.chosen(&particles), Some(vec![1, 2]));
-        part.region.below[0] = 1.0;
-        assert_eq!(part.chosen(&particles), Some(vec![1]));
+        part.region.below[0] = 0.9;
+        assert_eq!(part.chosen(&particles), Some(vec![2]));
         part.bodies = None;
-        assert_eq!(part.chosen(&particles), Some(vec![0, 1]));
+        assert_eq!(part.chosen(&particles), Some(vec![0, 2]));
     }
 }
