@@ -16,6 +16,9 @@
 #   sbatch jobs/run.sh CASE …            ranks and threads are the allocation's
 #   qsub -v WHIPPLE_ARGS="CASE …" jobs/run.sh       words without commas; else WHIPPLE_ARGS=@FILE
 #
+# On Lustre WHIPPLE_STRIPES=N spreads each file of a new run over N servers (-1: all), in pieces of
+# WHIPPLE_STRIPE_SIZE (as 4M) if that is set; give output.alignment the same size.
+#
 # On a workstation: two ranks, and the cores shared out among them as threads. Ctrl-C, TERM, or
 # the scheduler's USR1 stop the run softly: it writes a checkpoint and exits with 75, and
 # `jobs/run.sh restart RUN` goes on from there. A second Ctrl-C kills it.
@@ -68,6 +71,38 @@ fi
 program=${WHIPPLE_PROGRAM:-$root/target/release/whipple}
 if [ ! -x "$program" ]; then
     make -C "$root" release
+fi
+
+# The folder of a new run's results, as the program chooses it.
+results() {
+    local case=$1 name
+    shift
+    while [ $# -gt 0 ]; do
+        case $1 in
+            -o | --out) printf '%s' "${2:-}"; return ;;
+            --out=*) printf '%s' "${1#--out=}"; return ;;
+            -o?*) printf '%s' "${1#-o}"; return ;;
+        esac
+        shift
+    done
+    name=$(basename "${case%/}")
+    [ -d "$case" ] || name=${name%.*}
+    # Of case.toml the folder.
+    if [ "$name" = case ] && [ "$(dirname "$case")" != . ]; then
+        name=$(basename "$(dirname "$case")")
+    fi
+    printf 'runs/%s' "$name"
+}
+
+# On Lustre a file lies on one server unless its folder says otherwise, and what is made in a folder
+# inherits that. A restart into the same folder finds it so.
+if [ "$command" = run ] && [ -n "${WHIPPLE_STRIPES:-}" ]; then
+    folder=$(results "$@")
+    mkdir -p "$folder"
+    lfs setstripe -c "$WHIPPLE_STRIPES" ${WHIPPLE_STRIPE_SIZE:+-S "$WHIPPLE_STRIPE_SIZE"} "$folder" || {
+        echo "error: WHIPPLE_STRIPES=$WHIPPLE_STRIPES is set, but lfs cannot stripe $folder" >&2
+        exit 2
+    }
 fi
 
 # mpirun answers TERM and INT by killing its ranks within two seconds, but passes USR1 on to

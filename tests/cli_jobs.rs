@@ -146,6 +146,48 @@ fn arguments_reach_a_job_of_pbs_as_they_are() {
     assert_eq!(machine.submit("jobs/run.sh", "").with_code(2).stdout, "");
 }
 
+/// Tells what it was asked for.
+const LFS: &str = "#!/bin/sh\necho \"lfs $*\"\n[ \"$3\" != 7 ]\n";
+
+#[test]
+fn folders_of_new_runs_are_striped_where_that_is_asked_for() {
+    let machine = Machine::new();
+    let run = |stripes: &str, arguments: &[&str]| {
+        let mut command = machine.command(&project("jobs/run.sh"));
+        command.current_dir(machine.place.path());
+        command.env("WHIPPLE_STRIPES", stripes).args(arguments);
+        end(&mut command)
+    };
+    let ended = run("4", &["case"]).with_code(2);
+    assert!(
+        ended.stderr.contains("lfs cannot stripe runs/case"),
+        "{ended:#?}"
+    );
+    assert!(!ended.stdout.contains("--threads"), "{ended:#?}");
+    machine.program("lfs", LFS);
+    for (arguments, folder) in [
+        (&["inputs/sod"][..], "runs/sod"),
+        (&["inputs/sod/"], "runs/sod"),
+        (&["inputs/sod/case.toml"], "runs/sod"),
+        (&["my.toml", "--set", "a=1"], "runs/my"),
+        (&["inputs/sod", "--out", "else where"], "else where"),
+        (&["inputs/sod", "-o", "there"], "there"),
+        (&["inputs/sod", "--out=there", "--force"], "there"),
+    ] {
+        let ended = run("-1", arguments).with_code(0);
+        let first = ended.stdout.lines().next().unwrap_or_default();
+        assert_eq!(first, format!("lfs setstripe -c -1 {folder}"));
+        assert!(machine.at(folder).is_dir());
+        assert_eq!(started(&ended)[1], arguments[0]);
+    }
+    assert_eq!(run("7", &["case"]).with_code(2).stdout.lines().count(), 1);
+    // What is there already, or not asked for, stays as it is.
+    for (stripes, command) in [("4", "restart"), ("", "case")] {
+        let ended = run(stripes, &[command, "runs/sod"]).with_code(0);
+        assert!(!ended.stdout.contains("lfs"), "{ended:#?}");
+    }
+}
+
 /// The first leg stops, and the chain submits the second with the arguments of the first.
 #[test]
 fn a_chain_of_jobs_of_pbs_keeps_its_arguments() {

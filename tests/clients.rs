@@ -3,8 +3,16 @@
 //!
 //! `make test` makes the Python environment. `WHIPPLE_SKIP_CLIENTS=1` leaves these tests out.
 
+#[allow(dead_code, reason = "shared with the tests on real ranks")]
+mod output_support;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+
+use whipple::comm::Comm;
+use whipple::output::Rows;
+use whipple::output::snapshot::{self, Form};
+use whipple::particles::ParticleStore;
 
 /// The environment's Python, or nothing if the tests are to be skipped.
 fn python() -> Option<PathBuf> {
@@ -114,6 +122,44 @@ fn every_client_opens_the_form_that_we_document() {
         "{seen}"
     );
     eprintln!("{seen}");
+}
+
+#[test]
+fn every_client_opens_partitions_and_two_processes_share_them() {
+    let Some(python) = python() else { return };
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let sample = folder.path().join("sample.vtkhdf");
+    let points = ["27", "10"].map(Path::new);
+    script(&python, "sample.py", &[&sample, points[0], points[1]]).expect("the sample is written");
+    eprintln!("{}", opens_everywhere(&python, &sample));
+
+    for (total, partition_rows) in [(100, 7), (100, 50), (100, 99), (1, 1), (12, 4)] {
+        let snapshot = folder.path().join("ours.vtkhdf");
+        write_ours(&snapshot, total, partition_rows);
+        eprintln!("{}", opens_everywhere(&python, &snapshot));
+    }
+}
+
+/// Writes a snapshot of so many particles in partitions of so many rows.
+fn write_ours(path: &Path, total: u32, partition_rows: u64) {
+    let case = output_support::case();
+    let mut particles = ParticleStore::default();
+    particles.resize_owned(total as usize);
+    for k in 0..total {
+        // In no order of ids, with gaps.
+        let (row, id) = (k as usize, (k * 37 + 5) % 101);
+        particles.id[row] = id.into();
+        particles.position[row] = [id.into(), -1.5 * f64::from(id), 0.1];
+        particles.density[row] = 1000.0 + f64::from(k);
+    }
+    let quantities = snapshot::quantities(&[]).expect("the usual ones");
+    let form = Form {
+        partition_rows,
+        ..Form::of(&quantities)
+    };
+    let (comm, meta) = (Comm::solo(), output_support::meta(&case));
+    let mut rows = Rows::default();
+    snapshot::write(&comm, path, &particles, &meta, &form, &mut rows).expect("it is written");
 }
 
 #[test]

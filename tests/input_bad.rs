@@ -164,6 +164,7 @@ fn overridden(key: &Key, value: &str) -> String {
         .replace("absorb.", "absorb.0.")
         .replace("plane.", "plane.0.")
         .replace("surface.", "surface.0.")
+        .replace("output.snapshot.", "output.snapshot.0.")
         .replace("gauge.", "gauge.0.")
         .replace("witness.", "witness.0.");
     let measures = ["plate", "target", "bar", "debris", "region", "front"];

@@ -4,7 +4,9 @@ use std::path::Path;
 
 use whipple::input::{load, output_and_run_only, parse};
 use whipple::material::{Strength, library};
-use whipple::model::{Axis, Case, ContactMode, PotentialRange, Shape, SmoothingLength};
+use whipple::model::{
+    Axis, Case, ClockInterval, ContactMode, PotentialRange, Precision, Shape, SmoothingLength,
+};
 use whipple::populate;
 use whipple::preflight::warnings;
 
@@ -440,4 +442,61 @@ fn a_case_in_inches_and_degrees_is_the_one_in_metres_and_kelvins() {
     assert_eq!(inches.materials, metres.materials);
     assert_eq!(inches.run.end_time.to_bits(), metres.run.end_time.to_bits());
     assert_eq!(inches.length_unit.name, "in");
+}
+
+#[test]
+fn snapshots_may_have_schedules_of_their_own() {
+    let case = |more: &str| {
+        let text = include_str!("bad_inputs/case.toml");
+        let text = text.replace(
+            "[[output.snapshot]] # far",
+            &format!("{more}\n[[output.snapshot]]"),
+        );
+        parse("case", &text, &[]).unwrap()
+    };
+    let output = case("").output;
+    let names: Vec<_> = output
+        .snapshots
+        .iter()
+        .map(|s| (&s.name[..], s.every))
+        .collect();
+    assert_eq!(names, [("close", Some(1e-8)), ("far", None)]);
+    let output = case(
+        r#"fields = ["pressure"]
+        bodies = ["brick", "ball"]
+        region.above.z = "2 spacing"
+        precision = "single"
+        "#,
+    )
+    .output;
+    let [close, far] = &output.snapshots[..] else {
+        panic!()
+    };
+    assert_eq!(close.fields, ["pressure"]);
+    assert_eq!(close.bodies, Some(vec![0, 1]));
+    assert_eq!(
+        close.region.unwrap().above,
+        [f64::NEG_INFINITY, f64::NEG_INFINITY, 2e-3]
+    );
+    assert_eq!(close.precision, Precision::Single);
+    assert_eq!(
+        (far.precision, far.region, &far.bodies),
+        (Precision::Double, None, &None)
+    );
+    assert_eq!(output.all_fields().count(), 1);
+}
+
+#[test]
+fn checkpoints_may_come_by_what_they_cost() {
+    let every = |more: &[&str]| ready("quarter-impact", more).output.checkpoint_every_wall;
+    assert_eq!(every(&[]), None);
+    let wall = "output.checkpoint_every_wall=";
+    let minutes = format!("{wall}30 min");
+    assert_eq!(every(&[&minutes]), Some(ClockInterval::Fixed(1800.0)));
+    let auto = format!("{wall}auto");
+    let failures = 6.0 * 3600.0;
+    assert_eq!(every(&[&auto]), Some(ClockInterval::Auto { failures }));
+    let day = "output.mean_time_between_failures=24 h";
+    let failures = 24.0 * 3600.0;
+    assert_eq!(every(&[&auto, day]), Some(ClockInterval::Auto { failures }));
 }

@@ -26,7 +26,15 @@ fn run(place: &Path, name: &str, change: impl Fn(&mut ParticleStore)) -> PathBuf
     change(&mut particles);
     let path = folder.snapshot(12);
     let fields = snapshot::quantities(&[]).unwrap();
-    snapshot::write(&comm, &path, &particles, &meta(&case), &fields, &mut rows).unwrap();
+    snapshot::write(
+        &comm,
+        &path,
+        &particles,
+        &meta(&case),
+        &snapshot::Form::of(&fields),
+        &mut rows,
+    )
+    .unwrap();
     series::add(&folder.series(), &RunFolder::snapshot_name(12), 3.5e-8).unwrap();
     let meta = checkpoint::Meta {
         step: 12,

@@ -8,12 +8,18 @@ use std::process::Command;
 
 use output_support::{case, id, is_rank, meta, on_ranks, particles, sentinel, sorted_ids};
 use whipple::comm::Comm;
+use whipple::model::{Precision, Sharing};
+use whipple::output::h5::read::SnapshotFile;
 use whipple::output::h5::{Content, Element, RowType};
+use whipple::output::snapshot::{Form, Part};
 use whipple::output::{Block, OutputError, Rows, checkpoint, snapshot};
 use whipple::particles::{FIELDS, Life, ParticleStore, rows};
 
 /// None, fewer than ranks, uneven, and enough for many rows to travel.
 const TOTALS: [u64; 4] = [0, 1, 7, 1000];
+
+/// Rows of small partitions.
+const PARTITIONS: [u64; 3] = [1, 7, 333];
 
 /// Every quantity there is.
 fn all_quantities() -> Vec<snapshot::Quantity> {
@@ -47,18 +53,26 @@ fn expected(field: usize, total: u64, vtk: bool) -> Vec<u8> {
     all
 }
 
-fn check_snapshot(path: &Path, total: u64) {
+/// Checks a snapshot of so many particles in partitions of so many rows.
+fn check_snapshot(path: &Path, total: u64, rows: u64) {
     let file = Content::open(path).unwrap();
     // VTK counts in signed numbers.
     let signed = |name: &str| file.all::<i64>(&format!("/VTKHDF/{name}")).unwrap();
-    let last = i64::try_from(total).unwrap();
-    for name in ["NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"] {
-        assert_eq!(signed(name), [last]);
+    let mut sizes =
+        vec![i64::try_from(rows.max(1)).unwrap(); usize::try_from(total / rows.max(1)).unwrap()];
+    if total == 0 || !total.is_multiple_of(rows) {
+        sizes.push(i64::try_from(total % rows.max(1)).unwrap());
     }
-    let count: Vec<i64> = (0..=last).collect();
+    for name in ["NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"] {
+        assert_eq!(signed(name), sizes);
+    }
     let all = usize::try_from(total).unwrap();
-    assert_eq!(signed("Connectivity"), count[..all]);
-    assert_eq!(signed("Offsets"), count);
+    let numbers: Vec<i64> = sizes.iter().flat_map(|&n| 0..n).collect();
+    assert_eq!(signed("Connectivity"), numbers);
+    let offsets: Vec<i64> = sizes.iter().flat_map(|&n| 0..=n).collect();
+    assert_eq!(signed("Offsets"), offsets);
+    assert_eq!(file.partitions("/VTKHDF").unwrap(), sizes.len() as u64);
+    assert_eq!(SnapshotFile::open(path).unwrap().particles(), all);
     assert_eq!(file.all::<u8>("/VTKHDF/Types").unwrap(), vec![1; all]);
     let time = file.all::<f64>("/VTKHDF/FieldData/TimeValue").unwrap();
     assert_eq!(time[0].to_bits(), 3.5e-8_f64.to_bits());
@@ -87,6 +101,94 @@ fn check_snapshot(path: &Path, total: u64) {
     );
     assert_eq!(file.note("/whipple", "symmetry").unwrap(), r#"[["y",0.0]]"#);
     assert_eq!(file.text("/whipple/input").unwrap(), case.resolved);
+}
+
+/// What has x above zero, or no x: some half of the particles.
+fn halves() -> Part {
+    let mut part = Part::default();
+    part.region.above[0] = 0.0;
+    part
+}
+
+fn part(part: &Part) -> Form<'_> {
+    Form {
+        part,
+        partition_rows: 7,
+        schedule: Some("close"),
+        ..Form::of(&[])
+    }
+}
+
+fn short() -> Form<'static> {
+    Form {
+        precision: Precision::Single,
+        ..Form::of(&[])
+    }
+}
+
+/// Checks a snapshot of a part, and one of short numbers, against the whole.
+fn check_part(folder: &Path, total: u64) {
+    let open = |ending: &str| Content::open(&folder.join(format!("{total}{ending}"))).unwrap();
+    let [whole, part, short] = [".vtkhdf", "-part.vtkhdf", "-short.vtkhdf"].map(open);
+    let vector = whole.array("/VTKHDF/Points").unwrap().row;
+    let points = read_all(&whole, "/VTKHDF/Points", vector, total);
+    let x = points
+        .chunks(24)
+        .map(|point| f64::from_ne_bytes(point[..8].try_into().unwrap()));
+    let kept: Vec<bool> = x.map(|x| x.is_nan() || x >= 0.0).collect();
+    let count = kept.iter().filter(|kept| **kept).count() as u64;
+    assert!(total < 1000 || (300..700).contains(&count), "{count}");
+    assert_eq!(part.note("/whipple", "part").unwrap(), "above x = 0 m");
+    assert_eq!(part.note("/whipple", "schedule").unwrap(), "close");
+    assert_eq!(whole.note_if_any("/whipple", "part").unwrap(), None);
+    assert_eq!(
+        part.partitions("/VTKHDF").unwrap(),
+        count.div_ceil(7).max(1)
+    );
+    let names = whole.arrays("/VTKHDF/PointData").unwrap().into_iter();
+    let names = names.map(|array| format!("/VTKHDF/PointData/{}", array.name));
+    for path in names.chain(["/VTKHDF/Points".to_owned()]) {
+        let (array, some) = (whole.array(&path).unwrap(), part.array(&path).unwrap());
+        assert_eq!((some.row, some.rows), (array.row, count), "{path}");
+        let all = read_all(&whole, &path, array.row, total);
+        let rows = all.chunks(array.row.bytes()).zip(&kept);
+        let expected: Vec<u8> = rows
+            .filter(|(_, kept)| **kept)
+            .flat_map(|(row, _)| row.to_vec())
+            .collect();
+        assert!(
+            read_all(&part, &path, array.row, count) == expected,
+            "{path} of {total}"
+        );
+
+        let other = short.array(&path).unwrap();
+        assert_eq!(other.unit, array.unit);
+        let bytes = read_all(&short, &path, other.row, total);
+        if array.row.element == Element::F64 {
+            assert_eq!(other.row.element, Element::F32);
+            let long = bytemuck::pod_collect_to_vec::<u8, f64>(&all).into_iter();
+            #[allow(clippy::cast_possible_truncation, reason = "as it is written")]
+            let long = long.map(|value| {
+                if value.is_nan() {
+                    f32::NAN
+                } else {
+                    value as f32
+                }
+            });
+            assert!(
+                bytes == bytemuck::cast_slice::<f32, u8>(&long.collect::<Vec<_>>()),
+                "{path}"
+            );
+        } else {
+            assert_eq!(bytes, all);
+        }
+    }
+    let file = SnapshotFile::open(part.path()).unwrap();
+    assert_eq!(file.part().unwrap().as_deref(), Some("above x = 0 m"));
+    assert_eq!(
+        file.points(0..file.particles()).unwrap().len() as u64,
+        count
+    );
 }
 
 /// A state of any characters and some size.
@@ -145,20 +247,100 @@ fn snapshots_hold_every_field_in_id_order_on_any_ranks() {
                     &path,
                     &particles,
                     &meta(&case),
-                    &quantities,
+                    &Form::of(&quantities),
                     &mut rows,
                 )
                 .unwrap();
+                for partition_rows in PARTITIONS {
+                    let path = folder.join(format!("{total}-{partition_rows}.vtkhdf"));
+                    let form = Form {
+                        partition_rows,
+                        ..Form::of(&quantities)
+                    };
+                    snapshot::write(comm, &path, &particles, &meta(&case), &form, &mut rows)
+                        .unwrap();
+                }
+                for (name, form) in [("part", part(&halves())), ("short", short())] {
+                    let path = folder.join(format!("{total}-{name}.vtkhdf"));
+                    let form = Form {
+                        quantities: &quantities,
+                        ..form
+                    };
+                    snapshot::write(comm, &path, &particles, &meta(&case), &form, &mut rows)
+                        .unwrap();
+                }
             }
         });
         if is_rank() {
             return;
         }
         for total in TOTALS {
-            check_snapshot(&folder.path().join(format!("{total}.vtkhdf")), total);
+            check_snapshot(&folder.path().join(format!("{total}.vtkhdf")), total, total);
+            for rows in PARTITIONS {
+                let path = folder.path().join(format!("{total}-{rows}.vtkhdf"));
+                check_snapshot(&path, total, rows);
+            }
+            check_part(folder.path(), total);
         }
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), TOTALS.len());
+        let files = TOTALS.len() * (3 + PARTITIONS.len());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), files);
     }
+}
+
+#[test]
+fn few_writers_and_aligned_arrays_write_the_same_rows() {
+    let name = "few_writers_and_aligned_arrays_write_the_same_rows";
+    for (ranks, writers) in [(1, 9), (3, 1), (5, 2)] {
+        let folder = tempfile::tempdir().unwrap();
+        on_ranks(name, ranks, folder.path(), |comm, folder| {
+            let case = case();
+            let mut rows = Rows::new(Sharing {
+                writers: Some(writers),
+                alignment: Some(4096),
+            });
+            for total in TOTALS {
+                let quantities = all_quantities();
+                let form = Form {
+                    partition_rows: 7,
+                    ..Form::of(&quantities)
+                };
+                let path = folder.join(format!("{total}.vtkhdf"));
+                let particles = particles(comm, total);
+                snapshot::write(comm, &path, &particles, &meta(&case), &form, &mut rows).unwrap();
+                assert_eq!(
+                    rows.block().count == 0,
+                    total == 0 || !writes(comm, writers, total)
+                );
+                let state = state();
+                let meta = checkpoint::Meta {
+                    step: total,
+                    time: f64::MIN_POSITIVE / 4.0,
+                    state: &state,
+                    input: &case.resolved,
+                };
+                let path = checkpoint::write(comm, folder, &particles, &meta, 9, &mut rows);
+                check_restored(comm, &path.unwrap(), total);
+            }
+        });
+        if is_rank() {
+            return;
+        }
+        for total in TOTALS {
+            check_snapshot(&folder.path().join(format!("{total}.vtkhdf")), total, 7);
+            let path = folder.path().join(format!("step-{total:08}/state.h5"));
+            let file = hdf5::File::open(path).unwrap();
+            let place = file.dataset("/fields/velocity").unwrap().offset();
+            assert!(
+                total < 1000 || place.unwrap().is_multiple_of(4096),
+                "{place:?}"
+            );
+        }
+    }
+}
+
+/// Whether a rank has rows where so many are spread evenly over some of the ranks.
+fn writes(comm: &Comm, writers: usize, total: u64) -> bool {
+    Block::shared(total, comm.rank(), comm.size(), writers.min(comm.size())).count > 0
 }
 
 #[test]
@@ -173,11 +355,11 @@ fn a_lone_rank_without_mpi_writes_the_same() {
             &path,
             &particles,
             &meta(&case),
-            &all_quantities(),
+            &Form::of(&all_quantities()),
             &mut rows,
         )
         .unwrap();
-        check_snapshot(&path, total);
+        check_snapshot(&path, total, total);
         write_checkpoint(&comm, folder.path(), total, total).unwrap();
         check_restored(
             &comm,
@@ -265,9 +447,16 @@ fn fill_disk(comm: &Comm, folder: &Path) {
     let checkpoints = folder.join("checkpoints");
     let checkpoint = checkpoints.join("step-00000001");
     let (meta, mut rows) = (meta(&case), Rows::default());
-    let snapshot = snapshot::write(comm, &path, &particles, &meta, &all_quantities(), &mut rows);
+    let snapshot = snapshot::write(
+        comm,
+        &path,
+        &particles,
+        &meta,
+        &Form::of(&all_quantities()),
+        &mut rows,
+    );
     if snapshot.is_ok() && comm.is_root() {
-        check_snapshot(&path, total);
+        check_snapshot(&path, total, total);
         fs::remove_file(&path).unwrap();
     }
     comm.barrier();

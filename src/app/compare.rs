@@ -151,8 +151,16 @@ fn runs(a: &RunFolder, b: &RunFolder, report: &mut Report) -> Result<(), Results
         tables::compare("gauges", &a, &b, report);
     }
     let names = |folder: &RunFolder| -> Result<BTreeSet<String>, ResultsError> {
-        let files = folder.snapshot_files()?;
-        Ok(files.iter().map(|path| name_of(path)).collect())
+        let usual = folder.snapshot_files()?;
+        let mut all: BTreeSet<String> = usual.iter().map(|path| name_of(path)).collect();
+        for schedule in folder.schedules()? {
+            let own = folder.snapshot_files_of(Some(&schedule))?;
+            all.extend(
+                own.iter()
+                    .map(|path| format!("{schedule}/{}", name_of(path))),
+            );
+        }
+        Ok(all)
     };
     for name in in_both(&names(a)?, &names(b)?, report) {
         let open = |folder: &RunFolder| Content::open(&folder.snapshots().join(&name));

@@ -1,17 +1,19 @@
 //! `whipple info`: what is in a run, a snapshot or a checkpoint.
 
 mod measures;
+mod snapshots;
 
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::results::{POINT_DATA, Results, ResultsError, component_names};
+use super::results::{GRID, POINT_DATA, Results, ResultsError, component_names};
 use crate::model::readable::one_line;
 use crate::output::checkpoint::{self, FIELDS};
+use crate::output::h5::read::PART;
 use crate::output::h5::{Array, Content, Element, RowType};
 use crate::output::{
-    Block, OutputError, Phase, Presence, RunFolder, Sheet, read_regular, read_small, series,
+    Block, OutputError, Phase, Presence, RunFolder, Sheet, read_regular, read_small,
 };
 use crate::preflight::memory::in_words;
 use crate::run::exit::EXIT_INPUT;
@@ -91,6 +93,12 @@ fn snapshot(file: &Content, text: &mut Text) -> Result<(), ResultsError> {
     text.entry("title", file.note(group, "title")?);
     text.entry("step", file.number::<u64>(group, "step")?);
     text.entry("time", seconds(time.first().copied().unwrap_or(f64::NAN)));
+    if let Some(schedule) = file.note_if_any(group, "schedule")? {
+        text.entry("schedule", schedule);
+    }
+    if let Some(part) = file.note_if_any(group, PART)? {
+        text.entry("part of the model", part);
+    }
     let commit = file.note(group, "commit")?;
     text.entry(
         "version",
@@ -99,6 +107,10 @@ fn snapshot(file: &Content, text: &mut Text) -> Result<(), ResultsError> {
     let ranks: u64 = file.number("/run", "ranks")?;
     let threads: u64 = file.number("/run", "threads")?;
     text.entry("ranks x threads", format!("{ranks} x {threads}"));
+    let partitions = file.partitions(GRID)?;
+    if partitions > 1 {
+        text.entry("partitions", partitions);
+    }
     bodies(file, POINT_DATA, &names, text)?;
     heading(text);
     field(file, "/VTKHDF/Points", true, text)?;
@@ -278,14 +290,9 @@ fn run_folder(folder: &RunFolder, text: &mut Text) -> Result<(), ResultsError> {
     text.entry("state", state);
     text.entry("step", status.step);
     text.entry("time", seconds(status.time));
-    let snapshots = series::read(&folder.series())?;
-    let span = match (snapshots.first(), snapshots.last()) {
-        (Some(first), Some(last)) => {
-            format!(", {} to {}", seconds(first.time), seconds(last.time))
-        }
-        _ => String::new(),
-    };
-    text.entry("snapshots", format!("{}{span}", snapshots.len()));
+    for (name, found) in snapshots::entries(folder)? {
+        text.entry(&name, found);
+    }
     if let Some(line) = fragments(folder) {
         text.entry("fragments", line);
     }

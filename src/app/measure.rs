@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::results::ResultsError;
+use super::results::{ResultsError, only_part};
 use super::which::Which;
 use crate::comm::Comm;
 use crate::input::{self, InputError};
@@ -176,6 +176,9 @@ impl Loaded {
         let case = input::parse(&path.display().to_string(), &text, set)?;
         let told = |error: ReadError| wrong(error.to_string());
         let file = SnapshotFile::open(path).map_err(told)?;
+        if let Some(part) = file.part().map_err(told)? {
+            return Err(wrong(only_part(&part)));
+        }
         let names = file.names().map_err(told)?;
         let has = |field: &str| names.iter().any(|name| name == field);
         if has("stress_mass") {

@@ -6,6 +6,8 @@ use crate::output::checkpoint;
 use crate::output::h5::Content;
 use crate::output::{OutputError, RunFolder};
 
+/// Group of a snapshot's grid.
+pub const GRID: &str = "/VTKHDF";
 /// Group of a snapshot's particle fields.
 pub const POINT_DATA: &str = "/VTKHDF/PointData";
 
@@ -83,6 +85,12 @@ impl Results {
             Self::Checkpoint(_) => "checkpoint",
         }
     }
+}
+
+/// What is said of a snapshot of a part of the model where all of it is needed.
+#[must_use]
+pub fn only_part(part: &str) -> String {
+    format!("it holds a part of the model alone ({part}); give a snapshot of all particles")
 }
 
 /// Names of the components of a field of so many; `vtk` for the order that VTK wants.

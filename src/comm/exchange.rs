@@ -1,6 +1,7 @@
 //! One packed byte message to and from each peer of a phase.
 
 use std::ffi::{c_int, c_void};
+use std::ops::Range;
 
 use mpi::ffi;
 
@@ -11,6 +12,12 @@ use super::waiting::waiting;
 const PIECE: usize = 1 << 30;
 const TAG_SIZE: c_int = 1;
 const TAG_DATA: c_int = 2;
+
+/// The pieces of something of this length that goes in pieces of `most` at most.
+pub fn pieces(length: usize, most: usize) -> impl Iterator<Item = Range<usize>> {
+    let starts = (0..length).step_by(most);
+    starts.map(move |start| start..length.min(start.saturating_add(most)))
+}
 
 /// Messages and bytes sent, for reports.
 #[derive(Debug, Clone, Copy, Default)]
@@ -132,12 +139,12 @@ impl Exchange {
                 let receive = &mut self.peers[k].receive;
                 (receive.as_mut_ptr(), receive.len())
             };
-            for start in (0..length).step_by(PIECE) {
+            for Range { start, end } in pieces(length, PIECE) {
                 // SAFETY: the buffer is owned by `self`, lives until the requests end, and the
                 // piece lies in it.
                 unsafe {
                     let piece = pointer.add(start).cast();
-                    self.receive_piece(raw, piece, PIECE.min(length - start), rank, TAG_DATA);
+                    self.receive_piece(raw, piece, end - start, rank, TAG_DATA);
                 }
             }
         }
@@ -147,11 +154,11 @@ impl Exchange {
                 let send = &self.peers[k].send;
                 (send.as_ptr(), send.len())
             };
-            for start in (0..length).step_by(PIECE) {
+            for Range { start, end } in pieces(length, PIECE) {
                 // SAFETY: as above; MPI only reads the piece.
                 unsafe {
                     let piece = pointer.add(start).cast();
-                    self.send_piece(raw, piece, PIECE.min(length - start), rank, TAG_DATA);
+                    self.send_piece(raw, piece, end - start, rank, TAG_DATA);
                 }
             }
         }
@@ -239,4 +246,27 @@ fn wait_all(requests: &mut Vec<ffi::MPI_Request>) {
         ffi::MPI_Waitall(count, requests.as_mut_ptr(), ffi::RSMPI_STATUSES_IGNORE);
     });
     requests.clear();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_message_of_more_than_two_thousand_million_rows_goes_in_pieces_that_mpi_can_count() {
+        let row = 24;
+        for rows in [1 << 31, (1 << 31) + 1, (1 << 32) - 1, 44_739_243] {
+            let length = rows * row;
+            let mut end = 0;
+            for piece in pieces(length, PIECE) {
+                assert_eq!(piece.start, end);
+                assert!(c_int::try_from(piece.len()).is_ok_and(|count| count > 0));
+                end = piece.end;
+            }
+            assert_eq!(end, length);
+        }
+        assert_eq!(pieces(0, PIECE).count(), 0);
+        assert_eq!(pieces(PIECE, PIECE).count(), 1);
+        assert_eq!(pieces((1 << 31) * row, PIECE).count(), 48);
+    }
 }

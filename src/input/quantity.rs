@@ -252,7 +252,8 @@ pub(super) fn demand<K: Kind>(text: &str, si: f64, powers: Powers) -> Result<(),
     Ok(())
 }
 
-fn quantity<K: Kind>(text: &str) -> Result<Quantity<K>, String> {
+/// Reads a number with a unit of a kind.
+pub(super) fn quantity<K: Kind>(text: &str) -> Result<Quantity<K>, String> {
     let (si, powers) =
         parse(text).map_err(|why| format!("{why}; expected {}", expected::<K>("")))?;
     demand::<K>(text, si, powers)?;

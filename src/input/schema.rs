@@ -22,6 +22,7 @@ mod fragments;
 mod materials;
 mod measure;
 mod numerical_limits;
+mod output;
 mod particles;
 mod shapes;
 mod short;
@@ -32,6 +33,7 @@ pub use fragments::*;
 pub use materials::*;
 pub use measure::*;
 pub use numerical_limits::*;
+pub use output::*;
 pub use particles::*;
 pub use shapes::*;
 pub use short::*;
@@ -277,23 +279,5 @@ optional_tables! {
         balance_every: Option<Spanned<i64>>,
         /// The box of interest; everything if absent.
         keep: Option<Spanned<KeepParams>>,
-    }
-
-    /// `[output]`
-    OutputParams {
-        /// Time between snapshots.
-        snapshot_every: Option<Placed<Time>>,
-        /// Time between checkpoints.
-        checkpoint_every: Option<Placed<Time>>,
-        /// Steps between checkpoints.
-        checkpoint_every_steps: Option<Spanned<i64>>,
-        /// Time of the clock between checkpoints.
-        checkpoint_every_wall: Option<Placed<Time>>,
-        /// How many are kept.
-        checkpoints_kept: Option<Spanned<i64>>,
-        /// Steps between rows of the histories.
-        history_every: Option<Spanned<i64>>,
-        /// Snapshot fields, at least one.
-        fields: Option<Spanned<Vec<Spanned<String>>>>,
     }
 }

@@ -118,12 +118,111 @@ pub struct OutputOptions {
     pub checkpoint_every: Option<f64>,
     /// Steps between checkpoints; none if absent.
     pub checkpoint_every_steps: Option<u64>,
-    /// Time of the clock between checkpoints (s); none if absent.
-    pub checkpoint_every_wall: Option<f64>,
+    /// Time of the clock between checkpoints; none if absent.
+    pub checkpoint_every_wall: Option<ClockInterval>,
     /// How many checkpoints are kept.
     pub checkpoints_kept: usize,
     /// Steps between two rows of `history.csv`, `contacts.csv` and `performance.csv`.
     pub history_every: u64,
     /// Names of the snapshot fields; the field table's defaults when empty.
     pub fields: Vec<String>,
+    /// Further snapshots, with schedules of their own.
+    pub snapshots: Vec<SnapshotSchedule>,
+    /// How files of all ranks are written.
+    pub sharing: Sharing,
+}
+
+/// How files of all ranks are written, which never touches what is in them.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Sharing {
+    /// How many ranks write; all if absent.
+    pub writers: Option<usize>,
+    /// Arrays begin at multiples of so many bytes; anywhere if absent.
+    pub alignment: Option<u64>,
+}
+
+impl OutputOptions {
+    /// Names of all fields that snapshots are asked for.
+    pub fn all_fields(&self) -> impl Iterator<Item = &String> {
+        let more = self.snapshots.iter().flat_map(|schedule| &schedule.fields);
+        self.fields.iter().chain(more)
+    }
+}
+
+/// Time of the clock between checkpoints.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ClockInterval {
+    /// So many seconds.
+    Fixed(f64),
+    /// What loses the least time, by what a checkpoint costs.
+    Auto {
+        /// Mean time between two failures of the machine (s).
+        failures: f64,
+    },
+}
+
+impl ClockInterval {
+    /// Seconds from the end of a checkpoint to the next one, where one takes `cost` seconds.
+    ///
+    /// A failure, once in M seconds, costs half an interval τ, and checkpoints of δ seconds cost δ/τ of
+    /// the time: the sum is least for τ = √(2 δ M) (Young, Comm. ACM 17 (1974) 530). It is the first
+    /// order in δ/M; from δ = M/2 on it is M, where the higher orders end too (Daly, Future Gener.
+    /// Comput. Syst. 22 (2006) 303).
+    #[must_use]
+    pub fn seconds(self, cost: f64) -> f64 {
+        match self {
+            Self::Fixed(seconds) => seconds,
+            Self::Auto { failures } => (2.0 * cost * failures).sqrt().min(failures),
+        }
+    }
+}
+
+/// Snapshots beside the usual ones, of a part of the model or of other fields.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SnapshotSchedule {
+    /// Name of its folder.
+    pub name: String,
+    /// Time between them (s); the first and the last state alone if absent.
+    pub every: Option<f64>,
+    /// Names of the fields; the field table's defaults when empty.
+    pub fields: Vec<String>,
+    /// Bodies whose particles it holds; all if absent.
+    pub bodies: Option<Vec<usize>>,
+    /// What of space it holds; all if absent.
+    pub region: Option<Region>,
+    /// Of its numbers.
+    pub precision: Precision,
+}
+
+/// How many digits numbers are written with.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Precision {
+    /// Floating-point numbers of 64 bits.
+    #[default]
+    Double,
+    /// Of 32 bits.
+    Single,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn checkpoints_come_as_often_as_loses_the_least_time() {
+        let six_hours = 6.0 * 3600.0;
+        let auto = ClockInterval::Auto {
+            failures: six_hours,
+        };
+        // 14 s for 284 GB: 13 minutes.
+        let interval = auto.seconds(14.0);
+        assert!((interval - 777.7).abs() < 0.1, "{interval}");
+        let lost = |interval: f64| 14.0 / interval + interval / (2.0 * six_hours);
+        for other in [0.5, 0.9, 1.1, 2.0] {
+            assert!(lost(other * interval) > lost(interval));
+        }
+        assert!(auto.seconds(six_hours) <= six_hours);
+        assert!((ClockInterval::Fixed(5.0).seconds(14.0) - 5.0).abs() < f64::EPSILON);
+    }
 }

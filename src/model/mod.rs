@@ -39,7 +39,8 @@ pub use body::{Body, Lattice, LatticeKind};
 pub use cloud::{Cloud, Quantity, cube, edge};
 pub use contact::*;
 pub use control::{
-    DomainOptions, OutputOptions, RunControl, SmoothingLength, SphForm, SphOptions, TimeStepOptions,
+    ClockInterval, DomainOptions, OutputOptions, Precision, RunControl, Sharing, SmoothingLength,
+    SnapshotSchedule, SphForm, SphOptions, TimeStepOptions,
 };
 pub use formula::{Combination, Formula, Function, Operation, Place, Profile};
 pub use fragments::{FragmentOptions, Include};

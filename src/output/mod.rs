@@ -6,6 +6,7 @@
 
 mod begin;
 pub mod binary_table;
+mod block;
 pub mod checkpoint;
 mod digest;
 mod error;
@@ -17,6 +18,7 @@ mod history;
 mod lock;
 mod log;
 pub mod measures;
+pub mod partitions;
 pub mod post_mortem;
 mod quantity;
 mod rows;
@@ -26,14 +28,16 @@ pub mod series;
 mod set_aside;
 mod sheet;
 pub mod snapshot;
+mod snapshot_folders;
 mod vote;
 
+pub use block::Block;
 pub use error::OutputError;
 pub use files::{read_regular, read_small, write_atomically, write_json};
 pub use history::{Column, Table, Value, unit_of_model};
 pub use lock::{Holder, Presence, RunLock};
 pub use log::Log;
-pub use rows::{Block, Rows};
+pub use rows::Rows;
 pub use run_folder::{Phase, RunFolder, Status};
 pub use schedule::Schedule;
 pub use set_aside::SetAside;

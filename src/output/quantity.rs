@@ -61,15 +61,20 @@ impl Quantity {
     }
 }
 
-/// The quantities of a case: as [`quantities`], but by default none that `particles` have no use
-/// for; and what tells stress points from particles where there are any, and unequal particles from
-/// each other.
+/// The quantities of a case that are asked for by `names`: as [`quantities`], but by default none that
+/// `particles` have no use for; and what tells stress points from particles where there are any, and
+/// unequal particles from each other.
 ///
 /// # Errors
 /// As [`quantities`].
-pub fn quantities_of(case: &Case, particles: &ParticleStore) -> Result<Vec<Quantity>, OutputError> {
-    let mut names = case.output.fields.clone();
-    if names.is_empty() {
+pub fn quantities_of(
+    case: &Case,
+    names: &[String],
+    particles: &ParticleStore,
+) -> Result<Vec<Quantity>, OutputError> {
+    let by_default = names.is_empty();
+    let mut names = names.to_vec();
+    if by_default {
         let mut chosen = quantities(&[])?;
         chosen.retain(|choice| match choice {
             Quantity::Field(field) => field.output != Output::IfHeld || particles.holds(field),
@@ -77,7 +82,7 @@ pub fn quantities_of(case: &Case, particles: &ParticleStore) -> Result<Vec<Quant
         });
         names.extend(chosen.iter().map(|choice| choice.name().to_owned()));
     }
-    if case.fragments.is_some() && case.output.fields.is_empty() {
+    if case.fragments.is_some() && by_default {
         names.push(FRAGMENT.to_owned());
     }
     let role = "stress_mass".to_owned();

@@ -1,4 +1,4 @@
-//! Particles in the order of their ids, in even blocks over the ranks.
+//! Particles in the order of their ids, in even blocks over the ranks that write.
 //!
 //! Ranks own particles in any order. Block boundaries are ids, found by bisection on counts, all
 //! at once; then each field's rows travel straight to their block. No rank ever holds more than
@@ -7,62 +7,9 @@
 use std::ops::Range;
 
 use crate::comm::{Comm, Exchange};
+use crate::model::Sharing;
 
-use super::{OutputError, agree};
-
-/// One rank's share of the rows.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Block {
-    /// Rows of all ranks.
-    pub total: u64,
-    /// The first row here.
-    pub first: u64,
-    /// Rows here.
-    pub count: usize,
-}
-
-impl Block {
-    /// The even share of `rank` among `ranks`.
-    ///
-    /// # Panics
-    /// If a share is longer than an address.
-    #[must_use]
-    pub fn even(total: u64, rank: usize, ranks: usize) -> Self {
-        let first = start(total, rank, ranks);
-        let end = start(total, rank + 1, ranks);
-        Self {
-            total,
-            first,
-            count: usize::try_from(end - first).expect("a block fits memory"),
-        }
-    }
-
-    /// All of a few rows on rank 0.
-    #[must_use]
-    pub fn on_root(total: usize, comm: &Comm) -> Self {
-        Self {
-            total: total as u64,
-            first: 0,
-            count: if comm.is_root() { total } else { 0 },
-        }
-    }
-
-    /// The same block for a dataset with one row more, which the last rank holds.
-    #[must_use]
-    pub fn with_one_more(self, last_rank: bool) -> Self {
-        Self {
-            total: self.total + 1,
-            first: self.first,
-            count: self.count + usize::from(last_rank),
-        }
-    }
-}
-
-/// First row of a block: `⌊total · rank / ranks⌋`.
-fn start(total: u64, rank: usize, ranks: usize) -> u64 {
-    let first = u128::from(total) * rank as u128 / ranks as u128;
-    u64::try_from(first).unwrap_or(total)
-}
+use super::{Block, OutputError, agree};
 
 /// A rank that particles are sent to or received from.
 #[derive(Debug, Clone)]
@@ -74,9 +21,19 @@ struct Peer {
     receive: usize,
 }
 
+/// Most rows of a writer, whose places are counted in `u32`.
+const MOST_ROWS: u64 = 1 << 31;
+
+/// How many of the ranks write so many rows: as many as are asked for, if they can hold them.
+fn writers(asked: Option<usize>, total: u64, ranks: usize) -> usize {
+    let least = usize::try_from(total.div_ceil(MOST_ROWS)).unwrap_or(usize::MAX);
+    asked.unwrap_or(ranks).max(least).clamp(1, ranks)
+}
+
 /// The way of particles to rows in id order. Buffers are kept from one output to the next.
 #[derive(Default)]
 pub struct Rows {
+    sharing: Sharing,
     block: Block,
     /// This rank's particles, by id.
     order: Vec<u32>,
@@ -90,6 +47,21 @@ pub struct Rows {
 }
 
 impl Rows {
+    /// For files that are written so.
+    #[must_use]
+    pub fn new(sharing: Sharing) -> Self {
+        Self {
+            sharing,
+            ..Self::default()
+        }
+    }
+
+    /// How files are written.
+    #[must_use]
+    pub fn sharing(&self) -> Sharing {
+        self.sharing
+    }
+
     /// This rank's block, after [`Self::plan`].
     #[must_use]
     pub fn block(&self) -> Block {
@@ -104,15 +76,32 @@ impl Rows {
     /// # Panics
     /// If this rank owns 2³² particles or more, which no store can hold.
     pub fn plan(&mut self, comm: &Comm, ids: &[u64]) -> Result<(), OutputError> {
-        let mut total = [ids.len() as u64];
-        comm.sum_u64(&mut total);
-        self.block = Block::even(total[0], comm.rank(), comm.size());
         let particles = u32::try_from(ids.len()).expect("a rank's particles fit u32");
-        self.order.clear();
-        self.order.extend(0..particles);
-        self.order.sort_unstable_by_key(|&i| ids[i as usize]);
+        self.plan_of(comm, ids, 0..particles)
+    }
 
-        let cuts = find_cuts(comm, total[0], ids, &self.order);
+    /// As [`Self::plan`], of some particles alone: the others have no rows. Collective.
+    ///
+    /// # Errors
+    /// [`OutputError::DuplicateId`], the same on every rank.
+    pub fn plan_of(
+        &mut self,
+        comm: &Comm,
+        ids: &[u64],
+        chosen: impl IntoIterator<Item = u32>,
+    ) -> Result<(), OutputError> {
+        self.order.clear();
+        self.order.extend(chosen);
+        self.order.sort_unstable_by_key(|&i| ids[i as usize]);
+        let mut total = [self.order.len() as u64];
+        comm.sum_u64(&mut total);
+        let (total, ranks) = (total[0], comm.size());
+        let writers = writers(self.sharing.writers, total, ranks);
+        let block = |rank: usize| Block::shared(total, rank, ranks, writers);
+        self.block = block(comm.rank());
+
+        let starts: Vec<u64> = (0..ranks).map(|rank| block(rank).first).collect();
+        let cuts = find_cuts(comm, &starts, ids, &self.order);
         self.choose_peers(comm, &cuts);
         let placed = self.place(comm, ids);
         agree(comm, placed)
@@ -201,12 +190,12 @@ fn put(bytes: &mut [u8], place: u32, row: &[u8]) {
     bytes[at..at + row.len()].copy_from_slice(row);
 }
 
-/// Where each rank's block starts in this rank's `order`, and its length at the end: bisects for
-/// the largest id of all rows before each block, every boundary at once. Collective.
-fn find_cuts(comm: &Comm, total: u64, ids: &[u64], order: &[u32]) -> Vec<usize> {
+/// Where each rank's block, which `starts` at such a row, starts in this rank's `order`, and its
+/// length at the end: bisects for the largest id of all rows before each block, every boundary at
+/// once. Collective.
+fn find_cuts(comm: &Comm, starts: &[u64], ids: &[u64], order: &[u32]) -> Vec<usize> {
     let ranks = comm.size();
     let up_to = |id: u64| order.partition_point(|&i| ids[i as usize] <= id);
-    let starts: Vec<u64> = (0..ranks).map(|r| start(total, r, ranks)).collect();
     let mut bounds = [
         order.first().map_or(u64::MAX, |&i| ids[i as usize]),
         u64::MAX - order.last().map_or(0, |&i| ids[i as usize]),
@@ -248,17 +237,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn blocks_are_even_and_cover_all_rows() {
-        for (total, ranks) in [(0, 3), (1, 3), (7, 3), (7, 1), (1 << 60, 5)] {
-            let mut next = 0;
-            for rank in 0..ranks {
-                let block = Block::even(total, rank, ranks);
-                assert_eq!(block.first, next);
-                next += block.count as u64;
-                assert!(block.count as u64 <= total / ranks as u64 + 1);
-            }
-            assert_eq!(next, total);
-        }
+    fn more_rows_than_a_writer_can_count_have_more_writers() {
+        assert_eq!(writers(None, 10, 4), 4);
+        assert_eq!(writers(Some(9), 10, 4), 4);
+        assert_eq!(writers(Some(1), 1 << 31, 10_000), 1);
+        assert_eq!(writers(Some(1), (1 << 31) + 1, 10_000), 2);
+        assert_eq!(writers(Some(1), 1 << 40, 10_000), 512);
     }
 
     #[test]
@@ -275,6 +259,18 @@ mod tests {
             sorted,
             [[2, 20, 200], [3, 30, 300], [0, 0, 0], [1, 10, 100]]
         );
+    }
+
+    #[test]
+    fn particles_that_are_not_chosen_have_no_rows() {
+        let (comm, mut rows) = (Comm::solo(), Rows::default());
+        let ids = [7, 7, 0, 3];
+        rows.plan_of(&comm, &ids, [0, 3]).unwrap();
+        assert_eq!(rows.block(), Block::even(2, 0, 1));
+        let bytes = rows.collect(&comm, &[10, 11, 12, 13], 1);
+        assert_eq!(bytes, [13, 10]);
+        rows.plan_of(&comm, &ids, []).unwrap();
+        assert!(rows.collect(&comm, &[10, 11, 12, 13], 1).is_empty());
     }
 
     #[test]

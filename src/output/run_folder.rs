@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::checkpoint::{self, step_of};
 use super::files::names_in;
 use super::fragments::FragmentTable;
-use super::{OutputError, files, snapshot, write_json};
+use super::{OutputError, files, write_json};
 
 pub(super) const STATUS: &str = "status.json";
 const SNAPSHOTS: &str = "snapshots";
@@ -151,10 +151,10 @@ impl RunFolder {
         format!("step-{step:08}{SNAPSHOT_ENDING}")
     }
 
-    /// A snapshot's path.
+    /// A usual snapshot's path.
     #[must_use]
     pub fn snapshot(&self, step: u64) -> PathBuf {
-        self.snapshots().join(Self::snapshot_name(step))
+        self.snapshot_of(None, step)
     }
 
     /// The path of the table of all fragments at a step.
@@ -203,23 +203,18 @@ impl RunFolder {
         by_steps(&self.gauge_records(), &[HDF5_ENDING])
     }
 
-    /// The index of the snapshots.
+    /// The index of the usual snapshots.
     #[must_use]
     pub fn series(&self) -> PathBuf {
-        let name = format!("{SNAPSHOTS}.{}.series", snapshot::EXTENSION);
-        self.snapshots().join(name)
+        self.series_of(None)
     }
 
-    /// The snapshots there are, in the order of steps.
+    /// The usual snapshots that there are, in the order of steps.
     ///
     /// # Errors
     /// [`OutputError::Io`].
     pub fn snapshot_files(&self) -> Result<Vec<PathBuf>, OutputError> {
-        let folder = self.snapshots();
-        let mut found = names_in(&folder)?;
-        found.retain(|path| step_of(path, SNAPSHOT_ENDING).is_some());
-        found.sort_by_key(|path| step_of(path, SNAPSHOT_ENDING));
-        Ok(found)
+        self.snapshot_files_of(None)
     }
 }
 

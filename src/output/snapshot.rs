@@ -1,26 +1,31 @@
 //! Snapshots: the particles at one time as a VTKHDF file, for `ParaView`, `h5py` and the plots.
 //!
-//! One `UnstructuredGrid` of version 1.0 in one partition, a vertex for each particle, rows in id
-//! order: the content does not depend on ranks. `/whipple` says what was run; `/run` holds what
-//! does depend on ranks and clocks.
+//! One `UnstructuredGrid` of version 1.0, a vertex for each particle, rows in id order and cut into
+//! partitions of a fixed number: the content does not depend on ranks. `/whipple` says what was
+//! run; `/run` holds what does depend on ranks and clocks.
+
+mod form;
+mod grid;
+mod plan;
+mod values;
 
 use std::path::Path;
 
 use crate::comm::Comm;
-use crate::model::Case;
-use crate::particles::{FieldId, FieldKind, Owner, ParticleStore};
+use crate::model::{Case, Precision};
+use crate::particles::{FieldKind, Owner, ParticleStore};
 
+use super::h5::read::PART;
 use super::h5::{Element, RowType, Writer};
 pub use super::quantity::{Quantity, quantities, quantities_of};
 use super::{COMMIT, OutputError, Rows, VERSION, files, settle, unit_of_model};
+pub use form::{Form, Part};
+use grid::{GRID, write_grid};
+pub use plan::Plan;
+use values::write_values;
 
 /// Extension of snapshot files.
 pub const EXTENSION: &str = "vtkhdf";
-
-/// Group of the grid, as VTK wants it.
-const GRID: &str = "/VTKHDF";
-/// VTK's number of a cell that is a single point.
-const VERTEX: u8 = 1;
 
 /// What a snapshot says beside the particles.
 #[derive(Debug, Clone, Copy)]
@@ -49,11 +54,11 @@ pub fn write(
     path: &Path,
     particles: &ParticleStore,
     meta: &Meta,
-    quantities: &[Quantity],
+    form: &Form,
     rows: &mut Rows,
 ) -> Result<(), OutputError> {
     let temporary = files::partial(path);
-    let written = write_file(comm, &temporary, particles, meta, quantities, rows);
+    let written = write_file(comm, &temporary, particles, meta, form, rows);
     settle(comm, written, &temporary, || {
         files::publish(&temporary, path)
     })
@@ -64,16 +69,21 @@ fn write_file(
     path: &Path,
     particles: &ParticleStore,
     meta: &Meta,
-    quantities: &[Quantity],
+    form: &Form,
     rows: &mut Rows,
 ) -> Result<(), OutputError> {
-    rows.plan(comm, &particles.id[..particles.owned()])?;
-    let file = Writer::create(comm, path)?;
-    write_grid(comm, &file, particles, meta.time, rows)?;
-    for quantity in with_frozen(particles, quantities) {
-        write_quantity(comm, &file, particles, meta, quantity, rows)?;
+    let ids = &particles.id[..particles.owned()];
+    match form.part.chosen(particles) {
+        Some(chosen) => rows.plan_of(comm, ids, chosen)?,
+        None => rows.plan(comm, ids)?,
     }
-    write_meta(comm, &file, meta)?;
+    let file = Writer::create_aligned(comm, path, rows.sharing().alignment)?;
+    write_grid(comm, &file, particles, meta.time, form, rows)?;
+    for quantity in with_frozen(particles, form.quantities) {
+        let what = (quantity, form.precision);
+        write_quantity(comm, &file, particles, meta, what, rows)?;
+    }
+    write_meta(comm, &file, meta, form)?;
     file.close()
 }
 
@@ -85,91 +95,34 @@ fn with_frozen(particles: &ParticleStore, chosen: &[Quantity]) -> impl Iterator<
     chosen.iter().copied().chain(missing)
 }
 
-/// Points and their cells.
-fn write_grid(
-    comm: &Comm,
-    file: &Writer,
-    particles: &ParticleStore,
-    time: f64,
-    rows: &mut Rows,
-) -> Result<(), OutputError> {
-    let block = rows.block();
-    let total = [i64::try_from(block.total).unwrap_or(i64::MAX)];
-    file.group(GRID)?;
-    file.vtk_header(GRID, "UnstructuredGrid", [1, 0])?;
-    for name in ["NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"] {
-        file.numbers(&format!("{GRID}/{name}"), Element::I64, &total)?;
-    }
-    let vector = RowType {
-        element: Element::F64,
-        components: 3,
-    };
-    let points = rows.collect(comm, particles.bytes(FieldId::position), vector.bytes());
-    file.rows(&format!("{GRID}/Points"), vector, block, points)?;
-    file.note(&format!("{GRID}/Points"), "unit", "m")?;
-
-    let first = i64::try_from(block.first).unwrap_or(i64::MAX);
-    let mut numbers: Vec<i64> = (first..).take(block.count).collect();
-    let integer = RowType::single(Element::I64);
-    file.rows(
-        &format!("{GRID}/Connectivity"),
-        integer,
-        block,
-        bytemuck::cast_slice(&numbers),
-    )?;
-    let longer = block.with_one_more(comm.rank() + 1 == comm.size());
-    numbers.clear();
-    numbers.extend((first..).take(longer.count));
-    file.rows(
-        &format!("{GRID}/Offsets"),
-        integer,
-        longer,
-        bytemuck::cast_slice(&numbers),
-    )?;
-    let types = vec![VERTEX; block.count];
-    file.rows(
-        &format!("{GRID}/Types"),
-        RowType::single(Element::U8),
-        block,
-        &types,
-    )?;
-    file.group(&format!("{GRID}/PointData"))?;
-    file.group(&format!("{GRID}/FieldData"))?;
-    file.numbers(
-        &format!("{GRID}/FieldData/TimeValue"),
-        Element::F64,
-        &[time],
-    )
-}
-
 fn write_quantity(
     comm: &Comm,
     file: &Writer,
     particles: &ParticleStore,
     meta: &Meta,
-    quantity: Quantity,
+    (quantity, precision): (Quantity, Precision),
     rows: &mut Rows,
 ) -> Result<(), OutputError> {
     let (block, case) = (rows.block(), meta.case);
     let path = format!("{GRID}/PointData/{}", quantity.name());
-    match quantity {
-        Quantity::Field(field) => {
-            let row = row_type(field.kind);
-            let bytes = rows.collect(comm, &particles.bytes_or_zeros(field), row.bytes());
-            if field.kind == FieldKind::Symmetric {
-                // The store has xy, xz, yz at the end, VTK xy, yz, xz.
-                for tensor in bytes.chunks_exact_mut(48) {
-                    let (front, back) = tensor.split_at_mut(40);
-                    front[32..].swap_with_slice(back);
-                }
+    let mut write = |kind: FieldKind, values: &[u8]| {
+        let row = row_type(kind);
+        let bytes = rows.collect(comm, values, row.bytes());
+        if kind == FieldKind::Symmetric {
+            // The store has xy, xz, yz at the end, VTK xy, yz, xz.
+            for tensor in bytes.chunks_exact_mut(48) {
+                let (front, back) = tensor.split_at_mut(40);
+                front[32..].swap_with_slice(back);
             }
-            file.rows(&path, row, block, bytes)?;
         }
+        write_values(file, &path, (row, precision), block, bytes)
+    };
+    match quantity {
+        Quantity::Field(field) => write(field.kind, &particles.bytes_or_zeros(field))?,
         Quantity::Fragment => {
             let mut labels = meta.fragments.to_vec();
             labels.resize(particles.owned(), u64::MAX);
-            let bytes = rows.collect(comm, bytemuck::cast_slice(&labels), 8);
-            file.rows(&path, row_type(FieldKind::Id), block, bytes)?;
+            write(FieldKind::Id, bytemuck::cast_slice(&labels))?;
         }
         Quantity::VonMisesStress | Quantity::Temperature => {
             let value = |i: usize| match quantity {
@@ -177,8 +130,7 @@ fn write_quantity(
                 _ => von_mises(&particles.deviatoric_stress[i]),
             };
             let values: Vec<f64> = (0..particles.owned()).map(value).collect();
-            let bytes = rows.collect(comm, bytemuck::cast_slice(&values), 8);
-            file.rows(&path, RowType::single(Element::F64), block, bytes)?;
+            write(FieldKind::Scalar, bytemuck::cast_slice(&values))?;
         }
     }
     let unit = unit_of_model(quantity.unit(), case.dimension);
@@ -216,7 +168,7 @@ fn row_type(kind: FieldKind) -> RowType {
 }
 
 /// What was run, and by how many.
-fn write_meta(comm: &Comm, file: &Writer, meta: &Meta) -> Result<(), OutputError> {
+fn write_meta(comm: &Comm, file: &Writer, meta: &Meta, form: &Form) -> Result<(), OutputError> {
     let case = meta.case;
     let names: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();
     let spacings: Vec<f64> = case.bodies.iter().map(|b| b.lattice.spacing).collect();
@@ -236,6 +188,12 @@ fn write_meta(comm: &Comm, file: &Writer, meta: &Meta) -> Result<(), OutputError
     let rigid: Vec<bool> = case.bodies.iter().map(|b| b.rigid.is_some()).collect();
     file.note(group, "rigid", &serde_json::json!(rigid).to_string())?;
     file.note(group, "symmetry", &serde_json::json!(planes).to_string())?;
+    if let Some(schedule) = form.schedule {
+        file.note(group, "schedule", schedule)?;
+    }
+    if !form.part.is_all() {
+        file.note(group, PART, &form.part.text(case))?;
+    }
     file.note(group, "version", VERSION)?;
     file.note(group, "commit", COMMIT)?;
     file.number(group, "dimension", &(case.dimension as u64))?;

@@ -237,10 +237,13 @@ fn times(case: &Case, found: &mut Vec<String>) {
             shown(step, "s")
         ));
     }
-    for (key, every) in [
-        ("snapshot_every", case.output.snapshot_every),
-        ("checkpoint_every", case.output.checkpoint_every),
-    ] {
+    let own = case.output.snapshots.iter();
+    let own = own.map(|schedule| (format!("every` of `{}", schedule.name), schedule.every));
+    let usual = [
+        ("snapshot_every".to_owned(), case.output.snapshot_every),
+        ("checkpoint_every".to_owned(), case.output.checkpoint_every),
+    ];
+    for (key, every) in usual.into_iter().chain(own) {
         if let Some(every) = every.filter(|every| *every < step) {
             found.push(format!(
                 "`{key}` is {}, less than a step of about {}: every step writes one",

@@ -1,6 +1,8 @@
 //! The run loop: steps, and what is written between them.
 
+mod checkpoints;
 mod measures;
+mod snapshots;
 
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -12,18 +14,19 @@ use super::launch::{Launch, STEP, fail};
 use super::load::load;
 use super::notices::Notices;
 use super::options::CommonArgs;
+use super::output_time::OutputTime;
 use super::progress::Progress;
 use super::say::{counted, say, seconds};
 use super::stop::{self, Watch};
-use super::summary::summary;
+use super::summary::{Clock, summary};
 use super::tables::Tables;
 use super::{announce, census};
 use crate::comm::Comm;
 use crate::model::NumericalFailurePolicy;
-use crate::output::snapshot::{self, Quantity};
+use crate::output::snapshot::Plan;
 use crate::output::{
-    Log, OutputError, Phase, Rows, RunFolder, Schedule, Status, agree, checkpoint, on_root,
-    post_mortem, series, write_json,
+    Log, OutputError, Phase, Rows, RunFolder, Schedule, Status, agree, on_root, post_mortem,
+    write_json,
 };
 use crate::step::{self, Simulation, StepError, Timers};
 
@@ -36,13 +39,14 @@ pub struct Driver<'a> {
     /// Seconds from the start of MPI to the first step, but for what is written before it.
     set_up: f64,
     watch: Watch,
-    quantities: Vec<Quantity>,
+    plans: Vec<Plan>,
     rows: Rows,
     tables: Option<Tables>,
     log: Log,
     progress: Progress,
     notices: Notices,
     departures: Departures,
+    output_time: OutputTime,
     /// Post-mortems written.
     post_mortems: usize,
 }
@@ -76,7 +80,7 @@ impl<'a> Driver<'a> {
         simulation.poison = args.poison;
         // What set-up took is no part of a step.
         simulation.timers = Timers::default();
-        let quantities = snapshot::quantities_of(&simulation.case, &simulation.particles)?;
+        let plans = Plan::all(&simulation.case, &simulation.particles)?;
         let mut tables = None;
         on_root(comm, || {
             let resume = restarted.is_some().then_some(&simulation.state);
@@ -89,8 +93,8 @@ impl<'a> Driver<'a> {
             start: launch.start,
             set_up,
             watch: Watch::new(launch.signals.clone(), stop, launch.start, args.walltime),
-            quantities,
-            rows: Rows::default(),
+            plans,
+            rows: Rows::new(simulation.case.output.sharing),
             tables,
             log: Log::new(&folder.log(), comm.rank()),
             progress: Progress::new(comm.is_root(), &simulation.case.run),
@@ -98,6 +102,7 @@ impl<'a> Driver<'a> {
             simulation,
             folder,
             notices: Notices::default(),
+            output_time: OutputTime::default(),
             post_mortems: 0,
         };
         if comm.is_root() {
@@ -113,10 +118,12 @@ impl<'a> Driver<'a> {
             warnings,
         );
         if restarted.is_none() {
+            let begun = Instant::now();
             driver.write_row(comm)?;
             driver.write_measures(comm, 0.0)?;
             let tells = driver.simulation.case.fragments.is_some();
-            driver.write_snapshot(comm, tells)?;
+            driver.write_snapshots(comm, None, tells)?;
+            driver.output_time.add(begun);
         }
         Ok(driver)
     }
@@ -165,7 +172,9 @@ impl<'a> Driver<'a> {
             if let Err(error) = self.simulation.advance(comm) {
                 self.handle_failure(comm, error)?;
             }
+            let begun = Instant::now();
             self.write(comm, before).map_err(|e| e.to_string())?;
+            self.output_time.add(begun);
             if let Err(error) = self.simulation.check_gain(comm) {
                 self.handle_failure(comm, error)?;
             }
@@ -238,7 +247,9 @@ impl<'a> Driver<'a> {
         let finished = self.simulation.is_finished();
         let (now, step) = (self.simulation.state.time, self.simulation.state.step);
         let output = &self.simulation.case.output;
-        let snapshot_due = Schedule::new(output.snapshot_every).is_due(before, now);
+        let mut due = self.plans.iter().map(|plan| plan.is_due(before, now));
+        let usual_due = due.next().unwrap_or_default();
+        let snapshot_due = usual_due || due.any(|is| is);
         let checkpoint_due = Schedule::new(output.checkpoint_every).is_due(before, now)
             || output
                 .checkpoint_every_steps
@@ -249,11 +260,11 @@ impl<'a> Driver<'a> {
             self.write_row(comm)?;
         }
         let options = self.simulation.case.fragments;
-        let census_due = options.is_some_and(|options| {
-            finished || census::is_due(&options, [before, now], snapshot_due)
-        });
+        let census_due = options
+            .is_some_and(|options| finished || census::is_due(&options, [before, now], usual_due));
         if finished || snapshot_due {
-            self.write_snapshot(comm, census_due)?;
+            let step = (!finished).then_some([before, now]);
+            self.write_snapshots(comm, step, census_due)?;
         } else if census_due {
             self.find_fragments(comm, true)?;
         }
@@ -292,73 +303,21 @@ impl<'a> Driver<'a> {
         Ok(())
     }
 
-    /// Writes a snapshot, and the tables of fragments if it `tells`.
-    fn write_snapshot(&mut self, comm: &Comm, tells: bool) -> Result<(), OutputError> {
-        let begun = Instant::now();
-        let path = self.folder.snapshot(self.simulation.state.step);
-        self.simulation.measure_contact_stress(comm);
-        let shows = |quantity: &Quantity| matches!(quantity, Quantity::Fragment);
-        let labels = if tells || self.quantities.iter().any(shows) {
-            self.find_fragments(comm, tells)?
-        } else {
-            Vec::new()
-        };
-        let (quantities, rows) = (&self.quantities, &mut self.rows);
-        self.simulation.with_frozen(|simulation| {
-            let meta = snapshot::Meta {
-                case: &simulation.case,
-                step: simulation.state.step,
-                time: simulation.state.time,
-                threads: rayon::current_num_threads(),
-                wall_seconds: self.start.elapsed().as_secs_f64(),
-                fragments: &labels,
-            };
-            snapshot::write(comm, &path, &simulation.particles, &meta, quantities, rows)
-        })?;
-        let state = &self.simulation.state;
-        on_root(comm, || {
-            let name = RunFolder::snapshot_name(state.step);
-            series::add(&self.folder.series(), &name, state.time)
-        })?;
-        self.watch.wrote_snapshot(begun.elapsed());
-        self.log(comm, &format!("snapshot {}", path.display()));
-        Ok(())
-    }
-
-    fn write_checkpoint(&mut self, comm: &Comm) -> Result<(), OutputError> {
-        let begun = Instant::now();
-        self.write_crossings(comm)?;
-        // Rows before this checkpoint are not written again once it is there.
-        on_root(comm, || self.tables.as_mut().map_or(Ok(()), Tables::sync))?;
-        let folder = self.folder.checkpoints();
-        self.simulation.join_extremes(comm);
-        let rows = &mut self.rows;
-        let path = self.simulation.with_frozen(|simulation| {
-            let state = &simulation.state;
-            let text = serde_json::to_string(state).expect("plain numbers");
-            let meta = checkpoint::Meta {
-                step: state.step,
-                time: state.time,
-                state: &text,
-                input: &simulation.case.resolved,
-            };
-            let keep = simulation.case.output.checkpoints_kept;
-            checkpoint::write(comm, &folder, &simulation.particles, &meta, keep, rows)
-        })?;
-        on_root(comm, || self.folder.forget_set_aside())?;
-        self.watch.wrote_checkpoint(begun.elapsed());
-        let text = format!("checkpoint {}", path.display());
-        self.log(comm, &text);
-        Ok(())
-    }
-
     /// The last checkpoint, `summary.json` and `status.json`; gives the exit code.
     fn close(mut self, comm: &Comm, phase: Phase, reason: Option<&str>, code: u8) -> u8 {
         self.progress.finish();
         let folder = self.folder;
+        let begun = Instant::now();
+        let mut output = String::new();
         let closed = self.write_checkpoint(comm).and_then(|()| {
-            let wall = self.start.elapsed().as_secs_f64();
-            let summary = summary(comm, &self.simulation, [wall, self.set_up]);
+            self.output_time.add(begun);
+            let clock = Clock {
+                wall: self.start.elapsed().as_secs_f64(),
+                set_up: self.set_up,
+                output: self.output_time.seconds(comm),
+            };
+            output = clock.output.line(clock.wall);
+            let summary = summary(comm, &self.simulation, &clock);
             on_root(comm, || {
                 write_json(&folder.summary(), &summary)?;
                 self.write_status(phase, reason)
@@ -379,6 +338,7 @@ impl<'a> Driver<'a> {
         if comm.is_root() {
             say(&format!("{text}; results in {}", folder.path().display()));
         }
+        self.log(comm, &output);
         self.log(comm, &text);
         code
     }

@@ -13,6 +13,7 @@ pub(crate) mod launch;
 mod load;
 mod notices;
 mod options;
+mod output_time;
 mod progress;
 pub(crate) mod resume;
 pub(crate) mod saved_case;

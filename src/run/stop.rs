@@ -10,6 +10,7 @@ use signal_hook::flag::{register, register_conditional_shutdown};
 
 use super::exit::EXIT_INTERRUPTED;
 use crate::input;
+use crate::model::ClockInterval;
 
 /// Requests of a rank, as bits of a vote.
 const SIGNAL: u64 = 1;
@@ -17,6 +18,9 @@ const FILE: u64 = 2;
 const CLOCK: u64 = 4;
 /// Not to stop, but to write a checkpoint.
 const CHECKPOINT: u64 = 8;
+
+/// What a checkpoint is taken to cost (s) before anything has been written, as after a restart.
+const FIRST_COST: f64 = 1.0;
 
 /// Seconds between two looks at the file system.
 const LOOK_EVERY: Duration = Duration::from_secs(1);
@@ -47,9 +51,11 @@ pub struct Watch {
     limit: Option<Duration>,
     looked: Instant,
     seen: bool,
-    /// Time between checkpoints, and of the last one; rank 0 alone asks for them.
-    every: Option<Duration>,
+    /// Time between checkpoints, when the last one was whole, and what the next one will cost (s), as
+    /// of what has been written so far; rank 0 alone asks for them.
+    every: Option<ClockInterval>,
     last: Instant,
+    cost: f64,
     /// Time that a stop will take, as of what has been written so far.
     reserve: Duration,
 }
@@ -72,24 +78,38 @@ impl Watch {
             seen: false,
             every: None,
             last: Instant::now(),
+            cost: FIRST_COST,
             reserve: Duration::ZERO,
         }
     }
 
     /// Asks for checkpoints every so often by the clock.
-    pub fn ask_every(&mut self, every: Option<f64>) {
-        self.every = every.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    pub fn ask_every(&mut self, every: Option<ClockInterval>) {
+        self.every = every;
     }
 
     /// A checkpoint has been written in so much time. The next one is taken to need half as much
-    /// again, and that much is kept of the wall time.
-    pub fn wrote_checkpoint(&mut self, took: Duration) {
+    /// again, and that much is kept of the wall time. Gives the time to the next one where that
+    /// follows from it.
+    pub fn wrote_checkpoint(&mut self, took: Duration) -> Option<Duration> {
         self.last = Instant::now();
+        self.cost = took.as_secs_f64();
         self.keep(took.mul_f64(1.5));
+        let follows = matches!(self.every, Some(ClockInterval::Auto { .. }));
+        self.interval().filter(|_| follows)
+    }
+
+    /// Time between the end of a checkpoint and the next one.
+    fn interval(&self) -> Option<Duration> {
+        let seconds = self.every?.seconds(self.cost);
+        Duration::try_from_secs_f64(seconds).ok()
     }
 
     /// A snapshot has been written in so much time: a checkpoint is some twice as large.
     pub fn wrote_snapshot(&mut self, took: Duration) {
+        if self.reserve.is_zero() {
+            self.cost = 2.0 * took.as_secs_f64();
+        }
         self.keep(took.mul_f64(3.0));
     }
 
@@ -118,7 +138,7 @@ impl Watch {
         {
             requests |= CLOCK;
         }
-        if self.every.is_some_and(|every| self.last.elapsed() >= every) {
+        if (self.interval()).is_some_and(|every| self.last.elapsed() >= every) {
             requests |= CHECKPOINT;
         }
         requests
@@ -187,8 +207,28 @@ mod tests {
         watch.wrote_snapshot(Duration::from_secs(40));
         assert_eq!(watch.requests(), CLOCK);
         assert!(!wants_checkpoint(watch.requests()));
-        watch.ask_every(Some(0.0));
+        watch.ask_every(Some(ClockInterval::Fixed(0.0)));
         assert!(wants_checkpoint(watch.requests()));
+    }
+
+    #[test]
+    fn the_time_between_checkpoints_follows_from_what_one_takes() {
+        let signals = Signals(Arc::new(AtomicBool::new(false)));
+        let mut watch = Watch::new(signals, None, Instant::now(), None);
+        let seconds = |watch: &Watch| watch.interval().map(|time| time.as_secs());
+        assert_eq!(seconds(&watch), None);
+        watch.ask_every(Some(ClockInterval::Auto { failures: 20_000.0 }));
+        assert_eq!(seconds(&watch), Some(200));
+        // A checkpoint is some twice as large as a snapshot.
+        watch.wrote_snapshot(Duration::from_secs(2));
+        assert_eq!(seconds(&watch), Some(400));
+        let next = watch.wrote_checkpoint(Duration::from_secs(1));
+        assert_eq!(next, Some(Duration::from_secs(200)));
+        watch.wrote_snapshot(Duration::from_secs(20));
+        assert_eq!(seconds(&watch), Some(200));
+        watch.ask_every(Some(ClockInterval::Fixed(7.0)));
+        assert_eq!(watch.wrote_checkpoint(Duration::from_secs(1)), None);
+        assert_eq!(seconds(&watch), Some(7));
     }
 
     #[test]

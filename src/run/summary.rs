@@ -5,28 +5,36 @@ use std::collections::BTreeMap;
 use serde_json::json;
 
 use super::load::load;
+use super::output_time::Seconds;
 use crate::comm::Comm;
 use crate::model::SphForm;
 use crate::output::{COMMIT, VERSION};
 use crate::step::{Removed, Simulation, failed_mass};
 
+/// How long a run took.
+#[derive(Debug, Clone, Copy)]
+pub struct Clock {
+    /// Seconds since the start of the program.
+    pub wall: f64,
+    /// Of them those from the start of MPI to the first step.
+    pub set_up: f64,
+    /// And those of output.
+    pub output: Seconds,
+}
+
 /// `summary.json`: what the run has come to, and how fast this process has stepped (with the mean
-/// seconds of all ranks by phase). The seconds are those since the start of the program, and of
-/// them those from the start of MPI to the first step. Collective.
+/// seconds of all ranks by phase). Collective.
 #[allow(clippy::cast_precision_loss, reason = "for people")]
-pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde_json::Value {
-    let [wall, set_up] = seconds;
+pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_json::Value {
     let load = load(comm, simulation);
     let (state, worst) = (&simulation.state, &simulation.state.worst);
     let phases = mean_seconds(comm, simulation.timers.report());
-    let stepping: f64 = phases.iter().map(|(_, seconds)| seconds).sum();
     let mut counts = [simulation.memory() as u64, simulation.frozen() as u64];
     comm.sum_u64(&mut counts);
     let [memory, frozen] = counts;
     let taken_out: u64 = state.removed.iter().map(|r| r.particles).sum();
     let threads = rayon::current_num_threads();
-    let cores = (comm.size() * threads) as f64;
-    let rate = load.updates as f64 * 1e-6 / stepping.max(f64::MIN_POSITIVE) / cores;
+    let rate = rate(load.updates, &phases, comm.size() * threads);
     let contact = simulation.contact();
     let failed = failed_by_body(comm, simulation);
     let departed = departed_by_body(simulation);
@@ -49,13 +57,15 @@ pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde
         "departed": departed,
         "steps": state.step,
         "time": state.time,
-        "wall_seconds": wall,
-        "set_up_seconds": set_up,
+        "wall_seconds": clock.wall,
+        "set_up_seconds": clock.set_up,
         "million_updates_per_second_per_core": rate,
         "bytes_per_particle": memory as f64 / (load.particles[0] as f64).max(1.0),
         "messages_per_rank_and_step": each(load.messages),
         "bytes_sent_per_rank_and_step": each(load.bytes),
         "seconds_by_phase": object(phases),
+        "output_share": clock.output.share(clock.wall),
+        "output_seconds": object(clock.output.by_kind()),
         "energy_error_max": worst.energy_error,
         "contact_defect": worst.contact_defect,
         "momentum_error": object(["x", "y", "z"].into_iter().zip(worst.momentum_error)),
@@ -72,6 +82,13 @@ pub fn summary(comm: &Comm, simulation: &Simulation, seconds: [f64; 2]) -> serde
         "absorbing_zones": absorbing_zones(simulation),
         "contact_limited_steps": worst.contact_limited_steps,
     })
+}
+
+/// Million updates of particles in a second of stepping, by core.
+#[allow(clippy::cast_precision_loss, reason = "for people")]
+fn rate(updates: u64, phases: &[(&str, f64)], cores: usize) -> f64 {
+    let stepping: f64 = phases.iter().map(|(_, seconds)| seconds).sum();
+    updates as f64 * 1e-6 / stepping.max(f64::MIN_POSITIVE) / cores as f64
 }
 
 /// What absorbing zones have taken up (J), and what has yielded in them (kg), where there are any.

@@ -47,8 +47,8 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
 /// What particles keep because snapshots or gauges are to show it.
 fn records(case: &Case) -> Owner {
     let gauges = case.measure.gauges.iter().flat_map(|gauge| &gauge.fields);
-    let names = case.output.fields.iter().chain(gauges);
-    let records = rows(Owner::PEAKS).filter(|field| names.clone().any(|name| name == field.name));
+    let names: Vec<&String> = case.output.all_fields().chain(gauges).collect();
+    let records = rows(Owner::PEAKS).filter(|field| names.iter().any(|name| *name == field.name));
     records.fold(Owner::empty(), |all, field| all | field.owner)
 }
 

@@ -2,7 +2,8 @@
 
     python check.py SNAPSHOT [DUMP.npz …]
 
-A DUMP is what another Python's VTK saw (dump.py). Prints one line of what was seen.
+A DUMP is what another Python's VTK saw (dump.py). Two processes of a parallel reader must share the
+partitions of the file, if it has several. Prints one line of what was seen.
 """
 
 import sys
@@ -44,9 +45,18 @@ def sane(seen):
     assert np.isfinite(seen["points"]).all(), "points are not finite"
 
 
+def shared(snapshot, ids):
+    """Each particle is read by one of two processes, and neither reads all if it need not."""
+    pieces = readers.pieces_with_vtk(snapshot, 2)
+    same(np.sort(np.concatenate(pieces)), ids, "ids of two processes")
+    if readers.partitions(snapshot) > 1:
+        assert all(len(piece) > 0 for piece in pieces), [len(piece) for piece in pieces]
+
+
 def main(snapshot, *dumps):
     seen = readers.with_h5py(snapshot)
     sane(seen)
+    shared(snapshot, seen["fields"]["id"])
     clients = ["h5py"]
     for client in ("vtk", "pyvista"):
         compare(seen, getattr(readers, f"with_{client}")(snapshot), client)

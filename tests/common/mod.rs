@@ -76,6 +76,8 @@ pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
             checkpoints_kept: 2,
             history_every: 10,
             fields: Vec::new(),
+            snapshots: Vec::new(),
+            sharing: whipple::model::Sharing::default(),
         },
         measure: MeasureOptions::default(),
         resolved: String::new(),

@@ -93,7 +93,15 @@ impl Bench {
         };
         let path = place.path().join("sound.vtkhdf");
         let fields = snapshot::quantities(&[]).unwrap();
-        snapshot::write(&comm, &path, particles, &meta, &fields, &mut rows).unwrap();
+        snapshot::write(
+            &comm,
+            &path,
+            particles,
+            &meta,
+            &snapshot::Form::of(&fields),
+            &mut rows,
+        )
+        .unwrap();
         let state = checkpoint::state_file(&sound);
         let table = place.path().join("sound.h5");
         write_table(&table, particles.owned());

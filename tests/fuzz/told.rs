@@ -85,7 +85,7 @@ fn datasets_of_another_type_shape_or_storage_are_refused() {
             "unexpected shape",
         ),
         (mass(Kind::F64, &[n, 10], Store::Plain), "unexpected shape"),
-        (mass(Kind::F32, &[n], Store::Plain), "none of f64"),
+        (mass(Kind::I16, &[n], Store::Plain), "none of f64"),
         (mass(Kind::Record(9), &[n], Store::Plain), "none of f64"),
         (mass(Kind::LooseList, &[n], Store::Plain), "none of f64"),
         (mass(Kind::Text(8), &[n], Store::Plain), "none of f64"),
@@ -148,6 +148,41 @@ fn datasets_of_another_type_shape_or_storage_are_refused() {
     ] {
         let [_, plot] = said(&bench, Which::Snapshot, change.clone());
         assert!(plot.contains(expected), "{change:?}: {plot}");
+    }
+}
+
+#[test]
+fn partitions_that_are_not_those_of_the_rows_are_refused() {
+    let bench = Bench::new();
+    let sizes = || name("/VTKHDF/NumberOfPoints");
+    let other = |kind, shape: &[usize], store| Change::Data(sizes(), kind, of(shape), store);
+    let n = bench.rows as u64;
+    for (change, expected) in [
+        (Change::Value(sizes(), 0, n - 1), "of the "),
+        (Change::Value(sizes(), 0, n + 1), "more than the "),
+        (
+            Change::Value(sizes(), 0, u64::MAX),
+            "a partition of -1 rows",
+        ),
+        (Change::Unlink(sizes()), "NumberOfPoints"),
+        (other(Kind::U64, &[1], Store::Plain), "not of one i64 each"),
+        (
+            other(Kind::I64, &[1, 3], Store::Plain),
+            "not of one i64 each",
+        ),
+        (other(Kind::I64, &[0], Store::Plain), "0 partitions"),
+        (
+            other(Kind::I64, &[1 << 40], Store::Empty),
+            "more than the file holds",
+        ),
+        (
+            other(Kind::I64, &[1], Store::Packed),
+            "not stored in one piece",
+        ),
+    ] {
+        for told in said(&bench, Which::Snapshot, change.clone()) {
+            assert!(told.contains(expected), "{change:?}: {told}");
+        }
     }
 }
 

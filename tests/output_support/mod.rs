@@ -80,6 +80,8 @@ pub fn case() -> Case {
             checkpoints_kept: 2,
             history_every: 1,
             fields: Vec::new(),
+            snapshots: Vec::new(),
+            sharing: whipple::model::Sharing::default(),
         },
         fragments: None,
         measure: MeasureOptions::default(),

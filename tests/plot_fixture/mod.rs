@@ -126,6 +126,9 @@ pub fn write(path: &Path, case: &Case, particles: &Particles, time: f64) {
     let n = particles.points.len();
     let points: Vec<f64> = particles.points.concat();
     array(&root, "Points", &points, 3);
+    let counts = [i64::try_from(n).unwrap()];
+    let builder = root.new_dataset_builder();
+    builder.with_data(&counts).create("NumberOfPoints").unwrap();
     let data = root.create_group("PointData").unwrap();
     for (name, unit, width, value) in FIELDS {
         let values: Vec<f64> = particles

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::super::results::{POINT_DATA, ResultsError, component_names};
+use super::super::results::{GRID, POINT_DATA, ResultsError, component_names};
 use super::{Report, text};
 use crate::output::Block;
 use crate::output::checkpoint::FIELDS;
@@ -18,6 +18,9 @@ pub fn snapshots(
     what: &str,
     report: &mut Report,
 ) -> Result<(), ResultsError> {
+    for file in [a, b] {
+        file.partitions(GRID)?;
+    }
     let time = |file: &Content| file.all::<f64>("/VTKHDF/FieldData/TimeValue");
     let (times, mut found) = ([time(a)?, time(b)?], Found::default());
     if bytemuck::cast_slice::<f64, u64>(&times[0]) != bytemuck::cast_slice::<f64, u64>(&times[1]) {
@@ -299,6 +302,10 @@ impl<'a> Tally<'a> {
                 } else {
                     (value, format!("{value:?}"))
                 }
+            }
+            Element::F32 => {
+                let value = f32::from_ne_bytes(std::array::from_fn(|k| wide[k]));
+                (value.into(), format!("{value:?}"))
             }
             #[allow(clippy::cast_precision_loss, reason = "only the size of a difference")]
             _ => (bits as f64, bits.to_string()),

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::super::results::only_part;
 use super::{FragmentsError, read_case};
 use crate::fragments::{FirstSizes, Matter, belongs};
 use crate::model::{Axis, Case, FragmentOptions, Include, SymmetryPlane};
@@ -151,6 +152,9 @@ impl Loaded {
             .names()
             .map_err(|error| wrong(path, error.to_string()))?;
         let reader = Reader { path, file, names };
+        if let Some(part) = reader.told(reader.file.part())? {
+            return Err(reader.wrong(only_part(&part)));
+        }
         for field in ["mass", "velocity"] {
             if !reader.has(field) {
                 let what = format!("it does not tell the {field} of its particles");

@@ -24,6 +24,10 @@ pub fn read(path: &Path, request: &Request) -> Result<Table, Fault> {
         let d = request.dimension;
         return Err(format!("it is of a model of {dimension} dimensions, not {d}").into());
     }
+    if let Some(part) = file.part().map_err(told)? {
+        let part = format!("it holds a part of the model alone ({part})");
+        return Err(format!("{part}; give a snapshot of all particles").into());
+    }
     let bodies = file.attribute("/whipple", "bodies").map_err(told)?;
     let bodies: Vec<String> = serde_json::from_str(&bodies)
         .map_err(|cause| format!("attribute bodies of /whipple: {cause}"))?;

@@ -5,29 +5,18 @@ use toml::Spanned;
 use super::check::{out_of_range, whole};
 use super::region::KeepReader;
 use super::{Diagnostic, axis};
-use crate::input::schema::{CaseParams, DomainParams, LevelsParams};
-use crate::model::readable::Readable;
-use crate::model::{Axis, Body, DomainOptions, SymmetryPlane};
+use crate::input::schema::{DomainParams, LevelsParams};
+use crate::model::{Axis, DomainOptions};
 
+/// Lengths of `boxes` may count the case's own `spacing` (m).
 pub fn domain(
-    case: &CaseParams,
-    dimension: usize,
-    bodies: &[Body],
-    symmetry: &[SymmetryPlane],
-    length_unit: &Readable,
+    params: &DomainParams,
+    boxes: &KeepReader,
+    spacing: Option<f64>,
 ) -> Result<DomainOptions, Diagnostic> {
-    let params = &case.domain;
-    let spacing = case.spacing.as_ref().map(|spacing| spacing.get_ref().si);
-    let reader = KeepReader {
-        dimension,
-        bodies,
-        symmetry,
-        length_unit,
-    };
-    let keep = params
-        .keep
-        .as_ref()
-        .map(|table| reader.read(table, spacing));
+    let dimension = boxes.dimension;
+    let keep = params.keep.as_ref();
+    let keep = keep.map(|table| boxes.read(table, spacing));
     Ok(DomainOptions {
         levels: levels(params, dimension)?,
         axes: axes(params, dimension)?,

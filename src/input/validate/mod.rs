@@ -21,6 +21,7 @@ mod meshes;
 mod motion;
 mod named;
 mod numerical_limits;
+mod output;
 mod particles;
 mod region;
 mod shapes;
@@ -36,19 +37,18 @@ use std::path::Path;
 
 use super::names;
 use super::schema::{
-    BodyParams, CaseParams, OutputParams, RunParams, SmoothingName, SphParams, SymmetryParams,
-    TimeStepParams,
+    BodyParams, CaseParams, RunParams, SmoothingName, SphParams, SymmetryParams, TimeStepParams,
 };
 use super::source::Diagnostic;
 use crate::material::Material;
 use crate::model::readable::Readable;
 use crate::model::{
-    Axis, Body, Case, ContactMode, MeasureOptions, NumericalLimits, OutputOptions, RunControl,
-    SmoothingLength, SphForm, SphOptions, SymmetryPlane, TimeStepOptions,
+    Axis, Body, Case, ContactMode, DomainOptions, MeasureOptions, NumericalLimits, OutputOptions,
+    RunControl, SmoothingLength, SphForm, SphOptions, SymmetryPlane, TimeStepOptions,
 };
-use crate::particles::{FIELDS, FieldId, TEMPERATURE, snapshot_names};
 use crate::populate::overlap;
 use check::{Allowed, number, whole};
+use region::KeepReader;
 use toml::Spanned;
 
 /// Overlaps up to this may be those of curved faces on a lattice (spacings).
@@ -86,8 +86,8 @@ pub fn case(mut params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     }
     .all(&params)?;
     let time_step = time_step(&params.time_step, &sph, &bodies, &materials)?;
-    let domain = domain::domain(&params, dimension, &bodies, &symmetry, &length_unit)?;
-    check_temperature(&materials, &params.output)?;
+    let boxes = KeepReader::new(dimension, &bodies, &symmetry, &length_unit);
+    let (domain, output) = domain_and_output(&params, &boxes, &materials)?;
     let mut case = Case {
         title: names::title(params.title.take())?,
         length_unit,
@@ -104,7 +104,7 @@ pub fn case(mut params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         domain,
         numerical_limits: NumericalLimits::default(),
         run: run(params.run.get_ref())?,
-        output: output(std::mem::take(&mut params.output))?,
+        output,
         fragments: fragments::fragments(params.fragments.as_ref())?,
         measure: MeasureOptions::default(),
         resolved: String::new(),
@@ -179,18 +179,6 @@ fn check_overlaps(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Dia
         }
     }
     Ok(())
-}
-
-fn check_temperature(materials: &[Material], params: &OutputParams) -> Result<(), Diagnostic> {
-    let peak = FIELDS[FieldId::peak_temperature as usize].name;
-    let mut fields = params.fields.iter().flat_map(Spanned::get_ref);
-    match fields.find(|field| [TEMPERATURE, peak].contains(&field.get_ref().as_str())) {
-        Some(field) if materials.iter().all(|m| m.thermal.is_none()) => {
-            let title = "no material has `thermal` constants that would give it a temperature";
-            Err(Diagnostic::new(field.span(), title))
-        }
-        _ => Ok(()),
-    }
 }
 
 /// The unit in which the spacing is given, of the case or of its first body, or a file's; one that
@@ -309,6 +297,22 @@ fn time_step(
     Ok(TimeStepOptions { max, ..given })
 }
 
+/// What has boxes.
+fn domain_and_output(
+    params: &CaseParams,
+    boxes: &KeepReader,
+    materials: &[Material],
+) -> Result<(DomainOptions, OutputOptions), Diagnostic> {
+    let spacing = params.spacing.as_ref().map(|spacing| spacing.get_ref().si);
+    let reader = output::Reader {
+        boxes,
+        spacing,
+        materials,
+    };
+    let domain = domain::domain(&params.domain, boxes, spacing)?;
+    Ok((domain, reader.read(&params.output)?))
+}
+
 fn run(params: &RunParams) -> Result<RunControl, Diagnostic> {
     let max_steps = params.max_steps.as_ref();
     Ok(RunControl {
@@ -316,47 +320,5 @@ fn run(params: &RunParams) -> Result<RunControl, Diagnostic> {
         max_steps: max_steps
             .map(|steps| whole(Some(steps), "max_steps", 0, 1))
             .transpose()?,
-    })
-}
-
-fn output(params: OutputParams) -> Result<OutputOptions, Diagnostic> {
-    let fields = match params.fields {
-        Some(fields) if fields.get_ref().is_empty() => {
-            let title = "`fields` names no field";
-            let help =
-                "leave it out for the usual fields; id, body and position are always written";
-            return Err(Diagnostic::new(fields.span(), title).help(help));
-        }
-        fields => fields.map_or_else(Vec::new, Spanned::into_inner),
-    };
-    let every = |value: Option<_>, key| {
-        let checked = value.map(|v| number(Some(&v), key, 0.0, Allowed::Positive));
-        checked.transpose()
-    };
-    let kept = whole(params.checkpoints_kept.as_ref(), "checkpoints_kept", 2, 1)?;
-    for (n, field) in fields.iter().enumerate() {
-        if !snapshot_names().any(|name| name == field.get_ref()) {
-            return Err(Diagnostic::unknown(
-                field.span(),
-                "field",
-                field.get_ref(),
-                snapshot_names(),
-            ));
-        }
-        if fields[..n].contains(field) {
-            let title = format!("the field `{}` is listed twice", field.get_ref());
-            return Err(Diagnostic::new(field.span(), title));
-        }
-    }
-    Ok(OutputOptions {
-        snapshot_every: every(params.snapshot_every, "snapshot_every")?,
-        checkpoint_every: every(params.checkpoint_every, "checkpoint_every")?,
-        checkpoint_every_steps: (params.checkpoint_every_steps.as_ref())
-            .map(|steps| whole(Some(steps), "checkpoint_every_steps", 0, 1))
-            .transpose()?,
-        checkpoint_every_wall: every(params.checkpoint_every_wall, "checkpoint_every_wall")?,
-        checkpoints_kept: usize::try_from(kept).unwrap_or(usize::MAX),
-        history_every: whole(params.history_every.as_ref(), "history_every", 10, 1)?,
-        fields: fields.into_iter().map(Spanned::into_inner).collect(),
     })
 }

@@ -1,4 +1,4 @@
-//! Regions between sides, and the box of interest: `[domain] keep`.
+//! Regions between sides, and boxes: that of interest (`[domain] keep`) and those of snapshots.
 
 use std::ops::Range;
 
@@ -41,7 +41,7 @@ pub fn region(
     Ok(region)
 }
 
-/// What a box of interest is read with.
+/// What boxes are read with.
 pub struct KeepReader<'a> {
     pub dimension: usize,
     /// Where they begin.
@@ -51,7 +51,21 @@ pub struct KeepReader<'a> {
     pub length_unit: &'a Readable,
 }
 
-impl KeepReader<'_> {
+impl<'a> KeepReader<'a> {
+    pub fn new(
+        dimension: usize,
+        bodies: &'a [Body],
+        symmetry: &'a [SymmetryPlane],
+        length_unit: &'a Readable,
+    ) -> Self {
+        Self {
+            dimension,
+            bodies,
+            symmetry,
+            length_unit,
+        }
+    }
+
     /// The box of interest, in which all bodies begin that can leave it. Lengths may count a case's own
     /// spacing (m), if it has one.
     pub fn read(
@@ -61,20 +75,41 @@ impl KeepReader<'_> {
     ) -> Result<Region, Diagnostic> {
         let params = table.get_ref();
         let tables = [params.above.as_ref(), params.below.as_ref()];
+        let keep = self.read_box(table, "keep", spacing)?;
+        let deforming = self.bodies.iter().filter(|body| body.rigid.is_none());
+        for body in deforming {
+            self.check_start(body, &keep, tables)?;
+        }
+        Ok(keep)
+    }
+
+    /// A box that a key names, of which some side is closed and which has some place.
+    pub fn read_box(
+        &self,
+        table: &Spanned<KeepParams>,
+        key: &str,
+        spacing: Option<f64>,
+    ) -> Result<Region, Diagnostic> {
+        let params = table.get_ref();
+        let tables = [params.above.as_ref(), params.below.as_ref()];
         let all = || tables.into_iter().flat_map(sides);
         if all().next().is_none() {
-            return Err(Diagnostic::new(table.span(), "`keep` has no side")
-                .help("name what is of interest, as in `keep.below = { z = \"5 mm\" }`"));
+            return Err(
+                Diagnostic::new(table.span(), format!("`{key}` has no side")).help(format!(
+                    "name what is of interest, as in `{key}.below = {{ z = \"5 mm\" }}`"
+                )),
+            );
         }
         let counted = all().find(|(_, side)| matches!(side.get_ref(), Extent::Spacings(_)));
         if let (Some((_, side)), None) = (counted, spacing) {
-            let title = "a case without a `spacing` of its own has none that `keep` could count";
+            let title =
+                format!("a case without a `spacing` of its own has none that `{key}` could count");
             return Err(Diagnostic::new(side.span(), title).help("give a length"));
         }
-        let keep = region(tables, self.dimension, spacing.unwrap_or_default())?;
+        let found = region(tables, self.dimension, spacing.unwrap_or_default())?;
         let [_, below] = tables;
         for (axis, side) in sides(below) {
-            let [low, high] = [keep.above, keep.below].map(|ends| ends[axis.index()]);
+            let [low, high] = [found.above, found.below].map(|ends| ends[axis.index()]);
             if low >= high {
                 let [low, high] = [low, high].map(|x| self.length_unit.text(x));
                 let title = format!(
@@ -84,11 +119,7 @@ impl KeepReader<'_> {
                 return Err(Diagnostic::new(side.span(), title));
             }
         }
-        let deforming = self.bodies.iter().filter(|body| body.rigid.is_none());
-        for body in deforming {
-            self.check_start(body, &keep, tables)?;
-        }
-        Ok(keep)
+        Ok(found)
     }
 
     /// Refuses a body that begins beyond a side.

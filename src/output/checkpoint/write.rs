@@ -62,7 +62,7 @@ fn write_parts(
 ) -> Result<(), OutputError> {
     let state = state_file(folder);
     rows.plan(comm, &particles.id[..particles.owned()])?;
-    let file = Writer::create(comm, &state)?;
+    let file = Writer::create_aligned(comm, &state, rows.sharing().alignment)?;
     file.number("/", "format", &FORMAT)?;
     file.number("/", "step", &meta.step)?;
     file.number("/", "time", &meta.time)?;

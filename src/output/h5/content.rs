@@ -87,10 +87,10 @@ impl Content {
             name: path.rsplit('/').next().unwrap_or(path).to_owned(),
             row: rows.row,
             rows: rows.rows,
-            unit: self.told(&format!("the unit of {path}"), rows.note_if_any(c"unit"))?,
+            unit: self.told(&format!("the unit of {path}"), rows.note_if_any("unit"))?,
             description: self.told(
                 &format!("the description of {path}"),
-                rows.note_if_any(c"description"),
+                rows.note_if_any("description"),
             )?,
         })
     }
@@ -142,6 +142,16 @@ impl Content {
         self.values(path, &rows)
     }
 
+    /// How many partitions the points of a grid stand in.
+    ///
+    /// # Errors
+    /// [`OutputError::Hdf5`], also if they cannot be those of its points.
+    pub fn partitions(&self, grid: &str) -> Result<u64, OutputError> {
+        let points = self.numbers(&format!("{grid}/Points"))?.rows;
+        let what = format!("{grid}/NumberOfPoints");
+        self.told(&what, self.gate.partitions(grid, points))
+    }
+
     /// A text dataset.
     ///
     /// # Errors
@@ -158,6 +168,16 @@ impl Content {
     /// [`OutputError::Hdf5`].
     pub fn note(&self, group: &str, name: &str) -> Result<String, OutputError> {
         let note = self.gate.group(group).and_then(|g| gate::note(&g, name));
+        self.told(name, note)
+    }
+
+    /// A text attribute of a group, if there is one.
+    ///
+    /// # Errors
+    /// [`OutputError::Hdf5`].
+    pub fn note_if_any(&self, group: &str, name: &str) -> Result<Option<String>, OutputError> {
+        let note = self.gate.group(group);
+        let note = note.and_then(|g| gate::note_if_any(&g, name));
         self.told(name, note)
     }
 

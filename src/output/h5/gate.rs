@@ -7,7 +7,7 @@
 //! attributes of one value. Type, shape and place are compared with the length of the file before
 //! memory is taken.
 
-use std::ffi::{CStr, CString, c_int};
+use std::ffi::{CString, c_int};
 use std::path::Path;
 
 use hdf5::{Dataset, Dataspace, Datatype, File, Group, Location};
@@ -19,7 +19,7 @@ use hdf5_sys::h5p::{H5P_DEFAULT, H5Pget_external_count, H5Pget_layout, H5Pget_nf
 use hdf5_sys::h5t::{H5T_class_t, H5Tget_class, H5Tis_variable_str};
 
 use crate::comm::Comm;
-use crate::output::{Block, OutputError, agree, files, on_root};
+use crate::output::{Block, OutputError, agree, files, on_root, partitions};
 
 use super::transfer::{call, read_rows};
 use super::{Element, Number, RowType, access, explain};
@@ -107,6 +107,21 @@ impl Gate {
             components,
         };
         self.within(dataset, row, rows)
+    }
+
+    /// How many partitions a grid has, if they are those of so many points. Rows stand in one array
+    /// all the same, so that readers of rows need not know which partition a row is in.
+    pub fn partitions(&self, grid: &str, points: u64) -> hdf5::Result<u64> {
+        let found = self.numbers(&format!("{grid}/NumberOfPoints"))?;
+        if found.row != RowType::single(Element::I64) {
+            return Err("its rows are not of one i64 each".into());
+        }
+        partitions::check_count(found.rows)?;
+        let mut sizes = vec![0_i64; found.count()];
+        let all = Block::even(found.rows, 0, 1);
+        found.read(all, bytemuck::cast_slice_mut(&mut sizes))?;
+        partitions::check(&sizes, points)?;
+        Ok(found.rows)
     }
 
     /// All of a dataset of one text, without the zeros at its end.
@@ -205,20 +220,22 @@ impl Found {
     }
 
     /// A text attached to it; empty where there is none.
-    pub fn note_if_any(&self, name: &CStr) -> hdf5::Result<String> {
-        // SAFETY: the dataset is open, and the name ends with a zero.
-        let there = hdf5::sync::sync(|| unsafe { H5Aexists(self.dataset.id(), name.as_ptr()) });
-        if there > 0 {
-            self.note(&name.to_string_lossy())
-        } else {
-            Ok(String::new())
-        }
+    pub fn note_if_any(&self, name: &str) -> hdf5::Result<String> {
+        Ok(note_if_any(&self.dataset, name)?.unwrap_or_default())
     }
 
     /// A text attached to it.
     pub fn note(&self, name: &str) -> hdf5::Result<String> {
         note(&self.dataset, name)
     }
+}
+
+/// A text attached to an object, if there is one of this name.
+pub(super) fn note_if_any(object: &Location, name: &str) -> hdf5::Result<Option<String>> {
+    let text = CString::new(name).map_err(|e| e.to_string())?;
+    // SAFETY: the object is open, and the name ends with a zero.
+    let there = hdf5::sync::sync(|| unsafe { H5Aexists(object.id(), text.as_ptr()) });
+    (there > 0).then(|| note(object, name)).transpose()
 }
 
 /// A text attached to an object.

@@ -29,13 +29,22 @@ pub enum Element {
     U32,
     /// `u8`.
     U8,
+    /// `f32`.
+    F32,
     /// UTF-8 text of so many bytes, padded with zeros.
     Text(usize),
 }
 
 impl Element {
     /// All that are numbers.
-    const NUMBERS: [Self; 5] = [Self::F64, Self::I64, Self::U64, Self::U32, Self::U8];
+    const NUMBERS: [Self; 6] = [
+        Self::F64,
+        Self::I64,
+        Self::U64,
+        Self::U32,
+        Self::U8,
+        Self::F32,
+    ];
 
     /// Its name in messages.
     #[must_use]
@@ -46,6 +55,7 @@ impl Element {
             Self::U64 => "u64",
             Self::U32 => "u32",
             Self::U8 => "u8",
+            Self::F32 => "f32",
             Self::Text(_) => "text",
         }
     }
@@ -65,6 +75,7 @@ impl Element {
             Self::I64 => all(bytes, |value: i64| value as f64),
             Self::U64 => all(bytes, |value: u64| value as f64),
             Self::U32 => all(bytes, |value: u32| value.into()),
+            Self::F32 => all(bytes, |value: f32| value.into()),
             Self::U8 | Self::Text(_) => all(bytes, |value: u8| value.into()),
         }
     }
@@ -74,7 +85,7 @@ impl Element {
     pub fn bytes(self) -> usize {
         match self {
             Self::F64 | Self::I64 | Self::U64 => 8,
-            Self::U32 => 4,
+            Self::U32 | Self::F32 => 4,
             Self::U8 => 1,
             Self::Text(bytes) => bytes,
         }
@@ -87,6 +98,7 @@ impl Element {
             Self::U64 => TypeDescriptor::Unsigned(IntSize::U8),
             Self::U32 => TypeDescriptor::Unsigned(IntSize::U4),
             Self::U8 => TypeDescriptor::Unsigned(IntSize::U1),
+            Self::F32 => TypeDescriptor::Float(FloatSize::U4),
             Self::Text(bytes) => TypeDescriptor::FixedUnicode(bytes),
         }
     }
@@ -111,7 +123,7 @@ macro_rules! numbers {
     };
 }
 
-numbers!(F64: f64, I64: i64, U64: u64, U32: u32, U8: u8);
+numbers!(F64: f64, I64: i64, U64: u64, U32: u32, U8: u8, F32: f32);
 
 /// The type of a dataset's rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -198,5 +210,8 @@ mod tests {
         assert_eq!(Element::I64.reals(bytemuck::cast_slice(&ids)), [7.0, -1.0]);
         assert_eq!(Element::U32.reals(&[1, 0, 0, 0, 2, 1, 0, 0]), [1.0, 258.0]);
         assert_eq!(Element::U8.reals(&[0, 255]), [0.0, 255.0]);
+        let single = [0.5_f32, f32::MAX];
+        let reals = Element::F32.reals(bytemuck::cast_slice(&single));
+        assert_eq!(reals, [0.5, f64::from(f32::MAX)]);
     }
 }

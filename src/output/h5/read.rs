@@ -8,6 +8,12 @@ use crate::output::{Block, OutputError};
 use super::explain;
 use super::gate::{self, Found, Gate};
 
+/// Group of the grid.
+const GRID: &str = "/VTKHDF";
+
+/// Attribute of `/whipple` that says which part of the model a snapshot holds, if not all of it.
+pub const PART: &str = "part";
+
 /// Why a snapshot could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
@@ -42,7 +48,8 @@ impl SnapshotFile {
     /// Opens a snapshot for reading.
     ///
     /// # Errors
-    /// [`ReadError::Open`] if it is no HDF5 file, [`ReadError::Layout`] if it holds no points.
+    /// [`ReadError::Open`] if it is no HDF5 file, [`ReadError::Layout`] if it holds no points, or
+    /// partitions that are not theirs.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let mut snapshot = Self {
             gate: Gate::open(None, path)?,
@@ -55,6 +62,8 @@ impl SnapshotFile {
             return Err(snapshot.layout("/VTKHDF/Points", &reason));
         }
         snapshot.particles = points.count();
+        let partitions = snapshot.gate.partitions(GRID, points.rows);
+        snapshot.told(&format!("{GRID}/NumberOfPoints"), partitions)?;
         Ok(snapshot)
     }
 
@@ -162,6 +171,19 @@ impl SnapshotFile {
     pub fn attribute(&self, group: &str, name: &str) -> Result<String, ReadError> {
         let text = self.gate.group(group).and_then(|g| gate::note(&g, name));
         self.told(&format!("attribute {name} of {group}"), text)
+    }
+
+    /// Which part of the model it holds, if it says that it does not hold all particles.
+    ///
+    /// # Errors
+    /// [`ReadError::Layout`] if that cannot be read.
+    pub fn part(&self) -> Result<Option<String>, ReadError> {
+        let group = "/whipple";
+        let part = self
+            .gate
+            .group(group)
+            .and_then(|g| gate::note_if_any(&g, PART));
+        self.told(&format!("attribute {PART} of {group}"), part)
     }
 
     /// A whole number that is an attribute of a group, such as `dimension` of `/whipple`.

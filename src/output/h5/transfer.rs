@@ -12,6 +12,7 @@ use hdf5_sys::h5i::hid_t;
 use hdf5_sys::h5p::H5P_DEFAULT;
 use hdf5_sys::h5s::{H5S_seloper_t, H5Sselect_hyperslab};
 
+use crate::comm::pieces;
 use crate::output::Block;
 
 use super::RowType;
@@ -76,15 +77,33 @@ fn in_pieces(
     block: Block,
     mut piece: impl FnMut(hid_t, hid_t, usize) -> hdf5::Result<()>,
 ) -> hdf5::Result<()> {
-    let most = (PIECE / row.bytes()).max(1);
-    for start in (0..block.count).step_by(most) {
-        let count = most.min(block.count - start) as u64;
-        let memory = Dataspace::try_new(row.shape(count))?;
+    for part in parts(row, block) {
+        let memory = Dataspace::try_new(row.shape(part.count))?;
         let file = dataset.space()?;
-        select_rows(&file, row, block.first + start as u64, count)?;
-        piece(memory.id(), file.id(), start * row.bytes())?;
+        select_rows(&file, row, part.first, part.count)?;
+        piece(memory.id(), file.id(), part.start)?;
     }
     Ok(())
+}
+
+/// Rows of one call.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Part {
+    /// The first one in the file.
+    first: u64,
+    count: u64,
+    /// The first byte of the block that belongs to them.
+    start: usize,
+}
+
+/// The calls that a block takes.
+fn parts(row: RowType, block: Block) -> impl Iterator<Item = Part> {
+    let most = (PIECE / row.bytes()).max(1);
+    pieces(block.count, most).map(move |rows| Part {
+        first: block.first + rows.start as u64,
+        count: rows.len() as u64,
+        start: rows.start * row.bytes(),
+    })
 }
 
 fn select_rows(space: &Dataspace, row: RowType, first: u64, count: u64) -> hdf5::Result<()> {
@@ -101,4 +120,37 @@ fn select_rows(space: &Dataspace, row: RowType, first: u64, count: u64) -> hdf5:
             std::ptr::null(),
         )
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::h5::Element;
+
+    #[test]
+    fn blocks_of_more_than_two_thousand_million_rows_take_several_calls() {
+        let tensor = RowType {
+            element: Element::F64,
+            components: 9,
+        };
+        let block = Block {
+            total: 1 << 34,
+            first: 1 << 33,
+            count: (1 << 31) + 5,
+        };
+        let (mut first, mut start) = (block.first, 0);
+        for part in parts(tensor, block) {
+            assert_eq!((part.first, part.start), (first, start));
+            let bytes = part.count * tensor.bytes() as u64;
+            assert!(bytes > 0 && bytes <= PIECE as u64);
+            first += part.count;
+            start += usize::try_from(bytes).unwrap();
+        }
+        assert_eq!(first, block.first + block.count as u64);
+        assert_eq!(start, block.count * tensor.bytes());
+        assert_eq!(parts(tensor, Block { count: 0, ..block }).count(), 0);
+        // A row that is longer than a piece goes by itself.
+        let long = RowType::single(Element::Text(3 << 30));
+        assert_eq!(parts(long, Block::even(2, 0, 1)).count(), 2);
+    }
 }

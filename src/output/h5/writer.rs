@@ -31,11 +31,29 @@ impl<'a> Writer<'a> {
     /// # Errors
     /// [`OutputError::Io`] or [`OutputError::Hdf5`].
     pub fn create(comm: &'a Comm, path: &Path) -> Result<Self, OutputError> {
+        Self::create_aligned(comm, path, None)
+    }
+
+    /// As [`Self::create`], where arrays begin at multiples of so many bytes, if that is wanted.
+    /// Collective.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`] or [`OutputError::Hdf5`].
+    pub fn create_aligned(
+        comm: &'a Comm,
+        path: &Path,
+        alignment: Option<u64>,
+    ) -> Result<Self, OutputError> {
         // The system's messages ("permission denied", "no space left") are also clearer.
         on_root(comm, || {
             keep_room(path).map_err(OutputError::io("create", path))
         })?;
-        let created = access(Some(comm)).create(path);
+        let mut builder = access(Some(comm));
+        if let Some(bytes) = alignment {
+            // What is shorter stands between.
+            builder.with_fapl(|list| list.alignment(bytes, bytes));
+        }
+        let created = builder.create(path);
         let file = agree(comm, created.map_err(|e| refusal("create", path, &e)))?;
         Ok(Self {
             comm,

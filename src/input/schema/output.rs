@@ -1,0 +1,76 @@
+//! What is written, as it is typed.
+
+use serde::{Deserialize, Deserializer};
+use toml::Spanned;
+
+use super::KeepParams;
+use crate::input::quantity::{Placed, Quantity, TextVisitor, Time, expected, quantity};
+use crate::model::Precision;
+
+optional_tables! {
+    /// `[output]`
+    OutputParams {
+        /// Time between snapshots.
+        snapshot_every: Option<Placed<Time>>,
+        /// Time between checkpoints.
+        checkpoint_every: Option<Placed<Time>>,
+        /// Steps between checkpoints.
+        checkpoint_every_steps: Option<Spanned<i64>>,
+        /// Time of the clock between checkpoints.
+        checkpoint_every_wall: Option<Spanned<ClockParams>>,
+        /// Mean time between failures of the machine, for `"auto"`; 6 h if absent.
+        mean_time_between_failures: Option<Placed<Time>>,
+        /// How many are kept.
+        checkpoints_kept: Option<Spanned<i64>>,
+        /// Steps between rows of the histories.
+        history_every: Option<Spanned<i64>>,
+        /// Snapshot fields, at least one.
+        fields: Option<Spanned<Vec<Spanned<String>>>>,
+        /// How many ranks write; all if absent.
+        writers: Option<Spanned<i64>>,
+        /// Arrays begin at multiples of so many bytes; anywhere if absent.
+        alignment: Option<Spanned<i64>>,
+        /// Snapshots with schedules of their own.
+        snapshot: Vec<Spanned<SnapshotParams>>,
+    }
+}
+
+tables! {
+    /// `[[output.snapshot]]`
+    SnapshotParams {
+        /// Name of its folder, as of a body but without dots.
+        name: Spanned<String>,
+        /// Time between snapshots; the first and the last state alone if absent.
+        every: Option<Placed<Time>>,
+        /// Fields, at least one; those of the usual snapshots if absent.
+        fields: Option<Spanned<Vec<Spanned<String>>>>,
+        /// Names of the bodies whose particles it holds; all if absent.
+        bodies: Option<Spanned<Vec<Spanned<String>>>>,
+        /// What of space it holds; all if absent.
+        region: Option<Spanned<KeepParams>>,
+        /// Whether numbers have 64 bits or 32; 64 if absent.
+        precision: Option<Precision>,
+    }
+}
+
+/// A time of the clock, or `"auto"`.
+#[derive(Debug, Clone, Copy)]
+pub enum ClockParams {
+    /// By what a checkpoint costs.
+    Auto,
+    /// Always the same.
+    Every(Quantity<Time>),
+}
+
+impl<'de> Deserialize<'de> for ClockParams {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(TextVisitor {
+            expected: || expected::<Time>(" or \"auto\""),
+            takes_numbers: false,
+            read: |text| match text.trim() {
+                "auto" => Ok(Self::Auto),
+                _ => quantity::<Time>(text).map(Self::Every),
+            },
+        })
+    }
+}

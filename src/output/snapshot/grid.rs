@@ -1,0 +1,91 @@
+//! The grid of a snapshot as VTK wants it: points, and a cell for each, in partitions.
+
+use super::form::Form;
+use super::values::write_values;
+use crate::comm::Comm;
+use crate::model::Precision;
+use crate::output::h5::{Element, RowType, Writer};
+use crate::output::partitions::Partitions;
+use crate::output::{Block, OutputError, Rows};
+use crate::particles::{FieldId, ParticleStore};
+
+/// Group of the grid.
+pub(super) const GRID: &str = "/VTKHDF";
+/// VTK's number of a cell that is a single point.
+const VERTEX: u8 = 1;
+
+/// Points, their cells, and the time (s).
+pub(super) fn write_grid(
+    comm: &Comm,
+    file: &Writer,
+    particles: &ParticleStore,
+    time: f64,
+    form: &Form,
+    rows: &mut Rows,
+) -> Result<(), OutputError> {
+    let partitions = Partitions::new(rows.block().total, form.partition_rows);
+    let sizes: Vec<i64> = partitions.sizes().map(signed).collect();
+    file.group(GRID)?;
+    file.vtk_header(GRID, "UnstructuredGrid", [1, 0])?;
+    for name in ["NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"] {
+        file.numbers(&format!("{GRID}/{name}"), Element::I64, &sizes)?;
+    }
+    write_points(comm, file, particles, form.precision, rows)?;
+    write_cells(comm, file, partitions, rows)?;
+    file.group(&format!("{GRID}/PointData"))?;
+    file.group(&format!("{GRID}/FieldData"))?;
+    file.numbers(
+        &format!("{GRID}/FieldData/TimeValue"),
+        Element::F64,
+        &[time],
+    )
+}
+
+fn write_points(
+    comm: &Comm,
+    file: &Writer,
+    particles: &ParticleStore,
+    precision: Precision,
+    rows: &mut Rows,
+) -> Result<(), OutputError> {
+    let vector = RowType {
+        element: Element::F64,
+        components: 3,
+    };
+    let (path, block) = (format!("{GRID}/Points"), rows.block());
+    let points = rows.collect(comm, particles.bytes(FieldId::position), vector.bytes());
+    write_values(file, &path, (vector, precision), block, points)?;
+    file.note(&path, "unit", "m")
+}
+
+/// A vertex for each point. Numbers of points and offsets count in each partition anew.
+fn write_cells(
+    comm: &Comm,
+    file: &Writer,
+    partitions: Partitions,
+    rows: &Rows,
+) -> Result<(), OutputError> {
+    let block = rows.block();
+    let write = |name: &str, block: Block, value: &dyn Fn(u64) -> u64| {
+        let own = (block.first..).take(block.count);
+        let numbers: Vec<i64> = own.map(|k| signed(value(k))).collect();
+        let path = format!("{GRID}/{name}");
+        let integer = RowType::single(Element::I64);
+        file.rows(&path, integer, block, bytemuck::cast_slice(&numbers))
+    };
+    write("Connectivity", block, &|row| partitions.place(row))?;
+    let longer = partitions.offsets(block, block.closes(comm.is_root()));
+    write("Offsets", longer, &|entry| partitions.offset(entry))?;
+    let types = vec![VERTEX; block.count];
+    file.rows(
+        &format!("{GRID}/Types"),
+        RowType::single(Element::U8),
+        block,
+        &types,
+    )
+}
+
+/// VTK counts in signed numbers.
+fn signed(number: u64) -> i64 {
+    i64::try_from(number).unwrap_or(i64::MAX)
+}
