@@ -114,10 +114,10 @@ mod tests {
         assert_eq!([grid.period(0), grid.period(1)], [256, 256]);
         assert_eq!(ColumnGrid::new([0.0; 3], [9.0; 3], 0.01, 2).period(0), 2048);
         let first = grid.cell(0, 0.0);
-        assert_eq!(grid.cell(0, 0.0149), first);
-        assert_eq!(grid.cell(0, 0.0151), first + 1);
-        assert_eq!(grid.cell(0, -0.0051), first - 1);
-        assert_eq!(grid.cell(0, -0.005 + 256.5 * 0.02), first + 256);
+        assert_eq!(grid.cell(0, 0.0174), first);
+        assert_eq!(grid.cell(0, 0.0176), first + 1);
+        assert_eq!(grid.cell(0, -0.0026), first - 1);
+        assert_eq!(grid.cell(0, -0.0025 + 256.5 * 0.02), first + 256);
         assert_eq!(grid.after(0, first, first + 259), 3);
         assert_eq!(grid.after(0, first, first - 1), 255);
         for far in [1e9, 1e300, f64::INFINITY] {
