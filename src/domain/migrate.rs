@@ -97,9 +97,8 @@ impl Migration {
             }
             let owner = owners.owner(position);
             if owner != rank {
-                let ahead = (owner + size - rank) % size;
                 #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
-                self.leaving.push([ahead as u32, i as u32]);
+                self.leaving.push([ahead_of(rank, owner, size), i as u32]);
             }
         }
         self.leaving.sort_unstable();
@@ -126,9 +125,9 @@ impl Migration {
         self.gone.extend(self.leaving.iter().map(|[_, i]| i));
         for k in 0..self.exchange.peers() {
             let peer = self.exchange.rank(k);
-            let ahead = (peer + comm.size() - comm.rank()) % comm.size();
-            let start = self.leaving.partition_point(|to| (to[0] as usize) < ahead);
-            let end = self.leaving.partition_point(|to| to[0] as usize <= ahead);
+            let ahead = ahead_of(comm.rank(), peer, comm.size());
+            let start = self.leaving.partition_point(|to| to[0] < ahead);
+            let end = self.leaving.partition_point(|to| to[0] <= ahead);
             particles.pack(
                 FieldInfo::leaves,
                 &self.gone[start..end],
@@ -174,7 +173,13 @@ impl Migration {
     }
 }
 
-/// The rank so many ahead, round and round.
+/// How many ranks another one is ahead, round and round.
+#[allow(clippy::cast_possible_truncation, reason = "ranks fit u32")]
+fn ahead_of(rank: usize, other: usize, size: usize) -> u32 {
+    ((other + size - rank) % size) as u32
+}
+
+/// The rank so many ahead.
 fn rank_ahead(rank: usize, ahead: u32, size: usize) -> usize {
     (rank + ahead as usize) % size
 }

@@ -66,28 +66,18 @@ impl Extent {
         if self.is_empty() || other.is_empty() {
             return false;
         }
-        let gap = |a: usize| {
-            let gap = (other.lower[a] - self.upper[a]).max(self.lower[a] - other.upper[a]);
-            gap.max(0.0)
-        };
-        is_within([0, 1, 2].map(gap), self.reach + other.reach)
+        self.is_near((&other.lower, &other.upper), self.reach + other.reach)
     }
 
-    /// Whether a place (m) is within a range (m) of the box.
+    /// Whether another box between two corners (m), which may be a place, is within a range (m) of this one.
     #[inline]
-    fn is_near(&self, place: &[f64; 3], range: f64) -> bool {
-        let gap = |a: usize| {
-            let gap = (self.lower[a] - place[a]).max(place[a] - self.upper[a]);
-            gap.max(0.0)
+    fn is_near(&self, (lower, upper): (&[f64; 3], &[f64; 3]), range: f64) -> bool {
+        let square = |a: usize| {
+            let gap = (lower[a] - self.upper[a]).max(self.lower[a] - upper[a]);
+            gap.max(0.0) * gap.max(0.0)
         };
-        is_within([0, 1, 2].map(gap), range)
+        square(0) + square(1) + square(2) <= range * range * ROUNDING
     }
-}
-
-#[inline]
-fn is_within(gaps: [f64; 3], range: f64) -> bool {
-    let [x, y, z] = gaps.map(|gap| gap * gap);
-    x + y + z <= range * range * ROUNDING
 }
 
 /// A particle that a rank needs (this rank itself, or the peer of an index), and the codes of the
@@ -182,7 +172,7 @@ fn note(
     let mut needs = 0;
     for code in codes(near, peer != MYSELF) {
         let image = finder.mirrors.reflect_position(position, code);
-        if there.is_near(&image, reach + there.reach) {
+        if there.is_near((&image, &image), reach + there.reach) {
             needs |= 1 << code;
         }
     }

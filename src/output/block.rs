@@ -20,13 +20,7 @@ impl Block {
     /// If a share is longer than an address.
     #[must_use]
     pub fn even(total: u64, rank: usize, ranks: usize) -> Self {
-        let first = start(total, rank, ranks);
-        let end = start(total, rank + 1, ranks);
-        Self {
-            total,
-            first,
-            count: usize::try_from(end - first).expect("a block fits memory"),
-        }
+        Self::shared(total, rank, ranks, ranks)
     }
 
     /// The share of `rank` where `writers` of the ranks, evenly spread, have even shares and the
@@ -68,7 +62,7 @@ impl Block {
     }
 }
 
-/// First row of a block: `⌊total · rank / ranks⌋`.
+/// First row of a writer: `⌊total · rank / ranks⌋`.
 fn start(total: u64, rank: usize, ranks: usize) -> u64 {
     let first = u128::from(total) * rank as u128 / ranks as u128;
     u64::try_from(first).unwrap_or(total)

@@ -57,11 +57,11 @@ pub fn of_rank(case: &Case, comm: &Comm, ranks: usize) -> f64 {
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
 fn fullest(case: &Case, comm: &Comm, ranks: usize) -> Option<Fullest> {
     let outset = Outset::new(case)?;
-    if outset.known_levels(case, ranks) == Some(1) {
+    let known = outset.known_levels(case, ranks);
+    if known == Some(1) {
         return Some(fullest_slab(case, &outset, comm, ranks));
     }
     let forecast = outset.forecast(case, comm);
-    let known = outset.known_levels(case, ranks);
     let levels = known.unwrap_or_else(|| forecast.levels(ranks));
     let fullest = forecast.fullest(levels, ranks);
     let even = forecast.total() / ranks as f64;

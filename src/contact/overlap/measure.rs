@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::constants;
 use crate::contact::mode::{Found, Scene, fill, for_each_chunk};
-use crate::contact::view::{ContactView, Separation};
+use crate::contact::view::{ContactView, Party, Separation};
 use crate::model::{ContactClass, Overlap};
 use crate::neighbours::{CHUNKS_AT_ONCE, Chunk};
 use crate::numerics::vector::norm;
@@ -57,6 +57,13 @@ pub fn initial_offset(fraction: &Fraction) -> (f64, bool) {
     (wanted.min(limit), wanted > limit)
 }
 
+/// Current volume (m³) of the matter of an image, without the voids in it.
+#[inline(always)]
+fn matter(view: &ContactView, index: u32, party: &Party) -> f64 {
+    let most = party.volume * view.table.expansion(party.body);
+    view.motion[index as usize].volume.min(most)
+}
+
 /// Sums the foreign fraction of the receiver at `index`, whose initial overlap offset is `offset`.
 #[must_use]
 pub fn fraction(view: &ContactView, index: u32, neighbours: &[u32], offset: f64) -> Fraction {
@@ -72,8 +79,7 @@ pub fn fraction(view: &ContactView, index: u32, neighbours: &[u32], offset: f64)
         sum.modulus += share * own.modulus;
         sum.touching += share * own.touching;
         sum.slope -= j.volume * pair.kernel.slope(separation.distance);
-        let matter = j.volume * view.table.expansion(j.body);
-        sum.current += view.motion[other as usize].volume.min(matter) * kernel;
+        sum.current += matter(view, other, &j) * kernel;
     }
     if sum.fraction > 0.0 {
         sum.modulus /= sum.fraction;
@@ -175,8 +181,7 @@ fn has_room(view: &ContactView, index: u32, own: &[u32], current: f64) -> bool {
         let j = view.party(other);
         let distance = Separation::between(&i, &j).distance;
         let kernel = view.table.pair(i.kind, j.kind).kernel.value(distance);
-        let matter = j.volume * view.table.expansion(j.body);
-        let share = view.motion[other as usize].volume.min(matter) * kernel;
+        let share = matter(view, other, &j) * kernel;
         filled += if other == index { 0.5 * share } else { share };
         if filled > 1.0 {
             return false;

@@ -36,6 +36,25 @@ pub fn body(case: &Case, name: &Spanned<String>) -> Result<usize, Diagnostic> {
     })
 }
 
+/// Refuses the name at a place of a list if it is not known, or stands before it already.
+pub fn check_listed<'a, I: Iterator<Item = &'a str>>(
+    names: &[Spanned<String>],
+    place: usize,
+    what: &str,
+    known: impl Fn() -> I,
+) -> Result<(), Diagnostic> {
+    let name = &names[place];
+    let (at, text) = (name.span(), name.get_ref());
+    if !known().any(|known| known == text) {
+        return Err(Diagnostic::unknown(at, what, text, known()));
+    }
+    if names[..place].contains(name) {
+        let title = format!("the {what} `{text}` is listed twice");
+        return Err(Diagnostic::new(at, title));
+    }
+    Ok(())
+}
+
 /// What is read that a key names; `needs_any` of them.
 pub fn fields(
     fields: Option<&Spanned<Vec<Spanned<String>>>>,
@@ -47,20 +66,8 @@ pub fn fields(
     if fields.get_ref().is_empty() && needs_any {
         return Err(Diagnostic::new(fields.span(), "nothing is read"));
     }
-    for (n, field) in fields.get_ref().iter().enumerate() {
-        let name = field.get_ref();
-        if !gauge_names().any(|known| known == name) {
-            return Err(Diagnostic::unknown(
-                field.span(),
-                "field",
-                name,
-                gauge_names(),
-            ));
-        }
-        if fields.get_ref()[..n].contains(field) {
-            let title = format!("the field `{name}` is listed twice");
-            return Err(Diagnostic::new(field.span(), title));
-        }
+    for n in 0..fields.get_ref().len() {
+        check_listed(fields.get_ref(), n, "field", gauge_names)?;
     }
     let names = fields.get_ref().iter().map(|field| field.get_ref().clone());
     Ok(names.collect())

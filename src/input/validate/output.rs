@@ -3,6 +3,7 @@
 use toml::Spanned;
 
 use super::check::{Allowed, number, optional, whole};
+use super::named::check_listed;
 use super::region::KeepReader;
 use crate::input::names;
 use crate::input::quantity::{Placed, Time};
@@ -78,22 +79,10 @@ impl Reader<'_> {
         let Some(named) = named else { return Ok(None) };
         let all = self.boxes.bodies;
         let mut bodies = Vec::new();
-        for name in named.get_ref() {
-            let body = all.iter().position(|body| body.name == *name.get_ref());
-            let Some(body) = body else {
-                let known = all.iter().map(|body| body.name.as_str());
-                return Err(Diagnostic::unknown(
-                    name.span(),
-                    "body",
-                    name.get_ref(),
-                    known,
-                ));
-            };
-            if bodies.contains(&body) {
-                let title = format!("the body `{}` is listed twice", name.get_ref());
-                return Err(Diagnostic::new(name.span(), title));
-            }
-            bodies.push(body);
+        let known = || all.iter().map(|body| body.name.as_str());
+        for (n, name) in named.get_ref().iter().enumerate() {
+            check_listed(named.get_ref(), n, "body", known)?;
+            bodies.extend(known().position(|body| body == name.get_ref()));
         }
         if bodies.is_empty() {
             let help = "leave it out for all bodies";
@@ -115,19 +104,7 @@ impl Reader<'_> {
             return Err(Diagnostic::new(fields.span(), title).help(help));
         }
         for (n, field) in fields.get_ref().iter().enumerate() {
-            let name = field.get_ref();
-            if !snapshot_names().any(|known| known == name) {
-                return Err(Diagnostic::unknown(
-                    field.span(),
-                    "field",
-                    name,
-                    snapshot_names(),
-                ));
-            }
-            if fields.get_ref()[..n].contains(field) {
-                let title = format!("the field `{name}` is listed twice");
-                return Err(Diagnostic::new(field.span(), title));
-            }
+            check_listed(fields.get_ref(), n, "field", snapshot_names)?;
             self.check_temperature(field)?;
         }
         let names = fields.get_ref().iter();

@@ -24,13 +24,9 @@ impl<'a> Form<'a> {
     /// Some quantities of all particles.
     #[must_use]
     pub fn of(quantities: &'a [Quantity]) -> Self {
-        const ALL: &Part = &Part {
-            bodies: None,
-            region: Region::OPEN,
-        };
         Self {
             quantities,
-            part: ALL,
+            part: Part::ALL,
             precision: Precision::Double,
             schedule: None,
             partition_rows: PARTITION_ROWS,
@@ -49,14 +45,17 @@ pub struct Part {
 
 impl Default for Part {
     fn default() -> Self {
-        Self {
-            bodies: None,
-            region: Region::OPEN,
-        }
+        Self::ALL.clone()
     }
 }
 
 impl Part {
+    /// The whole model.
+    const ALL: &Self = &Self {
+        bodies: None,
+        region: Region::OPEN,
+    };
+
     /// That of a schedule.
     #[must_use]
     pub fn of(schedule: &SnapshotSchedule) -> Self {
@@ -69,7 +68,7 @@ impl Part {
     /// Whether it is the whole model.
     #[must_use]
     pub fn is_all(&self) -> bool {
-        self.bodies.is_none() && self.region == Region::OPEN
+        self == Self::ALL
     }
 
     /// The owned particles that belong to it; nothing where all do. A place that is no number is
