@@ -4,9 +4,11 @@ use std::ffi::{c_int, c_void};
 use std::ops::Range;
 
 use mpi::ffi;
+use mpi::traits::AsRaw;
 
-use super::Comm;
+use super::virtual_ranks::{Rank, Tag, Ticket};
 use super::waiting::waiting;
+use super::{Comm, Kind, RawComm};
 
 /// Largest piece of a message: counts are `i32`.
 const PIECE: usize = 1 << 30;
@@ -47,6 +49,8 @@ pub struct Exchange {
     count: usize,
     receives: Vec<ffi::MPI_Request>,
     sends: Vec<ffi::MPI_Request>,
+    /// In place of both, on a virtual rank: itself, and what will come of which peers.
+    expected: Option<(Rank, Vec<(usize, Ticket)>)>,
     /// Size of the message to and from each peer.
     sizes: Vec<[u64; 2]>,
     /// What this exchange has sent so far.
@@ -59,7 +63,8 @@ impl Exchange {
     /// # Panics
     /// If messages are still under way.
     pub fn set_peers(&mut self, ranks: impl Iterator<Item = usize>) {
-        assert!(self.receives.is_empty(), "an exchange is still under way");
+        let idle = self.receives.is_empty() && self.expected.is_none();
+        assert!(idle, "an exchange is still under way");
         wait_all(&mut self.sends);
         self.count = 0;
         for rank in ranks {
@@ -108,10 +113,58 @@ impl Exchange {
     /// # Panics
     /// If a message is larger than memory can be.
     pub fn post_sizes(&mut self, comm: &Comm) {
-        let Some(raw) = comm.raw() else { return };
         self.sizes.clear();
         let sends = self.peers[..self.count].iter().map(|peer| &peer.send);
         self.sizes.extend(sends.map(|send| [send.len() as u64, 0]));
+        match &comm.kind {
+            Kind::Solo => {}
+            Kind::Mpi(world) => self.swap_sizes_by_mpi(world.as_raw()),
+            Kind::Virtual(rank) => self.swap_sizes_virtually(rank),
+        }
+        for (peer, size) in self.peers[..self.count].iter_mut().zip(&self.sizes) {
+            let bytes = usize::try_from(size[1]).expect("a size fits memory");
+            peer.receive.resize(bytes, 0);
+        }
+    }
+
+    /// Starts all messages; returns at once.
+    pub fn post(&mut self, comm: &Comm) {
+        match &comm.kind {
+            Kind::Solo => {}
+            Kind::Mpi(world) => self.post_by_mpi(world.as_raw()),
+            Kind::Virtual(rank) => self.post_virtually(rank),
+        }
+    }
+
+    /// Waits for the messages of the peers. This rank's own may still be under way: their buffers
+    /// stay untouched until then.
+    ///
+    /// # Panics
+    /// If there are more messages than MPI can count; on a virtual rank, if a message has not the
+    /// size that was expected.
+    pub fn wait(&mut self) {
+        wait_all(&mut self.receives);
+        if let Some((rank, tickets)) = self.expected.take() {
+            for (k, ticket) in tickets {
+                let bytes = rank.receive(ticket);
+                let receive = &mut self.peers[k].receive;
+                assert_eq!(bytes.len(), receive.len(), "a message as expected");
+                *receive = bytes;
+            }
+        }
+    }
+
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        let message = |peer: &Peer| peer.send.capacity() + peer.receive.capacity();
+        self.peers.iter().map(message).sum::<usize>()
+            + size_of::<Peer>() * self.peers.capacity()
+            + size_of::<ffi::MPI_Request>() * (self.receives.capacity() + self.sends.capacity())
+            + size_of::<[u64; 2]>() * self.sizes.capacity()
+    }
+
+    fn swap_sizes_by_mpi(&mut self, raw: RawComm) {
         for k in 0..self.count {
             let rank = self.peers[k].rank;
             let size = self.sizes[k].as_mut_ptr();
@@ -124,15 +177,9 @@ impl Exchange {
         }
         self.wait();
         wait_all(&mut self.sends);
-        for (peer, size) in self.peers[..self.count].iter_mut().zip(&self.sizes) {
-            let bytes = usize::try_from(size[1]).expect("a size fits memory");
-            peer.receive.resize(bytes, 0);
-        }
     }
 
-    /// Starts all messages; returns at once.
-    pub fn post(&mut self, comm: &Comm) {
-        let Some(raw) = comm.raw() else { return };
+    fn post_by_mpi(&mut self, raw: RawComm) {
         for k in 0..self.count {
             let rank = self.peers[k].rank;
             let (pointer, length) = {
@@ -164,28 +211,38 @@ impl Exchange {
         }
     }
 
-    /// Waits for the messages of the peers. This rank's own may still be under way: their buffers
-    /// stay untouched until then.
-    ///
-    /// # Panics
-    /// If there are more messages than MPI can count.
-    pub fn wait(&mut self) {
-        wait_all(&mut self.receives);
+    fn swap_sizes_virtually(&mut self, me: &Rank) {
+        for (k, size) in self.sizes.iter().enumerate() {
+            me.send(self.rank(k), Tag::Size, &size[0].to_ne_bytes(), 1);
+            self.traffic.messages += 1;
+            self.traffic.bytes += 8;
+        }
+        for k in 0..self.count {
+            let bytes = me.receive(me.expect(self.rank(k), Tag::Size));
+            self.sizes[k][1] = bytemuck::pod_read_unaligned(&bytes);
+        }
     }
 
-    /// Bytes allocated.
-    #[must_use]
-    pub fn memory(&self) -> usize {
-        let message = |peer: &Peer| peer.send.capacity() + peer.receive.capacity();
-        self.peers.iter().map(message).sum::<usize>()
-            + size_of::<Peer>() * self.peers.capacity()
-            + size_of::<ffi::MPI_Request>() * (self.receives.capacity() + self.sends.capacity())
-            + size_of::<[u64; 2]>() * self.sizes.capacity()
+    fn post_virtually(&mut self, me: &Rank) {
+        let says = |k: &usize| !self.peers[*k].receive.is_empty();
+        let ticket = |k: usize| (k, me.expect(self.rank(k), Tag::Data));
+        let tickets = (0..self.count).filter(says).map(ticket);
+        self.expected = Some((me.clone(), tickets.collect()));
+        for k in 0..self.count {
+            if self.peers[k].send.is_empty() {
+                continue;
+            }
+            let send = &self.peers[k].send;
+            let messages = pieces(send.len(), PIECE).count() as u64;
+            me.send(self.rank(k), Tag::Data, send, messages);
+            self.traffic.messages += messages;
+            self.traffic.bytes += send.len() as u64;
+        }
     }
 
     unsafe fn receive_piece(
         &mut self,
-        comm: ffi::MPI_Comm,
+        comm: RawComm,
         to: *mut c_void,
         bytes: usize,
         rank: c_int,
@@ -199,7 +256,7 @@ impl Exchange {
 
     unsafe fn send_piece(
         &mut self,
-        comm: ffi::MPI_Comm,
+        comm: RawComm,
         from: *const c_void,
         bytes: usize,
         rank: c_int,

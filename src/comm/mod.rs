@@ -1,12 +1,15 @@
 //! Messages between ranks: the only module that names MPI.
 //!
-//! MPI is initialised *funneled*: every call comes from the main thread. A [`Comm`] without a
-//! world ([`Comm::solo`]) is a single rank that never touches MPI, for tests and library use.
+//! MPI is initialised *funneled*: every call comes from the main thread. A [`Comm`] without it
+//! ([`Comm::solo`]) is a single rank that never touches MPI, for tests and library use; so are
+//! [`virtual_ranks`], many ranks in one process.
 
 mod exchange;
+mod virtual_ranks;
 mod waiting;
 
 pub use exchange::{Exchange, Traffic, pieces};
+pub use virtual_ranks::{Computing, Machine, VirtualTime, virtual_ranks};
 pub use waiting::waited;
 
 use std::cell::RefCell;
@@ -15,6 +18,7 @@ use mpi::collective::SystemOperation;
 use mpi::ffi;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{AsRaw, Communicator, CommunicatorCollectives, Root};
+use virtual_ranks::Rank;
 use waiting::waiting;
 
 /// The communicator handle that parallel HDF5 takes.
@@ -33,7 +37,7 @@ impl Session {
         if threading < mpi::Threading::Funneled {
             return None;
         }
-        let comm = Comm::of(Some(universe.world()));
+        let comm = Comm::of(Kind::Mpi(universe.world()));
         Some((
             Self {
                 _universe: universe,
@@ -45,14 +49,22 @@ impl Session {
 
 /// A group of ranks.
 pub struct Comm {
-    world: Option<SimpleCommunicator>,
+    kind: Kind,
     scratch: RefCell<Vec<u64>>,
 }
 
+/// What carries messages.
+enum Kind {
+    /// Nothing: there is one rank.
+    Solo,
+    Mpi(SimpleCommunicator),
+    Virtual(Rank),
+}
+
 impl Comm {
-    fn of(world: Option<SimpleCommunicator>) -> Self {
+    fn of(kind: Kind) -> Self {
         Self {
-            world,
+            kind,
             scratch: RefCell::default(),
         }
     }
@@ -60,23 +72,31 @@ impl Comm {
     /// One rank by itself, without MPI.
     #[must_use]
     pub fn solo() -> Self {
-        Self::of(None)
+        Self::of(Kind::Solo)
     }
 
-    /// This process's number.
+    fn on_virtual_rank(rank: Rank) -> Self {
+        Self::of(Kind::Virtual(rank))
+    }
+
+    /// This rank's number.
     #[must_use]
     pub fn rank(&self) -> usize {
-        self.world
-            .as_ref()
-            .map_or(0, |world| usize::try_from(world.rank()).unwrap_or(0))
+        match &self.kind {
+            Kind::Solo => 0,
+            Kind::Mpi(world) => usize::try_from(world.rank()).unwrap_or(0),
+            Kind::Virtual(rank) => rank.number(),
+        }
     }
 
-    /// Number of processes.
+    /// Number of ranks.
     #[must_use]
     pub fn size(&self) -> usize {
-        self.world
-            .as_ref()
-            .map_or(1, |world| usize::try_from(world.size()).unwrap_or(1))
+        match &self.kind {
+            Kind::Solo => 1,
+            Kind::Mpi(world) => usize::try_from(world.size()).unwrap_or(1),
+            Kind::Virtual(rank) => rank.size(),
+        }
     }
 
     /// Whether this is rank 0, which prints.
@@ -85,44 +105,66 @@ impl Comm {
         self.rank() == 0
     }
 
-    /// The handle for parallel HDF5; `None` without MPI.
+    /// The handle for parallel HDF5; `None` without MPI, where one rank alone may write.
     #[must_use]
     pub fn raw(&self) -> Option<RawComm> {
-        self.world.as_ref().map(AsRaw::as_raw)
+        match &self.kind {
+            Kind::Mpi(world) => Some(world.as_raw()),
+            Kind::Solo | Kind::Virtual(_) => None,
+        }
+    }
+
+    /// What this rank has spent so far, if it is a virtual one.
+    #[must_use]
+    pub fn virtual_time(&self) -> Option<VirtualTime> {
+        match &self.kind {
+            Kind::Virtual(_) => Some(Rank::time()),
+            Kind::Solo | Kind::Mpi(_) => None,
+        }
+    }
+
+    /// Lets the clock of a virtual rank go on by seconds of computing, where they are
+    /// [told](Computing::Told). Does nothing else.
+    pub fn compute(&self, seconds: f64) {
+        if let Kind::Virtual(rank) = &self.kind {
+            rank.compute(seconds);
+        }
     }
 
     /// Waits for all ranks.
     pub fn barrier(&self) {
-        if let Some(world) = &self.world {
-            waiting(|| world.barrier());
+        match &self.kind {
+            Kind::Solo => {}
+            Kind::Mpi(world) => waiting(|| world.barrier()),
+            Kind::Virtual(rank) => rank.barrier(),
         }
     }
 
     /// Replaces each number by its sum over ranks (wrapping is the caller's concern).
     pub fn sum_i64(&self, values: &mut [i64]) {
-        self.reduce(values, SystemOperation::sum());
+        self.reduce(values, SystemOperation::sum(), i64::wrapping_add);
     }
 
     /// Replaces each number by its sum over ranks.
     pub fn sum_u64(&self, values: &mut [u64]) {
-        self.reduce(values, SystemOperation::sum());
+        self.reduce(values, SystemOperation::sum(), u64::wrapping_add);
     }
 
     /// Replaces each number by its largest over ranks.
     pub fn max_u64(&self, values: &mut [u64]) {
-        self.reduce(values, SystemOperation::max());
+        self.reduce(values, SystemOperation::max(), u64::max);
     }
 
     /// Replaces each number by its smallest over ranks.
     pub fn min_u64(&self, values: &mut [u64]) {
-        self.reduce(values, SystemOperation::min());
+        self.reduce(values, SystemOperation::min(), u64::min);
     }
 
     /// Largest of a number over ranks.
     #[must_use]
     pub fn max_f64(&self, value: f64) -> f64 {
         let mut values = [value];
-        self.reduce(&mut values, SystemOperation::max());
+        self.reduce(&mut values, SystemOperation::max(), f64::max);
         values[0]
     }
 
@@ -130,7 +172,7 @@ impl Comm {
     #[must_use]
     pub fn min_f64(&self, value: f64) -> f64 {
         let mut values = [value];
-        self.reduce(&mut values, SystemOperation::min());
+        self.reduce(&mut values, SystemOperation::min(), f64::min);
         values[0]
     }
 
@@ -145,18 +187,20 @@ impl Comm {
     /// Joins every rank's `values` (the same length everywhere) in rank order into `all`.
     pub fn all_gather_u64(&self, values: &[u64], all: &mut Vec<u64>) {
         all.resize(values.len() * self.size(), 0);
-        match &self.world {
-            Some(world) => waiting(|| world.all_gather_into(values, all.as_mut_slice())),
-            None => all.copy_from_slice(values),
+        match &self.kind {
+            Kind::Solo => all.copy_from_slice(values),
+            Kind::Mpi(world) => waiting(|| world.all_gather_into(values, all.as_mut_slice())),
+            Kind::Virtual(rank) => rank.all_gather(values, all),
         }
     }
 
     /// Sends `sends[r]` to rank r, receives what rank r sent here in `receives[r]`.
     pub fn all_to_all_u64(&self, sends: &[u64], receives: &mut Vec<u64>) {
         receives.resize(self.size(), 0);
-        match &self.world {
-            Some(world) => waiting(|| world.all_to_all_into(sends, receives.as_mut_slice())),
-            None => receives.copy_from_slice(sends),
+        match &self.kind {
+            Kind::Solo => receives.copy_from_slice(sends),
+            Kind::Mpi(world) => waiting(|| world.all_to_all_into(sends, receives.as_mut_slice())),
+            Kind::Virtual(rank) => rank.all_to_all(sends, receives),
         }
     }
 
@@ -170,34 +214,48 @@ impl Comm {
     /// # Panics
     /// If there is no such rank.
     pub fn broadcast_from(&self, from: usize, bytes: &mut Vec<u8>) {
-        if let Some(world) = &self.world {
-            let root = world.process_at_rank(i32::try_from(from).expect("a rank fits an int"));
-            let mut length = [bytes.len() as u64];
-            waiting(|| root.broadcast_into(&mut length));
-            bytes.resize(usize::try_from(length[0]).unwrap_or(0), 0);
-            for piece in bytes.chunks_mut(1 << 30) {
-                waiting(|| root.broadcast_into(piece));
-            }
+        match &self.kind {
+            Kind::Solo => assert_eq!(from, 0, "there is one rank"),
+            Kind::Mpi(world) => broadcast_by_mpi(world, from, bytes),
+            Kind::Virtual(rank) => rank.broadcast(from, bytes),
         }
     }
 
-    fn reduce<T>(&self, values: &mut [T], operation: SystemOperation)
+    /// Combines values of eight bytes over ranks, by MPI's operation or the function that does the same.
+    fn reduce<T>(&self, values: &mut [T], operation: SystemOperation, combine: fn(T, T) -> T)
     where
         T: bytemuck::Pod + mpi::traits::Equivalence,
         [T]: mpi::traits::Buffer + mpi::traits::BufferMut,
     {
-        if let Some(world) = &self.world
-            && self.size() > 1
-        {
-            let mut scratch = self.scratch.borrow_mut();
-            let words = size_of_val(values).div_ceil(8);
-            if scratch.len() < words {
-                scratch.resize(words, 0);
-            }
-            let mine: &mut [T] = bytemuck::cast_slice_mut(&mut scratch[..words]);
-            mine.copy_from_slice(values);
-            waiting(|| world.all_reduce_into(&*mine, values, operation));
+        if self.size() == 1 {
+            return;
         }
+        match &self.kind {
+            Kind::Solo => {}
+            Kind::Mpi(world) => {
+                let mut scratch = self.scratch.borrow_mut();
+                let words = size_of_val(values).div_ceil(8);
+                if scratch.len() < words {
+                    scratch.resize(words, 0);
+                }
+                let mine: &mut [T] = bytemuck::cast_slice_mut(&mut scratch[..words]);
+                mine.copy_from_slice(values);
+                waiting(|| world.all_reduce_into(&*mine, values, operation));
+            }
+            Kind::Virtual(rank) => rank.reduce(bytemuck::cast_slice_mut(values), |a, b| {
+                bytemuck::cast(combine(bytemuck::cast(a), bytemuck::cast(b)))
+            }),
+        }
+    }
+}
+
+fn broadcast_by_mpi(world: &SimpleCommunicator, from: usize, bytes: &mut Vec<u8>) {
+    let root = world.process_at_rank(i32::try_from(from).expect("a rank fits an int"));
+    let mut length = [bytes.len() as u64];
+    waiting(|| root.broadcast_into(&mut length));
+    bytes.resize(usize::try_from(length[0]).unwrap_or(0), 0);
+    for piece in bytes.chunks_mut(1 << 30) {
+        waiting(|| root.broadcast_into(piece));
     }
 }
 

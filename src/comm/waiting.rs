@@ -6,15 +6,18 @@
 use std::cell::Cell;
 use std::time::{Duration, Instant};
 
+use super::virtual_ranks;
+
 thread_local! {
     /// Of this thread: MPI is on the main thread alone.
     static WAITED: Cell<Duration> = const { Cell::new(Duration::ZERO) };
 }
 
-/// How long calls of this room have waited for other ranks since the thread began.
+/// How long calls of this room have waited for other ranks since the thread began. On a virtual
+/// rank it is all time that the rank has not computed, as its clock counts it.
 #[must_use]
 pub fn waited() -> Duration {
-    WAITED.get()
+    virtual_ranks::waited().unwrap_or_else(|| WAITED.get())
 }
 
 /// A call that waits for others.

@@ -7,6 +7,7 @@ pub mod outcome;
 pub mod random;
 pub mod ranks;
 pub mod sentinel;
+pub mod virtual_ranks;
 
 use whipple::material::{Elastic, Eos, Linear, LinearForm, Strength, VonMises, library};
 use whipple::model::{

@@ -163,7 +163,12 @@ impl RowType {
 /// How to open a file: all ranks of `comm` together with collective metadata, or this process
 /// alone. Without locks, which some file systems refuse and which nobody needs here: a file has
 /// its final name only when it is whole.
+///
+/// # Panics
+/// If several ranks without MPI would write over each other.
 fn access(comm: Option<&Comm>) -> FileBuilder {
+    let can_share = |comm: &Comm| comm.raw().is_some() || comm.size() == 1;
+    assert!(comm.is_none_or(can_share), "virtual ranks have no files");
     let mut builder = FileBuilder::new();
     // Records in few large blocks, not scattered between the arrays.
     builder.with_fapl(|list| list.meta_block_size(64 << 10));

@@ -1,0 +1,111 @@
+//! Virtual ranks: the ranks of one program as threads of one process, without MPI, on a machine that
+//! is thought of.
+//!
+//! They run the code that real ranks run, with messages as long as theirs, a thousand of them and
+//! more on a few cores. What the network of that machine would cost is counted by a
+//! [clock](VirtualTime) of each rank; how long the threads really take means nothing.
+//!
+//! A rank is its thread: what it computes must stay there if it is to be told from the work of
+//! others. So a task that uses rayon first builds a pool of one thread, its own, with
+//! `use_current_thread`. Files are not for virtual ranks: HDF5 would need MPI.
+
+mod clock;
+mod rank;
+mod world;
+
+pub use clock::VirtualTime;
+pub(super) use clock::waited;
+pub(super) use rank::Rank;
+pub(super) use world::{Tag, Ticket};
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
+use std::thread;
+
+use super::Comm;
+use clock::Clock;
+use world::{Abandoned, World};
+
+/// The machine that virtual ranks run on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Machine {
+    /// From the end of a message at the sender to its end at the receiver (s).
+    pub latency: f64,
+    /// Of the messages of a rank, which leave one after the other (bytes/s).
+    pub bandwidth: f64,
+    /// How long ranks compute.
+    pub computing: Computing,
+}
+
+impl Machine {
+    /// Messages take no time, and neither does computing.
+    pub const IDEAL: Self = Self {
+        latency: 0.0,
+        bandwidth: f64::INFINITY,
+        computing: Computing::Told,
+    };
+}
+
+/// Where the clock of a virtual rank has the time from that it computes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Computing {
+    /// The processor time of the rank's thread between calls of this module. Threads that share
+    /// a core drive each other's data from its cache, which counts.
+    Measured,
+    /// What [`Comm::compute`] is told, and nothing else: the same in every run.
+    Told,
+}
+
+/// Stack of a rank (bytes), as large as that of a process's main thread. What is never touched takes
+/// no memory.
+const STACK: usize = 8 << 20;
+
+/// Runs a task on so many virtual ranks at once and gives what it returns, by rank.
+///
+/// # Panics
+/// If the task panics on a rank, which ends all others where they wait next; if ranks wait for each
+/// other in a circle; if the system has no more threads.
+pub fn virtual_ranks<T: Send>(
+    ranks: usize,
+    machine: Machine,
+    task: impl Fn(&Comm) -> T + Sync,
+) -> Vec<T> {
+    let world = Arc::new(World::new(ranks));
+    let run = |rank: usize| {
+        Clock::start(machine.computing);
+        let comm = Comm::on_virtual_rank(Rank::new(rank, ranks, machine, Arc::clone(&world)));
+        let result = catch_unwind(AssertUnwindSafe(|| {
+            let result = task(&comm);
+            world.end();
+            result
+        }));
+        result.inspect_err(|_| world.give_up())
+    };
+    let results: Vec<Result<T, Box<dyn Any + Send>>> = thread::scope(|scope| {
+        let run = &run;
+        let threads: Vec<_> = (0..ranks)
+            .map(|rank| {
+                let thread = thread::Builder::new().stack_size(STACK);
+                let started = thread.spawn_scoped(scope, move || run(rank));
+                started.unwrap_or_else(|cause| {
+                    world.give_up();
+                    panic!("rank {rank} cannot start: {cause}")
+                })
+            })
+            .collect();
+        let joined = threads.into_iter().map(|thread| thread.join());
+        joined.map(|result| result.and_then(|same| same)).collect()
+    });
+    let is_cause = |result: &Result<T, Box<dyn Any + Send>>| matches!(result, Err(cause) if !cause.is::<Abandoned>());
+    let first = results.iter().position(is_cause);
+    let mut values = Vec::with_capacity(ranks);
+    for (rank, result) in results.into_iter().enumerate() {
+        match result {
+            Ok(value) => values.push(value),
+            Err(cause) if first.is_none_or(|first| first == rank) => resume_unwind(cause),
+            Err(_) => {}
+        }
+    }
+    values
+}

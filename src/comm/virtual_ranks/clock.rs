@@ -1,0 +1,132 @@
+//! The clock of a virtual rank, which is its thread.
+
+use std::cell::Cell;
+use std::time::{Duration, Instant};
+
+use super::Computing;
+
+thread_local! {
+    static CLOCK: Cell<Option<Clock>> = const { Cell::new(None) };
+}
+
+/// What a virtual rank has spent so far.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct VirtualTime {
+    /// Seconds since the start: [`Self::computing`] and [`Self::waiting`].
+    pub now: f64,
+    /// Seconds that the rank has computed.
+    pub computing: f64,
+    /// Seconds that it has waited for messages and for others, while nothing was left to compute:
+    /// communication that no computing hides.
+    pub waiting: f64,
+    /// Messages sent to peers, those with sizes among them.
+    pub messages: u64,
+    /// Bytes sent to peers.
+    pub bytes: u64,
+    /// Calls that all ranks take part in.
+    pub collectives: u64,
+}
+
+/// The clock of this thread.
+#[derive(Debug, Clone, Copy)]
+pub struct Clock {
+    computing: Computing,
+    time: VirtualTime,
+    /// When the last of the own messages has left (s).
+    sent: f64,
+    /// When the thread began, and its processor time when it computed last.
+    began: Instant,
+    processor: Duration,
+}
+
+impl Clock {
+    /// Starts the clock of this thread.
+    pub fn start(computing: Computing) {
+        CLOCK.set(Some(Self {
+            computing,
+            time: VirtualTime::default(),
+            sent: 0.0,
+            began: Instant::now(),
+            processor: processor_time(),
+        }));
+    }
+
+    /// Books what this thread has computed, lets a call of this module read and set the clock, and
+    /// leaves the processor time of that call out. Gives what the call returns.
+    ///
+    /// # Panics
+    /// If the thread has no clock.
+    pub fn with<T>(call: impl FnOnce(&mut Self) -> T) -> T {
+        let mut clock = Self::read().expect("a virtual rank stays on its thread");
+        let result = call(&mut clock);
+        clock.processor = processor_time();
+        CLOCK.set(Some(clock));
+        result
+    }
+
+    /// The clock of this thread up to now.
+    fn read() -> Option<Self> {
+        let mut clock = CLOCK.get()?;
+        if clock.computing == Computing::Measured {
+            let processor = processor_time();
+            clock.compute(processor.saturating_sub(clock.processor).as_secs_f64());
+            clock.processor = processor;
+        }
+        Some(clock)
+    }
+
+    /// Goes on by so many seconds of computing.
+    pub fn compute(&mut self, seconds: f64) {
+        self.time.computing += seconds;
+        self.time.now += seconds;
+    }
+
+    /// What was spent so far.
+    pub fn time(&self) -> VirtualTime {
+        self.time
+    }
+
+    /// Goes on to a time (s) if that is later: the rank waits.
+    pub fn wait(&mut self, until: f64) {
+        if until > self.time.now {
+            self.time.waiting += until - self.time.now;
+            self.time.now = until;
+        }
+    }
+
+    /// Books a call of all ranks.
+    pub fn count_collective(&mut self) {
+        self.time.collectives += 1;
+    }
+
+    /// Sends so many messages of so many bytes together, after what was sent before. Gives the time
+    /// (s) when all has left.
+    pub fn send(&mut self, messages: u64, bytes: u64, bandwidth: f64) -> f64 {
+        self.time.messages += messages;
+        self.time.bytes += bytes;
+        #[allow(clippy::cast_precision_loss, reason = "a time")]
+        let takes = bytes as f64 / bandwidth;
+        self.sent = self.sent.max(self.time.now) + takes;
+        self.sent
+    }
+}
+
+/// How long this thread, if it is a virtual rank, has not computed: it has waited for others or for a
+/// core, which both say nothing of its work.
+pub fn waited() -> Option<Duration> {
+    let clock = Clock::read()?;
+    let computing = Duration::try_from_secs_f64(clock.time.computing).unwrap_or(Duration::MAX);
+    Some(clock.began.elapsed().saturating_sub(computing))
+}
+
+/// Processor time of this thread since it began.
+fn processor_time() -> Duration {
+    let mut time = libc::timespec {
+        tv_sec: 0,
+        tv_nsec: 0,
+    };
+    // SAFETY: the call writes to `time` alone.
+    unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &raw mut time) };
+    let seconds = u64::try_from(time.tv_sec).unwrap_or(0);
+    Duration::new(seconds, u32::try_from(time.tv_nsec).unwrap_or(0))
+}

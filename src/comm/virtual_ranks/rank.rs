@@ -1,0 +1,167 @@
+//! One virtual rank: its messages and collective calls, and what they cost it.
+//!
+//! Costs of collective calls are those of the usual trees (Thakur, Rabenseifner & Gropp 2005,
+//! doi:10.1177/1094342005051521).
+
+use std::sync::Arc;
+
+use super::clock::{Clock, VirtualTime};
+use super::world::{Letter, Tag, Ticket, World};
+use super::{Computing, Machine};
+
+/// A rank on its own thread.
+#[derive(Clone)]
+pub struct Rank {
+    number: usize,
+    size: usize,
+    machine: Machine,
+    world: Arc<World>,
+}
+
+#[allow(clippy::cast_precision_loss, reason = "sizes and numbers, for a time")]
+impl Rank {
+    pub(super) fn new(number: usize, size: usize, machine: Machine, world: Arc<World>) -> Self {
+        Self {
+            number,
+            size,
+            machine,
+            world,
+        }
+    }
+
+    /// Its number.
+    pub fn number(&self) -> usize {
+        self.number
+    }
+
+    /// How many there are.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// What it has spent so far.
+    pub fn time() -> VirtualTime {
+        Clock::with(|clock| clock.time())
+    }
+
+    /// Books seconds of computing, where they are told.
+    pub fn compute(&self, seconds: f64) {
+        if self.machine.computing == Computing::Told {
+            Clock::with(|clock| clock.compute(seconds));
+        }
+    }
+
+    /// Sends bytes, which go in so many messages; returns at once.
+    pub fn send(&self, to: usize, tag: Tag, bytes: &[u8], messages: u64) {
+        Clock::with(|clock| {
+            let left = clock.send(messages, bytes.len() as u64, self.machine.bandwidth);
+            let letter = Letter {
+                bytes: bytes.to_vec(),
+                arrival: left + self.machine.latency,
+            };
+            self.world.send((self.number, to, tag), letter);
+        });
+    }
+
+    /// Begins to receive the next message of a rank, of those that were not begun yet.
+    pub fn expect(&self, from: usize, tag: Tag) -> Ticket {
+        Clock::with(|_| self.world.expect(self.number, from, tag))
+    }
+
+    /// Waits for a message.
+    pub fn receive(&self, ticket: Ticket) -> Vec<u8> {
+        Clock::with(|clock| {
+            let letter = self.world.receive(self.number, ticket);
+            clock.wait(letter.arrival);
+            letter.bytes
+        })
+    }
+
+    /// Waits for all ranks.
+    pub fn barrier(&self) {
+        self.meet(self.tree(1.0, 0.0), |_| {});
+    }
+
+    /// Combines each word with those of all ranks, in any order.
+    pub fn reduce(&self, words: &mut [u64], combine: impl Fn(u64, u64) -> u64) {
+        let cost = self.tree(1.0, size_of_val(words) as f64);
+        let all = self.meet(cost, |all| {
+            if all.is_empty() {
+                all.extend_from_slice(words);
+                return;
+            }
+            assert_eq!(all.len(), words.len(), "all ranks reduce as many words");
+            for (all, &mine) in all.iter_mut().zip(&*words) {
+                *all = combine(*all, mine);
+            }
+        });
+        words.copy_from_slice(&all);
+    }
+
+    /// Joins the words of all ranks in their order.
+    pub fn all_gather(&self, words: &[u64], joined: &mut [u64]) {
+        let others = (self.size - 1) * size_of_val(words);
+        let cost = self.tree(1.0, 0.0) + others as f64 / self.machine.bandwidth;
+        let all = self.meet(cost, |all| {
+            all.resize(joined.len(), 0);
+            let first = self.number * words.len();
+            all[first..first + words.len()].copy_from_slice(words);
+        });
+        joined.copy_from_slice(&all);
+    }
+
+    /// Gives each rank its word of this rank's, and this rank those of all.
+    pub fn all_to_all(&self, sends: &[u64], receives: &mut [u64]) {
+        let size = self.size;
+        let cost = self.tree(1.0, 0.5 * size_of_val(sends) as f64);
+        let all = self.meet(cost, |all| {
+            all.resize(size * size, 0);
+            all[self.number * size..][..size].copy_from_slice(sends);
+        });
+        for (from, word) in receives.iter_mut().enumerate() {
+            *word = all[from * size + self.number];
+        }
+    }
+
+    /// Gives all ranks the bytes of one, after their number.
+    pub fn broadcast(&self, from: usize, bytes: &mut Vec<u8>) {
+        let is_sender = from == self.number;
+        let cost = if is_sender {
+            let number = self.tree(1.0, 8.0);
+            let pieces = if bytes.is_empty() { 0.0 } else { 1.0 };
+            number + self.tree(pieces, bytes.len() as f64)
+        } else {
+            0.0
+        };
+        let all = self.meet(cost, |all| {
+            if is_sender {
+                all.push(bytes.len() as u64);
+                all.resize(1 + bytes.len().div_ceil(8), 0);
+                bytemuck::cast_slice_mut(&mut all[1..])[..bytes.len()].copy_from_slice(bytes);
+            }
+        });
+        if !is_sender {
+            let length = usize::try_from(all[0]).expect("a length fits memory");
+            bytes.clear();
+            bytes.extend_from_slice(&bytemuck::cast_slice(&all[1..])[..length]);
+        }
+    }
+
+    /// Meets all ranks, each of which adds to one list of words; gives it when all have. The clock
+    /// goes on to the last one's arrival and the largest cost (s) that any of them knows of.
+    fn meet(&self, cost: f64, add: impl FnOnce(&mut Vec<u64>)) -> Arc<Vec<u64>> {
+        Clock::with(|clock| {
+            let now = clock.time().now;
+            let (words, end) = self.world.meet(self.number, (now, cost), add);
+            clock.count_collective();
+            clock.wait(end);
+            words
+        })
+    }
+
+    /// Seconds that so many messages and bytes take from rank to rank up or down a binary tree.
+    fn tree(&self, messages: f64, bytes: f64) -> f64 {
+        let levels = f64::from(self.size.next_power_of_two().trailing_zeros());
+        levels * (messages * self.machine.latency + bytes / self.machine.bandwidth)
+    }
+}
