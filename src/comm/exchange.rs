@@ -4,6 +4,7 @@ use std::ffi::{c_int, c_void};
 use std::ops::Range;
 
 use mpi::ffi;
+use rayon::prelude::*;
 
 use super::Comm;
 use super::waiting::waiting;
@@ -92,10 +93,26 @@ impl Exchange {
         &mut self.peers[k].send
     }
 
+    /// Empties all messages and has all threads fill those of the peers.
+    pub fn fill(&mut self, fill: impl Fn(usize, &mut Vec<u8>) + Sync) {
+        wait_all(&mut self.sends);
+        let peers = self.peers[..self.count].par_iter_mut().enumerate();
+        peers.for_each(|(k, peer)| {
+            peer.send.clear();
+            fill(k, &mut peer.send);
+        });
+    }
+
     /// The message of the k-th peer, after [`Self::wait`].
     #[must_use]
     pub fn incoming(&self, k: usize) -> &[u8] {
         &self.peers[k].receive
+    }
+
+    /// Tells all threads the message of the k-th peer, after [`Self::wait`].
+    pub fn incoming_to_all<'a>(&'a self) -> impl Fn(usize) -> &'a [u8] + Sync {
+        let peers = self.peers.as_slice();
+        move |k| &peers[k].receive
     }
 
     /// Says how many bytes the k-th peer will send.

@@ -1,10 +1,12 @@
 //! What contact adds up: exact sums, counts and extremes, of pairs of bodies and of all.
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::force::BodyForce;
 use crate::domain::MirrorForce;
 use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
+use crate::numerics::gathered_sums::{self, GatheredSums};
 use crate::numerics::vector::cross;
 
 /// What a pair of bodies has come to in an interval of steps.
@@ -197,14 +199,28 @@ impl ContactSums {
     /// Adds what images behind symmetry planes do to particles at `positions` (m).
     pub fn add_plane_forces<'a>(
         &mut self,
-        forces: impl Iterator<Item = &'a MirrorForce>,
+        forces: impl ParallelIterator<Item = &'a MirrorForce>,
         positions: &[[f64; 3]],
     ) {
-        for force in forces {
-            self.add_plane_force(&force.force, &positions[force.particle]);
-            for (sum, couple) in self.outside_torque.iter_mut().zip(force.couple) {
-                sum.add(couple);
-            }
+        let add = |mut sums: GatheredSums<9>, force: &MirrorForce| {
+            let [x, y, z] = force.force;
+            let [a, b, c] = cross(&positions[force.particle], &force.force);
+            let [u, v, w] = force.couple;
+            sums.add(&[x, y, z, a, b, c, u, v, w]);
+            sums
+        };
+        let sums = forces
+            // same bits in any order: exact sums are integers
+            .fold(GatheredSums::default, add)
+            .map(GatheredSums::into_sums)
+            // same bits in any order, as above
+            .reduce(gathered_sums::none, gathered_sums::merged);
+        let [x, y, z, torques @ ..] = &sums;
+        for (sum, part) in self.plane_force.iter_mut().zip([x, y, z]) {
+            sum.merge(part);
+        }
+        for (k, part) in torques.iter().enumerate() {
+            self.outside_torque[k % 3].merge(part);
         }
     }
 

@@ -6,6 +6,7 @@ mod halo;
 mod histogram;
 mod migrate;
 mod mirrors;
+mod near;
 mod needs;
 mod nested;
 mod outset;
@@ -15,7 +16,7 @@ mod span;
 
 pub use balance::Balance;
 pub use forecast::{Forecast, Fullest, reach};
-pub use halo::Halo;
+pub use halo::{Halo, Reaches};
 pub use histogram::{Cumulative, Histogram};
 pub use migrate::Migration;
 pub use mirrors::{MirrorForce, Mirrors};

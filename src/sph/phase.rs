@@ -1,5 +1,7 @@
 //! The SPH sums of a step.
 
+use rayon::prelude::*;
+
 use super::corrected::CorrectedRecord;
 use super::formulation::{Conventional, Corrected, Formulation, Normalised, StressPoints};
 use super::momentum::StressRecord;
@@ -126,9 +128,10 @@ impl Sph {
     }
 
     /// What images behind symmetry planes did in the last second sweep.
-    pub fn forces_of_mirrors(&self) -> impl Iterator<Item = &MirrorForce> {
-        let chunks = self.sums.from_mirrors.iter();
-        chunks.flat_map(|chunk| &chunk.forces)
+    #[must_use]
+    pub fn forces_of_mirrors(&self) -> impl ParallelIterator<Item = &MirrorForce> {
+        let chunks = self.sums.from_mirrors.par_iter();
+        chunks.flat_map_iter(|chunk| &chunk.forces)
     }
 
     /// Particles of this rank whose gradient had no correction in the last first sweep.
