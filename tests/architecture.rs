@@ -343,6 +343,27 @@ fn no_sum_depends_on_threads() {
     });
 }
 
+/// Rooms of the step, where one thread may not go over all particles while others wait.
+const STEP: &str = "domain step loads contact sph neighbours particles fragments diagnose measure";
+
+/// What a comment beside such a loop must say, if it is not in the common step.
+const NO_STEP: &str = "not in every step";
+
+#[test]
+fn no_thread_goes_over_all_particles_alone() {
+    for_each_source(|source, complain| {
+        if !has(STEP, &source.module) {
+            return;
+        }
+        for line in source.lone_loops() {
+            if !source.says(line, NO_STEP) {
+                let why = format!("one thread alone; if it is {NO_STEP}, say so in a comment");
+                complain(line, &why);
+            }
+        }
+    });
+}
+
 #[test]
 fn files_are_short_or_have_a_reason() {
     for_each_source(|source, complain| {

@@ -4,7 +4,6 @@ use std::ffi::{c_int, c_void};
 use std::ops::Range;
 
 use mpi::ffi;
-use rayon::prelude::*;
 
 use super::Comm;
 use super::waiting::waiting;
@@ -29,11 +28,25 @@ pub struct Traffic {
     pub bytes: u64,
 }
 
+/// Whom messages go to and come from.
 #[derive(Default)]
-struct Peer {
+pub struct Peer {
     rank: c_int,
     send: Vec<u8>,
     receive: Vec<u8>,
+}
+
+impl Peer {
+    /// The message to it, to be filled.
+    pub fn outgoing(&mut self) -> &mut Vec<u8> {
+        &mut self.send
+    }
+
+    /// Its message.
+    #[must_use]
+    pub fn incoming(&self) -> &[u8] {
+        &self.receive
+    }
 }
 
 /// Buffers and requests of one exchange with a set of peers; every peer both sends and receives,
@@ -93,14 +106,10 @@ impl Exchange {
         &mut self.peers[k].send
     }
 
-    /// Empties all messages and has all threads fill those of the peers.
-    pub fn fill(&mut self, fill: impl Fn(usize, &mut Vec<u8>) + Sync) {
+    /// The peers, whose messages may be filled by any threads.
+    pub fn outgoing_all(&mut self) -> &mut [Peer] {
         wait_all(&mut self.sends);
-        let peers = self.peers[..self.count].par_iter_mut().enumerate();
-        peers.for_each(|(k, peer)| {
-            peer.send.clear();
-            fill(k, &mut peer.send);
-        });
+        &mut self.peers[..self.count]
     }
 
     /// The message of the k-th peer, after [`Self::wait`].
@@ -109,10 +118,10 @@ impl Exchange {
         &self.peers[k].receive
     }
 
-    /// Tells all threads the message of the k-th peer, after [`Self::wait`].
-    pub fn incoming_to_all<'a>(&'a self) -> impl Fn(usize) -> &'a [u8] + Sync {
-        let peers = self.peers.as_slice();
-        move |k| &peers[k].receive
+    /// The peers, whose messages any threads may read after [`Self::wait`].
+    #[must_use]
+    pub fn incoming_all(&self) -> &[Peer] {
+        &self.peers[..self.count]
     }
 
     /// Says how many bytes the k-th peer will send.

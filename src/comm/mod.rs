@@ -6,7 +6,7 @@
 mod exchange;
 mod waiting;
 
-pub use exchange::{Exchange, Traffic, pieces};
+pub use exchange::{Exchange, Peer, Traffic, pieces};
 pub use waiting::waited;
 
 use std::cell::RefCell;

@@ -196,24 +196,27 @@ impl ContactSums {
         self.foreign_fraction = self.foreign_fraction.max(other.foreign_fraction);
     }
 
-    /// Adds what images behind symmetry planes do to particles at `positions` (m).
-    pub fn add_plane_forces<'a>(
+    /// Adds what images behind symmetry planes do to particles at `positions` (m), some for each task.
+    pub fn add_plane_forces<'a, F: Iterator<Item = &'a MirrorForce>>(
         &mut self,
-        forces: impl ParallelIterator<Item = &'a MirrorForce>,
+        forces: impl ParallelIterator<Item = F>,
         positions: &[[f64; 3]],
     ) {
-        let add = |mut sums: GatheredSums<9>, force: &MirrorForce| {
-            let [x, y, z] = force.force;
-            let [a, b, c] = cross(&positions[force.particle], &force.force);
-            let [u, v, w] = force.couple;
-            sums.add(&[x, y, z, a, b, c, u, v, w]);
-            sums
+        let of_task = |forces: F| {
+            let mut sums = GatheredSums::<9>::default();
+            // Where matter bears no stress yet there is nothing to add.
+            let acts = |force: &&MirrorForce| [force.force, force.couple] != [[0.0; 3]; 2];
+            for force in forces.filter(acts) {
+                let [x, y, z] = force.force;
+                let [a, b, c] = cross(&positions[force.particle], &force.force);
+                let [u, v, w] = force.couple;
+                sums.add(&[x, y, z, a, b, c, u, v, w]);
+            }
+            sums.into_sums()
         };
         let sums = forces
+            .map(of_task)
             // same bits in any order: exact sums are integers
-            .fold(GatheredSums::default, add)
-            .map(GatheredSums::into_sums)
-            // same bits in any order, as above
             .reduce(gathered_sums::none, gathered_sums::merged);
         let [x, y, z, torques @ ..] = &sums;
         for (sum, part) in self.plane_force.iter_mut().zip([x, y, z]) {

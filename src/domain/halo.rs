@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::chosen::{Chosen, of_peer};
 use super::mirrors::Mirrors;
 use super::needs::{Extent, Finder, Found, MYSELF};
 use super::nested::NestedSlabs;
@@ -34,9 +35,7 @@ pub struct Halo {
     peers: Vec<usize>,
     /// Their extents.
     theirs: Vec<Extent>,
-    /// For each peer, the particles it needs and the codes of the images that it needs of each
-    /// (a set of eight bits).
-    sends: Vec<(Vec<u32>, Vec<u8>)>,
+    chosen: Chosen,
     /// For each peer, how many particles it sent.
     received: Vec<usize>,
     /// Images of owned particles.
@@ -65,7 +64,7 @@ impl Halo {
             mine: Extent::EMPTY,
             peers: Vec::new(),
             theirs: Vec::new(),
-            sends: Vec::new(),
+            chosen: Chosen::default(),
             received: Vec::new(),
             own: Vec::new(),
             others: Vec::new(),
@@ -89,11 +88,10 @@ impl Halo {
         self.find_extent(particles, &reach);
         self.find_peers(comm, reaches);
         self.choose(particles, &reach);
-        let (sends, store) = (&self.sends, &*particles);
-        self.exchange.fill(|k, message| {
-            let (sent, codes) = &sends[k];
-            message.extend_from_slice(codes);
-            store.pack(HaloPhase::MOTION, sent, message);
+        let (chosen, store) = (&self.chosen, &*particles);
+        fill(&mut self.exchange, |k, message| {
+            message.extend_from_slice(&chosen.codes[chosen.of(k)]);
+            store.pack(HaloPhase::MOTION, &chosen.particles[chosen.of(k)], message);
         });
         self.exchange.post_sizes(comm);
         self.exchange.post(comm);
@@ -110,9 +108,9 @@ impl Halo {
         }
         particles.resize_halo(self.received.iter().sum());
         let (exchange, received) = (&self.exchange, &self.received);
-        let (message, first) = (exchange.incoming_to_all(), particles.owned());
-        particles.unpack_all(HaloPhase::MOTION, first, received, move |k| {
-            &message(k)[received[k]..]
+        let (peers, first) = (exchange.incoming_all(), particles.owned());
+        particles.unpack_all(HaloPhase::MOTION, first, received, |k| {
+            &peers[k].incoming()[received[k]..]
         });
         let lower = (0..exchange.peers()).filter(|&k| exchange.rank(k) < self.rank);
         let lower = lower.count();
@@ -157,9 +155,10 @@ impl Halo {
     /// Starts to send the fields of `phase` of the same particles.
     pub fn post(&mut self, comm: &Comm, particles: &ParticleStore, phase: HaloPhase) {
         let size = particles.bytes_per_particle(phase);
-        let sends = &self.sends;
-        self.exchange
-            .fill(|k, message| particles.pack(phase, &sends[k].0, message));
+        let chosen = &self.chosen;
+        fill(&mut self.exchange, |k, message| {
+            particles.pack(phase, &chosen.particles[chosen.of(k)], message);
+        });
         for (k, count) in self.received.iter().enumerate() {
             self.exchange.expect(k, count * size);
         }
@@ -169,19 +168,22 @@ impl Halo {
     /// Receives what [`Self::post`] of the others sent.
     pub fn finish(&mut self, particles: &mut ParticleStore, phase: HaloPhase) {
         self.exchange.wait();
-        let message = self.exchange.incoming_to_all();
-        particles.unpack_all(phase, particles.owned(), &self.received, message);
+        let (peers, first) = (self.exchange.incoming_all(), particles.owned());
+        particles.unpack_all(phase, first, &self.received, |k| peers[k].incoming());
     }
 
     /// Gives halo particles the values of their owners: those of this rank's particles stand first
     /// in `values`, those of halo particles after them. Collective.
     pub fn exchange_values<T: bytemuck::Pod + Sync>(&mut self, comm: &Comm, values: &mut [T]) {
         let size = size_of::<T>();
-        let (sends, sent) = (&self.sends, &*values);
-        self.exchange.fill(|k, message| {
-            for &i in &sends[k].0 {
-                message.extend_from_slice(bytemuck::bytes_of(&sent[i as usize]));
-            }
+        let (chosen, sent) = (&self.chosen, &*values);
+        fill(&mut self.exchange, |k, message| {
+            let particles = &chosen.particles[chosen.of(k)];
+            message.resize(particles.len() * size, 0);
+            let slots = message.par_chunks_exact_mut(size).zip(particles);
+            slots.with_min_len(SHARE).for_each(|(slot, &i)| {
+                slot.copy_from_slice(bytemuck::bytes_of(&sent[i as usize]));
+            });
         });
         for (k, count) in self.received.iter().enumerate() {
             self.exchange.expect(k, count * size);
@@ -236,15 +238,13 @@ impl Halo {
     /// Bytes allocated.
     #[must_use]
     pub fn memory(&self) -> usize {
-        let send =
-            |(particles, codes): &(Vec<u32>, Vec<u8>)| 4 * particles.capacity() + codes.capacity();
         let found = |found: &Vec<Found>| size_of::<Found>() * found.capacity();
         self.exchange.memory()
             + self.greetings.memory()
             + 8 * (self.received.capacity() + self.peers.capacity())
             + size_of::<Extent>() * self.theirs.capacity()
             + size_of::<Image>() * (self.own.capacity() + self.others.capacity())
-            + self.sends.iter().map(send).sum::<usize>()
+            + self.chosen.memory()
             + self.found.iter().map(found).sum::<usize>()
             + self.collector.memory()
     }
@@ -301,15 +301,9 @@ impl Halo {
         particles: &ParticleStore,
         reach: &(impl Fn(&ParticleStore, usize) -> f64 + Sync),
     ) {
-        let peers = self.exchange.peers();
-        if self.sends.len() < peers {
-            self.sends.resize(peers, <(Vec<u32>, Vec<u8>)>::default());
-        }
-        for (particles, needs) in &mut self.sends {
-            particles.clear();
-            needs.clear();
-        }
+        let peers = self.peers.len();
         self.own.clear();
+        self.chosen.clear(peers);
         if peers == 0 && self.mirrors.is_empty() {
             return;
         }
@@ -328,15 +322,9 @@ impl Halo {
                 found.sort_unstable_by_key(|entry| (entry.peer, entry.particle));
             });
         let found = &self.found;
-        let sends = self.sends[..peers].par_iter_mut().enumerate();
-        sends.for_each(|(k, (particles, needs))| {
-            for run in found.iter().map(|found| of_peer(found, k)) {
-                particles.extend(run.iter().map(|entry| entry.particle));
-                needs.extend(run.iter().map(|entry| entry.needs));
-            }
-        });
+        self.chosen.sort(found, peers, &mut self.collector);
         let own = |task: usize| {
-            let run = of_peer(&found[task], usize::from(MYSELF));
+            let run = of_peer(&found[task], MYSELF);
             run.iter()
                 .flat_map(|entry| images(entry.particle as usize, entry.needs, 1))
         };
@@ -350,9 +338,12 @@ fn images(base: usize, needs: u8, first: u8) -> impl Iterator<Item = Image> {
     codes.map(move |code| Image::new(base, code))
 }
 
-/// What a task found for a peer: entries are in the order of peers.
-fn of_peer(found: &[Found], peer: usize) -> &[Found] {
-    let start = found.partition_point(|entry| usize::from(entry.peer) < peer);
-    let end = found.partition_point(|entry| usize::from(entry.peer) <= peer);
-    &found[start..end]
+/// Has all threads fill the messages to all peers.
+fn fill(exchange: &mut Exchange, fill: impl Fn(usize, &mut Vec<u8>) + Sync) {
+    let peers = exchange.outgoing_all().par_iter_mut().enumerate();
+    peers.for_each(|(k, peer)| {
+        let message = peer.outgoing();
+        message.clear();
+        fill(k, message);
+    });
 }

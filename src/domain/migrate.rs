@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::nested::Decomposition;
 use crate::comm::{Comm, Exchange, Traffic};
+use crate::numerics::alone;
 use crate::particles::{FieldInfo, ParticleStore};
 
 /// Particles that a rank may send in one round, or [`PART`] of its own if that is more: where a
@@ -153,6 +154,7 @@ impl Migration {
     /// Sends those that leave to the peers, of whom one knows how many they send or hears it.
     fn swap(&mut self, comm: &Comm, particles: &mut ParticleStore, is_known: bool) {
         let size = particles.bytes_per_particle(FieldInfo::leaves);
+        alone::visit(self.leaving.len());
         self.gone.clear();
         self.gone.extend(self.leaving.iter().map(|[_, i]| i));
         for k in 0..self.exchange.peers() {

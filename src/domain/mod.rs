@@ -1,6 +1,7 @@
 //! Which rank owns what: slabs of slabs, migration, halo exchange, balance, mirror images.
 
 mod balance;
+mod chosen;
 mod forecast;
 mod halo;
 mod histogram;

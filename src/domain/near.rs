@@ -1,5 +1,6 @@
 //! Which ranks stand near each other, as their slabs tell.
 
+use super::needs::ROUNDING;
 use super::nested::{Decomposition, NestedSlabs, Slab};
 use crate::numerics::vector::dot;
 use crate::populate::Brick;
@@ -65,7 +66,8 @@ impl Within {
             before.max(beyond).max(0.0)
         };
         let gaps = [gap(0), gap(1), gap(2)];
-        dot(&gaps, &gaps) <= self.range * self.range
+        let range = ROUNDING * self.range;
+        dot(&gaps, &gaps) < range * range
     }
 
     /// Where it ends along an axis (m), or somewhat beyond.

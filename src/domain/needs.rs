@@ -15,7 +15,7 @@ pub(super) struct Extent {
 }
 
 /// Distances that differ by this factor are the same but for rounding.
-const ROUNDING: f64 = 1.0 + 1e-12;
+pub(super) const ROUNDING: f64 = 1.0 + 1e-12;
 
 impl Extent {
     pub(super) const EMPTY: Self = Self {

@@ -10,6 +10,7 @@ use super::Whole;
 use crate::comm::Comm;
 use crate::diagnose::Passed;
 use crate::model::{Case, Witness};
+use crate::numerics::alone;
 use crate::numerics::collector::Collector;
 use crate::numerics::ordered::{disordered, ordered};
 use crate::numerics::vector::{dot, square};
@@ -127,6 +128,7 @@ impl Witnesses {
 
     /// Tells particles at the start of a case on which sides they are.
     pub fn begin(&self, particles: &mut ParticleStore) {
+        // At the start, not in every step.
         for i in 0..particles.owned() {
             particles.witness_sides[i] = self.sides(&particles.position[i]);
         }
@@ -143,6 +145,7 @@ impl Witnesses {
             is_passing.then(|| u32::try_from(i).unwrap_or(u32::MAX))
         });
         self.collector = collector;
+        alone::visit(passing.len());
         for i in passing.iter().map(|&i| i as usize) {
             let sides = self.sides(&particles.position[i]);
             let mut changed = std::mem::replace(&mut particles.witness_sides[i], sides) ^ sides;

@@ -45,6 +45,12 @@ impl Collector {
         halve((&self.ends, 0), (&mut list[first..], 0), &write);
     }
 
+    /// For each task how many entries it and those before it gave the last time.
+    #[must_use]
+    pub fn ends(&self) -> &[usize] {
+        &self.ends
+    }
+
     /// Bytes allocated.
     #[must_use]
     pub fn memory(&self) -> usize {

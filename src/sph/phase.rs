@@ -70,6 +70,9 @@ macro_rules! with_formulation {
 }
 pub(crate) use with_formulation;
 
+/// Chunks whose forces of mirrors a task adds up.
+const CHUNKS_OF_A_TASK: usize = 16;
+
 impl Sph {
     /// Of a case.
     #[must_use]
@@ -129,9 +132,11 @@ impl Sph {
 
     /// What images behind symmetry planes did in the last second sweep.
     #[must_use]
-    pub fn forces_of_mirrors(&self) -> impl ParallelIterator<Item = &MirrorForce> {
-        let chunks = self.sums.from_mirrors.par_iter();
-        chunks.flat_map_iter(|chunk| &chunk.forces)
+    pub fn forces_of_mirrors(
+        &self,
+    ) -> impl ParallelIterator<Item = impl Iterator<Item = &MirrorForce>> {
+        let tasks = self.sums.from_mirrors.par_chunks(CHUNKS_OF_A_TASK);
+        tasks.map(|chunks| chunks.iter().flat_map(|chunk| &chunk.forces))
     }
 
     /// Particles of this rank whose gradient had no correction in the last first sweep.

@@ -102,6 +102,7 @@ pub(super) fn failed<F: SignalSpeed>(
         };
         criteria.failure(i, &moved).is_some()
     };
+    // Looked for where a step cannot be chosen: not in every step.
     let failed = (0..particles.owned()).filter(has_failed);
     failed
         .map(|i| u32::try_from(i).unwrap_or(u32::MAX))

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::{Push, View};
 use crate::contact::friction::{Law, Slip};
+use crate::contact::mode::fill;
 use crate::numerics::vector::norm;
 use crate::particles::{ParticleStore, Scatter};
 
@@ -141,9 +142,9 @@ impl View<'_> {
 impl SurfaceFriction {
     /// Forgets the slip, before [`Self::store`].
     pub(super) fn clear(particles: &mut ParticleStore) {
-        particles.surface_slip.fill([0.0; 3]);
-        particles.surface_slip_rate.fill([0.0; 3]);
-        particles.surface_sliding.fill(0);
+        fill(&mut particles.surface_slip, [0.0; 3]);
+        fill(&mut particles.surface_slip_rate, [0.0; 3]);
+        fill(&mut particles.surface_sliding, 0);
     }
 
     /// Gives particles their heat, their time step and their slip.
