@@ -12,6 +12,7 @@ mod outset;
 mod partition;
 mod rank_speed;
 mod span;
+mod tally;
 
 pub use balance::Balance;
 pub use forecast::{Forecast, Fullest, reach};
@@ -24,3 +25,4 @@ pub use outset::Outset;
 pub use partition::Partition;
 pub use rank_speed::RankSpeeds;
 pub(crate) use span::Span;
+pub use tally::{Sent, Tally, tally};

@@ -24,32 +24,57 @@ const SPARE: f64 = 1.06;
 /// By how much a rank's share may rise as work is balanced.
 const UNEVEN: f64 = 1.05;
 
+/// What a rank takes at its peak (bytes).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Costs {
+    /// Before it has a particle.
+    process: f64,
+    /// For each particle that it owns.
+    owned: f64,
+    /// For each of other ranks.
+    halo: f64,
+}
+
+impl Costs {
+    /// Of a case.
+    #[allow(clippy::cast_precision_loss, reason = "an estimate")]
+    pub fn of_case(case: &Case) -> Self {
+        let contact = ContactTable::new(case).is_active();
+        let options = bytes_of_options(case).map(|bytes| SPARE * bytes as f64);
+        let meshes = case.meshes().into_iter().map(|(_, mesh)| mesh.memory());
+        // Each rank reads all of a file.
+        let clouds = case.bodies.iter().filter_map(|body| body.cloud());
+        let read = clouds.map(|(cloud, _)| cloud.memory());
+        Self {
+            process: PROCESS + meshes.chain(read).sum::<usize>() as f64,
+            owned: OWNED + if contact { CONTACT } else { 0.0 } + options[0],
+            halo: HALO + options[1],
+        }
+    }
+
+    /// Of a rank that owns so many particles, with so many of others; stress points count as such.
+    pub fn of(self, owned: f64, halo: f64) -> f64 {
+        self.process + owned * self.owned + halo * self.halo
+    }
+}
+
 /// Bytes that the largest of so many ranks takes at its peak. The processes of `comm`, which need
 /// not be those ranks, share the work. Collective; the same on all of them.
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
 pub fn of_rank(case: &Case, comm: &Comm, ranks: usize) -> f64 {
-    let contact = ContactTable::new(case).is_active();
-    let [owned_options, halo_options] = bytes_of_options(case).map(|bytes| SPARE * bytes as f64);
-    let owned = OWNED + if contact { CONTACT } else { 0.0 } + owned_options;
+    let costs = Costs::of_case(case);
     // As many stress points for each particle as there are axes, less some at surfaces.
     let points = match case.sph.form {
         SphForm::StressPoints => (1 + case.dimension) as f64,
         _ => 1.0,
     };
-    let meshes = case.meshes().into_iter().map(|(_, mesh)| mesh.memory());
-    // Each rank reads all of a file.
-    let clouds = case.bodies.iter().filter_map(|body| body.cloud());
-    let read = clouds.map(|(cloud, _)| cloud.memory());
-    let process = PROCESS + meshes.chain(read).sum::<usize>() as f64;
     if ranks < 2 {
         let count = |body| populate::count(body, case.dimension, &case.symmetry, None);
         let particles: u64 = case.bodies.iter().map(count).sum();
-        return process + points * particles as f64 * owned;
+        return costs.of(points * particles as f64, 0.0);
     }
-    let Some(fullest) = fullest(case, comm, ranks) else {
-        return process;
-    };
-    process + points * (fullest.owned * owned + fullest.halo * (HALO + halo_options))
+    let fullest = fullest(case, comm, ranks).unwrap_or_default();
+    costs.of(points * fullest.owned, points * fullest.halo)
 }
 
 /// Of so many ranks at the start, from one count of all particles along each axis. `None` for a case

@@ -11,7 +11,7 @@ use crate::contact::{Connectivity, Contact, ContactTable};
 use crate::diagnose::{
     Booked, NumericalFailure, PostMortem, Reason, RunState, StepSums, Totals, fastest, is_explained,
 };
-use crate::domain::{Halo, Partition};
+use crate::domain::{Halo, NestedSlabs, Partition};
 use crate::fragments::Labels;
 use crate::loads::Loads;
 use crate::measure::Measures;
@@ -349,6 +349,18 @@ impl Simulation {
             + self.step_control.memory()
             + self.halo.memory()
             + self.partition.memory()
+    }
+
+    /// Who owns which place.
+    #[must_use]
+    pub fn slabs(&self) -> &NestedSlabs {
+        self.partition.slabs()
+    }
+
+    /// What this rank exchanges with others in each step.
+    #[must_use]
+    pub fn halo(&self) -> &Halo {
+        &self.halo
     }
 
     /// Messages and bytes that this rank has sent.
