@@ -8,17 +8,18 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::PossibleValuesParser;
 
+use super::bench;
 use super::plot::out::{is_png, save, unsaved};
 use crate::model::Case;
 use crate::model::readable::{short, shown};
 use crate::output::read_small;
 use crate::plan::{
-    CONSTANTS, Files, Layout, Load, Machine, Row, Sharing, Weak, computing, own_levels, refined,
-    step_time,
+    CONSTANTS, Files, Layout, Load, Machine, Row, Sharing, Weak, computing, expected_steps,
+    own_levels, refined, step_time,
 };
 use crate::plot::PlotError;
-use crate::preflight::{self, memory};
-use crate::run::exit::EXIT_INPUT;
+use crate::preflight::memory;
+use crate::run::exit::{EXIT_FAILED, EXIT_INPUT};
 use crate::run::say::{say, warn};
 use source::Source;
 pub use table::duration;
@@ -39,14 +40,19 @@ pub use table::duration;
   whipple plan inputs/quarter-impact
   whipple plan inputs/quarter-impact --set spacing=0.005mm --ranks 64,512,4096 --threads 8 --chart plan.png
   whipple plan runs/quarter/checkpoints/step-00000100 --ranks 16 --machine cluster.toml --doubled
+  whipple plan --calibrate here.toml
 
 A machine file holds some of these, in SI units; `whipple plan --ranks 1 --machine FILE` refuses others:
   name, cores_per_node, particle_time, image_time, thread_loss, crowding, latency, bandwidth,
   node_latency, node_bandwidth, agreement_time, overlap, disk_bandwidth")]
 pub struct PlanArgs {
     /// Case file (TOML), a folder with a case.toml, a run (its last snapshot), a snapshot or a checkpoint
-    #[arg(value_name = "CASE_OR_SNAPSHOT")]
-    path: PathBuf,
+    #[arg(value_name = "CASE_OR_SNAPSHOT", required_unless_present = "calibrate")]
+    path: Option<PathBuf>,
+
+    /// Measure this machine by short runs of a few minutes, and write its machine file
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["path", "machine"])]
+    calibrate: Option<PathBuf>,
 
     /// Change a value of the case, as in spacing=0.015mm; may be given many times
     #[arg(short, long, value_name = "KEY=VALUE")]
@@ -96,13 +102,44 @@ pub struct PlanArgs {
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &PlanArgs) -> u8 {
-    match plan(args) {
-        Ok(()) => 0,
-        Err(message) => {
-            warn(&message);
-            EXIT_INPUT
+    let (done, code) = match (&args.calibrate, &args.path) {
+        (Some(file), _) => (calibrate(file), EXIT_FAILED),
+        (None, path) => {
+            let path = path.as_deref().unwrap_or(Path::new("."));
+            (plan(args, path), EXIT_INPUT)
         }
-    }
+    };
+    done.map_or_else(
+        |message| {
+            warn(&message);
+            code
+        },
+        |()| 0,
+    )
+}
+
+/// Measures this machine and writes its file.
+fn calibrate(path: &Path) -> Result<(), String> {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let machine = bench::calibrate(folder.unwrap_or(Path::new(".")));
+    let machine = machine.map_err(|what| {
+        let what = what.trim_start_matches("error: ");
+        format!("error: {what}")
+    })?;
+    let text = machine.text();
+    say(text.trim_end());
+    write_text(path, text.as_bytes())?;
+    say(
+        "of messages it tells what an ordinary cluster has: put what you know of yours in their place",
+    );
+    Ok(())
+}
+
+fn write_text(path: &Path, text: &[u8]) -> Result<(), String> {
+    let write = |path: &Path| std::fs::write(path, text).map_err(|error| unsaved(path, &error));
+    save(path, write).map_err(told)
 }
 
 /// Something planned: what ranks have, and what follows.
@@ -112,7 +149,7 @@ struct Planned {
     weak: Weak,
 }
 
-fn plan(args: &PlanArgs) -> Result<(), String> {
+fn plan(args: &PlanArgs, path: &Path) -> Result<(), String> {
     if let Some(path) = args.chart.as_ref().filter(|path| !is_png(path)) {
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         let (path, ending) = (path.clone(), ending.into_owned());
@@ -122,9 +159,9 @@ fn plan(args: &PlanArgs) -> Result<(), String> {
         .machine
         .as_deref()
         .map_or(Ok(Machine::default()), machine)?;
-    let source = source::read(&args.path, &args.set)?;
+    let source = source::read(path, &args.set)?;
     let count = source.particles.positions.len();
-    let steps = steps(&source);
+    let steps = expected_steps(&source.case, source.time.unwrap_or(0.0));
     say(&heading(&source, steps));
     say(&format!("  {}", machine_line(&machine, args)));
     say("");
@@ -146,11 +183,7 @@ fn plan(args: &PlanArgs) -> Result<(), String> {
     }
     let rows: Vec<Row> = all.iter().map(|planned| planned.row).collect();
     if let Some(path) = &args.csv {
-        let text = table::sheet(&rows, steps).text();
-        save(path, |path| {
-            std::fs::write(path, text).map_err(|error| unsaved(path, &error))
-        })
-        .map_err(told)?;
+        write_text(path, &table::sheet(&rows, steps).text())?;
     }
     if let Some(path) = &args.chart {
         let weak: Vec<Weak> = all.iter().map(|planned| planned.weak).collect();
@@ -205,16 +238,6 @@ fn machine(path: &Path) -> Result<Machine, String> {
     let wrong = |what: &str| format!("error: {}: {what}", path.display());
     let text = std::str::from_utf8(&bytes).map_err(|_| wrong("it is no text"))?;
     Machine::parse(text).map_err(|what| wrong(&what))
-}
-
-/// Steps from where the particles are to the end of the run.
-#[allow(clippy::cast_precision_loss, reason = "for people")]
-fn steps(source: &Source) -> Option<f64> {
-    let (case, time) = (&source.case, source.time.unwrap_or(0.0));
-    let step = preflight::expected_step(case)?;
-    let by_time = ((case.run.end_time - time) / step).max(0.0);
-    let most = case.run.max_steps.map_or(f64::INFINITY, |most| most as f64);
-    Some(by_time.min(most).ceil())
 }
 
 fn heading(source: &Source, steps: Option<f64>) -> String {

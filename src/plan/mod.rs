@@ -6,6 +6,7 @@ mod layout;
 mod machine;
 mod model;
 mod particles;
+mod rough;
 mod row;
 mod weak;
 
@@ -14,5 +15,6 @@ pub use layout::{Layout, Load, loads, own_levels, slabs_at_start, slabs_of};
 pub use machine::{CONSTANTS, Constant, Machine};
 pub use model::{Sharing, StepTime, computing, step_time};
 pub use particles::Particles;
+pub use rough::{expected_steps, rough_step};
 pub use row::Row;
 pub use weak::{Weak, refined};

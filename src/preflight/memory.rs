@@ -60,21 +60,33 @@ impl Costs {
 
 /// Bytes that the largest of so many ranks takes at its peak. The processes of `comm`, which need
 /// not be those ranks, share the work. Collective; the same on all of them.
-#[allow(clippy::cast_precision_loss, reason = "an estimate")]
 pub fn of_rank(case: &Case, comm: &Comm, ranks: usize) -> f64 {
-    let costs = Costs::of_case(case);
+    let fullest = fullest_of(case, comm, ranks);
+    Costs::of_case(case).of(fullest.owned, fullest.halo)
+}
+
+/// The most that one of so many ranks has at the start, stress points among it. Collective.
+#[allow(clippy::cast_precision_loss, reason = "an estimate")]
+pub fn fullest_of(case: &Case, comm: &Comm, ranks: usize) -> Fullest {
     // As many stress points for each particle as there are axes, less some at surfaces.
     let points = match case.sph.form {
         SphForm::StressPoints => (1 + case.dimension) as f64,
         _ => 1.0,
     };
-    if ranks < 2 {
+    let fullest = if ranks < 2 {
         let count = |body| populate::count(body, case.dimension, &case.symmetry, None);
         let particles: u64 = case.bodies.iter().map(count).sum();
-        return costs.of(points * particles as f64, 0.0);
+        Fullest {
+            owned: particles as f64,
+            halo: 0.0,
+        }
+    } else {
+        fullest(case, comm, ranks).unwrap_or_default()
+    };
+    Fullest {
+        owned: points * fullest.owned,
+        halo: points * fullest.halo,
     }
-    let fullest = fullest(case, comm, ranks).unwrap_or_default();
-    costs.of(points * fullest.owned, points * fullest.halo)
 }
 
 /// Of so many ranks at the start, from one count of all particles along each axis. `None` for a case
