@@ -25,7 +25,9 @@ fn rows(said: &str, ranks: &str) -> Vec<Vec<String>> {
         .map(|line| line.split_whitespace().map(str::to_owned));
     let cells = cells.map(Iterator::collect::<Vec<String>>);
     cells
-        .filter(|row| row.len() > 10 && row[0] == ranks)
+        .filter(|row| {
+            row.len() > 10 && row[0] == ranks && row[1].trim_start_matches('*').len() == 1
+        })
         .collect()
 }
 

@@ -18,9 +18,9 @@ use crate::plan::{
     own_levels, refined, step_time,
 };
 use crate::plot::PlotError;
-use crate::preflight::memory;
+use crate::preflight::{Costs, memory};
 use crate::run::exit::{EXIT_FAILED, EXIT_INPUT};
-use crate::run::say::{say, warn};
+use crate::run::say::{counted, say, warn};
 use source::Source;
 pub use table::duration;
 
@@ -288,7 +288,7 @@ fn one(
 ) -> Result<Planned, String> {
     let sharing = args.sharing(machine);
     let layout = layout_of(source, (ranks, levels), sharing.ranks_per_node)?;
-    let costs = memory::Costs::of_case(&source.case);
+    let costs = Costs::of_case(&source.case);
     let of = (&source.particles, &layout);
     let row = Row::new(of, (machine, sharing), costs, computing(alone, machine));
     let each = f64::from(args.per_core) * f64::from(args.threads);
@@ -311,12 +311,18 @@ fn print_files(source: &Source, machine: &Machine, steps: Option<f64>) -> Result
 /// What files there will be.
 pub fn file_lines(files: &Files, machine: &Machine) -> Vec<String> {
     let size = memory::in_words;
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "whole numbers"
+    )]
+    let many = |count: f64, word: &str| counted(count as u64, word);
     vec![
         format!(
-            "{} snapshots of {}; {} checkpoints of {}, of which {} stay",
-            short(files.snapshots),
+            "{} of {}; {} of {}, of which {} stay",
+            many(files.snapshots, "snapshot"),
             size(files.snapshot),
-            short(files.checkpoints),
+            many(files.checkpoints, "checkpoint"),
             size(files.checkpoint),
             short(files.kept),
         ),

@@ -18,7 +18,7 @@ const PEERS: u64 = 26;
 pub fn expected_steps(case: &Case, time: f64) -> Option<f64> {
     let by_time = ((case.run.end_time - time) / expected_step(case)?).max(0.0);
     let most = case.run.max_steps.map_or(f64::INFINITY, |most| most as f64);
-    Some(by_time.min(most).ceil())
+    Some(by_time.min(most).round())
 }
 
 /// Seconds of a step on so many ranks of a machine, each with one thread: as if all had as much to do as

@@ -6,7 +6,7 @@ use super::model::{Sharing, StepTime, step_time};
 use super::particles::Particles;
 use crate::domain::{Decomposition, NestedSlabs};
 use crate::populate::Brick;
-use crate::preflight::memory::Costs;
+use crate::preflight::Costs;
 
 /// What a plan tells of a number of ranks; `most` is the largest of them.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -95,8 +95,11 @@ fn halo_of_box(particles: &Particles, slabs: &NestedSlabs, rank: usize) -> f64 {
     let region = slabs.region(rank);
     // An axis along which there is but one layer does not count.
     let axes = (0..3).filter(|&a| all.1[a] > all.0[a]);
-    let length =
-        |brick: &Brick, a: usize| brick.upper[a].min(all.1[a]) - brick.lower[a].max(all.0[a]);
+    // Whatever stands in a slab, it has a layer.
+    let length = |brick: &Brick, a: usize| {
+        let length = brick.upper[a].min(all.1[a]) - brick.lower[a].max(all.0[a]);
+        length.max(reach)
+    };
     let wider = region.widened(2.0 * reach);
     let ratio: f64 = axes
         .map(|a| length(&wider, a) / length(&region, a))

@@ -52,36 +52,35 @@ impl Weak {
 
 /// The loads of a model whose particles are so much finer that ranks have so many in the mean.
 ///
-/// Owned particles grow as volumes do. A halo of r times as many particles is taken for that of a box which is cut
-/// along as many axes as there are levels, `1 + r = (1 + u)^levels`, of which u shrinks as the particles do.
+/// Shares are uneven by whole layers of particles, which become thinner. A halo of r times as many particles is taken for that
+/// of a box which is cut along as many axes as there are levels, `1 + r = (1 + u)^levels`, of which u shrinks as the
+/// particles do.
 #[must_use]
 #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]
 pub fn refined(loads: &[Load], levels: usize, each: f64) -> Vec<Load> {
     let owned: u64 = loads.iter().map(|load| load.tally.owned).sum();
-    let finer = each * loads.len() as f64 / owned as f64;
+    let mean = owned as f64 / loads.len() as f64;
     // Of a body of three dimensions; lengths of others shrink faster, and their halos too.
-    let shorter = 1.0 / libm::cbrt(finer);
-    let power = levels as f64;
-    let grown = |load: &Load, count: u64| -> f64 {
-        let ratio = count as f64 / load.tally.owned as f64;
-        if ratio.is_nan() || ratio.is_infinite() {
-            return 1.0;
-        }
-        if ratio == 0.0 {
-            return 0.0;
-        }
-        let u = libm::pow(1.0 + ratio, 1.0 / power) - 1.0;
-        finer * (libm::pow(1.0 + u * shorter, power) - 1.0) / ratio
-    };
+    let (shorter, power) = (1.0 / libm::cbrt(each / mean), levels as f64);
     let fine = |load: &Load| {
-        let (halo, images) = (grown(load, load.tally.halo), grown(load, load.tally.images));
+        let before = load.tally.owned as f64;
+        let owned = each * (1.0 + (before / mean - 1.0) * shorter);
+        // By how much a number of particles of others grows.
+        let growth = |others: u64| {
+            if others == 0 {
+                return 1.0;
+            }
+            let u = libm::pow(1.0 + others as f64 / before, 1.0 / power) - 1.0;
+            owned * (libm::pow(1.0 + u * shorter, power) - 1.0) / others as f64
+        };
+        let (halo, images) = (growth(load.tally.halo), growth(load.tally.images));
         let traffic = |traffic: Traffic| Traffic {
             messages: traffic.messages,
             bytes: scaled(traffic.bytes, halo),
         };
         Load {
             tally: Tally {
-                owned: scaled(load.tally.owned, finer),
+                owned: scaled(1, owned.max(0.0)),
                 halo: scaled(load.tally.halo, halo),
                 images: scaled(load.tally.images, images),
                 peers: load.tally.peers,

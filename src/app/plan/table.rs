@@ -73,6 +73,7 @@ fn digits(value: f64) -> String {
 /// A time (s) for people.
 pub fn duration(seconds: f64) -> String {
     match seconds {
+        s if s < 9.95 => format!("{s:.1} s"),
         s if s < 99.5 => format!("{s:.0} s"),
         s if s < 99.5 * 60.0 => format!("{:.0} min", s / 60.0),
         s if s < 99.5 * 3600.0 => format!("{:.1} h", s / 3600.0),
