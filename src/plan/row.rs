@@ -48,9 +48,14 @@ impl Row {
         let (slabs, loads) = (&layout.slabs, layout.loads.as_slice());
         let ranks = loads.len();
         let most = |value: fn(&Load) -> u64| loads.iter().map(value).max().unwrap_or(0) as f64;
+        let mean = particles.positions.len() as f64 / ranks as f64;
         let memory = loads.iter().map(|load| {
-            let tally = &load.tally;
-            costs.of(tally.owned as f64, tally.halo as f64)
+            let [owned, halo] = [load.tally.owned, load.tally.halo].map(|count| count as f64);
+            if ranks == 1 {
+                costs.of(owned, halo)
+            } else {
+                costs.of_several(owned, mean, halo)
+            }
         });
         let time = step_time(loads, machine, sharing);
         let halos = loads.iter().map(|load| load.tally.halo).enumerate();
@@ -59,10 +64,7 @@ impl Row {
         Self {
             ranks,
             levels: slabs.levels(),
-            owned: [
-                particles.positions.len() as f64 / ranks as f64,
-                most(|load| load.tally.owned),
-            ],
+            owned: [mean, most(|load| load.tally.owned)],
             halo: halo as f64,
             halo_of_box: halo_of_box(particles, slabs, rank) * loads[rank].tally.owned as f64,
             peers: most(|load| load.tally.peers),

@@ -17,6 +17,18 @@ const HALO: f64 = 1200.0;
 /// What arrays take over their content as they grow.
 const SPARE: f64 = 1.06;
 
+/// By how much a rank's share may rise as work is balanced.
+const UNEVEN: f64 = 1.05;
+
+/// By how much the share of a rank may rise.
+pub(super) fn uneven(case: &Case) -> f64 {
+    if case.domain.balance_every == 0 {
+        1.0
+    } else {
+        UNEVEN
+    }
+}
+
 /// What a rank takes at its peak (bytes).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Costs {
@@ -26,6 +38,8 @@ pub struct Costs {
     owned: f64,
     /// For each of other ranks.
     halo: f64,
+    /// By how much the share of one of several ranks may rise.
+    uneven: f64,
 }
 
 impl Costs {
@@ -43,6 +57,7 @@ impl Costs {
             process: PROCESS + meshes.chain(read).sum::<usize>() as f64,
             owned: OWNED + if contact { CONTACT } else { 0.0 } + options[0],
             halo: HALO + options[1],
+            uneven: uneven(case),
         }
     }
 
@@ -50,5 +65,11 @@ impl Costs {
     #[must_use]
     pub fn of(self, owned: f64, halo: f64) -> f64 {
         self.process + owned * self.owned + halo * self.halo
+    }
+
+    /// Of one of several ranks with so many, which may get a larger share than the mean.
+    #[must_use]
+    pub fn of_several(self, owned: f64, mean: f64, halo: f64) -> f64 {
+        self.of(owned.max(mean * self.uneven), halo)
     }
 }

@@ -2,14 +2,11 @@
 
 use std::path::Path;
 
-use super::costs::Costs;
+use super::costs::{Costs, uneven};
 use crate::comm::Comm;
 use crate::domain::{Fullest, Histogram, Outset, reach};
 use crate::model::{Case, SphForm};
 use crate::populate;
-
-/// By how much a rank's share may rise as work is balanced.
-const UNEVEN: f64 = 1.05;
 
 /// Bytes that the largest of so many ranks takes at its peak. The processes of `comm`, which need
 /// not be those ranks, share the work. Collective; the same on all of them.
@@ -87,15 +84,6 @@ fn fullest_slab(case: &Case, outset: &Outset, comm: &Comm, ranks: usize) -> Full
     Fullest {
         owned: (even * uneven(case)).max(most[0] as f64),
         halo: most[1] as f64,
-    }
-}
-
-/// By how much the share of a rank may rise.
-fn uneven(case: &Case) -> f64 {
-    if case.domain.balance_every == 0 {
-        1.0
-    } else {
-        UNEVEN
     }
 }
 

@@ -25,7 +25,7 @@ pub fn chart(
         ] {
             if !points.is_empty() {
                 let name = format!("{kind}, {levels} level{plural}");
-                curves.extend(with_rings(name, colour, mark, points));
+                curves.extend(with_dots(name, colour, mark, points));
             }
         }
     }
@@ -55,24 +55,16 @@ fn points(rows: impl Iterator<Item = (usize, f64)>) -> Vec<[f64; 2]> {
     points
 }
 
-/// A curve, and its points themselves where it is one of strong scaling.
-fn with_rings(
-    name: String,
-    colour: Rgb,
-    mark: Mark,
-    points: Vec<[f64; 2]>,
-) -> impl Iterator<Item = Curve> {
-    let rings = (mark == Mark::Line).then(|| Curve {
-        name: String::new(),
-        colour,
-        mark: Mark::Dots,
-        points: points.clone(),
-    });
-    let line = Curve {
+/// A curve and its points themselves.
+fn with_dots(name: String, colour: Rgb, mark: Mark, points: Vec<[f64; 2]>) -> [Curve; 2] {
+    let curve = |name: String, mark, points| Curve {
         name,
         colour,
         mark,
         points,
     };
-    std::iter::once(line).chain(rings)
+    [
+        curve(name, mark, points.clone()),
+        curve(String::new(), Mark::Dots, points),
+    ]
 }
