@@ -8,7 +8,9 @@ use std::time::Instant;
 use super::cases::{BenchCase, CASES};
 use super::driver::{Configuration, Scratch, launch, obstacle, program, read};
 use super::machine::{self, cores};
-use crate::plan::{Layout, Machine, Particles, Sharing, computing, own_levels, step_time};
+use crate::plan::{
+    CONSTANTS, Layout, Machine, Particles, Sharing, computing, own_levels, step_time,
+};
 
 /// The impact that tells the time of a particle, and a plate and its half, whose images behind a plane
 /// are as many as its particles.
@@ -51,7 +53,16 @@ pub fn calibrate(folder: &Path) -> Result<Machine, String> {
         let threads = time(IMPACT, (1, all))? / one / (1.0 + machine.crowding);
         machine.thread_loss = ((threads - 1.0) / as_number(all - 1)).max(0.0);
     }
+    for constant in &CONSTANTS {
+        let value = constant.of(&mut machine);
+        *value = rounded(*value);
+    }
     Ok(machine)
+}
+
+/// Four digits: no run tells more.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
 }
 
 /// Core time of a particle and step (s) of a case.
