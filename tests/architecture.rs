@@ -17,7 +17,7 @@ use std::fs;
 use source::{Source, sources, src};
 
 /// Every module, in the order in which data flows.
-const MODULES: &str = "app run sweep input model preflight populate numerics material particles comm domain fragments \
+const MODULES: &str = "app run sweep input model preflight plan populate numerics material particles comm domain fragments \
      neighbours loads contact sph step diagnose measure output ballistic exact plot";
 
 /// The modules on top, and who may name them.
@@ -25,7 +25,8 @@ const ON_TOP: &[(&str, &str)] = &[
     ("app", ""),
     ("run", "app"),
     ("sweep", "app"),
-    ("preflight", "app run"),
+    ("preflight", "app run plan"),
+    ("plan", "app run"),
 ];
 
 /// Folders whose files may start, go on with and step a simulation.
@@ -46,6 +47,10 @@ const FORBIDDEN: &[(&str, &str)] = &[
     (
         "preflight",
         "input particles neighbours diagnose output exact plot",
+    ),
+    (
+        "plan",
+        "input material neighbours contact diagnose exact plot",
     ),
     // But for the names of snapshot fields, which it checks.
     (
@@ -117,7 +122,7 @@ const ENTRUSTED: &[(&str, &str)] = &[
 
 /// The only modules that call `comm`, from the main thread.
 const CALLERS_OF_COMM: &str =
-    "app run preflight domain fragments step output diagnose measure comm";
+    "app run preflight plan domain fragments step output diagnose measure comm";
 
 /// Rooms whose results must have the same bits on any ranks, threads and hosts.
 const PHYSICS: &str = "numerics populate material particles domain fragments neighbours loads contact sph step diagnose \

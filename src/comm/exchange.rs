@@ -1,7 +1,7 @@
 //! One packed byte message to and from each peer of a phase.
 
 use std::ffi::{c_int, c_void};
-use std::ops::Range;
+use std::ops::{AddAssign, Range, Sub};
 
 use mpi::ffi;
 
@@ -10,6 +10,8 @@ use super::waiting::waiting;
 
 /// Largest piece of a message: counts are `i32`.
 const PIECE: usize = 1 << 30;
+/// Bytes of the size of a message.
+const SIZE: usize = 8;
 const TAG_SIZE: c_int = 1;
 const TAG_DATA: c_int = 2;
 
@@ -20,12 +22,48 @@ pub fn pieces(length: usize, most: usize) -> impl Iterator<Item = Range<usize>> 
 }
 
 /// Messages and bytes sent, for reports.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Traffic {
     /// Messages sent.
     pub messages: u64,
     /// Bytes sent.
     pub bytes: u64,
+}
+
+impl Traffic {
+    /// Of telling a peer the size of the next message.
+    pub const OF_SIZE: Self = Self {
+        messages: 1,
+        bytes: SIZE as u64,
+    };
+
+    /// Of so many bytes to a peer.
+    #[must_use]
+    pub fn of(bytes: u64) -> Self {
+        Self {
+            messages: bytes.div_ceil(PIECE as u64),
+            bytes,
+        }
+    }
+}
+
+impl AddAssign for Traffic {
+    fn add_assign(&mut self, other: Self) {
+        self.messages += other.messages;
+        self.bytes += other.bytes;
+    }
+}
+
+impl Sub for Traffic {
+    type Output = Self;
+
+    /// What has been sent since another time.
+    fn sub(self, before: Self) -> Self {
+        Self {
+            messages: self.messages - before.messages,
+            bytes: self.bytes - before.bytes,
+        }
+    }
 }
 
 /// Whom messages go to and come from.
@@ -144,8 +182,8 @@ impl Exchange {
             // SAFETY: `sizes` is owned by `self` and not touched before `wait` below; the two
             // halves of an entry are distinct.
             unsafe {
-                self.receive_piece(raw, size.add(1).cast(), 8, rank, TAG_SIZE);
-                self.send_piece(raw, size.cast(), 8, rank, TAG_SIZE);
+                self.receive_piece(raw, size.add(1).cast(), SIZE, rank, TAG_SIZE);
+                self.send_piece(raw, size.cast(), SIZE, rank, TAG_SIZE);
             }
         }
         self.wait();
@@ -290,6 +328,10 @@ mod tests {
                 end = piece.end;
             }
             assert_eq!(end, length);
+            assert_eq!(
+                Traffic::of(length as u64).messages,
+                pieces(length, PIECE).count() as u64
+            );
         }
         assert_eq!(pieces(0, PIECE).count(), 0);
         assert_eq!(pieces(PIECE, PIECE).count(), 1);

@@ -228,11 +228,9 @@ impl Halo {
     /// Messages and bytes sent so far.
     #[must_use]
     pub fn traffic(&self) -> Traffic {
-        let (data, greetings) = (self.exchange.traffic, self.greetings.traffic);
-        Traffic {
-            messages: data.messages + greetings.messages,
-            bytes: data.bytes + greetings.bytes,
-        }
+        let mut all = self.exchange.traffic;
+        all += self.greetings.traffic;
+        all
     }
 
     /// Bytes allocated.

@@ -14,6 +14,7 @@ mod outset;
 mod partition;
 mod rank_speed;
 mod span;
+mod tally;
 
 pub use balance::Balance;
 pub use forecast::{Forecast, Fullest, reach};
@@ -26,3 +27,4 @@ pub use outset::Outset;
 pub use partition::Partition;
 pub use rank_speed::RankSpeeds;
 pub(crate) use span::Span;
+pub use tally::{GREETING, Sent, Tally, greetings, tally};

@@ -29,7 +29,7 @@ impl Partition {
     #[must_use]
     pub fn new(case: &Case, comm: &Comm, outset: &Outset) -> Self {
         let mut balance = Balance::default();
-        let slabs = outset.slabs(case, comm, &mut balance);
+        let slabs = outset.slabs(case, comm, (comm.size(), None), &mut balance);
         Self::with(slabs, balance, case)
     }
 

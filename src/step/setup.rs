@@ -2,7 +2,7 @@
 
 use super::candidate::StepControl;
 use super::error::SetupError;
-use super::fields::unused_fields;
+use super::fields::{store_of, unused_fields};
 use super::given;
 use super::removal::Frozen;
 use super::restored::require_own;
@@ -70,8 +70,7 @@ impl Simulation {
         let contact = Contact::new(&case);
         let measures = Measures::new(&case);
         let table = &contact.table;
-        let mut particles = ParticleStore::default();
-        particles.drop_fields(unused_fields(&case, table));
+        let particles = store_of(&case);
         Self {
             frozen: Frozen::like(&particles),
             leaving: Vec::new(),

@@ -7,7 +7,7 @@ use super::integrate;
 use super::removal::Frozen;
 use super::timers::{Phase, Timers};
 use crate::comm::Comm;
-use crate::contact::{Connectivity, Contact, ContactTable};
+use crate::contact::{Connectivity, Contact};
 use crate::diagnose::{
     Booked, NumericalFailure, PostMortem, Reason, RunState, StepSums, Totals, fastest, is_explained,
 };
@@ -341,47 +341,6 @@ impl Simulation {
         let result = task(self);
         self.frozen.take_from(&mut self.particles);
         result
-    }
-
-    /// Particles that this rank has frozen.
-    #[must_use]
-    pub fn frozen(&self) -> usize {
-        self.frozen.count()
-    }
-
-    /// Bytes that this rank holds in particle arrays, lists and buffers.
-    #[must_use]
-    pub fn memory(&self) -> usize {
-        self.particles.memory()
-            + self.frozen.memory()
-            + 4 * self.leaving.capacity()
-            + self.collector.memory()
-            + self.lists.memory()
-            + self.sph.memory()
-            + self.contact.memory()
-            + self.labels.memory()
-            + self.loads.memory()
-            + self.sums.memory()
-            + self.measures.memory()
-            + self.step_control.memory()
-            + self.halo.memory()
-            + self.partition.memory()
-    }
-
-    /// Messages and bytes that this rank has sent.
-    #[must_use]
-    pub fn traffic(&self) -> (u64, u64) {
-        let (halo, migration) = (self.halo.traffic(), self.partition.traffic());
-        (
-            halo.messages + migration.messages,
-            halo.bytes + migration.bytes,
-        )
-    }
-
-    /// The contact table.
-    #[must_use]
-    pub fn contact(&self) -> &ContactTable {
-        &self.contact.table
     }
 }
 
