@@ -34,4 +34,5 @@ pub mod output;
 
 pub mod ballistic;
 pub mod exact;
+pub mod plan;
 pub mod plot;

@@ -17,7 +17,7 @@ use std::fs;
 use source::{Source, sources, src};
 
 /// Every module, in the order in which data flows.
-const MODULES: &str = "app run sweep input model preflight populate numerics material particles comm domain fragments \
+const MODULES: &str = "app run sweep input model preflight plan populate numerics material particles comm domain fragments \
      neighbours loads contact sph step diagnose measure output ballistic exact plot";
 
 /// The modules on top, and who may name them.
@@ -25,7 +25,8 @@ const ON_TOP: &[(&str, &str)] = &[
     ("app", ""),
     ("run", "app"),
     ("sweep", "app"),
-    ("preflight", "app run"),
+    ("preflight", "app run plan"),
+    ("plan", "app run"),
 ];
 
 /// Folders whose files may start, go on with and step a simulation.
@@ -46,6 +47,10 @@ const FORBIDDEN: &[(&str, &str)] = &[
     (
         "preflight",
         "input particles neighbours diagnose output exact plot",
+    ),
+    (
+        "plan",
+        "input material neighbours contact diagnose exact plot",
     ),
     // But for the names of snapshot fields, which it checks.
     (
@@ -117,7 +122,7 @@ const ENTRUSTED: &[(&str, &str)] = &[
 
 /// The only modules that call `comm`, from the main thread.
 const CALLERS_OF_COMM: &str =
-    "app run preflight domain fragments step output diagnose measure comm";
+    "app run preflight plan domain fragments step output diagnose measure comm";
 
 /// Rooms whose results must have the same bits on any ranks, threads and hosts.
 const PHYSICS: &str = "numerics populate material particles domain fragments neighbours loads contact sph step diagnose \
@@ -337,6 +342,27 @@ fn no_sum_depends_on_threads() {
         for (line, what) in source.parallel_reductions() {
             if !source.says(line, ANY_ORDER) {
                 let why = format!("{what}; if it has the {ANY_ORDER}, say why in a comment");
+                complain(line, &why);
+            }
+        }
+    });
+}
+
+/// Rooms of the step, where one thread may not go over all particles while others wait.
+const STEP: &str = "domain step loads contact sph neighbours particles fragments diagnose measure";
+
+/// What a comment beside such a loop must say, if it is not in the common step.
+const NO_STEP: &str = "not in every step";
+
+#[test]
+fn no_thread_goes_over_all_particles_alone() {
+    for_each_source(|source, complain| {
+        if !has(STEP, &source.module) {
+            return;
+        }
+        for line in source.lone_loops() {
+            if !source.says(line, NO_STEP) {
+                let why = format!("one thread alone; if it is {NO_STEP}, say so in a comment");
                 complain(line, &why);
             }
         }

@@ -12,7 +12,9 @@ use common::random::Random;
 use common::ranks::on_each;
 use common::sentinel::{id, mix, sentinel};
 use whipple::comm::{Comm, Exchange, waited};
-use whipple::domain::{Balance, Decomposition, Halo, Migration, Mirrors, NestedSlabs, RankSpeeds};
+use whipple::domain::{
+    Balance, Decomposition, Halo, Migration, Mirrors, NestedSlabs, RankSpeeds, Reaches,
+};
 use whipple::model::{Axis, Overlap, SelfContact, SymmetryPlane};
 use whipple::particles::{
     FIELDS, FieldInfo, HaloPhase, Image, ParticleStore, SCRATCH_WORDS, Select,
@@ -171,7 +173,9 @@ fn migrate_in_rounds_of(comm: &Comm, most: usize) {
             .filter(|other| other.abs_diff(comm.rank()) < usize::try_from(round % 5).unwrap())
             .filter(|&other| other != comm.rank())
             .collect();
-        migration.migrate(comm, &slabs, &mut particles, &near);
+        let reach = |particles: &ParticleStore, i: usize| reach_of(particles.id[i], 1.0);
+        let farthest = migration.migrate(comm, &slabs, &mut particles, &near, reach);
+        assert_eq!(farthest, if comm.size() == 1 { 0.0 } else { 3.0 });
         check_owners(comm, &slabs, &particles, round);
         filled_again |= was_empty && particles.owned() > 0;
         was_empty |= particles.owned() == 0;
@@ -280,13 +284,20 @@ fn exchange_halos(comm: &Comm) {
                 round += 1;
                 next_round(&mut particles, round, &mut own);
                 let slabs = random_slabs(comm, axis, &mut random);
-                migration.migrate(comm, &slabs, &mut particles, halo.peers());
+                let reach = |k: u64| reach_of(k, scale);
+                let reach = |particles: &ParticleStore, i: usize| reach(numbers[&particles.id[i]]);
+                let peers = halo.peers();
+                let farthest = migration.migrate(comm, &slabs, &mut particles, peers, reach);
                 for slot in 0..particles.owned() {
                     let k = numbers[&particles.id[slot]];
                     set(&mut particles, slot, k, round, |_| true);
                 }
                 let reach = |k: u64| reach_of(k, scale);
-                halo.post_motion(comm, &mut particles, |particles, i| {
+                let reaches = Reaches {
+                    slabs: &slabs,
+                    farthest,
+                };
+                halo.post_motion(comm, reaches, &mut particles, |particles, i| {
                     reach(numbers[&particles.id[i]])
                 });
                 halo.finish_motion(&mut particles);
@@ -426,7 +437,7 @@ fn balance_work_in(comm: &Comm, levels: usize) {
         assert!(faces.chunks(mine.len().max(1)).all(|theirs| theirs == mine));
         assert!(slabs.is_sorted());
 
-        migration.migrate(comm, &slabs, &mut particles, &[]);
+        migration.migrate(comm, &slabs, &mut particles, &[], |_, _| 0.0);
         let share = |k: u64| u64::from(work(k).max(1));
         let mine: u64 = particles.id[..particles.owned()]
             .iter()

@@ -1,11 +1,11 @@
-//! The work that many ranks share, and what they wait for, on virtual ranks.
+//! The work that many ranks share, on virtual ranks.
 
 mod common;
 mod physics_support;
 
 use common::virtual_ranks::on_virtual_ranks;
 use physics_support::ready;
-use whipple::comm::{Comm, Computing, Machine, VirtualTime};
+use whipple::comm::{Comm, Machine};
 use whipple::step::Simulation;
 
 /// The quarter of the main job with this spacing on virtual ranks, with a look at each step.
@@ -42,7 +42,11 @@ fn imbalance(shares: &[u64]) -> f64 {
 #[ignore = "slow: 2.7 million particles"]
 fn ranks_of_ten_thousand_particles_have_the_same_work() {
     let counts = run(256, Machine::IDEAL, ("0.0052mm", 14), |_, simulation| {
-        let counted = simulation.particles.work.iter().map(|&work| u64::from(work));
+        let counted = simulation
+            .particles
+            .work
+            .iter()
+            .map(|&work| u64::from(work));
         [counted.sum(), simulation.particles.owned() as u64]
     });
     let of = |step: usize, what: usize| -> Vec<u64> {
@@ -63,25 +67,4 @@ fn ranks_of_ten_thousand_particles_have_the_same_work() {
         let busiest = imbalance(&of(step, 0));
         assert!(busiest <= 1.10, "step {}: {busiest}", step + 1);
     }
-}
-
-/// What ranks wait for while nothing is left to compute, on a network of two microseconds and ten
-/// gigabytes a second, of which 16 ranks share one.
-#[test]
-#[ignore = "slow: two million particles"]
-fn ranks_of_ten_thousand_particles_seldom_wait() {
-    let machine = Machine {
-        latency: 2e-6,
-        bandwidth: 10e9 / 16.0,
-        computing: Computing::Measured,
-    };
-    let times = run(64, machine, ("0.0083mm", 24), |comm, _| {
-        comm.virtual_time().unwrap()
-    });
-    let (begin, steps) = (12, times[0].len());
-    let spent = |what: fn(&VirtualTime) -> f64| -> Vec<f64> {
-        let of = |times: &Vec<VirtualTime>| what(&times[steps - 1]) - what(&times[begin - 1]);
-        times.iter().map(of).collect()
-    };
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
 }

@@ -1,5 +1,6 @@
 //! `whipple bench`: how fast this program steps on this machine, on fixed cases.
 
+mod calibrate;
 mod cases;
 mod driver;
 mod machine;
@@ -17,6 +18,7 @@ use crate::comm::{Comm, Session};
 use crate::output::on_root;
 use crate::run::exit::{EXIT_FAILED, EXIT_INPUT};
 use crate::run::{launch, say};
+pub use calibrate::calibrate;
 use cases::{BenchCase, CASES};
 use report::{Report, Row};
 
@@ -37,7 +39,7 @@ Examples:
   whipple bench --case block-1m --threads 8
   mpirun -n 4 whipple bench --case quarter-400k --threads 1", cases::table()))]
 pub struct BenchArgs {
-    /// Case to measure; may be given many times [default: all but the small ones of --quick]
+    /// Case to measure; may be given many times [default: all but the small ones of --quick and those that are to be named]
     #[arg(
         short,
         long = "case",
@@ -81,7 +83,7 @@ impl BenchArgs {
         let named = |case: &BenchCase| self.cases.iter().any(|name| name == case.name);
         let wanted = |case: &&BenchCase| {
             if self.cases.is_empty() {
-                case.quick == self.quick
+                case.quick == self.quick && !case.on_demand
             } else {
                 named(case)
             }

@@ -2,12 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use super::plan::duration;
 use super::plot::out;
 use crate::comm::Comm;
 use crate::input;
 use crate::model::readable::{short, shown};
 use crate::model::{Body, Case, MeasureKind, Quantity, cube};
 use crate::output::{snapshot, unit_of_model};
+use crate::plan::{self, Files, Machine};
 use crate::plot::{self, PlotError};
 use crate::populate;
 use crate::preflight::{self, memory};
@@ -162,6 +164,7 @@ fn print_body(case: &Case, body: &Body) -> u64 {
     count
 }
 
+#[allow(clippy::cast_precision_loss, reason = "for people")]
 fn print_report(case: &Case, ranks: usize) {
     say(&format!("{} ({}-D): sound", case.title, case.dimension));
     let counts = case.bodies.iter().map(|body| print_body(case, body));
@@ -183,10 +186,31 @@ fn print_report(case: &Case, ranks: usize) {
         }
     }
     print_measures(case);
-    if let Some(step) = preflight::expected_step(case) {
-        let (steps, end) = (case.run.end_time / step, shown(case.run.end_time, "s"));
-        say(&format!("  about {} steps to {end}", short(steps.round())));
+    let steps = plan::expected_steps(case, 0.0);
+    if let Some(steps) = steps {
+        let end = shown(case.run.end_time, "s");
+        say(&format!("  about {} steps to {end}", short(steps)));
     }
+    print_costs(case, (total as f64, steps), ranks);
+}
+
+/// What the run takes of an ordinary machine, and of the disk.
+fn print_costs(case: &Case, (particles, steps): (f64, Option<f64>), ranks: usize) {
+    let machine = Machine::default();
+    let Ok(files) = Files::new(case, particles, steps.unwrap_or(0.0)) else {
+        return;
+    };
+    if let Some(steps) = steps {
+        let stepping = steps * plan::rough_step(case, ranks, &machine);
+        let wall = duration(stepping + files.written() / machine.disk_bandwidth);
+        let plural = if ranks == 1 { "" } else { "s" };
+        let name = &machine.name;
+        say(&format!(
+            "  about {wall} on {ranks} rank{plural} of one core of {name} (`whipple plan` tells more)"
+        ));
+    }
+    let disk = memory::in_words(files.disk());
+    say(&format!("  about {disk} on the disk at the end"));
 }
 
 /// What the run is going to measure.

@@ -8,6 +8,7 @@ pub mod info;
 mod limit;
 mod materials;
 mod measure;
+mod plan;
 pub mod plot;
 mod restart;
 pub mod results;
@@ -31,6 +32,7 @@ use crate::run::{launch, say};
     version,
     after_help = "Examples:
   whipple check inputs/quarter-impact
+  whipple plan inputs/quarter-impact --ranks 16,64
   mpirun -n 2 whipple run inputs/quarter-impact --out runs/quarter
   whipple info runs/quarter
   whipple plot runs/quarter --panels
@@ -56,6 +58,7 @@ enum Command {
     Run(run::RunArgs),
     Restart(restart::RestartArgs),
     Check(check::CheckArgs),
+    Plan(plan::PlanArgs),
     Plot(Box<plot::PlotArgs>),
     Info(info::InfoArgs),
     Fragments(fragments::FragmentsArgs),
@@ -87,6 +90,7 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run::run(&args),
         Command::Restart(args) => restart::run(&args),
         Command::Check(args) => check::run(&args),
+        Command::Plan(args) => plan::run(&args),
         Command::Plot(args) => plot::run(&args).map_or_else(
             |error| {
                 say::warn(&format!("error: {error}"));

@@ -1,7 +1,7 @@
 //! One packed byte message to and from each peer of a phase.
 
 use std::ffi::{c_int, c_void};
-use std::ops::Range;
+use std::ops::{AddAssign, Range, Sub};
 
 use mpi::ffi;
 use mpi::traits::AsRaw;
@@ -12,6 +12,8 @@ use super::{Comm, Kind, RawComm};
 
 /// Largest piece of a message: counts are `i32`.
 const PIECE: usize = 1 << 30;
+/// Bytes of the size of a message.
+const SIZE: usize = 8;
 const TAG_SIZE: c_int = 1;
 const TAG_DATA: c_int = 2;
 
@@ -22,7 +24,7 @@ pub fn pieces(length: usize, most: usize) -> impl Iterator<Item = Range<usize>> 
 }
 
 /// Messages and bytes sent, for reports.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Traffic {
     /// Messages sent.
     pub messages: u64,
@@ -30,11 +32,61 @@ pub struct Traffic {
     pub bytes: u64,
 }
 
+impl Traffic {
+    /// Of telling a peer the size of the next message.
+    pub const OF_SIZE: Self = Self {
+        messages: 1,
+        bytes: SIZE as u64,
+    };
+
+    /// Of so many bytes to a peer.
+    #[must_use]
+    pub fn of(bytes: u64) -> Self {
+        Self {
+            messages: bytes.div_ceil(PIECE as u64),
+            bytes,
+        }
+    }
+}
+
+impl AddAssign for Traffic {
+    fn add_assign(&mut self, other: Self) {
+        self.messages += other.messages;
+        self.bytes += other.bytes;
+    }
+}
+
+impl Sub for Traffic {
+    type Output = Self;
+
+    /// What has been sent since another time.
+    fn sub(self, before: Self) -> Self {
+        Self {
+            messages: self.messages - before.messages,
+            bytes: self.bytes - before.bytes,
+        }
+    }
+}
+
+/// Whom messages go to and come from.
 #[derive(Default)]
-struct Peer {
+pub struct Peer {
     rank: c_int,
     send: Vec<u8>,
     receive: Vec<u8>,
+}
+
+impl Peer {
+    /// The message to it, to be filled.
+    pub fn outgoing(&mut self) -> &mut Vec<u8> {
+        &mut self.send
+    }
+
+    /// Its message.
+    #[must_use]
+    pub fn incoming(&self) -> &[u8] {
+        &self.receive
+    }
 }
 
 /// Buffers and requests of one exchange with a set of peers; every peer both sends and receives,
@@ -97,10 +149,22 @@ impl Exchange {
         &mut self.peers[k].send
     }
 
+    /// The peers, whose messages may be filled by any threads.
+    pub fn outgoing_all(&mut self) -> &mut [Peer] {
+        wait_all(&mut self.sends);
+        &mut self.peers[..self.count]
+    }
+
     /// The message of the k-th peer, after [`Self::wait`].
     #[must_use]
     pub fn incoming(&self, k: usize) -> &[u8] {
         &self.peers[k].receive
+    }
+
+    /// The peers, whose messages any threads may read after [`Self::wait`].
+    #[must_use]
+    pub fn incoming_all(&self) -> &[Peer] {
+        &self.peers[..self.count]
     }
 
     /// Says how many bytes the k-th peer will send.
@@ -171,8 +235,8 @@ impl Exchange {
             // SAFETY: `sizes` is owned by `self` and not touched before `wait` below; the two
             // halves of an entry are distinct.
             unsafe {
-                self.receive_piece(raw, size.add(1).cast(), 8, rank, TAG_SIZE);
-                self.send_piece(raw, size.cast(), 8, rank, TAG_SIZE);
+                self.receive_piece(raw, size.add(1).cast(), SIZE, rank, TAG_SIZE);
+                self.send_piece(raw, size.cast(), SIZE, rank, TAG_SIZE);
             }
         }
         self.wait();
@@ -321,6 +385,10 @@ mod tests {
                 end = piece.end;
             }
             assert_eq!(end, length);
+            assert_eq!(
+                Traffic::of(length as u64).messages,
+                pieces(length, PIECE).count() as u64
+            );
         }
         assert_eq!(pieces(0, PIECE).count(), 0);
         assert_eq!(pieces(PIECE, PIECE).count(), 1);

@@ -8,7 +8,7 @@ mod exchange;
 mod virtual_ranks;
 mod waiting;
 
-pub use exchange::{Exchange, Traffic, pieces};
+pub use exchange::{Exchange, Peer, Traffic, pieces};
 pub use virtual_ranks::{Computing, Machine, VirtualTime, virtual_ranks};
 pub use waiting::waited;
 

@@ -94,7 +94,7 @@ pub fn virtual_ranks<T: Send>(
                 })
             })
             .collect();
-        let joined = threads.into_iter().map(|thread| thread.join());
+        let joined = threads.into_iter().map(thread::ScopedJoinHandle::join);
         joined.map(|result| result.and_then(|same| same)).collect()
     });
     let is_cause = |result: &Result<T, Box<dyn Any + Send>>| matches!(result, Err(cause) if !cause.is::<Abandoned>());

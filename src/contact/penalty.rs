@@ -9,13 +9,16 @@
 
 mod boundary;
 
+use rayon::prelude::*;
+
 use super::mode::{Found, Meeting, Mode, PairForce, Scene, fill, for_each_chunk};
 use super::pair::{Between, Constants};
 use super::view::{ContactView, Party};
 use crate::domain::Mirrors;
 use crate::model::{ContactClass, Penalty, PenaltyLaw};
+use crate::neighbours::CHUNKS_AT_ONCE;
 use crate::numerics::vector::{dot, minus, norm};
-use crate::particles::{HaloPhase, Owner};
+use crate::particles::{HaloPhase, Owner, Scatter};
 use boundary::{Boundary, CORNER, normal};
 
 /// Constants of an ordered pair of bodies.
@@ -76,9 +79,12 @@ impl Mode for Penalty {
             },
         );
         fill(&mut scene.particles.boundary_normal, [0.0; 3]);
-        for &(i, normal) in found.iter().flatten() {
-            scene.particles.boundary_normal[i] = normal;
-        }
+        let normals = Scatter::new(&mut scene.particles.boundary_normal);
+        let chunks = found.par_iter().with_max_len(CHUNKS_AT_ONCE);
+        chunks.flatten_iter().for_each(|&(i, normal)| {
+            // SAFETY: a particle is receiver in one task.
+            unsafe { *normals.slot(i) = normal };
+        });
     }
 
     fn side(_: &ContactView, _: &Party) {}

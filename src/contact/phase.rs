@@ -126,15 +126,36 @@ impl Contact {
         ] {
             fill(field, 0.0);
         }
-        for &(i, load, friction) in self.tasks.iter().flat_map(|task| &task.friction) {
-            particles.slip[i] = friction.slip.displacement;
-            particles.slip_rate[i] = friction.slip.rate;
-            particles.sliding[i] = u32::from(friction.slip.sliding);
-            particles.friction_force[i] = friction.force;
-            particles.friction_load[i] = load;
-            particles.friction_power[i] = friction.power;
-            particles.friction_energy[i] = friction.energy;
-        }
+        let vectors = [
+            &mut particles.slip,
+            &mut particles.slip_rate,
+            &mut particles.friction_force,
+        ]
+        .map(|field| Scatter::new(field));
+        let numbers = [
+            &mut particles.friction_load,
+            &mut particles.friction_power,
+            &mut particles.friction_energy,
+        ]
+        .map(|field| Scatter::new(field));
+        let sliding = Scatter::new(&mut particles.sliding);
+        let tasks = self.tasks.par_iter().with_max_len(CHUNKS_AT_ONCE);
+        let all = tasks.flat_map_iter(|task| &task.friction);
+        all.for_each(|&(i, load, friction)| {
+            let slip = friction.slip;
+            // SAFETY: a particle is receiver in one task.
+            unsafe {
+                let values = [slip.displacement, slip.rate, friction.force];
+                for (field, value) in vectors.iter().zip(values) {
+                    *field.slot(i) = value;
+                }
+                let values = [load, friction.power, friction.energy];
+                for (field, value) in numbers.iter().zip(values) {
+                    *field.slot(i) = value;
+                }
+                *sliding.slot(i) = u32::from(slip.sliding);
+            }
+        });
     }
 
     /// Contact forces after a step `dt` (s), the energy of contact, and what the time step must

@@ -1,10 +1,12 @@
 //! What contact adds up: exact sums, counts and extremes, of pairs of bodies and of all.
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::force::BodyForce;
 use crate::domain::MirrorForce;
 use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
+use crate::numerics::gathered_sums::{self, GatheredSums};
 use crate::numerics::vector::cross;
 
 /// What a pair of bodies has come to in an interval of steps.
@@ -194,17 +196,34 @@ impl ContactSums {
         self.foreign_fraction = self.foreign_fraction.max(other.foreign_fraction);
     }
 
-    /// Adds what images behind symmetry planes do to particles at `positions` (m).
-    pub fn add_plane_forces<'a>(
+    /// Adds what images behind symmetry planes do to particles at `positions` (m), some for each task.
+    pub fn add_plane_forces<'a, F: Iterator<Item = &'a MirrorForce>>(
         &mut self,
-        forces: impl Iterator<Item = &'a MirrorForce>,
+        forces: impl ParallelIterator<Item = F>,
         positions: &[[f64; 3]],
     ) {
-        for force in forces {
-            self.add_plane_force(&force.force, &positions[force.particle]);
-            for (sum, couple) in self.outside_torque.iter_mut().zip(force.couple) {
-                sum.add(couple);
+        let of_task = |forces: F| {
+            let mut sums = GatheredSums::<9>::default();
+            // Where matter bears no stress yet there is nothing to add.
+            let acts = |force: &&MirrorForce| [force.force, force.couple] != [[0.0; 3]; 2];
+            for force in forces.filter(acts) {
+                let [x, y, z] = force.force;
+                let [a, b, c] = cross(&positions[force.particle], &force.force);
+                let [u, v, w] = force.couple;
+                sums.add(&[x, y, z, a, b, c, u, v, w]);
             }
+            sums.into_sums()
+        };
+        let sums = forces
+            .map(of_task)
+            // same bits in any order: exact sums are integers
+            .reduce(gathered_sums::none, gathered_sums::merged);
+        let [x, y, z, torques @ ..] = &sums;
+        for (sum, part) in self.plane_force.iter_mut().zip([x, y, z]) {
+            sum.merge(part);
+        }
+        for (k, part) in torques.iter().enumerate() {
+            self.outside_torque[k % 3].merge(part);
         }
     }
 

@@ -15,8 +15,9 @@ use crate::loads::{Loads, Placed, SurfaceStep};
 use crate::model::{Body, Case, RigidSurface};
 use crate::neighbours::Kinds;
 use crate::numerics::exact_sum::ExactSum;
-use crate::numerics::vector::dot;
-use crate::particles::{GRAIN, ParticleStore};
+use crate::numerics::gathered_sums::{self, GatheredSums};
+use crate::numerics::vector::{cross, dot};
+use crate::particles::{GRAIN, ParticleStore, Scatter};
 
 /// What a surface does to one particle.
 #[derive(Debug, Clone, Copy)]
@@ -171,30 +172,72 @@ impl SurfaceForces {
             return;
         }
         self.find_pushes(particles, table, loads, dt);
-        for push in self.pushes.iter().flatten() {
-            let i = push.particle;
-            let per_mass = 1.0 / particles.mass[i];
-            for a in 0..3 {
-                particles.contact_acceleration[i][a] += push.force[a] * per_mass;
-            }
-            particles.contact_energy[i] += push.energy;
-            particles.contact_stiffness[i] += push.stiffness;
-            particles.approach_speed[i] = particles.approach_speed[i].max(push.approach);
-            of_contact.energy.add(push.energy);
-            of_contact.add_outside_force(&push.force, &particles.position[i]);
-            let sums = &mut self.sums[push.surface];
-            for a in 0..3 {
-                sums[a].add(push.force[a]);
-            }
-            sums[3].add(push.torque);
-            if let Some(heat) = self.heat.get_mut(push.surface) {
-                heat.add(push.heat);
+        self.push(particles);
+        let [energy, x, y, z] = self.sum(|push| {
+            let [x, y, z] = cross(&particles.position[push.particle], &push.force);
+            Some([push.energy, x, y, z])
+        });
+        of_contact.energy.merge(&energy);
+        for (sum, torque) in of_contact.outside_torque.iter_mut().zip([x, y, z]) {
+            sum.merge(&torque);
+        }
+        for surface in 0..self.sums.len() {
+            let [x, y, z, torque, heat] = self.sum(|push| {
+                let [x, y, z] = push.force;
+                (push.surface == surface).then_some([x, y, z, push.torque, push.heat])
+            });
+            self.sums[surface] = [x, y, z, torque];
+            if let Some(sum) = self.heat.get_mut(surface) {
+                *sum = heat;
             }
         }
         SurfaceFriction::clear(particles);
-        for friction in self.friction.iter().flatten() {
-            friction.store(particles);
-        }
+        SurfaceFriction::store(&self.friction, particles);
+    }
+
+    /// Gives particles what the surfaces do to them.
+    fn push(&self, particles: &mut ParticleStore) {
+        let mass = &particles.mass;
+        let [energy, stiffness, approach] = [
+            &mut particles.contact_energy,
+            &mut particles.contact_stiffness,
+            &mut particles.approach_speed,
+        ]
+        .map(|field| Scatter::new(field));
+        let acceleration = Scatter::new(&mut particles.contact_acceleration);
+        let all = self.pushes.par_iter().flat_map_iter(|chunk| chunk);
+        all.for_each(|push| {
+            let i = push.particle;
+            let per_mass = 1.0 / mass[i];
+            // SAFETY: all pushes of a particle are in one chunk, which one thread has.
+            unsafe {
+                for (a, force) in acceleration.slot(i).iter_mut().zip(push.force) {
+                    *a += force * per_mass;
+                }
+                *energy.slot(i) += push.energy;
+                *stiffness.slot(i) += push.stiffness;
+                *approach.slot(i) = approach.slot(i).max(push.approach);
+            }
+        });
+    }
+
+    /// Exact sums of the terms of those pushes that have any.
+    fn sum<const N: usize>(
+        &self,
+        terms: impl Fn(&Push) -> Option<[f64; N]> + Sync,
+    ) -> [ExactSum; N] {
+        let of_chunk = |mut sums: GatheredSums<N>, chunk: &Vec<Push>| {
+            let all = chunk.iter().filter_map(&terms);
+            all.for_each(|terms| sums.add(&terms));
+            sums
+        };
+        self.pushes
+            .par_iter()
+            // same bits in any order: exact sums are integers
+            .fold(GatheredSums::default, of_chunk)
+            .map(GatheredSums::into_sums)
+            // same bits in any order, as above
+            .reduce(gathered_sums::none, gathered_sums::merged)
     }
 
     /// What the forces of the last step carry through particles, with their indices: the matter

@@ -16,7 +16,7 @@ pub struct ContactTable {
     /// Which mode handles a pair, and its range.
     pub foreign: ForeignTable,
     /// What halo particles need before the forces.
-    pub(super) halo: HaloPhase,
+    pub halo: HaloPhase,
     /// Constants of the modes, in the order of the pairs.
     modes: ModePairs,
     pairs: Vec<Pair>,

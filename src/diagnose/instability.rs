@@ -56,6 +56,7 @@ pub(crate) fn is_explained(state: &RunState, hidden: f64, most: f64) -> bool {
 /// Identity of the fastest particle that nobody drives. Collective.
 pub(crate) fn fastest(comm: &Comm, particles: &ParticleStore, loads: &Loads) -> u64 {
     let mut best = (u64::MAX, u64::MAX);
+    // In a run that blows up, not in every step.
     for i in 0..particles.owned() {
         if loads.has_motions() && loads.is_rigid(particles.load[i]) {
             continue;

@@ -60,6 +60,7 @@ impl PostMortem {
         let i = owned.iter().position(|&x| x == id)?;
         let here = particles.position[i];
         let distance = |there: &[f64; 3]| norm(&minus(&here, there));
+        // After a failure, not in every step.
         let all = (0_u32..).zip(particles.position.iter().map(distance));
         let mut others: Vec<(u32, f64)> = all
             .filter(|&(k, r)| k as usize != i && r <= reach)

@@ -8,6 +8,7 @@ use crate::comm::Comm;
 use crate::contact::{Closest, Contact, ContactSums, ContactTable, least, pair_key};
 use crate::domain::{Mirrors, Span};
 use crate::loads::Loads;
+use crate::numerics::alone;
 use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use crate::numerics::vector::cross;
 use crate::particles::{GRAIN, ParticleStore};
@@ -96,6 +97,7 @@ impl StepSums {
                 crossed.extend(indices.map(|(k, _)| chunk * GRAIN + k));
             });
         for &i in self.crossed.iter().flatten() {
+            alone::visit(1);
             self.crossings += 1;
             let (x, before) = (particles.position[i], particles.velocity[i]);
             mirrors.fold(particles, i);

@@ -95,6 +95,7 @@ impl Totals {
 /// Mass that has failed (kg) of each of so many bodies. Collective.
 pub(crate) fn failed_mass(particles: &ParticleStore, bodies: usize, comm: &Comm) -> Vec<f64> {
     let mut sums = vec![ExactSum::default(); bodies];
+    // For rows of tables, not in every step.
     let owned = particles.damage.iter().enumerate().take(particles.owned());
     for (i, _) in owned.filter(|(_, damage)| **damage >= FAILED) {
         sums[particles.body[i] as usize].add(particles.thermal_mass(i));

@@ -1,5 +1,9 @@
 //! Faces of the slabs so that counted work is even.
 
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+use rayon::prelude::*;
+
 use super::histogram::Histogram;
 use super::nested::{NestedSlabs, Slab};
 use super::rank_speed::RankSpeeds;
@@ -7,7 +11,7 @@ use crate::comm::Comm;
 use crate::numerics::ordered::{disordered, ordered};
 
 /// What the balance works in, kept from one to the next.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Default)]
 pub struct Balance {
     /// Counted work.
     pub histogram: Histogram,
@@ -17,7 +21,12 @@ pub struct Balance {
     places: Vec<u32>,
     /// Smallest and largest coordinates of each, as words.
     ends: Vec<u64>,
+    /// The same, as threads find them.
+    least: Vec<AtomicU64>,
 }
+
+/// Particles that a task looks at.
+const SHARE: usize = 4096;
 
 impl Balance {
     /// Moves the faces of `slabs` for owned particles at `positions` (m) with counted `work`, so that
@@ -66,14 +75,28 @@ impl Balance {
         };
         self.ends.clear();
         self.ends.resize(2 * self.slabs.len(), u64::MAX);
-        for position in positions {
-            if let Some(place) = place_of(position) {
-                let x = position[axis];
-                let [lower, upper] = [ordered(x), !ordered(x)];
-                self.ends[2 * place] = self.ends[2 * place].min(lower);
-                self.ends[2 * place + 1] = self.ends[2 * place + 1].min(upper);
+        self.least.clear();
+        self.least
+            .resize_with(self.ends.len(), || AtomicU64::new(u64::MAX));
+        let least = &self.least;
+        positions.par_chunks(SHARE).for_each(|positions| {
+            // Those of one slab follow each other: each run is told once.
+            let mut run = (usize::MAX, [u64::MAX; 2]);
+            for position in positions {
+                let Some(place) = place_of(position) else {
+                    continue;
+                };
+                if place != run.0 {
+                    tell_ends(least, run);
+                    run = (place, [u64::MAX; 2]);
+                }
+                let x = ordered(position[axis]);
+                run.1 = [run.1[0].min(x), run.1[1].min(!x)];
             }
-        }
+            tell_ends(least, run);
+        });
+        let ends = self.ends.iter_mut().zip(&mut self.least);
+        ends.for_each(|(end, least)| *end = *least.get_mut());
         comm.min_u64(&mut self.ends);
         let ends = self.ends.chunks_exact(2).map(ends_of);
         if level == 0 {
@@ -83,12 +106,10 @@ impl Balance {
             let cuts = self.slabs.iter().map(|slab| slab.ranks().len());
             self.histogram.reset_each(ends.zip(cuts), ranks);
         }
-        for (position, &work) in positions.iter().zip(work) {
-            if let Some(place) = place_of(position) {
-                let work = u64::from(work.max(1));
-                self.histogram.add_to(place, position[axis], work);
-            }
-        }
+        self.histogram.add_all(positions.len(), |i| {
+            let place = place_of(&positions[i])?;
+            Some((place, positions[i][axis], u64::from(work[i].max(1))))
+        });
         self.histogram.sum(comm);
     }
 
@@ -123,7 +144,16 @@ impl Balance {
         self.histogram.memory()
             + size_of::<Slab>() * self.slabs.capacity()
             + 4 * self.places.capacity()
-            + 8 * self.ends.capacity()
+            + 8 * (self.ends.capacity() + self.least.capacity())
+    }
+}
+
+/// Joins the ends that a task has found of a slab, if any, with those of the others.
+fn tell_ends(least: &[AtomicU64], (place, ends): (usize, [u64; 2])) {
+    if place != usize::MAX {
+        for (least, end) in least[2 * place..].iter().zip(ends) {
+            least.fetch_min(end, Relaxed);
+        }
     }
 }
 

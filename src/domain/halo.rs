@@ -1,27 +1,41 @@
 //! Halo exchange: copies of other ranks' particles within reach of this rank's, and the images
 //! of all of them behind symmetry planes.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
+use super::chosen::{Chosen, of_peer};
 use super::mirrors::Mirrors;
 use super::needs::{Extent, Finder, Found, MYSELF};
+use super::nested::NestedSlabs;
 use crate::comm::{Comm, Exchange, Traffic};
+use crate::numerics::collector::Collector;
 use crate::particles::{HaloPhase, Image, ParticleStore};
+
+/// Where ranks stand: each has its particles in its own slab.
+#[derive(Debug, Clone, Copy)]
+pub struct Reaches<'a> {
+    /// The slabs.
+    pub slabs: &'a NestedSlabs,
+    /// Largest reach of the particles of all ranks (m).
+    pub farthest: f64,
+}
 
 /// Halo lists and buffers, kept from step to step.
 pub struct Halo {
     rank: usize,
     mirrors: Mirrors,
     exchange: Exchange,
-    words: Vec<u64>,
-    extents: Vec<Extent>,
+    /// Extents to and from all ranks that are near.
+    greetings: Exchange,
+    /// The box around this rank's particles.
+    mine: Extent,
     /// The ranks to talk to, ascending.
     peers: Vec<usize>,
     /// Their extents.
     theirs: Vec<Extent>,
-    /// For each peer, the particles it needs and the codes of the images that it needs of each
-    /// (a set of eight bits).
-    sends: Vec<(Vec<u32>, Vec<u8>)>,
+    chosen: Chosen,
     /// For each peer, how many particles it sent.
     received: Vec<usize>,
     /// Images of owned particles.
@@ -32,6 +46,7 @@ pub struct Halo {
     below: usize,
     /// What the tasks found, one after the other: see [`Found`].
     found: Vec<Vec<Found>>,
+    collector: Collector,
 }
 
 /// Particles that a task looks at.
@@ -45,16 +60,17 @@ impl Halo {
             rank: 0,
             mirrors,
             exchange: Exchange::default(),
-            words: Vec::new(),
-            extents: Vec::new(),
+            greetings: Exchange::default(),
+            mine: Extent::EMPTY,
             peers: Vec::new(),
             theirs: Vec::new(),
-            sends: Vec::new(),
+            chosen: Chosen::default(),
             received: Vec::new(),
             own: Vec::new(),
             others: Vec::new(),
             below: 0,
             found: Vec::new(),
+            collector: Collector::default(),
         }
     }
 
@@ -63,20 +79,20 @@ impl Halo {
     pub fn post_motion(
         &mut self,
         comm: &Comm,
+        reaches: Reaches,
         particles: &mut ParticleStore,
         reach: impl Fn(&ParticleStore, usize) -> f64 + Sync,
     ) {
         particles.resize_halo(0);
         self.rank = comm.rank();
-        self.gather_extents(comm, particles, &reach);
-        self.find_peers(comm);
-        self.choose(comm, particles, &reach);
-        for k in 0..self.exchange.peers() {
-            let (sent, codes) = &self.sends[k];
-            let message = self.exchange.outgoing(k);
-            message.extend_from_slice(codes);
-            particles.pack(HaloPhase::MOTION, sent, message);
-        }
+        self.find_extent(particles, &reach);
+        self.find_peers(comm, reaches);
+        self.choose(particles, &reach);
+        let (chosen, store) = (&self.chosen, &*particles);
+        fill(&mut self.exchange, |k, message| {
+            message.extend_from_slice(&chosen.codes[chosen.of(k)]);
+            store.pack(HaloPhase::MOTION, &chosen.particles[chosen.of(k)], message);
+        });
         self.exchange.post_sizes(comm);
         self.exchange.post(comm);
     }
@@ -91,37 +107,42 @@ impl Halo {
             self.received.push(self.exchange.incoming(k).len() / size);
         }
         particles.resize_halo(self.received.iter().sum());
+        let (exchange, received) = (&self.exchange, &self.received);
+        let (peers, first) = (exchange.incoming_all(), particles.owned());
+        particles.unpack_all(HaloPhase::MOTION, first, received, |k| {
+            &peers[k].incoming()[received[k]..]
+        });
+        let lower = (0..exchange.peers()).filter(|&k| exchange.rank(k) < self.rank);
+        let lower = lower.count();
         self.others.clear();
-        let mut own = Some(&self.own);
-        let mut first = particles.owned();
-        for (k, &count) in self.received.iter().enumerate() {
-            if self.exchange.rank(k) > self.rank {
-                self.others.extend(own.take().into_iter().flatten());
-                self.below = self.others.len();
-            }
-            let (needs, fields) = self.exchange.incoming(k).split_at(count);
-            particles.unpack(HaloPhase::MOTION, first, count, fields);
-            for (i, &need) in needs.iter().enumerate() {
-                for code in (0..8).filter(|code| need >> code & 1 == 1) {
-                    self.others.push(Image::new(first + i, code));
-                }
-            }
-            first += count;
+        let above = self.list_images(0..lower, first);
+        self.others.par_extend(self.own.par_iter().copied());
+        self.below = self.others.len();
+        self.list_images(lower..self.received.len(), above);
+    }
+
+    /// Lists the images of what some peers have sent, which stands in the store from a place on. Gives the
+    /// place after it.
+    fn list_images(&mut self, peers: Range<usize>, mut first: usize) -> usize {
+        for k in peers {
+            let needs = &self.exchange.incoming(k)[..self.received[k]];
+            let images = |i: usize| images(first + i, needs[i], 0);
+            let all = (needs.len(), SHARE);
+            self.collector.extend(&mut self.others, all, images);
+            first += needs.len();
         }
-        if let Some(own) = own {
-            self.others.extend(own);
-            self.below = self.others.len();
-        }
+        first
     }
 
     /// [`Self::post_motion`] and [`Self::finish_motion`]. Collective.
     pub fn exchange_motion(
         &mut self,
         comm: &Comm,
+        reaches: Reaches,
         particles: &mut ParticleStore,
         reach: impl Fn(&ParticleStore, usize) -> f64 + Sync,
     ) {
-        self.post_motion(comm, particles, reach);
+        self.post_motion(comm, reaches, particles, reach);
         self.finish_motion(particles);
     }
 
@@ -134,11 +155,12 @@ impl Halo {
     /// Starts to send the fields of `phase` of the same particles.
     pub fn post(&mut self, comm: &Comm, particles: &ParticleStore, phase: HaloPhase) {
         let size = particles.bytes_per_particle(phase);
-        for k in 0..self.exchange.peers() {
-            let message = self.exchange.outgoing(k);
-            message.clear();
-            particles.pack(phase, &self.sends[k].0, message);
-            self.exchange.expect(k, self.received[k] * size);
+        let chosen = &self.chosen;
+        fill(&mut self.exchange, |k, message| {
+            particles.pack(phase, &chosen.particles[chosen.of(k)], message);
+        });
+        for (k, count) in self.received.iter().enumerate() {
+            self.exchange.expect(k, count * size);
         }
         self.exchange.post(comm);
     }
@@ -146,24 +168,25 @@ impl Halo {
     /// Receives what [`Self::post`] of the others sent.
     pub fn finish(&mut self, particles: &mut ParticleStore, phase: HaloPhase) {
         self.exchange.wait();
-        let mut first = particles.owned();
-        for (k, &count) in self.received.iter().enumerate() {
-            particles.unpack(phase, first, count, self.exchange.incoming(k));
-            first += count;
-        }
+        let (peers, first) = (self.exchange.incoming_all(), particles.owned());
+        particles.unpack_all(phase, first, &self.received, |k| peers[k].incoming());
     }
 
     /// Gives halo particles the values of their owners: those of this rank's particles stand first
     /// in `values`, those of halo particles after them. Collective.
-    pub fn exchange_values<T: bytemuck::Pod>(&mut self, comm: &Comm, values: &mut [T]) {
+    pub fn exchange_values<T: bytemuck::Pod + Sync>(&mut self, comm: &Comm, values: &mut [T]) {
         let size = size_of::<T>();
-        for k in 0..self.exchange.peers() {
-            let message = self.exchange.outgoing(k);
-            message.clear();
-            for &i in &self.sends[k].0 {
-                message.extend_from_slice(bytemuck::bytes_of(&values[i as usize]));
-            }
-            self.exchange.expect(k, self.received[k] * size);
+        let (chosen, sent) = (&self.chosen, &*values);
+        fill(&mut self.exchange, |k, message| {
+            let particles = &chosen.particles[chosen.of(k)];
+            message.resize(particles.len() * size, 0);
+            let slots = message.par_chunks_exact_mut(size).zip(particles);
+            slots.with_min_len(SHARE).for_each(|(slot, &i)| {
+                slot.copy_from_slice(bytemuck::bytes_of(&sent[i as usize]));
+            });
+        });
+        for (k, count) in self.received.iter().enumerate() {
+            self.exchange.expect(k, count * size);
         }
         self.exchange.post(comm);
         self.exchange.wait();
@@ -205,30 +228,31 @@ impl Halo {
     /// Messages and bytes sent so far.
     #[must_use]
     pub fn traffic(&self) -> Traffic {
-        self.exchange.traffic
+        let mut all = self.exchange.traffic;
+        all += self.greetings.traffic;
+        all
     }
 
     /// Bytes allocated.
     #[must_use]
     pub fn memory(&self) -> usize {
-        let send =
-            |(particles, codes): &(Vec<u32>, Vec<u8>)| 4 * particles.capacity() + codes.capacity();
         let found = |found: &Vec<Found>| size_of::<Found>() * found.capacity();
         self.exchange.memory()
-            + 8 * (self.words.capacity() + self.received.capacity() + self.peers.capacity())
-            + size_of::<Extent>() * (self.extents.capacity() + self.theirs.capacity())
+            + self.greetings.memory()
+            + 8 * (self.received.capacity() + self.peers.capacity())
+            + size_of::<Extent>() * self.theirs.capacity()
             + size_of::<Image>() * (self.own.capacity() + self.others.capacity())
-            + self.sends.iter().map(send).sum::<usize>()
+            + self.chosen.memory()
             + self.found.iter().map(found).sum::<usize>()
+            + self.collector.memory()
     }
 
-    fn gather_extents(
+    fn find_extent(
         &mut self,
-        comm: &Comm,
         particles: &ParticleStore,
         reach: &(impl Fn(&ParticleStore, usize) -> f64 + Sync),
     ) {
-        let mine = (particles.position.par_chunks(SHARE).enumerate())
+        self.mine = (particles.position.par_chunks(SHARE).enumerate())
             .map(|(task, positions)| {
                 let mut part = Extent::EMPTY;
                 for (k, position) in positions.iter().enumerate() {
@@ -238,20 +262,33 @@ impl Halo {
             })
             // same bits in any order: smallest and largest numbers
             .reduce(|| Extent::EMPTY, Extent::join);
-        comm.all_gather_u64(&mine.write(), &mut self.words);
-        self.extents.clear();
-        let words = self.words.chunks_exact(Extent::WORDS);
-        self.extents.extend(words.map(Extent::read));
     }
 
-    /// Peers are the ranks whose particles may stand within reach of this rank's, by a test that
-    /// both sides answer alike.
-    fn find_peers(&mut self, comm: &Comm) {
-        let me = comm.rank();
-        let (extents, mine) = (&self.extents, self.extents[me]);
-        let is_peer = |&other: &usize| other != me && mine.may_need(&extents[other]);
+    /// Ranks whose slabs are near tell each other the boxes around their particles. Peers are those
+    /// whose particles may stand within reach of this rank's, by a test that both sides answer alike.
+    fn find_peers(&mut self, comm: &Comm, Reaches { slabs, farthest }: Reaches) {
+        let range = 2.0 * farthest;
         self.peers.clear();
-        self.peers.extend((0..comm.size()).filter(is_peer));
+        slabs.near(self.rank, range, |other| self.peers.push(other));
+        let (greetings, mine) = (&mut self.greetings, self.mine);
+        greetings.set_peers(self.peers.iter().copied());
+        for k in 0..greetings.peers() {
+            greetings
+                .outgoing(k)
+                .extend_from_slice(bytemuck::bytes_of(&mine));
+            greetings.expect(k, size_of::<Extent>());
+        }
+        greetings.post(comm);
+        greetings.wait();
+        self.peers.clear();
+        self.theirs.clear();
+        for k in 0..greetings.peers() {
+            let extent: Extent = bytemuck::pod_read_unaligned(greetings.incoming(k));
+            if mine.may_need(&extent) {
+                self.peers.push(greetings.rank(k));
+                self.theirs.push(extent);
+            }
+        }
         self.exchange.set_peers(self.peers.iter().copied());
     }
 
@@ -259,27 +296,16 @@ impl Halo {
     /// stand near its own particles.
     fn choose(
         &mut self,
-        comm: &Comm,
         particles: &ParticleStore,
         reach: &(impl Fn(&ParticleStore, usize) -> f64 + Sync),
     ) {
-        let peers = self.exchange.peers();
-        if self.sends.len() < peers {
-            self.sends.resize(peers, <(Vec<u32>, Vec<u8>)>::default());
-        }
-        for (particles, needs) in &mut self.sends {
-            particles.clear();
-            needs.clear();
-        }
+        let peers = self.peers.len();
         self.own.clear();
+        self.chosen.clear(peers);
         if peers == 0 && self.mirrors.is_empty() {
             return;
         }
-        self.theirs.clear();
-        let extents = &self.extents;
-        self.theirs
-            .extend(self.peers.iter().map(|&rank| extents[rank]));
-        let finder = Finder::new(&self.mirrors, extents[comm.rank()], &self.theirs);
+        let finder = Finder::new(&self.mirrors, self.mine, &self.theirs);
         let tasks = particles.position.len().div_ceil(SHARE);
         self.found.resize(tasks, Vec::new());
         (&mut self.found, particles.position.par_chunks(SHARE))
@@ -291,17 +317,31 @@ impl Halo {
                     let i = task * SHARE + k;
                     finder.find(i, position, reach(particles, i), found);
                 }
+                found.sort_unstable_by_key(|entry| (entry.peer, entry.particle));
             });
-        for entry in self.found.iter().flatten() {
-            if entry.peer == MYSELF {
-                let images = (1..8).filter(|code| entry.needs >> code & 1 == 1);
-                let base = entry.particle as usize;
-                self.own.extend(images.map(|code| Image::new(base, code)));
-            } else {
-                let (particles, needs) = &mut self.sends[usize::from(entry.peer)];
-                particles.push(entry.particle);
-                needs.push(entry.needs);
-            }
-        }
+        let found = &self.found;
+        self.chosen.sort(found, peers, &mut self.collector);
+        let own = |task: usize| {
+            let run = of_peer(&found[task], MYSELF);
+            run.iter()
+                .flat_map(|entry| images(entry.particle as usize, entry.needs, 1))
+        };
+        self.collector.extend(&mut self.own, (tasks, 1), own);
     }
+}
+
+/// The images of a particle that `needs` names, from a code on.
+fn images(base: usize, needs: u8, first: u8) -> impl Iterator<Item = Image> {
+    let codes = (first..8).filter(move |code| needs >> code & 1 == 1);
+    codes.map(move |code| Image::new(base, code))
+}
+
+/// Has all threads fill the messages to all peers.
+fn fill(exchange: &mut Exchange, fill: impl Fn(usize, &mut Vec<u8>) + Sync) {
+    let peers = exchange.outgoing_all().par_iter_mut().enumerate();
+    peers.for_each(|(k, peer)| {
+        let message = peer.outgoing();
+        message.clear();
+        fill(k, message);
+    });
 }

@@ -1,7 +1,10 @@
 //! Particles move to the rank that owns their position, by any distance.
 
+use rayon::prelude::*;
+
 use super::nested::Decomposition;
 use crate::comm::{Comm, Exchange, Traffic};
+use crate::numerics::alone;
 use crate::particles::{FieldInfo, ParticleStore};
 
 /// Particles that a rank may send in one round, or [`PART`] of its own if that is more: where a
@@ -10,6 +13,8 @@ use crate::particles::{FieldInfo, ParticleStore};
 const ROUND: usize = 1 << 12;
 /// One part of so many.
 const PART: usize = 32;
+/// Particles that a task looks at.
+const SHARE: usize = 4096;
 
 /// Buffers of migration, kept from step to step.
 pub struct Migration {
@@ -17,6 +22,8 @@ pub struct Migration {
     exchange: Exchange,
     /// Who leaves: how many ranks the owner is ahead, round and round, and the particle.
     leaving: Vec<[u32; 2]>,
+    /// The same, as the tasks found them.
+    found: Vec<Vec<[u32; 2]>>,
     gone: Vec<u32>,
     moves: Vec<(u32, u32)>,
     counts: Vec<u64>,
@@ -37,6 +44,7 @@ impl Migration {
             round,
             exchange: Exchange::default(),
             leaving: Vec::new(),
+            found: Vec::new(),
             gone: Vec::new(),
             moves: Vec::new(),
             counts: Vec::new(),
@@ -46,62 +54,87 @@ impl Migration {
 
     /// Sends every owned particle to the owner of its position. `near` are ranks (ascending) that all
     /// name each other: where nobody goes to another and no round is full, they alone talk. Drops
-    /// the halo; the order of the store changes. Collective.
+    /// the halo; the order of the store changes. Gives the largest `reach` (m) of the particles of all
+    /// ranks, zero if there is one rank. Collective.
     pub fn migrate(
         &mut self,
         comm: &Comm,
-        owners: &impl Decomposition,
+        owners: &(impl Decomposition + Sync),
         particles: &mut ParticleStore,
         near: &[usize],
-    ) {
+        reach: impl Fn(&ParticleStore, usize) -> f64 + Sync,
+    ) -> f64 {
         let (rank, size) = (comm.rank(), comm.size());
         if size == 1 {
-            return;
+            return 0.0;
         }
-        self.find_leaving(comm, owners, particles);
+        let farthest = self.find_leaving(comm, owners, particles, &reach);
         let most = self.round.max(particles.owned() / PART);
         let is_near = |to: &[u32; 2]| near.binary_search(&rank_ahead(rank, to[0], size)).is_ok();
         let is_far = self.leaving.iter().any(|to| !is_near(to));
-        let mut vote = [self.leaving.len().div_ceil(most) as u64, u64::from(is_far)];
+        let rounds = self.leaving.len().div_ceil(most) as u64;
+        // Numbers that are not negative are ordered as their bits are.
+        let mut vote = [rounds, u64::from(is_far), farthest.to_bits()];
         comm.max_u64(&mut vote);
-        let [rounds, is_far] = vote;
+        let [rounds, is_far, farthest] = vote;
+        let farthest = f64::from_bits(farthest);
         if rounds == 1 && is_far == 0 {
             self.exchange.set_peers(near.iter().copied());
             self.swap(comm, particles, false);
-            return;
+            return farthest;
         }
         for round in 0..rounds {
             if round > 0 {
-                self.find_leaving(comm, owners, particles);
+                self.find_leaving(comm, owners, particles, &reach);
             }
             // The next rank's first, so that no rank is sent to by all at once.
             self.leaving.truncate(most);
             self.tell_counts(comm);
             self.swap(comm, particles, true);
         }
+        farthest
     }
 
-    /// Lists who leaves, by owner from the next rank on, and then by place in the store.
+    /// Lists who leaves, by owner from the next rank on, and then by place in the store. Gives the largest
+    /// reach (m) of this rank's particles.
     fn find_leaving(
         &mut self,
         comm: &Comm,
-        owners: &impl Decomposition,
+        owners: &(impl Decomposition + Sync),
         particles: &ParticleStore,
-    ) {
+        reach: &(impl Fn(&ParticleStore, usize) -> f64 + Sync),
+    ) -> f64 {
         let (rank, size) = (comm.rank(), comm.size());
         let region = owners.region(rank);
+        let positions = &particles.position[..particles.owned()];
+        self.found
+            .resize(positions.len().div_ceil(SHARE), Vec::new());
+        let farthest = (&mut self.found, positions.par_chunks(SHARE))
+            .into_par_iter()
+            .enumerate()
+            .map(|(task, (found, positions))| {
+                let mut farthest: f64 = 0.0;
+                found.clear();
+                for (k, position) in positions.iter().enumerate() {
+                    let i = task * SHARE + k;
+                    farthest = farthest.max(reach(particles, i));
+                    if region.holds(position) {
+                        continue;
+                    }
+                    let owner = owners.owner(position);
+                    if owner != rank {
+                        #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
+                        found.push([ahead_of(rank, owner, size), i as u32]);
+                    }
+                }
+                farthest
+            })
+            // same bits in any order: a largest number
+            .reduce(|| 0.0, f64::max);
         self.leaving.clear();
-        for (i, position) in particles.position[..particles.owned()].iter().enumerate() {
-            if region.holds(position) {
-                continue;
-            }
-            let owner = owners.owner(position);
-            if owner != rank {
-                #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
-                self.leaving.push([ahead_of(rank, owner, size), i as u32]);
-            }
-        }
+        self.leaving.extend(self.found.iter().flatten());
         self.leaving.sort_unstable();
+        farthest
     }
 
     /// Tells all ranks how many particles they get, and makes peers of those that get any or send
@@ -121,6 +154,7 @@ impl Migration {
     /// Sends those that leave to the peers, of whom one knows how many they send or hears it.
     fn swap(&mut self, comm: &Comm, particles: &mut ParticleStore, is_known: bool) {
         let size = particles.bytes_per_particle(FieldInfo::leaves);
+        alone::visit(self.leaving.len());
         self.gone.clear();
         self.gone.extend(self.leaving.iter().map(|[_, i]| i));
         for k in 0..self.exchange.peers() {
@@ -169,6 +203,7 @@ impl Migration {
         self.exchange.memory()
             + 4 * self.gone.capacity()
             + 8 * (self.leaving.capacity() + self.moves.capacity())
+            + 8 * self.found.iter().map(Vec::capacity).sum::<usize>()
             + 8 * words.iter().sum::<usize>()
     }
 }

@@ -1,21 +1,24 @@
 //! Which rank owns what: slabs of slabs, migration, halo exchange, balance, mirror images.
 
 mod balance;
+mod chosen;
 mod forecast;
 mod halo;
 mod histogram;
 mod migrate;
 mod mirrors;
+mod near;
 mod needs;
 mod nested;
 mod outset;
 mod partition;
 mod rank_speed;
 mod span;
+mod tally;
 
 pub use balance::Balance;
 pub use forecast::{Forecast, Fullest, reach};
-pub use halo::Halo;
+pub use halo::{Halo, Reaches};
 pub use histogram::{Cumulative, Histogram};
 pub use migrate::Migration;
 pub use mirrors::{MirrorForce, Mirrors};
@@ -24,3 +27,4 @@ pub use outset::Outset;
 pub use partition::Partition;
 pub use rank_speed::RankSpeeds;
 pub(crate) use span::Span;
+pub use tally::{GREETING, Sent, Tally, greetings, tally};

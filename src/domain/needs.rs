@@ -2,9 +2,10 @@
 
 use super::mirrors::{Mirrors, codes};
 
-/// The box around a rank's particles, and how far these reach: what it tells all others before the
+/// The box around a rank's particles, and how far these reach: what it tells those that are near before the
 /// exchange.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
 pub(super) struct Extent {
     /// Smallest and largest coordinates of its particles (m).
     pub(super) lower: [f64; 3],
@@ -14,10 +15,9 @@ pub(super) struct Extent {
 }
 
 /// Distances that differ by this factor are the same but for rounding.
-const ROUNDING: f64 = 1.0 + 1e-12;
+pub(super) const ROUNDING: f64 = 1.0 + 1e-12;
 
 impl Extent {
-    pub(super) const WORDS: usize = 7;
     pub(super) const EMPTY: Self = Self {
         lower: [f64::INFINITY; 3],
         upper: [f64::NEG_INFINITY; 3],
@@ -38,21 +38,6 @@ impl Extent {
             lower: std::array::from_fn(|a| self.lower[a].min(other.lower[a])),
             upper: std::array::from_fn(|a| self.upper[a].max(other.upper[a])),
             reach: self.reach.max(other.reach),
-        }
-    }
-
-    pub(super) fn write(&self) -> [u64; Self::WORDS] {
-        let [x, y, z] = self.lower;
-        let [u, v, w] = self.upper;
-        [x, y, z, u, v, w, self.reach].map(f64::to_bits)
-    }
-
-    pub(super) fn read(words: &[u64]) -> Self {
-        let number = |k: usize| f64::from_bits(words[k]);
-        Self {
-            lower: std::array::from_fn(number),
-            upper: std::array::from_fn(|a| number(3 + a)),
-            reach: number(6),
         }
     }
 

@@ -75,7 +75,7 @@ impl Slab {
     }
 
     /// The first rank of a part of so many, from 0 on; beyond the last part the end.
-    fn start(&self, part: usize, parts: usize) -> usize {
+    pub(super) fn start(&self, part: usize, parts: usize) -> usize {
         let ranks = self.end - self.first;
         let (each, more) = (ranks / parts, ranks % parts);
         self.first + part * each + part.min(more)
@@ -103,7 +103,7 @@ impl Slab {
 
     /// Which part of so many, between these faces (m), a coordinate is in.
     #[inline]
-    fn part_at(&self, x: f64, parts: usize, faces: &[f64]) -> usize {
+    pub(super) fn part_at(&self, x: f64, parts: usize, faces: &[f64]) -> usize {
         let (mut least, mut end) = (0, parts - 1);
         // The first part whose upper face is above.
         while least < end {

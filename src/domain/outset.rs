@@ -116,9 +116,43 @@ impl Outset {
         case.domain.levels.or(few)
     }
 
-    /// Slabs with an even number of particles, of which none is created. Collective.
-    pub(super) fn slabs(&self, case: &Case, comm: &Comm, balance: &mut Balance) -> NestedSlabs {
-        let ranks = comm.size();
+    /// Slabs of so many levels, or as many as [`Self::levels`] tells, for so many ranks, with an even
+    /// number of particles, of which none is created. The processes of `comm`, which need not be those
+    /// ranks, share the work. Collective.
+    #[must_use]
+    pub fn slabs(
+        &self,
+        case: &Case,
+        comm: &Comm,
+        (ranks, levels): (usize, Option<usize>),
+        balance: &mut Balance,
+    ) -> NestedSlabs {
+        let levels = levels.unwrap_or_else(|| self.levels(case, comm, ranks));
+        if levels == 1 || ranks == 1 {
+            return self.flat_slabs(case, comm, ranks, balance);
+        }
+        // Each process counts for all what one slab has.
+        let processes = self.flat_slabs(case, comm, comm.size(), balance);
+        let brick = processes.region(comm.rank());
+        let mut places = Vec::new();
+        for body in &case.bodies {
+            let of = (body, case.dimension, case.symmetry.as_slice());
+            populate::places(of, brick, |position| places.push(*position));
+        }
+        let mut slabs = NestedSlabs::on_first(self.axes, levels, ranks);
+        let (work, even) = (vec![1; places.len()], RankSpeeds::default());
+        balance.cut(comm, &mut slabs, (&places, &work), &even);
+        slabs
+    }
+
+    /// The same of one level. Collective.
+    fn flat_slabs(
+        &self,
+        case: &Case,
+        comm: &Comm,
+        ranks: usize,
+        balance: &mut Balance,
+    ) -> NestedSlabs {
         let mut slabs = NestedSlabs::on_first(self.axes, 1, ranks);
         if ranks == 1 {
             return slabs;
@@ -129,20 +163,7 @@ impl Outset {
         split_slab(&balance.histogram, (0, whole), slabs.faces_mut(), |rank| {
             even.below(rank, ranks)
         });
-        let levels = self.levels(case, comm, ranks);
-        if levels == 1 {
-            return slabs;
-        }
-        // Each rank counts for all what one slab has.
-        let brick = slabs.region(comm.rank());
-        let mut places = Vec::new();
-        for body in &case.bodies {
-            let of = (body, case.dimension, case.symmetry.as_slice());
-            populate::places(of, brick, |position| places.push(*position));
-        }
-        let mut nested = NestedSlabs::on_first(self.axes, levels, ranks);
-        balance.cut(comm, &mut nested, (&places, &vec![1; places.len()]), &even);
-        nested
+        slabs
     }
 }
 

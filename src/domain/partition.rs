@@ -1,7 +1,9 @@
 //! Who owns which particles, kept even while they move.
 
+use rayon::prelude::*;
+
 use super::balance::Balance;
-use super::halo::Halo;
+use super::halo::{Halo, Reaches};
 use super::migrate::Migration;
 use super::nested::NestedSlabs;
 use super::outset::Outset;
@@ -18,6 +20,8 @@ pub struct Partition {
     migration: Migration,
     /// Steps between two balances; zero for none.
     every: u64,
+    /// Largest reach of the particles of all ranks when they last changed ranks (m).
+    farthest: f64,
 }
 
 impl Partition {
@@ -25,7 +29,7 @@ impl Partition {
     #[must_use]
     pub fn new(case: &Case, comm: &Comm, outset: &Outset) -> Self {
         let mut balance = Balance::default();
-        let slabs = outset.slabs(case, comm, &mut balance);
+        let slabs = outset.slabs(case, comm, (comm.size(), None), &mut balance);
         Self::with(slabs, balance, case)
     }
 
@@ -44,6 +48,7 @@ impl Partition {
             rank_speeds: RankSpeeds::default(),
             migration: Migration::default(),
             every: case.domain.balance_every,
+            farthest: 0.0,
         }
     }
 
@@ -51,6 +56,15 @@ impl Partition {
     #[must_use]
     pub fn slabs(&self) -> &NestedSlabs {
         &self.slabs
+    }
+
+    /// The slabs, and what reaches farthest of all particles since the last [`Self::migrate`] (m).
+    #[must_use]
+    pub fn reaches(&self) -> Reaches<'_> {
+        Reaches {
+            slabs: &self.slabs,
+            farthest: self.farthest,
+        }
     }
 
     /// Whether slabs are balanced at a step.
@@ -65,7 +79,8 @@ impl Partition {
         if comm.size() == 1 {
             return;
         }
-        let counted = particles.work.iter().map(|&w| u64::from(w)).sum();
+        // same bits in any order: whole numbers
+        let counted = particles.work.par_iter().map(|&w| u64::from(w)).sum();
         self.rank_speeds.measure(comm, counted, busy);
         self.cut(comm, particles);
     }
@@ -73,7 +88,8 @@ impl Partition {
     /// Deals any shares of all particles to the ranks. Collective.
     pub fn deal(&mut self, comm: &Comm, particles: &mut ParticleStore) {
         self.cut(comm, particles);
-        self.migration.migrate(comm, &self.slabs, particles, &[]);
+        self.migration
+            .migrate(comm, &self.slabs, particles, &[], |_, _| 0.0);
         // Its buffers have carried whole shares of the model; never again so much.
         self.migration = Migration::default();
     }
@@ -87,9 +103,17 @@ impl Partition {
 
     /// Sends every particle to the rank whose slab it is in, among the peers of the last `halo`
     /// if no particle goes farther. Drops the halo; the order of the store changes. Collective.
-    pub fn migrate(&mut self, comm: &Comm, particles: &mut ParticleStore, halo: &Halo) {
-        self.migration
-            .migrate(comm, &self.slabs, particles, halo.peers());
+    pub fn migrate(
+        &mut self,
+        comm: &Comm,
+        particles: &mut ParticleStore,
+        halo: &Halo,
+        reach: impl Fn(&ParticleStore, usize) -> f64 + Sync,
+    ) {
+        let near = halo.peers();
+        self.farthest = self
+            .migration
+            .migrate(comm, &self.slabs, particles, near, reach);
     }
 
     /// Messages and bytes sent so far.

@@ -1,9 +1,12 @@
 //! Labels of what hangs together, over all ranks.
 
+use rayon::prelude::*;
+
 use super::merger::{Merger, Row};
-use super::sets::Sets;
+use super::sets::{SHARE, Set, Sets};
 use crate::comm::Comm;
 use crate::domain::Halo;
+use crate::numerics::collector::Collector;
 
 /// Mark of sets that another rank may have joined with some of its own.
 pub(super) const TOUCHES: u32 = 1 << 31;
@@ -32,6 +35,7 @@ pub struct Labels {
     pub(super) merger: Merger,
     /// Labels of particles on their own rank.
     told: Vec<u64>,
+    collector: Collector,
 }
 
 /// Who hangs together with whom.
@@ -74,39 +78,39 @@ impl Labels {
             return;
         };
         let place = |i: usize| u32::try_from(i).unwrap_or(u32::MAX);
-        self.told.clear();
-        self.told
-            .extend((0..ids.len()).map(|i| sets.set(place(i)).label));
+        let known = &*sets;
+        self.told.resize(ids.len(), 0);
+        let told = self.told.par_iter_mut().enumerate().with_min_len(SHARE);
+        told.for_each(|(i, told)| *told = known.set(place(i)).label);
         halo.exchange_values(comm, &mut self.told);
+        let (told, collector) = (&self.told, &mut self.collector);
+        // A root is the smallest of its set: halo particles that nothing here is linked with are by
+        // themselves.
+        let linked = |i: usize| Some(known.set(place(owned + i))).filter(|set| set.count > 0);
+        let halo = (ids.len() - owned, SHARE);
         let rows = &mut self.merger.rows;
         rows.clear();
-        for i in owned..ids.len() {
-            let set = sets.set(place(i));
-            // A root is the smallest of its set: halo particles that nothing here is linked with
-            // are by themselves.
-            if set.count == 0 {
-                continue;
-            }
-            crossing.push((set.root, 0));
-            rows.push(Row {
+        collector.extend(rows, halo, |i| {
+            linked(i).map(|set| Row {
                 label: set.label,
-                other: self.told[i],
+                other: told[owned + i],
                 marks: 0,
                 count: 0,
-            });
-        }
-        rows.sort_unstable();
+            })
+        });
+        rows.par_sort_unstable();
         rows.dedup();
-        for i in 0..owned {
-            let set = sets.set(place(i));
-            if set.root == place(i) && set.marks & TOUCHES != 0 {
-                crossing.push((set.root, 0));
-            }
-        }
-        crossing.sort_unstable();
+        let crosses = |set: Set| (set.root, 0);
+        collector.extend(crossing, halo, |i| linked(i).map(crosses));
+        collector.extend(crossing, (owned, SHARE), |i| {
+            let set = Some(known.set(place(i)));
+            let touches = |set: &Set| set.root == place(i) && set.marks & TOUCHES != 0;
+            set.filter(touches).map(crosses)
+        });
+        crossing.par_sort_unstable();
         crossing.dedup();
         rows.extend(crossing.iter().map(|&(root, _)| {
-            let set = sets.set(root);
+            let set = known.set(root);
             Row {
                 label: set.label,
                 other: set.label,
@@ -131,6 +135,7 @@ impl Labels {
         self.members.sets.memory()
             + self.merger.memory()
             + 8 * self.told.capacity()
+            + self.collector.memory()
             + size_of::<(u32, u64)>() * self.members.crossing.capacity()
     }
 }

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 use rayon::prelude::*;
 
 /// Elements that a task looks at.
-const SHARE: usize = 4096;
+pub(super) const SHARE: usize = 4096;
 
 /// Disjoint sets of the elements `0..n`, joined by any threads in any order: which elements are
 /// together does not depend on it, and the root of a set is its smallest element.
@@ -41,16 +41,20 @@ impl Sets {
         self.labels.resize_with(n, AtomicU64::default);
         self.marks.resize_with(n, AtomicU32::default);
         self.counts.resize_with(n, AtomicU32::default);
-        (0_u32..)
-            .zip(&mut self.parents)
-            .for_each(|(i, parent)| *parent.get_mut() = i);
-        self.labels
-            .iter_mut()
-            .for_each(|label| *label.get_mut() = u64::MAX);
-        self.marks.iter_mut().for_each(|marks| *marks.get_mut() = 0);
-        self.counts
-            .iter_mut()
-            .for_each(|count| *count.get_mut() = 0);
+        (
+            &mut self.parents,
+            &mut self.labels,
+            &mut self.marks,
+            &mut self.counts,
+        )
+            .into_par_iter()
+            .enumerate()
+            .with_min_len(SHARE)
+            .for_each(|(i, (parent, label, marks, count))| {
+                *parent.get_mut() = u32::try_from(i).unwrap_or(u32::MAX);
+                *label.get_mut() = u64::MAX;
+                (*marks.get_mut(), *count.get_mut()) = (0, 0);
+            });
     }
 
     /// Number of elements.

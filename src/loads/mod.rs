@@ -7,6 +7,7 @@
 //! has no mass of its own here: what holds it gives the reaction of contact, `J = −½Δt m a_c`.
 
 mod absorption;
+mod held;
 mod surface_motion;
 
 pub(crate) use absorption::Absorption;
@@ -288,23 +289,10 @@ impl Loads {
         meant: impl Fn(usize) -> bool + Sync,
         terms: impl Fn(usize) -> [f64; N] + Sync,
     ) -> [ExactSum; N] {
-        let owned = particles.owned();
-        let of_chunk = |mut sums: GatheredSums<N>, chunk: usize| {
-            for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(owned) {
-                if !meant(i) || self.has_motions() && self.is_rigid(particles.load[i]) {
-                    continue;
-                }
-                sums.add(&terms(i));
-            }
-            sums
-        };
-        (0..owned.div_ceil(GRAIN))
-            .into_par_iter()
-            // same bits in any order: exact sums are integers
-            .fold(GatheredSums::default, of_chunk)
-            .map(GatheredSums::into_sums)
-            // same bits in any order, as above
-            .reduce(gathered_sums::none, gathered_sums::merged)
+        sum_over(particles.owned(), |i| {
+            let is_rigid = || self.has_motions() && self.is_rigid(particles.load[i]);
+            (meant(i) && !is_rigid()).then(|| terms(i))
+        })
     }
 
     /// Adds the torque of gravity on what is no part of a rigid body to `torque`.
@@ -320,43 +308,23 @@ impl Loads {
             sum.merge(other);
         }
     }
+}
 
-    /// Books impulse and work of loads and of what holds rigid bodies in a half kick of a step
-    /// `dt` (s): before the first one, or after the second.
-    pub(crate) fn book(&mut self, particles: &ParticleStore, dt: f64, first: bool) {
-        let half = 0.5 * dt;
-        for (i, &bits) in particles.load.iter().enumerate() {
-            if bits == 0 {
-                continue;
-            }
-            let contact = particles.contact_acceleration.get(i);
-            if self.is_rigid(bits) && contact.is_none_or(|c| *c == [0.0; 3]) {
-                continue;
-            }
-            let contact = contact.copied().unwrap_or_default();
-            let prescribed = self.of(bits);
-            let (mass, v) = (particles.mass[i], &particles.velocity[i]);
-            let mut impulses = [0.0; 3];
-            for a in 0..3 {
-                let Some(by) = prescribed.by[a] else { continue };
-                let middle = prescribed.middle[a];
-                let change = if first { middle - v[a] } else { v[a] - middle };
-                let forces = particles.acceleration[i][a] + contact[a];
-                let impulse = if prescribed.rigid {
-                    -mass * (half * forces)
-                } else {
-                    mass * (change - half * (forces + self.gravity[a]))
-                };
-                let work = impulse * (0.5 * (v[a] + middle));
-                let sums = &mut self.sums[usize::from(by)];
-                sums[a].add(impulse);
-                sums[3].add(work);
-                impulses[a] = impulse;
-            }
-            let angular = cross(&particles.position[i], &impulses);
-            for (sum, impulse) in self.angular_impulse.iter_mut().zip(angular) {
-                sum.add(impulse);
-            }
-        }
-    }
+/// Exact sums of the terms of those of the particles `0..owned` that have any.
+fn sum_over<const N: usize>(
+    owned: usize,
+    terms: impl Fn(usize) -> Option<[f64; N]> + Sync,
+) -> [ExactSum; N] {
+    let of_chunk = |mut sums: GatheredSums<N>, chunk: usize| {
+        let all = (chunk * GRAIN..((chunk + 1) * GRAIN).min(owned)).filter_map(&terms);
+        all.for_each(|terms| sums.add(&terms));
+        sums
+    };
+    (0..owned.div_ceil(GRAIN))
+        .into_par_iter()
+        // same bits in any order: exact sums are integers
+        .fold(GatheredSums::default, of_chunk)
+        .map(GatheredSums::into_sums)
+        // same bits in any order, as above
+        .reduce(gathered_sums::none, gathered_sums::merged)
 }

@@ -12,8 +12,9 @@ use crate::comm::Comm;
 use crate::domain::Mirrors;
 use crate::model::{Cadence, Case, Gauge};
 use crate::neighbours::Lists;
+use crate::numerics::collector::Collector;
 use crate::numerics::kernel::Kernel;
-use crate::particles::ParticleStore;
+use crate::particles::{GRAIN, ParticleStore};
 
 /// The gauges of a case.
 #[derive(Debug)]
@@ -28,6 +29,9 @@ pub struct Gauges {
     shares: Shares,
     /// Carried ids that are looked for, with their gauges.
     missing: Vec<(u64, usize)>,
+    /// Places in the store of this rank's carriers.
+    carriers: Vec<u32>,
+    collector: Collector,
 }
 
 /// What a gauge has read.
@@ -73,6 +77,8 @@ impl Gauges {
             columns,
             shares: Shares::default(),
             missing: Vec::new(),
+            carriers: Vec::new(),
+            collector: Collector::default(),
         }
     }
 
@@ -96,7 +102,10 @@ impl Gauges {
     #[must_use]
     pub fn memory(&self) -> usize {
         let sums = self.readers.iter().map(|reader| reader.sums.capacity());
-        8 * sums.sum::<usize>() + self.shares.memory()
+        8 * sums.sum::<usize>()
+            + self.shares.memory()
+            + 4 * self.carriers.capacity()
+            + self.collector.memory()
     }
 
     /// The particles that carry gauges, in their order: nearest at the start of the body that the
@@ -185,6 +194,7 @@ impl Gauges {
         }
         let mut sorted = carriers.to_vec();
         sorted.sort_unstable();
+        // At the start, not in every step.
         for i in 0..particles.owned() {
             let carries = sorted.binary_search(&particles.id[i]).is_ok();
             particles.measure_marks[i] |= CARRIES * u32::from(carries);
@@ -207,8 +217,15 @@ impl Gauges {
             return;
         }
         self.missing.sort_unstable();
-        let carriers = particles.measure_marks.iter().zip(ids).enumerate();
-        for (i, (_, &id)) in carriers.filter(|(_, (marks, _))| **marks & CARRIES != 0) {
+        let marks = &particles.measure_marks;
+        self.carriers.clear();
+        let all = (ids.len(), GRAIN);
+        self.collector.extend(&mut self.carriers, all, |i| {
+            let carries = marks[i] & CARRIES != 0;
+            carries.then(|| u32::try_from(i).unwrap_or(u32::MAX))
+        });
+        for i in self.carriers.iter().map(|&i| i as usize) {
+            let id = ids[i];
             let at = self.missing.partition_point(|(other, _)| *other < id);
             let same = self.missing[at..]
                 .iter()

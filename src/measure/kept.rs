@@ -72,6 +72,7 @@ pub fn mark_zones(case: &Case, particles: &mut ParticleStore) {
             continue;
         };
         let Some(mark) = zone.mark else { continue };
+        // At the start, not in every step.
         for i in 0..particles.owned() {
             let inside = zone.place.contains(&particles.position[i]);
             particles.measure_marks[i] |= u32::from(inside) << mark;

@@ -10,9 +10,11 @@ use super::Whole;
 use crate::comm::Comm;
 use crate::diagnose::Passed;
 use crate::model::{Case, Witness};
+use crate::numerics::alone;
+use crate::numerics::collector::Collector;
 use crate::numerics::ordered::{disordered, ordered};
 use crate::numerics::vector::{dot, square};
-use crate::particles::ParticleStore;
+use crate::particles::{GRAIN, ParticleStore};
 
 /// A particle that has passed a witness plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,6 +82,9 @@ pub struct Witnesses {
     bodies: usize,
     /// What has passed on this rank since the last time that all ranks joined.
     passed: Vec<Crossing>,
+    /// Who has passed in a step.
+    passing: Vec<u32>,
+    collector: Collector,
 }
 
 impl Witnesses {
@@ -89,7 +94,7 @@ impl Witnesses {
         Self {
             planes: case.measure.witnesses.clone(),
             bodies: case.bodies.len(),
-            passed: Vec::new(),
+            ..Self::default()
         }
     }
 
@@ -109,6 +114,8 @@ impl Witnesses {
     #[must_use]
     pub fn memory(&self) -> usize {
         size_of::<Crossing>() * self.passed.capacity()
+            + 4 * self.passing.capacity()
+            + self.collector.memory()
     }
 
     /// The planes that a position (m) is beyond: a set of bits.
@@ -121,6 +128,7 @@ impl Witnesses {
 
     /// Tells particles at the start of a case on which sides they are.
     pub fn begin(&self, particles: &mut ParticleStore) {
+        // At the start, not in every step.
         for i in 0..particles.owned() {
             particles.witness_sides[i] = self.sides(&particles.position[i]);
         }
@@ -128,7 +136,17 @@ impl Witnesses {
 
     /// Notes who has passed a plane in the step that ends at a time (s).
     pub fn watch(&mut self, particles: &mut ParticleStore, (step, time, dt): (u64, f64, f64)) {
-        for i in 0..particles.owned() {
+        let mut passing = std::mem::take(&mut self.passing);
+        passing.clear();
+        let mut collector = std::mem::take(&mut self.collector);
+        let (positions, known) = (&particles.position, &particles.witness_sides);
+        collector.extend(&mut passing, (particles.owned(), GRAIN), |i| {
+            let is_passing = self.sides(&positions[i]) != known[i];
+            is_passing.then(|| u32::try_from(i).unwrap_or(u32::MAX))
+        });
+        self.collector = collector;
+        alone::visit(passing.len());
+        for i in passing.iter().map(|&i| i as usize) {
             let sides = self.sides(&particles.position[i]);
             let mut changed = std::mem::replace(&mut particles.witness_sides[i], sides) ^ sides;
             while changed != 0 {
@@ -138,6 +156,7 @@ impl Witnesses {
                 self.passed.push(Crossing { step, ..crossing });
             }
         }
+        self.passing = passing;
     }
 
     /// Particle `i`, which has passed a plane in a step `dt` (s) that ends at a time (s).

@@ -13,8 +13,9 @@ use super::motion::MotionRecord;
 use super::sequence::Sequence;
 use crate::domain::{Halo, Mirrors, Outset};
 use crate::model::{Body, Case, SmoothingLength};
+use crate::numerics::collector::Collector;
 use crate::numerics::kernel::SUPPORT;
-use crate::particles::{Image, ParticleStore, Scatter, resize};
+use crate::particles::{GRAIN, Image, ParticleStore, Scatter, resize};
 
 /// The sequence of images, their motion records and the lists, kept from step to step.
 pub struct Lists {
@@ -37,6 +38,7 @@ pub struct Lists {
     /// stress, sums are zero to the bit and need not be made.
     common_velocity: Vec<[f64; 3]>,
     order: Vec<u32>,
+    collector: Collector,
 }
 
 /// The store is put in order if more than one particle in so many does not follow the one before.
@@ -70,6 +72,7 @@ impl Lists {
             foreign: ForeignLists::default(),
             is_variable: case.sph.smoothing_length != SmoothingLength::Constant,
             order: Vec::new(),
+            collector: Collector::default(),
             lengths,
             groups,
         }
@@ -256,16 +259,17 @@ impl Lists {
         particles: &mut ParticleStore,
         scratch: &mut [R],
     ) -> bool {
-        let owned = particles.owned();
+        let (owned, images) = (particles.owned(), self.sequence.images());
         self.order.clear();
-        for image in self.sequence.images() {
-            if image.code() == 0 && image.base() < owned {
-                #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
-                self.order.push(image.base() as u32);
-            }
-        }
+        let all = (images.len(), GRAIN);
+        self.collector.extend(&mut self.order, all, |index| {
+            let own = Some(images[index]).filter(|image| image.code() == 0 && image.base() < owned);
+            #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
+            own.map(|image| image.base() as u32)
+        });
         let known = self.order.len() == owned;
-        let astray = self.order.windows(2).filter(|pair| pair[1] != pair[0] + 1);
+        let pairs = self.order.par_windows(2).with_min_len(GRAIN);
+        let astray = pairs.filter(|pair| pair[1] != pair[0] + 1);
         if known && astray.count() > owned / ASTRAY {
             particles.keep(&self.order, bytemuck::cast_slice_mut(scratch));
         }

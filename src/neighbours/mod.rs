@@ -4,6 +4,7 @@
 mod cluster;
 mod clusters;
 mod columns;
+mod cursors;
 mod facts;
 mod foreign;
 mod fragments;

@@ -7,6 +7,7 @@ use std::cmp::Ordering;
 
 use rayon::prelude::*;
 
+use super::cursors::Cursors;
 use super::facts::{HALO, ImageFacts, MIRROR, MOVING};
 use super::group::{Group, lay_out};
 use crate::particles::{Image, Scatter};
@@ -120,8 +121,7 @@ impl Extent {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sorter {
     extents: Vec<Extent>,
-    /// For each task, where its next entry of each column goes.
-    cursors: Vec<u32>,
+    cursors: Cursors,
 }
 
 /// Places that a task finishes at least.
@@ -129,7 +129,7 @@ const GRAIN: usize = 2048;
 
 impl Sorter {
     pub(super) fn memory(&self) -> usize {
-        size_of::<Extent>() * self.extents.capacity() + 4 * self.cursors.capacity()
+        size_of::<Extent>() * self.extents.capacity() + self.cursors.memory()
     }
 
     /// Scatters `count` images into columns, in the first three of four parts of `scratch`; sets
@@ -149,23 +149,22 @@ impl Sorter {
         // Counters must not outweigh what they count.
         let tasks = (4 * count / columns).clamp(1, rayon::current_num_threads());
         let share = count.div_ceil(tasks).max(1);
-        self.cursors.clear();
-        self.cursors.resize(columns * tasks, 0);
+        self.cursors.reset(columns, tasks);
         let groups: &[Group] = groups;
         let index =
             |column: &Column| groups[column.group as usize].index(column.across.map(u32::from));
         self.cursors
-            .par_chunks_mut(columns)
+            .tasks()
             .zip(columns_of.par_chunks(share))
             .for_each(|(counts, mine)| {
                 for column in mine {
                     counts[index(column)] += 1;
                 }
             });
-        lay_out_cursors(&mut self.cursors, columns, starts);
+        self.cursors.lay_out(starts);
         let entries = Scatter::new(entries);
         self.cursors
-            .par_chunks_mut(columns)
+            .tasks()
             .zip(columns_of.par_chunks(share))
             .enumerate()
             .for_each(|(task, (cursors, mine))| {
@@ -301,19 +300,6 @@ impl Targets<'_> {
             }
         }
     }
-}
-
-/// Turns the tasks' counts of each column into where their entries go, and fills `starts`.
-fn lay_out_cursors(cursors: &mut [u32], columns: usize, starts: &mut Vec<u32>) {
-    starts.clear();
-    let mut next = 0;
-    for column in 0..columns {
-        starts.push(next);
-        for cursor in cursors.iter_mut().skip(column).step_by(columns) {
-            (*cursor, next) = (next, next + *cursor);
-        }
-    }
-    starts.push(next);
 }
 
 /// Calls `finish` with each column's first place, entries and walls, halving the places among

@@ -64,6 +64,23 @@ pub fn write(
     })
 }
 
+/// Bytes of a particle in a snapshot: its place, its cell and what is told of it.
+#[must_use]
+pub fn bytes_per_particle(form: &Form, particles: &ParticleStore) -> usize {
+    let real = match form.precision {
+        Precision::Double => 8,
+        Precision::Single => 4,
+    };
+    let bytes = |quantity: Quantity| match quantity {
+        Quantity::Field(field) if field.kind.is_real() => field.kind.components() * real,
+        Quantity::Field(field) => field.kind.bytes(),
+        Quantity::Fragment => 8,
+        Quantity::VonMisesStress | Quantity::Temperature => real,
+    };
+    let quantities = with_frozen(particles, form.quantities).map(bytes);
+    3 * real + grid::BYTES_OF_CELL + quantities.sum::<usize>()
+}
+
 fn write_file(
     comm: &Comm,
     path: &Path,

@@ -44,7 +44,43 @@ fn gather_words<W: bytemuck::Pod + Send + Sync>(
 }
 
 /// Elements that a task moves at least.
-const GRAIN: usize = 4096;
+pub(super) const GRAIN: usize = 4096;
+
+/// The array of a field, whatever its kind.
+pub(super) enum FieldArray<'a> {
+    Scalar(&'a mut Vec<f64>),
+    Vector(&'a mut Vec<[f64; 3]>),
+    Symmetric(&'a mut Vec<[f64; 6]>),
+    Tensor(&'a mut Vec<[f64; 9]>),
+    Id(&'a mut Vec<u64>),
+    Index(&'a mut Vec<u32>),
+}
+
+impl FieldArray<'_> {
+    /// Sets the length, zero-filling.
+    pub fn resize(&mut self, length: usize) {
+        match self {
+            Self::Scalar(values) => resize(values, length),
+            Self::Vector(values) => resize(values, length),
+            Self::Symmetric(values) => resize(values, length),
+            Self::Tensor(values) => resize(values, length),
+            Self::Id(values) => resize(values, length),
+            Self::Index(values) => resize(values, length),
+        }
+    }
+
+    /// The values as bytes.
+    pub fn bytes(&mut self) -> &mut [u8] {
+        match self {
+            Self::Scalar(values) => bytemuck::cast_slice_mut(values),
+            Self::Vector(values) => bytemuck::cast_slice_mut(values),
+            Self::Symmetric(values) => bytemuck::cast_slice_mut(values),
+            Self::Tensor(values) => bytemuck::cast_slice_mut(values),
+            Self::Id(values) => bytemuck::cast_slice_mut(values),
+            Self::Index(values) => bytemuck::cast_slice_mut(values),
+        }
+    }
+}
 
 /// Sets the length, zero-filling; grows by a sixteenth more than asked, not by doubling, since
 /// most of a rank's memory is here (and at first by just what is asked).
@@ -60,6 +96,10 @@ pub fn resize<T: bytemuck::Zeroable + Copy + Send + Sync>(values: &mut Vec<T>, l
     }
     if length > values.capacity() {
         values.reserve_exact(length + length / 16 - values.len());
+    }
+    if length > values.len() + GRAIN {
+        let zeros = rayon::iter::repeat_n(T::zeroed(), length - values.len());
+        return values.par_extend(zeros.with_min_len(GRAIN));
     }
     values.resize(length, T::zeroed());
 }

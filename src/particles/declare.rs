@@ -104,10 +104,9 @@ macro_rules! particle_fields {
                 match field { $( FieldId::$name => bytemuck::cast_slice_mut(&mut self.$name), )+ }
             }
 
-            pub(super) fn resize_field(&mut self, field: FieldId, length: usize) {
-                match field { $( FieldId::$name => {
-                    super::arrays::resize(&mut self.$name, length);
-                } )+ }
+            /// The arrays of all fields, in the order of the table, to be worked on at once.
+            pub(super) fn arrays(&mut self) -> [FieldArray<'_>; FIELDS.len()] {
+                [ $( FieldArray::$kind(&mut self.$name), )+ ]
             }
 
             pub(super) fn free_field(&mut self, field: FieldId) {

@@ -2,6 +2,7 @@
 //! that becomes of it, one column for each question ([`super::columns`]). Storage, sort, migration,
 //! halo exchange, symmetry planes, freezing, checkpoints and snapshots walk this table.
 
+use super::arrays::FieldArray;
 use super::columns::{FieldKind, HaloPhase, Life, Mirror, Output, Owner};
 
 /// One row of the table.

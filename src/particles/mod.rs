@@ -6,6 +6,7 @@ mod columns;
 mod declare;
 mod fields;
 mod image;
+mod messages;
 mod point;
 mod records;
 mod scatter;

@@ -1,6 +1,8 @@
-//! Walks over the table of fields: sizes, order, and packing for messages and files.
+//! Walks over the table of fields: sizes and order.
 
 use std::borrow::Cow;
+
+use rayon::prelude::*;
 
 use super::arrays::SCRATCH_WORDS;
 use super::columns::{HaloPhase, Life, Owner};
@@ -87,9 +89,7 @@ impl ParticleStore {
     pub fn resize_owned(&mut self, owned: usize) {
         self.owned = owned;
         self.halo = 0;
-        for field in self.held(FieldInfo::any) {
-            self.resize_field(field.id, owned);
-        }
+        self.resize_fields(FieldInfo::any, owned);
     }
 
     /// Sets the number of owned particles and sizes `fields` alone, zero-filling new values; drops
@@ -97,8 +97,9 @@ impl ParticleStore {
     pub fn resize_owned_in(&mut self, fields: &[&FieldInfo], owned: usize) {
         self.owned = owned;
         self.halo = 0;
+        let mut arrays = self.arrays();
         for field in fields {
-            self.resize_field(field.id, owned);
+            arrays[field.id as usize].resize(owned);
         }
     }
 
@@ -117,9 +118,26 @@ impl ParticleStore {
     /// Sets the number of halo particles.
     pub fn resize_halo(&mut self, halo: usize) {
         self.halo = halo;
-        for field in self.held(HaloPhase::all()) {
-            self.resize_field(field.id, self.owned + halo);
+        self.resize_fields(HaloPhase::all(), self.owned + halo);
+    }
+
+    fn resize_fields(&mut self, which: impl Select, length: usize) {
+        let places = self.places(which);
+        let arrays = self.arrays();
+        let held = arrays.into_par_iter().zip(places);
+        held.filter(|(_, place)| place.is_some())
+            .for_each(|(mut array, _)| array.resize(length));
+    }
+
+    /// For each row of the table where the bytes of its field begin in those of a particle, if `which`
+    /// takes it.
+    pub(super) fn places(&self, which: impl Select) -> [Option<usize>; FIELDS.len()] {
+        let (mut places, mut next) = ([None; FIELDS.len()], 0);
+        for field in self.held(which) {
+            places[field.id as usize] = Some(next);
+            next += field.kind.bytes();
         }
+        places
     }
 
     /// Keeps the owned particles `order`, in that order; drops the halo. `scratch` is memory to
@@ -160,34 +178,6 @@ impl ParticleStore {
             }
         }
         self.resize_owned(left);
-    }
-
-    /// Appends to `buffer` the fields of `which` of the particles `indices`, field by field.
-    pub fn pack(&self, which: impl Select, indices: &[u32], buffer: &mut Vec<u8>) {
-        for field in self.held(which) {
-            let size = field.kind.bytes();
-            let bytes = self.bytes(field.id);
-            buffer.reserve(indices.len() * size);
-            for &index in indices {
-                let start = index as usize * size;
-                buffer.extend_from_slice(&bytes[start..start + size]);
-            }
-        }
-    }
-
-    /// Writes what [`Self::pack`] produced for `count` particles into slots `first..`.
-    ///
-    /// # Panics
-    /// If `bytes` is not exactly `count` particles of those fields.
-    pub fn unpack(&mut self, which: impl Select, first: usize, count: usize, bytes: &[u8]) {
-        let mut at = 0;
-        for field in self.held(which) {
-            let size = field.kind.bytes();
-            self.bytes_mut(field.id)[first * size..(first + count) * size]
-                .copy_from_slice(&bytes[at..at + count * size]);
-            at += count * size;
-        }
-        assert_eq!(at, bytes.len(), "a particle message of the wrong length");
     }
 
     /// Overwrites every field that is not state with NaN (or the largest integer), so that a

@@ -34,6 +34,12 @@ impl Brick {
         }
     }
 
+    /// Whether nothing is inside.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        (0..3).any(|a| self.lower[a] >= self.upper[a])
+    }
+
     /// Whether a position (m) is inside.
     #[inline]
     #[must_use]
@@ -56,5 +62,8 @@ mod tests {
         );
         assert!(slab.widened(0.5).holds(&[0.0, -1.5, 0.0]));
         assert!(Brick::OPEN.holds(&[f64::MAX; 3]));
+        assert!(!Brick::OPEN.is_empty() && !slab.is_empty());
+        assert!(Brick::slab(0, 1.0, 1.0).is_empty());
+        assert!(Brick::slab(2, f64::INFINITY, f64::INFINITY).is_empty());
     }
 }

@@ -2,54 +2,41 @@
 
 use std::path::Path;
 
+use super::costs::{Costs, uneven};
 use crate::comm::Comm;
-use crate::contact::ContactTable;
 use crate::domain::{Fullest, Histogram, Outset, reach};
 use crate::model::{Case, SphForm};
 use crate::populate;
-use crate::step::bytes_of_options;
-
-/// What a process takes with MPI and HDF5 before it has a particle (bytes). This and the figures
-/// below are peaks of the resident memory of ranks that step and write, as measured on the quarter
-/// impact with 48,000 and 195,000 particles on one to four ranks.
-const PROCESS: f64 = 35.5e6;
-/// An owned particle with its lists, those of glass, and buffers (bytes).
-const OWNED: f64 = 660.0;
-/// What contact between bodies and images behind symmetry planes add (bytes).
-const CONTACT: f64 = 170.0;
-/// A halo particle with its lists and messages (bytes).
-const HALO: f64 = 1200.0;
-/// What arrays take over their content as they grow.
-const SPARE: f64 = 1.06;
-/// By how much a rank's share may rise as work is balanced.
-const UNEVEN: f64 = 1.05;
 
 /// Bytes that the largest of so many ranks takes at its peak. The processes of `comm`, which need
 /// not be those ranks, share the work. Collective; the same on all of them.
-#[allow(clippy::cast_precision_loss, reason = "an estimate")]
 pub fn of_rank(case: &Case, comm: &Comm, ranks: usize) -> f64 {
-    let contact = ContactTable::new(case).is_active();
-    let [owned_options, halo_options] = bytes_of_options(case).map(|bytes| SPARE * bytes as f64);
-    let owned = OWNED + if contact { CONTACT } else { 0.0 } + owned_options;
+    let fullest = fullest_of(case, comm, ranks);
+    Costs::of_case(case).of(fullest.owned, fullest.halo)
+}
+
+/// The most that one of so many ranks has at the start, stress points among it. Collective.
+#[allow(clippy::cast_precision_loss, reason = "an estimate")]
+pub fn fullest_of(case: &Case, comm: &Comm, ranks: usize) -> Fullest {
     // As many stress points for each particle as there are axes, less some at surfaces.
     let points = match case.sph.form {
         SphForm::StressPoints => (1 + case.dimension) as f64,
         _ => 1.0,
     };
-    let meshes = case.meshes().into_iter().map(|(_, mesh)| mesh.memory());
-    // Each rank reads all of a file.
-    let clouds = case.bodies.iter().filter_map(|body| body.cloud());
-    let read = clouds.map(|(cloud, _)| cloud.memory());
-    let process = PROCESS + meshes.chain(read).sum::<usize>() as f64;
-    if ranks < 2 {
+    let fullest = if ranks < 2 {
         let count = |body| populate::count(body, case.dimension, &case.symmetry, None);
         let particles: u64 = case.bodies.iter().map(count).sum();
-        return process + points * particles as f64 * owned;
-    }
-    let Some(fullest) = fullest(case, comm, ranks) else {
-        return process;
+        Fullest {
+            owned: particles as f64,
+            halo: 0.0,
+        }
+    } else {
+        fullest(case, comm, ranks).unwrap_or_default()
     };
-    process + points * (fullest.owned * owned + fullest.halo * (HALO + halo_options))
+    Fullest {
+        owned: points * fullest.owned,
+        halo: points * fullest.halo,
+    }
 }
 
 /// Of so many ranks at the start, from one count of all particles along each axis. `None` for a case
@@ -97,15 +84,6 @@ fn fullest_slab(case: &Case, outset: &Outset, comm: &Comm, ranks: usize) -> Full
     Fullest {
         owned: (even * uneven(case)).max(most[0] as f64),
         halo: most[1] as f64,
-    }
-}
-
-/// By how much the share of a rank may rise.
-fn uneven(case: &Case) -> f64 {
-    if case.domain.balance_every == 0 {
-        1.0
-    } else {
-        UNEVEN
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod approach;
 mod case;
+mod costs;
 mod impact;
 mod initial;
 pub(crate) mod memory;
@@ -9,6 +10,7 @@ mod meshes;
 mod sense;
 
 pub use approach::{Approach, approaches};
+pub use costs::Costs;
 pub use initial::beginning;
 pub use sense::expected_step;
 

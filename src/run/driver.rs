@@ -97,7 +97,7 @@ impl<'a> Driver<'a> {
             rows: Rows::new(simulation.case.output.sharing),
             tables,
             log: Log::new(&folder.log(), comm.rank()),
-            progress: Progress::new(comm.is_root(), &simulation.case.run),
+            progress: Progress::of(comm.is_root(), &simulation.case),
             departures: Departures::new(&simulation),
             simulation,
             folder,

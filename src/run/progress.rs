@@ -1,22 +1,24 @@
 //! How far a run is: a bar on a terminal, now and then a line elsewhere.
 
-use std::fmt;
 use std::fs::File;
 use std::io::IsTerminal;
 use std::os::unix::process::parent_id;
 use std::time::{Duration, Instant};
 
 use console::Term;
-use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::say::{say, seconds, warn};
-use crate::model::RunControl;
+use crate::model::{Case, RunControl};
+use crate::preflight::expected_step;
 use crate::step::RunState;
 
 /// Time between two lines.
 const LINE_EVERY: Duration = Duration::from_secs(10);
 /// Draws a second, at most.
 const DRAWS: u8 = 10;
+/// Part of a run after which its own steps tell of those to come.
+const SHOWN: f64 = 0.01;
 /// Length of the bar in its own units.
 const TICKS: u64 = 1000;
 
@@ -25,47 +27,72 @@ pub struct Progress {
     tells: bool,
     bar: Option<ProgressBar>,
     control: RunControl,
+    /// A step (s) as it is foreseen.
+    expected: Option<f64>,
+    /// The first state that was shown: when, and its step and time (s).
+    begun: Option<(Instant, u64, f64)>,
     last: Instant,
 }
 
 impl Progress {
-    /// For rank 0 where `tells`; others stay silent.
-    pub fn new(tells: bool, control: &RunControl) -> Self {
+    /// Of a case, for rank 0 where `tells`; others stay silent.
+    pub fn of(tells: bool, case: &Case) -> Self {
+        Self::new(tells, &case.run, expected_step(case))
+    }
+
+    /// Until a run has shown its steps, they are taken for as long as `expected` (s).
+    fn new(tells: bool, control: &RunControl, expected: Option<f64>) -> Self {
         let bar = tells.then(terminal).flatten().map(|target| {
             // Within 80 columns: a longer line would wrap and be drawn over and over.
-            let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}{left}");
+            let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}");
             let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
-            ProgressBar::with_draw_target(Some(TICKS), target).with_style(style.with_key(
-                "left",
-                |state: &ProgressState, to: &mut dyn fmt::Write| {
-                    // Who writes to a line that is drawn anew cannot fail.
-                    let _ = to.write_str(&left(state.eta()));
-                },
-            ))
+            ProgressBar::with_draw_target(Some(TICKS), target).with_style(style)
         });
         Self {
             tells,
             bar,
             control: *control,
+            expected,
+            begun: None,
             last: Instant::now(),
         }
     }
 
     /// Shows where the run stands; gives a line for the log now and then.
     pub fn show(&mut self, state: &RunState) -> Option<String> {
+        let left = left(self.left(state));
         if let Some(bar) = &self.bar {
-            bar.set_message(format!("step {}, {}", state.step, seconds(state.time)));
+            let text = format!("step {}, {}{left}", state.step, seconds(state.time));
+            bar.set_message(text);
             bar.set_position(self.ticks(state));
         }
         if !self.tells || self.last.elapsed() < LINE_EVERY {
             return None;
         }
         self.last = Instant::now();
-        let line = line(state);
+        let line = format!("{}{left}", line(state));
         if self.bar.is_none() {
             say(&line);
         }
         Some(line)
+    }
+
+    /// The time that is left: what steps have taken so far, for each of those to come.
+    #[allow(clippy::cast_precision_loss, reason = "for people")]
+    fn left(&mut self, state: &RunState) -> Option<Duration> {
+        let now = (Instant::now(), state.step, state.time);
+        let (begun, step, time) = *self.begun.get_or_insert(now);
+        let (steps, way) = ((state.step - step) as f64, state.time - time);
+        let to_come = self.control.end_time - state.time;
+        // Steps of the start tell little of those to come.
+        let is_start = way < SHOWN * (way + to_come);
+        let each = self.expected.filter(|_| is_start).unwrap_or(way / steps);
+        let most = self
+            .control
+            .max_steps
+            .map_or(f64::INFINITY, |most| most.saturating_sub(state.step) as f64);
+        let seconds = begun.elapsed().as_secs_f64() / steps * (to_come / each).min(most);
+        Duration::try_from_secs_f64(seconds).ok()
     }
 
     #[allow(
@@ -98,12 +125,10 @@ impl Progress {
 }
 
 /// The time that is left; nothing before the first steps have shown how fast they are.
-fn left(eta: Duration) -> String {
-    if eta.is_zero() {
-        String::new()
-    } else {
-        format!("  {:#} left", HumanDuration(eta))
-    }
+fn left(time: Option<Duration>) -> String {
+    time.map_or(String::new(), |time| {
+        format!("  {:#} left", HumanDuration(time))
+    })
 }
 
 fn line(state: &RunState) -> String {
@@ -151,7 +176,7 @@ mod tests {
             end_time: 2e-7,
             max_steps: Some(100),
         };
-        Progress::new(tells, &control)
+        Progress::new(tells, &control, Some(1e-9))
     }
 
     #[test]
@@ -160,6 +185,7 @@ mod tests {
             let mut progress = progress(tells);
             assert_eq!(progress.show(&state(1, 0.0)), None);
             progress.last = Instant::now().checked_sub(LINE_EVERY).unwrap();
+            progress.begun = None;
             let line = progress.show(&state(7, 1e-8));
             let expected = "step 7  t = 10 ns  dt = 1.5 ns (force)";
             assert_eq!(line.as_deref(), tells.then_some(expected));
@@ -169,8 +195,26 @@ mod tests {
 
     #[test]
     fn no_time_is_told_before_it_is_known() {
-        assert_eq!(left(Duration::ZERO), "");
-        assert_eq!(left(Duration::from_secs(30)), "  30s left");
+        let mut progress = progress(false);
+        assert_eq!(left(progress.left(&state(4, 0.0))), "");
+        assert_eq!(left(Some(Duration::from_secs(30))), "  30s left");
+    }
+
+    /// Steps of the start are taken for as long as those that are foreseen; later ones tell themselves.
+    #[test]
+    fn the_time_that_is_left_is_told_from_the_second_step_on() {
+        let mut progress = progress(false);
+        progress.control.max_steps = None;
+        let begun = Instant::now().checked_sub(Duration::from_secs(20)).unwrap();
+        progress.begun = Some((begun, 0, 0.0));
+        let mut left = |state| progress.left(&state).unwrap().as_secs_f64();
+        // 200 steps of 1 ns, ten in 20 s.
+        assert!((left(state(10, 1e-9)) - 398.0).abs() < 5.0);
+        // 5 ns each so far: 20 of 40 are left.
+        assert!((left(state(20, 1e-7)) - 20.0).abs() < 1.0);
+        progress.control.max_steps = Some(25);
+        let left = progress.left(&state(20, 1e-7)).unwrap().as_secs_f64();
+        assert!((left - 5.0).abs() < 1.0);
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! The SPH sums of a step.
 
+use rayon::prelude::*;
+
 use super::corrected::CorrectedRecord;
 use super::formulation::{Conventional, Corrected, Formulation, Normalised, StressPoints};
 use super::momentum::StressRecord;
@@ -68,6 +70,9 @@ macro_rules! with_formulation {
 }
 pub(crate) use with_formulation;
 
+/// Chunks whose forces of mirrors a task adds up.
+const CHUNKS_OF_A_TASK: usize = 16;
+
 impl Sph {
     /// Of a case.
     #[must_use]
@@ -126,9 +131,12 @@ impl Sph {
     }
 
     /// What images behind symmetry planes did in the last second sweep.
-    pub fn forces_of_mirrors(&self) -> impl Iterator<Item = &MirrorForce> {
-        let chunks = self.sums.from_mirrors.iter();
-        chunks.flat_map(|chunk| &chunk.forces)
+    #[must_use]
+    pub fn forces_of_mirrors(
+        &self,
+    ) -> impl ParallelIterator<Item = impl Iterator<Item = &MirrorForce>> {
+        let tasks = self.sums.from_mirrors.par_chunks(CHUNKS_OF_A_TASK);
+        tasks.map(|chunks| chunks.iter().flat_map(|chunk| &chunk.forces))
     }
 
     /// Particles of this rank whose gradient had no correction in the last first sweep.

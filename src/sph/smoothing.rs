@@ -60,8 +60,15 @@ impl Smoothing {
     #[inline]
     #[must_use]
     pub fn reach(&self, particles: &ParticleStore, i: usize) -> f64 {
-        let at_start = self.at_start(particles.body[i] as usize, particles.mass[i]);
-        particles.smoothing_length[i].max(at_start)
+        let (body, mass) = (particles.body[i] as usize, particles.mass[i]);
+        self.reach_of(body, mass, particles.smoothing_length[i])
+    }
+
+    /// The same of a particle of `body` with a mass (kg) and a length (m).
+    #[inline]
+    #[must_use]
+    pub fn reach_of(&self, body: usize, mass: f64, length: f64) -> f64 {
+        length.max(self.at_start(body, mass))
     }
 
     /// The length (m) of a particle of `body` with a mass (kg) at the start.

@@ -3,7 +3,7 @@
 use crate::contact::{Connectivity, ContactTable};
 use crate::fragments::{BYTES_OF_SEARCH, Labels};
 use crate::model::{Case, NumericalFailurePolicy, SphForm};
-use crate::particles::{FieldInfo, HaloPhase, Owner, Select, rows};
+use crate::particles::{FieldInfo, HaloPhase, Owner, ParticleStore, Select, rows};
 use crate::sph::Sph;
 
 /// Options of the table of fields that a case does not have.
@@ -50,6 +50,29 @@ fn records(case: &Case) -> Owner {
     let names: Vec<&String> = case.output.all_fields().chain(gauges).collect();
     let records = rows(Owner::PEAKS).filter(|field| names.iter().any(|name| *name == field.name));
     records.fold(Owner::empty(), |all, field| all | field.owner)
+}
+
+/// A store without particles, with the fields that a case has use for.
+#[must_use]
+pub fn store_of(case: &Case) -> ParticleStore {
+    let mut particles = ParticleStore::default();
+    particles.drop_fields(unused_fields(case, &ContactTable::new(case)));
+    particles
+}
+
+/// Bytes of a halo particle in each message of a step between two ranks: its motion, with the codes of
+/// its images; what it shows to forces; its friction, if there is any.
+#[must_use]
+pub fn bytes_of_messages(case: &Case) -> Vec<usize> {
+    let (contact, store) = (ContactTable::new(case), store_of(case));
+    let mut messages = vec![
+        1 + store.bytes_per_particle(HaloPhase::MOTION),
+        store.bytes_per_particle(contact.halo),
+    ];
+    if contact.has_friction() {
+        messages.push(store.bytes_per_particle(HaloPhase::FRICTION));
+    }
+    messages
 }
 
 /// Bytes that the options of a case add beyond contact without friction: to an owned particle, and

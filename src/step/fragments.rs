@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::simulation::Simulation;
 use crate::comm::Comm;
+use crate::domain::Reaches;
 use crate::fragments::{Census, FirstSizes, Matter, Rule, Surroundings, belongs, find, link_reach};
 use crate::model::{Case, FragmentOptions, SphForm};
 use crate::particles::ParticleStore;
@@ -15,6 +16,7 @@ impl Simulation {
         let Self {
             case,
             particles,
+            partition,
             halo,
             labels,
             ..
@@ -23,9 +25,17 @@ impl Simulation {
         let first = case.bodies.iter().map(|body| FirstSizes::new(case, body));
         let first: Vec<FirstSizes> = first.collect();
         let size_of = |mass: f64, body: u32| first[body as usize].of(mass, rule.dimension);
-        halo.exchange_motion(comm, particles, |particles, i| {
+        let reach = |particles: &ParticleStore, i: usize| {
             link_reach(rule.link, size_of(particles.mass[i], particles.body[i]))
-        });
+        };
+        let all = (0..particles.owned()).into_par_iter();
+        // same bits in any order: a largest number
+        let farthest = all.map(|i| reach(particles, i)).reduce(|| 0.0, f64::max);
+        let reaches = Reaches {
+            slabs: partition.slabs(),
+            farthest: comm.max_f64(farthest),
+        };
+        halo.exchange_motion(comm, reaches, particles, reach);
         let owned = particles.owned();
         let masses = particles.mass.par_iter().zip(&particles.body);
         let sizes: Vec<f64> = masses.map(|(&m, &body)| size_of(m, body)).collect();

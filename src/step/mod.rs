@@ -15,6 +15,7 @@ mod shown;
 mod simulation;
 mod taking_out;
 mod timers;
+mod told;
 
 pub(crate) use crate::diagnose::failed_mass;
 pub use crate::diagnose::{
@@ -23,7 +24,7 @@ pub use crate::diagnose::{
 };
 pub use candidate::StepControl;
 pub use error::{SetupError, StepError};
-pub use fields::bytes_of_options;
+pub use fields::{bytes_of_messages, bytes_of_options, store_of};
 pub use shown::Carried;
 pub use simulation::Simulation;
 pub use timers::{Phase, Timers};

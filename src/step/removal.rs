@@ -12,9 +12,10 @@ use crate::comm::Comm;
 use crate::diagnose::{Leave, Moved, Removed, RunState};
 use crate::loads::Loads;
 use crate::model::Region;
+use crate::numerics::collector::Collector;
 use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use crate::numerics::vector::cross;
-use crate::particles::{FieldInfo, Owner, ParticleStore};
+use crate::particles::{FieldInfo, GRAIN, Owner, ParticleStore};
 use crate::sph::SignalSpeed;
 
 /// Particles that this rank has frozen: they are in files, and in nothing else.
@@ -101,6 +102,7 @@ pub(super) fn failed<F: SignalSpeed>(
         };
         criteria.failure(i, &moved).is_some()
     };
+    // Looked for where a step cannot be chosen: not in every step.
     let failed = (0..particles.owned()).filter(has_failed);
     failed
         .map(|i| u32::try_from(i).unwrap_or(u32::MAX))
@@ -113,16 +115,18 @@ pub(super) fn find_departed(
     particles: &ParticleStore,
     loads: &Loads,
     keep: &Region,
-    leaving: &mut Vec<u32>,
+    (leaving, collector): (&mut Vec<u32>, &mut Collector),
 ) {
-    let places = &particles.position[..particles.owned()];
-    let beyond = (0_u32..).zip(places).filter(|(_, x)| keep.is_left_by(x));
-    let goes = |&i: &u32| {
-        let bits = particles.load.get(i as usize);
-        !bits.is_some_and(|&bits| loads.is_rigid(bits))
+    let goes = |i: &usize| {
+        let bits = particles.load.get(*i);
+        keep.is_left_by(&particles.position[*i]) && !bits.is_some_and(|&bits| loads.is_rigid(bits))
     };
     leaving.clear();
-    leaving.extend(beyond.map(|(i, _)| i).filter(goes));
+    collector.extend(leaving, (particles.owned(), GRAIN), |i| {
+        Some(i)
+            .filter(goes)
+            .map(|i| u32::try_from(i).unwrap_or(u32::MAX))
+    });
 }
 
 /// What particle `i` takes with it, under gravity (m/s²): mass, momentum, kinetic and internal energy,

@@ -43,6 +43,7 @@ pub(super) fn require_own(
             counts(state).any(|count| count > MOST)
         }),
         ("it has particles of another body", &|| {
+            // In a restart, not in every step.
             particles.body.iter().any(|&body| body as usize >= bodies)
         }),
         ("it has particles under another load", &|| {

@@ -2,7 +2,7 @@
 
 use super::candidate::StepControl;
 use super::error::SetupError;
-use super::fields::unused_fields;
+use super::fields::{store_of, unused_fields};
 use super::given;
 use super::removal::Frozen;
 use super::restored::require_own;
@@ -19,6 +19,7 @@ use crate::loads::{Absorption, Goal, Loads, Prescribe};
 use crate::measure::Measures;
 use crate::model::{Body, Case, SphForm, edge};
 use crate::neighbours::Lists;
+use crate::numerics::collector::Collector;
 use crate::particles::{Image, ParticleStore};
 use crate::populate::{self, Brick};
 use crate::sph::Sph;
@@ -69,11 +70,11 @@ impl Simulation {
         let contact = Contact::new(&case);
         let measures = Measures::new(&case);
         let table = &contact.table;
-        let mut particles = ParticleStore::default();
-        particles.drop_fields(unused_fields(&case, table));
+        let particles = store_of(&case);
         Self {
             frozen: Frozen::like(&particles),
             leaving: Vec::new(),
+            collector: Collector::default(),
             particles,
             state: RunState {
                 pairs: vec![PairState::default(); table.active_pairs().len()],
@@ -198,6 +199,7 @@ impl Simulation {
 
     /// First forces, sums and time step.
     fn begin(&mut self, comm: &Comm) -> Result<(), SetupError> {
+        self.migrate(comm);
         // The first pass finds the foreign fractions that contact is to forgive, and the work.
         self.evaluate(comm, 0.0);
         let mut capped = [self.contact.begin(&mut self.particles, &self.lists)];

@@ -7,7 +7,7 @@ use super::integrate;
 use super::removal::Frozen;
 use super::timers::{Phase, Timers};
 use crate::comm::Comm;
-use crate::contact::{Connectivity, Contact, ContactTable};
+use crate::contact::{Connectivity, Contact};
 use crate::diagnose::{
     Booked, NumericalFailure, PostMortem, Reason, RunState, StepSums, Totals, fastest, is_explained,
 };
@@ -17,6 +17,7 @@ use crate::loads::Loads;
 use crate::measure::Measures;
 use crate::model::{Case, SphForm};
 use crate::neighbours::Lists;
+use crate::numerics::collector::Collector;
 use crate::particles::{HaloPhase, ParticleStore};
 use crate::sph::{Side, Sph, Step, with_formulation};
 
@@ -29,6 +30,7 @@ pub struct Simulation {
     pub(super) frozen: Frozen,
     /// Particles that are about to be taken out.
     pub(super) leaving: Vec<u32>,
+    pub(super) collector: Collector,
     /// The scalar state, equal on all ranks.
     pub state: RunState,
     /// Seconds by phase, and what was done in them.
@@ -86,8 +88,7 @@ impl Simulation {
         self.timers.lap(Phase::Integrate);
         self.balance(comm);
         self.timers.lap(Phase::Balance);
-        self.partition
-            .migrate(comm, &mut self.particles, &self.halo);
+        self.migrate(comm);
         self.timers.lap(Phase::Migrate);
         self.evaluate(comm, dt);
         let candidate = self.kick(dt);
@@ -149,6 +150,20 @@ impl Simulation {
         }
     }
 
+    /// Sends particles to the ranks that own where they are. Collective.
+    pub(super) fn migrate(&mut self, comm: &Comm) {
+        let Self {
+            particles,
+            halo,
+            sph,
+            partition,
+            ..
+        } = self;
+        partition.migrate(comm, particles, halo, |particles, i| {
+            sph.smoothing.reach(particles, i)
+        });
+    }
+
     /// Stress, accelerations and rates at the current positions, from the predicted velocities,
     /// densities and energies.
     pub(super) fn evaluate(&mut self, comm: &Comm, dt: f64) {
@@ -157,6 +172,7 @@ impl Simulation {
             state,
             timers,
             lists,
+            partition,
             halo,
             sph,
             contact,
@@ -164,7 +180,7 @@ impl Simulation {
             labels,
             ..
         } = self;
-        halo.exchange_motion(comm, particles, |particles, i| {
+        halo.exchange_motion(comm, partition.reaches(), particles, |particles, i| {
             sph.smoothing.reach(particles, i)
         });
         timers.lap(Phase::HaloMotion);
@@ -325,46 +341,6 @@ impl Simulation {
         let result = task(self);
         self.frozen.take_from(&mut self.particles);
         result
-    }
-
-    /// Particles that this rank has frozen.
-    #[must_use]
-    pub fn frozen(&self) -> usize {
-        self.frozen.count()
-    }
-
-    /// Bytes that this rank holds in particle arrays, lists and buffers.
-    #[must_use]
-    pub fn memory(&self) -> usize {
-        self.particles.memory()
-            + self.frozen.memory()
-            + 4 * self.leaving.capacity()
-            + self.lists.memory()
-            + self.sph.memory()
-            + self.contact.memory()
-            + self.labels.memory()
-            + self.loads.memory()
-            + self.sums.memory()
-            + self.measures.memory()
-            + self.step_control.memory()
-            + self.halo.memory()
-            + self.partition.memory()
-    }
-
-    /// Messages and bytes that this rank has sent.
-    #[must_use]
-    pub fn traffic(&self) -> (u64, u64) {
-        let (halo, migration) = (self.halo.traffic(), self.partition.traffic());
-        (
-            halo.messages + migration.messages,
-            halo.bytes + migration.bytes,
-        )
-    }
-
-    /// The contact table.
-    #[must_use]
-    pub fn contact(&self) -> &ContactTable {
-        &self.contact.table
     }
 }
 

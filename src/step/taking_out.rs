@@ -59,7 +59,8 @@ impl Simulation {
         if !self.state.step.is_multiple_of(LOOK_EVERY) {
             return Ok(());
         }
-        removal::find_departed(&self.particles, &self.loads, keep, &mut self.leaving);
+        let lists = (&mut self.leaving, &mut self.collector);
+        removal::find_departed(&self.particles, &self.loads, keep, lists);
         if comm.any(!self.leaving.is_empty()) {
             // The step is chosen once more.
             let limited = self.state.dt_reason == Reason::Contact;

@@ -283,6 +283,23 @@ impl Source {
         })
     }
 
+    /// Lines where one thread goes over all particles of a rank: `0..owned`, or an iterator over a field of the
+    /// store, without rayon's.
+    pub fn lone_loops(&self) -> Vec<usize> {
+        let lines = self.tokens.chunk_by(|a, b| a.line == b.line);
+        let is_lone = |line: &&[Token]| {
+            let words: String = line.iter().map(|token| token.text.as_str()).collect();
+            let counts = words.contains("0..owned") || words.contains("0..particles.owned()");
+            let iterates = words.split("particles.").skip(1).any(|rest| {
+                let field = |c: char| !c.is_alphanumeric() && c != '_';
+                let after = rest.trim_start_matches(|c| !field(c));
+                after.starts_with(".iter()") || after.starts_with(".iter_mut()")
+            });
+            (counts || iterates) && !words.contains("par_") && !words.contains("0..owned.div_ceil")
+        };
+        lines.filter(is_lone).map(|line| line[0].line).collect()
+    }
+
     fn text_at(&self, at: usize) -> &str {
         self.tokens.get(at).map_or("", |token| token.text.as_str())
     }

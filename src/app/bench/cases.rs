@@ -19,6 +19,8 @@ pub struct BenchCase {
     pub steps: u64,
     /// One of the small cases that only try the command.
     pub quick: bool,
+    /// Measured only where it is named.
+    pub on_demand: bool,
 }
 
 /// All cases.
@@ -69,6 +71,23 @@ pub const CASES: &[BenchCase] = &[
         quick: true,
         ..QUARTER
     },
+    BenchCase {
+        name: "plate",
+        what: "where it is named: a plate of 100 x 100 x 4 particles",
+        set: &[r#"body.block.shape.box.size=["2 mm", "2 mm", "0.08 mm"]"#],
+        on_demand: true,
+        ..BLOCK
+    },
+    BenchCase {
+        name: "half-plate",
+        what: "where it is named: half of that, before a plane of symmetry",
+        set: &[
+            r#"body.block.shape.box.size=["2 mm", "2 mm", "0.04 mm"]"#,
+            r#"symmetry=[{ axis = "z", position = "-0.02 mm" }]"#,
+        ],
+        on_demand: true,
+        ..BLOCK
+    },
 ];
 
 const BLOCK: BenchCase = BenchCase {
@@ -98,6 +117,7 @@ lattice = "cubic"
     begin: 0.0,
     steps: 50,
     quick: false,
+    on_demand: false,
 };
 
 // Longer than the input's own end, which no measurement is to meet.
@@ -109,6 +129,7 @@ const QUARTER: BenchCase = BenchCase {
     begin: 0.05e-6,
     steps: 50,
     quick: false,
+    on_demand: false,
 };
 
 impl BenchCase {
@@ -146,6 +167,8 @@ mod tests {
         let counts: Vec<u64> = counts.collect();
         let block = |side: u64| side * side * side;
         assert_eq!([counts[0], counts[1], counts[5]], [47, 100, 22].map(block));
+        let plates = [100 * 100 * 4, 100 * 100 * 2];
+        assert_eq!([counts[7], counts[8]], plates);
         for (k, about) in [(2, 50_000), (3, 400_000), (4, 50_000), (6, 3_000)] {
             assert!(
                 counts[k].abs_diff(about) * 10 < about,

@@ -16,7 +16,7 @@ use crate::run::exit::{EXIT_FAILED, EXIT_INTERRUPTED};
 use crate::run::say::{say, warn};
 
 /// Ranks and the threads of each; the first is what the others are compared with.
-type Configuration = (usize, usize);
+pub(super) type Configuration = (usize, usize);
 const CONFIGURATIONS: [Configuration; 3] = [(1, 1), (1, 2), (2, 1)];
 
 /// What `mpirun` needs to know, as names and values of its environment: ranks are not to be bound,
@@ -125,7 +125,7 @@ fn measure_case(
 }
 
 /// Why a configuration cannot be measured here.
-fn obstacle((ranks, threads): Configuration) -> Option<String> {
+pub(super) fn obstacle((ranks, threads): Configuration) -> Option<String> {
     let (needed, cores) = (ranks * threads, cores());
     if needed > cores {
         return Some(format!(
@@ -163,7 +163,10 @@ fn is_rule(line: &str) -> bool {
 }
 
 /// This program measuring one case on one configuration.
-fn program((ranks, threads): Configuration, case: &BenchCase) -> Result<Command, String> {
+pub(super) fn program(
+    (ranks, threads): Configuration,
+    case: &BenchCase,
+) -> Result<Command, String> {
     let own = std::env::current_exe().map_err(|e| format!("this program is not found: {e}"))?;
     let mut command = if ranks == 1 {
         Command::new(own)
@@ -193,7 +196,7 @@ fn mpirun(ranks: usize) -> Command {
 ///
 /// # Errors
 /// What it warns of, if it does not start or fails.
-fn launch(command: &mut Command) -> Result<(), String> {
+pub(super) fn launch(command: &mut Command) -> Result<(), String> {
     let program = command.get_program().to_string_lossy().into_owned();
     let output = command
         .stdin(Stdio::null())
@@ -211,7 +214,7 @@ fn launch(command: &mut Command) -> Result<(), String> {
 }
 
 /// The rows that a measuring process has left.
-fn read(path: &Path) -> Result<Vec<Row>, String> {
+pub(super) fn read(path: &Path) -> Result<Vec<Row>, String> {
     let wrong = |error: &dyn std::fmt::Display| format!("cannot read {}: {error}", path.display());
     let text = std::fs::read(path).map_err(|e| wrong(&e))?;
     let report: Report = serde_json::from_slice(&text).map_err(|e| wrong(&e))?;
@@ -231,10 +234,10 @@ fn tell(case: &BenchCase, what: &str) {
 }
 
 /// A folder for states and figures that goes with its owner.
-struct Scratch(PathBuf);
+pub(super) struct Scratch(pub(super) PathBuf);
 
 impl Scratch {
-    fn create() -> Result<Self, String> {
+    pub(super) fn create() -> Result<Self, String> {
         let path = std::env::temp_dir().join(format!("whipple-bench-{}", std::process::id()));
         std::fs::create_dir_all(&path)
             .map_err(|error| format!("cannot make the folder {}: {error}", path.display()))?;

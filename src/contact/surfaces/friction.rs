@@ -1,10 +1,13 @@
 //! Friction and damping on rigid surfaces: one law for each particle, which rests on all that it
 //! touches (theory page "Loads").
 
+use rayon::prelude::*;
+
 use super::{Push, View};
 use crate::contact::friction::{Law, Slip};
+use crate::contact::mode::fill;
 use crate::numerics::vector::norm;
-use crate::particles::ParticleStore;
+use crate::particles::{ParticleStore, Scatter};
 
 /// What friction and damping do to one particle, beside their part of its [`Push`]es.
 #[derive(Debug, Clone, Copy)]
@@ -139,21 +142,33 @@ impl View<'_> {
 impl SurfaceFriction {
     /// Forgets the slip, before [`Self::store`].
     pub(super) fn clear(particles: &mut ParticleStore) {
-        particles.surface_slip.fill([0.0; 3]);
-        particles.surface_slip_rate.fill([0.0; 3]);
-        particles.surface_sliding.fill(0);
+        fill(&mut particles.surface_slip, [0.0; 3]);
+        fill(&mut particles.surface_slip_rate, [0.0; 3]);
+        fill(&mut particles.surface_sliding, 0);
     }
 
-    /// Gives the particle its heat, its time step and its slip.
-    pub(super) fn store(&self, particles: &mut ParticleStore) {
-        let i = self.particle;
-        let per_mass = 1.0 / particles.mass[i];
-        particles.surface_slip[i] = self.slip.displacement;
-        particles.surface_slip_rate[i] = self.slip.rate;
-        particles.surface_sliding[i] = u32::from(self.slip.sliding);
-        particles.d_specific_energy_dt[i] += self.power * per_mass;
-        // A step of m/c is stable: as if it were that of a spring, 2 √(m/k).
-        let rate = self.dashpot * per_mass;
-        particles.contact_stiffness[i] += 4.0 * particles.mass[i] * (rate * rate);
+    /// Gives particles their heat, their time step and their slip.
+    pub(super) fn store(chunks: &[Vec<Self>], particles: &mut ParticleStore) {
+        let mass = &particles.mass;
+        let displacement = Scatter::new(&mut particles.surface_slip);
+        let slip_rate = Scatter::new(&mut particles.surface_slip_rate);
+        let sliding = Scatter::new(&mut particles.surface_sliding);
+        let heating = Scatter::new(&mut particles.d_specific_energy_dt);
+        let stiffness = Scatter::new(&mut particles.contact_stiffness);
+        let all = chunks.par_iter().flat_map_iter(|chunk| chunk);
+        all.for_each(|friction| {
+            let (i, slip) = (friction.particle, friction.slip);
+            let per_mass = 1.0 / mass[i];
+            // A step of m/c is stable: as if it were that of a spring, 2 √(m/k).
+            let rate = friction.dashpot * per_mass;
+            // SAFETY: a particle is in one chunk once, and one thread has that.
+            unsafe {
+                *displacement.slot(i) = slip.displacement;
+                *slip_rate.slot(i) = slip.rate;
+                *sliding.slot(i) = u32::from(slip.sliding);
+                *heating.slot(i) += friction.power * per_mass;
+                *stiffness.slot(i) += 4.0 * mass[i] * (rate * rate);
+            }
+        });
     }
 }

@@ -14,6 +14,9 @@ pub(super) const GRID: &str = "/VTKHDF";
 /// VTK's number of a cell that is a single point.
 const VERTEX: u8 = 1;
 
+/// Bytes of a cell: the number of its point, where that stands, and its type.
+pub(super) const BYTES_OF_CELL: usize = 8 + 8 + 1;
+
 /// Points, their cells, and the time (s).
 pub(super) fn write_grid(
     comm: &Comm,

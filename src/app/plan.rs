@@ -1,0 +1,368 @@
+//! `whipple plan`: what a case takes on any number of ranks.
+
+mod chart;
+mod source;
+mod table;
+
+use std::path::{Path, PathBuf};
+
+use clap::builder::PossibleValuesParser;
+
+use super::bench;
+use super::plot::out::{is_png, save, unsaved};
+use crate::model::Case;
+use crate::model::readable::{short, shown};
+use crate::output::read_small;
+use crate::plan::{
+    CONSTANTS, Files, Layout, Load, Machine, Row, Sharing, Weak, computing, expected_steps,
+    own_levels, refined, step_time,
+};
+use crate::plot::PlotError;
+use crate::preflight::{Costs, memory};
+use crate::run::exit::{EXIT_FAILED, EXIT_INPUT};
+use crate::run::say::{counted, say, warn};
+use source::Source;
+pub use table::duration;
+
+/// Plan a run: what a case takes on any number of ranks
+///
+/// One process cuts the particles of the case for each number of ranks as the run would, in slabs of one to
+/// three levels, and counts what each rank owns, hears of others and sends: as much as in the first step of the
+/// run, to the unit, but for particles that change ranks. Of a run's folder, a snapshot or a checkpoint it is what a
+/// restart from there would begin with. Times follow from that and from what a machine file tells. No MPI.
+///
+/// Columns: mean and largest number of owned particles; the largest halo, and that over the one which a rank of its
+/// size would have in a box filled evenly; the most peers, messages and bytes that a rank sends in a step; memory of
+/// the largest rank; a step; efficiency against one core alone; the whole run. A star marks the levels that the
+/// case takes by itself.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  whipple plan inputs/quarter-impact
+  whipple plan inputs/quarter-impact --set spacing=0.005mm --ranks 64,512,4096 --threads 8 --chart plan.png
+  whipple plan runs/quarter/checkpoints/step-00000100 --ranks 16 --machine cluster.toml --doubled
+  whipple plan --calibrate here.toml
+
+A machine file holds some of these, in SI units; `whipple plan --ranks 1 --machine FILE` refuses others:
+  name, cores_per_node, particle_time, image_time, thread_loss, crowding, latency, bandwidth,
+  node_latency, node_bandwidth, agreement_time, overlap, disk_bandwidth")]
+pub struct PlanArgs {
+    /// Case file (TOML), a folder with a case.toml, a run (its last snapshot), a snapshot or a checkpoint
+    #[arg(value_name = "CASE_OR_SNAPSHOT", required_unless_present = "calibrate")]
+    path: Option<PathBuf>,
+
+    /// Measure this machine by short runs of a few minutes, and write its machine file
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["path", "machine"])]
+    calibrate: Option<PathBuf>,
+
+    /// Change a value of the case, as in spacing=0.015mm; may be given many times
+    #[arg(short, long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+
+    /// Numbers of ranks, as in 16,64 [default: 1, 4, 16 and so on, with 1000 particles each at least]
+    #[arg(short = 'n', long, value_name = "N", value_delimiter = ',')]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    ranks: Vec<u32>,
+
+    /// Levels of the slabs: 1, 2 or 3, or auto for those that the case takes [default: all, compared]
+    #[arg(long, value_name = "N", value_parser = PossibleValuesParser::new(["1", "2", "3", "auto"]))]
+    levels: Option<String>,
+
+    /// Machine file (TOML) [default: an ordinary cluster]
+    #[arg(short, long, value_name = "FILE")]
+    machine: Option<PathBuf>,
+
+    /// Threads of each rank
+    #[arg(short, long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+    threads: u16,
+
+    /// Ranks of each node [default: as many as its cores take]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    ranks_per_node: Option<u32>,
+
+    /// Tell the efficiency with each number of the machine doubled in turn, for the most ranks
+    #[arg(long)]
+    doubled: bool,
+
+    /// Particles of each core in weak scaling: the same model, refined, which the chart shows too
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(1..))]
+    per_core: u32,
+
+    /// Draw strong and weak scaling into this PNG file
+    #[arg(short, long, value_name = "FILE.png")]
+    chart: Option<PathBuf>,
+
+    /// Write the table, in SI units, into this file
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+
+    /// Width of the chart in pixels
+    #[arg(long, value_name = "PIXELS")]
+    width: Option<u32>,
+}
+
+/// Runs the command; returns the exit code.
+pub fn run(args: &PlanArgs) -> u8 {
+    let (done, code) = match (&args.calibrate, &args.path) {
+        (Some(file), _) => (calibrate(file), EXIT_FAILED),
+        (None, path) => {
+            let path = path.as_deref().unwrap_or(Path::new("."));
+            (plan(args, path), EXIT_INPUT)
+        }
+    };
+    done.map_or_else(
+        |message| {
+            warn(&message);
+            code
+        },
+        |()| 0,
+    )
+}
+
+/// Measures this machine and writes its file.
+fn calibrate(path: &Path) -> Result<(), String> {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let machine = bench::calibrate(folder.unwrap_or(Path::new(".")));
+    let machine = machine.map_err(|what| {
+        let what = what.trim_start_matches("error: ");
+        format!("error: {what}")
+    })?;
+    let text = machine.text();
+    say(text.trim_end());
+    write_text(path, text.as_bytes())?;
+    say(
+        "of messages it tells what an ordinary cluster has: put what you know of yours in their place",
+    );
+    Ok(())
+}
+
+fn write_text(path: &Path, text: &[u8]) -> Result<(), String> {
+    let write = |path: &Path| std::fs::write(path, text).map_err(|error| unsaved(path, &error));
+    save(path, write).map_err(told)
+}
+
+/// Something planned: what ranks have, and what follows.
+struct Planned {
+    loads: Vec<Load>,
+    row: Row,
+    weak: Weak,
+}
+
+fn plan(args: &PlanArgs, path: &Path) -> Result<(), String> {
+    if let Some(path) = args.chart.as_ref().filter(|path| !is_png(path)) {
+        let ending = path.extension().unwrap_or_default().to_string_lossy();
+        let (path, ending) = (path.clone(), ending.into_owned());
+        return Err(told(PlotError::Ending { path, ending }));
+    }
+    let machine = args
+        .machine
+        .as_deref()
+        .map_or(Ok(Machine::default()), machine)?;
+    let source = source::read(path, &args.set)?;
+    let count = source.particles.positions.len();
+    let steps = expected_steps(&source.case, source.time.unwrap_or(0.0));
+    say(&heading(&source, steps));
+    say(&format!("  {}", machine_line(&machine, args)));
+    say("");
+    say(&table::head());
+    let alone = layout_of(&source, (1, 1), 1)?.loads[0];
+    let mut all = Vec::new();
+    for ranks in args.ladder(count) {
+        let own = own_levels(&source.case, ranks);
+        for levels in args.levels(&source.case, own, ranks) {
+            let planned = one(args, &source, &machine, (ranks, levels), &alone)?;
+            say(&table::line(&planned.row, levels == own, steps));
+            all.push(planned);
+        }
+    }
+    say("");
+    print_files(&source, &machine, steps)?;
+    if args.doubled {
+        print_doubled(args, &machine, &alone, &all);
+    }
+    let rows: Vec<Row> = all.iter().map(|planned| planned.row).collect();
+    if let Some(path) = &args.csv {
+        write_text(path, &table::sheet(&rows, steps).text())?;
+    }
+    if let Some(path) = &args.chart {
+        let weak: Vec<Weak> = all.iter().map(|planned| planned.weak).collect();
+        let title = format!("{}, {}", source.case.title, machine.name);
+        let chart = chart::chart(&title, (count, args.per_core), &rows, &weak);
+        let canvas = chart.draw(args.width).map_err(told)?;
+        save(path, |path| canvas.save(path)).map_err(told)?;
+    }
+    Ok(())
+}
+
+impl PlanArgs {
+    #[allow(
+        clippy::cast_possible_truncation,
+        reason = "a hundred thousand at most"
+    )]
+    fn ladder(&self, particles: usize) -> Vec<usize> {
+        if !self.ranks.is_empty() {
+            return self.ranks.iter().map(|&ranks| ranks as usize).collect();
+        }
+        let most = (particles / 1000).clamp(1, 100_000);
+        let powers = (0..).map(|k| 4_usize.pow(k));
+        powers.take_while(|&ranks| ranks <= most).collect()
+    }
+
+    fn levels(&self, case: &Case, own: usize, ranks: usize) -> Vec<usize> {
+        match self.levels.as_deref() {
+            Some("auto") => vec![own],
+            Some(text) => text.parse().into_iter().collect(),
+            None if ranks == 1 => vec![own],
+            None => (1..=case.dimension).collect(),
+        }
+    }
+
+    fn sharing(&self, machine: &Machine) -> Sharing {
+        let threads = usize::from(self.threads);
+        let named = self.ranks_per_node.map(|ranks| ranks as usize);
+        Sharing {
+            threads,
+            ranks_per_node: named.unwrap_or_else(|| machine.ranks_per_node(threads)),
+        }
+    }
+}
+
+#[allow(clippy::needless_pass_by_value, reason = "to map errors by")]
+fn told(error: PlotError) -> String {
+    format!("error: {error}")
+}
+
+fn machine(path: &Path) -> Result<Machine, String> {
+    let bytes = read_small(path).map_err(|error| format!("error: {error}"))?;
+    let wrong = |what: &str| format!("error: {}: {what}", path.display());
+    let text = std::str::from_utf8(&bytes).map_err(|_| wrong("it is no text"))?;
+    Machine::parse(text).map_err(|what| wrong(&what))
+}
+
+fn heading(source: &Source, steps: Option<f64>) -> String {
+    let case = &source.case;
+    let from = source
+        .time
+        .map_or(String::new(), |time| format!(" at {}", shown(time, "s")));
+    let to = steps.map_or(String::new(), |steps| {
+        let end = shown(case.run.end_time, "s");
+        format!(", about {} steps to {end}", short(steps))
+    });
+    let count = source.particles.positions.len();
+    format!(
+        "{} ({}-D): {count} particles{from}{to}",
+        case.title, case.dimension
+    )
+}
+
+fn machine_line(machine: &Machine, args: &PlanArgs) -> String {
+    let sharing = args.sharing(machine);
+    let threads = if sharing.threads == 1 { "" } else { "s" };
+    format!(
+        "on {}: {} a particle and step, {} ranks of {} thread{threads} on a node",
+        machine.name,
+        shown(machine.particle_time, "s"),
+        sharing.ranks_per_node,
+        sharing.threads,
+    )
+}
+
+fn layout_of(
+    source: &Source,
+    (ranks, levels): (usize, usize),
+    ranks_per_node: usize,
+) -> Result<Layout, String> {
+    let (case, particles) = (&source.case, &source.particles);
+    let from = (particles, source.time.is_none());
+    let layout = Layout::new(case, from, (ranks, levels), ranks_per_node);
+    layout.ok_or_else(|| "error: the case has no particles".to_owned())
+}
+
+fn one(
+    args: &PlanArgs,
+    source: &Source,
+    machine: &Machine,
+    (ranks, levels): (usize, usize),
+    alone: &Load,
+) -> Result<Planned, String> {
+    let sharing = args.sharing(machine);
+    let layout = layout_of(source, (ranks, levels), sharing.ranks_per_node)?;
+    let costs = Costs::of_case(&source.case);
+    let of = (&source.particles, &layout);
+    let row = Row::new(of, (machine, sharing), costs, computing(alone, machine));
+    let each = f64::from(args.per_core) * f64::from(args.threads);
+    let weak = Weak::new(&layout.loads, levels, each, (machine, sharing));
+    let loads = layout.loads;
+    Ok(Planned { loads, row, weak })
+}
+
+fn print_files(source: &Source, machine: &Machine, steps: Option<f64>) -> Result<(), String> {
+    #[allow(clippy::cast_precision_loss, reason = "for people")]
+    let count = source.particles.positions.len() as f64;
+    let files = Files::new(&source.case, count, steps.unwrap_or(0.0));
+    let files = files.map_err(|error| format!("error: {error}"))?;
+    for line in file_lines(&files, machine) {
+        say(&format!("  {line}"));
+    }
+    Ok(())
+}
+
+/// What files there will be.
+pub fn file_lines(files: &Files, machine: &Machine) -> Vec<String> {
+    let size = memory::in_words;
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "whole numbers"
+    )]
+    let many = |count: f64, word: &str| counted(count as u64, word);
+    vec![
+        format!(
+            "{} of {}; {} of {}, of which {} stay",
+            many(files.snapshots, "snapshot"),
+            size(files.snapshot),
+            many(files.checkpoints, "checkpoint"),
+            size(files.checkpoint),
+            short(files.kept),
+        ),
+        format!(
+            "{} on the disk at the end; {} to write all, at {} a second",
+            size(files.disk()),
+            duration(files.written() / machine.disk_bandwidth),
+            size(machine.disk_bandwidth),
+        ),
+    ]
+}
+
+/// The efficiency of the most ranks, each number of the machine twice as large in turn.
+fn print_doubled(args: &PlanArgs, machine: &Machine, alone: &Load, all: &[Planned]) {
+    let sharing = args.sharing(machine);
+    let best = |a: &&Planned, b: &&Planned| {
+        let by_ranks = a.row.ranks.cmp(&b.row.ranks);
+        by_ranks.then(a.row.efficiency.total_cmp(&b.row.efficiency))
+    };
+    let Some(planned) = all.iter().max_by(best) else {
+        return;
+    };
+    let each = f64::from(args.per_core) * f64::from(args.threads);
+    let (ranks, levels) = (planned.row.ranks, planned.row.levels);
+    let fine = refined(&planned.loads, levels, each);
+    #[allow(clippy::cast_precision_loss, reason = "few cores")]
+    let cores = (ranks * sharing.threads) as f64;
+    say(&format!(
+        "\n  {ranks} ranks, {levels} levels: efficiency, and that of the model refined to {} particles a core",
+        args.per_core
+    ));
+    let efficiencies = |machine: &Machine| {
+        let time = step_time(&planned.loads, machine, sharing).all;
+        let strong = computing(alone, machine) / (time * cores);
+        let weak = Weak::of_refined(&fine, each, (machine, sharing)).efficiency;
+        format!("{strong:.3}  {weak:.3}")
+    };
+    say(&format!("  {:<24}{}", "as told", efficiencies(machine)));
+    for constant in &CONSTANTS {
+        let text = efficiencies(&machine.doubled(constant));
+        say(&format!("  {:<24}{text}", format!("2 x {}", constant.key)));
+    }
+}

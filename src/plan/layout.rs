@@ -1,0 +1,139 @@
+//! A case cut for a number of ranks: what each of them has and sends.
+
+use super::particles::Particles;
+use crate::comm::{Comm, Traffic};
+use crate::domain::{
+    Balance, GREETING, Mirrors, NestedSlabs, Outset, RankSpeeds, Sent, Tally, greetings, tally,
+};
+use crate::model::Case;
+use crate::populate;
+use crate::step::bytes_of_messages;
+
+/// What a rank has, and what it sends in a step but for particles that change ranks.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Load {
+    /// What it owns and hears of others.
+    pub tally: Tally,
+    /// All that it sends.
+    pub sent: Traffic,
+    /// What of it leaves its node.
+    pub beyond: Traffic,
+}
+
+/// A case cut for a number of ranks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layout {
+    /// Who owns which place.
+    pub slabs: NestedSlabs,
+    /// What each rank has and sends.
+    pub loads: Vec<Load>,
+}
+
+impl Layout {
+    /// Of particles, those of the start or not, for so many ranks in slabs of so many levels, where so
+    /// many ranks that follow each other share a node. `None` for a case without particles.
+    #[must_use]
+    pub fn new(
+        case: &Case,
+        (particles, are_first): (&Particles, bool),
+        (ranks, levels): (usize, usize),
+        ranks_per_node: usize,
+    ) -> Option<Self> {
+        let cut = if are_first { slabs_at_start } else { slabs_of };
+        let slabs = cut(case, particles, ranks, Some(levels))?;
+        let loads = loads(case, particles, &slabs, ranks_per_node);
+        Some(Self { slabs, loads })
+    }
+}
+
+/// The levels of slabs that a case takes on so many ranks.
+#[must_use]
+pub fn own_levels(case: &Case, ranks: usize) -> usize {
+    let outset = Outset::new(case);
+    outset.map_or(1, |outset| outset.levels(case, &Comm::solo(), ranks))
+}
+
+/// The slabs that a run begins with on so many ranks, of so many levels or as many as the case has.
+///
+/// `None` for a case without particles.
+#[must_use]
+pub fn slabs_at_start(
+    case: &Case,
+    particles: &Particles,
+    ranks: usize,
+    levels: Option<usize>,
+) -> Option<NestedSlabs> {
+    let (solo, outset) = (Comm::solo(), Outset::new(case)?);
+    let mut balance = Balance::default();
+    let mut slabs = outset.slabs(case, &solo, (ranks, levels), &mut balance);
+    // As a run does that has dealt out what stands outside of the slabs it was made in.
+    if ranks > 1 && case.bodies.iter().any(populate::moves_sites) {
+        cut(&mut slabs, particles, &mut balance);
+    }
+    Some(slabs)
+}
+
+/// The slabs that a run goes on with from some particles.
+///
+/// `None` for a case without particles.
+#[must_use]
+pub fn slabs_of(
+    case: &Case,
+    particles: &Particles,
+    ranks: usize,
+    levels: Option<usize>,
+) -> Option<NestedSlabs> {
+    let (solo, outset) = (Comm::solo(), Outset::new(case)?);
+    let levels = levels.unwrap_or_else(|| outset.levels(case, &solo, ranks));
+    let mut slabs = NestedSlabs::on_first(outset.axes, levels, ranks);
+    cut(&mut slabs, particles, &mut Balance::default());
+    Some(slabs)
+}
+
+/// Moves faces so that each rank has as many particles.
+fn cut(slabs: &mut NestedSlabs, particles: &Particles, balance: &mut Balance) {
+    let work = vec![1; particles.positions.len()];
+    let all = (particles.positions.as_slice(), work.as_slice());
+    balance.cut(&Comm::solo(), slabs, all, &RankSpeeds::default());
+}
+
+/// What each rank has and sends, where so many that follow each other share a node.
+#[must_use]
+pub fn loads(
+    case: &Case,
+    particles: &Particles,
+    slabs: &NestedSlabs,
+    ranks_per_node: usize,
+) -> Vec<Load> {
+    let mirrors = Mirrors::new(&case.symmetry);
+    let bytes = bytes_of_messages(case);
+    let mut loads = vec![Load::default(); slabs.ranks()];
+    let all = (particles.positions.as_slice(), particles.reach.as_slice());
+    let mut send = |from: usize, to: usize, traffic: Traffic| {
+        let load: &mut Load = &mut loads[from];
+        load.sent += traffic;
+        if from / ranks_per_node != to / ranks_per_node {
+            load.beyond += traffic;
+        }
+    };
+    let tallies = tally(slabs, &mirrors, all, |sent| {
+        send(sent.from, sent.to, traffic_of(sent, &bytes));
+    });
+    let farthest = particles.reach.iter().copied().fold(0.0, f64::max);
+    greetings(slabs, farthest, |from, to| {
+        send(from, to, Traffic::of(GREETING));
+    });
+    for (load, tally) in loads.iter_mut().zip(tallies) {
+        load.tally = tally;
+    }
+    loads
+}
+
+/// What a rank sends to a peer in a step: a size, then messages of so many bytes a particle.
+fn traffic_of(sent: Sent, bytes: &[usize]) -> Traffic {
+    let mut traffic = Traffic::OF_SIZE;
+    for &bytes in bytes {
+        traffic += Traffic::of(sent.particles * bytes as u64);
+    }
+    traffic
+}

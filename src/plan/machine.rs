@@ -1,0 +1,208 @@
+//! What a plan must know of a machine, and the file that tells it.
+
+use std::fmt::Write as _;
+
+use serde::{Deserialize, Serialize};
+
+/// How fast a machine is, in SI units.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Machine {
+    /// What it is called.
+    pub name: String,
+    /// Cores of a node.
+    pub cores_per_node: f64,
+    /// Time of one core for a step of a particle (s).
+    pub particle_time: f64,
+    /// Time of one core for a step of an image or of another rank's particle (s).
+    pub image_time: f64,
+    /// Part of the time of a step that each further thread of a rank adds to all.
+    pub thread_loss: f64,
+    /// Part by which a core is slower while all cores of its node are at work.
+    pub crowding: f64,
+    /// Time of a message between two nodes (s).
+    pub latency: f64,
+    /// Bytes that a node sends in a second.
+    pub bandwidth: f64,
+    /// Time of a message within a node (s).
+    pub node_latency: f64,
+    /// Bytes that ranks of one node send each other in a second.
+    pub node_bandwidth: f64,
+    /// Time that each doubling of the number of ranks adds to a step (s): what all agree on.
+    pub agreement_time: f64,
+    /// Part of the computing time in which messages fly.
+    pub overlap: f64,
+    /// Bytes that all ranks together write in a second.
+    pub disk_bandwidth: f64,
+}
+
+/// A number of a machine: its key, what it is, where it stands, and what it may be.
+pub struct Constant {
+    /// Its key in the file.
+    pub key: &'static str,
+    /// What it is, with its unit.
+    pub what: &'static str,
+    get: fn(&mut Machine) -> &mut f64,
+    range: [f64; 2],
+}
+
+/// Times (s) and rates (1/s) of any machine.
+const TIMES: [f64; 2] = [1e-12, 1.0];
+const RATES: [f64; 2] = [1e3, 1e18];
+
+/// All numbers of a machine.
+pub const CONSTANTS: [Constant; 12] = [
+    Constant {
+        key: "cores_per_node",
+        what: "cores of a node",
+        get: |machine| &mut machine.cores_per_node,
+        range: [1.0, 1e6],
+    },
+    Constant {
+        key: "particle_time",
+        what: "s, one core, a step of a particle",
+        get: |machine| &mut machine.particle_time,
+        range: TIMES,
+    },
+    Constant {
+        key: "image_time",
+        what: "s, one core, a step of an image or of another rank's particle",
+        get: |machine| &mut machine.image_time,
+        range: [0.0, 1.0],
+    },
+    Constant {
+        key: "thread_loss",
+        what: "part of the time that each further thread of a rank adds",
+        get: |machine| &mut machine.thread_loss,
+        range: [0.0, 10.0],
+    },
+    Constant {
+        key: "crowding",
+        what: "part by which a core is slower while all of its node work",
+        get: |machine| &mut machine.crowding,
+        range: [0.0, 100.0],
+    },
+    Constant {
+        key: "latency",
+        what: "s, a message between two nodes",
+        get: |machine| &mut machine.latency,
+        range: [0.0, 1.0],
+    },
+    Constant {
+        key: "bandwidth",
+        what: "bytes/s, all that a node sends",
+        get: |machine| &mut machine.bandwidth,
+        range: RATES,
+    },
+    Constant {
+        key: "node_latency",
+        what: "s, a message within a node",
+        get: |machine| &mut machine.node_latency,
+        range: [0.0, 1.0],
+    },
+    Constant {
+        key: "node_bandwidth",
+        what: "bytes/s, all messages within a node",
+        get: |machine| &mut machine.node_bandwidth,
+        range: RATES,
+    },
+    Constant {
+        key: "agreement_time",
+        what: "s, for each doubling of the number of ranks",
+        get: |machine| &mut machine.agreement_time,
+        range: [0.0, 1.0],
+    },
+    Constant {
+        key: "overlap",
+        what: "part of the computing time in which messages fly",
+        get: |machine| &mut machine.overlap,
+        range: [0.0, 1.0],
+    },
+    Constant {
+        key: "disk_bandwidth",
+        what: "bytes/s, what all ranks together write",
+        get: |machine| &mut machine.disk_bandwidth,
+        range: RATES,
+    },
+];
+
+impl Default for Machine {
+    /// An ordinary cluster: times of a core as the page on performance tells them, nodes of 128 cores
+    /// with a network of 200 Gbit/s.
+    fn default() -> Self {
+        Self {
+            name: "an ordinary cluster".to_owned(),
+            cores_per_node: 128.0,
+            particle_time: 0.6e-6,
+            image_time: 0.08e-6,
+            thread_loss: 0.02,
+            crowding: 0.05,
+            latency: 2e-6,
+            bandwidth: 25e9,
+            node_latency: 0.5e-6,
+            node_bandwidth: 50e9,
+            agreement_time: 10e-6,
+            overlap: 0.0,
+            disk_bandwidth: 2e9,
+        }
+    }
+}
+
+impl Machine {
+    /// What a file tells; what it leaves out is that of an ordinary cluster.
+    ///
+    /// # Errors
+    /// What is wrong with the text.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let machine: Self = toml::from_str(text).map_err(|error| error.to_string())?;
+        let mut numbers = machine.clone();
+        for constant in &CONSTANTS {
+            let (value, [least, most]) = (*constant.of(&mut numbers), constant.range);
+            // What is no number is in no range.
+            if !(least..=most).contains(&value) {
+                let key = constant.key;
+                return Err(format!("{key} is {value}; it may be {least:e} to {most:e}"));
+            }
+        }
+        Ok(machine)
+    }
+
+    /// The text of its file.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let name = toml::Value::from(self.name.as_str());
+        let mut text = format!("name = {name}\n");
+        let mut numbers = self.clone();
+        for constant in &CONSTANTS {
+            let (key, value) = (constant.key, *constant.of(&mut numbers));
+            let _ = writeln!(text, "{key} = {value:?}  # {}", constant.what);
+        }
+        text
+    }
+
+    /// The same with one constant twice as large.
+    #[must_use]
+    pub fn doubled(&self, constant: &Constant) -> Self {
+        let mut machine = self.clone();
+        *constant.of(&mut machine) *= 2.0;
+        machine
+    }
+
+    /// How many ranks of so many threads a node has.
+    #[must_use]
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a million at most"
+    )]
+    pub fn ranks_per_node(&self, threads: usize) -> usize {
+        (self.cores_per_node as usize / threads).max(1)
+    }
+}
+
+impl Constant {
+    /// Where it stands in a machine.
+    pub fn of<'a>(&self, machine: &'a mut Machine) -> &'a mut f64 {
+        (self.get)(machine)
+    }
+}

@@ -1,0 +1,20 @@
+//! What a case takes on any number of ranks, told by one process: what each rank has and sends, how
+//! long a step takes, and the files.
+
+mod files;
+mod layout;
+mod machine;
+mod model;
+mod particles;
+mod rough;
+mod row;
+mod weak;
+
+pub use files::Files;
+pub use layout::{Layout, Load, loads, own_levels, slabs_at_start, slabs_of};
+pub use machine::{CONSTANTS, Constant, Machine};
+pub use model::{Sharing, StepTime, computing, step_time};
+pub use particles::Particles;
+pub use rough::{expected_steps, rough_step};
+pub use row::Row;
+pub use weak::{Weak, refined};

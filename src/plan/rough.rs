@@ -1,0 +1,61 @@
+//! What a run takes, from counts along the axes alone: soon told of any number of particles.
+
+use super::layout::Load;
+use super::machine::Machine;
+use super::model::{Sharing, step_time};
+use crate::comm::{Comm, Traffic};
+use crate::domain::Tally;
+use crate::model::Case;
+use crate::preflight::{expected_step, memory};
+use crate::step::bytes_of_messages;
+
+/// Peers of a rank in boxes: those around a box of three axes.
+const PEERS: u64 = 26;
+
+/// Steps of a case from a time (s) on, as far as they are foreseen.
+#[must_use]
+#[allow(clippy::cast_precision_loss, reason = "for people")]
+pub fn expected_steps(case: &Case, time: f64) -> Option<f64> {
+    let by_time = ((case.run.end_time - time) / expected_step(case)?).max(0.0);
+    let most = case.run.max_steps.map_or(f64::INFINITY, |most| most as f64);
+    Some(by_time.min(most).round())
+}
+
+/// Seconds of a step on so many ranks of a machine, each with one thread: as if all had as much to do as
+/// the largest.
+#[must_use]
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "counts of particles"
+)]
+pub fn rough_step(case: &Case, ranks: usize, machine: &Machine) -> f64 {
+    let fullest = memory::fullest_of(case, &Comm::solo(), ranks);
+    let [owned, halo] = [fullest.owned, fullest.halo].map(|count| count as u64);
+    let sharing = Sharing {
+        threads: 1,
+        ranks_per_node: machine.ranks_per_node(1),
+    };
+    let bytes = bytes_of_messages(case);
+    let peers = PEERS.min(ranks as u64 - 1);
+    let sent = Traffic {
+        messages: peers * (1 + bytes.len() as u64),
+        bytes: halo * bytes.iter().sum::<usize>() as u64,
+    };
+    let beyond = if ranks > sharing.ranks_per_node {
+        sent
+    } else {
+        Traffic::default()
+    };
+    let load = Load {
+        tally: Tally {
+            owned,
+            halo,
+            images: halo,
+            peers,
+        },
+        sent,
+        beyond,
+    };
+    step_time(&vec![load; ranks], machine, sharing).all
+}

@@ -1,0 +1,60 @@
+//! What a simulation tells of what it holds and has sent.
+
+use super::simulation::Simulation;
+use crate::contact::ContactTable;
+use crate::domain::{Halo, NestedSlabs};
+
+impl Simulation {
+    /// Particles that this rank has frozen.
+    #[must_use]
+    pub fn frozen(&self) -> usize {
+        self.frozen.count()
+    }
+
+    /// Bytes that this rank holds in particle arrays, lists and buffers.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.particles.memory()
+            + self.frozen.memory()
+            + 4 * self.leaving.capacity()
+            + self.collector.memory()
+            + self.lists.memory()
+            + self.sph.memory()
+            + self.contact.memory()
+            + self.labels.memory()
+            + self.loads.memory()
+            + self.sums.memory()
+            + self.measures.memory()
+            + self.step_control.memory()
+            + self.halo.memory()
+            + self.partition.memory()
+    }
+
+    /// Who owns which place.
+    #[must_use]
+    pub fn slabs(&self) -> &NestedSlabs {
+        self.partition.slabs()
+    }
+
+    /// What this rank exchanges with others in each step.
+    #[must_use]
+    pub fn halo(&self) -> &Halo {
+        &self.halo
+    }
+
+    /// Messages and bytes that this rank has sent.
+    #[must_use]
+    pub fn traffic(&self) -> (u64, u64) {
+        let (halo, migration) = (self.halo.traffic(), self.partition.traffic());
+        (
+            halo.messages + migration.messages,
+            halo.bytes + migration.bytes,
+        )
+    }
+
+    /// The contact table.
+    #[must_use]
+    pub fn contact(&self) -> &ContactTable {
+        &self.contact.table
+    }
+}
