@@ -338,7 +338,8 @@ fn collective_calls_cost_what_their_trees_do() {
     }
 }
 
-/// What a rank computes is its work, by the phases' clock too; what it sleeps or waits is none.
+/// What a rank is measured to compute is its work; what it sleeps or waits is none, and neither is by the phases'
+/// clock what is told.
 #[test]
 fn computing_is_work_and_waiting_is_none() {
     let told = virtual_ranks(4, SLOW, |comm| {
@@ -349,7 +350,7 @@ fn computing_is_work_and_waiting_is_none() {
         timers.busy()
     });
     for busy in told {
-        assert!((busy - 5.0).abs() < 0.5, "{busy}");
+        assert!(busy.abs() < 0.05, "{busy}");
     }
     let measured = Machine {
         computing: Computing::Measured,

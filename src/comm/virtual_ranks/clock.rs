@@ -112,11 +112,17 @@ impl Clock {
 }
 
 /// How long this thread, if it is a virtual rank, has not computed: it has waited for others or for a
-/// core, which both say nothing of its work.
+/// core, which both say nothing of its work. Where computing is told it is all time: no clock has a say then.
 pub fn waited() -> Option<Duration> {
     let clock = Clock::read()?;
-    let computing = Duration::try_from_secs_f64(clock.time.computing).unwrap_or(Duration::MAX);
-    Some(clock.began.elapsed().saturating_sub(computing))
+    let all = clock.began.elapsed();
+    Some(match clock.computing {
+        Computing::Told => all,
+        Computing::Measured => {
+            let computing = Duration::try_from_secs_f64(clock.time.computing);
+            all.saturating_sub(computing.unwrap_or(Duration::MAX))
+        }
+    })
 }
 
 /// Processor time of this thread since it began.
