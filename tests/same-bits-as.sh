@@ -185,9 +185,9 @@ rows() {
     others
 }
 
-# Every field that snapshots can have, in all cases; `temperature` is refused without constants of heat.
+# Every field that snapshots can have, in all cases; temperatures are refused without constants of heat.
 fields=$({ "$old" check "$root/inputs/bar-impact" --set 'output.fields=["?"]' 2>&1 || true; } |
-    sed -n 's/.*the choices are //p' | tr '`' '"' | sed 's/, "temperature"//')
+    sed -n 's/.*the choices are //p' | tr '`' '"' | sed -E 's/, "(peak_)?temperature"//g')
 [ -n "$fields" ] || { echo "$old does not tell the names of fields" >&2; exit 2; }
 
 # start FOLDER RANKS PROGRAM ARGUMENTS…: what it says and its exit code stay in FOLDER.

@@ -3,6 +3,7 @@
 use super::neighbourhood::Neighbourhood;
 use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
+use crate::numerics::lane_matrix::store_all;
 use crate::numerics::lanes::{F64x8, Lanes};
 
 /// The sum over pairs.
@@ -32,6 +33,6 @@ impl<S: PairScale> Vectorised for VelocityGradient<'_, S> {
                 }
             }
         }
-        gradient.map(V::store)
+        store_all(&gradient)
     }
 }

@@ -7,6 +7,7 @@
 use super::neighbourhood::Neighbourhood;
 use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::{PairKernel, PairScale};
+use crate::numerics::lane_matrix::store_all;
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
 use crate::numerics::matrix::product;
 
@@ -226,23 +227,23 @@ impl<S: PairScale> Vectorised for LinearFit<'_, S> {
         let sums = Sums {
             once: Moments {
                 all: all.store(),
-                first: first.map(V::store),
-                second: second.map(V::store),
+                first: store_all(&first),
+                second: store_all(&second),
             },
             twice: Moments {
                 all: all2.store(),
-                first: first2.map(V::store),
-                second: second2.map(V::store),
+                first: store_all(&first2),
+                second: store_all(&second2),
             },
-            drift: drift.map(V::store),
-            product: product.map(V::store),
+            drift: store_all(&drift),
+            product: store_all(&product),
         };
         let h = if S::VARIABLE {
             around.h::<V>().store()
         } else {
             around.sources.scale.kernel(zero, zero, 0.0).h.store()
         };
-        sums.fit(&velocity.map(V::store), &h, self.dimension)
+        sums.fit(&store_all(&velocity), &h, self.dimension)
     }
 }
 

@@ -1,11 +1,12 @@
 //! Conservative momentum equation with its compatible energy equation and Monaghan–Gingold
 //! viscosity (physics page, section 2).
 
-use super::neighbourhood::{Neighbourhood, Separation, gather, gather3, records};
+use super::neighbourhood::{Neighbourhood, Separation, gather, gather_all, records};
 use super::normalised::NormalisedSums;
 use super::terms::{NORMALISED, PairTerms, SHAPED, TermRecord, TermSums};
 use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
+use crate::numerics::lane_matrix::store_all;
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
 
 /// What a particle shows to its neighbours of its stress: one cache line.
@@ -215,8 +216,9 @@ impl PairStress for StressRecord {
         }
         let (position, velocity) = around.motion::<V>();
         let stresses = records(sums.stresses, &around.receivers);
-        let normal = gather3::<V, _>(&stresses, |record, a| record.stress_over_density2[a]);
-        let shear = gather3::<V, _>(&stresses, |record, a| record.stress_over_density2[3 + a]);
+        let normal = gather_all::<V, _, 3>(&stresses, |record, a| record.stress_over_density2[a]);
+        let shear =
+            gather_all::<V, _, 3>(&stresses, |record, a| record.stress_over_density2[3 + a]);
         let rho_i = gather::<V, _>(&stresses, |record| record.density);
         let c_i = gather::<V, _>(&stresses, |record| record.sound_speed);
         let zero = V::splat(0.0);
@@ -270,10 +272,10 @@ impl PairStress for StressRecord {
             }
         }
         Forces {
-            acceleration: corrected.add_to(acceleration).map(V::store),
+            acceleration: store_all(&corrected.add_to(acceleration)),
             power: zero.sub(power.mul(V::splat(0.5))).store(),
             approach: zero.sub(fastest).store(),
-            correction: terms.correction().map(V::store),
+            correction: store_all(&terms.correction()),
         }
     }
 }

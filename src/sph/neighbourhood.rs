@@ -47,8 +47,8 @@ impl<'a, S: PairScale> Neighbourhood<'a, S> {
     pub(super) fn motion<V: Lanes>(&self) -> ([V; 3], [V; 3]) {
         let receivers = records(self.sources.records, &self.receivers);
         (
-            gather3(&receivers, |record, a| record.position[a]),
-            gather3(&receivers, |record, a| record.velocity[a]),
+            gather_all(&receivers, |record, a| record.position[a]),
+            gather_all(&receivers, |record, a| record.velocity[a]),
         )
     }
 
@@ -140,17 +140,17 @@ pub(super) fn gather<V: Lanes, R>(records: &[&R; LANES], number: impl Fn(&R) -> 
     V::read(&[at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)])
 }
 
-/// Three numbers of each of eight records.
+/// `N` numbers of each of eight records.
 #[inline(always)]
-pub(super) fn gather3<V: Lanes, R>(
+pub(super) fn gather_all<V: Lanes, R, const N: usize>(
     records: &[&R; LANES],
     number: impl Fn(&R, usize) -> f64,
-) -> [V; 3] {
-    [
-        gather(records, |record| number(record, 0)),
-        gather(records, |record| number(record, 1)),
-        gather(records, |record| number(record, 2)),
-    ]
+) -> [V; N] {
+    let mut all = [V::splat(0.0); N];
+    for c in 0..N {
+        all[c] = gather(records, |record| number(record, c));
+    }
+    all
 }
 
 /// Smoothing length of a neighbour (m), whatever if the scale is constant.

@@ -9,11 +9,12 @@
 //! the factor `1/s` drops out. All of it is linear in sums over pairs, so one sweep makes the
 //! corrected velocity gradient; only the forces need the corrections of neighbours.
 
-use super::neighbourhood::{Neighbourhood, Separation, gather, gather3, records};
+use super::neighbourhood::{Neighbourhood, Separation, gather, gather_all, records};
 pub use super::records::NormalisedRecord;
 use super::terms::{NORMALISED, PairTerms};
 use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
+use crate::numerics::lane_matrix::store_all;
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
 use crate::numerics::matrix::adjugate;
 
@@ -167,11 +168,11 @@ impl<S: PairScale> Vectorised for NormalisedGradient<'_, S> {
             mass = mass.add(share);
         }
         let sums = Sums {
-            gradient: gradient.map(V::store),
-            drift: drift.map(V::store),
-            second: second.map(V::store),
-            first: first.map(V::store),
-            slope: slope.map(V::store),
+            gradient: store_all(&gradient),
+            drift: store_all(&drift),
+            second: store_all(&second),
+            first: store_all(&first),
+            slope: store_all(&slope),
             kernel: mass.store(),
         };
         sums.correct(self.dimension)
@@ -254,11 +255,9 @@ impl<V: Lanes, const TERMS: u8> NormalisedSums<V, TERMS> {
         }
         let all = records(terms.normalised, &around.receivers);
         let motion = records(around.sources.records, &around.receivers);
-        let row = |a: usize| gather3::<V, _>(&all, |record, b| record.stress[3 * a + b]);
-        let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = [row(0), row(1), row(2)];
         Self {
-            stress: [xx, xy, xz, yx, yy, yz, zx, zy, zz],
-            shift: gather3(&all, |record, a| record.shift[a]),
+            stress: gather_all(&all, |record, c| record.stress[c]),
+            shift: gather_all(&all, |record, a| record.shift[a]),
             specific_volume: gather(&motion, |record| record.volume / record.mass),
             sum: [zero; 3],
         }

@@ -4,6 +4,7 @@ use super::step::Step;
 use super::sums::Sums;
 use crate::material::{FAILED, LANES, Lanes as Numbers, Material, PointBatch};
 use crate::numerics::dispatch::{Vectorised, instructions};
+use crate::numerics::lane_matrix::dot;
 use crate::numerics::lanes::Lanes;
 use crate::particles::{Records, Scatter};
 
@@ -65,8 +66,12 @@ impl<'a> Recording<'a> {
         if work.is_empty() {
             return [0.0; LANES];
         }
-        // SAFETY: by this function's contract.
-        particles.map(|i| unsafe { *work.slot(i) })
+        let mut all = [0.0; LANES];
+        for k in 0..LANES {
+            // SAFETY: by this function's contract.
+            all[k] = unsafe { *work.slot(particles[k]) };
+        }
+        all
     }
 }
 
@@ -232,12 +237,13 @@ fn plastic_work(before: &PointBatch, after: &PointBatch, k: usize) -> f64 {
 fn strain_rates<V: Lanes>(points: &PointBatch) -> V {
     let l = &points.velocity_gradient;
     let [xx, yy, zz] = [V::read(&l[0]), V::read(&l[4]), V::read(&l[8])];
-    let mean = xx.add(yy).add(zz).div(V::splat(3.0));
-    let square = |a: V, b: V, c: V| a.mul(a).add(b.mul(b)).add(c.mul(c));
-    let normal = square(xx.sub(mean), yy.sub(mean), zz.sub(mean));
-    let both = |a: usize, b: usize| V::read(&l[a]).add(V::read(&l[b]));
-    let shear = square(both(1, 3), both(2, 6), both(5, 7));
-    let all = normal.add(V::splat(0.5).mul(shear));
+    let mean = xx.add(yy).add(zz).mul(V::splat(1.0 / 3.0));
+    let normal = [xx.sub(mean), yy.sub(mean), zz.sub(mean)];
+    let mut shear = [V::splat(0.0); 3];
+    for (c, [a, b]) in [[1, 3], [2, 6], [5, 7]].into_iter().enumerate() {
+        shear[c] = V::read(&l[a]).add(V::read(&l[b]));
+    }
+    let all = V::splat(0.5).mul_add(dot(&shear, &shear), dot(&normal, &normal));
     V::splat(2.0 / 3.0).mul(all).sqrt()
 }
 

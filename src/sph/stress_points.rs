@@ -10,6 +10,7 @@ use super::neighbourhood::Neighbourhood;
 use super::principal::tensile_part;
 use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
+use crate::numerics::lane_matrix::store_all;
 use crate::numerics::lanes::{F64x8, Lanes};
 
 /// What a stress point shows to velocity particles.
@@ -92,7 +93,7 @@ impl<S: PairScale> Vectorised for Pull<'_, S> {
             all = all.add(w);
         }
         Pulled {
-            force: force.map(V::store),
+            force: store_all(&force),
             density: mass.div(all).store(),
             heat: heat.store(),
         }

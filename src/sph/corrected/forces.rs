@@ -8,7 +8,7 @@ use crate::numerics::lanes::{F64x8, LANES, Lanes};
 use crate::numerics::matrix;
 use crate::particles::ParticleStore;
 use crate::sph::momentum::{Forces, Momentum, PairStress, Viscous};
-use crate::sph::neighbourhood::{Neighbourhood, gather, gather3, records};
+use crate::sph::neighbourhood::{Neighbourhood, gather, gather_all, records};
 use crate::sph::terms::{ARTIFICIAL_STRESS, SHAPED, TermSums};
 
 /// What a particle shows to its neighbours of its stress.
@@ -103,10 +103,8 @@ impl PairStress for CorrectedRecord {
         let zero = V::splat(0.0);
         let (position, velocity) = around.motion::<V>();
         let own = records(sums.stresses, &around.receivers);
-        let row = |a: usize| gather3::<V, _>(&own, |record, b| record.stress[3 * a + b]);
-        let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = [row(0), row(1), row(2)];
-        let stress = [xx, xy, xz, yx, yy, yz, zx, zy, zz];
-        let hourglass = gather3::<V, _>(&own, |record, a| record.hourglass[a]);
+        let stress: [V; 9] = gather_all(&own, |record, c| record.stress[c]);
+        let hourglass: [V; 3] = gather_all(&own, |record, a| record.hourglass[a]);
         let motion = records(around.sources.records, &around.receivers);
         let specific_volume = gather::<V, _>(&motion, |record| record.volume / record.mass);
         let viscous = Viscous::<V>::begin(

@@ -5,7 +5,7 @@ use super::TermRecord;
 use crate::domain::Mirrors;
 use crate::numerics::lanes::{LANES, Lanes};
 use crate::particles::{Image, ParticleStore};
-use crate::sph::neighbourhood::gather3;
+use crate::sph::neighbourhood::gather_all;
 use crate::sph::principal::tensile_part;
 
 /// Artificial stress over density squared (Pa m⁶/kg²), `R = −ε Σ_a ⟨σ_a⟩₊ n_a ⊗ n_a/ρ²` over the
@@ -39,8 +39,8 @@ impl<V: Lanes> Lane<V> {
     #[inline(always)]
     pub fn begin(own: &[&TermRecord; LANES], inverse_shape: f64) -> Self {
         Self {
-            normal: gather3(own, |record, a| record.repulsion[a]),
-            shear: gather3(own, |record, a| record.repulsion[3 + a]),
+            normal: gather_all(own, |record, a| record.repulsion[a]),
+            shear: gather_all(own, |record, a| record.repulsion[3 + a]),
             inverse_shape: V::splat(inverse_shape),
         }
     }
