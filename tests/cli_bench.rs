@@ -120,6 +120,28 @@ fn a_launch_of_its_own_measures_itself() {
 }
 
 #[test]
+fn messages_are_measured_between_ranks() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("messages.json");
+    let measure = |mut command: Command, code| {
+        command.args(["bench", "--messages", "--json"]).arg(&file);
+        end(&mut command).with_code(code)
+    };
+    let ended = measure(ranks(2), 0);
+    let told = json(&file);
+    for key in ["latency", "bandwidth", "agreement_time"] {
+        assert!(told[key].as_f64().unwrap() > 0.0, "{told}");
+    }
+    assert_eq!(told["between_nodes"], false);
+    // The lines of a machine file.
+    let lines: toml::Table = ended.stdout.parse().unwrap();
+    let keys: Vec<&String> = lines.keys().collect();
+    assert_eq!(keys, ["agreement_time", "node_bandwidth", "node_latency"]);
+    let ended = measure(command(WHIPPLE), 1);
+    assert!(ended.stderr.contains("pairs of ranks"), "{}", ended.stderr);
+}
+
+#[test]
 fn mistakes_are_said() {
     let mistake = |options: &[&str], expected: &str| {
         let ended = end(command(WHIPPLE).arg("bench").args(options)).with_code(2);

@@ -13,7 +13,7 @@ use common::outcome::{Outcome, assert_same};
 use common::sentinel::mix;
 use common::virtual_ranks::on_virtual_ranks;
 use physics_support::{ready, run_to, start};
-use whipple::comm::{Comm, Computing, Exchange, Machine, virtual_ranks, waited};
+use whipple::comm::{Comm, Computing, Exchange, Joint, Machine, virtual_ranks, waited};
 use whipple::model::{Axis, Case};
 use whipple::step::{Phase, Simulation, Timers};
 
@@ -52,6 +52,20 @@ fn check_collectives(comm: &Comm) {
         let last = me + 1 == ranks;
         assert!(comm.any(last));
         comm.barrier();
+        let mut joint = Joint {
+            sums: mine.map(u64::cast_signed).to_vec(),
+            least: mine[..2].to_vec(),
+            first: [mine[0] >> 45, mine[1], mine[2]],
+            bits: 1 << (me % 64),
+            ..Joint::default()
+        };
+        comm.join(&mut joint);
+        assert_eq!(joint.sums, sums.map(u64::cast_signed));
+        assert_eq!(joint.least, over(u64::min)[..2]);
+        let entries = all.iter().map(|[a, b, c]| [a >> 45, *b, *c]);
+        assert_eq!(joint.first, entries.min().unwrap());
+        let bits = (0..ranks.min(64)).fold(0, |bits, rank| bits | 1 << rank);
+        assert_eq!(joint.bits, bits);
         let mut gathered = vec![7; 5];
         comm.all_gather_u64(&mine, &mut gathered);
         assert!(gathered == all.as_flattened());
@@ -407,6 +421,26 @@ fn together(ranks: usize, steps: usize, start: impl Fn(&Comm) -> Simulation + Sy
         }
     }
     all
+}
+
+/// Once to agree on who goes where, once to join sums and candidates. Who hangs together takes more, every few
+/// steps.
+#[test]
+fn a_common_step_calls_all_ranks_together_twice() {
+    let counts = on_virtual_ranks(6, Machine::IDEAL, |comm| {
+        let mut case = impact("0.05mm", 2, 0);
+        case.self_contact = None;
+        let mut simulation = Simulation::start(case, comm).unwrap();
+        let mut count = |_| {
+            let before = comm.virtual_time().unwrap().collectives;
+            simulation.advance(comm).unwrap();
+            comm.virtual_time().unwrap().collectives - before
+        };
+        (0..12).map(&mut count).collect::<Vec<_>>()
+    });
+    for counts in counts {
+        assert_eq!(counts, [2; 12]);
+    }
 }
 
 /// From a state of the main job in which sphere and plate have failed and fly apart in parts, with

@@ -6,6 +6,7 @@ mod driver;
 mod machine;
 mod measure;
 mod memory;
+mod messages;
 mod neighbours;
 mod pin;
 mod report;
@@ -37,7 +38,8 @@ Examples:
   whipple bench --json bench.json
   whipple bench --case quarter-400k --repeat 5
   whipple bench --case block-1m --threads 8
-  mpirun -n 4 whipple bench --case quarter-400k --threads 1", cases::table()))]
+  mpirun -n 4 whipple bench --case quarter-400k --threads 1
+  mpirun -n 2 --map-by node whipple bench --messages", cases::table()))]
 pub struct BenchArgs {
     /// Case to measure; may be given many times [default: all but the small ones of --quick and those that are to be named]
     #[arg(
@@ -64,6 +66,10 @@ pub struct BenchArgs {
     /// Small cases only, to try the command: seconds instead of minutes
     #[arg(long, conflicts_with = "cases")]
     quick: bool,
+
+    /// Measure messages between the ranks of mpirun in place of cases, as a plan's machine file tells them
+    #[arg(long, conflicts_with_all = ["cases", "quick", "steps", "threads", "repeat"])]
+    messages: bool,
 
     /// Write all figures, with the facts of the machine, to this file
     #[arg(long, value_name = "FILE")]
@@ -94,7 +100,7 @@ impl BenchArgs {
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &BenchArgs) -> u8 {
-    if launch::by_mpi() || args.threads.is_some() {
+    if launch::by_mpi() || args.threads.is_some() || args.messages {
         return one_configuration(args);
     }
     if let Err(message) = writable(args) {
@@ -128,6 +134,7 @@ fn one_configuration(args: &BenchArgs) -> u8 {
         return launch::warn(&comm, &ready.err().unwrap_or_default());
     }
     let done = match &args.save {
+        _ if args.messages => messages::run(&comm, args.json.as_deref()),
         Some(folder) => args
             .cases()
             .into_iter()

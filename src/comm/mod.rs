@@ -5,10 +5,12 @@
 //! [`virtual_ranks`], many ranks in one process.
 
 mod exchange;
+mod joint;
 mod virtual_ranks;
 mod waiting;
 
 pub use exchange::{Exchange, Peer, Traffic, pieces};
+pub use joint::Joint;
 pub use virtual_ranks::{Computing, Machine, VirtualTime, virtual_ranks};
 pub use waiting::waited;
 
@@ -242,9 +244,13 @@ impl Comm {
                 mine.copy_from_slice(values);
                 waiting(|| world.all_reduce_into(&*mine, values, operation));
             }
-            Kind::Virtual(rank) => rank.reduce(bytemuck::cast_slice_mut(values), |a, b| {
-                bytemuck::cast(combine(bytemuck::cast(a), bytemuck::cast(b)))
-            }),
+            Kind::Virtual(rank) => {
+                rank.reduce(bytemuck::cast_slice_mut(values), |all, mine| {
+                    for (all, &mine) in all.iter_mut().zip(mine) {
+                        *all = bytemuck::cast(combine(bytemuck::cast(*all), bytemuck::cast(mine)));
+                    }
+                });
+            }
         }
     }
 }

@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use super::ledger::{NearestPair, RunState};
 use super::meetings::Meetings;
-use crate::comm::Comm;
-use crate::contact::{Closest, Contact, ContactSums, ContactTable, least, pair_key};
+use crate::comm::{Comm, Joint};
+use crate::contact::{Closest, Contact, ContactTable, least, pair_key};
 use crate::domain::{Mirrors, Span};
 use crate::loads::Loads;
 use crate::numerics::alone;
@@ -34,8 +34,7 @@ pub(crate) struct StepSums {
     crossed: Vec<Vec<usize>>,
     /// Whether there is friction or damping between bodies, whose heat is summed.
     friction: bool,
-    limbs: Vec<i64>,
-    words: Vec<u64>,
+    joint: Joint,
 }
 
 /// What else a step adds up on each rank.
@@ -62,8 +61,7 @@ impl StepSums {
             crossings: 0,
             uncorrected: 0,
             span: Span::NONE,
-            limbs: Vec::new(),
-            words: Vec::new(),
+            joint: Joint::default(),
         }
     }
 
@@ -72,7 +70,7 @@ impl StepSums {
         self.meetings.memory()
             + size_of::<usize>() * crossed
             + size_of::<usize>() * self.pair_keys.capacity()
-            + 8 * (self.limbs.capacity() + self.words.capacity())
+            + self.joint.memory()
     }
 
     /// Particles that crossed a symmetry plane change places with their images; books the impulse.
@@ -135,59 +133,80 @@ impl StepSums {
             .chain(&mut contact.sums.outside_torque)
     }
 
-    /// Joins the sums of all ranks. Collective.
-    pub fn reduce(&mut self, comm: &Comm, booked: &mut Booked) {
+    /// Joins the sums of all ranks, if there are any, with `first`, which becomes the first of all ranks'
+    /// words, and `bits`, which become those of any rank. Collective.
+    pub fn join(
+        &mut self,
+        comm: &Comm,
+        booked: Option<&mut Booked>,
+        (first, bits): (&mut [u64; 3], &mut u64),
+    ) {
+        let mut joint = std::mem::take(&mut self.joint);
+        joint.sums.clear();
+        joint.least.clear();
+        (joint.first, joint.bits) = (*first, *bits);
+        match booked {
+            Some(booked) if comm.size() > 1 => {
+                self.gather(booked, &mut joint);
+                comm.join(&mut joint);
+                self.scatter(comm, booked, &joint);
+            }
+            Some(booked) => self.meet(comm, booked),
+            None => comm.join(&mut joint),
+        }
+        (*first, *bits) = (joint.first, joint.bits);
+        self.joint = joint;
+    }
+
+    /// Adds this rank's sums and extremes to what ranks join. Positive doubles order as their bits do, and
+    /// a largest value is the smallest complement.
+    fn gather(&mut self, booked: &mut Booked, joint: &mut Joint) {
         let Booked { contact, loads, .. } = booked;
         self.uncorrected = booked.uncorrected;
         let news = self.meetings.news(&contact.sums.pairs);
-        let friction = self.friction;
-        if comm.size() == 1 {
-            let book = &mut contact.sums.pairs;
-            if news > 0 {
-                self.meetings.admit(comm, book, friction);
-            }
-            self.meetings.note(book);
-            return;
-        }
-        let mut limbs = std::mem::take(&mut self.limbs);
-        limbs.clear();
-        gather_limbs(self.exact(contact, loads), &mut limbs);
-        limbs.extend([self.uncorrected, self.crossings]);
-        limbs.extend([
+        gather_limbs(self.exact(contact, loads), &mut joint.sums);
+        joint.sums.extend([
+            self.uncorrected,
+            self.crossings,
             contact.sums.interpenetrated,
             i64::try_from(news).unwrap_or(1),
         ]);
-        self.meetings
-            .gather(&mut contact.sums.pairs, friction, &mut limbs);
-        comm.sum_i64(&mut limbs);
-        let rest = scatter_limbs(self.exact(contact, loads), &limbs);
+        let book = &mut contact.sums.pairs;
+        self.meetings.gather(book, self.friction, &mut joint.sums);
+        joint.least.extend([
+            contact.sums.closest.map_or(u64::MAX, f64::to_bits),
+            !contact.sums.foreign_fraction.to_bits(),
+        ]);
+        self.span.write(&mut joint.least);
+    }
+
+    /// Takes what the ranks have joined. Collective where bodies have met for the first time.
+    fn scatter(&mut self, comm: &Comm, booked: &mut Booked, joint: &Joint) {
+        let Booked { contact, loads, .. } = booked;
+        let rest = scatter_limbs(self.exact(contact, loads), &joint.sums);
         let (counts, rest) = rest.split_at(4);
         [self.uncorrected, self.crossings] = [counts[0], counts[1]];
         contact.sums.interpenetrated = counts[2];
         let book = &mut contact.sums.pairs;
-        self.meetings.scatter(book, friction, rest);
+        self.meetings.scatter(book, self.friction, rest);
         if counts[3] > 0 {
-            self.meetings.admit(comm, book, friction);
+            self.meetings.admit(comm, book, self.friction);
         }
         self.meetings.note(book);
-        self.limbs = limbs;
-        self.reduce_extremes(comm, &mut contact.sums);
+        let [closest, fraction] = [joint.least[0], !joint.least[1]];
+        contact.sums.closest = (closest != u64::MAX).then(|| f64::from_bits(closest));
+        contact.sums.foreign_fraction = f64::from_bits(fraction);
+        self.span = Span::read(&joint.least[2..]);
     }
 
-    /// Words whose smallest over the ranks are all ranks' extremes: positive doubles order as their
-    /// bits do, and a largest value is the smallest complement.
-    fn reduce_extremes(&mut self, comm: &Comm, contact: &mut ContactSums) {
-        self.words.clear();
-        self.words.extend([
-            contact.closest.map_or(u64::MAX, f64::to_bits),
-            !contact.foreign_fraction.to_bits(),
-        ]);
-        self.span.write(&mut self.words);
-        comm.min_u64(&mut self.words);
-        let [closest, fraction] = [self.words[0], !self.words[1]];
-        contact.closest = (closest != u64::MAX).then(|| f64::from_bits(closest));
-        contact.foreign_fraction = f64::from_bits(fraction);
-        self.span = Span::read(&self.words[2..]);
+    /// What one rank alone has to do in place of both.
+    fn meet(&mut self, comm: &Comm, booked: &mut Booked) {
+        self.uncorrected = booked.uncorrected;
+        let book = &mut booked.contact.sums.pairs;
+        if self.meetings.news(book) > 0 {
+            self.meetings.admit(comm, book, self.friction);
+        }
+        self.meetings.note(book);
     }
 
     /// Books the sums of all ranks into the state, after the second half of a step `dt` (s).

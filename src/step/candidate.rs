@@ -1,6 +1,6 @@
 //! The next time step: the smallest candidate of all particles on all ranks.
 //!
-//! A candidate is (Δt, reason, id), compared in that order, so that ties agree on any ranks.
+//! A candidate is Δt, reason and id, compared in that order, so that ties agree on any ranks.
 
 use std::collections::VecDeque;
 use std::marker::PhantomData;
@@ -18,16 +18,16 @@ use crate::sph::{SignalSpeed, Signals, Sph};
 const FARTHEST: f64 = 1e12;
 
 /// A candidate: bits of Δt (s; positive doubles order as their bits), reason, id.
-pub(super) type Candidate = (u64, u64, u64);
+pub(super) type Candidate = [u64; 3];
 
-pub(super) const NO_CANDIDATE: Candidate = (u64::MAX, 0, 0);
+pub(super) const NO_CANDIDATE: Candidate = [u64::MAX, 0, 0];
 /// Reads as an error: no positive Δt has these bits.
 const ERROR: u64 = 0;
 
 /// The choice of steps, and what a run remembers of them.
 pub struct StepControl {
-    /// What this rank asks for (a set of bits): all ranks' requests are joined by the choice of the
-    /// next step.
+    /// What this rank asks for (a set of bits): all ranks' requests are joined with their candidates on
+    /// the next step.
     pub requests: u64,
     /// The joined requests of all ranks as of the last candidate.
     pub agreed_requests: u64,
@@ -39,7 +39,6 @@ pub struct StepControl {
     id: u64,
     /// The last candidates, for post-mortems.
     past: VecDeque<PastStep>,
-    words: Vec<u64>,
 }
 
 impl StepControl {
@@ -53,39 +52,25 @@ impl StepControl {
             longest: case.time_step.max,
             id: 0,
             past: VecDeque::with_capacity(PAST_STEPS),
-            words: Vec::new(),
         }
     }
 
-    /// The next step (s) and its reason, given this rank's candidate and what all particles span;
-    /// or who has failed numerically. Collective.
+    /// The next step (s) and its reason, given the first candidate of all ranks and what all particles
+    /// span; or who has failed numerically. Collective.
     pub(super) fn choose(
         &mut self,
         comm: &Comm,
-        (dt, reason, id): Candidate,
+        [dt, reason, id]: Candidate,
         sky: &Sky,
         span: &Span,
     ) -> Result<(f64, Reason), (NumericalFailure, u64)> {
-        let words = &mut self.words;
-        comm.all_gather_u64(&[dt, reason, id, self.requests], words);
-        self.agreed_requests = words
-            .iter()
-            .skip(3)
-            .step_by(4)
-            .fold(0, |all, one| all | one);
-        let best = words
-            .chunks_exact(4)
-            .map(|word| (word[0], word[1], word[2]))
-            .min()
-            .unwrap_or(NO_CANDIDATE);
-        let (dt, reason, id) = best;
         if dt == ERROR {
             return Err((kind_of(reason), id));
         }
         self.id = id;
         let last = Reason::ALL.len() - 1;
         let mut reason = Reason::ALL[usize::try_from(reason).unwrap_or(0).min(last)];
-        let mut dt = if dt == NO_CANDIDATE.0 {
+        let mut dt = if dt == NO_CANDIDATE[0] {
             f64::INFINITY
         } else {
             f64::from_bits(dt)
@@ -119,7 +104,7 @@ impl StepControl {
     }
 
     pub(super) fn memory(&self) -> usize {
-        self.flight.memory() + 8 * self.words.capacity()
+        self.flight.memory()
     }
 }
 
@@ -146,7 +131,7 @@ impl BestCandidate {
     fn new(best: Candidate, step_min: f64, by_sound: Option<[f64; 2]>) -> Self {
         let dt = match best {
             NO_CANDIDATE => f64::INFINITY,
-            (bits, ..) => f64::from_bits(bits),
+            [bits, ..] => f64::from_bits(bits),
         };
         let step = dt.max(step_min) * (1.0 + 1e-9);
         let step2 = step * step;
@@ -247,7 +232,7 @@ impl<'a, F: SignalSpeed> Criteria<'a, F> {
 
     /// What is wrong with a particle, if anything is.
     pub(super) fn failure(&self, i: usize, moved: &Moved) -> Option<NumericalFailure> {
-        let (dt, kind, _) = self.candidate(i, moved);
+        let [dt, kind, _] = self.candidate(i, moved);
         (dt == ERROR).then(|| kind_of(kind))
     }
 
@@ -262,7 +247,7 @@ impl<'a, F: SignalSpeed> Criteria<'a, F> {
         if !self.is_beyond(i, moved, best) {
             let candidate = self.candidate(i, moved);
             if candidate < best.best {
-                let by_sound = candidate.1 == Reason::Sound as u64 && candidate.0 != ERROR;
+                let by_sound = candidate[1] == Reason::Sound as u64 && candidate[0] != ERROR;
                 let by_sound =
                     by_sound.then(|| [self.fields.smoothing_length[i], self.signals.of::<F>(i)]);
                 *best = BestCandidate::new(candidate, self.limits.step_min, by_sound);
@@ -277,7 +262,7 @@ impl<'a, F: SignalSpeed> Criteria<'a, F> {
         let (fields, factors) = (&self.fields, &self.factors);
         let (h, signal) = (fields.smoothing_length[i], self.signals.of::<F>(i));
         let by_sound = (signal >= 0.0 && factors.courant * h > best.step * signal)
-            || (best.is_matched(h, signal) && fields.id[i] > best.best.2);
+            || (best.is_matched(h, signal) && fields.id[i] > best.best[2]);
         let reach = factors.force * factors.force * h;
         let a = self.acceleration(i, &moved.contact);
         let by_force = reach * reach > best.step4 * square(&a);
@@ -321,10 +306,10 @@ impl<'a, F: SignalSpeed> Criteria<'a, F> {
             && moved.velocity.iter().all(|v| v.is_finite())
             && fields.position[i].iter().all(|x| x.abs() < FARTHEST);
         if !sane {
-            return (ERROR, NumericalFailure::NotFinite as u64, id);
+            return [ERROR, NumericalFailure::NotFinite as u64, id];
         }
         if let Some(kind) = self.limits.check(fields.body[i], fields.density[i], moved) {
-            return (ERROR, kind as u64, id);
+            return [ERROR, kind as u64, id];
         }
         let (dt, reason) = [
             (sound, Reason::Sound),
@@ -335,8 +320,8 @@ impl<'a, F: SignalSpeed> Criteria<'a, F> {
         .reduce(|best, next| if next.0 < best.0 { next } else { best })
         .unwrap_or((f64::INFINITY, Reason::Sound));
         if dt < self.limits.step_min {
-            return (ERROR, NumericalFailure::Step as u64, id);
+            return [ERROR, NumericalFailure::Step as u64, id];
         }
-        (dt.to_bits(), reason as u64, id)
+        [dt.to_bits(), reason as u64, id]
     }
 }

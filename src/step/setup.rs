@@ -208,8 +208,8 @@ impl Simulation {
         let scratch = self.sph.scratch(self.particles.owned());
         self.lists.restore_order(&mut self.particles, scratch);
         self.evaluate(comm, 0.0);
-        let candidate = self.kick(0.0);
-        self.book_step(comm, 0.0);
+        let own = self.kick(0.0);
+        let candidate = self.book_step(comm, 0.0, own);
         self.state.initial = self.totals(comm);
         self.state.initial.contact_energy = self.state.contact_energy;
         let scale = angular_momentum_scale(&self.particles, &self.loads, comm);

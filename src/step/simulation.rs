@@ -91,12 +91,12 @@ impl Simulation {
         self.migrate(comm);
         self.timers.lap(Phase::Migrate);
         self.evaluate(comm, dt);
-        let candidate = self.kick(dt);
+        let own = self.kick(dt);
         self.timers.lap(Phase::Integrate);
         self.state.step += 1;
         self.state.time = end;
         (self.state.last_dt, self.state.last_reason) = (dt, reason);
-        self.book_step(comm, dt);
+        let candidate = self.book_step(comm, dt, own);
         self.timers.updates += self.particles.owned() as u64;
         self.watch_witnesses();
         self.choose_step(comm, candidate)?;
@@ -247,9 +247,9 @@ impl Simulation {
         kicked.candidate
     }
 
-    /// Joins the sums of all ranks into the state, after the second half of a step `dt` (s).
-    /// Collective.
-    pub(super) fn book_step(&mut self, comm: &Comm, dt: f64) {
+    /// Joins the sums of all ranks into the state, after the second half of a step `dt` (s), and this rank's
+    /// candidate on the next step with those of others: gives the first. Collective.
+    pub(super) fn book_step(&mut self, comm: &Comm, dt: f64, own: Candidate) -> Candidate {
         let corrects = self.case.sph.form != SphForm::Conventional;
         let outside = !self.halo.mirrors().is_empty() || self.loads.act();
         let sums_any = self.contact.table.is_active() || outside || corrects;
@@ -258,14 +258,16 @@ impl Simulation {
             contact: &mut self.contact,
             loads: &mut self.loads,
         };
-        if sums_any {
-            self.sums.reduce(comm, &mut booked);
-        }
+        let (mut first, mut requests) = (own, self.step_control.requests);
+        let joined = sums_any.then_some(&mut booked);
+        self.sums.join(comm, joined, (&mut first, &mut requests));
+        self.step_control.agreed_requests = requests;
         self.sums.book(&mut self.state, &mut booked, dt);
+        first
     }
 
-    /// Chooses the next Δt, given this rank's candidate. Collective.
-    pub(super) fn choose_step(&mut self, comm: &Comm, own: Candidate) -> Result<(), StepError> {
+    /// Chooses the next Δt, given the first candidate of all ranks. Collective.
+    pub(super) fn choose_step(&mut self, comm: &Comm, first: Candidate) -> Result<(), StepError> {
         let sky = Sky {
             case: &self.case,
             particles: &self.particles,
@@ -274,7 +276,7 @@ impl Simulation {
             mirrors: self.halo.mirrors(),
             time: self.state.time,
         };
-        let chosen = self.step_control.choose(comm, own, &sky, &self.sums.span);
+        let chosen = self.step_control.choose(comm, first, &sky, &self.sums.span);
         let (dt, reason) = chosen.map_err(|(kind, id)| self.failure(comm, kind, id))?;
         (self.state.dt, self.state.dt_reason) = (dt, reason);
         self.step_control.keep(&self.state);

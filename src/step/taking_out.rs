@@ -96,11 +96,11 @@ impl Simulation {
         self.loads
             .prepare(&self.case, self.state.time, self.state.time);
         self.evaluate(comm, 0.0);
-        let candidate = self.kick(0.0);
+        let own = self.kick(0.0);
         // The sums of a step of no length have no work in them. Its defect is taken with what has
         // been lost, so the loss must be known first.
         let worst = self.state.worst;
-        self.book_step(comm, 0.0);
+        let candidate = self.book_step(comm, 0.0, own);
         let lost = contact_energy - self.state.contact_energy;
         *self.state.leaving(why).1 += lost;
         self.state.worst = worst;

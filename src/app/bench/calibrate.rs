@@ -6,8 +6,10 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::cases::{BenchCase, CASES};
-use super::driver::{Configuration, Scratch, launch, obstacle, program, read};
+use super::driver::{Configuration, Scratch, launch, mpirun, obstacle, program, read};
 use super::machine::{self, cores};
+use super::messages::Messages;
+use super::report::Report;
 use crate::plan::{
     CONSTANTS, Layout, Machine, Particles, Sharing, computing, own_levels, step_time,
 };
@@ -45,7 +47,12 @@ pub fn calibrate(folder: &Path) -> Result<Machine, String> {
     let one = time(IMPACT, (1, 1))?;
     machine.particle_time = (one - images_of(IMPACT)? * machine.image_time).max(0.0);
     let all = cores();
-    if all > 1 && obstacle((all, 1)).is_none() {
+    let can_launch = all > 1 && obstacle((all, 1)).is_none();
+    if can_launch {
+        let between = messages(&scratch)?;
+        machine.node_latency = between.latency;
+        machine.node_bandwidth = between.bandwidth;
+        machine.agreement_time = between.agreement_time;
         let many = time(IMPACT, (all, 1))?;
         machine.crowding = crowding(&machine, many)?;
     }
@@ -71,9 +78,19 @@ fn core_time(scratch: &Scratch, name: &str, configuration: Configuration) -> Res
     let mut command = program(configuration, bench(name))?;
     command.arg(format!("--repeat={REPEAT}")).arg("--json");
     launch(command.arg(&figures))?;
-    let rows = read(&figures)?;
-    let row = rows.first().ok_or("it tells nothing")?;
+    let report: Report = read(&figures)?;
+    let row = report.rows.first().ok_or("it tells nothing")?;
     Ok(1e-6 / row.million_updates_per_second_per_core)
+}
+
+/// What messages take between ranks on all cores, one fewer if they are odd.
+fn messages(scratch: &Scratch) -> Result<Messages, String> {
+    let figures = scratch.0.join("messages.json");
+    let own = std::env::current_exe().map_err(|e| format!("this program is not found: {e}"))?;
+    let mut command = mpirun(cores() / 2 * 2);
+    command.arg(own).args(["bench", "--messages", "--json"]);
+    launch(command.arg(&figures))?;
+    read(&figures)
 }
 
 fn bench(name: &str) -> &'static BenchCase {

@@ -6,6 +6,7 @@ use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use serde::de::DeserializeOwned;
 use signal_hook::consts::SIGINT;
 
 use super::BenchArgs;
@@ -109,7 +110,7 @@ fn measure_case(
                 command.arg("--from").arg(folder);
             }
             launch(&mut command)?;
-            rows.extend(read(&figures)?);
+            rows.extend(read::<Report>(&figures)?.rows);
         }
     }
     if let Some(folder) = &state {
@@ -181,7 +182,7 @@ pub(super) fn program(
     Ok(command)
 }
 
-fn mpirun(ranks: usize) -> Command {
+pub(super) fn mpirun(ranks: usize) -> Command {
     let mut command = Command::new("mpirun");
     command.arg("-n").arg(ranks.to_string());
     for (name, value) in LAUNCH {
@@ -213,12 +214,11 @@ pub(super) fn launch(command: &mut Command) -> Result<(), String> {
     })
 }
 
-/// The rows that a measuring process has left.
-pub(super) fn read(path: &Path) -> Result<Vec<Row>, String> {
+/// What a measuring process has left.
+pub(super) fn read<T: DeserializeOwned>(path: &Path) -> Result<T, String> {
     let wrong = |error: &dyn std::fmt::Display| format!("cannot read {}: {error}", path.display());
     let text = std::fs::read(path).map_err(|e| wrong(&e))?;
-    let report: Report = serde_json::from_slice(&text).map_err(|e| wrong(&e))?;
-    Ok(report.rows)
+    serde_json::from_slice(&text).map_err(|e| wrong(&e))
 }
 
 /// Says on a terminal what is going on, over what it said last.

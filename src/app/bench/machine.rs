@@ -1,5 +1,7 @@
 //! What the figures belong to.
 
+use std::hash::{DefaultHasher, Hash, Hasher};
+
 use serde::{Deserialize, Serialize};
 
 /// The machine and the instructions in use.
@@ -30,6 +32,14 @@ impl Machine {
 /// Cores that this process may use.
 pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// A number that processes of one node share, and others hardly do.
+pub fn host() -> u64 {
+    let mut hasher = DefaultHasher::new();
+    let name = std::fs::read("/proc/sys/kernel/hostname");
+    name.unwrap_or_default().hash(&mut hasher);
+    hasher.finish()
 }
 
 fn processor() -> Option<String> {

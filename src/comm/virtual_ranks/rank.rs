@@ -82,8 +82,8 @@ impl Rank {
         self.meet(self.tree(1.0, 0.0), |_| {});
     }
 
-    /// Combines each word with those of all ranks, in any order.
-    pub fn reduce(&self, words: &mut [u64], combine: impl Fn(u64, u64) -> u64) {
+    /// Combines words with those of all ranks, in any order: `combine` adds the second ones to the first.
+    pub fn reduce(&self, words: &mut [u64], combine: impl Fn(&mut [u64], &[u64])) {
         let cost = self.tree(1.0, size_of_val(words) as f64);
         let all = self.meet(cost, |all| {
             if all.is_empty() {
@@ -91,9 +91,7 @@ impl Rank {
                 return;
             }
             assert_eq!(all.len(), words.len(), "all ranks reduce as many words");
-            for (all, &mine) in all.iter_mut().zip(&*words) {
-                *all = combine(*all, mine);
-            }
+            combine(all, words);
         });
         words.copy_from_slice(&all);
     }
