@@ -136,7 +136,7 @@ fn messages_are_measured_between_ranks() {
     // The lines of a machine file.
     let lines: toml::Table = ended.stdout.parse().unwrap();
     let keys: Vec<&String> = lines.keys().collect();
-    assert_eq!(keys, ["agreement_time", "node_bandwidth", "node_latency"]);
+    assert_eq!(keys, ["node_latency", "node_bandwidth", "agreement_time"]);
     let ended = measure(command(WHIPPLE), 1);
     assert!(ended.stderr.contains("pairs of ranks"), "{}", ended.stderr);
 }

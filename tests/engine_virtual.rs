@@ -52,13 +52,11 @@ fn check_collectives(comm: &Comm) {
         let last = me + 1 == ranks;
         assert!(comm.any(last));
         comm.barrier();
-        let mut joint = Joint {
-            sums: mine.map(u64::cast_signed).to_vec(),
-            least: mine[..2].to_vec(),
-            first: [mine[0] >> 45, mine[1], mine[2]],
-            bits: 1 << (me % 64),
-            ..Joint::default()
-        };
+        let mut joint = Joint::default();
+        joint.sums.extend(mine.map(u64::cast_signed));
+        joint.least.extend(&mine[..2]);
+        joint.first = [mine[0] >> 45, mine[1], mine[2]];
+        joint.bits = 1 << (me % 64);
         comm.join(&mut joint);
         assert_eq!(joint.sums, sums.map(u64::cast_signed));
         assert_eq!(joint.least, over(u64::min)[..2]);

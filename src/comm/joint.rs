@@ -167,11 +167,11 @@ mod tests {
         assert_eq!(all.sums, [i64::MIN, -5, 1]);
         // Two elements in a row, as MPI may pass them.
         let words = |joint: &Joint| [joint.words.clone(), joint.words.clone()].concat();
-        let (mut two, mut added) = (words(&all), words(&mine));
+        let (mut two, mut added, mut count) = (words(&all), words(&mine), 2);
         // SAFETY: two elements each.
         unsafe {
             let (mine, all) = (added.as_mut_ptr().cast(), two.as_mut_ptr().cast());
-            combine_elements(mine, all, &raw mut { 2 }, std::ptr::null_mut());
+            combine_elements(mine, all, &raw mut count, std::ptr::null_mut());
         }
         combine(&mut all.words, &mine.words);
         assert_eq!(two, words(&all));
