@@ -51,7 +51,8 @@ fn a_panic_on_one_rank_ends_all() {
         let line = only_line(&ended);
         let begin = format!("error: rank {rank}, step 20: a panic on purpose (src/run/fault.rs:");
         assert!(line.starts_with(&begin), "{line}");
-        assert_eq!(ended.stdout.lines().count(), 1, "{ended:#?}");
+        // What runs on how many ranks, and how these share out space.
+        assert_eq!(ended.stdout.lines().count(), number.min(2), "{ended:#?}");
         // A crash has no time to write a status; what a chain reads is that nothing is finished.
         assert_eq!(status(&run).0, "running");
     }

@@ -7,7 +7,8 @@ use std::fs;
 use std::path::Path;
 
 use cli_support::{
-    WHIPPLE, assert_same, coarse_run, command, end, json, quarter_impact, ranks, start, status,
+    WHIPPLE, assert_same, coarse_run, command, end, json, project, quarter_impact, ranks, start,
+    status,
 };
 
 /// The columns of a table by name, of numbers.
@@ -153,15 +154,49 @@ fn a_users_program_has_no_faults_on_purpose() {
     assert!(!program.windows(name.len()).any(|bytes| bytes == name));
 }
 
+/// Levels and axes of the slabs are told as a run begins, when they change and at its end.
+#[test]
+fn a_run_tells_how_space_is_cut() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("run");
+    let case = project("tests/common/spreading.toml");
+    let mut started = ranks(8);
+    started.args(["run", &case, "--threads", "1", "--out"]);
+    let ended = end(started.arg(&run)).with_code(0);
+    let lines: Vec<&str> = ended.stdout.lines().collect();
+    let [_, begun, changed, _] = lines[..] else {
+        panic!("{ended:#?}");
+    };
+    assert_eq!(
+        begun,
+        "decomposition: 8 ranks in 3 levels of slabs along x, y, z"
+    );
+    let (step, how) = changed
+        .strip_prefix("decomposition from step ")
+        .and_then(|told| told.split_once(" on: "))
+        .unwrap_or_else(|| panic!("{changed}"));
+    // Slabs are looked at anew at every eighth balance.
+    assert_eq!(step.parse::<u64>().unwrap() % 8, 1, "{changed}");
+    assert_eq!(how, "8 ranks in slabs along z");
+    let log = fs::read_to_string(run.join("log.txt")).unwrap();
+    assert!(log.contains(begun) && log.contains(changed), "{log}");
+    let told = &json(&run.join("summary.json"))["decomposition"];
+    let expected = serde_json::json!({ "levels": 1, "axes": ["z"], "changes": 1 });
+    assert_eq!(*told, expected);
+    let about = end(command(WHIPPLE).arg("info").arg(&run)).with_code(0);
+    assert!(about.stdout.contains("decomposition"), "{about:#?}");
+}
+
 #[test]
 fn a_log_tells_the_story_of_a_run() {
     let place = tempfile::tempdir().unwrap();
     let run = place.path().join("run");
     let ended = end(coarse_run(2, &run).args(["--threads", "1"])).with_code(0);
     let lines: Vec<&str> = ended.stdout.lines().collect();
-    let [first, last] = lines[..] else {
+    let [first, cut, last] = lines[..] else {
         panic!("{ended:#?}");
     };
+    assert_eq!(cut, "decomposition: 2 ranks in slabs along x");
     let title = "Aluminium sphere at 7 km/s on an aluminium plate";
     let begin = format!("{title}: 3056 particles, 2 ranks with 1 thread each (");
     assert!(first.starts_with(&begin), "{first}");
@@ -182,7 +217,8 @@ fn a_log_tells_the_story_of_a_run() {
     assert!(told[0].starts_with("whipple 0."), "{log}");
     assert!(told[1].starts_with(&begin), "{log}");
     assert!(told[2].starts_with("set up in "), "{log}");
-    assert!(told[3].ends_with("snapshots/step-00000000.vtkhdf"), "{log}");
+    assert_eq!(told[3], cut, "{log}");
+    assert!(told[4].ends_with("snapshots/step-00000000.vtkhdf"), "{log}");
     assert!(
         told.iter().any(|line| line.starts_with("checkpoint ")),
         "{log}"

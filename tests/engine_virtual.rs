@@ -14,6 +14,7 @@ use common::sentinel::mix;
 use common::virtual_ranks::on_virtual_ranks;
 use physics_support::{ready, run_to, start};
 use whipple::comm::{Comm, Computing, Exchange, Joint, Machine, virtual_ranks, waited};
+use whipple::input;
 use whipple::model::{Axis, Case};
 use whipple::step::{Phase, Simulation, Timers};
 
@@ -407,6 +408,10 @@ fn together(ranks: usize, steps: usize, start: impl Fn(&Comm) -> Simulation + Sy
         assert!(simulation.traffic().0 > 0);
         Outcome::of(&simulation)
     });
+    joined(shares)
+}
+
+fn joined(shares: Vec<Outcome>) -> Outcome {
     let mut all = Outcome {
         rows: BTreeMap::new(),
         state: shares[0].state.clone(),
@@ -483,4 +488,47 @@ fn a_thousand_ranks_compute_what_one_does() {
     advance(&solo, &mut alone, 4);
     let all = together(1000, 4, begin);
     assert_same(&all, &Outcome::of(&alone));
+}
+
+/// What flies apart is cut otherwise while the run goes on, and nothing that comes out depends on it.
+#[test]
+fn levels_that_change_on_the_way_change_no_bit() {
+    let case = || {
+        let text = include_str!("common/spreading.toml");
+        input::parse("tests/common/spreading.toml", text, &[]).unwrap()
+    };
+    let (solo, steps) = (Comm::solo(), 40);
+    let mut alone = Simulation::start(case(), &solo).unwrap();
+    advance(&solo, &mut alone, steps);
+    let alone = Outcome::of(&alone);
+    for ranks in [8, 13] {
+        let cuts = |simulation: &Simulation| {
+            let slabs = simulation.slabs();
+            (slabs.levels(), slabs.axis(0))
+        };
+        let shares = on_virtual_ranks(ranks, Machine::IDEAL, |comm| {
+            let mut simulation = Simulation::start(case(), comm).unwrap();
+            let begun = cuts(&simulation);
+            advance(comm, &mut simulation, steps);
+            let told = (begun, cuts(&simulation), simulation.changes_of_slabs());
+            (told, Outcome::of(&simulation))
+        });
+        let (told, shares): (Vec<_>, Vec<_>) = shares.into_iter().unzip();
+        println!("{ranks} ranks: {:?}", told[0]);
+        assert!(told.iter().all(|of_rank| *of_rank == told[0]));
+        let (begun, ended, changes) = told[0];
+        assert!(begun.0 > 1 && changes > 0, "{:?}", told[0]);
+        assert_eq!(ended, (1, 2));
+        assert_same(&joined(shares), &alone);
+    }
+    // Named levels stay.
+    let changes = on_virtual_ranks(8, Machine::IDEAL, |comm| {
+        let mut case = case();
+        case.domain.levels = Some(2);
+        let mut simulation = Simulation::start(case, comm).unwrap();
+        advance(comm, &mut simulation, steps);
+        assert_eq!(simulation.slabs().levels(), 2);
+        simulation.changes_of_slabs()
+    });
+    assert_eq!(changes, [0; 8]);
 }

@@ -15,7 +15,7 @@ use crate::model::readable::{short, shown};
 use crate::output::read_small;
 use crate::plan::{
     CONSTANTS, Files, Layout, Load, Machine, Row, Sharing, Weak, computing, expected_steps,
-    own_levels, refined, step_time,
+    refined, step_time,
 };
 use crate::plot::PlotError;
 use crate::preflight::{Costs, memory};
@@ -166,13 +166,20 @@ fn plan(args: &PlanArgs, path: &Path) -> Result<(), String> {
     say(&format!("  {}", machine_line(&machine, args)));
     say("");
     say(&table::head());
-    let alone = layout_of(&source, (1, 1), 1)?.loads[0];
+    let alone = layout_of(&source, (1, Some(1)), 1)?.loads[0];
+    let ranks_per_node = args.sharing(&machine).ranks_per_node;
     let mut all = Vec::new();
     for ranks in args.ladder(count) {
-        let own = own_levels(&source.case, ranks);
-        for levels in args.levels(&source.case, own, ranks) {
-            let planned = one(args, &source, &machine, (ranks, levels), &alone)?;
-            say(&table::line(&planned.row, levels == own, steps));
+        let own = layout_of(&source, (ranks, None), ranks_per_node)?;
+        for levels in args.levels(&source.case, own.slabs.levels(), ranks) {
+            let is_own = levels == own.slabs.levels();
+            let layout = if is_own {
+                own.clone()
+            } else {
+                layout_of(&source, (ranks, Some(levels)), ranks_per_node)?
+            };
+            let planned = one(args, &source, &machine, layout, &alone);
+            say(&table::line(&planned.row, is_own, steps));
             all.push(planned);
         }
     }
@@ -270,12 +277,12 @@ fn machine_line(machine: &Machine, args: &PlanArgs) -> String {
 
 fn layout_of(
     source: &Source,
-    (ranks, levels): (usize, usize),
+    ranks_and_levels: (usize, Option<usize>),
     ranks_per_node: usize,
 ) -> Result<Layout, String> {
     let (case, particles) = (&source.case, &source.particles);
     let from = (particles, source.time.is_none());
-    let layout = Layout::new(case, from, (ranks, levels), ranks_per_node);
+    let layout = Layout::new(case, from, ranks_and_levels, ranks_per_node);
     layout.ok_or_else(|| "error: the case has no particles".to_owned())
 }
 
@@ -283,18 +290,17 @@ fn one(
     args: &PlanArgs,
     source: &Source,
     machine: &Machine,
-    (ranks, levels): (usize, usize),
+    layout: Layout,
     alone: &Load,
-) -> Result<Planned, String> {
+) -> Planned {
     let sharing = args.sharing(machine);
-    let layout = layout_of(source, (ranks, levels), sharing.ranks_per_node)?;
     let costs = Costs::of_case(&source.case);
     let of = (&source.particles, &layout);
     let row = Row::new(of, (machine, sharing), costs, computing(alone, machine));
     let each = f64::from(args.per_core) * f64::from(args.threads);
-    let weak = Weak::new(&layout.loads, levels, each, (machine, sharing));
+    let weak = Weak::new(&layout.loads, row.levels, each, (machine, sharing));
     let loads = layout.loads;
-    Ok(Planned { loads, row, weak })
+    Planned { loads, row, weak }
 }
 
 fn print_files(source: &Source, machine: &Machine, steps: Option<f64>) -> Result<(), String> {

@@ -1,5 +1,8 @@
 //! What the ranks of a decomposition would own and receive, before there is a particle.
 
+use std::f64::consts::{FRAC_PI_4, FRAC_PI_6};
+
+use super::choice::WORTHWHILE;
 use super::histogram::{Cumulative, Histogram};
 use super::nested::Slab;
 use crate::comm::Comm;
@@ -26,9 +29,6 @@ pub struct Fullest {
     /// Of others.
     pub halo: f64,
 }
-
-/// What more levels must save to be worth their messages.
-const WORTHWHILE: f64 = 0.95;
 
 /// The planes between which a slab lies, lower and upper by axis.
 type Planes = [[usize; 2]; 3];
@@ -101,14 +101,21 @@ impl Forecast {
     /// Cuts a slab by a level and those below, and looks at its ranks.
     fn cut(&self, (slab, level): (Slab, usize), planes: Planes, fullest: &mut Fullest) {
         if !slab.is_cut() {
-            let owned = self.count(&planes, 0.0);
+            let bodies = 0..self.bodies[0].len();
+            let [mut owned, mut halo] = [0.0; 2];
+            let filled = self.filled(&planes);
+            for body in bodies {
+                let sites = as_number(self.bodies[0][body].total());
+                owned += sites * self.share(body, &planes, None);
+                halo += sites * self.share_about(body, &filled);
+            }
             fullest.owned = fullest.owned.max(owned);
-            fullest.halo = fullest.halo.max(self.count(&planes, self.reach) - owned);
+            fullest.halo = fullest.halo.max(halo);
             return;
         }
         let axis = self.axes[level];
         let shares: Vec<f64> = (0..self.bodies[axis].len())
-            .map(|b| self.share(b, &planes, 0.0, Some(axis)))
+            .map(|b| self.share(b, &planes, Some(axis)))
             .collect();
         let below = |plane: usize| -> f64 {
             let bodies = self.bodies[axis].iter().zip(&shares);
@@ -143,22 +150,48 @@ impl Forecast {
         totals.sum()
     }
 
-    /// Sites between planes, and beyond them by a way (m).
-    fn count(&self, planes: &Planes, way: f64) -> f64 {
-        let bodies = &self.bodies[0];
-        let count = |b: usize| as_number(bodies[b].total()) * self.share(b, planes, way, None);
-        (0..bodies.len()).map(count).sum()
+    /// The part of a body between planes; along all axes but one.
+    fn share(&self, body: usize, planes: &Planes, but: Option<usize>) -> f64 {
+        let axes = (0..self.dimension).filter(|&axis| Some(axis) != but);
+        let shares = axes.map(|axis| self.share_along(axis, (body, planes), 0.0));
+        shares.product()
     }
 
-    /// The part of a body between planes, and beyond them by a way (m); along all axes but one.
-    fn share(&self, body: usize, planes: &Planes, way: f64, but: Option<usize>) -> f64 {
-        let axes = (0..self.dimension).filter(|&axis| Some(axis) != but);
-        let along = |axis: usize| {
-            let (body, [lower, upper]) = (&self.bodies[axis][body], planes[axis]);
-            let within = counted(body, upper, way) - counted(body, lower, -way);
-            within / as_number(body.total()).max(1.0)
-        };
-        axes.map(along).product()
+    /// The part of a body between planes along an axis, and beyond them by a way (m).
+    fn share_along(&self, axis: usize, (body, planes): (usize, &Planes), way: f64) -> f64 {
+        let (body, [lower, upper]) = (&self.bodies[axis][body], planes[axis]);
+        let within = counted(body, upper, way) - counted(body, lower, -way);
+        within / as_number(body.total()).max(1.0)
+    }
+
+    /// The part of a body that is within reach of the box between planes, and not in it. Beside edges
+    /// it is a quarter of a cylinder, at corners an eighth of a ball.
+    fn share_about(&self, body: usize, planes: &Planes) -> f64 {
+        // By the number of axes along which it is beside the box.
+        let mut beside = [1.0, 0.0, 0.0, 0.0];
+        for axis in 0..self.dimension {
+            let along = |way| self.share_along(axis, (body, planes), way);
+            let inside = along(0.0);
+            let outside = along(self.reach) - inside;
+            for n in (0..4).rev() {
+                let before = if n > 0 { beside[n - 1] } else { 0.0 };
+                beside[n] = inside * beside[n] + outside * before;
+            }
+        }
+        beside[1] + FRAC_PI_4 * beside[2] + FRAC_PI_6 * beside[3]
+    }
+
+    /// The same planes nearer together, as far as there is nothing between: halos reach from particles.
+    fn filled(&self, planes: &Planes) -> Planes {
+        let there = |body: &usize| self.share(*body, planes, None) > 0.0;
+        let there: Vec<usize> = (0..self.bodies[0].len()).filter(there).collect();
+        let mut filled = *planes;
+        for axis in 0..self.dimension {
+            let of_body = |&body: &usize| self.bodies[axis][body].filled(planes[axis]);
+            let join = |one: [usize; 2], two: [usize; 2]| [one[0].min(two[0]), one[1].max(two[1])];
+            filled[axis] = there.iter().map(of_body).reduce(join).unwrap_or([0; 2]);
+        }
+        filled
     }
 }
 

@@ -223,6 +223,15 @@ impl Cumulative {
         plane.min(self.below.len() - 1)
     }
 
+    /// The planes nearest to each other between which all lies that is between two others.
+    #[must_use]
+    pub fn filled(&self, [lower, upper]: [usize; 2]) -> [usize; 2] {
+        let (none, all) = (self.below[lower], self.below[upper]);
+        let first = self.below.partition_point(|&below| below <= none) - 1;
+        let last = self.below.partition_point(|&below| below < all);
+        [first.max(lower).min(upper), last.min(upper).max(lower)]
+    }
+
     /// What lies below the last plane that is not farther than `way` (m, signed) from another.
     #[must_use]
     #[allow(
@@ -257,6 +266,9 @@ mod tests {
         let found = below.map(|(plane, way)| cumulative.below(plane, way));
         assert_eq!(found, [0, 3, 3, 6, 3, 3]);
         assert_eq!(cumulative.below(9, f64::INFINITY), 10);
+        let between = [[0, 2048], [1, 2047], [1, 7], [2, 5]];
+        let filled = between.map(|planes| cumulative.filled(planes));
+        assert_eq!(filled, [[0, 2048], [7, 8], [7, 1], [5, 2]]);
         assert_eq!(
             [0.0, 3.0, 3.5, 9.0, 99.0].map(|n| cumulative.plane(n)),
             [0, 1, 8, 2048, 2048]

@@ -1,9 +1,11 @@
 //! Which rank owns what: slabs of slabs, migration, halo exchange, balance, mirror images.
 
 mod balance;
+mod choice;
 mod chosen;
 mod forecast;
 mod halo;
+mod halo_count;
 mod histogram;
 mod migrate;
 mod mirrors;
@@ -17,6 +19,7 @@ mod span;
 mod tally;
 
 pub use balance::Balance;
+pub use choice::Choice;
 pub use forecast::{Forecast, Fullest, reach};
 pub use halo::{Halo, Reaches};
 pub use histogram::{Cumulative, Histogram};

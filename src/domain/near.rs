@@ -11,13 +11,23 @@ impl NestedSlabs {
     pub(super) fn near(&self, rank: usize, range: f64, mut tell: impl FnMut(usize)) {
         let region = self.region(rank);
         if !region.is_empty() {
-            let within = Within { region, range };
-            self.descend((self.whole(), Brick::OPEN), &within, &mut |other| {
+            self.descend_to(Within { region, range }, |other| {
                 if other != rank {
                     tell(other);
                 }
             });
         }
+    }
+
+    /// Tells the ranks, ascending, that may own anything within a range (m) of a position (m).
+    pub(super) fn near_place(&self, position: &[f64; 3], range: f64, tell: impl FnMut(usize)) {
+        let [lower, upper] = [*position; 2];
+        let region = Brick { lower, upper };
+        self.descend_to(Within { region, range }, tell);
+    }
+
+    fn descend_to(&self, within: Within, mut tell: impl FnMut(usize)) {
+        self.descend((self.whole(), Brick::OPEN), &within, &mut tell);
     }
 
     /// Tells the ranks of a slab, and of a part of space, that are within a range.
@@ -55,7 +65,7 @@ struct Within {
 
 /// Slabs that are looked at lie within the range and so much more of it: whoever is within it by rounding
 /// alone is among them.
-const MARGIN: f64 = 1.001;
+pub(super) const MARGIN: f64 = 1.001;
 
 impl Within {
     /// Whether it reaches a box; that box's own region reaches this one if so.

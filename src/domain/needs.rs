@@ -1,6 +1,7 @@
 //! Who needs which particles, and which images of them.
 
 use super::mirrors::{Mirrors, codes};
+use crate::numerics::ordered::{disordered, ordered};
 
 /// The box around a rank's particles, and how far these reach: what it tells those that are near before the
 /// exchange.
@@ -24,6 +25,9 @@ impl Extent {
         reach: 0.0,
     };
 
+    /// How many words tell one.
+    pub(super) const WORDS: usize = 7;
+
     #[inline]
     pub(super) fn add(&mut self, position: &[f64; 3], reach: f64) {
         for (a, &x) in position.iter().enumerate() {
@@ -45,6 +49,26 @@ impl Extent {
         self.lower[0] > self.upper[0]
     }
 
+    /// Words whose smallest over some extents are those of all of them together.
+    pub(super) fn words(&self) -> [u64; Self::WORDS] {
+        let [a, b, c] = self.lower.map(ordered);
+        let [d, e, f] = self.upper.map(|x| !ordered(x));
+        [a, b, c, d, e, f, !ordered(self.reach)]
+    }
+
+    /// Takes [`Self::words`], or what is larger than any.
+    pub(super) fn of_words(words: &[u64]) -> Self {
+        if words[0] == u64::MAX {
+            return Self::EMPTY;
+        }
+        let most = |k: usize| disordered(!words[k]);
+        Self {
+            lower: std::array::from_fn(|a| disordered(words[a])),
+            upper: std::array::from_fn(|a| most(3 + a)),
+            reach: most(6),
+        }
+    }
+
     /// Whether particles of the two may be within each other's reach; whoever asks gets the same
     /// answer. Images behind planes are never nearer than their particles.
     pub(super) fn may_need(&self, other: &Self) -> bool {
@@ -56,7 +80,7 @@ impl Extent {
 
     /// Whether another box between two corners (m), which may be a place, is within a range (m) of this one.
     #[inline]
-    fn is_near(&self, (lower, upper): (&[f64; 3], &[f64; 3]), range: f64) -> bool {
+    pub(super) fn is_near(&self, (lower, upper): (&[f64; 3], &[f64; 3]), range: f64) -> bool {
         let square = |a: usize| {
             let gap = (lower[a] - self.upper[a]).max(self.lower[a] - upper[a]);
             gap.max(0.0) * gap.max(0.0)

@@ -157,6 +157,13 @@ impl NestedSlabs {
         Self::nested(axes, levels, vec![f64::INFINITY; ranks - 1])
     }
 
+    /// Becomes [`Self::on_first`] for so many ranks in place.
+    pub(super) fn reset(&mut self, axes: [usize; 3], levels: usize, ranks: usize) {
+        (self.axes, self.levels) = (axes, levels);
+        self.faces.clear();
+        self.faces.resize(ranks - 1, f64::INFINITY);
+    }
+
     /// The faces (m), one fewer than ranks: at place r that between ranks r and r + 1.
     #[must_use]
     pub fn faces(&self) -> &[f64] {
@@ -173,6 +180,12 @@ impl NestedSlabs {
     #[must_use]
     pub fn axis(&self, level: usize) -> usize {
         self.axes[level]
+    }
+
+    /// Axes of all levels (0, 1, 2), those that cut nothing last.
+    #[must_use]
+    pub fn axes(&self) -> [usize; 3] {
+        self.axes
     }
 
     /// How many ranks there are.

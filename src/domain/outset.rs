@@ -1,12 +1,13 @@
 //! Where the particles of a case stand before its first step.
 
 use super::balance::{Balance, split_slab};
+use super::choice::Choice;
 use super::forecast::{Forecast, share_of};
 use super::histogram::Histogram;
 use super::nested::{Decomposition, NestedSlabs};
 use super::rank_speed::RankSpeeds;
 use crate::comm::Comm;
-use crate::model::{Axis, Case};
+use crate::model::{Axis, Case, edge};
 use crate::populate;
 
 /// The ends of boxes along all axes (m).
@@ -94,14 +95,6 @@ impl Outset {
         }
     }
 
-    /// How many levels of slabs so many ranks get: as many as the case says, or those of the smallest
-    /// halo. Collective.
-    #[must_use]
-    pub fn levels(&self, case: &Case, comm: &Comm, ranks: usize) -> usize {
-        self.known_levels(case, ranks)
-            .unwrap_or_else(|| self.forecast(case, comm).levels(ranks))
-    }
-
     /// What ranks would own and receive. Collective.
     #[must_use]
     pub fn forecast(&self, case: &Case, comm: &Comm) -> Forecast {
@@ -109,16 +102,16 @@ impl Outset {
         Forecast::new(case, comm, ends, self.axes)
     }
 
-    /// [`Self::levels`] where they take no forecast.
+    /// How many levels of slabs so many ranks get, where that is not to be chosen by their halos.
     #[must_use]
     pub fn known_levels(&self, case: &Case, ranks: usize) -> Option<usize> {
-        let few = (ranks < FEW_RANKS).then_some(1);
-        case.domain.levels.or(few)
+        let few = ranks < FEW_RANKS || case.dimension == 1;
+        case.domain.levels.or(few.then_some(1))
     }
 
-    /// Slabs of so many levels, or as many as [`Self::levels`] tells, for so many ranks, with an even
-    /// number of particles, of which none is created. The processes of `comm`, which need not be those
-    /// ranks, share the work. Collective.
+    /// Slabs of so many levels, or as many as the case says or as a [`Choice`] takes, for so many ranks,
+    /// with an even number of particles, of which none is created. The processes of `comm`, which need
+    /// not be those ranks, share the work. Collective.
     #[must_use]
     pub fn slabs(
         &self,
@@ -127,21 +120,29 @@ impl Outset {
         (ranks, levels): (usize, Option<usize>),
         balance: &mut Balance,
     ) -> NestedSlabs {
-        let levels = levels.unwrap_or_else(|| self.levels(case, comm, ranks));
-        if levels == 1 || ranks == 1 {
+        let levels = levels.or_else(|| self.known_levels(case, ranks));
+        if levels == Some(1) || ranks == 1 {
             return self.flat_slabs(case, comm, ranks, balance);
         }
         // Each process counts for all what one slab has.
         let processes = self.flat_slabs(case, comm, comm.size(), balance);
         let brick = processes.region(comm.rank());
-        let mut places = Vec::new();
+        let (mut places, mut reach) = (Vec::new(), Vec::new());
         for body in &case.bodies {
             let of = (body, case.dimension, case.symmetry.as_slice());
-            populate::places(of, brick, |position| places.push(*position));
+            populate::places(of, brick, |site| {
+                places.push(site.position);
+                reach.push(body.smoothing_length * edge(site.share, case.dimension));
+            });
         }
-        let mut slabs = NestedSlabs::on_first(self.axes, levels, ranks);
+        let mut slabs = NestedSlabs::on_first(self.axes, levels.unwrap_or(1), ranks);
         let (work, even) = (vec![1; places.len()], RankSpeeds::default());
         balance.cut(comm, &mut slabs, (&places, &work), &even);
+        if levels.is_none() {
+            let all = (places.as_slice(), work.as_slice());
+            let mut choice = Choice::new(case);
+            choice.revise(comm, &mut slabs, (balance, &even), all, |i| reach[i]);
+        }
         slabs
     }
 

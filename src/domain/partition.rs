@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::balance::Balance;
+use super::choice::Choice;
 use super::halo::{Halo, Reaches};
 use super::migrate::Migration;
 use super::nested::NestedSlabs;
@@ -18,11 +19,18 @@ pub struct Partition {
     balance: Balance,
     rank_speeds: RankSpeeds,
     migration: Migration,
+    /// Where levels are to be chosen.
+    choice: Option<Choice>,
+    /// How often levels or axes have changed.
+    changes: u64,
     /// Steps between two balances; zero for none.
     every: u64,
     /// Largest reach of the particles of all ranks when they last changed ranks (m).
     farthest: f64,
 }
+
+/// Balances from one look at levels and axes to the next.
+const REVISED: u64 = 8;
 
 impl Partition {
     /// Slabs with an even number of particles, of which none is created. Collective.
@@ -30,19 +38,22 @@ impl Partition {
     pub fn new(case: &Case, comm: &Comm, outset: &Outset) -> Self {
         let mut balance = Balance::default();
         let slabs = outset.slabs(case, comm, (comm.size(), None), &mut balance);
-        Self::with(slabs, balance, case)
+        Self::with(slabs, balance, case, outset)
     }
 
     /// All particles on the first rank, until they are [dealt](Self::deal).
     #[must_use]
     pub fn none(case: &Case, comm: &Comm, outset: &Outset) -> Self {
-        let levels = outset.levels(case, comm, comm.size());
+        let levels = outset.known_levels(case, comm.size()).unwrap_or(1);
         let slabs = NestedSlabs::on_first(outset.axes, levels, comm.size());
-        Self::with(slabs, Balance::default(), case)
+        Self::with(slabs, Balance::default(), case, outset)
     }
 
-    fn with(slabs: NestedSlabs, balance: Balance, case: &Case) -> Self {
+    fn with(slabs: NestedSlabs, balance: Balance, case: &Case, outset: &Outset) -> Self {
+        let is_open = outset.known_levels(case, slabs.ranks()).is_none();
         Self {
+            choice: is_open.then(|| Choice::new(case)),
+            changes: 0,
             slabs,
             balance,
             rank_speeds: RankSpeeds::default(),
@@ -73,9 +84,15 @@ impl Partition {
         self.every != 0 && step.is_multiple_of(self.every)
     }
 
-    /// Moves faces so that each rank gets its share of work, given the seconds that this rank has
-    /// worked. Collective.
-    pub fn balance(&mut self, comm: &Comm, particles: &ParticleStore, busy: f64) {
+    /// Moves faces at a step so that each rank gets its share of work, given the seconds that this rank
+    /// has worked; now and then [revises](Self::revise) levels and axes. Collective.
+    pub fn balance(
+        &mut self,
+        comm: &Comm,
+        (particles, step): (&ParticleStore, u64),
+        busy: f64,
+        reach: impl Fn(&ParticleStore, usize) -> f64 + Sync,
+    ) {
         if comm.size() == 1 {
             return;
         }
@@ -83,6 +100,39 @@ impl Partition {
         let counted = particles.work.par_iter().map(|&w| u64::from(w)).sum();
         self.rank_speeds.measure(comm, counted, busy);
         self.cut(comm, particles);
+        if step > 0 && step.is_multiple_of(REVISED * self.every) {
+            let before = (self.slabs.levels(), self.slabs.axes());
+            self.revise(comm, particles, reach);
+            let is_new = before != (self.slabs.levels(), self.slabs.axes());
+            self.changes += u64::from(is_new);
+        }
+    }
+
+    /// Takes the levels and axes that suit the particles, where the case leaves them open. Collective.
+    fn revise(
+        &mut self,
+        comm: &Comm,
+        particles: &ParticleStore,
+        reach: impl Fn(&ParticleStore, usize) -> f64 + Sync,
+    ) {
+        if let Some(choice) = &mut self.choice {
+            let positions = &particles.position[..particles.owned()];
+            let all = (positions, particles.work.as_slice());
+            let by = (&mut self.balance, &self.rank_speeds);
+            choice.revise(comm, &mut self.slabs, by, all, |i| reach(particles, i));
+        }
+    }
+
+    /// Cuts slabs anew for any shares of all particles, and [deals](Self::deal) these. Collective.
+    pub fn begin(
+        &mut self,
+        comm: &Comm,
+        particles: &mut ParticleStore,
+        reach: impl Fn(&ParticleStore, usize) -> f64 + Sync,
+    ) {
+        self.cut(comm, particles);
+        self.revise(comm, particles, reach);
+        self.deal(comm, particles);
     }
 
     /// Deals any shares of all particles to the ranks. Collective.
@@ -116,6 +166,12 @@ impl Partition {
             .migrate(comm, &self.slabs, particles, near, reach);
     }
 
+    /// How often levels or axes have changed since the start of this process.
+    #[must_use]
+    pub fn changes(&self) -> u64 {
+        self.changes
+    }
+
     /// Messages and bytes sent so far.
     #[must_use]
     pub fn traffic(&self) -> Traffic {
@@ -128,6 +184,7 @@ impl Partition {
         self.migration.memory()
             + self.balance.memory()
             + self.rank_speeds.memory()
+            + self.choice.as_ref().map_or(0, Choice::memory)
             + 8 * self.slabs.faces().len()
     }
 }

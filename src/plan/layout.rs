@@ -3,7 +3,8 @@
 use super::particles::Particles;
 use crate::comm::{Comm, Traffic};
 use crate::domain::{
-    Balance, GREETING, Mirrors, NestedSlabs, Outset, RankSpeeds, Sent, Tally, greetings, tally,
+    Balance, Choice, GREETING, Mirrors, NestedSlabs, Outset, RankSpeeds, Sent, Tally, greetings,
+    tally,
 };
 use crate::model::Case;
 use crate::populate;
@@ -30,27 +31,21 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Of particles, those of the start or not, for so many ranks in slabs of so many levels, where so
-    /// many ranks that follow each other share a node. `None` for a case without particles.
+    /// Of particles, those of the start or not, for so many ranks in slabs of so many levels, or of those
+    /// that the case takes by itself, where so many ranks that follow each other share a node. `None` for a
+    /// case without particles.
     #[must_use]
     pub fn new(
         case: &Case,
         (particles, are_first): (&Particles, bool),
-        (ranks, levels): (usize, usize),
+        (ranks, levels): (usize, Option<usize>),
         ranks_per_node: usize,
     ) -> Option<Self> {
         let cut = if are_first { slabs_at_start } else { slabs_of };
-        let slabs = cut(case, particles, ranks, Some(levels))?;
+        let slabs = cut(case, particles, ranks, levels)?;
         let loads = loads(case, particles, &slabs, ranks_per_node);
         Some(Self { slabs, loads })
     }
-}
-
-/// The levels of slabs that a case takes on so many ranks.
-#[must_use]
-pub fn own_levels(case: &Case, ranks: usize) -> usize {
-    let outset = Outset::new(case);
-    outset.map_or(1, |outset| outset.levels(case, &Comm::solo(), ranks))
 }
 
 /// The slabs that a run begins with on so many ranks, of so many levels or as many as the case has.
@@ -83,10 +78,20 @@ pub fn slabs_of(
     ranks: usize,
     levels: Option<usize>,
 ) -> Option<NestedSlabs> {
-    let (solo, outset) = (Comm::solo(), Outset::new(case)?);
-    let levels = levels.unwrap_or_else(|| outset.levels(case, &solo, ranks));
-    let mut slabs = NestedSlabs::on_first(outset.axes, levels, ranks);
-    cut(&mut slabs, particles, &mut Balance::default());
+    let outset = Outset::new(case)?;
+    let levels = levels.or_else(|| outset.known_levels(case, ranks));
+    let mut slabs = NestedSlabs::on_first(outset.axes, levels.unwrap_or(1), ranks);
+    let mut balance = Balance::default();
+    cut(&mut slabs, particles, &mut balance);
+    if levels.is_none() {
+        let (work, even) = (vec![1; particles.positions.len()], RankSpeeds::default());
+        let (all, by) = (
+            (particles.positions.as_slice(), work.as_slice()),
+            (&mut balance, &even),
+        );
+        let reach = |i: usize| particles.reach[i];
+        Choice::new(case).revise(&Comm::solo(), &mut slabs, by, all, reach);
+    }
     Some(slabs)
 }
 

@@ -11,7 +11,7 @@ mod row;
 mod weak;
 
 pub use files::Files;
-pub use layout::{Layout, Load, loads, own_levels, slabs_at_start, slabs_of};
+pub use layout::{Layout, Load, loads, slabs_at_start, slabs_of};
 pub use machine::{CONSTANTS, Constant, Machine};
 pub use model::{Sharing, StepTime, computing, step_time};
 pub use particles::Particles;

@@ -57,11 +57,11 @@ impl Filling {
         }
     }
 
-    /// Tells where they stand before they are fitted (m).
-    pub fn places(self, cuts: Vec<Cut>, mut tell: impl FnMut(&[f64; 3])) {
+    /// Tells them as they stand before they are fitted; `each` as for [`Self::sites`].
+    pub fn places(self, cuts: Vec<Cut>, each: f64, tell: impl FnMut(Site)) {
         match self {
             Self::Cells(cells) => cells.places(&cuts, tell),
-            _ => self.sites(cuts, 1.0).for_each(|site| tell(&site.position)),
+            _ => self.sites(cuts, each).for_each(tell),
         }
     }
 

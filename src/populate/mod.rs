@@ -103,14 +103,16 @@ pub fn sites(
     filling.sites(cuts(symmetry, brick), particle_volume(body, dimension))
 }
 
-/// Tells where the [`sites`] of a body (in a dimension, above all symmetry planes) in a brick stand (m)
+/// Tells the [`sites`] of a body (in a dimension, above all symmetry planes) in a brick as they stand
 /// before they are fitted.
 pub fn places(
     (body, dimension, symmetry): (&Body, usize, &[SymmetryPlane]),
     brick: Brick,
-    tell: impl FnMut(&[f64; 3]),
+    tell: impl FnMut(Site),
 ) {
-    Filling::of(body, dimension, symmetry).places(cuts(symmetry, Some(brick)), tell);
+    let filling = Filling::of(body, dimension, symmetry);
+    let each = particle_volume(body, dimension);
+    filling.places(cuts(symmetry, Some(brick)), each, tell);
 }
 
 /// How many [`sites`] there are, without visiting each, and of layers that are alike only one.

@@ -197,9 +197,9 @@ fn left(folder: &Path, [limit, used, files]: [&str; 3]) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::domain::{Balance, Decomposition, NestedSlabs, RankSpeeds};
+    use crate::domain::{Balance, Mirrors, Tally, tally};
     use crate::input;
-    use crate::populate::{Brick, visits};
+    use crate::populate::visits;
     use crate::preflight::{approaches, warnings};
 
     fn quarter(spacing: &str) -> Case {
@@ -266,37 +266,26 @@ mod tests {
     /// Slabs of slabs hold what is forecast, but for bodies that are no boxes, and so do their halos.
     #[test]
     #[allow(clippy::cast_precision_loss, reason = "counts of thousands")]
-    fn the_forecast_is_that_of_a_walk() {
+    fn the_forecast_is_that_of_a_count() {
         let case = quarter("0.02mm");
         let sites = |body| populate::sites(body, 3, &case.symmetry, None);
         let sites = case.bodies.iter().flat_map(sites);
         let places: Vec<[f64; 3]> = sites.map(|site| site.position).collect();
-        let (solo, even) = (Comm::solo(), RankSpeeds::default());
+        let reaches = vec![0.5 * reach(&case); places.len()];
+        let solo = Comm::solo();
         let outset = Outset::new(&case).unwrap();
         let forecast = outset.forecast(&case, &solo);
         assert_eq!(forecast.total(), places.len() as f64);
         for (ranks, levels) in [(8, 1), (8, 2), (8, 3), (30, 2), (60, 3)] {
-            let mut slabs = NestedSlabs::on_first(outset.axes, levels, ranks);
-            let work = vec![1; places.len()];
-            Balance::default().cut(&solo, &mut slabs, (&places, &work), &even);
-            let count = |brick: Brick| places.iter().filter(|x| brick.holds(x)).count() as f64;
-            let mut most = Fullest::default();
-            for rank in 0..ranks {
-                let brick = slabs.region(rank);
-                let owned = count(brick);
-                most.owned = most.owned.max(owned);
-                most.halo = most.halo.max(count(brick.widened(reach(&case))) - owned);
-            }
+            let slabs = outset.slabs(&case, &solo, (ranks, Some(levels)), &mut Balance::default());
+            let tallies = tally(&slabs, &Mirrors::default(), (&places, &reaches), |_| {});
+            let most = |of: fn(&Tally) -> u64| tallies.iter().map(of).max().unwrap() as f64;
+            let (owned, halo) = (most(|tally| tally.owned), most(|tally| tally.halo));
             let told = forecast.fullest(levels, ranks);
-            println!("{ranks} ranks, {levels} levels: {told:?}, in truth {most:?}");
-            assert!(
-                (told.halo / most.halo - 1.0).abs() < 0.25,
-                "{ranks} {levels}"
-            );
-            assert!(
-                (told.owned / most.owned - 1.0).abs() < 0.25,
-                "{ranks} {levels}"
-            );
+            println!("{ranks} ranks, {levels} levels: {told:?}, in truth {owned} and {halo}");
+            for (told, truth) in [(told.halo, halo), (told.owned, owned)] {
+                assert!((told / truth - 1.0).abs() < 0.25, "{ranks} {levels}");
+            }
         }
         assert!(forecast.levels(10_000) > 1);
     }

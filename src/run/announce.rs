@@ -38,9 +38,27 @@ pub fn say_all(
     log.line(&text);
     log.line(&format!("set up in {set_up:.3} s"));
     say(&text);
+    if comm.size() > 1 {
+        let text = format!("decomposition: {}", decomposition(comm, simulation));
+        log.line(&text);
+        say(&text);
+    }
     for warning in warnings {
         let text = format!("warning: {warning}");
         log.line(&text);
         warn(&text);
     }
+}
+
+/// How space is shared out among ranks.
+pub fn decomposition(comm: &Comm, simulation: &Simulation) -> String {
+    let axes: Vec<&str> = (simulation.axes_of_slabs().iter())
+        .map(|axis| axis.name())
+        .collect();
+    let levels = match axes.len() {
+        1 => String::new(),
+        levels => format!("{levels} levels of "),
+    };
+    let ranks = counted(comm.size() as u64, "rank");
+    format!("{ranks} in {levels}slabs along {}", axes.join(", "))
 }

@@ -244,6 +244,10 @@ impl<'a> Driver<'a> {
         for text in self.departures.notices(&self.simulation) {
             self.log(comm, &text);
         }
+        if let Some(text) = self.notices.decomposition(comm, &self.simulation) {
+            self.log(comm, &text);
+            self.progress.tell(&text);
+        }
         let finished = self.simulation.is_finished();
         let (now, step) = (self.simulation.state.time, self.simulation.state.step);
         let output = &self.simulation.case.output;

@@ -1,5 +1,7 @@
-//! Tells once of what goes wrong in a run that goes on.
+//! Tells of what changes in a run, and once of what goes wrong in one that goes on.
 
+use super::announce::decomposition;
+use crate::comm::Comm;
 use crate::model::SphForm;
 use crate::model::readable::short;
 use crate::step::Simulation;
@@ -12,12 +14,24 @@ const WORTH: f64 = 0.01;
 pub struct Notices {
     drift: bool,
     yielded: bool,
+    /// How often the slabs had changed.
+    changes: u64,
 }
 
 impl Notices {
     /// A warning, the first time that there is cause for it.
     pub fn notice(&mut self, simulation: &Simulation) -> Option<String> {
         self.drift(simulation).or_else(|| self.yielded(simulation))
+    }
+
+    /// How space is shared out from now on, each time that it changes.
+    pub fn decomposition(&mut self, comm: &Comm, simulation: &Simulation) -> Option<String> {
+        let changes = simulation.changes_of_slabs();
+        let has_changed = std::mem::replace(&mut self.changes, changes) != changes;
+        has_changed.then(|| {
+            let (step, how) = (simulation.state.step, decomposition(comm, simulation));
+            format!("decomposition from step {step} on: {how}")
+        })
     }
 
     /// Angular momentum is off by more than a hundredth that no plane, surface, load or gravity

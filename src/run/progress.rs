@@ -107,11 +107,20 @@ impl Progress {
         (done.clamp(0.0, 1.0) * TICKS as f64) as u64
     }
 
+    /// A line, above the bar.
+    pub fn tell(&self, line: &str) {
+        self.above(|| say(line));
+    }
+
     /// A warning, above the bar.
     pub fn warn(&self, text: &str) {
+        self.above(|| warn(text));
+    }
+
+    fn above(&self, speak: impl FnOnce()) {
         match &self.bar {
-            Some(bar) => bar.suspend(|| warn(text)),
-            None if self.tells => warn(text),
+            Some(bar) => bar.suspend(speak),
+            None if self.tells => speak(),
             None => {}
         }
     }

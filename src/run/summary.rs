@@ -47,6 +47,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_jso
         "version": VERSION,
         "commit": COMMIT,
         "ranks": comm.size(),
+        "decomposition": (comm.size() > 1).then(|| decomposition(simulation)),
         "threads": threads,
         "instructions": crate::numerics::dispatch::instructions().name(),
         "particles": load.particles[0],
@@ -81,6 +82,17 @@ pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_jso
         "failed_mass": failed,
         "absorbing_zones": absorbing_zones(simulation),
         "contact_limited_steps": worst.contact_limited_steps,
+    })
+}
+
+/// Axes of the slabs by level, and how often they have changed.
+fn decomposition(simulation: &Simulation) -> serde_json::Value {
+    let axes = simulation.axes_of_slabs();
+    let names: Vec<&str> = axes.iter().map(|axis| axis.name()).collect();
+    json!({
+        "levels": names.len(),
+        "axes": names,
+        "changes": simulation.changes_of_slabs(),
     })
 }
 

@@ -60,7 +60,12 @@ impl Simulation {
         simulation.frozen = Frozen::part(comm, &mut simulation.particles, unused);
         simulation.state = state;
         simulation.open_departures();
-        simulation.partition.deal(comm, &mut simulation.particles);
+        let smoothing = &simulation.sph.smoothing;
+        simulation
+            .partition
+            .begin(comm, &mut simulation.particles, |particles, i| {
+                smoothing.reach(particles, i)
+            });
         limit_count(comm, simulation.particles.owned() as u64)?;
         Ok(simulation)
     }

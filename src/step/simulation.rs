@@ -146,7 +146,10 @@ impl Simulation {
         if partition.is_due(state.step) {
             // After the next search, when those that change ranks now have found their place.
             lists.is_order_due = true;
-            partition.balance(comm, particles, timers.busy());
+            let all = (&*particles, state.step);
+            partition.balance(comm, all, timers.busy(), |particles, i| {
+                sph.smoothing.reach(particles, i)
+            });
         }
     }
 

@@ -3,6 +3,7 @@
 use super::simulation::Simulation;
 use crate::contact::ContactTable;
 use crate::domain::{Halo, NestedSlabs};
+use crate::model::Axis;
 
 impl Simulation {
     /// Particles that this rank has frozen.
@@ -34,6 +35,20 @@ impl Simulation {
     #[must_use]
     pub fn slabs(&self) -> &NestedSlabs {
         self.partition.slabs()
+    }
+
+    /// The axes along which space is cut, by level.
+    #[must_use]
+    pub fn axes_of_slabs(&self) -> Vec<Axis> {
+        let slabs = self.slabs();
+        let levels = 0..slabs.levels();
+        levels.map(|level| Axis::ALL[slabs.axis(level)]).collect()
+    }
+
+    /// How often levels or axes of the slabs have changed since the start of this process.
+    #[must_use]
+    pub fn changes_of_slabs(&self) -> u64 {
+        self.partition.changes()
     }
 
     /// What this rank exchanges with others in each step.

@@ -10,9 +10,7 @@ use super::driver::{Configuration, Scratch, launch, mpirun, obstacle, program, r
 use super::machine::{self, cores};
 use super::messages::Messages;
 use super::report::Report;
-use crate::plan::{
-    CONSTANTS, Layout, Machine, Particles, Sharing, computing, own_levels, step_time,
-};
+use crate::plan::{CONSTANTS, Layout, Machine, Particles, Sharing, computing, step_time};
 
 /// The impact that tells the time of a particle, and a plate and its half, whose images behind a plane
 /// are as many as its particles.
@@ -102,8 +100,7 @@ fn bench(name: &str) -> &'static BenchCase {
 fn layout(name: &str, ranks: usize) -> Result<(Layout, usize), String> {
     let case = bench(name).read().map_err(|error| error.to_string())?;
     let particles = Particles::at_start(&case);
-    let cut = (ranks, own_levels(&case, ranks));
-    let layout = Layout::new(&case, (&particles, true), cut, ranks);
+    let layout = Layout::new(&case, (&particles, true), (ranks, None), ranks);
     let layout = layout.ok_or("it has no particles")?;
     Ok((layout, particles.positions.len()))
 }

@@ -2,8 +2,8 @@
 
 use super::laid::{Block, Cells, Level, Lie, each};
 use crate::model::{Vec3, cube};
-use crate::populate::Share;
 use crate::populate::row::Cut;
+use crate::populate::{Share, Site};
 
 /// Sites that are told together.
 enum Piece {
@@ -63,10 +63,10 @@ impl Cells {
         sum
     }
 
-    /// Tells where they stand before they are fitted (m).
-    pub fn places(&self, cuts: &[Cut], mut tell: impl FnMut(&[f64; 3])) {
+    /// Tells them as they stand before they are fitted.
+    pub fn places(&self, cuts: &[Cut], mut tell: impl FnMut(Site)) {
         for block in self.all_blocks(cuts) {
-            self.tell_sites(block, cuts, |site| tell(&site.position));
+            self.tell_sites(block, cuts, &mut tell);
         }
     }
 
