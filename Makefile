@@ -4,7 +4,7 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help deps test-deps release impact test run-tests check validation fuzz fuzz-memory soak pictures contact-lab bench bench-kernels docs clean
+.PHONY: help deps test-deps release impact test run-tests check validation fuzz fuzz-memory soak pictures image contact-lab bench bench-kernels docs clean
 
 # The environment of every build and launch: Open MPI's settings, HDF5_DIR.
 ENV := source jobs/env.sh;
@@ -79,6 +79,11 @@ test-deps:
 release: deps
 	$(ENV) WHIPPLE_COMMIT=$$(git describe --always --dirty 2>/dev/null || echo unknown) \
 	    cargo build --locked --release
+
+image: ## Make target/whipple.sif, a container, with Apptainer
+	mkdir -p target
+	apptainer build --force --build-arg commit=$$(git describe --always --dirty 2>/dev/null || echo unknown) \
+	    target/whipple.sif jobs/whipple.def
 
 run-tests: test-deps $(VENV)/ready
 	$(ENV) jobs/cargo-test.sh

@@ -16,6 +16,9 @@
 #   sbatch jobs/chain.sh CASE RUN …      each job is one leg and submits the next
 #   qsub -v WHIPPLE_ARGS="CASE RUN …" jobs/chain.sh       or WHIPPLE_ARGS=@FILE, as for run.sh
 #
+# A job script that ends in a call of this one names itself in WHIPPLE_JOB (whipple plan --job writes
+# such scripts): the next job is then that script again, with its own headers.
+#
 # A leg ends softly when the scheduler's time is nearly up (USR1) or at --walltime; the chain then
 # goes on. Ctrl-C, TERM (scancel --batch --signal=TERM JOB) and a file RUN/stop end the leg softly
 # and the chain with it (75). A plain scancel signals mpirun too, which kills its ranks. A run that
@@ -130,8 +133,11 @@ while [ "$(status)" != finished ]; do
         exit 1
     fi
     if [ -n "${SLURM_JOB_ID:-}" ]; then
-        exec sbatch "${same_job[@]}" "$root/jobs/chain.sh" "${arguments[@]}"
+        next=("$root/jobs/chain.sh" "${arguments[@]}")
+        [ -z "${WHIPPLE_JOB:-}" ] || next=("$WHIPPLE_JOB")
+        exec sbatch "${same_job[@]}" "${next[@]}"
     elif [ -n "${PBS_JOBID:-}" ]; then
+        [ -z "${WHIPPLE_JOB:-}" ] || exec qsub "$WHIPPLE_JOB"
         # Whatever they hold, they reach the next job as they are.
         list=$(realpath "$run")/chain.arguments
         case $list in

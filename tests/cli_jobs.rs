@@ -8,7 +8,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use cli_support::{Ended, command, end, project};
+use cli_support::{Ended, WHIPPLE, command, end, project, quarter_impact};
 
 /// Prints its arguments, one a line, in place of starting anything.
 const MPIRUN: &str = "#!/bin/sh\nprintf '%s\\n' \"$@\"\n";
@@ -55,7 +55,13 @@ impl Machine {
         command.env("PATH", format!("{}:{path}", self.at("bin").display()));
         command.env("SPOOL", self.at("spool"));
         command.env("HOME", self.at("home"));
-        for name in ["WHIPPLE_ARGS", "SLURM_JOB_ID", "PBS_JOBID", "PBS_O_WORKDIR"] {
+        for name in [
+            "WHIPPLE_ARGS",
+            "SLURM_JOB_ID",
+            "PBS_JOBID",
+            "PBS_O_WORKDIR",
+            "WHIPPLE_JOB",
+        ] {
             command.env_remove(name);
         }
         command.current_dir(project("."));
@@ -188,18 +194,22 @@ fn folders_of_new_runs_are_striped_where_that_is_asked_for() {
     }
 }
 
+/// In place of `mpirun`: prints its arguments; the first leg of a run stops, and the second finishes.
+fn two_legs(run: &Path) -> String {
+    format!(
+        "#!/bin/bash\nprintf '%s\\n' \"$@\"\nrun='{}'\nif [ -e \"$run/status.json\" ]\n\
+         then echo '\"finished\"' >\"$run/status.json\"\n\
+         else mkdir -p \"$run/checkpoints/step-00000001\"; echo '\"stopped\"' >\"$run/status.json\"; exit 75\nfi\n",
+        run.display()
+    )
+}
+
 /// The first leg stops, and the chain submits the second with the arguments of the first.
 #[test]
 fn a_chain_of_jobs_of_pbs_keeps_its_arguments() {
     let machine = Machine::new();
     let run = machine.at("a run");
-    let leg = format!(
-        "#!/bin/bash\nprintf '%s\\n' \"$@\"\nrun='{}'\nif [ -e \"$run/status.json\" ]\n\
-         then echo '\"finished\"' >\"$run/status.json\"\n\
-         else mkdir -p \"$run/checkpoints/step-00000001\"; echo '\"stopped\"' >\"$run/status.json\"; exit 75\nfi\n",
-        run.display()
-    );
-    machine.program("mpirun", &leg);
+    machine.program("mpirun", &two_legs(&run));
     let set = "output.fields=[\"pressure\", \"density\"]";
     let arguments = ["inputs/sod", run.to_str().unwrap(), "--set", set];
     fs::write(machine.at("arguments"), arguments.join("\n")).unwrap();
@@ -218,4 +228,92 @@ fn a_chain_of_jobs_of_pbs_keeps_its_arguments() {
         Some(&*format!("{} is finished", arguments[1]))
     );
     assert!(Path::new(&run).join("chain.arguments").is_file());
+}
+
+/// Gives a job what the headers of its script ask for, as SLURM and PBS do, and runs a copy of it; tells its options.
+const SBATCH: &str = r#"#!/bin/bash
+header() { sed -n "s/^#SBATCH --$1=//p" "${!#}"; }
+cd "$PLACE" && cp "${!#}" "$SPOOL/job"
+printf '%s\n' "sbatch $*"
+export SLURM_JOB_ID=7 SLURM_JOB_NAME=whipple SLURM_JOB_PARTITION=all SLURM_SUBMIT_DIR="$PWD"
+export SLURM_JOB_NUM_NODES=$(header nodes "$@") SLURM_CPUS_PER_TASK=$(header cpus-per-task "$@")
+export SLURM_NTASKS=$((SLURM_JOB_NUM_NODES * $(header ntasks-per-node "$@")))
+exec bash "$SPOOL/job"
+"#;
+const QSUB_FILE: &str = r#"#!/bin/bash
+[ $# = 1 ] || exit 9
+printf '%s\n' "qsub $*"
+asked=$(sed -n 's/^#PBS -l select=//p' "$1")
+IFS=:= read -r nodes _ cores _ ranks _ OMP_NUM_THREADS _ <<<"$asked"
+[ "$cores" = $((ranks * OMP_NUM_THREADS)) ] || exit 9
+export OMP_NUM_THREADS PBS_JOBID=7 PBS_O_WORKDIR="$PWD" PBS_NODEFILE="$SPOOL/nodes"
+for ((k = 0; k < nodes * ranks; k++)); do echo "node$((k / ranks))"; done >"$PBS_NODEFILE"
+cp "$1" "$SPOOL/job" && cd "$HOME" && exec bash "$SPOOL/job"
+"#;
+
+/// The script that `whipple plan` writes runs under both schedulers until the run is at its end.
+#[test]
+fn a_planned_job_submits_itself_until_the_end() {
+    for scheduler in ["sbatch", "qsub"] {
+        let machine = Machine::new();
+        let place = machine.place.path();
+        std::os::unix::fs::symlink(project("jobs"), place.join("jobs")).unwrap();
+        machine.program("mpirun", &two_legs(&place.join("runs/quarter-impact")));
+        machine.program("sbatch", SBATCH);
+        machine.program("qsub", QSUB_FILE);
+        machine.program("squeue", "#!/bin/sh\necho 10:00\n");
+        fs::write(machine.at("machine.toml"), "cores_per_node = 8.0\n").unwrap();
+        let case = quarter_impact();
+        let title = "title=\"it's here\"";
+        let mut plan = command(WHIPPLE);
+        plan.args(["plan", &case, "--set", "spacing=0.05mm", "--set", title]);
+        plan.args([
+            "--machine",
+            "machine.toml",
+            "--nodes=3",
+            "--threads=4",
+            "--job=a job",
+        ]);
+        end(plan.current_dir(place)).with_code(0);
+        let mut submit = machine.command(scheduler);
+        submit.env("PLACE", place).current_dir(place).arg("a job");
+        let ended = end(&mut submit).with_code(0);
+        let words: Vec<&str> = ended.stdout.lines().collect();
+        let count = |sought: &[&str]| {
+            let found = words.windows(sought.len()).filter(|words| *words == sought);
+            found.count()
+        };
+        // Both legs alike.
+        assert_eq!(
+            count(&["-n", "6", "--map-by", "slot:PE=4"]),
+            2,
+            "{ended:#?}"
+        );
+        let stop = ["--walltime", "0:05:00", "--threads", "4"];
+        assert_eq!(count(&stop), 2, "{ended:#?}");
+        let run = "runs/quarter-impact";
+        let first = [
+            "run",
+            &case,
+            "--out",
+            run,
+            "--set",
+            "spacing=0.05mm",
+            "--set",
+            title,
+        ];
+        assert_eq!(
+            (count(&first), count(&["restart", run])),
+            (1, 1),
+            "{ended:#?}"
+        );
+        assert_eq!(words.last(), Some(&"runs/quarter-impact is finished"));
+        let submitted = words.iter().filter(|word| word.starts_with(scheduler));
+        let submitted: Vec<&&str> = submitted.collect();
+        assert_eq!(submitted.len(), 2, "{ended:#?}");
+        assert!(
+            submitted.iter().all(|word| word.ends_with(" a job")),
+            "{ended:#?}"
+        );
+    }
 }

@@ -1,6 +1,9 @@
 //! `whipple plan`: what a case takes on any number of ranks.
 
 mod chart;
+mod doubled;
+mod job;
+mod nodes;
 mod source;
 mod table;
 
@@ -13,10 +16,7 @@ use super::plot::out::{is_png, save, unsaved};
 use crate::model::Case;
 use crate::model::readable::{short, shown};
 use crate::output::read_small;
-use crate::plan::{
-    CONSTANTS, Files, Layout, Load, Machine, Row, Sharing, Weak, computing, expected_steps,
-    refined, step_time,
-};
+use crate::plan::{Files, Layout, Load, Machine, Row, Sharing, Weak, computing, expected_steps};
 use crate::plot::PlotError;
 use crate::preflight::{Costs, memory};
 use crate::run::exit::{EXIT_FAILED, EXIT_INPUT};
@@ -35,16 +35,21 @@ pub use table::duration;
 /// size would have in a box filled evenly; the most peers, messages and bytes that a rank sends in a step; memory of
 /// the largest rank; a step; efficiency against one core alone; the whole run. A star marks the levels that the
 /// case takes by itself.
+///
+/// With --nodes, layouts that fill the cores of that many nodes are compared instead: each number of threads of a
+/// rank that divides the cores of a node. A star marks the fastest of each number of nodes that fits into memory.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   whipple plan inputs/quarter-impact
   whipple plan inputs/quarter-impact --set spacing=0.005mm --ranks 64,512,4096 --threads 8 --chart plan.png
   whipple plan runs/quarter/checkpoints/step-00000100 --ranks 16 --machine cluster.toml --doubled
+  whipple plan inputs/quarter-impact --nodes 1,2,4 --machine cluster.toml
+  whipple plan inputs/quarter-impact --nodes 4 --machine cluster.toml --job quarter.job
   whipple plan --calibrate here.toml
 
 A machine file holds some of these, in SI units; `whipple plan --ranks 1 --machine FILE` refuses others:
   name, cores_per_node, particle_time, image_time, thread_loss, crowding, latency, bandwidth,
-  node_latency, node_bandwidth, agreement_time, overlap, disk_bandwidth")]
+  node_latency, node_bandwidth, agreement_time, overlap, disk_bandwidth, memory_per_node, longest_job")]
 pub struct PlanArgs {
     /// Case file (TOML), a folder with a case.toml, a run (its last snapshot), a snapshot or a checkpoint
     #[arg(value_name = "CASE_OR_SNAPSHOT", required_unless_present = "calibrate")]
@@ -71,9 +76,19 @@ pub struct PlanArgs {
     #[arg(short, long, value_name = "FILE")]
     machine: Option<PathBuf>,
 
-    /// Threads of each rank
-    #[arg(short, long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
-    threads: u16,
+    /// Numbers of nodes, as in 1,2,4: compare ranks and threads that fill their cores, and star the fastest
+    #[arg(short = 'N', long, value_name = "N", value_delimiter = ',')]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(conflicts_with_all = ["ranks", "levels", "doubled", "chart", "calibrate"])]
+    nodes: Vec<u32>,
+
+    /// Write a batch script for SLURM and PBS: a chain of jobs on the fastest layout of --nodes
+    #[arg(short, long, value_name = "FILE", requires = "nodes")]
+    job: Option<PathBuf>,
+
+    /// Threads of each rank [default: 1; with --nodes all that divide the cores of a node]
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
 
     /// Ranks of each node [default: as many as its cores take]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
@@ -132,7 +147,7 @@ fn calibrate(path: &Path) -> Result<(), String> {
     say(text.trim_end());
     write_text(path, text.as_bytes())?;
     say(
-        "of messages it tells what an ordinary cluster has: put what you know of yours in their place",
+        "of messages, memory and jobs it tells what an ordinary cluster has: put what you know of yours in their place",
     );
     Ok(())
 }
@@ -160,46 +175,67 @@ fn plan(args: &PlanArgs, path: &Path) -> Result<(), String> {
         .as_deref()
         .map_or(Ok(Machine::default()), machine)?;
     let source = source::read(path, &args.set)?;
-    let count = source.particles.positions.len();
     let steps = expected_steps(&source.case, source.time.unwrap_or(0.0));
     say(&heading(&source, steps));
-    say(&format!("  {}", machine_line(&machine, args)));
+    if !args.nodes.is_empty() {
+        return nodes::plan(args, path, (&source, steps), &machine);
+    }
+    let all = print_ranks(args, &source, &machine, steps)?;
+    let rows: Vec<Row> = all.iter().map(|planned| planned.row).collect();
+    write_sheet(args, &rows, steps)?;
+    if let Some(path) = &args.chart {
+        let weak: Vec<Weak> = all.iter().map(|planned| planned.weak).collect();
+        let title = format!("{}, {}", source.case.title, machine.name);
+        let particles = (source.particles.positions.len(), args.per_core);
+        let chart = chart::chart(&title, particles, &rows, &weak);
+        let canvas = chart.draw(args.width).map_err(told)?;
+        save(path, |path| canvas.save(path)).map_err(told)?;
+    }
+    Ok(())
+}
+
+/// Compares levels for each number of ranks.
+fn print_ranks(
+    args: &PlanArgs,
+    source: &Source,
+    machine: &Machine,
+    steps: Option<f64>,
+) -> Result<Vec<Planned>, String> {
+    let sharing = args.sharing(machine);
+    say(&format!("  {}", machine_line(machine, sharing)));
     say("");
     say(&table::head());
-    let alone = layout_of(&source, (1, Some(1)), 1)?.loads[0];
-    let ranks_per_node = args.sharing(&machine).ranks_per_node;
+    let alone = layout_of(source, (1, Some(1)), 1)?.loads[0];
     let mut all = Vec::new();
-    for ranks in args.ladder(count) {
-        let own = layout_of(&source, (ranks, None), ranks_per_node)?;
+    for ranks in args.ladder(source.particles.positions.len()) {
+        let own = layout_of(source, (ranks, None), sharing.ranks_per_node)?;
         for levels in args.levels(&source.case, own.slabs.levels(), ranks) {
             let is_own = levels == own.slabs.levels();
             let layout = if is_own {
                 own.clone()
             } else {
-                layout_of(&source, (ranks, Some(levels)), ranks_per_node)?
+                layout_of(source, (ranks, Some(levels)), sharing.ranks_per_node)?
             };
-            let planned = one(args, &source, &machine, layout, &alone);
-            say(&table::line(&planned.row, is_own, steps));
-            all.push(planned);
+            let row = row_of(source, machine, &layout, sharing, &alone);
+            let line = table::line(&row, is_own, steps);
+            say(&(line + &table::excess(&row, machine)));
+            let each = f64::from(args.per_core) * as_number(sharing.threads);
+            let weak = Weak::new(&layout.loads, levels, each, (machine, sharing));
+            let loads = layout.loads;
+            all.push(Planned { loads, row, weak });
         }
     }
     say("");
-    print_files(&source, &machine, steps)?;
+    print_files(source, machine, steps)?;
     if args.doubled {
-        print_doubled(args, &machine, &alone, &all);
+        doubled::print(args, machine, &alone, &all);
     }
-    let rows: Vec<Row> = all.iter().map(|planned| planned.row).collect();
-    if let Some(path) = &args.csv {
-        write_text(path, &table::sheet(&rows, steps).text())?;
-    }
-    if let Some(path) = &args.chart {
-        let weak: Vec<Weak> = all.iter().map(|planned| planned.weak).collect();
-        let title = format!("{}, {}", source.case.title, machine.name);
-        let chart = chart::chart(&title, (count, args.per_core), &rows, &weak);
-        let canvas = chart.draw(args.width).map_err(told)?;
-        save(path, |path| canvas.save(path)).map_err(told)?;
-    }
-    Ok(())
+    Ok(all)
+}
+
+fn write_sheet(args: &PlanArgs, rows: &[Row], steps: Option<f64>) -> Result<(), String> {
+    let Some(path) = &args.csv else { return Ok(()) };
+    write_text(path, &table::sheet(rows, steps).text())
 }
 
 impl PlanArgs {
@@ -226,7 +262,7 @@ impl PlanArgs {
     }
 
     fn sharing(&self, machine: &Machine) -> Sharing {
-        let threads = usize::from(self.threads);
+        let threads = self.threads.map_or(1, usize::from);
         let named = self.ranks_per_node.map(|ranks| ranks as usize);
         Sharing {
             threads,
@@ -263,8 +299,7 @@ fn heading(source: &Source, steps: Option<f64>) -> String {
     )
 }
 
-fn machine_line(machine: &Machine, args: &PlanArgs) -> String {
-    let sharing = args.sharing(machine);
+fn machine_line(machine: &Machine, sharing: Sharing) -> String {
     let threads = if sharing.threads == 1 { "" } else { "s" };
     format!(
         "on {}: {} a particle and step, {} ranks of {} thread{threads} on a node",
@@ -286,32 +321,32 @@ fn layout_of(
     layout.ok_or_else(|| "error: the case has no particles".to_owned())
 }
 
-fn one(
-    args: &PlanArgs,
+/// What a number of ranks in slabs of some levels has, and what the table tells of it.
+fn row_of(
     source: &Source,
     machine: &Machine,
-    layout: Layout,
+    layout: &Layout,
+    sharing: Sharing,
     alone: &Load,
-) -> Planned {
-    let sharing = args.sharing(machine);
+) -> Row {
     let costs = Costs::of_case(&source.case);
-    let of = (&source.particles, &layout);
-    let row = Row::new(of, (machine, sharing), costs, computing(alone, machine));
-    let each = f64::from(args.per_core) * f64::from(args.threads);
-    let weak = Weak::new(&layout.loads, row.levels, each, (machine, sharing));
-    let loads = layout.loads;
-    Planned { loads, row, weak }
+    let of = (&source.particles, layout);
+    Row::new(of, (machine, sharing), costs, computing(alone, machine))
 }
 
-fn print_files(source: &Source, machine: &Machine, steps: Option<f64>) -> Result<(), String> {
-    #[allow(clippy::cast_precision_loss, reason = "for people")]
-    let count = source.particles.positions.len() as f64;
+fn print_files(source: &Source, machine: &Machine, steps: Option<f64>) -> Result<Files, String> {
+    let count = as_number(source.particles.positions.len());
     let files = Files::new(&source.case, count, steps.unwrap_or(0.0));
     let files = files.map_err(|error| format!("error: {error}"))?;
     for line in file_lines(&files, machine) {
         say(&format!("  {line}"));
     }
-    Ok(())
+    Ok(files)
+}
+
+#[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]
+fn as_number(count: usize) -> f64 {
+    count as f64
 }
 
 /// What files there will be.
@@ -339,36 +374,4 @@ pub fn file_lines(files: &Files, machine: &Machine) -> Vec<String> {
             size(machine.disk_bandwidth),
         ),
     ]
-}
-
-/// The efficiency of the most ranks, each number of the machine twice as large in turn.
-fn print_doubled(args: &PlanArgs, machine: &Machine, alone: &Load, all: &[Planned]) {
-    let sharing = args.sharing(machine);
-    let best = |a: &&Planned, b: &&Planned| {
-        let by_ranks = a.row.ranks.cmp(&b.row.ranks);
-        by_ranks.then(a.row.efficiency.total_cmp(&b.row.efficiency))
-    };
-    let Some(planned) = all.iter().max_by(best) else {
-        return;
-    };
-    let each = f64::from(args.per_core) * f64::from(args.threads);
-    let (ranks, levels) = (planned.row.ranks, planned.row.levels);
-    let fine = refined(&planned.loads, levels, each);
-    #[allow(clippy::cast_precision_loss, reason = "few cores")]
-    let cores = (ranks * sharing.threads) as f64;
-    say(&format!(
-        "\n  {ranks} ranks, {levels} levels: efficiency, and that of the model refined to {} particles a core",
-        args.per_core
-    ));
-    let efficiencies = |machine: &Machine| {
-        let time = step_time(&planned.loads, machine, sharing).all;
-        let strong = computing(alone, machine) / (time * cores);
-        let weak = Weak::of_refined(&fine, each, (machine, sharing)).efficiency;
-        format!("{strong:.3}  {weak:.3}")
-    };
-    say(&format!("  {:<24}{}", "as told", efficiencies(machine)));
-    for constant in &CONSTANTS {
-        let text = efficiencies(&machine.doubled(constant));
-        say(&format!("  {:<24}{text}", format!("2 x {}", constant.key)));
-    }
 }

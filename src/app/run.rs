@@ -96,7 +96,7 @@ fn read_case(comm: &Comm, path: &Path) -> Result<(PathBuf, String), String> {
 }
 
 /// `runs/` and the case's own name: that of its file, or of its folder for a `case.toml`.
-fn default_folder(case: &Path) -> PathBuf {
+pub(super) fn default_folder(case: &Path) -> PathBuf {
     let stem = case.file_stem().unwrap_or_default();
     let folder = case.parent().and_then(Path::file_name);
     let name = if stem == "case" {

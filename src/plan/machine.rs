@@ -4,6 +4,8 @@ use std::fmt::Write as _;
 
 use serde::{Deserialize, Serialize};
 
+use super::model::Sharing;
+
 /// How fast a machine is, in SI units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -34,6 +36,10 @@ pub struct Machine {
     pub overlap: f64,
     /// Bytes that all ranks together write in a second.
     pub disk_bandwidth: f64,
+    /// Bytes of memory that the ranks of a node may take together; infinite where nobody told.
+    pub memory_per_node: f64,
+    /// The longest time (s) that a batch job may ask for.
+    pub longest_job: f64,
 }
 
 /// A number of a machine: its key, what it is, where it stands, and what it may be.
@@ -51,7 +57,7 @@ const TIMES: [f64; 2] = [1e-12, 1.0];
 const RATES: [f64; 2] = [1e3, 1e18];
 
 /// All numbers of a machine.
-pub const CONSTANTS: [Constant; 12] = [
+pub const CONSTANTS: [Constant; 14] = [
     Constant {
         key: "cores_per_node",
         what: "cores of a node",
@@ -124,6 +130,18 @@ pub const CONSTANTS: [Constant; 12] = [
         get: |machine| &mut machine.disk_bandwidth,
         range: RATES,
     },
+    Constant {
+        key: "memory_per_node",
+        what: "bytes, what the ranks of a node may take; inf: not told",
+        get: |machine| &mut machine.memory_per_node,
+        range: [1e6, f64::INFINITY],
+    },
+    Constant {
+        key: "longest_job",
+        what: "s, the longest time that a batch job may ask for",
+        get: |machine| &mut machine.longest_job,
+        range: [600.0, 1e8],
+    },
 ];
 
 impl Default for Machine {
@@ -144,6 +162,8 @@ impl Default for Machine {
             agreement_time: 10e-6,
             overlap: 0.0,
             disk_bandwidth: 2e9,
+            memory_per_node: f64::INFINITY,
+            longest_job: 86_400.0,
         }
     }
 }
@@ -197,6 +217,18 @@ impl Machine {
     )]
     pub fn ranks_per_node(&self, threads: usize) -> usize {
         (self.cores_per_node as usize / threads).max(1)
+    }
+
+    /// The ways to share all cores of a node among ranks of equally many threads, one thread first.
+    #[must_use]
+    pub fn sharings(&self) -> Vec<Sharing> {
+        let cores = self.ranks_per_node(1);
+        let threads = (1..=cores).filter(|threads| cores.is_multiple_of(*threads));
+        let sharing = |threads| Sharing {
+            threads,
+            ranks_per_node: cores / threads,
+        };
+        threads.map(sharing).collect()
     }
 }
 

@@ -9,7 +9,7 @@ use super::machine::Machine;
 use crate::comm::Traffic;
 
 /// How ranks share a machine.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Sharing {
     /// Threads of each rank.
     pub threads: usize,

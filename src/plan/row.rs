@@ -13,6 +13,8 @@ use crate::preflight::Costs;
 pub struct Row {
     /// How many ranks.
     pub ranks: usize,
+    /// How they share nodes.
+    pub sharing: Sharing,
     /// Levels of their slabs.
     pub levels: usize,
     /// Mean number of particles, and the most.
@@ -63,6 +65,7 @@ impl Row {
         let (rank, halo) = largest.unwrap_or((0, 0));
         Self {
             ranks,
+            sharing,
             levels: slabs.levels(),
             owned: [mean, most(|load| load.tally.owned)],
             halo: halo as f64,
@@ -74,6 +77,13 @@ impl Row {
             time,
             efficiency: work / (time.all * (ranks * sharing.threads) as f64),
         }
+    }
+
+    /// Bytes that the ranks of a node take, each as much as the largest.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss, reason = "few ranks")]
+    pub fn memory_of_node(&self) -> f64 {
+        self.memory * self.ranks.min(self.sharing.ranks_per_node) as f64
     }
 
     /// The most particles of a rank over the mean.

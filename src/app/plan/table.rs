@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::output::Sheet;
-use crate::plan::Row;
+use crate::plan::{Machine, Row, Sharing};
 use crate::preflight::memory::in_words;
 
 /// Columns of the printed table, with their widths.
@@ -61,6 +61,15 @@ pub fn line(row: &Row, is_own: bool, steps: Option<f64>) -> String {
     text
 }
 
+/// What stands behind a line whose ranks take more memory than their node has.
+pub fn excess(row: &Row, machine: &Machine) -> String {
+    let memory = row.memory_of_node();
+    if memory <= machine.memory_per_node {
+        return String::new();
+    }
+    format!("  a node has not the {} it takes", in_words(memory))
+}
+
 /// Three digits.
 fn digits(value: f64) -> String {
     match value {
@@ -86,6 +95,8 @@ pub fn sheet(rows: &[Row], steps: Option<f64>) -> Sheet {
     let columns = [
         ("ranks", ""),
         ("levels", ""),
+        ("threads", ""),
+        ("ranks_per_node", ""),
         ("owned_mean", ""),
         ("owned_most", ""),
         ("halo_most", ""),
@@ -101,7 +112,12 @@ pub fn sheet(rows: &[Row], steps: Option<f64>) -> Sheet {
         ("wall_time", "s"),
     ];
     let cells = |row: &Row| -> Vec<String> {
-        let mut cells = vec![row.ranks.to_string(), row.levels.to_string()];
+        let Sharing {
+            threads,
+            ranks_per_node,
+        } = row.sharing;
+        let counts = [row.ranks, row.levels, threads, ranks_per_node];
+        let mut cells = counts.map(|count| count.to_string()).to_vec();
         let wall = steps.map_or(f64::NAN, |steps| steps * row.time.all);
         let numbers = [
             row.owned[0],
