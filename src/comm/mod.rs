@@ -15,11 +15,12 @@ pub use virtual_ranks::{Computing, Machine, VirtualTime, virtual_ranks};
 pub use waiting::waited;
 
 use std::cell::RefCell;
+use std::ops::Range;
 
 use mpi::collective::SystemOperation;
 use mpi::ffi;
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::{AsRaw, Communicator, CommunicatorCollectives, Root};
+use mpi::traits::{AsRaw, Communicator, CommunicatorCollectives, Group, Root};
 use virtual_ranks::Rank;
 use waiting::waiting;
 
@@ -79,6 +80,27 @@ impl Comm {
 
     fn on_virtual_rank(rank: Rank) -> Self {
         Self::of(Kind::Virtual(rank))
+    }
+
+    /// Some of the ranks by themselves, numbered from zero; this one is among them, and all of them
+    /// ask for the same. Collective for them alone.
+    ///
+    /// # Panics
+    /// If this rank is not among them.
+    #[must_use]
+    pub fn among(&self, members: Range<usize>) -> Self {
+        assert!(members.contains(&self.rank()), "a rank of {members:?}");
+        Self::of(match &self.kind {
+            Kind::Solo => Kind::Solo,
+            Kind::Mpi(world) => {
+                let number = |rank| i32::try_from(rank).expect("a rank fits an int");
+                let numbers: Vec<i32> = members.map(number).collect();
+                let group = world.group().include(&numbers);
+                let part = waiting(|| world.split_by_subgroup(&group));
+                Kind::Mpi(part.expect("this rank is among them"))
+            }
+            Kind::Virtual(rank) => Kind::Virtual(rank.among(&members)),
+        })
     }
 
     /// This rank's number.
