@@ -11,7 +11,7 @@ use common::outcome::{CASES, Outcome, rubbing};
 use common::random::Random;
 use common::ranks::on_each;
 use common::sentinel::{id, mix, sentinel};
-use whipple::comm::{Comm, Exchange, waited};
+use whipple::comm::{Comm, Exchange, Joint, waited};
 use whipple::domain::{
     Balance, Decomposition, Halo, Migration, Mirrors, NestedSlabs, RankSpeeds, Reaches,
 };
@@ -511,7 +511,7 @@ const CALLS: &[Call] = &[
     ("barrier", Comm::barrier),
     ("sum", |comm| comm.sum_u64(&mut [1])),
     ("any", |comm| assert!(!comm.any(false))),
-    ("least", |comm| comm.least_u64(&mut [1; 3], &mut 0)),
+    ("join", |comm| comm.join(&mut Joint::default())),
     ("gather", |comm| comm.all_gather_u64(&[1], &mut Vec::new())),
     ("all to all", |comm| {
         comm.all_to_all_u64(&vec![1; comm.size()], &mut Vec::new());
