@@ -11,7 +11,7 @@ impl NestedSlabs {
     pub(super) fn near(&self, rank: usize, range: f64, mut tell: impl FnMut(usize)) {
         let region = self.region(rank);
         if !region.is_empty() {
-            self.descend_to(Within { region, range }, |other| {
+            self.descend_to(&Within { region, range }, |other| {
                 if other != rank {
                     tell(other);
                 }
@@ -23,11 +23,11 @@ impl NestedSlabs {
     pub(super) fn near_place(&self, position: &[f64; 3], range: f64, tell: impl FnMut(usize)) {
         let [lower, upper] = [*position; 2];
         let region = Brick { lower, upper };
-        self.descend_to(Within { region, range }, tell);
+        self.descend_to(&Within { region, range }, tell);
     }
 
-    fn descend_to(&self, within: Within, mut tell: impl FnMut(usize)) {
-        self.descend((self.whole(), Brick::OPEN), &within, &mut tell);
+    fn descend_to(&self, within: &Within, mut tell: impl FnMut(usize)) {
+        self.descend((self.whole(), Brick::OPEN), within, &mut tell);
     }
 
     /// Tells the ranks of a slab, and of a part of space, that are within a range.
