@@ -511,6 +511,7 @@ const CALLS: &[Call] = &[
     ("barrier", Comm::barrier),
     ("sum", |comm| comm.sum_u64(&mut [1])),
     ("any", |comm| assert!(!comm.any(false))),
+    ("least", |comm| comm.least_u64(&mut [1; 3], &mut 0)),
     ("gather", |comm| comm.all_gather_u64(&[1], &mut Vec::new())),
     ("all to all", |comm| {
         comm.all_to_all_u64(&vec![1; comm.size()], &mut Vec::new());

@@ -9,6 +9,7 @@ use std::panic::catch_unwind;
 use std::thread;
 use std::time::Duration;
 
+use common::collectives::{check_collectives, check_parts};
 use common::outcome::{Outcome, assert_same};
 use common::sentinel::mix;
 use common::virtual_ranks::on_virtual_ranks;
@@ -20,64 +21,13 @@ use whipple::step::{Phase, Simulation, Timers};
 /// Numbers of ranks: one, few, and one that is no power of two, many.
 const RANKS: [usize; 6] = [1, 2, 3, 7, 64, 1000];
 
-/// Some number of a rank in a round.
-fn number(rank: usize, round: u64, k: u64) -> u64 {
-    mix(rank as u64 ^ round << 20 ^ k << 40) >> 16
-}
-
-fn check_collectives(comm: &Comm) {
-    let (me, ranks) = (comm.rank(), comm.size());
-    for round in 0..4 {
-        let mine = [0, 1, 2].map(|k| number(me, round, k));
-        let all: Vec<[u64; 3]> = (0..ranks)
-            .map(|rank| [0, 1, 2].map(|k| number(rank, round, k)))
-            .collect();
-        let over = |combine: fn(u64, u64) -> u64| {
-            [0, 1, 2].map(|k| all.iter().map(|v| v[k]).reduce(combine).unwrap())
-        };
-        let (mut sum, mut most, mut least) = (mine, mine, mine);
-        comm.sum_u64(&mut sum);
-        comm.max_u64(&mut most);
-        comm.min_u64(&mut least);
-        let sums = over(|a, b| a + b);
-        assert_eq!([sum, most, least], [sums, over(u64::max), over(u64::min)]);
-        let mut signed = mine.map(|v| -v.cast_signed());
-        comm.sum_i64(&mut signed);
-        assert_eq!(signed, sums.map(|v| -v.cast_signed()));
-        #[allow(clippy::cast_precision_loss, reason = "48 bits")]
-        let real = |v: u64| -(v as f64);
-        assert_eq!(comm.max_f64(real(mine[0])), real(over(u64::min)[0]));
-        assert_eq!(comm.min_f64(real(mine[0])), real(over(u64::max)[0]));
-        assert!(!comm.any(false));
-        let last = me + 1 == ranks;
-        assert!(comm.any(last));
-        comm.barrier();
-        let mut gathered = vec![7; 5];
-        comm.all_gather_u64(&mine, &mut gathered);
-        assert!(gathered == all.as_flattened());
-        let word = |from: usize, to: usize| number(from, round, 3 + to as u64);
-        let sends: Vec<u64> = (0..ranks).map(|to| word(me, to)).collect();
-        let mut receives = Vec::new();
-        comm.all_to_all_u64(&sends, &mut receives);
-        assert!((0..ranks).all(|from| receives[from] == word(from, me)));
-        let from = usize::try_from(round).unwrap() * 5 % ranks;
-        let said = vec![u8::try_from(round + 1).unwrap(); [13, 0, 8, 70_001][from % 4]];
-        let mut heard = if me == from {
-            said.clone()
-        } else {
-            vec![9; me % 3]
-        };
-        comm.broadcast_from(from, &mut heard);
-        assert!(heard == said);
-    }
-}
-
 #[test]
 fn collective_calls_give_what_the_numbers_of_all_ranks_give() {
     for ranks in RANKS {
         let done = virtual_ranks(ranks, Machine::IDEAL, |comm| {
             assert_eq!(comm.size(), ranks);
             check_collectives(comm);
+            check_parts(comm);
             comm.rank()
         });
         assert!(done.into_iter().eq(0..ranks));
@@ -308,9 +258,13 @@ fn computing_hides_messages() {
 #[test]
 fn collective_calls_cost_what_their_trees_do() {
     type Call = (fn(&Comm), f64);
-    let calls: [Call; 5] = [
+    let calls: [Call; 6] = [
         (Comm::barrier, 3.0 * 0.25),
         (|comm| comm.sum_u64(&mut [1; 4]), 3.0 * (0.25 + 4.0)),
+        (
+            |comm| comm.least_u64(&mut [1; 3], &mut 0),
+            3.0 * (0.25 + 4.0),
+        ),
         (
             |comm| comm.all_gather_u64(&[1; 4], &mut Vec::new()),
             3.0 * 0.25 + 6.0 * 4.0,

@@ -5,6 +5,7 @@
 //! [`virtual_ranks`], many ranks in one process.
 
 mod exchange;
+mod least;
 mod virtual_ranks;
 mod waiting;
 
@@ -12,12 +13,14 @@ pub use exchange::{Exchange, Peer, Traffic, pieces};
 pub use virtual_ranks::{Computing, Machine, VirtualTime, virtual_ranks};
 pub use waiting::waited;
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
+use std::ops::Range;
 
+use least::{LeastByMpi, least};
 use mpi::collective::SystemOperation;
 use mpi::ffi;
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::{AsRaw, Communicator, CommunicatorCollectives, Root};
+use mpi::traits::{AsRaw, Communicator, CommunicatorCollectives, Group, Root};
 use virtual_ranks::Rank;
 use waiting::waiting;
 
@@ -51,6 +54,7 @@ impl Session {
 pub struct Comm {
     kind: Kind,
     scratch: RefCell<Vec<u64>>,
+    least: OnceCell<LeastByMpi>,
 }
 
 /// What carries messages.
@@ -66,6 +70,7 @@ impl Comm {
         Self {
             kind,
             scratch: RefCell::default(),
+            least: OnceCell::new(),
         }
     }
 
@@ -77,6 +82,27 @@ impl Comm {
 
     fn on_virtual_rank(rank: Rank) -> Self {
         Self::of(Kind::Virtual(rank))
+    }
+
+    /// Some of the ranks by themselves, numbered from zero; this one is among them, and all of them
+    /// ask for the same. Collective for them alone.
+    ///
+    /// # Panics
+    /// If this rank is not among them.
+    #[must_use]
+    pub fn among(&self, members: Range<usize>) -> Self {
+        assert!(members.contains(&self.rank()), "a rank of {members:?}");
+        Self::of(match &self.kind {
+            Kind::Solo => Kind::Solo,
+            Kind::Mpi(world) => {
+                let number = |rank| i32::try_from(rank).expect("a rank fits an int");
+                let numbers: Vec<i32> = members.map(number).collect();
+                let group = world.group().include(&numbers);
+                let part = waiting(|| world.split_by_subgroup(&group));
+                Kind::Mpi(part.expect("this rank is among them"))
+            }
+            Kind::Virtual(rank) => Kind::Virtual(rank.among(&members)),
+        })
     }
 
     /// This rank's number.
@@ -182,6 +208,22 @@ impl Comm {
         let mut values = [u64::from(yes)];
         self.max_u64(&mut values);
         values[0] != 0
+    }
+
+    /// Replaces a list by that of all ranks which comes first by its first words, and bits by those
+    /// that any rank has.
+    pub fn least_u64(&self, list: &mut [u64; 3], bits: &mut u64) {
+        let mut words = [list[0], list[1], list[2], *bits];
+        match &self.kind {
+            Kind::Solo => {}
+            Kind::Mpi(world) => {
+                let by_mpi = self.least.get_or_init(LeastByMpi::new);
+                by_mpi.reduce(world, &mut words);
+            }
+            Kind::Virtual(rank) => rank.reduce_lists(&mut words, least),
+        }
+        let [first, second, third, any] = words;
+        (*list, *bits) = ([first, second, third], any);
     }
 
     /// Joins every rank's `values` (the same length everywhere) in rank order into `all`.

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test file uses some of these")]
 
 pub mod cloud;
+pub mod collectives;
 pub mod linear_field;
 pub mod outcome;
 pub mod random;

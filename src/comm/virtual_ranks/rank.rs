@@ -3,17 +3,19 @@
 //! Costs of collective calls are those of the usual trees (Thakur, Rabenseifner & Gropp 2005,
 //! doi:10.1177/1094342005051521).
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::clock::{Clock, VirtualTime};
-use super::world::{Letter, Tag, Ticket, World};
+use super::world::{Group, Letter, Tag, Ticket, World};
 use super::{Computing, Machine};
 
-/// A rank on its own thread.
+/// A rank on its own thread, in a group of ranks.
 #[derive(Clone)]
 pub struct Rank {
+    /// In the group.
     number: usize,
-    size: usize,
+    group: Group,
     machine: Machine,
     world: Arc<World>,
 }
@@ -23,9 +25,21 @@ impl Rank {
     pub(super) fn new(number: usize, size: usize, machine: Machine, world: Arc<World>) -> Self {
         Self {
             number,
-            size,
+            group: Group { first: 0, size },
             machine,
             world,
+        }
+    }
+
+    /// The same rank among some members of its group, itself one of them.
+    pub fn among(&self, members: &Range<usize>) -> Self {
+        Self {
+            number: self.number - members.start,
+            group: Group {
+                first: self.group.first + members.start,
+                size: members.len(),
+            },
+            ..self.clone()
         }
     }
 
@@ -36,7 +50,7 @@ impl Rank {
 
     /// How many there are.
     pub fn size(&self) -> usize {
-        self.size
+        self.group.size
     }
 
     /// What it has spent so far.
@@ -59,13 +73,13 @@ impl Rank {
                 bytes: bytes.to_vec(),
                 arrival: left + self.machine.latency,
             };
-            self.world.send((self.number, to, tag), letter);
+            self.world.send(self.group, (self.number, to, tag), letter);
         });
     }
 
     /// Begins to receive the next message of a rank, of those that were not begun yet.
     pub fn expect(&self, from: usize, tag: Tag) -> Ticket {
-        Clock::with(|_| self.world.expect(self.number, from, tag))
+        Clock::with(|_| self.world.expect(self.group, (self.number, from, tag)))
     }
 
     /// Waits for a message.
@@ -98,9 +112,24 @@ impl Rank {
         words.copy_from_slice(&all);
     }
 
+    /// Combines a list of words with those of all ranks, in any order.
+    pub fn reduce_lists<const N: usize>(
+        &self,
+        list: &mut [u64; N],
+        combine: impl Fn([u64; N], [u64; N]) -> [u64; N],
+    ) {
+        let cost = self.tree(1.0, size_of_val(list) as f64);
+        let all = self.meet(cost, |all| {
+            let joined = all.first_chunk().map_or(*list, |all| combine(*all, *list));
+            all.clear();
+            all.extend(joined);
+        });
+        list.copy_from_slice(&all);
+    }
+
     /// Joins the words of all ranks in their order.
     pub fn all_gather(&self, words: &[u64], joined: &mut [u64]) {
-        let others = (self.size - 1) * size_of_val(words);
+        let others = (self.size() - 1) * size_of_val(words);
         let cost = self.tree(1.0, 0.0) + others as f64 / self.machine.bandwidth;
         let all = self.meet(cost, |all| {
             all.resize(joined.len(), 0);
@@ -112,7 +141,7 @@ impl Rank {
 
     /// Gives each rank its word of this rank's, and this rank those of all.
     pub fn all_to_all(&self, sends: &[u64], receives: &mut [u64]) {
-        let size = self.size;
+        let size = self.size();
         let cost = self.tree(1.0, 0.5 * size_of_val(sends) as f64);
         let all = self.meet(cost, |all| {
             all.resize(size * size, 0);
@@ -152,7 +181,7 @@ impl Rank {
     fn meet(&self, cost: f64, add: impl FnOnce(&mut Vec<u64>)) -> Arc<Vec<u64>> {
         Clock::with(|clock| {
             let now = clock.time().now;
-            let (words, end) = self.world.meet(self.number, (now, cost), add);
+            let (words, end) = self.world.meet(self.group, self.number, (now, cost), add);
             clock.count_collective();
             clock.wait(end);
             words
@@ -161,7 +190,7 @@ impl Rank {
 
     /// Seconds that so many messages and bytes take from rank to rank up or down a binary tree.
     fn tree(&self, messages: f64, bytes: f64) -> f64 {
-        let levels = f64::from(self.size.next_power_of_two().trailing_zeros());
+        let levels = f64::from(self.size().next_power_of_two().trailing_zeros());
         levels * (messages * self.machine.latency + bytes / self.machine.bandwidth)
     }
 }

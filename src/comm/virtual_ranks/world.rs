@@ -13,9 +13,20 @@ pub enum Tag {
     Data,
 }
 
-/// A message that will come: sender, tag and its number among those of both.
+/// Ranks in a row, which number each other from zero.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Group {
+    /// The first of them, as the world numbers it.
+    pub first: usize,
+    /// How many.
+    pub size: usize,
+}
+
+/// A message that will come: sender, tag and its number among those of both in a group.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Ticket {
+    /// The group.
+    pub group: Group,
     /// The sender.
     pub from: usize,
     /// The tag.
@@ -44,7 +55,7 @@ pub struct World {
 
 struct State {
     ranks: Vec<Mailbox>,
-    meeting: Meeting,
+    meetings: BTreeMap<Group, Meeting>,
     /// Ranks that neither wait nor have ended.
     running: usize,
     /// Whether a rank met trouble, which ends all.
@@ -57,8 +68,8 @@ struct Mailbox {
     /// Messages that nobody has received yet.
     letters: BTreeMap<Ticket, Letter>,
     /// How many messages were sent here, and how many are expected or received.
-    sent: BTreeMap<(usize, Tag), u64>,
-    expected: BTreeMap<(usize, Tag), u64>,
+    sent: BTreeMap<(Group, usize, Tag), u64>,
+    expected: BTreeMap<(Group, usize, Tag), u64>,
     waits: Option<Awaited>,
 }
 
@@ -87,7 +98,7 @@ impl World {
         Self {
             state: Mutex::new(State {
                 ranks: (0..ranks).map(|_| Mailbox::default()).collect(),
-                meeting: Meeting::default(),
+                meetings: BTreeMap::new(),
                 running: ranks,
                 is_over: false,
             }),
@@ -96,11 +107,11 @@ impl World {
     }
 
     /// Puts a message into the mailbox of its receiver.
-    pub fn send(&self, (from, to, tag): (usize, usize, Tag), letter: Letter) {
+    pub fn send(&self, group: Group, (from, to, tag): (usize, usize, Tag), letter: Letter) {
+        let to = group.first + to;
         let mut state = self.enter();
         let mailbox = &mut state.ranks[to];
-        let number = next(&mut mailbox.sent, (from, tag));
-        let ticket = Ticket { from, tag, number };
+        let ticket = next(&mut mailbox.sent, (group, from, tag));
         mailbox.letters.insert(ticket, letter);
         if mailbox.waits == Some(Awaited::Letter(ticket)) {
             self.call(&mut state, to);
@@ -108,14 +119,15 @@ impl World {
     }
 
     /// Numbers the next message that `me` is to receive from a rank.
-    pub fn expect(&self, me: usize, from: usize, tag: Tag) -> Ticket {
+    pub fn expect(&self, group: Group, (me, from, tag): (usize, usize, Tag)) -> Ticket {
         let mut state = self.enter();
-        let number = next(&mut state.ranks[me].expected, (from, tag));
-        Ticket { from, tag, number }
+        let mailbox = &mut state.ranks[group.first + me];
+        next(&mut mailbox.expected, (group, from, tag))
     }
 
     /// Waits for a message.
     pub fn receive(&self, me: usize, ticket: Ticket) -> Letter {
+        let me = ticket.group.first + me;
         let mut state = self.enter();
         loop {
             if let Some(letter) = state.ranks[me].letters.remove(&ticket) {
@@ -125,31 +137,33 @@ impl World {
         }
     }
 
-    /// Adds this rank's words to those of the others that have come, at a time and with a cost (s);
-    /// waits for all. Gives the words and the end (s).
+    /// Adds this rank's words to those of the others of a group that have come, at a time and with a
+    /// cost (s); waits for all of them. Gives the words and the end (s).
     pub fn meet(
         &self,
+        group: Group,
         me: usize,
         (now, cost): (f64, f64),
         add: impl FnOnce(&mut Vec<u64>),
     ) -> (Arc<Vec<u64>>, f64) {
+        let me = group.first + me;
         let mut state = self.enter();
-        let all = state.ranks.len();
-        let meeting = &mut state.meeting;
+        let meeting = state.meetings.entry(group).or_default();
         add(&mut meeting.words);
         meeting.latest = meeting.latest.max(now);
         meeting.cost = meeting.cost.max(cost);
         meeting.arrived += 1;
-        if meeting.arrived < all {
+        if meeting.arrived < group.size {
             state = self.wait(state, me, Awaited::Meeting);
         } else {
             let met = std::mem::take(meeting);
             meeting.done = (Arc::new(met.words), met.latest + met.cost);
-            for other in (0..all).filter(|&other| other != me) {
+            let all = group.first..group.first + group.size;
+            for other in all.filter(|&other| other != me) {
                 self.call(&mut state, other);
             }
         }
-        state.meeting.done.clone()
+        state.meetings[&group].done.clone()
     }
 
     /// Takes leave of a rank that has nothing more to do.
@@ -218,8 +232,14 @@ fn going_on(state: MutexGuard<'_, State>) -> MutexGuard<'_, State> {
     state
 }
 
-fn next(counts: &mut BTreeMap<(usize, Tag), u64>, of: (usize, Tag)) -> u64 {
+fn next(counts: &mut BTreeMap<(Group, usize, Tag), u64>, of: (Group, usize, Tag)) -> Ticket {
     let count = counts.entry(of).or_default();
     *count += 1;
-    *count
+    let (group, from, tag) = of;
+    Ticket {
+        group,
+        from,
+        tag,
+        number: *count,
+    }
 }
