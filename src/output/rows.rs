@@ -1,25 +1,24 @@
 //! Particles in the order of their ids, in even blocks over the ranks that write.
 //!
-//! Ranks own particles in any order. Block boundaries are ids, found by bisection on counts, all
-//! at once; then each field's rows travel straight to their block. No rank ever holds more than
-//! its own particles and its own block.
+//! Ranks own particles in any order, and ids know nothing of ranks: a rank may have rows of any
+//! block. So rows take two hops over groups of some √P ranks, first to a rank of the group that
+//! has their block, then within the group. No rank sends more than 2√P messages for a field.
+//! Beside its own particles and its own block a rank has what passes through it, one field at a
+//! time: as much as its own again, and a few times that where many ranks have rows for one group.
+//!
+//! Boundaries are ids, found by bisection on counts, all at once: those of groups by all ranks,
+//! those of blocks by each group for itself. Up to three ranks are one group, for which the second
+//! hop is enough.
 
-use std::ops::Range;
+mod groups;
+mod hop;
 
 use crate::comm::{Comm, Exchange};
 use crate::model::Sharing;
 
 use super::{Block, OutputError, agree};
-
-/// A rank that particles are sent to or received from.
-#[derive(Debug, Clone)]
-struct Peer {
-    rank: usize,
-    /// Which part of [`Rows::order`] goes there.
-    send: Range<usize>,
-    /// Rows that come from there.
-    receive: usize,
-}
+use groups::Groups;
+use hop::{Hop, Ways};
 
 /// Most rows of a writer, whose places are counted in `u32`.
 const MOST_ROWS: u64 = 1 << 31;
@@ -30,20 +29,41 @@ fn writers(asked: Option<usize>, total: u64, ranks: usize) -> usize {
     asked.unwrap_or(ranks).max(least).clamp(1, ranks)
 }
 
+/// The first hop, to the groups of ranks.
+struct ToGroups {
+    groups: Groups,
+    /// The ranks of this one's group.
+    group: Comm,
+    ways: Ways,
+    hop: Hop,
+}
+
+impl ToGroups {
+    /// Of all ranks, unless they are one group. Collective.
+    fn new(comm: &Comm) -> Option<Self> {
+        let (groups, rank) = (Groups::of(comm.size()), comm.rank());
+        (groups.count() > 1).then(|| Self {
+            groups,
+            group: comm.among(groups.members(groups.group(rank))),
+            ways: Ways {
+                to: groups.gates(rank).collect(),
+                from: groups.guests(rank).collect(),
+            },
+            hop: Hop::default(),
+        })
+    }
+}
+
 /// The way of particles to rows in id order. Buffers are kept from one output to the next.
 #[derive(Default)]
 pub struct Rows {
     sharing: Sharing,
     block: Block,
-    /// This rank's particles, by id.
-    order: Vec<u32>,
-    peers: Vec<Peer>,
-    /// Part of `order` that stays here.
-    own: Range<usize>,
-    /// Row in the block of each arriving particle: own ones first, then by peer.
-    places: Vec<u32>,
+    /// Ranks that the hops are for.
+    ranks: usize,
+    to_groups: Option<ToGroups>,
+    to_blocks: Hop,
     exchange: Exchange,
-    bytes: Vec<u8>,
 }
 
 impl Rows {
@@ -90,146 +110,59 @@ impl Rows {
         ids: &[u64],
         chosen: impl IntoIterator<Item = u32>,
     ) -> Result<(), OutputError> {
-        self.order.clear();
-        self.order.extend(chosen);
-        self.order.sort_unstable_by_key(|&i| ids[i as usize]);
-        let mut total = [self.order.len() as u64];
+        let ranks = comm.size();
+        if self.ranks != ranks {
+            self.ranks = ranks;
+            self.to_groups = ToGroups::new(comm);
+        }
+        let first = (self.to_groups.as_mut()).map_or(&mut self.to_blocks, |first| &mut first.hop);
+        let mut total = [first.choose(ids, chosen)];
         comm.sum_u64(&mut total);
-        let (total, ranks) = (total[0], comm.size());
+        let total = total[0];
         let writers = writers(self.sharing.writers, total, ranks);
         let block = |rank: usize| Block::shared(total, rank, ranks, writers);
         self.block = block(comm.rank());
 
-        let starts: Vec<u64> = (0..ranks).map(|rank| block(rank).first).collect();
-        let cuts = find_cuts(comm, &starts, ids, &self.order);
-        self.choose_peers(comm, &cuts);
-        let placed = self.place(comm, ids);
-        agree(comm, placed)
+        let (mut group, mut members, mut ids) = (comm, 0..ranks, ids);
+        if let Some(first) = &mut self.to_groups {
+            let groups = first.groups;
+            let starts = (0..groups.count()).map(|k| block(groups.members(k).start).first);
+            let starts: Vec<u64> = starts.collect();
+            let exchange = &mut self.exchange;
+            first.hop.plan(comm, exchange, (ids, &starts), &first.ways);
+            members = groups.members(groups.group(comm.rank()));
+            (group, ids) = (&first.group, first.hop.ids());
+            self.to_blocks.choose(ids, (0..).take(ids.len()));
+        }
+        let begin = block(members.start).first;
+        let starts: Vec<u64> = members.map(|rank| block(rank).first - begin).collect();
+        let ways = Ways::all(group);
+        self.to_blocks
+            .plan(group, &mut self.exchange, (ids, &starts), &ways);
+        agree(comm, self.check())
     }
 
-    /// Who sends how much to whom. `cuts[r]` is where rank r's part of `order` starts.
-    fn choose_peers(&mut self, comm: &Comm, cuts: &[usize]) {
-        let sends: Vec<u64> = cuts.windows(2).map(|c| (c[1] - c[0]) as u64).collect();
-        let mut receives = Vec::new();
-        comm.all_to_all_u64(&sends, &mut receives);
-        let me = comm.rank();
-        self.own = cuts[me]..cuts[me + 1];
-        self.peers.clear();
-        for (rank, receive) in receives.into_iter().enumerate() {
-            let receive = usize::try_from(receive).expect("a count fits memory");
-            let send = cuts[rank]..cuts[rank + 1];
-            if rank != me && (receive > 0 || !send.is_empty()) {
-                self.peers.push(Peer {
-                    rank,
-                    send,
-                    receive,
-                });
-            }
+    /// Refuses ids that two particles have.
+    fn check(&self) -> Result<(), OutputError> {
+        let mut pairs = self.to_blocks.ids().windows(2);
+        match pairs.find(|pair| pair[0] == pair[1]) {
+            Some(pair) => Err(OutputError::DuplicateId { id: pair[0] }),
+            None => Ok(()),
         }
-    }
-
-    /// Learns the ids that arrive, and thereby the row of each.
-    fn place(&mut self, comm: &Comm, ids: &[u64]) -> Result<(), OutputError> {
-        let arriving = self.own.len() + self.peers.iter().map(|p| p.receive).sum::<usize>();
-        self.places.clear();
-        self.places
-            .extend(0..u32::try_from(arriving).expect("a block fits u32"));
-        self.move_rows(comm, bytemuck::cast_slice(ids), 8);
-        let arrived: Vec<u64> = bytemuck::pod_collect_to_vec(&self.bytes);
-        let mut by_id = self.places.clone();
-        by_id.sort_unstable_by_key(|&k| arrived[k as usize]);
-        for (row, &k) in (0_u32..).zip(&by_id) {
-            self.places[k as usize] = row;
-        }
-        for pair in by_id.windows(2) {
-            let id = arrived[pair[0] as usize];
-            if id == arrived[pair[1] as usize] {
-                return Err(OutputError::DuplicateId { id });
-            }
-        }
-        Ok(())
     }
 
     /// One field's rows of this rank's block in id order, `[block.count × size]` bytes, from its
     /// owned particles' values `[owned × size]`. Collective, after [`Self::plan`].
     pub fn collect(&mut self, comm: &Comm, values: &[u8], size: usize) -> &mut [u8] {
-        self.move_rows(comm, values, size);
-        &mut self.bytes
-    }
-
-    fn move_rows(&mut self, comm: &Comm, values: &[u8], size: usize) {
-        let row = |i: u32| &values[i as usize * size..(i as usize + 1) * size];
-        self.exchange.set_peers(self.peers.iter().map(|p| p.rank));
-        for (k, peer) in self.peers.iter().enumerate() {
-            self.exchange.expect(k, peer.receive * size);
-            let message = self.exchange.outgoing(k);
-            message.reserve(peer.send.len() * size);
-            for &i in &self.order[peer.send.clone()] {
-                message.extend_from_slice(row(i));
+        let exchange = &mut self.exchange;
+        match &mut self.to_groups {
+            Some(first) => {
+                let passing = first.hop.carry(comm, exchange, values, size);
+                self.to_blocks.carry(&first.group, exchange, passing, size)
             }
-        }
-        self.exchange.post(comm);
-        self.bytes.resize(self.places.len() * size, 0);
-        let (own_places, mut places) = self.places.split_at(self.own.len());
-        for (&i, &place) in self.order[self.own.clone()].iter().zip(own_places) {
-            put(&mut self.bytes, place, row(i));
-        }
-        self.exchange.wait();
-        for (k, peer) in self.peers.iter().enumerate() {
-            let (here, rest) = places.split_at(peer.receive);
-            for (row, &place) in self.exchange.incoming(k).chunks_exact(size).zip(here) {
-                put(&mut self.bytes, place, row);
-            }
-            places = rest;
+            None => self.to_blocks.carry(comm, exchange, values, size),
         }
     }
-}
-
-fn put(bytes: &mut [u8], place: u32, row: &[u8]) {
-    let at = place as usize * row.len();
-    bytes[at..at + row.len()].copy_from_slice(row);
-}
-
-/// Where each rank's block, which `starts` at such a row, starts in this rank's `order`, and its
-/// length at the end: bisects for the largest id of all rows before each block, every boundary at
-/// once. Collective.
-fn find_cuts(comm: &Comm, starts: &[u64], ids: &[u64], order: &[u32]) -> Vec<usize> {
-    let ranks = comm.size();
-    let up_to = |id: u64| order.partition_point(|&i| ids[i as usize] <= id);
-    let mut bounds = [
-        order.first().map_or(u64::MAX, |&i| ids[i as usize]),
-        u64::MAX - order.last().map_or(0, |&i| ids[i as usize]),
-    ];
-    comm.min_u64(&mut bounds);
-    let mut lower = vec![bounds[0]; ranks];
-    let mut upper = vec![u64::MAX - bounds[1]; ranks];
-    let mut counts = vec![0; ranks];
-    while lower.iter().zip(&upper).any(|(lower, upper)| lower < upper) {
-        let middle = |r: usize| lower[r] + (upper[r] - lower[r]) / 2;
-        for (r, count) in counts.iter_mut().enumerate() {
-            *count = if lower[r] < upper[r] {
-                up_to(middle(r)) as u64
-            } else {
-                0
-            };
-        }
-        comm.sum_u64(&mut counts);
-        for r in 0..ranks {
-            if lower[r] < upper[r] {
-                let middle = lower[r] + (upper[r] - lower[r]) / 2;
-                if counts[r] >= starts[r] {
-                    upper[r] = middle;
-                } else {
-                    lower[r] = middle + 1;
-                }
-            }
-        }
-    }
-    let mut cuts: Vec<usize> = (0..ranks)
-        .map(|r| if starts[r] == 0 { 0 } else { up_to(lower[r]) })
-        .collect();
-    cuts.push(order.len());
-    cuts
 }
 
 #[cfg(test)]

@@ -1,0 +1,214 @@
+//! One way of rows: from each rank to those that have the parts where they belong.
+
+use std::ops::Range;
+
+use crate::comm::{Comm, Exchange};
+
+/// Who sends to whom, itself included.
+#[derive(Debug, Clone, Default)]
+pub struct Ways {
+    /// The rank that each part goes to, ascending.
+    pub to: Vec<usize>,
+    /// Ranks that send here, ascending.
+    pub from: Vec<usize>,
+}
+
+impl Ways {
+    /// Each rank has a part, for which all others have rows.
+    pub fn all(comm: &Comm) -> Self {
+        let ranks: Vec<usize> = (0..comm.size()).collect();
+        Self {
+            to: ranks.clone(),
+            from: ranks,
+        }
+    }
+}
+
+/// A rank that rows are sent to or received from.
+#[derive(Debug, Clone)]
+struct Peer {
+    rank: usize,
+    /// Which part of [`Hop::order`] goes there.
+    send: Range<usize>,
+    /// Rows that come from there.
+    receive: usize,
+}
+
+/// Rows go to the parts of all rows that their ids belong to, and stand there in the order of ids.
+/// Buffers are kept from one output to the next.
+#[derive(Debug, Default)]
+pub struct Hop {
+    /// This rank's rows that go anywhere, by id.
+    order: Vec<u32>,
+    peers: Vec<Peer>,
+    /// Part of `order` that stays here.
+    own: Range<usize>,
+    /// Place in the part of each arriving row: own ones first, then by peer.
+    places: Vec<u32>,
+    /// Ids of the part, ascending.
+    ids: Vec<u64>,
+    bytes: Vec<u8>,
+}
+
+impl Hop {
+    /// Takes some of this rank's rows, whose ids are `ids[i]`; gives their number.
+    pub fn choose(&mut self, ids: &[u64], chosen: impl IntoIterator<Item = u32>) -> u64 {
+        self.order.clear();
+        self.order.extend(chosen);
+        self.order.sort_unstable_by_key(|&i| ids[i as usize]);
+        self.order.len() as u64
+    }
+
+    /// Finds the way of the rows chosen from `ids`. Parts begin at such rows of all ranks' rows.
+    /// Collective.
+    pub fn plan(
+        &mut self,
+        comm: &Comm,
+        exchange: &mut Exchange,
+        (ids, starts): (&[u64], &[u64]),
+        ways: &Ways,
+    ) {
+        let cuts = find_cuts(comm, starts, ids, &self.order);
+        self.choose_peers(comm, exchange, &cuts, ways);
+        let arriving = self.own.len() + self.peers.iter().map(|p| p.receive).sum::<usize>();
+        self.places.clear();
+        self.places
+            .extend(0..u32::try_from(arriving).expect("a part fits u32"));
+        self.carry(comm, exchange, bytemuck::cast_slice(ids), 8);
+        let arrived: Vec<u64> = bytemuck::pod_collect_to_vec(&self.bytes);
+        let mut by_id = self.places.clone();
+        by_id.sort_unstable_by_key(|&k| arrived[k as usize]);
+        for (place, &k) in (0_u32..).zip(&by_id) {
+            self.places[k as usize] = place;
+        }
+        self.ids.clear();
+        self.ids.extend(by_id.iter().map(|&k| arrived[k as usize]));
+    }
+
+    /// The ids of this rank's part, ascending, after [`Self::plan`].
+    pub fn ids(&self) -> &[u64] {
+        &self.ids
+    }
+
+    /// Who sends how much to whom. `cuts[k]` is where the k-th part of `order` starts.
+    fn choose_peers(&mut self, comm: &Comm, exchange: &mut Exchange, cuts: &[usize], ways: &Ways) {
+        let part = |rank: usize| match ways.to.binary_search(&rank) {
+            Ok(k) => cuts[k]..cuts[k + 1],
+            Err(_) => 0..0,
+        };
+        let mut ranks = [&ways.to[..], &ways.from].concat();
+        ranks.sort_unstable();
+        ranks.dedup();
+        ranks.retain(|&rank| rank != comm.rank());
+        exchange.set_peers(ranks.iter().copied());
+        for (k, rank) in ranks.iter().enumerate() {
+            if ways.to.binary_search(rank).is_ok() {
+                let count = part(*rank).len() as u64;
+                exchange.outgoing(k).extend(count.to_ne_bytes());
+            }
+            if ways.from.binary_search(rank).is_ok() {
+                exchange.expect(k, 8);
+            }
+        }
+        exchange.post(comm);
+        exchange.wait();
+        self.own = part(comm.rank());
+        self.peers.clear();
+        for (k, rank) in ranks.into_iter().enumerate() {
+            let count = exchange.incoming(k).first_chunk().copied();
+            let receive = count.map_or(0, u64::from_ne_bytes);
+            let receive = usize::try_from(receive).expect("a count fits memory");
+            let send = part(rank);
+            if receive > 0 || !send.is_empty() {
+                self.peers.push(Peer {
+                    rank,
+                    send,
+                    receive,
+                });
+            }
+        }
+    }
+
+    /// The values of this rank's part in the order of ids, `[part × size]` bytes, from those of its
+    /// rows, `[rows × size]`. Collective, after [`Self::plan`].
+    pub fn carry(
+        &mut self,
+        comm: &Comm,
+        exchange: &mut Exchange,
+        values: &[u8],
+        size: usize,
+    ) -> &mut [u8] {
+        let row = |i: u32| &values[i as usize * size..(i as usize + 1) * size];
+        exchange.set_peers(self.peers.iter().map(|p| p.rank));
+        for (k, peer) in self.peers.iter().enumerate() {
+            exchange.expect(k, peer.receive * size);
+            let message = exchange.outgoing(k);
+            message.reserve(peer.send.len() * size);
+            for &i in &self.order[peer.send.clone()] {
+                message.extend_from_slice(row(i));
+            }
+        }
+        exchange.post(comm);
+        self.bytes.resize(self.places.len() * size, 0);
+        let (own_places, mut places) = self.places.split_at(self.own.len());
+        for (&i, &place) in self.order[self.own.clone()].iter().zip(own_places) {
+            put(&mut self.bytes, place, row(i));
+        }
+        exchange.wait();
+        for (k, peer) in self.peers.iter().enumerate() {
+            let (here, rest) = places.split_at(peer.receive);
+            for (row, &place) in exchange.incoming(k).chunks_exact(size).zip(here) {
+                put(&mut self.bytes, place, row);
+            }
+            places = rest;
+        }
+        &mut self.bytes
+    }
+}
+
+fn put(bytes: &mut [u8], place: u32, row: &[u8]) {
+    let at = place as usize * row.len();
+    bytes[at..at + row.len()].copy_from_slice(row);
+}
+
+/// Where each part, which `starts` at such a row of all, starts in this rank's `order`, and its
+/// length at the end: bisects for the largest id of all rows before each part, every boundary at
+/// once. Collective.
+fn find_cuts(comm: &Comm, starts: &[u64], ids: &[u64], order: &[u32]) -> Vec<usize> {
+    let parts = starts.len();
+    let up_to = |id: u64| order.partition_point(|&i| ids[i as usize] <= id);
+    let mut bounds = [
+        order.first().map_or(u64::MAX, |&i| ids[i as usize]),
+        u64::MAX - order.last().map_or(0, |&i| ids[i as usize]),
+    ];
+    comm.min_u64(&mut bounds);
+    let mut lower = vec![bounds[0]; parts];
+    let mut upper = vec![u64::MAX - bounds[1]; parts];
+    let mut counts = vec![0; parts];
+    while lower.iter().zip(&upper).any(|(lower, upper)| lower < upper) {
+        let middle = |k: usize| lower[k] + (upper[k] - lower[k]) / 2;
+        for (k, count) in counts.iter_mut().enumerate() {
+            *count = if lower[k] < upper[k] {
+                up_to(middle(k)) as u64
+            } else {
+                0
+            };
+        }
+        comm.sum_u64(&mut counts);
+        for k in 0..parts {
+            if lower[k] < upper[k] {
+                let middle = lower[k] + (upper[k] - lower[k]) / 2;
+                if counts[k] >= starts[k] {
+                    upper[k] = middle;
+                } else {
+                    lower[k] = middle + 1;
+                }
+            }
+        }
+    }
+    let mut cuts: Vec<usize> = (0..parts)
+        .map(|k| if starts[k] == 0 { 0 } else { up_to(lower[k]) })
+        .collect();
+    cuts.push(order.len());
+    cuts
+}
