@@ -30,7 +30,8 @@ const WIDEST: f64 = 2.0;
 impl RankSpeeds {
     /// Takes what this rank has done since the last call: `work` counted now for one step, and
     /// `busy`, the seconds since its start that it spent neither waiting nor sending. What was
-    /// before the first call, with its cold memory, does not count. Collective.
+    /// before the first call, with its cold memory, does not count. Collective: all ranks hear of
+    /// all, since each cuts all faces.
     pub fn measure(&mut self, comm: &Comm, work: u64, busy: f64) {
         let Some(before) = self.busy.replace(busy) else {
             return;

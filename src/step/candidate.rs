@@ -39,7 +39,6 @@ pub struct StepControl {
     id: u64,
     /// The last candidates, for post-mortems.
     past: VecDeque<PastStep>,
-    words: Vec<u64>,
 }
 
 impl StepControl {
@@ -53,7 +52,6 @@ impl StepControl {
             longest: case.time_step.max,
             id: 0,
             past: VecDeque::with_capacity(PAST_STEPS),
-            words: Vec::new(),
         }
     }
 
@@ -66,19 +64,10 @@ impl StepControl {
         sky: &Sky,
         span: &Span,
     ) -> Result<(f64, Reason), (NumericalFailure, u64)> {
-        let words = &mut self.words;
-        comm.all_gather_u64(&[dt, reason, id, self.requests], words);
-        self.agreed_requests = words
-            .iter()
-            .skip(3)
-            .step_by(4)
-            .fold(0, |all, one| all | one);
-        let best = words
-            .chunks_exact(4)
-            .map(|word| (word[0], word[1], word[2]))
-            .min()
-            .unwrap_or(NO_CANDIDATE);
-        let (dt, reason, id) = best;
+        let mut best = [dt, reason, id];
+        self.agreed_requests = self.requests;
+        comm.least_u64(&mut best, &mut self.agreed_requests);
+        let [dt, reason, id] = best;
         if dt == ERROR {
             return Err((kind_of(reason), id));
         }
@@ -119,7 +108,7 @@ impl StepControl {
     }
 
     pub(super) fn memory(&self) -> usize {
-        self.flight.memory() + 8 * self.words.capacity()
+        self.flight.memory()
     }
 }
 
