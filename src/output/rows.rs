@@ -2,11 +2,13 @@
 //!
 //! Ranks own particles in any order, and ids know nothing of ranks: a rank may have rows of any
 //! block. So rows take two hops over groups of some √P ranks, first to a rank of the group that
-//! has their block, then within the group. No rank sends more than 2√P messages for a field, and
-//! none holds more than its own particles, its own block, and for one field what passes through
-//! it, about as much as its own again. Boundaries are ids, found by bisection on counts, all at
-//! once: those of groups by all ranks, those of blocks by each group for itself. Up to three ranks are one
-//! group, which the second hop alone serves.
+//! has their block, then within the group. No rank sends more than 2√P messages for a field.
+//! Beside its own particles and its own block a rank has what passes through it, one field at a
+//! time: as much as its own again, and a few times that where many ranks have rows for one group.
+//!
+//! Boundaries are ids, found by bisection on counts, all at once: those of groups by all ranks,
+//! those of blocks by each group for itself. Up to three ranks are one group, for which the second
+//! hop is enough.
 
 mod groups;
 mod hop;

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde::{Deserialize, Serialize};
 
-use super::model::Sharing;
+use super::sharing::Sharing;
 
 /// How fast a machine is, in SI units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

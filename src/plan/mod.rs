@@ -8,13 +8,15 @@ mod model;
 mod particles;
 mod rough;
 mod row;
+mod sharing;
 mod weak;
 
 pub use files::Files;
 pub use layout::{Layout, Load, loads, slabs_at_start, slabs_of};
 pub use machine::{CONSTANTS, Constant, Machine};
-pub use model::{Sharing, StepTime, computing, step_time};
+pub use model::{StepTime, computing, step_time};
 pub use particles::Particles;
 pub use rough::{expected_steps, rough_step};
 pub use row::Row;
+pub use sharing::Sharing;
 pub use weak::{Weak, refined};

@@ -6,16 +6,8 @@
 
 use super::layout::Load;
 use super::machine::Machine;
+use super::sharing::Sharing;
 use crate::comm::Traffic;
-
-/// How ranks share a machine.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Sharing {
-    /// Threads of each rank.
-    pub threads: usize,
-    /// Ranks of each node.
-    pub ranks_per_node: usize,
-}
 
 /// Times of a step (s).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -2,7 +2,8 @@
 
 use super::layout::Load;
 use super::machine::Machine;
-use super::model::{Sharing, step_time};
+use super::model::step_time;
+use super::sharing::Sharing;
 use crate::comm::{Comm, Traffic};
 use crate::domain::Tally;
 use crate::model::Case;

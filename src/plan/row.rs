@@ -2,8 +2,9 @@
 
 use super::layout::{Layout, Load};
 use super::machine::Machine;
-use super::model::{Sharing, StepTime, step_time};
+use super::model::{StepTime, step_time};
 use super::particles::Particles;
+use super::sharing::Sharing;
 use crate::domain::{Decomposition, NestedSlabs};
 use crate::populate::Brick;
 use crate::preflight::Costs;
