@@ -15,14 +15,14 @@ const MARGIN: f64 = 2.0;
 /// The least that a job asks for (minutes), and how much before its end the run stops: PBS sends no signal, and
 /// ranks begin some time after the job.
 const LEAST: f64 = 10.0;
-const EARLIER: u64 = 5;
+const EARLIER: f64 = 5.0;
 
 /// What a job asks for.
 pub struct Job<'a> {
     row: &'a Row,
     nodes: usize,
-    /// Of the job.
-    minutes: u64,
+    /// Minutes, a whole number.
+    minutes: f64,
     /// Of a node (MB of 2²⁰ bytes), if the machine file tells it.
     memory: Option<u64>,
     /// How many such jobs are foreseen.
@@ -59,11 +59,11 @@ impl<'a> Job<'a> {
             (MARGIN * wanted / 60.0).ceil().clamp(LEAST, most)
         });
         let memory = Some(machine.memory_per_node).filter(|memory| memory.is_finite());
-        let of_one = 60.0 * (minutes - EARLIER as f64);
+        let of_one = 60.0 * (minutes - EARLIER);
         Self {
             row,
             nodes: row.ranks / row.sharing.ranks_per_node,
-            minutes: minutes as u64,
+            minutes,
             memory: memory.map(|memory| (memory / 1_048_576.0) as u64),
             jobs: wanted.map(|wanted| (wanted / of_one).ceil().max(1.0)),
         }
@@ -143,9 +143,9 @@ export WHIPPLE_JOB="
     }
 }
 
-/// Minutes as hours:minutes:seconds.
-fn clock(minutes: u64) -> String {
-    format!("{}:{:02}:00", minutes / 60, minutes % 60)
+/// Whole minutes as hours:minutes:seconds.
+fn clock(minutes: f64) -> String {
+    format!("{}:{:02}:00", (minutes / 60.0).floor(), minutes % 60.0)
 }
 
 /// A word for the shell, which takes it as it is.
