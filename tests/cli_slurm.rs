@@ -9,7 +9,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use cli_support::{assert_same, command, end, project, quarter_impact, ranks, status, strike};
+use cli_support::{
+    WHIPPLE, assert_same, command, end, project, quarter_impact, ranks, status, strike,
+};
 
 /// Longer than anything here takes on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(200);
@@ -222,4 +224,41 @@ fn a_chain_of_jobs_goes_on_until_the_end_with_the_bits_of_one_run() {
     // Where the job after that left its output.
     let next = job.parse::<u32>().unwrap() + 1;
     std::fs::remove_file(project(&format!("slurm-{next}.out"))).unwrap();
+}
+
+/// The script that `whipple plan` writes asks SLURM for its layout, each time that it submits itself.
+#[test]
+#[cfg_attr(
+    not(feature = "fault-injection"),
+    ignore = "needs --features fault-injection"
+)]
+fn a_planned_job_submits_itself() {
+    let place = tempfile::tempdir().unwrap();
+    let place = place.path();
+    let Some(cluster) = Cluster::start(&place.join("slurm")) else {
+        return;
+    };
+    std::os::unix::fs::symlink(project("jobs"), place.join("jobs")).unwrap();
+    std::fs::write(place.join("machine.toml"), "cores_per_node = 2.0\n").unwrap();
+    let mut plan = command(WHIPPLE);
+    plan.args(["plan", &quarter_impact(), "--nodes=1", "--threads=1"]);
+    plan.args(["--machine=machine.toml", "--job=its job"]);
+    plan.args(["--set=spacing=0.05mm", "--set=output.history_every=1"]);
+    plan.arg("--set=run.max_steps=8");
+    end(plan.current_dir(place)).with_code(0);
+
+    let mut sbatch = cluster.command("sbatch");
+    strike(&mut sbatch, "pause:0:4");
+    sbatch.current_dir(place).args(["--parsable", "its job"]);
+    let job = end(&mut sbatch).with_code(0).stdout.trim().to_owned();
+    let run = place.join("runs/quarter-impact");
+    cluster.until_step(&run, 3);
+    cluster.signal("USR1", &job);
+    cluster.until("the end of the case", || status(&run).0 == "finished");
+    cluster.until("end of the chain", || cluster.jobs() == 0);
+    let log = std::fs::read_to_string(run.join("log.txt")).unwrap();
+    let starts = log.lines().filter(|line| line.contains(" particles, "));
+    let starts: Vec<&str> = starts.collect();
+    let layout = |line: &&str| line.contains("2 ranks with 1 thread");
+    assert!(starts.len() == 2 && starts.iter().all(layout), "{log}");
 }
