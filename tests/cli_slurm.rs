@@ -242,16 +242,17 @@ fn a_planned_job_submits_itself() {
     std::fs::write(place.join("machine.toml"), "cores_per_node = 2.0\n").unwrap();
     let mut plan = command(WHIPPLE);
     plan.args(["plan", &quarter_impact(), "--nodes=1", "--threads=1"]);
-    plan.args(["--machine=machine.toml", "--job=its job"])
-        .args(CASE);
+    plan.args(["--machine=machine.toml", "--job=its job"]);
+    plan.args(["--set=spacing=0.05mm", "--set=output.history_every=1"]);
+    plan.arg("--set=run.max_steps=8");
     end(plan.current_dir(place)).with_code(0);
 
     let mut sbatch = cluster.command("sbatch");
-    strike(&mut sbatch, "pause:0:60");
+    strike(&mut sbatch, "pause:0:4");
     sbatch.current_dir(place).args(["--parsable", "its job"]);
     let job = end(&mut sbatch).with_code(0).stdout.trim().to_owned();
     let run = place.join("runs/quarter-impact");
-    cluster.until_step(&run, 59);
+    cluster.until_step(&run, 3);
     cluster.signal("USR1", &job);
     cluster.until("the end of the case", || status(&run).0 == "finished");
     cluster.until("end of the chain", || cluster.jobs() == 0);
