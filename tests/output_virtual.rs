@@ -81,7 +81,7 @@ struct Sent {
 fn check(comm: &Comm, rows: &mut Rows, job: Job) -> Sent {
     let Job { owners, total, .. } = job;
     let (me, ranks) = (comm.rank(), comm.size());
-    let is_chosen = |k: u64| job.left_out.is_none_or(|every| k % every != 0);
+    let is_chosen = |k: u64| job.left_out.is_none_or(|every| !k.is_multiple_of(every));
     let mine: Vec<u64> = (0..total)
         .filter(|&k| owners.of(k, total, ranks) == me)
         .collect();
@@ -96,7 +96,9 @@ fn check(comm: &Comm, rows: &mut Rows, job: Job) -> Sent {
     rows.plan_of(comm, &ids, chosen.map(|(i, _)| i)).unwrap();
     let planned = sent();
     let mut all: Vec<u64> = (0..total).filter(|&k| is_chosen(k)).collect();
-    all.iter_mut().for_each(|k| *k = owners.id(*k));
+    for k in &mut all {
+        *k = owners.id(*k);
+    }
     all.sort_unstable();
     let writers = job.writers.unwrap_or(ranks).min(ranks);
     let block = Block::shared(all.len() as u64, me, ranks, writers);

@@ -115,7 +115,9 @@ mod tests {
                         .zip(&gates)
                         .all(|(group, &gate)| groups.group(gate) == group)
                 );
-                gates.iter().for_each(|&gate| expected[gate].push(rank));
+                for &gate in &gates {
+                    expected[gate].push(rank);
+                }
             }
             for (rank, expected) in expected.iter().enumerate() {
                 let guests: Vec<usize> = groups.guests(rank).collect();
