@@ -85,7 +85,7 @@ impl Partition {
     }
 
     /// Moves faces at a step so that each rank gets its share of work, given the seconds that this rank
-    /// has worked; now and then [revises](Self::revise) levels and axes. Collective.
+    /// has worked; now and then revises levels and axes. Collective.
     pub fn balance(
         &mut self,
         comm: &Comm,
