@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use crate::numerics::counter::split_mix;
+
 /// All ranks in groups that follow each other: ⌊√P⌋ of them, as even as whole numbers allow.
 ///
 /// Each rank has a gate in each group, the one rank there that takes in what it has for the group.
@@ -64,16 +66,13 @@ impl Groups {
 }
 
 /// How far the gates of ranks of a group are shifted in another of so many ranks; not at all in
-/// their own. The numbers are mixed as by `SplitMix64` (Steele, Lea & Flood 2014,
-/// doi:10.1145/2660193.2660195).
+/// their own.
 fn shift(from: usize, to: usize, ranks: usize) -> usize {
     if from == to {
         return 0;
     }
-    let z = ((from as u64) << 32 | to as u64).wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    usize::try_from((z ^ z >> 31) % ranks as u64).unwrap_or(0)
+    let word = split_mix(&mut ((from as u64) << 32 | to as u64));
+    usize::try_from(word % ranks as u64).unwrap_or(0)
 }
 
 #[cfg(test)]
