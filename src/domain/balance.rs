@@ -1,10 +1,9 @@
 //! Faces of the slabs so that counted work is even.
 
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-
 use rayon::prelude::*;
 
 use super::histogram::Histogram;
+use super::least::Least;
 use super::nested::{NestedSlabs, Slab};
 use super::rank_speed::RankSpeeds;
 use crate::comm::Comm;
@@ -20,9 +19,7 @@ pub struct Balance {
     /// For each first rank of such a slab its place there.
     places: Vec<u32>,
     /// Smallest and largest coordinates of each, as words.
-    ends: Vec<u64>,
-    /// The same, as threads find them.
-    least: Vec<AtomicU64>,
+    ends: Least,
 }
 
 /// Particles that a task looks at.
@@ -73,12 +70,8 @@ impl Balance {
             // Nobody cuts a slab of one rank.
             (places[first] != u32::MAX).then_some(places[first] as usize)
         };
-        self.ends.clear();
-        self.ends.resize(2 * self.slabs.len(), u64::MAX);
-        self.least.clear();
-        self.least
-            .resize_with(self.ends.len(), || AtomicU64::new(u64::MAX));
-        let least = &self.least;
+        self.ends.begin(2 * self.slabs.len());
+        let ends = &self.ends;
         positions.par_chunks(SHARE).for_each(|positions| {
             // Those of one slab follow each other: each run is told once.
             let mut run = (usize::MAX, [u64::MAX; 2]);
@@ -87,20 +80,19 @@ impl Balance {
                     continue;
                 };
                 if place != run.0 {
-                    tell_ends(least, run);
+                    tell_ends(ends, run);
                     run = (place, [u64::MAX; 2]);
                 }
                 let x = ordered(position[axis]);
                 run.1 = [run.1[0].min(x), run.1[1].min(!x)];
             }
-            tell_ends(least, run);
+            tell_ends(ends, run);
         });
-        let ends = self.ends.iter_mut().zip(&mut self.least);
-        ends.for_each(|(end, least)| *end = *least.get_mut());
-        comm.min_u64(&mut self.ends);
-        let ends = self.ends.chunks_exact(2).map(ends_of);
+        self.ends.join(comm);
+        let words = self.ends.words();
+        let ends = words.chunks_exact(2).map(ends_of);
         if level == 0 {
-            let (lower, upper) = ends_of(&self.ends);
+            let (lower, upper) = ends_of(words);
             self.histogram.reset(lower, upper, ranks);
         } else {
             let cuts = self.slabs.iter().map(|slab| slab.ranks().len());
@@ -117,7 +109,7 @@ impl Balance {
     fn split(&self, slabs: &mut NestedSlabs, rank_speeds: &RankSpeeds) {
         let ranks = slabs.ranks();
         for (place, slab) in self.slabs.iter().enumerate() {
-            let (lower, upper) = ends_of(&self.ends[2 * place..]);
+            let (lower, upper) = ends_of(&self.ends.words()[2 * place..]);
             if lower <= upper {
                 split_slab(&self.histogram, (place, *slab), slabs.faces_mut(), |rank| {
                     rank_speeds.below(rank, ranks)
@@ -144,16 +136,14 @@ impl Balance {
         self.histogram.memory()
             + size_of::<Slab>() * self.slabs.capacity()
             + 4 * self.places.capacity()
-            + 8 * (self.ends.capacity() + self.least.capacity())
+            + self.ends.memory()
     }
 }
 
 /// Joins the ends that a task has found of a slab, if any, with those of the others.
-fn tell_ends(least: &[AtomicU64], (place, ends): (usize, [u64; 2])) {
+fn tell_ends(all: &Least, (place, ends): (usize, [u64; 2])) {
     if place != usize::MAX {
-        for (least, end) in least[2 * place..].iter().zip(ends) {
-            least.fetch_min(end, Relaxed);
-        }
+        all.tell(2 * place, ends);
     }
 }
 

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use rayon::prelude::*;
 
+use super::least::Least;
 use super::near::MARGIN;
 use super::needs::Extent;
 use super::nested::{Decomposition, NestedSlabs};
@@ -15,10 +16,8 @@ use crate::populate::Brick;
 /// buffers are kept from one count to the next.
 #[derive(Debug, Default)]
 pub(super) struct HaloCount {
-    /// Of each rank the words of the box around what would be its particles, as threads find them.
-    least: Vec<AtomicU64>,
-    /// The same of all ranks.
-    words: Vec<u64>,
+    /// Of each rank the words of the box around what would be its particles.
+    boxes: Least,
     extents: Vec<Extent>,
     /// Particles that each rank would hear of, as threads find them.
     heard: Vec<AtomicU64>,
@@ -68,28 +67,25 @@ impl HaloCount {
         positions: &[[f64; 3]],
         reach: &(impl Fn(usize) -> f64 + Sync),
     ) {
-        let words = Extent::WORDS * slabs.ranks();
-        self.least.clear();
-        self.least.resize_with(words, || AtomicU64::new(u64::MAX));
-        let least = &self.least;
+        self.boxes.begin(Extent::WORDS * slabs.ranks());
+        let boxes = &self.boxes;
         let tasks = positions.par_chunks(SHARE).enumerate();
         tasks.for_each(|(task, positions)| {
             // Those of one rank follow each other: each run is told once.
             let (mut owner, mut region, mut extent) = (0, NOWHERE, Extent::EMPTY);
             for (k, position) in positions.iter().enumerate() {
                 if !region.holds(position) {
-                    tell(least, owner, extent);
+                    tell(boxes, owner, extent);
                     owner = slabs.owner(position);
                     (region, extent) = (slabs.region(owner), Extent::EMPTY);
                 }
                 extent.add(position, reach(task * SHARE + k));
             }
-            tell(least, owner, extent);
+            tell(boxes, owner, extent);
         });
-        take(&mut self.words, &mut self.least);
-        comm.min_u64(&mut self.words);
+        self.boxes.join(comm);
         self.extents.clear();
-        let extents = self.words.chunks_exact(Extent::WORDS);
+        let extents = self.boxes.words().chunks_exact(Extent::WORDS);
         self.extents.extend(extents.map(Extent::of_words));
     }
 
@@ -127,32 +123,25 @@ impl HaloCount {
                 });
             }
         });
-        take(&mut self.halos, &mut self.heard);
+        self.halos.clear();
+        let heard = self.heard.iter_mut().map(|heard| *heard.get_mut());
+        self.halos.extend(heard);
         comm.sum_u64(&mut self.halos);
     }
 
     /// Bytes allocated.
     pub(super) fn memory(&self) -> usize {
-        let words = self.words.capacity() + self.halos.capacity();
-        8 * (self.least.capacity() + self.heard.capacity() + words)
+        self.boxes.memory()
+            + 8 * (self.heard.capacity() + self.halos.capacity())
             + size_of::<Extent>() * self.extents.capacity()
     }
 }
 
 /// Joins what a task has found of a rank, if anything, with what the others have.
-fn tell(least: &[AtomicU64], rank: usize, extent: Extent) {
+fn tell(boxes: &Least, rank: usize, extent: Extent) {
     if !extent.is_empty() {
-        let words = &least[Extent::WORDS * rank..];
-        for (least, word) in words.iter().zip(extent.words()) {
-            least.fetch_min(word, Relaxed);
-        }
+        boxes.tell(Extent::WORDS * rank, extent.words());
     }
-}
-
-/// Takes what threads have found.
-fn take(words: &mut Vec<u64>, found: &mut [AtomicU64]) {
-    words.clear();
-    words.extend(found.iter_mut().map(|word| *word.get_mut()));
 }
 
 #[cfg(test)]

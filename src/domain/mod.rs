@@ -7,6 +7,7 @@ mod forecast;
 mod halo;
 mod halo_count;
 mod histogram;
+mod least;
 mod migrate;
 mod mirrors;
 mod near;

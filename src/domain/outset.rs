@@ -135,11 +135,26 @@ impl Outset {
                 reach.push(body.smoothing_length * edge(site.share, case.dimension));
             });
         }
+        self.slabs_of(case, comm, (ranks, levels), (&places, &reach), balance)
+    }
+
+    /// The same for particles at some positions (m) that reach so far (m), shared by the processes of
+    /// `comm`. Collective.
+    #[must_use]
+    pub fn slabs_of(
+        &self,
+        case: &Case,
+        comm: &Comm,
+        (ranks, levels): (usize, Option<usize>),
+        (positions, reach): (&[[f64; 3]], &[f64]),
+        balance: &mut Balance,
+    ) -> NestedSlabs {
+        let levels = levels.or_else(|| self.known_levels(case, ranks));
         let mut slabs = NestedSlabs::on_first(self.axes, levels.unwrap_or(1), ranks);
-        let (work, even) = (vec![1; places.len()], RankSpeeds::default());
-        balance.cut(comm, &mut slabs, (&places, &work), &even);
+        let (work, even) = (vec![1; positions.len()], RankSpeeds::default());
+        let all = (positions, work.as_slice());
+        balance.cut(comm, &mut slabs, all, &even);
         if levels.is_none() {
-            let all = (places.as_slice(), work.as_slice());
             let mut choice = Choice::new(case);
             choice.revise(comm, &mut slabs, (balance, &even), all, |i| reach[i]);
         }

@@ -123,7 +123,7 @@ impl Partition {
         }
     }
 
-    /// Cuts slabs anew for any shares of all particles, and [deals](Self::deal) these. Collective.
+    /// [`Self::deal`], in slabs of the levels and axes that suit the particles. Collective.
     pub fn begin(
         &mut self,
         comm: &Comm,
@@ -132,12 +132,17 @@ impl Partition {
     ) {
         self.cut(comm, particles);
         self.revise(comm, particles, reach);
-        self.deal(comm, particles);
+        self.hand_out(comm, particles);
+    }
+
+    /// Cuts slabs anew for any shares of all particles, and deals these to the ranks. Collective.
+    pub fn deal(&mut self, comm: &Comm, particles: &mut ParticleStore) {
+        self.cut(comm, particles);
+        self.hand_out(comm, particles);
     }
 
     /// Deals any shares of all particles to the ranks. Collective.
-    pub fn deal(&mut self, comm: &Comm, particles: &mut ParticleStore) {
-        self.cut(comm, particles);
+    fn hand_out(&mut self, comm: &Comm, particles: &mut ParticleStore) {
         self.migration
             .migrate(comm, &self.slabs, particles, &[], |_, _| 0.0);
         // Its buffers have carried whole shares of the model; never again so much.

@@ -3,8 +3,7 @@
 use super::particles::Particles;
 use crate::comm::{Comm, Traffic};
 use crate::domain::{
-    Balance, Choice, GREETING, Mirrors, NestedSlabs, Outset, RankSpeeds, Sent, Tally, greetings,
-    tally,
+    Balance, GREETING, Mirrors, NestedSlabs, Outset, RankSpeeds, Sent, Tally, greetings, tally,
 };
 use crate::model::Case;
 use crate::populate;
@@ -79,20 +78,11 @@ pub fn slabs_of(
     levels: Option<usize>,
 ) -> Option<NestedSlabs> {
     let outset = Outset::new(case)?;
-    let levels = levels.or_else(|| outset.known_levels(case, ranks));
-    let mut slabs = NestedSlabs::on_first(outset.axes, levels.unwrap_or(1), ranks);
-    let mut balance = Balance::default();
-    cut(&mut slabs, particles, &mut balance);
-    if levels.is_none() {
-        let (work, even) = (vec![1; particles.positions.len()], RankSpeeds::default());
-        let (all, by) = (
-            (particles.positions.as_slice(), work.as_slice()),
-            (&mut balance, &even),
-        );
-        let reach = |i: usize| particles.reach[i];
-        Choice::new(case).revise(&Comm::solo(), &mut slabs, by, all, reach);
-    }
-    Some(slabs)
+    let (all, balance) = (
+        (particles.positions.as_slice(), particles.reach.as_slice()),
+        &mut Balance::default(),
+    );
+    Some(outset.slabs_of(case, &Comm::solo(), (ranks, levels), all, balance))
 }
 
 /// Moves faces so that each rank has as many particles.
