@@ -29,7 +29,6 @@ pub struct Joint {
     /// Becomes the union of all ranks' bits.
     pub bits: u64,
     words: Vec<u64>,
-    mine: Vec<u64>,
 }
 
 impl Joint {
@@ -37,7 +36,7 @@ impl Joint {
     #[must_use]
     pub fn memory(&self) -> usize {
         let words = self.sums.capacity() + self.least.capacity();
-        8 * (words + self.words.capacity() + self.mine.capacity())
+        8 * (words + self.words.capacity())
     }
 
     fn pack(&mut self) {
@@ -75,8 +74,9 @@ impl Comm {
         match &self.kind {
             Kind::Solo => {}
             Kind::Mpi(world) => {
-                joint.mine.clone_from(&joint.words);
-                join_by_mpi(world.as_raw(), &joint.mine, &mut joint.words);
+                let mut mine = self.scratch.borrow_mut();
+                mine.clone_from(&joint.words);
+                join_by_mpi(world.as_raw(), &mine, &mut joint.words);
             }
             Kind::Virtual(rank) => rank.reduce(&mut joint.words, combine),
         }
