@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::cases::{BenchCase, CASES};
-use super::driver::{Configuration, Scratch, launch, mpirun, obstacle, program, read};
+use super::driver::{Configuration, Scratch, bench_on, launch, obstacle, program, read};
 use super::machine::{self, cores};
 use super::messages::Messages;
 use super::report::Report;
@@ -84,9 +84,8 @@ fn core_time(scratch: &Scratch, name: &str, configuration: Configuration) -> Res
 /// What messages take between ranks on all cores, one fewer if they are odd.
 fn messages(scratch: &Scratch) -> Result<Messages, String> {
     let figures = scratch.0.join("messages.json");
-    let own = std::env::current_exe().map_err(|e| format!("this program is not found: {e}"))?;
-    let mut command = mpirun(cores() / 2 * 2);
-    command.arg(own).args(["bench", "--messages", "--json"]);
+    let mut command = bench_on(cores() / 2 * 2)?;
+    command.arg("--messages").arg("--json");
     launch(command.arg(&figures))?;
     read(&figures)
 }

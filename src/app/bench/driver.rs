@@ -168,6 +168,15 @@ pub(super) fn program(
     (ranks, threads): Configuration,
     case: &BenchCase,
 ) -> Result<Command, String> {
+    let mut command = bench_on(ranks)?;
+    command
+        .args(["--case", case.name])
+        .arg(format!("--threads={threads}"));
+    Ok(command)
+}
+
+/// `whipple bench` of this program on so many ranks.
+pub(super) fn bench_on(ranks: usize) -> Result<Command, String> {
     let own = std::env::current_exe().map_err(|e| format!("this program is not found: {e}"))?;
     let mut command = if ranks == 1 {
         Command::new(own)
@@ -176,13 +185,11 @@ pub(super) fn program(
         command.arg(own);
         command
     };
-    command
-        .args(["bench", "--case", case.name])
-        .arg(format!("--threads={threads}"));
+    command.arg("bench");
     Ok(command)
 }
 
-pub(super) fn mpirun(ranks: usize) -> Command {
+fn mpirun(ranks: usize) -> Command {
     let mut command = Command::new("mpirun");
     command.arg("-n").arg(ranks.to_string());
     for (name, value) in LAUNCH {

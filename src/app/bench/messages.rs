@@ -6,6 +6,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use super::machine::host;
+use super::report::median;
 use crate::comm::{Comm, Exchange, Joint};
 use crate::output::{on_root, write_json};
 use crate::run::say::say;
@@ -79,8 +80,8 @@ fn measure(comm: &Comm) -> Messages {
             exchange.wait();
         }
     };
-    let short = median(comm, SHORT_ROUNDS, &mut swap, SHORT);
-    let long = median(comm, LONG_ROUNDS, &mut swap, LONG);
+    let short = time_of(comm, SHORT_ROUNDS, &mut swap, SHORT);
+    let long = time_of(comm, LONG_ROUNDS, &mut swap, LONG);
     let mut joint = Joint::default();
     let mut agree = |_, rounds| {
         for _ in 0..rounds {
@@ -90,7 +91,7 @@ fn measure(comm: &Comm) -> Messages {
             comm.join(&mut joint);
         }
     };
-    let both = median(comm, SHORT_ROUNDS, &mut agree, 0);
+    let both = time_of(comm, SHORT_ROUNDS, &mut agree, 0);
     let sent = comm.size() as f64 * LONG as f64;
     Messages {
         between_nodes,
@@ -101,9 +102,9 @@ fn measure(comm: &Comm) -> Messages {
 }
 
 /// The median time (s) of one of so many rounds, the longest of all ranks. Collective.
-fn median(comm: &Comm, rounds: u32, task: &mut dyn FnMut(usize, u32), bytes: usize) -> f64 {
+fn time_of(comm: &Comm, rounds: u32, task: &mut dyn FnMut(usize, u32), bytes: usize) -> f64 {
     task(bytes, rounds);
-    let mut times: Vec<f64> = (0..REPEAT)
+    let times: Vec<f64> = (0..REPEAT)
         .map(|_| {
             comm.barrier();
             let begun = Instant::now();
@@ -111,6 +112,5 @@ fn median(comm: &Comm, rounds: u32, task: &mut dyn FnMut(usize, u32), bytes: usi
             comm.max_f64(begun.elapsed().as_secs_f64() / f64::from(rounds))
         })
         .collect();
-    times.sort_unstable_by(f64::total_cmp);
-    times[REPEAT / 2]
+    median(&times)
 }

@@ -87,7 +87,7 @@ impl Row {
 }
 
 /// The middle of some figures, or the mean of the two in the middle.
-fn median(figures: &[f64]) -> f64 {
+pub(super) fn median(figures: &[f64]) -> f64 {
     let mut sorted = figures.to_vec();
     sorted.sort_by(f64::total_cmp);
     let n = sorted.len();
