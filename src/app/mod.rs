@@ -13,6 +13,7 @@ pub mod plot;
 mod restart;
 pub mod results;
 mod run;
+mod shell;
 mod sweep;
 pub mod which;
 

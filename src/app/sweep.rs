@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::shell::quoted;
 use crate::input;
 use crate::output::{OutputError, RunLock, write_atomically};
 use crate::run::exit::{EXIT_FAILED, EXIT_INPUT, EXIT_STOPPED};
@@ -166,10 +167,7 @@ fn sweep(args: &SweepArgs) -> Result<u8, SweepError> {
     let _lock = hold(definition)?;
     if args.slurm {
         let path = folder.join("sweep.sbatch");
-        write_atomically(
-            &path,
-            script(&folder, &args.shares, sweep.count()?).as_bytes(),
-        )?;
+        write_atomically(&path, &script(&folder, &args.shares, sweep.count()?))?;
         say(&format!(
             "wrote {}: give it to sbatch, then run",
             path.display()
@@ -308,16 +306,20 @@ impl Shares {
 }
 
 /// A job array whose tasks run a point each.
-fn script(folder: &Path, shares: &Shares, points: usize) -> String {
+fn script(folder: &Path, shares: &Shares, points: usize) -> Vec<u8> {
     let program = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("whipple"));
     let (ranks, threads) = (shares.ranks, shares.threads.unwrap_or(1));
     let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
-    let quoted = |path: &Path| format!("'{}'", path.display().to_string().replace('\'', "'\\''"));
-    format!(
+    let mut text = format!(
         "#!/bin/bash\n#SBATCH --array=1-{points}\n#SBATCH --ntasks={ranks}\n\
          #SBATCH --cpus-per-task={threads}\n#SBATCH --output=%A_%a.log\n\
-         exec {} sweep {} --point \"$SLURM_ARRAY_TASK_ID\" --ranks {ranks} --threads {threads}\n",
-        quoted(&program),
-        quoted(&folder),
+         exec "
     )
+    .into_bytes();
+    text.extend(quoted(program.as_os_str()));
+    text.extend(b" sweep ");
+    text.extend(quoted(folder.as_os_str()));
+    let rest = format!(" --point \"$SLURM_ARRAY_TASK_ID\" --ranks {ranks} --threads {threads}\n");
+    text.extend(rest.into_bytes());
+    text
 }

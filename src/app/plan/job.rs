@@ -1,11 +1,11 @@
 //! The batch script of a layout, for SLURM and for PBS: a chain of jobs.
 
 use std::ffi::OsStr;
-use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 
 use super::source::Source;
 use crate::app::run::default_folder;
+use crate::app::shell::quoted;
 use crate::model::readable::one_line;
 use crate::output::RunFolder;
 use crate::plan::{Machine, Row};
@@ -146,23 +146,4 @@ export WHIPPLE_JOB="
 /// Whole minutes as hours:minutes:seconds.
 fn clock(minutes: f64) -> String {
     format!("{}:{:02}:00", (minutes / 60.0).floor(), minutes % 60.0)
-}
-
-/// A word for the shell, which takes it as it is.
-fn quoted(word: &OsStr) -> Vec<u8> {
-    let bytes = word.as_bytes();
-    let plain = |byte: &u8| byte.is_ascii_alphanumeric() || b"-_./=:,+@%".contains(byte);
-    if !bytes.is_empty() && bytes.iter().all(plain) {
-        return bytes.to_owned();
-    }
-    let mut quoted = vec![b'\''];
-    for byte in bytes {
-        if *byte == b'\'' {
-            quoted.extend(b"'\\''");
-        } else {
-            quoted.push(*byte);
-        }
-    }
-    quoted.push(b'\'');
-    quoted
 }
