@@ -52,6 +52,7 @@ fn script_in(
     } = Command::new(python)
         .arg(root().join("tests/clients").join(name))
         .args(arguments)
+        .env("PYTHONPATH", root().join("python/src"))
         .current_dir(folder)
         .output()
         .expect("python starts");
