@@ -304,8 +304,7 @@ fn exchange_halos(comm: &Comm) {
                 let needed = needed(comm, &slabs, &mirrors, round, reach);
                 check_halo(comm, &particles, &halo, &needed, round);
                 for phase in [HaloPhase::STRESS, HaloPhase::FORCES] {
-                    halo.post(comm, &particles, phase);
-                    halo.finish(&mut particles, phase);
+                    halo.exchange(comm, &mut particles, phase);
                     for slot in 0..particles.owned() + particles.halo() {
                         assert_holds(&particles, slot, numbers[&particles.id[slot]], round, phase);
                     }

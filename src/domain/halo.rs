@@ -9,9 +9,10 @@ use super::chosen::{Chosen, of_peer};
 use super::mirrors::Mirrors;
 use super::needs::{Extent, Finder, Found, MYSELF};
 use super::nested::NestedSlabs;
+use super::shown::Shown;
 use crate::comm::{Comm, Exchange, Traffic};
 use crate::numerics::collector::Collector;
-use crate::particles::{HaloPhase, Image, ParticleStore};
+use crate::particles::{HaloPhase, Image, ParticleStore, copy_at_once};
 
 /// Where ranks stand: each has its particles in its own slab.
 #[derive(Debug, Clone, Copy)]
@@ -146,18 +147,32 @@ impl Halo {
         self.finish_motion(particles);
     }
 
-    /// [`Self::post`] and [`Self::finish`]. Collective.
+    /// [`Self::post`] and [`Self::finish`] of fields alone. Collective.
     pub fn exchange(&mut self, comm: &Comm, particles: &mut ParticleStore, phase: HaloPhase) {
-        self.post(comm, particles, phase);
-        self.finish(particles, phase);
+        self.post(comm, particles, phase, None);
+        self.finish(particles, phase, None);
     }
 
-    /// Starts to send the fields of `phase` of the same particles.
-    pub fn post(&mut self, comm: &Comm, particles: &ParticleStore, phase: HaloPhase) {
-        let size = particles.bytes_per_particle(phase);
+    /// Starts to send the fields of `phase` of the same particles, and what else they show.
+    pub fn post(
+        &mut self,
+        comm: &Comm,
+        particles: &ParticleStore,
+        phase: HaloPhase,
+        shown: Option<&dyn Shown>,
+    ) {
+        let size = particles.bytes_per_particle(phase) + shown.map_or(0, Shown::size);
         let chosen = &self.chosen;
         fill(&mut self.exchange, |k, message| {
-            particles.pack(phase, &chosen.particles[chosen.of(k)], message);
+            let sent = &chosen.particles[chosen.of(k)];
+            particles.pack(phase, sent, message);
+            if let Some(shown) = shown {
+                let fields = message.len();
+                message.resize(sent.len() * size, 0);
+                let slots = message[fields..].par_chunks_exact_mut(shown.size());
+                let slots = slots.zip(sent).with_min_len(SHARE);
+                slots.for_each(|(slot, &i)| slot.copy_from_slice(shown.of(i as usize)));
+            }
         });
         for (k, count) in self.received.iter().enumerate() {
             self.exchange.expect(k, count * size);
@@ -166,10 +181,27 @@ impl Halo {
     }
 
     /// Receives what [`Self::post`] of the others sent.
-    pub fn finish(&mut self, particles: &mut ParticleStore, phase: HaloPhase) {
+    pub fn finish(
+        &mut self,
+        particles: &mut ParticleStore,
+        phase: HaloPhase,
+        shown: Option<&mut dyn Shown>,
+    ) {
         self.exchange.wait();
         let (peers, first) = (self.exchange.incoming_all(), particles.owned());
-        particles.unpack_all(phase, first, &self.received, |k| peers[k].incoming());
+        let (received, size) = (&self.received, particles.bytes_per_particle(phase));
+        particles.unpack_all(phase, first, received, |k| {
+            &peers[k].incoming()[..received[k] * size]
+        });
+        if let Some(shown) = shown {
+            let mut rest = shown.heard(particles.halo());
+            for (peer, count) in peers.iter().zip(received) {
+                let values = &peer.incoming()[count * size..];
+                let (slots, after) = rest.split_at_mut(values.len());
+                copy_at_once(values, slots);
+                rest = after;
+            }
+        }
     }
 
     /// Gives halo particles the values of their owners: those of this rank's particles stand first

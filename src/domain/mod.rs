@@ -16,6 +16,7 @@ mod nested;
 mod outset;
 mod partition;
 mod rank_speed;
+mod shown;
 mod span;
 mod tally;
 
@@ -30,5 +31,6 @@ pub use nested::{Decomposition, NestedSlabs};
 pub use outset::Outset;
 pub use partition::Partition;
 pub use rank_speed::RankSpeeds;
+pub use shown::Shown;
 pub(crate) use span::Span;
 pub use tally::{GREETING, Sent, Tally, greetings, tally};

@@ -83,10 +83,10 @@ pub(super) fn push_numbers(list: &mut Vec<f64>, used: usize, numbers: &[f64; LAN
     list[used..used + LANES].copy_from_slice(&chosen);
 }
 
-/// Lists fill most of a rank's memory beside the particles: they grow by a quarter only.
+/// Lists fill most of a rank's memory beside the particles: they grow by little.
 #[cold]
 fn grow(list: &mut Vec<u32>, length: usize) {
-    let wanted = (length + length / 4).max(1 << 12);
+    let wanted = (length + length / 16).max(1 << 12);
     list.reserve_exact(wanted - list.len());
     list.resize(wanted, 0);
 }

@@ -245,9 +245,7 @@ particle_fields! {
     /// Gradient of the kernel sum over the kernel sum; it points into the body.
     gradient_shift: Vector,               "1/m",    Scratch,  STRESS,         OnDemand, NORMALISED;
     /// Elastic displacement of a particle against its neighbours that no linear field explains.
-    hourglass_displacement: Vector,       "m",      State,    STRESS,         OnDemand, CORRECTED;
-    /// Stress of the corrected form between its corrections, `P = A σ B`, row-major.
-    pair_stress: Tensor,                  "Pa",     Scratch,  STRESS,         OnDemand, CORRECTED;
+    hourglass_displacement: Vector,       "m",      State,    -,              OnDemand, CORRECTED;
     /// How much the correction enlarges gradients; 0 where it is ill-conditioned and left out.
     correction_norm: Scalar,              "",       Scratch,  -,              OnDemand, NORMALISED;
     /// Velocity gradient at a stress point at the predicted velocities.

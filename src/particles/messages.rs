@@ -9,6 +9,16 @@ use super::select::Select;
 /// Bytes that a task copies.
 const PIECE: usize = 1 << 16;
 
+/// Copies bytes by all threads.
+///
+/// # Panics
+/// If there are not as many slots.
+pub fn copy_at_once(values: &[u8], slots: &mut [u8]) {
+    assert_eq!(values.len(), slots.len(), "bytes and slots");
+    let pieces = slots.par_chunks_mut(PIECE).zip(values.par_chunks(PIECE));
+    pieces.for_each(|(slots, values)| slots.copy_from_slice(values));
+}
+
 impl ParticleStore {
     /// Appends to `buffer` the fields of `which` of the particles `indices`, field by field.
     pub fn pack(&self, which: impl Select, indices: &[u32], buffer: &mut Vec<u8>) {
@@ -64,8 +74,7 @@ impl ParticleStore {
             for (k, count) in counts.iter().enumerate() {
                 let (slots, after) = rest.split_at_mut(count * size);
                 let values = &message(k)[count * place..][..slots.len()];
-                let pieces = slots.par_chunks_mut(PIECE).zip(values.par_chunks(PIECE));
-                pieces.for_each(|(slots, values)| slots.copy_from_slice(values));
+                copy_at_once(values, slots);
                 rest = after;
             }
         });

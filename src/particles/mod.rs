@@ -17,6 +17,7 @@ pub use arrays::{SCRATCH_WORDS, resize};
 pub use columns::{FieldKind, HaloPhase, Life, Mirror, Output, Owner};
 pub use fields::{FIELDS, FieldId, FieldInfo, ParticleStore};
 pub use image::Image;
+pub use messages::copy_at_once;
 pub use point::MaterialPoints;
 pub(crate) use point::material_points;
 pub use records::Records;

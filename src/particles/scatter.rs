@@ -44,4 +44,22 @@ impl<'a, T> Scatter<'a, T> {
         // SAFETY: in range, and unique by this function's contract.
         unsafe { &mut *self.pointer.add(index) }
     }
+
+    /// The value of element `index`.
+    ///
+    /// # Safety
+    /// Nobody may write it meanwhile.
+    ///
+    /// # Panics
+    /// If `index` is out of range.
+    #[inline(always)]
+    #[must_use]
+    pub unsafe fn read(&self, index: usize) -> T
+    where
+        T: Copy,
+    {
+        assert!(index < self.length, "element {index} of {}", self.length);
+        // SAFETY: in range, and at rest by this function's contract.
+        unsafe { self.pointer.add(index).read() }
+    }
 }

@@ -16,6 +16,7 @@ pub use stress_points::StressPoints;
 use super::signal::SignalSpeed;
 use super::step::{Side, Step};
 use super::sums::Sums;
+use crate::domain::Shown;
 use crate::neighbours::Lists;
 use crate::particles::ParticleStore;
 
@@ -31,6 +32,11 @@ pub(super) trait Formulation: SignalSpeed {
 
     /// The drift in a step `dt` (s) that velocities and `gravity` (m/s²) do not tell.
     fn drift(&self, _particles: &mut ParticleStore, _dt: f64, _gravity: &[f64; 3]) {}
+
+    /// What else than fields the second sweep is to know of halo particles, if anything.
+    fn shown(&mut self) -> Option<&mut dyn Shown> {
+        None
+    }
 
     /// Memory for so many images that is free until [`Self::rates`], in words.
     fn scratch(&mut self, images: usize) -> &mut [u64];

@@ -61,12 +61,6 @@ pub(super) trait Show {
     /// # Safety
     /// No other thread may read or write what belongs to these particles and places.
     unsafe fn show<V: Lanes>(&self, points: &Updated);
-
-    /// Shows particle `i` of a rigid body, which has no stress.
-    ///
-    /// # Safety
-    /// No other thread may read or write what belongs to the particle.
-    unsafe fn show_rigid(&self, _i: usize) {}
 }
 
 /// Nothing is shown.
@@ -106,10 +100,6 @@ impl<'a> MaterialUpdate<'a> {
     ) {
         if self.rigid[cluster.group] {
             self.store_free(cluster, 0);
-            for &index in &cluster.receivers[..cluster.lanes] {
-                // SAFETY: the particle belongs to this cluster alone, and this thread has it.
-                unsafe { show.show_rigid(self.images[index as usize].base()) };
-            }
             return;
         }
         let base = self.base(cluster);

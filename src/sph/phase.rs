@@ -11,7 +11,7 @@ use super::smoothing::Smoothing;
 use super::step::{Side, Step};
 use super::sums::Sums;
 use super::terms;
-use crate::domain::MirrorForce;
+use crate::domain::{MirrorForce, Shown};
 use crate::loads::Loads;
 use crate::model::{Case, SphForm};
 use crate::neighbours::Lists;
@@ -112,6 +112,28 @@ impl Sph {
         let sums = &mut self.sums;
         with_form!(&mut self.form, form => form.rates(sums, particles, lists, step));
         sums.terms.prepare(particles, step.dt);
+    }
+
+    /// What else than fields the second sweep is to know of halo particles, if anything.
+    pub fn shown(&mut self) -> Option<&mut dyn Shown> {
+        with_form!(&mut self.form, form => form.shown())
+    }
+
+    /// What images have shown in the last second sweep of the corrected form, in the order of the lists.
+    pub(super) fn corrected(&self) -> &[CorrectedRecord] {
+        match &self.form {
+            Form::Corrected(form) => form.records(),
+            Form::Conventional(_) | Form::Normalised(_) | Form::StressPoints(_) => &[],
+        }
+    }
+
+    /// Bytes of it for a particle.
+    #[must_use]
+    pub fn bytes_shown(case: &Case) -> usize {
+        match case.sph.form {
+            SphForm::Corrected => size_of::<CorrectedRecord>(),
+            SphForm::Conventional | SphForm::Normalised | SphForm::StressPoints => 0,
+        }
     }
 
     /// The second sweep: accelerations by stress and viscosity, and the power they put into heat,

@@ -12,7 +12,7 @@ use crate::model::{Case, SmoothingLength};
 use crate::neighbours::Lists;
 use crate::numerics::kernel::{ConstantScale, Kernel, MeanScale};
 use crate::numerics::lanes::LANES;
-use crate::particles::{GRAIN, ParticleStore, resize};
+use crate::particles::{GRAIN, Scatter, resize};
 
 /// What a formulation finds beside particles and lists, kept from step to step.
 pub(super) struct Sums {
@@ -110,30 +110,32 @@ impl Sums {
 
 /// What is made of halo particles and their images, or of the images of this rank's particles,
 /// whose own records the first sweep has written: `show` makes it of a particle's index and an
-/// image's code.
+/// image's code, and may read the own records.
 pub(super) fn show_images<R: Send>(
     records: &mut [R],
-    particles: &ParticleStore,
+    owned: usize,
     lists: &Lists,
     side: Side,
-    show: impl Fn(usize, u8) -> R + Sync,
+    show: impl Fn(&Scatter<R>, usize, u8) -> R + Sync,
 ) {
-    let owned = particles.owned();
     let sequence = lists.sequence();
     if sequence.images().len() == owned {
         return;
     }
-    let records = records.par_chunks_mut(LANES);
+    let records = Scatter::new(records);
     let images = sequence.images().par_chunks(LANES).enumerate();
-    let others = records.zip(images).with_min_len(GRAIN);
-    others
-        .filter(|(_, (eight, _))| sequence.any_images(LANES * eight))
-        .flat_map_iter(|(records, (_, images))| records.iter_mut().zip(images))
-        .for_each(|(record, image)| {
-            let (base, code) = (image.base(), image.code());
-            let of_halo = base >= owned;
-            if side.takes(of_halo) && (of_halo || code != 0) {
-                *record = show(base, code);
+    images
+        .with_min_len(GRAIN)
+        .filter(|(eight, _)| sequence.any_images(LANES * eight))
+        .for_each(|(eight, images)| {
+            for (k, image) in images.iter().enumerate() {
+                let (base, code) = (image.base(), image.code());
+                let of_halo = base >= owned;
+                if side.takes(of_halo) && (of_halo || code != 0) {
+                    let shown = show(&records, base, code);
+                    // SAFETY: each place is visited once, and those of own particles are not.
+                    unsafe { *records.slot(LANES * eight + k) = shown };
+                }
             }
         });
 }

@@ -9,12 +9,13 @@ use crate::numerics::vector::{dot, minus, norm};
 use crate::numerics::virial::Virial;
 use crate::particles::ParticleStore;
 use crate::sph::corrected::CorrectedRecord;
+use crate::sph::phase::Sph;
 
 /// Forces of stresses after a step, while lists and halo are still those of that step.
 pub struct StressForces<'a> {
     form: SphForm,
-    /// Stiffness ξ of the hourglass control.
-    hourglass: f64,
+    /// What images show in the corrected form.
+    corrected: &'a [CorrectedRecord],
     kernel: Kernel,
     particles: &'a ParticleStore,
     lists: &'a Lists,
@@ -23,10 +24,10 @@ pub struct StressForces<'a> {
 impl<'a> StressForces<'a> {
     /// Of a case.
     #[must_use]
-    pub fn new(case: &Case, particles: &'a ParticleStore, lists: &'a Lists) -> Self {
+    pub fn new(case: &Case, particles: &'a ParticleStore, lists: &'a Lists, sph: &'a Sph) -> Self {
         Self {
             form: case.sph.form,
-            hourglass: case.sph.hourglass,
+            corrected: sph.corrected(),
             kernel: Kernel::new(case.dimension),
             particles,
             lists,
@@ -83,7 +84,7 @@ impl<'a> StressForces<'a> {
         let motion = &self.lists.motion()[place as usize];
         let particles = self.particles;
         if self.form == SphForm::Corrected {
-            let record = CorrectedRecord::of_image(particles, (base, code), self.hourglass);
+            let record = &self.corrected[place as usize];
             return Shown {
                 weight: motion.volume,
                 stress: record.stress,

@@ -67,7 +67,7 @@ pub fn bytes_of_messages(case: &Case) -> Vec<usize> {
     let (contact, store) = (ContactTable::new(case), store_of(case));
     let mut messages = vec![
         1 + store.bytes_per_particle(HaloPhase::MOTION),
-        store.bytes_per_particle(contact.halo),
+        store.bytes_per_particle(contact.halo) + Sph::bytes_shown(case),
     ];
     if contact.has_friction() {
         messages.push(store.bytes_per_particle(HaloPhase::FRICTION));
@@ -85,6 +85,7 @@ pub fn bytes_of_options(case: &Case) -> [usize; 2] {
     let owned: usize = fields().map(|field| field.kind.bytes()).sum();
     let halo = fields().filter(|field| HaloPhase::all().takes(field));
     let halo: usize = halo.map(|field| field.kind.bytes()).sum();
+    let halo = halo + Sph::bytes_shown(case);
     let mut record = Sph::bytes_of_records(case) + Connectivity::bytes_of_image(case);
     if case.fragments.is_some() {
         record += Labels::BYTES + BYTES_OF_SEARCH;

@@ -30,7 +30,7 @@ impl Simulation {
     pub fn carried_in_contact(&self) -> Vec<Carried> {
         let (particles, lists) = (&self.particles, &self.lists);
         let borne = self.contact.borne(particles, lists, self.state.last_dt);
-        let forces = StressForces::new(&self.case, particles, lists);
+        let forces = StressForces::new(&self.case, particles, lists, &self.sph);
         of_receivers(lists, |i, place, neighbours| {
             let at = borne.binary_search_by_key(&i, |(i, _)| *i).ok()?;
             let borne = &borne[at].1;

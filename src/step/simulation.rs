@@ -205,11 +205,11 @@ impl Simulation {
         contact.measure(particles, lists, dt);
         timers.lap(Phase::ContactFractions);
         let phase = contact.halo_of_forces();
-        halo.post(comm, particles, phase);
+        halo.post(comm, particles, phase, sph.shown().map(|shown| &*shown));
         timers.lap(Phase::HaloStress);
         sph.forces(particles, lists, Side::Inner);
         timers.lap(Phase::Momentum);
-        halo.finish(particles, phase);
+        halo.finish(particles, phase, sph.shown());
         timers.lap(Phase::HaloStress);
         sph.forces(particles, lists, Side::Outer);
         timers.lap(Phase::Momentum);

@@ -6,7 +6,6 @@ use crate::numerics::kernel::PairScale;
 use crate::numerics::lane_matrix::{FULL, along, dot, full, store_all};
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
 use crate::numerics::matrix;
-use crate::particles::ParticleStore;
 use crate::sph::momentum::{Forces, Momentum, PairStress, Viscous};
 use crate::sph::neighbourhood::{Neighbourhood, gather, gather_all, records};
 use crate::sph::terms::{ARTIFICIAL_STRESS, SHAPED, TermSums};
@@ -49,15 +48,14 @@ impl CorrectedRecord {
         }
     }
 
-    /// What the image `code` of particle `base` shows, with the stiffness ξ of hourglass displacements.
+    /// What the image `code` of a particle shows that shows this.
     #[must_use]
-    pub fn of_image(particles: &ParticleStore, (base, code): (usize, u8), stiffness: f64) -> Self {
-        Self::new(
-            &Mirrors::reflect_tensor(&particles.pair_stress[base], code),
-            &Mirrors::reflect_vector(&particles.hourglass_displacement[base], code),
-            stiffness,
-            [particles.density[base], particles.sound_speed[base]],
-        )
+    pub fn reflected(&self, code: u8) -> Self {
+        Self {
+            stress: Mirrors::reflect_tensor(&self.stress, code),
+            hourglass: Mirrors::reflect_vector(&self.hourglass, code),
+            ..*self
+        }
     }
 }
 

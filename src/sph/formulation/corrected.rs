@@ -1,17 +1,20 @@
 //! The corrected formulation: gradients that a smooth function of the neighbours' moments corrects,
 //! and forces that are their adjoint.
 
+use rayon::prelude::*;
+
 use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
 use crate::material::{FAILED, PointBatch};
+use crate::domain::Shown;
 use crate::model::Case;
 use crate::neighbours::{Among, Cluster, Lists};
 use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lane_matrix::{full, load_all, read_all, store_all};
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
-use crate::particles::{ParticleStore, Scatter, material_points, records_of};
+use crate::particles::{GRAIN, ParticleStore, Scatter, material_points, records_of, resize};
 use crate::sph::corrected::{CorrectedGradient, CorrectedRecord, Correction};
 use crate::sph::hourglass;
 use crate::sph::material_update::{Show, Updated};
@@ -24,6 +27,10 @@ use crate::sph::sums::{Sums, scratch_of, show_images};
 #[derive(Debug, Default)]
 pub struct Corrected {
     records: Vec<CorrectedRecord>,
+    /// Where the records of this rank's particles stand.
+    places: Vec<u32>,
+    /// Those of halo particles.
+    heard: Vec<CorrectedRecord>,
     /// Stiffness ξ of the hourglass control.
     hourglass: f64,
 }
@@ -33,9 +40,30 @@ impl Corrected {
     #[must_use]
     pub fn new(case: &Case) -> Self {
         Self {
-            records: Vec::new(),
             hourglass: case.sph.hourglass,
+            ..Self::default()
         }
+    }
+}
+
+impl Corrected {
+    /// What images have shown in the last second sweep, in the order of the lists.
+    pub fn records(&self) -> &[CorrectedRecord] {
+        &self.records
+    }
+
+    fn find_places(&mut self, owned: usize, lists: &Lists) {
+        resize(&mut self.places, owned);
+        let places = Scatter::new(&mut self.places);
+        let images = lists.images().par_iter().enumerate();
+        images.with_min_len(GRAIN).for_each(|(place, image)| {
+            if image.code() == 0 && image.base() < owned {
+                #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
+                let place = place as u32;
+                // SAFETY: each particle stands at one place.
+                unsafe { *places.slot(image.base()) = place };
+            }
+        });
     }
 }
 
@@ -52,11 +80,11 @@ impl Formulation for Corrected {
             dt: step.dt,
             hourglass: self.hourglass,
             displacement: Scatter::new(&mut particles.hourglass_displacement),
-            stress: Scatter::new(&mut particles.pair_stress),
             records: Scatter::new(&mut self.records),
         };
         let points = (material_points!(particles), records_of!(particles));
         strain(&gradient, sums, points, lists, step);
+        self.find_places(particles.owned(), lists);
     }
 
     fn forces(
@@ -66,9 +94,14 @@ impl Formulation for Corrected {
         lists: &Lists,
         side: Side,
     ) {
-        let hourglass = self.hourglass;
-        show_images(&mut self.records, particles, lists, side, |base, code| {
-            CorrectedRecord::of_image(particles, (base, code), hourglass)
+        let (owned, places, heard) = (particles.owned(), &self.places, &self.heard);
+        show_images(&mut self.records, owned, lists, side, |records, base, code| {
+            let shown = match base.checked_sub(owned) {
+                // SAFETY: images stand at other places, and nobody writes elsewhere.
+                None => unsafe { records.read(places[base] as usize) },
+                Some(k) => heard[k],
+            };
+            shown.reflected(code)
         });
         sums.terms.show(particles, lists, side);
         let set = sums.terms.set();
@@ -79,8 +112,29 @@ impl Formulation for Corrected {
         scratch_of(&mut self.records, images)
     }
 
+    fn shown(&mut self) -> Option<&mut dyn Shown> {
+        Some(self)
+    }
+
     fn memory(&self) -> usize {
-        self.records.capacity() * size_of::<CorrectedRecord>()
+        (self.records.capacity() + self.heard.capacity()) * size_of::<CorrectedRecord>()
+            + 4 * self.places.capacity()
+    }
+}
+
+/// Their records.
+impl Shown for Corrected {
+    fn size(&self) -> usize {
+        size_of::<CorrectedRecord>()
+    }
+
+    fn of(&self, particle: usize) -> &[u8] {
+        bytemuck::bytes_of(&self.records[self.places[particle] as usize])
+    }
+
+    fn heard(&mut self, halo: usize) -> &mut [u8] {
+        resize(&mut self.heard, halo);
+        bytemuck::cast_slice_mut(&mut self.heard)
     }
 }
 
@@ -97,7 +151,6 @@ struct CorrectedGradients<'a> {
     dt: f64,
     hourglass: f64,
     displacement: Scatter<'a, [f64; 3]>,
-    stress: Scatter<'a, [f64; 9]>,
     records: Scatter<'a, CorrectedRecord>,
 }
 
@@ -182,16 +235,10 @@ impl<S: PairScale> Show for ShowCorrected<'_, S> {
             // SAFETY: by the contract of this function.
             unsafe {
                 let displacement = target.displacement.slot(i);
-                *target.stress.slot(i) = own;
                 *target.records.slot(index) =
                     CorrectedRecord::new(&own, displacement, target.hourglass, state);
             }
         });
-    }
-
-    unsafe fn show_rigid(&self, i: usize) {
-        // SAFETY: by the contract of this function.
-        unsafe { *self.target.stress.slot(i) = [0.0; 9] };
     }
 }
 

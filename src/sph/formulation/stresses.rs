@@ -43,7 +43,7 @@ pub(super) fn fill_stresses(
     lists: &Lists,
     side: Side,
 ) {
-    show_images(records, particles, lists, side, |base, code| {
+    show_images(records, particles.owned(), lists, side, |_, base, code| {
         StressRecord::new(
             particles.pressure[base],
             &Mirrors::reflect_symmetric(&particles.deviatoric_stress[base], code),

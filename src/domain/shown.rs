@@ -1,0 +1,13 @@
+//! What particles show to other ranks beside their fields.
+
+/// Bytes of this rank's particles, and those that it has heard of halo particles.
+pub trait Shown: Sync {
+    /// Bytes of a particle.
+    fn size(&self) -> usize;
+
+    /// Those of a particle of this rank.
+    fn of(&self, particle: usize) -> &[u8];
+
+    /// Where those of so many halo particles go, one after the other.
+    fn heard(&mut self, halo: usize) -> &mut [u8];
+}
