@@ -26,6 +26,8 @@ pub struct Among {
     pub halo: bool,
     /// Anything that is not at the group's common velocity.
     pub moving: bool,
+    /// Not all that is in range: strangers have been taken out.
+    pub parted: bool,
 }
 
 impl Cluster {
@@ -40,7 +42,22 @@ impl Cluster {
     pub(crate) fn valid(&self) -> &[u32] {
         &self.receivers[..self.lanes]
     }
+
+    /// Takes over the receivers of another one.
+    fn take(&mut self, other: &Self) {
+        let rest = &mut self.receivers[self.lanes..];
+        rest[..other.lanes].copy_from_slice(other.valid());
+        rest[other.lanes..].fill(other.receivers[LANES - 1]);
+        self.lanes += other.lanes;
+        for a in 0..3 {
+            self.lower[a] = self.lower[a].min(other.lower[a]);
+            self.upper[a] = self.upper[a].max(other.upper[a]);
+        }
+    }
 }
+
+/// Neighbours that a cluster of several may have.
+const FEW: usize = 32;
 
 /// Clusters with their neighbours.
 #[derive(Debug, Clone, Default)]
@@ -66,6 +83,37 @@ impl Lists {
         })
     }
 
+    /// Lets clusters that follow each other share their lanes where they have few neighbours and none
+    /// in common, as lone particles do. A receiver keeps its neighbours in their order, among others out
+    /// of its range: all that is in its range stood in its list, unless strangers were taken out.
+    pub(super) fn join(&mut self) {
+        let (mut kept, mut start) = (0, 0);
+        for next in 1..self.clusters.len() {
+            let (middle, among) = self.ends[next - 1];
+            let (end, their) = self.ends[next];
+            let (own, other) =
+                self.neighbours[start..end as usize].split_at(middle as usize - start);
+            let cluster = self.clusters[next];
+            let joins = self.clusters[kept].lanes + cluster.lanes <= LANES
+                && own.len() + other.len() <= FEW
+                && among == their
+                && !among.parted
+                // Whose position is no number has no neighbours, and stays by itself.
+                && !own.is_empty()
+                && !other.is_empty()
+                && !other.iter().any(|index| own.contains(index));
+            if joins {
+                self.clusters[kept].take(&cluster);
+            } else {
+                (kept, start) = (kept + 1, middle as usize);
+                self.clusters[kept] = cluster;
+            }
+            self.ends[kept] = (end, their);
+        }
+        self.clusters.truncate(kept + 1);
+        self.ends.truncate(kept + 1);
+    }
+
     pub(super) fn clear(&mut self) {
         self.clusters.clear();
         self.ends.clear();
@@ -83,5 +131,85 @@ impl Lists {
         size_of::<Cluster>() * self.clusters.capacity()
             + size_of::<(u32, Among)>() * self.ends.capacity()
             + 4 * self.neighbours.capacity()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cluster of these receivers, with these neighbours.
+    fn push(lists: &mut Lists, receivers: &[u32], neighbours: &[u32], among: Among) {
+        let mut all = [*receivers.last().unwrap(); LANES];
+        all[..receivers.len()].copy_from_slice(receivers);
+        let cluster = Cluster {
+            receivers: all,
+            lanes: receivers.len(),
+            group: 0,
+            lower: [f64::from(receivers[0]); 3],
+            upper: [f64::from(all[LANES - 1]); 3],
+        };
+        lists.neighbours.extend_from_slice(neighbours);
+        lists.push(cluster, among);
+    }
+
+    fn joined(lists: &mut Lists) -> Vec<(Vec<u32>, Vec<u32>)> {
+        lists.join();
+        let all = lists.iter();
+        all.map(|(cluster, list, _)| (cluster.valid().to_vec(), list.to_vec()))
+            .collect()
+    }
+
+    #[test]
+    fn lone_particles_share_lanes() {
+        let mut lists = Lists::default();
+        for k in 0..11 {
+            push(&mut lists, &[k], &[k], Among::default());
+        }
+        let all: Vec<u32> = (0..11).collect();
+        let wanted = [0..8, 8..11]
+            .map(|k: std::ops::Range<usize>| (all[k.clone()].to_vec(), all[k].to_vec()));
+        assert_eq!(joined(&mut lists), wanted);
+        let (cluster, _, _) = lists.iter().next().unwrap();
+        assert_eq!((cluster.lower, cluster.upper), ([0.0; 3], [7.0; 3]));
+        assert_eq!(lists.iter().nth(1).unwrap().0.receivers[3..], [10; 5]);
+    }
+
+    #[test]
+    fn who_has_neighbours_in_common_or_lacks_some_stays_apart() {
+        let moving = Among {
+            moving: true,
+            ..Among::default()
+        };
+        let parted = Among {
+            parted: true,
+            ..Among::default()
+        };
+        let none = Among::default();
+        let mut lists = Lists::default();
+        let all: [(&[u32], &[u32], Among); 8] = [
+            (&[0, 1], &[0, 1, 2], none),
+            (&[2], &[1, 2], none),
+            (&[3], &[3, 4], none),
+            (&[5], &[5], moving),
+            (&[6], &[6], parted),
+            (&[7], &[7], parted),
+            (&[8], &[], none),
+            (&[9], &[], none),
+        ];
+        for (receivers, neighbours, among) in all {
+            push(&mut lists, receivers, neighbours, among);
+        }
+        let wanted: [(&[u32], &[u32]); 7] = [
+            (&[0, 1], &[0, 1, 2]),
+            (&[2, 3], &[1, 2, 3, 4]),
+            (&[5], &[5]),
+            (&[6], &[6]),
+            (&[7], &[7]),
+            (&[8], &[]),
+            (&[9], &[]),
+        ];
+        let wanted = wanted.map(|(a, b)| (a.to_vec(), b.to_vec()));
+        assert_eq!(joined(&mut lists), wanted);
     }
 }

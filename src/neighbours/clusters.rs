@@ -166,6 +166,7 @@ impl Lister<'_> {
             mirrors: special & u64::from(MIRROR) != 0,
             halo: special & u64::from(HALO) != 0,
             moving: special & u64::from(MOVING) != 0,
+            parted: false,
         }
     }
 }
@@ -240,6 +241,14 @@ impl ClusterLists {
         chunks
             .with_max_len(CHUNKS_AT_ONCE)
             .for_each(|chunk| chunk.split.part(membership, &mut chunk.lists));
+    }
+
+    /// Lets clusters of sparse matter share their lanes; after [`Self::part`].
+    pub fn join(&mut self) {
+        let chunks = self.chunks[..self.used].par_iter_mut();
+        chunks
+            .with_max_len(CHUNKS_AT_ONCE)
+            .for_each(|chunk| chunk.lists.join());
     }
 
     /// The tasks, for parallel iteration.

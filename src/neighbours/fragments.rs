@@ -128,7 +128,11 @@ impl Split {
                 let others = neighbours.iter().filter(|j| !own(j));
                 self.strangers.add(receiver, others.copied());
             }
-            self.lists.push(part, among);
+            let parted = Among {
+                parted: true,
+                ..among
+            };
+            self.lists.push(part, parted);
         }
     }
 }

@@ -235,6 +235,11 @@ impl Lists {
         self.clusters.part(membership);
     }
 
+    /// Lets clusters of sparse matter share lanes, after [`Self::build_foreign`], if there are any such.
+    pub fn join(&mut self) {
+        self.clusters.join();
+    }
+
     /// Lists the neighbours of other groups that contact knows, after [`Self::build`].
     pub fn build_foreign(&mut self, particles: &ParticleStore, table: &ForeignTable) {
         let images = self.sequence.images();

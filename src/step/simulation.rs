@@ -194,6 +194,7 @@ impl Simulation {
         if contact.table.has_pairs() {
             lists.build_foreign(particles, &contact.table.foreign);
         }
+        lists.join();
         timers.lap(Phase::Neighbours);
         if contact.connectivity.is_due(state.step) {
             tell_parts(comm, (lists, halo), particles, labels);

@@ -6,8 +6,8 @@ use rayon::prelude::*;
 use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
-use crate::material::{FAILED, PointBatch};
 use crate::domain::Shown;
+use crate::material::{FAILED, PointBatch};
 use crate::model::Case;
 use crate::neighbours::{Among, Cluster, Lists};
 use crate::numerics::dispatch::Vectorised;
@@ -95,14 +95,20 @@ impl Formulation for Corrected {
         side: Side,
     ) {
         let (owned, places, heard) = (particles.owned(), &self.places, &self.heard);
-        show_images(&mut self.records, owned, lists, side, |records, base, code| {
-            let shown = match base.checked_sub(owned) {
-                // SAFETY: images stand at other places, and nobody writes elsewhere.
-                None => unsafe { records.read(places[base] as usize) },
-                Some(k) => heard[k],
-            };
-            shown.reflected(code)
-        });
+        show_images(
+            &mut self.records,
+            owned,
+            lists,
+            side,
+            |records, base, code| {
+                let shown = match base.checked_sub(owned) {
+                    // SAFETY: images stand at other places, and nobody writes elsewhere.
+                    None => unsafe { records.read(places[base] as usize) },
+                    Some(k) => heard[k],
+                };
+                shown.reflected(code)
+            },
+        );
         sums.terms.show(particles, lists, side);
         let set = sums.terms.set();
         accelerate(sums, (set, &self.records, &[]), particles, lists, side);
