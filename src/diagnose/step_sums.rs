@@ -134,12 +134,14 @@ impl StepSums {
     }
 
     /// Joins the sums of all ranks, if there are any, with `first`, which becomes the first of all ranks'
-    /// words, and `bits`, which become those of any rank. Collective.
+    /// words, `bits`, which become those of any rank, and `work` and load of this rank, which become
+    /// the sum of the one and the largest of the other. Collective.
     pub fn join(
         &mut self,
         comm: &Comm,
         booked: Option<&mut Booked>,
         (first, bits): (&mut [u64; 3], &mut u64),
+        work: &mut [u64; 2],
     ) {
         let mut joint = std::mem::take(&mut self.joint);
         joint.sums.clear();
@@ -148,11 +150,11 @@ impl StepSums {
         match booked {
             Some(booked) if comm.size() > 1 => {
                 self.gather(booked, &mut joint);
-                comm.join(&mut joint);
+                join_with_work(comm, &mut joint, work);
                 self.scatter(comm, booked, &joint);
             }
             Some(booked) => self.meet(comm, booked),
-            None => comm.join(&mut joint),
+            None => join_with_work(comm, &mut joint, work),
         }
         (*first, *bits) = (joint.first, joint.bits);
         self.joint = joint;
@@ -267,4 +269,16 @@ impl StepSums {
             *worst = Some(worst.map_or(nearest, |worst| worst.min(nearest)));
         }
     }
+}
+
+/// Joins what ranks have, and with it the sum of their work and their largest load. Collective.
+fn join_with_work(comm: &Comm, joint: &mut Joint, [work, load]: &mut [u64; 2]) {
+    joint.sums.push(work.cast_signed());
+    joint.least.push(!*load);
+    comm.join(joint);
+    let (sum, least) = (joint.sums.pop(), joint.least.pop());
+    (*work, *load) = (
+        sum.unwrap_or_default().cast_unsigned(),
+        !least.unwrap_or(u64::MAX),
+    );
 }

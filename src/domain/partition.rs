@@ -23,14 +23,42 @@ pub struct Partition {
     choice: Option<Choice>,
     /// How often levels or axes have changed.
     changes: u64,
-    /// Steps between two balances; zero for none.
+    /// Most steps between two balances; zero for none.
     every: u64,
+    /// What steps since the last balance have lost by unevenness.
+    loss: Loss,
+    /// Counted work of this rank since its speed was measured.
+    done: u64,
     /// Largest reach of the particles of all ranks when they last changed ranks (m).
     farthest: f64,
 }
 
-/// Balances from one look at levels and axes to the next.
+/// Regular balances from one look at levels and axes to the next.
 const REVISED: u64 = 8;
+
+/// What a balance costs, in steps.
+const PRICE: f64 = 0.1;
+
+/// Time that ranks have waited for the busiest one since the last balance, as its work is counted.
+#[derive(Debug, Clone, Copy)]
+struct Loss {
+    /// In steps, beyond what the balance itself has left.
+    steps: f64,
+    /// The least of a step, in steps.
+    least: f64,
+}
+
+impl Loss {
+    const NONE: Self = Self {
+        steps: 0.0,
+        least: f64::INFINITY,
+    };
+
+    fn add(&mut self, step: f64) {
+        self.least = self.least.min(step);
+        self.steps += step - self.least;
+    }
+}
 
 impl Partition {
     /// Slabs with an even number of particles, of which none is created. Collective.
@@ -59,6 +87,8 @@ impl Partition {
             rank_speeds: RankSpeeds::default(),
             migration: Migration::default(),
             every: case.domain.balance_every,
+            loss: Loss::NONE,
+            done: 0,
             farthest: 0.0,
         }
     }
@@ -78,10 +108,38 @@ impl Partition {
         }
     }
 
-    /// Whether slabs are balanced at a step.
+    /// Whether a step is one of those at regular intervals when slabs are balanced in any case.
+    #[must_use]
+    pub fn is_regular(&self, step: u64) -> bool {
+        self.every != 0 && step.is_multiple_of(self.every)
+    }
+
+    /// Whether slabs are balanced at a step: at regular intervals, and as soon as what was lost since
+    /// the last balance is worth one.
     #[must_use]
     pub fn is_due(&self, step: u64) -> bool {
-        self.every != 0 && step.is_multiple_of(self.every)
+        self.is_regular(step) || self.every != 0 && self.loss.steps > PRICE
+    }
+
+    /// The work that this rank has counted in a step, and the load that it is for one of its speed.
+    #[must_use]
+    pub fn count(&mut self, comm: &Comm, particles: &ParticleStore) -> [u64; 2] {
+        if comm.size() == 1 {
+            return [0; 2];
+        }
+        // same bits in any order: whole numbers
+        let work = particles.work.par_iter().map(|&w| u64::from(w)).sum();
+        self.done += work;
+        [work, self.rank_speeds.load(work, comm.rank(), comm.size())]
+    }
+
+    /// Hears of the work of all ranks in a step, and of the largest load.
+    pub fn hear(&mut self, comm: &Comm, [work, load]: [u64; 2]) {
+        if work > 0 {
+            #[allow(clippy::cast_precision_loss, reason = "a ratio")]
+            self.loss
+                .add(load as f64 * comm.size() as f64 / work as f64);
+        }
     }
 
     /// Moves faces at a step so that each rank gets its share of work, given the seconds that this rank
@@ -96,9 +154,11 @@ impl Partition {
         if comm.size() == 1 {
             return;
         }
-        // same bits in any order: whole numbers
-        let counted = particles.work.par_iter().map(|&w| u64::from(w)).sum();
-        self.rank_speeds.measure(comm, counted, busy);
+        self.loss = Loss::NONE;
+        if self.is_regular(step) {
+            let done = std::mem::take(&mut self.done);
+            self.rank_speeds.measure(comm, done, busy);
+        }
         self.cut(comm, particles);
         if step > 0 && step.is_multiple_of(REVISED * self.every) {
             let before = (self.slabs.levels(), self.slabs.axes());

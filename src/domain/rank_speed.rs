@@ -28,7 +28,7 @@ const FOLLOWED: f64 = 0.25;
 const WIDEST: f64 = 2.0;
 
 impl RankSpeeds {
-    /// Takes what this rank has done since the last call: `work` counted now for one step, and
+    /// Takes what this rank has done: the `work` counted since the last call, and
     /// `busy`, the seconds since its start that it spent neither waiting nor sending. What was
     /// before the first call, with its cold memory, does not count. Collective: all ranks hear of
     /// all, since each cuts all faces.
@@ -63,6 +63,23 @@ impl RankSpeeds {
             sum += share;
             sum
         }));
+    }
+
+    /// The work for which a rank of mean speed takes as long as one of `ranks` for `work`.
+    #[must_use]
+    #[allow(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a measure of load"
+    )]
+    pub(super) fn load(&self, work: u64, rank: usize, ranks: usize) -> u64 {
+        match self.shares.get(rank) {
+            Some(share) if self.shares.len() == ranks => {
+                (work as f64 / (share * ranks as f64)) as u64
+            }
+            _ => work,
+        }
     }
 
     /// The part of all work that ranks below `rank` are to have, of `ranks`.

@@ -275,7 +275,7 @@ optional_tables! {
         axes: Option<Spanned<Vec<Spanned<Axis>>>>,
         /// How many of them there are at most.
         levels: Option<Spanned<LevelsParams>>,
-        /// Steps between two balances.
+        /// Most steps between two balances.
         balance_every: Option<Spanned<i64>>,
         /// The box of interest; everything if absent.
         keep: Option<Spanned<KeepParams>>,

@@ -94,7 +94,7 @@ pub struct DomainOptions {
     pub levels: Option<usize>,
     /// Axes of the slabs by level; the longest of the others when absent.
     pub axes: [Option<Axis>; 3],
-    /// Steps between two balances of the work; 0 keeps the first faces.
+    /// Most steps between two balances of the work; 0 keeps the first faces.
     pub balance_every: u64,
     /// What of space is of interest: particles that leave it are taken out; everything if absent.
     pub keep: Option<Region>,

@@ -127,8 +127,8 @@ impl Simulation {
         sums.cross_planes(particles, halo.mirrors(), loads);
     }
 
-    /// Every few steps gives each rank its share of the work, and particles in memory the order of
-    /// the last search.
+    /// Gives each rank its share of the work where it pays, and every few steps particles in memory the
+    /// order of the last search.
     fn balance(&mut self, comm: &Comm) {
         let Self {
             particles,
@@ -143,9 +143,9 @@ impl Simulation {
             let scratch = sph.scratch(particles.owned());
             lists.is_order_due = !lists.restore_order(particles, scratch);
         }
+        // After the next search, when those that change ranks now have found their place.
+        lists.is_order_due |= partition.is_regular(state.step);
         if partition.is_due(state.step) {
-            // After the next search, when those that change ranks now have found their place.
-            lists.is_order_due = true;
             let all = (&*particles, state.step);
             partition.balance(comm, all, timers.busy(), |particles, i| {
                 sph.smoothing.reach(particles, i)
@@ -263,8 +263,11 @@ impl Simulation {
             loads: &mut self.loads,
         };
         let (mut first, mut requests) = (own, self.step_control.requests);
+        let mut work = self.partition.count(comm, &self.particles);
         let joined = sums_any.then_some(&mut booked);
-        self.sums.join(comm, joined, (&mut first, &mut requests));
+        self.sums
+            .join(comm, joined, (&mut first, &mut requests), &mut work);
+        self.partition.hear(comm, work);
         self.step_control.agreed_requests = requests;
         self.sums.book(&mut self.state, &mut booked, dt);
         first
