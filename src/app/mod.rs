@@ -4,10 +4,12 @@ mod bench;
 mod check;
 pub mod compare;
 pub mod fragments;
+mod generate;
 pub mod info;
 mod limit;
 mod materials;
 mod measure;
+mod new;
 mod plan;
 pub mod plot;
 mod restart;
@@ -20,7 +22,7 @@ pub mod which;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::model::readable::is_printable;
 use crate::run::exit::EXIT_INPUT;
@@ -32,6 +34,7 @@ use crate::run::{launch, say};
     name = "whipple",
     version,
     after_help = "Examples:
+  whipple new my-shield --from shield
   whipple check inputs/quarter-impact
   whipple plan inputs/quarter-impact --ranks 16,64
   mpirun -n 2 whipple run inputs/quarter-impact --out runs/quarter
@@ -56,6 +59,7 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    New(new::NewArgs),
     Run(run::RunArgs),
     Restart(restart::RestartArgs),
     Check(check::CheckArgs),
@@ -66,6 +70,7 @@ enum Command {
     Measure(measure::MeasureArgs),
     Materials(materials::MaterialsArgs),
     Limit(limit::LimitArgs),
+    Generate(generate::GenerateArgs),
     Sweep(sweep::SweepArgs),
     Converge(sweep::ConvergeArgs),
     #[command(hide = true)]
@@ -88,6 +93,7 @@ pub fn main() -> ExitCode {
         end_with_the_pipe();
     }
     let code = match cli.command {
+        Command::New(args) => new::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Restart(args) => restart::run(&args),
         Command::Check(args) => check::run(&args),
@@ -104,6 +110,7 @@ pub fn main() -> ExitCode {
         Command::Measure(args) => measure::run(&args),
         Command::Materials(args) => materials::run(&args),
         Command::Limit(args) => limit::run(&args),
+        Command::Generate(args) => generate::run(&args, Cli::command()),
         Command::Sweep(args) => sweep::run(&args),
         Command::Converge(args) => sweep::converge(&args),
         Command::Compare(args) => compare::run(&args),

@@ -32,6 +32,12 @@ pub use case_file::text;
 pub use difference::{Difference, differences};
 pub use file::{content, open_regular};
 
+/// The JSON schema of cases.
+#[must_use]
+pub fn schema() -> serde_json::Value {
+    schema::describe::schema::<schema::CaseParams>("A case of whipple")
+}
+
 /// Why a case cannot be read. `Display` is the whole message for the user, several lines long.
 #[derive(Debug, thiserror::Error)]
 pub enum InputError {

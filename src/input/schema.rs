@@ -18,6 +18,7 @@ use crate::model::{Axis, SphForm};
 mod declare;
 mod choices;
 pub mod contact;
+pub mod describe;
 mod fragments;
 mod materials;
 mod measure;

@@ -3,6 +3,8 @@
 
 use serde::Deserialize;
 
+use super::describe::described_words;
+
 choices! {
     /// What the program chooses.
     AutoWord {
@@ -94,6 +96,8 @@ pub enum AxisWord {
     #[serde(rename = "-z")]
     MinusZ,
 }
+
+described_words!(Direction, AxisWord);
 
 impl AxisWord {
     /// Which axis (0, 1, 2), and 1 or −1.

@@ -2,13 +2,41 @@
 
 /// Declares tables whose keys are all optional unless said, and closed to others.
 macro_rules! tables {
-    ($($(#[$doc:meta])+ $table:ident { $($(#[$key_doc:meta])+ $key:ident: $value:ty,)* })+) => { $(
-        $(#[$doc])+
+    ($($(#[doc = $doc:literal])+ $table:ident {
+        $($(#[doc = $key_doc:literal])+ $(#[serde($option:ident)])? $key:ident: $value:ty,)*
+    })+) => { $(
+        $(#[doc = $doc])+
         #[derive(Debug, Deserialize)]
         #[serde(deny_unknown_fields, remote = "Self")]
-        pub struct $table { $($(#[$key_doc])+ pub $key: $value,)* }
+        pub struct $table {
+            $($(#[doc = $key_doc])+ $(#[serde($option)])? pub $key: $value,)*
+        }
         from_table!($table);
+        described_table!($table [$($doc)+] {
+            $( $key: $value, [$($key_doc)+], [$($option)?]; )*
+        });
     )+ };
+}
+
+/// Describes a table; a key whose last bracket holds anything may be left out.
+macro_rules! described_table {
+    ($table:ident [$($doc:literal)+] {
+        $( $key:ident: $value:ty, [$($key_doc:literal)+], [$($option:ident)?]; )*
+    }) => {
+        impl $crate::input::schema::describe::Described for $table {
+            fn describe(
+                definitions: &mut $crate::input::schema::describe::Definitions,
+            ) -> serde_json::Value {
+                use $crate::input::schema::describe::{Described, Key};
+                definitions.table(stringify!($table), &[$($doc),+], &[$( Key {
+                    name: stringify!($key),
+                    docs: &[$($key_doc),+],
+                    optional: <$value as Described>::OPTIONAL $( || stringify!($option) != "" )?,
+                    value: <$value as Described>::describe,
+                }, )*])
+            }
+        }
+    };
 }
 
 /// Reads a struct from a table alone: serde would take an array of its values too, in the order of
@@ -31,12 +59,17 @@ macro_rules! from_table {
 
 /// Declares tables that may be left out altogether.
 macro_rules! optional_tables {
-    ($($(#[$doc:meta])+ $table:ident { $($(#[$key_doc:meta])+ $key:ident: $value:ty,)* })+) => { $(
-        $(#[$doc])+
+    ($($(#[doc = $doc:literal])+ $table:ident {
+        $($(#[doc = $key_doc:literal])+ $key:ident: $value:ty,)*
+    })+) => { $(
+        $(#[doc = $doc])+
         #[derive(Debug, Default, Deserialize)]
         #[serde(default, deny_unknown_fields, remote = "Self")]
-        pub struct $table { $($(#[$key_doc])+ pub $key: $value,)* }
+        pub struct $table { $($(#[doc = $key_doc])+ pub $key: $value,)* }
         from_table!($table);
+        described_table!($table [$($doc)+] {
+            $( $key: $value, [$($key_doc)+], [default]; )*
+        });
     )+ };
 }
 
@@ -47,6 +80,7 @@ macro_rules! choices {
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
         #[serde(rename_all = "snake_case")]
         pub enum $choice { $($(#[$word_doc])+ $word,)+ }
+        $crate::input::schema::describe::described_words!($choice);
     )+ };
 }
 
@@ -69,6 +103,28 @@ macro_rules! typed_as {
                 deserializer.deserialize_any(Ways)
             }
         }
+
+        impl $crate::input::schema::describe::Described for $made {
+            fn describe(
+                definitions: &mut $crate::input::schema::describe::Definitions,
+            ) -> serde_json::Value {
+                let ways = vec![$( described_way!($way, definitions, $make) ),+];
+                $crate::input::schema::describe::any_of($expected, ways)
+            }
+        }
+    };
+}
+
+/// The schema of one of the ways of [`typed_as`].
+macro_rules! described_way {
+    (truth, $definitions:ident, $make:expr) => {
+        serde_json::json!({ "type": "boolean" })
+    };
+    (number, $definitions:ident, $make:expr) => {
+        serde_json::json!({ "type": "number" })
+    };
+    ($way:ident, $definitions:ident, $make:expr) => {
+        $crate::input::schema::describe::argument($definitions, $make)
     };
 }
 

@@ -262,12 +262,12 @@ pub(in crate::input) use failure_laws;
 
 macro_rules! law_tables {
     ($(
-        $(#[$doc:meta])+ $law:ident: $table:ident => $made:ident {
-            $( $(#[$key_doc:meta])+ $key:ident: $value:ty, $allowed:ident $(, or $default:literal)?; )+
+        $(#[doc = $doc:literal])+ $law:ident: $table:ident => $made:ident {
+            $( $(#[doc = $key_doc:literal])+ $key:ident: $value:ty, $allowed:ident $(, or $default:literal)?; )+
         }
     )+) => {
         optional_tables! {
-            $( $(#[$doc])+ $table { $( $(#[$key_doc])+ $key: Option<$value>, )+ } )+
+            $( $(#[doc = $doc])+ $table { $( $(#[doc = $key_doc])+ $key: Option<$value>, )+ } )+
         }
     };
 }
@@ -275,21 +275,21 @@ strength_laws!(law_tables);
 failure_laws!(law_tables);
 
 macro_rules! strength_table {
-    ($( $(#[$doc:meta])+ $law:ident: $table:ident => $made:ident { $($keys:tt)+ } )+) => {
+    ($( $(#[doc = $doc:literal])+ $law:ident: $table:ident => $made:ident { $($keys:tt)+ } )+) => {
         optional_tables! {
             /// `strength`: exactly one of these.
-            StrengthParams { $( $(#[$doc])+ $law: Option<$table>, )+ }
+            StrengthParams { $( $(#[doc = $doc])+ $law: Option<$table>, )+ }
         }
     };
 }
 strength_laws!(strength_table);
 
 macro_rules! failure_table {
-    ($( $(#[$doc:meta])+ $law:ident: $table:ident => $made:ident { $($keys:tt)+ } )+) => {
+    ($( $(#[doc = $doc:literal])+ $law:ident: $table:ident => $made:ident { $($keys:tt)+ } )+) => {
         optional_tables! {
             /// `failure`: any of these laws, and what they have in common.
             FailureParams {
-                $( $(#[$doc])+ $law: Option<Spanned<OrNone<$table>>>, )+
+                $( $(#[doc = $doc])+ $law: Option<Spanned<OrNone<$table>>>, )+
                 /// What failed matter has lost.
                 effect: Option<Spanned<Effect>>,
                 /// Energy that opens a crack.

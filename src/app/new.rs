@@ -1,0 +1,123 @@
+//! `whipple new`: a case to begin with.
+
+use std::fs;
+use std::io;
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+
+use crate::input;
+use crate::output::{OutputError, write_atomically};
+use crate::run::exit::EXIT_INPUT;
+use crate::run::say::{say, warn};
+
+/// Write a commented case to begin with
+///
+/// Makes a folder with a `case.toml`, one of the program's ready inputs, and with the JSON schema that lets
+/// editors complete and check it.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  whipple new my-shield --from shield
+  whipple new my-crater --from crater && whipple check my-crater --picture model.png")]
+pub struct NewArgs {
+    /// Folder of the case
+    #[arg(value_name = "NAME")]
+    folder: PathBuf,
+
+    /// What the case is like
+    #[arg(long, value_name = "KIND")]
+    from: Kind,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    /// A sphere through a bumper, its debris on a rear wall
+    Shield,
+    /// A sphere on a thick target, which absorbing zones let go on for ever
+    Crater,
+    /// A sphere through a thin plate: how large a hole it makes
+    Plate,
+    /// The same at an angle: half of the model
+    Oblique,
+    /// An ogive of hard steel through a steel plate
+    Penetration,
+    /// A plate that hits another one and tears it: uniaxial strain
+    Spall,
+    /// A copper rod on a rigid anvil
+    Taylor,
+    /// Two rubber rings that meet: two dimensions
+    Rings,
+    /// The paper's sphere through a plate: seconds on two ranks
+    Quarter,
+}
+
+impl Kind {
+    fn text(self) -> &'static str {
+        macro_rules! ready {
+            ($name:literal) => {
+                include_str!(concat!("../../inputs/", $name, "/case.toml"))
+            };
+        }
+        match self {
+            Self::Shield => ready!("whipple-shield"),
+            Self::Crater => ready!("crater"),
+            Self::Plate => ready!("bumper-hole"),
+            Self::Oblique => ready!("oblique-30"),
+            Self::Penetration => ready!("ogive-on-weldox"),
+            Self::Spall => ready!("flyer-spall"),
+            Self::Taylor => ready!("taylor-bar"),
+            Self::Rings => ready!("rubber-rings"),
+            Self::Quarter => ready!("quarter-impact"),
+        }
+    }
+}
+
+/// Name of the schema beside a case.
+const SCHEMA: &str = "whipple.schema.json";
+
+/// Why nothing was written.
+#[derive(Debug, thiserror::Error)]
+enum NewError {
+    #[error("{} is there already: take another name, or remove it", .0.display())]
+    Exists(PathBuf),
+    #[error("cannot make {}: {cause}", path.display())]
+    Folder { path: PathBuf, cause: io::Error },
+    #[error("{0}")]
+    Output(OutputError),
+}
+
+/// Runs the command; returns the exit code.
+pub fn run(args: &NewArgs) -> u8 {
+    match write(args) {
+        Ok(()) => 0,
+        Err(error) => {
+            warn(&format!("error: {error}"));
+            EXIT_INPUT
+        }
+    }
+}
+
+fn write(args: &NewArgs) -> Result<(), NewError> {
+    let folder = &args.folder;
+    let case = folder.join("case.toml");
+    for path in [&case, &folder.join(SCHEMA)] {
+        if fs::symlink_metadata(path).is_ok() {
+            return Err(NewError::Exists(path.clone()));
+        }
+    }
+    fs::create_dir_all(folder).map_err(|cause| NewError::Folder {
+        path: folder.clone(),
+        cause,
+    })?;
+    let schema = format!("{:#}\n", input::schema());
+    write_atomically(&folder.join(SCHEMA), schema.as_bytes()).map_err(NewError::Output)?;
+    let text = format!("#:schema ./{SCHEMA}\n{}", args.from.text());
+    write_atomically(&case, text.as_bytes()).map_err(NewError::Output)?;
+    let name = folder.display();
+    say(&format!("wrote {}", case.display()));
+    say(&format!(
+        "look at it: whipple check {name} --picture {name}/model.png"
+    ));
+    say(&format!("run it:     mpirun -n 2 whipple run {name}"));
+    Ok(())
+}

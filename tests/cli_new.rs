@@ -1,0 +1,104 @@
+//! Cases to begin with, and what editors, shells and man know of the program.
+
+mod cli_support;
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use cli_support::{Ended, WHIPPLE, command, end};
+use tempfile::tempdir;
+
+fn whipple(arguments: &[&str]) -> Ended {
+    end(command(WHIPPLE).args(arguments))
+}
+
+const KINDS: [&str; 9] = [
+    "shield",
+    "crater",
+    "plate",
+    "oblique",
+    "penetration",
+    "spall",
+    "taylor",
+    "rings",
+    "quarter",
+];
+
+#[test]
+fn every_kind_makes_a_sound_case() {
+    let folder = tempdir().unwrap();
+    for kind in KINDS {
+        let case = folder.path().join(kind);
+        let made = whipple(&["new", case.to_str().unwrap(), "--from", kind]);
+        made.with_code(0);
+        let checked = whipple(&["check", case.to_str().unwrap()]).with_code(0);
+        assert!(checked.stdout.contains("sound"), "{kind}");
+    }
+}
+
+#[test]
+fn nothing_is_overwritten() {
+    let folder = tempdir().unwrap();
+    let case = folder.path().join("mine");
+    fs::create_dir(&case).unwrap();
+    fs::write(case.join("case.toml"), "mine").unwrap();
+    let made = whipple(&["new", case.to_str().unwrap(), "--from", "taylor"]);
+    assert_eq!(code(&made), 2);
+    assert!(
+        stderr(&made).contains("is there already"),
+        "{}",
+        stderr(&made)
+    );
+    assert_eq!(fs::read_to_string(case.join("case.toml")).unwrap(), "mine");
+    assert_eq!(fs::read_dir(&case).unwrap().count(), 1);
+}
+
+#[test]
+fn completions_and_pages_know_all_commands() {
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let text = whipple(&["generate", "completions", shell])
+            .with_code(0)
+            .stdout;
+        assert!(
+            text.contains("fragments") && text.contains("whipple"),
+            "{shell}"
+        );
+    }
+    let folder = tempdir().unwrap();
+    let pages = folder.path().join("man1");
+    whipple(&["generate", "man", pages.to_str().unwrap()]).with_code(0);
+    for page in ["whipple", "whipple-run", "whipple-limit-nno", "whipple-new"] {
+        let text = fs::read_to_string(pages.join(format!("{page}.1"))).unwrap();
+        assert!(text.contains(".SH NAME"), "{page}");
+    }
+    assert!(!pages.join("whipple-bench.1").exists());
+}
+
+/// The schema takes all cases of the program and of its tests, and refuses what the program does.
+#[test]
+fn the_schema_knows_cases() {
+    if std::env::var("WHIPPLE_SKIP_CLIENTS").is_ok_and(|value| value == "1") {
+        eprintln!("skipped: WHIPPLE_SKIP_CLIENTS=1");
+        return;
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = tempdir().unwrap();
+    let schema = folder.path().join("schema.json");
+    fs::write(
+        &schema,
+        whipple(&["generate", "schema"]).with_code(0).stdout,
+    )
+    .unwrap();
+    let output = Command::new(root.join("target/venv/bin/python"))
+        .arg(root.join("tests/clients/schema.py"))
+        .args([&schema, root])
+        .output()
+        .expect("python starts");
+    let (told, errors) = (
+        String::from_utf8_lossy(&output.stdout),
+        String::from_utf8_lossy(&output.stderr),
+    );
+    assert!(output.status.success(), "{told}\n{errors}");
+    eprintln!("{told}");
+}
