@@ -43,13 +43,8 @@ fn nothing_is_overwritten() {
     let case = folder.path().join("mine");
     fs::create_dir(&case).unwrap();
     fs::write(case.join("case.toml"), "mine").unwrap();
-    let made = whipple(&["new", case.to_str().unwrap(), "--from", "taylor"]);
-    assert_eq!(code(&made), 2);
-    assert!(
-        stderr(&made).contains("is there already"),
-        "{}",
-        stderr(&made)
-    );
+    let made = whipple(&["new", case.to_str().unwrap(), "--from", "taylor"]).with_code(2);
+    assert!(made.stderr.contains("is there already"), "{made:?}");
     assert_eq!(fs::read_to_string(case.join("case.toml")).unwrap(), "mine");
     assert_eq!(fs::read_dir(&case).unwrap().count(), 1);
 }

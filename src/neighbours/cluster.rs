@@ -18,6 +18,7 @@ pub struct Cluster {
 }
 
 /// What is among the neighbours of a cluster.
+#[allow(clippy::struct_excessive_bools, reason = "independent of each other")]
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Among {
     /// Images behind symmetry planes.

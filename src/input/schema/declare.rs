@@ -108,8 +108,8 @@ macro_rules! typed_as {
             fn describe(
                 definitions: &mut $crate::input::schema::describe::Definitions,
             ) -> serde_json::Value {
-                let ways = vec![$( described_way!($way, definitions, $make) ),+];
-                $crate::input::schema::describe::any_of($expected, ways)
+                let ways = [$( described_way!($way, definitions, $make) ),+];
+                $crate::input::schema::describe::any_of($expected, &ways)
             }
         }
     };

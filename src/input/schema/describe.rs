@@ -94,7 +94,7 @@ pub fn text(docs: &[&str]) -> String {
 }
 
 /// One of several ways of typing what is `expected`.
-pub fn any_of(expected: &str, ways: Vec<Value>) -> Value {
+pub fn any_of(expected: &str, ways: &[Value]) -> Value {
     json!({ "description": expected, "anyOf": ways })
 }
 

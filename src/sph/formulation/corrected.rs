@@ -48,6 +48,7 @@ impl Corrected {
 
 impl Corrected {
     /// What images have shown in the last second sweep, in the order of the lists.
+    #[must_use]
     pub fn records(&self) -> &[CorrectedRecord] {
         &self.records
     }
