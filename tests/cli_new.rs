@@ -1,12 +1,14 @@
 //! Cases to begin with, and what editors, shells and man know of the program.
 
 mod cli_support;
+mod python_support;
 
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
 use cli_support::{Ended, WHIPPLE, command, end};
+use python_support::python;
 use tempfile::tempdir;
 
 fn whipple(arguments: &[&str]) -> Ended {
@@ -73,10 +75,7 @@ fn completions_and_pages_know_all_commands() {
 /// The schema takes all cases of the program and of its tests, and refuses what the program does.
 #[test]
 fn the_schema_knows_cases() {
-    if std::env::var("WHIPPLE_SKIP_CLIENTS").is_ok_and(|value| value == "1") {
-        eprintln!("skipped: WHIPPLE_SKIP_CLIENTS=1");
-        return;
-    }
+    let Some(python) = python() else { return };
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folder = tempdir().unwrap();
     let schema = folder.path().join("schema.json");
@@ -85,7 +84,7 @@ fn the_schema_knows_cases() {
         whipple(&["generate", "schema"]).with_code(0).stdout,
     )
     .unwrap();
-    let output = Command::new(root.join("target/venv/bin/python"))
+    let output = Command::new(python)
         .arg(root.join("tests/clients/schema.py"))
         .args([&schema, root])
         .output()

@@ -5,29 +5,17 @@
 
 #[allow(dead_code, reason = "shared with the tests on real ranks")]
 mod output_support;
+mod python_support;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+
+use python_support::python;
 
 use whipple::comm::Comm;
 use whipple::output::Rows;
 use whipple::output::snapshot::{self, Form};
 use whipple::particles::ParticleStore;
-
-/// The environment's Python, or nothing if the tests are to be skipped.
-fn python() -> Option<PathBuf> {
-    if std::env::var("WHIPPLE_SKIP_CLIENTS").is_ok_and(|value| value == "1") {
-        eprintln!("skipped: WHIPPLE_SKIP_CLIENTS=1");
-        return None;
-    }
-    let python = root().join("target/venv/bin/python");
-    assert!(
-        python.exists(),
-        "{} is missing: `make test` makes it (or set WHIPPLE_SKIP_CLIENTS=1)",
-        python.display()
-    );
-    Some(python)
-}
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))

@@ -3,22 +3,17 @@
 //!
 //! `WHIPPLE_SKIP_CLIENTS=1` leaves them out.
 
+mod python_support;
+
 use std::path::Path;
 use std::process::Command;
 
+use python_support::python;
+
 #[test]
 fn the_python_package_reads_our_runs() {
-    if std::env::var("WHIPPLE_SKIP_CLIENTS").is_ok_and(|value| value == "1") {
-        eprintln!("skipped: WHIPPLE_SKIP_CLIENTS=1");
-        return;
-    }
+    let Some(python) = python() else { return };
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let python = root.join("target/venv/bin/python");
-    assert!(
-        python.exists(),
-        "{} is missing: `make test` makes it (or set WHIPPLE_SKIP_CLIENTS=1)",
-        python.display()
-    );
     let output = Command::new(python)
         .args(["-m", "pytest", "-q", "-p", "no:cacheprovider"])
         .current_dir(root.join("python"))
