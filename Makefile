@@ -4,11 +4,14 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help deps test-deps release impact test run-tests check validation fuzz fuzz-memory soak pictures image contact-lab bench bench-kernels docs clean
+.PHONY: help deps test-deps release impact test run-tests check validation fuzz fuzz-memory soak pictures image contact-lab bench bench-kernels docs book clean
 
 # The environment of every build and launch: Open MPI's settings, HDF5_DIR.
 ENV := source jobs/env.sh;
 VENV := target/venv
+BOOK_TOOLS := target/tools
+MDBOOK := 0.5.3
+MDBOOK_KATEX := 0.10.0
 # Tests put faults into the program (src/run/fault.rs); `make release` builds what users get, without.
 TESTED := --locked --features fault-injection
 
@@ -60,11 +63,13 @@ bench: release ## Time fixed cases on threads and ranks, beside other programs w
 bench-kernels: deps ## Time the inner loops alone, for each instruction set
 	$(ENV) cargo bench --locked --bench kernels
 
-docs: deps ## Build the book (target/book) and the API documentation (target/doc)
+docs: deps book ## Build the book (target/book) and the API documentation (target/doc)
 	$(ENV) cargo doc --locked --no-deps
-	@mdbook=$$(command -v mdbook || command -v target/tools/bin/mdbook) || { \
-	    echo "the book needs mdBook: cargo install --root target/tools --locked mdbook, or Debian 13's mdbook" >&2; exit 2; }; \
-	"$$mdbook" build docs
+
+# The book alone. A page that reaches for the network, or an equation that is not typeset, is an error.
+book: $(BOOK_TOOLS)/ready-$(MDBOOK)-$(MDBOOK_KATEX)
+	PATH="$(CURDIR)/$(BOOK_TOOLS)/bin:$$PATH" mdbook build docs
+	jobs/check-book.sh target/book
 
 clean: ## Remove what was built; runs/ stays
 	rm -rf target
@@ -87,6 +92,14 @@ image: ## Make target/whipple.sif, a container, with Apptainer
 
 run-tests: test-deps $(VENV)/ready
 	$(ENV) jobs/cargo-test.sh
+
+# mdBook, which makes the book, and what typesets its equations as it does; the two go together.
+$(BOOK_TOOLS)/ready-$(MDBOOK)-$(MDBOOK_KATEX):
+	$(ENV) cargo install --locked --root $(BOOK_TOOLS) --target-dir $(BOOK_TOOLS)/build mdbook@$(MDBOOK) \
+	    --no-default-features --features search
+	$(ENV) cargo install --locked --root $(BOOK_TOOLS) --target-dir $(BOOK_TOOLS)/build mdbook-katex@$(MDBOOK_KATEX)
+	rm -rf $(BOOK_TOOLS)/build
+	touch $@
 
 # The Python clients that open our files in the tests, at pinned versions.
 $(VENV)/ready: tests/clients/requirements.txt | test-deps
