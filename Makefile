@@ -10,7 +10,7 @@ SHELL := bash
 ENV := source jobs/env.sh;
 VENV := target/venv
 BOOK_TOOLS := target/tools
-MDBOOK := 0.5.3
+MDBOOK := 0.5.4
 MDBOOK_KATEX := 0.10.0
 # Tests put faults into the program (src/run/fault.rs); `make release` builds what users get, without.
 TESTED := --locked --features fault-injection
