@@ -1,5 +1,8 @@
 //! `whipple generate`: what shells, man and editors need to know of the program and of its cases.
 
+mod materials;
+mod reference;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -10,12 +13,14 @@ use crate::input;
 use crate::run::exit::EXIT_INPUT;
 use crate::run::say::{say, warn};
 
-/// Write shell completions, man pages, or the JSON schema of cases
+/// Write shell completions, man pages, the JSON schema of cases, or pages of the book
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   whipple generate completions bash > ~/.local/share/bash-completion/completions/whipple
   whipple generate man ~/.local/share/man/man1
   whipple generate schema > whipple.schema.json
+  whipple generate reference > input-reference.md
+  whipple generate materials > materials.md
 
 An editor completes and checks a case whose first line names the schema, with the extension
 \"Even Better TOML\" of VS Code or with Taplo:
@@ -39,6 +44,10 @@ enum What {
     },
     /// The JSON schema of cases, to the standard output
     Schema,
+    /// A page in Markdown of all tables and keys of cases, to the standard output
+    Reference,
+    /// A page in Markdown of the material library, to the standard output
+    Materials,
 }
 
 /// Runs the command, given that of the whole program; returns the exit code.
@@ -63,6 +72,14 @@ pub fn run(args: &GenerateArgs, program: clap::Command) -> u8 {
         },
         What::Schema => {
             say(&format!("{:#}", input::schema()));
+            0
+        }
+        What::Reference => {
+            say(reference::page(&input::schema()).trim_end());
+            0
+        }
+        What::Materials => {
+            say(materials::page().trim_end());
             0
         }
     }

@@ -86,7 +86,7 @@ fn law<'a>(constants: &'a [Constant], kind: &str) -> &'a str {
 }
 
 /// A material as a table of the input, with sources as comments.
-fn table(name: &str) -> Option<String> {
+pub fn table(name: &str) -> Option<String> {
     let material = library::find(name)?;
     let title = library::title(name).unwrap_or_default();
     let mut text = format!("# {title}\n[material.{name}]\n");

@@ -46,7 +46,7 @@ pub type Point = Spanned<Vec<Spanned<Extent>>>;
 tables! {
     /// The whole document.
     CaseParams {
-        /// One line for reports and plots, without control characters.
+        /// One line for reports and plots, without control characters; `"untitled"` if absent.
         title: Option<Spanned<String>>,
         /// 1, 2 or 3.
         dimension: Spanned<i64>,
@@ -75,7 +75,7 @@ tables! {
         /// Symmetry planes.
         #[serde(default)]
         symmetry: Vec<SymmetryParams>,
-        /// Acceleration of gravity.
+        /// Acceleration of gravity; none if absent.
         gravity: Option<Spanned<Vec<Placed<Acceleration>>>>,
         /// Prescribed velocities.
         #[serde(default)]
@@ -95,7 +95,7 @@ tables! {
         /// What is written.
         #[serde(default)]
         output: OutputParams,
-        /// Fragments; they are not told if absent.
+        /// Fragments; not told if absent.
         fragments: Option<FragmentsParams>,
         /// Gauges.
         #[serde(default)]
@@ -112,7 +112,7 @@ tables! {
     RunParams {
         /// End of the case.
         end_time: Placed<Time>,
-        /// Largest number of steps.
+        /// Largest number of steps; no limit if absent.
         max_steps: Option<Spanned<i64>>,
     }
 
@@ -126,9 +126,10 @@ tables! {
         shape: Option<Spanned<ShapeParams>>,
         /// Those of a file, in place of a shape and its filling.
         particles: Option<Spanned<ParticlesParams>>,
-        /// Stacking of the particles; cubic if absent.
+        /// Stacking of the particles; `"glass"`, in fewer dimensions and with stress points `"cubic"` if
+        /// absent.
         lattice: Option<Spanned<LatticeParams>>,
-        /// Own particle spacing, or how it grows.
+        /// Own particle spacing, or how it grows; the case's if absent.
         spacing: Option<Spanned<SpacingParams>>,
         /// Initial velocity; at rest if absent.
         velocity: Option<Spanned<Vec<Spanned<ProfileParams<Velocity>>>>>,
@@ -142,41 +143,41 @@ tables! {
         temperature: Option<Spanned<ProfileParams<Temperature>>>,
         /// Initial equivalent plastic strain; none if absent.
         plastic_strain: Option<Spanned<ProfileParams<Strain>>>,
-        /// Moves the body until it touches another one.
+        /// Moves the body until it touches another one; not moved if absent.
         touch: Option<TouchParams>,
-        /// Whether the body is rigid: it keeps its velocity, whatever acts on it.
+        /// Whether the body is rigid: it keeps its velocity, whatever acts on it; false if absent.
         rigid: Option<bool>,
-        /// Motion of a rigid body.
+        /// Motion of a rigid body; its `velocity` for ever if absent.
         motion: Option<Spanned<MotionParams>>,
     }
 
     /// `[[load]]`
     LoadParams {
-        /// Name in reports, as of a body.
+        /// Name in reports, as of a body; `load-1` and so on if absent.
         name: Option<Spanned<String>>,
         /// Name of a body.
         body: Spanned<String>,
-        /// Smallest coordinates of the region.
+        /// Smallest coordinates of the region; open if absent.
         above: Option<Spanned<SidesParams>>,
-        /// Largest coordinates of the region.
+        /// Largest coordinates of the region; open if absent.
         below: Option<Spanned<SidesParams>>,
         /// The velocity.
         velocity: Spanned<MotionParams>,
-        /// When the particles are free again.
+        /// When the particles are free again; never if absent.
         until: Option<Placed<Time>>,
     }
 
     /// `[[absorb]]`
     AbsorbParams {
-        /// Name in reports, as of a body.
+        /// Name in reports, as of a body; `absorb-1` and so on if absent.
         name: Option<Spanned<String>>,
         /// Name of a body.
         body: Spanned<String>,
-        /// Directions out of the body in which it goes on.
+        /// Directions out of the body in which it goes on; none if absent.
         faces: Option<Spanned<Vec<Spanned<NormalParams>>>>,
-        /// Whether it goes on beyond its curved face, or which one that is.
+        /// Whether it goes on beyond its curved face, or which one that is; false if absent.
         round: Option<Spanned<RoundParams>>,
-        /// How far the zone reaches into the body.
+        /// How far the zone reaches into the body; 30 spacings if absent.
         depth: Option<Spanned<Extent>>,
     }
 
@@ -192,9 +193,9 @@ tables! {
 
     /// `domain.keep`: sides of the box of interest, at least one.
     KeepParams {
-        /// Smallest coordinates.
+        /// Smallest coordinates; open if absent.
         above: Option<Spanned<SidesParams>>,
-        /// Largest coordinates.
+        /// Largest coordinates; open if absent.
         below: Option<Spanned<SidesParams>>,
     }
 
@@ -222,7 +223,7 @@ tables! {
     SymmetryParams {
         /// Normal.
         axis: Spanned<Axis>,
-        /// Where the plane cuts the axis; zero if absent.
+        /// Where the plane cuts the axis; 0 if absent.
         position: Option<Placed<Length>>,
     }
 }
@@ -230,27 +231,27 @@ tables! {
 optional_tables! {
     /// `[sph]`
     SphParams {
-        /// How gradients are taken.
+        /// How gradients are taken; `"corrected"` if absent.
         form: Option<Spanned<SphForm>>,
-        /// Smoothing length over particle spacing.
+        /// Smoothing length over particle spacing; 1.3 if absent.
         smoothing: Option<Spanned<f64>>,
-        /// Linear viscosity.
+        /// Linear viscosity; 1 if absent.
         alpha: Option<Spanned<f64>>,
-        /// Quadratic viscosity.
+        /// Quadratic viscosity; 2 if absent.
         beta: Option<Spanned<f64>>,
-        /// Constant or variable.
+        /// Constant or variable; `"constant"` if absent.
         smoothing_length: Option<SmoothingName>,
-        /// Smallest h/h₀ of a variable smoothing length.
+        /// Smallest h/h₀ of a variable smoothing length; 0.6 if absent.
         smoothing_length_min: Option<Spanned<f64>>,
-        /// Largest h/h₀ of a variable smoothing length.
+        /// Largest h/h₀ of a variable smoothing length; 2 if absent.
         smoothing_length_max: Option<Spanned<f64>>,
-        /// Factor of the artificial stress.
+        /// Factor of the artificial stress; 0 if absent.
         artificial_stress: Option<Spanned<f64>>,
-        /// The Balsara switch.
+        /// The Balsara switch; false if absent.
         balsara: Option<bool>,
-        /// Coefficient of the artificial conduction.
+        /// Coefficient of the artificial conduction; 0 if absent.
         conduction: Option<Spanned<f64>>,
-        /// Factor of XSPH.
+        /// Factor of XSPH; 0 if absent.
         xsph: Option<Spanned<f64>>,
         /// Stiffness of the hourglass control of the corrected form; 0.1 if absent.
         hourglass: Option<Spanned<f64>>,
@@ -258,13 +259,13 @@ optional_tables! {
 
     /// `[time_step]`
     TimeStepParams {
-        /// Factor of the sound and viscosity criterion.
+        /// Factor of the sound and viscosity criterion; 0.5 if absent.
         courant: Option<Spanned<f64>>,
-        /// Factor of the acceleration criterion.
+        /// Factor of the acceleration criterion; 0.25 if absent.
         force: Option<Spanned<f64>>,
-        /// Safety factor of the contact criterion.
+        /// Safety factor of the contact criterion; 0.8 if absent.
         contact: Option<Spanned<f64>>,
-        /// Upper bound.
+        /// Upper bound; none if absent.
         max: Option<Placed<Time>>,
     }
 
@@ -272,11 +273,11 @@ optional_tables! {
     DomainParams {
         /// The first of `axes`, if it alone is said.
         axis: Option<Spanned<Axis>>,
-        /// Axes of the slabs, of the slabs of these, and so on.
+        /// Axes of the slabs, of the slabs of these, and so on; the longest first if absent.
         axes: Option<Spanned<Vec<Spanned<Axis>>>>,
-        /// How many of them there are at most.
+        /// How many of them there are at most; `"auto"` if absent.
         levels: Option<Spanned<LevelsParams>>,
-        /// Most steps between two balances.
+        /// Most steps between two balances; 25 if absent.
         balance_every: Option<Spanned<i64>>,
         /// The box of interest; everything if absent.
         keep: Option<Spanned<KeepParams>>,

@@ -19,13 +19,13 @@ use potential::PotentialParams;
 optional_tables! {
     /// `[contact]`
     ContactParams {
-        /// Mode of all pairs that have no own.
+        /// Mode of all pairs that have no own; `"overlap"` if absent.
         mode: Option<ModeName>,
-        /// Coefficients of friction.
+        /// Coefficients of friction; 0 if absent.
         friction: Option<Spanned<FrictionParams>>,
-        /// Share of critical damping.
+        /// Share of critical damping; 0 if absent.
         damping: Option<Spanned<f64>>,
-        /// Contact of a body with itself.
+        /// Contact of a body with itself; where matter may fail if absent.
         self_contact: Option<Spanned<SelfContactParams>>,
         /// Parameters of the mode `overlap`.
         overlap: OverlapParams,
@@ -45,9 +45,9 @@ tables! {
         bodies: Spanned<Vec<Spanned<String>>>,
         /// What happens where they meet; as for all others if absent.
         mode: Option<ModeName>,
-        /// Coefficients of friction.
+        /// Coefficients of friction; the case's if absent.
         friction: Option<Spanned<FrictionParams>>,
-        /// Share of critical damping.
+        /// Share of critical damping; the case's if absent.
         damping: Option<Spanned<f64>>,
         /// Parameters of the mode `overlap`.
         #[serde(default)]

@@ -71,7 +71,7 @@ optional_tables! {
         b: Option<Placed<Pressure>>,
         /// Sound speed of the reference state.
         sound_speed: Option<Placed<Velocity>>,
-        /// Exponent.
+        /// Exponent; 7 if absent.
         gamma: Option<Spanned<f64>>,
     }
 
@@ -101,9 +101,9 @@ optional_tables! {
     IdealGasParams {
         /// Ratio of specific heats.
         gamma: Option<Spanned<f64>>,
-        /// Stiffening pressure.
+        /// Stiffening pressure; 0 if absent.
         stiffening_pressure: Option<Placed<Pressure>>,
-        /// Pressure of the reference state.
+        /// Pressure of the reference state; 0 if absent.
         reference_pressure: Option<Placed<Pressure>>,
     }
 
@@ -111,11 +111,11 @@ optional_tables! {
     ThermalParams {
         /// Specific heat.
         specific_heat: Option<Placed<SpecificHeat>>,
-        /// Temperature of the reference state.
+        /// Temperature of the reference state; 300 K if absent.
         reference_temperature: Option<Placed<Temperature>>,
         /// Melting temperature.
         melting_temperature: Option<Placed<Temperature>>,
-        /// Share of plastic work that becomes heat.
+        /// Share of plastic work that becomes heat; 1 if absent.
         taylor_quinney: Option<Spanned<f64>>,
     }
 }
@@ -147,7 +147,7 @@ macro_rules! strength_laws {
                 shear_modulus: Placed<Pressure>, Positive;
                 /// Yield stress.
                 yield_stress: Placed<Pressure>, NotNegative;
-                /// Hardening modulus.
+                /// Hardening modulus; 0 if absent.
                 hardening_modulus: Placed<Pressure>, NotNegative, or 0.0;
             }
             /// `strength.johnson_cook`: Johnson and Cook.
@@ -164,7 +164,7 @@ macro_rules! strength_laws {
                 c: Spanned<f64>, NotNegative;
                 /// Exponent of thermal softening.
                 m: Spanned<f64>, Positive;
-                /// Reference strain rate.
+                /// Reference strain rate; 1/s if absent.
                 reference_rate: Placed<Rate>, Positive, or 1.0;
             }
             /// `strength.steinberg_guinan`: Steinberg and Guinan.
@@ -179,7 +179,7 @@ macro_rules! strength_laws {
                 beta: Spanned<f64>, NotNegative;
                 /// Hardening exponent.
                 n: Spanned<f64>, UpToOne;
-                /// Initial plastic strain.
+                /// Initial plastic strain; 0 if absent.
                 initial_strain: Spanned<f64>, NotNegative, or 0.0;
                 /// G′p/G₀.
                 pressure_coefficient: Placed<PerPressure>, NotNegative;
@@ -206,7 +206,7 @@ macro_rules! failure_laws {
             spall: SpallParams => Spall {
                 /// Lowest pressure.
                 pressure: Placed<Pressure>, NotPositive;
-                /// What becomes of matter beyond it.
+                /// What becomes of matter beyond it; `"failed"` if absent.
                 after: Spanned<AfterSpall>, Word;
             }
             /// `failure.principal_stress`: largest principal stress.
@@ -227,17 +227,17 @@ macro_rules! failure_laws {
                 d2: Spanned<f64>, Any;
                 /// D₃.
                 d3: Spanned<f64>, Any;
-                /// D₄.
+                /// D₄; 0 if absent.
                 d4: Spanned<f64>, Any, or 0.0;
-                /// D₅.
+                /// D₅; 0 if absent.
                 d5: Spanned<f64>, Any, or 0.0;
-                /// Reference strain rate.
+                /// Reference strain rate; 1/s if absent.
                 reference_rate: Placed<Rate>, Positive, or 1.0;
-                /// How the failure strain follows the rate.
+                /// How the failure strain follows the rate; `"logarithm"` if absent.
                 rate_form: Spanned<RateForm>, Word;
-                /// Least failure strain.
+                /// Least failure strain; 0.01 if absent.
                 least_strain: Spanned<f64>, Positive, or 0.01;
-                /// Mean tension at which the least strain is enough.
+                /// Mean tension at which the least strain is enough; no such stress if absent.
                 spall_stress: Placed<Pressure>, NotNegative, or 0.0;
             }
             /// `failure.grady_kipp`: cracks that grow from flaws.
@@ -246,13 +246,13 @@ macro_rules! failure_laws {
                 k: Placed<NumberDensity>, Positive;
                 /// Weibull's exponent.
                 m: Spanned<f64>, Positive;
-                /// Crack speed over the sound speed.
+                /// Crack speed over the sound speed; 0.4 if absent.
                 crack_speed: Spanned<f64>, Positive, or 0.4;
-                /// What a crack crosses.
+                /// What a crack crosses; `"particle"` if absent.
                 crosses: Spanned<Crosses>, Word;
-                /// How many flaws are active.
+                /// How many flaws are active; `"drawn"` if absent.
                 flaws: Spanned<Flaws>, Word;
-                /// Flaws of a particle.
+                /// Flaws of a particle; no limit if absent.
                 most_flaws: Spanned<f64>, NotNegative, or 0.0;
             }
         }

@@ -11,15 +11,15 @@ use crate::model::Include;
 tables! {
     /// `[[gauge]]`
     GaugeParams {
-        /// Name in tables, as of a body.
+        /// Name in tables, as of a body; `gauge-1` and so on if absent.
         name: Option<Spanned<String>>,
         /// Where it is, or begins.
         at: Spanned<Vec<Placed<Length>>>,
-        /// Whether the particle nearest at the start carries it; fixed in space if absent.
+        /// Whether the particle nearest at the start carries it, else it is fixed; false if absent.
         moves: Option<bool>,
         /// Name of the body whose matter it reads; all that deform if absent.
         body: Option<Spanned<String>>,
-        /// Names of what it reads.
+        /// Names of what it reads; pressure, density and velocity if absent.
         fields: Option<Spanned<Vec<Spanned<String>>>>,
         /// Direction of the normal stress that it reads; none if absent.
         along: Option<Spanned<NormalParams>>,
@@ -31,7 +31,7 @@ tables! {
 
     /// `[[witness]]`
     WitnessParams {
-        /// Name in tables, as of a body.
+        /// Name in tables, as of a body; `witness-1` and so on if absent.
         name: Option<Spanned<String>>,
         /// To the side to which matter passes forwards.
         normal: Spanned<NormalParams>,
@@ -65,43 +65,43 @@ tables! {
 
     /// `[[measure.debris]]`
     DebrisParams {
-        /// Name in tables.
+        /// Name in tables; `debris-1` and so on if absent.
         name: Option<Spanned<String>>,
         /// Name of the plate or target that it leaves; what remains of that is no debris.
         of: Option<Spanned<String>>,
         /// Direction of flight.
         direction: Spanned<NormalParams>,
-        /// A point of the plane beyond which it is; of the face of that plate, or the origin, if absent.
+        /// A point of the plane beyond which it is; on that plate, else the origin if absent.
         point: Option<Spanned<Vec<Placed<Length>>>>,
         /// Names of the bodies whose matter it may be; all that deform if absent.
         bodies: Option<Spanned<Vec<Spanned<String>>>>,
-        /// Areal mass of the outline.
+        /// Areal mass of the outline; 2 % of the plate's, else half a layer of particles if absent.
         outline: Option<Placed<ArealMass>>,
     }
 
     /// `[[measure.region]]`
     ZoneParams {
-        /// Name in tables.
+        /// Name in tables; `region-1` and so on if absent.
         name: Option<Spanned<String>>,
-        /// Smallest coordinates.
+        /// Smallest coordinates; open if absent.
         above: Option<Spanned<SidesParams>>,
-        /// Largest coordinates.
+        /// Largest coordinates; open if absent.
         below: Option<Spanned<SidesParams>>,
         /// Centre of a ball, in place of sides.
         centre: Option<Spanned<Vec<Placed<Length>>>>,
         /// Radius of the ball.
         radius: Option<Placed<Length>>,
-        /// Whether it is what begins there and moves; fixed in space if absent.
+        /// Whether it is what begins there and moves, or fixed in space; false if absent.
         moves: Option<bool>,
         /// Name of the body whose matter it reads; all that deform if absent.
         body: Option<Spanned<String>>,
-        /// Names of what it reads.
+        /// Names of what it reads; pressure, density and velocity if absent.
         fields: Option<Spanned<Vec<Spanned<String>>>>,
     }
 
     /// `[[measure.front]]`
     FrontParams {
-        /// Name in tables.
+        /// Name in tables; `front-1` and so on if absent.
         name: Option<Spanned<String>>,
         /// Where the line begins.
         from: Spanned<Vec<Placed<Length>>>,
@@ -117,9 +117,9 @@ tables! {
 optional_tables! {
     /// `[measure]`
     MeasureParams {
-        /// Whether `bodies.csv` is written; it is if absent.
+        /// Whether `bodies.csv` is written; true if absent.
         bodies: Option<bool>,
-        /// Whether plates, targets and bars are found by their shapes; they are if absent.
+        /// Whether plates, targets and bars are found by their shapes; true if absent.
         usual: Option<bool>,
         /// Time between rows of `measures.csv`; a tenth of the run if absent.
         every: Option<Placed<Time>>,

@@ -9,19 +9,19 @@ use crate::model::NumericalFailurePolicy;
 optional_tables! {
     /// `[numerical_limits]`
     NumericalLimitsParams {
-        /// What happens to a particle whose state is out of range.
+        /// What happens to a particle whose state is out of range; `"stop"` if absent.
         policy: Option<NumericalFailurePolicy>,
-        /// Largest speed.
+        /// Largest speed; 20 times the speeds of the case if absent.
         speed_max: Option<Placed<Velocity>>,
-        /// Largest magnitude of the specific energy.
+        /// Largest magnitude of the specific energy; ½ `speed_max`² if absent.
         energy_max: Option<Placed<SpecificEnergy>>,
-        /// Smallest density over that at the start.
+        /// Smallest density over that at the start; 1e-6 if absent.
         density_min: Option<Spanned<f64>>,
-        /// Largest density over that at the start.
+        /// Largest density over that at the start; 100 if absent.
         density_max: Option<Spanned<f64>>,
-        /// Smallest time step.
+        /// Smallest time step; 1e-6 of h over the speeds of the case if absent.
         step_min: Option<Placed<Time>>,
-        /// Largest kinetic energy over what there was and has been put in.
+        /// Largest kinetic energy over what there was and has been put in; 10 if absent.
         gain_max: Option<Spanned<f64>>,
     }
 }

@@ -10,21 +10,21 @@ use crate::model::Precision;
 optional_tables! {
     /// `[output]`
     OutputParams {
-        /// Time between snapshots.
+        /// Time between snapshots; the first and the last state alone if absent.
         snapshot_every: Option<Placed<Time>>,
-        /// Time between checkpoints.
+        /// Time between checkpoints; none if absent.
         checkpoint_every: Option<Placed<Time>>,
-        /// Steps between checkpoints.
+        /// Steps between checkpoints; none if absent.
         checkpoint_every_steps: Option<Spanned<i64>>,
-        /// Time of the clock between checkpoints.
+        /// Time of the clock between checkpoints; none if absent.
         checkpoint_every_wall: Option<Spanned<ClockParams>>,
         /// Mean time between failures of the machine, for `"auto"`; 6 h if absent.
         mean_time_between_failures: Option<Placed<Time>>,
-        /// How many are kept.
+        /// How many are kept; 2 if absent.
         checkpoints_kept: Option<Spanned<i64>>,
-        /// Steps between rows of the histories.
+        /// Steps between rows of the histories; 10 if absent.
         history_every: Option<Spanned<i64>>,
-        /// Snapshot fields, at least one.
+        /// Snapshot fields, at least one; those of the table of fields if absent.
         fields: Option<Spanned<Vec<Spanned<String>>>>,
         /// How many ranks write; all if absent.
         writers: Option<Spanned<i64>>,

@@ -11,11 +11,11 @@ tables! {
     ParticlesParams {
         /// Path, from the folder of the case.
         file: Spanned<String>,
-        /// What is in it; its ending tells if absent.
+        /// What is in it; told by its ending if absent.
         format: Option<Spanned<FormatName>>,
-        /// Names or numbers of its parts that the body is of.
+        /// Names or numbers of its parts that the body is of; the only one if absent.
         part: Option<Spanned<PartsParams>>,
-        /// What of a mesh becomes particles; its elements if absent.
+        /// What of a mesh becomes particles; `"elements"` if absent.
         take: Option<Spanned<TakeName>>,
         /// Length of one unit of the file.
         unit: Option<Placed<Length>>,
@@ -25,9 +25,9 @@ tables! {
         time_unit: Option<Placed<Time>>,
         /// What the file calls its columns or arrays.
         columns: Option<Spanned<ColumnsParams>>,
-        /// Turns them.
+        /// Turns them; none if absent.
         turn: Option<Spanned<TurnsParams>>,
-        /// Moves them, once they are turned.
+        /// Moves them, once they are turned; none if absent.
         shift: Option<Point>,
         /// SHA-256 that the file must have.
         sha256: Option<Spanned<String>>,

@@ -35,9 +35,9 @@ tables! {
         intersection: Option<Spanned<Vec<Spanned<ShapeParams>>>>,
         /// What the first of some shapes holds and none of the others.
         difference: Option<Spanned<Vec<Spanned<ShapeParams>>>>,
-        /// Turns it.
+        /// Turns it; none if absent.
         turn: Option<Spanned<TurnsParams>>,
-        /// Moves it, once it is turned.
+        /// Moves it, once it is turned; none if absent.
         shift: Option<Point>,
     }
 
@@ -55,7 +55,7 @@ tables! {
 
     /// `shape.sphere`
     SphereParams {
-        /// The origin if absent.
+        /// Centre; the origin if absent.
         centre: Option<Point>,
         /// Radius.
         radius: Spanned<Extent>,
@@ -79,7 +79,7 @@ tables! {
 
     /// `shape.ellipsoid`
     EllipsoidParams {
-        /// The origin if absent.
+        /// Centre; the origin if absent.
         centre: Option<Point>,
         /// Half its extents along the axes.
         semi_axes: Point,
@@ -115,7 +115,7 @@ tables! {
 
     /// `shape.torus`
     TorusParams {
-        /// The origin if absent.
+        /// Centre; the origin if absent.
         centre: Option<Point>,
         /// Axis of the ring; z if absent.
         axis: Option<Spanned<AxisParams>>,

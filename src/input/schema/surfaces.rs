@@ -13,7 +13,7 @@ use crate::model::Axis;
 tables! {
     /// `[[plane]]`
     PlaneParams {
-        /// Name in reports, as of a body.
+        /// Name in reports, as of a body; `plane-1` and so on if absent.
         name: Option<Spanned<String>>,
         /// To the side that the plane keeps.
         normal: Spanned<NormalParams>,
@@ -21,11 +21,11 @@ tables! {
         point: Option<Spanned<Vec<Placed<Length>>>>,
         /// Names of the bodies that feel it; all if absent.
         bodies: Option<Vec<Spanned<String>>>,
-        /// Stiffness κ.
+        /// Stiffness κ; 2 if absent.
         stiffness: Option<Spanned<f64>>,
-        /// Coefficients of friction.
+        /// Coefficients of friction; 0 if absent.
         friction: Option<Spanned<FrictionParams>>,
-        /// Share of critical damping.
+        /// Share of critical damping; 0 if absent.
         damping: Option<Spanned<f64>>,
         /// Motion of the plane; fixed if absent.
         motion: Option<Spanned<MotionParams>>,
@@ -33,19 +33,19 @@ tables! {
 
     /// `[[surface]]`
     SurfaceParams {
-        /// Name in reports, as of a body.
+        /// Name in reports, as of a body; `surface-1` and so on if absent.
         name: Option<Spanned<String>>,
         /// Geometry.
         shape: Spanned<SurfaceShapeParams>,
-        /// Where the particles are; outside if absent.
+        /// Where the particles are; `"outside"` if absent.
         side: Option<SideName>,
         /// Names of the bodies that feel it; all if absent.
         bodies: Option<Vec<Spanned<String>>>,
-        /// Stiffness κ.
+        /// Stiffness κ; 2 if absent.
         stiffness: Option<Spanned<f64>>,
-        /// Coefficients of friction.
+        /// Coefficients of friction; 0 if absent.
         friction: Option<Spanned<FrictionParams>>,
-        /// Share of critical damping.
+        /// Share of critical damping; 0 if absent.
         damping: Option<Spanned<f64>>,
         /// Motion of the surface; fixed if absent.
         motion: Option<Spanned<MotionParams>>,
@@ -67,7 +67,7 @@ tables! {
 
     /// `shape.sphere` of a surface.
     SurfaceSphereParams {
-        /// The origin if absent.
+        /// Centre; the origin if absent.
         centre: Option<Spanned<Vec<Placed<Length>>>>,
         /// Radius.
         radius: Placed<Length>,
@@ -93,7 +93,7 @@ tables! {
         unit: Placed<Length>,
         /// Where the file's origin stands; the origin if absent.
         at: Option<Spanned<Vec<Placed<Length>>>>,
-        /// Turns the surface about the file's origin, before it is placed.
+        /// Turns the surface about the file's origin, before it is placed; none if absent.
         turn: Option<TurnParams>,
         /// SHA-256 that the file must have.
         sha256: Option<Spanned<String>>,

@@ -11,13 +11,13 @@ use crate::model::Overlap;
 optional_tables! {
     /// `contact.overlap`
     OverlapParams {
-        /// Stiffness κ.
+        /// Stiffness κ; 4 if absent.
         stiffness: Option<Spanned<f64>>,
-        /// Stiffness `κ_c` of the core.
+        /// Stiffness `κ_c` of the core; 2.2 if absent.
         core_stiffness: Option<Spanned<f64>>,
-        /// Radius of the core in mean spacings.
+        /// Radius of the core in mean spacings; 0.6 if absent.
         core_radius: Option<Spanned<f64>>,
-        /// Along what it acts.
+        /// Along what it acts; `"pair"` if absent.
         direction: Option<Spanned<DirectionName>>,
     }
 }

@@ -11,9 +11,9 @@ use crate::model::{Penalty, PenaltyLaw};
 optional_tables! {
     /// `contact.penalty`
     PenaltyParams {
-        /// Stiffness κ.
+        /// Stiffness κ; 2 if absent.
         stiffness: Option<Spanned<f64>>,
-        /// Law of the force.
+        /// Law of the force; `"hertz"` if absent.
         law: Option<PenaltyLawName>,
     }
 }

@@ -15,13 +15,13 @@ const LARGEST_EXPONENT: u32 = 100;
 optional_tables! {
     /// `contact.potential`
     PotentialParams {
-        /// Stiffness k.
+        /// Stiffness k; 1 if absent.
         stiffness: Option<Spanned<f64>>,
-        /// Exponent n.
+        /// Exponent n; 4 if absent.
         exponent: Option<Spanned<i64>>,
-        /// Range of the force.
+        /// Range of the force; `"support"` if absent.
         range: Option<Spanned<RangeName>>,
-        /// Along what it acts.
+        /// Along what it acts; `"pair"` if absent.
         direction: Option<Spanned<DirectionName>>,
     }
 }

@@ -1,0 +1,92 @@
+//! The material library as a page of the book.
+
+use std::fmt::Write as _;
+
+use crate::app::materials::table;
+use crate::material::{Constant, Material, library};
+
+/// What the page says before its tables.
+const HEAD: &str = "\
+# Materials
+
+<!-- Written by `whipple generate materials`: change the library (src/material/library), not this page. -->
+
+The library has the materials below. A case takes one by its name:
+
+```toml
+[material.sphere]
+library = \"aluminium-2024\"
+```
+
+Single values may be changed beside the name, and laws of failure added:
+
+```toml
+[material.sphere]
+library = \"aluminium-2024\"
+strength.von_mises.yield_stress = \"0.3 GPa\"
+failure.spall = { pressure = \"-1.4 GPa\" }
+```
+
+- Choose a **strength** that knows what your case does: von Mises for shocks that are far above the yield stress, Johnson–Cook where
+  strain rate and heat matter, Steinberg–Guinan for rates above some 10⁵/s.
+- Choose an **equation of state** for the pressures of your case: Mie–Grüneisen up to strong shocks of solids, Tillotson where matter
+  vaporises, Tait for liquids at low pressure.
+- Only the `-ductile` materials **fail** by themselves. Debris that never fails holds together as long as it can: add `failure.spall` or
+  another [law](../theory/failure.md) to whatever breaks.
+
+The formulas stand in [Materials](../theory/materials.md), all keys in the [input reference](input-reference.md). `whipple materials NAME`
+prints one of the tables below, ready to be copied into a case and changed; `whipple materials --json` prints all of them for programs.
+
+## Overview
+
+Sound is the longitudinal speed at rest, √(M/ρ₀) with the P-wave modulus M.
+
+| name | what it is | ρ₀, kg/m³ | sound, m/s | equation of state, strength, failure |
+|---|---|---|---|---|
+";
+
+/// The page.
+pub fn page() -> String {
+    let mut page = HEAD.to_owned();
+    let all = || library::names().into_iter();
+    for (name, material) in all().filter_map(|name| library::find(name).map(|found| (name, found)))
+    {
+        write_row(&mut page, name, &material);
+    }
+    page.push_str("\n## Constants\n\nEach number stands with its source.\n");
+    for (name, table) in all().filter_map(|name| table(name).map(|table| (name, table))) {
+        let _ = writeln!(page, "\n### {name}\n\n```toml\n{}\n```", table.trim_end());
+    }
+    page
+}
+
+fn write_row(page: &mut String, name: &str, material: &Material) {
+    let constants = material.constants();
+    let sound = (material.p_wave_modulus() / material.reference_density).sqrt();
+    let laws: Vec<String> = ["eos", "strength", "failure"]
+        .iter()
+        .flat_map(|kind| laws(&constants, kind))
+        .collect();
+    let _ = writeln!(
+        page,
+        "| [`{name}`](#{name}) | {} | {} | {sound:.0} | {} |",
+        library::title(name).unwrap_or_default(),
+        material.reference_density,
+        laws.join(", "),
+    );
+}
+
+/// Which laws of a kind the constants belong to: `eos.tait` of `eos.tait.b`.
+fn laws(constants: &[Constant], kind: &str) -> Vec<String> {
+    let mut laws: Vec<String> = Vec::new();
+    for constant in constants {
+        let words: Vec<&str> = constant.key.split('.').collect();
+        if let [first, law, _] = words[..]
+            && first == kind
+        {
+            laws.push(format!("`{kind}.{law}`"));
+        }
+    }
+    laws.dedup();
+    laws
+}
