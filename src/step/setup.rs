@@ -205,14 +205,15 @@ impl Simulation {
     /// First forces, sums and time step.
     fn begin(&mut self, comm: &Comm) -> Result<(), SetupError> {
         self.migrate(comm);
-        // The first pass finds the foreign fractions that contact is to forgive, and the work.
-        self.evaluate(comm, 0.0);
+        // The first search finds which parts bodies are in, and the order of the store.
+        self.search(comm);
+        let scratch = self.sph.scratch(self.particles.owned());
+        self.lists.restore_order(&mut self.particles, scratch);
+        self.search(comm);
         let mut capped = [self.contact.begin(&mut self.particles, &self.lists)];
         comm.sum_i64(&mut capped);
         self.state.capped_reliefs = capped[0];
-        let scratch = self.sph.scratch(self.particles.owned());
-        self.lists.restore_order(&mut self.particles, scratch);
-        self.evaluate(comm, 0.0);
+        self.sum(comm, 0.0);
         let own = self.kick(0.0);
         let candidate = self.book_step(comm, 0.0, own);
         self.state.initial = self.totals(comm);

@@ -168,8 +168,14 @@ impl Simulation {
     }
 
     /// Stress, accelerations and rates at the current positions, from the predicted velocities,
-    /// densities and energies.
+    /// densities and energies. Collective.
     pub(super) fn evaluate(&mut self, comm: &Comm, dt: f64) {
+        self.search(comm);
+        self.sum(comm, dt);
+    }
+
+    /// Who is whose neighbour at the current positions, over ranks and symmetry planes. Collective.
+    pub(super) fn search(&mut self, comm: &Comm) {
         let Self {
             particles,
             state,
@@ -179,7 +185,6 @@ impl Simulation {
             halo,
             sph,
             contact,
-            loads,
             labels,
             ..
         } = self;
@@ -200,6 +205,21 @@ impl Simulation {
             tell_parts(comm, (lists, halo), particles, labels);
             timers.lap(Phase::Neighbours);
         }
+    }
+
+    /// The sums over the neighbours of the last search, after a step `dt` (s). Collective.
+    pub(super) fn sum(&mut self, comm: &Comm, dt: f64) {
+        let Self {
+            particles,
+            state,
+            timers,
+            lists,
+            halo,
+            sph,
+            contact,
+            loads,
+            ..
+        } = self;
         let step = step(state, loads, dt);
         sph.rates(particles, lists, &step);
         timers.lap(Phase::Material);
