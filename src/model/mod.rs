@@ -11,6 +11,7 @@ mod body;
 mod cloud;
 mod contact;
 mod control;
+pub mod differences;
 mod distance;
 mod formula;
 mod fragments;

@@ -2,6 +2,8 @@
 
 use serde_json::Value;
 
+use crate::model::differences::{Difference, differences};
+
 /// Tables of a case that do not touch results.
 const FREE: [&str; 5] = ["output", "fragments", "run", "domain", "measure"];
 
@@ -14,57 +16,33 @@ pub fn cases(a: &str, b: &str) -> Vec<String> {
         }
         serde_json::to_value(table).map_err(|e| e.to_string())
     };
-    differences(&parse(a), &parse(b), a == b)
+    lines(&parse(a), &parse(b), a == b)
 }
 
 /// Differences of two texts of JSON.
 pub fn states(a: &str, b: &str) -> Vec<String> {
     let parse = |text: &str| serde_json::from_str(text).map_err(|e| e.to_string());
-    differences(&parse(a), &parse(b), a == b)
+    lines(&parse(a), &parse(b), a == b)
 }
 
-fn differences(a: &Result<Value, String>, b: &Result<Value, String>, same: bool) -> Vec<String> {
+fn lines(a: &Result<Value, String>, b: &Result<Value, String>, same: bool) -> Vec<String> {
     match (a, b) {
         (Ok(a), Ok(b)) => {
-            let mut found = Vec::new();
-            walk("", Some(a), Some(b), &mut found);
-            found
+            let show = |value: &Option<Value>| {
+                (value.as_ref()).map_or_else(|| "nothing".to_owned(), Value::to_string)
+            };
+            let line = |found: Difference| {
+                format!(
+                    "{}: {} against {}",
+                    found.path,
+                    show(&found.a),
+                    show(&found.b)
+                )
+            };
+            differences(a, b).into_iter().map(line).collect()
         }
         _ if same => Vec::new(),
         (Err(error), _) | (_, Err(error)) => vec![format!("the texts differ ({error})")],
-    }
-}
-
-/// Collects the paths of leaves that differ.
-fn walk(path: &str, a: Option<&Value>, b: Option<&Value>, found: &mut Vec<String>) {
-    let below = |key: &str| {
-        if path.is_empty() {
-            key.to_owned()
-        } else {
-            format!("{path}.{key}")
-        }
-    };
-    match (a, b) {
-        (Some(Value::Object(a)), Some(Value::Object(b))) => {
-            for key in a.keys().chain(b.keys().filter(|key| !a.contains_key(*key))) {
-                walk(&below(key), a.get(key), b.get(key), found);
-            }
-        }
-        (Some(Value::Array(a)), Some(Value::Array(b))) => {
-            for k in 0..a.len().max(b.len()) {
-                walk(&format!("{path}[{k}]"), a.get(k), b.get(k), found);
-            }
-        }
-        (a, b) => {
-            let show = |value: Option<&Value>| {
-                value.map_or_else(|| "nothing".to_owned(), Value::to_string)
-            };
-            // Texts are compared, so that −0 and 0 differ.
-            let (a, b) = (show(a), show(b));
-            if a != b {
-                found.push(format!("{path}: {a} against {b}"));
-            }
-        }
     }
 }
 
