@@ -18,11 +18,12 @@ TESTED := --locked --features fault-injection
 help: ## Say what each target does
 	@sed -nE 's/^([a-z-]+):.*## (.*)/\1\t\2/p' Makefile | expand -t 16
 
-impact: release ## Run the main job on two ranks, draw its pictures, report
+impact: release ## Run the main job on two ranks, draw its pictures, write the page that tells it
 	jobs/run.sh -n 2 inputs/quarter-impact --out runs/quarter-impact --force
 	$(ENV) target/release/whipple plot runs/quarter-impact --panels
 	$(ENV) target/release/whipple plot runs/quarter-impact --history
 	$(ENV) target/release/whipple info runs/quarter-impact
+	$(ENV) target/release/whipple report runs/quarter-impact --open-nothing
 
 test: run-tests ## Run the test suite, about eight minutes on two cores
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what the build needs beside Rust and a C compiler: Open MPI, parallel HDF5, libclang
-# (for the bindings) and, with --tests, Python's venv and OpenGL without a display. Silent and quick
-# when all of it is there.
+# (for the bindings) and, with --tests, Python's venv, OpenGL without a display and a headless Chromium. Silent
+# and quick when all of it is there.
 #
 #   jobs/install-deps.sh [--tests]
 #
@@ -34,6 +34,16 @@ have_opengl() {
         python3 -c 'import ctypes; ctypes.CDLL("libEGL.so.1")' 2>/dev/null
 }
 
+# The browser that the tests of `whipple report` drive.
+have_chromium() {
+    local program
+    [ "${WHIPPLE_SKIP_CLIENTS:-}" != 1 ] || return 0
+    for program in chromium-headless-shell chromium chromium-browser google-chrome; do
+        if command -v "$program" >/dev/null; then return 0; fi
+    done
+    return 1
+}
+
 # What lacks, one line each.
 lacking() {
     command -v cc >/dev/null || echo "a C compiler (cc)"
@@ -45,6 +55,7 @@ lacking() {
         echo "Python 3 with venv (for the tests)"
     [ -z "$want_tests" ] || have_opengl ||
         echo "OpenGL without a display, libEGL (for the tests)"
+    [ -z "$want_tests" ] || have_chromium || echo "Chromium (for the tests)"
 }
 
 mapfile -t missing < <(lacking)
@@ -58,7 +69,9 @@ echo "whipple needs, and this machine lacks:"
 printf '  %s\n' "${missing[@]}"
 
 packages=(build-essential openmpi-bin libopenmpi-dev libhdf5-openmpi-dev libclang-dev pkg-config)
-[ -z "$want_tests" ] || packages+=(python3-venv libegl1 libgl1-mesa-dri)
+chromium=chromium-headless-shell
+if grep -qs '^ID=ubuntu' /etc/os-release; then chromium=chromium-browser; fi
+[ -z "$want_tests" ] || packages+=(python3-venv libegl1 libgl1-mesa-dri "$chromium")
 install=(install -y --no-install-recommends "${packages[@]}")
 
 on_cluster=

@@ -36,3 +36,4 @@ pub mod ballistic;
 pub mod exact;
 pub mod plan;
 pub mod plot;
+pub mod report;

@@ -18,7 +18,7 @@ use source::{Source, sources, src};
 
 /// Every module, in the order in which data flows.
 const MODULES: &str = "app run sweep input model preflight plan populate numerics material particles comm domain fragments \
-     neighbours loads contact sph step diagnose measure output ballistic exact plot";
+     neighbours loads contact sph step diagnose measure output ballistic exact plot report";
 
 /// The modules on top, and who may name them.
 const ON_TOP: &[(&str, &str)] = &[
@@ -27,6 +27,7 @@ const ON_TOP: &[(&str, &str)] = &[
     ("sweep", "app"),
     ("preflight", "app run plan"),
     ("plan", "app run"),
+    ("report", "app"),
 ];
 
 /// Folders whose files may start, go on with and step a simulation.
@@ -104,6 +105,11 @@ const FORBIDDEN: &[(&str, &str)] = &[
     ),
     ("exact", "particles comm domain output input step"),
     ("plot", "comm step"),
+    (
+        "report",
+        "input populate numerics material particles comm domain fragments neighbours loads contact sph step \
+         diagnose measure exact",
+    ),
 ];
 
 /// What of a forbidden module a part of `src/` may name all the same, with the reason.

@@ -12,6 +12,7 @@ mod measure;
 mod new;
 mod plan;
 pub mod plot;
+mod report;
 mod restart;
 pub mod results;
 mod run;
@@ -42,6 +43,7 @@ use crate::run::{launch, say};
   whipple plot runs/quarter --panels
   whipple fragments runs/quarter
   whipple measure runs/quarter
+  whipple report runs/quarter
   mpirun -n 4 whipple restart runs/quarter --set run.end_time=0.3us
   whipple sweep inputs/quarter-impact --vary body.sphere.velocity=\"3..9 km/s\"
   whipple limit nno --bumper 1.2mm --wall 3.2mm --gap 100mm --yield 40ksi
@@ -65,6 +67,7 @@ enum Command {
     Check(check::CheckArgs),
     Plan(plan::PlanArgs),
     Plot(Box<plot::PlotArgs>),
+    Report(report::ReportArgs),
     Info(info::InfoArgs),
     Fragments(fragments::FragmentsArgs),
     Measure(measure::MeasureArgs),
@@ -105,6 +108,7 @@ pub fn main() -> ExitCode {
             },
             |()| 0,
         ),
+        Command::Report(args) => report::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Fragments(args) => fragments::run(&args),
         Command::Measure(args) => measure::run(&args),

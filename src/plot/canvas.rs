@@ -256,6 +256,14 @@ impl Canvas {
         Ok(bytes)
     }
 
+    /// The picture as the bytes of a PNG file.
+    ///
+    /// # Errors
+    /// [`PlotError::Encode`] if there is no memory for it.
+    pub fn png(&self) -> Result<Vec<u8>, PlotError> {
+        self.encode().map_err(|e| PlotError::Encode(e.to_string()))
+    }
+
     /// Writes the picture as a PNG file.
     ///
     /// # Errors

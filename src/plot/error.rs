@@ -141,6 +141,9 @@ pub enum PlotError {
         /// What follows its last dot.
         ending: String,
     },
+    /// The picture could not be packed.
+    #[error("cannot pack the picture: {0}")]
+    Encode(String),
     /// The picture could not be written.
     #[error("cannot write {}: {reason}", path.display())]
     Save {

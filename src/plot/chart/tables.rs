@@ -11,7 +11,7 @@ use crate::plot::header::Mark;
 use crate::plot::units;
 
 /// What is drawn against what.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Columns {
     /// Column to the right.
     pub x: String,
@@ -69,7 +69,7 @@ impl Points {
 }
 
 /// Tables, and what to draw of them.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Tables {
     /// Title of the chart.
     pub title: String,

@@ -14,6 +14,7 @@ const CHUNK: usize = 1 << 20;
 /// An open snapshot and its case.
 #[derive(Debug)]
 pub struct Snapshot {
+    /// Its file.
     pub file: SnapshotFile,
     /// Time (s).
     pub time: f64,

@@ -1,0 +1,169 @@
+//! `whipple report`: a page that tells a run, or two side by side.
+
+use std::io::IsTerminal as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use super::fragments::{FragmentsArgs, tell as tell_fragments};
+use super::results::{Results, ResultsError};
+use super::which::Which;
+use crate::model::readable::one_line;
+use crate::output::{OutputError, RunFolder, write_atomically};
+use crate::report;
+use crate::run::exit::EXIT_INPUT;
+use crate::run::say::{say, warn};
+
+/// Write one HTML page that tells a run, with a viewer in three dimensions; or two runs side by side
+///
+/// The page holds all that it shows: verdict on the run's figures, pictures, particles, case, energies, steps,
+/// contacts, measures, fragments, load. It opens from disk and asks no network. What a run does not have is
+/// named in the page.
+#[derive(Debug, Clone, clap::Args)]
+#[command(after_help = "Examples:
+  whipple report runs/impact
+  whipple report runs/impact --out impact.html --particles 200000 --frames 10
+  whipple report runs/coarse runs/fine --out coarse-fine.html")]
+pub struct ReportArgs {
+    /// Run folder; two to compare them
+    #[arg(value_name = "RUN", required = true, num_args = 1..=2)]
+    pub runs: Vec<PathBuf>,
+
+    /// The page [default: report.html in the run, or report-against-B.html in the first of two]
+    #[arg(short, long, value_name = "FILE.html")]
+    pub out: Option<PathBuf>,
+
+    /// Most particles that the viewer shows at a time; of more some are chosen by their ids
+    #[arg(long, value_name = "N", default_value_t = 100_000)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=300_000))]
+    pub particles: u32,
+
+    /// Snapshots that the viewer shows, the first and the last among them [default: as many as keep the page
+    /// below 25 MB]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub frames: Option<u32>,
+
+    /// Do not open the page, which happens at a terminal with a display
+    #[arg(long)]
+    pub open_nothing: bool,
+}
+
+/// Why there is no page.
+#[derive(Debug, thiserror::Error)]
+enum ReportError {
+    #[error(transparent)]
+    Results(#[from] ResultsError),
+    #[error("{} is a {kind}: give the folder of a run", path.display())]
+    NoRun { path: PathBuf, kind: &'static str },
+    #[error("cannot write {}: a page has a name that ends in .html", .0.display())]
+    Name(PathBuf),
+    #[error(transparent)]
+    Output(#[from] OutputError),
+}
+
+/// Runs the command; returns the exit code.
+pub fn run(args: &ReportArgs) -> u8 {
+    match write(args) {
+        Ok(path) => {
+            if !args.open_nothing {
+                open(&path);
+            }
+            0
+        }
+        Err(error) => {
+            warn(&format!("error: {error}"));
+            EXIT_INPUT
+        }
+    }
+}
+
+/// Writes the page; gives its path.
+fn write(args: &ReportArgs) -> Result<PathBuf, ReportError> {
+    let path = target(args)?;
+    let page = match &args.runs[..] {
+        [a, b] => report::compare(&folder(a)?, &folder(b)?),
+        runs => {
+            let folder = folder(&runs[0])?;
+            let asked = report::Asked {
+                particles: args.particles as usize,
+                frames: args.frames.map(|frames| frames as usize),
+                fragments: fragments(&folder),
+            };
+            report::tell(&folder, &asked)
+        }
+    };
+    write_atomically(&path, page.as_bytes())?;
+    #[allow(clippy::cast_precision_loss, reason = "for people")]
+    let size = page.len() as f64 / 1e6;
+    let name = path.display().to_string();
+    say(&format!("wrote {} ({size:.1} MB)", one_line(&name)));
+    Ok(path)
+}
+
+/// Where the page goes.
+fn target(args: &ReportArgs) -> Result<PathBuf, ReportError> {
+    let Some(out) = &args.out else {
+        let name = match args.runs.get(1) {
+            None => "report.html".to_owned(),
+            Some(other) => {
+                let other = other.canonicalize().unwrap_or_else(|_| other.clone());
+                let name = other.file_name().unwrap_or_default().to_string_lossy();
+                format!("report-against-{name}.html")
+            }
+        };
+        return Ok(args.runs[0].join(name));
+    };
+    let ending = out.extension().unwrap_or_default();
+    if ending.eq_ignore_ascii_case("html") || ending.eq_ignore_ascii_case("htm") {
+        Ok(out.clone())
+    } else {
+        Err(ReportError::Name(out.clone()))
+    }
+}
+
+/// The folder of a run.
+fn folder(path: &Path) -> Result<RunFolder, ReportError> {
+    match Results::open(path)? {
+        Results::Run(folder) => Ok(folder),
+        other => Err(ReportError::NoRun {
+            path: path.to_owned(),
+            kind: other.kind(),
+        }),
+    }
+}
+
+/// What `whipple fragments` tells of the last snapshot of a run that has no table of fragments.
+fn fragments(folder: &RunFolder) -> Result<String, String> {
+    if folder.fragments().exists() {
+        return Ok(String::new());
+    }
+    let args = FragmentsArgs {
+        path: folder.path().to_owned(),
+        which: Which::default(),
+        link: None,
+        include: None,
+        bridges: false,
+        apart: false,
+        min_particles: None,
+        csv: None,
+        hdf5: None,
+    };
+    tell_fragments(&args).map_err(|error| error.to_string())
+}
+
+/// Opens the page where somebody sees it: at a terminal with a display. That nobody can is no fault.
+fn open(path: &Path) {
+    let display = ["DISPLAY", "WAYLAND_DISPLAY"]
+        .iter()
+        .any(|name| std::env::var_os(name).is_some());
+    let mac = cfg!(target_os = "macos");
+    if !std::io::stdout().is_terminal() || !(display || mac) {
+        return;
+    }
+    let mut opener = Command::new(if mac { "open" } else { "xdg-open" });
+    let opener = opener
+        .arg(path)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
+    let _ = opener.spawn();
+}

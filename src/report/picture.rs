@@ -1,0 +1,32 @@
+//! Pictures in a page.
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+
+use super::html::{Html, missing};
+use crate::plot::{Canvas, Chart};
+
+/// Width of charts (pixels).
+const WIDTH: u32 = 1000;
+
+/// A chart with a text for those who do not see it, or why there is none.
+pub fn chart(chart: Result<Chart, String>, alt: &str) -> Html {
+    let draw = |chart: Chart| chart.draw(Some(WIDTH)).map_err(|error| error.to_string());
+    image(chart.and_then(draw), alt)
+}
+
+/// A picture with a text for those who do not see it, or why there is none.
+pub fn image(canvas: Result<Canvas, String>, alt: &str) -> Html {
+    match canvas.and_then(|canvas| canvas.png().map_err(|error| error.to_string())) {
+        Ok(bytes) => {
+            let source = format!("data:image/png;base64,{}", STANDARD.encode(bytes));
+            let attributes = [("src", source.as_str()), ("alt", alt)];
+            Html::element(
+                "figure",
+                &[],
+                Html::element("img", &attributes, Html::default()),
+            )
+        }
+        Err(error) => missing(&error),
+    }
+}

@@ -1,0 +1,34 @@
+//! With what and on what the run was made.
+
+use crate::report::found::{Run, figure_in_words};
+use crate::report::html::{Html, list};
+
+/// Figures of the summary that tell it, in this order, and what they are called.
+const TOLD: [(&str, &str); 13] = [
+    ("version", "whipple"),
+    ("commit", "commit"),
+    ("mpi", "MPI"),
+    ("hdf5", "HDF5"),
+    ("environment", "environment"),
+    ("instructions", "instruction set"),
+    ("ranks", "ranks"),
+    ("threads", "threads of a rank"),
+    ("decomposition", "decomposition"),
+    ("wall_seconds", "wall clock, s"),
+    ("set_up_seconds", "of these set-up, s"),
+    (
+        "million_updates_per_second_per_core",
+        "million updates per second and core",
+    ),
+    ("bytes_per_particle", "bytes of a particle"),
+];
+
+/// Tells the environment.
+pub fn tell(run: &Run) -> Result<Html, String> {
+    run.summary.as_ref().map_err(Clone::clone)?;
+    let told = TOLD.iter();
+    let entry = |(key, name): &(&'static str, &'static str)| {
+        Some((*name, figure_in_words(run.figure(key)?)))
+    };
+    Ok(list(told.filter_map(entry)))
+}

@@ -1,0 +1,14 @@
+//! All figures of the summary, for those who look for one.
+
+use crate::report::found::{Run, figure_in_words};
+use crate::report::html::{Html, table_of_texts};
+
+/// Tells them all.
+pub fn tell(run: &Run) -> Result<Html, String> {
+    let summary = run.summary.as_ref().map_err(Clone::clone)?;
+    let row =
+        |(key, value): (&String, &serde_json::Value)| vec![key.clone(), figure_in_words(value)];
+    let all = table_of_texts(&["key of summary.json", "value"], summary.iter().map(row));
+    let title = Html::of("summary", "All figures of summary.json");
+    Ok(Html::element("details", &[], title.then(all)))
+}

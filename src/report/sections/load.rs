@@ -1,0 +1,68 @@
+//! How evenly the ranks were loaded, and where the time went.
+
+use crate::plot::{Columns, Tables};
+use crate::report::found::{Rows, Run};
+use crate::report::html::{Html, bar, missing, note, table};
+use crate::report::picture::chart;
+
+/// Tells load and time.
+pub fn tell(run: &Run) -> Result<Html, String> {
+    let rows = Rows::read(&run.folder.performance())?;
+    let mut page = Html::default();
+    if run.number("ranks").is_some_and(|ranks| ranks > 1.0) {
+        let drawn = Tables {
+            title: run.title().to_owned(),
+            tables: vec![(run.name.clone(), run.folder.performance())],
+            columns: Columns {
+                x: "step".to_owned(),
+                y: vec!["work_imbalance".to_owned(), "particle_imbalance".to_owned()],
+            },
+            label: Some("busiest rank over the mean".to_owned()),
+            ..Tables::default()
+        };
+        let drawn = drawn.chart().map_err(|error| run.without_path(&error));
+        page.push(chart(
+            drawn,
+            "Load of the busiest rank over the mean of all, by step",
+        ));
+        let last = rows.len() - 1;
+        let [work, particles] =
+            ["work_imbalance", "particle_imbalance"].map(|name| rows.shown(last, name));
+        page.push(note(&format!(
+            "At the end the busiest rank has {work} times the mean work and {particles} times the mean \
+             number of particles; 1 is even. Ranks without particles: {}. Messages: {}, of {} MB.",
+            rows.shown(last, "empty_ranks"),
+            rows.shown(last, "messages"),
+            rows.shown(last, "megabytes_sent").trim_end_matches(" MB"),
+        )));
+    } else {
+        page.push(note("One rank: nothing to share out."));
+    }
+    page.push(phases(run));
+    Ok(page)
+}
+
+/// Seconds of the steps by phase.
+fn phases(run: &Run) -> Html {
+    let Some(phases) = run.figure("seconds_by_phase").and_then(|p| p.as_object()) else {
+        return missing("Where the time went is not told: the summary has no seconds_by_phase.");
+    };
+    let phases = phases
+        .iter()
+        .map(|(name, seconds)| (name, seconds.as_f64().unwrap_or(0.0)));
+    let phases: Vec<_> = phases.collect();
+    let all: f64 = phases.iter().map(|(_, seconds)| seconds).sum();
+    let row = |(name, seconds): &(&String, f64)| {
+        let share = seconds / all.max(f64::MIN_POSITIVE);
+        vec![
+            Html::text(&name.replace('_', " ")),
+            Html::text(&format!("{seconds:.2}")),
+            Html::text(&format!("{:.1} %", 100.0 * share)),
+            bar(share),
+        ]
+    };
+    Html::of("h3", "Where the time went").then(table(
+        &["phase of a step", "seconds, mean of ranks", "share", ""],
+        phases.iter().map(row),
+    ))
+}

@@ -1,0 +1,50 @@
+//! Sections of the model: several times side by side, and the last one.
+
+use std::path::PathBuf;
+
+use crate::plot::{Pictures, PlotError, Request, Source, Wanted, choose};
+use crate::report::found::Run;
+use crate::report::html::Html;
+use crate::report::picture::image;
+
+/// Draws the sections of snapshots in the order of time: by body, and by pressure where it is known.
+pub fn tell(run: &Run, snapshots: &[(f64, PathBuf)]) -> Result<Html, String> {
+    let told = |error: PlotError| run.without_path(&error);
+    let three = choose(snapshots, &Wanted::Three).map_err(told)?;
+    let last = choose(snapshots, &Wanted::Last).map_err(told)?;
+    let mut page = Html::default();
+    let panels = pictures(run, three, None).and_then(|pictures| pictures.panels(None));
+    page.push(image(
+        panels.map_err(told),
+        "Sections at the first, a middle and the last snapshot, by body",
+    ));
+    for (field, alt) in [(None, "by body"), (Some("pressure"), "by pressure")] {
+        let drawn =
+            pictures(run, last.clone(), field).and_then(|pictures| pictures.single(0, None));
+        let unknown = matches!(drawn, Err(PlotError::Field { .. }));
+        if !unknown {
+            page.push(image(
+                drawn.map_err(told),
+                &format!("Section of the last snapshot, {alt}"),
+            ));
+        }
+    }
+    Ok(page)
+}
+
+fn pictures(
+    run: &Run,
+    snapshots: Vec<PathBuf>,
+    field: Option<&str>,
+) -> Result<Pictures, PlotError> {
+    let source = Source {
+        name: run.name.clone(),
+        snapshots,
+    };
+    let request = Request {
+        field: field.map(str::to_owned),
+        mirror: true,
+        ..Request::default()
+    };
+    Pictures::new(&[source], &request)
+}
