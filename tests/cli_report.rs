@@ -272,11 +272,13 @@ fn a_browser_shows_the_page_and_turns_the_model() {
     let (place, folder) = run(&["--set", &title]);
     make_hostile(&folder);
     page(&folder, &[]);
+    report(&[&folder, &folder], &[]).with_code(0);
     let shots = place.path().join("shots");
     fs::create_dir(&shots).unwrap();
     let output = Command::new(python)
         .arg(project("tests/clients/page.py"))
         .args([folder.join("report.html"), shots.clone()])
+        .arg(folder.join("report-against-run.html"))
         .output()
         .expect("python starts");
     let errors = String::from_utf8_lossy(&output.stderr);

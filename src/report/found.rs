@@ -201,9 +201,7 @@ pub fn told(value: f64, unit: &str) -> String {
         return "–".to_owned();
     }
     let unit = Readable::new(unit, value.abs());
-    format!("{} {}", short(value / unit.size), unit.name)
-        .trim_end()
-        .to_owned()
+    format!("{}{}", short(value / unit.size), behind(&unit))
 }
 
 /// The same of a vector, with one unit.
@@ -213,9 +211,16 @@ pub fn told_vector(components: &[f64], unit: &str) -> String {
         .fold(0.0, |most: f64, x| most.max(x.abs()));
     let unit = Readable::new(unit, largest);
     let numbers: Vec<String> = components.iter().map(|x| short(x / unit.size)).collect();
-    format!("[{}] {}", numbers.join(", "), unit.name)
-        .trim_end()
-        .to_owned()
+    format!("[{}]{}", numbers.join(", "), behind(&unit))
+}
+
+/// A unit behind its number: a power of ten multiplies it.
+fn behind(unit: &Readable) -> String {
+    match unit.name.as_str() {
+        "" => String::new(),
+        name if name.starts_with("10") => format!(" · {name}"),
+        name => format!(" {name}"),
+    }
 }
 
 /// A value of a case as people read it: texts as typed, tables as `key value, key value`.

@@ -88,7 +88,7 @@ impl FromIterator<Html> for Html {
 }
 
 /// Elements that nothing stands in.
-const VOID: [&str; 3] = ["img", "input", "rect"];
+const VOID: [&str; 2] = ["img", "input"];
 
 /// A table: names of the columns, and rows of cells.
 pub fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<Html>>) -> Html {

@@ -6,10 +6,10 @@
   const at = (id) => document.getElementById(id);
   const all = (name) => [...document.querySelectorAll(`[data-${name}]`)];
   const canvas = at("canvas");
-  const gl = canvas.getContext("webgl2", { alpha: true, preserveDrawingBuffer: true });
-  if (!gl || !window.DecompressionStream) return; // What the page says without a viewer stays.
+  const gl = canvas?.getContext("webgl2", { alpha: true, preserveDrawingBuffer: true });
+  if (!gl || !window.DecompressionStream) return; // No viewer in the page, or what it says without one stays.
   at("no-viewer").hidden = true;
-  at("viewer").hidden = false;
+  at("live").hidden = false;
   const scene = JSON.parse(at("scene").textContent);
   const axes = [0, 1, 2];
   const middle = axes.map((k) => (scene.lower[k] + scene.upper[k]) / 2);

@@ -38,7 +38,7 @@ pub fn tell(
     let inside = stage().then(controls(&scene));
     page.push(Html::element(
         "div",
-        &[("id", "viewer"), ("hidden", "")],
+        &[("id", "live"), ("hidden", "")],
         inside,
     ));
     page.push(note(&words(&scene, snapshots.len())));

@@ -118,7 +118,8 @@ class Browser:
             self.call("Input.dispatchKeyEvent", type=kind, key=name, **({"text": text} if kind == "keyDown" and text else {}))
 
     def picture(self):
-        """The whole page as the bytes of a PNG in base64."""
+        """The page, or its upper part, as the bytes of a PNG in base64."""
         size = self.call("Page.getLayoutMetrics")["cssContentSize"]
-        clip = {"x": 0, "y": 0, "width": size["width"], "height": size["height"], "scale": 1}
+        # Beyond some 8000 pixels it would begin again from the top.
+        clip = {"x": 0, "y": 0, "width": size["width"], "height": min(size["height"], 8000), "scale": 1}
         return self.call("Page.captureScreenshot", captureBeyondViewport=True, clip=clip)["data"]

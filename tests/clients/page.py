@@ -1,5 +1,5 @@
 """Opens a page of `whipple report` in a headless Chromium and uses its viewer. Arguments: page, folder for
-screenshots."""
+screenshots, further pages that are opened alone."""
 
 import base64
 import json
@@ -105,7 +105,7 @@ def touch(browser):
     changes(browser, "two fingers", lambda: move((-30, -40, 0), (30, 40, 0)))
 
 
-def main(page, folder):
+def main(page, folder, *others):
     browser = Browser()
     try:
         browser.size(1280, 900)
@@ -126,7 +126,9 @@ def main(page, folder):
         browser.call("Page.addScriptToEvaluateOnNewDocument", source="HTMLCanvasElement.prototype.getContext = () => null")
         browser.open(page)
         assert browser.run("getComputedStyle(document.getElementById('no-viewer')).display") == "block", "no message"
-        assert browser.run("document.getElementById('viewer').hidden"), "a viewer without WebGL"
+        assert browser.run("document.getElementById('live').hidden"), "a viewer without WebGL"
+        for other in others:
+            browser.open(other)
         away = [url for url in browser.requests if not url.startswith(("file:", "data:", "about:"))]
         assert not away, f"asks the network: {away}"
         assert not browser.errors, f"the console says {browser.errors}"
@@ -144,4 +146,4 @@ def save(browser, path):
 if __name__ == "__main__":
     if not program():
         sys.exit("no Chromium: jobs/install-deps.sh --tests installs it")
-    main(*map(pathlib.Path, sys.argv[1:3]))
+    main(*map(pathlib.Path, sys.argv[1:]))

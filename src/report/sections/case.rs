@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::plot::colour_of;
 use crate::report::found::{Rows, Run, in_words};
-use crate::report::html::{Html, list, missing, swatch, table, table_of_texts};
+use crate::report::html::{Html, list, missing, note, swatch, table, table_of_texts};
 
 /// Tells the case.
 pub fn tell(run: &Run) -> Result<Html, String> {
@@ -31,7 +31,7 @@ fn facts(run: &Run, case: &toml::Table) -> Vec<(&'static str, String)> {
     let facts = [
         ("dimensions", words("dimension")),
         ("particle spacing", words("spacing")),
-        ("particles", particles),
+        ("particles computed", particles),
         ("form of SPH", inside("sph", "form")),
         ("contact", words("contact")),
         ("end time", inside("run", "end_time")),
@@ -44,6 +44,8 @@ fn facts(run: &Run, case: &toml::Table) -> Vec<(&'static str, String)> {
 /// A row for each body, with the colour that it has in pictures.
 fn bodies(run: &Run) -> Html {
     let counted = counted(run);
+    let of_case = run.case.as_ref().ok().and_then(|case| case.get("spacing"));
+    let spacing = of_case.map_or("–".to_owned(), in_words);
     let mut colour = 0;
     let row = |body: &toml::Table| {
         let word = |key: &str| body.get(key).map_or("–".to_owned(), in_words);
@@ -59,7 +61,8 @@ fn bodies(run: &Run) -> Html {
         let texts = [
             word("material"),
             word("shape"),
-            word("spacing"),
+            body.get("spacing")
+                .map_or_else(|| spacing.clone(), in_words),
             word("velocity"),
             particles,
             mass,
@@ -79,11 +82,14 @@ fn bodies(run: &Run) -> Html {
         "mass",
     ];
     let mut page = Html::of("h3", "Bodies").then(table(&head, rows));
-    if let Err(reason) = counted {
-        page.push(missing(&format!(
+    page.push(match counted {
+        Ok(_) => note(
+            "Particles and masses are of the whole model with its mirror images, at the start.",
+        ),
+        Err(reason) => missing(&format!(
             "Particles and masses of bodies are not told: {reason}."
-        )));
-    }
+        )),
+    });
     page
 }
 

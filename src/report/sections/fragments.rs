@@ -21,7 +21,7 @@ pub fn tell(run: &Run, of_snapshot: &Result<String, String>) -> Result<Html, Str
         let block = Html::element("pre", &[], lines.collect());
         let block = Html::element("div", &[("class", "wide")], block);
         return Ok(block.then(note(
-            "By the rule of `whipple fragments` on the last snapshot, since the case has no [fragments].",
+            "By the rule of whipple fragments on the last snapshot, since the case has no [fragments].",
         )));
     }
     let rows = Rows::read(&run.folder.fragments())?;

@@ -14,7 +14,7 @@ pub fn tell(run: &Run) -> Result<Html, String> {
     page.push(Html::of("h3", "Measures of the case"));
     if !run.folder.measures().exists() {
         page.push(missing(
-            "The run has no measures.csv: its case names no measures (see `whipple measure`).",
+            "The run has no measures.csv: its case names no measures (see whipple measure).",
         ));
         return Ok(page);
     }
@@ -103,7 +103,5 @@ fn figures(path: &Path) -> Result<Html, String> {
     let head = ["measure", "of", "figure", "value", "uncertainty ±"];
     let at = rows.shown(rows.len() - 1, "time");
     let table = table_of_texts(&head, rows.like_last(time).map(row));
-    Ok(table.then(note(&format!(
-        "At {at}; `–` where there is nothing to tell."
-    ))))
+    Ok(table.then(note(&format!("At {at}; – where there is nothing to tell."))))
 }

@@ -71,16 +71,16 @@ pub fn tell(run: &Run) -> Result<Html, String> {
 /// What a reason means, see the book's page on time integration.
 fn meaning(reason: &str) -> &'static str {
     let known = BTreeMap::from([
-        ("sound", "sound crosses a smoothing length (`courant`)"),
+        ("sound", "sound crosses a smoothing length (“courant”)"),
         (
             "force",
-            "acceleration moves matter by part of a smoothing length (`force`)",
+            "acceleration moves matter by part of a smoothing length (“force”)",
         ),
         (
             "contact",
-            "the stiffness of contact, or the approach of two bodies (`contact`)",
+            "the stiffness of contact, or the approach of two bodies (“contact”)",
         ),
-        ("maximum", "the case's `max`"),
+        ("maximum", "the case's “max”"),
         ("flight", "bodies must not fly through each other unseen"),
         ("end", "a file is due at this time, or the end"),
     ]);

@@ -160,7 +160,7 @@ pub fn tell(run: &Run) -> Html {
     page.push(note(
         "Bounds of the main job hold for its spacing: the contact defect is an error of the time step \
          where few particles meet, and falls with the spacing (book, Validation). What a run does not \
-         measure is not told: with contact `kernel` and `none` bodies are not told apart.",
+         measure is not told: with contact “kernel” and “none” bodies are not told apart.",
     ));
     page
 }
