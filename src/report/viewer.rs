@@ -10,6 +10,7 @@ use serde_json::json;
 
 use super::found::{Run, told};
 use super::html::{Html, note, swatch};
+use crate::model::SymmetryPlane;
 use crate::model::readable::short;
 use scene::Scene;
 
@@ -178,7 +179,8 @@ fn data(scene: &Scene) -> serde_json::Value {
         })
     };
     let field = |field: &scene::Field| json!({ "name": field.name, "ticks": field.ticks, "stops": field.stops });
-    let mirror = |plane: &crate::model::SymmetryPlane| json!({ "axis": plane.axis.index(), "position": plane.position });
+    let mirror =
+        |plane: &SymmetryPlane| json!({ "axis": plane.axis.index(), "position": plane.position });
     let body = |body: &scene::Shade| json!({ "name": body.name, "colour": body.colour });
     json!({
         "dimension": scene.dimension,
