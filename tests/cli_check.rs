@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 use cli_support::{WHIPPLE, command, end, project, quarter_impact};
-use tiny_skia::Pixmap;
+use resvg::tiny_skia::Pixmap;
 
 /// Colours of the first two bodies, of symmetry planes, rigid surfaces and the box of interest.
 const FIRST: [u8; 3] = [0, 114, 178];
@@ -96,8 +96,9 @@ fn what_cannot_be_drawn_is_said() {
     let place = tempfile::tempdir().unwrap();
     let png = place.path().join("model.png");
     for (picture, section, said) in [
-        (place.path().join("model.svg"), "y", "PNG"),
-        (place.path().join("model"), "y", "PNG"),
+        (place.path().join("model.pdf"), "y", ".png or .svg"),
+        (place.path().join("model.csv"), "y", ".png or .svg"),
+        (place.path().join("model"), "y", ".png or .svg"),
         (png.clone(), "w=0", "cannot read the section"),
         (png.clone(), "y=1s", "cannot read"),
         (

@@ -135,6 +135,28 @@ fn results_are_looked_at_without_mpi() {
     assert!(std::fs::read(&picture).unwrap().starts_with(b"\x89PNG"));
     output(&["plot", text(&a), "--history"]);
     assert!(a.join("pictures/history.png").is_file());
+    for (history, name) in [
+        ("time-step", ">sound</text>"),
+        ("momentum", "kg m/s"),
+        ("defect", ">of contact</text>"),
+        ("load", ">work</text>"),
+    ] {
+        let option = format!("--history={history}");
+        output(&["plot", text(&a), &option, "--format", "svg"]);
+        let picture = a.join(format!("pictures/history-{history}.svg"));
+        let picture = std::fs::read_to_string(picture).unwrap();
+        assert!(picture.contains(name), "{picture}");
+    }
+    output(&[
+        "plot",
+        text(&a),
+        "--history=load",
+        "--with",
+        text(&b),
+        "--csv",
+    ]);
+    let table = std::fs::read_to_string(a.join("pictures/history-load.csv")).unwrap();
+    assert!(table.contains("\nb: work,"), "{table}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use tiny_skia::Pixmap;
+use resvg::tiny_skia::Pixmap;
 use whipple::output::h5::read::SnapshotFile;
 
 mod plot_fixture;

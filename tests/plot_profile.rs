@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use resvg::tiny_skia::Pixmap;
 use shocks::Shocks;
-use tiny_skia::Pixmap;
 use whipple::exact::finite_strain::Medium;
 use whipple::material::LinearForm;
 use whipple::plot::{Along, Columns, Mark, ProfileRequest, Profiles, Source, Tables};
@@ -437,7 +437,7 @@ fn tables_are_drawn_with_measured_points() {
     .unwrap();
     let picture = Pixmap::load_png(folder.path().join("xy-time-front.png")).unwrap();
     // The rings of the second colour, in the picture and in the legend.
-    let orange = |pixel: &tiny_skia::PremultipliedColorU8| {
+    let orange = |pixel: &resvg::tiny_skia::PremultipliedColorU8| {
         [pixel.red(), pixel.green(), pixel.blue()] == [230, 159, 0]
     };
     assert!(picture.pixels().iter().filter(|p| orange(p)).count() > 100);

@@ -39,9 +39,9 @@ pub struct CheckArgs {
     #[arg(value_parser = clap::value_parser!(u32).range(1..=100_000))]
     ranks: u32,
 
-    /// Draw the particles as they will begin into this PNG file: a section, and what is seen of them along
-    /// the axes
-    #[arg(short, long, value_name = "FILE.png")]
+    /// Draw the particles as they will begin into this SVG or PNG file: a section, and what is seen of them
+    /// along the axes
+    #[arg(short, long, value_name = "FILE")]
     picture: Option<PathBuf>,
 
     /// Plane of the picture's section, as in y=0.1mm; with the axis alone its plane of symmetry or the middle
@@ -87,13 +87,7 @@ pub fn run(args: &CheckArgs) -> u8 {
 }
 
 fn draw(case: &Case, path: &Path, section: Option<&str>) -> Result<(), PlotError> {
-    if !out::is_png(path) {
-        let ending = path.extension().unwrap_or_default();
-        return Err(PlotError::Ending {
-            path: path.to_owned(),
-            ending: ending.to_string_lossy().into_owned(),
-        });
-    }
+    out::check_picture(path)?;
     out::write(&plot::preview(case, section, None)?, path)
 }
 

@@ -7,7 +7,7 @@ mod table;
 
 use std::path::PathBuf;
 
-use super::plot::out::{is_png, save, unsaved};
+use super::plot::out::{PictureFormat, check_picture, save, unsaved, write_chart};
 use crate::model::readable::one_line;
 use crate::plot::{PlotError, Quantity};
 use crate::run::exit::{EXIT_FAILED, EXIT_INPUT};
@@ -42,8 +42,8 @@ struct Output {
     #[arg(long, value_name = "VALUES", default_value = "1..15/29 km/s")]
     speeds: String,
 
-    /// Draw a chart
-    #[arg(long, value_name = "FILE.png")]
+    /// Draw a chart into this SVG or PNG file
+    #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
 
     /// Write the table, in SI units
@@ -59,9 +59,12 @@ struct Output {
 #[derive(Debug, Clone, clap::Args)]
 struct Beside {
     /// Folder of a sweep (see `whipple sweep`) whose finished runs stand beside the equation
-    /// [without --plot the chart is SWEEP/limit.png]
+    /// [without --plot the chart is SWEEP/limit.png, or .svg]
     #[arg(long, value_name = "SWEEP")]
     sweep: Option<PathBuf>,
+
+    #[command(flatten)]
+    picture: PictureFormat,
 
     /// What counts as failed of a run, as in "failed wall" [default: what the sweep bisects, else
     /// whether a plate has failed]
@@ -101,10 +104,8 @@ pub fn run(args: &LimitArgs) -> u8 {
 
 fn limit(args: &LimitArgs) -> Result<(), LimitError> {
     let (law, output, beside) = args.equation.law().map_err(LimitError::Typed)?;
-    if let Some(path) = output.plot.as_ref().filter(|path| !is_png(path)) {
-        let ending = path.extension().unwrap_or_default().to_string_lossy();
-        let (path, ending) = (path.clone(), ending.into_owned());
-        return Err(PlotError::Ending { path, ending }.into());
+    if let Some(path) = &output.plot {
+        check_picture(path)?;
     }
     let speeds = speeds(&output.speeds).map_err(LimitError::Typed)?;
     let shots = match beside.and_then(|beside| Some((beside, beside.sweep.as_ref()?))) {
@@ -132,8 +133,10 @@ fn limit(args: &LimitArgs) -> Result<(), LimitError> {
             std::fs::write(path, sheet.text()).map_err(|error| unsaved(path, &error))
         })?;
     }
-    let beside = beside.and_then(|beside| beside.sweep.as_ref());
-    let own = beside.map(|folder| folder.join("limit.png"));
+    let own = beside.and_then(|beside| {
+        let name = format!("limit.{}", beside.picture.ending());
+        Some(beside.sweep.as_ref()?.join(name))
+    });
     if let Some(path) = output.plot.clone().or(own) {
         draw(&law, &speeds, &shots, &path, output.width)?;
     }
@@ -164,9 +167,8 @@ fn draw(
         quantity("speed", "m/s", false),
         quantity(law.what, "m", true),
     ];
-    let canvas = chart::chart(law, speeds, shots, axes).draw(width)?;
-    save(path, |path| canvas.save(path))?;
-    Ok(())
+    let chart = chart::chart(law, speeds, shots, axes);
+    Ok(write_chart(&chart, width, path)?)
 }
 
 /// The speeds of the table (m/s).

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use clap::builder::PossibleValuesParser;
 
 use super::bench;
-use super::plot::out::{is_png, save, unsaved};
+use super::plot::out::{check_picture, save, unsaved, write_chart};
 use crate::model::Case;
 use crate::model::readable::{short, shown};
 use crate::output::read_small;
@@ -102,8 +102,8 @@ pub struct PlanArgs {
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(1..))]
     per_core: u32,
 
-    /// Draw strong and weak scaling into this PNG file
-    #[arg(short, long, value_name = "FILE.png")]
+    /// Draw strong and weak scaling into this SVG or PNG file
+    #[arg(short, long, value_name = "FILE")]
     chart: Option<PathBuf>,
 
     /// Write the table, in SI units, into this file
@@ -165,10 +165,8 @@ struct Planned {
 }
 
 fn plan(args: &PlanArgs, path: &Path) -> Result<(), String> {
-    if let Some(path) = args.chart.as_ref().filter(|path| !is_png(path)) {
-        let ending = path.extension().unwrap_or_default().to_string_lossy();
-        let (path, ending) = (path.clone(), ending.into_owned());
-        return Err(told(PlotError::Ending { path, ending }));
+    if let Some(path) = &args.chart {
+        check_picture(path).map_err(told)?;
     }
     let machine = args
         .machine
@@ -188,8 +186,7 @@ fn plan(args: &PlanArgs, path: &Path) -> Result<(), String> {
         let title = format!("{}, {}", source.case.title, machine.name);
         let particles = (source.particles.positions.len(), args.per_core);
         let chart = chart::chart(&title, particles, &rows, &weak);
-        let canvas = chart.draw(args.width).map_err(told)?;
-        save(path, |path| canvas.save(path)).map_err(told)?;
+        write_chart(&chart, args.width, path).map_err(told)?;
     }
     Ok(())
 }

@@ -3,15 +3,18 @@
 mod curves;
 pub(super) mod out;
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use crate::plot::{
-    Along, Pictures, PlotError, ProfileRequest, Profiles, Request, Source, Wanted, choose,
-    parse_quantity, snapshots,
-};
-use out::{is_png, target, write};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 
-/// Draw sections of snapshots, profiles along a line, energies or tables as PNG pictures
+use crate::plot::{
+    Along, Format, History, Pictures, PlotError, ProfileRequest, Profiles, Request, Source, Wanted,
+    choose, parse_quantity, snapshots,
+};
+use out::{named, save, target, unsaved, write, write_chart};
+
+/// Draw sections of snapshots, profiles along a line, energies or tables as SVG or PNG pictures
 ///
 /// A section shows the matter that a plane cuts, coloured by body or by a field, with the bodies'
 /// outlines. A run's last snapshot is drawn unless others are asked for.
@@ -23,7 +26,7 @@ use out::{is_png, target, write};
   whipple plot runs/impact --panels --time 0us,0.1us,0.2us   side by side
   whipple plot runs/impact --all --field velocity.z --range -7:1km/s
   whipple plot state.vtkhdf --section z=0.1mm --view -1:1,-1:1mm
-  whipple plot runs/impact --history
+  whipple plot runs/impact --history --out energies.svg      lines and text for a paper
   whipple plot runs/impact --fragments --all
   whipple plot runs/impact --distributions --time 5us,10us
   whipple plot runs/bars --profile stress.xx --at 0.48us --exact
@@ -43,10 +46,18 @@ pub struct PlotArgs {
     #[arg(value_name = "FILE_OR_RUN")]
     pub source: PathBuf,
 
-    /// Picture to write if the name ends in .png, else the folder to write into (with / at its end
-    /// if it has an ending of letters) [default: beside the snapshot, or RUN/pictures]
-    #[arg(short, long, value_name = "PNG_OR_FOLDER")]
+    /// File to write if the name ends in .png, .svg or .csv, else the folder to write into (with / at
+    /// its end if it has an ending of letters) [default: beside the snapshot, or RUN/pictures]
+    #[arg(short, long, value_name = "FILE_OR_FOLDER")]
     pub out: Option<PathBuf>,
+
+    #[command(flatten)]
+    picture: out::PictureFormat,
+
+    /// Write what would be drawn as a table of comma-separated values instead, in SI units: the points of
+    /// curves, of a section its grid of pixels or its particles
+    #[arg(long, conflicts_with = "format")]
+    pub csv: bool,
 
     /// What colours show: "body", a field, FIELD.COMPONENT (x, y, z, magnitude; xx … xz,
     /// von_mises) or "von_mises" [default: body]
@@ -119,15 +130,25 @@ pub struct PlotArgs {
     pub panels: bool,
 
     /// Further runs, snapshots or tables in the same picture: beside the first with --panels, over
-    /// it with --profile and --xy
+    /// it with --profile, --history and --xy
     #[arg(long, value_name = "FILE_OR_RUN", value_delimiter = ',')]
     pub with: Vec<PathBuf>,
 
-    /// Draw the run's energies against time instead
-    #[arg(long, conflicts_with_all = [
-        "which", "field", "section", "drawn_as", "thickness", "no_mirror", "panels", "range", "view", "with",
-    ])]
-    pub history: bool,
+    /// Draw what the run's tables tell over time instead: its "energies", each "time-step" by what limits
+    /// it, "momentum", "defect" (energy that nothing accounts for), "load" of the busiest rank over the
+    /// mean [default: energies]
+    #[arg(
+        long,
+        value_name = "WHAT",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = History::Energies.name(),
+        value_parser = history(),
+        conflicts_with_all = [
+            "which", "field", "section", "drawn_as", "thickness", "no_mirror", "panels", "range", "view",
+        ],
+    )]
+    pub history: Option<History>,
 
     /// Draw how many fragments of the run are as heavy, and how many as large, as any, instead: one
     /// picture each, of the last time that the run has told them unless others are asked for; or of
@@ -217,14 +238,20 @@ pub struct PlotArgs {
     pub log: Option<String>,
 }
 
+fn history() -> impl TypedValueParser<Value = History> {
+    let of = |name: String| History::ALL.into_iter().find(|kind| kind.name() == name);
+    PossibleValuesParser::new(History::ALL.map(History::name))
+        .map(move |name| of(name).unwrap_or(History::Energies))
+}
+
 /// Makes the pictures and prints their paths.
 ///
 /// # Errors
 /// [`PlotError`] if an input cannot be read, a request cannot be met or a picture not written.
 pub fn run(args: &PlotArgs) -> Result<(), PlotError> {
     out::check(args)?;
-    if args.history {
-        curves::draw_history(args)
+    if let Some(history) = args.history {
+        curves::draw_history(args, history)
     } else if args.fragments {
         curves::draw_fragments(args)
     } else if args.distributions || curves::is_distributions(args) {
@@ -260,21 +287,35 @@ fn draw_sections(args: &PlotArgs) -> Result<(), PlotError> {
     };
     let pictures = Pictures::new(&sources, &request)?;
     let field = args.field.as_deref().unwrap_or("body");
+    let all = 0..sources.iter().map(|source| source.snapshots.len()).sum();
+    let draw = |chosen: Range<usize>, stem: &str| {
+        let path = target(args, stem);
+        if Format::of(&path) == Some(Format::Csv) {
+            let table = |path: &Path| {
+                let written = pictures.write_table(chosen, args.width, path);
+                written.map_err(|e| unsaved(path, &e))
+            };
+            return save(&path, table);
+        }
+        let canvas = if args.panels {
+            pictures.panels(args.width)
+        } else {
+            pictures.single(chosen.start, args.width)
+        };
+        write(&canvas?, &path)
+    };
     if args.panels {
-        let canvas = pictures.panels(args.width)?;
-        return write(&canvas, &target(args, &format!("panels-{field}.png")));
+        return draw(all, &format!("panels-{field}"));
     }
     let paths = &sources[0].snapshots;
-    let named = args.out.as_deref().is_some_and(is_png);
-    if named && paths.len() > 1 {
+    if named(args).is_some() && paths.len() > 1 {
         return Err(PlotError::Options(
             "several pictures cannot have one name: give --out a folder, or add --panels",
         ));
     }
     for (k, path) in paths.iter().enumerate() {
-        let canvas = pictures.single(k, args.width)?;
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        write(&canvas, &target(args, &format!("{stem}-{field}.png")))?;
+        draw(k..k + 1, &format!("{stem}-{field}"))?;
     }
     Ok(())
 }
@@ -290,8 +331,8 @@ fn draw_profile(args: &PlotArgs, field: &str) -> Result<(), PlotError> {
         exact: args.exact,
     };
     let profiles = Profiles::new(&sources(args)?, &request)?;
-    let canvas = profiles.chart().draw(args.width)?;
-    write(&canvas, &target(args, &format!("profile-{field}.png")))
+    let path = target(args, &format!("profile-{field}"));
+    write_chart(profiles.chart(), args.width, &path)
 }
 
 /// What is drawn: the source, and what goes with it.

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::plot::out::{PictureFormat, write_chart};
 use super::shell::quoted;
 use crate::input;
 use crate::output::{OutputError, RunLock, write_atomically};
@@ -45,7 +46,8 @@ pub struct Shares {
 /// that was stopped or killed goes on with the same command, runs no point twice, and has the same
 /// table in the end. Points are added by more values of the same keys.
 ///
-/// The table is sweep.csv, its chart sweep.png; a bisection has limits.csv and limits.png.
+/// The table is sweep.csv, its chart sweep.png; a bisection has limits.csv and limits.png; with
+/// --format svg they are SVG.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     after_help = "Values: a list (\"3, 5, 7 km/s\"), a range (\"3..9 km/s\", five values, \
@@ -83,6 +85,9 @@ pub struct SweepArgs {
     /// Answer that the chart shows [default: the first one that is a number]
     #[arg(long, value_name = "NAME")]
     chart: Option<String>,
+
+    #[command(flatten)]
+    picture: PictureFormat,
 
     /// Write a job array for SLURM into the folder in place of running here
     #[arg(long, conflicts_with_all = ["bisect", "point"])]
@@ -178,10 +183,9 @@ fn sweep(args: &SweepArgs) -> Result<u8, SweepError> {
     let tally = sweep.run(jobs, say)?;
     say(&format!("wrote {}", folder.join("sweep.csv").display()));
     if let Some((chart, path)) = sweep::draw(&folder, keys, args.chart.as_deref())? {
-        let drawn = chart.draw(None).and_then(|canvas| canvas.save(&path));
-        match drawn {
-            Ok(()) => say(&format!("wrote {}", path.display())),
-            Err(error) => warn(&format!("warning: {error}")),
+        let path = path.with_extension(args.picture.ending());
+        if let Err(error) = write_chart(&chart, None, &path) {
+            warn(&format!("warning: {error}"));
         }
     }
     Ok(code(tally))

@@ -41,7 +41,7 @@ pub use rows::Rows;
 pub use run_folder::{Phase, RunFolder, Status};
 pub use schedule::Schedule;
 pub use set_aside::SetAside;
-pub use sheet::Sheet;
+pub use sheet::{Sheet, line as csv_line};
 use vote::settle;
 pub use vote::{agree, from_root, on_root};
 

@@ -1,17 +1,19 @@
-//! Pixels: discs, lines and text on white paper. Positions are pixels from the upper left corner.
+//! A picture while it is drawn: discs, lines, text and pixels on white paper, kept as SVG. Positions
+//! are pixels from the upper left corner.
 
 use std::path::Path;
 
-use tiny_skia::{
-    Color, FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, PremultipliedColorU8, Rect,
-    Stroke, Transform,
-};
+use base64::prelude::{BASE64_STANDARD, Engine as _};
 
 use super::PlotError;
-use super::font;
-
-/// A colour: red, green, blue.
-pub type Rgb = [u8; 3];
+use super::discs::Discs;
+use super::dots::{Disc, Dots};
+use super::format::Format;
+pub use super::frame::{Frame, Rgb};
+use super::pixels::Pixels;
+use super::stretch::stretches;
+use super::svg::{Document, Element, hex, number, path, rect};
+use crate::model::readable::one_line;
 
 /// Colour of text and axes.
 pub const INK: Rgb = [32, 32, 32];
@@ -19,24 +21,8 @@ pub const INK: Rgb = [32, 32, 32];
 /// Colour of the paper.
 pub const PAPER: Rgb = [255, 255, 255];
 
-/// A rectangle of the picture (pixels).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Frame {
-    pub left: f32,
-    pub top: f32,
-    pub width: f32,
-    pub height: f32,
-}
-
-impl Frame {
-    pub fn right(&self) -> f32 {
-        self.left + self.width
-    }
-
-    pub fn bottom(&self) -> f32 {
-        self.top + self.height
-    }
-}
+/// How far beyond the frame that they are cut at lines go (pixels): no end of one is seen.
+const BEYOND: f32 = 50.0;
 
 /// Which point of a line of text its position names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,8 +33,14 @@ pub enum Align {
 }
 
 /// A picture while it is drawn.
+#[derive(Debug)]
 pub struct Canvas {
-    pixmap: Pixmap,
+    size: (u32, u32),
+    document: Document,
+    /// The discs that were drawn last.
+    discs: Discs,
+    /// What all that is drawn is cut at.
+    clip: Option<Frame>,
 }
 
 impl Canvas {
@@ -58,9 +50,19 @@ impl Canvas {
     /// [`PlotError::Size`] if it cannot be held.
     pub fn new(width: u32, height: u32) -> Result<Self, PlotError> {
         Self::fits(width, height)?;
-        let mut pixmap = Pixmap::new(width, height).ok_or(PlotError::Size { width, height })?;
-        pixmap.fill(Color::WHITE);
-        Ok(Self { pixmap })
+        let mut canvas = Self {
+            size: (width, height),
+            document: Document::new(width, height),
+            discs: Discs::default(),
+            clip: None,
+        };
+        let page = Frame {
+            width: width as f32,
+            height: height as f32,
+            ..Frame::PAGE
+        };
+        canvas.fill(&page, PAPER);
+        Ok(canvas)
     }
 
     /// Whether paper of a size in pixels can be held: no more than 2³¹ bytes of it.
@@ -76,195 +78,199 @@ impl Canvas {
         }
     }
 
-    /// A filled disc with smooth edges, cut at the borders of `clip`.
-    ///
-    /// A pixel's cover is taken from its centre's distance to the edge, or for small discs from
-    /// a grid of samples: exact enough for the eye, and far faster than a general path.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "bounds are clamped to the picture first"
-    )]
+    /// What `draw` draws, cut at a frame.
+    pub fn within(&mut self, frame: &Frame, draw: impl FnOnce(&mut Self)) {
+        let outer = self.clip.replace(*frame);
+        draw(self);
+        self.clip = outer;
+    }
+
+    /// A filled disc, cut at the borders of `clip`.
     pub fn disc(&mut self, centre: (f32, f32), radius: f32, colour: Rgb, clip: &Frame) {
-        let reach = radius + 0.5;
-        let columns = self.pixmap.width() as usize;
-        let range = |middle: f32, low: f32, high: f32, size: u32| {
-            let (low, high) = (low.max(0.0), high.min(size as f32));
-            let first = (middle - reach).clamp(low, high).floor() as usize;
-            first..(middle + reach).clamp(low, high).ceil() as usize
+        let disc = Disc {
+            centre,
+            radius,
+            colour,
+            rim: None,
         };
-        let xs = range(centre.0, clip.left, clip.right(), self.pixmap.width());
-        let ys = range(centre.1, clip.top, clip.bottom(), self.pixmap.height());
-        let pixels = self.pixmap.pixels_mut();
-        for y in ys {
-            let dy = y as f32 + 0.5 - centre.1;
-            for x in xs.clone() {
-                let dx = x as f32 + 0.5 - centre.0;
-                let cover = if radius < 3.0 {
-                    sampled_cover(dx, dy, radius)
-                } else {
-                    (reach - (dx * dx + dy * dy).sqrt()).clamp(0.0, 1.0)
-                };
-                if cover > 0.0 {
-                    blend(&mut pixels[y * columns + x], colour, cover);
-                }
-            }
+        self.add_disc(disc, clip);
+    }
+
+    /// The same with a rim of a width and a colour inside of its edge.
+    pub fn bead(
+        &mut self,
+        centre: (f32, f32),
+        radius: f32,
+        colour: Rgb,
+        rim: (f32, Rgb),
+        clip: &Frame,
+    ) {
+        let disc = Disc {
+            centre,
+            radius,
+            colour,
+            rim: Some(rim),
+        };
+        self.add_disc(disc, clip);
+    }
+
+    fn add_disc(&mut self, disc: Disc, clip: &Frame) {
+        if *clip != self.discs.clip {
+            self.settle();
+            self.discs.clip = *clip;
         }
+        self.discs.add(disc, self.size);
     }
 
     /// A filled rectangle.
     pub fn fill(&mut self, frame: &Frame, colour: Rgb) {
-        if let Some(rect) = Rect::from_xywh(frame.left, frame.top, frame.width, frame.height) {
-            self.pixmap
-                .fill_rect(rect, &paint(colour), Transform::identity(), None);
-        }
+        let style = format!("fill=\"{}\"", hex(colour));
+        self.put(&style, Element::new("rect", rect(frame)));
     }
 
-    /// The pixels of a frame, row by row; those beyond the picture are left out.
+    /// A rectangle of colours that change from its top to its bottom, at even shares.
+    pub fn gradient(&mut self, frame: &Frame, colours: &[Rgb]) {
+        let style = self.document.gradient(colours);
+        self.put(&style, Element::new("rect", rect(frame)));
+    }
+
+    /// The pixels of a frame, row by row.
+    pub fn image(&mut self, frame: &Frame, colours: &[Rgb]) {
+        let rgba: Vec<[u8; 4]> = colours.iter().map(|&[r, g, b]| [r, g, b, 255]).collect();
+        self.raster(frame, &rgba);
+    }
+
+    /// The pixels of a frame, row by row: red, green, blue and alpha, by which the colours are not
+    /// multiplied.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "frames are whole pixels, and a float cast saturates"
     )]
-    pub fn image(&mut self, frame: &Frame, colours: &[Rgb]) {
-        let columns = self.pixmap.width() as usize;
-        let (left, width) = (frame.left as usize, frame.width as usize);
-        let room = columns.saturating_sub(left).min(width);
-        let rows = self.pixmap.pixels_mut().chunks_mut(columns);
-        let rows = rows.skip(frame.top as usize);
-        for (row, colours) in rows.zip(colours.chunks(width.max(1))) {
-            for (pixel, &colour) in row[left.min(columns)..].iter_mut().zip(&colours[..room]) {
-                *pixel = opaque(colour);
-            }
+    pub fn raster(&mut self, frame: &Frame, pixels: &[[u8; 4]]) {
+        let columns = frame.width as usize;
+        let rows = pixels.len().checked_div(columns).unwrap_or(0);
+        let rgba = pixels[..rows * columns].concat();
+        if let [Ok(width), Ok(height)] = [columns, rows].map(u32::try_from) {
+            let frame = Frame {
+                width: width as f32,
+                height: height as f32,
+                ..*frame
+            };
+            let pixels = Pixels {
+                width,
+                height,
+                rgba,
+            };
+            self.settle();
+            put_image(&mut self.document, self.clip.as_ref(), &frame, &pixels);
         }
     }
 
     /// A filled polygon.
     pub fn polygon(&mut self, corners: &[(f32, f32)], colour: Rgb) {
-        let mut path = PathBuilder::new();
-        for (k, &(x, y)) in corners.iter().enumerate() {
-            if k == 0 {
-                path.move_to(x, y);
-            } else {
-                path.line_to(x, y);
-            }
-        }
-        path.close();
-        if let Some(path) = path.finish() {
-            self.pixmap.fill_path(
-                &path,
-                &paint(colour),
-                FillRule::Winding,
-                Transform::identity(),
-                None,
-            );
-        }
+        let style = format!("fill=\"{}\"", hex(colour));
+        let attributes = format!("d=\"{}z\"", path(corners));
+        self.put(&style, Element::new("path", attributes));
     }
 
     /// A line through points.
     pub fn line(&mut self, points: &[(f32, f32)], width: f32, colour: Rgb) {
-        let mut path = PathBuilder::new();
-        for (k, &(x, y)) in points.iter().enumerate() {
-            if k == 0 {
-                path.move_to(x, y);
-            } else {
-                path.line_to(x, y);
-            }
-        }
-        let stroke = Stroke {
-            width,
-            line_cap: LineCap::Butt,
-            line_join: LineJoin::Round,
-            ..Stroke::default()
-        };
-        if let Some(path) = path.finish() {
-            self.pixmap
-                .stroke_path(&path, &paint(colour), &stroke, Transform::identity(), None);
-        }
+        self.stroke(points, width, colour, "");
     }
 
-    /// Blank paper around a frame: what was drawn beyond it goes.
-    pub fn clear_around(&mut self, frame: &Frame) {
-        let (width, height) = (self.pixmap.width() as f32, self.pixmap.height() as f32);
-        let band = |left, top, width, height| Frame {
-            left,
-            top,
-            width,
-            height,
-        };
-        for band in [
-            band(0.0, 0.0, width, frame.top),
-            band(0.0, frame.bottom(), width, height - frame.bottom()),
-            band(0.0, 0.0, frame.left, height),
-            band(frame.right(), 0.0, width - frame.right(), height),
-        ] {
-            self.fill(&band, PAPER);
+    /// A line of dashes through points: the lengths of one, of the gap behind it, and so on (pixels).
+    pub fn dashes(&mut self, points: &[(f32, f32)], width: f32, colour: Rgb, lengths: &[f32]) {
+        let lengths: Vec<String> = lengths.iter().map(|&length| number(length)).collect();
+        let dashes = format!(" stroke-dasharray=\"{}\"", lengths.join(" "));
+        self.stroke(points, width, colour, &dashes);
+    }
+
+    fn stroke(&mut self, points: &[(f32, f32)], width: f32, colour: Rgb, dashes: &str) {
+        if points.len() < 2 {
+            return;
+        }
+        let (colour, width) = (hex(colour), number(width));
+        let style = format!(
+            "fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" \
+             stroke-linejoin=\"round\"{dashes}"
+        );
+        let near = self.clip.map(|clip| clip.grown(BEYOND));
+        let seen = near.map(|near| stretches(points, &near));
+        let lines = seen.unwrap_or_else(|| vec![points.to_vec()]);
+        for line in lines {
+            let attributes = format!("d=\"{}\"", path(&line));
+            self.put(&style, Element::new("path", attributes));
         }
     }
 
     /// The four sides of a frame.
     pub fn border(&mut self, frame: &Frame, width: f32, colour: Rgb) {
-        let (left, right) = (frame.left, frame.right());
-        let (top, bottom) = (frame.top, frame.bottom());
-        let half = 0.5 * width;
-        self.line(&[(left - half, top), (right + half, top)], width, colour);
-        self.line(
-            &[(left - half, bottom), (right + half, bottom)],
-            width,
-            colour,
-        );
-        self.line(&[(left, top), (left, bottom)], width, colour);
-        self.line(&[(right, top), (right, bottom)], width, colour);
+        let (colour, width) = (hex(colour), number(width));
+        let style = format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"");
+        self.put(&style, Element::new("rect", rect(frame)));
     }
 
     /// A line of text with its baseline at `at`.
     pub fn text(&mut self, text: &str, at: (f32, f32), size: f32, align: Align) {
-        let shift = shift(text, size, align);
-        self.glyphs(text, size, Transform::from_translate(at.0 + shift, at.1));
+        let [x, y] = [at.0, at.1].map(number);
+        self.write(text, format!("x=\"{x}\" y=\"{y}\""), size, align);
     }
 
     /// A line of text that runs upwards, with its baseline at `at`.
     pub fn text_upwards(&mut self, text: &str, at: (f32, f32), size: f32, align: Align) {
-        let shift = shift(text, size, align);
-        let turned = Transform::from_row(0.0, -1.0, 1.0, 0.0, at.0, at.1 - shift);
-        self.glyphs(text, size, turned);
+        let [x, y] = [at.0, at.1].map(number);
+        let place = format!("transform=\"translate({x} {y})rotate(-90)\"");
+        self.write(text, place, size, align);
     }
 
-    fn glyphs(&mut self, text: &str, size: f32, place: Transform) {
-        if let Some(path) = font::outline(text, size) {
-            self.pixmap
-                .fill_path(&path, &paint(INK), FillRule::Winding, place, None);
-        }
+    fn write(&mut self, text: &str, attributes: String, size: f32, align: Align) {
+        let anchor = match align {
+            Align::Start => "",
+            Align::Middle => " text-anchor=\"middle\"",
+            Align::End => " text-anchor=\"end\"",
+        };
+        let style = format!(
+            "fill=\"{}\" font-size=\"{}\"{anchor}",
+            hex(INK),
+            number(size)
+        );
+        let element = Element {
+            text: Some(one_line(text).into_owned()),
+            ..Element::new("text", attributes)
+        };
+        self.put(&style, element);
     }
 
-    /// The picture as a PNG: without the opaque alpha, and without filters, which spoil the
-    /// repetition that discs of a lattice and blank paper are made of.
-    fn encode(&self) -> Result<Vec<u8>, png::EncodingError> {
-        let mut bytes = Vec::new();
-        let mut encoder = png::Encoder::new(&mut bytes, self.pixmap.width(), self.pixmap.height());
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_compression(png::Compression::High);
-        encoder.set_filter(png::Filter::NoFilter);
-        let pixels = self.pixmap.pixels().iter();
-        let colours: Vec<u8> = pixels
-            .flat_map(|p| [p.red(), p.green(), p.blue()])
-            .collect();
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(&colours)?;
-        writer.finish()?;
-        Ok(bytes)
+    /// Adds an element over the discs so far.
+    fn put(&mut self, style: &str, element: Element) {
+        self.settle();
+        self.document.put(self.clip.as_ref(), style, element);
     }
 
-    /// The picture as the bytes of a PNG file.
+    /// Adds the discs so far.
+    fn settle(&mut self) {
+        let discs = std::mem::take(&mut self.discs);
+        put_discs(&mut self.document, &discs);
+    }
+
+    /// The picture as an SVG file.
+    #[must_use]
+    pub fn svg(&self) -> String {
+        let mut tail = self.document.tail();
+        put_discs(&mut tail, &self.discs);
+        self.document.text(tail)
+    }
+
+    /// The pixels of the picture, on opaque paper.
     ///
     /// # Errors
-    /// [`PlotError::Encode`] if there is no memory for it.
-    pub fn png(&self) -> Result<Vec<u8>, PlotError> {
-        self.encode().map_err(|e| PlotError::Encode(e.to_string()))
+    /// [`PlotError::Size`] if they cannot be held.
+    pub fn pixels(&self) -> Result<Pixels, PlotError> {
+        Pixels::of(&self.svg(), self.size.into())
     }
 
-    /// Writes the picture as a PNG file.
+    /// Writes the picture as an SVG file if its name ends so, else as a PNG file.
     ///
     /// # Errors
     /// [`PlotError::Save`] if the system refuses.
@@ -273,101 +279,44 @@ impl Canvas {
             path: path.to_owned(),
             reason,
         };
-        let bytes = self.encode().map_err(|e| failed(e.to_string()))?;
+        let bytes = match Format::of(path) {
+            Some(Format::Svg) => self.svg().into_bytes(),
+            _ => self.pixels()?.png().map_err(|e| failed(e.to_string()))?,
+        };
         std::fs::write(path, bytes).map_err(|e| failed(e.to_string()))
     }
 }
 
-/// The share of a pixel within a disc, from 4 × 4 samples; the pixel's centre lies at (dx, dy)
-/// from the disc's.
-fn sampled_cover(dx: f32, dy: f32, radius: f32) -> f32 {
-    let offsets = [-0.375, -0.125, 0.125, 0.375];
-    let inside = |x: f32, y: f32| x * x + y * y <= radius * radius;
-    let samples = offsets
-        .iter()
-        .flat_map(|v| offsets.map(|u| inside(dx + u, dy + v)));
-    samples.filter(|&hit| hit).count() as f32 / 16.0
-}
-
-/// How far left of its position a line of text begins.
-fn shift(text: &str, size: f32, align: Align) -> f32 {
-    match align {
-        Align::Start => 0.0,
-        Align::Middle => -0.5 * font::width(text, size),
-        Align::End => -font::width(text, size),
-    }
-}
-
-fn paint(colour: Rgb) -> Paint<'static> {
-    let mut paint = Paint::default();
-    paint.set_color_rgba8(colour[0], colour[1], colour[2], 255);
-    paint
-}
-
-/// Lays a colour over an opaque pixel.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a mean of two bytes is a byte"
-)]
-fn blend(pixel: &mut PremultipliedColorU8, colour: Rgb, cover: f32) {
-    let mix =
-        |old: u8, new: u8| (f32::from(old) * (1.0 - cover) + f32::from(new) * cover).round() as u8;
-    *pixel = opaque([
-        mix(pixel.red(), colour[0]),
-        mix(pixel.green(), colour[1]),
-        mix(pixel.blue(), colour[2]),
-    ]);
-}
-
-/// A colour as a pixel holds it.
-fn opaque([red, green, blue]: Rgb) -> PremultipliedColorU8 {
-    PremultipliedColorU8::from_rgba(red, green, blue, 255)
-        .expect("an opaque colour is premultiplied")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const CLIP: Frame = Frame {
-        left: 0.0,
-        top: 0.0,
-        width: 40.0,
-        height: 40.0,
-    };
-
-    #[test]
-    fn a_disc_covers_its_area() {
-        for radius in [0.4_f32, 1.0, 3.3, 10.0] {
-            let mut canvas = Canvas::new(40, 40).unwrap();
-            canvas.disc((20.3, 19.8), radius, [0, 0, 0], &CLIP);
-            let ink: f32 = canvas
-                .pixmap
-                .pixels()
-                .iter()
-                .map(|p| 1.0 - f32::from(p.red()) / 255.0)
-                .sum();
-            let area = std::f32::consts::PI * radius * radius;
-            // 8 of 16 samples fall into the smallest; larger discs are better, and the cover by
-            // distance adds π/12 pixels.
-            let bound = 0.3 / area;
-            assert!((ink / area - 1.0).abs() < bound, "{radius}: {ink} {area}");
+/// Adds discs, one by one or as pixels.
+fn put_discs(document: &mut Document, discs: &Discs) {
+    let clip = (discs.clip != Frame::PAGE).then_some(&discs.clip);
+    for disc in &discs.few {
+        let (x, y) = disc.centre;
+        let (colour, mut radius, mut rim) = (hex(disc.colour), disc.radius, String::new());
+        if let Some((width, colour)) = disc.rim {
+            radius -= 0.5 * width;
+            let (colour, width) = (hex(colour), number(width));
+            rim = format!(" stroke=\"{colour}\" stroke-width=\"{width}\"");
         }
+        let [x, y, r] = [x, y, radius].map(number);
+        let attributes = format!("cx=\"{x}\" cy=\"{y}\" r=\"{r}\"");
+        let style = format!("fill=\"{colour}\"{rim}");
+        document.put(clip, &style, Element::new("circle", attributes));
     }
+    if let Some((frame, pixels)) = discs.many.as_ref().and_then(Dots::image) {
+        put_image(document, None, &frame, &pixels);
+    }
+}
 
-    #[test]
-    fn a_disc_stays_inside_its_clip() {
-        let mut canvas = Canvas::new(40, 40).unwrap();
-        let clip = Frame {
-            left: 10.0,
-            width: 10.0,
-            ..CLIP
-        };
-        canvas.disc((10.0, 20.0), 5.0, [0, 0, 0], &clip);
-        canvas.disc((-50.0, 20.0), 5.0, [0, 0, 0], &clip);
-        let red = |x, y| canvas.pixmap.pixel(x, y).unwrap().red();
-        assert_eq!(red(9, 20), 255);
-        assert_eq!(red(10, 20), 0);
-    }
+/// Adds pixels, which stay apart however large they are shown.
+fn put_image(document: &mut Document, clip: Option<&Frame>, frame: &Frame, pixels: &Pixels) {
+    // What cannot be a PNG file has no pixels.
+    let Ok(file) = pixels.fast_png() else { return };
+    let attributes = format!(
+        "{} preserveAspectRatio=\"none\" href=\"data:image/png;base64,{}\"",
+        rect(frame),
+        BASE64_STANDARD.encode(file),
+    );
+    let style = "style=\"image-rendering:optimizeSpeed;image-rendering:pixelated\"";
+    document.put(clip, style, Element::new("image", attributes));
 }

@@ -126,20 +126,18 @@ pub enum PlotError {
         height: u32,
     },
     /// The picture's name has an ending that is none of ours.
-    #[error(
-        "cannot write {}: {} give a name that ends in .png, or a folder with / at its end",
-        path.display(),
-        if ending.eq_ignore_ascii_case("svg") {
-            "SVG is not written yet, PNG is:".to_owned()
-        } else {
-            format!("pictures are PNG files, not .{ending}:")
-        }
-    )]
+    #[error("cannot write {}: give a name that ends in {expected}", path.display())]
     Ending {
         /// As asked for.
         path: PathBuf,
-        /// What follows its last dot.
-        ending: String,
+        /// Endings that it could have, and what else it could be.
+        expected: &'static str,
+    },
+    /// A picture that was made is none that can be read: a fault of ours.
+    #[error("cannot draw the picture: {reason}")]
+    Svg {
+        /// What is wrong with it.
+        reason: String,
     },
     /// The picture could not be packed.
     #[error("cannot pack the picture: {0}")]

@@ -5,9 +5,10 @@ use super::font;
 use super::style::Style;
 
 /// How a thing of the legend looks in the picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Mark {
     /// A line.
+    #[default]
     Line,
     /// A thin line, for what is exact.
     Thin,
@@ -86,17 +87,11 @@ impl Mark {
 impl Entry {
     /// The sign before the name; `centre` is that of a disc of radius `disc` in its place.
     fn draw_mark(&self, canvas: &mut Canvas, style: Style, centre: (f32, f32), disc: f32) {
-        let page = Frame {
-            left: 0.0,
-            top: 0.0,
-            width: f32::MAX,
-            height: f32::MAX,
-        };
         match self.mark {
-            Mark::Dots => canvas.disc(centre, disc, self.colour, &page),
+            Mark::Dots => canvas.disc(centre, disc, self.colour, &Frame::PAGE),
             Mark::Rings => {
-                canvas.disc(centre, disc, INK, &page);
-                canvas.disc(centre, disc - 2.0 * style.unit, self.colour, &page);
+                let rim = (2.0 * style.unit, INK);
+                canvas.bead(centre, disc, self.colour, rim, &Frame::PAGE);
             }
             Mark::Line | Mark::Thin => {
                 let (x, y) = (centre.0 - disc, centre.1);

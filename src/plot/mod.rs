@@ -2,9 +2,9 @@
 //!
 //! A [`Pictures`] takes a section of some snapshots and draws them one by one or as panels of one
 //! picture; [`Profiles`] draws values along a line, with the exact answer where there is one;
-//! [`Tables`] and [`energies`] draw columns of tables. These are [`Chart`]s. Everything is drawn by
-//! the program itself with a font of its own: no Python, no system fonts. Sizes of a picture are in
-//! proportion to its width, so that a wider picture is the same picture, finer.
+//! [`Tables`] and [`History`] draw columns of tables. These are [`Chart`]s. Every picture is made as
+//! SVG, and its pixels from that with a font of the program's own: no Python, no system fonts. Sizes
+//! of a picture are in proportion to its width, so that a wider picture is the same picture, finer.
 
 #![expect(
     clippy::cast_precision_loss,
@@ -15,13 +15,20 @@ mod axes;
 mod canvas;
 mod chart;
 mod colour;
+mod discs;
+mod dots;
 mod error;
 mod font;
+mod format;
+mod frame;
 mod header;
 mod picture;
+mod pixels;
 mod preview;
 mod snapshots;
+mod stretch;
 mod style;
+mod svg;
 mod ticks;
 mod units;
 
@@ -29,15 +36,17 @@ pub use canvas::{Canvas, Rgb};
 pub use chart::curves::{Chart, Curve, Quantity};
 pub use chart::distributions::distributions;
 pub use chart::fragments::{By, cumulative, tables_of_run};
-pub use chart::history::energies;
+pub use chart::history::History;
 pub use chart::profile::{Along, ProfileRequest, Profiles};
 pub use chart::series::parse_pair;
 pub use chart::tables::{Columns, Points, Tables, widest};
 pub(crate) use colour::Scale;
 pub use colour::body as colour_of;
 pub use error::PlotError;
+pub use format::Format;
 pub use header::Mark;
 pub use picture::pictures::{Pictures, Request};
+pub use pixels::Pixels;
 pub use preview::page::preview;
 pub(crate) use snapshots::field::Shown;
 pub use snapshots::front::{Direction, front, largest_reaches};

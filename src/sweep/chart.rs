@@ -12,8 +12,8 @@ use crate::plot::{Chart, Curve, Mark, Quantity, colour_of};
 /// Columns of a table that are no keys and no answers.
 const OWN: &[&str] = &["run", "state"];
 
-/// Draws the tables of a sweep's folder; gives the chart and where its PNG goes, or nothing if there
-/// is nothing to draw. Of a grid the first answer is drawn, or the one that is named.
+/// Draws the tables of a sweep's folder; gives the chart and where its picture goes, but for the ending
+/// of its name, or nothing if there is nothing to draw. Of a grid the first answer is drawn, or the one that is named.
 ///
 /// # Errors
 /// [`SweepError::Output`] if a table cannot be read, [`SweepError::Typed`] if there is no such answer.
@@ -26,7 +26,7 @@ pub fn draw(
     if answer.is_none() && limits.is_file() {
         let sheet = read(&limits)?;
         let chart = chart(&sheet, keys - 1, keys - 1);
-        return Ok(chart.map(|chart| (chart, folder.join("limits.png"))));
+        return Ok(chart.map(|chart| (chart, folder.join("limits"))));
     }
     let sheet = read(&folder.join("sweep.csv"))?;
     let answers = keys + OWN.len()..sheet.names.len();
@@ -41,7 +41,7 @@ pub fn draw(
         }
     };
     let chart = at.and_then(|at| chart(&sheet, keys, at));
-    Ok(chart.map(|chart| (chart, folder.join("sweep.png"))))
+    Ok(chart.map(|chart| (chart, folder.join("sweep"))))
 }
 
 fn read(path: &Path) -> Result<Sheet, SweepError> {
@@ -99,20 +99,15 @@ fn chart(sheet: &Sheet, keys: usize, y: usize) -> Option<Chart> {
             .iter()
             .map(|(k, text)| format!("{} {text}", sheet.names[*k]));
         let name = named.collect::<Vec<_>>().join(", ");
-        let rings = Curve {
-            name: String::new(),
-            colour: colour_of(k),
-            mark: Mark::Rings,
-            points: points.clone(),
-        };
-        let mark = Mark::Line;
-        chart.curves.push(Curve {
+        let curve = |name: String, mark| Curve {
             name,
             colour: colour_of(k),
             mark,
-            points,
-        });
-        chart.curves.push(rings);
+            points: points.clone(),
+            ..Curve::default()
+        };
+        let both = [curve(name, Mark::Line), curve(String::new(), Mark::Rings)];
+        chart.curves.extend(both);
     }
     Some(chart)
 }

@@ -37,6 +37,7 @@ pub(super) fn chart(law: &Law, speeds: &[f64], shots: &[Shot], axes: [Quantity; 
                 .iter()
                 .map(|(speed, values)| [*speed, values[k]])
                 .collect(),
+            ..Curve::default()
         })
         .collect();
     for (failed, name, colour) in SHOTS {
@@ -48,6 +49,7 @@ pub(super) fn chart(law: &Law, speeds: &[f64], shots: &[Shot], axes: [Quantity; 
                 colour,
                 mark: Mark::Rings,
                 points,
+                ..Curve::default()
             });
         }
     }

@@ -62,6 +62,7 @@ fn with_dots(name: String, colour: Rgb, mark: Mark, points: Vec<[f64; 2]>) -> [C
         colour,
         mark,
         points,
+        ..Curve::default()
     };
     [
         curve(name, mark, points.clone()),

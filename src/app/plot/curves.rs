@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use crate::output::RunFolder;
 use crate::plot::{
-    By, Columns, Direction, PlotError, Points, Tables, choose, cumulative, distributions, energies,
+    By, Columns, Direction, History, PlotError, Points, Tables, choose, cumulative, distributions,
     front, parse_pair, snapshots, tables_of_run, title, widest,
 };
 use crate::run::say::seconds;
 
-use super::out::{is_png, save, target, unsaved, write};
+use super::out::{named, save, target, unsaved, write_chart};
 use super::{PlotArgs, name, places, wanted};
 
 /// What `--xy` is of a table that knows what to draw, or with `--pair`.
@@ -68,9 +68,15 @@ const DISTRIBUTIONS: &str = "distributions.csv";
 /// The table of a run that its energies are in.
 const HISTORY: &str = "history.csv";
 
-pub fn draw_history(args: &PlotArgs) -> Result<(), PlotError> {
-    let chart = energies(&table(&args.source, HISTORY), &title_of(&args.source))?;
-    write(&chart.draw(args.width)?, &target(args, "history.png"))
+pub fn draw_history(args: &PlotArgs, history: History) -> Result<(), PlotError> {
+    let tables = places(args).map(|place| (name(place), table(place, history.table())));
+    let tables: Vec<_> = tables.collect();
+    let chart = history.chart(&tables, &title_of(&args.source))?;
+    let stem = match history {
+        History::Energies => "history".to_owned(),
+        other => format!("history-{}", other.name()),
+    };
+    write_chart(&chart, args.width, &target(args, &stem))
 }
 
 /// Draws the fragments of each run by mass and by size.
@@ -96,9 +102,8 @@ pub fn draw_fragments(args: &PlotArgs) -> Result<(), PlotError> {
     }
     for by in By::ALL {
         let chart = cumulative(&tables, by, &title_of(&args.source))?;
-        let picture = format!("fragments-{}.png", by.name());
-        let path = beside(args, &picture, by.name());
-        write(&chart.draw(args.width)?, &path)?;
+        let path = beside(args, &format!("fragments-{}", by.name()), by.name());
+        write_chart(&chart, args.width, &path)?;
     }
     Ok(())
 }
@@ -115,8 +120,7 @@ pub fn draw_distributions(args: &PlotArgs) -> Result<(), PlotError> {
     let charts = distributions(&tables, &wanted(args)?, &title_of(&args.source), seconds)?;
     for (distribution, chart) in charts {
         let stem = distribution.replace('_', "-");
-        let path = beside(args, &format!("{stem}.png"), &stem);
-        write(&chart.draw(args.width)?, &path)?;
+        write_chart(&chart, args.width, &beside(args, &stem, &stem))?;
     }
     Ok(())
 }
@@ -124,9 +128,10 @@ pub fn draw_distributions(args: &PlotArgs) -> Result<(), PlotError> {
 /// Where one of several pictures goes: one name is no name of several.
 fn beside(args: &PlotArgs, picture: &str, suffix: &str) -> PathBuf {
     match &args.out {
-        Some(out) if is_png(out) => {
-            let stem = out.file_stem().unwrap_or_default().to_string_lossy();
-            out.with_file_name(format!("{stem}-{suffix}.png"))
+        Some(out) if named(args).is_some() => {
+            let [stem, ending] = [out.file_stem(), out.extension()]
+                .map(|part| part.unwrap_or_default().to_string_lossy());
+            out.with_file_name(format!("{stem}-{suffix}.{ending}"))
         }
         _ => target(args, picture),
     }
@@ -162,7 +167,9 @@ pub fn draw_front(args: &PlotArgs, body: &str) -> Result<(), PlotError> {
             y: vec!["front".to_owned()],
         });
     }
-    draw(args, &chart, &format!("{stem}.png"))
+    // The table of the front has its name.
+    let drawn = if args.csv { "-drawn" } else { "" };
+    draw(args, &chart, &format!("{stem}{drawn}"))
 }
 
 pub fn draw_tables(args: &PlotArgs, columns: &str) -> Result<(), PlotError> {
@@ -182,7 +189,7 @@ pub fn draw_tables(args: &PlotArgs, columns: &str) -> Result<(), PlotError> {
         picture = format!("gauges-{picture}");
     }
     let chart = tables_of(args, tables.collect(), Columns::parse(columns)?)?;
-    draw(args, &chart, &format!("{picture}.png"))
+    draw(args, &chart, &picture)
 }
 
 fn tables_of(
@@ -212,8 +219,7 @@ fn tables_of(
 }
 
 fn draw(args: &PlotArgs, tables: &Tables, picture: &str) -> Result<(), PlotError> {
-    let canvas = tables.chart()?.draw(args.width)?;
-    write(&canvas, &target(args, picture))
+    write_chart(&tables.chart()?, args.width, &target(args, picture))
 }
 
 /// A table of a run, or a table itself.

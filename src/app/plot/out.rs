@@ -1,50 +1,119 @@
-//! Where pictures and tables go.
+//! Where pictures and tables go, and what they are: for all commands that draw.
 
 use std::path::{Path, PathBuf};
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+
 use super::PlotArgs;
 use crate::model::readable::one_line;
-use crate::plot::{Canvas, PlotError};
+use crate::plot::{Canvas, Chart, Format, PlotError};
 use crate::run::say::say;
 
-/// Refuses a name that is neither that of a PNG picture nor of a folder, before anything is drawn.
+/// What pictures are where no name of one tells.
+#[derive(Debug, Clone, Copy, clap::Args)]
+pub struct PictureFormat {
+    /// What pictures are where the name of none tells: "svg" has lines and text, which stay sharp in
+    /// papers, "png" the pixels of the same [default: png]
+    #[arg(long, value_name = "svg|png", value_parser = picture_format())]
+    pub format: Option<Format>,
+}
+
+fn picture_format() -> impl TypedValueParser<Value = Format> {
+    let read = |text: String| Format::of(Path::new(&format!("picture.{text}")));
+    PossibleValuesParser::new(["svg", "png"]).map(move |text| read(text).unwrap_or_default())
+}
+
+impl PictureFormat {
+    /// The ending of a picture's name.
+    pub fn ending(self) -> &'static str {
+        self.format.unwrap_or_default().ending()
+    }
+}
+
+/// Refuses a name that is neither that of a picture, a table nor a folder, before anything is drawn.
 ///
-/// # Errors [`PlotError::Ending`] for a name with an ending of letters, as `x.svg`, unless it is a
-/// folder, or a slash says that it is to be one.
+/// # Errors
+/// [`PlotError::Ending`] for a name with an ending of letters, as `x.pdf`, unless it is a folder, or a
+/// slash says that it is to be one; [`PlotError::Options`] if another option asks for something else.
 pub fn check(args: &PlotArgs) -> Result<(), PlotError> {
-    let Some(out) = args.out.as_deref().filter(|out| !is_png(out)) else {
+    let Some(out) = args.out.as_deref() else {
         return Ok(());
     };
+    if let Some(format) = named(args) {
+        let asked = if args.csv {
+            Some(Format::Csv)
+        } else {
+            args.picture.format
+        };
+        if asked.is_some_and(|asked| asked != format) {
+            return Err(PlotError::Options(
+                "--out names another kind of file than --format or --csv asks for",
+            ));
+        }
+        return Ok(());
+    }
     let folder = out.is_dir() || out.as_os_str().to_string_lossy().ends_with(['/', '\\']);
-    let ending = out.extension().map(|e| e.to_string_lossy().into_owned());
+    let ending = out.extension().map(|e| e.to_string_lossy());
     match ending {
         Some(ending) if !folder && ending.starts_with(char::is_alphabetic) => {
             Err(PlotError::Ending {
                 path: out.to_owned(),
-                ending,
+                expected: ".png, .svg or .csv, or a folder with / at its end",
             })
         }
         _ => Ok(()),
     }
 }
 
-/// The path of a picture that is called `name` unless `--out` calls it otherwise.
-pub fn target(args: &PlotArgs, name: &str) -> PathBuf {
+/// What `--out` names, if that is a file.
+pub fn named(args: &PlotArgs) -> Option<Format> {
+    args.out.as_deref().and_then(Format::of)
+}
+
+/// The path of a picture, or of a table in its place, that is called `stem` unless `--out` calls it
+/// otherwise.
+pub fn target(args: &PlotArgs, stem: &str) -> PathBuf {
+    let ending = if args.csv {
+        Format::Csv.ending()
+    } else {
+        args.picture.ending()
+    };
+    let name = format!("{stem}.{ending}");
     match &args.out {
-        Some(out) if is_png(out) => out.clone(),
+        Some(out) if named(args).is_some() => out.clone(),
         Some(out) => out.join(name),
         None if args.source.is_dir() => args.source.join("pictures").join(name),
         None => args.source.with_file_name(name),
     }
 }
 
-pub fn is_png(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("png"))
+/// Refuses a name that is not that of a picture.
+///
+/// # Errors
+/// [`PlotError::Ending`].
+pub fn check_picture(path: &Path) -> Result<(), PlotError> {
+    match Format::of(path) {
+        Some(Format::Png | Format::Svg) => Ok(()),
+        _ => Err(PlotError::Ending {
+            path: path.to_owned(),
+            expected: ".png or .svg",
+        }),
+    }
 }
 
+/// Writes a picture and says so.
 pub fn write(canvas: &Canvas, path: &Path) -> Result<(), PlotError> {
     save(path, |path| canvas.save(path))
+}
+
+/// Writes a chart as what its name says, of a width in pixels, and says so.
+pub fn write_chart(chart: &Chart, width: Option<u32>, path: &Path) -> Result<(), PlotError> {
+    if Format::of(path) == Some(Format::Csv) {
+        return save(path, |path| {
+            std::fs::write(path, chart.sheet().text()).map_err(|e| unsaved(path, &e))
+        });
+    }
+    write(&chart.draw(width)?, path)
 }
 
 /// Writes a file, whose folder is made if it lacks, and says so.

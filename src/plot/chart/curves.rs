@@ -26,10 +26,12 @@ pub struct Quantity {
 }
 
 /// A curve of a chart.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Curve {
     /// Name in the legend; none if empty.
     pub name: String,
+    /// What a table of the chart calls it, if not as the legend does.
+    pub in_tables: String,
     /// Colour.
     pub colour: Rgb,
     /// How it is drawn.
@@ -92,14 +94,15 @@ impl Chart {
             y: y.span,
         };
         axes.draw_grid(&mut canvas, style, &x.ticks, &y.ticks);
-        for curve in &self.curves {
-            let points = curve.points.iter().map(|&[a, b]| {
-                let (a, b) = (x.place(a), y.place(b));
-                (a + b).is_finite().then(|| axes.at(a, b))
-            });
-            draw_curve(&mut canvas, style, &frame, curve, points);
-        }
-        canvas.clear_around(&frame);
+        canvas.within(&frame, |canvas| {
+            for curve in &self.curves {
+                let points = curve.points.iter().map(|&[a, b]| {
+                    let (a, b) = (x.place(a), y.place(b));
+                    (a + b).is_finite().then(|| axes.at(a, b))
+                });
+                draw_curve(canvas, style, &frame, curve, points);
+            }
+        });
         header.draw(Some(&mut canvas), style, width as f32);
         let labels = [(&self.x, &x), (&self.y, &y)].map(|(axis, r)| r.unit.label(&axis.label));
         axes.draw_x(&mut canvas, style, &x.ticks, Some(&labels[0]));
@@ -138,17 +141,17 @@ fn draw_curve(
             }
         }
         Mark::Rings => {
+            let rim = (2.0 * style.unit, INK);
             for at in points.flatten() {
-                canvas.disc(at, 6.5 * style.unit, INK, frame);
-                canvas.disc(at, 4.5 * style.unit, curve.colour, frame);
+                canvas.bead(at, 6.5 * style.unit, curve.colour, rim, frame);
             }
         }
         Mark::Line | Mark::Thin => {
             let width = if curve.mark == Mark::Thin { 1.7 } else { 3.0 };
             let points: Vec<_> = points.collect();
             for stretch in points.split(Option::is_none) {
-                let stretch = thinned(stretch.iter().flatten().copied());
-                canvas.line(&stretch, width * style.unit, curve.colour);
+                let stretch: Vec<_> = stretch.iter().copied().flatten().collect();
+                canvas.line(&thinned(&stretch), width * style.unit, curve.colour);
             }
         }
     }
@@ -237,19 +240,29 @@ fn roomy(axis: &Quantity, [low, high]: [f64; 2]) -> [f64; 2] {
     ]
 }
 
-/// Points of a curve at least a quarter of a pixel apart: a long run has far more rows than a
-/// picture has pixels.
-fn thinned(points: impl Iterator<Item = (f32, f32)>) -> Vec<(f32, f32)> {
+/// Points of a curve that are seen to be others: a long run has far more rows than a picture has
+/// pixels. Of those that follow each other in half a column of pixels the first, the lowest, the
+/// highest and the last, and of these no two within a quarter of a pixel.
+fn thinned(points: &[(f32, f32)]) -> Vec<(f32, f32)> {
     let mut kept: Vec<(f32, f32)> = Vec::new();
-    let mut last = None;
-    for (x, y) in points {
-        let far = |&(a, b): &(f32, f32)| (x - a).abs().max((y - b).abs()) >= 0.25;
-        if kept.last().is_none_or(far) {
-            kept.push((x, y));
+    let column = |at: &(f32, f32)| (2.0 * at.0).floor();
+    for run in points.chunk_by(|a, b| column(a) == column(b)) {
+        let by_height = |k: &usize, l: &usize| run[*k].1.total_cmp(&run[*l].1);
+        let mut ends = [0; 4];
+        ends[1] = (0..run.len()).min_by(by_height).unwrap_or_default();
+        ends[2] = (0..run.len()).max_by(by_height).unwrap_or_default();
+        ends[3] = run.len() - 1;
+        ends.sort_unstable();
+        for (x, y) in ends.map(|k| run[k]) {
+            let far = |&(a, b): &(f32, f32)| (x - a).abs().max((y - b).abs()) >= 0.25;
+            if kept.last().is_none_or(far) {
+                kept.push((x, y));
+            }
         }
-        last = Some((x, y));
     }
-    kept.extend(last);
+    if kept.last() != points.last() {
+        kept.extend(points.last());
+    }
     kept
 }
 
@@ -259,9 +272,19 @@ mod tests {
 
     #[test]
     fn thinning_keeps_both_ends() {
-        let kept = thinned((0..1000).map(|k| (k as f32 * 0.01, 0.0)));
+        let line: Vec<_> = (0..1000).map(|k| (k as f32 * 0.01, 0.0)).collect();
+        let kept = thinned(&line);
         assert!(kept.len() < 50);
         assert_eq!((kept[0].0, kept[kept.len() - 1].0), (0.0, 9.99));
+    }
+
+    #[test]
+    fn thinning_keeps_peaks_of_noise() {
+        let height = |k: usize| if k == 7_777 { 99.0 } else { (k % 7) as f32 };
+        let noise: Vec<_> = (0..100_000).map(|k| (k as f32 * 1e-3, height(k))).collect();
+        let kept = thinned(&noise);
+        assert!(kept.len() < 1000, "{}", kept.len());
+        assert!(kept.iter().any(|at| at.1 == 99.0));
     }
 
     #[test]

@@ -66,6 +66,7 @@ fn add(charts: &mut Vec<(String, Chart)>, bin: &Bin, name: &str, title: &str) {
             colour: colour::body(curves.len()),
             mark: Mark::Line,
             points: Vec::new(),
+            ..Curve::default()
         });
     }
     let [from, to, value] = bin.step;

@@ -55,6 +55,7 @@ pub fn cumulative(tables: &[(String, PathBuf)], by: By, title: &str) -> Result<C
             colour: colour::body(k),
             mark: Mark::Line,
             points,
+            ..Curve::default()
         });
     }
     if let [curve] = &mut curves[..] {

@@ -7,5 +7,6 @@ pub mod fragments;
 pub mod history;
 pub mod profile;
 pub mod series;
+pub mod sheet;
 pub mod table;
 pub mod tables;

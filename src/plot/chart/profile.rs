@@ -290,6 +290,7 @@ fn curves(taken: &[Taken], sources: usize) -> Vec<Curve> {
         colour,
         mark: Mark::Dots,
         points,
+        ..Curve::default()
     };
     if let [only] = taken {
         let of = |body: usize| {
@@ -307,13 +308,20 @@ fn curves(taken: &[Taken], sources: usize) -> Vec<Curve> {
     let every = taken.len().div_ceil(NAMED);
     let curve = |(k, profile): (usize, &Taken)| {
         let name = match (sources > 1, same_time) {
-            _ if k % every != 0 && k + 1 != taken.len() => String::new(),
             (true, true) => profile.name.clone(),
             (true, false) => format!("{}, {}", profile.name, times[k]),
             (false, _) => times[k].clone(),
         };
+        let is_named = k.is_multiple_of(every) || k + 1 == taken.len();
         let points = profile.dots.iter().map(|dot| [dot.1, dot.2]).collect();
-        dots(name, colour::series(k, taken.len()), points)
+        Curve {
+            in_tables: name.clone(),
+            ..dots(
+                if is_named { name } else { String::new() },
+                colour::series(k, taken.len()),
+                points,
+            )
+        }
     };
     taken.iter().enumerate().map(curve).collect()
 }
@@ -327,13 +335,15 @@ fn exact_curves(
 ) -> Result<Vec<Curve>, PlotError> {
     let answer = Exact::of_run(path)?;
     let mut curves = Vec::new();
+    let times = units::times(&taken.iter().map(|t| t.time).collect::<Vec<_>>());
     for (k, profile) in taken.iter().enumerate() {
         let shade = colour::series(k, taken.len()).map(|c| c / 2);
         curves.push(Curve {
-            name: String::new(),
+            in_tables: format!("exact, {}", times[k]),
             colour: if taken.len() == 1 { INK } else { shade },
             mark: Mark::Thin,
             points: exact_points(&answer, request, profile.time)?,
+            ..Curve::default()
         });
     }
     // For the legend alone.
@@ -342,6 +352,7 @@ fn exact_curves(
         colour: INK,
         mark: Mark::Thin,
         points: Vec::new(),
+        ..Curve::default()
     });
     Ok(curves)
 }

@@ -1,12 +1,14 @@
 //! The series of a table: the rows of each pair of bodies, load or body, told apart by the columns
 //! that name them.
 
+use super::sheet::CURVE;
 use super::table::Table;
 
 /// Columns that name what a row belongs to.
-const KEYS: [&str; 7] = [
+const KEYS: [&str; 8] = [
     "body_a",
     "body_b",
+    CURVE,
     "load",
     "gauge",
     "witness",

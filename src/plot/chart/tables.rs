@@ -124,6 +124,7 @@ impl Tables {
                         colour: colour::body(chart.curves.len()),
                         mark: if self.dots { Mark::Dots } else { Mark::Line },
                         points,
+                        ..Curve::default()
                     });
                 }
             }
@@ -153,6 +154,7 @@ impl Tables {
                 colour: colour::body(curves + k),
                 mark: Mark::Rings,
                 points: places.map_err(|reason| wrong(&measured.path, reason))?,
+                ..Curve::default()
             });
         }
         Ok(chart)

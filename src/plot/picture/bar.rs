@@ -8,6 +8,9 @@ use crate::plot::style::Style;
 use crate::plot::ticks::{Ticks, nice_step};
 use crate::plot::units::Readable;
 
+/// Stretches of a bar between which its colours are those of the map.
+const STOPS: usize = 64;
+
 /// What colours of a field mean.
 #[derive(Debug, Clone)]
 pub struct ColourBar {
@@ -70,18 +73,16 @@ impl ColourBar {
         let bottom = frame.bottom() - if scale.below { tip } else { 0.0 };
         let (left, right) = (frame.left, frame.right());
         let middle = 0.5 * (left + right);
-        let mut y = top;
-        while y < bottom {
-            let strip = Frame {
-                top: y,
-                height: (bottom - y).min(1.0),
-                ..*frame
-            };
-            let share = f64::from((bottom - y - 0.5) / (bottom - top));
-            let value = scale.low + share * (scale.high - scale.low);
-            canvas.fill(&strip, scale.colour(value));
-            y += 1.0;
-        }
+        let body = Frame {
+            top,
+            height: bottom - top,
+            ..*frame
+        };
+        let colour = |k: usize| {
+            let share = 1.0 - k as f64 / STOPS as f64;
+            scale.colour(scale.low + share * (scale.high - scale.low))
+        };
+        canvas.gradient(&body, &(0..=STOPS).map(colour).collect::<Vec<_>>());
         let mut outline = vec![(left, bottom), (left, top)];
         if scale.above {
             let tip = (middle, frame.top);
@@ -99,10 +100,6 @@ impl ColourBar {
         }
         outline.extend([(left, bottom), (left, top)]);
         canvas.line(&outline, style.line(), INK);
-        Frame {
-            top,
-            height: bottom - top,
-            ..*frame
-        }
+        body
     }
 }

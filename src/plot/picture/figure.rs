@@ -52,9 +52,8 @@ impl Figure<'_> {
     /// [`PlotError::Size`] if no such picture can be held.
     pub fn draw(&self) -> Result<Canvas, PlotError> {
         let count = self.sections.len();
-        let style = Style::new(self.width, if count > 1 { PANELS_WIDTH } else { WIDTH });
-        let has_bar = matches!(self.colours, Colours::Bar(_));
-        let layout = Layout::new(style, self.width, count, self.view, has_bar);
+        let layout = self.layout();
+        let style = layout.style;
         // What is too large is refused before it is drawn.
         Canvas::fits(self.width, whole(layout.height))?;
         let rasters = self.rasters(&layout);
@@ -76,6 +75,14 @@ impl Figure<'_> {
             bar.draw(&mut canvas, style, left, last_of_row.top, last.bottom());
         }
         Ok(canvas)
+    }
+
+    /// Where its parts go, from the top of the picture.
+    pub fn layout(&self) -> Layout {
+        let count = self.sections.len();
+        let style = Style::new(self.width, if count > 1 { PANELS_WIDTH } else { WIDTH });
+        let has_bar = matches!(self.colours, Colours::Bar(_));
+        Layout::new(style, self.width, count, self.view, has_bar)
     }
 
     /// The panels of cuts; none of particles.
@@ -182,7 +189,7 @@ fn draw_particle(canvas: &mut Canvas, at: (f32, f32), radius: f32, colour: Rgb, 
     if rim < 0.35 {
         canvas.disc(at, radius, colour, clip);
     } else {
-        canvas.disc(at, radius, colour.map(|c| c / 4 * 3), clip);
-        canvas.disc(at, radius - rim, colour, clip);
+        let rim = (rim, colour.map(|c| c / 4 * 3));
+        canvas.bead(at, radius, colour, rim, clip);
     }
 }

@@ -7,4 +7,5 @@ pub mod layout;
 pub mod pictures;
 pub mod raster;
 pub mod section;
+mod table;
 pub mod view;

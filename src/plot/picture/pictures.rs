@@ -1,5 +1,6 @@
 //! From a request to pictures: sections of some snapshots with one plane, view and colours.
 
+use std::ops::Range;
 use std::path::PathBuf;
 
 use super::bar::ColourBar;
@@ -43,8 +44,10 @@ pub struct Request {
 pub struct Pictures {
     title: String,
     /// Names of the runs that the snapshots belong to, if there are several.
-    names: Option<Vec<String>>,
-    cut: Cut,
+    pub(super) names: Option<Vec<String>>,
+    /// Names of the bodies by their numbers in the pictures.
+    pub(super) bodies: Vec<String>,
+    pub(super) cut: Cut,
     where_text: String,
     sections: Vec<Section>,
     colours: Colours,
@@ -97,7 +100,8 @@ impl Pictures {
         }
         Ok(Self {
             where_text: where_text(&cut, &first),
-            colours: colours(&cut.shown, bodies, &sections, range),
+            colours: colours(&cut.shown, &bodies, &sections, range),
+            bodies,
             view: view.unwrap_or_else(|| section::view(&sections)),
             names: (sources.len() > 1).then(|| {
                 let names = sources
@@ -149,6 +153,17 @@ impl Pictures {
         let width = width.unwrap_or(PANELS_WIDTH);
         self.figure(&self.sections, self.where_text.clone(), headings, width)
             .draw()
+    }
+
+    /// Some sections as one figure without words.
+    pub(super) fn figure_of(&self, chosen: Range<usize>, width: Option<u32>) -> Figure<'_> {
+        let usual = if chosen.len() > 1 {
+            PANELS_WIDTH
+        } else {
+            WIDTH
+        };
+        let sections = &self.sections[chosen];
+        self.figure(sections, String::new(), Vec::new(), width.unwrap_or(usual))
     }
 
     fn times(&self) -> Vec<String> {
@@ -221,12 +236,12 @@ fn numbers(bodies: &[String], known: &mut Vec<String>) -> Vec<usize> {
 
 fn colours(
     shown: &Shown,
-    bodies: Vec<String>,
+    bodies: &[String],
     sections: &[Section],
     range: Option<[f64; 2]>,
 ) -> Colours {
     match shown {
-        Shown::Body => Colours::Bodies(bodies),
+        Shown::Body => Colours::Bodies(bodies.to_vec()),
         Shown::Field(field) => {
             let values = || {
                 let cells = sections.iter().flat_map(|s| &s.cells);

@@ -5,6 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::cells::{Cell, Sample, Tiles};
+use super::layout::whole;
 use super::view::View;
 use crate::plot::canvas::{Frame, PAPER, Rgb};
 
@@ -159,16 +160,6 @@ impl<C: Fn(&Sample) -> Rgb> Panel<'_, C> {
 fn mean(sum: usize) -> u8 {
     let count = FINE * FINE;
     u8::try_from((sum + count / 2) / count).unwrap_or(u8::MAX)
-}
-
-/// A length as a number of pixels.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "frames are whole pixels of a canvas"
-)]
-fn whole(length: f32) -> usize {
-    length.round() as usize
 }
 
 #[cfg(test)]

@@ -57,6 +57,11 @@ impl Image {
         }
     }
 
+    /// Pixels in a row.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
     /// Adds a particle at a place (m) as a ball of a size (m).
     pub fn add(&mut self, place: &[f64; 3], size: f64, body: usize) {
         let [right, up] = self.panel.axes();

@@ -20,26 +20,9 @@ const SLOW: f64 = 1e-3;
 /// The fastest body's arrow over the smaller side of its panel.
 const LONGEST: f32 = 0.3;
 
-/// A line of dashes (and, if wanted, dots) between two points.
-fn dashed(canvas: &mut Canvas, style: Style, ends: [(f32, f32); 2], colour: Rgb, dots: bool) {
-    let [a, b] = ends;
-    let (dx, dy) = (b.0 - a.0, b.1 - a.1);
-    let length = dx.hypot(dy);
-    let pattern: &[(f32, f32)] = if dots {
-        &[(14.0, 5.0), (2.0, 5.0)]
-    } else {
-        &[(7.0, 5.0)]
-    };
-    let (mut at, mut k) = (0.0, 0);
-    while at < length {
-        let (dash, gap) = pattern[k % pattern.len()];
-        let end = (at + dash * style.unit).min(length);
-        let point = |s: f32| (a.0 + dx * s / length, a.1 + dy * s / length);
-        canvas.line(&[point(at), point(end)], 2.0 * style.unit, colour);
-        at = end + gap * style.unit;
-        k += 1;
-    }
-}
+/// Lengths of dashes and of the gaps behind them (units of layout), and with dots between them.
+const DASHES: &[f32] = &[7.0, 5.0];
+const DASHES_AND_DOTS: &[f32] = &[14.0, 5.0, 2.0, 5.0];
 
 /// A line across the frame where a coordinate of one axis has a value (m), if it is in the view.
 fn across(
@@ -62,7 +45,13 @@ fn across(
     } else {
         return;
     };
-    dashed(canvas, style, ends, colour, colour == SYMMETRY);
+    let lengths = if colour == SYMMETRY {
+        DASHES_AND_DOTS
+    } else {
+        DASHES
+    };
+    let lengths: Vec<f32> = lengths.iter().map(|length| length * style.unit).collect();
+    canvas.dashes(&ends, 2.0 * style.unit, colour, &lengths);
 }
 
 /// The planes of symmetry that are seen from their side.
@@ -87,19 +76,6 @@ pub fn keep(canvas: &mut Canvas, style: Style, panel: &Panel, keep: Option<&Regi
         {
             across(canvas, style, panel, (axis, side), KEEP);
         }
-    }
-}
-
-/// Pixels of a frame, two wide, in a colour.
-pub fn pixels(canvas: &mut Canvas, panel: &Panel, pixels: &[(usize, usize)]) {
-    for &(column, row) in pixels {
-        let dot = Frame {
-            left: panel.frame.left + column as f32,
-            top: panel.frame.top + row as f32,
-            width: 1.0,
-            height: 1.0,
-        };
-        canvas.fill(&dot, SURFACE);
     }
 }
 
@@ -184,16 +160,10 @@ fn arrow(canvas: &mut Canvas, style: Style, at: (f32, f32), (dx, dy): (f32, f32)
 
 /// A dot in a ring for what comes, a cross in one for what goes.
 fn along_sight(canvas: &mut Canvas, style: Style, at: (f32, f32), comes: bool) {
-    let page = Frame {
-        left: 0.0,
-        top: 0.0,
-        width: f32::MAX,
-        height: f32::MAX,
-    };
+    let page = Frame::PAGE;
     let radius = 9.0 * style.unit;
     canvas.disc(at, radius + 2.0 * style.unit, PAPER, &page);
-    canvas.disc(at, radius, INK, &page);
-    canvas.disc(at, radius - 2.5 * style.unit, PAPER, &page);
+    canvas.bead(at, radius, PAPER, (2.5 * style.unit, INK), &page);
     if comes {
         canvas.disc(at, 2.5 * style.unit, INK, &page);
         return;

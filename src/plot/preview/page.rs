@@ -256,8 +256,11 @@ impl<'a> Page<'a> {
         let coarsest = spacings.fold(0.0, f64::max);
         // What is smooth has no lines, however steep it is seen.
         let step = (2.5 * coarsest).max(STEEP / panel.scale());
-        canvas.image(&panel.frame, &image.colours(step));
-        marks::pixels(canvas, panel, dots);
+        let mut colours = image.colours(step);
+        for &(column, row) in dots {
+            colours[row * image.columns() + column] = SURFACE;
+        }
+        canvas.image(&panel.frame, &colours);
         marks::symmetry(canvas, self.style, panel, &self.case.symmetry);
         marks::keep(canvas, self.style, panel, self.case.domain.keep.as_ref());
     }
