@@ -15,11 +15,15 @@ pub fn chart(chart: Result<Chart, String>, alt: &str) -> Html {
     image(chart.and_then(draw), alt)
 }
 
-/// A picture with a text for those who do not see it, or why there is none.
+/// A picture with a text for those who do not see it, or why there is none. As an image of its own it
+/// is drawn without the page's styles.
 pub fn image(canvas: Result<Canvas, String>, alt: &str) -> Html {
-    match canvas.and_then(|canvas| canvas.png().map_err(|error| error.to_string())) {
-        Ok(bytes) => {
-            let source = format!("data:image/png;base64,{}", STANDARD.encode(bytes));
+    match canvas {
+        Ok(canvas) => {
+            let source = format!(
+                "data:image/svg+xml;base64,{}",
+                STANDARD.encode(canvas.svg())
+            );
             let attributes = [("src", source.as_str()), ("alt", alt)];
             Html::element(
                 "figure",
