@@ -34,6 +34,7 @@ pub mod output;
 
 pub mod ballistic;
 pub mod exact;
+pub mod export;
 pub mod plan;
 pub mod plot;
 pub mod report;

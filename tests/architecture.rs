@@ -18,7 +18,7 @@ use source::{Source, sources, src};
 
 /// Every module, in the order in which data flows.
 const MODULES: &str = "app run sweep input model preflight plan populate numerics material particles comm domain fragments \
-     neighbours loads contact sph step diagnose measure output ballistic exact plot report";
+     neighbours loads contact sph step diagnose measure output ballistic exact export plot report";
 
 /// The modules on top, and who may name them.
 const ON_TOP: &[(&str, &str)] = &[
@@ -27,6 +27,7 @@ const ON_TOP: &[(&str, &str)] = &[
     ("sweep", "app"),
     ("preflight", "app run plan"),
     ("plan", "app run"),
+    ("export", "app"),
     ("report", "app"),
 ];
 
@@ -104,6 +105,10 @@ const FORBIDDEN: &[(&str, &str)] = &[
          contact sph step diagnose measure output exact plot",
     ),
     ("exact", "particles comm domain output input step"),
+    (
+        "export",
+        "comm input populate numerics material domain fragments neighbours loads contact sph step diagnose measure exact",
+    ),
     ("plot", "comm step"),
     (
         "report",

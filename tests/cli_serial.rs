@@ -165,12 +165,14 @@ fn what_is_no_result_is_an_input_error() {
         &["check", "nowhere"][..],
         &["info", "nowhere"],
         &["plot", "nowhere"],
+        &["export", "nowhere", "--to", "csv"],
         &["compare", "nowhere", "nowhere"],
         &["info", "/"],
         &["plot", "/"],
         &["compare", "/", "/"],
         &["info", WHIPPLE],
         &["plot", WHIPPLE],
+        &["export", WHIPPLE, "--to", "csv"],
     ] {
         let ended = end(without_mpi().args(arguments)).with_code(2);
         assert_eq!(ended.complaints("error: ").len(), 1, "{ended:#?}");
@@ -188,7 +190,9 @@ fn help_says_how_to_use_each_command() {
     for word in ["mpirun -n 2 whipple run", "75", "restart", "compare"] {
         assert!(stdout.contains(word), "{stdout}");
     }
-    for name in ["run", "restart", "check", "info", "plot", "compare"] {
+    for name in [
+        "run", "restart", "check", "info", "plot", "export", "compare",
+    ] {
         let help = output(&[name, "--help"]);
         assert!(
             help.contains("Examples:\n") && help.contains(&format!("whipple {name} ")),

@@ -183,6 +183,13 @@ fn the_recipes_of_the_book_draw_something() {
     let options = [&sets[..], &["--until", "0.04us"]].concat();
     simulate("1", "quarter-impact", &options, &run);
 
+    let exported = Command::new(env!("CARGO_BIN_EXE_whipple"))
+        .arg("export")
+        .arg(&run)
+        .args(["--to", "npz"])
+        .status();
+    assert!(exported.expect("the program starts").success());
+
     let book = root().join("docs/src");
     let drawn = script_in(folder.path(), &python, "recipes.py", &[&book])
         .unwrap_or_else(|error| panic!("{error}"));

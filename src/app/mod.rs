@@ -3,6 +3,7 @@
 mod bench;
 mod check;
 pub mod compare;
+mod export;
 pub mod fragments;
 mod generate;
 pub mod info;
@@ -41,6 +42,7 @@ use crate::run::{launch, say};
   mpirun -n 2 whipple run inputs/quarter-impact --out runs/quarter
   whipple info runs/quarter
   whipple plot runs/quarter --panels
+  whipple export runs/quarter --to vtu --all
   whipple fragments runs/quarter
   whipple measure runs/quarter
   whipple report runs/quarter
@@ -68,6 +70,7 @@ enum Command {
     Plan(plan::PlanArgs),
     Plot(Box<plot::PlotArgs>),
     Report(report::ReportArgs),
+    Export(export::ExportArgs),
     Info(info::InfoArgs),
     Fragments(fragments::FragmentsArgs),
     Measure(measure::MeasureArgs),
@@ -109,6 +112,7 @@ pub fn main() -> ExitCode {
             |()| 0,
         ),
         Command::Report(args) => report::run(&args),
+        Command::Export(args) => export::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Fragments(args) => fragments::run(&args),
         Command::Measure(args) => measure::run(&args),

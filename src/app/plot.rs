@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
+use super::which::Several;
 use crate::plot::{
     Along, Format, History, Pictures, PlotError, ProfileRequest, Profiles, Request, Source, Wanted,
-    choose, parse_quantity, snapshots,
 };
 use out::{named, save, target, unsaved, write, write_chart};
 
@@ -342,21 +342,10 @@ fn places(args: &PlotArgs) -> impl Iterator<Item = &PathBuf> {
 
 /// The chosen snapshots of each place.
 fn sources(args: &PlotArgs) -> Result<Vec<Source>, PlotError> {
-    let wanted = wanted(args)?;
-    let chosen = args.all || !args.time.is_empty() || !args.index.is_empty();
     let source = |place: &PathBuf| {
-        let snapshots = if place.is_dir() {
-            choose(&snapshots(place)?, &wanted)?
-        } else if chosen {
-            return Err(PlotError::Options(
-                "--time, --index and --all choose among the snapshots of a run: give its folder",
-            ));
-        } else {
-            vec![place.clone()]
-        };
         Ok(Source {
             name: name(place),
-            snapshots,
+            snapshots: several(args).at(place, usual(args))?,
         })
     };
     places(args).map(source).collect()
@@ -375,17 +364,22 @@ fn name(place: &Path) -> String {
     )
 }
 
-pub(super) fn wanted(args: &PlotArgs) -> Result<Wanted, PlotError> {
-    if args.all {
-        Ok(Wanted::All)
-    } else if !args.time.is_empty() {
-        let times = args.time.iter().map(|text| parse_quantity(text, "s"));
-        Ok(Wanted::Times(times.collect::<Result<_, _>>()?))
-    } else if !args.index.is_empty() {
-        Ok(Wanted::Indices(args.index.clone()))
-    } else if args.panels && args.with.is_empty() {
-        Ok(Wanted::Three)
-    } else {
-        Ok(Wanted::Last)
+fn several(args: &PlotArgs) -> Several<'_> {
+    Several {
+        times: &args.time,
+        indices: &args.index,
+        all: args.all,
     }
+}
+
+fn usual(args: &PlotArgs) -> Wanted {
+    if args.panels && args.with.is_empty() {
+        Wanted::Three
+    } else {
+        Wanted::Last
+    }
+}
+
+pub(super) fn wanted(args: &PlotArgs) -> Result<Wanted, PlotError> {
+    several(args).wanted(usual(args))
 }

@@ -1,6 +1,8 @@
-//! Which snapshot of a run a command is asked for.
+//! Which snapshots of a run a command is asked for.
 
-use crate::plot::{PlotError, Wanted, parse_quantity};
+use std::path::{Path, PathBuf};
+
+use crate::plot::{PlotError, Wanted, choose, parse_quantity, snapshots};
 
 /// A snapshot of a run, by time or number.
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -32,5 +34,57 @@ impl Which {
             (None, Some(index)) => Wanted::Indices(vec![index]),
             (None, None) => Wanted::Last,
         })
+    }
+}
+
+/// Several snapshots of a run, by times, by numbers, or all of them.
+#[derive(Debug, Clone, Copy)]
+pub struct Several<'a> {
+    /// Times, as typed.
+    pub times: &'a [String],
+    /// Numbers, from 0.
+    pub indices: &'a [usize],
+    /// All of them.
+    pub all: bool,
+}
+
+impl Several<'_> {
+    /// Whether any are named.
+    #[must_use]
+    pub fn any(&self) -> bool {
+        self.all || !self.times.is_empty() || !self.indices.is_empty()
+    }
+
+    /// As the choice among snapshots knows it; `usual` if none are named.
+    ///
+    /// # Errors
+    /// [`PlotError::Quantity`] if a time cannot be read.
+    pub fn wanted(&self, usual: Wanted) -> Result<Wanted, PlotError> {
+        if self.all {
+            Ok(Wanted::All)
+        } else if !self.times.is_empty() {
+            let times = self.times.iter().map(|text| parse_quantity(text, "s"));
+            Ok(Wanted::Times(times.collect::<Result<_, _>>()?))
+        } else if !self.indices.is_empty() {
+            Ok(Wanted::Indices(self.indices.to_vec()))
+        } else {
+            Ok(usual)
+        }
+    }
+
+    /// The snapshots at a place: those chosen of a run, or the file itself. At least one.
+    ///
+    /// # Errors
+    /// [`PlotError`] if there are none, or if a file is to be chosen from.
+    pub fn at(&self, place: &Path, usual: Wanted) -> Result<Vec<PathBuf>, PlotError> {
+        if place.is_dir() {
+            choose(&snapshots(place)?, &self.wanted(usual)?)
+        } else if self.any() {
+            Err(PlotError::Options(
+                "--time, --index and --all choose among the snapshots of a run: give its folder",
+            ))
+        } else {
+            Ok(vec![place.to_owned()])
+        }
     }
 }

@@ -10,10 +10,7 @@ const UNITS: &str = "# units:";
 const COMMENT: u8 = b'#';
 
 /// Some values as one line with its end; those with commas, quotes or line ends are quoted.
-///
-/// # Panics
-/// Never: memory takes it.
-pub fn line<T: AsRef<[u8]>>(values: impl IntoIterator<Item = T>) -> Vec<u8> {
+pub(crate) fn line<T: AsRef<[u8]>>(values: impl IntoIterator<Item = T>) -> Vec<u8> {
     lines([values])
 }
 

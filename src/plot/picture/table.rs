@@ -14,7 +14,7 @@ use super::pictures::Pictures;
 use super::section::{DrawnAs, Section};
 use super::view::View;
 use crate::model::Axis;
-use crate::output::{Sheet, csv_line};
+use crate::output::{Sheet, table_line};
 use crate::plot::snapshots::field::Shown;
 
 /// Rows of a grid that are found at once.
@@ -40,16 +40,16 @@ impl Pictures {
         out.write_all(&self.head().text())?;
         let figure = self.figure_of(chosen.clone(), width);
         for (k, section) in chosen.zip(figure.sections) {
-            let mut before = csv_line([format!("{:?}", section.time)]);
+            let mut before = table_line([format!("{:?}", section.time)]);
             if let Some(names) = &self.names {
-                before = csv_line([format!("{:?}", section.time), names[k].clone()]);
+                before = table_line([format!("{:?}", section.time), names[k].clone()]);
             }
             before.pop();
             let mut write = |rows: &[Row]| -> io::Result<()> {
                 for ([x, y], sample) in rows {
                     out.write_all(&before)?;
                     write!(out, ",{x:?},{y:?},")?;
-                    let mut body = csv_line([&self.bodies[sample.body]]);
+                    let mut body = table_line([&self.bodies[sample.body]]);
                     body.pop();
                     out.write_all(&body)?;
                     match sample.value {

@@ -7,13 +7,13 @@ use crate::model::Axis;
 use crate::plot::PlotError;
 
 /// Components of a vector, in the order of the file.
-const VECTOR: [&str; 3] = ["x", "y", "z"];
+pub const VECTOR: [&str; 3] = ["x", "y", "z"];
 
 /// Components of a symmetric tensor, in the order of the file, which is VTK's.
-const SYMMETRIC: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
+pub const SYMMETRIC: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
 
 /// Components of a tensor, row by row.
-const TENSOR: [&str; 9] = ["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"];
+pub const TENSOR: [&str; 9] = ["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"];
 
 /// What the particles of a picture are coloured by.
 #[derive(Debug, Clone, PartialEq)]

@@ -285,6 +285,14 @@ pub fn title(path: &Path) -> Result<String, PlotError> {
     Ok(Snapshot::open(path)?.title)
 }
 
+/// Names of the bodies of a snapshot, in the order of their numbers.
+///
+/// # Errors
+/// [`PlotError::Read`] if the snapshot cannot be read.
+pub fn bodies(path: &Path) -> Result<Vec<String>, PlotError> {
+    Ok(Snapshot::open(path)?.bodies)
+}
+
 /// A JSON attribute of the group `/whipple`.
 fn json<T: serde::de::DeserializeOwned>(file: &SnapshotFile, name: &str) -> Result<T, PlotError> {
     let text = file.attribute("/whipple", name)?;

@@ -1,0 +1,233 @@
+//! The formats, and which files they make of some snapshots.
+
+use std::path::{Path, PathBuf};
+
+use super::frame::Frame;
+pub use super::frame::Wish;
+use super::surface::surfaces;
+use super::{ExportError, csv, lammps, npz, paraview, ply, stl, vtu, xyz};
+use crate::model::readable::one_line;
+use crate::output::NewFile;
+
+/// What others read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Format {
+    /// LAMMPS dump, a text with all snapshots: OVITO, VMD, LAMMPS
+    Lammps,
+    /// Extended XYZ, a text with all snapshots: OVITO, ASE
+    Xyz,
+    /// VTK's unstructured grid, with a .pvd of a series: ParaView, VTK, PyVista
+    Vtu,
+    /// Cloud of points with the colours of bodies: MeshLab, CloudCompare, Open3D
+    Ply,
+    /// Surface of each body: Blender, MeshLab, CAD
+    Stl,
+    /// Comma-separated values, a row for each particle
+    Csv,
+    /// NumPy arrays, one for each field
+    #[value(alias = "npy")]
+    Npz,
+    /// Script that opens the run in ParaView, coloured by body and mirrored
+    Paraview,
+}
+
+/// Where files go.
+#[derive(Debug, Clone)]
+pub struct Place {
+    /// The folder.
+    pub folder: PathBuf,
+    /// The only file, if it has a name of its own.
+    pub file: Option<PathBuf>,
+}
+
+impl Format {
+    /// What its files end with.
+    #[must_use]
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Lammps => "lammpstrj",
+            Self::Xyz => "xyz",
+            Self::Vtu => "vtu",
+            Self::Ply => "ply",
+            Self::Stl => "stl",
+            Self::Csv => "csv",
+            Self::Npz => "npz",
+            Self::Paraview => "py",
+        }
+    }
+
+    /// Whether one file holds all snapshots.
+    #[must_use]
+    pub fn is_series(self) -> bool {
+        matches!(self, Self::Lammps | Self::Xyz)
+    }
+
+    /// Whether it tells of bodies by number alone.
+    #[must_use]
+    pub fn numbers_bodies(self) -> bool {
+        matches!(self, Self::Lammps)
+    }
+}
+
+/// Writes snapshots, at least one, and tells the path of each file that is there.
+///
+/// # Errors
+/// [`ExportError`] if a snapshot cannot be read, has not what is wished for, or a file cannot be
+/// written.
+pub fn export(
+    snapshots: &[PathBuf],
+    format: Format,
+    wish: &Wish,
+    place: &Place,
+    tell: &mut dyn FnMut(&Path),
+) -> Result<(), ExportError> {
+    if format.is_series() {
+        return write_series(snapshots, format, wish, place, tell);
+    }
+    let ending = format.ending();
+    if place.file.is_some() && snapshots.len() > 1 {
+        return Err(several(format!("{} snapshots", snapshots.len())));
+    }
+    let mut written = Vec::new();
+    for snapshot in snapshots {
+        let frame = Frame::open(snapshot, wish)?;
+        let name = stem(snapshot);
+        if format == Format::Stl {
+            write_surfaces(&frame, wish, &name, place, tell)?;
+            continue;
+        }
+        let path = target(place, &format!("{name}.{ending}"));
+        let mut out = NewFile::create(&path)?;
+        match format {
+            Format::Vtu => vtu::write(&frame, &mut out)?,
+            Format::Ply => ply::write(&frame, &mut out)?,
+            Format::Csv => csv::write(&frame, &mut out)?,
+            _ => npz::write(&frame, &mut out)?,
+        }
+        out.finish()?;
+        tell(&path);
+        written.push((frame.snapshot.time, format!("{name}.{ending}")));
+    }
+    if format == Format::Vtu && snapshots.len() > 1 {
+        let path = place.folder.join(format!("{SERIES}.pvd"));
+        let mut out = NewFile::create(&path)?;
+        out.put(vtu::index(&written).as_bytes())?;
+        out.finish()?;
+        tell(&path);
+    }
+    Ok(())
+}
+
+/// Writes the script that opens a run, of which `snapshot` is one, or a snapshot alone.
+///
+/// # Errors
+/// As [`export`].
+pub fn script(
+    run: Option<&Path>,
+    snapshot: &Path,
+    place: &Place,
+    tell: &mut dyn FnMut(&Path),
+) -> Result<(), ExportError> {
+    let path = target(place, paraview::NAME);
+    let mut out = NewFile::create(&path)?;
+    paraview::write(run, snapshot, &mut out)?;
+    out.finish()?;
+    tell(&path);
+    Ok(())
+}
+
+/// What a file of several snapshots is called.
+const SERIES: &str = "snapshots";
+
+/// All snapshots in one file.
+fn write_series(
+    snapshots: &[PathBuf],
+    format: Format,
+    wish: &Wish,
+    place: &Place,
+    tell: &mut dyn FnMut(&Path),
+) -> Result<(), ExportError> {
+    let ending = format.ending();
+    let name = match snapshots {
+        [only] => stem(only),
+        _ => SERIES.to_owned(),
+    };
+    let path = target(place, &format!("{name}.{ending}"));
+    let mut out = NewFile::create(&path)?;
+    let mut apart = None;
+    for snapshot in snapshots {
+        let mut frame = Frame::open(snapshot, wish)?;
+        // The first has all particles that the others have.
+        frame.apart = match apart {
+            Some(apart) => apart,
+            None => *apart.insert(frame.distance_of_ids()?),
+        };
+        match format {
+            Format::Lammps => lammps::write(&frame, &mut out)?,
+            _ => xyz::write(&frame, &mut out)?,
+        }
+    }
+    out.finish()?;
+    tell(&path);
+    Ok(())
+}
+
+fn write_surfaces(
+    frame: &Frame,
+    wish: &Wish,
+    name: &str,
+    place: &Place,
+    tell: &mut dyn FnMut(&Path),
+) -> Result<(), ExportError> {
+    let surfaces = surfaces(frame, wish.cell)?;
+    let bodies = frame.snapshot.bodies.iter().zip(surfaces);
+    let wanted = |body: &String| wish.bodies.is_empty() || wish.bodies.contains(body);
+    let there = bodies.filter(|(body, surface)| wanted(body) && !surface.is_empty());
+    let there: Vec<_> = there.collect();
+    if there.is_empty() {
+        return Err(frame.wrong("no particles of the bodies are there"));
+    }
+    if place.file.is_some() && there.len() > 1 {
+        return Err(several(format!("the surfaces of {} bodies", there.len())));
+    }
+    for (body, surface) in there {
+        let path = target(place, &format!("{name}-{}.stl", file_name(body)));
+        let mut out = NewFile::create(&path)?;
+        stl::write(body, frame.snapshot.time, &surface, &mut out)?;
+        out.finish()?;
+        tell(&path);
+    }
+    Ok(())
+}
+
+fn several(what: String) -> ExportError {
+    ExportError::Options(format!(
+        "{what} cannot have one name: give --out a folder, with / at its end"
+    ))
+}
+
+fn target(place: &Place, name: &str) -> PathBuf {
+    place
+        .file
+        .clone()
+        .unwrap_or_else(|| place.folder.join(name))
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned()
+}
+
+/// A body's name as a part of that of a file.
+fn file_name(body: &str) -> String {
+    let sound = |c: char| {
+        if c.is_alphanumeric() || "-_".contains(c) {
+            c
+        } else {
+            '_'
+        }
+    };
+    one_line(body).chars().map(sound).collect()
+}

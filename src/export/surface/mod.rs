@@ -1,0 +1,89 @@
+//! Surfaces of bodies: where pictures draw their outlines, in three dimensions.
+//!
+//! A place belongs to a body where the weights of the body's particles add up to one, and to no
+//! less than those of any other body (`plot/picture/cells.rs`). So the level of a body b at a place is
+//!
+//! ```text
+//! f_b = S_b^¼ − max(1, max_{c ≠ b} S_c^¼) ,   S_b = Σ_b w ,
+//! ```
+//!
+//! inside where it is not negative; two bodies in touch share their interface. Space is cut into
+//! cells of half the finest spacing, and each that a surface passes through is cut by
+//! [`cubes`].
+
+mod blocks;
+mod cubes;
+mod level;
+
+use rayon::prelude::*;
+
+use super::ExportError;
+use super::frame::Frame;
+use blocks::Blocks;
+use level::Ball;
+
+/// Corners (m) of a triangle, which turn against the clock as seen from outside.
+pub type Triangle = [[f64; 3]; 3];
+
+/// The most particles of one snapshot: their numbers have 32 bits.
+const MOST: u64 = u32::MAX as u64;
+
+/// The surface of each body of the model.
+pub fn surfaces(frame: &Frame, cell: Option<f64>) -> Result<Vec<Vec<Triangle>>, ExportError> {
+    if frame.snapshot.dimension != 3 {
+        let reason = format!(
+            "surfaces are of models of three dimensions, and this has {}",
+            frame.snapshot.dimension
+        );
+        return Err(frame.wrong(reason));
+    }
+    let pitch = cell.unwrap_or(0.5 * frame.snapshot.finest());
+    let balls = balls(frame)?;
+    let blocks = Blocks::new(&balls, pitch).map_err(|reason| frame.wrong(reason))?;
+    let bodies = frame.snapshot.bodies.len();
+    let found: Vec<Vec<(u32, Triangle)>> = (0..blocks.count())
+        .into_par_iter()
+        .map(|block| blocks.triangles(&balls, block))
+        .collect();
+    let mut surfaces = vec![Vec::new(); bodies];
+    for (body, triangle) in found.into_iter().flatten() {
+        surfaces[body as usize].push(triangle);
+    }
+    Ok(surfaces)
+}
+
+/// What fills space: all particles that are part of the model still, and their images.
+fn balls(frame: &Frame) -> Result<Vec<Ball>, ExportError> {
+    let snapshot = &frame.snapshot;
+    let images = frame.images.numbers();
+    let rows = snapshot.file.particles() as u64 * images.len() as u64;
+    if rows > MOST {
+        return Err(frame.wrong(format!("{rows} particles are too many for surfaces")));
+    }
+    let mut balls = Vec::new();
+    for rows in snapshot.chunks() {
+        let bodies = snapshot.body_of(rows.clone())?;
+        let sizes = snapshot.sizes(rows.clone(), &bodies)?;
+        let bears = frame.matter(rows.clone())?;
+        let points = snapshot.file.points(rows)?;
+        let all = points.iter().zip(bodies).zip(sizes).zip(bears);
+        for (((point, body), size), _) in all.filter(|(_, bears)| *bears) {
+            if !(point.iter().all(|x| x.is_finite()) && size > 0.0) {
+                continue;
+            }
+            balls.extend(images.iter().map(|&image| {
+                let x = |axis: usize| frame.images.coordinate(image, axis, point[axis]);
+                Ball {
+                    centre: [x(0), x(1), x(2)],
+                    size,
+                    #[expect(
+                        clippy::cast_possible_truncation,
+                        reason = "bodies are as many as an attribute can name"
+                    )]
+                    body: body as u32,
+                }
+            }));
+        }
+    }
+    Ok(balls)
+}
