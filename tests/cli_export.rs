@@ -5,6 +5,7 @@
 mod cli_support;
 mod python_support;
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -83,6 +84,17 @@ fn images_have_their_signs_and_fields_are_made_as_plots_make_them() {
     let ended = export(&run, &arguments).with_code(0);
     assert_eq!(ended.stdout, format!("wrote {out_text}\n"));
     check("mirror", [&run, &out]);
+
+    // Readers of dumps want each id once.
+    let out = place.path().join("mirrored.lammpstrj");
+    let arguments = ["--to", "lammps", "--mirror", "--out", out.to_str().unwrap()];
+    export(&run, &arguments).with_code(0);
+    let text = fs::read_to_string(&out).unwrap();
+    let rows = text
+        .lines()
+        .skip_while(|line| !line.starts_with("ITEM: ATOMS"));
+    let ids = rows.skip(1).filter_map(|row| row.split(' ').next());
+    assert_eq!(ids.collect::<BTreeSet<_>>().len(), 4 * 3056);
 }
 
 #[test]

@@ -168,7 +168,7 @@ fn derived(snapshot: &Snapshot, name: &str) -> Result<Column, ExportError> {
     let shown = parts.iter().map(find).collect::<Result<Vec<_>, _>>()?;
     let (unit, label) = match shown.first() {
         Some(Shown::Field(field)) => (field.unit.clone(), field.label.clone()),
-        _ => Default::default(),
+        _ => (String::new(), String::new()),
     };
     let label = if whole { name.replace('_', " ") } else { label };
     let told = format!("Made from the snapshot's fields: {label}.");

@@ -11,6 +11,10 @@ use crate::output::NewFile;
 
 /// What others read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[expect(
+    clippy::doc_markdown,
+    reason = "the comments are the command line's help"
+)]
 pub enum Format {
     /// LAMMPS dump, a text with all snapshots: OVITO, VMD, LAMMPS
     Lammps,
@@ -86,7 +90,7 @@ pub fn export(
     }
     let ending = format.ending();
     if place.file.is_some() && snapshots.len() > 1 {
-        return Err(several(format!("{} snapshots", snapshots.len())));
+        return Err(several(&format!("{} snapshots", snapshots.len())));
     }
     let mut written = Vec::new();
     for snapshot in snapshots {
@@ -188,7 +192,7 @@ fn write_surfaces(
         return Err(frame.wrong("no particles of the bodies are there"));
     }
     if place.file.is_some() && there.len() > 1 {
-        return Err(several(format!("the surfaces of {} bodies", there.len())));
+        return Err(several(&format!("the surfaces of {} bodies", there.len())));
     }
     for (body, surface) in there {
         let path = target(place, &format!("{name}-{}.stl", file_name(body)));
@@ -200,7 +204,7 @@ fn write_surfaces(
     Ok(())
 }
 
-fn several(what: String) -> ExportError {
+fn several(what: &str) -> ExportError {
     ExportError::Options(format!(
         "{what} cannot have one name: give --out a folder, with / at its end"
     ))

@@ -1,4 +1,4 @@
-//! NumPy's `.npz`: an array for each field, shaped as in the snapshot, in a ZIP archive of stored entries.
+//! `NumPy`'s `.npz`: an array for each field, shaped as in the snapshot, in a ZIP archive of stored entries.
 //!
 //! Layouts: the module numpy.lib.format (version 1.0), and PKWARE's APPNOTE.TXT 6.3, sections 4.3 and
 //! 4.5.3 (sizes beyond 4 GB).

@@ -1,7 +1,7 @@
 //! VTU, XML with appended binary data, which ParaView, VTK, PyVista and meshio read, and `.pvd`, the index
 //! of a series.
 //!
-//! Layout: VTK File Formats, https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html.
+//! Layout: VTK File Formats, <https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>.
 
 use std::fmt::Write as _;
 

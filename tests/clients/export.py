@@ -124,7 +124,7 @@ def csv(path, snapshot):
     assert told["x"] == "m" and told["deviatoric_stress_xy"] == "Pa" and told["id"] == "-"
     assert told["mass"] == units["mass"]
     table = pd.read_csv(path, comment="#", float_precision="round_trip")
-    assert f"# time: {float(time)!r} s" in lines[:3]
+    assert float(lines[2].removeprefix("# time: ").removesuffix(" s")) == time
     for k, axis in enumerate("xyz"):
         same(table[axis].to_numpy(), points[:, k], axis)
     assert (table["body"] == np.array(bodies)[fields["body"]]).all()
@@ -232,7 +232,7 @@ def mirror(run, path):
             # Minus zero and zero are one number.
             assert (told[name][ours] == whole[name][order]).all(), name
         stress = np.asarray(whole.stress())[order]
-        assert np.allclose(told["stress"][ours], stress, rtol=1e-14, atol=1e-6)
+        assert np.allclose(told["stress"][ours], stress, rtol=1e-12, atol=1e-4)
         s = whole["deviatoric_stress"][order]
         von_mises = np.sqrt(1.5 * ((s[:, :3] ** 2).sum(1) + 2.0 * (s[:, 3:] ** 2).sum(1)))
         assert np.allclose(told["von_mises"][ours], von_mises, rtol=1e-9)

@@ -1,5 +1,10 @@
 //! Space in blocks of cells, of which only those exist that particles reach.
 
+#![expect(
+    clippy::cast_precision_loss,
+    reason = "numbers of cells along a block are small"
+)]
+
 use std::collections::BTreeMap;
 
 use super::Triangle;
@@ -111,7 +116,7 @@ impl Blocks {
 }
 
 /// Cuts all cells of a block.
-fn cut(coordinates: &Coordinates, level: &Nodes, mut tell: impl FnMut(Triangle)) {
+fn cut(coordinates: &Coordinates, level: &[f64], mut tell: impl FnMut(Triangle)) {
     let [x, y, z] = coordinates;
     for k in 0..CELLS {
         for j in 0..CELLS {

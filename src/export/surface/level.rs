@@ -37,7 +37,7 @@ pub fn node(i: usize, j: usize, k: usize) -> usize {
 }
 
 /// Adds the weights of a particle to the nodes.
-pub fn add(ball: &Ball, coordinates: &Coordinates, sums: &mut Nodes) {
+pub fn add(ball: &Ball, coordinates: &Coordinates, sums: &mut [f64]) {
     let square = |axis: usize, n: usize| {
         let distance = (coordinates[axis][n] - ball.centre[axis]) / ball.size;
         distance * distance
