@@ -306,3 +306,50 @@ fn a_terminal_gets_a_bar_and_a_pipe_gets_lines() {
     assert_eq!(ended.complaints("").len(), 0, "{ended:#?}");
     assert!(!ended.stdout.contains('█'), "{ended:#?}");
 }
+
+/// A short run has a row of each step; by time or by steps, and through a restart between rows, they are those
+/// that the case asks for.
+#[test]
+fn rows_are_dense_enough_for_a_curve_or_as_the_case_says() {
+    let place = tempfile::tempdir().unwrap();
+    let run = |name: &str, number: usize, more: &[&str]| {
+        let folder = place.path().join(name);
+        let mut command = ranks(number);
+        command.args(["run", &quarter_impact(), "--set", "spacing=0.05mm"]);
+        end(command.args(more).arg("--out").arg(&folder)).with_code(0);
+        folder
+    };
+    let steps = |folder: &Path, name: &str| {
+        let rows = table(&folder.join(name));
+        let key = if name == "bodies.csv" { "time" } else { "step" };
+        rows[key].len()
+    };
+    let usual = run("usual", 2, &[]);
+    let (_, last, _) = status(&usual);
+    assert!((60..250).contains(&last), "{last}");
+    let rows = usize::try_from(last).unwrap() + 1;
+    assert_eq!(steps(&usual, "history.csv"), rows);
+    assert_eq!(steps(&usual, "performance.csv"), rows);
+    assert_eq!(steps(&usual, "bodies.csv"), 2 * rows);
+
+    let short = run("short", 1, &["--set", "run.max_steps=7"]);
+    assert_eq!(steps(&short, "history.csv"), 8);
+
+    // At 0, 0.05, 0.1, 0.15 us and at the end.
+    let every = ["--set", "output.history_every=0.05us"];
+    let timed = run("timed", 1, &every);
+    assert_eq!(steps(&timed, "history.csv"), 5);
+    for (at, due) in table(&timed.join("history.csv"))["time"].iter().zip(0_u8..) {
+        let late = at - f64::from(due) * 0.05e-6;
+        assert!((-1e-20..5e-9).contains(&late), "{at}");
+    }
+    let legs = run("legs", 3, &[&every[..], &["--until", "0.07us"]].concat());
+    end(ranks(2).arg("restart").arg(&legs)).with_code(0);
+    assert_same(&legs, &timed);
+
+    let few = run("few", 1, &["--set", "output.history_every=50"]);
+    let end = u32::try_from(last).unwrap();
+    let due = (0..end).step_by(50).chain([end]);
+    let expected: Vec<f64> = due.map(f64::from).collect();
+    assert_eq!(table(&few.join("history.csv"))["step"], expected);
+}

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::{Axis, Region};
+use super::{Axis, Cadence, Region};
 
 /// Whether the smoothing length of the SPH sums follows the density. Contact always keeps the
 /// reference h₀.
@@ -122,8 +122,9 @@ pub struct OutputOptions {
     pub checkpoint_every_wall: Option<ClockInterval>,
     /// How many checkpoints are kept.
     pub checkpoints_kept: usize,
-    /// Steps between two rows of `history.csv`, `contacts.csv` and `performance.csv`.
-    pub history_every: u64,
+    /// When rows of `history.csv` and the tables that go with it are written; some hundreds of a run if
+    /// absent.
+    pub history_every: Option<Cadence>,
     /// Names of the snapshot fields; the field table's defaults when empty.
     pub fields: Vec<String>,
     /// Further snapshots, with schedules of their own.

@@ -25,8 +25,8 @@ use crate::comm::Comm;
 use crate::model::NumericalFailurePolicy;
 use crate::output::snapshot::Plan;
 use crate::output::{
-    Log, OutputError, Phase, Rows, RunFolder, Schedule, Status, agree, on_root, post_mortem,
-    write_json,
+    Log, OutputError, Phase, RowSchedule, Rows, RunFolder, Schedule, Status, agree, on_root,
+    post_mortem, write_json,
 };
 use crate::step::{self, Simulation, StepError, Timers};
 
@@ -259,8 +259,11 @@ impl<'a> Driver<'a> {
                 .checkpoint_every_steps
                 .is_some_and(|n| step.is_multiple_of(n))
             || stop::wants_checkpoint(self.simulation.step_control.agreed_requests);
-        if finished || step.is_multiple_of(output.history_every.max(1)) {
+        let rows = RowSchedule::of(&self.simulation.case);
+        if finished || rows.sums_are_due(step, before, now) {
             self.simulation.diagnose(comm);
+        }
+        if finished || rows.is_due(step, before, now) {
             self.write_row(comm)?;
         }
         let options = self.simulation.case.fragments;

@@ -76,7 +76,7 @@ pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
             checkpoint_every_steps: None,
             checkpoint_every_wall: None,
             checkpoints_kept: 2,
-            history_every: 10,
+            history_every: None,
             fields: Vec::new(),
             snapshots: Vec::new(),
             sharing: whipple::model::Sharing::default(),

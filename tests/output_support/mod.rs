@@ -78,7 +78,7 @@ pub fn case() -> Case {
             checkpoint_every_steps: None,
             checkpoint_every_wall: None,
             checkpoints_kept: 2,
-            history_every: 1,
+            history_every: None,
             fields: Vec::new(),
             snapshots: Vec::new(),
             sharing: whipple::model::Sharing::default(),

@@ -9,7 +9,7 @@ use super::memory::Resident;
 use super::neighbours;
 use super::report::Row;
 use crate::comm::Comm;
-use crate::output::{Rows, checkpoint, from_root};
+use crate::output::{RowSchedule, Rows, checkpoint, from_root};
 use crate::particles::ParticleStore;
 use crate::step::{Phase, Simulation};
 
@@ -78,9 +78,10 @@ pub fn measure(
 
 /// A step and what `whipple run` does after it with all files off.
 fn step(comm: &Comm, simulation: &mut Simulation) -> Result<(), String> {
+    let before = simulation.state.time;
     simulation.advance(comm).map_err(|e| e.to_string())?;
-    let every = simulation.case.output.history_every.max(1);
-    if simulation.state.step.is_multiple_of(every) {
+    let (step, now) = (simulation.state.step, simulation.state.time);
+    if RowSchedule::of(&simulation.case).sums_are_due(step, before, now) {
         simulation.diagnose(comm);
     }
     simulation.timers.lap(Phase::Output);

@@ -123,6 +123,9 @@ macro_rules! described_way {
     (number, $definitions:ident, $make:expr) => {
         serde_json::json!({ "type": "number" })
     };
+    (count, $definitions:ident, $make:expr) => {
+        serde_json::json!({ "type": "integer" })
+    };
     ($way:ident, $definitions:ident, $make:expr) => {
         $crate::input::schema::describe::argument($definitions, $make)
     };
@@ -137,6 +140,11 @@ macro_rules! way {
     };
     (truth, $made:ident, $make:expr) => {
         fn visit_bool<E: Error>(self, value: bool) -> Result<$made, E> {
+            Ok($make(value))
+        }
+    };
+    (count, $made:ident, $make:expr) => {
+        fn visit_i64<E: Error>(self, value: i64) -> Result<$made, E> {
             Ok($make(value))
         }
     };

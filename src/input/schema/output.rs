@@ -1,5 +1,9 @@
 //! What is written, as it is typed.
 
+use std::fmt;
+
+use serde::de::value::StrDeserializer;
+use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
@@ -22,8 +26,8 @@ optional_tables! {
         mean_time_between_failures: Option<Placed<Time>>,
         /// How many are kept; 2 if absent.
         checkpoints_kept: Option<Spanned<i64>>,
-        /// Steps between rows of the histories; 10 if absent.
-        history_every: Option<Spanned<i64>>,
+        /// Steps, or time, between rows of the histories; 250 rows a run if absent.
+        history_every: Option<Spanned<CadenceParams>>,
         /// Snapshot fields, at least one; those of the table of fields if absent.
         fields: Option<Spanned<Vec<Spanned<String>>>>,
         /// How many ranks write; all if absent.
@@ -72,5 +76,21 @@ impl<'de> Deserialize<'de> for ClockParams {
                 _ => quantity::<Time>(text).map(Self::Every),
             },
         })
+    }
+}
+
+/// How often, by steps or by time.
+#[derive(Debug, Clone, Copy)]
+pub enum CadenceParams {
+    /// Every so many steps.
+    Steps(i64),
+    /// Every so much time.
+    Time(Quantity<Time>),
+}
+
+typed_as! {
+    CadenceParams: "a whole number of steps or a time with a unit, such as 10 or \"0.01 us\"" {
+        count: CadenceParams::Steps;
+        word: CadenceParams::Time;
     }
 }

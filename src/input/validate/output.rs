@@ -7,10 +7,10 @@ use super::named::check_listed;
 use super::region::KeepReader;
 use crate::input::names;
 use crate::input::quantity::{Placed, Time};
-use crate::input::schema::{ClockParams, OutputParams, SnapshotParams};
+use crate::input::schema::{CadenceParams, ClockParams, OutputParams, SnapshotParams};
 use crate::input::source::Diagnostic;
 use crate::material::Material;
-use crate::model::{ClockInterval, OutputOptions, Sharing, SnapshotSchedule};
+use crate::model::{Cadence, ClockInterval, OutputOptions, Sharing, SnapshotSchedule};
 use crate::particles::{FIELDS, FieldId, TEMPERATURE, snapshot_names};
 
 /// A list of names as it is typed.
@@ -43,7 +43,7 @@ impl Reader<'_> {
                 .transpose()?,
             checkpoint_every_wall: clock_interval(params)?,
             checkpoints_kept: usize::try_from(kept).unwrap_or(usize::MAX),
-            history_every: whole(params.history_every.as_ref(), "history_every", 10, 1)?,
+            history_every: history_every(params)?,
             fields,
             snapshots,
             sharing: sharing(params)?,
@@ -170,6 +170,23 @@ fn clock_interval(params: &OutputParams) -> Result<Option<ClockInterval>, Diagno
             let time = Spanned::new(every.span(), *time);
             let key = "checkpoint_every_wall";
             ClockInterval::Fixed(number(Some(&time), key, 0.0, Allowed::Positive)?)
+        }
+    }))
+}
+
+fn history_every(params: &OutputParams) -> Result<Option<Cadence>, Diagnostic> {
+    let Some(every) = &params.history_every else {
+        return Ok(None);
+    };
+    let key = "history_every";
+    Ok(Some(match every.get_ref() {
+        CadenceParams::Steps(steps) => {
+            let steps = Spanned::new(every.span(), *steps);
+            Cadence::Steps(whole(Some(&steps), key, 0, 1)?)
+        }
+        CadenceParams::Time(time) => {
+            let time = Spanned::new(every.span(), *time);
+            Cadence::Time(number(Some(&time), key, 0.0, Allowed::Positive)?)
         }
     }))
 }
