@@ -121,8 +121,26 @@ fn a_wrong_command_line_is_told_once() {
     ] {
         assert_eq!(complaint(arguments), complaint_alone(arguments));
     }
-    let ended = end(ranks(2).arg("--version")).with_code(0);
+    let ended = end(ranks(2).arg("-V")).with_code(0);
     assert_eq!(ended.stdout.lines().count(), 1, "{ended:#?}");
+}
+
+/// The long form tells what a result may hang on, alone and once for all ranks.
+#[test]
+fn the_version_tells_the_libraries() {
+    let alone = end(command(WHIPPLE).arg("--version")).with_code(0);
+    let words: Vec<Vec<&str>> = (alone.stdout.lines())
+        .map(|line| line.split_whitespace().collect())
+        .collect();
+    assert_eq!(words[0], ["whipple", env!("CARGO_PKG_VERSION")]);
+    let names: Vec<&str> = words[1..].iter().map(|words| words[0]).collect();
+    assert_eq!(names, ["commit", "MPI", "HDF5", "instructions"]);
+    for line in &words[1..] {
+        assert!(line.len() > 1 && line.len() < 9, "{line:?}");
+    }
+    assert!(words[3][1].contains('.'), "{alone:#?}");
+    let ranks = end(ranks(2).arg("--version")).with_code(0);
+    assert_eq!(ranks.stdout, alone.stdout);
 }
 
 #[test]

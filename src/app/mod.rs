@@ -19,6 +19,7 @@ pub mod results;
 mod run;
 mod shell;
 mod sweep;
+mod version;
 pub mod which;
 
 use std::ffi::OsString;
@@ -91,7 +92,10 @@ pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
-            launch::once(|| tell(&error));
+            launch::once(|| match version::asked(&error) {
+                Some(text) => say::say(&text),
+                None => tell(&error),
+            });
             return ExitCode::from(if error.use_stderr() { EXIT_INPUT } else { 0 });
         }
     };

@@ -50,6 +50,17 @@ impl Session {
     }
 }
 
+/// Name and version of the MPI library, which need not be started.
+#[must_use]
+pub fn library() -> String {
+    let told = mpi::environment::library_version().unwrap_or_default();
+    // Some tell on several lines, or go on with how they were built.
+    let first = told.lines().next().unwrap_or_default();
+    let first = first.split(',').next().unwrap_or_default();
+    let words: Vec<&str> = first.split_whitespace().collect();
+    words.join(" ")
+}
+
 /// A group of ranks.
 pub struct Comm {
     kind: Kind,

@@ -16,6 +16,13 @@ use hdf5::types::{FloatSize, IntSize, TypeDescriptor};
 
 use crate::comm::Comm;
 
+/// Version of the HDF5 library.
+#[must_use]
+pub fn library() -> String {
+    let (major, minor, release) = hdf5::library_version();
+    format!("{major}.{minor}.{release}")
+}
+
 /// One value of a dataset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Element {
