@@ -1,11 +1,13 @@
 //! `whipple check`: is a case sound, and what will it cost?
 
+mod explain;
+
 use std::path::{Path, PathBuf};
 
 use super::plan::duration;
 use super::plot::out;
 use crate::comm::Comm;
-use crate::input;
+use crate::input::{self, InputError};
 use crate::model::readable::{short, shown};
 use crate::model::{Body, Case, MeasureKind, Quantity, cube};
 use crate::output::{snapshot, unit_of_model};
@@ -39,6 +41,10 @@ pub struct CheckArgs {
     #[arg(value_parser = clap::value_parser!(u32).range(1..=100_000))]
     ranks: u32,
 
+    /// Print each key of the case with its value and where that comes from, as a case that can be run
+    #[arg(short, long, conflicts_with_all = ["picture", "ranks"])]
+    explain: bool,
+
     /// Draw the particles as they will begin into this SVG or PNG file: a section, and what is seen of them
     /// along the axes
     #[arg(short, long, value_name = "FILE")]
@@ -64,6 +70,9 @@ pub fn run(args: &CheckArgs) -> u8 {
             return EXIT_INPUT;
         }
     };
+    if args.explain {
+        return told(explain::explain(&args.case, &args.set));
+    }
     if let Err(error) = snapshot::quantities(&case.output.fields) {
         warn(&format!("error: {error}"));
         return EXIT_INPUT;
@@ -81,6 +90,20 @@ pub fn run(args: &CheckArgs) -> u8 {
         Ok(()) => 0,
         Err(error) => {
             warn(&format!("error: {error}"));
+            EXIT_INPUT
+        }
+    }
+}
+
+/// Prints what a case is; gives the exit code.
+fn told(text: Result<String, InputError>) -> u8 {
+    match text {
+        Ok(text) => {
+            say(text.trim_end());
+            0
+        }
+        Err(error) => {
+            warn(&error.to_string());
             EXIT_INPUT
         }
     }

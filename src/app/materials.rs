@@ -118,7 +118,7 @@ fn derived(material: &Material) -> String {
 }
 
 /// A value as the input writes it.
-fn written(value: Value) -> String {
+pub(super) fn written(value: Value) -> String {
     match value {
         Value::Word(word) => format!("\"{word}\""),
         Value::Number(number, "") => format!("{number:?}"),

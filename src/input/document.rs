@@ -18,11 +18,7 @@ pub fn read(
     overrides: &[String],
     places: &[usize],
 ) -> Result<(CaseParams, String), Diagnostic> {
-    let mut document = DeTable::parse(text).map_err(|e| translate(&e))?;
-    modernise(document.get_mut());
-    for (text, &start) in overrides.iter().zip(places) {
-        Override::parse(text, start)?.apply(document.get_mut())?;
-    }
+    let document = laid(text, overrides, places)?;
     let resolved = if overrides.is_empty() {
         text.to_owned()
     } else {
@@ -30,6 +26,20 @@ pub fn read(
     };
     let params = CaseParams::deserialize(toml::Deserializer::from(document));
     Ok((params.map_err(|e| translate(&e))?, resolved))
+}
+
+/// The document with its overrides laid over it.
+pub fn laid<'t>(
+    text: &'t str,
+    overrides: &'t [String],
+    places: &[usize],
+) -> Result<Spanned<DeTable<'t>>, Diagnostic> {
+    let mut document = DeTable::parse(text).map_err(|e| translate(&e))?;
+    modernise(document.get_mut());
+    for (text, &start) in overrides.iter().zip(places) {
+        Override::parse(text, start)?.apply(document.get_mut())?;
+    }
+    Ok(document)
 }
 
 /// The document as text, headed by the overrides in it.

@@ -8,6 +8,7 @@ mod case_file;
 mod cloud;
 mod difference;
 mod document;
+mod explain;
 pub(crate) mod file;
 mod forms;
 mod formula;
@@ -30,6 +31,7 @@ use source::{Diagnostic, Sources};
 
 pub use case_file::text;
 pub use difference::{Difference, differences};
+pub use explain::{Explained, explain};
 pub use file::{content, open_regular};
 
 /// The JSON schema of cases.

@@ -112,7 +112,7 @@ tables! {
     RunParams {
         /// End of the case.
         end_time: Placed<Time>,
-        /// Largest number of steps; no limit if absent.
+        /// Largest number of steps; no bound if absent.
         max_steps: Option<Spanned<i64>>,
     }
 
@@ -126,7 +126,7 @@ tables! {
         shape: Option<Spanned<ShapeParams>>,
         /// Those of a file, in place of a shape and its filling.
         particles: Option<Spanned<ParticlesParams>>,
-        /// Stacking of the particles; `"glass"`, in fewer dimensions and with stress points `"cubic"` if
+        /// Stacking of the particles; glass, in fewer than three dimensions and with stress points cubic, if
         /// absent.
         lattice: Option<Spanned<LatticeParams>>,
         /// Own particle spacing, or how it grows; the case's if absent.
@@ -145,7 +145,7 @@ tables! {
         plastic_strain: Option<Spanned<ProfileParams<Strain>>>,
         /// Moves the body until it touches another one; not moved if absent.
         touch: Option<TouchParams>,
-        /// Whether the body is rigid: it keeps its velocity, whatever acts on it; false if absent.
+        /// Whether the body is rigid and keeps its velocity, whatever acts on it; `false` if absent.
         rigid: Option<bool>,
         /// Motion of a rigid body; its `velocity` for ever if absent.
         motion: Option<Spanned<MotionParams>>,
@@ -223,7 +223,7 @@ tables! {
     SymmetryParams {
         /// Normal.
         axis: Spanned<Axis>,
-        /// Where the plane cuts the axis; 0 if absent.
+        /// Where the plane cuts the axis; `0` if absent.
         position: Option<Placed<Length>>,
     }
 }
@@ -233,39 +233,39 @@ optional_tables! {
     SphParams {
         /// How gradients are taken; `"corrected"` if absent.
         form: Option<Spanned<SphForm>>,
-        /// Smoothing length over particle spacing; 1.3 if absent.
+        /// Smoothing length over particle spacing; `1.3` if absent.
         smoothing: Option<Spanned<f64>>,
-        /// Linear viscosity; 1 if absent.
+        /// Linear viscosity; `1.0` if absent.
         alpha: Option<Spanned<f64>>,
-        /// Quadratic viscosity; 2 if absent.
+        /// Quadratic viscosity; `2.0` if absent.
         beta: Option<Spanned<f64>>,
         /// Constant or variable; `"constant"` if absent.
         smoothing_length: Option<SmoothingName>,
-        /// Smallest h/h₀ of a variable smoothing length; 0.6 if absent.
+        /// Smallest h/h₀ of a variable smoothing length; `0.6` if absent.
         smoothing_length_min: Option<Spanned<f64>>,
-        /// Largest h/h₀ of a variable smoothing length; 2 if absent.
+        /// Largest h/h₀ of a variable smoothing length; `2.0` if absent.
         smoothing_length_max: Option<Spanned<f64>>,
-        /// Factor of the artificial stress; 0 if absent.
+        /// Factor of the artificial stress; `0` if absent.
         artificial_stress: Option<Spanned<f64>>,
-        /// The Balsara switch; false if absent.
+        /// The Balsara switch; `false` if absent.
         balsara: Option<bool>,
-        /// Coefficient of the artificial conduction; 0 if absent.
+        /// Coefficient of the artificial conduction; `0` if absent.
         conduction: Option<Spanned<f64>>,
-        /// Factor of XSPH; 0 if absent.
+        /// Factor of XSPH; `0` if absent.
         xsph: Option<Spanned<f64>>,
-        /// Stiffness of the hourglass control of the corrected form; 0.1 if absent.
+        /// Stiffness of the hourglass control of the corrected form; `0.1` if absent.
         hourglass: Option<Spanned<f64>>,
     }
 
     /// `[time_step]`
     TimeStepParams {
-        /// Factor of the sound and viscosity criterion; 0.5 if absent.
+        /// Factor of the sound and viscosity criterion; `0.5` if absent.
         courant: Option<Spanned<f64>>,
-        /// Factor of the acceleration criterion; 0.25 if absent.
+        /// Factor of the acceleration criterion; `0.25` if absent.
         force: Option<Spanned<f64>>,
-        /// Safety factor of the contact criterion; 0.8 if absent.
+        /// Safety factor of the contact criterion; `0.8` if absent.
         contact: Option<Spanned<f64>>,
-        /// Upper bound; none if absent.
+        /// Upper bound; none but what materials demand if absent.
         max: Option<Placed<Time>>,
     }
 
@@ -273,11 +273,11 @@ optional_tables! {
     DomainParams {
         /// The first of `axes`, if it alone is said.
         axis: Option<Spanned<Axis>>,
-        /// Axes of the slabs, of the slabs of these, and so on; the longest first if absent.
+        /// Axes of the slabs, of the slabs of these, and so on; the longest of the others at each level if absent.
         axes: Option<Spanned<Vec<Spanned<Axis>>>>,
         /// How many of them there are at most; `"auto"` if absent.
         levels: Option<Spanned<LevelsParams>>,
-        /// Most steps between two balances; 25 if absent.
+        /// Most steps between two balances; `25` if absent.
         balance_every: Option<Spanned<i64>>,
         /// The box of interest; everything if absent.
         keep: Option<Spanned<KeepParams>>,

@@ -88,6 +88,16 @@ impl Sources {
         start
     }
 
+    /// The name of the text and the number of the line that an address is in.
+    pub fn place(&self, address: usize) -> (&str, usize) {
+        let after = self.0.partition_point(|s| s.start <= address);
+        let source = &self.0[after.saturating_sub(1)];
+        let bytes = source.text.as_bytes();
+        let before = &bytes[..(address - source.start).min(bytes.len())];
+        let ends = before.iter().filter(|byte| **byte == b'\n');
+        (&source.name, 1 + ends.count())
+    }
+
     /// The diagnostic as the user sees it: title, file, line, column, caret, help.
     pub fn render(&self, diagnostic: &Diagnostic) -> String {
         let after = self.0.partition_point(|s| s.start <= diagnostic.span.start);

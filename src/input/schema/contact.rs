@@ -21,9 +21,9 @@ optional_tables! {
     ContactParams {
         /// Mode of all pairs that have no own; `"overlap"` if absent.
         mode: Option<ModeName>,
-        /// Coefficients of friction; 0 if absent.
+        /// Coefficients of friction; `0` if absent.
         friction: Option<Spanned<FrictionParams>>,
-        /// Share of critical damping; 0 if absent.
+        /// Share of critical damping; `0` if absent.
         damping: Option<Spanned<f64>>,
         /// Contact of a body with itself; where matter may fail if absent.
         self_contact: Option<Spanned<SelfContactParams>>,

@@ -15,7 +15,7 @@ tables! {
         name: Option<Spanned<String>>,
         /// Where it is, or begins.
         at: Spanned<Vec<Placed<Length>>>,
-        /// Whether the particle nearest at the start carries it, else it is fixed; false if absent.
+        /// Whether the particle nearest at the start carries it, in place of being fixed in space; `false` if absent.
         moves: Option<bool>,
         /// Name of the body whose matter it reads; all that deform if absent.
         body: Option<Spanned<String>>,
@@ -25,7 +25,7 @@ tables! {
         along: Option<Spanned<NormalParams>>,
         /// Time between readings.
         every: Option<Placed<Time>>,
-        /// Steps between readings; each step if both are absent.
+        /// Steps between readings; each step, without a time, if absent.
         every_steps: Option<Spanned<i64>>,
     }
 
@@ -91,7 +91,7 @@ tables! {
         centre: Option<Spanned<Vec<Placed<Length>>>>,
         /// Radius of the ball.
         radius: Option<Placed<Length>>,
-        /// Whether it is what begins there and moves, or fixed in space; false if absent.
+        /// Whether it is what begins there and moves, in place of being fixed in space; `false` if absent.
         moves: Option<bool>,
         /// Name of the body whose matter it reads; all that deform if absent.
         body: Option<Spanned<String>>,
@@ -117,9 +117,9 @@ tables! {
 optional_tables! {
     /// `[measure]`
     MeasureParams {
-        /// Whether `bodies.csv` is written; true if absent.
+        /// Whether `bodies.csv` is written; `true` if absent.
         bodies: Option<bool>,
-        /// Whether plates, targets and bars are found by their shapes; true if absent.
+        /// Whether plates, targets and bars are found by their shapes; `true` if absent.
         usual: Option<bool>,
         /// Time between rows of `measures.csv`; a tenth of the run if absent.
         every: Option<Placed<Time>>,

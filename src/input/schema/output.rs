@@ -16,19 +16,19 @@ optional_tables! {
     OutputParams {
         /// Time between snapshots; the first and the last state alone if absent.
         snapshot_every: Option<Placed<Time>>,
-        /// Time between checkpoints; none if absent.
+        /// Time between checkpoints; the last one alone if absent.
         checkpoint_every: Option<Placed<Time>>,
-        /// Steps between checkpoints; none if absent.
+        /// Steps between checkpoints; none by steps if absent.
         checkpoint_every_steps: Option<Spanned<i64>>,
-        /// Time of the clock between checkpoints; none if absent.
+        /// Time of the clock between checkpoints; none by the clock if absent.
         checkpoint_every_wall: Option<Spanned<ClockParams>>,
         /// Mean time between failures of the machine, for `"auto"`; 6 h if absent.
         mean_time_between_failures: Option<Placed<Time>>,
-        /// How many are kept; 2 if absent.
+        /// How many are kept; `2` if absent.
         checkpoints_kept: Option<Spanned<i64>>,
         /// Steps, or time, between rows of the histories; 250 rows a run if absent.
         history_every: Option<Spanned<CadenceParams>>,
-        /// Snapshot fields, at least one; those of the table of fields if absent.
+        /// Snapshot fields, at least one; the usual ones if absent.
         fields: Option<Spanned<Vec<Spanned<String>>>>,
         /// How many ranks write; all if absent.
         writers: Option<Spanned<i64>>,
@@ -52,7 +52,7 @@ tables! {
         bodies: Option<Spanned<Vec<Spanned<String>>>>,
         /// What of space it holds; all if absent.
         region: Option<Spanned<KeepParams>>,
-        /// Whether numbers have 64 bits or 32; 64 if absent.
+        /// Whether numbers have 64 bits or 32; `"double"` if absent.
         precision: Option<Precision>,
     }
 }

@@ -11,13 +11,13 @@ use crate::model::Overlap;
 optional_tables! {
     /// `contact.overlap`
     OverlapParams {
-        /// Stiffness κ; 4 if absent.
+        /// Stiffness κ; `4`, or that of all pairs, if absent.
         stiffness: Option<Spanned<f64>>,
-        /// Stiffness `κ_c` of the core; 2.2 if absent.
+        /// Stiffness `κ_c` of the core; `2.2`, or that of all pairs, if absent.
         core_stiffness: Option<Spanned<f64>>,
-        /// Radius of the core in mean spacings; 0.6 if absent.
+        /// Radius of the core in mean spacings; `0.6`, or that of all pairs, if absent.
         core_radius: Option<Spanned<f64>>,
-        /// Along what it acts; `"pair"` if absent.
+        /// Along what it acts; `"pair"`, or that of all pairs, if absent.
         direction: Option<Spanned<DirectionName>>,
     }
 }

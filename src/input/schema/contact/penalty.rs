@@ -11,9 +11,9 @@ use crate::model::{Penalty, PenaltyLaw};
 optional_tables! {
     /// `contact.penalty`
     PenaltyParams {
-        /// Stiffness κ; 2 if absent.
+        /// Stiffness κ; `2`, or that of all pairs, if absent.
         stiffness: Option<Spanned<f64>>,
-        /// Law of the force; `"hertz"` if absent.
+        /// Law of the force; `"hertz"`, or that of all pairs, if absent.
         law: Option<PenaltyLawName>,
     }
 }

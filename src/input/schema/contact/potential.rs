@@ -15,13 +15,13 @@ const LARGEST_EXPONENT: u32 = 100;
 optional_tables! {
     /// `contact.potential`
     PotentialParams {
-        /// Stiffness k; 1 if absent.
+        /// Stiffness k; `1`, or that of all pairs, if absent.
         stiffness: Option<Spanned<f64>>,
-        /// Exponent n; 4 if absent.
+        /// Exponent n; `4`, or that of all pairs, if absent.
         exponent: Option<Spanned<i64>>,
-        /// Range of the force; `"support"` if absent.
+        /// Range of the force; `"support"`, or that of all pairs, if absent.
         range: Option<Spanned<RangeName>>,
-        /// Along what it acts; `"pair"` if absent.
+        /// Along what it acts; `"pair"`, or that of all pairs, if absent.
         direction: Option<Spanned<DirectionName>>,
     }
 }
