@@ -15,7 +15,7 @@ fn whipple(arguments: &[&str]) -> Ended {
     end(command(WHIPPLE).args(arguments))
 }
 
-const KINDS: [&str; 9] = [
+const KINDS: [&str; 10] = [
     "shield",
     "crater",
     "plate",
@@ -24,6 +24,7 @@ const KINDS: [&str; 9] = [
     "spall",
     "taylor",
     "rings",
+    "drop",
     "quarter",
 ];
 

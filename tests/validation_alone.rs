@@ -28,6 +28,7 @@ const INPUTS: &[&str] = &[
     "ogive-on-weldox",
     "punch",
     "quarter-impact",
+    "raindrop",
     "rubber-rings",
     "sliding-block",
     "sod",

@@ -18,7 +18,8 @@ use crate::run::say::{say, warn};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   whipple new my-shield --from shield
-  whipple new my-crater --from crater && whipple check my-crater --picture model.png")]
+  whipple new my-crater --from crater && \\
+      whipple check my-crater --picture model.png")]
 pub struct NewArgs {
     /// Folder of the case
     #[arg(value_name = "NAME")]
@@ -47,6 +48,8 @@ enum Kind {
     Taylor,
     /// Two rubber rings that meet: two dimensions
     Rings,
+    /// A raindrop on a plate: erosion; a minute on two ranks
+    Drop,
     /// The paper's sphere through a plate: seconds on two ranks
     Quarter,
 }
@@ -67,6 +70,7 @@ impl Kind {
             Self::Spall => ready!("flyer-spall"),
             Self::Taylor => ready!("taylor-bar"),
             Self::Rings => ready!("rubber-rings"),
+            Self::Drop => ready!("raindrop"),
             Self::Quarter => ready!("quarter-impact"),
         }
     }
