@@ -63,6 +63,17 @@ fn completions_and_pages_know_all_commands() {
             "{shell}"
         );
     }
+    // Keys of cases, of which a restart changes few.
+    let bash = whipple(&["generate", "completions", "bash"])
+        .with_code(0)
+        .stdout;
+    let keys = |line: &&str| line.contains("run.end_time=");
+    let lists: Vec<&str> = bash.lines().filter(keys).collect();
+    assert!(lists.len() > 4, "{lists:?}");
+    let all = |key: &str| lists.iter().all(|line| line.contains(key));
+    let some = |key: &str| lists.iter().any(|line| line.contains(key));
+    assert!(all(" output.history_every=") && !all(" body.0.velocity="));
+    assert!(some(" body.0.velocity=") && some(" sph.alpha="));
     let folder = tempdir().unwrap();
     let pages = folder.path().join("man1");
     whipple(&["generate", "man", pages.to_str().unwrap()]).with_code(0);

@@ -3,10 +3,12 @@
 mod materials;
 mod reference;
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use clap::Subcommand;
+use clap::builder::PossibleValuesParser;
+use clap::{Command, Subcommand};
 use clap_complete::Shell;
 
 use crate::input;
@@ -16,14 +18,15 @@ use crate::run::say::{say, warn};
 /// Write shell completions, man pages, the JSON schema of cases, or pages of the book
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
-  whipple generate completions bash > ~/.local/share/bash-completion/completions/whipple
+  whipple generate completions bash \\
+      > ~/.local/share/bash-completion/completions/whipple
   whipple generate man ~/.local/share/man/man1
   whipple generate schema > whipple.schema.json
   whipple generate reference > input-reference.md
   whipple generate materials > materials.md
 
-An editor completes and checks a case whose first line names the schema, with the extension
-\"Even Better TOML\" of VS Code or with Taplo:
+An editor completes and checks a case whose first line names the schema, with
+the extension \"Even Better TOML\" of VS Code or with Taplo:
   #:schema ./whipple.schema.json")]
 pub struct GenerateArgs {
     #[command(subcommand)]
@@ -32,7 +35,7 @@ pub struct GenerateArgs {
 
 #[derive(Debug, Subcommand)]
 enum What {
-    /// Completions for a shell, to the standard output
+    /// Completions for a shell, to the standard output, with the keys of cases for `--set`
     Completions {
         /// Shell
         shell: Shell,
@@ -51,13 +54,18 @@ enum What {
 }
 
 /// Runs the command, given that of the whole program; returns the exit code.
-pub fn run(args: &GenerateArgs, program: clap::Command) -> u8 {
+pub fn run(args: &GenerateArgs, program: Command) -> u8 {
     match &args.what {
         What::Completions { shell } => {
             let mut text = Vec::new();
-            let mut program = program;
+            let mut program = with_keys(program);
             clap_complete::generate(*shell, &mut program, "whipple", &mut text);
-            say(String::from_utf8_lossy(&text).trim_end());
+            let text = String::from_utf8_lossy(&text);
+            let text = match shell {
+                Shell::Bash => without_spaces(&text),
+                _ => text.into_owned(),
+            };
+            say(text.trim_end());
             0
         }
         What::Man { folder } => match write_pages(program, folder) {
@@ -85,7 +93,44 @@ pub fn run(args: &GenerateArgs, program: clap::Command) -> u8 {
     }
 }
 
-fn write_pages(program: clap::Command, folder: &Path) -> std::io::Result<()> {
+/// The program whose `--set` takes keys of the schema and nothing else, for shells to complete them.
+fn with_keys(program: Command) -> Command {
+    let words = |keys: BTreeSet<String>| {
+        // They last as long as the program, which ends once the script is written.
+        let words = keys.into_iter().map(|key| &*format!("{key}=").leak());
+        PossibleValuesParser::new(words.collect::<Vec<&'static str>>())
+    };
+    let (all, few) = (words(input::keys()), words(input::restartable_keys()));
+    program.mut_subcommands(|command| {
+        if command
+            .get_arguments()
+            .all(|argument| argument.get_id() != "set")
+        {
+            return command;
+        }
+        let keys = match command.get_name() {
+            "restart" => few.clone(),
+            _ => all.clone(),
+        };
+        command.mut_arg("set", |argument| argument.value_parser(keys))
+    })
+}
+
+/// A script for bash in which no space follows the `=` of a key.
+fn without_spaces(script: &str) -> String {
+    let mut lines = Vec::new();
+    for line in script.lines() {
+        let words = line.trim_start();
+        if words.starts_with("COMPREPLY=") && words.contains("run.end_time=") {
+            let indent = &line[..line.len() - words.len()];
+            lines.push(format!("{indent}compopt -o nospace"));
+        }
+        lines.push(line.to_owned());
+    }
+    lines.join("\n")
+}
+
+fn write_pages(program: Command, folder: &Path) -> std::io::Result<()> {
     fs::create_dir_all(folder)?;
     clap_mangen::generate_to(program, folder)
 }

@@ -21,7 +21,7 @@ use out::{named, save, target, unsaved, write, write_chart};
 /// With --profile the particles of one row along a line are drawn as dots over their coordinate.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = "Examples:
-  whipple plot runs/impact                                   last snapshot, by body
+  whipple plot runs/impact                                last snapshot, by body
   whipple plot runs/impact --field pressure --time 0.1us
   whipple plot runs/impact --panels --time 0us,0.1us,0.2us   side by side
   whipple plot runs/impact --all --field velocity.z --range -7:1km/s

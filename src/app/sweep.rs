@@ -50,8 +50,9 @@ pub struct Shares {
 /// --format svg they are SVG.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
-    after_help = "Values: a list (\"3, 5, 7 km/s\"), a range (\"3..9 km/s\", five values, \
-\"3..9/7 km/s\", seven). A number for a vector, such as a velocity, is its length: its direction stays.
+    after_help = "Values: a list (\"3, 5, 7 km/s\"), a range (\"3..9 km/s\", five values,
+\"3..9/7 km/s\", seven). A number for a vector, such as a velocity, is its length:
+its direction stays.
 
 Examples:
   whipple sweep inputs/quarter-impact --vary body.sphere.velocity=\"3..9/4 km/s\" \\
@@ -60,10 +61,12 @@ Examples:
       --vary body.sphere.velocity=\"2..8 km/s\" --bisect \"failed wall\"
   whipple sweep sweeps/shield                             # goes on
 
-A bisection finds where in the range of the last key its condition changes: an answer compared, as in \
-\"fragments.largest_mass<1 mg\" or \"history.interpenetrated==0\".
+A bisection finds where in the range of the last key its condition changes: an
+answer compared, as in \"fragments.largest_mass<1 mg\" or
+\"history.interpenetrated==0\".
 
-Exit codes: 0 all points have answers, 1 some have failed, 2 wrong input, 75 some were stopped."
+Exit codes: 0 all points have answers, 1 some have failed, 2 wrong input, 75 some
+were stopped."
 )]
 pub struct SweepArgs {
     /// Case file (TOML), a folder with a case.toml, or the folder of a sweep to go on with

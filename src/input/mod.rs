@@ -12,6 +12,7 @@ mod explain;
 pub(crate) mod file;
 mod forms;
 mod formula;
+mod keys;
 mod names;
 mod obj;
 mod overrides;
@@ -33,6 +34,7 @@ pub use case_file::text;
 pub use difference::{Difference, differences};
 pub use explain::{Explained, explain};
 pub use file::{content, open_regular};
+pub use keys::{keys, restartable_keys};
 
 /// The JSON schema of cases.
 #[must_use]
