@@ -1,9 +1,11 @@
 //! `whipple check`: is a case sound, and what will it cost?
 
+mod document;
 mod explain;
 
 use std::path::{Path, PathBuf};
 
+use super::form::Form;
 use super::plan::duration;
 use super::plot::out;
 use crate::comm::Comm;
@@ -17,6 +19,7 @@ use crate::populate;
 use crate::preflight::{self, memory};
 use crate::run::exit::EXIT_INPUT;
 use crate::run::say::{counted, say, warn};
+use document::document;
 
 /// Check a case without running it: particles by body, memory, expected steps
 ///
@@ -25,8 +28,9 @@ use crate::run::say::{counted, say, warn};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   whipple check inputs/quarter-impact
-  whipple check inputs/quarter-impact --picture model.png    see the particles as they will begin
-  whipple check inputs/quarter-impact/case.toml --set spacing=0.01mm")]
+  whipple check inputs/quarter-impact --picture model.png
+  whipple check inputs/quarter-impact/case.toml --set spacing=0.01mm
+  whipple check inputs/quarter-impact --explain")]
 pub struct CheckArgs {
     /// Case file (TOML), or a folder with a case.toml
     #[arg(value_name = "CASE")]
@@ -42,8 +46,11 @@ pub struct CheckArgs {
     ranks: u32,
 
     /// Print each key of the case with its value and where that comes from, as a case that can be run
-    #[arg(short, long, conflicts_with_all = ["picture", "ranks"])]
+    #[arg(short, long, conflicts_with_all = ["json", "picture", "ranks"])]
     explain: bool,
+
+    #[command(flatten)]
+    form: Form,
 
     /// Draw the particles as they will begin into this SVG or PNG file: a section, and what is seen of them
     /// along the axes
@@ -63,6 +70,7 @@ pub struct CheckArgs {
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &CheckArgs) -> u8 {
+    args.form.begin();
     let case = match input::load(&args.case, &args.set) {
         Ok(case) => case,
         Err(error) => {
@@ -77,11 +85,17 @@ pub fn run(args: &CheckArgs) -> u8 {
         warn(&format!("error: {error}"));
         return EXIT_INPUT;
     }
-    let warnings = preflight::warnings(&case);
-    for warning in warnings.into_iter().chain(preflight::advice(&case)) {
+    let mut warnings = preflight::warnings(&case);
+    warnings.extend(preflight::advice(&case));
+    for warning in &warnings {
         warn(&format!("warning: {warning}"));
     }
-    print_report(&case, args.ranks as usize);
+    let ranks = args.ranks as usize;
+    if args.form.is_json() {
+        args.form.tell(|| document(&case, ranks, &warnings));
+    } else {
+        print_report(&case, ranks);
+    }
     let drawn = args
         .picture
         .as_ref()
@@ -114,23 +128,24 @@ fn draw(case: &Case, path: &Path, section: Option<&str>) -> Result<(), PlotError
     out::write(&plot::preview(case, section, None)?, path)
 }
 
-/// The mass of so many particles of a body, and by how much each has more than Δp^d to bear that;
-/// nothing of a rigid body.
+/// The mass of so many particles of a body (SI); none of a rigid one.
 #[allow(clippy::cast_precision_loss, reason = "for people")]
-fn mass(case: &Case, body: &Body, count: u64) -> String {
-    if body.rigid.is_some() {
-        return String::new();
-    }
-    let each = body.lattice.particle_volume(case.dimension);
+fn mass_of(case: &Case, body: &Body, count: u64) -> Option<f64> {
     // Where all are alike they have been counted.
-    let shares = match body.lattice.grading {
+    let shares = || match body.lattice.grading {
         None => count as f64,
         Some(_) => populate::shares(body, case.dimension, &case.symmetry),
     };
-    let text = shown(
-        case.particle_mass(body) * shares,
-        unit_of_model("kg", case.dimension),
-    );
+    (body.rigid.is_none()).then(|| case.particle_mass(body) * shares())
+}
+
+/// That mass, and by how much each has more than Δp^d to bear that; nothing of a rigid body.
+fn mass(case: &Case, body: &Body, count: u64) -> String {
+    let Some(mass) = mass_of(case, body, count) else {
+        return String::new();
+    };
+    let each = body.lattice.particle_volume(case.dimension);
+    let text = shown(mass, unit_of_model("kg", case.dimension));
     let cell = cube(body.lattice.spacing, case.dimension);
     let more = 100.0 * (each / cell - 1.0);
     if more == 0.0 {

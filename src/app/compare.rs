@@ -7,6 +7,9 @@ mod text;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use serde_json::json;
+
+use super::form::Form;
 use super::results::{Results, ResultsError};
 use crate::model::readable::one_line;
 use crate::output::checkpoint;
@@ -24,7 +27,8 @@ use crate::run::say::{say, warn};
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = "Examples:
   whipple compare runs/two-ranks runs/four-ranks
-  whipple compare a/snapshots/step-00000100.vtkhdf b/snapshots/step-00000100.vtkhdf
+  whipple compare a/snapshots/step-00000100.vtkhdf \\
+      b/snapshots/step-00000100.vtkhdf
   whipple compare a/checkpoints/step-00000100 b/checkpoints/step-00000100")]
 pub struct CompareArgs {
     /// Run folder, snapshot (.vtkhdf) or checkpoint
@@ -34,6 +38,10 @@ pub struct CompareArgs {
     /// Another of the same kind
     #[arg(value_name = "B")]
     pub b: PathBuf,
+
+    /// How the answer is told.
+    #[command(flatten)]
+    pub form: Form,
 }
 
 /// Exit code when something differs.
@@ -42,12 +50,21 @@ const EXIT_DIFFERENT: u8 = 1;
 /// Runs the command; returns the exit code.
 #[must_use]
 pub fn run(args: &CompareArgs) -> u8 {
+    args.form.begin();
     match compare(&args.a, &args.b) {
         Ok(report) => {
             for line in &report.lines {
                 say(&one_line(line));
             }
             say(&report.verdict());
+            args.form.tell(|| {
+                json!({
+                    "agrees": report.agrees(),
+                    "compared": report.compared,
+                    "different": report.different,
+                    "lines": report.lines,
+                })
+            });
             if report.agrees() { 0 } else { EXIT_DIFFERENT }
         }
         Err(error) => {

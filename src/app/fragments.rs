@@ -5,14 +5,17 @@ mod matter;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use serde_json::{Value, json};
+
+use super::form::{self, Form};
 use super::results::ResultsError;
 use super::which::Which;
-use crate::fragments::{Census, Fragment, Rule, find_alone};
+use crate::fragments::{Census, Fragment, Rule, Share, find_alone};
 use crate::input;
 use crate::model::readable::{one_line, shown, shown_vector};
 use crate::model::{FragmentOptions, Include};
 use crate::output::fragments::FragmentTable;
-use crate::output::{OutputError, RunFolder, write_atomically};
+use crate::output::{OutputError, RunFolder, Sheet, write_atomically};
 use crate::plot::{PlotError, choose, snapshots};
 use crate::run::exit::EXIT_INPUT;
 use crate::run::say::{counted, say, seconds, warn};
@@ -59,6 +62,10 @@ pub struct FragmentsArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub min_particles: Option<u64>,
 
+    /// How the answer is told.
+    #[command(flatten)]
+    pub form: Form,
+
     /// Write the table of all fragments, as a run does into its folder `fragments`
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
@@ -99,6 +106,7 @@ const LISTED: usize = 10;
 /// Runs the command; returns the exit code.
 #[must_use]
 pub fn run(args: &FragmentsArgs) -> u8 {
+    args.form.begin();
     match tell(args) {
         Ok(text) => {
             say(text.trim_end());
@@ -134,6 +142,8 @@ pub fn tell(args: &FragmentsArgs) -> Result<String, FragmentsError> {
     let census = find_alone(&matter, &loaded.symmetry, &rule);
     let bodies: Vec<&str> = loaded.bodies.iter().map(String::as_str).collect();
     let table = FragmentTable::new(&census, &bodies, loaded.dimension);
+    args.form
+        .tell(|| document(&loaded, &census, &options, &table));
     let wrote = |path: &Path| say(&format!("wrote {}", one_line(&path.display().to_string())));
     if let Some(path) = &args.csv {
         write_atomically(path, &table.text())?;
@@ -190,7 +200,7 @@ fn report(loaded: &Loaded, census: &Census, options: &FragmentOptions) -> String
     let mut entry = |name: &str, value: String| {
         let _ = writeln!(text, "{name:<36} {value}");
     };
-    let share = |share: &crate::fragments::Share| {
+    let share = |share: &Share| {
         let part = 100.0 * share.mass / census.total.mass;
         let particles = counted(share.particles, "particle");
         format!("{} ({part:.2} %) in {particles}", mass(share.mass))
@@ -211,6 +221,34 @@ fn report(loaded: &Loaded, census: &Census, options: &FragmentOptions) -> String
         text.push_str("all of them: --csv FILE\n");
     }
     text
+}
+
+/// All that is told, in SI units, with the table of all fragments.
+fn document(
+    loaded: &Loaded,
+    census: &Census,
+    options: &FragmentOptions,
+    table: &FragmentTable,
+) -> Value {
+    let share = |share: &Share| json!({ "mass": share.mass, "particles": share.particles });
+    let sheet = Sheet::parse(&String::from_utf8_lossy(&table.text()));
+    let mut document = form::table(&sheet.expect("a table that was made here"));
+    document["title"] = loaded.title.as_str().into();
+    document["time"] = loaded.time.into();
+    document["units"]["time"] = "s".into();
+    document["fragments"] = census.count().into();
+    document["total_mass"] = census.total.mass.into();
+    document["in_fragments"] = share(&census.in_fragments);
+    document["dust"] = share(&census.dust);
+    document["failed"] = share(&census.excluded);
+    document["rule"] = json!({
+        "link": options.link,
+        "include": if options.include == Include::Intact { "intact" } else { "all" },
+        "bridges": options.bridges,
+        "across_bodies": options.across_bodies,
+        "min_particles": options.min_particles,
+    });
+    document
 }
 
 fn list(fragment: &Fragment, dimension: usize, text: &mut String) {

@@ -2,22 +2,23 @@
 
 mod measures;
 mod snapshots;
+mod summary;
+mod text;
 
 use std::path::{Path, PathBuf};
 
-use serde_json::Value;
+use serde_json::json;
 
-use super::results::{GRID, POINT_DATA, Results, ResultsError, component_names};
-use crate::model::readable::one_line;
+use super::form::Form;
+use super::results::{GRID, POINT_DATA, Results, ResultsError, component_names, running};
 use crate::output::checkpoint::{self, FIELDS};
 use crate::output::h5::read::PART;
 use crate::output::h5::{Array, Content, Element, RowType};
-use crate::output::{
-    Block, OutputError, Phase, Presence, RunFolder, Sheet, read_regular, read_small,
-};
+use crate::output::{Block, OutputError, Phase, RunFolder, Sheet, read_regular, read_small};
 use crate::preflight::memory::in_words;
 use crate::run::exit::EXIT_INPUT;
 use crate::run::say::{say, seconds, warn};
+use text::Text;
 
 /// Tell what is in a run folder, a snapshot or a checkpoint
 ///
@@ -32,6 +33,10 @@ pub struct InfoArgs {
     /// Run folder, snapshot (.vtkhdf) or checkpoint
     #[arg(value_name = "FILE_OR_RUN")]
     pub path: PathBuf,
+
+    /// How the answer is told.
+    #[command(flatten)]
+    pub form: Form,
 }
 
 /// Rows read at a time.
@@ -40,9 +45,11 @@ const CHUNK: usize = 1 << 18;
 /// Runs the command; returns the exit code.
 #[must_use]
 pub fn run(args: &InfoArgs) -> u8 {
-    match describe(&args.path) {
+    args.form.begin();
+    match look(&args.path) {
         Ok(text) => {
-            say(text.trim_end());
+            say(text.lines.trim_end());
+            args.form.tell(|| text.values.into());
             0
         }
         Err(error) => {
@@ -57,28 +64,17 @@ pub fn run(args: &InfoArgs) -> u8 {
 /// # Errors
 /// [`ResultsError`] if the path cannot be read.
 pub fn describe(path: &Path) -> Result<String, ResultsError> {
+    look(path).map(|text| text.lines)
+}
+
+fn look(path: &Path) -> Result<Text, ResultsError> {
     let mut text = Text::default();
     match Results::open(path)? {
         Results::Run(folder) => run_folder(&folder, &mut text)?,
         Results::Snapshot(file) => snapshot(&file, &mut text)?,
         Results::Checkpoint(file) => checkpoint_state(&file, &mut text)?,
     }
-    Ok(text.0)
-}
-
-#[derive(Default)]
-struct Text(String);
-
-impl Text {
-    fn line(&mut self, text: &str) {
-        self.0.push_str(&one_line(text));
-        self.0.push('\n');
-    }
-
-    fn entry(&mut self, name: &str, value: impl std::fmt::Display) {
-        let name = name.replace('_', " ");
-        self.line(&format!("{name:<36} {value}"));
-    }
+    Ok(text)
 }
 
 fn snapshot(file: &Content, text: &mut Text) -> Result<(), ResultsError> {
@@ -89,28 +85,33 @@ fn snapshot(file: &Content, text: &mut Text) -> Result<(), ResultsError> {
             let what = format!("the names of its bodies cannot be read ({error})");
             OutputError::damaged(file.path(), what)
         })?;
-    text.entry("snapshot", file.path().display());
-    text.entry("title", file.note(group, "title")?);
-    text.entry("step", file.number::<u64>(group, "step")?);
-    text.entry("time", seconds(time.first().copied().unwrap_or(f64::NAN)));
+    text.both("snapshot", file.path().display().to_string());
+    text.both("title", file.note(group, "title")?);
+    text.both("step", file.number::<u64>(group, "step")?);
+    let time = time.first().copied().unwrap_or(f64::NAN);
+    text.entry("time", seconds(time));
+    text.value("time_s", time);
     if let Some(schedule) = file.note_if_any(group, "schedule")? {
-        text.entry("schedule", schedule);
+        text.both("schedule", schedule);
     }
     if let Some(part) = file.note_if_any(group, PART)? {
-        text.entry("part of the model", part);
+        text.entry("part of the model", &part);
+        text.value("part", part);
     }
-    let commit = file.note(group, "commit")?;
-    text.entry(
-        "version",
-        format!("{} ({commit})", file.note(group, "version")?),
-    );
+    let [version, commit] = [file.note(group, "version")?, file.note(group, "commit")?];
+    text.entry("version", format!("{version} ({commit})"));
+    text.value("version", version);
+    text.value("commit", commit);
     let ranks: u64 = file.number("/run", "ranks")?;
     let threads: u64 = file.number("/run", "threads")?;
     text.entry("ranks x threads", format!("{ranks} x {threads}"));
+    text.value("ranks", ranks);
+    text.value("threads", threads);
     let partitions = file.partitions(GRID)?;
     if partitions > 1 {
         text.entry("partitions", partitions);
     }
+    text.value("partitions", partitions);
     bodies(file, POINT_DATA, &names, text)?;
     heading(text);
     field(file, "/VTKHDF/Points", true, text)?;
@@ -128,12 +129,14 @@ fn checkpoint_state(file: &Content, text: &mut Text) -> Result<(), ResultsError>
         .flatten()
         .filter_map(|body| body.get("name")?.as_str().map(String::from))
         .collect();
-    text.entry("checkpoint", file.path().display());
+    text.both("checkpoint", file.path().display().to_string());
     if let Some(title) = input.get("title").and_then(toml::Value::as_str) {
-        text.entry("title", title);
+        text.both("title", title);
     }
-    text.entry("step", file.number::<u64>("/", "step")?);
-    text.entry("time", seconds(file.number("/", "time")?));
+    text.both("step", file.number::<u64>("/", "step")?);
+    let time: f64 = file.number("/", "time")?;
+    text.entry("time", seconds(time));
+    text.value("time_s", time);
     let folder = file.path().parent().unwrap_or(Path::new("."));
     match checkpoint::manifest(folder) {
         Ok(manifest) => {
@@ -142,11 +145,14 @@ fn checkpoint_state(file: &Content, text: &mut Text) -> Result<(), ResultsError>
                 "version",
                 format!("{version} ({commit}), format {}", manifest.format),
             );
-            text.entry("ranks", manifest.ranks);
+            text.value("version", version.as_str());
+            text.value("commit", commit.as_str());
+            text.both("ranks", manifest.ranks);
             #[allow(clippy::cast_precision_loss, reason = "for people")]
             text.entry("size", in_words(manifest.size as f64));
+            text.value("size_bytes", manifest.size);
         }
-        Err(error) => text.entry("not restartable", error),
+        Err(error) => text.both("not restartable", error.to_string()),
     }
     bodies(file, FIELDS, &names, text)?;
     heading(text);
@@ -178,9 +184,10 @@ fn bodies(
             }
         }
     })?;
-    text.entry("particles", array.rows);
+    text.both("particles", array.rows);
     for (body, (count, name)) in counts.into_iter().zip(names).enumerate() {
         text.entry(&format!("  body {body}"), format!("{count:<10} {name}"));
+        text.one_of("bodies", json!({ "body": name, "particles": count }));
     }
     if others > 0 {
         text.entry("  of other bodies", others);
@@ -226,6 +233,11 @@ fn field(file: &Content, path: &str, vtk: bool, text: &mut Text) -> Result<(), R
             _ => format!("{low:>13} {high:>13}"),
         };
         text.line(&format!("{name:<28} {unit:<8} {range}"));
+        let ends = [low, high].map(|end| (low <= high).then_some(end));
+        text.one_of(
+            "fields",
+            json!({ "field": name.trim_end(), "unit": array.unit, "min": ends[0], "max": ends[1] }),
+        );
     }
     if odd > 0 {
         text.line(&format!("  {odd} of its values are not finite"));
@@ -274,12 +286,14 @@ fn fragments(folder: &RunFolder) -> Option<String> {
 
 fn run_folder(folder: &RunFolder, text: &mut Text) -> Result<(), ResultsError> {
     let status = folder.status()?;
-    text.entry("run", folder.path().display());
+    text.both("run", folder.path().display().to_string());
     let input = read_small(&folder.case()).unwrap_or_default();
     let input: toml::Table = toml::from_slice(&input).unwrap_or_default();
     if let Some(title) = input.get("title").and_then(toml::Value::as_str) {
-        text.entry("title", title);
+        text.both("title", title);
     }
+    text.value("status", status.state.name());
+    text.value("reason", status.reason.clone());
     let reason = status
         .reason
         .map_or_else(String::new, |r| format!(" ({r})"));
@@ -287,12 +301,11 @@ fn run_folder(folder: &RunFolder, text: &mut Text) -> Result<(), ResultsError> {
         Phase::Running => running(folder),
         ended => format!("{}{reason}", ended.name()),
     };
-    text.entry("state", state);
-    text.entry("step", status.step);
+    text.both("state", state);
+    text.both("step", status.step);
     text.entry("time", seconds(status.time));
-    for (name, found) in snapshots::entries(folder)? {
-        text.entry(&name, found);
-    }
+    text.value("time_s", status.time);
+    snapshots::tell(folder, text)?;
     if let Some(line) = fragments(folder) {
         text.entry("fragments", line);
     }
@@ -301,6 +314,8 @@ fn run_folder(folder: &RunFolder, text: &mut Text) -> Result<(), ResultsError> {
         format!(", the newest of step {step}")
     });
     text.entry("checkpoints", format!("{}{newest}", checkpoints.len()));
+    let steps: Vec<u64> = checkpoints.iter().map(|(step, _)| *step).collect();
+    text.value("checkpoint_steps", steps);
     for path in checkpoint::list_damaged(&folder.checkpoints())? {
         text.entry("passed over as damaged", path.display());
     }
@@ -315,82 +330,6 @@ fn run_folder(folder: &RunFolder, text: &mut Text) -> Result<(), ResultsError> {
     for (name, figure) in figures {
         text.entry(&name, figure);
     }
-    summary(&folder.summary(), text)
-}
-
-/// What `running` in a status means: a run that is killed cannot change it.
-fn running(folder: &RunFolder) -> String {
-    match Presence::of(folder.path()) {
-        Presence::Held(Some(who)) => format!("running ({who})"),
-        Presence::Held(None) => "running".to_owned(),
-        Presence::Nobody(_) => {
-            "was running; killed or lost (no process holds the folder)".to_owned()
-        }
-        Presence::Unclear(who) => {
-            format!("running, or killed or lost ({who}, which cannot be seen from this host)")
-        }
-    }
-}
-
-/// The figures of a finished run.
-fn summary(path: &Path, text: &mut Text) -> Result<(), ResultsError> {
-    if !path.exists() {
-        text.entry("summary", "none yet");
-        return Ok(());
-    }
-    let content = read_small(path)?;
-    let figures: Value = serde_json::from_slice(&content).map_err(|error| ResultsError::Text {
-        path: path.to_owned(),
-        reason: error.to_string(),
-    })?;
-    text.line("");
-    for (name, figure) in figures.as_object().into_iter().flatten() {
-        if ["title", "steps", "time"].contains(&name.as_str()) {
-            continue;
-        }
-        match figure {
-            Value::Object(parts) => {
-                text.entry(name, "");
-                for (part, value) in parts {
-                    text.entry(&format!("  {part}"), parts_of(value));
-                }
-            }
-            value => text.entry(name, short(value)),
-        }
-    }
-    Ok(())
-}
-
-/// A figure, or several with their names and vectors in one line.
-fn parts_of(value: &Value) -> String {
-    match value {
-        Value::Object(parts) => {
-            let part = |(name, value): (&String, &Value)| {
-                format!("{} {}", name.replace('_', " "), parts_of(value))
-            };
-            parts.iter().map(part).collect::<Vec<_>>().join(", ")
-        }
-        Value::Array(parts) => {
-            let all: Vec<String> = parts.iter().map(short).collect();
-            format!("[{}]", all.join(", "))
-        }
-        value => short(value),
-    }
-}
-
-/// A figure to five digits.
-fn short(value: &Value) -> String {
-    match value {
-        Value::String(word) => word.clone(),
-        Value::Number(number) if number.is_f64() => {
-            let number = number.as_f64().unwrap_or(f64::NAN);
-            if number != 0.0 && !(1e-3..1e6).contains(&number.abs()) {
-                format!("{number:.4e}")
-            } else {
-                format!("{number:.4}")
-            }
-        }
-        Value::Null => "-".to_owned(),
-        other => other.to_string(),
-    }
+    text.value("last", measures::last_rows(folder));
+    summary::summary(&folder.summary(), text)
 }

@@ -7,6 +7,7 @@ mod table;
 
 use std::path::PathBuf;
 
+use super::form::Form;
 use super::plot::out::{PictureFormat, check_picture, save, unsaved, write_chart};
 use crate::model::readable::one_line;
 use crate::plot::{PlotError, Quantity};
@@ -21,10 +22,14 @@ use laws::Law;
 /// runs of a sweep stand in the chart and the table beside the equation, failed and not.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = "Examples:
-  whipple limit nno --bumper 1.2mm --wall 3.2mm --gap 100mm --yield 40ksi --plot nno.png
-  whipple limit nno --bumper 1.27mm --wall 3.175mm --gap 50.8mm --yield 47ksi --sweep sweeps/whipple-shield
-  whipple limit thin-bumper --bumper 0.3mm --wall 3.2mm --gap 100mm --yield 40ksi --speeds \"3..12/10 km/s\"
-  whipple limit stuffed --bumper 2mm --wall 4.8mm --gap 114mm --yield 52ksi --stuffing \"8 kg/m^2\"
+  whipple limit nno --bumper 1.2mm --wall 3.2mm --gap 100mm --yield 40ksi \\
+      --plot nno.png
+  whipple limit nno --bumper 1.27mm --wall 3.175mm --gap 50.8mm --yield 47ksi \\
+      --sweep sweeps/whipple-shield
+  whipple limit thin-bumper --bumper 0.3mm --wall 3.2mm --gap 100mm \\
+      --yield 40ksi --speeds \"3..12/10 km/s\"
+  whipple limit stuffed --bumper 2mm --wall 4.8mm --gap 114mm \\
+      --yield 52ksi --stuffing \"8 kg/m^2\"
   whipple limit sizing --diameter 1cm --gap 30cm --yield 40ksi
   whipple limit crater --wall 20mm --brinell 95 --sound-speed 5.1km/s
   whipple limit crater --diameter 1cm --brinell 95 --sound-speed 5.1km/s
@@ -41,6 +46,9 @@ struct Output {
     /// least to the greatest
     #[arg(long, value_name = "VALUES", default_value = "1..15/29 km/s")]
     speeds: String,
+
+    #[command(flatten)]
+    form: Form,
 
     /// Draw a chart into this SVG or PNG file
     #[arg(long, value_name = "FILE")]
@@ -120,13 +128,17 @@ fn limit(args: &LimitArgs) -> Result<(), LimitError> {
             shots
         }
     };
+    output.form.begin();
     say(&law.title);
-    print!("{}", table::text(&law, &speeds));
+    say(table::text(&law, &speeds).trim_end_matches('\n'));
+    say("");
     say(&format!("Source: {}.", law.source));
     say(&format!("Holds for {}.", law.holds));
     if !shots.is_empty() {
-        print!("\n{}", one_by_line(&table::shots(&law, &shots)));
+        say("");
+        say(one_by_line(&table::shots(&law, &shots)).trim_end());
     }
+    output.form.tell(|| table::document(&law, &speeds, &shots));
     if let Some(path) = &output.csv {
         let sheet = table::sheet(&law, &speeds);
         save(path, |path| {

@@ -4,9 +4,10 @@ use std::fmt::Write as _;
 
 use serde_json::json;
 
+use super::form::Form;
 use crate::material::{Constant, Material, Value, library};
 use crate::run::exit::EXIT_INPUT;
-use crate::run::say::warn;
+use crate::run::say::{say, warn};
 
 /// Print the material library: all names, or each number of one material with its source
 ///
@@ -21,29 +22,24 @@ pub struct MaterialsArgs {
     #[arg(value_name = "NAME")]
     name: Option<String>,
 
-    /// Print JSON, in SI units
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    form: Form,
 }
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &MaterialsArgs) -> u8 {
+    args.form.begin();
     let Some(name) = &args.name else {
-        if args.json {
+        say(list().trim_end());
+        args.form.tell(|| {
             let all: Vec<_> = library::names().into_iter().filter_map(as_json).collect();
-            println!("{:#}", serde_json::Value::Array(all));
-        } else {
-            print!("{}", list());
-        }
+            all.into()
+        });
         return 0;
     };
-    let text = if args.json {
-        as_json(name).map(|value| format!("{value:#}\n"))
-    } else {
-        table(name)
-    };
-    if let Some(text) = text {
-        print!("{text}");
+    if let (Some(text), Some(document)) = (table(name), as_json(name)) {
+        say(text.trim_end());
+        args.form.tell(|| document);
         return 0;
     }
     let names = library::names().join(", ");

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::form::{self, Form};
 use super::results::{ResultsError, only_part};
 use super::which::Which;
 use crate::comm::Comm;
@@ -11,7 +12,7 @@ use crate::model::readable::{one_line, shown};
 use crate::model::{Case, Measure, MeasureKind};
 use crate::output::h5::Content;
 use crate::output::h5::read::{ReadError, SnapshotFile};
-use crate::output::{OutputError, RunFolder, measures, write_atomically};
+use crate::output::{OutputError, RunFolder, Sheet, measures, write_atomically};
 use crate::plot::{PlotError, Wanted, choose, snapshots};
 use crate::run::exit::EXIT_INPUT;
 use crate::run::say::{say, seconds, warn};
@@ -24,7 +25,8 @@ use crate::run::say::{say, seconds, warn};
   whipple measure runs/impact
   whipple measure runs/impact --at 5us
   whipple measure runs/impact --all --csv measures.csv
-  whipple measure runs/impact --set 'measure.plate=[{ body = \"wall\", include = \"all\" }]'")]
+  whipple measure runs/impact \\
+      --set 'measure.plate=[{ body = \"wall\", include = \"all\" }]'")]
 pub struct MeasureArgs {
     /// Run folder, or snapshot (.vtkhdf)
     #[arg(value_name = "FILE_OR_RUN")]
@@ -41,6 +43,10 @@ pub struct MeasureArgs {
     /// Change a key of the case's `measure`
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
+
+    /// How the answer is told.
+    #[command(flatten)]
+    pub form: Form,
 
     /// Write the rows of measures.csv
     #[arg(long, value_name = "FILE")]
@@ -74,6 +80,7 @@ pub enum MeasureError {
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &MeasureArgs) -> u8 {
+    args.form.begin();
     match tell(args) {
         Ok(text) => {
             say(text.trim_end());
@@ -104,12 +111,19 @@ fn tell(args: &MeasureArgs) -> Result<String, MeasureError> {
         text = report(&loaded, loaded.case.measure.measures.iter().zip(&found));
         told.push((loaded.case, loaded.time, found));
     }
+    let rows = told.iter().flat_map(|(case, time, found)| {
+        let all = case.measure.measures.iter().zip(found);
+        measures::figures(*time, all, case.dimension)
+    });
+    let table = measures::table(&rows.collect::<Vec<_>>());
+    args.form.tell(|| {
+        let sheet = Sheet::parse(&String::from_utf8_lossy(&table));
+        let mut document = form::table(&sheet.expect("a table that was made here"));
+        document["title"] = told.last().map(|(case, ..)| case.title.as_str()).into();
+        document
+    });
     if let Some(path) = &args.csv {
-        let rows = told.iter().flat_map(|(case, time, found)| {
-            let all = case.measure.measures.iter().zip(found);
-            measures::figures(*time, all, case.dimension)
-        });
-        write_atomically(path, &measures::table(&rows.collect::<Vec<_>>()))?;
+        write_atomically(path, &table)?;
         say(&format!("wrote {}", one_line(&path.display().to_string())));
     }
     Ok(text)

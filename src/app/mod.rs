@@ -4,6 +4,7 @@ mod bench;
 mod check;
 pub mod compare;
 mod export;
+mod form;
 pub mod fragments;
 mod generate;
 pub mod info;
@@ -20,6 +21,7 @@ mod run;
 mod shell;
 mod sweep;
 mod version;
+mod watch;
 pub mod which;
 
 use std::ffi::OsString;
@@ -41,6 +43,7 @@ use crate::run::{launch, say};
   whipple check inputs/quarter-impact
   whipple plan inputs/quarter-impact --ranks 16,64
   mpirun -n 2 whipple run inputs/quarter-impact --out runs/quarter
+  whipple watch runs/quarter
   whipple info runs/quarter
   whipple plot runs/quarter --panels
   whipple export runs/quarter --to vtu --all
@@ -51,11 +54,13 @@ use crate::run::{launch, say};
   whipple sweep inputs/quarter-impact --vary body.sphere.velocity=\"3..9 km/s\"
   whipple limit nno --bumper 1.2mm --wall 3.2mm --gap 100mm --yield 40ksi
 
-For work on the program itself: `whipple compare` tells whether two results agree to the last bit,
-`whipple bench` measures how fast it steps on this machine.
+For work on the program itself: `whipple compare` tells whether two results
+agree to the last bit, `whipple bench` measures how fast it steps here.
 
-`whipple COMMAND --help` says more. Only `run`, `restart` and `bench` use MPI. Exit codes: 0 done,
-1 failed (or `compare` found differences), 2 wrong input, 75 stopped softly with a checkpoint."
+`whipple COMMAND --help` says more, `whipple --version` which MPI and HDF5 it
+runs with. Only `run`, `restart` and `bench` use MPI. Exit codes: 0 done,
+1 failed (or `compare` found differences), 2 wrong input, 75 stopped softly with
+a checkpoint."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -72,6 +77,7 @@ enum Command {
     Plot(Box<plot::PlotArgs>),
     Report(report::ReportArgs),
     Export(export::ExportArgs),
+    Watch(watch::WatchArgs),
     Info(info::InfoArgs),
     Fragments(fragments::FragmentsArgs),
     Measure(measure::MeasureArgs),
@@ -117,6 +123,7 @@ pub fn main() -> ExitCode {
         ),
         Command::Report(args) => report::run(&args),
         Command::Export(args) => export::run(&args),
+        Command::Watch(args) => watch::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Fragments(args) => fragments::run(&args),
         Command::Measure(args) => measure::run(&args),

@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 use clap::builder::PossibleValuesParser;
 
 use super::bench;
+use super::form::Form;
 use super::plot::out::{check_picture, save, unsaved, write_chart};
 use crate::model::Case;
 use crate::model::readable::{short, shown};
@@ -41,15 +42,20 @@ pub use table::duration;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   whipple plan inputs/quarter-impact
-  whipple plan inputs/quarter-impact --set spacing=0.005mm --ranks 64,512,4096 --threads 8 --chart plan.png
-  whipple plan runs/quarter/checkpoints/step-00000100 --ranks 16 --machine cluster.toml --doubled
+  whipple plan inputs/quarter-impact --set spacing=0.005mm \\
+      --ranks 64,512,4096 --threads 8 --chart plan.png
+  whipple plan runs/quarter/checkpoints/step-00000100 \\
+      --ranks 16 --machine cluster.toml --doubled
   whipple plan inputs/quarter-impact --nodes 1,2,4 --machine cluster.toml
-  whipple plan inputs/quarter-impact --nodes 4 --machine cluster.toml --job quarter.job
+  whipple plan inputs/quarter-impact --nodes 4 \\
+      --machine cluster.toml --job quarter.job
   whipple plan --calibrate here.toml
 
-A machine file holds some of these, in SI units; `whipple plan --ranks 1 --machine FILE` refuses others:
-  name, cores_per_node, particle_time, image_time, thread_loss, crowding, latency, bandwidth,
-  node_latency, node_bandwidth, agreement_time, overlap, disk_bandwidth, memory_per_node, longest_job")]
+A machine file holds some of these, in SI units; `whipple plan --ranks 1
+--machine FILE` refuses others:
+  name, cores_per_node, particle_time, image_time, thread_loss, crowding,
+  latency, bandwidth, node_latency, node_bandwidth, agreement_time, overlap,
+  disk_bandwidth, memory_per_node, longest_job")]
 pub struct PlanArgs {
     /// Case file (TOML), a folder with a case.toml, a run (its last snapshot), a snapshot or a checkpoint
     #[arg(value_name = "CASE_OR_SNAPSHOT", required_unless_present = "calibrate")]
@@ -106,6 +112,9 @@ pub struct PlanArgs {
     #[arg(short, long, value_name = "FILE")]
     chart: Option<PathBuf>,
 
+    #[command(flatten)]
+    form: Form,
+
     /// Write the table, in SI units, into this file
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -117,6 +126,7 @@ pub struct PlanArgs {
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &PlanArgs) -> u8 {
+    args.form.begin();
     let (done, code) = match (&args.calibrate, &args.path) {
         (Some(file), _) => (calibrate(file), EXIT_FAILED),
         (None, path) => {
@@ -180,7 +190,7 @@ fn plan(args: &PlanArgs, path: &Path) -> Result<(), String> {
     }
     let all = print_ranks(args, &source, &machine, steps)?;
     let rows: Vec<Row> = all.iter().map(|planned| planned.row).collect();
-    write_sheet(args, &rows, steps)?;
+    write_sheet(args, (&source, &machine), &rows, steps)?;
     if let Some(path) = &args.chart {
         let weak: Vec<Weak> = all.iter().map(|planned| planned.weak).collect();
         let title = format!("{}, {}", source.case.title, machine.name);
@@ -230,7 +240,15 @@ fn print_ranks(
     Ok(all)
 }
 
-fn write_sheet(args: &PlanArgs, rows: &[Row], steps: Option<f64>) -> Result<(), String> {
+fn write_sheet(
+    args: &PlanArgs,
+    (source, machine): (&Source, &Machine),
+    rows: &[Row],
+    steps: Option<f64>,
+) -> Result<(), String> {
+    let files = files(source, steps)?;
+    args.form
+        .tell(|| table::document((source, machine), rows, &files, steps));
     let Some(path) = &args.csv else { return Ok(()) };
     write_text(path, &table::sheet(rows, steps).text())
 }
@@ -332,13 +350,17 @@ fn row_of(
 }
 
 fn print_files(source: &Source, machine: &Machine, steps: Option<f64>) -> Result<Files, String> {
-    let count = as_number(source.particles.positions.len());
-    let files = Files::new(&source.case, count, steps.unwrap_or(0.0));
-    let files = files.map_err(|error| format!("error: {error}"))?;
+    let files = files(source, steps)?;
     for line in file_lines(&files, machine) {
         say(&format!("  {line}"));
     }
     Ok(files)
+}
+
+fn files(source: &Source, steps: Option<f64>) -> Result<Files, String> {
+    let count = as_number(source.particles.positions.len());
+    let files = Files::new(&source.case, count, steps.unwrap_or(0.0));
+    files.map_err(|error| format!("error: {error}"))
 }
 
 #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]

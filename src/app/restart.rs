@@ -24,7 +24,8 @@ use crate::step::RunState;
 #[command(after_help = "Examples:
   mpirun -n 4 whipple restart runs/quarter-impact
   mpirun -n 4 whipple restart runs/quarter-impact --set run.end_time=0.3us
-  mpirun -n 4 whipple restart runs/fine/checkpoints/step-00000100 --out runs/branch")]
+  mpirun -n 4 whipple restart runs/fine/checkpoints/step-00000100 \\
+      --out runs/branch")]
 pub struct RestartArgs {
     /// Run folder (its newest whole checkpoint is taken), or one checkpoint's folder
     #[arg(value_name = "RUN_OR_CHECKPOINT")]
@@ -54,6 +55,7 @@ pub struct RestartArgs {
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &RestartArgs) -> u8 {
+    args.common.voice().begin();
     with_ranks(|launch| {
         let comm = launch.comm;
         if let Err(error) = input::output_and_run_only(&args.set) {

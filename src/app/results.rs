@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::output::checkpoint;
 use crate::output::h5::Content;
-use crate::output::{OutputError, RunFolder};
+use crate::output::{OutputError, Presence, RunFolder};
 
 /// Group of a snapshot's grid.
 pub const GRID: &str = "/VTKHDF";
@@ -102,5 +102,19 @@ pub fn component_names(components: usize, vtk: bool) -> &'static [&'static str] 
         6 => &["xx", "yy", "zz", "xy", "xz", "yz"],
         9 => &["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"],
         _ => &[""],
+    }
+}
+
+/// What `running` in a status means: a run that is killed cannot change it.
+pub(super) fn running(folder: &RunFolder) -> String {
+    match Presence::of(folder.path()) {
+        Presence::Held(Some(who)) => format!("running ({who})"),
+        Presence::Held(None) => "running".to_owned(),
+        Presence::Nobody(_) => {
+            "was running; killed or lost (no process holds the folder)".to_owned()
+        }
+        Presence::Unclear(who) => {
+            format!("running, or killed or lost ({who}, which cannot be seen from this host)")
+        }
     }
 }

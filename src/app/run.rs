@@ -17,12 +17,14 @@ use crate::run::start::start;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   mpirun -n 2 whipple run inputs/quarter-impact
-  mpirun -n 2 whipple run inputs/quarter-impact --set spacing=0.015mm --out runs/fine
+  mpirun -n 2 whipple run inputs/quarter-impact --set spacing=0.015mm \\
+      --out runs/fine
   mpirun -n 2 whipple run inputs/quarter-impact --walltime 1h --force
 
-To stop a run softly, send SIGUSR1 to mpirun or SIGTERM to a rank, make a file `stop` in its
-folder, or give --walltime: it writes a checkpoint and exits with 75, and `whipple restart` goes
-on. Other exit codes: 0 finished, or --until is reached; 1 failed; 2 wrong input.")]
+To stop a run softly, send SIGUSR1 to mpirun or SIGTERM to a rank, make a file
+`stop` in its folder, or give --walltime: it writes a checkpoint and exits with
+75, and `whipple restart` goes on. Other exit codes: 0 finished, or --until is
+reached; 1 failed; 2 wrong input.")]
 pub struct RunArgs {
     /// Case file (TOML), or a folder with a case.toml
     #[arg(value_name = "CASE")]
@@ -46,6 +48,7 @@ pub struct RunArgs {
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &RunArgs) -> u8 {
+    args.common.voice().begin();
     with_ranks(|launch| {
         let comm = launch.comm;
         let (path, text) = match read_case(comm, &args.case) {

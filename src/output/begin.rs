@@ -195,11 +195,11 @@ impl RunFolder {
 
     /// Says that a run goes on from here.
     fn begin(&self, step: u64, time: f64, resolved: Option<&str>) -> Result<(), OutputError> {
+        // What has been told of the way to here stays.
+        let before = self.status().ok().filter(|_| step > 0);
         self.write_status(&Status {
-            state: Phase::Running,
-            step,
-            time,
-            reason: None,
+            outlook: before.and_then(|status| status.outlook),
+            ..Status::new(Phase::Running, step, time)
         })?;
         resolved.map_or(Ok(()), |text| {
             write_atomically(&self.case(), text.as_bytes())

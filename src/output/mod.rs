@@ -31,6 +31,7 @@ mod set_aside;
 mod sheet;
 pub mod snapshot;
 mod snapshot_folders;
+mod status;
 mod vote;
 
 pub use block::Block;
@@ -40,13 +41,14 @@ pub use history::{Column, Table, Value, unit_of_model};
 pub use lock::{Holder, Presence, RunLock};
 pub use log::Log;
 pub use new_file::NewFile;
-pub use rows::Rows;
 pub use row_schedule::RowSchedule;
-pub use run_folder::{Phase, RunFolder, Status};
+pub use rows::Rows;
+pub use run_folder::RunFolder;
 pub use schedule::Schedule;
 pub use set_aside::SetAside;
 pub use sheet::Sheet;
 pub(crate) use sheet::line as table_line;
+pub use status::{Energies, Outlook, Phase, Status};
 use vote::settle;
 pub use vote::{agree, from_root, on_root};
 

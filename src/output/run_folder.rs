@@ -4,12 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use serde::{Deserialize, Serialize};
-
 use super::checkpoint::{self, step_of};
 use super::files::names_in;
 use super::fragments::FragmentTable;
-use super::{OutputError, files, write_json};
+use super::{OutputError, Status, files, write_atomically};
 
 pub(super) const STATUS: &str = "status.json";
 const SNAPSHOTS: &str = "snapshots";
@@ -20,47 +18,6 @@ const GAUGES: &str = "gauges";
 pub(super) const HDF5_ENDING: &str = ".h5";
 pub(super) const TROUBLE: &str = "trouble";
 pub(super) const SNAPSHOT_ENDING: &str = ".vtkhdf";
-
-/// Where a run stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Phase {
-    /// It runs, or was killed while it did.
-    Running,
-    /// It reached its end.
-    Finished,
-    /// It was asked to stop and wrote a checkpoint.
-    Stopped,
-    /// It ended by an error.
-    Failed,
-}
-
-impl Phase {
-    /// Its name in `status.json`.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Running => "running",
-            Self::Finished => "finished",
-            Self::Stopped => "stopped",
-            Self::Failed => "failed",
-        }
-    }
-}
-
-/// `status.json`: what scripts that chain runs read.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Status {
-    /// Where the run stands.
-    pub state: Phase,
-    /// Last step.
-    pub step: u64,
-    /// Time reached (s).
-    pub time: f64,
-    /// Why it stopped or failed.
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub reason: Option<String>,
-}
 
 /// The folder of a run and the names of what is in it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -135,7 +92,7 @@ impl RunFolder {
     /// # Errors
     /// [`OutputError::Io`].
     pub fn write_status(&self, status: &Status) -> Result<(), OutputError> {
-        write_json(&self.status_file(), status)
+        write_atomically(&self.status_file(), &status.text())
     }
 
     /// The folder itself.
@@ -287,7 +244,7 @@ paths! {
     log: "log.txt";
     /// The status file.
     status_file: STATUS;
-    /// The figures of a finished run; see [`write_json`].
+    /// The figures of a finished run; see [`write_json`](super::write_json).
     summary: "summary.json";
 }
 

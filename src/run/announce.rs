@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::say::{counted, say, seconds, warn};
+use super::say::{counted, note, say, seconds, warn};
 use crate::comm::Comm;
 use crate::output::{COMMIT, Log, VERSION};
 use crate::step::Simulation;
@@ -34,10 +34,16 @@ pub fn say_all(
         counted(rayon::current_num_threads() as u64, "thread"),
         crate::numerics::dispatch::instructions().name(),
     );
-    log.line(&format!("whipple {VERSION} ({COMMIT})"));
-    log.line(&text);
-    log.line(&format!("set up in {set_up:.3} s"));
+    let [by, ready] = [
+        format!("whipple {VERSION} ({COMMIT})"),
+        format!("set up in {set_up:.3} s"),
+    ];
+    for line in [&by, &text, &ready] {
+        log.line(line);
+    }
+    note(&by);
     say(&text);
+    note(&ready);
     if comm.size() > 1 {
         let text = format!("decomposition: {}", decomposition(comm, simulation));
         log.line(&text);

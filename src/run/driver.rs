@@ -3,6 +3,7 @@
 mod checkpoints;
 mod measures;
 mod snapshots;
+mod status;
 
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -16,17 +17,18 @@ use super::notices::Notices;
 use super::options::CommonArgs;
 use super::output_time::OutputTime;
 use super::progress::Progress;
-use super::say::{counted, say, seconds};
+use super::say::{counted, note, say, seconds};
 use super::stop::{self, Watch};
 use super::summary::{Clock, summary};
 use super::tables::Tables;
+use super::watched::Watched;
 use super::{announce, census};
 use crate::comm::Comm;
 use crate::model::NumericalFailurePolicy;
 use crate::output::snapshot::Plan;
 use crate::output::{
-    Log, OutputError, Phase, RowSchedule, Rows, RunFolder, Schedule, Status, agree, on_root,
-    post_mortem, write_json,
+    Log, OutputError, Phase, RowSchedule, Rows, RunFolder, Schedule, agree, on_root, post_mortem,
+    write_json,
 };
 use crate::step::{self, Simulation, StepError, Timers};
 
@@ -46,6 +48,7 @@ pub struct Driver<'a> {
     progress: Progress,
     notices: Notices,
     departures: Departures,
+    watched: Watched,
     output_time: OutputTime,
     /// Post-mortems written.
     post_mortems: usize,
@@ -99,16 +102,16 @@ impl<'a> Driver<'a> {
             log: Log::new(&folder.log(), comm.rank()),
             progress: Progress::of(comm.is_root(), &simulation.case),
             departures: Departures::new(&simulation),
+            watched: Watched::begin(comm, folder, &simulation, restarted.is_some()),
             simulation,
             folder,
             notices: Notices::default(),
             output_time: OutputTime::default(),
             post_mortems: 0,
         };
+        let every = driver.simulation.case.output.checkpoint_every_wall;
         if comm.is_root() {
-            driver
-                .watch
-                .ask_every(driver.simulation.case.output.checkpoint_every_wall);
+            driver.watch.ask_every(every);
         }
         announce::say_all(
             comm,
@@ -141,7 +144,7 @@ impl<'a> Driver<'a> {
             }
             Err(message) => {
                 self.progress.finish();
-                self.log(comm, &format!("failed: {message}"));
+                self.record(comm, &format!("failed: {message}"));
                 let _ = self.tables.as_mut().map(Tables::write_records);
                 let state = &self.simulation.state;
                 fail(comm, self.folder, &message, state.step, state.time)
@@ -245,7 +248,7 @@ impl<'a> Driver<'a> {
             self.log(comm, &text);
         }
         if let Some(text) = self.notices.decomposition(comm, &self.simulation) {
-            self.log(comm, &text);
+            self.record(comm, &text);
             self.progress.tell(&text);
         }
         let finished = self.simulation.is_finished();
@@ -284,8 +287,9 @@ impl<'a> Driver<'a> {
             on_root(comm, || self.write_status(Phase::Running, None))?;
         }
         if let Some(line) = self.progress.show(&self.simulation.state) {
-            self.log(comm, &line);
+            self.record(comm, &line);
         }
+        self.renew_status(comm);
         Ok(())
     }
 
@@ -298,13 +302,14 @@ impl<'a> Driver<'a> {
             Vec::new()
         };
         let wall = self.start.elapsed().as_secs_f64();
+        self.watched.row(&self.simulation.state, &load);
         on_root(comm, || match &mut self.tables {
             Some(tables) => tables.write(&self.simulation, &bodies, &load, wall),
             None => Ok(()),
         })?;
         self.simulation.state.begin_interval();
         if let Some(text) = self.notices.notice(&self.simulation) {
-            self.log(comm, &text);
+            self.record(comm, &text);
             self.progress.warn(&text);
         }
         Ok(())
@@ -327,7 +332,7 @@ impl<'a> Driver<'a> {
             let summary = summary(comm, &self.simulation, &clock);
             on_root(comm, || {
                 write_json(&folder.summary(), &summary)?;
-                self.write_status(phase, reason)
+                self.write_status(phase, Some((reason, code)))
             })
         });
         let state = &self.simulation.state;
@@ -346,20 +351,20 @@ impl<'a> Driver<'a> {
             say(&format!("{text}; results in {}", folder.path().display()));
         }
         self.log(comm, &output);
-        self.log(comm, &text);
+        self.record(comm, &text);
         code
     }
 
-    fn write_status(&self, phase: Phase, reason: Option<&str>) -> Result<(), OutputError> {
-        self.folder.write_status(&Status {
-            state: phase,
-            step: self.simulation.state.step,
-            time: self.simulation.state.time,
-            reason: reason.map(str::to_owned),
-        })
+    /// A line of the log, which is told to those alone who read JSON.
+    fn log(&mut self, comm: &Comm, text: &str) {
+        self.record(comm, text);
+        if comm.is_root() {
+            note(text);
+        }
     }
 
-    fn log(&mut self, comm: &Comm, text: &str) {
+    /// A line of the log that the user hears of in another way.
+    fn record(&mut self, comm: &Comm, text: &str) {
         if comm.is_root() {
             self.log.line(text);
         }

@@ -108,11 +108,12 @@ pub fn fail(comm: &Comm, folder: &RunFolder, message: &str, step: u64, time: f64
     if comm.is_root() {
         say::warn(&format!("error: {message}"));
         // The message above is what counts; the folder may be what failed.
+        let before = folder.status().ok();
         let _ = folder.write_status(&Status {
-            state: Phase::Failed,
-            step,
-            time,
             reason: Some(message.to_owned()),
+            exit_code: Some(EXIT_FAILED),
+            outlook: before.and_then(|status| status.outlook),
+            ..Status::new(Phase::Failed, step, time)
         });
     }
     comm.barrier();

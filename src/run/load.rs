@@ -18,13 +18,52 @@ pub struct Load {
     pub bytes: u64,
     /// Of particles, since the start of the process.
     pub updates: u64,
+    /// Work of each of some groups of ranks, of single ones if there are few.
+    groups: Vec<u64>,
 }
+
+/// Groups of ranks whose work is told, at most.
+const GROUPS: usize = 64;
 
 impl Load {
     /// The most that a rank has over the mean.
     #[allow(clippy::cast_precision_loss, reason = "for people")]
     pub(super) fn imbalance(&self, [sum, most]: [u64; 2]) -> f64 {
         most as f64 * self.ranks as f64 / (sum as f64).max(1.0)
+    }
+
+    /// Number of ranks.
+    pub(super) fn ranks(&self) -> usize {
+        self.ranks
+    }
+
+    /// Work of a rank over the mean of all, by groups of ranks.
+    #[allow(clippy::cast_precision_loss, reason = "for people")]
+    pub(super) fn by_group(&self) -> impl Iterator<Item = f64> {
+        let groups = self.groups.len();
+        let begin = move |group: usize| (group * self.ranks).div_ceil(groups);
+        let mean = (self.work[0] as f64).max(1.0) / self.ranks as f64;
+        let all = self.groups.iter().enumerate();
+        all.map(move |(group, &work)| {
+            let ranks = begin(group + 1) - begin(group);
+            work as f64 / (ranks as f64 * mean)
+        })
+    }
+
+    /// That of ranks that do as much work each.
+    #[cfg(test)]
+    pub(super) fn of_equals(ranks: usize, work: u64) -> Self {
+        let total = work * ranks as u64;
+        Self {
+            ranks,
+            particles: [total, work],
+            work: [total, work],
+            empty_ranks: 0,
+            messages: 0,
+            bytes: 0,
+            updates: 0,
+            groups: vec![work; ranks],
+        }
     }
 }
 
@@ -37,7 +76,8 @@ pub fn load(comm: &Comm, simulation: &Simulation) -> Load {
         .sum();
     let (messages, bytes) = simulation.traffic();
     let empty = u64::from(particles == 0);
-    let mut sums = [
+    let groups = comm.size().min(GROUPS);
+    let mut sums = vec![
         particles,
         work,
         messages,
@@ -45,6 +85,9 @@ pub fn load(comm: &Comm, simulation: &Simulation) -> Load {
         simulation.timers.updates,
         empty,
     ];
+    let others = sums.len();
+    sums.resize(others + groups, 0);
+    sums[others + comm.rank() * groups / comm.size()] = work;
     comm.sum_u64(&mut sums);
     let mut most = [particles, work];
     comm.max_u64(&mut most);
@@ -56,5 +99,6 @@ pub fn load(comm: &Comm, simulation: &Simulation) -> Load {
         bytes: sums[3],
         updates: sums[4],
         empty_ranks: sums[5],
+        groups: sums.split_off(others),
     }
 }

@@ -22,5 +22,7 @@ pub(crate) mod start;
 mod stop;
 mod summary;
 mod tables;
+pub(crate) mod voice;
+mod watched;
 
 pub(crate) use options::CommonArgs;

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use super::stop::{parse_until, parse_walltime};
+use super::voice::{LogForm, Voice};
 use crate::comm::Comm;
 use crate::model::Case;
 use crate::preflight::memory;
@@ -17,6 +18,14 @@ pub struct CommonArgs {
     /// Stop with a checkpoint after this much time of the clock, as in 90s, 2h or 1:30:00
     #[arg(short, long, value_name = "TIME", value_parser = parse_walltime)]
     pub walltime: Option<Duration>,
+
+    /// Print neither lines nor a bar: warnings and errors alone
+    #[arg(short, long)]
+    pub quiet: bool,
+
+    /// Form of what is printed: lines of text, or a JSON object a line, with the lines of log.txt
+    #[arg(long, value_name = "FORM", value_enum, default_value_t)]
+    pub log: LogForm,
 
     /// Threads of each rank [default: the cores shared out among the machine's ranks]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
@@ -36,6 +45,14 @@ pub struct CommonArgs {
 }
 
 impl CommonArgs {
+    /// How this process is to speak.
+    pub fn voice(&self) -> Voice {
+        Voice {
+            quiet: self.quiet,
+            json: self.log == LogForm::Json,
+        }
+    }
+
     /// Why there is not enough memory for a case, unless the user will not hear of it. Collective.
     pub fn shortage(&self, comm: &Comm, case: &Case) -> Option<String> {
         let shortage = (!self.ignore_memory).then(|| memory::shortage(comm, case));

@@ -7,8 +7,10 @@ use std::time::{Duration, Instant};
 
 use console::Term;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde_json::{Map, Value};
 
-use super::say::{say, seconds, warn};
+use super::say::{say, seconds, tell, warn};
+use super::voice::Voice;
 use crate::model::{Case, RunControl};
 use crate::preflight::expected_step;
 use crate::step::RunState;
@@ -32,6 +34,8 @@ pub struct Progress {
     /// The first state that was shown: when, and its step and time (s).
     begun: Option<(Instant, u64, f64)>,
     last: Instant,
+    /// The time that was left when it was last asked for.
+    left: Option<Duration>,
 }
 
 impl Progress {
@@ -42,7 +46,8 @@ impl Progress {
 
     /// Until a run has shown its steps, they are taken for as long as `expected` (s).
     fn new(tells: bool, control: &RunControl, expected: Option<f64>) -> Self {
-        let bar = tells.then(terminal).flatten().map(|target| {
+        let draws = tells && Voice::now() == Voice::default();
+        let bar = draws.then(terminal).flatten().map(|target| {
             // Within 80 columns: a longer line would wrap and be drawn over and over.
             let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}");
             let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
@@ -55,12 +60,14 @@ impl Progress {
             expected,
             begun: None,
             last: Instant::now(),
+            left: None,
         }
     }
 
     /// Shows where the run stands; gives a line for the log now and then.
     pub fn show(&mut self, state: &RunState) -> Option<String> {
-        let left = left(self.left(state));
+        self.left = self.left(state);
+        let left = left(self.left);
         if let Some(bar) = &self.bar {
             let text = format!("step {}, {}{left}", state.step, seconds(state.time));
             bar.set_message(text);
@@ -72,7 +79,7 @@ impl Progress {
         self.last = Instant::now();
         let line = format!("{}{left}", line(state));
         if self.bar.is_none() {
-            say(&line);
+            tell(&line, self.fields(state));
         }
         Some(line)
     }
@@ -93,6 +100,26 @@ impl Progress {
             .map_or(f64::INFINITY, |most| most.saturating_sub(state.step) as f64);
         let seconds = begun.elapsed().as_secs_f64() / steps * (to_come / each).min(most);
         Duration::try_from_secs_f64(seconds).ok()
+    }
+
+    /// What a line tells, as values.
+    fn fields(&self, state: &RunState) -> Map<String, Value> {
+        [
+            ("step", state.step.into()),
+            ("time_s", state.time.into()),
+            ("dt_s", state.last_dt.into()),
+            ("dt_reason", state.last_reason.name().into()),
+            ("end_time_s", self.control.end_time.into()),
+            ("left_s", self.left.map(|left| left.as_secs_f64()).into()),
+        ]
+        .map(|(name, value): (&str, Value)| (name.to_owned(), value))
+        .into_iter()
+        .collect()
+    }
+
+    /// The time that was left when it was last shown.
+    pub fn time_left(&self) -> Option<Duration> {
+        self.left
     }
 
     #[allow(

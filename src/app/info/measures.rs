@@ -2,8 +2,11 @@
 
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use serde_json::Value;
+
+use crate::app::form;
 use crate::model::readable::{shown, shown_vector};
 use crate::output::{RunFolder, Sheet, gauge_records};
 
@@ -37,6 +40,23 @@ pub fn last_figures(folder: &RunFolder) -> Vec<(String, String)> {
         lines.extend(last.lines("gauge", &reads));
     }
     lines
+}
+
+/// The rows of the last time of the same tables, and of the history.
+pub fn last_rows(folder: &RunFolder) -> Value {
+    let tables = [
+        ("history", folder.history()),
+        ("bodies", folder.bodies()),
+        ("measures", folder.measures()),
+        ("witness", folder.witness()),
+        ("gauges", folder.gauges()),
+        ("fragments", folder.fragments()),
+    ];
+    let last = |(name, path): (&str, PathBuf)| {
+        let last = Last::of(&path)?;
+        Some((name.to_owned(), form::table(&last.sheet)))
+    };
+    tables.into_iter().filter_map(last).collect()
 }
 
 /// The rows of the last time of a table.

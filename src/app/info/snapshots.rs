@@ -1,20 +1,22 @@
 //! What snapshots a run has.
 
+use serde_json::json;
+
+use super::text::Text;
 use crate::output::{OutputError, RunFolder, series};
 use crate::run::say::seconds;
 
-/// A line for the usual snapshots and for those of each schedule: its name, and what there is.
-pub(super) fn entries(folder: &RunFolder) -> Result<Vec<(String, String)>, OutputError> {
-    let mut lines = vec![("snapshots".to_owned(), count_and_span(folder, None)?)];
+/// Tells of the usual snapshots and of those of each schedule.
+pub(super) fn tell(folder: &RunFolder, text: &mut Text) -> Result<(), OutputError> {
+    tell_of(folder, None, text)?;
     for schedule in folder.schedules()? {
-        let found = count_and_span(folder, Some(&schedule))?;
-        lines.push((format!("snapshots of {schedule}"), found));
+        tell_of(folder, Some(&schedule), text)?;
     }
-    Ok(lines)
+    Ok(())
 }
 
 /// How many snapshots the index of a schedule names, or that of the usual ones, and their times.
-fn count_and_span(folder: &RunFolder, schedule: Option<&str>) -> Result<String, OutputError> {
+fn tell_of(folder: &RunFolder, schedule: Option<&str>, text: &mut Text) -> Result<(), OutputError> {
     let snapshots = series::read(&folder.series_of(schedule))?;
     let span = match (snapshots.first(), snapshots.last()) {
         (Some(first), Some(last)) => {
@@ -22,5 +24,15 @@ fn count_and_span(folder: &RunFolder, schedule: Option<&str>) -> Result<String, 
         }
         _ => String::new(),
     };
-    Ok(format!("{}{span}", snapshots.len()))
+    let name = schedule.map_or_else(
+        || "snapshots".to_owned(),
+        |schedule| format!("snapshots of {schedule}"),
+    );
+    text.entry(&name, format!("{}{span}", snapshots.len()));
+    let times: Vec<f64> = snapshots.iter().map(|snapshot| snapshot.time).collect();
+    text.one_of(
+        "snapshots",
+        json!({ "schedule": schedule, "times_s": times }),
+    );
+    Ok(())
 }

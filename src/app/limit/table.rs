@@ -2,7 +2,10 @@
 
 use std::fmt::Write as _;
 
+use serde_json::{Value, json};
+
 use super::laws::Law;
+use crate::app::form;
 use crate::output::Sheet;
 use crate::sweep::Shot;
 
@@ -63,6 +66,27 @@ pub(super) fn sheet(law: &Law, speeds: &[f64]) -> Sheet {
         units,
         rows: speeds.iter().map(row).enumerate().collect(),
     }
+}
+
+/// All that is told, in SI units.
+pub(super) fn document(law: &Law, speeds: &[f64], beside: &[Shot]) -> Value {
+    let shots = beside.iter().map(|shot| {
+        let critical = law.limit.map(|at| (law.at)(shot.speed).values[at]);
+        json!({
+            "run": shot.run,
+            "speed": shot.speed,
+            "diameter": shot.diameter,
+            "failed": shot.failed,
+            "critical_diameter": critical,
+        })
+    });
+    let mut document = form::table(&sheet(law, speeds));
+    document["title"] = law.title.as_str().into();
+    document["subtitle"] = law.subtitle.as_str().into();
+    document["source"] = law.source.into();
+    document["holds_for"] = law.holds.into();
+    document["shots"] = shots.collect();
+    document
 }
 
 /// Shots beside the limit, a line for each, and how many of them it tells.

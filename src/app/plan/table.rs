@@ -2,8 +2,12 @@
 
 use std::fmt::Write as _;
 
+use serde_json::{Value, json};
+
+use super::source::Source;
+use crate::app::form;
 use crate::output::Sheet;
-use crate::plan::{Machine, Row, Sharing};
+use crate::plan::{Files, Machine, Row, Sharing};
 use crate::preflight::memory::in_words;
 
 /// Columns of the printed table, with their widths.
@@ -88,6 +92,33 @@ pub fn duration(seconds: f64) -> String {
         s if s < 99.5 * 3600.0 => format!("{:.1} h", s / 3600.0),
         s => format!("{:.1} days", s / 86400.0),
     }
+}
+
+/// All that is told, in SI units.
+pub fn document(
+    (source, machine): (&Source, &Machine),
+    rows: &[Row],
+    files: &Files,
+    steps: Option<f64>,
+) -> Value {
+    let mut document = form::table(&sheet(rows, steps));
+    document["title"] = source.case.title.as_str().into();
+    document["dimension"] = source.case.dimension.into();
+    document["particles"] = source.particles.positions.len().into();
+    document["begins_at_s"] = source.time.into();
+    document["steps"] = steps.into();
+    document["machine"] = machine.name.as_str().into();
+    document["files"] = json!({
+        "snapshots": files.snapshots,
+        "snapshot_bytes": files.snapshot,
+        "checkpoints": files.checkpoints,
+        "checkpoint_bytes": files.checkpoint,
+        "kept_checkpoints": files.kept,
+        "disk_bytes": files.disk(),
+        "written_bytes": files.written(),
+        "writing_s": files.written() / machine.disk_bandwidth,
+    });
+    document
 }
 
 /// All rows in SI units.

@@ -1,0 +1,82 @@
+//! What is told of a case, for programs.
+
+use serde_json::{Value, json};
+
+use super::mass_of;
+use crate::comm::Comm;
+use crate::model::{Body, Case};
+use crate::output::unit_of_model;
+use crate::plan::{self, Files, Machine};
+use crate::populate;
+use crate::preflight::{self, memory};
+
+/// All that is told, in SI units.
+pub(super) fn document(case: &Case, ranks: usize, warnings: &[String]) -> Value {
+    let bodies: Vec<(Value, u64)> = case.bodies.iter().map(|body| of_body(case, body)).collect();
+    let total: u64 = bodies.iter().map(|(_, count)| count).sum();
+    let bodies: Vec<Value> = bodies.into_iter().map(|(body, _)| body).collect();
+    let meetings = preflight::approaches(case);
+    let meetings = meetings
+        .iter()
+        .filter(|pair| pair.time.is_finite() && pair.time > 0.0)
+        .map(|pair| {
+            let names = pair.bodies.map(|body| case.bodies[body].name.as_str());
+            json!({ "bodies": names, "time": pair.time, "gap_spacings": pair.gap })
+        });
+    let measures = case.measure.measures.iter();
+    let measures: Vec<Value> = measures
+        .map(|measure| json!({ "measure": measure.name, "kind": measure.kind.word() }))
+        .collect();
+    let steps = plan::expected_steps(case, 0.0);
+    let machine = Machine::default();
+    #[allow(clippy::cast_precision_loss, reason = "an estimate")]
+    let files = Files::new(case, total as f64, steps.unwrap_or(0.0)).ok();
+    let wall = steps.zip(files).map(|(steps, files)| {
+        let stepping = steps * plan::rough_step(case, ranks, &machine);
+        stepping + files.written() / machine.disk_bandwidth
+    });
+    json!({
+        "title": case.title,
+        "dimension": case.dimension,
+        "particles": total,
+        "bodies": bodies,
+        "ranks": ranks,
+        "memory_of_rank": memory::of_rank(case, &Comm::solo(), ranks),
+        "meetings": meetings.collect::<Value>(),
+        "measures": measures,
+        "gauges": case.measure.gauges.len(),
+        "witness_planes": case.measure.witnesses.len(),
+        "end_time": case.run.end_time,
+        "steps": steps,
+        "machine": machine.name,
+        "wall_time": wall,
+        "disk": files.map(|files| files.disk()),
+        "warnings": warnings,
+        "units": {
+            "mass": unit_of_model("kg", case.dimension),
+            "spacing": "m",
+            "smoothing_length": "m",
+            "memory_of_rank": "bytes",
+            "time": "s",
+            "end_time": "s",
+            "wall_time": "s",
+            "disk": "bytes",
+        },
+    })
+}
+
+/// A body, and the number of its particles.
+fn of_body(case: &Case, body: &Body) -> (Value, u64) {
+    let count = populate::count(body, case.dimension, &case.symmetry, None);
+    let sizes = body.lattice.sizes.unwrap_or([1.0; 2]);
+    let told = json!({
+        "body": body.name,
+        "material": case.materials[body.material].name,
+        "particles": count,
+        "spacing": sizes.map(|size| size * body.lattice.spacing),
+        "smoothing_length": sizes.map(|size| size * body.smoothing_length),
+        "mass": mass_of(case, body, count),
+        "rigid": body.rigid.is_some(),
+    });
+    (told, count)
+}

@@ -1,0 +1,110 @@
+//! Answers as text for people, or as a JSON document for programs.
+
+use serde_json::{Map, Value, json};
+
+use crate::output::Sheet;
+use crate::run::say;
+use crate::run::voice::Voice;
+
+/// How a command tells its answer.
+#[derive(Debug, Clone, Copy, Default, clap::Args)]
+#[group(skip)]
+pub struct Form {
+    /// Print one JSON document in place of text, with numbers in SI units
+    #[arg(long)]
+    json: bool,
+}
+
+impl Form {
+    /// Text is not printed from now on where a document is asked for.
+    pub fn begin(self) {
+        if self.json {
+            let quiet = Voice {
+                quiet: true,
+                json: false,
+            };
+            quiet.begin();
+        }
+    }
+
+    /// Whether a document is asked for.
+    pub fn is_json(self) -> bool {
+        self.json
+    }
+
+    /// Prints the document if it is asked for.
+    pub fn tell(self, document: impl FnOnce() -> Value) {
+        if self.json {
+            say::document(&document());
+        }
+    }
+}
+
+/// Columns whose cells are words, whatever they look like.
+const WORDS: [&str; 9] = [
+    "body",
+    "bodies",
+    "direction",
+    "figure",
+    "gauge",
+    "kind",
+    "measure",
+    "run",
+    "witness",
+];
+
+/// A table: `units` by column, and `rows` by column. What is not a number in a column of numbers is null.
+pub fn table(sheet: &Sheet) -> Value {
+    let units = sheet.names.iter().zip(&sheet.units);
+    let units = units.filter(|(_, unit)| !["", "-"].contains(&unit.as_str()));
+    let units: Map<String, Value> = units
+        .map(|(name, unit)| (name.clone(), unit.as_str().into()))
+        .collect();
+    let row = |(_, cells): &(usize, Vec<String>)| -> Value {
+        let named = sheet.names.iter().zip(cells);
+        let row: Map<String, Value> = named
+            .map(|(name, cell)| (name.clone(), value(name, cell)))
+            .collect();
+        row.into()
+    };
+    let rows: Vec<Value> = sheet.rows.iter().map(row).collect();
+    json!({ "units": units, "rows": rows })
+}
+
+/// The cell of a column.
+fn value(column: &str, cell: &str) -> Value {
+    if WORDS.contains(&column) {
+        return cell.into();
+    }
+    if let Ok(count) = cell.parse::<u64>() {
+        return count.into();
+    }
+    match cell.parse::<f64>() {
+        // No number of JSON is infinite or none.
+        Ok(number) => json!(number),
+        Err(_) if cell.is_empty() => Value::Null,
+        Err(_) => cell.into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_has_units_and_rows_by_column() {
+        let text =
+            "# units: s,-,Pa\ntime,body,pressure\n0.5,7,2e9\n1.0,inf,NaN\n1.5,c,\n2,d,none\n";
+        let sheet = Sheet::parse(text).unwrap();
+        let expected = json!({
+            "units": { "time": "s", "pressure": "Pa" },
+            "rows": [
+                { "time": 0.5, "body": "7", "pressure": 2e9 },
+                { "time": 1.0, "body": "inf", "pressure": null },
+                { "time": 1.5, "body": "c", "pressure": null },
+                { "time": 2, "body": "d", "pressure": "none" },
+            ],
+        });
+        assert_eq!(table(&sheet), expected);
+    }
+}
