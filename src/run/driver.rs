@@ -122,7 +122,7 @@ impl<'a> Driver<'a> {
         );
         if restarted.is_none() {
             let begun = Instant::now();
-            driver.write_row(comm)?;
+            driver.write_row(comm, true)?;
             driver.write_measures(comm, 0.0)?;
             let tells = driver.simulation.case.fragments.is_some();
             driver.write_snapshots(comm, None, tells)?;
@@ -267,7 +267,8 @@ impl<'a> Driver<'a> {
             self.simulation.diagnose(comm);
         }
         if finished || rows.is_due(step, before, now) {
-            self.write_row(comm)?;
+            let of_bodies = finished || rows.bodies_are_due(step, before, now);
+            self.write_row(comm, of_bodies)?;
         }
         let options = self.simulation.case.fragments;
         let census_due = options
@@ -293,10 +294,11 @@ impl<'a> Driver<'a> {
         Ok(())
     }
 
-    fn write_row(&mut self, comm: &Comm) -> Result<(), OutputError> {
+    /// Writes a row of each table, those of bodies if they are asked for.
+    fn write_row(&mut self, comm: &Comm, of_bodies: bool) -> Result<(), OutputError> {
         self.write_crossings(comm)?;
         let load = load(comm, &self.simulation);
-        let bodies = if self.simulation.case.measure.bodies {
+        let bodies = if of_bodies && self.simulation.case.measure.bodies {
             self.simulation.measure_bodies(comm)
         } else {
             Vec::new()
