@@ -23,7 +23,7 @@ impact: release ## Run the main job on two ranks, draw its pictures, write the p
 	$(ENV) target/release/whipple plot runs/quarter-impact --panels
 	$(ENV) target/release/whipple plot runs/quarter-impact --history
 	$(ENV) target/release/whipple info runs/quarter-impact
-	$(ENV) target/release/whipple report runs/quarter-impact --open-nothing
+	$(ENV) target/release/whipple report runs/quarter-impact
 
 test: run-tests ## Run the test suite, about eight minutes on two cores
 

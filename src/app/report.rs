@@ -1,9 +1,9 @@
 //! `whipple report`: a page that tells a run, or two side by side.
 
-use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use super::form::Form;
 use super::fragments::{FragmentsArgs, tell as tell_fragments};
 use super::results::{Results, ResultsError};
 use super::which::Which;
@@ -42,9 +42,9 @@ pub struct ReportArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: Option<u32>,
 
-    /// Do not open the page, which happens at a terminal with a display
+    /// Open the page with what the desktop opens pages with
     #[arg(long)]
-    pub open_nothing: bool,
+    pub open: bool,
 }
 
 /// Why there is no page.
@@ -64,7 +64,7 @@ enum ReportError {
 pub fn run(args: &ReportArgs) -> u8 {
     match write(args) {
         Ok(path) => {
-            if !args.open_nothing {
+            if args.open {
                 open(&path);
             }
             0
@@ -144,22 +144,21 @@ fn fragments(folder: &RunFolder) -> Result<String, String> {
         bridges: false,
         apart: false,
         min_particles: None,
+        form: Form::default(),
         csv: None,
         hdf5: None,
     };
     tell_fragments(&args).map_err(|error| error.to_string())
 }
 
-/// Opens the page where somebody sees it: at a terminal with a display. That nobody can is no fault.
+/// Opens the page. That nothing can is no fault: its path has been told.
 fn open(path: &Path) {
-    let display = ["DISPLAY", "WAYLAND_DISPLAY"]
-        .iter()
-        .any(|name| std::env::var_os(name).is_some());
-    let mac = cfg!(target_os = "macos");
-    if !std::io::stdout().is_terminal() || !(display || mac) {
-        return;
-    }
-    let mut opener = Command::new(if mac { "open" } else { "xdg-open" });
+    let opener = if cfg!(target_os = "macos") {
+        "open"
+    } else {
+        "xdg-open"
+    };
+    let mut opener = Command::new(opener);
     let opener = opener
         .arg(path)
         .stdin(Stdio::null())

@@ -1,6 +1,6 @@
 //! Energies over time.
 
-use crate::plot::energies;
+use crate::plot::History;
 use crate::report::found::{Rows, Run};
 use crate::report::html::{Html, table_of_texts};
 use crate::report::picture::chart;
@@ -18,7 +18,8 @@ const TOLD: [&str; 6] = [
 /// Draws and tells the energies.
 pub fn tell(run: &Run) -> Result<Html, String> {
     let rows = Rows::read(&run.folder.history())?;
-    let drawn = energies(&run.folder.history(), run.title());
+    let table = (String::new(), run.folder.history());
+    let drawn = History::Energies.chart(&[table], run.title());
     let drawn = chart(
         drawn.map_err(|error| run.without_path(&error)),
         "Kinetic, internal, contact and total energy over time",
