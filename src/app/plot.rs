@@ -1,31 +1,40 @@
 //! `whipple plot`: pictures from a snapshot or a run folder.
 
 mod curves;
+mod each;
+mod movie;
 pub(super) mod out;
+mod scene;
 
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use super::which::Several;
 use crate::plot::{
-    Along, Format, History, Pictures, PlotError, ProfileRequest, Profiles, Request, Source, Wanted,
+    Along, History, Pictures, PlotError, ProfileRequest, Profiles, Request, Source, Wanted,
 };
-use out::{named, save, target, unsaved, write, write_chart};
+use movie::MovieArgs;
+use out::{target, write_chart};
+use scene::SceneArgs;
 
-/// Draw sections of snapshots, profiles along a line, energies or tables as SVG or PNG pictures
+/// Draw sections, views and radiographs of snapshots, profiles along a line, energies or tables as SVG or
+/// PNG pictures, and movies
 ///
 /// A section shows the matter that a plane cuts, coloured by body or by a field, with the bodies'
 /// outlines. A run's last snapshot is drawn unless others are asked for.
 /// With --profile the particles of one row along a line are drawn as dots over their coordinate.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = "Examples:
-  whipple plot runs/impact                                last snapshot, by body
+  whipple plot runs/impact                                   last snapshot, by body
   whipple plot runs/impact --field pressure --time 0.1us
   whipple plot runs/impact --panels --time 0us,0.1us,0.2us   side by side
   whipple plot runs/impact --all --field velocity.z --range -7:1km/s
   whipple plot state.vtkhdf --section z=0.1mm --view -1:1,-1:1mm
+  whipple plot runs/impact --view isometric                  the whole model, cut open
+  whipple plot runs/impact --view 30,-15 --cut y=0 --field velocity
+  whipple plot runs/impact --radiograph y
+  whipple plot runs/impact --view isometric --movie cloud.gif
   whipple plot runs/impact --history --out energies.svg      lines and text for a paper
   whipple plot runs/impact --fragments --all
   whipple plot runs/impact --distributions --time 5us,10us
@@ -94,11 +103,13 @@ pub struct PlotArgs {
     #[arg(long, value_name = "LOW:HIGH", allow_hyphen_values = true)]
     pub range: Option<String>,
 
-    /// Part of the plane to draw, as in -1:1,0:2mm, or of a profile's line or a table's axis to the
-    /// right, as in -1:1mm [default: all of it]
+    /// From where to see the whole model: isometric, front, back, left, right, top, bottom, or
+    /// AZIMUTH,ELEVATION of the viewer in degrees, 0,0 at the front and 90,0 at the right. Or part of
+    /// the plane to draw, as in -1:1,0:2mm, or of a profile's line or a table's axis to the right, as
+    /// in -1:1mm [default: a section, and all of it]
     #[arg(
         long,
-        value_name = "LEFT:RIGHT[,BOTTOM:TOP]",
+        value_name = "NAME|LEFT:RIGHT[,BOTTOM:TOP]",
         allow_hyphen_values = true
     )]
     pub view: Option<String>,
@@ -236,6 +247,14 @@ pub struct PlotArgs {
     /// Logarithmic axes of --xy
     #[arg(long, value_name = "x|y|xy", requires = "xy", value_parser = ["x", "y", "xy"])]
     pub log: Option<String>,
+
+    /// What belongs to views and radiographs.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+
+    /// What belongs to movies.
+    #[command(flatten)]
+    pub movie: MovieArgs,
 }
 
 fn history() -> impl TypedValueParser<Value = History> {
@@ -250,6 +269,8 @@ fn history() -> impl TypedValueParser<Value = History> {
 /// [`PlotError`] if an input cannot be read, a request cannot be met or a picture not written.
 pub fn run(args: &PlotArgs) -> Result<(), PlotError> {
     out::check(args)?;
+    scene::check(args)?;
+    movie::check(args)?;
     if let Some(history) = args.history {
         curves::draw_history(args, history)
     } else if args.fragments {
@@ -265,17 +286,18 @@ pub fn run(args: &PlotArgs) -> Result<(), PlotError> {
     } else if let Some(field) = &args.profile {
         draw_profile(args, field)
     } else {
-        draw_sections(args)
+        draw_snapshots(args)
     }
 }
 
-fn draw_sections(args: &PlotArgs) -> Result<(), PlotError> {
-    if !args.panels && !args.with.is_empty() {
-        return Err(PlotError::Options(
-            "--with puts runs side by side: add --panels, or draw a --profile",
-        ));
+/// Draws sections, or views and radiographs where they are asked for.
+fn draw_snapshots(args: &PlotArgs) -> Result<(), PlotError> {
+    if let Some(along) = &args.scene.radiograph {
+        return scene::draw_radiographs(args, along);
     }
-    let sources = sources(args)?;
+    if let Some(from) = scene::view(args)? {
+        return scene::draw_views(args, from);
+    }
     let request = Request {
         field: args.field.clone(),
         section: args.section.clone(),
@@ -285,39 +307,8 @@ fn draw_sections(args: &PlotArgs) -> Result<(), PlotError> {
         range: args.range.clone(),
         view: args.view.clone(),
     };
-    let pictures = Pictures::new(&sources, &request)?;
     let field = args.field.as_deref().unwrap_or("body");
-    let all = 0..sources.iter().map(|source| source.snapshots.len()).sum();
-    let draw = |chosen: Range<usize>, stem: &str| {
-        let path = target(args, stem);
-        if Format::of(&path) == Some(Format::Csv) {
-            let table = |path: &Path| {
-                let written = pictures.write_table(chosen, args.width, path);
-                written.map_err(|e| unsaved(path, &e))
-            };
-            return save(&path, table);
-        }
-        let canvas = if args.panels {
-            pictures.panels(args.width)
-        } else {
-            pictures.single(chosen.start, args.width)
-        };
-        write(&canvas?, &path)
-    };
-    if args.panels {
-        return draw(all, &format!("panels-{field}"));
-    }
-    let paths = &sources[0].snapshots;
-    if named(args).is_some() && paths.len() > 1 {
-        return Err(PlotError::Options(
-            "several pictures cannot have one name: give --out a folder, or add --panels",
-        ));
-    }
-    for (k, path) in paths.iter().enumerate() {
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        draw(k..k + 1, &format!("{stem}-{field}"))?;
-    }
-    Ok(())
+    each::draw(args, field, |sources| Pictures::new(sources, &request))
 }
 
 fn draw_profile(args: &PlotArgs, field: &str) -> Result<(), PlotError> {
@@ -373,7 +364,9 @@ fn several(args: &PlotArgs) -> Several<'_> {
 }
 
 fn usual(args: &PlotArgs) -> Wanted {
-    if args.panels && args.with.is_empty() {
+    if args.movie.is_wanted() {
+        Wanted::All
+    } else if args.panels && args.with.is_empty() {
         Wanted::Three
     } else {
         Wanted::Last

@@ -62,6 +62,18 @@ const COOL_WARM: [Rgb; 17] = [
     [180, 4, 38],
 ];
 
+/// From the paper to black, as much darker everywhere: a flash X-ray.
+#[expect(clippy::cast_possible_truncation, reason = "seventeen bytes")]
+const GREY: [Rgb; 17] = {
+    let mut map = [[255; 3]; 17];
+    let mut k = 0;
+    while k < 17 {
+        map[k] = [255 - 15 * k as u8; 3];
+        k += 1;
+    }
+    map
+};
+
 /// Share of the particles at each end that may be cut off when they stretch the range.
 const TAIL: f64 = 0.002;
 
@@ -95,10 +107,32 @@ pub struct Scale {
     pub below: bool,
     /// Values above `high` occur; they take its colour.
     pub above: bool,
-    diverging: bool,
+    map: Map,
+}
+
+/// Which colours a scale has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Map {
+    /// Of one sign.
+    Sequential,
+    /// Of both signs, with grey at zero.
+    Diverging,
+    /// Dark on light.
+    Grey,
 }
 
 impl Scale {
+    /// From the paper at a value to black at a higher one, `above` which some may lie.
+    pub fn grey([low, high]: [f64; 2], above: bool) -> Self {
+        Self {
+            low,
+            high,
+            below: false,
+            above,
+            map: Map::Grey,
+        }
+    }
+
     /// The scale over a given range, or over all values.
     ///
     /// Without a given range a few outliers, at most 0.2 % at each end, are cut off if the range
@@ -114,12 +148,17 @@ impl Scale {
         let [low, high] = range.unwrap_or_else(|| widen(without_tails(&values, ends)));
         let smaller = high.abs().min(low.abs());
         let larger = high.abs().max(low.abs());
+        let map = if low < 0.0 && high > 0.0 && smaller >= 0.1 * larger {
+            Map::Diverging
+        } else {
+            Map::Sequential
+        };
         Self {
             low,
             high,
             below: ends[0] < low,
             above: ends[1] > high,
-            diverging: low < 0.0 && high > 0.0 && smaller >= 0.1 * larger,
+            map,
         }
     }
 
@@ -129,13 +168,16 @@ impl Scale {
             return NOT_FINITE;
         }
         let value = value.clamp(self.low, self.high);
-        if self.diverging {
-            // Zero in the middle; an uneven range uses one half of the map only in part, so that
-            // equal magnitudes are equally strong.
-            let reach = self.high.max(-self.low);
-            sample(&COOL_WARM, 0.5 + 0.5 * value / reach)
-        } else {
-            sample(&VIRIDIS, (value - self.low) / (self.high - self.low))
+        let share = (value - self.low) / (self.high - self.low);
+        match self.map {
+            Map::Diverging => {
+                // Zero in the middle; an uneven range uses one half of the map only in part, so that
+                // equal magnitudes are equally strong.
+                let reach = self.high.max(-self.low);
+                sample(&COOL_WARM, 0.5 + 0.5 * value / reach)
+            }
+            Map::Sequential => sample(&VIRIDIS, share),
+            Map::Grey => sample(&GREY, share),
         }
     }
 }
@@ -203,7 +245,7 @@ mod tests {
     #[test]
     fn signed_fields_are_grey_at_zero() {
         let scale = Scale::new([-1.0, 4.0].into_iter(), None);
-        assert!(scale.diverging);
+        assert_eq!(scale.map, Map::Diverging);
         assert_eq!(scale.colour(0.0), [221, 221, 221]);
         let (low, high) = (scale.colour(-1.0), scale.colour(4.0));
         assert!(
@@ -220,7 +262,7 @@ mod tests {
 
     #[test]
     fn a_little_tension_leaves_pressure_sequential() {
-        assert!(!Scale::new([-1.2, 97.0].into_iter(), None).diverging);
+        assert!(Scale::new([-1.2, 97.0].into_iter(), None).map == Map::Sequential);
     }
 
     #[test]

@@ -29,6 +29,16 @@ impl Frame {
         self.top + self.height
     }
 
+    /// Columns and rows of a frame of whole pixels, one at least.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a float cast saturates"
+    )]
+    pub fn pixels(&self) -> [usize; 2] {
+        [self.width, self.height].map(|length| (length.round() as usize).max(1))
+    }
+
     /// The same with room on all sides.
     pub fn grown(&self, by: f32) -> Self {
         Self {

@@ -2,6 +2,8 @@
 //!
 //! A [`Pictures`] takes a section of some snapshots and draws them one by one or as panels of one
 //! picture; [`Profiles`] draws values along a line, with the exact answer where there is one;
+//! [`Scenes`] show whole models from a side and [`Radiographs`] the mass along each line of sight;
+//! [`movie`] puts one picture after the other.
 //! [`Tables`] and [`History`] draw columns of tables. These are [`Chart`]s. Every picture is made as
 //! SVG, and its pixels from that with a font of the program's own: no Python, no system fonts. Sizes
 //! of a picture are in proportion to its width, so that a wider picture is the same picture, finer.
@@ -11,6 +13,7 @@
     reason = "positions in a picture need no more digits than a float has"
 )]
 
+mod arrow;
 mod axes;
 mod canvas;
 mod chart;
@@ -22,9 +25,14 @@ mod font;
 mod format;
 mod frame;
 mod header;
+mod length_bar;
+pub mod movie;
 mod picture;
 mod pixels;
 mod preview;
+mod radiograph;
+mod scene;
+mod sequence;
 mod snapshots;
 mod stretch;
 mod style;
@@ -49,6 +57,10 @@ pub(crate) use picture::cells::{REACH, weight};
 pub use picture::pictures::{Pictures, Request};
 pub use pixels::Pixels;
 pub use preview::page::preview;
+pub use radiograph::radiographs::{RadiographRequest, Radiographs};
+pub use scene::camera::Camera;
+pub use scene::scenes::{SceneRequest, Scenes};
+pub use sequence::{NO_TABLE, Sequence};
 pub(crate) use snapshots::field::{SYMMETRIC, Shown, TENSOR, VECTOR};
 pub use snapshots::front::{Direction, front, largest_reaches};
 pub(crate) use snapshots::snapshot::Snapshot;

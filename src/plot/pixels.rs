@@ -54,18 +54,20 @@ impl Pixels {
         })
     }
 
+    /// Red, green and blue of each, without alpha.
+    #[must_use]
+    pub fn rgb(&self) -> Vec<u8> {
+        let pixels = self.rgba.as_chunks::<4>().0.iter();
+        pixels.flat_map(|&[r, g, b, _]| [r, g, b]).collect()
+    }
+
     /// A small PNG file without alpha: and without filters, which spoil the repetition that discs of
     /// a lattice and blank paper are made of.
     ///
     /// # Errors
     /// What is wrong.
     pub fn png(&self) -> Result<Vec<u8>, png::EncodingError> {
-        let colours: Vec<u8> = self
-            .rgba
-            .chunks_exact(4)
-            .flat_map(|p| [p[0], p[1], p[2]])
-            .collect();
-        self.encode(&colours, png::ColorType::Rgb, png::Compression::High)
+        self.encode(&self.rgb(), png::ColorType::Rgb, png::Compression::High)
     }
 
     /// A PNG file with alpha where it has any, made fast.
@@ -75,12 +77,7 @@ impl Pixels {
     pub fn fast_png(&self) -> Result<Vec<u8>, png::EncodingError> {
         let fast = png::Compression::Balanced;
         if self.rgba.chunks_exact(4).all(|p| p[3] == 255) {
-            let colours: Vec<u8> = self
-                .rgba
-                .chunks_exact(4)
-                .flat_map(|p| [p[0], p[1], p[2]])
-                .collect();
-            self.encode(&colours, png::ColorType::Rgb, fast)
+            self.encode(&self.rgb(), png::ColorType::Rgb, fast)
         } else {
             self.encode(&self.rgba, png::ColorType::Rgba, fast)
         }

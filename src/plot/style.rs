@@ -67,6 +67,12 @@ impl Style {
         self.tick() + self.small() + self.text() + 3.0 * self.gap()
     }
 
+    /// Height of what stands below frames without axes: the directions of the model's axes, and a
+    /// length.
+    pub fn beneath(self) -> f32 {
+        104.0 * self.unit
+    }
+
     /// Width of what stands left of a frame with these numbers: label, numbers, marks.
     pub fn beside(self, ticks: &Ticks) -> f32 {
         self.tick() + self.widest(ticks) + self.text() + 3.0 * self.gap()

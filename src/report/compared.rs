@@ -11,7 +11,7 @@ use crate::model::differences::{Difference, differences};
 use crate::model::readable::short;
 use crate::output::RunFolder;
 use crate::plot::{
-    Columns, Pictures, PlotError, Request, Source, Tables, Wanted, choose, snapshots,
+    Columns, Pictures, PlotError, Request, Sequence, Source, Tables, Wanted, choose, snapshots,
 };
 
 /// The page of two runs, A and B.

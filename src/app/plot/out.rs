@@ -6,8 +6,12 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use super::PlotArgs;
 use crate::model::readable::one_line;
-use crate::plot::{Canvas, Chart, Format, PlotError};
+use crate::plot::{Canvas, Chart, Format, PlotError, movie};
 use crate::run::say::say;
+
+/// What movies are called.
+pub const MOVIES: &str =
+    "a movie has a name that ends in .apng, .png or .gif, behind --movie or --out";
 
 /// What pictures are where no name of one tells.
 #[derive(Debug, Clone, Copy, clap::Args)]
@@ -30,7 +34,8 @@ impl PictureFormat {
     }
 }
 
-/// Refuses a name that is neither that of a picture, a table nor a folder, before anything is drawn.
+/// Refuses a name that is neither that of a picture, a movie, a table nor a folder, before anything is
+/// drawn.
 ///
 /// # Errors
 /// [`PlotError::Ending`] for a name with an ending of letters, as `x.pdf`, unless it is a folder, or a
@@ -39,7 +44,10 @@ pub fn check(args: &PlotArgs) -> Result<(), PlotError> {
     let Some(out) = args.out.as_deref() else {
         return Ok(());
     };
-    if let Some(format) = named(args) {
+    if args.movie.is_wanted() && is_file(args, out) {
+        return Ok(());
+    }
+    if let Some(format) = named(args).filter(|_| !args.movie.is_wanted()) {
         let asked = if args.csv {
             Some(Format::Csv)
         } else {
@@ -56,6 +64,9 @@ pub fn check(args: &PlotArgs) -> Result<(), PlotError> {
     let ending = out.extension().map(|e| e.to_string_lossy());
     match ending {
         Some(ending) if !folder && ending.starts_with(char::is_alphabetic) => {
+            if args.movie.is_wanted() {
+                return Err(PlotError::Options(MOVIES));
+            }
             Err(PlotError::Ending {
                 path: out.to_owned(),
                 expected: ".png, .svg or .csv, or a folder with / at its end",
@@ -70,20 +81,31 @@ pub fn named(args: &PlotArgs) -> Option<Format> {
     args.out.as_deref().and_then(Format::of)
 }
 
-/// The path of a picture, or of a table in its place, that is called `stem` unless `--out` calls it
+/// The path of a picture, or of a movie or table in its place, that is called `stem` unless `--out` calls it
 /// otherwise.
 pub fn target(args: &PlotArgs, stem: &str) -> PathBuf {
-    let ending = if args.csv {
+    let ending = if args.movie.is_wanted() {
+        "apng"
+    } else if args.csv {
         Format::Csv.ending()
     } else {
         args.picture.ending()
     };
     let name = format!("{stem}.{ending}");
     match &args.out {
-        Some(out) if named(args).is_some() => out.clone(),
+        Some(out) if is_file(args, out) => out.clone(),
         Some(out) => out.join(name),
         None if args.source.is_dir() => args.source.join("pictures").join(name),
         None => args.source.with_file_name(name),
+    }
+}
+
+/// Whether a name is that of a file: of a movie where one is drawn, else of a picture or a table.
+fn is_file(args: &PlotArgs, out: &Path) -> bool {
+    if args.movie.is_wanted() {
+        movie::Format::of(out).is_some()
+    } else {
+        Format::of(out).is_some()
     }
 }
 

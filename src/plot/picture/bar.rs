@@ -23,6 +23,16 @@ pub struct ColourBar {
 }
 
 impl ColourBar {
+    /// Of a quantity with its SI unit; `lost` says whether some values are no numbers.
+    pub fn new(scale: Scale, quantity: &str, unit: &str, lost: bool) -> Self {
+        let unit = Readable::new(unit, scale.high.abs().max(scale.low.abs()));
+        let mut label = unit.label(quantity);
+        if lost {
+            label += "; pink: not finite";
+        }
+        Self { scale, unit, label }
+    }
+
     /// Room that a bar needs beside the panels, with numbers of usual length.
     pub fn room(style: Style) -> f32 {
         150.0 * style.unit

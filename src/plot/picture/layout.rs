@@ -26,13 +26,29 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Lays out `count` panels of equal scale in a width, from the top of the picture.
+    /// Lays out `count` panels with axes, of equal scale, in a width, from the top of the picture.
     pub fn new(style: Style, width: u32, count: usize, view: View, has_bar: bool) -> Self {
+        Self::arranged(style, width, count, view, has_bar, true)
+    }
+
+    /// The same without axes.
+    pub fn bare(style: Style, width: u32, count: usize, view: View, has_bar: bool) -> Self {
+        Self::arranged(style, width, count, view, has_bar, false)
+    }
+
+    fn arranged(
+        style: Style,
+        width: u32,
+        count: usize,
+        view: View,
+        has_bar: bool,
+        has_axes: bool,
+    ) -> Self {
         let view = view.at_least(0.45, 0.2);
         let unit = Readable::new("m", view.reach());
         let bar = if has_bar { ColourBar::room(style) } else { 0.0 };
         // The numbers beside the panels are known once the scale is.
-        let guess = 100.0 * style.unit;
+        let guess = if has_axes { 100.0 * style.unit } else { 0.0 };
         let room = width as f32 - guess - bar - 2.0 * style.margin();
         let (columns, scale) = arrange(count, &view, style, room);
         let step = shared_step(&view, &unit, scale, style);
@@ -44,7 +60,11 @@ impl Layout {
             panel[0] + style.between(),
             panel[1] + style.between() + heading,
         ];
-        let beside = style.beside(&y_ticks);
+        let [beside, beneath] = if has_axes {
+            [style.beside(&y_ticks), style.below()]
+        } else {
+            [0.0, style.beneath()]
+        };
         let used = beside + columns as f32 * pitch[0] - style.between() + bar;
         let left = beside + (0.5 * (width as f32 - used)).max(style.margin());
         let frame = |k: usize| Frame {
@@ -57,7 +77,7 @@ impl Layout {
         let bottom = frames.last().map_or(0.0, Frame::bottom);
         Self {
             style,
-            height: bottom + style.below() + 0.5 * style.margin(),
+            height: bottom + beneath + 0.5 * style.margin(),
             columns,
             view,
             unit,

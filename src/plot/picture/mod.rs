@@ -7,5 +7,7 @@ pub mod layout;
 pub mod pictures;
 pub mod raster;
 pub mod section;
+pub mod sheet;
 mod table;
+pub mod titles;
 pub mod view;

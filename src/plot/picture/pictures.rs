@@ -1,24 +1,27 @@
 //! From a request to pictures: sections of some snapshots with one plane, view and colours.
 
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::bar::ColourBar;
 use super::cells::Cell;
-use super::figure::{Colours, Figure};
+use super::figure::Figure;
 use super::section::{self, Cut, DrawnAs, Section};
+use super::sheet::Colours;
+use super::titles::Titles;
 use super::view::View;
 use crate::model::Axis;
 use crate::plot::PlotError;
 use crate::plot::canvas::Canvas;
 use crate::plot::colour::Scale;
+use crate::plot::sequence::Sequence;
+use crate::plot::snapshots::bodies::Bodies;
 use crate::plot::snapshots::field::Shown;
 use crate::plot::snapshots::plane::Plane;
 use crate::plot::snapshots::slice::{place, quantity, thickness};
 use crate::plot::snapshots::snapshot::Snapshot;
 use crate::plot::snapshots::source::Source;
 use crate::plot::style::{PANELS_WIDTH, WIDTH};
-use crate::plot::units::{self, Readable};
 
 /// What to draw, as typed.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -42,9 +45,7 @@ pub struct Request {
 /// Sections of some snapshots that share plane, view and colours.
 #[derive(Debug)]
 pub struct Pictures {
-    title: String,
-    /// Names of the runs that the snapshots belong to, if there are several.
-    pub(super) names: Option<Vec<String>>,
+    pub(super) titles: Titles,
     /// Names of the bodies by their numbers in the pictures.
     pub(super) bodies: Vec<String>,
     pub(super) cut: Cut,
@@ -52,6 +53,8 @@ pub struct Pictures {
     sections: Vec<Section>,
     colours: Colours,
     view: View,
+    /// Numbers of the bodies in any of several sections, which then have one legend.
+    seen: Option<Vec<usize>>,
 }
 
 impl Pictures {
@@ -78,38 +81,32 @@ impl Pictures {
             mirror: request.mirror,
             shown: Shown::find(&first, request.field.as_deref().unwrap_or("body"))?,
         };
-        let range = match (&request.range, &cut.shown) {
-            (None, _) => None,
-            (Some(text), Shown::Field(field)) => Some(units::parse_span(text, None, &field.unit)?),
-            (Some(_), Shown::Body) => {
-                return Err(PlotError::Options("--range needs a --field to colour by"));
-            }
-        };
-        let view = request.view.as_deref().map(parse_view).transpose()?;
+        let range = cut.shown.range(request.range.as_deref())?;
+        let view = request.view.as_deref().map(View::parse).transpose()?;
 
         let mut sections = Vec::with_capacity(paths.len());
-        let mut bodies = Vec::new();
+        let mut bodies = Bodies::default();
         for path in &paths {
             let snapshot = Snapshot::open(path)?;
-            let numbers = numbers(&snapshot.bodies, &mut bodies);
+            let numbers = bodies.add(&snapshot);
             sections.push(cut.take(&snapshot, &numbers)?);
         }
         let mut cells = sections.iter().flat_map(|section| &section.cells);
         if !cells.any(Cell::is_cut) {
             return Err(cut.miss(&first));
         }
+        let view = view.unwrap_or_else(|| section::view(&sections));
         Ok(Self {
             where_text: where_text(&cut, &first),
-            colours: colours(&cut.shown, &bodies, &sections, range),
-            bodies,
-            view: view.unwrap_or_else(|| section::view(&sections)),
-            names: (sources.len() > 1).then(|| {
-                let names = sources
-                    .iter()
-                    .map(|s| vec![s.name.clone(); s.snapshots.len()]);
-                names.flatten().collect()
-            }),
-            title: first.title,
+            colours: colours(&cut.shown, &bodies.names, &sections, range),
+            bodies: bodies.names,
+            seen: (sections.len() > 1).then(|| section::bodies(&sections, &view)),
+            view,
+            titles: Titles::new(
+                first.title,
+                sources,
+                &sections.iter().map(|s| s.time).collect::<Vec<_>>(),
+            ),
             cut,
             sections,
         })
@@ -119,40 +116,6 @@ impl Pictures {
     #[must_use]
     pub fn place(&self) -> &str {
         &self.where_text
-    }
-
-    /// The picture of one snapshot, by its place among the paths, of a width in pixels.
-    ///
-    /// # Errors
-    /// [`PlotError::Size`] if no such picture can be held.
-    pub fn single(&self, index: usize, width: Option<u32>) -> Result<Canvas, PlotError> {
-        let section = &self.sections[index..=index];
-        let time = &self.times()[index];
-        let subtitle = match self.where_text.as_str() {
-            "" => format!("t = {time}"),
-            place => format!("t = {time},  {place}"),
-        };
-        self.figure(section, subtitle, Vec::new(), width.unwrap_or(WIDTH))
-            .draw()
-    }
-
-    /// One picture with a panel for each snapshot, of a width in pixels.
-    ///
-    /// # Errors
-    /// [`PlotError::Size`] if no such picture can be held.
-    pub fn panels(&self, width: Option<u32>) -> Result<Canvas, PlotError> {
-        if self.sections.len() == 1 {
-            return self.single(0, width);
-        }
-        let times = self.times();
-        let heading = |(k, time): (usize, &String)| match &self.names {
-            Some(names) => format!("{}, t = {time}", names[k]),
-            None => format!("t = {time}"),
-        };
-        let headings = times.iter().enumerate().map(heading).collect();
-        let width = width.unwrap_or(PANELS_WIDTH);
-        self.figure(&self.sections, self.where_text.clone(), headings, width)
-            .draw()
     }
 
     /// Some sections as one figure without words.
@@ -166,10 +129,6 @@ impl Pictures {
         self.figure(sections, String::new(), Vec::new(), width.unwrap_or(usual))
     }
 
-    fn times(&self) -> Vec<String> {
-        units::times(&self.sections.iter().map(|s| s.time).collect::<Vec<_>>())
-    }
-
     fn figure<'a>(
         &'a self,
         sections: &'a [Section],
@@ -178,9 +137,10 @@ impl Pictures {
         width: u32,
     ) -> Figure<'a> {
         Figure {
-            title: &self.title,
+            title: &self.titles.title,
             subtitle,
             sections,
+            seen: self.seen.as_deref().filter(|_| headings.is_empty()),
             headings,
             axes: self.cut.plane.picture_axes().map(Axis::name),
             drawn_as: self.cut.drawn_as,
@@ -191,16 +151,36 @@ impl Pictures {
     }
 }
 
-/// Reads `LEFT:RIGHT,BOTTOM:TOP`; numbers without a unit take the last one's.
-fn parse_view(text: &str) -> Result<View, PlotError> {
-    let (x, y) = text.split_once(',').ok_or_else(|| {
-        PlotError::quantity(text, "a view LEFT:RIGHT,BOTTOM:TOP, as in -1:1,0:2mm")
-    })?;
-    let unit = units::unit_behind(y.rsplit(':').next().unwrap_or_default());
-    Ok(View {
-        x: units::parse_span(x, Some(unit), "m")?,
-        y: units::parse_span(y, None, "m")?,
-    })
+impl Sequence for Pictures {
+    fn single(&self, index: usize, width: Option<u32>) -> Result<Canvas, PlotError> {
+        let section = &self.sections[index..=index];
+        let subtitle = self.titles.subtitle(index, &self.where_text);
+        self.figure(section, subtitle, Vec::new(), width.unwrap_or(WIDTH))
+            .draw()
+    }
+
+    fn panels(&self, width: Option<u32>) -> Result<Canvas, PlotError> {
+        if self.sections.len() == 1 {
+            return self.single(0, width);
+        }
+        let headings = self.titles.headings();
+        let width = width.unwrap_or(PANELS_WIDTH);
+        self.figure(&self.sections, self.where_text.clone(), headings, width)
+            .draw()
+    }
+
+    fn save_table(
+        &self,
+        chosen: Range<usize>,
+        width: Option<u32>,
+        path: &Path,
+    ) -> Result<(), PlotError> {
+        let written = self.write_table(chosen, width, path);
+        written.map_err(|error| PlotError::Save {
+            path: path.to_owned(),
+            reason: error.to_string(),
+        })
+    }
 }
 
 /// Where a section is taken, in units that suit the positions and the particle spacing.
@@ -222,18 +202,6 @@ fn drawn_as(request: &Request) -> Result<DrawnAs, PlotError> {
     }
 }
 
-/// The numbers in the picture of a snapshot's bodies: those of the same name, of which `known`
-/// takes up new ones.
-fn numbers(bodies: &[String], known: &mut Vec<String>) -> Vec<usize> {
-    let number = |name: &String| {
-        known.iter().position(|n| n == name).unwrap_or_else(|| {
-            known.push(name.clone());
-            known.len() - 1
-        })
-    };
-    bodies.iter().map(number).collect()
-}
-
 fn colours(
     shown: &Shown,
     bodies: &[String],
@@ -250,12 +218,8 @@ fn colours(
                     .filter_map(|cell| cell.value)
             };
             let scale = Scale::new(values(), range);
-            let unit = Readable::new(&field.unit, scale.high.abs().max(scale.low.abs()));
-            let mut label = unit.label(&field.label);
-            if values().any(|value| !value.is_finite()) {
-                label += "; pink: not finite";
-            }
-            Colours::Bar(ColourBar { scale, unit, label })
+            let lost = values().any(|value| !value.is_finite());
+            Colours::Bar(ColourBar::new(scale, &field.label, &field.unit, lost))
         }
     }
 }

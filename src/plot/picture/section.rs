@@ -1,5 +1,6 @@
 //! Which particles a plane cuts, and where they lie in it.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::cells::{Cell, REACH};
@@ -7,6 +8,7 @@ use super::view::View;
 use crate::model::{Axis, SymmetryPlane};
 use crate::plot::PlotError;
 use crate::plot::snapshots::field::Shown;
+use crate::plot::snapshots::images::{Image, Mirrors};
 use crate::plot::snapshots::plane::Plane;
 use crate::plot::snapshots::slice::{NUDGE, slice};
 use crate::plot::snapshots::snapshot::{LARGEST, Snapshot};
@@ -47,14 +49,6 @@ pub struct Cut {
     pub shown: Shown,
 }
 
-/// A place where a particle or an image of it is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Image {
-    point: [f64; 3],
-    /// Whether the shown number has the other sign there.
-    flipped: bool,
-}
-
 impl Cut {
     /// Collects the particles near the plane; `names` is the number in the picture of each of the
     /// snapshot's bodies.
@@ -65,6 +59,7 @@ impl Cut {
     /// when the material expands.
     pub fn take(&self, snapshot: &Snapshot, names: &[usize]) -> Result<Section, PlotError> {
         let planes = self.mirrors(snapshot);
+        let mirrors = Mirrors::new(planes.clone(), &self.shown);
         let coarsest = snapshot.coarsest();
         let reach = match self.drawn_as {
             DrawnAs::Cut => REACH * LARGEST * coarsest,
@@ -97,7 +92,7 @@ impl Cut {
                     DrawnAs::Cut => REACH * size,
                     DrawnAs::Particles => self.half_thickness(size, &snapshot.symmetry),
                 };
-                self.reflect(point, &planes, &mut images);
+                mirrors.reflect(point, &mut images);
                 let cell = |image: &Image| {
                     let at = self.flatten(&image.point, half, size)?;
                     let value = if image.flipped { -value } else { value };
@@ -161,28 +156,6 @@ impl Cut {
     fn is_on(&self, mirror: &SymmetryPlane, spacing: f64) -> bool {
         mirror.axis == self.plane.axis
             && (mirror.position - self.plane.position).abs() < NUDGE * spacing
-    }
-
-    /// Fills `images` with a particle and its reflections at some planes of symmetry.
-    fn reflect(&self, point: &[f64; 3], planes: &[SymmetryPlane], images: &mut Vec<Image>) {
-        images.clear();
-        images.push(Image {
-            point: *point,
-            flipped: false,
-        });
-        for plane in planes {
-            let k = plane.axis.index();
-            let flips = match &self.shown {
-                Shown::Body => false,
-                Shown::Field(field) => field.flips(plane.axis),
-            };
-            for n in 0..images.len() {
-                let mut image = images[n];
-                image.point[k] = 2.0 * plane.position - image.point[k];
-                image.flipped ^= flips;
-                images.push(image);
-            }
-        }
     }
 
     /// Half the thickness of the slice for a body of a spacing (m).
@@ -267,6 +240,14 @@ pub fn view(sections: &[Section]) -> View {
     View { x, y }
 }
 
+/// Numbers of the bodies that a view of some sections shows, in ascending order.
+pub fn bodies(sections: &[Section], view: &View) -> Vec<usize> {
+    let cells = sections.iter().flat_map(|s| &s.cells);
+    let shown = cells.filter(|c| c.is_cut() && view.shows(c.at, 0.5 * c.size));
+    let bodies: BTreeSet<usize> = shown.map(|cell| cell.body).collect();
+    bodies.into_iter().collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -300,27 +281,6 @@ mod tests {
                 assert_eq!(layers.count(), 1, "plane at {k}/8 spacings");
             }
         }
-    }
-
-    #[test]
-    fn a_quarter_model_has_four_images() {
-        let plane = |axis| SymmetryPlane {
-            axis,
-            position: 1.0,
-        };
-        let symmetry = [plane(Axis::X), plane(Axis::Y)];
-        let mut images = Vec::new();
-        cut(1.0, true).reflect(&[1.5, 1.25, 3.0], &symmetry, &mut images);
-        let points: Vec<_> = images.iter().map(|image| image.point).collect();
-        let expected = [
-            [1.5, 1.25, 3.0],
-            [0.5, 1.25, 3.0],
-            [1.5, 0.75, 3.0],
-            [0.5, 0.75, 3.0],
-        ];
-        assert_eq!(points, expected);
-        cut(1.0, false).reflect(&[1.5, 1.25, 3.0], &[], &mut images);
-        assert_eq!(images.len(), 1);
     }
 
     #[test]

@@ -41,7 +41,7 @@ impl Pictures {
         let figure = self.figure_of(chosen.clone(), width);
         for (k, section) in chosen.zip(figure.sections) {
             let mut before = table_line([format!("{:?}", section.time)]);
-            if let Some(names) = &self.names {
+            if let Some(names) = &self.titles.names {
                 before = table_line([format!("{:?}", section.time), names[k].clone()]);
             }
             before.pop();
@@ -76,7 +76,7 @@ impl Pictures {
     fn head(&self) -> Sheet {
         let [right, up] = self.cut.plane.picture_axes().map(Axis::name);
         let mut columns = vec![("time", "s"), (right, "m"), (up, "m"), ("body", "")];
-        if self.names.is_some() {
+        if self.titles.names.is_some() {
             columns.insert(1, ("run", ""));
         }
         let field = match &self.cut.shown {

@@ -1,6 +1,7 @@
 //! What part of its plane a picture shows.
 
-use crate::plot::units::Readable;
+use crate::plot::PlotError;
+use crate::plot::units::{self, Readable};
 
 /// A part of the section's plane (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,6 +13,21 @@ pub struct View {
 }
 
 impl View {
+    /// Reads `LEFT:RIGHT,BOTTOM:TOP`; numbers without a unit take the last one's.
+    ///
+    /// # Errors
+    /// [`PlotError::Quantity`] for anything else.
+    pub fn parse(text: &str) -> Result<Self, PlotError> {
+        let (x, y) = text.split_once(',').ok_or_else(|| {
+            PlotError::quantity(text, "a view LEFT:RIGHT,BOTTOM:TOP, as in -1:1,0:2mm")
+        })?;
+        let unit = units::unit_behind(y.rsplit(':').next().unwrap_or_default());
+        Ok(Self {
+            x: units::parse_span(x, Some(unit), "m")?,
+            y: units::parse_span(y, None, "m")?,
+        })
+    }
+
     /// Whether a disc reaches into it.
     pub fn shows(&self, at: [f64; 2], radius: f64) -> bool {
         let within = |at: f64, span: [f64; 2]| at + radius > span[0] && at - radius < span[1];

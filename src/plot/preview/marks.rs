@@ -1,12 +1,12 @@
 //! Lines, arrows and a scale over a panel.
 
 use super::panel::Panel;
-use crate::model::readable::{Readable, shown};
+use crate::model::readable::shown;
 use crate::model::{Case, Region, SymmetryPlane};
+use crate::plot::arrow;
 use crate::plot::canvas::{Align, Canvas, Frame, INK, PAPER, Rgb};
 use crate::plot::font;
 use crate::plot::style::Style;
-use crate::plot::ticks::nice_step;
 
 /// Colour of symmetry planes.
 pub const SYMMETRY: Rgb = [0, 130, 130];
@@ -119,7 +119,7 @@ pub fn arrows(canvas: &mut Canvas, style: Style, panel: &Panel, all: &[Flight], 
         } else {
             // Short ones are still seen.
             let least = (16.0 * style.unit / dx.hypot(dy)).max(1.0);
-            arrow(canvas, style, at, (dx * least, dy * least));
+            arrow::draw(canvas, style, at, (dx * least, dy * least));
         }
         if named {
             // Not over its arrow.
@@ -133,29 +133,6 @@ pub fn arrows(canvas: &mut Canvas, style: Style, panel: &Panel, all: &[Flight], 
 #[expect(clippy::cast_possible_truncation, reason = "a pixel needs no more")]
 fn as_pixels(length: f64) -> f32 {
     length as f32
-}
-
-fn arrow(canvas: &mut Canvas, style: Style, at: (f32, f32), (dx, dy): (f32, f32)) {
-    let length = dx.hypot(dy);
-    let (ex, ey) = (dx / length, dy / length);
-    let (line, head) = (3.0 * style.unit, 13.0 * style.unit);
-    let tip = (at.0 + dx, at.1 + dy);
-    // Paper around it keeps it apart from what is below.
-    for (more, colour) in [(2.0 * style.unit, PAPER), (0.0, INK)] {
-        let head = head + more;
-        let end = (tip.0 + ex * more, tip.1 + ey * more);
-        let neck = (end.0 - ex * head, end.1 - ey * head);
-        let side = 0.42 * head;
-        canvas.line(&[at, neck], line + 2.0 * more, colour);
-        canvas.polygon(
-            &[
-                end,
-                (neck.0 - ey * side, neck.1 + ex * side),
-                (neck.0 + ey * side, neck.1 - ex * side),
-            ],
-            colour,
-        );
-    }
 }
 
 /// A dot in a ring for what comes, a cross in one for what goes.
@@ -206,27 +183,4 @@ fn label(
     canvas.fill(&paper, PAPER);
     let at = (left, at.1 + 0.36 * size);
     canvas.text(text, at, size, Align::Start);
-}
-
-/// A bar of a round length with its number, at a place, not longer than some pixels.
-pub fn scale_bar(canvas: &mut Canvas, style: Style, at: (f32, f32), (scale, most): (f64, f32)) {
-    let room = f64::from(most) / scale;
-    // The largest round length that is not longer.
-    let steps = (1..=40).map(|k| nice_step(room / 1.05_f64.powi(k)));
-    let length = steps.filter(|&length| length <= room).fold(0.0, f64::max);
-    let unit = Readable::new("m", length);
-    let number = crate::model::readable::short(length / unit.size);
-    let end = (at.0 + as_pixels(length * scale), at.1);
-    let rise = 0.8 * style.tick();
-    canvas.line(&[at, end], 3.0 * style.unit, INK);
-    for (x, y) in [at, end] {
-        canvas.line(&[(x, y - rise), (x, y + rise)], style.line(), INK);
-    }
-    let text = (end.0 + style.gap(), at.1 + 0.36 * style.small());
-    canvas.text(
-        &format!("{number} {}", unit.name),
-        text,
-        style.small(),
-        Align::Start,
-    );
 }

@@ -11,6 +11,7 @@ use crate::plot::axes::Axes;
 use crate::plot::canvas::{Align, Canvas, Frame};
 use crate::plot::colour;
 use crate::plot::header::{Entry, Header, Mark};
+use crate::plot::length_bar;
 use crate::plot::picture::view::View;
 use crate::plot::snapshots::plane::Plane;
 use crate::plot::snapshots::slice::place;
@@ -296,7 +297,7 @@ impl<'a> Page<'a> {
         );
         if panel.plane.axis == Axis::Y {
             let at = (frame.left, frame.bottom() + 1.3 * style.text());
-            marks::scale_bar(canvas, style, at, (panel.scale(), 0.5 * frame.width));
+            length_bar::draw(canvas, style, at, (panel.scale(), 0.5 * frame.width));
         }
     }
 }

@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::snapshot::{FROZEN, Snapshot};
 use crate::model::Axis;
 use crate::plot::PlotError;
+use crate::plot::units::parse_span;
 
 /// Components of a vector, in the order of the file.
 pub const VECTOR: [&str; 3] = ["x", "y", "z"];
@@ -75,6 +76,20 @@ impl Shown {
                     _ => find(snapshot, dataset, component),
                 };
                 field.map(Self::Field)
+            }
+        }
+    }
+
+    /// Reads the range of colours `LOW:HIGH`, in the unit of the field.
+    ///
+    /// # Errors
+    /// [`PlotError::Quantity`] for another text, [`PlotError::Options`] if there is no field.
+    pub fn range(&self, text: Option<&str>) -> Result<Option<[f64; 2]>, PlotError> {
+        match (text, self) {
+            (None, _) => Ok(None),
+            (Some(text), Self::Field(field)) => parse_span(text, None, &field.unit).map(Some),
+            (Some(_), Self::Body) => {
+                Err(PlotError::Options("--range needs a --field to colour by"))
             }
         }
     }

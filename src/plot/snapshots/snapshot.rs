@@ -207,6 +207,21 @@ impl Snapshot {
             .collect())
     }
 
+    /// Masses of some particles (kg; per metre or square metre of a flat model): those that the
+    /// snapshot holds, else ρ₀ Δp^d.
+    pub fn masses(&self, rows: Range<usize>) -> Result<Vec<f64>, PlotError> {
+        if self.has("mass")? {
+            return Ok(self.file.scalar("mass", 0, rows)?);
+        }
+        let first = self.densities.as_ref().ok_or_else(|| PlotError::Snapshot {
+            path: self.file.path().to_owned(),
+            reason: "it tells neither masses nor initial densities".to_owned(),
+        })?;
+        let bodies = self.body_of(rows)?;
+        let mass = |&body: &usize| first[body] * self.spacings[body].powi(self.dimension);
+        Ok(bodies.iter().map(mass).collect())
+    }
+
     /// Where each body is and how it moves.
     pub fn movers(&self) -> Result<Vec<Mover>, PlotError> {
         let mut movers = vec![Mover::default(); self.bodies.len()];
