@@ -112,7 +112,8 @@ mod tests {
             ..curve("", &[[5.0, 6.0]])
         });
         chart.curves.push(rings);
-        chart.curves[2].points.clone_from(&chart.curves[0].points);
+        let points = chart.curves[0].points.clone();
+        chart.curves[2].points = points;
         let several = "# units: -,s,J\ncurve,time,kinetic_energy\n,0.0,1e-9\n,,\n,2.0,3.0\n\"a, b\",5.0,6.0\n";
         assert_eq!(text(&chart), several);
     }
