@@ -148,7 +148,7 @@ fn what_is_no_machine_is_refused() {
     assert!(refusal(&quarter_impact(), &ranks).contains(path));
     assert!(refusal("/no/such/case", &[]).contains("/no/such/case"));
     assert!(refusal(Path::new(WHIPPLE).to_str().unwrap(), &[]).contains("error"));
-    assert!(refusal(&quarter_impact(), &["--chart", "plan.svg"]).contains("svg"));
+    assert!(refusal(&quarter_impact(), &["--chart", "plan.pdf"]).contains("pdf"));
 }
 
 /// A machine of 8 cores a node; 3,056 particles are enough for three ranks.

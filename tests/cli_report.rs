@@ -255,7 +255,7 @@ fn what_is_no_run_is_refused() {
     refused(
         &[place.path(), place.path(), place.path()],
         &[],
-        "unexpected argument",
+        "no more were expected",
     );
     let page = page(place.path(), &[]);
     assert!(

@@ -69,8 +69,15 @@ impl Run {
 
     /// What went wrong, without the way to the folder, which is another on each machine.
     pub fn without_path(&self, error: &impl ToString) -> String {
-        let way = format!("{}/", self.folder.path().display());
-        error.to_string().replace(&way.replace("//", "/"), "")
+        let folder = self.folder.path().display().to_string();
+        let folder = folder.trim_end_matches('/');
+        let text = error.to_string().replace(&format!("{folder}/"), "");
+        // A single name may be part of another word.
+        if folder.contains('/') {
+            text.replace(folder, "the run")
+        } else {
+            text
+        }
     }
 
     /// How many images of the model stand behind planes of symmetry, itself included.

@@ -101,7 +101,8 @@ fn heading(table: &Value) -> (&str, &str) {
 fn meaning(text: &str) -> (&str, &str) {
     let stated = text.strip_suffix(" if absent.");
     let parts = stated.and_then(|stated| stated.rsplit_once("; "));
-    parts.unwrap_or((text.trim_end_matches('.'), "–"))
+    let (meaning, default) = parts.unwrap_or((text.trim_end_matches('.'), "–"));
+    (meaning, default.trim_end_matches(','))
 }
 
 /// What may be typed, in Markdown.
