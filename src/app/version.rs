@@ -5,7 +5,7 @@ use std::ffi::OsString;
 use clap::error::ErrorKind;
 
 use crate::comm;
-use crate::numerics::dispatch::{available, instructions};
+use crate::numerics::dispatch::{Instructions, available, instructions};
 use crate::output::{COMMIT, VERSION, h5};
 
 /// The long form, if that is what the command line asks for; `-V` is the short one.
@@ -18,7 +18,7 @@ pub fn asked(error: &clap::Error) -> Option<String> {
 /// Version and commit, the libraries that it runs with, and vector instructions: those in use, and those that
 /// the processor has. MPI is asked without being started.
 fn long() -> String {
-    let sets: Vec<&str> = available().into_iter().map(|set| set.name()).collect();
+    let sets: Vec<&str> = available().into_iter().map(Instructions::name).collect();
     format!(
         "whipple {VERSION}\n\
          commit        {COMMIT}\n\

@@ -83,7 +83,7 @@ fn numbers(name: &str, value: &Value, found: &mut Vec<(String, f64)>) {
             }
         }
         Value::Number(number) => {
-            found.extend(number.as_f64().map(|number| (name.to_owned(), number)))
+            found.extend(number.as_f64().map(|number| (name.to_owned(), number)));
         }
         _ => {}
     }

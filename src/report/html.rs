@@ -6,6 +6,10 @@ use crate::model::readable::one_line;
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Html(String);
 
+#[expect(
+    clippy::needless_pass_by_value,
+    reason = "a piece goes into one place of the page"
+)]
 impl Html {
     /// A text of any origin.
     pub fn text(text: &str) -> Self {

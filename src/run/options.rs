@@ -10,6 +10,10 @@ use crate::preflight::memory;
 
 /// Options that `run` and `restart` share.
 #[derive(Debug, Clone, clap::Args)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is an option of its own"
+)]
 pub struct CommonArgs {
     /// Stop with a checkpoint at the first step at or after this time of the case, as in 0.1us
     #[arg(short, long, value_name = "TIME", value_parser = parse_until)]

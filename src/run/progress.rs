@@ -79,7 +79,7 @@ impl Progress {
         self.last = Instant::now();
         let line = format!("{}{left}", line(state));
         if self.bar.is_none() {
-            tell(&line, self.fields(state));
+            tell(&line, &self.fields(state));
         }
         Some(line)
     }

@@ -11,11 +11,11 @@ use crate::model::readable::{printable, shown};
 
 /// A line of output.
 pub fn say(line: &str) {
-    tell(line, Map::new());
+    tell(line, &Map::new());
 }
 
 /// A line of output, with what it tells as values for those who read JSON.
-pub fn tell(line: &str, fields: Map<String, Value>) {
+pub fn tell(line: &str, fields: &Map<String, Value>) {
     let Voice { quiet, json } = Voice::now();
     if quiet {
         return;
@@ -48,7 +48,7 @@ pub fn warn(text: &str) {
             Some((level, message))
         });
         let (level, message) = found.unwrap_or(("warning", text));
-        out(&voice::event(level, message, Map::new()));
+        out(&voice::event(level, message, &Map::new()));
         return;
     }
     let _ = std::io::stderr().write_all(format!("{}\n", printable(text)).as_bytes());

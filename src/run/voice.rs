@@ -48,7 +48,7 @@ impl Voice {
 }
 
 /// A line as a JSON object: `time` (UTC), `level`, `message` and `fields`.
-pub fn event(level: &str, message: &str, fields: Map<String, Value>) -> String {
+pub fn event(level: &str, message: &str, fields: &Map<String, Value>) -> String {
     let since = SystemTime::now().duration_since(UNIX_EPOCH);
     let time = moment(since.unwrap_or_default());
     let event = json!({ "time": time, "level": level, "message": message, "fields": fields });
@@ -122,7 +122,7 @@ mod tests {
     #[test]
     fn words_of_strangers_stay_in_their_strings() {
         let hostile = "a\u{1b}[2J\"b\u{202e}\nc";
-        let line = event("info", hostile, Map::new());
+        let line = event("info", hostile, &Map::new());
         assert!(line.chars().all(is_printable), "{line}");
         let read: Value = serde_json::from_str(&line).unwrap();
         assert_eq!(read["message"], hostile);

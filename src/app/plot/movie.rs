@@ -13,6 +13,10 @@ use crate::plot::{PlotError, Sequence};
 pub struct MovieArgs {
     /// Draw all snapshots, or those asked for, one after the other as a movie: .apng (or .png) in all
     /// colours, .gif in 256 [default: RUN/pictures/movie-….apng, or what --out says]
+    #[expect(
+        clippy::option_option,
+        reason = "an option that may have a value: clap's own type for it"
+    )]
     #[arg(long, value_name = "APNG_OR_GIF", num_args = 0..=1, conflicts_with_all = [
         "csv", "format", "panels", "history", "fragments", "distributions", "profile", "xy", "pair", "gauges", "front",
     ])]

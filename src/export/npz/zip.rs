@@ -150,9 +150,9 @@ fn extra(longs: &[u64]) -> Vec<u8> {
     let mut bytes = 1_u16.to_le_bytes().to_vec();
     let length = u16::try_from(8 * longs.len()).unwrap_or(u16::MAX);
     bytes.extend(length.to_le_bytes());
-    longs
-        .iter()
-        .for_each(|long| bytes.extend(long.to_le_bytes()));
+    for long in longs {
+        bytes.extend(long.to_le_bytes());
+    }
     bytes
 }
 

@@ -28,7 +28,7 @@ pub struct Blocks {
     /// Edge of a cell (m).
     pitch: f64,
     /// Place of each block, and where its balls begin in `balls`; in order of places.
-    blocks: Vec<([i32; 3], usize)>,
+    starts: Vec<([i32; 3], usize)>,
     /// Numbers of balls, block by block, and in each in their own order.
     balls: Vec<u32>,
 }
@@ -52,9 +52,9 @@ impl Blocks {
             return Err(TOO_SMALL.to_owned());
         }
         let mut end = 0;
-        let mut blocks = Vec::with_capacity(counts.len());
+        let mut starts = Vec::with_capacity(counts.len());
         for (place, count) in &mut counts {
-            blocks.push((*place, end));
+            starts.push((*place, end));
             end += std::mem::replace(count, end);
         }
         let mut sorted = vec![0; end];
@@ -68,21 +68,21 @@ impl Blocks {
         }
         Ok(Self {
             pitch,
-            blocks,
+            starts,
             balls: sorted,
         })
     }
 
     /// How many there are.
     pub fn count(&self) -> usize {
-        self.blocks.len()
+        self.starts.len()
     }
 
     /// The surfaces in a block, with the bodies that they are of.
     pub fn triangles(&self, all: &[Ball], block: usize) -> Vec<(u32, Triangle)> {
-        let (place, first) = self.blocks[block];
+        let (place, first) = self.starts[block];
         let end = self
-            .blocks
+            .starts
             .get(block + 1)
             .map_or(self.balls.len(), |next| next.1);
         let coordinates = self.coordinates(place);
@@ -100,7 +100,7 @@ impl Blocks {
         let mut triangles = Vec::new();
         for (body, level) in bodies.into_iter().zip(levels(sums)) {
             cut(&coordinates, &level, |triangle| {
-                triangles.push((body, triangle))
+                triangles.push((body, triangle));
             });
         }
         triangles

@@ -84,7 +84,10 @@ fn changed(before: Option<&[u8]>, now: &[u8], width: usize) -> Part {
     let differs = |k: &usize| now[*k] != before[*k];
     let places = || (0..now.len()).filter(differs);
     // A picture like the one before has a pixel, and its time.
-    let (first, last) = (places().next().unwrap_or(0), places().last().unwrap_or(0));
+    let (first, last) = (
+        places().next().unwrap_or(0),
+        places().next_back().unwrap_or(0),
+    );
     let (left, right) = places().fold((width, 0), |(left, right), k| {
         (left.min(k % width), right.max(k % width))
     });

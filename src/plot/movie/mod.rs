@@ -58,8 +58,8 @@ pub fn write(
     let file = File::create(&part).map_err(|e| failed(e.to_string()))?;
     let mut file = BufWriter::new(file);
     let written = match format {
-        Format::Apng => apng::write(&mut file, pictures, fps, draw, &failed),
-        Format::Gif => gif::write(&mut file, pictures, fps, draw, &failed),
+        Format::Apng => apng::write(&mut file, pictures, fps, draw, failed),
+        Format::Gif => gif::write(&mut file, pictures, fps, draw, failed),
     };
     let whole = written.and_then(|()| {
         let named = file.flush().and_then(|()| std::fs::rename(&part, path));

@@ -72,6 +72,7 @@ impl Camera {
     }
 
     /// Whether a text that may be a part of the plane is a view: it has no range in it.
+    #[must_use]
     pub fn is_view(text: &str) -> bool {
         !text.contains(':')
     }
@@ -88,6 +89,7 @@ impl Camera {
     }
 
     /// A point (m) along the picture's axes: to the right, upwards, towards the viewer.
+    #[must_use]
     pub fn project(&self, point: &[f64; 3]) -> [f64; 3] {
         [&self.right, &self.up, &self.towards].map(|axis| dot(axis, point))
     }

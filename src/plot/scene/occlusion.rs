@@ -2,7 +2,7 @@
 //!
 //! About each sample others are looked at within a disc. One that rises over the surface takes light
 //! by the cosine of its direction from the normal, less the farther it is (after Bavoil & Sainz, 2009,
-//! and McGuire et al., 2012). The samples of a pixel look at different places, which are the same for each
+//! and `McGuire` et al., 2012). The samples of a pixel look at different places, which are the same for each
 //! pixel, so that their mean is smooth, and each picture of a movie has the same pattern.
 
 use rayon::prelude::*;

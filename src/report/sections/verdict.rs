@@ -49,7 +49,7 @@ struct Bound {
     most: f64,
     /// Whether people read it in percent.
     percent: bool,
-    bound: &'static str,
+    words: &'static str,
     source: &'static str,
 }
 
@@ -64,7 +64,7 @@ const BOUNDS: [Bound; 8] = [
         what: "energy error",
         most: 5e-3,
         percent: true,
-        bound: "≤ 0.5 %",
+        words: "≤ 0.5 %",
         source: MAIN_JOB,
     },
     Bound {
@@ -72,7 +72,7 @@ const BOUNDS: [Bound; 8] = [
         what: "contact defect",
         most: 1e-3,
         percent: true,
-        bound: "≤ 0.1 %",
+        words: "≤ 0.1 %",
         source: MAIN_JOB,
     },
     Bound {
@@ -80,7 +80,7 @@ const BOUNDS: [Bound; 8] = [
         what: "momentum error",
         most: 1e-12,
         percent: false,
-        bound: "≤ 1e-12",
+        words: "≤ 1e-12",
         source: MAIN_JOB,
     },
     Bound {
@@ -88,7 +88,7 @@ const BOUNDS: [Bound; 8] = [
         what: "angular momentum error",
         most: 1e-2,
         percent: true,
-        bound: "≤ 1 %, beyond which a run warns",
+        words: "≤ 1 %, beyond which a run warns",
         source: OUTPUT,
     },
     Bound {
@@ -96,7 +96,7 @@ const BOUNDS: [Bound; 8] = [
         what: "interpenetrated particles",
         most: 0.0,
         percent: false,
-        bound: "0",
+        words: "0",
         source: MAIN_JOB,
     },
     Bound {
@@ -104,7 +104,7 @@ const BOUNDS: [Bound; 8] = [
         what: "particles removed, out of range",
         most: 0.0,
         percent: false,
-        bound: "0",
+        words: "0",
         source: LAWS,
     },
     Bound {
@@ -112,7 +112,7 @@ const BOUNDS: [Bound; 8] = [
         what: "particles frozen, out of range",
         most: 0.0,
         percent: false,
-        bound: "0",
+        words: "0",
         source: LAWS,
     },
     Bound {
@@ -120,7 +120,7 @@ const BOUNDS: [Bound; 8] = [
         what: "mass yielded in absorbing zones",
         most: 0.0,
         percent: false,
-        bound: "none",
+        words: "none",
         source: "book, Output: history.csv",
     },
 ];
@@ -238,7 +238,7 @@ fn check(run: &Run, bound: &Bound) -> Check {
     Check {
         what: bound.what,
         value,
-        bound: bound.bound,
+        bound: bound.words,
         source: bound.source,
         standing: Standing::of(found.map(|value| value <= bound.most)),
     }
