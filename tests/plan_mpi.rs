@@ -6,9 +6,9 @@ use common::outcome::{everything, rubbing, stress_points};
 use common::ranks::on_each;
 use whipple::comm::{Comm, Traffic};
 use whipple::model::Case;
-use whipple::plan::{Load, Particles, loads, slabs_at_start, slabs_of};
+use whipple::plan::{Load, Particles, loads, loads_of, slabs_at_start, slabs_of};
 use whipple::sph::Smoothing;
-use whipple::step::Simulation;
+use whipple::step::{Simulation, bytes_of_messages};
 
 /// Steps that are compared, through the impact and several balances.
 const STEPS: usize = 50;
@@ -46,9 +46,9 @@ fn counted(simulation: &Simulation) -> (u64, u64, usize, usize, Traffic) {
     (owned, others, images, peers, halo.traffic())
 }
 
-/// Asserts that the plan for the faces of a run tells what its counters do, with what was sent in so
-/// many exchanges since `before`. Collective.
-fn assert_told(comm: &Comm, simulation: &Simulation, before: Traffic, exchanges: u64, what: &str) {
+/// Asserts that the plan for the faces of a run tells what its counters do, with what was sent since
+/// `before` in so many searches, and in what else a step sends once. Collective.
+fn assert_told(comm: &Comm, simulation: &Simulation, before: Traffic, searches: u64, what: &str) {
     let all = gathered(comm, simulation);
     let told = loads(&simulation.case, &all, simulation.slabs(), 1);
     assert_eq!(told.len(), comm.size());
@@ -64,12 +64,19 @@ fn assert_told(comm: &Comm, simulation: &Simulation, before: Traffic, exchanges:
     assert_eq!(tally.images, images as u64, "images: {what}");
     assert_eq!(tally.peers, peers as u64, "peers: {what}");
     let since = traffic - before;
+    let motion = &bytes_of_messages(&simulation.case)[..1];
+    let search = loads_of(&simulation.case, &all, simulation.slabs(), 1, motion)[comm.rank()].sent;
+    let more = searches - 1;
     assert_eq!(
-        exchanges * sent.messages,
+        sent.messages + more * search.messages,
         since.messages,
         "messages: {what}"
     );
-    assert_eq!(exchanges * sent.bytes, since.bytes, "bytes: {what}");
+    assert_eq!(
+        sent.bytes + more * search.bytes,
+        since.bytes,
+        "bytes: {what}"
+    );
     assert_eq!(sent, beyond, "each rank has a node of its own: {what}");
 }
 
@@ -83,7 +90,7 @@ fn follow(comm: &Comm, case: &Case, name: &str) {
         let told = slabs_at_start(&case, &start, comm.size(), None).unwrap();
         let mut simulation = Simulation::start(case, comm).unwrap();
         assert_eq!(&told, simulation.slabs(), "faces: {what}");
-        // Forces are evaluated twice before the first step.
+        // Two searches come before the first forces.
         assert_told(comm, &simulation, Traffic::default(), 2, &what);
         for step in 1..=STEPS {
             let before = simulation.halo().traffic();

@@ -92,7 +92,7 @@ fn cut(slabs: &mut NestedSlabs, particles: &Particles, balance: &mut Balance) {
     balance.cut(&Comm::solo(), slabs, all, &RankSpeeds::default());
 }
 
-/// What each rank has and sends, where so many that follow each other share a node.
+/// What each rank has and sends in a step, where so many that follow each other share a node.
 #[must_use]
 pub fn loads(
     case: &Case,
@@ -100,8 +100,20 @@ pub fn loads(
     slabs: &NestedSlabs,
     ranks_per_node: usize,
 ) -> Vec<Load> {
-    let mirrors = Mirrors::new(&case.symmetry);
     let bytes = bytes_of_messages(case);
+    loads_of(case, particles, slabs, ranks_per_node, &bytes)
+}
+
+/// The same with messages of so many `bytes` a halo particle: a search has the first of those of a step alone.
+#[must_use]
+pub fn loads_of(
+    case: &Case,
+    particles: &Particles,
+    slabs: &NestedSlabs,
+    ranks_per_node: usize,
+    bytes: &[usize],
+) -> Vec<Load> {
+    let mirrors = Mirrors::new(&case.symmetry);
     let mut loads = vec![Load::default(); slabs.ranks()];
     let all = (particles.positions.as_slice(), particles.reach.as_slice());
     let mut send = |from: usize, to: usize, traffic: Traffic| {
@@ -112,7 +124,7 @@ pub fn loads(
         }
     };
     let tallies = tally(slabs, &mirrors, all, |sent| {
-        send(sent.from, sent.to, traffic_of(sent, &bytes));
+        send(sent.from, sent.to, traffic_of(sent, bytes));
     });
     let farthest = particles.reach.iter().copied().fold(0.0, f64::max);
     greetings(slabs, farthest, |from, to| {

@@ -12,7 +12,7 @@ mod sharing;
 mod weak;
 
 pub use files::Files;
-pub use layout::{Layout, Load, loads, slabs_at_start, slabs_of};
+pub use layout::{Layout, Load, loads, loads_of, slabs_at_start, slabs_of};
 pub use machine::{CONSTANTS, Constant, Machine};
 pub use model::{StepTime, computing, step_time};
 pub use particles::Particles;
