@@ -8,7 +8,7 @@ mod table;
 use std::path::PathBuf;
 
 use super::form::Form;
-use super::plot::out::{PictureFormat, check_picture, save, unsaved, write_chart};
+use super::plot::out::{PictureFormat, check_picture, save_text, write_chart};
 use crate::model::readable::one_line;
 use crate::plot::{PlotError, Quantity};
 use crate::run::exit::{EXIT_FAILED, EXIT_INPUT};
@@ -141,9 +141,7 @@ fn limit(args: &LimitArgs) -> Result<(), LimitError> {
     output.form.tell(|| table::document(&law, &speeds, &shots));
     if let Some(path) = &output.csv {
         let sheet = table::sheet(&law, &speeds);
-        save(path, |path| {
-            std::fs::write(path, sheet.text()).map_err(|error| unsaved(path, &error))
-        })?;
+        save_text(path, &sheet.text())?;
     }
     let own = beside.and_then(|beside| {
         let name = format!("limit.{}", beside.picture.ending());

@@ -13,7 +13,7 @@ use clap::builder::PossibleValuesParser;
 
 use super::bench;
 use super::form::Form;
-use super::plot::out::{check_picture, save, unsaved, write_chart};
+use super::plot::out::{check_picture, save_text, write_chart};
 use crate::model::Case;
 use crate::model::readable::{short, shown};
 use crate::output::read_small;
@@ -163,8 +163,7 @@ fn calibrate(path: &Path) -> Result<(), String> {
 }
 
 fn write_text(path: &Path, text: &[u8]) -> Result<(), String> {
-    let write = |path: &Path| std::fs::write(path, text).map_err(|error| unsaved(path, &error));
-    save(path, write).map_err(told)
+    save_text(path, text).map_err(told)
 }
 
 /// Something planned: what ranks have, and what follows.

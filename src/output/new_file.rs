@@ -1,7 +1,7 @@
 //! Large files that appear under their names when they are whole.
 
 use std::fs::{self, File};
-use std::io::{BufWriter, Seek, SeekFrom, Write};
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use super::OutputError;
@@ -93,6 +93,18 @@ impl NewFile {
     }
 }
 
+impl Write for NewFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let count = self.file.write(bytes)?;
+        self.written += count as u64;
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
 impl Drop for NewFile {
     fn drop(&mut self) {
         if !self.whole {
@@ -112,7 +124,8 @@ mod tests {
         let mut file = NewFile::create(&path).unwrap();
         file.put(b"0000, body").unwrap();
         file.replace(0, b"head").unwrap();
-        file.put(b" and end").unwrap();
+        file.put(b" and").unwrap();
+        write!(file, " {}", "end").unwrap();
         assert!(!path.exists());
         assert_eq!(file.written(), 18);
         file.finish().unwrap();

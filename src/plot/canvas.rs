@@ -8,6 +8,7 @@ use base64::prelude::{BASE64_STANDARD, Engine as _};
 use super::PlotError;
 use super::discs::Discs;
 use super::dots::{Disc, Dots};
+use super::file;
 use super::format::Format;
 pub use super::frame::{Frame, Rgb};
 use super::pixels::Pixels;
@@ -270,20 +271,20 @@ impl Canvas {
         Pixels::of(&self.svg(), self.size.into())
     }
 
-    /// Writes the picture as an SVG file if its name ends so, else as a PNG file.
+    /// Writes the picture as an SVG file if its name ends so, else as a PNG file. Its folder is made if
+    /// it lacks.
     ///
     /// # Errors
     /// [`PlotError::Save`] if the system refuses.
     pub fn save(&self, path: &Path) -> Result<(), PlotError> {
-        let failed = |reason: String| PlotError::Save {
-            path: path.to_owned(),
-            reason,
-        };
         let bytes = match Format::of(path) {
             Some(Format::Svg) => self.svg().into_bytes(),
-            _ => self.pixels()?.png().map_err(|e| failed(e.to_string()))?,
+            _ => {
+                let packed = self.pixels()?.png();
+                packed.map_err(|error| PlotError::unsaved(path, error))?
+            }
         };
-        std::fs::write(path, bytes).map_err(|e| failed(e.to_string()))
+        file::save(path, &bytes)
     }
 }
 

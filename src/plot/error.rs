@@ -1,6 +1,7 @@
 //! What can go wrong on the way to a picture.
 
-use std::path::PathBuf;
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
 
 use crate::output::h5::read::ReadError;
 
@@ -158,6 +159,14 @@ impl PlotError {
         Self::Quantity {
             text: text.to_owned(),
             expected: expected.into(),
+        }
+    }
+
+    /// A file that could not be written.
+    pub(crate) fn unsaved(path: &Path, reason: impl Display) -> Self {
+        Self::Save {
+            path: path.to_owned(),
+            reason: reason.to_string(),
         }
     }
 }

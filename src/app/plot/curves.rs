@@ -9,7 +9,7 @@ use crate::plot::{
 };
 use crate::run::say::seconds;
 
-use super::out::{named, save, target, unsaved, write_chart};
+use super::out::{named, save_text, target, write_chart};
 use super::{PlotArgs, name, places, wanted};
 
 /// What `--xy` is of a table that knows what to draw, or with `--pair`.
@@ -145,10 +145,8 @@ pub fn draw_front(args: &PlotArgs, body: &str) -> Result<(), PlotError> {
     for place in places(args) {
         let found: Vec<_> = snapshots(place)?.into_iter().map(|found| found.1).collect();
         let path = place.join(format!("pictures/{stem}.csv"));
-        save(&path, |path| {
-            let text = front(&found, body, direction)?;
-            std::fs::write(path, text).map_err(|e| unsaved(path, &e))
-        })?;
+        let text = front(&found, body, direction)?;
+        save_text(&path, text.as_bytes())?;
         tables.push((name(place), path));
     }
     let mut chart = tables_of(

@@ -6,7 +6,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use super::PlotArgs;
 use crate::model::readable::one_line;
-use crate::plot::{Canvas, Chart, Format, PlotError, movie};
+use crate::plot::{self, Canvas, Chart, Format, PlotError, movie};
 use crate::run::say::say;
 
 /// What movies are called.
@@ -131,32 +131,22 @@ pub fn write(canvas: &Canvas, path: &Path) -> Result<(), PlotError> {
 /// Writes a chart as what its name says, of a width in pixels, and says so.
 pub fn write_chart(chart: &Chart, width: Option<u32>, path: &Path) -> Result<(), PlotError> {
     if Format::of(path) == Some(Format::Csv) {
-        return save(path, |path| {
-            std::fs::write(path, chart.sheet().text()).map_err(|e| unsaved(path, &e))
-        });
+        return save_text(path, &chart.sheet().text());
     }
     write(&chart.draw(width)?, path)
 }
 
-/// Writes a file, whose folder is made if it lacks, and says so.
+/// Writes a text, whose folder is made if it lacks, and says so.
+pub fn save_text(path: &Path, text: &[u8]) -> Result<(), PlotError> {
+    save(path, |path| plot::save(path, text))
+}
+
+/// Writes a file and says so.
 pub fn save(
     path: &Path,
     write: impl FnOnce(&Path) -> Result<(), PlotError>,
 ) -> Result<(), PlotError> {
-    if let Some(folder) = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty())
-    {
-        std::fs::create_dir_all(folder).map_err(|e| unsaved(path, &e))?;
-    }
     write(path)?;
     say(&format!("wrote {}", one_line(&path.display().to_string())));
     Ok(())
-}
-
-pub fn unsaved(path: &Path, error: &std::io::Error) -> PlotError {
-    PlotError::Save {
-        path: path.to_owned(),
-        reason: error.to_string(),
-    }
 }

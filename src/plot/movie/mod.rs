@@ -4,12 +4,11 @@ mod apng;
 mod gif;
 mod palette;
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::PlotError;
 use super::canvas::Canvas;
+use super::file;
 
 /// Formats of movies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,7 +35,7 @@ impl Format {
 /// Writes a movie of so many pictures, which `draw` makes one by one, that goes on for ever at a
 /// number of pictures a second.
 ///
-/// The file has its name once it is whole.
+/// The file has its name once it is whole; its folder is made if it lacks.
 ///
 /// # Errors
 /// [`PlotError`] of `draw`; [`PlotError::Save`] if the system refuses, or if pictures differ in
@@ -50,30 +49,9 @@ pub fn write(
     let format = Format::of(path).ok_or(PlotError::Options(
         "a movie has a name that ends in .apng, .png or .gif",
     ))?;
-    let part = beside(path);
-    let failed = |reason: String| PlotError::Save {
-        path: path.to_owned(),
-        reason,
-    };
-    let file = File::create(&part).map_err(|e| failed(e.to_string()))?;
-    let mut file = BufWriter::new(file);
-    let written = match format {
-        Format::Apng => apng::write(&mut file, pictures, fps, draw, failed),
-        Format::Gif => gif::write(&mut file, pictures, fps, draw, failed),
-    };
-    let whole = written.and_then(|()| {
-        let named = file.flush().and_then(|()| std::fs::rename(&part, path));
-        named.map_err(|e| failed(e.to_string()))
-    });
-    if whole.is_err() {
-        // What is not whole is of no use; the error is what counts.
-        let _ = std::fs::remove_file(&part);
-    }
-    whole
-}
-
-/// The name of a file while it is written.
-fn beside(path: &Path) -> PathBuf {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    path.with_file_name(format!(".{name}.part"))
+    let failed = |reason: String| PlotError::unsaved(path, reason);
+    file::save_by(path, |file| match format {
+        Format::Apng => apng::write(file, pictures, fps, draw, failed),
+        Format::Gif => gif::write(file, pictures, fps, draw, failed),
+    })
 }

@@ -14,6 +14,7 @@ use crate::model::Axis;
 use crate::plot::PlotError;
 use crate::plot::canvas::Canvas;
 use crate::plot::colour::Scale;
+use crate::plot::file;
 use crate::plot::sequence::Sequence;
 use crate::plot::snapshots::bodies::Bodies;
 use crate::plot::snapshots::field::Shown;
@@ -175,10 +176,9 @@ impl Sequence for Pictures {
         width: Option<u32>,
         path: &Path,
     ) -> Result<(), PlotError> {
-        let written = self.write_table(chosen, width, path);
-        written.map_err(|error| PlotError::Save {
-            path: path.to_owned(),
-            reason: error.to_string(),
+        file::save_by(path, |file| {
+            let written = self.write_table(chosen, width, file);
+            written.map_err(|error| PlotError::unsaved(path, error))
         })
     }
 }

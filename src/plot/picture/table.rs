@@ -1,9 +1,7 @@
 //! What a section draws, as a table: a grid of what fills its places, or its particles.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::ops::Range;
-use std::path::Path;
 
 use rayon::prelude::*;
 
@@ -24,7 +22,7 @@ const BAND: usize = 64;
 type Row = ([f64; 2], Sample);
 
 impl Pictures {
-    /// Writes the table of some snapshots, by their places among the paths, as a picture of them of a
+    /// Puts the table of some snapshots, by their places among the paths, as a picture of them of a
     /// width in pixels shows them: of a cut a row for each pixel with matter, at its middle; of a slice
     /// one for each particle. Time, run, place, body and field, in SI units.
     ///
@@ -34,16 +32,16 @@ impl Pictures {
         &self,
         chosen: Range<usize>,
         width: Option<u32>,
-        path: &Path,
+        out: &mut impl Write,
     ) -> io::Result<()> {
-        let mut out = BufWriter::new(File::create(path)?);
         out.write_all(&self.head().text())?;
         let figure = self.figure_of(chosen.clone(), width);
         for (k, section) in chosen.zip(figure.sections) {
-            let mut before = table_line([format!("{:?}", section.time)]);
+            let mut before = vec![format!("{:?}", section.time)];
             if let Some(names) = &self.titles.names {
-                before = table_line([format!("{:?}", section.time), names[k].clone()]);
+                before.push(names[k].clone());
             }
+            let mut before = table_line(before);
             before.pop();
             let mut write = |rows: &[Row]| -> io::Result<()> {
                 for ([x, y], sample) in rows {
@@ -65,7 +63,7 @@ impl Pictures {
                 DrawnAs::Particles => write(&particles(section, &figure.view))?,
             }
         }
-        out.flush()
+        Ok(())
     }
 
     fn has_field(&self) -> bool {
