@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use resvg::tiny_skia::Pixmap;
-use whipple::plot::{Pictures, Request, Source};
+use whipple::plot::{Pictures, Request, Sequence, Source};
 
 mod plot_fixture;
 use plot_fixture::{Case, Particles, impact, plot, write};

@@ -5,6 +5,8 @@ use std::path::Path;
 
 use super::PlotError;
 use super::canvas::Canvas;
+use super::picture::titles::Titles;
+use super::style::usual_width;
 
 /// What is said where a table of pictures without one is asked for.
 pub const NO_TABLE: &str = "there is no table of a view or a radiograph, but of a section: draw it as .png or \
@@ -12,18 +14,52 @@ pub const NO_TABLE: &str = "there is no table of a view or a radiograph, but of 
 
 /// Pictures of some snapshots that share frame and colours.
 pub trait Sequence {
+    /// What the pictures say of the snapshots.
+    fn titles(&self) -> &Titles;
+
+    /// What is shown of the snapshots, as their pictures say it: where sections are taken, from where
+    /// a view is. May be empty.
+    fn place(&self) -> &str;
+
+    /// One picture of some snapshots, by their places among the paths, side by side in a width in
+    /// pixels, with what stands below its title and above its panels.
+    ///
+    /// # Errors
+    /// [`PlotError::Size`] if no such picture can be held, [`PlotError::Read`] if a snapshot cannot
+    /// be read.
+    fn draw(
+        &self,
+        chosen: Range<usize>,
+        subtitle: &str,
+        headings: &[String],
+        width: u32,
+    ) -> Result<Canvas, PlotError>;
+
     /// The picture of one snapshot, by its place among the paths, of a width in pixels.
     ///
     /// # Errors
-    /// [`PlotError::Size`] if no such picture can be held, [`PlotError::Read`] if the snapshot
-    /// cannot be read.
-    fn single(&self, index: usize, width: Option<u32>) -> Result<Canvas, PlotError>;
+    /// As [`Self::draw`].
+    fn single(&self, index: usize, width: Option<u32>) -> Result<Canvas, PlotError> {
+        let subtitle = self.titles().subtitle(index, self.place());
+        let width = width.unwrap_or(usual_width(1));
+        self.draw(index..index + 1, &subtitle, &[], width)
+    }
 
     /// One picture with a panel for each snapshot, of a width in pixels.
     ///
     /// # Errors
-    /// As [`Self::single`].
-    fn panels(&self, width: Option<u32>) -> Result<Canvas, PlotError>;
+    /// As [`Self::draw`].
+    fn panels(&self, width: Option<u32>) -> Result<Canvas, PlotError> {
+        let count = self.titles().count();
+        if count == 1 {
+            return self.single(0, width);
+        }
+        let (headings, width) = (
+            self.titles().headings(),
+            width.unwrap_or(usual_width(count)),
+        );
+        self.draw(0..count, self.place(), &headings, width)
+    }
 
     /// Writes what the pictures of some snapshots show, by their places among the paths, as a table.
     ///

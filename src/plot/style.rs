@@ -7,7 +7,12 @@ use super::ticks::Ticks;
 pub const WIDTH: u32 = 1200;
 
 /// Default width of a picture of several panels (pixels).
-pub const PANELS_WIDTH: u32 = 1800;
+const PANELS_WIDTH: u32 = 1800;
+
+/// Default width of a picture of some panels (pixels).
+pub fn usual_width(panels: usize) -> u32 {
+    if panels > 1 { PANELS_WIDTH } else { WIDTH }
+}
 
 /// Lengths of a picture in pixels, all in proportion to its width.
 #[derive(Debug, Clone, Copy)]
@@ -23,6 +28,11 @@ impl Style {
         Self {
             unit: (width as f32 / nominal as f32).max(0.6),
         }
+    }
+
+    /// Lengths for a picture of a width with some panels.
+    pub fn of(width: u32, panels: usize) -> Self {
+        Self::new(width, usual_width(panels))
     }
 
     pub fn title(self) -> f32 {

@@ -18,13 +18,13 @@ pub struct Figure<'a> {
     /// Title of the case.
     pub title: &'a str,
     /// What is shown, where and when.
-    pub subtitle: String,
+    pub subtitle: &'a str,
     /// One for each panel.
     pub sections: &'a [Section],
     /// Numbers of the bodies that the legend lists; if absent those that are seen.
     pub seen: Option<&'a [usize]>,
     /// Names above the panels; used if there are several.
-    pub headings: Vec<String>,
+    pub headings: &'a [String],
     /// Names of the axes to the right and upwards.
     pub axes: [&'static str; 2],
     /// How particles are drawn.
@@ -68,8 +68,8 @@ impl Figure<'_> {
     fn sheet(&self) -> Sheet<'_> {
         Sheet {
             title: self.title,
-            subtitle: &self.subtitle,
-            headings: &self.headings,
+            subtitle: self.subtitle,
+            headings: self.headings,
             colours: self.colours,
             width: self.width,
         }

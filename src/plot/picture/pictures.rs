@@ -22,7 +22,7 @@ use crate::plot::snapshots::plane::Plane;
 use crate::plot::snapshots::slice::{place, quantity, thickness};
 use crate::plot::snapshots::snapshot::Snapshot;
 use crate::plot::snapshots::source::Source;
-use crate::plot::style::{PANELS_WIDTH, WIDTH};
+use crate::plot::style::usual_width;
 
 /// What to draw, as typed.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -113,34 +113,23 @@ impl Pictures {
         })
     }
 
-    /// Where the sections are taken, as their pictures say it; nothing for flat models.
-    #[must_use]
-    pub fn place(&self) -> &str {
-        &self.where_text
-    }
-
     /// Some sections as one figure without words.
     pub(super) fn figure_of(&self, chosen: Range<usize>, width: Option<u32>) -> Figure<'_> {
-        let usual = if chosen.len() > 1 {
-            PANELS_WIDTH
-        } else {
-            WIDTH
-        };
-        let sections = &self.sections[chosen];
-        self.figure(sections, String::new(), Vec::new(), width.unwrap_or(usual))
+        let width = width.unwrap_or(usual_width(chosen.len()));
+        self.figure(chosen, "", &[], width)
     }
 
     fn figure<'a>(
         &'a self,
-        sections: &'a [Section],
-        subtitle: String,
-        headings: Vec<String>,
+        chosen: Range<usize>,
+        subtitle: &'a str,
+        headings: &'a [String],
         width: u32,
     ) -> Figure<'a> {
         Figure {
             title: &self.titles.title,
             subtitle,
-            sections,
+            sections: &self.sections[chosen],
             seen: self.seen.as_deref().filter(|_| headings.is_empty()),
             headings,
             axes: self.cut.plane.picture_axes().map(Axis::name),
@@ -153,21 +142,23 @@ impl Pictures {
 }
 
 impl Sequence for Pictures {
-    fn single(&self, index: usize, width: Option<u32>) -> Result<Canvas, PlotError> {
-        let section = &self.sections[index..=index];
-        let subtitle = self.titles.subtitle(index, &self.where_text);
-        self.figure(section, subtitle, Vec::new(), width.unwrap_or(WIDTH))
-            .draw()
+    fn titles(&self) -> &Titles {
+        &self.titles
     }
 
-    fn panels(&self, width: Option<u32>) -> Result<Canvas, PlotError> {
-        if self.sections.len() == 1 {
-            return self.single(0, width);
-        }
-        let headings = self.titles.headings();
-        let width = width.unwrap_or(PANELS_WIDTH);
-        self.figure(&self.sections, self.where_text.clone(), headings, width)
-            .draw()
+    /// Where the sections are taken; nothing for flat models.
+    fn place(&self) -> &str {
+        &self.where_text
+    }
+
+    fn draw(
+        &self,
+        chosen: Range<usize>,
+        subtitle: &str,
+        headings: &[String],
+        width: u32,
+    ) -> Result<Canvas, PlotError> {
+        self.figure(chosen, subtitle, headings, width).draw()
     }
 
     fn save_table(

@@ -7,7 +7,7 @@ use crate::plot::axes::Axes;
 use crate::plot::canvas::{Align, Canvas};
 use crate::plot::colour;
 use crate::plot::header::{Entry, Header, Mark};
-use crate::plot::style::{PANELS_WIDTH, Style, WIDTH, whole};
+use crate::plot::style::{Style, whole};
 
 /// What colours mean.
 #[derive(Debug, Clone)]
@@ -36,7 +36,7 @@ pub struct Sheet<'a> {
 impl Sheet<'_> {
     /// Lengths of a picture of some panels.
     pub fn style(&self, panels: usize) -> Style {
-        Style::new(self.width, if panels > 1 { PANELS_WIDTH } else { WIDTH })
+        Style::of(self.width, panels)
     }
 
     /// Whether there is a colour bar.

@@ -27,6 +27,11 @@ impl Titles {
         }
     }
 
+    /// Number of the snapshots.
+    pub fn count(&self) -> usize {
+        self.times.len()
+    }
+
     /// What stands below the title of a picture of one snapshot; `place` says what is shown of it.
     pub fn subtitle(&self, index: usize, place: &str) -> String {
         let time = &self.times[index];

@@ -1,5 +1,6 @@
 //! From a request to pictures: radiographs of some snapshots with one frame and one scale.
 
+use std::ops::Range;
 use std::sync::OnceLock;
 
 use rayon::prelude::*;
@@ -25,7 +26,7 @@ use crate::plot::snapshots::plane::Plane;
 use crate::plot::snapshots::sample::Sampled;
 use crate::plot::snapshots::snapshot::Snapshot;
 use crate::plot::snapshots::source::Source;
-use crate::plot::style::{PANELS_WIDTH, Style, WIDTH, whole};
+use crate::plot::style::{Style, whole};
 use crate::plot::units::parse_span;
 
 /// Unit of what is shown.
@@ -195,22 +196,32 @@ impl Radiographs {
         let bar = ColourBar::new(scale, "mass per area", UNIT, false);
         Ok(self.colours.get_or_init(|| Colours::Bar(bar)))
     }
+}
+
+impl Sequence for Radiographs {
+    fn titles(&self) -> &Titles {
+        &self.titles
+    }
+
+    fn place(&self) -> &str {
+        &self.place
+    }
 
     fn draw(
         &self,
-        snapshots: std::ops::Range<usize>,
+        chosen: Range<usize>,
         subtitle: &str,
         headings: &[String],
         width: u32,
     ) -> Result<Canvas, PlotError> {
-        let count = snapshots.len();
-        let style = Style::new(width, if count > 1 { PANELS_WIDTH } else { WIDTH });
+        let count = chosen.len();
+        let style = Style::of(width, count);
         let layout = Layout::new(style, width, count, self.view, true);
         Canvas::fits(width, whole(layout.height))?;
         let (size, view) = (layout.frames[0].pixels(), layout.view);
         let draw =
             |k: usize| -> Result<Vec<f64>, PlotError> { Ok(self.masses(k, size, view)?.areal()) };
-        let rasters = snapshots.map(|k| Ok((k, draw(k)?)));
+        let rasters = chosen.map(|k| Ok((k, draw(k)?)));
         let rasters: Vec<(usize, Vec<f64>)> = rasters.collect::<Result<_, PlotError>>()?;
         let colours = self.colours(&rasters, draw)?;
         let sheet = Sheet {
@@ -228,20 +239,5 @@ impl Radiographs {
             }
             draw_axes(canvas, layout, k, self.axes);
         })
-    }
-}
-
-impl Sequence for Radiographs {
-    fn single(&self, index: usize, width: Option<u32>) -> Result<Canvas, PlotError> {
-        let subtitle = self.titles.subtitle(index, &self.place);
-        self.draw(index..index + 1, &subtitle, &[], width.unwrap_or(WIDTH))
-    }
-
-    fn panels(&self, width: Option<u32>) -> Result<Canvas, PlotError> {
-        if self.snapshots.len() == 1 {
-            return self.single(0, width);
-        }
-        let (headings, width) = (self.titles.headings(), width.unwrap_or(PANELS_WIDTH));
-        self.draw(0..self.snapshots.len(), &self.place, &headings, width)
     }
 }

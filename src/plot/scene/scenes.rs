@@ -1,5 +1,7 @@
 //! From a request to pictures: views of some snapshots with one camera, frame and colours.
 
+use std::ops::Range;
+
 use super::buffer::Seen;
 use super::camera::Camera;
 use super::cut::Cuts;
@@ -21,7 +23,7 @@ use crate::plot::snapshots::field::Shown;
 use crate::plot::snapshots::matter::Wanted;
 use crate::plot::snapshots::snapshot::Snapshot;
 use crate::plot::snapshots::source::Source;
-use crate::plot::style::{PANELS_WIDTH, WIDTH, whole};
+use crate::plot::style::whole;
 
 /// What to draw, as typed.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -120,9 +122,40 @@ impl Scenes {
         })
     }
 
+    /// Directions of the axes, and a length, below the panels.
+    fn draw_scale(&self, canvas: &mut Canvas, layout: &Layout) {
+        let (style, first) = (layout.style, layout.frames[0]);
+        let bottom = layout.frames.iter().map(Frame::bottom).fold(0.0, f32::max);
+        let middle = bottom + 0.5 * style.beneath();
+        let at = first.left + 0.55 * style.beneath();
+        triad::draw(canvas, style, (at, middle), &self.camera);
+        let scale = f64::from(first.width) / layout.view.width();
+        let at = (first.left + 1.3 * style.beneath(), middle);
+        length_bar::draw(canvas, style, at, (scale, 0.3 * first.width));
+    }
+
+    fn colour(&self, seen: &Seen) -> Rgb {
+        let body = usize::from(seen.body);
+        match &self.colours {
+            Colours::Bodies(_) => colour::body(body),
+            Colours::Bar(_) if self.wanted.bodies.rigid.get(body) == Some(&true) => colour::RIGID,
+            Colours::Bar(bar) => bar.scale.colour(f64::from(seen.value)),
+        }
+    }
+}
+
+impl Sequence for Scenes {
+    fn titles(&self) -> &Titles {
+        &self.titles
+    }
+
+    fn place(&self) -> &str {
+        &self.place
+    }
+
     fn draw(
         &self,
-        snapshots: &[Numbered],
+        chosen: Range<usize>,
         subtitle: &str,
         headings: &[String],
         width: u32,
@@ -134,6 +167,7 @@ impl Scenes {
             colours: &self.colours,
             width,
         };
+        let snapshots = &self.snapshots[chosen];
         let count = snapshots.len();
         let layout = Layout::bare(sheet.style(count), width, count, self.view, sheet.has_bar());
         Canvas::fits(width, whole(layout.height))?;
@@ -161,43 +195,6 @@ impl Scenes {
                 self.draw_scale(canvas, layout);
             }
         })
-    }
-
-    /// Directions of the axes, and a length, below the panels.
-    fn draw_scale(&self, canvas: &mut Canvas, layout: &Layout) {
-        let (style, first) = (layout.style, layout.frames[0]);
-        let bottom = layout.frames.iter().map(Frame::bottom).fold(0.0, f32::max);
-        let middle = bottom + 0.5 * style.beneath();
-        let at = first.left + 0.55 * style.beneath();
-        triad::draw(canvas, style, (at, middle), &self.camera);
-        let scale = f64::from(first.width) / layout.view.width();
-        let at = (first.left + 1.3 * style.beneath(), middle);
-        length_bar::draw(canvas, style, at, (scale, 0.3 * first.width));
-    }
-
-    fn colour(&self, seen: &Seen) -> Rgb {
-        let body = usize::from(seen.body);
-        match &self.colours {
-            Colours::Bodies(_) => colour::body(body),
-            Colours::Bar(_) if self.wanted.bodies.rigid.get(body) == Some(&true) => colour::RIGID,
-            Colours::Bar(bar) => bar.scale.colour(f64::from(seen.value)),
-        }
-    }
-}
-
-impl Sequence for Scenes {
-    fn single(&self, index: usize, width: Option<u32>) -> Result<Canvas, PlotError> {
-        let subtitle = self.titles.subtitle(index, &self.place);
-        let snapshots = &self.snapshots[index..=index];
-        self.draw(snapshots, &subtitle, &[], width.unwrap_or(WIDTH))
-    }
-
-    fn panels(&self, width: Option<u32>) -> Result<Canvas, PlotError> {
-        if self.snapshots.len() == 1 {
-            return self.single(0, width);
-        }
-        let (headings, width) = (self.titles.headings(), width.unwrap_or(PANELS_WIDTH));
-        self.draw(&self.snapshots, &self.place, &headings, width)
     }
 }
 
