@@ -44,7 +44,7 @@ impl Layout {
         has_bar: bool,
         has_axes: bool,
     ) -> Self {
-        let view = view.at_least(0.45, 0.2);
+        let view = view.drawn();
         let unit = Readable::new("m", view.reach());
         let bar = if has_bar { ColourBar::room(style) } else { 0.0 };
         // The numbers beside the panels are known once the scale is.

@@ -96,7 +96,8 @@ impl Pictures {
         if !cells.any(Cell::is_cut) {
             return Err(cut.miss(&first));
         }
-        let view = view.unwrap_or_else(|| section::view(&sections));
+        // As it is drawn, for tables and the legend too.
+        let view = view.unwrap_or_else(|| section::view(&sections)).drawn();
         Ok(Self {
             where_text: where_text(&cut, &first),
             colours: colours(&cut.shown, &bodies.names, &sections, range),

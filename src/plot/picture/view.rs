@@ -3,6 +3,13 @@
 use crate::plot::PlotError;
 use crate::plot::units::{self, Readable};
 
+/// Width of a drawn view over its height, at least, and height over width.
+const NARROWEST: f64 = 0.45;
+const FLATTEST: f64 = 0.2;
+
+/// Share of a length that is nothing but rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// A part of the section's plane (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
@@ -42,15 +49,19 @@ impl View {
         self.y[1] - self.y[0]
     }
 
-    /// The view widened about its middle until neither side is a thin strip.
-    pub fn at_least(self, narrowest: f64, flattest: f64) -> Self {
+    /// The view as pictures draw it: widened about its middle until neither side is a thin strip.
+    pub fn drawn(self) -> Self {
         let grow = |span: [f64; 2], least: f64| {
-            let more = 0.5 * (least - (span[1] - span[0])).max(0.0);
-            [span[0] - more, span[1] + more]
+            let lack = least - (span[1] - span[0]);
+            // What has been widened is not widened again by what rounding has left.
+            if lack <= ROUNDING * least {
+                return span;
+            }
+            [span[0] - 0.5 * lack, span[1] + 0.5 * lack]
         };
         Self {
-            x: grow(self.x, narrowest * self.height()),
-            y: grow(self.y, flattest * self.width()),
+            x: grow(self.x, NARROWEST * self.height()),
+            y: grow(self.y, FLATTEST * self.width()),
         }
     }
 
@@ -63,5 +74,29 @@ impl View {
     pub fn reach(&self) -> f64 {
         let ends = self.x.into_iter().chain(self.y);
         ends.fold(0.0, |reach, end| end.abs().max(reach))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_strip_is_widened_once() {
+        for (x, y) in [
+            ([0.1, 0.1001], [-3.0, 7.7]),
+            ([-1e-3, 0.3], [0.2, 0.2]),
+            ([-1.0, 1.0], [0.0, 1.0]),
+        ] {
+            let view = View { x, y }.drawn();
+            assert!(view.width() >= 0.449_999 * view.height());
+            assert!(view.height() >= 0.199_999 * view.width());
+            assert_eq!(view.drawn(), view);
+        }
+        let wide = View {
+            x: [-1.0, 1.0],
+            y: [0.0, 1.0],
+        };
+        assert_eq!(wide.drawn(), wide);
     }
 }
