@@ -137,21 +137,10 @@ impl Canvas {
 
     /// The pixels of a frame, row by row.
     pub fn image(&mut self, frame: &Frame, colours: &[Rgb]) {
-        let rgba: Vec<[u8; 4]> = colours.iter().map(|&[r, g, b]| [r, g, b, 255]).collect();
-        self.raster(frame, &rgba);
-    }
-
-    /// The pixels of a frame, row by row: red, green, blue and alpha, by which the colours are not
-    /// multiplied.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "frames are whole pixels, and a float cast saturates"
-    )]
-    pub fn raster(&mut self, frame: &Frame, pixels: &[[u8; 4]]) {
-        let columns = frame.width as usize;
-        let rows = pixels.len().checked_div(columns).unwrap_or(0);
-        let rgba = pixels[..rows * columns].concat();
+        let [columns, _] = frame.pixels();
+        let rows = colours.len() / columns;
+        let colours = &colours[..rows * columns];
+        let rgba = colours.iter().flat_map(|&[r, g, b]| [r, g, b, 255]);
         if let [Ok(width), Ok(height)] = [columns, rows].map(u32::try_from) {
             let frame = Frame {
                 width: width as f32,
@@ -161,7 +150,7 @@ impl Canvas {
             let pixels = Pixels {
                 width,
                 height,
-                rgba,
+                rgba: rgba.collect(),
             };
             self.settle();
             put_image(&mut self.document, self.clip.as_ref(), &frame, &pixels);

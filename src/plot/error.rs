@@ -140,9 +140,6 @@ pub enum PlotError {
         /// What is wrong with it.
         reason: String,
     },
-    /// The picture could not be packed.
-    #[error("cannot pack the picture: {0}")]
-    Encode(String),
     /// The picture could not be written.
     #[error("cannot write {}: {reason}", path.display())]
     Save {

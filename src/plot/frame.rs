@@ -30,13 +30,8 @@ impl Frame {
     }
 
     /// Columns and rows of a frame of whole pixels, one at least.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a float cast saturates"
-    )]
     pub fn pixels(&self) -> [usize; 2] {
-        [self.width, self.height].map(|length| (length.round() as usize).max(1))
+        [self.width, self.height].map(whole)
     }
 
     /// The same with room on all sides.
@@ -48,4 +43,14 @@ impl Frame {
             height: self.height + 2.0 * by,
         }
     }
+}
+
+/// A length as a number of pixels, one at least.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a float cast saturates"
+)]
+pub fn whole(length: f32) -> usize {
+    (length.round() as usize).max(1)
 }

@@ -1,6 +1,7 @@
 //! The length bar of pictures without axes.
 
 use super::canvas::{Align, Canvas, INK};
+use super::picture::layout::pixels;
 use super::style::Style;
 use super::ticks::nice_step;
 use crate::model::readable::{Readable, short};
@@ -14,9 +15,7 @@ pub fn draw(canvas: &mut Canvas, style: Style, at: (f32, f32), (scale, most): (f
     let length = steps.filter(|&length| length <= room).fold(0.0, f64::max);
     let unit = Readable::new("m", length);
     let number = short(length / unit.size);
-    #[expect(clippy::cast_possible_truncation, reason = "a pixel needs no more")]
-    let pixels = (length * scale) as f32;
-    let end = (at.0 + pixels, at.1);
+    let end = (at.0 + pixels(length * scale), at.1);
     let rise = 0.8 * style.tick();
     canvas.line(&[at, end], 3.0 * style.unit, INK);
     for (x, y) in [at, end] {

@@ -37,14 +37,9 @@ impl Chart {
 
     /// The curves without those that draw the points of an earlier one again.
     fn told(&self) -> impl Iterator<Item = &Curve> {
-        // Where a line is interrupted there is no number, which no other equals.
-        let bits = |curve: &Curve| -> Vec<[u64; 2]> {
-            let points = curve.points.iter();
-            points.map(|point| point.map(f64::to_bits)).collect()
-        };
         let again = move |k: usize, curve: &Curve| {
             let mut earlier = self.curves[..k].iter();
-            curve.told().is_empty() && earlier.any(|other| bits(other) == bits(curve))
+            curve.told().is_empty() && earlier.any(|other| other.bits().eq(curve.bits()))
         };
         let all = self.curves.iter().enumerate();
         let all = all.filter(|(_, curve)| !curve.points.is_empty());
@@ -61,6 +56,12 @@ impl Curve {
         } else {
             &self.in_tables
         }
+    }
+
+    /// Its points, by their bits: where a line is interrupted there is no number, which no other
+    /// equals.
+    fn bits(&self) -> impl Iterator<Item = [u64; 2]> {
+        self.points.iter().map(|point| point.map(f64::to_bits))
     }
 }
 

@@ -138,16 +138,6 @@ pub fn pixels(length: f64) -> f32 {
     length as f32
 }
 
-/// A length as a number of pixels.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "frames are whole pixels of a canvas"
-)]
-pub fn whole(length: f32) -> usize {
-    length.round() as usize
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,9 +5,9 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::cells::{Cell, Sample, Tiles};
-use super::layout::whole;
 use super::view::View;
 use crate::plot::canvas::{Frame, PAPER, Rgb};
+use crate::plot::frame::whole;
 
 /// Samples along either axis of a pixel at an edge: an odd number, so that one is in the middle.
 const FINE: usize = 3;
@@ -48,12 +48,12 @@ impl Raster {
         line: f32,
         colour: impl Fn(&Sample) -> Rgb + Sync,
     ) -> Self {
-        let [columns, rows] = [frame.width, frame.height].map(whole);
+        let [columns, rows] = frame.pixels();
         let panel = Panel {
-            tiles: Tiles::new(cells, view, view.width() / columns.max(1) as f64),
+            tiles: Tiles::new(cells, view, view.width() / columns as f64),
             view,
             size: [columns, rows],
-            line: whole(line * FINE as f32).max(1),
+            line: whole(line * FINE as f32),
             colour,
         };
         let bands: Vec<(Vec<Rgb>, Vec<usize>)> = (0..rows.div_ceil(BAND))

@@ -7,7 +7,6 @@ use rayon::prelude::*;
 
 use super::cells::{Cell, Sample, Tiles};
 use super::figure::Figure;
-use super::layout::whole;
 use super::pictures::Pictures;
 use super::section::{DrawnAs, Section};
 use super::view::View;
@@ -102,8 +101,8 @@ fn grid(
     let layout = figure.layout();
     let view = layout.view;
     let frame = layout.frames[0];
-    let [columns, rows] = [frame.width, frame.height].map(whole);
-    let tiles = Tiles::new(&section.cells, view, view.width() / columns.max(1) as f64);
+    let [columns, rows] = frame.pixels();
+    let tiles = Tiles::new(&section.cells, view, view.width() / columns as f64);
     let share = |k: usize, count: usize| (k as f64 + 0.5) / count as f64;
     let of_row = |row: usize| -> Vec<Row> {
         let y = view.y[1] - view.height() * share(row, rows);

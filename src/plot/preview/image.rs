@@ -42,7 +42,7 @@ pub struct Image {
 impl Image {
     /// Of no particles yet, which are to be so high at least (pixels).
     pub fn new(panel: Panel, height: f64) -> Self {
-        let (columns, rows) = (panel.frame.width as usize, panel.frame.height as usize);
+        let [columns, rows] = panel.frame.pixels();
         let none = Hit {
             depth: f32::INFINITY,
             body: NOBODY,

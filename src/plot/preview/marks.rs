@@ -6,6 +6,7 @@ use crate::model::{Case, Region, SymmetryPlane};
 use crate::plot::arrow;
 use crate::plot::canvas::{Align, Canvas, Frame, INK, PAPER, Rgb};
 use crate::plot::font;
+use crate::plot::picture::layout::pixels;
 use crate::plot::style::Style;
 
 /// Colour of symmetry planes.
@@ -112,7 +113,7 @@ pub fn arrows(canvas: &mut Canvas, style: Style, panel: &Panel, all: &[Flight], 
     let normal = panel.plane.axis.index();
     for (_, place, v) in all {
         let at = panel.at(place);
-        let share = |a: usize| as_pixels(v[a] / fastest) * longest;
+        let share = |a: usize| pixels(v[a] / fastest) * longest;
         let (dx, dy) = (share(right), -share(up));
         if dx.hypot(dy) < 0.05 * longest {
             along_sight(canvas, style, at, v[normal] * panel.towards() > 0.0);
@@ -128,11 +129,6 @@ pub fn arrows(canvas: &mut Canvas, style: Style, panel: &Panel, all: &[Flight], 
             label(canvas, style, at, (&text, leftwards), &panel.frame);
         }
     }
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "a pixel needs no more")]
-fn as_pixels(length: f64) -> f32 {
-    length as f32
 }
 
 /// A dot in a ring for what comes, a cross in one for what goes.

@@ -12,6 +12,7 @@ use crate::plot::canvas::{Align, Canvas, Frame};
 use crate::plot::colour;
 use crate::plot::header::{Entry, Header, Mark};
 use crate::plot::length_bar;
+use crate::plot::picture::layout::pixels;
 use crate::plot::picture::view::View;
 use crate::plot::snapshots::plane::Plane;
 use crate::plot::snapshots::slice::place;
@@ -300,10 +301,4 @@ impl<'a> Page<'a> {
             length_bar::draw(canvas, style, at, (panel.scale(), 0.5 * frame.width));
         }
     }
-}
-
-/// A length in pixels as the canvas takes it.
-#[expect(clippy::cast_possible_truncation, reason = "pixels need no more")]
-fn pixels(length: f64) -> f32 {
-    length as f32
 }

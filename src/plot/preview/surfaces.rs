@@ -46,22 +46,13 @@ fn distance(surface: &RigidSurface, place: &[f64; 3]) -> f64 {
 
 /// Calls `work` for each row of pixels, in parallel, and gives those of their columns that it takes.
 fn rows(panel: &Panel, work: impl Fn(usize, usize) -> bool + Sync) -> Vec<(usize, usize)> {
-    let [columns, rows] = size(panel);
+    let [columns, rows] = panel.frame.pixels();
     let of_row = |row: usize| {
         let columns = (0..columns).filter(|&column| work(column, row));
         columns.map(|column| (column, row)).collect::<Vec<_>>()
     };
     let found: Vec<Vec<_>> = (0..rows).into_par_iter().map(of_row).collect();
     found.concat()
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "frames are whole pixels of a canvas"
-)]
-fn size(panel: &Panel) -> [usize; 2] {
-    [panel.frame.width, panel.frame.height].map(|length| length as usize)
 }
 
 /// The middle of a pixel.
@@ -138,7 +129,7 @@ pub fn seen(surface: &RigidSurface, panel: &Panel, particles: &Ends) -> Vec<(usi
         let at = |along: f64| panel.place(middle(column), middle(row), along);
         reach.has(&at(low)) && is_met(surface, at, [low, high], pixel)
     };
-    let [columns, height] = size(panel);
+    let [columns, height] = panel.frame.pixels();
     let mut mask = vec![false; columns * height];
     for (column, row) in rows(panel, hits) {
         mask[row * columns + column] = true;

@@ -4,6 +4,7 @@ use super::camera::Camera;
 use crate::model::Axis;
 use crate::plot::arrow;
 use crate::plot::canvas::{Align, Canvas};
+use crate::plot::picture::layout::pixels;
 use crate::plot::style::Style;
 
 /// Length of an axis that lies in the picture (units of layout).
@@ -23,21 +24,17 @@ pub fn draw(canvas: &mut Canvas, style: Style, at: (f32, f32), camera: &Camera) 
         if right.hypot(up) < ALONG_SIGHT {
             continue;
         }
-        let pixels = |share: f64, length: f64| {
-            #[expect(clippy::cast_possible_truncation, reason = "a pixel needs no more")]
-            let pixels = (share * length) as f32;
-            pixels * style.unit
-        };
+        let long = |share: f64, length: f64| pixels(share * length) * style.unit;
         arrow::draw(
             canvas,
             style,
             at,
-            (pixels(right, LENGTH), -pixels(up, LENGTH)),
+            (long(right, LENGTH), -long(up, LENGTH)),
         );
         let beyond = (LENGTH + 12.0 / right.hypot(up)).min(2.0 * LENGTH);
         let name = (
-            at.0 + pixels(right, beyond),
-            at.1 - pixels(up, beyond) + 0.3 * style.small(),
+            at.0 + long(right, beyond),
+            at.1 - long(up, beyond) + 0.3 * style.small(),
         );
         canvas.text(axis.name(), name, style.small(), Align::Middle);
     }
