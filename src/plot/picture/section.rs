@@ -10,7 +10,7 @@ use crate::plot::PlotError;
 use crate::plot::snapshots::field::Shown;
 use crate::plot::snapshots::images::{Image, Mirrors};
 use crate::plot::snapshots::plane::Plane;
-use crate::plot::snapshots::slice::{NUDGE, slice};
+use crate::plot::snapshots::slice::{NUDGE, mirrored, slice};
 use crate::plot::snapshots::snapshot::{LARGEST, Snapshot};
 use crate::plot::units::Readable;
 
@@ -214,10 +214,8 @@ impl Cut {
         };
         let seen = |p: &&SymmetryPlane| self.mirror && p.axis != self.plane.axis;
         let planes = snapshot.symmetry.iter().filter(seen);
-        let planes: Vec<String> = planes.map(|p| place(p.axis, p.position)).collect();
         let section = (snapshot.dimension == 3).then_some(section);
-        let mirrored =
-            (!planes.is_empty()).then(|| format!("mirrored at {}", planes.join(" and ")));
+        let mirrored = mirrored(planes.map(|p| place(p.axis, p.position)));
         let texts: Vec<String> = section.into_iter().chain(mirrored).collect();
         texts.join(",  ")
     }

@@ -21,7 +21,7 @@ use crate::plot::scene::survey::{Numbered, Survey};
 use crate::plot::sequence::Sequence;
 use crate::plot::snapshots::bodies::Bodies;
 use crate::plot::snapshots::field::Shown;
-use crate::plot::snapshots::matter::{Grain, Wanted};
+use crate::plot::snapshots::matter::{Grain, PORTION, Wanted};
 use crate::plot::snapshots::plane::Plane;
 use crate::plot::snapshots::sample::Sampled;
 use crate::plot::snapshots::snapshot::Snapshot;
@@ -42,7 +42,7 @@ pub struct RadiographRequest {
     pub along: String,
     /// `LEFT:RIGHT,BOTTOM:TOP`; everything if absent.
     pub part: Option<String>,
-    /// `LOW:HIGH` of the colours; from zero to the largest if absent.
+    /// `LOW:HIGH` of the colours; from zero to the largest but a few if absent.
     pub range: Option<String>,
     /// Whether to reflect at planes of symmetry.
     pub mirror: bool,
@@ -148,7 +148,7 @@ impl Radiographs {
                 }
                 spots
             };
-            let spots: Vec<Spot> = grains.par_chunks(8192).flat_map_iter(portion).collect();
+            let spots: Vec<Spot> = grains.par_chunks(PORTION).flat_map_iter(portion).collect();
             masses.add(&spots);
         }
         Ok(masses)

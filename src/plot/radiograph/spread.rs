@@ -8,6 +8,8 @@
 //! Bands of rows are summed side by side, each in the order of the particles: the same bits on any
 //! number of threads.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use crate::plot::picture::view::View;
@@ -73,17 +75,20 @@ impl Masses {
             ]
         };
         let reach = |spot: &Spot, k: usize| REACH * spot.size / pitch[k];
-        let mut bands: Vec<Vec<usize>> = vec![Vec::new(); rows.div_ceil(BAND)];
-        for (index, spot) in spots.iter().enumerate() {
+        let touched = |spot: &Spot| {
             let [x, y] = place(spot);
-            if pixels(x, reach(spot, 0), columns).is_empty() {
-                continue;
-            }
             let own = pixels(y, reach(spot, 1), rows);
-            if !own.is_empty() {
-                for band in &mut bands[own.start / BAND..=(own.end - 1) / BAND] {
-                    band.push(index);
-                }
+            if own.is_empty() || pixels(x, reach(spot, 0), columns).is_empty() {
+                0..0
+            } else {
+                own.start / BAND..own.end.div_ceil(BAND)
+            }
+        };
+        let touched: Vec<Range<usize>> = spots.par_iter().map(touched).collect();
+        let mut bands: Vec<Vec<usize>> = vec![Vec::new(); rows.div_ceil(BAND)];
+        for (index, own) in touched.into_iter().enumerate() {
+            for band in &mut bands[own] {
+                band.push(index);
             }
         }
         let parts = self.pixels.par_chunks_mut(columns * BAND);
@@ -117,7 +122,7 @@ impl Masses {
     clippy::cast_sign_loss,
     reason = "clamped to the panel"
 )]
-fn pixels(at: f64, reach: f64, count: usize) -> std::ops::Range<usize> {
+fn pixels(at: f64, reach: f64, count: usize) -> Range<usize> {
     let first = (at - reach).floor().clamp(0.0, count as f64) as usize;
     let end = (at + reach).ceil().clamp(0.0, count as f64) as usize;
     first..end.max(first)

@@ -84,6 +84,9 @@ impl Buffer {
 
     /// Draws balls, no more than 2³¹.
     pub fn draw(&mut self, balls: &[Ball], window: &Window) {
+        if balls.is_empty() {
+            return;
+        }
         let nearest = &self.nearest;
         balls
             .par_chunks(PORTION)

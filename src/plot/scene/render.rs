@@ -12,13 +12,13 @@ use crate::plot::PlotError;
 use crate::plot::canvas::Rgb;
 use crate::plot::picture::view::View;
 use crate::plot::snapshots::images::Mirrors;
-use crate::plot::snapshots::matter::{Grain, Wanted};
+use crate::plot::snapshots::matter::{Grain, PORTION, Wanted};
 use crate::plot::snapshots::snapshot::Snapshot;
 
 /// Samples along either axis of a pixel, where memory allows.
 const FINE: usize = 3;
 
-/// Samples of a panel at most: some 24 bytes each.
+/// Samples of all layers of a panel at most: some 24 bytes each.
 const MOST_SAMPLES: usize = 40_000_000;
 
 /// Pixels of a panel at most.
@@ -56,7 +56,7 @@ impl Stage<'_> {
         size: [usize; 2],
         colour: impl Fn(&Seen) -> Rgb + Sync,
     ) -> Result<Vec<Rgb>, PlotError> {
-        let fine = fine(size);
+        let fine = fine(size, self.layers());
         let samples = size.map(|n| n * fine);
         let window = Window::new(
             samples,
@@ -81,6 +81,11 @@ impl Stage<'_> {
         Ok(pixels(&layers, size, fine, &colour))
     }
 
+    /// Number of layers: the opaque matter, and each transparent body.
+    fn layers(&self) -> usize {
+        1 + self.transparent.len()
+    }
+
     /// What is seen of the opaque matter, then of each transparent body.
     fn buffers(
         &self,
@@ -88,8 +93,8 @@ impl Stage<'_> {
         numbers: &[usize],
         window: &Window,
     ) -> Result<Vec<Buffer>, PlotError> {
-        let layers = 1 + self.transparent.len();
-        let mut buffers: Vec<Buffer> = (0..layers).map(|_| Buffer::new(window)).collect();
+        let layers = 0..self.layers();
+        let mut buffers: Vec<Buffer> = layers.map(|_| Buffer::new(window)).collect();
         let mirrors = self.wanted.mirrors(snapshot);
         for rows in snapshot.chunks() {
             let grains = self.wanted.grains(snapshot, numbers, rows)?;
@@ -130,7 +135,7 @@ impl Stage<'_> {
             }
             balls
         };
-        grains.par_chunks(8192).flat_map_iter(portion).collect()
+        grains.par_chunks(PORTION).flat_map_iter(portion).collect()
     }
 }
 
@@ -143,8 +148,8 @@ fn single(value: f64) -> f32 {
 }
 
 /// Samples along either axis of a pixel.
-fn fine([columns, rows]: [usize; 2]) -> usize {
-    let fits = |fine: &usize| fine * fine * columns * rows <= MOST_SAMPLES;
+fn fine([columns, rows]: [usize; 2], layers: usize) -> usize {
+    let fits = |fine: &usize| fine * fine * columns * rows * layers <= MOST_SAMPLES;
     (1..=FINE).rev().find(fits).unwrap_or(1)
 }
 

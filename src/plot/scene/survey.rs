@@ -10,7 +10,7 @@ use super::cut::{Cuts, takes};
 use crate::plot::PlotError;
 use crate::plot::picture::view::View;
 use crate::plot::snapshots::field::Shown;
-use crate::plot::snapshots::matter::{Grain, Wanted};
+use crate::plot::snapshots::matter::{Grain, PORTION, Wanted};
 use crate::plot::snapshots::sample::Sampled;
 use crate::plot::snapshots::snapshot::Snapshot;
 use crate::plot::snapshots::source::Source;
@@ -116,7 +116,7 @@ impl Survey {
                 }
                 (reach, values, bodies)
             };
-            let found: Vec<_> = grains.par_chunks(8192).map(portion).collect();
+            let found: Vec<_> = grains.par_chunks(PORTION).map(portion).collect();
             for (reach, _, bodies) in &found {
                 self.bodies.extend(bodies);
                 for (own, other) in self.reach.iter_mut().zip(reach) {

@@ -7,9 +7,12 @@ use rayon::prelude::*;
 use super::bodies::Bodies;
 use super::field::Shown;
 use super::images::Mirrors;
-use super::slice::place;
+use super::slice::{mirrored, place};
 use super::snapshot::Snapshot;
 use crate::plot::PlotError;
+
+/// Particles that one task takes.
+pub const PORTION: usize = 8192;
 
 /// A particle that is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,9 +55,7 @@ impl Wanted {
         let planes = mirrors
             .planes()
             .map(|plane| place(plane.axis.name(), plane.position, snapshot.finest()));
-        let planes: Vec<String> = planes.collect();
-        let mirrored =
-            (!planes.is_empty()).then(|| format!("mirrored at {}", planes.join(" and ")));
+        let mirrored = mirrored(planes);
         let alone = self
             .bodies
             .alone()

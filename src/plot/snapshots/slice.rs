@@ -32,6 +32,12 @@ pub fn place(axis: &str, position: f64, spacing: f64) -> String {
     format!("{axis} = {}", quantity(position, spacing))
 }
 
+/// `"mirrored at x = 0 and y = 0"`, if there are planes, each as [`place`] names it.
+pub fn mirrored(planes: impl Iterator<Item = String>) -> Option<String> {
+    let planes: Vec<String> = planes.collect();
+    (!planes.is_empty()).then(|| format!("mirrored at {}", planes.join(" and ")))
+}
+
 /// A length with a unit that suits it and the particle spacing.
 pub fn quantity(length: f64, spacing: f64) -> String {
     let unit = Readable::new("m", length.abs().max(spacing));
