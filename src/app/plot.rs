@@ -279,8 +279,8 @@ pub fn run(args: &PlotArgs) -> Result<(), PlotError> {
         curves::draw_distributions(args)
     } else if let Some(body) = &args.front {
         curves::draw_front(args, body)
-    } else if let Some(columns) = curves::columns(args)? {
-        curves::draw_tables(args, &columns)
+    } else if curves::is_table(args) {
+        curves::draw_tables(args, &curves::columns(args)?)
     } else if !args.points.is_empty() {
         Err(PlotError::Options("--points belong to --xy or --front"))
     } else if let Some(field) = &args.profile {

@@ -12,27 +12,34 @@ use crate::run::say::seconds;
 use super::out::{named, save_text, target, write_chart};
 use super::{PlotArgs, name, places, wanted};
 
-/// What `--xy` is of a table that knows what to draw, or with `--pair`.
+/// Whether columns of a table are drawn.
+pub fn is_table(args: &PlotArgs) -> bool {
+    args.xy.is_some()
+        || args.pair.is_some()
+        || !args.gauges.is_empty()
+        || is(args, GAUGE_RECORDS)
+        || args.source.extension().is_some_and(|e| e == "csv")
+}
+
+/// What `--xy` is, or what it would be of a table that knows what to draw, or with `--pair`.
 ///
 /// # Errors
 /// [`PlotError::Options`] for a table of which nothing is known.
-pub fn columns(args: &PlotArgs) -> Result<Option<String>, PlotError> {
+pub fn columns(args: &PlotArgs) -> Result<String, PlotError> {
     let columns = match (&args.xy, &args.pair) {
         (Some(columns), _) => columns,
         (None, Some(_)) => "time:force_x,force_y,force_z",
         (None, None) if !args.gauges.is_empty() => PRESSURE,
-        (None, None) if is(args, CROSSINGS) => return widest(&args.source).map(Some),
-        (None, None) => match USUAL.iter().find(|(table, _)| is(args, table)) {
-            Some((_, columns)) => columns,
-            None if args.source.extension().is_some_and(|e| e == "csv") => {
-                return Err(PlotError::Options(
-                    "of a table say which columns to draw, as in --xy time:force_x",
-                ));
-            }
-            None => return Ok(None),
-        },
+        (None, None) if is(args, CROSSINGS) => return widest(&args.source),
+        (None, None) => {
+            let usual = USUAL.iter().find(|(table, _)| is(args, table));
+            let (_, columns) = usual.ok_or(PlotError::Options(
+                "of a table say which columns to draw, as in --xy time:force_x",
+            ))?;
+            columns
+        }
     };
-    Ok(Some(columns.to_owned()))
+    Ok(columns.to_owned())
 }
 
 /// Whether a table of a run is drawn.

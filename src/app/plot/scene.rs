@@ -1,7 +1,7 @@
 //! `whipple plot --view isometric`: the whole model, seen from a side.
 
 use super::out::named;
-use super::{PlotArgs, each};
+use super::{PlotArgs, curves, each};
 use crate::plot::{
     Camera, Format, NO_TABLE, PlotError, RadiographRequest, Radiographs, SceneRequest, Scenes,
 };
@@ -104,10 +104,7 @@ fn is_curve(args: &PlotArgs) -> bool {
         || args.distributions
         || args.front.is_some()
         || args.profile.is_some()
-        || args.xy.is_some()
-        || args.pair.is_some()
-        || !args.gauges.is_empty()
-        || args.source.extension().is_some_and(|e| e == "csv")
+        || curves::is_table(args)
 }
 
 /// Draws views.
