@@ -3,6 +3,7 @@
 
 use std::borrow::Cow;
 use std::io::{Read, Write};
+use std::path::Path;
 
 use flate2::Compression;
 use flate2::read::ZlibDecoder;
@@ -10,36 +11,35 @@ use flate2::write::ZlibEncoder;
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
 
 use super::palette::{Palette, Tally};
+use super::part::Part;
 use crate::plot::PlotError;
-use crate::plot::canvas::Canvas;
+use crate::plot::pixels::Pixels;
 
-/// Writes the pictures that `draw` makes, at a number a second. They wait, compressed, until all
-/// colours are known.
+/// Writes pictures of one size, at a number a second, into the file that will have a path. They wait,
+/// compressed, until all colours are known.
 pub fn write(
     file: impl Write,
-    pictures: usize,
+    path: &Path,
+    pictures: impl ExactSizeIterator<Item = Result<Pixels, PlotError>>,
     fps: f64,
-    mut draw: impl FnMut(usize) -> Result<Canvas, PlotError>,
-    failed: impl Fn(String) -> PlotError,
 ) -> Result<(), PlotError> {
-    let unsaved = |e: gif::EncodingError| failed(e.to_string());
+    let unsaved = |e: gif::EncodingError| PlotError::unsaved(path, e);
+    let refused = |e: std::io::Error| PlotError::unsaved(path, e);
     let mut tally = Tally::new();
-    let mut waiting = Vec::with_capacity(pictures);
-    let mut size = None;
-    for k in 0..pictures {
-        let picture = draw(k)?.pixels()?;
-        let own = [picture.width, picture.height];
-        if *size.get_or_insert(own) != own {
-            return Err(failed("its pictures differ in size".to_owned()));
-        }
+    let mut waiting = Vec::with_capacity(pictures.len());
+    let mut size = [1, 1];
+    for picture in pictures {
+        let picture = picture?;
+        size = [picture.width, picture.height];
         let colours = picture.rgb();
         tally.add(colours.as_chunks::<3>().0);
-        waiting.push(pack(&colours).map_err(|e| failed(e.to_string()))?);
+        waiting.push(pack(&colours).map_err(refused)?);
     }
-    let side =
-        |length: u32| u16::try_from(length).map_err(|e| failed(format!("a side of it: {e}")));
-    let [width, height] = size.unwrap_or([1, 1]);
-    let (width, height) = (side(width)?, side(height)?);
+    let side = |length: u32| {
+        let side = u16::try_from(length);
+        side.map_err(|e| PlotError::unsaved(path, format!("a side of it: {e}")))
+    };
+    let (width, height) = (side(size[0])?, side(size[1])?);
 
     let palette = Palette::new(&tally);
     let mut encoder = Encoder::new(file, width, height, &palette.table()).map_err(unsaved)?;
@@ -47,72 +47,44 @@ pub fn write(
     let delay = delay(fps);
     let mut before: Option<Vec<u8>> = None;
     for packed in waiting {
-        let colours = unpack(&packed).map_err(|e| failed(e.to_string()))?;
+        let colours = unpack(&packed).map_err(refused)?;
         let indices = palette.indices(colours.as_chunks::<3>().0);
-        let part = changed(before.as_deref(), &indices, usize::from(width));
-        encoder.write_frame(&frame(&part, delay)).map_err(unsaved)?;
+        let (part, own) = changed(before.as_deref(), &indices, usize::from(width));
+        let frame = frame(part, &own, delay);
+        encoder.write_frame(&frame).map_err(unsaved)?;
         before = Some(indices);
     }
-    encoder
-        .into_inner()
-        .map(drop)
-        .map_err(|e| failed(e.to_string()))
+    encoder.into_inner().map(drop).map_err(unsaved)
 }
 
-/// The part of a picture that is not as before.
-struct Part {
-    left: usize,
-    top: usize,
-    width: usize,
-    height: usize,
-    /// Places in the palette, row by row; what is as before is [`Palette::SAME`].
-    indices: Vec<u8>,
-}
-
-/// What of a picture differs from the one before.
-fn changed(before: Option<&[u8]>, now: &[u8], width: usize) -> Part {
-    let height = now.len() / width;
+/// The part of a picture that is not as before, and its places in the palette, row by row; what is as
+/// before is [`Palette::SAME`].
+fn changed(before: Option<&[u8]>, now: &[u8], width: usize) -> (Part, Vec<u8>) {
     let Some(before) = before else {
-        return Part {
+        let whole = Part {
             left: 0,
             top: 0,
             width,
-            height,
-            indices: now.to_vec(),
+            height: now.len() / width,
         };
+        return (whole, now.to_vec());
     };
-    let differs = |k: &usize| now[*k] != before[*k];
-    let places = || (0..now.len()).filter(differs);
-    // A picture like the one before has a pixel, and its time.
-    let (first, last) = (
-        places().next().unwrap_or(0),
-        places().next_back().unwrap_or(0),
-    );
-    let (left, right) = places().fold((width, 0), |(left, right), k| {
-        (left.min(k % width), right.max(k % width))
-    });
-    let left = left.min(right);
-    let (top, bottom) = (first / width, last / width);
-    let mut indices = Vec::with_capacity((right - left + 1) * (bottom - top + 1));
-    for row in top..=bottom {
-        for k in row * width + left..=row * width + right {
-            indices.push(if differs(&k) { now[k] } else { Palette::SAME });
+    let part = Part::changed(before, now, width);
+    let place = |k: usize| {
+        if now[k] == before[k] {
+            Palette::SAME
+        } else {
+            now[k]
         }
-    }
-    Part {
-        left,
-        top,
-        width: right - left + 1,
-        height: bottom - top + 1,
-        indices,
-    }
+    };
+    (part, part.places(width).map(place).collect())
 }
 
 #[expect(
     clippy::cast_possible_truncation,
     reason = "parts of a picture whose sides fit"
 )]
-fn frame(part: &Part, delay: u16) -> Frame<'_> {
+fn frame(part: Part, indices: &[u8], delay: u16) -> Frame<'_> {
     Frame {
         delay,
         dispose: DisposalMethod::Keep,
@@ -124,7 +96,7 @@ fn frame(part: &Part, delay: u16) -> Frame<'_> {
         height: part.height as u16,
         interlaced: false,
         palette: None,
-        buffer: Cow::Borrowed(&part.indices),
+        buffer: Cow::Borrowed(indices),
     }
 }
 
@@ -160,11 +132,11 @@ mod tests {
         let mut now = before;
         now[5] = 3;
         now[10] = 4;
-        let part = changed(Some(&before), &now, 4);
+        let (part, indices) = changed(Some(&before), &now, 4);
         assert_eq!((part.left, part.top, part.width, part.height), (1, 1, 2, 2));
-        assert_eq!(part.indices, [3, Palette::SAME, Palette::SAME, 4]);
-        let part = changed(Some(&now), &now, 4);
+        assert_eq!(indices, [3, Palette::SAME, Palette::SAME, 4]);
+        let (part, indices) = changed(Some(&now), &now, 4);
         assert_eq!((part.width, part.height), (1, 1));
-        assert_eq!(part.indices, [Palette::SAME]);
+        assert_eq!(indices, [Palette::SAME]);
     }
 }

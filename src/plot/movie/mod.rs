@@ -3,12 +3,14 @@
 mod apng;
 mod gif;
 mod palette;
+mod part;
 
 use std::path::Path;
 
 use super::PlotError;
 use super::canvas::Canvas;
 use super::file;
+use super::pixels::Pixels;
 
 /// Formats of movies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,9 +51,29 @@ pub fn write(
     let format = Format::of(path).ok_or(PlotError::Options(
         "a movie has a name that ends in .apng, .png or .gif",
     ))?;
-    let failed = |reason: String| PlotError::unsaved(path, reason);
-    file::save_by(path, |file| match format {
-        Format::Apng => apng::write(file, pictures, fps, draw, failed),
-        Format::Gif => gif::write(file, pictures, fps, draw, failed),
+    file::save_by(path, |file| {
+        let pictures = drawn(path, pictures, draw);
+        match format {
+            Format::Apng => apng::write(file, path, pictures, fps),
+            Format::Gif => gif::write(file, path, pictures, fps),
+        }
+    })
+}
+
+/// The pixels of so many pictures, one by one, all of one size.
+fn drawn(
+    path: &Path,
+    pictures: usize,
+    mut draw: impl FnMut(usize) -> Result<Canvas, PlotError>,
+) -> impl ExactSizeIterator<Item = Result<Pixels, PlotError>> {
+    let mut size = None;
+    (0..pictures).map(move |k| {
+        let picture = draw(k)?.pixels()?;
+        let own = [picture.width, picture.height];
+        if *size.get_or_insert(own) == own {
+            Ok(picture)
+        } else {
+            Err(PlotError::unsaved(path, "its pictures differ in size"))
+        }
     })
 }
