@@ -25,12 +25,7 @@ pub fn draw(canvas: &mut Canvas, style: Style, at: (f32, f32), camera: &Camera) 
             continue;
         }
         let long = |share: f64, length: f64| pixels(share * length) * style.unit;
-        arrow::draw(
-            canvas,
-            style,
-            at,
-            (long(right, LENGTH), -long(up, LENGTH)),
-        );
+        arrow::draw(canvas, style, at, (long(right, LENGTH), -long(up, LENGTH)));
         let beyond = (LENGTH + 12.0 / right.hypot(up)).min(2.0 * LENGTH);
         let name = (
             at.0 + long(right, beyond),
