@@ -134,9 +134,9 @@ fn what_is_nearer_hides_what_is_behind() {
 #[test]
 fn the_image_of_a_mirror_is_the_same_to_the_pixel() {
     let folder = tempfile::tempdir().unwrap();
-    let snapshot = quarter(folder.path(), 1.0);
+    let tossed = quarter(folder.path(), 1.0);
     for options in ["--view front", "--view front --cut none", "--view top"] {
-        let panel = panel(&snapshot, &format!("{options} --width 600"));
+        let panel = panel(&tossed, &format!("{options} --width 600"));
         let (first, last) = panel.columns();
         assert!(last - first > 400);
         // The light is not the same on both sides, what there is is.
