@@ -403,4 +403,9 @@ fn flat_models_and_wrong_words_are_refused() {
     assert!(complaint("--view front --csv").contains("no table"));
     assert!(complaint("--radiograph y --out mass.csv").contains("no table"));
     assert!(complaint("--from front --history").contains("leave the other kind out"));
+    // What gauges have read is a folder of tables.
+    let gauges = folder.path().join("gauges");
+    std::fs::create_dir(&gauges).unwrap();
+    let refused = plot(&gauges, "--from front").unwrap_err();
+    assert!(refused.contains("leave the other kind out"), "{refused}");
 }
