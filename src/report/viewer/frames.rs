@@ -21,6 +21,8 @@ use crate::plot::{PlotError, Shown, Snapshot};
 pub struct Kept {
     /// Time (s).
     pub time: f64,
+    /// Particles that could be chosen: those that are part of the model still, at known places.
+    pub whole: usize,
     /// Positions (m).
     pub positions: Vec<[f64; 3]>,
     /// Bodies by number; beyond 255 the last.
@@ -62,9 +64,11 @@ impl Kept {
             let values = values?;
             for row in 0..points.len() {
                 let finite = points[row].iter().all(|x| x.is_finite());
-                if !(bears[row] && finite && chosen.keeps(id(numbers[row])))
-                    || kept.bodies.len() == most
-                {
+                if !(bears[row] && finite) {
+                    continue;
+                }
+                kept.whole += 1;
+                if !chosen.keeps(id(numbers[row])) || kept.bodies.len() == most {
                     continue;
                 }
                 kept.add(points[row], bodies[row], sizes[row]);

@@ -73,7 +73,7 @@ pub struct Scene {
     pub unit: Readable,
     /// Where the camera stands at first (rad).
     pub yaw: f64,
-    /// Most particles that a frame shows, and that a snapshot has.
+    /// Most particles that a frame shows, and that it would show if none were left out.
     pub kept: usize,
     pub total: usize,
     /// Frames in the order of time.
@@ -91,11 +91,11 @@ impl Scene {
     ) -> Result<Self, PlotError> {
         let first = Snapshot::open(&snapshots[0].1)?;
         let shown = shown(&first)?;
-        let total = most_particles(snapshots)?;
+        let rows = most_particles(snapshots)?;
         let most = particles.min(MOST_PARTICLES);
-        let chosen = Chosen::new(most, total);
+        let chosen = Chosen::new(most, rows);
         // A guess on the safe side: a place takes six bytes that hardly pack, and base64 a third more.
-        let each = (4 * (6 + shown.len()) / 3 + 1) * most.min(total);
+        let each = (4 * (6 + shown.len()) / 3 + 1) * most.min(rows);
         let wanted = frames.unwrap_or((room / each.max(1)).clamp(2, MOST_FRAMES));
         let read = |k: usize| Kept::read(&Snapshot::open(&snapshots[k].1)?, &shown, chosen, most);
         let all: Result<Vec<Kept>, _> = spread(snapshots.len(), wanted)
@@ -103,7 +103,7 @@ impl Scene {
             .map(read)
             .collect();
         let all = all?;
-        let mut scene = Self::shared(&first, &shown, &all, total);
+        let mut scene = Self::shared(&first, &shown, &all);
         let ranges: Vec<[f64; 2]> = scene.fields.iter().map(|field| field.range).collect();
         scene.frames = all
             .iter()
@@ -116,8 +116,9 @@ impl Scene {
     }
 
     /// What all frames share.
-    fn shared(first: &Snapshot, shown: &[Shown], all: &[Kept], total: usize) -> Self {
+    fn shared(first: &Snapshot, shown: &[Shown], all: &[Kept]) -> Self {
         let kept = all.iter().map(|kept| kept.bodies.len()).max().unwrap_or(0);
+        let total = all.iter().map(|kept| kept.whole).max().unwrap_or(0);
         let sizes = all.iter().flat_map(|kept| &kept.sizes);
         let [lower, upper] = corners(all, TAIL, &first.symmetry);
         let width = [0, 1, 2].map(|k| upper[k] - lower[k]);
@@ -207,7 +208,7 @@ fn shown(first: &Snapshot) -> Result<Vec<Shown>, PlotError> {
         .collect())
 }
 
-/// Particles of the snapshot with the most.
+/// Rows of the snapshot with the most particles, frozen ones and stress points among them.
 fn most_particles(snapshots: &[(f64, PathBuf)]) -> Result<usize, PlotError> {
     let count = |path: &Path| Ok(Snapshot::open(path)?.file.particles());
     let counts: Result<Vec<usize>, PlotError> =
