@@ -120,10 +120,14 @@ fn target(args: &ReportArgs) -> Result<PathBuf, ReportError> {
     }
 }
 
-/// The folder of a run.
+/// The folder of a run by its whole path, which texts of the page then leave out.
 fn folder(path: &Path) -> Result<RunFolder, ReportError> {
     match Results::open(path)? {
-        Results::Run(folder) => Ok(folder),
+        Results::Run(folder) => {
+            let whole = folder.path().canonicalize();
+            let whole = whole.map_err(OutputError::io("find", path))?;
+            Ok(RunFolder::at(&whole))
+        }
         other => Err(ReportError::NoRun {
             path: path.to_owned(),
             kind: other.kind(),

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::found::{Rows, Run, figure_in_words, told};
+use super::found::{Rows, Run, figure_in_words, told, without_paths};
 use super::html::{Html, note, table, table_of_texts};
 use super::page::{Section, whole};
 use super::picture::{chart, image};
@@ -207,7 +207,7 @@ fn curves(runs: &[Run; 2]) -> Html {
             };
             tables.chart()
         });
-        chart(drawn.map_err(|error| runs[0].without_path(&error)), alt)
+        chart(drawn.map_err(|error| without_paths(&[&runs[0], &runs[1]], &error)), alt)
     };
     [
         (
@@ -249,6 +249,6 @@ fn pictures(runs: &[Run; 2]) -> Result<Html, String> {
         ..Request::default()
     };
     let drawn = Pictures::new(&sources, &request).and_then(|pictures| pictures.panels(None));
-    let drawn = drawn.map_err(|error| runs[0].without_path(&error));
+    let drawn = drawn.map_err(|error| without_paths(&[&runs[0], &runs[1]], &error));
     Ok(image(drawn, "The last section of both runs, side by side"))
 }

@@ -1,11 +1,13 @@
 //! What is found in the folder of a run: its texts and tables, and what of them is missing or damaged.
 
+use std::cmp::Reverse;
 use std::path::Path;
 
+use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
 use crate::model::readable::{Readable, short};
-use crate::output::{RunFolder, Sheet, Status, read_regular, read_small};
+use crate::output::{OutputError, RunFolder, Sheet, Status, read_regular, read_small};
 
 /// A run as its folder tells it. What cannot be read is a sentence that says so.
 #[derive(Debug)]
@@ -23,15 +25,12 @@ pub struct Run {
 }
 
 impl Run {
-    /// Reads the texts of a run; tables are read as they are asked for.
+    /// Reads the texts of a run, whose folder goes by its whole path; tables are read as they are asked for.
     pub fn read(folder: &RunFolder) -> Self {
-        let path = folder.path().canonicalize();
-        let path = path.unwrap_or_else(|_| folder.path().to_owned());
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
         Self {
-            name: name.into_owned(),
+            name: file_name(folder.path()),
             case: read_case(folder),
-            status: folder.status().map_err(|error| error.to_string()),
+            status: read_json(&folder.status_file()),
             summary: read_summary(folder),
             folder: folder.clone(),
         }
@@ -69,15 +68,7 @@ impl Run {
 
     /// What went wrong, without the way to the folder, which is another on each machine.
     pub fn without_path(&self, error: &impl ToString) -> String {
-        let folder = self.folder.path().display().to_string();
-        let folder = folder.trim_end_matches('/');
-        let text = error.to_string().replace(&format!("{folder}/"), "");
-        // A single name may be part of another word.
-        if folder.contains('/') {
-            text.replace(folder, "the run")
-        } else {
-            text
-        }
+        without_paths(&[self], error)
     }
 
     /// How many images of the model stand behind planes of symmetry, itself included.
@@ -85,6 +76,23 @@ impl Run {
         let planes = self.entries("symmetry").len().min(3);
         f64::from(1_u32 << planes)
     }
+}
+
+/// What went wrong with any of some runs, without the ways to their folders.
+pub fn without_paths(runs: &[&Run], error: &impl ToString) -> String {
+    let way = |run: &&Run| run.folder.path().display().to_string();
+    let mut ways: Vec<String> = runs.iter().map(way).collect();
+    ways.retain(|way| way != "/");
+    // One may be the beginning of another.
+    ways.sort_by_key(|way| Reverse(way.len()));
+    let mut text = error.to_string();
+    for way in &ways {
+        text = text.replace(&format!("{way}/"), "");
+    }
+    for way in &ways {
+        text = text.replace(way, "the run");
+    }
+    text
 }
 
 fn read_case(folder: &RunFolder) -> Result<toml::Table, String> {
@@ -99,8 +107,12 @@ fn read_summary(folder: &RunFolder) -> Result<Map<String, Value>, String> {
     if !path.exists() {
         return Err("there is no summary.json: the run has not come to its end".to_owned());
     }
-    let text = read_small(&path).map_err(|error| lacks(&path, &error))?;
-    serde_json::from_slice(&text).map_err(|error| damaged(&path, &error))
+    read_json(&path)
+}
+
+fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, String> {
+    let text = read_small(path).map_err(|error| lacks(path, &error))?;
+    serde_json::from_slice(&text).map_err(|error| damaged(path, &error))
 }
 
 fn file_name(path: &Path) -> String {
@@ -111,13 +123,17 @@ fn file_name(path: &Path) -> String {
 }
 
 /// What is said of a file that is not there, without the way to it, which is another on each machine.
-fn lacks(path: &Path, error: &dyn std::fmt::Display) -> String {
+fn lacks(path: &Path, error: &OutputError) -> String {
     let name = file_name(path);
-    if path.exists() {
-        format!("{name} cannot be read: {error}")
-    } else {
-        format!("the run has no {name}")
+    if !path.exists() {
+        return format!("the run has no {name}");
     }
+    let reason = match error {
+        OutputError::Io { source, .. } => source.to_string(),
+        OutputError::Damaged { what, .. } => what.clone(),
+        other => other.to_string(),
+    };
+    format!("{name} cannot be read: {reason}")
 }
 
 fn damaged(path: &Path, reason: &dyn std::fmt::Display) -> String {
@@ -274,5 +290,40 @@ pub fn figure_in_words(value: &Value) -> String {
             parts.iter().map(part).collect::<Vec<_>>().join(", ")
         }
         Value::Bool(_) => value.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_text_has_the_way_to_a_folder() {
+        let run = |path: &str| Run::read(&RunFolder::at(Path::new(path)));
+        let (one, other) = (run("/nowhere/run"), run("/nowhere/run-b"));
+        let text = "cannot open /nowhere/run-b/a.csv, /nowhere/run/b.csv, /nowhere/run-b or /nowhere/run";
+        assert_eq!(
+            without_paths(&[&one, &other], &text),
+            "cannot open a.csv, b.csv, the run or the run"
+        );
+        assert_eq!(other.name, "run-b");
+        assert_eq!(other.status.unwrap_err(), "the run has no status.json");
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_told_without_its_path() {
+        let place = tempfile::tempdir().unwrap();
+        std::fs::create_dir(place.path().join("bodies.csv")).unwrap();
+        std::fs::write(place.path().join("status.json"), "{}").unwrap();
+        let run = Run::read(&RunFolder::at(place.path()));
+        let of_rows = Rows::read(&run.folder.bodies()).unwrap_err();
+        let of_status = run.status.unwrap_err();
+        let way = place.path().display().to_string();
+        for (text, told) in [
+            (of_rows, "bodies.csv cannot be read: "),
+            (of_status, "status.json is damaged: "),
+        ] {
+            assert!(text.starts_with(told) && !text.contains(&way), "{text}");
+        }
     }
 }
