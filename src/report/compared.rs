@@ -1,18 +1,18 @@
 //! Two runs side by side: what of their cases differs, their figures, their curves in one chart.
 
+use std::path::PathBuf;
+
 use serde_json::Value;
 
 use super::found::{Rows, Run, figure_in_words, told, without_paths};
-use super::html::{Html, note, table, table_of_texts};
-use super::page::{Section, whole};
+use super::html::{Html, missing, note, or_untold, table, table_of_texts};
+use super::page::{Section, snapshots, whole};
 use super::picture::{chart, image};
 use super::sections::verdict;
 use crate::model::differences::{Difference, differences};
 use crate::model::readable::short;
 use crate::output::RunFolder;
-use crate::plot::{
-    Columns, Pictures, PlotError, Request, Sequence, Source, Tables, Wanted, choose, snapshots,
-};
+use crate::plot::{Columns, Pictures, Request, Sequence, Source, Tables};
 
 /// The page of two runs, A and B.
 #[must_use]
@@ -28,7 +28,7 @@ pub fn compare(a: &RunFolder, b: &RunFolder) -> String {
         ("figures", "Figures of the runs", figures(&runs)),
         ("bodies", "Bodies at the end", bodies(&runs)),
         ("curves", "Curves", Ok(curves(&runs))),
-        ("pictures", "Pictures", pictures(&runs)),
+        ("pictures", "Pictures", Ok(pictures(&runs))),
     ];
     let title = format!("{} against {}", runs[0].name, runs[1].name);
     let state = if runs[0].title() == runs[1].title() {
@@ -232,23 +232,36 @@ fn curves(runs: &[Run; 2]) -> Html {
     .collect()
 }
 
-/// The last section of each, side by side.
-fn pictures(runs: &[Run; 2]) -> Result<Html, String> {
-    let source = |run: &Run| -> Result<Source, PlotError> {
-        Ok(Source {
-            name: run.name.clone(),
-            snapshots: choose(&snapshots(run.folder.path())?, &Wanted::Last)?,
-        })
-    };
-    let sources = runs
-        .iter()
-        .map(|run| source(run).map_err(|error| run.without_path(&error)));
-    let sources: Vec<Source> = sources.collect::<Result<_, _>>()?;
+/// The last section of each, side by side, and what is said of snapshots that cannot be read.
+fn pictures(runs: &[Run; 2]) -> Html {
+    let mut sources = Vec::new();
+    let mut warnings = Html::default();
+    for run in runs {
+        let (found, damaged) = snapshots(run);
+        let warning = |reason: String| missing(&format!("{}: {reason}", run.name));
+        warnings.push(damaged.into_iter().map(warning).collect());
+        sources.push(last(run, &found));
+    }
+    let sources: Result<Vec<Source>, String> = sources.into_iter().collect();
     let request = Request {
         mirror: true,
         ..Request::default()
     };
-    let drawn = Pictures::new(&sources, &request).and_then(|pictures| pictures.panels(None));
-    let drawn = drawn.map_err(|error| without_paths(&[&runs[0], &runs[1]], &error));
-    Ok(image(drawn, "The last section of both runs, side by side"))
+    let drawn = sources.map(|sources| {
+        let drawn = Pictures::new(&sources, &request).and_then(|pictures| pictures.panels(None));
+        let drawn = drawn.map_err(|error| without_paths(&[&runs[0], &runs[1]], &error));
+        image(drawn, "The last section of both runs, side by side")
+    });
+    or_untold(drawn).then(warnings)
+}
+
+/// The last of a run's snapshots (time in s, path).
+fn last(run: &Run, found: &[(f64, PathBuf)]) -> Result<Source, String> {
+    let Some((_, path)) = found.last() else {
+        return Err(format!("{} has no snapshots that can be read", run.name));
+    };
+    Ok(Source {
+        name: run.name.clone(),
+        snapshots: vec![path.clone()],
+    })
 }

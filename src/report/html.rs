@@ -133,6 +133,11 @@ pub fn missing(what: &str) -> Html {
     Html::element("p", &[("class", "missing")], Html::text(what))
 }
 
+/// A piece, or why it is not told.
+pub fn or_untold(piece: Result<Html, String>) -> Html {
+    piece.unwrap_or_else(|reason| missing(&format!("Not told: {reason}.")))
+}
+
 /// A note below a table or picture.
 pub fn note(text: &str) -> Html {
     Html::element("p", &[("class", "note")], Html::text(text))

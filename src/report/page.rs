@@ -7,7 +7,7 @@ use base64::engine::general_purpose::STANDARD;
 use sha2::{Digest, Sha256};
 
 use super::found::{Run, told};
-use super::html::{Html, missing};
+use super::html::{Html, missing, or_untold};
 use super::sections::{
     case, contacts, energies, environment, figures, fragments, load, measures, pictures, steps,
     verdict,
@@ -58,13 +58,13 @@ pub fn tell(folder: &RunFolder, asked: &Asked) -> String {
         ("energies", "Energies", energies::tell(&run)),
         ("steps", "Time line", steps::tell(&run)),
         ("contacts", "Contact ledger", contacts::tell(&run)),
-        ("measures", "Measures", measures::tell(&run)),
+        ("measures", "Measures", Ok(measures::tell(&run))),
         (
             "fragments",
             "Fragments",
             fragments::tell(&run, &asked.fragments),
         ),
-        ("load", "Load", load::tell(&run)),
+        ("load", "Load", Ok(load::tell(&run))),
         ("environment", "Environment", environment::tell(&run)),
         ("figures", "Figures", figures::tell(&run)),
     ];
@@ -94,7 +94,7 @@ fn state(run: &Run) -> String {
 }
 
 /// The snapshots of a run (time in s, path) in the order of time, and what is said of those that cannot be read.
-fn snapshots(run: &Run) -> (Vec<(f64, PathBuf)>, Vec<String>) {
+pub fn snapshots(run: &Run) -> (Vec<(f64, PathBuf)>, Vec<String>) {
     let (mut found, mut damaged) = (Vec::new(), Vec::new());
     match run.folder.snapshot_files() {
         Err(error) => damaged.push(run.without_path(&error)),
@@ -121,12 +121,8 @@ pub fn whole(title: &str, state: &str, sections: Vec<Section>) -> String {
         .then(Html::of("p", state))
         .then(Html::element("nav", &[("aria-label", "Sections")], links));
     let section = |(id, title, content): Section| {
-        let content = content.unwrap_or_else(|reason| missing(&format!("Not told: {reason}.")));
-        Html::element(
-            "section",
-            &[("id", id)],
-            Html::of("h2", title).then(content),
-        )
+        let inside = Html::of("h2", title).then(or_untold(content));
+        Html::element("section", &[("id", id)], inside)
     };
     let sections = sections.into_iter().map(section).collect();
     let footer = format!(
