@@ -185,11 +185,22 @@ fn what_is_missing_or_damaged_is_named() {
     }
     fs::write(folder.join("history.csv"), "time,dt\n0.0,1").unwrap();
     fs::write(folder.join("summary.json"), "{ no").unwrap();
+    fs::write(folder.join("measures.csv"), "time\n").unwrap();
+    fs::write(folder.join("fragments.csv"), "# units: s\ntime\n0.0\n").unwrap();
+    fs::create_dir_all(folder.join("fragments")).unwrap();
+    fs::write(folder.join("fragments/step-00000001.csv"), "mass\n").unwrap();
     fs::remove_dir_all(folder.join("snapshots")).unwrap();
     let page = page(&folder, &[]);
     assert!(section(&page, "steps").contains("history.csv has no column dt_reason"));
     assert!(section(&page, "figures").contains("summary.json is damaged"));
     assert!(section(&page, "viewer").contains("no snapshots"));
+    assert!(section(&page, "measures").contains("Measures of the case"));
+    assert!(section(&page, "load").contains("seconds_by_phase"));
+    let fragments = section(&page, "fragments");
+    assert!(
+        fragments.contains("<table>") && fragments.contains("step-00000001.csv has no rows yet"),
+        "{fragments}"
+    );
     let path = folder.display().to_string();
     assert!(
         !page.contains(&path),

@@ -2,7 +2,7 @@
 
 use crate::plot::{By, cumulative};
 use crate::report::found::{Rows, Run};
-use crate::report::html::{Html, note, table_of_texts};
+use crate::report::html::{Html, note, or_untold, table_of_texts};
 use crate::report::picture::chart;
 
 /// Fragments that are listed.
@@ -44,7 +44,7 @@ pub fn tell(run: &Run, of_snapshot: &Result<String, String>) -> Result<Html, Str
     let words = named.map(|name| name.replace('_', " "));
     head.extend(words.iter().map(String::as_str));
     let mut page = table_of_texts(&head, times.map(row));
-    page.push(heaviest(run)?);
+    page.push(or_untold(heaviest(run)));
     Ok(page)
 }
 

@@ -2,11 +2,16 @@
 
 use crate::plot::{Columns, Tables};
 use crate::report::found::{Rows, Run};
-use crate::report::html::{Html, bar, missing, note, table};
+use crate::report::html::{Html, bar, missing, note, or_untold, table};
 use crate::report::picture::chart;
 
 /// Tells load and time.
-pub fn tell(run: &Run) -> Result<Html, String> {
+pub fn tell(run: &Run) -> Html {
+    or_untold(balance(run)).then(phases(run))
+}
+
+/// The load of the busiest rank.
+fn balance(run: &Run) -> Result<Html, String> {
     let rows = Rows::read(&run.folder.performance())?;
     let mut page = Html::default();
     if run.number("ranks").is_some_and(|ranks| ranks > 1.0) {
@@ -38,7 +43,6 @@ pub fn tell(run: &Run) -> Result<Html, String> {
     } else {
         page.push(note("One rank: nothing to share out."));
     }
-    page.push(phases(run));
     Ok(page)
 }
 

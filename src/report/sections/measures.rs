@@ -4,21 +4,21 @@ use std::path::Path;
 
 use crate::plot::{Wanted, distributions};
 use crate::report::found::{Rows, Run, told};
-use crate::report::html::{Html, missing, note, table_of_texts};
+use crate::report::html::{Html, missing, note, or_untold, table_of_texts};
 use crate::report::picture::chart;
 
 /// Tells the measures at their last time.
-pub fn tell(run: &Run) -> Result<Html, String> {
+pub fn tell(run: &Run) -> Html {
     let mut page = Html::of("h3", "Bodies at the end");
-    page.push(bodies(run).unwrap_or_else(|reason| missing(&format!("Not told: {reason}."))));
+    page.push(or_untold(bodies(run)));
     page.push(Html::of("h3", "Measures of the case"));
     if !run.folder.measures().exists() {
         page.push(missing(
             "The run has no measures.csv: its case names no measures (see whipple measure).",
         ));
-        return Ok(page);
+        return page;
     }
-    page.push(figures(&run.folder.measures())?);
+    page.push(or_untold(figures(&run.folder.measures())));
     let tables = [(run.name.clone(), run.folder.distributions())];
     if run.folder.distributions().exists() {
         let told = |time| told(time, "s");
@@ -31,7 +31,7 @@ pub fn tell(run: &Run) -> Result<Html, String> {
             Err(error) => page.push(missing(&run.without_path(&error))),
         }
     }
-    Ok(page)
+    page
 }
 
 /// What there is of each body at the last time.
