@@ -101,23 +101,14 @@ pub fn export(
             continue;
         }
         let path = target(place, &format!("{name}.{ending}"));
-        let mut out = NewFile::create(&path)?;
-        match format {
-            Format::Vtu => vtu::write(&frame, &mut out)?,
-            Format::Ply => ply::write(&frame, &mut out)?,
-            Format::Csv => csv::write(&frame, &mut out)?,
-            _ => npz::write(&frame, &mut out)?,
-        }
-        out.finish()?;
-        tell(&path);
+        file(&path, tell, |out| write(&frame, format, out))?;
         written.push((frame.snapshot.time, format!("{name}.{ending}")));
     }
     if format == Format::Vtu && snapshots.len() > 1 {
         let path = place.folder.join(format!("{SERIES}.pvd"));
-        let mut out = NewFile::create(&path)?;
-        out.put(vtu::index(&written).as_bytes())?;
-        out.finish()?;
-        tell(&path);
+        file(&path, tell, |out| {
+            Ok(out.put(vtu::index(&written).as_bytes())?)
+        })?;
     }
     Ok(())
 }
@@ -133,11 +124,35 @@ pub fn script(
     tell: &mut dyn FnMut(&Path),
 ) -> Result<(), ExportError> {
     let path = target(place, paraview::NAME);
-    let mut out = NewFile::create(&path)?;
-    paraview::write(run, snapshot, &mut out)?;
+    file(&path, tell, |out| paraview::write(run, snapshot, out))
+}
+
+/// Writes a file and tells its path.
+fn file(
+    path: &Path,
+    tell: &mut dyn FnMut(&Path),
+    write: impl FnOnce(&mut NewFile) -> Result<(), ExportError>,
+) -> Result<(), ExportError> {
+    let mut out = NewFile::create(path)?;
+    write(&mut out)?;
     out.finish()?;
-    tell(&path);
+    tell(path);
     Ok(())
+}
+
+/// Writes a snapshot in a format of particles.
+fn write(frame: &Frame, format: Format, out: &mut NewFile) -> Result<(), ExportError> {
+    match format {
+        Format::Lammps => lammps::write(frame, out),
+        Format::Xyz => xyz::write(frame, out),
+        Format::Vtu => vtu::write(frame, out),
+        Format::Ply => ply::write(frame, out),
+        Format::Csv => csv::write(frame, out),
+        Format::Npz => npz::write(frame, out),
+        Format::Stl | Format::Paraview => {
+            Err(frame.wrong(format!(".{} tells of no particles", format.ending())))
+        }
+    }
 }
 
 /// What a file of several snapshots is called.
@@ -157,23 +172,19 @@ fn write_series(
         _ => SERIES.to_owned(),
     };
     let path = target(place, &format!("{name}.{ending}"));
-    let mut out = NewFile::create(&path)?;
-    let mut apart = None;
-    for snapshot in snapshots {
-        let mut frame = Frame::open(snapshot, wish)?;
-        // The first has all particles that the others have.
-        frame.apart = match apart {
-            Some(apart) => apart,
-            None => *apart.insert(frame.distance_of_ids()?),
-        };
-        match format {
-            Format::Lammps => lammps::write(&frame, &mut out)?,
-            _ => xyz::write(&frame, &mut out)?,
+    file(&path, tell, |out| {
+        let mut apart = None;
+        for snapshot in snapshots {
+            let mut frame = Frame::open(snapshot, wish)?;
+            // The first has all particles that the others have.
+            frame.apart = match apart {
+                Some(apart) => apart,
+                None => *apart.insert(frame.distance_of_ids()?),
+            };
+            write(&frame, format, out)?;
         }
-    }
-    out.finish()?;
-    tell(&path);
-    Ok(())
+        Ok(())
+    })
 }
 
 fn write_surfaces(
@@ -196,10 +207,9 @@ fn write_surfaces(
     }
     for (body, surface) in there {
         let path = target(place, &format!("{name}-{}.stl", file_name(body)));
-        let mut out = NewFile::create(&path)?;
-        stl::write(body, frame.snapshot.time, &surface, &mut out)?;
-        out.finish()?;
-        tell(&path);
+        file(&path, tell, |out| {
+            stl::write(body, frame.snapshot.time, &surface, out)
+        })?;
     }
     Ok(())
 }
