@@ -1,5 +1,6 @@
 //! The formats, and which files they make of some snapshots.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::frame::Frame;
@@ -195,9 +196,10 @@ fn write_surfaces(
     tell: &mut dyn FnMut(&Path),
 ) -> Result<(), ExportError> {
     let surfaces = surfaces(frame, wish.cell)?;
-    let bodies = frame.snapshot.bodies.iter().zip(surfaces);
+    let bodies = &frame.snapshot.bodies;
+    let all = bodies.iter().zip(file_names(bodies)).zip(surfaces);
     let wanted = |body: &String| wish.bodies.is_empty() || wish.bodies.contains(body);
-    let there = bodies.filter(|(body, surface)| wanted(body) && !surface.is_empty());
+    let there = all.filter(|((body, _), surface)| wanted(body) && !surface.is_empty());
     let there: Vec<_> = there.collect();
     if there.is_empty() {
         return Err(frame.wrong("no particles of the bodies are there"));
@@ -205,8 +207,8 @@ fn write_surfaces(
     if place.file.is_some() && there.len() > 1 {
         return Err(several(&format!("the surfaces of {} bodies", there.len())));
     }
-    for (body, surface) in there {
-        let path = target(place, &format!("{name}-{}.stl", file_name(body)));
+    for ((body, own), surface) in there {
+        let path = target(place, &format!("{name}-{own}.stl"));
         file(&path, tell, |out| {
             stl::write(body, frame.snapshot.time, &surface, out)
         })?;
@@ -234,6 +236,30 @@ fn stem(path: &Path) -> String {
         .into_owned()
 }
 
+/// The names of bodies as parts of those of files; those that would share one have numbers.
+fn file_names(bodies: &[String]) -> Vec<String> {
+    let plain: Vec<String> = bodies.iter().map(|body| file_name(body)).collect();
+    let mut sharing: BTreeMap<&str, usize> = BTreeMap::new();
+    for name in &plain {
+        *sharing.entry(name).or_default() += 1;
+    }
+    let mut numbers: BTreeMap<&str, usize> = BTreeMap::new();
+    let own = plain.iter().map(|name| {
+        if sharing[name.as_str()] == 1 {
+            return name.clone();
+        }
+        let number = numbers.entry(name.as_str()).or_default();
+        loop {
+            *number += 1;
+            let numbered = format!("{name}-{number}");
+            if !sharing.contains_key(numbered.as_str()) {
+                return numbered;
+            }
+        }
+    });
+    own.collect()
+}
+
 /// A body's name as a part of that of a file.
 fn file_name(body: &str) -> String {
     let sound = |c: char| {
@@ -244,4 +270,16 @@ fn file_name(body: &str) -> String {
         }
     };
     one_line(body).chars().map(sound).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::file_names;
+
+    #[test]
+    fn no_two_bodies_share_a_file() {
+        let names = ["a b", "plate", "a/b", "a_b-1", "a_b"].map(str::to_owned);
+        let files = ["a_b-2", "plate", "a_b-3", "a_b-1", "a_b-4"];
+        assert_eq!(file_names(&names), files);
+    }
 }
