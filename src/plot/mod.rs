@@ -68,5 +68,6 @@ pub use snapshots::front::{Direction, front, largest_reaches};
 pub(crate) use snapshots::snapshot::Snapshot;
 pub use snapshots::snapshot::{bodies, title};
 pub use snapshots::source::{Source, Wanted, choose, snapshots};
+pub(crate) use svg::hex;
 pub(crate) use units::decimals;
 pub use units::parse as parse_quantity;

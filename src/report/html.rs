@@ -1,6 +1,7 @@
 //! Pieces of HTML, in which texts of files cannot become markup.
 
 use crate::model::readable::one_line;
+use crate::plot::{Rgb, hex};
 
 /// A piece of a page: markup of our own, and texts that are escaped.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -143,9 +144,14 @@ pub fn note(text: &str) -> Html {
     Html::element("p", &[("class", "note")], Html::text(text))
 }
 
-/// A square of a colour (`#rrggbb`), as in a legend.
-pub fn swatch(colour: &str) -> Html {
-    let square = [("width", "12"), ("height", "12"), ("fill", colour)];
+/// A square of a colour, as in a legend.
+pub fn swatch(colour: Rgb) -> Html {
+    let colour = hex(colour);
+    let square = [
+        ("width", "12"),
+        ("height", "12"),
+        ("fill", colour.as_str()),
+    ];
     let attributes = [
         ("class", "swatch"),
         ("viewBox", "0 0 12 12"),

@@ -12,6 +12,7 @@ use super::found::{Run, told};
 use super::html::{Html, note, swatch};
 use crate::model::SymmetryPlane;
 use crate::model::readable::short;
+use crate::plot::hex;
 use scene::Scene;
 
 /// What runs in the browser.
@@ -143,7 +144,7 @@ fn colours_and_cut(scene: &Scene) -> Html {
 fn boxes(scene: &Scene) -> Html {
     let mut row = Html::default();
     for (k, body) in scene.bodies.iter().enumerate() {
-        let inside = swatch(&body.colour).then(Html::text(&body.name));
+        let inside = swatch(body.colour).then(Html::text(&body.name));
         row.push(check("data-body", k, true, inside));
     }
     for (k, plane) in scene.mirrors.iter().enumerate() {
@@ -181,7 +182,7 @@ fn data(scene: &Scene) -> serde_json::Value {
     let field = |field: &scene::Field| json!({ "name": field.name, "ticks": field.ticks, "stops": field.stops });
     let mirror =
         |plane: &SymmetryPlane| json!({ "axis": plane.axis.index(), "position": plane.position });
-    let body = |body: &scene::Shade| json!({ "name": body.name, "colour": body.colour });
+    let body = |body: &scene::Shade| json!({ "name": body.name, "colour": hex(body.colour) });
     json!({
         "dimension": scene.dimension,
         "yaw": scene.yaw,

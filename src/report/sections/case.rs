@@ -49,10 +49,9 @@ fn bodies(run: &Run) -> Html {
     let mut colour = 0;
     let row = |body: &toml::Table| {
         let word = |key: &str| body.get(key).map_or("–".to_owned(), in_words);
-        let [red, green, blue] = colour_of(colour);
+        let square = swatch(colour_of(colour));
         colour += 1;
         let name = word("name");
-        let square = swatch(&format!("#{red:02x}{green:02x}{blue:02x}"));
         let of_bodies = counted
             .as_ref()
             .ok()

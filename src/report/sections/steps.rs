@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::plot::{Columns, Tables, colour_of};
+use crate::plot::{Columns, Tables, colour_of, hex};
 use crate::report::found::{Rows, Run, told};
 use crate::report::html::{Html, note, swatch, table};
 use crate::report::picture::chart;
@@ -94,17 +94,12 @@ fn row(k: usize, reason: &str, taken: &[(f64, f64, &str)]) -> Vec<Html> {
     let shortest = lengths.iter().copied().fold(f64::INFINITY, f64::min);
     let longest = lengths.iter().copied().fold(0.0, f64::max);
     vec![
-        swatch(&colour(k)).then(Html::of("span", reason)),
+        swatch(colour_of(k)).then(Html::of("span", reason)),
         Html::text(&lengths.len().to_string()),
         Html::text(&told(shortest, "s")),
         Html::text(&told(longest, "s")),
         Html::text(meaning(reason)),
     ]
-}
-
-fn colour(k: usize) -> String {
-    let [red, green, blue] = colour_of(k);
-    format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
 /// A strip along time, coloured by what chose the steps.
@@ -121,7 +116,7 @@ fn strip(taken: &[(f64, f64, &str)], reasons: &[&str]) -> Html {
             .iter()
             .position(|reason| *reason == same[0].2)
             .unwrap_or(0);
-        let fill = colour(k);
+        let fill = hex(colour_of(k));
         let [x, width] = [from, to - from].map(|value| format!("{value:.2}"));
         let attributes = [
             ("x", x.as_str()),

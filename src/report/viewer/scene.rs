@@ -6,7 +6,7 @@ use super::chosen::{Chosen, spread};
 use super::frames::{Frame, Kept};
 use crate::model::readable::Readable;
 use crate::model::{Axis, SymmetryPlane};
-use crate::plot::{PlotError, Rgb, Scale, Shown, Snapshot, colour_of, decimals};
+use crate::plot::{PlotError, Rgb, Scale, Shown, Snapshot, colour_of, decimals, hex};
 
 /// Fields that may be coloured by, as far as snapshots have them.
 const FIELDS: [&str; 6] = [
@@ -32,8 +32,8 @@ const TAIL: f64 = 0.005;
 pub struct Shade {
     /// Its name.
     pub name: String,
-    /// `#rrggbb`.
-    pub colour: String,
+    /// As pictures have it.
+    pub colour: Rgb,
 }
 
 /// A field and its scale of colours.
@@ -43,7 +43,7 @@ pub struct Field {
     pub name: String,
     /// Numbers at even shares of the scale.
     pub ticks: Vec<String>,
-    /// Colours at even shares of the scale.
+    /// Colours at even shares of the scale, `#rrggbb`.
     pub stops: Vec<String>,
     /// Values at both ends, in SI.
     range: [f64; 2],
@@ -124,7 +124,7 @@ impl Scene {
         let width = [0, 1, 2].map(|k| upper[k] - lower[k]);
         let shade = |(k, name): (usize, &String)| Shade {
             name: name.clone(),
-            colour: hexadecimal(colour_of(k)),
+            colour: colour_of(k),
         };
         let field = |(k, shown): (usize, &Shown)| match shown {
             Shown::Body => None,
@@ -187,15 +187,11 @@ impl Field {
             name: unit.label(label),
             ticks: (0..=4).map(tick).collect(),
             stops: (0..=32)
-                .map(|k| hexadecimal(scale.colour(at(k, 32))))
+                .map(|k| hex(scale.colour(at(k, 32))))
                 .collect(),
             range: [low, high],
         }
     }
-}
-
-fn hexadecimal([red, green, blue]: Rgb) -> String {
-    format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
 /// The fields that the first snapshot has. Stress points bear theirs apart from the particles, so that of such
