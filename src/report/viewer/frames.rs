@@ -87,18 +87,20 @@ impl Kept {
     }
 
     /// Ends of the places along each axis (m); without a share of the particles at each.
-    pub fn ends(&self, without: f64) -> [[f64; 2]; 3] {
+    pub fn ends(&self, without: f64) -> Ends {
         [0, 1, 2].map(|axis| {
             let mut places: Vec<f64> = self.positions.iter().map(|point| point[axis]).collect();
-            places.sort_by(f64::total_cmp);
             let Some(last) = places.len().checked_sub(1) else {
                 return [0.0; 2];
             };
             let cut = part(without * last as f64);
-            [places[cut], places[last - cut]]
+            [cut, last - cut].map(|k| *places.select_nth_unstable_by(k, f64::total_cmp).1)
         })
     }
 }
+
+/// Ends of places along each axis (m).
+pub type Ends = [[f64; 2]; 3];
 
 /// A frame of the viewer.
 #[derive(Debug)]
@@ -116,9 +118,9 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Packs what is kept: sizes over the largest of all frames, values over the range of each field.
-    pub fn new(kept: &Kept, largest: f64, ranges: &[[f64; 2]]) -> Self {
-        let ends = kept.ends(0.0);
+    /// Packs what is kept: places between their ends, sizes over the largest of all frames, values over the
+    /// range of each field.
+    pub fn new(kept: &Kept, ends: Ends, largest: f64, ranges: &[[f64; 2]]) -> Self {
         let mut bytes = Vec::with_capacity(kept.bodies.len() * (8 + ranges.len()));
         for (axis, [low, high]) in ends.into_iter().enumerate() {
             let width = (high - low).max(f64::MIN_POSITIVE);
@@ -225,7 +227,7 @@ mod tests {
             values: vec![vec![0.0, f32::NAN, 9.0]],
             ..Kept::default()
         };
-        let frame = Frame::new(&kept, 2.0, &[[0.0, 4.0]]);
+        let frame = Frame::new(&kept, kept.ends(0.0), 2.0, &[[0.0, 4.0]]);
         assert_eq!(
             (frame.count, frame.lower, frame.upper),
             (3, [0.0, 5.0, -1.0], [1.0, 5.0, 1.0])

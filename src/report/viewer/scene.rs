@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::chosen::{Chosen, spread};
-use super::frames::{Frame, Kept};
+use super::frames::{Ends, Frame, Kept};
 use crate::model::readable::Readable;
 use crate::model::{Axis, SymmetryPlane};
 use crate::plot::{PlotError, Rgb, Scale, Shown, Snapshot, colour_of, decimals, hex};
@@ -103,11 +103,13 @@ impl Scene {
             .map(read)
             .collect();
         let all = all?;
-        let mut scene = Self::shared(&first, &shown, &all);
+        let ends: Vec<Ends> = all.iter().map(|kept| kept.ends(0.0)).collect();
+        let mut scene = Self::shared(&first, &shown, &all, &ends);
         let ranges: Vec<[f64; 2]> = scene.fields.iter().map(|field| field.range).collect();
         scene.frames = all
             .iter()
-            .map(|kept| Frame::new(kept, scene.size, &ranges))
+            .zip(ends)
+            .map(|(kept, ends)| Frame::new(kept, ends, scene.size, &ranges))
             .collect();
         if frames.is_none() {
             scene.fit(room);
@@ -116,7 +118,7 @@ impl Scene {
     }
 
     /// What all frames share.
-    fn shared(first: &Snapshot, shown: &[Shown], all: &[Kept]) -> Self {
+    fn shared(first: &Snapshot, shown: &[Shown], all: &[Kept], ends: &[Ends]) -> Self {
         let kept = all.iter().map(|kept| kept.bodies.len()).max().unwrap_or(0);
         let total = all.iter().map(|kept| kept.whole).max().unwrap_or(0);
         let sizes = all.iter().flat_map(|kept| &kept.sizes);
@@ -139,7 +141,7 @@ impl Scene {
             bodies: first.bodies.iter().enumerate().map(shade).collect(),
             fields: shown.iter().enumerate().filter_map(field).collect(),
             mirrors: first.symmetry.clone(),
-            reach: reach(all, [lower, upper], &first.symmetry),
+            reach: reach(ends, [lower, upper], &first.symmetry),
             lower,
             upper,
             size: f64::from(sizes.copied().fold(f32::MIN_POSITIVE, f32::max)),
@@ -238,9 +240,8 @@ fn corners(all: &[Kept], without: f64, planes: &[SymmetryPlane]) -> [[f64; 3]; 2
 }
 
 /// Distance of the farthest particle or image from the middle of a box (m).
-fn reach(all: &[Kept], [lower, upper]: [[f64; 3]; 2], planes: &[SymmetryPlane]) -> f64 {
+fn reach(ends: &[Ends], [lower, upper]: [[f64; 3]; 2], planes: &[SymmetryPlane]) -> f64 {
     let mut squares = 0.0;
-    let ends: Vec<_> = all.iter().map(|kept| kept.ends(0.0)).collect();
     for axis in 0..3 {
         let middle = 0.5 * (lower[axis] + upper[axis]);
         let images = |x: f64| {
