@@ -195,7 +195,7 @@ fn write_surfaces(
     place: &Place,
     tell: &mut dyn FnMut(&Path),
 ) -> Result<(), ExportError> {
-    let surfaces = surfaces(frame, wish.cell)?;
+    let surfaces = surfaces(frame, wish)?;
     let bodies = &frame.snapshot.bodies;
     let all = bodies.iter().zip(file_names(bodies)).zip(surfaces);
     let wanted = |body: &String| wish.bodies.is_empty() || wish.bodies.contains(body);

@@ -180,11 +180,6 @@ impl Frame {
         Ok(ways.collect())
     }
 
-    /// Which rows are matter of the model still: none that is frozen or a stress point.
-    pub fn matter(&self, rows: Range<usize>) -> Result<Vec<bool>, ExportError> {
-        Ok(Shown::Body.bearers(&self.snapshot, rows)?)
-    }
-
     /// What ids of images are to differ by so that each is there once, as the last row, which has the largest
     /// id, tells; nothing where there are none, or no room for it.
     pub fn distance_of_ids(&self) -> Result<i64, ExportError> {

@@ -18,7 +18,8 @@ mod level;
 use rayon::prelude::*;
 
 use super::ExportError;
-use super::frame::Frame;
+use super::frame::{Frame, Wish};
+use crate::plot::{Bodies, Matter, Shown};
 use blocks::Blocks;
 use level::Ball;
 
@@ -29,7 +30,7 @@ pub type Triangle = [[f64; 3]; 3];
 const MOST: u64 = u32::MAX as u64;
 
 /// The surface of each body of the model.
-pub fn surfaces(frame: &Frame, cell: Option<f64>) -> Result<Vec<Vec<Triangle>>, ExportError> {
+pub fn surfaces(frame: &Frame, wish: &Wish) -> Result<Vec<Vec<Triangle>>, ExportError> {
     if frame.snapshot.dimension != 3 {
         let reason = format!(
             "surfaces are of models of three dimensions, and this has {}",
@@ -37,8 +38,8 @@ pub fn surfaces(frame: &Frame, cell: Option<f64>) -> Result<Vec<Vec<Triangle>>, 
         );
         return Err(frame.wrong(reason));
     }
-    let pitch = cell.unwrap_or(0.5 * frame.snapshot.finest());
-    let balls = balls(frame)?;
+    let pitch = wish.cell.unwrap_or(0.5 * frame.snapshot.finest());
+    let balls = balls(frame, wish.mirror)?;
     let blocks = Blocks::new(&balls, pitch).map_err(|reason| frame.wrong(reason))?;
     let bodies = frame.snapshot.bodies.len();
     let found: Vec<Vec<(u32, Triangle)>> = (0..blocks.count())
@@ -53,35 +54,34 @@ pub fn surfaces(frame: &Frame, cell: Option<f64>) -> Result<Vec<Vec<Triangle>>, 
 }
 
 /// What fills space: all particles that are part of the model still, and their images.
-fn balls(frame: &Frame) -> Result<Vec<Ball>, ExportError> {
+fn balls(frame: &Frame, mirror: bool) -> Result<Vec<Ball>, ExportError> {
     let snapshot = &frame.snapshot;
-    let images = frame.images.numbers();
-    let rows = snapshot.file.particles() as u64 * images.len() as u64;
+    let matter = Matter {
+        bodies: Bodies::default(),
+        shown: Shown::Body,
+        mirror,
+    };
+    let mirrors = matter.mirrors(snapshot);
+    let copies = (0..mirrors.planes().count()).fold(1, |copies: u64, _| copies.saturating_mul(2));
+    let rows = copies.saturating_mul(snapshot.file.particles() as u64);
     if rows > MOST {
         return Err(frame.wrong(format!("{rows} particles are too many for surfaces")));
     }
-    let mut balls = Vec::new();
+    // Two bodies of one name are two here.
+    let numbers: Vec<usize> = (0..snapshot.bodies.len()).collect();
+    let (mut balls, mut images) = (Vec::new(), Vec::new());
     for rows in snapshot.chunks() {
-        let bodies = snapshot.body_of(rows.clone())?;
-        let sizes = snapshot.sizes(rows.clone(), &bodies)?;
-        let bears = frame.matter(rows.clone())?;
-        let points = snapshot.file.points(rows)?;
-        let all = points.iter().zip(bodies).zip(sizes).zip(bears);
-        for (((point, body), size), _) in all.filter(|(_, bears)| *bears) {
-            if !(point.iter().all(|x| x.is_finite()) && size > 0.0) {
-                continue;
-            }
-            balls.extend(images.iter().map(|&image| {
-                let x = |axis: usize| frame.images.coordinate(image, axis, point[axis]);
-                Ball {
-                    centre: [x(0), x(1), x(2)],
-                    size,
-                    #[expect(
-                        clippy::cast_possible_truncation,
-                        reason = "bodies are as many as an attribute can name"
-                    )]
-                    body: body as u32,
-                }
+        let grains = matter.grains(snapshot, &numbers, rows)?;
+        for grain in grains.iter().filter(|grain| grain.size > 0.0) {
+            mirrors.reflect(&grain.point, &mut images);
+            balls.extend(images.iter().map(|image| Ball {
+                centre: image.point,
+                size: grain.size,
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    reason = "bodies are as many as an attribute can name"
+                )]
+                body: grain.body as u32,
             }));
         }
     }
