@@ -41,23 +41,9 @@ pub struct ExportArgs {
     #[arg(short, long, value_name = "FILE_OR_FOLDER")]
     pub out: Option<PathBuf>,
 
-    /// Snapshots of the run nearest to these times, as in 0.1us
-    #[arg(
-        long,
-        visible_alias = "at",
-        value_name = "TIME",
-        value_delimiter = ',',
-        group = "which"
-    )]
-    pub time: Vec<String>,
-
-    /// Snapshots of the run by number, from 0
-    #[arg(long, value_name = "K", value_delimiter = ',', group = "which")]
-    pub index: Vec<usize>,
-
-    /// All snapshots of the run
-    #[arg(long, group = "which")]
-    pub all: bool,
+    /// Which snapshots of a run.
+    #[command(flatten)]
+    pub which: Several,
 
     /// Fields, by the names that `whipple plot` knows, as in velocity, stress.xx, von_mises; whole
     /// vectors and tensors by their own; radius, and displacement since the start [default: all
@@ -104,7 +90,7 @@ pub fn write(args: &ExportArgs) -> Result<(), ExportError> {
         mirror: args.mirror,
         cell: args.cell.as_deref().map(cell).transpose()?,
     };
-    let snapshots = several(args).at(&args.source, Wanted::Last)?;
+    let snapshots = args.which.at(&args.source, Wanted::Last)?;
     let place = place(args)?;
     let mut tell = |path: &Path| {
         say(&format!("wrote {}", one_line(&path.display().to_string())));
@@ -122,17 +108,9 @@ pub fn write(args: &ExportArgs) -> Result<(), ExportError> {
     Ok(())
 }
 
-fn several(args: &ExportArgs) -> Several<'_> {
-    Several {
-        times: &args.time,
-        indices: &args.index,
-        all: args.all,
-    }
-}
-
 /// Refuses options that the format has no use for.
 fn check(args: &ExportArgs) -> Result<(), ExportError> {
-    let chosen = several(args).any();
+    let chosen = args.which.any();
     let told = !args.fields.is_empty() || !args.bodies.is_empty() || args.mirror;
     let what = match args.to {
         Format::Stl if !args.fields.is_empty() => "surfaces have no --fields",

@@ -118,23 +118,9 @@ pub struct PlotArgs {
     #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(400..=20_000))]
     pub width: Option<u32>,
 
-    /// Snapshots of the run nearest to these times, as in 0.1us
-    #[arg(
-        long,
-        visible_alias = "at",
-        value_name = "TIME",
-        value_delimiter = ',',
-        group = "which"
-    )]
-    pub time: Vec<String>,
-
-    /// Snapshots of the run by number, from 0
-    #[arg(long, value_name = "K", value_delimiter = ',', group = "which")]
-    pub index: Vec<usize>,
-
-    /// All snapshots of the run, with one view and one range of colours
-    #[arg(long, group = "which")]
-    pub all: bool,
+    /// Which snapshots of a run.
+    #[command(flatten)]
+    pub which: Several,
 
     /// Draw the snapshots side by side in one picture [default: the first, middle and last]
     #[arg(long)]
@@ -336,7 +322,7 @@ fn sources(args: &PlotArgs) -> Result<Vec<Source>, PlotError> {
     let source = |place: &PathBuf| {
         Ok(Source {
             name: name(place),
-            snapshots: several(args).at(place, usual(args))?,
+            snapshots: args.which.at(place, usual(args))?,
         })
     };
     places(args).map(source).collect()
@@ -355,14 +341,6 @@ fn name(place: &Path) -> String {
     )
 }
 
-fn several(args: &PlotArgs) -> Several<'_> {
-    Several {
-        times: &args.time,
-        indices: &args.index,
-        all: args.all,
-    }
-}
-
 fn usual(args: &PlotArgs) -> Wanted {
     if args.movie.is_wanted() {
         Wanted::All
@@ -374,5 +352,5 @@ fn usual(args: &PlotArgs) -> Wanted {
 }
 
 pub(super) fn wanted(args: &PlotArgs) -> Result<Wanted, PlotError> {
-    several(args).wanted(usual(args))
+    args.which.wanted(usual(args))
 }

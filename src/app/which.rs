@@ -29,30 +29,43 @@ impl Which {
     /// # Errors
     /// [`PlotError::Quantity`] if the time cannot be read.
     pub fn wanted(&self) -> Result<Wanted, PlotError> {
-        Ok(match (&self.at, self.snapshot) {
-            (Some(time), _) => Wanted::Times(vec![parse_quantity(time, "s")?]),
-            (None, Some(index)) => Wanted::Indices(vec![index]),
-            (None, None) => Wanted::Last,
-        })
+        let several = Several {
+            time: self.at.iter().cloned().collect(),
+            index: self.snapshot.into_iter().collect(),
+            all: false,
+        };
+        several.wanted(Wanted::Last)
     }
 }
 
 /// Several snapshots of a run, by times, by numbers, or all of them.
-#[derive(Debug, Clone, Copy)]
-pub struct Several<'a> {
-    /// Times, as typed.
-    pub times: &'a [String],
-    /// Numbers, from 0.
-    pub indices: &'a [usize],
-    /// All of them.
+#[derive(Debug, Clone, Default, clap::Args)]
+#[group(skip)]
+pub struct Several {
+    /// Snapshots of the run nearest to these times, as in 0.1us
+    #[arg(
+        long,
+        visible_alias = "at",
+        value_name = "TIME",
+        value_delimiter = ',',
+        group = "which"
+    )]
+    pub time: Vec<String>,
+
+    /// Snapshots of the run by number, from 0
+    #[arg(long, value_name = "K", value_delimiter = ',', group = "which")]
+    pub index: Vec<usize>,
+
+    /// All snapshots of the run; pictures of them have one view and one range of colours
+    #[arg(long, group = "which")]
     pub all: bool,
 }
 
-impl Several<'_> {
+impl Several {
     /// Whether any are named.
     #[must_use]
     pub fn any(&self) -> bool {
-        self.all || !self.times.is_empty() || !self.indices.is_empty()
+        self.all || !self.time.is_empty() || !self.index.is_empty()
     }
 
     /// As the choice among snapshots knows it; `usual` if none are named.
@@ -62,11 +75,11 @@ impl Several<'_> {
     pub fn wanted(&self, usual: Wanted) -> Result<Wanted, PlotError> {
         if self.all {
             Ok(Wanted::All)
-        } else if !self.times.is_empty() {
-            let times = self.times.iter().map(|text| parse_quantity(text, "s"));
+        } else if !self.time.is_empty() {
+            let times = self.time.iter().map(|text| parse_quantity(text, "s"));
             Ok(Wanted::Times(times.collect::<Result<_, _>>()?))
-        } else if !self.indices.is_empty() {
-            Ok(Wanted::Indices(self.indices.to_vec()))
+        } else if !self.index.is_empty() {
+            Ok(Wanted::Indices(self.index.clone()))
         } else {
             Ok(usual)
         }
