@@ -114,6 +114,13 @@ impl Pictures {
         })
     }
 
+    /// The plane of the sections, as a [`Request`] has it.
+    #[must_use]
+    pub fn section(&self) -> String {
+        let plane = &self.cut.plane;
+        format!("{}={:e}m", plane.axis.name(), plane.position)
+    }
+
     /// Some sections as one figure without words.
     pub(super) fn figure_of(&self, chosen: Range<usize>, width: Option<u32>) -> Figure<'_> {
         let width = width.unwrap_or(usual_width(chosen.len()));

@@ -13,14 +13,24 @@ pub fn tell(run: &Run, snapshots: &[(f64, PathBuf)]) -> Result<Html, String> {
     let three = choose(snapshots, &Wanted::Three).map_err(told)?;
     let last = choose(snapshots, &Wanted::Last).map_err(told)?;
     let mut page = Html::default();
-    let panels = pictures(run, three, None).and_then(|pictures| pictures.panels(None));
+    let panels = pictures(run, three, None, None);
+    // All show one section.
+    let section = panels.as_ref().ok().map(Pictures::section);
+    let panels = panels.and_then(|pictures| pictures.panels(None));
     page.push(image(
         panels.map_err(told),
         "Sections at the first, a middle and the last snapshot, by body",
     ));
     for (field, alt) in [(None, "by body"), (Some("pressure"), "by pressure")] {
-        let drawn =
-            pictures(run, last.clone(), field).and_then(|pictures| pictures.single(0, None));
+        let drawn = |section: Option<String>| {
+            pictures(run, last.clone(), field, section)
+                .and_then(|pictures| pictures.single(0, None))
+        };
+        let drawn = match drawn(section.clone()) {
+            // Matter may have left the plane.
+            Err(PlotError::Empty { .. }) => drawn(None),
+            drawn => drawn,
+        };
         let unknown = matches!(drawn, Err(PlotError::Field { .. }));
         if !unknown {
             page.push(image(
@@ -36,6 +46,7 @@ fn pictures(
     run: &Run,
     snapshots: Vec<PathBuf>,
     field: Option<&str>,
+    section: Option<String>,
 ) -> Result<Pictures, PlotError> {
     let source = Source {
         name: run.name.clone(),
@@ -43,6 +54,7 @@ fn pictures(
     };
     let request = Request {
         field: field.map(str::to_owned),
+        section,
         mirror: true,
         ..Request::default()
     };
