@@ -249,6 +249,33 @@ fn two_runs_stand_side_by_side() {
     .with_code(0);
     let same = fs::read_to_string(place.path().join("same.html")).unwrap();
     assert!(section(&same, "case").contains("their cases are the same"));
+    spoil_snapshots(&one, &other);
+}
+
+/// Two runs of which one has a snapshot that is cut off, then none at all.
+fn spoil_snapshots(one: &Path, other: &Path) {
+    let pictures = |told: [&str; 2]| {
+        report(&[one, other], &[]).with_code(0);
+        let page = fs::read_to_string(one.join("report-against-softer.html")).unwrap();
+        let pictures = section(&page, "pictures");
+        assert!(
+            told.iter().all(|told| pictures.contains(told)),
+            "{pictures}"
+        );
+        let way = one.parent().unwrap().display().to_string();
+        assert!(!page.contains(&way), "the way to a folder");
+    };
+    let entries = fs::read_dir(other.join("snapshots")).unwrap().flatten();
+    let all = entries.map(|entry| entry.path());
+    let first = all
+        .filter(|path| path.extension().is_some_and(|e| e == "vtkhdf"))
+        .min()
+        .unwrap();
+    fs::write(&first, "no snapshot").unwrap();
+    let name = first.file_name().unwrap().to_str().unwrap();
+    pictures(["data:image/", name]);
+    fs::remove_dir_all(other.join("snapshots")).unwrap();
+    pictures(["Not told: softer has no snapshots", "that can be read"]);
 }
 
 #[test]
