@@ -207,7 +207,10 @@ fn curves(runs: &[Run; 2]) -> Html {
             };
             tables.chart()
         });
-        chart(drawn.map_err(|error| without_paths(&[&runs[0], &runs[1]], &error)), alt)
+        chart(
+            drawn.map_err(|error| without_paths(&[&runs[0], &runs[1]], &error)),
+            alt,
+        )
     };
     [
         (

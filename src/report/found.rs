@@ -301,7 +301,8 @@ mod tests {
     fn no_text_has_the_way_to_a_folder() {
         let run = |path: &str| Run::read(&RunFolder::at(Path::new(path)));
         let (one, other) = (run("/nowhere/run"), run("/nowhere/run-b"));
-        let text = "cannot open /nowhere/run-b/a.csv, /nowhere/run/b.csv, /nowhere/run-b or /nowhere/run";
+        let text =
+            "cannot open /nowhere/run-b/a.csv, /nowhere/run/b.csv, /nowhere/run-b or /nowhere/run";
         assert_eq!(
             without_paths(&[&one, &other], &text),
             "cannot open a.csv, b.csv, the run or the run"

@@ -147,11 +147,7 @@ pub fn note(text: &str) -> Html {
 /// A square of a colour, as in a legend.
 pub fn swatch(colour: Rgb) -> Html {
     let colour = hex(colour);
-    let square = [
-        ("width", "12"),
-        ("height", "12"),
-        ("fill", colour.as_str()),
-    ];
+    let square = [("width", "12"), ("height", "12"), ("fill", colour.as_str())];
     let attributes = [
         ("class", "swatch"),
         ("viewBox", "0 0 12 12"),

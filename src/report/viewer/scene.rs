@@ -188,9 +188,7 @@ impl Field {
         Self {
             name: unit.label(label),
             ticks: (0..=4).map(tick).collect(),
-            stops: (0..=32)
-                .map(|k| hex(scale.colour(at(k, 32))))
-                .collect(),
+            stops: (0..=32).map(|k| hex(scale.colour(at(k, 32)))).collect(),
             range: [low, high],
         }
     }
