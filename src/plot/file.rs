@@ -1,15 +1,21 @@
 //! Files of pictures, which have their names when they are whole.
 
+use std::fs;
 use std::path::Path;
 
 use super::PlotError;
 use crate::output::{NewFile, OutputError};
 
-/// Writes a file; its folder is made if it lacks.
+/// Writes a file; its folder is made if it lacks. What is there and no file, as a terminal or a pipe, gets
+/// the content as it is: nothing can take its name.
 ///
 /// # Errors
 /// [`PlotError::Save`] if the system refuses.
 pub fn save(path: &Path, content: &[u8]) -> Result<(), PlotError> {
+    let takes = |found: fs::Metadata| !found.is_file() && !found.is_dir();
+    if fs::metadata(path).is_ok_and(takes) {
+        return fs::write(path, content).map_err(|error| PlotError::unsaved(path, error));
+    }
     save_by(path, |file| file.put(content).map_err(unsaved(path)))
 }
 
