@@ -105,11 +105,10 @@ pub fn table(name: &str) -> Option<String> {
 
 /// What users compare and no table holds.
 fn derived(material: &Material) -> String {
-    let modulus = material.p_wave_modulus();
-    let speed = (modulus / material.reference_density).sqrt();
     format!(
-        "p-wave modulus {}, longitudinal sound speed {speed:.0} m/s",
-        scaled(modulus, "Pa", 4)
+        "p-wave modulus {}, longitudinal sound speed {:.0} m/s",
+        scaled(material.p_wave_modulus(), "Pa", 4),
+        material.longitudinal_speed()
     )
 }
 

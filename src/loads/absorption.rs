@@ -133,7 +133,7 @@ impl Absorption {
         let absorber = absorbers.find(|absorber| absorber.body == body);
         absorber.map_or(0.0, |absorber| {
             let material = &case.materials[case.bodies[body].material];
-            let speed = (material.p_wave_modulus() / material.reference_density).sqrt();
+            let speed = material.longitudinal_speed();
             absorber.rate(place, speed)
         })
     }

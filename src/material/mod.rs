@@ -56,6 +56,12 @@ impl Material {
         self.eos.bulk_modulus(self.reference_density) + self.strength.shear_modulus() * (4.0 / 3.0)
     }
 
+    /// Longitudinal sound speed √(M/ρ₀) (m/s) of matter at rest.
+    #[must_use]
+    pub fn longitudinal_speed(&self) -> f64 {
+        (self.p_wave_modulus() / self.reference_density).sqrt()
+    }
+
     /// Longest stable step (s) of viscous diffusion at the smoothing length `h` (m),
     /// `h² ρ₀/(8 η)` (Morris, Fox & Zhu 1997, J. Comput. Phys. 136, 214); infinite without
     /// viscosity.

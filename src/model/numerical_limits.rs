@@ -103,10 +103,8 @@ impl NumericalLimits {
         );
         // What is rigid has a material that carries nothing.
         let deforming = || case.bodies.iter().filter(|body| body.rigid.is_none());
-        let sound = largest(&mut deforming().map(|body| {
-            let material = &case.materials[body.material];
-            (material.p_wave_modulus() / material.reference_density).sqrt()
-        }));
+        let mut sounds = deforming().map(|b| case.materials[b.material].longitudinal_speed());
+        let sound = largest(&mut sounds);
         let hot = largest(&mut deforming().map(|b| (2.0 * case.initial_energy(b).abs()).sqrt()));
         let g = case.loads.gravity;
         let gravity = (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]).sqrt();

@@ -265,7 +265,7 @@ pub fn expected_step(case: &Case) -> Option<f64> {
         .filter(|body| body.rigid.is_none())
         .map(|body| {
             let material = &case.materials[body.material];
-            let c = (material.p_wave_modulus() / material.reference_density).sqrt();
+            let c = material.longitudinal_speed();
             let signal = c + 0.6 * (case.sph.alpha * c + case.sph.beta * 0.25 * speed);
             case.time_step.courant * body.smoothing_length / signal
         })

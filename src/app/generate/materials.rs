@@ -62,7 +62,7 @@ pub fn page() -> String {
 
 fn write_row(page: &mut String, name: &str, material: &Material) {
     let constants = material.constants();
-    let sound = (material.p_wave_modulus() / material.reference_density).sqrt();
+    let sound = material.longitudinal_speed();
     let laws: Vec<String> = ["eos", "strength", "failure"]
         .iter()
         .flat_map(|kind| laws(&constants, kind))
