@@ -85,9 +85,7 @@ impl<'a> Walk<'a> {
     /// What a schema of one thing refers to.
     fn resolved(&self, schema: &'a Schema) -> &'a Schema {
         let inner = schema.get("allOf").map_or(schema, |all| &all[0]);
-        let name = inner.get("$ref").and_then(Schema::as_str);
-        let name = name.and_then(|name| name.rsplit('/').next());
-        name.map_or(inner, |name| &self.definitions[name])
+        schema::describe::referred(inner).map_or(inner, |name| &self.definitions[name])
     }
 
     /// What a schema says by a word, or one of its ways of typing does.

@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use serde_json::Value;
 
 use super::overrides::RESTARTABLE;
-use super::schema::{CaseParams, describe};
+use super::schema::CaseParams;
+use super::schema::describe::{self, referred};
 
 /// Paths of the keys of the schema. Of lists they are those of the first element, and what a case
 /// names by itself, such as materials, is left out.
@@ -36,10 +37,7 @@ fn collect<'s>(
     (path, above): (&str, &mut Vec<&'s str>),
     found: &mut BTreeSet<String>,
 ) {
-    if let Some(table) = schema["$ref"]
-        .as_str()
-        .and_then(|name| name.rsplit('/').next())
-    {
+    if let Some(table) = referred(schema) {
         // Tables may hold themselves.
         if !above.contains(&table) {
             above.push(table);
@@ -70,16 +68,15 @@ fn collect<'s>(
         collect(way, all, (path, &mut *above), found);
     }
     // Tables of tables alone have elements with keys.
-    if schema["items"]["$ref"].is_string() {
+    if referred(&schema["items"]).is_some() {
         collect(&schema["items"], all, (&format!("{path}.0"), above), found);
     }
 }
 
 /// What a key holds that can be nothing but a table.
 fn schema_of_table<'s>(value: &'s Value, all: &'s Value) -> &'s Value {
-    let name = value["allOf"][0]["$ref"].as_str();
-    let name = name.and_then(|name| name.rsplit('/').next());
-    name.map_or(&Value::Null, |name| &all["definitions"][name]["properties"])
+    referred(&value["allOf"][0])
+        .map_or(&Value::Null, |name| &all["definitions"][name]["properties"])
 }
 
 #[cfg(test)]

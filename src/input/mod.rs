@@ -35,6 +35,7 @@ pub use difference::{Difference, differences};
 pub use explain::{Explained, explain};
 pub use file::{content, open_regular};
 pub use keys::{keys, restartable_keys};
+pub use schema::describe::referred;
 
 /// The JSON schema of cases.
 #[must_use]

@@ -4,8 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::{Map, Value};
 
-/// Where tables stand in the schema.
-const DEFINITIONS: &str = "#/definitions/";
+use crate::input::referred;
 
 /// What the page says before its tables.
 const HEAD: &str = "\
@@ -41,18 +40,17 @@ pub fn page(schema: &Value) -> String {
 
 /// Names of the tables that a value refers to, each before those that it refers to itself.
 fn in_order<'a>(value: &'a Value, tables: &'a Tables, order: &mut Vec<&'a str>) {
+    if let Some(name) = referred(value) {
+        if !order.contains(&name) {
+            order.push(name);
+            in_order(&tables[name], tables, order);
+        }
+        return;
+    }
     match value {
         Value::Object(entries) => {
-            for (key, entry) in entries {
-                let name = entry.as_str().filter(|_| key == "$ref").and_then(referred);
-                match name {
-                    Some(name) if !order.contains(&name) => {
-                        order.push(name);
-                        in_order(&tables[name], tables, order);
-                    }
-                    Some(_) => {}
-                    None => in_order(entry, tables, order),
-                }
+            for entry in entries.values() {
+                in_order(entry, tables, order);
             }
         }
         Value::Array(entries) => {
@@ -62,11 +60,6 @@ fn in_order<'a>(value: &'a Value, tables: &'a Tables, order: &mut Vec<&'a str>) 
         }
         _ => {}
     }
-}
-
-/// The table that a reference names.
-fn referred(reference: &str) -> Option<&str> {
-    reference.strip_prefix(DEFINITIONS)
 }
 
 fn write_table(page: &mut String, table: &Value, tables: &Tables) {
@@ -110,7 +103,7 @@ fn kind(value: &Value, tables: &Tables) -> String {
     if let Some(title) = value["title"].as_str() {
         return quoted(&title.replace(" with a unit, such as", ", as in"));
     }
-    if let Some(name) = value["$ref"].as_str().and_then(referred) {
+    if let Some(name) = referred(value) {
         let (heading, _) = heading(&tables[name]);
         return format!("[{heading}](#{})", anchor(heading));
     }

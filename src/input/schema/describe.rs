@@ -22,6 +22,15 @@ pub trait Described {
     fn describe(definitions: &mut Definitions) -> Value;
 }
 
+/// Where tables stand in a schema.
+const DEFINITIONS: &str = "#/definitions/";
+
+/// The table that a schema refers to, if it is a reference.
+#[must_use]
+pub fn referred(schema: &Value) -> Option<&str> {
+    schema["$ref"].as_str()?.strip_prefix(DEFINITIONS)
+}
+
 /// Schemas of tables, by their names.
 #[derive(Debug, Default)]
 pub struct Definitions(Map<String, Value>);
@@ -53,7 +62,7 @@ impl Definitions {
             self.0.insert(name.to_owned(), Value::Null);
             let properties = keys.iter().map(|key| {
                 let mut value = (key.value)(self);
-                if value.get("$ref").is_some() {
+                if referred(&value).is_some() {
                     value = json!({ "allOf": [value] });
                 }
                 value["description"] = text(key.docs).into();
@@ -71,7 +80,7 @@ impl Definitions {
             });
             self.0.insert(name.to_owned(), table);
         }
-        json!({ "$ref": format!("#/definitions/{name}") })
+        json!({ "$ref": format!("{DEFINITIONS}{name}") })
     }
 }
 
