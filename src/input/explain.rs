@@ -7,6 +7,7 @@ use serde_json::{Map, Value as Schema};
 use toml::de::{DeArray, DeTable, DeValue};
 use toml::{Table, Value};
 
+use super::schema::describe::{referred, stated};
 use super::source::Sources;
 use super::{InputError, case_file, document, parse, schema};
 use crate::model::Case;
@@ -32,7 +33,7 @@ pub enum Explained {
         /// The value that it has then, as TOML, if that is always the same.
         default: Option<String>,
         /// What is so, in words.
-        text: String,
+        said: String,
     },
 }
 
@@ -67,11 +68,11 @@ pub fn explain(path: &Path, overrides: &[String]) -> Result<(Case, Vec<Explained
 /// Keys of a table of which nothing is known.
 static NOTHING: std::sync::LazyLock<Map<String, Schema>> = std::sync::LazyLock::new(Map::new);
 
-/// The value that a key has when it is not typed, as TOML, by its documentation: `` …; `1.3` if absent ``.
-fn default_of(text: &str) -> Option<&str> {
-    let (_, after) = text.rsplit_once("; `")?;
-    let (value, rest) = after.split_once('`')?;
-    rest.ends_with("if absent.").then_some(value)
+/// The value, as TOML, in what is said of a key that is not typed: `` `1.3` `` alone, or
+/// `` `1.3`, or that of all pairs ``.
+fn default_of(said: &str) -> Option<&str> {
+    let (value, rest) = said.strip_prefix('`')?.split_once('`')?;
+    (rest.is_empty() || rest.starts_with(", or that of all")).then_some(value)
 }
 
 /// Goes through a document and the schema together.
@@ -85,7 +86,7 @@ impl<'a> Walk<'a> {
     /// What a schema of one thing refers to.
     fn resolved(&self, schema: &'a Schema) -> &'a Schema {
         let inner = schema.get("allOf").map_or(schema, |all| &all[0]);
-        schema::describe::referred(inner).map_or(inner, |name| &self.definitions[name])
+        referred(inner).map_or(inner, |name| &self.definitions[name])
     }
 
     /// What a schema says by a word, or one of its ways of typing does.
@@ -214,11 +215,11 @@ impl<'a> Walk<'a> {
     /// A key that is not typed, if something is so without it; of a table that is always there, its keys.
     fn absent(&mut self, key: &str, schema: &'a Schema, below: bool) {
         let text = schema["description"].as_str().unwrap_or_default();
-        if text.ends_with("if absent.") {
+        if let (_, Some(said)) = stated(text) {
             self.lines.push(Explained::Absent {
                 key: key.to_owned(),
-                default: default_of(text).map(str::to_owned),
-                text: text.to_owned(),
+                default: default_of(said).map(str::to_owned),
+                said: said.to_owned(),
             });
             return;
         }
@@ -301,9 +302,11 @@ mod tests {
 
     #[test]
     fn a_default_is_what_the_documentation_ends_with() {
-        assert_eq!(default_of("A; `1.3` if absent."), Some("1.3"));
-        assert_eq!(default_of("A; `4`, or that of all, if absent."), Some("4"));
-        assert_eq!(default_of("Of `a`; none if absent."), None);
-        assert_eq!(default_of("A; `1`."), None);
+        let of = |text| stated(text).1.and_then(default_of);
+        assert_eq!(of("A; `1.3` if absent."), Some("1.3"));
+        assert_eq!(of("A; `4`, or that of all, if absent."), Some("4"));
+        assert_eq!(of("Of `a`; none if absent."), None);
+        assert_eq!(of("A; `1`."), None);
+        assert_eq!(of("A; `load-1` and so on if absent."), None);
     }
 }

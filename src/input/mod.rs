@@ -35,7 +35,7 @@ pub use difference::{Difference, differences};
 pub use explain::{Explained, explain};
 pub use file::{content, open_regular};
 pub use keys::{keys, restartable_keys};
-pub use schema::describe::referred;
+pub use schema::describe::{referred, stated};
 
 /// The JSON schema of cases.
 #[must_use]

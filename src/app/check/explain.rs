@@ -40,9 +40,7 @@ pub(super) fn explain(path: &Path, overrides: &[String]) -> Result<String, Input
                 default: Some(value),
                 ..
             } => add(&beside(&format!("# {key} = {value}"), "default")),
-            Explained::Absent { key, text, .. } => {
-                let (_, said) = text.rsplit_once("; ").unwrap_or(("", text));
-                let said = said.trim_end_matches(" if absent.");
+            Explained::Absent { key, said, .. } => {
                 add(&beside(&format!("# {key}"), &format!("default: {said}")));
             }
         }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::{Map, Value};
 
-use crate::input::referred;
+use crate::input::{referred, stated};
 
 /// What the page says before its tables.
 const HEAD: &str = "\
@@ -72,8 +72,12 @@ fn write_table(page: &mut String, table: &Value, tables: &Tables) {
     let required = table["required"].as_array();
     for (key, value) in table["properties"].as_object().into_iter().flatten() {
         let must = required.is_some_and(|keys| keys.iter().any(|other| other == key.as_str()));
-        let (meaning, default) = meaning(text(value, "description"));
-        let default = if must { "*required*" } else { default };
+        let (meaning, default) = stated(text(value, "description"));
+        let default = if must {
+            "*required*"
+        } else {
+            default.unwrap_or("–")
+        };
         let kind = kind(value, tables).replace('|', "\\|");
         let _ = writeln!(page, "| `{key}` | {kind} | {default} | {meaning} |");
     }
@@ -88,14 +92,6 @@ fn heading(table: &Value) -> (&str, &str) {
         !in_code && [':', ';', '.'].contains(&c)
     });
     end.map_or((text, ""), |(at, _)| (&text[..at], text[at + 1..].trim()))
-}
-
-/// What a key means, and what holds without it: `Exponent; 7 if absent.`
-fn meaning(text: &str) -> (&str, &str) {
-    let stated = text.strip_suffix(" if absent.");
-    let parts = stated.and_then(|stated| stated.rsplit_once("; "));
-    let (meaning, default) = parts.unwrap_or((text.trim_end_matches('.'), "–"));
-    (meaning, default.trim_end_matches(','))
 }
 
 /// What may be typed, in Markdown.

@@ -102,6 +102,17 @@ pub fn text(docs: &[&str]) -> String {
     lines.join(" ")
 }
 
+/// What the documentation of a key says that it means, and what is so without it: of `Exponent; 7 if absent.` these
+/// are `Exponent` and `7`.
+#[must_use]
+pub fn stated(text: &str) -> (&str, Option<&str>) {
+    let said = text.strip_suffix(" if absent.");
+    match said.and_then(|said| said.rsplit_once("; ")) {
+        Some((meaning, default)) => (meaning, Some(default.trim_end_matches(','))),
+        None => (text.trim_end_matches('.'), None),
+    }
+}
+
 /// One of several ways of typing what is `expected`.
 pub fn any_of(expected: &str, ways: &[Value]) -> Value {
     json!({ "description": expected, "anyOf": ways })
@@ -275,5 +286,25 @@ impl<T: Described> Described for Vec<T> {
     fn describe(definitions: &mut Definitions) -> Value {
         let items = T::describe(definitions);
         json!({ "type": "array", "items": items })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn documentation_says_what_is_so_without_a_key() {
+        assert_eq!(stated("A; b; 7 if absent."), ("A; b", Some("7")));
+        let of_all = "`4`, or that of all";
+        assert_eq!(
+            stated("A; `4`, or that of all, if absent."),
+            ("A", Some(of_all))
+        );
+        assert_eq!(stated("A; b."), ("A; b", None));
+        assert_eq!(
+            stated("What it is if absent."),
+            ("What it is if absent", None)
+        );
     }
 }
