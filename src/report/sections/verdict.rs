@@ -291,13 +291,20 @@ fn mass_defect(run: &Run) -> Result<f64, String> {
         sum(&mut bodies.like(0, time)),
         sum(&mut bodies.like_last(time)),
     ];
+    // Rows of what has gone stand at more times than those of bodies.
+    let now = bodies.text(bodies.len() - 1, time);
     let gone = |path: std::path::PathBuf| -> Result<f64, String> {
         if !path.exists() {
             return Ok(0.0);
         }
         let rows = Rows::read(&path)?;
         let [time, mass] = [rows.column("time")?, rows.column("mass")?];
-        Ok(rows.like_last(time).map(|row| rows.number(row, mass)).sum())
+        let of_now = (0..rows.len()).filter(|&row| rows.text(row, time) == now);
+        let masses: Vec<f64> = of_now.map(|row| rows.number(row, mass)).collect();
+        if masses.is_empty() {
+            return Err("what has gone is not told at the last time of bodies".to_owned());
+        }
+        Ok(masses.into_iter().sum())
     };
     let gone = gone(run.folder.removed())? + gone(run.folder.departed())?;
     // Bodies are told with all images, what has gone is that of what was computed.
@@ -306,4 +313,28 @@ fn mass_defect(run: &Run) -> Result<f64, String> {
         .is_finite()
         .then_some(defect)
         .ok_or_else(|| "masses are no numbers".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::RunFolder;
+
+    /// Bodies are told less often than what has gone, so a run that is stopped or goes on has rows of that alone.
+    #[test]
+    fn masses_of_one_time_are_added_up() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = RunFolder::at(place.path());
+        let bodies = "time,body,mass\n0.0,a,4.0\n0.0,b,2.0\n0.5,a,3.0\n0.5,b,2.0\n";
+        std::fs::write(folder.bodies(), bodies).unwrap();
+        let removed = "time,body,mass\n0.0,a,0.0\n0.0,b,0.0\n0.5,a,0.75\n0.5,b,0.0\n\
+                       0.6,a,0.75\n0.6,b,1.0\n";
+        std::fs::write(folder.removed(), removed).unwrap();
+        let departed = "time,body,mass\n0.5,a,0.25\n0.5,b,0.0\n0.6,a,2.0\n0.6,b,0.0\n";
+        std::fs::write(folder.departed(), departed).unwrap();
+        let defect = || mass_defect(&Run::read(&folder));
+        assert_eq!(defect(), Ok(0.0));
+        std::fs::write(folder.departed(), "time,body,mass\n0.6,a,0.25\n").unwrap();
+        assert!(defect().is_err());
+    }
 }
