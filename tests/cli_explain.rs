@@ -13,6 +13,7 @@ fn a_case_is_explained_key_by_key() {
     let case = place.path().join("case.toml");
     let text = "title = \"Cubes\"\ndimension = 3\nspacing = \"0.1 mm\"\n\
                 material.metal.library = \"copper\"\nmaterial.metal.density = \"8.9 g/cm^3\"\n\
+                material.metal.failure.spall.pressure = \"-1 GPa\"\n\
                 [run]\nend_time = \"1 us\"\n\
                 [[body]]\nname = \"one\"\nmaterial = \"metal\"\n\
                 shape.box = { lower = [0, 0, 0], upper = [\"1 mm\", \"1 mm\", \"1 mm\"] }\n\
@@ -40,7 +41,7 @@ fn a_case_is_explained_key_by_key() {
         assert!(found, "{begin} {end}: {told}");
     };
     line("title = \"Cubes\" ", &format!("# {path}:1"));
-    line("end_time = \"1 us\" ", &format!("# {path}:7"));
+    line("end_time = \"1 us\" ", &format!("# {path}:8"));
     line("shape.sphere.radius = \"0.4 mm\" ", "# --set");
     line("alpha = 0.7 ", "# --set");
     line("# beta = 2.0 ", "# default");
@@ -48,6 +49,9 @@ fn a_case_is_explained_key_by_key() {
     line("# history_every ", "# default: 250 rows a run");
     line("density = \"8.9 g/cm^3\" ", &format!("# {path}:5"));
     line("# strength", "# library");
+    // Copper of the library does not fail.
+    line("# failure.spall.after = \"failed\" ", "# default");
+    assert_eq!(told.matches("failure.spall.after").count(), 1, "{told}");
     line("# density ", "# default: the material's reference density");
 
     // Without origins, which hang on the text, it explains itself.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::app::materials::written;
 use crate::input::{self, Explained, InputError};
-use crate::material::Material;
+use crate::material::{Constant, Material, library};
 use crate::model::Case;
 
 /// Columns that keys and values take before what is said of them.
@@ -18,14 +18,14 @@ pub(super) fn explain(path: &Path, overrides: &[String]) -> Result<String, Input
         text.push_str(line);
         text.push('\n');
     };
-    let (mut begun, mut of) = (false, None);
-    let mut typed: Vec<String> = Vec::new();
+    let (mut begun, mut of) = (false, Vec::new());
+    let mut typed: Vec<(&str, &str)> = Vec::new();
     for line in &lines {
         match line {
             Explained::Header(header) => {
-                constants(of, &typed, &mut add);
+                constants(&of, &typed, &mut add);
                 typed.clear();
-                of = material(&case, header);
+                of = constants_of(&case, header);
                 if begun {
                     add("");
                 }
@@ -33,8 +33,10 @@ pub(super) fn explain(path: &Path, overrides: &[String]) -> Result<String, Input
             }
             Explained::Typed { key, value, place } => {
                 add(&beside(&format!("{key} = {value}"), place));
-                typed.push(key.clone());
+                typed.push((key, value));
             }
+            // It stands among the constants.
+            Explained::Absent { key, .. } if has(&of, key) => {}
             Explained::Absent {
                 key,
                 default: Some(value),
@@ -46,7 +48,7 @@ pub(super) fn explain(path: &Path, overrides: &[String]) -> Result<String, Input
         }
         begun = true;
     }
-    constants(of, &typed, &mut add);
+    constants(&of, &typed, &mut add);
     Ok(text)
 }
 
@@ -56,25 +58,41 @@ fn beside(line: &str, said: &str) -> String {
     format!("{line:<KEYS$}  # {said}")
 }
 
-/// The material whose table begins.
-fn material<'a>(case: &'a Case, header: &str) -> Option<&'a Material> {
-    let name = header.strip_prefix("[material.")?.strip_suffix(']')?;
-    let name = name.trim_matches('"');
-    case.materials.iter().find(|material| material.name == name)
+/// The constants of the material whose table begins, if it is one.
+fn constants_of(case: &Case, header: &str) -> Vec<Constant> {
+    let name = header.strip_prefix("[material.");
+    let name = name.and_then(|name| name.strip_suffix(']'));
+    let found = name.and_then(|name| {
+        let mut materials = case.materials.iter();
+        materials.find(|material| material.name == name.trim_matches('"'))
+    });
+    found.map_or_else(Vec::new, Material::constants)
+}
+
+fn has(constants: &[Constant], key: &str) -> bool {
+    constants.iter().any(|constant| constant.key == key)
 }
 
 /// The constants of a material that its table does not name.
-fn constants(of: Option<&Material>, typed: &[String], add: &mut impl FnMut(&str)) {
-    let Some(material) = of else { return };
-    let from = if typed.iter().any(|key| key == "library") {
-        "library"
-    } else {
-        "default"
-    };
-    for constant in material.constants() {
-        if !typed.contains(&constant.key) {
-            let line = format!("# {} = {}", constant.key, written(constant.value));
+fn constants(of: &[Constant], typed: &[(&str, &str)], add: &mut impl FnMut(&str)) {
+    let named = typed.iter().find(|(key, _)| *key == "library");
+    let base = named.and_then(|(_, name)| library::find(name.trim_matches(['"', '\''])));
+    let base = base.map_or_else(Vec::new, |base| base.constants());
+    for Constant { key, value } in of {
+        if !typed.iter().any(|(other, _)| other == key) {
+            let line = format!("# {key} = {}", written(*value));
+            let from = if comes_from(&base, key) {
+                "library"
+            } else {
+                "default"
+            };
             add(&beside(&line, from));
         }
     }
+}
+
+/// Whether a constant is one of the library's material: a shear modulus may be that of another law.
+fn comes_from(base: &[Constant], key: &str) -> bool {
+    let is_shear = |key: &str| key.starts_with("strength.") && key.ends_with(".shear_modulus");
+    has(base, key) || is_shear(key) && base.iter().any(|constant| is_shear(&constant.key))
 }
