@@ -10,11 +10,11 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 
 use super::form::Form;
-use super::results::{GRID, POINT_DATA, Results, ResultsError, component_names, running};
+use super::results::{GRID, POINT_DATA, Results, ResultsError, component_names, running, standing};
 use crate::output::checkpoint::{self, FIELDS};
 use crate::output::h5::read::PART;
 use crate::output::h5::{Array, Content, Element, RowType};
-use crate::output::{Block, OutputError, Phase, RunFolder, Sheet, read_regular, read_small};
+use crate::output::{Block, OutputError, RunFolder, Sheet, read_regular, read_small};
 use crate::preflight::memory::in_words;
 use crate::run::exit::EXIT_INPUT;
 use crate::run::say::{say, seconds, warn};
@@ -285,7 +285,7 @@ fn fragments(folder: &RunFolder) -> Option<String> {
 }
 
 fn run_folder(folder: &RunFolder, text: &mut Text) -> Result<(), ResultsError> {
-    let status = folder.status()?;
+    let (status, presence) = standing(folder, |_| true)?;
     text.both("run", folder.path().display().to_string());
     let input = read_small(&folder.case()).unwrap_or_default();
     let input: toml::Table = toml::from_slice(&input).unwrap_or_default();
@@ -297,9 +297,9 @@ fn run_folder(folder: &RunFolder, text: &mut Text) -> Result<(), ResultsError> {
     let reason = status
         .reason
         .map_or_else(String::new, |r| format!(" ({r})"));
-    let state = match status.state {
-        Phase::Running => running(folder),
-        ended => format!("{}{reason}", ended.name()),
+    let state = match presence {
+        Some(presence) => running(&presence),
+        None => format!("{}{reason}", status.state.name()),
     };
     text.both("state", state);
     text.both("step", status.step);

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::output::checkpoint;
 use crate::output::h5::Content;
-use crate::output::{OutputError, Presence, RunFolder};
+use crate::output::{OutputError, Phase, Presence, RunFolder, Status};
 
 /// Group of a snapshot's grid.
 pub const GRID: &str = "/VTKHDF";
@@ -105,9 +105,31 @@ pub fn component_names(components: usize, vtk: bool) -> &'static [&'static str] 
     }
 }
 
+/// The status of a run, and who has its folder where it says that the run goes on and `asks` for that. `Nobody` is
+/// said of a killed run alone, not of one that has ended in between.
+pub(super) fn standing(
+    folder: &RunFolder,
+    asks: impl Fn(&Status) -> bool,
+) -> Result<(Status, Option<Presence>), OutputError> {
+    let mut status = folder.status()?;
+    while status.state == Phase::Running && asks(&status) {
+        let presence = Presence::of(folder.path());
+        if !matches!(presence, Presence::Nobody(_)) {
+            return Ok((status, Some(presence)));
+        }
+        // A run says how it has ended before it leaves its folder.
+        let again = folder.status()?;
+        if again == status {
+            return Ok((status, Some(presence)));
+        }
+        status = again;
+    }
+    Ok((status, None))
+}
+
 /// What `running` in a status means: a run that is killed cannot change it.
-pub(super) fn running(folder: &RunFolder) -> String {
-    match Presence::of(folder.path()) {
+pub(super) fn running(presence: &Presence) -> String {
+    match presence {
         Presence::Held(Some(who)) => format!("running ({who})"),
         Presence::Held(None) => "running".to_owned(),
         Presence::Nobody(_) => {
@@ -116,5 +138,28 @@ pub(super) fn running(folder: &RunFolder) -> String {
         Presence::Unclear(who) => {
             format!("running, or killed or lost ({who}, which cannot be seen from this host)")
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_run_that_ends_while_it_is_looked_at_is_not_killed() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = RunFolder::at(place.path());
+        let write = |state| folder.write_status(&Status::new(state, 7, 1e-6)).unwrap();
+        write(Phase::Running);
+        let (status, presence) = standing(&folder, |_| true).unwrap();
+        assert_eq!(status.state, Phase::Running);
+        assert!(matches!(presence, Some(Presence::Nobody(None))));
+        let ends = |_: &Status| {
+            write(Phase::Finished);
+            true
+        };
+        let (status, presence) = standing(&folder, ends).unwrap();
+        assert_eq!(status.state, Phase::Finished);
+        assert!(presence.is_none());
     }
 }

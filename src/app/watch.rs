@@ -8,7 +8,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use console::Term;
 
-use super::results::running;
+use super::results::{running, standing};
 use crate::model::readable::one_line;
 use crate::output::{OutputError, Phase, Presence, RunFolder, Status};
 use crate::run::exit::{EXIT_FAILED, EXIT_INPUT, EXIT_STOPPED};
@@ -85,14 +85,8 @@ struct Seen {
 
 /// Looks at a run.
 fn look(folder: &RunFolder) -> Result<Seen, OutputError> {
-    let status = folder.status()?;
+    let (status, presence) = standing(folder, is_late)?;
     let name = one_line(&folder.path().display().to_string()).into_owned();
-    let now = SystemTime::now().duration_since(UNIX_EPOCH);
-    let outlook = status.outlook.as_ref();
-    let age = outlook.zip(now.ok()).and_then(|(outlook, now)| {
-        now.checked_sub(Duration::from_secs(outlook.written))
-            .map(|age| age.as_secs_f64())
-    });
     let reason = status.reason.as_deref().unwrap_or_default();
     let reason = if reason.is_empty() {
         String::new()
@@ -101,11 +95,13 @@ fn look(folder: &RunFolder) -> Result<Seen, OutputError> {
     };
     let code = status.exit_code;
     let (told, code) = match status.state {
-        Phase::Running if is_late(&status, age) => {
-            let lost = matches!(Presence::of(folder.path()), Presence::Nobody(_));
-            (running(folder), lost.then_some(EXIT_FAILED))
-        }
-        Phase::Running => ("running".to_owned(), None),
+        Phase::Running => match &presence {
+            Some(presence) => {
+                let lost = matches!(presence, Presence::Nobody(_));
+                (running(presence), lost.then_some(EXIT_FAILED))
+            }
+            None => ("running".to_owned(), None),
+        },
         Phase::Finished => ("finished".to_owned(), Some(code.unwrap_or(0))),
         Phase::Stopped => (
             format!("stopped{reason}"),
@@ -115,17 +111,24 @@ fn look(folder: &RunFolder) -> Result<Seen, OutputError> {
     };
     Ok(Seen {
         standing: format!("{name}: {told}"),
+        age: age(&status),
         status,
-        age,
         code,
     })
 }
 
+/// Seconds since a status was written, if that can be told.
+fn age(status: &Status) -> Option<f64> {
+    let now = SystemTime::now().duration_since(UNIX_EPOCH).ok()?;
+    let written = Duration::from_secs(status.outlook.as_ref()?.written);
+    now.checked_sub(written).map(|age| age.as_secs_f64())
+}
+
 /// Whether a run has not told of itself for longer than a sound one would take.
-fn is_late(status: &Status, age: Option<f64>) -> bool {
+fn is_late(status: &Status) -> bool {
     const PATIENCE: f64 = 5.0;
     let step = status.outlook.as_ref().map_or(0.0, |o| o.seconds_per_step);
-    age.is_none_or(|age| age > PATIENCE + 3.0 * step)
+    age(status).is_none_or(|age| age > PATIENCE + 3.0 * step)
 }
 
 /// Columns of the terminal.
