@@ -8,7 +8,7 @@ use super::say;
 use super::stop::Signals;
 use crate::comm::{Comm, Session, abort_job};
 use crate::output::h5::abandoned;
-use crate::output::{Phase, RunFolder, Status};
+use crate::output::{Outlook, Phase, RunFolder, Status};
 
 /// Exit code of a program that panicked.
 const EXIT_PANIC: i32 = 101;
@@ -108,11 +108,14 @@ pub fn fail(comm: &Comm, folder: &RunFolder, message: &str, step: u64, time: f64
     if comm.is_root() {
         say::warn(&format!("error: {message}"));
         // The message above is what counts; the folder may be what failed.
-        let before = folder.status().ok();
+        let outlook = folder.status().ok().and_then(|status| status.outlook);
         let _ = folder.write_status(&Status {
             reason: Some(message.to_owned()),
             exit_code: Some(EXIT_FAILED),
-            outlook: before.and_then(|status| status.outlook),
+            outlook: outlook.map(|outlook| Outlook {
+                seconds_left: None,
+                ..outlook
+            }),
             ..Status::new(Phase::Failed, step, time)
         });
     }

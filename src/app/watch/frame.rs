@@ -6,7 +6,7 @@ use indicatif::HumanDuration;
 
 use super::Seen;
 use crate::model::readable::{one_line, shown};
-use crate::output::{Energies, Outlook, Status};
+use crate::output::{Energies, Outlook};
 use crate::run::say::{counted, seconds};
 
 /// Heights of a column of text.
@@ -24,7 +24,7 @@ pub fn frame(seen: &Seen, width: usize) -> Vec<String> {
     let status = &seen.status;
     match &status.outlook {
         Some(outlook) => {
-            lines.extend(progress(status, outlook, width));
+            lines.extend(progress(seen, outlook, width));
             lines.extend(energies(outlook, width));
             lines.push(ranks(outlook, width));
         }
@@ -53,7 +53,8 @@ fn duration(seconds: f64) -> String {
     clippy::cast_sign_loss,
     reason = "for people, and clamped"
 )]
-fn progress(status: &Status, outlook: &Outlook, width: usize) -> [String; 3] {
+fn progress(seen: &Seen, outlook: &Outlook, width: usize) -> [String; 3] {
+    let status = &seen.status;
     let steps = outlook.max_steps.unwrap_or(u64::MAX) as f64;
     let done = (status.time / outlook.end_time).max(status.step as f64 / steps);
     let done = done.clamp(0.0, 1.0);
@@ -64,7 +65,8 @@ fn progress(status: &Status, outlook: &Outlook, width: usize) -> [String; 3] {
         .max_steps
         .map_or_else(String::new, |most| format!(" of {most}"));
     let (at, end) = (seconds(status.time), seconds(outlook.end_time));
-    let left = outlook.seconds_left.map_or_else(String::new, |left| {
+    let left = outlook.seconds_left.filter(|_| seen.code.is_none());
+    let left = left.map_or_else(String::new, |left| {
         format!(", about {} left", duration(left))
     });
     [
@@ -187,7 +189,7 @@ fn ranks(outlook: &Outlook, width: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::Phase;
+    use crate::output::{Phase, Status};
 
     fn seen(energies: Energies) -> Seen {
         let outlook = Outlook {
@@ -240,6 +242,12 @@ mod tests {
                 "as of 1 second ago",
             ]
         );
+        // Of a run that is over nothing is left.
+        let over = Seen {
+            code: Some(1),
+            ..seen(Energies::default())
+        };
+        assert_eq!(frame(&over, 46)[2], "clock     65 seconds");
         for width in [20, 80, 300] {
             let lines = frame(&seen(Energies::default()), width);
             assert_eq!(lines.len(), 6);
