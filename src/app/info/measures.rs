@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde_json::Value;
 
@@ -34,8 +34,7 @@ pub fn last_figures(folder: &RunFolder) -> Vec<(String, String)> {
         let passed = ["mass", "momentum", "kinetic_energy"];
         lines.extend(last.lines("witness", &passed));
     }
-    let many = gauge_records::last_rows(folder).ok().flatten();
-    if let Some(last) = Last::of(&folder.gauges()).or(many.and_then(Last::of_sheet)) {
+    if let Some(last) = last_of_gauges(folder) {
         let reads = ["pressure", "velocity", "normal_stress"];
         lines.extend(last.lines("gauge", &reads));
     }
@@ -45,18 +44,24 @@ pub fn last_figures(folder: &RunFolder) -> Vec<(String, String)> {
 /// The rows of the last time of the same tables, and of the history.
 pub fn last_rows(folder: &RunFolder) -> Value {
     let tables = [
-        ("history", folder.history()),
-        ("bodies", folder.bodies()),
-        ("measures", folder.measures()),
-        ("witness", folder.witness()),
-        ("gauges", folder.gauges()),
-        ("fragments", folder.fragments()),
+        ("history", Last::of(&folder.history())),
+        ("bodies", Last::of(&folder.bodies())),
+        ("measures", Last::of(&folder.measures())),
+        ("witness", Last::of(&folder.witness())),
+        ("gauges", last_of_gauges(folder)),
+        ("fragments", Last::of(&folder.fragments())),
     ];
-    let last = |(name, path): (&str, PathBuf)| {
-        let last = Last::of(&path)?;
-        Some((name.to_owned(), form::table(&last.sheet)))
-    };
-    tables.into_iter().filter_map(last).collect()
+    let told =
+        |(name, last): (&str, Option<Last>)| Some((name.to_owned(), form::table(&last?.sheet)));
+    tables.into_iter().filter_map(told).collect()
+}
+
+/// What gauges have read last, few or many.
+fn last_of_gauges(folder: &RunFolder) -> Option<Last> {
+    Last::of(&folder.gauges()).or_else(|| {
+        let many = gauge_records::last_rows(folder).ok().flatten();
+        many.and_then(Last::of_sheet)
+    })
 }
 
 /// The rows of the last time of a table.
@@ -206,6 +211,8 @@ fn end_of_header(text: &[u8]) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::output::Column;
+    use crate::output::gauge_records::GaugeRecords;
     use std::fmt::Write as _;
 
     #[test]
@@ -245,5 +252,26 @@ mod tests {
                 "density 2785 kg/m^3"
             ]
         );
+    }
+
+    #[test]
+    fn many_gauges_are_told_to_people_and_programs() {
+        let place = tempfile::tempdir().unwrap();
+        let run = RunFolder::at(place.path());
+        let columns = ["step", "time", "gauge", "pressure"].map(|name| Column::new(name, ""));
+        let names = ["front", "rear"].map(str::to_owned);
+        let mut records = GaugeRecords::new(&run, columns.to_vec(), names.to_vec());
+        for step in 0..3_u32 {
+            for gauge in 0..2 {
+                let pressure = f64::from(10 * step + gauge);
+                let at = (u64::from(step), f64::from(step));
+                records.add(at, gauge, std::iter::once(pressure));
+            }
+        }
+        records.write().unwrap();
+        let lines = last_figures(&run);
+        let told: Vec<&str> = lines.iter().map(|line| line.1.as_str()).collect();
+        assert_eq!(told, ["pressure 20", "pressure 21"]);
+        assert!(last_rows(&run)["gauges"].to_string().contains("rear"));
     }
 }
