@@ -71,6 +71,9 @@ pub struct CheckArgs {
 /// Runs the command; returns the exit code.
 pub fn run(args: &CheckArgs) -> u8 {
     args.form.begin();
+    if args.explain {
+        return told(explain::explain(&args.case, &args.set));
+    }
     let case = match input::load(&args.case, &args.set) {
         Ok(case) => case,
         Err(error) => {
@@ -78,9 +81,6 @@ pub fn run(args: &CheckArgs) -> u8 {
             return EXIT_INPUT;
         }
     };
-    if args.explain {
-        return told(explain::explain(&args.case, &args.set));
-    }
     if let Err(error) = snapshot::quantities(&case.output.fields) {
         warn(&format!("error: {error}"));
         return EXIT_INPUT;
