@@ -285,7 +285,7 @@ impl<'a> Driver<'a> {
             self.write_checkpoint(comm)?;
         }
         if snapshot_due || checkpoint_due {
-            on_root(comm, || self.write_status(Phase::Running, None))?;
+            on_root(comm, || self.tell_running())?;
         }
         if let Some(line) = self.progress.show(&self.simulation.state) {
             self.record(comm, &line);

@@ -24,13 +24,19 @@ impl Driver<'_> {
         })
     }
 
+    /// Writes that the run goes on. Rank 0's alone.
+    pub(super) fn tell_running(&mut self) -> Result<(), OutputError> {
+        let begun = Instant::now();
+        let written = self.write_status(Phase::Running, None);
+        self.watched.wrote(begun);
+        written
+    }
+
     /// Writes it now and then, for those who watch the run.
     pub(super) fn renew_status(&mut self, comm: &Comm) {
         if comm.is_root() && self.watched.is_due() {
-            let begun = Instant::now();
             // A folder that takes no files any more is told of by what has to be written.
-            let _ = self.write_status(Phase::Running, None);
-            self.watched.wrote(begun);
+            let _ = self.tell_running();
         }
     }
 }
