@@ -304,7 +304,9 @@ impl<'a> Driver<'a> {
             Vec::new()
         };
         let wall = self.start.elapsed().as_secs_f64();
-        self.watched.row(&self.simulation.state, &load);
+        if comm.is_root() {
+            self.watched.row(&self.simulation.state, &load);
+        }
         on_root(comm, || match &mut self.tables {
             Some(tables) => tables.write(&self.simulation, &bodies, &load, wall),
             None => Ok(()),
