@@ -16,7 +16,7 @@ use crate::output::{snapshot, unit_of_model};
 use crate::plan::{self, Files, Machine};
 use crate::plot::{self, PlotError};
 use crate::populate;
-use crate::preflight::{self, memory};
+use crate::preflight::{self, Approach, memory};
 use crate::run::exit::EXIT_INPUT;
 use crate::run::say::{counted, say, warn};
 use document::document;
@@ -207,15 +207,12 @@ fn print_report(case: &Case, ranks: usize) {
         "  {:<16} {total:>10} particles, about {memory} a rank on {ranks} rank{plural}",
         "all"
     ));
-    for pair in preflight::approaches(case) {
-        let [a, b] = pair.bodies.map(|body| case.bodies[body].name.as_str());
-        if pair.time.is_finite() && pair.time > 0.0 {
-            say(&format!(
-                "  {a} and {b} meet at {}, from {:.1} spacings apart",
-                shown(pair.time, "s"),
-                pair.gap
-            ));
-        }
+    for (pair, [a, b]) in meetings(case) {
+        say(&format!(
+            "  {a} and {b} meet at {}, from {:.1} spacings apart",
+            shown(pair.time, "s"),
+            pair.gap
+        ));
     }
     print_measures(case);
     let steps = plan::expected_steps(case, 0.0);
@@ -226,6 +223,22 @@ fn print_report(case: &Case, ranks: usize) {
     print_costs(case, (total as f64, steps), ranks);
 }
 
+/// Bodies that are going to meet, with their names.
+fn meetings(case: &Case) -> impl Iterator<Item = (Approach, [&str; 2])> {
+    let pairs = preflight::approaches(case).into_iter();
+    let meeting = pairs.filter(|pair| pair.time.is_finite() && pair.time > 0.0);
+    meeting.map(|pair| {
+        let names = pair.bodies.map(|body| case.bodies[body].name.as_str());
+        (pair, names)
+    })
+}
+
+/// Seconds of so many steps with their files on a machine.
+fn wall_time(case: &Case, ranks: usize, machine: &Machine, (steps, files): (f64, &Files)) -> f64 {
+    let stepping = steps * plan::rough_step(case, ranks, machine);
+    stepping + files.written() / machine.disk_bandwidth
+}
+
 /// What the run takes of an ordinary machine, and of the disk.
 fn print_costs(case: &Case, (particles, steps): (f64, Option<f64>), ranks: usize) {
     let machine = Machine::default();
@@ -233,8 +246,7 @@ fn print_costs(case: &Case, (particles, steps): (f64, Option<f64>), ranks: usize
         return;
     };
     if let Some(steps) = steps {
-        let stepping = steps * plan::rough_step(case, ranks, &machine);
-        let wall = duration(stepping + files.written() / machine.disk_bandwidth);
+        let wall = duration(wall_time(case, ranks, &machine, (steps, &files)));
         let plural = if ranks == 1 { "" } else { "s" };
         let name = &machine.name;
         say(&format!(

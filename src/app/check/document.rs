@@ -2,27 +2,22 @@
 
 use serde_json::{Value, json};
 
-use super::mass_of;
+use super::{mass_of, meetings, wall_time};
 use crate::comm::Comm;
 use crate::model::{Body, Case};
 use crate::output::unit_of_model;
 use crate::plan::{self, Files, Machine};
 use crate::populate;
-use crate::preflight::{self, memory};
+use crate::preflight::memory;
 
 /// All that is told, in SI units.
 pub(super) fn document(case: &Case, ranks: usize, warnings: &[String]) -> Value {
     let bodies: Vec<(Value, u64)> = case.bodies.iter().map(|body| of_body(case, body)).collect();
     let total: u64 = bodies.iter().map(|(_, count)| count).sum();
     let bodies: Vec<Value> = bodies.into_iter().map(|(body, _)| body).collect();
-    let meetings = preflight::approaches(case);
-    let meetings = meetings
-        .iter()
-        .filter(|pair| pair.time.is_finite() && pair.time > 0.0)
-        .map(|pair| {
-            let names = pair.bodies.map(|body| case.bodies[body].name.as_str());
-            json!({ "bodies": names, "time": pair.time, "gap_spacings": pair.gap })
-        });
+    let meetings = meetings(case).map(
+        |(pair, names)| json!({ "bodies": names, "time": pair.time, "gap_spacings": pair.gap }),
+    );
     let measures = case.measure.measures.iter();
     let measures: Vec<Value> = measures
         .map(|measure| json!({ "measure": measure.name, "kind": measure.kind.word() }))
@@ -31,10 +26,8 @@ pub(super) fn document(case: &Case, ranks: usize, warnings: &[String]) -> Value 
     let machine = Machine::default();
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
     let files = Files::new(case, total as f64, steps.unwrap_or(0.0)).ok();
-    let wall = steps.zip(files).map(|(steps, files)| {
-        let stepping = steps * plan::rough_step(case, ranks, &machine);
-        stepping + files.written() / machine.disk_bandwidth
-    });
+    let wall = steps.zip(files);
+    let wall = wall.map(|(steps, files)| wall_time(case, ranks, &machine, (steps, &files)));
     json!({
         "title": case.title,
         "dimension": case.dimension,
