@@ -187,9 +187,9 @@ fn plan(args: &PlanArgs, path: &Path) -> Result<(), String> {
     if !args.nodes.is_empty() {
         return nodes::plan(args, path, (&source, steps), &machine);
     }
-    let all = print_ranks(args, &source, &machine, steps)?;
+    let (all, files) = print_ranks(args, &source, &machine, steps)?;
     let rows: Vec<Row> = all.iter().map(|planned| planned.row).collect();
-    write_sheet(args, (&source, &machine), &rows, steps)?;
+    write_sheet(args, (&source, &machine), &rows, &files, steps)?;
     if let Some(path) = &args.chart {
         let weak: Vec<Weak> = all.iter().map(|planned| planned.weak).collect();
         let title = format!("{}, {}", source.case.title, machine.name);
@@ -206,7 +206,7 @@ fn print_ranks(
     source: &Source,
     machine: &Machine,
     steps: Option<f64>,
-) -> Result<Vec<Planned>, String> {
+) -> Result<(Vec<Planned>, Files), String> {
     let sharing = args.sharing(machine);
     say(&format!("  {}", machine_line(machine, sharing)));
     say("");
@@ -232,22 +232,22 @@ fn print_ranks(
         }
     }
     say("");
-    print_files(source, machine, steps)?;
+    let files = print_files(source, machine, steps)?;
     if args.doubled {
         doubled::print(args, machine, &alone, &all);
     }
-    Ok(all)
+    Ok((all, files))
 }
 
 fn write_sheet(
     args: &PlanArgs,
     (source, machine): (&Source, &Machine),
     rows: &[Row],
+    files: &Files,
     steps: Option<f64>,
 ) -> Result<(), String> {
-    let files = files(source, steps)?;
     args.form
-        .tell(|| table::document((source, machine), rows, &files, steps));
+        .tell(|| table::document((source, machine), rows, files, steps));
     let Some(path) = &args.csv else { return Ok(()) };
     write_text(path, &table::sheet(rows, steps).text())
 }
@@ -349,17 +349,13 @@ fn row_of(
 }
 
 fn print_files(source: &Source, machine: &Machine, steps: Option<f64>) -> Result<Files, String> {
-    let files = files(source, steps)?;
+    let count = as_number(source.particles.positions.len());
+    let files = Files::new(&source.case, count, steps.unwrap_or(0.0));
+    let files = files.map_err(|error| format!("error: {error}"))?;
     for line in file_lines(&files, machine) {
         say(&format!("  {line}"));
     }
     Ok(files)
-}
-
-fn files(source: &Source, steps: Option<f64>) -> Result<Files, String> {
-    let count = as_number(source.particles.positions.len());
-    let files = Files::new(&source.case, count, steps.unwrap_or(0.0));
-    files.map_err(|error| format!("error: {error}"))
 }
 
 #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]

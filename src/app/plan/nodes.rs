@@ -29,7 +29,7 @@ pub fn plan(
     let rows = compare(args, source, machine, steps)?;
     say("");
     let files = print_files(source, machine, steps)?;
-    write_sheet(args, (source, machine), &rows, steps)?;
+    write_sheet(args, (source, machine), &rows, &files, steps)?;
     let (Some(file), Some(run)) = (&args.job, run) else {
         return Ok(());
     };
