@@ -200,6 +200,7 @@ impl World {
                     viscosity: Viscosity {
                         alpha: 0.0,
                         beta: 0.0,
+                        negligible: 0.0,
                     },
                     terms: PairTerms {
                         normalised: &normalised,

@@ -23,6 +23,7 @@ use whipple::sph::terms::PairTerms;
 const VISCOSITY: Viscosity = Viscosity {
     alpha: 1.3,
     beta: 2.1,
+    negligible: 0.0,
 };
 
 /// The sums of one receiver, and the sums of the sizes of their terms.

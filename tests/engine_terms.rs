@@ -22,6 +22,7 @@ use whipple::sph::terms::{
 const VISCOSITY: Viscosity = Viscosity {
     alpha: 1.3,
     beta: 2.1,
+    negligible: 0.0,
 };
 /// Particle spacing over smoothing length.
 const RATIO: f64 = 0.8;

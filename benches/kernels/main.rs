@@ -68,6 +68,7 @@ fn momentum(criterion: &mut Criterion) {
     let viscosity = Viscosity {
         alpha: 1.0,
         beta: 2.0,
+        negligible: 0.0,
     };
     let mut group = group(criterion, "momentum_and_energy", COUNT);
     for set in available() {

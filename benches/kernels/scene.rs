@@ -5,7 +5,8 @@ use whipple::input;
 use whipple::model::Case;
 use whipple::neighbours::MotionRecord;
 use whipple::neighbours::{
-    Chunk, ClusterLists, ColumnGrid, ForeignLists, ImageFacts, Lengths, Sequence,
+    Chunk, ClusterLists, ColumnGrid, ForeignLists, ImageFacts, ImageState, Lengths, Sequence,
+    Spared,
 };
 use whipple::numerics::lanes::LANES;
 use whipple::particles::{Image, ParticleStore};
@@ -96,11 +97,13 @@ impl Scene {
             id: particles.id[image.base()],
             group: particles.body[image.base()] as usize,
             smoothing_length: LENGTH,
-            moving: true,
         };
         let scratch = &mut self.scratch;
         self.sequence
-            .build(scratch, COUNT, (&[], 0), facts, |_, _| ());
+            .build(scratch, COUNT, (&[], 0), facts, |_, _| ImageState {
+                moving: true,
+                resting: false,
+            });
     }
 
     pub fn list(&mut self) {
@@ -111,7 +114,7 @@ impl Scene {
             uniform: true,
             rigid: false,
         };
-        self.clusters.build(&self.sequence, &[lengths; 2]);
+        self.clusters.build(&self.sequence, &[lengths; 2], &[]);
     }
 
     pub fn list_foreign(&self, table: &ContactTable, foreign: &mut ForeignLists) {

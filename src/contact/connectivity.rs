@@ -6,10 +6,12 @@ use crate::domain::Mirrors;
 use crate::fragments::{Labels, Members, Sets};
 use crate::model::Case;
 use crate::neighbours::{Fragment, Lists, Membership};
-use crate::particles::{GRAIN, ParticleStore, resize};
+use crate::particles::{GRAIN, Image, ParticleStore, resize};
 
 /// Steps between two looks at what is still connected.
 const EVERY: u64 = 10;
+/// Particles that are asked what rests.
+const SAMPLE: usize = 256;
 /// Every symmetry plane: at the start nothing is cut off from any.
 const ALL_PLANES: u32 = 7;
 
@@ -23,6 +25,8 @@ pub struct Connectivity {
     of_images: Vec<Fragment>,
     /// Places at the start over the distance of folds.
     references: Vec<[f64; 3]>,
+    /// By body: the label of most of what rests of it on this rank, as a sample tells, and its lead in that.
+    at_rest: Vec<(u64, u32)>,
 }
 
 impl Connectivity {
@@ -45,6 +49,7 @@ impl Connectivity {
         let bodies = case.bodies.iter().map(|body| body.lattice.coarsest());
         Self {
             is_active: case.self_contact.is_some(),
+            at_rest: vec![(0, 0); case.bodies.len()],
             per_fold: folds.map_or(Vec::new(), |f| bodies.map(|dp| 1.0 / (f * dp)).collect()),
             ..Self::default()
         }
@@ -146,6 +151,40 @@ impl Connectivity {
             fragments: &self.of_images,
             references: &self.references,
         });
+    }
+
+    /// Asks some particles, `rests` tells which of them rest, of which fragment that is. Only lists that are
+    /// spared hang on it, no result.
+    pub(crate) fn sample(&mut self, particles: &ParticleStore, rests: impl Fn(usize) -> bool) {
+        if !self.is_active {
+            return;
+        }
+        self.at_rest.fill((0, 0));
+        let owned = particles.owned();
+        let every = owned.div_ceil(SAMPLE).max(1);
+        // The label of more than half of them, if there is one (Boyer & Moore 1991).
+        for i in (0..SAMPLE).map(|k| k * every).take_while(|&i| i < owned) {
+            if rests(i) {
+                let (label, lead) = &mut self.at_rest[particles.body[i] as usize];
+                if *label == particles.part[i] {
+                    *lead += 1;
+                } else if *lead == 0 {
+                    (*label, *lead) = (particles.part[i], 1);
+                } else {
+                    *lead -= 1;
+                }
+            }
+        }
+    }
+
+    /// Whether an image of an owned particle that rests is no stranger to what else rests of its body, and nobody
+    /// wants to know its neighbours at a step.
+    pub(crate) fn lets_rest(&self, particles: &ParticleStore, image: Image, step: u64) -> bool {
+        let (i, code) = (image.base(), u32::from(image.code()));
+        !self.is_active
+            || !self.is_due(step)
+                && particles.part[i] == self.at_rest[particles.body[i] as usize].0
+                && code & !particles.part_planes[i] == 0
     }
 
     /// Whether fragments are to be told at a step.

@@ -11,6 +11,7 @@ pub mod constants;
 pub mod eos;
 pub mod library;
 mod point;
+mod rest;
 pub mod thermal;
 
 pub use constants::Constant;
@@ -18,6 +19,7 @@ pub use declare::{Constants, Listed, Value};
 pub use eos::{Eos, IdealGas, Linear, LinearForm, MieGruneisen, Tait, Tillotson};
 pub use point::*;
 pub(crate) use point::{FAILED, point_fields, point_lanes};
+pub use rest::{NEGLIGIBLE, Rest};
 pub use thermal::{Thermal, ThermalConstants};
 
 /// Smallest square of the bulk sound speed, as a fraction of its reference value K/ρ₀: expanded

@@ -29,6 +29,8 @@ pub struct Among {
     pub moving: bool,
     /// Not all that is in range: strangers have been taken out.
     pub parted: bool,
+    /// Nothing, as the list was spared: all in range rests, and belongs to this rank and this group.
+    pub resting: bool,
 }
 
 impl Cluster {

@@ -11,6 +11,7 @@ use super::gather::Gatherer;
 use super::near::{INFLATION, near_box, push_places};
 use super::pairs::PairList;
 use super::sequence::Sequence;
+use super::watch::Watch;
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::lanes::Lanes;
 
@@ -61,6 +62,7 @@ struct Build<'a> {
     sources: usize,
     sequence: &'a Sequence,
     lengths: Lengths,
+    ranges: &'a [f64],
 }
 
 impl Vectorised for Build<'_> {
@@ -104,17 +106,35 @@ impl Vectorised for Build<'_> {
             used: 0,
             hints: [0; 64],
         };
-        for cluster in clusters.iter() {
-            let among = if uniform {
-                lister.list::<V, true>(cluster)
-            } else {
-                lister.list::<V, false>(cluster)
-            };
-            #[allow(clippy::cast_possible_truncation, reason = "a chunk's lists fit u32")]
-            ends.push((lister.used as u32, among));
+        let mut watch = Watch {
+            sequence,
+            group: *group,
+            ranges: self.ranges,
+            far: (2.0 * longest).max(least) * stretch * INFLATION,
+            hints: [0; 64],
+        };
+        for run in clusters.chunks(RUN) {
+            let rests = watch.rests::<V>(run);
+            for cluster in run {
+                let among = if rests {
+                    Among {
+                        resting: true,
+                        ..Among::default()
+                    }
+                } else if uniform {
+                    lister.list::<V, true>(cluster)
+                } else {
+                    lister.list::<V, false>(cluster)
+                };
+                #[allow(clippy::cast_possible_truncation, reason = "a chunk's lists fit u32")]
+                ends.push((lister.used as u32, among));
+            }
         }
     }
 }
+
+/// Clusters in a row that are looked at together, whether they rest.
+const RUN: usize = 8;
 
 /// Writes the lists of a chunk one after the other.
 struct Lister<'a> {
@@ -167,6 +187,7 @@ impl Lister<'_> {
             halo: special & u64::from(HALO) != 0,
             moving: special & u64::from(MOVING) != 0,
             parted: false,
+            resting: false,
         }
     }
 }
@@ -215,8 +236,10 @@ impl ClusterLists {
     }
 
     /// Groups this rank's own particles into clusters and lists the neighbours of each.
-    /// `lengths` are the smoothing lengths of each group.
-    pub fn build(&mut self, sequence: &Sequence, lengths: &[Lengths]) {
+    /// `lengths` are the smoothing lengths of each group; clusters that rest among what
+    /// rests get empty ones, if they are far from other groups: `ranges[own * groups + other]` is the longest range (m) of
+    /// contact between two, if there is any contact.
+    pub fn build(&mut self, sequence: &Sequence, lengths: &[Lengths], ranges: &[f64]) {
         let set = instructions();
         self.lay_out(sequence);
         let sources_of = |group: usize| match self.body_groups {
@@ -231,6 +254,7 @@ impl ClusterLists {
                 sources: sources_of(chunk.group),
                 chunk,
                 sequence,
+                ranges,
             });
         });
     }

@@ -11,8 +11,24 @@ pub struct ImageFacts {
     pub group: usize,
     /// Smoothing length (m).
     pub smoothing_length: f64,
+}
+
+/// Whether there is anything to sum around an image.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct ImageState {
     /// Whether its velocity is another than the one common to its group at rest in itself.
     pub moving: bool,
+    /// Whether nothing changes it as long as nothing moves around it, as far as this rank knows.
+    pub resting: bool,
+}
+
+impl ImageState {
+    /// As flags.
+    pub(super) fn flags(self) -> u8 {
+        let moving = if self.moving { MOVING } else { 0 };
+        let active = if self.resting { 0 } else { ACTIVE };
+        moving | active
+    }
 }
 
 /// Behind a symmetry plane.
@@ -21,5 +37,7 @@ pub(super) const MIRROR: u8 = 1;
 pub(super) const HALO: u8 = 2;
 /// Not at the group's common velocity.
 pub(super) const MOVING: u8 = 4;
+/// Not [at rest](ImageState::resting).
+pub(super) const ACTIVE: u8 = 8;
 /// Everything but particles of this rank themselves.
 pub(super) const IMAGE: u8 = MIRROR | HALO;

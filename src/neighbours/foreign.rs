@@ -131,7 +131,10 @@ impl<B: Fn(u32) -> usize> Vectorised for Find<'_, B> {
             std::mem::take(&mut chunk.candidates),
             std::mem::take(&mut chunk.strangers),
         );
-        for (cluster, _, _) in self.own.iter() {
+        for (cluster, _, among) in self.own.iter() {
+            if among.resting {
+                continue;
+            }
             near.find::<V>(cluster, self.sequence, self.table, &mut hints);
             if near.used == 0 && strangers.peek().is_none() {
                 continue;

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::clusters::{Chunk, ClusterLists, Lengths};
 use super::columns::ColumnGrid;
-use super::facts::ImageFacts;
+use super::facts::{ImageFacts, ImageState};
 use super::foreign::{ForeignChunk, ForeignLists, ForeignTable};
 use super::fragments::Membership;
 use super::groups::Groups;
@@ -169,12 +169,15 @@ impl Lists {
             + 4 * self.order.capacity()
     }
 
-    /// Sorts all particles and images and lists the neighbours of each in its own group. `scratch`
-    /// is memory to work in, see [`Sequence::build`].
+    /// Sorts all particles and images and lists the neighbours of each in its own group, but of what rests far
+    /// from what moves and from `contact`, if there is any: `rests` tells of an image of a particle of this rank whether
+    /// nothing changes it as long as nothing moves around it. `scratch` is memory to work in, see [`Sequence::build`].
     pub fn build<R: bytemuck::Pod>(
         &mut self,
         particles: &ParticleStore,
         halo: &Halo,
+        contact: Option<&ForeignTable>,
+        rests: impl Fn(Image) -> bool + Sync,
         scratch: &mut [R],
     ) {
         let (owned, others) = (particles.owned(), halo.others());
@@ -182,20 +185,22 @@ impl Lists {
         let (spare, common) = (self.spare_quiescent, &self.common_velocity);
         resize(&mut self.motion, owned + others.len());
         let motion = Scatter::new(&mut self.motion);
-        let facts = |image: Image| {
-            let (base, code) = (image.base(), image.code());
-            let mut group = groups.of_body[particles.body[base] as usize];
+        let group_of = |base: usize| {
+            let group = groups.of_body[particles.body[base] as usize];
             let stress_mass = particles.stress_mass.get(base);
             if stress_mass.is_some_and(|&mass| mass > 0.0) {
-                group += groups.of_bodies;
+                group + groups.of_bodies
+            } else {
+                group
             }
-            let velocity = || Mirrors::reflect_vector(&particles.predicted_velocity[base], code);
+        };
+        let facts = |image: Image| {
+            let (base, code) = (image.base(), image.code());
             ImageFacts {
                 position: mirrors.reflect_position(&particles.position[base], code),
                 id: particles.id[base],
-                group,
+                group: group_of(base),
                 smoothing_length: particles.smoothing_length[base],
-                moving: !spare || velocity() != common[group],
             }
         };
         let scratch = bytemuck::cast_slice_mut(scratch);
@@ -215,6 +220,11 @@ impl Lists {
                 };
                 // SAFETY: each place is emitted once.
                 unsafe { *motion.slot(index) = record };
+                let moving = !spare || record.velocity != common[group_of(base)];
+                ImageState {
+                    moving,
+                    resting: !moving && base < owned && rests(image),
+                }
             },
         );
         if self.is_variable {
@@ -226,7 +236,8 @@ impl Lists {
                     .reduce(|| 0.0, f64::max);
             }
         }
-        self.clusters.build(&self.sequence, &self.lengths);
+        let ranges = contact.map_or(&[][..], |table| &table.group_range);
+        self.clusters.build(&self.sequence, &self.lengths, ranges);
     }
 
     /// Takes those of another fragment out of the lists of the own group, before

@@ -19,11 +19,12 @@ mod pairs;
 mod point;
 mod sequence;
 mod sort;
+mod watch;
 
 pub use cluster::{Among, Cluster};
 pub use clusters::{CHUNKS_AT_ONCE, Chunk, ClusterLists, Lengths};
 pub use columns::ColumnGrid;
-pub use facts::ImageFacts;
+pub use facts::{ImageFacts, ImageState};
 pub use foreign::{ForeignChunk, ForeignLists, ForeignTable};
 pub use fragments::{Fragment, Membership};
 pub use groups::Groups;

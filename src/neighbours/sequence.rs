@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use super::columns::ColumnGrid;
-use super::facts::{IMAGE, ImageFacts};
+use super::facts::{ACTIVE, IMAGE, ImageFacts, ImageState, MOVING};
 use super::group::Group;
 use super::sort::{SCRATCH_WORDS, Sorter, Targets, Walls};
 use crate::numerics::lanes::{LANES, Lanes};
@@ -22,7 +22,7 @@ pub struct Sequence {
     starts: Vec<u32>,
     walls: Vec<Walls>,
     images: Vec<Image>,
-    /// Sets of `MIRROR`, `HALO` and `MOVING`.
+    /// Sets of `MIRROR`, `HALO`, `MOVING` and `ACTIVE`.
     special: Vec<u8>,
     /// Coordinates and smoothing lengths (m) in order, for vectors that read past the end.
     coordinates: [Vec<f64>; 3],
@@ -37,7 +37,7 @@ pub(super) struct Eight<'a> {
     pub(super) coordinates: [&'a [f64; LANES]; 3],
     /// Smoothing lengths (m), whatever if they are uniform.
     pub(super) lengths: &'a [f64; LANES],
-    /// Sets of `MIRROR`, `HALO` and `MOVING`.
+    /// Sets of `MIRROR`, `HALO`, `MOVING` and `ACTIVE`.
     pub(super) special: &'a [u8; LANES],
 }
 
@@ -73,14 +73,14 @@ impl Sequence {
     /// halo particles with theirs; the first `below` of them stand below the particles as far as
     /// one can tell, the rest above, which saves work). `facts` tells position, id and group of an
     /// image; `emit` is called once with each index of the sequence and the image that stands
-    /// there. `scratch` is memory to work in: at least [`Self::SCRATCH_WORDS`] for each image.
+    /// there, and tells its state. `scratch` is memory to work in: at least [`Self::SCRATCH_WORDS`] for each image.
     pub fn build(
         &mut self,
         scratch: &mut [u64],
         owned: usize,
         (others, below): (&[Image], usize),
         facts: impl Fn(Image) -> ImageFacts + Sync,
-        emit: impl Fn(usize, Image) + Sync,
+        emit: impl Fn(usize, Image) -> ImageState + Sync,
     ) {
         let count = owned + others.len();
         let image = |k: usize| match k.checked_sub(below) {
@@ -170,6 +170,12 @@ impl Sequence {
             .first_chunk()
             .expect("the array is padded");
         u64::from_le_bytes(eight) & u64::from_le_bytes([IMAGE; LANES]) != 0
+    }
+
+    /// Whether the image at an index rests, at the velocity common to its group.
+    #[inline(always)]
+    pub(super) fn rests(&self, index: usize) -> bool {
+        self.special[index] & (MOVING | ACTIVE) == 0
     }
 
     /// Whether the image at an index is a particle of this rank itself.

@@ -8,7 +8,7 @@ use std::cmp::Ordering;
 use rayon::prelude::*;
 
 use super::cursors::Cursors;
-use super::facts::{HALO, ImageFacts, MIRROR, MOVING};
+use super::facts::{HALO, ImageFacts, ImageState, MIRROR};
 use super::group::{Group, lay_out};
 use crate::particles::{Image, Scatter};
 
@@ -239,7 +239,7 @@ impl Sorter {
         walls: &mut [Walls],
         targets: &Targets,
         facts: &(impl Fn(Image) -> ImageFacts + Sync),
-        emit: &(impl Fn(usize, Image) + Sync),
+        emit: &(impl Fn(usize, Image) -> ImageState + Sync),
     ) {
         let [a, b] = group.grid.across;
         let finish = |first: usize, entries: &mut [Entry], walls: &mut Walls| {
@@ -248,8 +248,8 @@ impl Sorter {
             for (k, entry) in entries.iter().enumerate() {
                 let facts = facts(entry.image);
                 walls.include([facts.position[a], facts.position[b]]);
-                targets.write(first + k, entry.image, &facts);
-                emit(first + k, entry.image);
+                let state = emit(first + k, entry.image);
+                targets.write(first + k, entry.image, &facts, state);
             }
         };
         let indices = group.images.clone();
@@ -284,14 +284,13 @@ pub(super) struct Targets<'a> {
 
 impl Targets<'_> {
     #[inline(always)]
-    fn write(&self, index: usize, image: Image, facts: &ImageFacts) {
+    fn write(&self, index: usize, image: Image, facts: &ImageFacts, state: ImageState) {
         let mirror = if image.code() == 0 { 0 } else { MIRROR };
         let halo = if image.base() < self.owned { 0 } else { HALO };
-        let moving = if facts.moving { MOVING } else { 0 };
         // SAFETY: each place belongs to one column, and one thread has that column.
         unsafe {
             *self.images.slot(index) = image;
-            *self.special.slot(index) = mirror | halo | moving;
+            *self.special.slot(index) = mirror | halo | state.flags();
             for axis in 0..3 {
                 *self.coordinates[axis].slot(index) = facts.position[axis];
             }

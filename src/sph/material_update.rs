@@ -1,9 +1,10 @@
 //! The material's answer to the velocity gradient, cluster by cluster inside the first sweep.
 
 use super::recording::Recording;
+use super::rest;
 use super::step::Step;
 use super::sums::Sums;
-use crate::material::{LANES, Material, PointBatch};
+use crate::material::{LANES, Material, PointBatch, Rest};
 use crate::neighbours::{Cluster, Lists};
 use crate::numerics::lanes::{F64x8, Lanes};
 use crate::particles::{Image, MaterialPoints, Records};
@@ -12,11 +13,16 @@ use crate::particles::{Image, MaterialPoints, Records};
 /// material, integration and time-step candidates against both sweeps, as timed by the bench.
 const OWN_WORK: u32 = 60;
 
+/// The same for a particle that rests: sort and integration.
+const RESTING_WORK: u32 = 20;
+
 /// What the update reads and writes: each owned particle stands in exactly one lane of one
 /// cluster.
 pub(super) struct MaterialUpdate<'a> {
     images: &'a [Image],
     materials: &'a [Material],
+    /// Reference states without stress, by body.
+    rest: &'a [Option<Rest>],
     material_of_body: &'a [usize],
     /// By group: whether it is a rigid body.
     rigid: &'a [bool],
@@ -80,6 +86,7 @@ impl<'a> MaterialUpdate<'a> {
         Self {
             images: lists.images(),
             materials: &sums.materials,
+            rest: &sums.resting.states,
             material_of_body: &sums.material_of_body,
             rigid: &lists.groups.rigid,
             dt: step.dt,
@@ -104,13 +111,17 @@ impl<'a> MaterialUpdate<'a> {
         }
         let base = self.base(cluster);
         let mut before = self.gather(&base);
+        let mut gradient = *gradient;
+        let still = rest::settle(&mut gradient, &before, self.dt, |k| {
+            self.rest[self.points.body[base[k]] as usize]
+        });
         for c in 0..9 {
             for k in 0..LANES {
                 let mean = 0.5 * (before.velocity_gradient[c][k] + gradient[c].0[k]);
                 before.velocity_gradient[c][k] = mean;
             }
         }
-        self.advance::<V>(cluster, &base, before, gradient, neighbours, show);
+        self.advance::<V>(cluster, &base, (before, still), &gradient, neighbours, show);
     }
 
     /// The same of a cluster of stress points, whose velocity gradient in the middle of the step is
@@ -128,7 +139,7 @@ impl<'a> MaterialUpdate<'a> {
         for c in 0..9 {
             before.velocity_gradient[c] = mean[c].0;
         }
-        self.advance::<F64x8>(cluster, &base, before, gradient, neighbours, &());
+        self.advance::<F64x8>(cluster, &base, (before, 0), gradient, neighbours, &());
     }
 
     /// Adds to the specific energy of particle `i` (J/kg).
@@ -171,13 +182,13 @@ impl<'a> MaterialUpdate<'a> {
         [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)]
     }
 
-    /// Advances what was gathered by the velocity gradients in it.
+    /// Advances what was gathered by the velocity gradients in it; the lanes `still` stay without pressure.
     #[inline(always)]
     fn advance<V: Lanes>(
         &self,
         cluster: &Cluster,
         base: &[usize; LANES],
-        mut before: PointBatch,
+        (mut before, still): (PointBatch, u8),
         gradient: &[F64x8; 9],
         neighbours: usize,
         show: &impl Show,
@@ -200,6 +211,9 @@ impl<'a> MaterialUpdate<'a> {
             let own = material(k);
             let mut after = before;
             let untorn = self.materials[own].update(&mut after, self.dt);
+            for lane in (0..LANES).filter(|lane| still >> lane & 1 == 1) {
+                after.pressure[lane] = 0.0;
+            }
             let mut lanes = 0_u8;
             for lane in k..cluster.lanes {
                 if material(lane) == own {
@@ -222,6 +236,24 @@ impl<'a> MaterialUpdate<'a> {
             };
             // SAFETY: the places belong to this cluster alone, as its particles do.
             unsafe { show.show::<V>(&updated) };
+        }
+    }
+
+    /// Particles that rest stay as they are; `show` is told the place of each, its density (kg/m³) and its sound
+    /// speed (m/s).
+    pub(super) fn rest(&self, cluster: &Cluster, show: impl Fn(usize, [f64; 2])) {
+        for &place in cluster.valid() {
+            let i = self.images[place as usize].base();
+            let rest = self.rest[self.points.body[i] as usize];
+            let speed = rest.map_or(f64::NAN, |rest| rest.sound_speed);
+            // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
+            let density = unsafe {
+                *self.points.pressure.slot(i) = 0.0;
+                *self.points.sound_speed.slot(i) = speed;
+                *self.points.work.slot(i) = RESTING_WORK;
+                *self.points.density.slot(i)
+            };
+            show(place as usize, [density, speed]);
         }
     }
 

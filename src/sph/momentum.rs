@@ -50,6 +50,8 @@ pub struct Viscosity {
     pub alpha: f64,
     /// Quadratic coefficient β.
     pub beta: f64,
+    /// Approach μ (m/s) up to which a pair has none.
+    pub negligible: f64,
 }
 
 /// What particles show of their stress, and how pairs of it sum up.
@@ -79,12 +81,13 @@ pub(super) struct Viscous<V> {
     signal: V,
     alpha: V,
     twice_beta: V,
+    negligible: V,
 }
 
 /// Artificial viscosity of pairs.
 pub(super) struct ViscousPair<V> {
-    /// `min(v·r, 0)` (m²/s).
-    pub approach: V,
+    /// `v·r` (m²/s).
+    pub closing: V,
     /// `μ` (m/s).
     pub mu: V,
     /// `Π` (m⁵/(kg s²)).
@@ -105,6 +108,7 @@ impl<V: Lanes> Viscous<V> {
             signal: sound_speed.mul(alpha),
             alpha,
             twice_beta: V::splat(2.0 * viscosity.beta),
+            negligible: V::splat(viscosity.negligible),
         }
     }
 
@@ -125,16 +129,17 @@ impl<V: Lanes> Viscous<V> {
         // One division serves 1/(r² + 0.01 h²) and 1/(ρ_i + ρ_j).
         let inverse = V::splat(1.0).div(soft.mul(rho_sum));
         // μ = h v·r/(r² + 0.01 h²) for approaching pairs.
-        let approach = r[2]
-            .mul_add(v[2], r[1].mul_add(v[1], r[0].mul(v[0])))
+        let closing = r[2].mul_add(v[2], r[1].mul_add(v[1], r[0].mul(v[0])));
+        let mu = h
+            .mul(closing)
+            .mul_add(inverse.mul(rho_sum), self.negligible)
             .min(V::splat(0.0));
-        let mu = h.mul(approach).mul(inverse.mul(rho_sum));
         // Π = μ (β μ − α c̄)/ρ̄ with c̄ = ½ c_sum and ρ̄ = ½ rho_sum.
         let linear = V::splat(sound_speed).mul_add(self.alpha, self.signal);
         let signal = terms.limit(mu.mul(self.twice_beta).sub(linear), shown);
         let inverse_density = inverse.mul(soft);
         ViscousPair {
-            approach,
+            closing,
             mu,
             pi: mu.mul(inverse_density).mul(signal),
             inverse_density,

@@ -6,6 +6,7 @@ use super::corrected::CorrectedRecord;
 use super::formulation::{Conventional, Corrected, Formulation, Normalised, StressPoints};
 use super::momentum::StressRecord;
 use super::normalised::NormalisedRecord;
+use super::rest::Resting;
 use super::signal::Signals;
 use super::smoothing::Smoothing;
 use super::step::{Side, Step};
@@ -104,6 +105,12 @@ impl Sph {
     /// Memory for so many images that is free until [`Self::rates`].
     pub fn scratch(&mut self, images: usize) -> &mut [u64] {
         with_form!(&mut self.form, form => form.scratch(images))
+    }
+
+    /// The same, and what of the case can rest.
+    pub(crate) fn before_rates(&mut self, images: usize) -> (&mut [u64], &Resting) {
+        let scratch = with_form!(&mut self.form, form => form.scratch(images));
+        (scratch, &self.sums.resting)
     }
 
     /// The first sweep: velocity gradient at the end of the step, density and stress from its mean

@@ -27,7 +27,7 @@ impl Signals<'_> {
     #[inline(always)]
     #[must_use]
     pub fn of<F: SignalSpeed>(&self, i: usize) -> f64 {
-        let Viscosity { alpha, beta } = self.viscosity;
+        let Viscosity { alpha, beta, .. } = self.viscosity;
         let c = self.sound_speed[i];
         let approach = self.approach_speed[i];
         let signal = c + 0.6 * (alpha * c + beta * approach);

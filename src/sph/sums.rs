@@ -4,10 +4,11 @@ use rayon::prelude::*;
 
 use super::momentum::Viscosity;
 use super::neighbourhood::Sources;
+use super::rest::Resting;
 use super::step::Side;
 use super::terms::Terms;
 use crate::domain::MirrorForce;
-use crate::material::Material;
+use crate::material::{Material, NEGLIGIBLE};
 use crate::model::{Case, SmoothingLength};
 use crate::neighbours::Lists;
 use crate::numerics::kernel::{ConstantScale, Kernel, MeanScale};
@@ -21,6 +22,7 @@ pub(super) struct Sums {
     pub viscosity: Viscosity,
     pub terms: Terms,
     pub materials: Vec<Material>,
+    pub resting: Resting,
     pub material_of_body: Vec<usize>,
     /// Whether one of these asks for what only some laws must know.
     pub asks: bool,
@@ -89,9 +91,11 @@ impl Sums {
             viscosity: Viscosity {
                 alpha: case.sph.alpha,
                 beta: case.sph.beta,
+                negligible: NEGLIGIBLE * fastest_sound(case),
             },
             terms: Terms::new(case, kernel),
             materials: case.materials.clone(),
+            resting: Resting::new(case),
             arrival: (case.materials.iter())
                 .map(|material| case.measure.arrival_of(material))
                 .collect(),
@@ -106,6 +110,12 @@ impl Sums {
         let mirrors: usize = self.from_mirrors.iter().map(FromMirrors::memory).sum();
         mirrors + self.terms.memory()
     }
+}
+
+/// The largest sound speed of the materials (m/s).
+fn fastest_sound(case: &Case) -> f64 {
+    let speeds = case.materials.iter().map(Material::longitudinal_speed);
+    speeds.fold(0.0, f64::max)
 }
 
 /// What is made of halo particles and their images, or of the images of this rank's particles,

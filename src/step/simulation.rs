@@ -18,7 +18,7 @@ use crate::measure::Measures;
 use crate::model::{Case, SphForm};
 use crate::neighbours::Lists;
 use crate::numerics::collector::Collector;
-use crate::particles::{HaloPhase, ParticleStore};
+use crate::particles::{HaloPhase, Image, ParticleStore};
 use crate::sph::{Side, Sph, Step, with_formulation};
 
 /// One rank's part of a running case.
@@ -193,15 +193,25 @@ impl Simulation {
         });
         timers.lap(Phase::HaloMotion);
         let images = particles.owned() + halo.others().len();
-        lists.build(particles, halo, sph.scratch(images));
+        let meetings = contact.table.has_pairs().then_some(&contact.table.foreign);
+        let (scratch, resting) = sph.before_rates(images);
+        let connectivity = &mut contact.connectivity;
+        connectivity.sample(particles, |i| resting.holds(particles, i));
+        let rests = |image: Image| {
+            // At the start nobody has been asked for anything yet.
+            state.step > 0
+                && connectivity.lets_rest(particles, image, state.step)
+                && resting.holds(particles, image.base())
+        };
+        lists.build(particles, halo, meetings, rests, scratch);
         let mirrors = halo.mirrors();
-        contact.connectivity.separate(particles, lists, mirrors);
-        if contact.table.has_pairs() {
-            lists.build_foreign(particles, &contact.table.foreign);
+        connectivity.separate(particles, lists, mirrors);
+        if let Some(table) = meetings {
+            lists.build_foreign(particles, table);
         }
         lists.join();
         timers.lap(Phase::Neighbours);
-        if contact.connectivity.is_due(state.step) {
+        if connectivity.is_due(state.step) {
             tell_parts(comm, (lists, halo), particles, labels);
             timers.lap(Phase::Neighbours);
         }

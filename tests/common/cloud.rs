@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use whipple::domain::Mirrors;
 use whipple::model::{Axis, SymmetryPlane};
 use whipple::neighbours::MotionRecord;
-use whipple::neighbours::{ClusterLists, ColumnGrid, ImageFacts, Lengths, Sequence};
+use whipple::neighbours::{ClusterLists, ColumnGrid, ImageFacts, ImageState, Lengths, Sequence};
 use whipple::particles::Image;
 
 use super::random::Random;
@@ -155,7 +155,6 @@ impl Cloud {
             id: self.id[image.base()],
             group: self.group(image.base()),
             smoothing_length: self.smoothing_length[image.base()],
-            moving: self.velocity[image.base()] != self.velocity[0],
         };
         let others: Vec<Image> = self.images().split_off(self.owned);
         let emitted: Vec<AtomicU32> = std::iter::repeat_with(AtomicU32::default)
@@ -163,8 +162,12 @@ impl Cloud {
             .collect();
         let mut scratch = vec![0; Sequence::SCRATCH_WORDS * emitted.len()];
         let others = (&others[..], others.len() / 3);
-        sequence.build(&mut scratch, self.owned, others, facts, |place, _| {
+        sequence.build(&mut scratch, self.owned, others, facts, |place, image| {
             emitted[place].fetch_add(1, Ordering::Relaxed);
+            ImageState {
+                moving: self.velocity[image.base()] != self.velocity[0],
+                resting: false,
+            }
         });
         assert!(emitted.iter().all(|n| n.load(Ordering::Relaxed) == 1));
         let motion: Vec<MotionRecord> = sequence
@@ -195,7 +198,7 @@ impl Cloud {
             })
             .collect();
         let mut clusters = ClusterLists::default();
-        clusters.build(&sequence, &lengths);
+        clusters.build(&sequence, &lengths, &[]);
         Found {
             sequence,
             motion,

@@ -177,6 +177,7 @@ impl World {
                     viscosity: Viscosity {
                         alpha,
                         beta: 2.0 * alpha,
+                        negligible: 0.0,
                     },
                     terms: PairTerms::NONE,
                 })

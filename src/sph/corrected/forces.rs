@@ -134,13 +134,12 @@ impl PairStress for CorrectedRecord {
             let both = viscous.rho.mul(V::splat(state.density));
             let pi = now.pi.mul(both);
             // Viscosity strains by the plain relative velocity, stress does by L.
-            let lost = zero.sub(pi.mul(now.approach));
+            let lost = zero.sub(pi.mul(now.closing));
             // Hourglass displacements against each other pull or push along the pair.
             let pull = dot(&r, &bend)
                 .mul(separation.inverse)
                 .mul(separation.inverse);
-            let closing = dot(&r, &v);
-            let mut lost = pull.mul_add(closing, lost);
+            let mut lost = pull.mul_add(now.closing, lost);
             let central = pull.sub(pi);
             let mut push = [central, central, central, zero, zero, zero];
             if TERMS & SHAPED != 0 {

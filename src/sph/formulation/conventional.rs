@@ -89,4 +89,14 @@ impl Gradient for PlainGradient<'_> {
         };
         (gradient, &self.0)
     }
+
+    unsafe fn show_resting(&self, place: usize, [density, sound_speed]: [f64; 2]) {
+        // SAFETY: by the contract of this function.
+        unsafe {
+            self.0.set(
+                place,
+                StressRecord::new(0.0, &[0.0; 6], density, sound_speed),
+            )
+        };
+    }
 }

@@ -7,7 +7,7 @@ use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
 use crate::domain::Shown;
-use crate::material::{FAILED, PointBatch};
+use crate::material::{FAILED, NEGLIGIBLE, PointBatch};
 use crate::model::Case;
 use crate::neighbours::{Among, Cluster, Lists};
 use crate::numerics::dispatch::Vectorised;
@@ -200,6 +200,14 @@ impl Gradient for CorrectedGradients<'_> {
         };
         (gradient, show)
     }
+
+    unsafe fn show_resting(&self, place: usize, state: [f64; 2]) {
+        // SAFETY: by the contract of this function.
+        unsafe {
+            *self.records.slot(place) =
+                CorrectedRecord::new(&[0.0; 9], &[0.0; 3], self.hourglass, state);
+        }
+    }
 }
 
 /// Shows the stresses of a cluster between their corrections.
@@ -265,7 +273,10 @@ impl<S: PairScale> ShowCorrected<'_, S> {
             for a in 0..3 {
                 old[a][k] = own[a];
             }
-            if after.damage[k] >= FAILED {
+            let drift = || (0..3).map(|a| self.rest[a].0[k].abs()).fold(0.0, f64::max);
+            let still = || after.velocity_gradient.iter().all(|l| l[k] == 0.0);
+            let rests = own == [0.0; 3] && drift() < NEGLIGIBLE * after.sound_speed[k] && still();
+            if after.damage[k] >= FAILED || rests {
                 intact[k] = 0.0;
             }
         }

@@ -30,6 +30,13 @@ pub(super) trait Gradient: Sync {
         around: Neighbourhood<'a, S>,
         failed: impl FnOnce() -> u8,
     ) -> ([F64x8; 9], Self::Show<'a, S>);
+
+    /// Shows at a place a particle that rests, of this density (kg/m³) and sound speed (m/s). Nothing rests in forms
+    /// whose sums of it need neighbours.
+    ///
+    /// # Safety
+    /// No other thread may read or write what belongs to the place.
+    unsafe fn show_resting(&self, _place: usize, _state: [f64; 2]) {}
 }
 
 /// The sweep over all clusters, after a step.
@@ -64,8 +71,14 @@ impl<S: PairScale, G: Gradient> Vectorised for GradientChunk<'_, S, G> {
     #[inline(always)]
     fn run<V: Lanes>(self) {
         for (cluster, neighbours, among) in self.chunk.iter() {
-            let around = self.motion.around(cluster.receivers, neighbours);
             let update = self.update;
+            if among.resting {
+                // SAFETY: the places belong to this cluster alone.
+                let show = |place, state| unsafe { self.gradient.show_resting(place, state) };
+                update.rest(cluster, show);
+                continue;
+            }
+            let around = self.motion.around(cluster.receivers, neighbours);
             let failed = || update.failed(cluster);
             let (gradient, show) = self.gradient.of::<V, S>(cluster, among, around, failed);
             update.apply::<V>(cluster, &gradient, neighbours.len(), &show);

@@ -16,6 +16,15 @@ impl<'a> ShowStress<'a> {
     pub fn new(records: &'a mut [StressRecord]) -> Self {
         Self(Scatter::new(records))
     }
+
+    /// Sets what a place shows.
+    ///
+    /// # Safety
+    /// No other thread may read or write what belongs to the place.
+    pub unsafe fn set(&self, place: usize, record: StressRecord) {
+        // SAFETY: by the contract of this function.
+        unsafe { *self.0.slot(place) = record };
+    }
 }
 
 impl Show for &ShowStress<'_> {
