@@ -54,6 +54,7 @@ struct Bound {
 }
 
 const MAIN_JOB: &str = "book, Validation: the main job";
+const CONTACT: &str = "book, Contact: the contact defect";
 const OUTPUT: &str = "book, Output: summary.json";
 const LAWS: &str = "book, Laws: nothing is lost in silence";
 
@@ -70,10 +71,10 @@ const BOUNDS: [Bound; 8] = [
     Bound {
         key: "contact_defect",
         what: "contact defect",
-        most: 1e-3,
+        most: 5e-3,
         percent: true,
-        words: "≤ 0.1 %",
-        source: MAIN_JOB,
+        words: "≤ 0.5 %, as part of the energy error",
+        source: CONTACT,
     },
     Bound {
         key: "momentum_error",
