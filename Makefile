@@ -4,13 +4,14 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help deps test-deps release impact test run-tests check validation fuzz fuzz-memory soak pictures image contact-lab bench bench-kernels docs book clean
+.PHONY: help deps test-deps release impact test run-tests check validation fuzz fuzz-memory soak pictures image deb contact-lab bench bench-kernels docs book clean
 
 # The environment of every build and launch: Open MPI's settings, HDF5_DIR.
 ENV := source jobs/env.sh;
 VENV := target/venv
 BOOK_TOOLS := target/tools
 MDBOOK := 0.5.4
+CARGO_DEB := 3.8.0
 MDBOOK_KATEX := 0.10.0
 # Tests put faults into the program (src/run/fault.rs); `make release` builds what users get, without.
 TESTED := --locked --features fault-injection
@@ -91,6 +92,16 @@ image: ## Make target/whipple.sif, a container, with Apptainer
 	apptainer build --force --build-arg commit=$$(git describe --always --dirty 2>/dev/null || echo unknown) \
 	    target/whipple.sif jobs/whipple.def
 
+deb: release ## Make target/debian/whipple_….deb: the program, man pages, completions, jobs/ and inputs/
+deb: $(BOOK_TOOLS)/cargo-deb-$(CARGO_DEB)
+	rm -rf target/package target/debian
+	mkdir -p target/package
+	$(ENV) target/release/whipple generate man target/package/man
+	target/release/whipple generate completions bash >target/package/whipple.bash
+	target/release/whipple generate completions zsh >target/package/_whipple
+	target/release/whipple generate completions fish >target/package/whipple.fish
+	$(ENV) PATH="$(CURDIR)/$(BOOK_TOOLS)/bin:$$PATH" cargo deb --locked --no-build
+
 run-tests: test-deps $(VENV)/ready
 	$(ENV) jobs/cargo-test.sh
 
@@ -99,6 +110,13 @@ $(BOOK_TOOLS)/ready-$(MDBOOK)-$(MDBOOK_KATEX):
 	$(ENV) cargo install --locked --root $(BOOK_TOOLS) --target-dir $(BOOK_TOOLS)/build mdbook@$(MDBOOK) \
 	    --no-default-features --features search
 	$(ENV) cargo install --locked --root $(BOOK_TOOLS) --target-dir $(BOOK_TOOLS)/build mdbook-katex@$(MDBOOK_KATEX)
+	rm -rf $(BOOK_TOOLS)/build
+	touch $@
+
+# What makes the package. It asks dpkg for the libraries that the program needs.
+$(BOOK_TOOLS)/cargo-deb-$(CARGO_DEB):
+	$(ENV) cargo install --locked --root $(BOOK_TOOLS) --target-dir $(BOOK_TOOLS)/build cargo-deb@$(CARGO_DEB) \
+	    --no-default-features --features gzip
 	rm -rf $(BOOK_TOOLS)/build
 	touch $@
 

@@ -69,6 +69,10 @@ if [ -z "$threads" ]; then
 fi
 
 program=${WHIPPLE_PROGRAM:-$root/target/release/whipple}
+# From a package these scripts stand beside no Makefile, and the program is on the path.
+if [ ! -x "$program" ] && [ ! -f "$root/Makefile" ]; then
+    program=$(command -v whipple)
+fi
 if [ ! -x "$program" ]; then
     make -C "$root" release
 fi
