@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs the cases of the book's validation page and draws its pictures: the paper's Figures 3, 4, 6
-# to 10, 12 to 14 and 16, what is measured on the dam, and the picture of the README. Some three
+# to 10 and 12 to 16, what is measured on the dam, and the picture of the README. Some three
 # minutes on two cores.
 #
 #   jobs/validation-pictures.sh [FOLDER]      FOLDER: for the pictures, docs/src/images by default
@@ -51,9 +51,11 @@ draw dam dam-frames --panels --field velocity --time 0s,0.2s,0.7s,1s --view -1.5
 draw dam dam-front --front water --view 0:0.35s --range 0:0.7m \
     --points inputs/dam-break/martin_moyce_1.125in.csv --points inputs/dam-break/martin_moyce_2.25in.csv
 
-# Figure 16: the sphere and the plate.
+# Figures 15 and 16: the sphere and the plate.
 run quarter-impact quarter
 width=1300 draw quarter quarter-impact --panels
+width=1300 draw quarter quarter-isometric --view isometric --no-mirror --panels --time 0us,0.2us
+draw quarter view-isometric --view isometric --time 0.1us
 
 # The same whole and without a lattice, half as long again: the picture of the README.
 run quarter-impact whole --set 'symmetry=[]' --set 'run.end_time="0.3 us"' \
