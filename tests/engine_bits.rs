@@ -76,7 +76,10 @@ fn sparing_what_is_calm_changes_no_bit() {
 #[test]
 fn what_no_wave_has_reached_rests() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/quarter-impact/case.toml");
-    let coarse = ["spacing=\"0.05 mm\"", "body.plate.shape.cylinder.radius=\"3 mm\""];
+    let coarse = [
+        "spacing=\"0.05 mm\"",
+        "body.plate.shape.cylinder.radius=\"3 mm\"",
+    ];
     let case = input::load(&path, &coarse.map(str::to_owned)).unwrap();
     let start = || Simulation::start(case.clone(), &Comm::solo()).unwrap();
     let (mut spared, mut whole) = (start(), start());

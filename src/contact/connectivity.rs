@@ -96,18 +96,21 @@ impl Connectivity {
         let base = |index: u32| images[index as usize].base() as u32;
         lists.chunks().par_iter().for_each(|chunk| {
             for (cluster, neighbours, _) in chunk.iter() {
-                for &i in &cluster.receivers[..cluster.lanes] {
-                    let own = base(i);
-                    let mut here = sets.root(own);
-                    for &j in neighbours {
-                        let code = images[j as usize].code();
-                        let there = sets.root(base(j));
-                        if (there == here && code == 0) || !lists.in_support(cluster.group, i, j) {
+                let own = cluster.receivers.map(base);
+                let mut here = own.map(|i| sets.root(i));
+                for &j in neighbours {
+                    let code = images[j as usize].code();
+                    let mut there = sets.root(base(j));
+                    for (k, &i) in cluster.valid().iter().enumerate() {
+                        // Roots may be old, which costs a look more.
+                        if (there == here[k] && code == 0) || !lists.in_support(cluster.group, i, j)
+                        {
                             continue;
                         }
-                        sets.mark(own, code.into());
-                        sets.join(here, there);
-                        here = sets.root(own);
+                        sets.mark(own[k], code.into());
+                        sets.join(here[k], there);
+                        here[k] = sets.root(own[k]);
+                        there = here[k];
                     }
                 }
             }
