@@ -14,7 +14,7 @@ use crate::particles::{Image, MaterialPoints, Records};
 const OWN_WORK: u32 = 60;
 
 /// The same for a particle that rests: sort and integration.
-const RESTING_WORK: u32 = 20;
+const RESTING_WORK: u32 = 45;
 
 /// What the update reads and writes: each owned particle stands in exactly one lane of one
 /// cluster.
