@@ -33,6 +33,17 @@ pub struct Among {
     pub resting: bool,
 }
 
+impl Among {
+    /// Nothing that anybody needs.
+    pub(super) const RESTING: Self = Self {
+        mirrors: false,
+        halo: false,
+        moving: false,
+        parted: false,
+        resting: true,
+    };
+}
+
 impl Cluster {
     /// The longest smoothing length of the receivers (m), of those of all places.
     #[inline(always)]

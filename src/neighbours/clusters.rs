@@ -117,10 +117,7 @@ impl Vectorised for Build<'_> {
             let rests = watch.rests::<V>(run);
             for cluster in run {
                 let among = if rests {
-                    Among {
-                        resting: true,
-                        ..Among::default()
-                    }
+                    Among::RESTING
                 } else if uniform {
                     lister.list::<V, true>(cluster)
                 } else {

@@ -185,15 +185,7 @@ impl Lists {
         let (spare, common) = (self.spare_quiescent, &self.common_velocity);
         resize(&mut self.motion, owned + others.len());
         let motion = Scatter::new(&mut self.motion);
-        let group_of = |base: usize| {
-            let group = groups.of_body[particles.body[base] as usize];
-            let stress_mass = particles.stress_mass.get(base);
-            if stress_mass.is_some_and(|&mass| mass > 0.0) {
-                group + groups.of_bodies
-            } else {
-                group
-            }
-        };
+        let group_of = |base: usize| group_of(groups, particles, base);
         let facts = |image: Image| {
             let (base, code) = (image.base(), image.code());
             ImageFacts {
@@ -228,16 +220,21 @@ impl Lists {
             },
         );
         if self.is_variable {
-            for (group, lengths) in self.lengths.iter_mut().enumerate() {
-                lengths.longest = self.sequence.smoothing_lengths()[self.sequence.group(group)]
-                    .par_iter()
-                    .copied()
-                    // same bits in any order: a largest number
-                    .reduce(|| 0.0, f64::max);
-            }
+            self.measure_lengths();
         }
         let ranges = contact.map_or(&[][..], |table| &table.group_range);
         self.clusters.build(&self.sequence, &self.lengths, ranges);
+    }
+
+    /// Finds the longest smoothing length of each group among its images.
+    fn measure_lengths(&mut self) {
+        for (group, lengths) in self.lengths.iter_mut().enumerate() {
+            lengths.longest = self.sequence.smoothing_lengths()[self.sequence.group(group)]
+                .par_iter()
+                .copied()
+                // same bits in any order: a largest number
+                .reduce(|| 0.0, f64::max);
+        }
     }
 
     /// Takes those of another fragment out of the lists of the own group, before
@@ -290,6 +287,18 @@ impl Lists {
             particles.keep(&self.order, bytemuck::cast_slice_mut(scratch));
         }
         known
+    }
+}
+
+/// The group of a particle: stress points have groups of their own.
+#[inline(always)]
+fn group_of(groups: &Groups, particles: &ParticleStore, base: usize) -> usize {
+    let group = groups.of_body[particles.body[base] as usize];
+    let stress_mass = particles.stress_mass.get(base);
+    if stress_mass.is_some_and(|&mass| mass > 0.0) {
+        group + groups.of_bodies
+    } else {
+        group
     }
 }
 

@@ -112,9 +112,10 @@ impl Sums {
     }
 }
 
-/// The largest sound speed of the materials (m/s).
+/// The largest sound speed (m/s) of what deforms; rigid bodies may be of a material without bounds.
 fn fastest_sound(case: &Case) -> f64 {
-    let speeds = case.materials.iter().map(Material::longitudinal_speed);
+    let bodies = case.bodies.iter().filter(|body| body.rigid.is_none());
+    let speeds = bodies.map(|body| case.materials[body.material].longitudinal_speed());
     speeds.fold(0.0, f64::max)
 }
 
