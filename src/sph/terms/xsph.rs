@@ -32,8 +32,14 @@ impl<V: Lanes> Lane<V> {
     /// `ε Σ (m_j/ρ̄) (v_j − v_i) W_ij` (m/s).
     #[inline(always)]
     pub fn correction(&self) -> [V; 3] {
+        // Of what moves alike zero with a plus, as where no sum is made.
+        let zero = V::splat(0.0);
         let [x, y, z] = self.sum;
-        [x.mul(self.factor), y.mul(self.factor), z.mul(self.factor)]
+        [
+            x.mul_add(self.factor, zero),
+            y.mul_add(self.factor, zero),
+            z.mul_add(self.factor, zero),
+        ]
     }
 }
 
