@@ -100,7 +100,7 @@ deb: $(BOOK_TOOLS)/cargo-deb-$(CARGO_DEB)
 	target/release/whipple generate completions bash >target/package/whipple.bash
 	target/release/whipple generate completions zsh >target/package/_whipple
 	target/release/whipple generate completions fish >target/package/whipple.fish
-	$(ENV) PATH="$(CURDIR)/$(BOOK_TOOLS)/bin:$$PATH" cargo deb --locked --no-build
+	$(ENV) PATH="$(CURDIR)/$(BOOK_TOOLS)/bin:$$PATH" cargo deb --locked --no-build --strip
 
 run-tests: test-deps $(VENV)/ready
 	$(ENV) jobs/cargo-test.sh
