@@ -4,7 +4,7 @@ use super::{LANES, Material, PointBatch};
 
 /// A strain in one step, or a velocity over that of sound, that is none: 2⁻⁴³ = 1.1e-13. Positions of a model of
 /// a thousand spacings resolve no smaller one.
-pub const NEGLIGIBLE: f64 = 1.0 / (1_u64 << 43) as f64;
+pub const NEGLIGIBLE: f64 = 512.0 * f64::EPSILON;
 
 /// A reference state without stress.
 #[derive(Debug, Clone, Copy, PartialEq)]

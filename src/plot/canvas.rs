@@ -266,12 +266,11 @@ impl Canvas {
     /// # Errors
     /// [`PlotError::Save`] if the system refuses.
     pub fn save(&self, path: &Path) -> Result<(), PlotError> {
-        let bytes = match Format::of(path) {
-            Some(Format::Svg) => self.svg().into_bytes(),
-            _ => {
-                let packed = self.pixels()?.png();
-                packed.map_err(|error| PlotError::unsaved(path, error))?
-            }
+        let bytes = if let Some(Format::Svg) = Format::of(path) {
+            self.svg().into_bytes()
+        } else {
+            let packed = self.pixels()?.png();
+            packed.map_err(|error| PlotError::unsaved(path, error))?
         };
         file::save(path, &bytes)
     }

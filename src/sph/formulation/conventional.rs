@@ -91,12 +91,8 @@ impl Gradient for PlainGradient<'_> {
     }
 
     unsafe fn show_resting(&self, place: usize, [density, sound_speed]: [f64; 2]) {
+        let record = StressRecord::new(0.0, &[0.0; 6], density, sound_speed);
         // SAFETY: by the contract of this function.
-        unsafe {
-            self.0.set(
-                place,
-                StressRecord::new(0.0, &[0.0; 6], density, sound_speed),
-            )
-        };
+        unsafe { self.0.set(place, record) };
     }
 }
