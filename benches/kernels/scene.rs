@@ -6,7 +6,6 @@ use whipple::model::Case;
 use whipple::neighbours::MotionRecord;
 use whipple::neighbours::{
     Chunk, ClusterLists, ColumnGrid, ForeignLists, ImageFacts, ImageState, Lengths, Sequence,
-    Spared,
 };
 use whipple::numerics::lanes::LANES;
 use whipple::particles::{Image, ParticleStore};
