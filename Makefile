@@ -9,10 +9,10 @@ SHELL := bash
 # The environment of every build and launch: Open MPI's settings, HDF5_DIR.
 ENV := source jobs/env.sh;
 VENV := target/venv
-BOOK_TOOLS := target/tools
+TOOLS := target/tools
 MDBOOK := 0.5.4
-CARGO_DEB := 3.8.0
 MDBOOK_KATEX := 0.10.0
+CARGO_DEB := 3.8.0
 # Tests put faults into the program (src/run/fault.rs); `make release` builds what users get, without.
 TESTED := --locked --features fault-injection
 
@@ -69,8 +69,8 @@ docs: deps book ## Build the book (target/book) and the API documentation (targe
 	$(ENV) cargo doc --locked --no-deps
 
 # The book alone. A page that reaches for the network, or an equation that is not typeset, is an error.
-book: $(BOOK_TOOLS)/ready-$(MDBOOK)-$(MDBOOK_KATEX)
-	PATH="$(CURDIR)/$(BOOK_TOOLS)/bin:$$PATH" mdbook build docs
+book: $(TOOLS)/ready-$(MDBOOK)-$(MDBOOK_KATEX)
+	PATH="$(CURDIR)/$(TOOLS)/bin:$$PATH" mdbook build docs
 	jobs/check-book.sh target/book
 
 clean: ## Remove what was built; runs/ stays
@@ -93,31 +93,31 @@ image: ## Make target/whipple.sif, a container, with Apptainer
 	    target/whipple.sif jobs/whipple.def
 
 deb: release ## Make target/debian/whipple_….deb: the program, man pages, completions, jobs/ and inputs/
-deb: $(BOOK_TOOLS)/cargo-deb-$(CARGO_DEB)
+deb: $(TOOLS)/cargo-deb-$(CARGO_DEB)
 	rm -rf target/package target/debian
 	mkdir -p target/package
 	$(ENV) target/release/whipple generate man target/package/man
 	target/release/whipple generate completions bash >target/package/whipple.bash
 	target/release/whipple generate completions zsh >target/package/_whipple
 	target/release/whipple generate completions fish >target/package/whipple.fish
-	$(ENV) PATH="$(CURDIR)/$(BOOK_TOOLS)/bin:$$PATH" cargo deb --locked --no-build --strip
+	$(ENV) PATH="$(CURDIR)/$(TOOLS)/bin:$$PATH" cargo deb --locked --no-build --strip
 
 run-tests: test-deps $(VENV)/ready
 	$(ENV) jobs/cargo-test.sh
 
 # mdBook, which makes the book, and what typesets its equations as it does; the two go together.
-$(BOOK_TOOLS)/ready-$(MDBOOK)-$(MDBOOK_KATEX):
-	$(ENV) cargo install --locked --root $(BOOK_TOOLS) --target-dir $(BOOK_TOOLS)/build mdbook@$(MDBOOK) \
+$(TOOLS)/ready-$(MDBOOK)-$(MDBOOK_KATEX):
+	$(ENV) cargo install --locked --root $(TOOLS) --target-dir $(TOOLS)/build mdbook@$(MDBOOK) \
 	    --no-default-features --features search
-	$(ENV) cargo install --locked --root $(BOOK_TOOLS) --target-dir $(BOOK_TOOLS)/build mdbook-katex@$(MDBOOK_KATEX)
-	rm -rf $(BOOK_TOOLS)/build
+	$(ENV) cargo install --locked --root $(TOOLS) --target-dir $(TOOLS)/build mdbook-katex@$(MDBOOK_KATEX)
+	rm -rf $(TOOLS)/build
 	touch $@
 
 # What makes the package. It asks dpkg for the libraries that the program needs.
-$(BOOK_TOOLS)/cargo-deb-$(CARGO_DEB):
-	$(ENV) cargo install --locked --root $(BOOK_TOOLS) --target-dir $(BOOK_TOOLS)/build cargo-deb@$(CARGO_DEB) \
+$(TOOLS)/cargo-deb-$(CARGO_DEB):
+	$(ENV) cargo install --locked --root $(TOOLS) --target-dir $(TOOLS)/build cargo-deb@$(CARGO_DEB) \
 	    --no-default-features --features gzip
-	rm -rf $(BOOK_TOOLS)/build
+	rm -rf $(TOOLS)/build
 	touch $@
 
 # The Python clients that open our files in the tests, at pinned versions.
