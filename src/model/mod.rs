@@ -203,6 +203,14 @@ impl Case {
         bodies.any(|body| self.materials[body.material].strength.yields())
     }
 
+    /// The largest sound speed (m/s) of what deforms; what is rigid has a material that carries nothing.
+    #[must_use]
+    pub fn fastest_sound(&self) -> f64 {
+        let bodies = self.bodies.iter().filter(|body| body.rigid.is_none());
+        let speeds = bodies.map(|body| self.materials[body.material].longitudinal_speed());
+        speeds.fold(0.0, f64::max)
+    }
+
     /// The "impact speed" (m/s) of the interpenetration measure: the largest
     /// [`Self::closing_speed`] of two bodies, or the largest speed of a single one if there is
     /// none.

@@ -101,11 +101,9 @@ impl NumericalLimits {
                 .iter()
                 .map(|body| body.velocity.norm() + body.speed_spread()),
         );
-        // What is rigid has a material that carries nothing.
-        let deforming = || case.bodies.iter().filter(|body| body.rigid.is_none());
-        let mut sounds = deforming().map(|b| case.materials[b.material].longitudinal_speed());
-        let sound = largest(&mut sounds);
-        let hot = largest(&mut deforming().map(|b| (2.0 * case.initial_energy(b).abs()).sqrt()));
+        let sound = case.fastest_sound();
+        let deforming = case.bodies.iter().filter(|body| body.rigid.is_none());
+        let hot = largest(&mut deforming.map(|b| (2.0 * case.initial_energy(b).abs()).sqrt()));
         let g = case.loads.gravity;
         let gravity = (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]).sqrt();
         driven + moving + sound + hot + gravity * case.run.end_time

@@ -248,9 +248,7 @@ impl<'a> MaterialUpdate<'a> {
             let speed = rest.map_or(f64::NAN, |rest| rest.sound_speed);
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
             let density = unsafe {
-                *self.points.pressure.slot(i) = 0.0;
-                *self.points.sound_speed.slot(i) = speed;
-                *self.points.work.slot(i) = RESTING_WORK;
+                self.free(i, speed, RESTING_WORK);
                 *self.points.density.slot(i)
             };
             show(place as usize, [density, speed]);
@@ -265,11 +263,21 @@ impl<'a> MaterialUpdate<'a> {
         for &index in &cluster.receivers[..cluster.lanes] {
             let i = self.images[index as usize].base();
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
-            unsafe {
-                *self.points.pressure.slot(i) = 0.0;
-                *self.points.sound_speed.slot(i) = 0.0;
-                *self.points.work.slot(i) = work;
-            }
+            unsafe { self.free(i, 0.0, work) };
+        }
+    }
+
+    /// What is told of a particle without pressure, of this sound speed (m/s), whose step took so much work.
+    ///
+    /// # Safety
+    /// No other thread may read or write what belongs to the particle.
+    #[inline(always)]
+    unsafe fn free(&self, i: usize, sound_speed: f64, work: u32) {
+        // SAFETY: by the contract of this function.
+        unsafe {
+            *self.points.pressure.slot(i) = 0.0;
+            *self.points.sound_speed.slot(i) = sound_speed;
+            *self.points.work.slot(i) = work;
         }
     }
 

@@ -91,7 +91,7 @@ impl Sums {
             viscosity: Viscosity {
                 alpha: case.sph.alpha,
                 beta: case.sph.beta,
-                negligible: NEGLIGIBLE * fastest_sound(case),
+                negligible: NEGLIGIBLE * case.fastest_sound(),
             },
             terms: Terms::new(case, kernel),
             materials: case.materials.clone(),
@@ -110,13 +110,6 @@ impl Sums {
         let mirrors: usize = self.from_mirrors.iter().map(FromMirrors::memory).sum();
         mirrors + self.terms.memory()
     }
-}
-
-/// The largest sound speed (m/s) of what deforms; rigid bodies may be of a material without bounds.
-fn fastest_sound(case: &Case) -> f64 {
-    let bodies = case.bodies.iter().filter(|body| body.rigid.is_none());
-    let speeds = bodies.map(|body| case.materials[body.material].longitudinal_speed());
-    speeds.fold(0.0, f64::max)
 }
 
 /// What is made of halo particles and their images, or of the images of this rank's particles,

@@ -273,9 +273,9 @@ impl<S: PairScale> ShowCorrected<'_, S> {
             for a in 0..3 {
                 old[a][k] = own[a];
             }
-            let drift = || (0..3).map(|a| self.rest[a].0[k].abs()).fold(0.0, f64::max);
+            let slow = |v: &F64x8| v.0[k].abs() < NEGLIGIBLE * after.sound_speed[k];
             let still = || after.velocity_gradient.iter().all(|l| l[k] == 0.0);
-            let rests = own == [0.0; 3] && drift() < NEGLIGIBLE * after.sound_speed[k] && still();
+            let rests = own == [0.0; 3] && self.rest.iter().all(slow) && still();
             if after.damage[k] >= FAILED || rests {
                 intact[k] = 0.0;
             }

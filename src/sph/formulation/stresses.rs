@@ -40,7 +40,7 @@ impl Show for &ShowStress<'_> {
                 after.sound_speed[k],
             );
             // SAFETY: by the contract of this function.
-            unsafe { *self.0.slot(index) = record };
+            unsafe { self.set(index, record) };
         });
     }
 }
