@@ -83,6 +83,39 @@ fn answers_are_documents_in_si_units() {
     assert_eq!(limit["rows"][0]["speed"], 5000.0);
     assert_eq!(limit["units"]["critical_diameter"], "m");
 
+    let at = |name: &str| place.path().join(name).display().to_string();
+    let picture = at("energies.svg");
+    let drawn = document(&["plot", run, "--history", "--out", &picture]);
+    assert_eq!(drawn["written"], serde_json::json!([picture]));
+    let (made, page) = (at("made"), at("page.html"));
+    let made = document(&["new", &made, "--from", "quarter"]);
+    assert!(made["written"][0].as_str().unwrap().ends_with("case.toml"));
+    let told = document(&["report", run, "--out", &page]);
+    assert_eq!(
+        (&told["runs"][0], &told["written"][0]),
+        (&run.into(), &page.as_str().into())
+    );
+    let exported = document(&["export", run, "--to", "xyz", "--out", &at("last.xyz")]);
+    assert_eq!(exported["written"][0], at("last.xyz"));
+    let exported = document(&[
+        "export",
+        run,
+        "--to",
+        "lammps",
+        "--out",
+        &at("last.lammpstrj"),
+    ]);
+    assert_eq!(exported["types"][1], "sphere");
+    let (sweep, vary) = (at("sweep"), ["--vary", "body.sphere.velocity=6, 7 km/s"]);
+    let coarse = ["--set", "spacing=0.06mm", "--set", "run.end_time=0.02us"];
+    let swept = [&["sweep", &case, "--out", &sweep], &vary[..], &coarse].concat();
+    let swept = document(&[swept, vec!["--answers", "history.kinetic_energy"]].concat());
+    assert_eq!(swept["points"]["finished"], 2);
+    assert!(
+        swept["rows"][1]["history.kinetic_energy"].as_f64().unwrap() > 0.0,
+        "{swept:#}"
+    );
+
     // What is wrong is told as ever.
     let ended = end(command(WHIPPLE).args(["info", "nowhere", "--json"])).with_code(2);
     assert!(

@@ -33,7 +33,7 @@ fn gathered(comm: &Comm, simulation: &Simulation) -> Particles {
     let mut gathered = Particles::default();
     for row in all.chunks_exact(4).filter(|row| row[0] != u64::MAX) {
         let [x, y, z, reach] = [0, 1, 2, 3].map(|k| f64::from_bits(row[k]));
-        gathered.add([x, y, z], reach);
+        gathered.add(0, [x, y, z], reach);
     }
     gathered
 }

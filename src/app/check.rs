@@ -91,9 +91,7 @@ pub fn run(args: &CheckArgs) -> u8 {
         warn(&format!("warning: {warning}"));
     }
     let ranks = args.ranks as usize;
-    if args.form.is_json() {
-        args.form.tell(|| document(&case, ranks, &warnings));
-    } else {
+    if !args.form.is_json() {
         print_report(&case, ranks);
     }
     let drawn = args
@@ -101,7 +99,10 @@ pub fn run(args: &CheckArgs) -> u8 {
         .as_ref()
         .map_or(Ok(()), |path| draw(&case, path, args.section.as_deref()));
     match drawn {
-        Ok(()) => 0,
+        Ok(()) => {
+            args.form.tell(|| document(&case, ranks, &warnings));
+            0
+        }
         Err(error) => {
             warn(&format!("error: {error}"));
             EXIT_INPUT

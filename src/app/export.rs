@@ -2,6 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use serde_json::json;
+
+use super::form::{Form, wrote};
 use super::which::Several;
 use crate::export::{self, ExportError, Format, Place, Wish};
 use crate::model::readable::one_line;
@@ -63,13 +66,21 @@ pub struct ExportArgs {
     /// spacing]
     #[arg(long, value_name = "LENGTH")]
     pub cell: Option<String>,
+
+    /// How the answer is told.
+    #[command(flatten)]
+    pub form: Form,
 }
 
 /// Runs the command; returns the exit code.
 #[must_use]
 pub fn run(args: &ExportArgs) -> u8 {
+    args.form.begin();
     match write(args) {
-        Ok(()) => 0,
+        Ok(bodies) => {
+            args.form.tell(|| json!({ "types": bodies }));
+            0
+        }
         Err(error) => {
             warn(&format!("error: {error}"));
             EXIT_INPUT
@@ -77,12 +88,12 @@ pub fn run(args: &ExportArgs) -> u8 {
     }
 }
 
-/// Writes the files and says which.
+/// Writes the files and says which; gives the names of bodies that are numbers there, from 1 on.
 ///
 /// # Errors
 /// [`ExportError`] if there is no such snapshot, if it has not what is asked for, or if a file
 /// cannot be written.
-pub fn write(args: &ExportArgs) -> Result<(), ExportError> {
+pub fn write(args: &ExportArgs) -> Result<Vec<String>, ExportError> {
     check(args)?;
     let wish = Wish {
         fields: args.fields.clone(),
@@ -92,20 +103,20 @@ pub fn write(args: &ExportArgs) -> Result<(), ExportError> {
     };
     let snapshots = args.which.at(&args.source, Wanted::Last)?;
     let place = place(args)?;
-    let mut tell = |path: &Path| {
-        say(&format!("wrote {}", one_line(&path.display().to_string())));
-    };
+    let mut tell = |path: &Path| wrote(path, "");
     if args.to == Format::Paraview {
         let run = args.source.is_dir().then_some(args.source.as_path());
-        return export::script(run, &snapshots[0], &place, &mut tell);
+        export::script(run, &snapshots[0], &place, &mut tell)?;
+        return Ok(Vec::new());
     }
     export::export(&snapshots, args.to, &wish, &place, &mut tell)?;
-    if args.to.numbers_bodies() {
-        for (number, name) in (1..).zip(bodies(&snapshots[0])?) {
-            say(&format!("type {number} is {}", one_line(&name)));
-        }
+    let numbered = args.to.numbers_bodies();
+    let names = numbered.then(|| bodies(&snapshots[0])).transpose()?;
+    let names = names.unwrap_or_default();
+    for (number, name) in (1..).zip(&names) {
+        say(&format!("type {number} is {}", one_line(name)));
     }
-    Ok(())
+    Ok(names)
 }
 
 /// Refuses options that the format has no use for.

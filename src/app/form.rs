@@ -1,7 +1,11 @@
 //! Answers as text for people, or as a JSON document for programs.
 
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+
 use serde_json::{Map, Value, json};
 
+use crate::model::readable::one_line;
 use crate::output::Sheet;
 use crate::run::say;
 use crate::run::voice::Voice;
@@ -32,12 +36,29 @@ impl Form {
         self.json
     }
 
-    /// Prints the document if it is asked for.
+    /// Prints the document if it is asked for, with the files that have been written.
     pub fn tell(self, document: impl FnOnce() -> Value) {
-        if self.json {
-            say::document(&document());
+        if !self.json {
+            return;
         }
+        let mut document = document();
+        let written = WRITTEN.lock().unwrap_or_else(PoisonError::into_inner);
+        if !written.is_empty() {
+            document["written"] = written.as_slice().into();
+        }
+        say::document(&document);
     }
+}
+
+/// The files that this process has written for its user.
+static WRITTEN: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+/// Says that a file has been written, and what else there is to say of it.
+pub fn wrote(path: &Path, more: &str) {
+    let name = path.display().to_string();
+    say::say(&format!("wrote {}{more}", one_line(&name)));
+    let mut written = WRITTEN.lock().unwrap_or_else(PoisonError::into_inner);
+    written.push(name);
 }
 
 /// Columns whose cells are words, whatever they look like.

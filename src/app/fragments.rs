@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use super::form::{self, Form};
+use super::form::{self, Form, wrote};
 use super::results::ResultsError;
 use super::which::Which;
 use crate::fragments::{Census, Fragment, Rule, Share, find_alone};
@@ -142,17 +142,16 @@ pub fn tell(args: &FragmentsArgs) -> Result<String, FragmentsError> {
     let census = find_alone(&matter, &loaded.symmetry, &rule);
     let bodies: Vec<&str> = loaded.bodies.iter().map(String::as_str).collect();
     let table = FragmentTable::new(&census, &bodies, loaded.dimension);
-    args.form
-        .tell(|| document(&loaded, &census, &options, &table));
-    let wrote = |path: &Path| say(&format!("wrote {}", one_line(&path.display().to_string())));
     if let Some(path) = &args.csv {
         write_atomically(path, &table.text())?;
-        wrote(path);
+        wrote(path, "");
     }
     if let Some(path) = &args.hdf5 {
         table.write_hdf5(path)?;
-        wrote(path);
+        wrote(path, "");
     }
+    args.form
+        .tell(|| document(&loaded, &census, &options, &table));
     Ok(report(&loaded, &census, &options))
 }
 

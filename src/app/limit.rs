@@ -138,7 +138,6 @@ fn limit(args: &LimitArgs) -> Result<(), LimitError> {
         say("");
         say(one_by_line(&table::shots(&law, &shots)).trim_end());
     }
-    output.form.tell(|| table::document(&law, &speeds, &shots));
     if let Some(path) = &output.csv {
         let sheet = table::sheet(&law, &speeds);
         save_text(path, &sheet.text())?;
@@ -150,6 +149,7 @@ fn limit(args: &LimitArgs) -> Result<(), LimitError> {
     if let Some(path) = output.plot.clone().or(own) {
         draw(&law, &speeds, &shots, &path, output.width)?;
     }
+    output.form.tell(|| table::document(&law, &speeds, &shots));
     Ok(())
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::form::{self, Form};
+use super::form::{self, Form, wrote};
 use super::results::{ResultsError, only_part};
 use super::which::Which;
 use crate::comm::Comm;
@@ -116,16 +116,16 @@ fn tell(args: &MeasureArgs) -> Result<String, MeasureError> {
         measures::figures(*time, all, case.dimension)
     });
     let table = measures::table(&rows.collect::<Vec<_>>());
+    if let Some(path) = &args.csv {
+        write_atomically(path, &table)?;
+        wrote(path, "");
+    }
     args.form.tell(|| {
         let sheet = Sheet::parse(&String::from_utf8_lossy(&table));
         let mut document = form::table(&sheet.expect("a table that was made here"));
         document["title"] = told.last().map(|(case, ..)| case.title.as_str()).into();
         document
     });
-    if let Some(path) = &args.csv {
-        write_atomically(path, &table)?;
-        say(&format!("wrote {}", one_line(&path.display().to_string())));
-    }
     Ok(text)
 }
 

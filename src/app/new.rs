@@ -5,7 +5,9 @@ use std::io;
 use std::path::PathBuf;
 
 use clap::ValueEnum;
+use serde_json::json;
 
+use super::form::{Form, wrote};
 use crate::input;
 use crate::output::{OutputError, write_atomically};
 use crate::run::exit::EXIT_INPUT;
@@ -28,6 +30,9 @@ pub struct NewArgs {
     /// What the case is like
     #[arg(long, value_name = "KIND")]
     from: Kind,
+
+    #[command(flatten)]
+    form: Form,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -92,8 +97,13 @@ enum NewError {
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &NewArgs) -> u8 {
+    args.form.begin();
     match write(args) {
-        Ok(()) => 0,
+        Ok(()) => {
+            args.form
+                .tell(|| json!({ "schema": args.folder.join(SCHEMA) }));
+            0
+        }
         Err(error) => {
             warn(&format!("error: {error}"));
             EXIT_INPUT
@@ -118,7 +128,7 @@ fn write(args: &NewArgs) -> Result<(), NewError> {
     let text = format!("#:schema ./{SCHEMA}\n{}", args.from.text());
     write_atomically(&case, text.as_bytes()).map_err(NewError::Output)?;
     let name = folder.display();
-    say(&format!("wrote {}", case.display()));
+    wrote(&case, "");
     say(&format!(
         "look at it: whipple check {name} --picture {name}/model.png"
     ));

@@ -6,6 +6,7 @@ mod job;
 mod nodes;
 mod source;
 mod table;
+mod words;
 
 use std::path::{Path, PathBuf};
 
@@ -15,9 +16,11 @@ use super::bench;
 use super::form::Form;
 use super::plot::out::{check_picture, save_text, write_chart};
 use crate::model::Case;
-use crate::model::readable::{short, shown};
+use crate::model::readable::short;
 use crate::output::read_small;
-use crate::plan::{Files, Layout, Load, Machine, Row, Sharing, Weak, computing, expected_steps};
+use crate::plan::{
+    Files, Layout, Load, Machine, Row, Sharing, Weak, computing, expected_steps, share_of_work,
+};
 use crate::plot::PlotError;
 use crate::preflight::{Costs, memory};
 use crate::run::exit::{EXIT_FAILED, EXIT_INPUT};
@@ -182,14 +185,21 @@ fn plan(args: &PlanArgs, path: &Path) -> Result<(), String> {
         .as_deref()
         .map_or(Ok(Machine::default()), machine)?;
     let source = source::read(path, &args.set)?;
-    let steps = expected_steps(&source.case, source.time.unwrap_or(0.0));
-    say(&heading(&source, steps));
+    let from = source.time.unwrap_or(0.0);
+    let steps = expected_steps(&source.case, from);
+    say(&words::heading(&source, steps));
+    say(&words::machine(&machine));
+    let share = share_of_work(&source.case, from);
+    if let Some(line) = words::rest(share) {
+        say(&line);
+    }
+    let machine = machine.sparing(share);
     if !args.nodes.is_empty() {
         return nodes::plan(args, path, (&source, steps), &machine);
     }
     let (all, files) = print_ranks(args, &source, &machine, steps)?;
     let rows: Vec<Row> = all.iter().map(|planned| planned.row).collect();
-    write_sheet(args, (&source, &machine), &rows, &files, steps)?;
+    write_sheet(args, &rows, steps)?;
     if let Some(path) = &args.chart {
         let weak: Vec<Weak> = all.iter().map(|planned| planned.weak).collect();
         let title = format!("{}, {}", source.case.title, machine.name);
@@ -197,6 +207,8 @@ fn plan(args: &PlanArgs, path: &Path) -> Result<(), String> {
         let chart = chart::chart(&title, particles, &rows, &weak);
         write_chart(&chart, args.width, path).map_err(told)?;
     }
+    args.form
+        .tell(|| table::document((&source, &machine), &rows, &files, steps));
     Ok(())
 }
 
@@ -208,7 +220,7 @@ fn print_ranks(
     steps: Option<f64>,
 ) -> Result<(Vec<Planned>, Files), String> {
     let sharing = args.sharing(machine);
-    say(&format!("  {}", machine_line(machine, sharing)));
+    say(&words::sharing(sharing));
     say("");
     say(&table::head());
     let alone = layout_of(source, (1, Some(1)), 1)?.loads[0];
@@ -239,15 +251,7 @@ fn print_ranks(
     Ok((all, files))
 }
 
-fn write_sheet(
-    args: &PlanArgs,
-    (source, machine): (&Source, &Machine),
-    rows: &[Row],
-    files: &Files,
-    steps: Option<f64>,
-) -> Result<(), String> {
-    args.form
-        .tell(|| table::document((source, machine), rows, files, steps));
+fn write_sheet(args: &PlanArgs, rows: &[Row], steps: Option<f64>) -> Result<(), String> {
     let Some(path) = &args.csv else { return Ok(()) };
     write_text(path, &table::sheet(rows, steps).text())
 }
@@ -297,40 +301,13 @@ fn machine(path: &Path) -> Result<Machine, String> {
     Machine::parse(text).map_err(|what| wrong(&what))
 }
 
-fn heading(source: &Source, steps: Option<f64>) -> String {
-    let case = &source.case;
-    let from = source
-        .time
-        .map_or(String::new(), |time| format!(" at {}", shown(time, "s")));
-    let to = steps.map_or(String::new(), |steps| {
-        let end = shown(case.run.end_time, "s");
-        format!(", about {} steps to {end}", short(steps))
-    });
-    let count = source.particles.positions.len();
-    format!(
-        "{} ({}-D): {count} particles{from}{to}",
-        case.title, case.dimension
-    )
-}
-
-fn machine_line(machine: &Machine, sharing: Sharing) -> String {
-    let threads = if sharing.threads == 1 { "" } else { "s" };
-    format!(
-        "on {}: {} a particle and step, {} ranks of {} thread{threads} on a node",
-        machine.name,
-        shown(machine.particle_time, "s"),
-        sharing.ranks_per_node,
-        sharing.threads,
-    )
-}
-
 fn layout_of(
     source: &Source,
     ranks_and_levels: (usize, Option<usize>),
     ranks_per_node: usize,
 ) -> Result<Layout, String> {
     let (case, particles) = (&source.case, &source.particles);
-    let from = (particles, source.time.is_none());
+    let from = (particles, source.time);
     let layout = Layout::new(case, from, ranks_and_levels, ranks_per_node);
     layout.ok_or_else(|| "error: the case has no particles".to_owned())
 }

@@ -9,7 +9,9 @@ mod scene;
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use serde_json::json;
 
+use super::form::Form;
 use super::which::Several;
 use crate::plot::{
     Along, History, Pictures, PlotError, ProfileRequest, Profiles, Request, Source, Wanted,
@@ -241,6 +243,10 @@ pub struct PlotArgs {
     /// What belongs to movies.
     #[command(flatten)]
     pub movie: MovieArgs,
+
+    /// How the answer is told.
+    #[command(flatten)]
+    pub form: Form,
 }
 
 fn history() -> impl TypedValueParser<Value = History> {
@@ -254,6 +260,13 @@ fn history() -> impl TypedValueParser<Value = History> {
 /// # Errors
 /// [`PlotError`] if an input cannot be read, a request cannot be met or a picture not written.
 pub fn run(args: &PlotArgs) -> Result<(), PlotError> {
+    args.form.begin();
+    draw(args)?;
+    args.form.tell(|| json!({}));
+    Ok(())
+}
+
+fn draw(args: &PlotArgs) -> Result<(), PlotError> {
     out::check(args)?;
     scene::check(args)?;
     movie::check(args)?;

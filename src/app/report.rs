@@ -3,15 +3,16 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use super::form::Form;
+use serde_json::json;
+
+use super::form::{Form, wrote};
 use super::fragments::{FragmentsArgs, tell as tell_fragments};
 use super::results::{Results, ResultsError};
 use super::which::Which;
-use crate::model::readable::one_line;
 use crate::output::{OutputError, RunFolder, write_atomically};
 use crate::report;
 use crate::run::exit::EXIT_INPUT;
-use crate::run::say::{say, warn};
+use crate::run::say::warn;
 
 /// Write one HTML page that tells a run, with a viewer in three dimensions; or two runs side by side
 ///
@@ -42,6 +43,10 @@ pub struct ReportArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: Option<u32>,
 
+    /// How the answer is told.
+    #[command(flatten)]
+    pub form: Form,
+
     /// Open the page with what the desktop opens pages with
     #[arg(long)]
     pub open: bool,
@@ -62,8 +67,10 @@ enum ReportError {
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &ReportArgs) -> u8 {
+    args.form.begin();
     match write(args) {
         Ok(path) => {
+            args.form.tell(|| json!({ "runs": args.runs }));
             if args.open {
                 open(&path);
             }
@@ -94,8 +101,7 @@ fn write(args: &ReportArgs) -> Result<PathBuf, ReportError> {
     write_atomically(&path, page.as_bytes())?;
     #[allow(clippy::cast_precision_loss, reason = "for people")]
     let size = page.len() as f64 / 1e6;
-    let name = path.display().to_string();
-    say(&format!("wrote {} ({size:.1} MB)", one_line(&name)));
+    wrote(&path, &format!(" ({size:.1} MB)"));
     Ok(path)
 }
 

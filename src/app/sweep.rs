@@ -3,10 +3,13 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use serde_json::json;
+
+use super::form::{self, Form, wrote};
 use super::plot::out::{PictureFormat, write_chart};
 use super::shell::quoted;
 use crate::input;
-use crate::output::{OutputError, RunLock, write_atomically};
+use crate::output::{OutputError, RunLock, Sheet, write_atomically};
 use crate::run::exit::{EXIT_FAILED, EXIT_INPUT, EXIT_STOPPED};
 use crate::run::say::{counted, say, warn};
 use crate::sweep::{self, Converged, Definition, Launch, Sweep, SweepError, Tally};
@@ -38,6 +41,9 @@ pub struct Shares {
     /// Threads of each rank [default: the cores shared out among the runs]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
+
+    #[command(flatten)]
+    form: Form,
 }
 
 /// Run a case at many points: a table of answers, a limit
@@ -129,12 +135,14 @@ pub struct ConvergeArgs {
 /// Runs `whipple sweep`; returns the exit code.
 #[must_use]
 pub fn run(args: &SweepArgs) -> u8 {
+    args.shares.form.begin();
     told(sweep(args))
 }
 
 /// Runs `whipple converge`; returns the exit code.
 #[must_use]
 pub fn converge(args: &ConvergeArgs) -> u8 {
+    args.shares.form.begin();
     told(converged(args))
 }
 
@@ -176,22 +184,21 @@ fn sweep(args: &SweepArgs) -> Result<u8, SweepError> {
     if args.slurm {
         let path = folder.join("sweep.sbatch");
         write_atomically(&path, &script(&folder, &args.shares, sweep.count()?))?;
-        say(&format!(
-            "wrote {}: give it to sbatch, then run",
-            path.display()
-        ));
+        wrote(&path, ": give it to sbatch, then run");
         say(&format!("  whipple sweep {}", folder.display()));
+        args.shares.form.tell(|| json!({}));
         return Ok(0);
     }
     let tally = sweep.run(jobs, say)?;
-    say(&format!("wrote {}", folder.join("sweep.csv").display()));
+    let table = folder.join("sweep.csv");
+    wrote(&table, "");
     if let Some((chart, path)) = sweep::draw(&folder, keys, args.chart.as_deref())? {
         let path = path.with_extension(args.picture.ending());
         if let Err(error) = write_chart(&chart, None, &path) {
             warn(&format!("warning: {error}"));
         }
     }
-    Ok(code(tally))
+    args.shares.ended(&table, tally)
 }
 
 fn converged(args: &ConvergeArgs) -> Result<u8, SweepError> {
@@ -223,29 +230,9 @@ fn converged(args: &ConvergeArgs) -> Result<u8, SweepError> {
     for line in converged.lines() {
         say(&line);
     }
-    say(&format!("wrote {}", folder.join("converge.csv").display()));
-    Ok(code(tally))
-}
-
-fn code(tally: Tally) -> u8 {
-    let Tally {
-        answered,
-        failed,
-        open,
-    } = tally;
-    let mut parts = vec![format!("{} finished", counted(answered as u64, "point"))];
-    if failed > 0 {
-        parts.push(format!("{failed} failed"));
-    }
-    if open > 0 {
-        parts.push(format!("{open} open"));
-    }
-    say(&parts.join(", "));
-    match (failed, open) {
-        (0, 0) => 0,
-        (0, _) => EXIT_STOPPED,
-        _ => EXIT_FAILED,
-    }
+    let table = folder.join("converge.csv");
+    wrote(&table, "");
+    args.shares.ended(&table, tally)
 }
 
 /// Takes the folder of a sweep, which is made if it lacks, and keeps its definition there.
@@ -270,6 +257,38 @@ fn name(case: &Path) -> String {
 }
 
 impl Shares {
+    /// Tells how a sweep with a table ended; gives the exit code.
+    fn ended(&self, table: &Path, tally: Tally) -> Result<u8, SweepError> {
+        let Tally {
+            answered,
+            failed,
+            open,
+        } = tally;
+        let mut parts = vec![format!("{} finished", counted(answered as u64, "point"))];
+        if failed > 0 {
+            parts.push(format!("{failed} failed"));
+        }
+        if open > 0 {
+            parts.push(format!("{open} open"));
+        }
+        say(&parts.join(", "));
+        if self.form.is_json() {
+            let text = fs::read_to_string(table).map_err(OutputError::io("read", table))?;
+            let sheet = Sheet::parse(&text).map_err(SweepError::Typed)?;
+            self.form.tell(|| {
+                let mut document = form::table(&sheet);
+                document["points"] =
+                    json!({ "finished": answered, "failed": failed, "open": open });
+                document
+            });
+        }
+        Ok(match (failed, open) {
+            (0, 0) => 0,
+            (0, _) => EXIT_STOPPED,
+            _ => EXIT_FAILED,
+        })
+    }
+
     fn definition(&self, case: &Path, vary: Vec<String>) -> Result<Definition, SweepError> {
         let (path, _) = input::text(case)?;
         let path = fs::canonicalize(&path).map_err(OutputError::io("find", &path))?;

@@ -20,15 +20,21 @@ pub struct Balance {
     places: Vec<u32>,
     /// Smallest and largest coordinates of each, as words.
     ends: Least,
+    /// What a particle counts at least.
+    floor: u32,
 }
+
+/// The mean work of all particles over what one counts at least, so that no rank owns much more than so many even
+/// shares because its own take little work: what a rank takes of memory goes by their number.
+pub const MOST_UNEVEN: u64 = 2;
 
 /// Particles that a task looks at.
 const SHARE: usize = 4096;
 
 impl Balance {
     /// Moves the faces of `slabs` for owned particles at `positions` (m) with counted `work`, so that
-    /// each rank gets its share by `rank_speeds`, level by level. Particles whose work is unknown
-    /// count as one. Slabs without particles keep their faces. Collective.
+    /// each rank gets its share by `rank_speeds`, level by level. A particle counts the mean work over [`MOST_UNEVEN`]
+    /// at least. Slabs without particles keep their faces. Collective.
     pub fn cut(
         &mut self,
         comm: &Comm,
@@ -36,6 +42,7 @@ impl Balance {
         (positions, work): (&[[f64; 3]], &[u32]),
         rank_speeds: &RankSpeeds,
     ) {
+        self.floor = floor(comm, work);
         self.slabs.clear();
         self.slabs.push(slabs.whole());
         for level in 0..slabs.levels() {
@@ -64,7 +71,7 @@ impl Balance {
             self.places[slab.ranks().start] = place;
         }
         let axis = slabs.axis(level);
-        let places = &self.places;
+        let (places, floor) = (&self.places, self.floor);
         let place_of = |position: &[f64; 3]| {
             let first = slabs.slab_at(position, level).ranks().start;
             // Nobody cuts a slab of one rank.
@@ -100,7 +107,7 @@ impl Balance {
         }
         self.histogram.add_all(positions.len(), |i| {
             let place = place_of(&positions[i])?;
-            Some((place, positions[i][axis], u64::from(work[i].max(1))))
+            Some((place, positions[i][axis], u64::from(work[i].max(floor))))
         });
         self.histogram.sum(comm);
     }
@@ -140,6 +147,17 @@ impl Balance {
     }
 }
 
+/// What a particle counts at least, by the work of all. Collective.
+fn floor(comm: &Comm, work: &[u32]) -> u32 {
+    // same bits in any order: whole numbers
+    let all = work.par_iter().map(|&work| u64::from(work)).sum();
+    let mut sums = [all, work.len() as u64];
+    comm.sum_u64(&mut sums);
+    let [all, particles] = sums;
+    let floor = all / (MOST_UNEVEN * particles.max(1));
+    u32::try_from(floor).unwrap_or(u32::MAX).max(1)
+}
+
 /// Joins the ends that a task has found of a slab, if any, with those of the others.
 fn tell_ends(all: &Least, (place, ends): (usize, [u64; 2])) {
     if place != usize::MAX {
@@ -176,6 +194,26 @@ pub(super) fn split_slab(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// One half takes no work: it is shared out all the same, as far as memory has to.
+    #[test]
+    fn no_rank_gets_much_more_than_its_even_share() {
+        use super::super::nested::Decomposition;
+        let positions: Vec<[f64; 3]> = (0..8000).map(|k| [f64::from(k), 0.0, 0.0]).collect();
+        let work: Vec<u32> = (0..8000).map(|k| if k < 4000 { 210 } else { 1 }).collect();
+        let mut slabs = NestedSlabs::on_first([0, 1, 2], 1, 8);
+        let all = (positions.as_slice(), work.as_slice());
+        Balance::default().cut(&Comm::solo(), &mut slabs, all, &RankSpeeds::default());
+        let mut counts = [0; 8];
+        for position in &positions {
+            counts[slabs.owner(position)] += 1;
+        }
+        // Each counts 52 at least, so that all is 8 x 131,000.
+        let expected = [624, 624, 624, 623, 624, 624, 1738, 2519];
+        for (count, expected) in counts.into_iter().zip(expected) {
+            assert!(i32::abs(count - expected) < 40, "{counts:?}");
+        }
+    }
 
     #[test]
     fn one_rank_has_no_faces_and_all_work_in_one_place_is_legal() {

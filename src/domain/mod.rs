@@ -20,7 +20,7 @@ mod shown;
 mod span;
 mod tally;
 
-pub use balance::Balance;
+pub use balance::{Balance, MOST_UNEVEN};
 pub use choice::Choice;
 pub use forecast::{Forecast, Fullest, reach};
 pub use halo::{Halo, Reaches};

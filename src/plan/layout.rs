@@ -1,12 +1,16 @@
 //! A case cut for a number of ranks: what each of them has and sends.
 
+use rayon::prelude::*;
+
 use super::particles::Particles;
 use crate::comm::{Comm, Traffic};
 use crate::domain::{
-    Balance, GREETING, Mirrors, NestedSlabs, Outset, RankSpeeds, Sent, Tally, greetings, tally,
+    Balance, Decomposition, GREETING, Mirrors, NestedSlabs, Outset, RankSpeeds, Sent, Tally,
+    greetings, tally,
 };
 use crate::model::Case;
 use crate::populate;
+use crate::preflight::{UNEVEN, Waves};
 use crate::step::bytes_of_messages;
 
 /// What a rank has, and what it sends in a step but for particles that change ranks.
@@ -27,23 +31,34 @@ pub struct Layout {
     pub slabs: NestedSlabs,
     /// What each rank has and sends.
     pub loads: Vec<Load>,
+    /// The most of an even share of all particles that a rank will own as work is balanced.
+    pub uneven: f64,
 }
 
 impl Layout {
-    /// Of particles, those of the start or not, for so many ranks in slabs of so many levels, or of those
+    /// Of particles, those of the start or those at a time (s), for so many ranks in slabs of so many levels, or of those
     /// that the case takes by itself, where so many ranks that follow each other share a node. `None` for a
     /// case without particles.
     #[must_use]
     pub fn new(
         case: &Case,
-        (particles, are_first): (&Particles, bool),
+        (particles, time): (&Particles, Option<f64>),
         (ranks, levels): (usize, Option<usize>),
         ranks_per_node: usize,
     ) -> Option<Self> {
-        let cut = if are_first { slabs_at_start } else { slabs_of };
+        let cut = if time.is_none() {
+            slabs_at_start
+        } else {
+            slabs_of
+        };
         let slabs = cut(case, particles, ranks, levels)?;
         let loads = loads(case, particles, &slabs, ranks_per_node);
-        Some(Self { slabs, loads })
+        let uneven = uneven(case, particles, &slabs, time.unwrap_or(0.0));
+        Some(Self {
+            slabs,
+            loads,
+            uneven,
+        })
     }
 }
 
@@ -90,6 +105,38 @@ fn cut(slabs: &mut NestedSlabs, particles: &Particles, balance: &mut Balance) {
     let work = vec![1; particles.positions.len()];
     let all = (particles.positions.as_slice(), work.as_slice());
     balance.cut(&Comm::solo(), slabs, all, &RankSpeeds::default());
+}
+
+/// The most of an even share of all particles that a rank owns from a time (s) on, as work is balanced.
+#[allow(clippy::cast_precision_loss, reason = "a ratio")]
+fn uneven(case: &Case, particles: &Particles, slabs: &NestedSlabs, from: f64) -> f64 {
+    let ranks = slabs.ranks();
+    if case.domain.balance_every == 0 || ranks < 2 {
+        return 1.0;
+    }
+    let Some(waves) = Waves::new(case) else {
+        return UNEVEN;
+    };
+    let (mut slabs, mut balance) = (slabs.clone(), Balance::default());
+    let each = particles.positions.len() as f64 / ranks as f64;
+    let places = particles.positions.as_slice();
+    let most = Waves::times(case, from).map(|time| {
+        let bodies = particles.body.par_iter().zip(places);
+        let work = bodies.map(|(&body, place)| waves.work(body as usize, place, time));
+        let work: Vec<u32> = work.collect();
+        balance.cut(
+            &Comm::solo(),
+            &mut slabs,
+            (places, &work),
+            &RankSpeeds::default(),
+        );
+        let mut owned = vec![0_u64; ranks];
+        for place in places {
+            owned[slabs.owner(place)] += 1;
+        }
+        owned.into_iter().max().unwrap_or(0) as f64 / each
+    });
+    most.fold(UNEVEN, f64::max)
 }
 
 /// What each rank has and sends in a step, where so many that follow each other share a node.

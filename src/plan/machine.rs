@@ -169,6 +169,16 @@ impl Default for Machine {
 }
 
 impl Machine {
+    /// A machine on which steps take that share of the work for the same particles.
+    #[must_use]
+    pub fn sparing(self, share: f64) -> Self {
+        Self {
+            particle_time: share * self.particle_time,
+            image_time: share * self.image_time,
+            ..self
+        }
+    }
+
     /// What a file tells; what it leaves out is that of an ordinary cluster.
     ///
     /// # Errors

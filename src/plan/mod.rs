@@ -16,7 +16,7 @@ pub use layout::{Layout, Load, loads, loads_of, slabs_at_start, slabs_of};
 pub use machine::{CONSTANTS, Constant, Machine};
 pub use model::{StepTime, computing, step_time};
 pub use particles::Particles;
-pub use rough::{expected_steps, rough_step};
+pub use rough::{expected_steps, rough_step, share_of_work};
 pub use row::Row;
 pub use sharing::Sharing;
 pub use weak::{Weak, refined};

@@ -11,6 +11,8 @@ pub struct Particles {
     pub positions: Vec<[f64; 3]>,
     /// How far each reaches (m): two of them see each other within the sum.
     pub reach: Vec<f64>,
+    /// Their bodies.
+    pub body: Vec<u32>,
 }
 
 impl Particles {
@@ -25,7 +27,7 @@ impl Particles {
                 let told = told_mass(body, site.index);
                 let mass = told.unwrap_or(whole * site.share);
                 let length = body.smoothing_length * edge(site.share, case.dimension);
-                particles.add(site.position, smoothing.reach_of(b, mass, length));
+                particles.add(b, site.position, smoothing.reach_of(b, mass, length));
             }
             if case.sph.form != SphForm::StressPoints {
                 continue;
@@ -33,7 +35,7 @@ impl Particles {
             // They have no mass of their own.
             let reach = smoothing.reach_of(b, 0.0, body.smoothing_length);
             for site in populate::stress_sites(body, case.dimension, &case.symmetry, None) {
-                particles.add(site.position, reach);
+                particles.add(b, site.position, reach);
             }
         }
         particles
@@ -58,7 +60,7 @@ impl Particles {
                 ));
             }
             let length = length.unwrap_or_else(|density| smoothing.length(body, mass, density));
-            particles.add(position, smoothing.reach_of(body, mass, length));
+            particles.add(body, position, smoothing.reach_of(body, mass, length));
         }
         Ok(particles)
     }
@@ -67,12 +69,14 @@ impl Particles {
     pub fn append(&mut self, mut more: Self) {
         self.positions.append(&mut more.positions);
         self.reach.append(&mut more.reach);
+        self.body.append(&mut more.body);
     }
 
-    /// Takes in one more.
-    pub fn add(&mut self, position: [f64; 3], reach: f64) {
+    /// Takes in one more, of a body, at a position (m), which reaches so far (m).
+    pub fn add(&mut self, body: usize, position: [f64; 3], reach: f64) {
         self.positions.push(position);
         self.reach.push(reach);
+        self.body.push(u32::try_from(body).unwrap_or(u32::MAX));
     }
 }
 

@@ -7,7 +7,7 @@ use super::sharing::Sharing;
 use crate::comm::{Comm, Traffic};
 use crate::domain::Tally;
 use crate::model::Case;
-use crate::preflight::{expected_step, memory};
+use crate::preflight::{self, Waves, memory};
 use crate::step::bytes_of_messages;
 
 /// Peers of a rank in boxes: those around a box of three axes.
@@ -17,22 +17,30 @@ const PEERS: u64 = 26;
 #[must_use]
 #[allow(clippy::cast_precision_loss, reason = "for people")]
 pub fn expected_steps(case: &Case, time: f64) -> Option<f64> {
-    let by_time = ((case.run.end_time - time) / expected_step(case)?).max(0.0);
+    let by_time = preflight::expected_steps(case, time)?;
     let most = case.run.max_steps.map_or(f64::INFINITY, |most| most as f64);
     Some(by_time.min(most).round())
 }
 
-/// Seconds of a step on so many ranks of a machine, each with one thread: as if all had as much to do as
-/// the largest.
+/// Work of the steps from a time (s) on, over what it would be if all matter moved.
+#[must_use]
+pub fn share_of_work(case: &Case, time: f64) -> f64 {
+    Waves::new(case).map_or(1.0, |waves| waves.share_of_work(case, time))
+}
+
+/// Seconds of a mean step on so many ranks of a machine, each with one thread and as much to do.
 #[must_use]
 #[allow(
     clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
     clippy::cast_sign_loss,
     reason = "counts of particles"
 )]
 pub fn rough_step(case: &Case, ranks: usize, machine: &Machine) -> f64 {
-    let fullest = memory::fullest_of(case, &Comm::solo(), ranks);
-    let [owned, halo] = [fullest.owned, fullest.halo].map(|count| count as u64);
+    let machine = machine.clone().sparing(share_of_work(case, 0.0));
+    let solo = Comm::solo();
+    let owned = (memory::fullest_of(case, &solo, 1).owned / ranks as f64) as u64;
+    let halo = memory::fullest_of(case, &solo, ranks).halo as u64;
     let sharing = Sharing {
         threads: 1,
         ranks_per_node: machine.ranks_per_node(1),
@@ -58,5 +66,5 @@ pub fn rough_step(case: &Case, ranks: usize, machine: &Machine) -> f64 {
         sent,
         beyond,
     };
-    step_time(&vec![load; ranks], machine, sharing).all
+    step_time(&vec![load; ranks], &machine, sharing).all
 }

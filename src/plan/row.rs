@@ -54,11 +54,7 @@ impl Row {
         let mean = particles.positions.len() as f64 / ranks as f64;
         let memory = loads.iter().map(|load| {
             let [owned, halo] = [load.tally.owned, load.tally.halo].map(|count| count as f64);
-            if ranks == 1 {
-                costs.of(owned, halo)
-            } else {
-                costs.of_several(owned, mean, halo)
-            }
+            costs.of(owned.max(mean * layout.uneven), halo)
         });
         let time = step_time(loads, machine, sharing);
         let halos = loads.iter().map(|load| load.tally.halo).enumerate();

@@ -1,6 +1,8 @@
 //! What a rank takes of memory by what it has.
 
+use super::waves::{RESTING, Waves};
 use crate::contact::ContactTable;
+use crate::domain::MOST_UNEVEN;
 use crate::model::Case;
 use crate::step::bytes_of_options;
 
@@ -17,17 +19,23 @@ const HALO: f64 = 1200.0;
 /// What arrays take over their content as they grow.
 const SPARE: f64 = 1.06;
 
-/// By how much a rank's share may rise as work is balanced: matter at rest takes less work, so that ranks
-/// own more of it. In the quarter impact it comes to 1.35 on two ranks and to 1.55 on eight.
-const UNEVEN: f64 = 1.4;
+/// By how much a rank's share rises as work is balanced that all move in: what is broken or touches takes more.
+pub const UNEVEN: f64 = 1.2;
 
-/// By how much the share of a rank may rise.
-pub(super) fn uneven(case: &Case) -> f64 {
-    if case.domain.balance_every == 0 {
-        1.0
-    } else {
-        UNEVEN
+/// By how much the share of one of so many ranks may rise: matter at rest takes less work, so that a rank gets more of it,
+/// but no more than balances allow.
+#[allow(clippy::cast_precision_loss, reason = "few ranks")]
+pub(super) fn uneven(case: &Case, ranks: usize) -> f64 {
+    if case.domain.balance_every == 0 || ranks < 2 {
+        return 1.0;
     }
+    if Waves::new(case).is_none() {
+        return UNEVEN;
+    }
+    // All that moves is on the other ranks.
+    let (moves, rests) = ((ranks - 1) as f64, 1.0 / RESTING);
+    let most = ranks as f64 * rests / (moves + rests);
+    most.min(MOST_UNEVEN as f64)
 }
 
 /// What a rank takes at its peak (bytes).
@@ -39,8 +47,6 @@ pub struct Costs {
     owned: f64,
     /// For each of other ranks.
     halo: f64,
-    /// By how much the share of one of several ranks may rise.
-    uneven: f64,
 }
 
 impl Costs {
@@ -58,7 +64,6 @@ impl Costs {
             process: PROCESS + meshes.chain(read).sum::<usize>() as f64,
             owned: OWNED + if contact { CONTACT } else { 0.0 } + options[0],
             halo: HALO + options[1],
-            uneven: uneven(case),
         }
     }
 
@@ -66,11 +71,5 @@ impl Costs {
     #[must_use]
     pub fn of(self, owned: f64, halo: f64) -> f64 {
         self.process + owned * self.owned + halo * self.halo
-    }
-
-    /// Of one of several ranks with so many, which may get a larger share than the mean.
-    #[must_use]
-    pub fn of_several(self, owned: f64, mean: f64, halo: f64) -> f64 {
-        self.of(owned.max(mean * self.uneven), halo)
     }
 }

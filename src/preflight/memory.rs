@@ -53,7 +53,7 @@ fn fullest(case: &Case, comm: &Comm, ranks: usize) -> Option<Fullest> {
     let fullest = forecast.fullest(levels, ranks);
     let even = forecast.total() / ranks as f64;
     Some(Fullest {
-        owned: fullest.owned.max(even * uneven(case)),
+        owned: fullest.owned.max(even * uneven(case, ranks)),
         ..fullest
     })
 }
@@ -82,7 +82,7 @@ fn fullest_slab(case: &Case, outset: &Outset, comm: &Comm, ranks: usize) -> Full
         most = [most[0].max(owned), most[1].max(halo)];
     }
     Fullest {
-        owned: (even * uneven(case)).max(most[0] as f64),
+        owned: (even * uneven(case, ranks)).max(most[0] as f64),
         halo: most[1] as f64,
     }
 }
@@ -260,7 +260,7 @@ mod tests {
         ];
         assert_eq!(fullest.halo, halo.into_iter().fold(0.0, f64::max));
         let even = x.len() as f64 / 4.0;
-        assert_eq!(fullest.owned, uneven(&case) * even);
+        assert_eq!(fullest.owned, uneven(&case, 4) * even);
     }
 
     /// Slabs of slabs hold what is forecast, but for bodies that are no boxes, and so do their halos.

@@ -8,11 +8,14 @@ mod initial;
 pub(crate) mod memory;
 mod meshes;
 mod sense;
+mod steps;
+mod waves;
 
 pub use approach::{Approach, approaches};
-pub use costs::Costs;
+pub use costs::{Costs, UNEVEN};
 pub use initial::beginning;
-pub use sense::expected_step;
+pub use steps::{expected_step, expected_steps};
+pub use waves::Waves;
 
 use crate::model::{Body, Case, ContactMode};
 use crate::populate::{self, overlap};

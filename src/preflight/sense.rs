@@ -1,6 +1,7 @@
 //! Values that are allowed and that no run has a use for.
 
 use super::approach::Approach;
+use super::steps::expected_step;
 use crate::material::AfterSpall;
 use crate::model::readable::{short, shown};
 use crate::model::{Body, Case, ContactMode, LatticeKind, Resistance, Shape, SphForm};
@@ -252,23 +253,4 @@ fn times(case: &Case, found: &mut Vec<String>) {
             ));
         }
     }
-}
-
-/// The step (s) that the sound criterion asks for, with the sound speed of the undeformed materials
-/// and the approach speed of the impact; shocks take shorter ones, rarefaction longer ones.
-#[must_use]
-pub fn expected_step(case: &Case) -> Option<f64> {
-    let speed = case.impact_speed();
-    let dt = case
-        .bodies
-        .iter()
-        .filter(|body| body.rigid.is_none())
-        .map(|body| {
-            let material = &case.materials[body.material];
-            let c = material.longitudinal_speed();
-            let signal = c + 0.6 * (case.sph.alpha * c + case.sph.beta * 0.25 * speed);
-            case.time_step.courant * body.smoothing_length / signal
-        })
-        .fold(case.time_step.max, f64::min);
-    (dt.is_finite() && dt > 0.0).then_some(dt)
 }

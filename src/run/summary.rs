@@ -6,9 +6,9 @@ use serde_json::json;
 
 use super::load::load;
 use super::output_time::Seconds;
-use crate::comm::Comm;
+use crate::comm::{self, Comm};
 use crate::model::SphForm;
-use crate::output::{COMMIT, VERSION};
+use crate::output::{COMMIT, VERSION, h5};
 use crate::step::{Removed, Simulation, failed_mass};
 
 /// How long a run took.
@@ -46,6 +46,8 @@ pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_jso
         "title": simulation.case.title,
         "version": VERSION,
         "commit": COMMIT,
+        "mpi": comm::library(),
+        "hdf5": h5::library(),
         "ranks": comm.size(),
         "decomposition": (comm.size() > 1).then(|| decomposition(simulation)),
         "threads": threads,

@@ -99,7 +99,7 @@ fn bench(name: &str) -> &'static BenchCase {
 fn layout(name: &str, ranks: usize) -> Result<(Layout, usize), String> {
     let case = bench(name).read().map_err(|error| error.to_string())?;
     let particles = Particles::at_start(&case);
-    let layout = Layout::new(&case, (&particles, true), (ranks, None), ranks);
+    let layout = Layout::new(&case, (&particles, None), (ranks, None), ranks);
     let layout = layout.ok_or("it has no particles")?;
     Ok((layout, particles.positions.len()))
 }

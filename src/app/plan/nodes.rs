@@ -29,16 +29,17 @@ pub fn plan(
     let rows = compare(args, source, machine, steps)?;
     say("");
     let files = print_files(source, machine, steps)?;
-    write_sheet(args, (source, machine), &rows, &files, steps)?;
-    let (Some(file), Some(run)) = (&args.job, run) else {
-        return Ok(());
-    };
-    let row = fastest(&rows, machine).ok_or_else(|| too_large(&rows, machine))?;
-    let writing = files.written() / machine.disk_bandwidth;
-    let wanted = steps.map(|steps| steps * row.time.all + writing);
-    let job = Job::new(row, machine, wanted);
-    write_text(file, &job.text(file, [path, &run], &args.set))?;
-    say(&job.told(file));
+    write_sheet(args, &rows, steps)?;
+    if let (Some(file), Some(run)) = (&args.job, run) {
+        let row = fastest(&rows, machine).ok_or_else(|| too_large(&rows, machine))?;
+        let writing = files.written() / machine.disk_bandwidth;
+        let wanted = steps.map(|steps| steps * row.time.all + writing);
+        let job = Job::new(row, machine, wanted);
+        write_text(file, &job.text(file, [path, &run], &args.set))?;
+        say(&job.told(file));
+    }
+    args.form
+        .tell(|| table::document((source, machine), &rows, &files, steps));
     Ok(())
 }
 
@@ -49,8 +50,6 @@ fn compare(
     machine: &Machine,
     steps: Option<f64>,
 ) -> Result<Vec<Row>, String> {
-    let cores = machine.ranks_per_node(1);
-    say(&format!("  on {}: nodes of {cores} cores", machine.name));
     say("");
     let head = "nodes x ranks x threads";
     say(&format!("{head:>WIDTH$}{}", table::head()));

@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use super::PlotArgs;
-use crate::model::readable::one_line;
+use crate::app::form::wrote;
 use crate::plot::{self, Canvas, Chart, Format, PlotError, movie};
-use crate::run::say::say;
 
 /// What movies are called.
 pub const MOVIES: &str =
@@ -147,6 +146,6 @@ pub fn save(
     write: impl FnOnce(&Path) -> Result<(), PlotError>,
 ) -> Result<(), PlotError> {
     write(path)?;
-    say(&format!("wrote {}", one_line(&path.display().to_string())));
+    wrote(path, "");
     Ok(())
 }

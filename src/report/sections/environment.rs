@@ -4,12 +4,11 @@ use crate::report::found::{Run, figure_in_words};
 use crate::report::html::{Html, list};
 
 /// Figures of the summary that tell it, in this order, and what they are called.
-const TOLD: [(&str, &str); 13] = [
+const TOLD: [(&str, &str); 12] = [
     ("version", "whipple"),
     ("commit", "commit"),
     ("mpi", "MPI"),
     ("hdf5", "HDF5"),
-    ("environment", "environment"),
     ("instructions", "instruction set"),
     ("ranks", "ranks"),
     ("threads", "threads of a rank"),

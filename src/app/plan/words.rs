@@ -1,0 +1,56 @@
+//! Lines above the table.
+
+use super::source::Source;
+use crate::model::readable::{short, shown};
+use crate::plan::{Machine, Sharing};
+use crate::run::say::counted;
+
+/// A share of the work that counts as all of it.
+const ALL: f64 = 0.995;
+
+/// What is planned, of so many steps.
+pub fn heading(source: &Source, steps: Option<f64>) -> String {
+    let case = &source.case;
+    let from = source
+        .time
+        .map_or(String::new(), |time| format!(" at {}", shown(time, "s")));
+    let to = steps.map_or(String::new(), |steps| {
+        let end = shown(case.run.end_time, "s");
+        format!(", about {} steps to {end}", short(steps))
+    });
+    let count = source.particles.positions.len();
+    format!(
+        "{} ({}-D): {count} particles{from}{to}",
+        case.title, case.dimension
+    )
+}
+
+/// The machine.
+pub fn machine(machine: &Machine) -> String {
+    let time = shown(machine.particle_time, "s");
+    let cores = machine.ranks_per_node(1);
+    format!(
+        "  on {}: {time} a particle and step, nodes of {cores} cores",
+        machine.name
+    )
+}
+
+/// How ranks share nodes.
+pub fn sharing(sharing: Sharing) -> String {
+    let (ranks, threads) = (sharing.ranks_per_node as u64, sharing.threads as u64);
+    format!(
+        "  {} of {} on a node",
+        counted(ranks, "rank"),
+        counted(threads, "thread")
+    )
+}
+
+/// What share of the work steps take, if it is not all.
+pub fn rest(share: f64) -> Option<String> {
+    let percent = 100.0 * share;
+    (share < ALL).then(|| {
+        format!(
+            "  matter rests until a wave comes: steps take {percent:.0} % of the work of all of it"
+        )
+    })
+}

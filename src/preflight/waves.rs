@@ -1,0 +1,179 @@
+//! What of the matter waves have reached by a time: the rest costs next to nothing, see the theory page "Smoothed
+//! particle hydrodynamics".
+
+use super::approach::approaches;
+use crate::material::Rest;
+use crate::model::{Body, Case, Heat, SphForm, Vec3};
+use crate::populate;
+
+/// Smallest and largest coordinates (m) of a body's particles.
+type Ends = ([f64; 3], [f64; 3]);
+
+/// How far sums pass on what is not negligible ahead of sound, in spacings, as measured in the quarter impact.
+const AHEAD: f64 = 16.0;
+
+/// Work of a particle at rest over that of another.
+pub(super) const RESTING: f64 = 0.21;
+
+/// Times of a run at which its matter is looked at.
+const TIMES: usize = 8;
+
+/// Places that are looked at of a body.
+const PLACES: u64 = 20_000;
+
+/// What of the matter of a case waits for a wave.
+#[derive(Debug, Clone)]
+pub struct Waves {
+    /// By body, what waits; `None` for matter that moves from the start.
+    still: Vec<Option<Still>>,
+    /// What strikes any of them.
+    strikes: Vec<Strike>,
+}
+
+/// Matter at rest.
+#[derive(Debug, Clone, Copy)]
+struct Still {
+    /// Of sound (m/s).
+    speed: f64,
+    /// How far the wave is ahead of sound (m).
+    ahead: f64,
+}
+
+/// A body comes.
+#[derive(Debug, Clone, Copy)]
+struct Strike {
+    /// When it touches another (s).
+    time: f64,
+    /// Where it is then.
+    ends: Ends,
+    /// Its velocity (m/s).
+    velocity: [f64; 3],
+}
+
+impl Waves {
+    /// Of a case; `None` if nothing of it rests, or nobody knows how long.
+    #[must_use]
+    pub fn new(case: &Case) -> Option<Self> {
+        let known = matches!(case.sph.form, SphForm::Conventional | SphForm::Corrected)
+            && case.loads.gravity == [0.0; 3]
+            && case.loads.velocities.is_empty();
+        known.then_some(())?;
+        let still: Vec<_> = case.bodies.iter().map(|body| still(case, body)).collect();
+        still.iter().any(Option::is_some).then_some(())?;
+        let mut strikes = Vec::new();
+        for pair in approaches(case) {
+            let waits = pair.bodies.iter().any(|&body| still[body].is_some());
+            if waits && pair.time.is_finite() {
+                strikes.extend(
+                    pair.bodies
+                        .iter()
+                        .filter_map(|&body| strike(case, body, pair.time)),
+                );
+            }
+        }
+        Some(Self { still, strikes })
+    }
+
+    /// Whether matter of a body at a place (m) rests at a time (s). Waves go from any body to any other as they do
+    /// within one.
+    #[must_use]
+    pub fn rests(&self, body: usize, place: &[f64; 3], time: f64) -> bool {
+        let still = self.still.get(body).and_then(Option::as_ref);
+        still.is_some_and(|still| {
+            let reached = |strike: &Strike| {
+                let since = time - strike.time;
+                since >= 0.0 && strike.distance(place, since) <= still.speed * since + still.ahead
+            };
+            !self.strikes.iter().any(reached)
+        })
+    }
+
+    /// Times of a run (s) from one on, in the middle of even parts of it.
+    pub fn times(case: &Case, from: f64) -> impl Iterator<Item = f64> {
+        let each = (case.run.end_time - from).max(0.0) / as_number(TIMES as u64);
+        (0..TIMES as u64).map(move |k| from + each * (as_number(k) + 0.5))
+    }
+
+    /// Work of a step from a time (s) on, over what it would be if nothing rested.
+    #[must_use]
+    pub fn share_of_work(&self, case: &Case, from: f64) -> f64 {
+        let (mut work, mut all) = (0.0, 0.0);
+        for (b, body) in case.bodies.iter().enumerate() {
+            let (dimension, planes) = (case.dimension, &case.symmetry);
+            let count = as_number(populate::count(body, dimension, planes, None));
+            let (sites, _) = populate::sample(body, dimension, planes, PLACES);
+            let places: Vec<[f64; 3]> = sites.map(|site| site.position).collect();
+            let mut mean = 0.0;
+            for time in Self::times(case, from) {
+                let rests = |place: &&[f64; 3]| self.rests(b, place, time);
+                let resting = places.iter().filter(rests).count() as u64;
+                let part = as_number(resting) / as_number(places.len().max(1) as u64);
+                mean += (1.0 - part * (1.0 - RESTING)) / as_number(TIMES as u64);
+            }
+            work += count * mean;
+            all += count;
+        }
+        if all > 0.0 { work / all } else { 1.0 }
+    }
+
+    /// Work for matter of a body at a place (m) at a time (s), in per cent of that of what moves.
+    #[must_use]
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a per cent"
+    )]
+    pub fn work(&self, body: usize, place: &[f64; 3], time: f64) -> u32 {
+        if self.rests(body, place, time) {
+            (100.0 * RESTING) as u32
+        } else {
+            100
+        }
+    }
+}
+
+impl Strike {
+    /// How far a place (m) is from where the body has been (m), some time (s) after it has touched another.
+    fn distance(&self, place: &[f64; 3], since: f64) -> f64 {
+        let (lower, upper) = self.ends;
+        let apart = |a: usize| {
+            let way = self.velocity[a] * since;
+            let beyond = place[a] - (upper[a] + way.max(0.0));
+            let before = lower[a] + way.min(0.0) - place[a];
+            beyond.max(before).max(0.0)
+        };
+        Vec3::from(std::array::from_fn(apart)).norm()
+    }
+}
+
+/// What waits in a body, if it is at rest.
+fn still(case: &Case, body: &Body) -> Option<Still> {
+    let rest = Rest::of(&case.materials[body.material])?;
+    let is_still = body.rigid.is_none()
+        && body.velocity.norm() == 0.0
+        && body.speed_spread() == 0.0
+        && body.initial.heat == Heat::Reference
+        && body.initial.plastic_strain.constant() == Some(0.0);
+    is_still.then_some(Still {
+        speed: rest.sound_speed,
+        ahead: AHEAD * body.lattice.spacing,
+    })
+}
+
+/// A body that moves and touches another at a time (s).
+fn strike(case: &Case, body: usize, time: f64) -> Option<Strike> {
+    let body = &case.bodies[body];
+    let (lower, upper) = populate::bounds(body, case.dimension)?;
+    let velocity: [f64; 3] = body.velocity.into();
+    let then = |place: [f64; 3]| std::array::from_fn(|a| place[a] + velocity[a] * time);
+    (body.velocity.norm() > 0.0).then_some(Strike {
+        time,
+        ends: (then(lower), then(upper)),
+        velocity,
+    })
+}
+
+#[allow(clippy::cast_precision_loss, reason = "far fewer than 2^52")]
+fn as_number(count: u64) -> f64 {
+    count as f64
+}
