@@ -5,6 +5,7 @@ In ParaView: Macros > Import new macro, or View > Python Shell > Run Script. Wit
 pvpython open_in_paraview.py PICTURE.png draws the last snapshot.
 """
 
+import json
 import os
 import sys
 
@@ -26,6 +27,19 @@ def snapshots():
     here = os.path.dirname(os.path.abspath(globals().get("__file__", "")))
     beside = os.path.join(here, SNAPSHOTS)
     return beside if os.path.exists(beside) else PLACE
+
+
+def opened(simple, path):
+    """The source of the snapshots. ParaView 5.11 reads them, but does not know the endings of their names."""
+    try:
+        return simple.OpenDataFile(path)
+    except RuntimeError:
+        names = [path]
+    if path.endswith(".series"):
+        with open(path, encoding="utf-8") as index:
+            files = json.load(index)["files"]
+        names = [os.path.join(os.path.dirname(path), file["name"]) for file in files]
+    return simple.VTKHDFReader(FileName=names)
 
 
 def mirrored(simple, source, axis, position):
@@ -52,7 +66,7 @@ def main(picture=None):
     """Shows the snapshots; draws the last into a file if there is a name for it."""
     from paraview import simple
 
-    source = simple.OpenDataFile(snapshots())
+    source = opened(simple, snapshots())
     simple.RenameSource(TITLE, source)
     for axis, position in PLANES:
         source = mirrored(simple, source, axis, position)
@@ -67,10 +81,14 @@ def main(picture=None):
     colours.IndexedColors = [share / 255.0 for colour in COLOURS for share in colour]
     shown.SetScalarBarVisibility(view, True)
     simple.GetAnimationScene().GoToLast()
+    lower, upper = source.GetDataInformation().GetBounds()[4:]
+    if upper > lower:
+        view.CameraPosition, view.CameraFocalPoint = [1.0, -2.0, 1.0], [0.0] * 3
+        view.CameraViewUp = [0.0, 0.0, 1.0]
     simple.ResetCamera(view)
     simple.Render(view)
     if picture:
-        simple.SaveScreenshot(picture, view)
+        simple.SaveScreenshot(picture, view, ImageResolution=[1200, 900])
 
 
 if __name__ in ("__main__", "__vtkconsole__"):
