@@ -109,8 +109,12 @@ pub fn tables_of_run(
     table: &Path,
     path_of: impl Fn(u64) -> PathBuf,
 ) -> Result<Vec<(f64, PathBuf)>, PlotError> {
+    if !table.exists() {
+        let reason = "the run tells no fragments; `whipple fragments RUN --csv FILE` makes a table of a snapshot";
+        return Err(wrong(table, reason.to_owned()));
+    }
+    let rows = Table::read(table)?;
     let read = || -> Result<_, String> {
-        let rows = Table::read(table).map_err(|error| error.to_string())?;
         let steps = rows.texts("step")?;
         let times = rows.column("time")?;
         let step = |text: &str| {
