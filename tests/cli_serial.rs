@@ -52,7 +52,7 @@ Aluminium sphere at 7 km/s on an aluminium plate (3-D): sound
                    begins with velocity [0, 0, -7] km/s
   all                    3056 particles, about 45 MB a rank on 1 rank
   measures: plate, plate-debris
-  about 59 steps to 0.2 us
+  about 63 steps to 0.2 us
   about 0.1 s on 1 rank of one core of an ordinary cluster (`whipple plan` tells more)
   about 10 MB on the disk at the end
 ";

@@ -32,7 +32,6 @@ pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_jso
     let mut counts = [simulation.memory() as u64, simulation.frozen() as u64];
     comm.sum_u64(&mut counts);
     let [memory, frozen] = counts;
-    let taken_out: u64 = state.removed.iter().map(|r| r.particles).sum();
     let threads = rayon::current_num_threads();
     let rate = rate(load.updates, &phases, comm.size() * threads);
     let contact = simulation.contact();
@@ -53,7 +52,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_jso
         "threads": threads,
         "instructions": crate::numerics::dispatch::instructions().name(),
         "particles": load.particles[0],
-        "removed_particles": taken_out - frozen,
+        "removed_particles": taken_out(&state.removed) - frozen,
         "frozen_particles": frozen,
         "removed_energy": state.removed_energy(),
         "departed_energy": departed.is_some().then(|| state.departed_energy()),
@@ -85,6 +84,11 @@ pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_jso
         "absorbing_zones": absorbing_zones(simulation),
         "contact_limited_steps": worst.contact_limited_steps,
     })
+}
+
+/// How many particles were taken out.
+fn taken_out(removed: &[Removed]) -> u64 {
+    removed.iter().map(|removed| removed.particles).sum()
 }
 
 /// Axes of the slabs by level, and how often they have changed.
