@@ -103,3 +103,41 @@ fn sound_speed(medium: &Medium, shock: &Shock) -> f64 {
     let of_energy = response.dp_de * shock.pressure / (shock.density * shock.density);
     (response.dp_drho + of_energy).max(0.0).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::input;
+
+    fn steps(name: &str, set: &[&str]) -> [f64; 2] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("inputs")
+            .join(name);
+        let set: Vec<String> = set.iter().map(|&set| set.to_owned()).collect();
+        let case = input::load(&path, &set).unwrap();
+        let plain = case.run.end_time / expected_step(&case).unwrap();
+        [expected_steps(&case, 0.0).unwrap(), plain]
+    }
+
+    /// What runs of these cases have taken.
+    #[test]
+    fn steps_are_foreseen_as_they_are_taken() {
+        let near = |[told, _]: [f64; 2], ran: f64, within: f64| {
+            assert!((told / ran - 1.0).abs() < within, "{told} of {ran}");
+        };
+        near(steps("quarter-impact", &[]), 189.0, 0.2);
+        near(steps("nakamura-1991", &["spacing=2mm"]), 351.0, 0.05);
+        near(steps("ogive-on-weldox", &["spacing=3mm"]), 2958.0, 0.05);
+        let slow = steps("taylor-bar", &["spacing=0.8mm"]);
+        near(slow, 1024.0, 0.05);
+        assert_eq!(slow[0].to_bits(), slow[1].to_bits());
+    }
+
+    #[test]
+    fn first_shocks_take_short_steps() {
+        let [told, plain] = steps("quarter-impact", &[]);
+        assert!(told > 1.1 * plain, "{told} {plain}");
+    }
+}

@@ -177,3 +177,40 @@ fn strike(case: &Case, body: usize, time: f64) -> Option<Strike> {
 fn as_number(count: u64) -> f64 {
     count as f64
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::input;
+
+    fn quarter(set: &[&str]) -> Case {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/quarter-impact");
+        let set: Vec<String> = set.iter().map(|&set| set.to_owned()).collect();
+        input::load(&path, &set).unwrap()
+    }
+
+    #[test]
+    fn waves_go_out_from_where_bodies_meet() {
+        let case = quarter(&[]);
+        let waves = Waves::new(&case).unwrap();
+        let (plate, sphere) = (0, 1);
+        let (near, far) = ([0.1e-3, 0.0, 0.05e-3], [1.4e-3, 0.0, 0.05e-3]);
+        assert!(!waves.rests(sphere, &[0.0, 0.0, 0.5e-3], 0.0));
+        assert!(!waves.rests(plate, &near, 0.01e-6));
+        // 1.1 mm from the sphere's side, of which 16 spacings are ahead of sound at 6.5 km/s.
+        assert!(waves.rests(plate, &far, 0.10e-6));
+        assert!(!waves.rests(plate, &far, 0.13e-6));
+        let share = waves.share_of_work(&case, 0.0);
+        assert!((0.7..0.85).contains(&share), "{share}");
+        assert!((waves.share_of_work(&case, 0.19e-6) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn nothing_rests_where_all_falls_or_flies() {
+        assert!(Waves::new(&quarter(&["gravity=[0, 0, \"-9.81 m/s^2\"]"])).is_none());
+        let flies = r#"body.plate.velocity=[0, 0, "1 m/s"]"#;
+        assert!(Waves::new(&quarter(&[flies])).is_none());
+    }
+}
