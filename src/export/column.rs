@@ -137,11 +137,7 @@ pub fn columns(
         } else {
             derived(snapshot, &name)?
         };
-        // Each component once: of a vector and one of its own, the vector.
-        let own = column.names();
-        let is_within = |other: &Column| own.iter().all(|name| other.names().contains(name));
-        if !columns.iter().any(is_within) {
-            columns.retain(|other| !other.names().iter().all(|name| own.contains(name)));
+        if !columns.iter().any(|other| other.name == column.name) {
             columns.push(column);
         }
     }
