@@ -157,7 +157,11 @@ fn snapshots_fields_and_bodies_are_chosen() {
     export(&run, &arguments).with_code(0);
     let tables: Vec<_> = names(&out)
         .into_iter()
-        .filter(|name| name.ends_with(".csv"))
+        .filter(|name| {
+            Path::new(name)
+                .extension()
+                .is_some_and(|ending| ending == "csv")
+        })
         .collect();
     assert_eq!(tables.len(), 2, "{tables:?}");
     assert_eq!(tables[0], "step-00000000.csv");

@@ -125,7 +125,7 @@ mod tests {
         file.put(b"0000, body").unwrap();
         file.replace(0, b"head").unwrap();
         file.put(b" and").unwrap();
-        write!(file, " {}", "end").unwrap();
+        write!(file, " end").unwrap();
         assert!(!path.exists());
         assert_eq!(file.written(), 18);
         file.finish().unwrap();
