@@ -20,8 +20,6 @@ pub struct Balance {
     places: Vec<u32>,
     /// Smallest and largest coordinates of each, as words.
     ends: Least,
-    /// What a particle counts at least.
-    floor: u32,
 }
 
 /// The mean work of all particles over what one counts at least, so that no rank owns much more than so many even
@@ -42,7 +40,7 @@ impl Balance {
         (positions, work): (&[[f64; 3]], &[u32]),
         rank_speeds: &RankSpeeds,
     ) {
-        self.floor = floor(comm, work);
+        let floor = floor(comm, work);
         self.slabs.clear();
         self.slabs.push(slabs.whole());
         for level in 0..slabs.levels() {
@@ -50,19 +48,20 @@ impl Balance {
             if self.slabs.is_empty() {
                 break;
             }
-            self.count(comm, slabs, level, (positions, work));
+            self.count(comm, slabs, level, (positions, work, floor));
             self.split(slabs, rank_speeds);
             self.descend();
         }
     }
 
-    /// Counts all work in the slabs that are cut by a level, by planes normal to its axis. Collective.
+    /// Counts all work, that of a particle at least `floor`, in the slabs that are cut by a level, by planes normal to
+    /// its axis. Collective.
     fn count(
         &mut self,
         comm: &Comm,
         slabs: &NestedSlabs,
         level: usize,
-        (positions, work): (&[[f64; 3]], &[u32]),
+        (positions, work, floor): (&[[f64; 3]], &[u32], u32),
     ) {
         let ranks = slabs.ranks();
         self.places.clear();
@@ -71,7 +70,7 @@ impl Balance {
             self.places[slab.ranks().start] = place;
         }
         let axis = slabs.axis(level);
-        let (places, floor) = (&self.places, self.floor);
+        let places = &self.places;
         let place_of = |position: &[f64; 3]| {
             let first = slabs.slab_at(position, level).ranks().start;
             // Nobody cuts a slab of one rank.

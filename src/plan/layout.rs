@@ -1,5 +1,7 @@
 //! A case cut for a number of ranks: what each of them has and sends.
 
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
 use rayon::prelude::*;
 
 use super::particles::Particles;
@@ -120,6 +122,7 @@ fn uneven(case: &Case, particles: &Particles, slabs: &NestedSlabs, from: f64) ->
     let (mut slabs, mut balance) = (slabs.clone(), Balance::default());
     let each = particles.positions.len() as f64 / ranks as f64;
     let places = particles.positions.as_slice();
+    let mut owned: Vec<AtomicU64> = (0..ranks).map(|_| AtomicU64::default()).collect();
     let most = Waves::times(case, from).map(|time| {
         let bodies = particles.body.par_iter().zip(places);
         let work = bodies.map(|(&body, place)| waves.work(body as usize, place, time));
@@ -130,11 +133,13 @@ fn uneven(case: &Case, particles: &Particles, slabs: &NestedSlabs, from: f64) ->
             (places, &work),
             &RankSpeeds::default(),
         );
-        let mut owned = vec![0_u64; ranks];
-        for place in places {
-            owned[slabs.owner(place)] += 1;
-        }
-        owned.into_iter().max().unwrap_or(0) as f64 / each
+        owned.fill_with(AtomicU64::default);
+        let owners = places.par_iter().map(|place| slabs.owner(place));
+        owners.for_each(|owner| {
+            owned[owner].fetch_add(1, Relaxed);
+        });
+        let most = owned.iter_mut().map(|owned| *owned.get_mut()).max();
+        most.unwrap_or(0) as f64 / each
     });
     most.fold(UNEVEN, f64::max)
 }

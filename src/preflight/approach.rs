@@ -9,7 +9,7 @@ const TOUCH: f64 = 0.1;
 const MOST_STEPS: usize = 200;
 
 /// Smallest and largest coordinates (m) of a body's particles.
-type Ends = ([f64; 3], [f64; 3]);
+pub(super) type Ends = ([f64; 3], [f64; 3]);
 
 /// Two bodies, of which one at least deforms.
 #[derive(Debug, Clone, Copy, PartialEq)]

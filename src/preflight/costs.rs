@@ -1,6 +1,6 @@
 //! What a rank takes of memory by what it has.
 
-use super::waves::{RESTING, Waves};
+use super::waves::{RESTING, can_rest};
 use crate::contact::ContactTable;
 use crate::domain::MOST_UNEVEN;
 use crate::model::Case;
@@ -29,7 +29,7 @@ pub(super) fn uneven(case: &Case, ranks: usize) -> f64 {
     if case.domain.balance_every == 0 || ranks < 2 {
         return 1.0;
     }
-    if Waves::new(case).is_none() {
+    if !can_rest(case) {
         return UNEVEN;
     }
     // All that moves is on the other ranks.

@@ -21,12 +21,16 @@ pub fn expected_step(case: &Case) -> Option<f64> {
         .filter(|body| body.rigid.is_none())
         .map(|body| {
             let material = &case.materials[body.material];
-            let c = material.longitudinal_speed();
-            let signal = c + 0.6 * (case.sph.alpha * c + case.sph.beta * APPROACH[1] * speed);
+            let signal = signal(case, material.longitudinal_speed(), APPROACH[1] * speed);
             case.time_step.courant * body.smoothing_length / signal
         })
         .fold(case.time_step.max, f64::min);
     (dt.is_finite() && dt > 0.0).then_some(dt)
+}
+
+/// Speed (m/s) of the signals that limit a step, by that of sound and of the approach of neighbours (m/s).
+fn signal(case: &Case, sound: f64, approach: f64) -> f64 {
+    sound + 0.6 * (case.sph.alpha * sound + case.sph.beta * approach)
 }
 
 /// Steps from a time (s) to the end, as far as they are foreseen: those of [`expected_step`], and shorter ones while
@@ -36,7 +40,7 @@ pub fn expected_steps(case: &Case, from: f64) -> Option<f64> {
     let long = expected_step(case)?;
     let end = case.run.end_time;
     let all = (end - from).max(0.0) / long;
-    let Some((until, signal)) = shock(case) else {
+    let Some(([begin, until], signal)) = shock(case) else {
         return Some(all);
     };
     let lengths = case.bodies.iter().filter(|body| body.rigid.is_none());
@@ -44,14 +48,14 @@ pub fn expected_steps(case: &Case, from: f64) -> Option<f64> {
         least.min(body.smoothing_length)
     });
     let short = long.min(case.time_step.courant * length / signal);
-    let shocked = (until.min(end) - from).max(0.0);
+    let shocked = (until.min(end) - begin.max(from)).max(0.0);
     Some(all + shocked / short - shocked / long)
 }
 
-/// Until when (s) shocks are as strong as at first, and the speed (m/s) of their signals: the strongest of all pairs of
+/// From when until when (s) shocks are as strong as at first, and the speed (m/s) of their signals: the strongest of all pairs of
 /// bodies that meet. A shock and the release from the nearest free face cross the smaller body.
-fn shock(case: &Case) -> Option<(f64, f64)> {
-    let mut strongest: Option<(f64, f64)> = None;
+fn shock(case: &Case) -> Option<([f64; 2], f64)> {
+    let mut strongest: Option<([f64; 2], f64)> = None;
     for pair in approaches(case) {
         let bodies = pair.bodies.map(|body| &case.bodies[body]);
         let of = |k: usize| Medium::of(&case.materials[bodies[k].material]);
@@ -59,7 +63,7 @@ fn shock(case: &Case) -> Option<(f64, f64)> {
         let (Some(flyer), Some(target)) = (of(0), of(1)) else {
             continue;
         };
-        if !deform || !pair.time.is_finite() {
+        if !deform || pair.speed == 0.0 || !pair.time.is_finite() {
             continue;
         }
         let along = (bodies[0].velocity - bodies[1].velocity) / pair.speed;
@@ -70,15 +74,14 @@ fn shock(case: &Case) -> Option<(f64, f64)> {
             .map(|(medium, shock)| sound_speed(medium, shock))
             .into_iter()
             .fold(0.0, f64::max);
-        let signal =
-            speed + 0.6 * (case.sph.alpha * speed + case.sph.beta * APPROACH[0] * pair.speed);
+        let signal = signal(case, speed, APPROACH[0] * pair.speed);
         let crossing = impact.flyer.shock_speed.min(impact.target.shock_speed);
         let until = pair.time + 2.0 * f64::min(way[0], way[1]) / crossing;
         if strongest.is_none_or(|(_, most)| signal > most) {
-            strongest = Some((until, signal));
+            strongest = Some(([pair.time, until], signal));
         }
     }
-    strongest.filter(|(until, _)| until.is_finite())
+    strongest.filter(|([_, until], _)| until.is_finite())
 }
 
 /// The way (m) through a body along a direction, or to the side from its middle if that is shorter.
@@ -110,6 +113,7 @@ mod tests {
 
     use super::*;
     use crate::input;
+    use crate::model::Shape;
 
     fn steps(name: &str, set: &[&str]) -> [f64; 2] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -133,6 +137,24 @@ mod tests {
         let slow = steps("taylor-bar", &["spacing=0.8mm"]);
         near(slow, 1024.0, 0.05);
         assert_eq!(slow[0].to_bits(), slow[1].to_bits());
+    }
+
+    /// A ball that comes from farther away flies first, in long steps.
+    #[test]
+    fn nothing_is_shocked_before_bodies_meet() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/quarter-impact");
+        let case = input::load(&path, &[]).unwrap();
+        let ([begin, until], _) = shock(&case).unwrap();
+        let mut far = case.clone();
+        let way = 0.7e-3;
+        let Shape::Sphere { centre, .. } = &mut far.bodies[1].shape else {
+            panic!("the sphere is one");
+        };
+        centre[2] += way;
+        let ([later, end], _) = shock(&far).unwrap();
+        // Bodies in touch are within a tenth of a spacing.
+        assert!((later - begin - way / 7e3).abs() < 1e-9);
+        assert!((end - later - (until - begin)).abs() < 1e-3 * until);
     }
 
     #[test]

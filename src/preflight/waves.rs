@@ -1,13 +1,10 @@
 //! What of the matter waves have reached by a time: the rest costs next to nothing, see the theory page "Smoothed
 //! particle hydrodynamics".
 
-use super::approach::approaches;
+use super::approach::{Ends, approaches};
 use crate::material::Rest;
 use crate::model::{Body, Case, Heat, SphForm, Vec3};
 use crate::populate;
-
-/// Smallest and largest coordinates (m) of a body's particles.
-type Ends = ([f64; 3], [f64; 3]);
 
 /// How far sums pass on what is not negligible ahead of sound, in spacings, as measured in the quarter impact.
 const AHEAD: f64 = 16.0;
@@ -54,12 +51,7 @@ impl Waves {
     /// Of a case; `None` if nothing of it rests, or nobody knows how long.
     #[must_use]
     pub fn new(case: &Case) -> Option<Self> {
-        let known = matches!(case.sph.form, SphForm::Conventional | SphForm::Corrected)
-            && case.loads.gravity == [0.0; 3]
-            && case.loads.velocities.is_empty();
-        known.then_some(())?;
-        let still: Vec<_> = case.bodies.iter().map(|body| still(case, body)).collect();
-        still.iter().any(Option::is_some).then_some(())?;
+        let still = waiting(case)?;
         let mut strikes = Vec::new();
         for pair in approaches(case) {
             let waits = pair.bodies.iter().any(|&body| still[body].is_some());
@@ -144,6 +136,21 @@ impl Strike {
         };
         Vec3::from(std::array::from_fn(apart)).norm()
     }
+}
+
+/// Whether matter of a case rests at first, without a look at what strikes it.
+pub(super) fn can_rest(case: &Case) -> bool {
+    waiting(case).is_some()
+}
+
+/// By body, what waits; `None` if nothing does, or nobody knows how long.
+fn waiting(case: &Case) -> Option<Vec<Option<Still>>> {
+    let known = matches!(case.sph.form, SphForm::Conventional | SphForm::Corrected)
+        && case.loads.gravity == [0.0; 3]
+        && case.loads.velocities.is_empty();
+    known.then_some(())?;
+    let still: Vec<_> = case.bodies.iter().map(|body| still(case, body)).collect();
+    still.iter().any(Option::is_some).then_some(still)
 }
 
 /// What waits in a body, if it is at rest.
