@@ -9,7 +9,7 @@ use physics_support::{inline, run_to, start};
 use whipple::comm::Comm;
 use whipple::model::{Case, Vec3};
 use whipple::populate;
-use whipple::preflight::{beginning, warnings};
+use whipple::preflight::{approaches, beginning, warnings};
 use whipple::step::Simulation;
 
 /// A copper block of 6 × 5 × 4 mm about (1, 2, 3) mm.
@@ -92,7 +92,7 @@ fn a_temperature_is_an_energy_with_its_pressure() {
     let pressure = material.eos.at(rho, rho, energy).pressure;
     // Γ = 2.02, ρ = 8930 kg/m³, c_v = 383 J/(kg K), from 298 K or so.
     assert!((1.9e9..2.3e9).contains(&pressure), "{pressure}");
-    let said = warnings(&case).join("\n");
+    let said = warnings(&case, &approaches(&case)).join("\n");
     assert!(said.contains("begins with a pressure of 2.07"), "{said}");
     let density = said.split("at a `density` of ").nth(1).expect(&said);
     let density = density.split(" it is free").next().unwrap();
@@ -106,7 +106,7 @@ fn a_temperature_is_an_energy_with_its_pressure() {
         .at(rho, free.initial_density(body), free.initial_energy(body));
     assert!(state.pressure.abs() < 1e7, "{}", state.pressure);
     assert!(
-        !warnings(&free)
+        !warnings(&free, &approaches(&free))
             .join("\n")
             .contains("begins with a pressure")
     );

@@ -2,7 +2,7 @@
 
 use whipple::input::parse;
 use whipple::model::{Absorber, Axis, Case, OuterFace};
-use whipple::preflight::warnings;
+use whipple::preflight::{approaches, warnings};
 
 /// A can about z, a quarter of a block and a zone.
 fn case(zone: &str) -> Result<Case, String> {
@@ -39,7 +39,7 @@ fn zone(text: &str) -> Absorber {
     let case = case(text).unwrap_or_else(|error| panic!("{error}"));
     let sinks = "which bears no weight";
     assert!(
-        warnings(&case)
+        warnings(&case, &approaches(&case))
             .iter()
             .any(|warning| warning.ends_with(sinks))
     );

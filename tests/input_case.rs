@@ -8,7 +8,7 @@ use whipple::model::{
     Axis, Case, ClockInterval, ContactMode, PotentialRange, Precision, Shape, SmoothingLength,
 };
 use whipple::populate;
-use whipple::preflight::warnings;
+use whipple::preflight::{approaches, warnings};
 
 fn ready(name: &str, overrides: &[&str]) -> Case {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("inputs/{name}/case.toml"));
@@ -35,7 +35,7 @@ fn meaning(case: &Case) -> String {
 fn the_main_job() {
     let case = ready("quarter-impact", &[]);
     assert_eq!(particles(&case), [44_230, 3_582]);
-    assert!(warnings(&case).is_empty());
+    assert!(warnings(&case, &approaches(&case)).is_empty());
     let [plate, sphere] = case.bodies.as_slice() else {
         panic!("two bodies")
     };
@@ -86,7 +86,7 @@ fn the_small_cases() {
     let elastic = ready("elastic-impact", &[]);
     assert_eq!(particles(&elastic), [2400, 552]);
     for case in [flyer, elastic] {
-        assert!(warnings(&case).is_empty());
+        assert!(warnings(&case, &approaches(&case)).is_empty());
     }
 }
 
@@ -115,7 +115,7 @@ fn impacts_of_plates_and_targets() {
         for (count, about) in particles(&case).iter().zip(expected) {
             assert!(count.abs_diff(*about) * 50 < *about, "{name}: {count}");
         }
-        let said = warnings(&case);
+        let said = warnings(&case, &approaches(&case));
         assert!(said.is_empty(), "{name}: {said:?}");
     }
 }
@@ -361,14 +361,16 @@ fn overlapping_bodies_and_crooked_lattices_are_doubted() {
         &["body.sphere.touch={body=\"block\",direction=\"-x\"}"],
     );
     assert!(
-        warnings(&deep)[0].starts_with("nothing meets"),
+        warnings(&deep, &approaches(&deep))[0].starts_with("nothing meets"),
         "beside the block"
     );
     let text = ready("elastic-impact", &[]).resolved;
     let text = text.replace("touch = { body = \"block\", direction = \"-z\" }", "");
     let near = text.replace("\"1 mm\"]", "\"0.77 mm\"]");
     let case = parse("overlap", &near, &[]).unwrap();
-    assert!(warnings(&case)[0].contains("begin 0.30 spacings within each other"));
+    assert!(
+        warnings(&case, &approaches(&case))[0].contains("begin 0.30 spacings within each other")
+    );
     let text = text.replace("\"1 mm\"]", "\"0.5 mm\"]");
     let error = parse("overlap", &text, &[]).unwrap_err().to_string();
     assert!(
@@ -376,9 +378,9 @@ fn overlapping_bodies_and_crooked_lattices_are_doubted() {
         "{error}"
     );
     let silent = parse("overlap", &text, &strings(&["contact.mode=none"])).unwrap();
-    assert!(warnings(&silent)[0].contains("they pass through each other"));
+    assert!(warnings(&silent, &approaches(&silent))[0].contains("they pass through each other"));
     let crooked = ready("quarter-impact", &["body.plate.lattice=hexagonal"]);
-    assert!(warnings(&crooked)[0].contains("is not its own mirror image"));
+    assert!(warnings(&crooked, &approaches(&crooked))[0].contains("is not its own mirror image"));
 }
 
 #[test]

@@ -11,7 +11,7 @@ use surfaces::{Triangles, ball, cuboid, rounded, torus, turned, volume, write_ob
 use whipple::input::load;
 use whipple::model::{Axis, Case, Shape, SymmetryPlane, Vec3};
 use whipple::populate;
-use whipple::preflight::warnings;
+use whipple::preflight::{approaches, warnings};
 
 /// A case in a folder of a body at .1 mm.
 fn written(folder: &Path, body: &str, more: &str) -> std::path::PathBuf {
@@ -92,7 +92,7 @@ fn volume_and_mass_are_those_of_the_triangles() {
                 for site in &sites {
                     assert!(body.shape.distance(&Vec3::from(site.position), 3) < 0.0);
                 }
-                assert_eq!(warnings(&case), [""; 0]);
+                assert_eq!(warnings(&case, &approaches(&case)), [""; 0]);
             }
         }
     }
@@ -252,7 +252,7 @@ fn small_leaks_are_mended_and_said_and_large_ones_refused_with_their_place() {
     }
     write_stl(&path, &leaky);
     let mended = case(folder.path(), body, "");
-    let told = warnings(&mended);
+    let told = warnings(&mended, &approaches(&mended));
     let line = told
         .iter()
         .find(|line| line.contains("mended"))
@@ -306,7 +306,8 @@ fn small_leaks_are_mended_and_said_and_large_ones_refused_with_their_place() {
     let mut across = cuboid([0.0; 3], [2.0; 3]);
     across.extend(cuboid([1.0, 0.5, 0.5], [3.0, 1.5, 1.5]));
     write_stl(&path, &across);
-    let told = warnings(&case(folder.path(), body, ""));
+    let case = case(folder.path(), body, "");
+    let told = warnings(&case, &approaches(&case));
     let is_told = told
         .iter()
         .any(|line| line.contains("cut through each other, as near [2, "));
@@ -333,7 +334,7 @@ fn shells_within_each_other_are_cavities() {
     let error = mass(&case, 8.0 - 1.0 + 0.125 + 1.0);
     assert!(error.abs() < 1e-12, "{error:e}");
     assert!(
-        warnings(&case)
+        warnings(&case, &approaches(&case))
             .iter()
             .any(|line| line.contains("1 shell turned inside out"))
     );

@@ -6,7 +6,7 @@ use whipple::comm::Comm;
 use whipple::input::{load, parse};
 use whipple::model::Case;
 use whipple::populate::{bounds, smallest_gap};
-use whipple::preflight::warnings;
+use whipple::preflight::{approaches, warnings};
 use whipple::step::Simulation;
 
 const GOOD: &str = r#"dimension = 3
@@ -193,7 +193,7 @@ fn assert_in_touch(case: Case, name: &str) {
     for gap in gaps(&case) {
         assert!((gap - 0.5).abs() < 2e-9, "{name}: {gap}");
     }
-    let told = warnings(&case);
+    let told = warnings(&case, &approaches(&case));
     assert!(told.iter().all(|line| !line.contains("pushes")), "{told:?}");
     let mut simulation = Simulation::start(case, &Comm::solo()).unwrap();
     let still = |s: &Simulation| {

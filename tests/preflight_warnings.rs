@@ -25,7 +25,7 @@ shape.box = { lower = ["-2 mm", 0], upper = ["3 mm", "1 mm"] }
 fn told(set: &[&str]) -> Vec<String> {
     let set: Vec<String> = set.iter().map(ToString::to_string).collect();
     let case = parse("bar", BAR, &set).unwrap_or_else(|error| panic!("{error}"));
-    warnings(&case)
+    warnings(&case, &approaches(&case))
 }
 
 #[track_caller]

@@ -85,14 +85,15 @@ pub fn run(args: &CheckArgs) -> u8 {
         warn(&format!("error: {error}"));
         return EXIT_INPUT;
     }
-    let mut warnings = preflight::warnings(&case);
+    let approaches = preflight::approaches(&case);
+    let mut warnings = preflight::warnings(&case, &approaches);
     warnings.extend(preflight::advice(&case));
     for warning in &warnings {
         warn(&format!("warning: {warning}"));
     }
     let ranks = args.ranks as usize;
     if !args.form.is_json() {
-        print_report(&case, ranks);
+        print_report((&case, &approaches), ranks);
     }
     let drawn = args
         .picture
@@ -100,7 +101,8 @@ pub fn run(args: &CheckArgs) -> u8 {
         .map_or(Ok(()), |path| draw(&case, path, args.section.as_deref()));
     match drawn {
         Ok(()) => {
-            args.form.tell(|| document(&case, ranks, &warnings));
+            args.form
+                .tell(|| document((&case, &approaches), ranks, &warnings));
             0
         }
         Err(error) => {
@@ -198,7 +200,7 @@ fn print_body(case: &Case, body: &Body) -> u64 {
 }
 
 #[allow(clippy::cast_precision_loss, reason = "for people")]
-fn print_report(case: &Case, ranks: usize) {
+fn print_report((case, approaches): (&Case, &[Approach]), ranks: usize) {
     say(&format!("{} ({}-D): sound", case.title, case.dimension));
     let counts = case.bodies.iter().map(|body| print_body(case, body));
     let total: u64 = counts.sum();
@@ -208,7 +210,7 @@ fn print_report(case: &Case, ranks: usize) {
         "  {:<16} {total:>10} particles, about {memory} a rank on {ranks} rank{plural}",
         "all"
     ));
-    for (pair, [a, b]) in meetings(case) {
+    for (pair, [a, b]) in meetings(case, approaches) {
         say(&format!(
             "  {a} and {b} meet at {}, from {:.1} spacings apart",
             shown(pair.time, "s"),
@@ -216,22 +218,31 @@ fn print_report(case: &Case, ranks: usize) {
         ));
     }
     print_measures(case);
-    let steps = plan::expected_steps(case, 0.0);
+    let steps = plan::expected_steps(case, approaches, 0.0);
     if let Some(steps) = steps {
         let end = shown(case.run.end_time, "s");
         say(&format!("  about {} steps to {end}", short(steps)));
     }
-    print_costs(case, (total as f64, steps), ranks);
+    let machine = machine(case, approaches);
+    print_costs(case, (total as f64, steps), ranks, &machine);
 }
 
 /// Bodies that are going to meet, with their names.
-fn meetings(case: &Case) -> impl Iterator<Item = (Approach, [&str; 2])> {
-    let pairs = preflight::approaches(case).into_iter();
+fn meetings<'a>(
+    case: &'a Case,
+    approaches: &'a [Approach],
+) -> impl Iterator<Item = (&'a Approach, [&'a str; 2])> {
+    let pairs = approaches.iter();
     let meeting = pairs.filter(|pair| pair.time.is_finite() && pair.time > 0.0);
     meeting.map(|pair| {
         let names = pair.bodies.map(|body| case.bodies[body].name.as_str());
         (pair, names)
     })
+}
+
+/// An ordinary machine, which is spared what rests.
+fn machine(case: &Case, approaches: &[Approach]) -> Machine {
+    Machine::default().sparing(plan::share_of_work(case, approaches))
 }
 
 /// Seconds of so many steps with their files on a machine.
@@ -241,13 +252,17 @@ fn wall_time(case: &Case, ranks: usize, machine: &Machine, (steps, files): (f64,
 }
 
 /// What the run takes of an ordinary machine, and of the disk.
-fn print_costs(case: &Case, (particles, steps): (f64, Option<f64>), ranks: usize) {
-    let machine = Machine::default();
+fn print_costs(
+    case: &Case,
+    (particles, steps): (f64, Option<f64>),
+    ranks: usize,
+    machine: &Machine,
+) {
     let Ok(files) = Files::new(case, particles, steps.unwrap_or(0.0)) else {
         return;
     };
     if let Some(steps) = steps {
-        let wall = duration(wall_time(case, ranks, &machine, (steps, &files)));
+        let wall = duration(wall_time(case, ranks, machine, (steps, &files)));
         let plural = if ranks == 1 { "" } else { "s" };
         let name = &machine.name;
         say(&format!(

@@ -18,9 +18,7 @@ use super::plot::out::{check_picture, save_text, write_chart};
 use crate::model::Case;
 use crate::model::readable::short;
 use crate::output::read_small;
-use crate::plan::{
-    Files, Layout, Load, Machine, Row, Sharing, Weak, computing, expected_steps, share_of_work,
-};
+use crate::plan::{Files, Layout, Load, Machine, Row, Sharing, Weak, computing};
 use crate::plot::PlotError;
 use crate::preflight::{Costs, memory};
 use crate::run::exit::{EXIT_FAILED, EXIT_INPUT};
@@ -185,21 +183,19 @@ fn plan(args: &PlanArgs, path: &Path) -> Result<(), String> {
         .as_deref()
         .map_or(Ok(Machine::default()), machine)?;
     let source = source::read(path, &args.set)?;
-    let from = source.time.unwrap_or(0.0);
-    let steps = expected_steps(&source.case, from);
-    say(&words::heading(&source, steps));
+    say(&words::heading(&source));
     say(&words::machine(&machine));
-    let share = share_of_work(&source.case, from);
+    let share = source.outlook.share_of_work;
     if let Some(line) = words::rest(share) {
         say(&line);
     }
     let machine = machine.sparing(share);
     if !args.nodes.is_empty() {
-        return nodes::plan(args, path, (&source, steps), &machine);
+        return nodes::plan(args, path, &source, &machine);
     }
-    let (all, files) = print_ranks(args, &source, &machine, steps)?;
+    let (all, files) = print_ranks(args, &source, &machine)?;
     let rows: Vec<Row> = all.iter().map(|planned| planned.row).collect();
-    write_sheet(args, &rows, steps)?;
+    write_sheet(args, &rows, source.outlook.steps)?;
     if let Some(path) = &args.chart {
         let weak: Vec<Weak> = all.iter().map(|planned| planned.weak).collect();
         let title = format!("{}, {}", source.case.title, machine.name);
@@ -208,7 +204,7 @@ fn plan(args: &PlanArgs, path: &Path) -> Result<(), String> {
         write_chart(&chart, args.width, path).map_err(told)?;
     }
     args.form
-        .tell(|| table::document((&source, &machine), &rows, &files, steps));
+        .tell(|| table::document((&source, &machine), &rows, &files));
     Ok(())
 }
 
@@ -217,7 +213,6 @@ fn print_ranks(
     args: &PlanArgs,
     source: &Source,
     machine: &Machine,
-    steps: Option<f64>,
 ) -> Result<(Vec<Planned>, Files), String> {
     let sharing = args.sharing(machine);
     say(&words::sharing(sharing));
@@ -235,7 +230,7 @@ fn print_ranks(
                 layout_of(source, (ranks, Some(levels)), sharing.ranks_per_node)?
             };
             let row = row_of(source, machine, &layout, sharing, &alone);
-            let line = table::line(&row, is_own, steps);
+            let line = table::line(&row, is_own, source.outlook.steps);
             say(&(line + &table::excess(&row, machine)));
             let each = f64::from(args.per_core) * as_number(sharing.threads);
             let weak = Weak::new(&layout.loads, levels, each, (machine, sharing));
@@ -244,7 +239,7 @@ fn print_ranks(
         }
     }
     say("");
-    let files = print_files(source, machine, steps)?;
+    let files = print_files(source, machine)?;
     if args.doubled {
         doubled::print(args, machine, &alone, &all);
     }
@@ -306,9 +301,8 @@ fn layout_of(
     ranks_and_levels: (usize, Option<usize>),
     ranks_per_node: usize,
 ) -> Result<Layout, String> {
-    let (case, particles) = (&source.case, &source.particles);
-    let from = (particles, source.time);
-    let layout = Layout::new(case, from, ranks_and_levels, ranks_per_node);
+    let from = (&source.particles, source.time, &source.outlook);
+    let layout = Layout::new(&source.case, from, ranks_and_levels, ranks_per_node);
     layout.ok_or_else(|| "error: the case has no particles".to_owned())
 }
 
@@ -325,9 +319,9 @@ fn row_of(
     Row::new(of, (machine, sharing), costs, computing(alone, machine))
 }
 
-fn print_files(source: &Source, machine: &Machine, steps: Option<f64>) -> Result<Files, String> {
+fn print_files(source: &Source, machine: &Machine) -> Result<Files, String> {
     let count = as_number(source.particles.positions.len());
-    let files = Files::new(&source.case, count, steps.unwrap_or(0.0));
+    let files = Files::new(&source.case, count, source.outlook.steps.unwrap_or(0.0));
     let files = files.map_err(|error| format!("error: {error}"))?;
     for line in file_lines(&files, machine) {
         say(&format!("  {line}"));

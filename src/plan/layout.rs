@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use rayon::prelude::*;
 
+use super::outlook::Outlook;
 use super::particles::Particles;
 use crate::comm::{Comm, Traffic};
 use crate::domain::{
@@ -12,7 +13,7 @@ use crate::domain::{
 };
 use crate::model::Case;
 use crate::populate;
-use crate::preflight::{UNEVEN, Waves};
+use crate::preflight::UNEVEN;
 use crate::step::bytes_of_messages;
 
 /// What a rank has, and what it sends in a step but for particles that change ranks.
@@ -38,13 +39,13 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Of particles, those of the start or those at a time (s), for so many ranks in slabs of so many levels, or of those
-    /// that the case takes by itself, where so many ranks that follow each other share a node. `None` for a
-    /// case without particles.
+    /// Of particles, those of the start or those at a time (s), and what is foreseen of them, for so many ranks in slabs
+    /// of so many levels, or of those that the case takes by itself, where so many ranks that follow each other share a
+    /// node. `None` for a case without particles.
     #[must_use]
     pub fn new(
         case: &Case,
-        (particles, time): (&Particles, Option<f64>),
+        (particles, time, outlook): (&Particles, Option<f64>, &Outlook),
         (ranks, levels): (usize, Option<usize>),
         ranks_per_node: usize,
     ) -> Option<Self> {
@@ -55,7 +56,7 @@ impl Layout {
         };
         let slabs = cut(case, particles, ranks, levels)?;
         let loads = loads(case, particles, &slabs, ranks_per_node);
-        let uneven = uneven(case, particles, &slabs, time.unwrap_or(0.0));
+        let uneven = uneven(case, particles, &slabs, outlook);
         Some(Self {
             slabs,
             loads,
@@ -109,24 +110,21 @@ fn cut(slabs: &mut NestedSlabs, particles: &Particles, balance: &mut Balance) {
     balance.cut(&Comm::solo(), slabs, all, &RankSpeeds::default());
 }
 
-/// The most of an even share of all particles that a rank owns from a time (s) on, as work is balanced.
+/// The most of an even share of all particles that a rank is going to own, as work is balanced.
 #[allow(clippy::cast_precision_loss, reason = "a ratio")]
-fn uneven(case: &Case, particles: &Particles, slabs: &NestedSlabs, from: f64) -> f64 {
+fn uneven(case: &Case, particles: &Particles, slabs: &NestedSlabs, outlook: &Outlook) -> f64 {
     let ranks = slabs.ranks();
     if case.domain.balance_every == 0 || ranks < 2 {
         return 1.0;
     }
-    let Some(waves) = Waves::new(case) else {
+    let Some(works) = outlook.works() else {
         return UNEVEN;
     };
     let (mut slabs, mut balance) = (slabs.clone(), Balance::default());
     let each = particles.positions.len() as f64 / ranks as f64;
     let places = particles.positions.as_slice();
     let mut owned: Vec<AtomicU64> = (0..ranks).map(|_| AtomicU64::default()).collect();
-    let most = Waves::times(case, from).map(|time| {
-        let bodies = particles.body.par_iter().zip(places);
-        let work = bodies.map(|(&body, place)| waves.work(body as usize, place, time));
-        let work: Vec<u32> = work.collect();
+    let most = works.map(|work| {
         balance.cut(
             &Comm::solo(),
             &mut slabs,

@@ -1,4 +1,4 @@
-//! What a run takes, from counts along the axes alone: soon told of any number of particles.
+//! What a step takes, from counts along the axes alone: soon told of any number of particles.
 
 use super::layout::Load;
 use super::machine::Machine;
@@ -7,26 +7,11 @@ use super::sharing::Sharing;
 use crate::comm::{Comm, Traffic};
 use crate::domain::Tally;
 use crate::model::Case;
-use crate::preflight::{self, Waves, memory};
+use crate::preflight::memory;
 use crate::step::bytes_of_messages;
 
 /// Peers of a rank in boxes: those around a box of three axes.
 const PEERS: u64 = 26;
-
-/// Steps of a case from a time (s) on, as far as they are foreseen.
-#[must_use]
-#[allow(clippy::cast_precision_loss, reason = "for people")]
-pub fn expected_steps(case: &Case, time: f64) -> Option<f64> {
-    let by_time = preflight::expected_steps(case, time)?;
-    let most = case.run.max_steps.map_or(f64::INFINITY, |most| most as f64);
-    Some(by_time.min(most).round())
-}
-
-/// Work of the steps from a time (s) on, over what it would be if all matter moved.
-#[must_use]
-pub fn share_of_work(case: &Case, time: f64) -> f64 {
-    Waves::new(case).map_or(1.0, |waves| waves.share_of_work(case, time))
-}
 
 /// Seconds of a mean step on so many ranks of a machine, each with one thread and as much to do.
 #[must_use]
@@ -37,7 +22,6 @@ pub fn share_of_work(case: &Case, time: f64) -> f64 {
     reason = "counts of particles"
 )]
 pub fn rough_step(case: &Case, ranks: usize, machine: &Machine) -> f64 {
-    let machine = machine.clone().sparing(share_of_work(case, 0.0));
     let solo = Comm::solo();
     let owned = (memory::fullest_of(case, &solo, 1).owned / ranks as f64) as u64;
     let halo = memory::fullest_of(case, &solo, ranks).halo as u64;
@@ -66,5 +50,5 @@ pub fn rough_step(case: &Case, ranks: usize, machine: &Machine) -> f64 {
         sent,
         beyond,
     };
-    step_time(&vec![load; ranks], &machine, sharing).all
+    step_time(&vec![load; ranks], machine, sharing).all
 }

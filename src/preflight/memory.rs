@@ -222,7 +222,8 @@ mod tests {
         let all_of = |spacing| {
             visits::of(|| {
                 let case = quarter(spacing);
-                let told = (warnings(&case), approaches(&case));
+                let approaches = approaches(&case);
+                let told = (warnings(&case, &approaches), approaches);
                 (told, of_rank(&case, &solo, 10_000))
             })
         };

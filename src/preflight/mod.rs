@@ -15,7 +15,7 @@ pub use approach::{Approach, approaches};
 pub use costs::{Costs, UNEVEN};
 pub use initial::beginning;
 pub use steps::{expected_step, expected_steps};
-pub use waves::Waves;
+pub use waves::{RESTING, TIMES, Waves, mean_work};
 
 use crate::model::{Body, Case, ContactMode};
 use crate::populate::{self, overlap};
@@ -26,9 +26,9 @@ const SHALLOW: f64 = 0.2;
 /// Doubtful things in a valid case, one line each: bodies that overlap a little, lattices that a
 /// symmetry plane does not mirror into themselves, planes that push from the start, bodies that
 /// meet without contact or never, surfaces that were mended, contact of an odd stiffness, impacts beyond an equation of state,
-/// pressure that heat brings along, and values that no run has a use for.
+/// pressure that heat brings along, and values that no run has a use for; of a case whose bodies meet so.
 #[must_use]
-pub fn warnings(case: &Case) -> Vec<String> {
+pub fn warnings(case: &Case, approaches: &[Approach]) -> Vec<String> {
     let mut found = Vec::new();
     for (a, body) in case.bodies.iter().enumerate() {
         for (b, other) in case.bodies.iter().enumerate().skip(a + 1) {
@@ -63,12 +63,11 @@ pub fn warnings(case: &Case) -> Vec<String> {
     }
     surfaces(case, &mut found);
     meshes::warnings(case, &mut found);
-    let approaches = approaches(case);
     case::stiffness(case, &mut found);
-    case::meetings(case, &approaches, &mut found);
-    impact::warnings(case, &approaches, &mut found);
+    case::meetings(case, approaches, &mut found);
+    impact::warnings(case, approaches, &mut found);
     initial::warnings(case, &mut found);
-    sense::warnings(case, &approaches, &mut found);
+    sense::warnings(case, approaches, &mut found);
     found
 }
 

@@ -1,6 +1,6 @@
 //! How long steps will be.
 
-use super::approach::approaches;
+use super::approach::Approach;
 use crate::exact::hugoniot::{Medium, Shock, impact};
 use crate::model::{Body, Case, Vec3};
 use crate::populate;
@@ -34,13 +34,13 @@ fn signal(case: &Case, sound: f64, approach: f64) -> f64 {
 }
 
 /// Steps from a time (s) to the end, as far as they are foreseen: those of [`expected_step`], and shorter ones while
-/// the first shocks go through the bodies.
+/// the first shocks go through bodies that meet so.
 #[must_use]
-pub fn expected_steps(case: &Case, from: f64) -> Option<f64> {
+pub fn expected_steps(case: &Case, approaches: &[Approach], from: f64) -> Option<f64> {
     let long = expected_step(case)?;
     let end = case.run.end_time;
     let all = (end - from).max(0.0) / long;
-    let Some(([begin, until], signal)) = shock(case) else {
+    let Some(([begin, until], signal)) = shock(case, approaches) else {
         return Some(all);
     };
     let lengths = case.bodies.iter().filter(|body| body.rigid.is_none());
@@ -54,9 +54,9 @@ pub fn expected_steps(case: &Case, from: f64) -> Option<f64> {
 
 /// From when until when (s) shocks are as strong as at first, and the speed (m/s) of their signals: the strongest of all pairs of
 /// bodies that meet. A shock and the release from the nearest free face cross the smaller body.
-fn shock(case: &Case) -> Option<([f64; 2], f64)> {
+fn shock(case: &Case, approaches: &[Approach]) -> Option<([f64; 2], f64)> {
     let mut strongest: Option<([f64; 2], f64)> = None;
-    for pair in approaches(case) {
+    for pair in approaches {
         let bodies = pair.bodies.map(|body| &case.bodies[body]);
         let of = |k: usize| Medium::of(&case.materials[bodies[k].material]);
         let deform = bodies.iter().all(|body| body.rigid.is_none());
@@ -114,6 +114,7 @@ mod tests {
     use super::*;
     use crate::input;
     use crate::model::Shape;
+    use crate::preflight::approaches;
 
     fn steps(name: &str, set: &[&str]) -> [f64; 2] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -122,7 +123,10 @@ mod tests {
         let set: Vec<String> = set.iter().map(|&set| set.to_owned()).collect();
         let case = input::load(&path, &set).unwrap();
         let plain = case.run.end_time / expected_step(&case).unwrap();
-        [expected_steps(&case, 0.0).unwrap(), plain]
+        [
+            expected_steps(&case, &approaches(&case), 0.0).unwrap(),
+            plain,
+        ]
     }
 
     /// What runs of these cases have taken.
@@ -144,14 +148,14 @@ mod tests {
     fn nothing_is_shocked_before_bodies_meet() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/quarter-impact");
         let case = input::load(&path, &[]).unwrap();
-        let ([begin, until], _) = shock(&case).unwrap();
+        let ([begin, until], _) = shock(&case, &approaches(&case)).unwrap();
         let mut far = case.clone();
         let way = 0.7e-3;
         let Shape::Sphere { centre, .. } = &mut far.bodies[1].shape else {
             panic!("the sphere is one");
         };
         centre[2] += way;
-        let ([later, end], _) = shock(&far).unwrap();
+        let ([later, end], _) = shock(&far, &approaches(&far)).unwrap();
         // Bodies in touch are within a tenth of a spacing.
         assert!((later - begin - way / 7e3).abs() < 1e-9);
         assert!((end - later - (until - begin)).abs() < 1e-3 * until);

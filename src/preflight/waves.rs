@@ -1,7 +1,7 @@
 //! What of the matter waves have reached by a time: the rest costs next to nothing, see the theory page "Smoothed
 //! particle hydrodynamics".
 
-use super::approach::{Ends, approaches};
+use super::approach::{Approach, Ends};
 use crate::material::Rest;
 use crate::model::{Body, Case, Heat, SphForm, Vec3};
 use crate::populate;
@@ -10,10 +10,10 @@ use crate::populate;
 const AHEAD: f64 = 16.0;
 
 /// Work of a particle at rest over that of another.
-pub(super) const RESTING: f64 = 0.21;
+pub const RESTING: f64 = 0.21;
 
 /// Times of a run at which its matter is looked at.
-const TIMES: usize = 8;
+pub const TIMES: usize = 8;
 
 /// Places that are looked at of a body.
 const PLACES: u64 = 20_000;
@@ -48,12 +48,12 @@ struct Strike {
 }
 
 impl Waves {
-    /// Of a case; `None` if nothing of it rests, or nobody knows how long.
+    /// Of a case whose bodies meet so; `None` if nothing of it rests, or nobody knows how long.
     #[must_use]
-    pub fn new(case: &Case) -> Option<Self> {
+    pub fn new(case: &Case, approaches: &[Approach]) -> Option<Self> {
         let still = waiting(case)?;
         let mut strikes = Vec::new();
-        for pair in approaches(case) {
+        for pair in approaches {
             let waits = pair.bodies.iter().any(|&body| still[body].is_some());
             if waits && pair.time.is_finite() {
                 strikes.extend(
@@ -80,48 +80,48 @@ impl Waves {
         })
     }
 
+    /// At which of some times (s) matter of a body at a place (m) rests: bit k is time k.
+    #[must_use]
+    pub fn resting(&self, body: usize, place: &[f64; 3], times: &[f64; TIMES]) -> u8 {
+        let bits = times.iter().enumerate();
+        bits.fold(0, |bits, (k, &time)| {
+            bits | u8::from(self.rests(body, place, time)) << k
+        })
+    }
+
     /// Times of a run (s) from one on, in the middle of even parts of it.
-    pub fn times(case: &Case, from: f64) -> impl Iterator<Item = f64> {
+    #[must_use]
+    pub fn times(case: &Case, from: f64) -> [f64; TIMES] {
         let each = (case.run.end_time - from).max(0.0) / as_number(TIMES as u64);
-        (0..TIMES as u64).map(move |k| from + each * (as_number(k) + 0.5))
+        std::array::from_fn(|k| from + each * (as_number(k as u64) + 0.5))
     }
 
     /// Work of a step from a time (s) on, over what it would be if nothing rested.
     #[must_use]
     pub fn share_of_work(&self, case: &Case, from: f64) -> f64 {
         let (mut work, mut all) = (0.0, 0.0);
+        let times = Self::times(case, from);
         for (b, body) in case.bodies.iter().enumerate() {
             let (dimension, planes) = (case.dimension, &case.symmetry);
             let count = as_number(populate::count(body, dimension, planes, None));
             let (sites, _) = populate::sample(body, dimension, planes, PLACES);
-            let places: Vec<[f64; 3]> = sites.map(|site| site.position).collect();
-            let mut mean = 0.0;
-            for time in Self::times(case, from) {
-                let rests = |place: &&[f64; 3]| self.rests(b, place, time);
-                let resting = places.iter().filter(rests).count() as u64;
-                let part = as_number(resting) / as_number(places.len().max(1) as u64);
-                mean += (1.0 - part * (1.0 - RESTING)) / as_number(TIMES as u64);
-            }
-            work += count * mean;
+            let bits: Vec<u8> = sites
+                .map(|site| self.resting(b, &site.position, &times))
+                .collect();
+            work += count * mean_work(&bits);
             all += count;
         }
         if all > 0.0 { work / all } else { 1.0 }
     }
+}
 
-    /// Work for matter of a body at a place (m) at a time (s), in per cent of that of what moves.
-    #[must_use]
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a per cent"
-    )]
-    pub fn work(&self, body: usize, place: &[f64; 3], time: f64) -> u32 {
-        if self.rests(body, place, time) {
-            (100.0 * RESTING) as u32
-        } else {
-            100
-        }
-    }
+/// Mean work of particles that rest at some of the times, a bit for each, over what it would be if all moved.
+#[must_use]
+pub fn mean_work(resting: &[u8]) -> f64 {
+    let times = |bits: &u8| u64::from(bits.count_ones());
+    let rest = resting.iter().map(times).sum();
+    let all = (resting.len() * TIMES).max(1) as u64;
+    1.0 - as_number(rest) / as_number(all) * (1.0 - RESTING)
 }
 
 impl Strike {
@@ -191,6 +191,7 @@ mod tests {
 
     use super::*;
     use crate::input;
+    use crate::preflight::approaches;
 
     fn quarter(set: &[&str]) -> Case {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/quarter-impact");
@@ -198,10 +199,14 @@ mod tests {
         input::load(&path, &set).unwrap()
     }
 
+    fn waves(case: &Case) -> Option<Waves> {
+        Waves::new(case, &approaches(case))
+    }
+
     #[test]
     fn waves_go_out_from_where_bodies_meet() {
         let case = quarter(&[]);
-        let waves = Waves::new(&case).unwrap();
+        let waves = waves(&case).unwrap();
         let (plate, sphere) = (0, 1);
         let (near, far) = ([0.1e-3, 0.0, 0.05e-3], [1.4e-3, 0.0, 0.05e-3]);
         assert!(!waves.rests(sphere, &[0.0, 0.0, 0.5e-3], 0.0));
@@ -216,8 +221,8 @@ mod tests {
 
     #[test]
     fn nothing_rests_where_all_falls_or_flies() {
-        assert!(Waves::new(&quarter(&["gravity=[0, 0, \"-9.81 m/s^2\"]"])).is_none());
+        assert!(waves(&quarter(&["gravity=[0, 0, \"-9.81 m/s^2\"]"])).is_none());
         let flies = r#"body.plate.velocity=[0, 0, "1 m/s"]"#;
-        assert!(Waves::new(&quarter(&[flies])).is_none());
+        assert!(waves(&quarter(&[flies])).is_none());
     }
 }

@@ -7,7 +7,7 @@ use super::launch::{Launch, fail, give_up};
 use super::options::CommonArgs;
 use crate::model::Case;
 use crate::output::RunFolder;
-use crate::preflight::warnings;
+use crate::preflight::{approaches, warnings};
 use crate::step::Simulation;
 
 /// Sets the case up, only then clears the folder `out` of an earlier run, and steps to the end;
@@ -22,7 +22,7 @@ pub fn start(
 ) -> u8 {
     launch.start_threads(args.threads);
     let comm = launch.comm;
-    let mut warnings = warnings(&case);
+    let mut warnings = warnings(&case, &approaches(&case));
     warnings.extend(more);
     let resolved = case.resolved.clone();
     let simulation = match Simulation::start(case, comm) {

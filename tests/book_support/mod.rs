@@ -1,5 +1,7 @@
 //! The pages of the book and the README: their links, the places that links lead to, and commands.
 
+#![allow(dead_code, reason = "each test file uses some of these")]
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -122,6 +124,36 @@ fn without_blocks(text: &str) -> String {
         !inside && !fence
     });
     lines.collect::<Vec<_>>().join("\n")
+}
+
+/// A block of code.
+pub struct Block {
+    /// What it is, as `sh`.
+    pub kind: String,
+    /// Its lines.
+    pub text: String,
+}
+
+/// The blocks of code of a text.
+pub fn blocks(text: &str) -> Vec<Block> {
+    let mut all: Vec<Block> = Vec::new();
+    let mut inside = false;
+    for line in text.lines() {
+        if let Some(kind) = line.strip_prefix("```") {
+            inside = !inside;
+            if inside {
+                all.push(Block {
+                    kind: kind.to_owned(),
+                    text: String::new(),
+                });
+            }
+        } else if inside {
+            let block = all.last_mut().expect("one has begun");
+            block.text.push_str(line);
+            block.text.push('\n');
+        }
+    }
+    all
 }
 
 /// What the commands of a page hand to the program: those of blocks `sh` and `bash`, and those in the text that

@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::random::Random;
 use crate::{Budget, Met, folder, random};
 use whipple::input::parse;
-use whipple::preflight::warnings;
+use whipple::preflight::{approaches, warnings};
 
 /// Longer files are not changed further.
 const LONGEST: usize = 20_000;
@@ -89,7 +89,7 @@ fn attempt(folder: &Path, format: &str, bytes: &[u8]) -> String {
         Ok(case) => case,
         Err(error) => return error.to_string(),
     };
-    let told = warnings(&case).join("; ");
+    let told = warnings(&case, &approaches(&case)).join("; ");
     for (_, mesh) in case.meshes() {
         assert!(mesh.volume().is_finite());
         assert!(!mesh.distance(&[0.0; 3]).is_nan());

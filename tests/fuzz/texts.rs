@@ -129,7 +129,7 @@ fn attempt(text: &str, overrides: &[String]) -> String {
     if case.bodies.iter().map(count).sum::<u64>() > MOST_PARTICLES {
         return "sound and large".to_owned();
     }
-    let mut said = warnings(&case);
+    let mut said = warnings(&case, &approaches(&case));
     said.extend(advice(&case));
     said.extend(
         approaches(&case)

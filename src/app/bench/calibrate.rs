@@ -10,7 +10,7 @@ use super::driver::{Configuration, Scratch, bench_on, launch, obstacle, program,
 use super::machine::{self, cores};
 use super::messages::Messages;
 use super::report::Report;
-use crate::plan::{CONSTANTS, Layout, Machine, Particles, Sharing, computing, step_time};
+use crate::plan::{CONSTANTS, Layout, Machine, Outlook, Particles, Sharing, computing, step_time};
 
 /// The impact that tells the time of a particle, and a plate and its half, whose images behind a plane
 /// are as many as its particles.
@@ -99,7 +99,8 @@ fn bench(name: &str) -> &'static BenchCase {
 fn layout(name: &str, ranks: usize) -> Result<(Layout, usize), String> {
     let case = bench(name).read().map_err(|error| error.to_string())?;
     let particles = Particles::at_start(&case);
-    let layout = Layout::new(&case, (&particles, None), (ranks, None), ranks);
+    let outlook = Outlook::new(&case, &particles, None);
+    let layout = Layout::new(&case, (&particles, None, &outlook), (ranks, None), ranks);
     let layout = layout.ok_or("it has no particles")?;
     Ok((layout, particles.positions.len()))
 }

@@ -2,28 +2,32 @@
 
 use serde_json::{Value, json};
 
-use super::{mass_of, meetings, wall_time};
+use super::{machine, mass_of, meetings, wall_time};
 use crate::comm::Comm;
 use crate::model::{Body, Case};
 use crate::output::unit_of_model;
-use crate::plan::{self, Files, Machine};
+use crate::plan::{self, Files};
 use crate::populate;
-use crate::preflight::memory;
+use crate::preflight::{Approach, memory};
 
 /// All that is told, in SI units.
-pub(super) fn document(case: &Case, ranks: usize, warnings: &[String]) -> Value {
+pub(super) fn document(
+    (case, approaches): (&Case, &[Approach]),
+    ranks: usize,
+    warnings: &[String],
+) -> Value {
     let bodies: Vec<(Value, u64)> = case.bodies.iter().map(|body| of_body(case, body)).collect();
     let total: u64 = bodies.iter().map(|(_, count)| count).sum();
     let bodies: Vec<Value> = bodies.into_iter().map(|(body, _)| body).collect();
-    let meetings = meetings(case).map(
+    let meetings = meetings(case, approaches).map(
         |(pair, names)| json!({ "bodies": names, "time": pair.time, "gap_spacings": pair.gap }),
     );
     let measures = case.measure.measures.iter();
     let measures: Vec<Value> = measures
         .map(|measure| json!({ "measure": measure.name, "kind": measure.kind.word() }))
         .collect();
-    let steps = plan::expected_steps(case, 0.0);
-    let machine = Machine::default();
+    let steps = plan::expected_steps(case, approaches, 0.0);
+    let machine = machine(case, approaches);
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
     let files = Files::new(case, total as f64, steps.unwrap_or(0.0)).ok();
     let wall = steps.zip(files);

@@ -21,14 +21,15 @@ const WIDTH: usize = 25;
 pub fn plan(
     args: &PlanArgs,
     path: &Path,
-    (source, steps): (&Source, Option<f64>),
+    source: &Source,
     machine: &Machine,
 ) -> Result<(), String> {
     let run = args.job.as_ref().map(|_| job::run_of(path, source));
     let run = run.transpose()?;
-    let rows = compare(args, source, machine, steps)?;
+    let rows = compare(args, source, machine)?;
     say("");
-    let files = print_files(source, machine, steps)?;
+    let files = print_files(source, machine)?;
+    let steps = source.outlook.steps;
     write_sheet(args, &rows, steps)?;
     if let (Some(file), Some(run)) = (&args.job, run) {
         let row = fastest(&rows, machine).ok_or_else(|| too_large(&rows, machine))?;
@@ -39,17 +40,12 @@ pub fn plan(
         say(&job.told(file));
     }
     args.form
-        .tell(|| table::document((source, machine), &rows, &files, steps));
+        .tell(|| table::document((source, machine), &rows, &files));
     Ok(())
 }
 
 /// Prints the layouts for each number of nodes, a star on the fastest of each that fits.
-fn compare(
-    args: &PlanArgs,
-    source: &Source,
-    machine: &Machine,
-    steps: Option<f64>,
-) -> Result<Vec<Row>, String> {
+fn compare(args: &PlanArgs, source: &Source, machine: &Machine) -> Result<Vec<Row>, String> {
     say("");
     let head = "nodes x ranks x threads";
     say(&format!("{head:>WIDTH$}{}", table::head()));
@@ -66,7 +62,7 @@ fn compare(
         for row in &rows {
             let star = if Some(*row) == fastest { "*" } else { "" };
             let layout = format!("{star}{}", layout(row));
-            let line = table::line(row, false, steps);
+            let line = table::line(row, false, source.outlook.steps);
             let excess = table::excess(row, machine);
             say(&format!("{layout:>WIDTH$}{line}{excess}"));
         }

@@ -10,7 +10,7 @@ use crate::output::h5::Content;
 use crate::output::h5::read::SnapshotFile;
 use crate::output::{RunFolder, checkpoint};
 use crate::particles::ParticleStore;
-use crate::plan::Particles;
+use crate::plan::{Outlook, Particles};
 use crate::plot::snapshots;
 
 /// What is planned.
@@ -21,6 +21,20 @@ pub struct Source {
     pub particles: Particles,
     /// When they stand so (s); absent for the start of a case.
     pub time: Option<f64>,
+    /// What is foreseen of them.
+    pub outlook: Outlook,
+}
+
+impl Source {
+    fn new(case: Case, particles: Particles, time: Option<f64>) -> Self {
+        let outlook = Outlook::new(&case, &particles, time);
+        Self {
+            case,
+            particles,
+            time,
+            outlook,
+        }
+    }
 }
 
 /// Most particles that one process counts.
@@ -72,11 +86,7 @@ fn at_start(case: Case) -> Result<Source, String> {
     if particles.positions.is_empty() {
         return Err("error: the case has no particles".to_owned());
     }
-    Ok(Source {
-        case,
-        particles,
-        time: None,
-    })
+    Ok(Source::new(case, particles, None))
 }
 
 fn of_checkpoint(folder: &Path, set: &[String]) -> Result<Source, String> {
@@ -90,11 +100,7 @@ fn of_checkpoint(folder: &Path, set: &[String]) -> Result<Source, String> {
         (store.position[i], body, mass, Err(density))
     });
     let particles = Particles::of(&case, rows).map_err(|what| wrong(folder, &what))?;
-    Ok(Source {
-        case,
-        particles,
-        time: Some(restored.time),
-    })
+    Ok(Source::new(case, particles, Some(restored.time)))
 }
 
 fn of_snapshot(path: &Path, set: &[String]) -> Result<Source, String> {
@@ -127,11 +133,7 @@ fn of_snapshot(path: &Path, set: &[String]) -> Result<Source, String> {
         particles.append(chunk);
     }
     let time = file.time().map_err(|error| told(&error))?;
-    Ok(Source {
-        case,
-        particles,
-        time: Some(time),
-    })
+    Ok(Source::new(case, particles, Some(time)))
 }
 
 /// A body's number; that of none if it is no whole number.

@@ -95,12 +95,8 @@ pub fn duration(seconds: f64) -> String {
 }
 
 /// All that is told, in SI units.
-pub fn document(
-    (source, machine): (&Source, &Machine),
-    rows: &[Row],
-    files: &Files,
-    steps: Option<f64>,
-) -> Value {
+pub fn document((source, machine): (&Source, &Machine), rows: &[Row], files: &Files) -> Value {
+    let steps = source.outlook.steps;
     let mut document = form::table(&sheet(rows, steps));
     document["title"] = source.case.title.as_str().into();
     document["dimension"] = source.case.dimension.into();

@@ -8,13 +8,13 @@ use crate::run::say::counted;
 /// A share of the work that counts as all of it.
 const ALL: f64 = 0.995;
 
-/// What is planned, of so many steps.
-pub fn heading(source: &Source, steps: Option<f64>) -> String {
+/// What is planned.
+pub fn heading(source: &Source) -> String {
     let case = &source.case;
     let from = source
         .time
         .map_or(String::new(), |time| format!(" at {}", shown(time, "s")));
-    let to = steps.map_or(String::new(), |steps| {
+    let to = source.outlook.steps.map_or(String::new(), |steps| {
         let end = shown(case.run.end_time, "s");
         format!(", about {} steps to {end}", short(steps))
     });

@@ -1,0 +1,68 @@
+//! What is foreseen of a run: its steps, and what of its matter waits for a wave.
+
+use rayon::prelude::*;
+
+use super::particles::Particles;
+use crate::model::Case;
+use crate::preflight::{self, Approach, RESTING, TIMES, Waves, approaches, mean_work};
+
+/// What is foreseen of a run from a time on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outlook {
+    /// Steps to its end, where anything tells.
+    pub steps: Option<f64>,
+    /// Work of these steps, over what it would be if all matter moved.
+    pub share_of_work: f64,
+    /// By particle, at which of the times it rests, a bit for each; `None` where nothing does.
+    resting: Option<Vec<u8>>,
+}
+
+impl Outlook {
+    /// Of particles, those of the start or those at a time (s).
+    #[must_use]
+    pub fn new(case: &Case, particles: &Particles, time: Option<f64>) -> Self {
+        let (from, approaches) = (time.unwrap_or(0.0), approaches(case));
+        let times = Waves::times(case, from);
+        let resting = Waves::new(case, &approaches).map(|waves| {
+            let places = particles.body.par_iter().zip(&particles.positions);
+            places
+                .map(|(&body, place)| waves.resting(body as usize, place, &times))
+                .collect::<Vec<u8>>()
+        });
+        Self {
+            steps: expected_steps(case, &approaches, from),
+            share_of_work: resting.as_deref().map_or(1.0, mean_work),
+            resting,
+        }
+    }
+
+    /// Work of the particles at each of the times, in per cent of that of what moves; `None` where nothing rests.
+    pub(super) fn works(&self) -> Option<impl Iterator<Item = Vec<u32>>> {
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a per cent"
+        )]
+        const AT_REST: u32 = (100.0 * RESTING) as u32;
+        let resting = self.resting.as_ref()?;
+        Some((0..TIMES).map(|k| {
+            let work = |bits: &u8| if bits >> k & 1 == 1 { AT_REST } else { 100 };
+            resting.par_iter().map(work).collect()
+        }))
+    }
+}
+
+/// Steps of a case whose bodies meet so, from a time (s) on, as far as they are foreseen.
+#[must_use]
+#[allow(clippy::cast_precision_loss, reason = "for people")]
+pub fn expected_steps(case: &Case, approaches: &[Approach], time: f64) -> Option<f64> {
+    let by_time = preflight::expected_steps(case, approaches, time)?;
+    let most = case.run.max_steps.map_or(f64::INFINITY, |most| most as f64);
+    Some(by_time.min(most).round())
+}
+
+/// Work of all steps of a case whose bodies meet so, over what it would be if all matter moved, from some of its places.
+#[must_use]
+pub fn share_of_work(case: &Case, approaches: &[Approach]) -> f64 {
+    Waves::new(case, approaches).map_or(1.0, |waves| waves.share_of_work(case, 0.0))
+}

@@ -1,0 +1,98 @@
+//! The ten first tasks of the book are done as its page says: each block, in turn, in one folder.
+
+mod book_support;
+mod cli_support;
+mod python_support;
+
+use std::fs;
+use std::path::Path;
+
+use book_support::{Block, blocks};
+use cli_support::{Ended, WHIPPLE, command, end, project};
+
+/// A folder with the program on the path.
+struct Desk {
+    place: tempfile::TempDir,
+}
+
+impl Desk {
+    fn new() -> Self {
+        let place = tempfile::tempdir().unwrap();
+        // The package is read where it stands; `python_package` installs it.
+        fs::create_dir(place.path().join("bin")).unwrap();
+        std::os::unix::fs::symlink(WHIPPLE, place.path().join("bin/whipple")).unwrap();
+        Self { place }
+    }
+
+    fn run(&self, program: impl AsRef<Path>, flags: &[&str], text: &str) -> Ended {
+        let mut command = command(program.as_ref().to_str().unwrap());
+        let path = std::env::var("PATH").unwrap();
+        let bin = self.place.path().join("bin");
+        command.env("PATH", format!("{}:{path}", bin.display()));
+        command.env("PYTHONPATH", project("python/src"));
+        command.args(flags).arg(text);
+        end(command.current_dir(self.place.path()))
+    }
+
+    fn case(&self) -> std::path::PathBuf {
+        self.place.path().join("impact/case.toml")
+    }
+
+    /// A part of a case: a table goes to its end, a shape in the place of the sphere's.
+    fn edit(&self, part: &str) {
+        let mut text = fs::read_to_string(self.case()).unwrap();
+        if part.starts_with("shape.") {
+            let old = text.lines().find(|line| line.starts_with("shape.sphere"));
+            text = text.replace(old.expect("a sphere"), part.trim());
+        } else {
+            text.push_str(part);
+        }
+        fs::write(self.case(), text).unwrap();
+    }
+}
+
+#[test]
+fn ten_first_tasks_are_done_as_the_page_says() {
+    let page = fs::read_to_string(project("docs/src/guide/tasks.md")).unwrap();
+    let python = python_support::python();
+    let desk = Desk::new();
+    let mut original = None;
+    let mut tasks = 0;
+    for section in page.split("\n## ") {
+        // Each task begins with the case as it was.
+        if let Some(original) = &original {
+            fs::write(desk.case(), original).unwrap();
+            tasks += 1;
+        }
+        for Block { kind, text } in blocks(section) {
+            match kind.as_str() {
+                "sh" if text.starts_with("pip ") => {}
+                "sh" => {
+                    desk.run("bash", &["-euo", "pipefail", "-c"], &text)
+                        .with_code(0);
+                }
+                "toml" => desk.edit(&text),
+                "python" => {
+                    let Some(python) = &python else { continue };
+                    let told = desk.run(python, &["-c"], &text).with_code(0);
+                    assert!(told.stdout.ends_with("m/s\n"), "{told:#?}");
+                }
+                other => panic!("a block of {other}"),
+            }
+        }
+        original = original.or_else(|| Some(fs::read_to_string(desk.case()).unwrap()));
+    }
+    assert_eq!(tasks, 10);
+    let left = |name: &str| desk.place.path().join(name);
+    for name in [
+        "model.png",
+        "part.png",
+        "impact.gif",
+        "view.apng",
+        "spacings.html",
+        "runs/impact/export/snapshots.xyz",
+        "impact.job",
+    ] {
+        assert!(left(name).exists(), "{name}");
+    }
+}
