@@ -1,10 +1,11 @@
-//! The ten first tasks of the book are done as its page says: each block, in turn, in one folder.
+//! What pages of the book let one type is done as they say: each block, in turn, in one folder.
 
 mod book_support;
 mod cli_support;
 mod python_support;
 
 use std::fs;
+use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::Path;
 
 use book_support::{Block, blocks};
@@ -20,8 +21,21 @@ impl Desk {
         let place = tempfile::tempdir().unwrap();
         // The package is read where it stands; `python_package` installs it.
         fs::create_dir(place.path().join("bin")).unwrap();
-        std::os::unix::fs::symlink(WHIPPLE, place.path().join("bin/whipple")).unwrap();
+        symlink(WHIPPLE, place.path().join("bin/whipple")).unwrap();
         Self { place }
+    }
+
+    /// The same, on which runs and sweeps end after a few steps.
+    fn of_few_steps() -> Self {
+        let desk = Self::new();
+        let program = desk.place.path().join("bin/whipple");
+        let script = format!(
+            "#!/bin/sh\ncase $1 in run|sweep) set -- \"$@\" --set run.max_steps=4;; esac\nexec '{WHIPPLE}' \"$@\"\n"
+        );
+        fs::remove_file(&program).unwrap();
+        fs::write(&program, script).unwrap();
+        fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
+        desk
     }
 
     fn run(&self, program: impl AsRef<Path>, flags: &[&str], text: &str) -> Ended {
@@ -32,6 +46,12 @@ impl Desk {
         command.env("PYTHONPATH", project("python/src"));
         command.args(flags).arg(text);
         end(command.current_dir(self.place.path()))
+    }
+
+    fn shell(&self, text: &str) {
+        for line in text.lines() {
+            self.run("bash", &["-c"], line).with_code(0);
+        }
     }
 
     fn case(&self) -> std::path::PathBuf {
@@ -67,10 +87,7 @@ fn ten_first_tasks_are_done_as_the_page_says() {
         for Block { kind, text } in blocks(section) {
             match kind.as_str() {
                 "sh" if text.starts_with("pip ") => {}
-                "sh" => {
-                    desk.run("bash", &["-euo", "pipefail", "-c"], &text)
-                        .with_code(0);
-                }
+                "sh" => desk.shell(&text),
                 "toml" => desk.edit(&text),
                 "python" => {
                     let Some(python) = &python else { continue };
@@ -94,5 +111,41 @@ fn ten_first_tasks_are_done_as_the_page_says() {
         "impact.job",
     ] {
         assert!(left(name).exists(), "{name}");
+    }
+}
+
+fn page(name: &str) -> Vec<Block> {
+    blocks(&fs::read_to_string(project(&format!("docs/src/guide/{name}.md"))).unwrap())
+}
+
+#[test]
+#[ignore = "slow: ready cases at their own spacings"]
+fn recipes_are_commands_that_run() {
+    let desk = Desk::of_few_steps();
+    for Block { text, .. } in page("recipes") {
+        // In so few steps nothing gets behind the plate.
+        let lines = text
+            .lines()
+            .filter(|line| !line.contains("--distributions"));
+        desk.shell(&lines.collect::<Vec<_>>().join("\n"));
+    }
+}
+
+#[test]
+#[ignore = "slow: a case at its own spacing"]
+fn a_case_of_ones_own_is_built_as_the_page_says() {
+    let desk = Desk::of_few_steps();
+    let all = page("build-a-case");
+    let case: String = all
+        .iter()
+        .filter(|block| block.kind == "toml")
+        .map(|block| &*block.text)
+        .collect();
+    for Block { kind, text } in &all {
+        if kind == "sh" {
+            desk.shell(text);
+        } else {
+            fs::write(desk.place.path().join("my-plate/case.toml"), &case).unwrap();
+        }
     }
 }

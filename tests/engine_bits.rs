@@ -99,6 +99,46 @@ fn what_no_wave_has_reached_rests() {
     assert!(far.iter().all(|&i| particles.velocity[i] == [0.0; 3]));
     let [few, all] = [&spared, &whole].map(|simulation| simulation.lists.entries());
     assert!(4 * few < 3 * all, "{few} of {all}");
+    assert_same(&Outcome::of(&spared), &Outcome::of(&whole));
+}
+
+/// What rests far from what moves is left out of steps and comes back as the wave does, whatever becomes of the
+/// store meanwhile, and no bit tells.
+#[test]
+fn what_sleeps_changes_no_bit() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/quarter-impact/case.toml");
+    let wide = [
+        "spacing=\"0.05 mm\"",
+        "body.plate.shape.cylinder.radius=\"3 mm\"",
+        "domain.balance_every=7",
+    ];
+    let case = input::load(&path, &wide.map(str::to_owned)).unwrap();
+    let start = || Simulation::start(case.clone(), &Comm::solo()).unwrap();
+    let (mut spared, mut shaken, mut whole) = (start(), start(), start());
+    whole.lists.spare_quiescent = false;
+    let mut random = Random::new(3);
+    let mut asleep = Vec::new();
+    for step in 0..75 {
+        advance(&mut spared, 1);
+        advance(&mut shaken, 1);
+        advance(&mut whole, 1);
+        asleep.push(spared.asleep());
+        if step % 13 == 5 {
+            let count = u32::try_from(shaken.particles.owned()).unwrap();
+            let mut order: Vec<u32> = (0..count).collect();
+            random.shuffle(&mut order[100..2000]);
+            let mut scratch = vec![0; SCRATCH_WORDS * order.len()];
+            shaken.particles.keep(&order, &mut scratch);
+        }
+    }
+    assert_eq!(whole.asleep(), 0);
+    let (most, last) = (asleep.iter().max().unwrap(), asleep.last().unwrap());
+    let owned = spared.particles.owned();
+    assert!(3 * most > owned, "{most} of {owned}");
+    assert!(2 * last < *most, "{last} of {most}");
+    let whole = Outcome::of(&whole);
+    assert_same(&Outcome::of(&spared), &whole);
+    assert_same(&Outcome::of(&shaken), &whole);
 }
 
 /// The order of particles in memory is nobody's business.

@@ -17,7 +17,7 @@ use whipple::domain::{
 };
 use whipple::model::{Axis, Overlap, SelfContact, SymmetryPlane};
 use whipple::particles::{
-    FIELDS, FieldInfo, HaloPhase, Image, ParticleStore, SCRATCH_WORDS, Select,
+    Asleep, FIELDS, FieldInfo, HaloPhase, Image, ParticleStore, SCRATCH_WORDS, Select,
 };
 use whipple::step::{Simulation, Timers};
 
@@ -297,7 +297,8 @@ fn exchange_halos(comm: &Comm) {
                     slabs: &slabs,
                     farthest,
                 };
-                halo.post_motion(comm, reaches, &mut particles, |particles, i| {
+                let awake = Asleep::default();
+                halo.post_motion(comm, reaches, (&mut particles, &awake), |particles, i| {
                     reach(numbers[&particles.id[i]])
                 });
                 halo.finish_motion(&mut particles);
