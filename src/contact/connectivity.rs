@@ -9,7 +9,7 @@ use crate::neighbours::{Fragment, Lists, Membership};
 use crate::particles::{GRAIN, Image, ParticleStore, resize};
 
 /// Steps between two looks at what is still connected.
-const EVERY: u64 = 10;
+pub(crate) const EVERY: u64 = 10;
 /// Particles that are asked what rests.
 const SAMPLE: usize = 256;
 /// Every symmetry plane: at the start nothing is cut off from any.
@@ -180,17 +180,15 @@ impl Connectivity {
         }
     }
 
-    /// Whether an image of an owned particle that rests is no stranger to what else rests of its body, and nobody
-    /// wants to know its neighbours at a step.
-    pub(crate) fn lets_rest(&self, particles: &ParticleStore, image: Image, step: u64) -> bool {
+    /// Whether an image of an owned particle that rests is no stranger to what else rests of its body.
+    pub(crate) fn lets_rest(&self, particles: &ParticleStore, image: Image) -> bool {
         let (i, code) = (image.base(), u32::from(image.code()));
         !self.is_active
-            || !self.is_due(step)
-                && particles.part[i] == self.at_rest[particles.body[i] as usize].0
+            || particles.part[i] == self.at_rest[particles.body[i] as usize].0
                 && code & !particles.part_planes[i] == 0
     }
 
-    /// Whether fragments are to be told at a step.
+    /// Whether fragments are to be told at a step, from lists of all particles.
     pub(crate) fn is_due(&self, step: u64) -> bool {
         self.is_active && step.is_multiple_of(EVERY)
     }

@@ -26,6 +26,7 @@ mod view;
 mod virial;
 
 pub use connectivity::Connectivity;
+pub(crate) use connectivity::EVERY;
 pub use force::{BodyForce, ContactForce, TaskForces};
 pub use pair::Pair;
 pub use phase::Contact;

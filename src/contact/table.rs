@@ -114,6 +114,12 @@ impl ContactTable {
         }
     }
 
+    /// The longest range of contact between two groups (m), zero without.
+    pub(crate) fn longest_range(&self) -> f64 {
+        let ranges = self.foreign.group_range.iter().copied();
+        ranges.fold(0.0, f64::max)
+    }
+
     /// Constants of a mode for a receiver of kind `a` and a neighbour of kind `b`.
     #[inline(always)]
     pub(super) fn own<M: Listed>(&self, a: usize, b: usize) -> &M::Pair {

@@ -12,7 +12,7 @@ use super::nested::NestedSlabs;
 use super::shown::Shown;
 use crate::comm::{Comm, Exchange, Traffic};
 use crate::numerics::collector::Collector;
-use crate::particles::{HaloPhase, Image, ParticleStore, copy_at_once};
+use crate::particles::{Asleep, HaloPhase, Image, ParticleStore, copy_at_once};
 
 /// Where ranks stand: each has its particles in its own slab.
 #[derive(Debug, Clone, Copy)]
@@ -76,19 +76,19 @@ impl Halo {
     }
 
     /// Decides who needs whom and starts to send [`HaloPhase::MOTION`]. A pair of particles
-    /// interacts within the sum of their `reach` (m). Collective.
+    /// interacts within the sum of their `reach` (m); nobody needs what is asleep. Collective.
     pub fn post_motion(
         &mut self,
         comm: &Comm,
         reaches: Reaches,
-        particles: &mut ParticleStore,
+        (particles, asleep): (&mut ParticleStore, &Asleep),
         reach: impl Fn(&ParticleStore, usize) -> f64 + Sync,
     ) {
         particles.resize_halo(0);
         self.rank = comm.rank();
         self.find_extent(particles, &reach);
         self.find_peers(comm, reaches);
-        self.choose(particles, &reach);
+        self.choose((particles, asleep), &reach);
         let (chosen, store) = (&self.chosen, &*particles);
         fill(&mut self.exchange, |k, message| {
             message.extend_from_slice(&chosen.codes[chosen.of(k)]);
@@ -140,10 +140,10 @@ impl Halo {
         &mut self,
         comm: &Comm,
         reaches: Reaches,
-        particles: &mut ParticleStore,
+        (particles, asleep): (&mut ParticleStore, &Asleep),
         reach: impl Fn(&ParticleStore, usize) -> f64 + Sync,
     ) {
-        self.post_motion(comm, reaches, particles, reach);
+        self.post_motion(comm, reaches, (particles, asleep), reach);
         self.finish_motion(particles);
     }
 
@@ -328,7 +328,7 @@ impl Halo {
     /// stand near its own particles.
     fn choose(
         &mut self,
-        particles: &ParticleStore,
+        (particles, asleep): (&ParticleStore, &Asleep),
         reach: &(impl Fn(&ParticleStore, usize) -> f64 + Sync),
     ) {
         let peers = self.peers.len();
@@ -345,10 +345,10 @@ impl Halo {
             .enumerate()
             .for_each(|(task, (found, positions))| {
                 found.clear();
-                for (k, position) in positions.iter().enumerate() {
+                asleep.each_awake(task * SHARE, positions.len(), |k| {
                     let i = task * SHARE + k;
-                    finder.find(i, position, reach(particles, i), found);
-                }
+                    finder.find(i, &positions[k], reach(particles, i), found);
+                });
                 found.sort_unstable_by_key(|entry| (entry.peer, entry.particle));
             });
         let found = &self.found;

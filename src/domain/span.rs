@@ -38,6 +38,11 @@ impl Span {
         self.lower[0] > self.upper[0]
     }
 
+    /// Smallest and largest coordinates (m).
+    pub fn bounds(&self) -> [&[f64; 3]; 2] {
+        [&self.lower, &self.upper]
+    }
+
     /// Takes a particle in.
     #[inline(always)]
     pub fn add(&mut self, x: &[f64; 3], v: &[f64; 3]) {

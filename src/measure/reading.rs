@@ -216,6 +216,8 @@ pub fn temperature(case: &Case, particles: &ParticleStore, i: usize) -> Option<f
 /// thermal constants.
 pub fn temperatures(case: &Case, particles: &ParticleStore, first: usize, all: &mut [f64]) {
     let material = |i: usize| case.bodies[particles.body[i] as usize].material;
+    // Eight that rest are as the eight before them.
+    let mut last = None;
     for (eight, all) in all.chunks_mut(LANES).enumerate() {
         let first = first + eight * LANES;
         let end = first + all.len();
@@ -227,16 +229,24 @@ pub fn temperatures(case: &Case, particles: &ParticleStore, first: usize, all: &
         }
         let lanes =
             |field: &[f64]| std::array::from_fn(|k| field.get(first + k).map_or(0.0, |x| *x));
-        let material = &case.materials[material(first)];
-        let told = material.temperatures(
-            &lanes(&particles.density),
-            &material.thermal_energies(
-                &lanes(&particles.specific_energy),
-                &lanes(&particles.plastic_energy),
-            ),
-            &lanes(&particles.damage),
-        );
-        all.copy_from_slice(&told.unwrap_or([f64::NEG_INFINITY; LANES]));
+        let state = [
+            lanes(&particles.density),
+            lanes(&particles.specific_energy),
+            lanes(&particles.plastic_energy),
+            lanes(&particles.damage),
+        ];
+        let told = match last {
+            Some((known, its, told)) if known == material(first) && its == state => told,
+            _ => {
+                let material = &case.materials[material(first)];
+                let [density, energy, work, damage] = &state;
+                let energy = material.thermal_energies(energy, work);
+                let told = material.temperatures(density, &energy, damage);
+                told.unwrap_or([f64::NEG_INFINITY; LANES])
+            }
+        };
+        all.copy_from_slice(&told);
+        last = Some((material(first), state, told));
     }
 }
 

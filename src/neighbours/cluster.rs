@@ -29,7 +29,7 @@ pub struct Among {
     pub moving: bool,
     /// Not all that is in range: strangers have been taken out.
     pub parted: bool,
-    /// Nothing, as the list was spared: all in range rests, and belongs to this rank and this group.
+    /// Nothing that anybody sums: all in range rests, and belongs to this rank and this group. The list may be empty.
     pub resting: bool,
 }
 

@@ -55,6 +55,14 @@ pub struct Lengths {
     pub rigid: bool,
 }
 
+impl Lengths {
+    /// The longest range of a list (m).
+    #[inline(always)]
+    pub(super) fn range(&self) -> f64 {
+        (2.0 * self.longest).max(self.least) * self.stretch * INFLATION
+    }
+}
+
 /// Gathers the clusters of a chunk and lists their neighbours.
 struct Build<'a> {
     chunk: &'a mut Chunk,
@@ -63,6 +71,7 @@ struct Build<'a> {
     sequence: &'a Sequence,
     lengths: Lengths,
     ranges: &'a [f64],
+    spared: bool,
 }
 
 impl Vectorised for Build<'_> {
@@ -110,19 +119,21 @@ impl Vectorised for Build<'_> {
             sequence,
             group: *group,
             ranges: self.ranges,
-            far: (2.0 * longest).max(least) * stretch * INFLATION,
+            far: lengths.range(),
             hints: [0; 64],
         };
         for run in clusters.chunks(RUN) {
             let rests = watch.rests::<V>(run);
             for cluster in run {
-                let among = if rests {
-                    Among::RESTING
-                } else if uniform {
-                    lister.list::<V, true>(cluster)
-                } else {
-                    lister.list::<V, false>(cluster)
-                };
+                let mut among = Among::RESTING;
+                if !(rests && self.spared) {
+                    among = if uniform {
+                        lister.list::<V, true>(cluster)
+                    } else {
+                        lister.list::<V, false>(cluster)
+                    };
+                    among.resting = rests;
+                }
                 #[allow(clippy::cast_possible_truncation, reason = "a chunk's lists fit u32")]
                 ends.push((lister.used as u32, among));
             }
@@ -233,10 +244,15 @@ impl ClusterLists {
     }
 
     /// Groups this rank's own particles into clusters and lists the neighbours of each.
-    /// `lengths` are the smoothing lengths of each group; clusters that rest among what
-    /// rests get empty ones, if they are far from other groups: `ranges[own * groups + other]` is the longest range (m) of
-    /// contact between two, if there is any contact.
-    pub fn build(&mut self, sequence: &Sequence, lengths: &[Lengths], ranges: &[f64]) {
+    /// `lengths` are the smoothing lengths of each group. Clusters rest that are among what
+    /// rests and far from other groups: `ranges[own * groups + other]` is the longest range (m) of
+    /// contact between two, if there is any contact. They get empty lists if these are `spared`.
+    pub fn build(
+        &mut self,
+        sequence: &Sequence,
+        lengths: &[Lengths],
+        (ranges, spared): (&[f64], bool),
+    ) {
         let set = instructions();
         self.lay_out(sequence);
         let sources_of = |group: usize| match self.body_groups {
@@ -252,6 +268,7 @@ impl ClusterLists {
                 chunk,
                 sequence,
                 ranges,
+                spared,
             });
         });
     }

@@ -15,7 +15,7 @@ use crate::domain::{Halo, Mirrors, Outset};
 use crate::model::{Body, Case, SmoothingLength};
 use crate::numerics::collector::Collector;
 use crate::numerics::kernel::SUPPORT;
-use crate::particles::{GRAIN, Image, ParticleStore, Scatter, resize};
+use crate::particles::{Asleep, GRAIN, Image, ParticleStore, Scatter, resize};
 
 /// The sequence of images, their motion records and the lists, kept from step to step.
 pub struct Lists {
@@ -143,6 +143,19 @@ impl Lists {
         (SUPPORT * self.lengths[group].longest, uniform)
     }
 
+    /// The longest range of any list (m).
+    #[must_use]
+    pub fn farthest(&self) -> f64 {
+        let ranges = self.lengths.iter().map(Lengths::range);
+        ranges.fold(0.0, f64::max)
+    }
+
+    /// Whether the particles of a group have no velocity where it is at rest in itself.
+    #[must_use]
+    pub fn is_still(&self, group: usize) -> bool {
+        self.common_velocity[group] == [0.0; 3]
+    }
+
     /// The longest smoothing length (m).
     #[must_use]
     pub fn longest(&self) -> f64 {
@@ -169,21 +182,22 @@ impl Lists {
             + 4 * self.order.capacity()
     }
 
-    /// Sorts all particles and images and lists the neighbours of each in its own group, but of what rests far
-    /// from what moves and from `contact`, if there is any: `rests` tells of an image of a particle of this rank whether
-    /// nothing changes it as long as nothing moves around it. `scratch` is memory to work in, see [`Sequence::build`].
+    /// Sorts all particles that are awake and images, and lists the neighbours of each in its own group; if lists are
+    /// `spared`, not of what rests far from what moves and from `contact`, if there is any: `rests` tells of an image of a
+    /// particle of this rank whether nothing changes it as long as nothing moves around it. `scratch` is memory to work in,
+    /// see [`Sequence::build`].
     pub fn build<R: bytemuck::Pod>(
         &mut self,
-        particles: &ParticleStore,
+        (particles, asleep): (&ParticleStore, &Asleep),
         halo: &Halo,
         contact: Option<&ForeignTable>,
-        rests: impl Fn(Image) -> bool + Sync,
+        (rests, spared): (impl Fn(Image) -> bool + Sync, bool),
         scratch: &mut [R],
     ) {
         let (owned, others) = (particles.owned(), halo.others());
         let (mirrors, groups) = (halo.mirrors(), &self.groups);
         let (spare, common) = (self.spare_quiescent, &self.common_velocity);
-        resize(&mut self.motion, owned + others.len());
+        resize(&mut self.motion, asleep.awake(owned) + others.len());
         let motion = Scatter::new(&mut self.motion);
         let group_of = |base: usize| group_of(groups, particles, base);
         let facts = |image: Image| {
@@ -199,7 +213,7 @@ impl Lists {
         let sequence = &mut self.sequence;
         sequence.build(
             scratch,
-            owned,
+            (owned, asleep),
             (others, halo.below()),
             facts,
             |index, image| {
@@ -223,7 +237,8 @@ impl Lists {
             self.measure_lengths();
         }
         let ranges = contact.map_or(&[][..], |table| &table.group_range);
-        self.clusters.build(&self.sequence, &self.lengths, ranges);
+        self.clusters
+            .build(&self.sequence, &self.lengths, (ranges, spared));
     }
 
     /// Finds the longest smoothing length of each group among its images.

@@ -12,7 +12,7 @@ use super::group::Group;
 use super::sort::{SCRATCH_WORDS, Sorter, Targets, Walls};
 use crate::numerics::lanes::{LANES, Lanes};
 use crate::numerics::ordered::ordered;
-use crate::particles::{Image, Scatter, resize};
+use crate::particles::{Asleep, Image, Scatter, resize};
 
 /// The sorted images. Buffers are kept from step to step.
 #[derive(Debug, Clone, Default)]
@@ -28,6 +28,8 @@ pub struct Sequence {
     coordinates: [Vec<f64>; 3],
     lengths: Vec<f64>,
     uniform: bool,
+    /// How many are no particles of this rank themselves.
+    others: usize,
     sorter: Sorter,
 }
 
@@ -69,24 +71,26 @@ impl Sequence {
     /// Words of scratch memory that [`Self::build`] needs for each image.
     pub const SCRATCH_WORDS: usize = SCRATCH_WORDS;
 
-    /// Sorts particles `0..owned` of the store and the images `others` (mirror images of these, and
-    /// halo particles with theirs; the first `below` of them stand below the particles as far as
+    /// Sorts those of the particles `0..owned` of the store that are awake, and the images `others` (mirror images
+    /// of these, and halo particles with theirs; the first `below` of them stand below the particles as far as
     /// one can tell, the rest above, which saves work). `facts` tells position, id and group of an
     /// image; `emit` is called once with each index of the sequence and the image that stands
     /// there, and tells its state. `scratch` is memory to work in: at least [`Self::SCRATCH_WORDS`] for each image.
     pub fn build(
         &mut self,
         scratch: &mut [u64],
-        owned: usize,
+        (owned, asleep): (usize, &Asleep),
         (others, below): (&[Image], usize),
         facts: impl Fn(Image) -> ImageFacts + Sync,
         emit: impl Fn(usize, Image) -> ImageState + Sync,
     ) {
-        let count = owned + others.len();
+        let awake = asleep.awake(owned);
+        self.others = others.len();
+        let count = awake + others.len();
         let image = |k: usize| match k.checked_sub(below) {
             None => others[k],
-            Some(own) if own < owned => Image::new(own, 0),
-            Some(_) => others[k - owned],
+            Some(own) if own < awake => Image::new(asleep.nth(own), 0),
+            Some(_) => others[k - awake],
         };
         self.sorter.scatter(
             scratch,
@@ -200,6 +204,12 @@ impl Sequence {
     #[must_use]
     pub fn mirrored(&self) -> &[u8] {
         &self.special
+    }
+
+    /// Whether all are particles of this rank themselves.
+    #[must_use]
+    pub fn is_alone(&self) -> bool {
+        self.others == 0
     }
 
     /// Number of groups.

@@ -1,6 +1,7 @@
 //! Particles as a structure of arrays: the table of fields and the store that walks it.
 
 mod arrays;
+mod asleep;
 mod columns;
 #[macro_use]
 mod declare;
@@ -14,6 +15,7 @@ mod select;
 mod store;
 
 pub use arrays::{SCRATCH_WORDS, resize};
+pub use asleep::{Asleep, PART};
 pub use columns::{FieldKind, HaloPhase, Life, Mirror, Output, Owner};
 pub use fields::{FIELDS, FieldId, FieldInfo, ParticleStore};
 pub use image::Image;

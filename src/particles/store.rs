@@ -151,10 +151,18 @@ impl ParticleStore {
             "too little scratch"
         );
         self.resize_halo(0);
+        self.settled = 0;
         for field in self.held(FieldInfo::any) {
             self.gather_field(field.id, order, scratch);
         }
         self.resize_owned(order.len());
+    }
+
+    /// How many owned particles, the first ones, stand where they did when this was last asked.
+    pub fn settled(&mut self) -> usize {
+        let settled = self.settled.min(self.owned);
+        self.settled = usize::MAX;
+        settled
     }
 
     /// Removes owned particles and the halo; the last ones take the places of those `leaving`
@@ -163,6 +171,7 @@ impl ParticleStore {
         self.resize_halo(0);
         leaving.sort_unstable();
         let left = self.owned - leaving.len();
+        self.settled = self.settled.min(left);
         #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
         let (left_u32, owned) = (left as u32, self.owned as u32);
         let (holes, gone) = leaving.split_at(leaving.partition_point(|&i| i < left_u32));

@@ -123,7 +123,7 @@ pub(super) fn show_images<R: Send>(
     show: impl Fn(&Scatter<R>, usize, u8) -> R + Sync,
 ) {
     let sequence = lists.sequence();
-    if sequence.images().len() == owned {
+    if sequence.is_alone() {
         return;
     }
     let records = Scatter::new(records);

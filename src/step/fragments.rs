@@ -7,7 +7,7 @@ use crate::comm::Comm;
 use crate::domain::Reaches;
 use crate::fragments::{Census, FirstSizes, Matter, Rule, Surroundings, belongs, find, link_reach};
 use crate::model::{Case, FragmentOptions, SphForm};
-use crate::particles::ParticleStore;
+use crate::particles::{Asleep, ParticleStore};
 
 impl Simulation {
     /// Finds the fragments of all ranks. Between steps: halo particles are others afterwards.
@@ -35,7 +35,7 @@ impl Simulation {
             slabs: partition.slabs(),
             farthest: comm.max_f64(farthest),
         };
-        halo.exchange_motion(comm, reaches, particles, reach);
+        halo.exchange_motion(comm, reaches, (particles, &Asleep::default()), reach);
         let owned = particles.owned();
         let masses = particles.mass.par_iter().zip(&particles.body);
         let sizes: Vec<f64> = masses.map(|(&m, &body)| size_of(m, body)).collect();

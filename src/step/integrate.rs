@@ -18,7 +18,7 @@ use crate::domain::Span;
 use crate::loads::{Free, Goal, Loads, Prescribe};
 use crate::numerics::exact_sum::ExactSum;
 use crate::numerics::vector::dot;
-use crate::particles::{GRAIN, ParticleStore};
+use crate::particles::{Asleep, GRAIN, ParticleStore};
 use crate::sph::{SignalSpeed, Smoothing};
 
 fn add(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
@@ -95,10 +95,10 @@ struct Rates<'a> {
     velocity_gradient: &'a [[f64; 9]],
 }
 
-/// First half kick and drift of a step `dt` (s), and the predictions for its end. Gives the work of
-/// contact (J).
+/// First half kick and drift of a step `dt` (s), and the predictions for its end, of what is awake. Gives the
+/// work of contact (J).
 pub(super) fn kick_and_drift(
-    particles: &mut ParticleStore,
+    (particles, asleep): (&mut ParticleStore, &Asleep),
     loads: &Loads,
     smoothing: &Smoothing,
     dt: f64,
@@ -123,14 +123,16 @@ pub(super) fn kick_and_drift(
         heating: &particles.d_specific_energy_dt,
         velocity_gradient: &particles.velocity_gradient,
     };
-    with_outside!(loads, particles, outside => drifting.advance(kick, &rates, smoothing, outside))
+    with_outside!(loads, particles, outside => {
+        drifting.advance(kick, (&rates, asleep), smoothing, outside)
+    })
 }
 
 impl Drifting<'_> {
     fn advance<D: Prescribe>(
         self,
         kick: Kick,
-        rates: &Rates,
+        (rates, asleep): (&Rates, &Asleep),
         smoothing: &Smoothing,
         outside: impl Fn(usize) -> ([f64; 3], D) + Sync,
     ) -> ExactSum {
@@ -151,7 +153,7 @@ impl Drifting<'_> {
             .fold(
                 ExactSum::default,
                 |mut work, (chunk, (v, e, x, v_p, rho_p, h))| {
-                    for k in 0..v.len() {
+                    asleep.each_awake(chunk * GRAIN, v.len(), |k| {
                         let i = chunk * GRAIN + k;
                         let (contact, prescribed) = outside(i);
                         let a = &rates.acceleration[i];
@@ -173,7 +175,7 @@ impl Drifting<'_> {
                         let strain = half * (l[0] + l[4] + l[8]);
                         rho_p[k] = rates.density[i] * ((1.0 - strain) / (1.0 + strain));
                         h[k] = smoothing.length(rates.body[i] as usize, rates.mass[i], rho_p[k]);
-                    }
+                    });
                     work
                 },
             )
@@ -192,10 +194,10 @@ pub(super) struct Kicked {
     pub span: Span,
 }
 
-/// Second half kick of a step `dt` (s), zero at the start of a case. What `criteria` makes of the
-/// fields of candidates asks particles for candidates.
+/// Second half kick of a step `dt` (s), zero at the start of a case, of what is awake. What `criteria` makes of
+/// the fields of candidates asks particles for candidates.
 pub(super) fn kick<'a, F: SignalSpeed>(
-    particles: &'a mut ParticleStore,
+    (particles, asleep): (&'a mut ParticleStore, &Asleep),
     loads: &Loads,
     criteria: impl FnOnce(super::candidate::CriteriaFields<'a>) -> Criteria<'a, F>,
     dt: f64,
@@ -212,7 +214,7 @@ pub(super) fn kick<'a, F: SignalSpeed>(
         heating: &mut particles.d_specific_energy_dt,
     };
     with_outside!(loads, particles, outside => {
-        kicking.finish(kick, &criteria, predicted_velocity, outside)
+        kicking.finish(kick, (&criteria, asleep), predicted_velocity, outside)
     })
 }
 
@@ -227,7 +229,7 @@ impl Kicking<'_> {
     fn finish<D: Prescribe, F: SignalSpeed>(
         self,
         kick: Kick,
-        criteria: &Criteria<F>,
+        (criteria, asleep): (&Criteria<F>, &Asleep),
         predicted_velocity: &[[f64; 3]],
         outside: impl Fn(usize) -> ([f64; 3], D) + Sync,
     ) -> Kicked {
@@ -247,7 +249,7 @@ impl Kicking<'_> {
             .fold(
                 none,
                 |(mut work, mut best, mut span), (chunk, (v, e, de))| {
-                    for k in 0..v.len() {
+                    asleep.each_awake(chunk * GRAIN, v.len(), |k| {
                         let i = chunk * GRAIN + k;
                         let (contact, prescribed) = outside(i);
                         let a = &fields.acceleration[i];
@@ -275,7 +277,7 @@ impl Kicking<'_> {
                             };
                             criteria.ask(i, &moved, &mut best);
                         }
-                    }
+                    });
                     (work, best, span)
                 },
             )

@@ -1,6 +1,7 @@
 //! The loop, the integrator and the time-step candidates.
 
 mod candidate;
+mod dormant;
 mod error;
 mod fields;
 mod flight;
@@ -10,6 +11,7 @@ mod integrate;
 mod measures;
 mod removal;
 mod restored;
+mod search;
 mod setup;
 mod shown;
 mod simulation;

@@ -1,6 +1,7 @@
 //! From a case to the particles of this rank at time zero, or from saved particles to a run.
 
 use super::candidate::StepControl;
+use super::dormant::Dormant;
 use super::error::SetupError;
 use super::fields::{store_of, unused_fields};
 use super::given;
@@ -97,6 +98,7 @@ impl Simulation {
             loads: Loads::new(&case),
             sums: StepSums::new(table),
             contact,
+            dormant: Dormant::new(&case),
             labels: Labels::default(),
             measures,
             case,

@@ -1,13 +1,14 @@
 //! The simulation: everything a rank holds, and one step of it.
 
 use super::candidate::{Candidate, Criteria, StepControl};
+use super::dormant::Dormant;
 use super::error::{self, StepError};
 use super::flight::Sky;
 use super::integrate;
 use super::removal::Frozen;
 use super::timers::{Phase, Timers};
 use crate::comm::Comm;
-use crate::contact::{Connectivity, Contact};
+use crate::contact::Contact;
 use crate::diagnose::{
     Booked, NumericalFailure, PostMortem, Reason, RunState, StepSums, Totals, fastest, is_explained,
 };
@@ -18,7 +19,7 @@ use crate::measure::Measures;
 use crate::model::{Case, SphForm};
 use crate::neighbours::Lists;
 use crate::numerics::collector::Collector;
-use crate::particles::{HaloPhase, Image, ParticleStore};
+use crate::particles::{HaloPhase, ParticleStore};
 use crate::sph::{Side, Sph, Step, with_formulation};
 
 /// One rank's part of a running case.
@@ -45,6 +46,8 @@ pub struct Simulation {
     pub(super) halo: Halo,
     pub(super) sph: Sph,
     pub(super) contact: Contact,
+    /// What rests far from what does not.
+    pub(super) dormant: Dormant,
     /// Who hangs together with whom.
     pub(super) labels: Labels,
     pub(super) loads: Loads,
@@ -92,6 +95,7 @@ impl Simulation {
         self.timers.lap(Phase::Migrate);
         self.evaluate(comm, dt);
         let own = self.kick(dt);
+        self.settle(comm);
         self.timers.lap(Phase::Integrate);
         self.state.step += 1;
         self.state.time = end;
@@ -114,6 +118,7 @@ impl Simulation {
             sph,
             loads,
             sums,
+            dormant,
             ..
         } = self;
         loads.prepare(case, state.time, end);
@@ -121,7 +126,8 @@ impl Simulation {
         loads.book_drag(particles);
         state.book_first_half(loads, dt);
         particles.resize_halo(0);
-        let work = integrate::kick_and_drift(particles, loads, &sph.smoothing, dt);
+        let moved = (&mut *particles, &dormant.asleep);
+        let work = integrate::kick_and_drift(moved, loads, &sph.smoothing, dt);
         sums.contact_work.merge(&work);
         sph.drift(particles, loads, dt);
         sums.cross_planes(particles, halo.mirrors(), loads);
@@ -137,15 +143,20 @@ impl Simulation {
             lists,
             sph,
             partition,
+            dormant,
             ..
         } = self;
-        if lists.is_order_due {
+        if lists.is_order_due && dormant.is_whole {
             let scratch = sph.scratch(particles.owned());
             lists.is_order_due = !lists.restore_order(particles, scratch);
         }
         // After the next search, when those that change ranks now have found their place.
         lists.is_order_due |= partition.is_regular(state.step);
         if partition.is_due(state.step) {
+            if comm.size() > 1 {
+                // Faces come near.
+                dormant.wake();
+            }
             let all = (&*particles, state.step);
             partition.balance(comm, all, timers.busy(), |particles, i| {
                 sph.smoothing.reach(particles, i)
@@ -172,49 +183,6 @@ impl Simulation {
     pub(super) fn evaluate(&mut self, comm: &Comm, dt: f64) {
         self.search(comm);
         self.sum(comm, dt);
-    }
-
-    /// Who is whose neighbour at the current positions, over ranks and symmetry planes. Collective.
-    pub(super) fn search(&mut self, comm: &Comm) {
-        let Self {
-            particles,
-            state,
-            timers,
-            lists,
-            partition,
-            halo,
-            sph,
-            contact,
-            labels,
-            ..
-        } = self;
-        halo.exchange_motion(comm, partition.reaches(), particles, |particles, i| {
-            sph.smoothing.reach(particles, i)
-        });
-        timers.lap(Phase::HaloMotion);
-        let images = particles.owned() + halo.others().len();
-        let meetings = contact.table.has_pairs().then_some(&contact.table.foreign);
-        let (scratch, resting) = sph.before_rates(images);
-        let connectivity = &mut contact.connectivity;
-        connectivity.sample(particles, |i| resting.holds(particles, i));
-        let rests = |image: Image| {
-            // At the start nobody has been asked for anything yet.
-            state.step > 0
-                && connectivity.lets_rest(particles, image, state.step)
-                && resting.holds(particles, image.base())
-        };
-        lists.build(particles, halo, meetings, rests, scratch);
-        let mirrors = halo.mirrors();
-        connectivity.separate(particles, lists, mirrors);
-        if let Some(table) = meetings {
-            lists.build_foreign(particles, table);
-        }
-        lists.join();
-        timers.lap(Phase::Neighbours);
-        if connectivity.is_due(state.step) {
-            tell_parts(comm, (lists, halo), particles, labels);
-            timers.lap(Phase::Neighbours);
-        }
     }
 
     /// The sums over the neighbours of the last search, after a step `dt` (s). Collective.
@@ -266,19 +234,22 @@ impl Simulation {
             sph,
             loads,
             sums,
+            dormant,
             ..
         } = self;
         loads.book_drag(particles);
         let rules = (case.time_step, loads.gravity);
         let kicked = with_formulation!(case.sph.form, Form => {
             let criteria = |fields| Criteria::<Form>::new(fields, sph, &step_control.limits, rules);
-            integrate::kick(particles, loads, criteria, dt)
+            integrate::kick((particles, &dormant.asleep), loads, criteria, dt)
         });
         sums.contact_work.merge(&kicked.work);
+        let (candidate, span) = &dormant.told;
         sums.span = kicked.span;
+        sums.span.join(span);
         loads.book(particles, dt, false);
         loads.relax(particles);
-        kicked.candidate
+        kicked.candidate.min(*candidate)
     }
 
     /// Joins the sums of all ranks into the state, after the second half of a step `dt` (s), and this rank's
@@ -381,17 +352,4 @@ impl Simulation {
         self.frozen.take_from(&mut self.particles);
         result
     }
-}
-
-/// Finds anew who is of which part of a body. Collective.
-fn tell_parts(
-    comm: &Comm,
-    (lists, halo): (&Lists, &mut Halo),
-    particles: &mut ParticleStore,
-    labels: &mut Labels,
-) {
-    labels.begin(particles.part.len());
-    Connectivity::link(lists, labels.sets());
-    labels.settle(comm, Some(halo), &particles.id, particles.owned());
-    Connectivity::tell(labels.members(), particles);
 }

@@ -12,6 +12,13 @@ impl Simulation {
         self.frozen.count()
     }
 
+    /// Particles of this rank that steps leave out, as they rest far from what does not.
+    #[must_use]
+    pub fn asleep(&self) -> usize {
+        let owned = self.particles.owned();
+        owned - self.dormant.asleep.awake(owned)
+    }
+
     /// Bytes that this rank holds in particle arrays, lists and buffers.
     #[must_use]
     pub fn memory(&self) -> usize {
@@ -22,6 +29,7 @@ impl Simulation {
             + self.lists.memory()
             + self.sph.memory()
             + self.contact.memory()
+            + self.dormant.memory()
             + self.labels.memory()
             + self.loads.memory()
             + self.sums.memory()

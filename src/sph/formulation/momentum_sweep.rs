@@ -173,7 +173,7 @@ impl<S: PairScale, R: PairStress, const TERMS: u8> Vectorised for MomentumChunk<
         let all = self.chunk.iter();
         for (cluster, neighbours, among) in all.filter(|(_, _, among)| side.takes(among.halo)) {
             let free = |&j: &u32| self.sources.stresses[j as usize].is_free();
-            if !among.moving && neighbours.iter().all(free) {
+            if among.resting || !among.moving && neighbours.iter().all(free) {
                 target.store::<R, TERMS>(cluster, &Forces::NONE);
                 continue;
             }

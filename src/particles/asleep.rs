@@ -1,0 +1,125 @@
+//! Parts of the store that take no part in steps.
+
+/// Particles of a part: those that follow each other in the store, where these fill it.
+pub const PART: usize = 64;
+
+/// Which parts of a store sleep. Kept from step to step.
+#[derive(Debug, Clone, Default)]
+pub struct Asleep {
+    /// By part; those beyond the last are awake.
+    parts: Vec<bool>,
+    /// How many sleep.
+    count: usize,
+    /// The parts that are awake, ascending, with that which owned particles do not fill.
+    awake: Vec<u32>,
+}
+
+impl Asleep {
+    /// Whether none does.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// Whether a part does.
+    #[inline(always)]
+    #[must_use]
+    pub fn has(&self, part: usize) -> bool {
+        self.parts.get(part).copied().unwrap_or(false)
+    }
+
+    /// Whether an owned particle is of a part that does.
+    #[inline(always)]
+    #[must_use]
+    pub fn holds(&self, particle: usize) -> bool {
+        self.count > 0 && self.has(particle / PART)
+    }
+
+    /// How many of so many owned particles are awake.
+    #[must_use]
+    pub fn awake(&self, owned: usize) -> usize {
+        owned - PART * self.count
+    }
+
+    /// The n-th owned particle that is awake.
+    #[inline(always)]
+    #[must_use]
+    pub fn nth(&self, n: usize) -> usize {
+        if self.count == 0 {
+            n
+        } else {
+            PART * self.awake[n / PART] as usize + n % PART
+        }
+    }
+
+    /// Calls `work` with `0..count` but for those k whose particle `first + k` sleeps; `first` begins a part.
+    #[inline(always)]
+    pub fn each_awake(&self, first: usize, count: usize, mut work: impl FnMut(usize)) {
+        for begin in (0..count).step_by(PART) {
+            if self.count == 0 || !self.has((first + begin) / PART) {
+                for k in begin..count.min(begin + PART) {
+                    work(k);
+                }
+            }
+        }
+    }
+
+    /// Wakes all.
+    pub fn clear(&mut self) {
+        self.parts.fill(false);
+        self.count = 0;
+    }
+
+    /// Has those of the parts sleep that so many owned particles fill and `sleeps` takes, which is told whether a part
+    /// sleeps now.
+    pub fn set(&mut self, owned: usize, mut sleeps: impl FnMut(usize, bool) -> bool) {
+        let whole = owned / PART;
+        self.parts.resize(whole, false);
+        self.awake.clear();
+        for (part, asleep) in (0..).zip(&mut self.parts) {
+            *asleep = sleeps(part as usize, *asleep);
+            if !*asleep {
+                self.awake.push(part);
+            }
+        }
+        self.count = whole - self.awake.len();
+        #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
+        self.awake.push(whole as u32);
+    }
+
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.parts.capacity() + 4 * self.awake.capacity()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_awake_is_all_but_the_parts_that_sleep() {
+        let mut asleep = Asleep::default();
+        let owned = 5 * PART + 7;
+        let visited = |asleep: &Asleep| {
+            let mut found = Vec::new();
+            asleep.each_awake(0, owned, |i| found.push(i));
+            found
+        };
+        let all: Vec<usize> = (0..owned).collect();
+        assert!(asleep.is_empty() && asleep.awake(owned) == owned && asleep.nth(300) == 300);
+        assert_eq!(visited(&asleep), all);
+        asleep.set(owned, |part, _| part == 0 || part >= 3);
+        // What does not fill a part never sleeps.
+        let awake: Vec<usize> = (PART..3 * PART).chain(5 * PART..owned).collect();
+        assert_eq!(visited(&asleep), awake);
+        assert_eq!(asleep.awake(owned), awake.len());
+        let listed: Vec<usize> = (0..awake.len()).map(|n| asleep.nth(n)).collect();
+        assert_eq!(listed, awake);
+        let holds = |i: &usize| !asleep.holds(*i);
+        assert_eq!(all.iter().copied().filter(holds).collect::<Vec<_>>(), awake);
+        asleep.clear();
+        assert_eq!(visited(&asleep), all);
+    }
+}
