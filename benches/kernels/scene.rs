@@ -8,7 +8,7 @@ use whipple::neighbours::{
     Chunk, ClusterLists, ColumnGrid, ForeignLists, ImageFacts, ImageState, Lengths, Sequence,
 };
 use whipple::numerics::lanes::LANES;
-use whipple::particles::{Image, ParticleStore};
+use whipple::particles::{Asleep, Image, ParticleStore};
 
 /// Particles along an edge.
 const EDGE: u32 = 48;
@@ -98,11 +98,16 @@ impl Scene {
             smoothing_length: LENGTH,
         };
         let scratch = &mut self.scratch;
-        self.sequence
-            .build(scratch, COUNT, (&[], 0), facts, |_, _| ImageState {
+        self.sequence.build(
+            scratch,
+            (COUNT, &Asleep::default()),
+            (&[], 0),
+            facts,
+            |_, _| ImageState {
                 moving: true,
                 resting: false,
-            });
+            },
+        );
     }
 
     pub fn list(&mut self) {
@@ -113,7 +118,8 @@ impl Scene {
             uniform: true,
             rigid: false,
         };
-        self.clusters.build(&self.sequence, &[lengths; 2], &[]);
+        self.clusters
+            .build(&self.sequence, &[lengths; 2], (&[], true));
     }
 
     pub fn list_foreign(&self, table: &ContactTable, foreign: &mut ForeignLists) {

@@ -7,7 +7,7 @@ use whipple::domain::Mirrors;
 use whipple::model::{Axis, SymmetryPlane};
 use whipple::neighbours::MotionRecord;
 use whipple::neighbours::{ClusterLists, ColumnGrid, ImageFacts, ImageState, Lengths, Sequence};
-use whipple::particles::Image;
+use whipple::particles::{Asleep, Image};
 
 use super::random::Random;
 
@@ -162,7 +162,9 @@ impl Cloud {
             .collect();
         let mut scratch = vec![0; Sequence::SCRATCH_WORDS * emitted.len()];
         let others = (&others[..], others.len() / 3);
-        sequence.build(&mut scratch, self.owned, others, facts, |place, image| {
+        let asleep = Asleep::default();
+        let owned = (self.owned, &asleep);
+        sequence.build(&mut scratch, owned, others, facts, |place, image| {
             emitted[place].fetch_add(1, Ordering::Relaxed);
             ImageState {
                 moving: self.velocity[image.base()] != self.velocity[0],
@@ -198,7 +200,7 @@ impl Cloud {
             })
             .collect();
         let mut clusters = ClusterLists::default();
-        clusters.build(&sequence, &lengths, &[]);
+        clusters.build(&sequence, &lengths, (&[], true));
         Found {
             sequence,
             motion,
