@@ -125,15 +125,12 @@ impl Vectorised for Build<'_> {
         for run in clusters.chunks(RUN) {
             let rests = watch.rests::<V>(run);
             for cluster in run {
-                let mut among = Among::RESTING;
-                if !(rests && self.spared) {
-                    among = if uniform {
-                        lister.list::<V, true>(cluster)
-                    } else {
-                        lister.list::<V, false>(cluster)
-                    };
-                    among.resting = rests;
-                }
+                let mut among = match (rests && self.spared, uniform) {
+                    (true, _) => Among::RESTING,
+                    (false, true) => lister.list::<V, true>(cluster),
+                    (false, false) => lister.list::<V, false>(cluster),
+                };
+                among.resting = rests;
                 #[allow(clippy::cast_possible_truncation, reason = "a chunk's lists fit u32")]
                 ends.push((lister.used as u32, among));
             }

@@ -9,17 +9,15 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use rayon::prelude::*;
 
-use super::candidate::{Candidate, Criteria, NO_CANDIDATE, criteria_fields};
-use super::simulation::Simulation;
-use crate::comm::Comm;
+use super::candidate::{Candidate, Criteria, NO_CANDIDATE};
 use crate::diagnose::Moved;
-use crate::domain::{Decomposition, Span};
+use crate::domain::Span;
 use crate::model::Case;
 use crate::neighbours::{Chunk, Lists};
 use crate::numerics::collector::Collector;
 use crate::particles::{Asleep, PART, ParticleStore};
 use crate::populate::Brick;
-use crate::sph::{SignalSpeed, with_formulation};
+use crate::sph::SignalSpeed;
 
 /// Particles that are left out of steps, kept from one to the next.
 #[derive(Debug)]
@@ -181,25 +179,6 @@ impl Dormant {
                     }
                 }
             }
-        });
-    }
-}
-
-impl Simulation {
-    /// Lets sleep what rests far from what does not, and wakes what that has come near to.
-    pub(super) fn settle(&mut self, comm: &Comm) {
-        if self.poison {
-            return;
-        }
-        let (particles, range) = (&self.particles, self.contact.table.longest_range());
-        let rules = (self.case.time_step, self.loads.gravity);
-        let region = self.partition.slabs().region(comm.rank());
-        let (sph, limits) = (&self.sph, &self.step_control.limits);
-        with_formulation!(self.case.sph.form, Form => {
-            let fields = criteria_fields!(particles);
-            let criteria = Criteria::<Form>::new(fields, sph, limits, rules);
-            let near = (&self.lists, range);
-            self.dormant.settle(particles, near, &region, &criteria);
         });
     }
 }

@@ -1,13 +1,15 @@
-//! Who is whose neighbour.
+//! Who is whose neighbour, and who sleeps.
 
+use super::candidate::{Criteria, criteria_fields};
 use super::simulation::Simulation;
 use super::timers::Phase;
 use crate::comm::Comm;
 use crate::contact::{Connectivity, EVERY};
-use crate::domain::Halo;
+use crate::domain::{Decomposition, Halo};
 use crate::fragments::Labels;
 use crate::neighbours::Lists;
 use crate::particles::{Image, ParticleStore};
+use crate::sph::with_formulation;
 
 impl Simulation {
     /// Who is whose neighbour at the current positions, over ranks and symmetry planes. Collective.
@@ -59,6 +61,23 @@ impl Simulation {
             tell_parts(comm, (lists, halo), particles, labels);
             timers.lap(Phase::Neighbours);
         }
+    }
+
+    /// Lets sleep what rests far from what does not, and wakes what that has come near to.
+    pub(super) fn settle(&mut self, comm: &Comm) {
+        if self.poison {
+            return;
+        }
+        let (particles, range) = (&self.particles, self.contact.table.longest_range());
+        let rules = (self.case.time_step, self.loads.gravity);
+        let region = self.partition.slabs().region(comm.rank());
+        let (sph, limits) = (&self.sph, &self.step_control.limits);
+        with_formulation!(self.case.sph.form, Form => {
+            let fields = criteria_fields!(particles);
+            let criteria = Criteria::<Form>::new(fields, sph, limits, rules);
+            let near = (&self.lists, range);
+            self.dormant.settle(particles, near, &region, &criteria);
+        });
     }
 }
 
