@@ -1,5 +1,10 @@
 //! Parts of the store that take no part in steps.
 
+use rayon::prelude::*;
+
+use super::GRAIN;
+use crate::numerics::collector::Collector;
+
 /// Particles of a part: those that follow each other in the store, where these fill it.
 pub const PART: usize = 64;
 
@@ -12,6 +17,7 @@ pub struct Asleep {
     count: usize,
     /// The parts that are awake, ascending, with that which owned particles do not fill.
     awake: Vec<u32>,
+    collector: Collector,
 }
 
 impl Asleep {
@@ -72,25 +78,27 @@ impl Asleep {
 
     /// Has those of the parts sleep that so many owned particles fill and `sleeps` takes, which is told whether a part
     /// sleeps now.
-    pub fn set(&mut self, owned: usize, mut sleeps: impl FnMut(usize, bool) -> bool) {
+    pub fn set(&mut self, owned: usize, sleeps: impl Fn(usize, bool) -> bool + Sync) {
         let whole = owned / PART;
         self.parts.resize(whole, false);
-        self.awake.clear();
-        for (part, asleep) in (0..).zip(&mut self.parts) {
-            *asleep = sleeps(part as usize, *asleep);
-            if !*asleep {
-                self.awake.push(part);
-            }
-        }
-        self.count = whole - self.awake.len();
+        let parts = self.parts.par_iter_mut().with_min_len(GRAIN).enumerate();
+        parts.for_each(|(part, asleep)| *asleep = sleeps(part, *asleep));
         #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
-        self.awake.push(whole as u32);
+        let number = |part: usize| part as u32;
+        let parts = &self.parts;
+        self.awake.clear();
+        self.collector
+            .extend(&mut self.awake, (whole, GRAIN), |part| {
+                (!parts[part]).then_some(number(part))
+            });
+        self.count = whole - self.awake.len();
+        self.awake.push(number(whole));
     }
 
     /// Bytes allocated.
     #[must_use]
     pub fn memory(&self) -> usize {
-        self.parts.capacity() + 4 * self.awake.capacity()
+        self.parts.capacity() + 4 * self.awake.capacity() + self.collector.memory()
     }
 }
 

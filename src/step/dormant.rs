@@ -15,7 +15,7 @@ use crate::domain::Span;
 use crate::model::Case;
 use crate::neighbours::{Chunk, Lists};
 use crate::numerics::collector::Collector;
-use crate::particles::{Asleep, PART, ParticleStore};
+use crate::particles::{Asleep, GRAIN, PART, ParticleStore};
 use crate::populate::Brick;
 use crate::sph::SignalSpeed;
 
@@ -152,14 +152,18 @@ impl Dormant {
 
     /// Sums up what sleeps.
     fn tell(&mut self) {
-        self.told = (NO_CANDIDATE, Span::NONE);
-        let (candidate, span) = &mut self.told;
-        for (p, part) in self.parts.iter().enumerate() {
-            if self.asleep.has(p) {
-                *candidate = part.candidate.min(*candidate);
-                span.join(&part.span);
-            }
-        }
+        let none = || (NO_CANDIDATE, Span::NONE);
+        let join = |(first, mut span): (Candidate, Span), (other, beyond): (Candidate, Span)| {
+            span.join(&beyond);
+            (first.min(other), span)
+        };
+        let asleep = &self.asleep;
+        let parts = self.parts.par_iter().enumerate().with_min_len(GRAIN);
+        let all = parts.filter(|(p, _)| asleep.has(*p));
+        // same bits in any order: smallest and largest numbers
+        self.told = all
+            .map(|(_, part)| (part.candidate, part.span))
+            .reduce(none, join);
     }
 
     /// Counts by part what rests without motion.
