@@ -41,6 +41,12 @@ impl Asleep {
         self.count > 0 && self.has(particle / PART)
     }
 
+    /// The place in the store after the last part that may sleep.
+    #[must_use]
+    pub fn end(&self) -> usize {
+        PART * self.parts.len()
+    }
+
     /// How many of so many owned particles are awake.
     #[must_use]
     pub fn awake(&self, owned: usize) -> usize {

@@ -26,6 +26,8 @@ pub(super) struct Dormant {
     pub asleep: Asleep,
     /// Whether the last search saw all particles.
     pub is_whole: bool,
+    /// Whether some may fall asleep in this step, whose search sees all.
+    pub is_asked: bool,
     /// The first candidate of what sleeps, and where that is.
     pub told: (Candidate, Span),
     /// Whether a case lets any sleep.
@@ -69,6 +71,7 @@ impl Dormant {
         Self {
             asleep: Asleep::default(),
             is_whole: true,
+            is_asked: false,
             told: (NO_CANDIDATE, Span::NONE),
             is_open: loads.surfaces.is_empty()
                 && loads.velocities.is_empty()
@@ -94,20 +97,19 @@ impl Dormant {
         self.told = (NO_CANDIDATE, Span::NONE);
     }
 
-    /// Before a search: wakes what may stand elsewhere in the store than when it fell asleep.
+    /// Wakes what may stand elsewhere in the store than when it fell asleep.
     pub fn follow(&mut self, particles: &mut ParticleStore) {
         let settled = particles.settled();
-        if !self.asleep.is_empty() {
+        if !self.asleep.is_empty() && settled < self.asleep.end() {
             let is_in_place = |part: usize| (part + 1) * PART <= settled;
             self.asleep.set(particles.owned(), |part, asleep| {
                 asleep && is_in_place(part)
             });
             self.tell();
         }
-        self.is_whole = self.asleep.is_empty();
     }
 
-    /// After a step: wakes what others come near to, and, if its search has seen all, lets sleep what is far from them
+    /// After a step: wakes what others come near to, and, if it is asked to, lets sleep what is far from them
     /// and from the faces of this rank's region.
     pub fn settle<F: SignalSpeed>(
         &mut self,
@@ -116,11 +118,12 @@ impl Dormant {
         region: &Brick,
         criteria: &Criteria<F>,
     ) {
-        let is_asked = self.is_whole && self.is_open && lists.spare_quiescent;
-        if !is_asked && self.asleep.is_empty() {
+        let owned = particles.owned();
+        let is_asked = self.is_asked && self.is_open && lists.spare_quiescent;
+        let any_rest = is_asked && self.count_resting(lists, owned / PART);
+        if !any_rest && self.asleep.is_empty() {
             return;
         }
-        let owned = particles.owned();
         let none = Part {
             sleeps: false,
             candidate: NO_CANDIDATE,
@@ -129,16 +132,13 @@ impl Dormant {
         self.parts.resize(owned / PART, none);
         let apart = ROOM * (2.0 * lists.farthest() + range);
         self.busy.find(lists, apart / APART[1]);
-        if is_asked {
-            self.count_resting(lists);
-        }
         let (asleep, busy, resting) = (&self.asleep, &self.busy, &self.resting);
         let parts = self.parts.par_iter_mut().enumerate();
         parts.for_each(|(p, part)| {
             if asleep.has(p) {
                 part.sleeps = !busy.is_near(&part.span, APART[1]);
             } else {
-                part.sleeps = is_asked && resting[p].load(Relaxed) as usize == PART;
+                part.sleeps = any_rest && resting[p].load(Relaxed) as usize == PART;
                 part.sleeps = part.sleeps && part.lie_down(particles, p, criteria);
                 part.sleeps = part.sleeps
                     && is_inside(&part.span, region, 2.0 * apart)
@@ -166,10 +166,9 @@ impl Dormant {
             .reduce(none, join);
     }
 
-    /// Counts by part what rests without motion.
-    fn count_resting(&mut self, lists: &Lists) {
-        let parts = self.parts.len() + 1;
-        self.resting.resize_with(parts, AtomicU32::default);
+    /// Counts by part what rests without motion; gives whether any of so many parts does as a whole.
+    fn count_resting(&mut self, lists: &Lists, whole: usize) -> bool {
+        self.resting.resize_with(whole + 1, AtomicU32::default);
         self.resting
             .iter_mut()
             .for_each(|count| *count.get_mut() = 0);
@@ -184,6 +183,10 @@ impl Dormant {
                 }
             }
         });
+        let counts = self.resting[..whole].iter_mut();
+        counts
+            .map(AtomicU32::get_mut)
+            .any(|count| *count as usize == PART)
     }
 }
 

@@ -27,10 +27,12 @@ impl Simulation {
             dormant,
             ..
         } = self;
-        if state.step.is_multiple_of(EVERY) {
+        dormant.is_asked = state.step.is_multiple_of(EVERY);
+        if dormant.is_asked {
             dormant.wake();
         }
         dormant.follow(particles);
+        dormant.is_whole = dormant.asleep.is_empty();
         let asleep = &dormant.asleep;
         let all = (&mut *particles, asleep);
         halo.exchange_motion(comm, partition.reaches(), all, |particles, i| {

@@ -126,6 +126,7 @@ impl Simulation {
         loads.book_drag(particles);
         state.book_first_half(loads, dt);
         particles.resize_halo(0);
+        dormant.follow(particles);
         let moved = (&mut *particles, &dormant.asleep);
         let work = integrate::kick_and_drift(moved, loads, &sph.smoothing, dt);
         sums.contact_work.merge(&work);

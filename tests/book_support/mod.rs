@@ -139,7 +139,7 @@ pub fn blocks(text: &str) -> Vec<Block> {
     let mut all: Vec<Block> = Vec::new();
     let mut inside = false;
     for line in text.lines() {
-        if let Some(kind) = line.strip_prefix("```") {
+        if let Some(kind) = line.trim_start().strip_prefix("```") {
             inside = !inside;
             if inside {
                 all.push(Block {
@@ -159,27 +159,15 @@ pub fn blocks(text: &str) -> Vec<Block> {
 /// What the commands of a page hand to the program: those of blocks `sh` and `bash`, and those in the text that
 /// stand for nothing else (no `…`, no word in capitals).
 pub fn commands(text: &str) -> Vec<Vec<String>> {
-    let mut all: Vec<Vec<String>> = Vec::new();
-    let mut block = None;
-    let mut begun = String::new();
-    for line in text.lines() {
-        if let Some(kind) = line.trim_start().strip_prefix("```") {
-            block = block.is_none().then(|| kind.to_owned());
-            continue;
-        }
-        match block.as_deref() {
-            Some("sh" | "bash") => {
-                if let Some(part) = line.strip_suffix('\\') {
-                    begun.push_str(part);
-                    continue;
-                }
-                let whole = std::mem::take(&mut begun) + line;
-                all.extend(split(&whole).into_iter().filter_map(|words| given(&words)));
-            }
-            Some(_) => {}
-            None => all.extend(inline(line)),
+    let mut all = Vec::new();
+    for Block { kind, text } in blocks(text) {
+        if ["sh", "bash"].contains(&&*kind) {
+            let whole = text.replace("\\\n", "");
+            let lines = whole.lines().flat_map(split);
+            all.extend(lines.filter_map(|words| given(&words)));
         }
     }
+    all.extend(without_blocks(text).lines().flat_map(inline));
     all
 }
 
