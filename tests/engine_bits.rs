@@ -6,6 +6,7 @@ mod common;
 use std::path::Path;
 use std::process::Command;
 
+use common::bridge;
 use common::outcome::{
     CASES, Outcome, advance, assert_same, every_option, everything, loaded, normalised, start,
 };
@@ -135,6 +136,26 @@ fn what_sleeps_changes_no_bit() {
     let whole = Outcome::of(&whole);
     assert_same(&Outcome::of(&spared), &whole);
     assert_same(&Outcome::of(&shaken), &whole);
+}
+
+/// What sleeps hangs together as lists of all would tell, though they have it not: also when its pieces come apart
+/// elsewhere, and when the store is put in order around it.
+#[test]
+fn what_sleeps_is_told_its_parts() {
+    let solo = Comm::solo();
+    let (mut spared, mut whole) = (start(bridge::case()), start(bridge::case()));
+    whole.lists.spare_quiescent = false;
+    for step in 0..bridge::STEPS {
+        for simulation in [&mut spared, &mut whole] {
+            bridge::advance(simulation, &solo);
+        }
+        let (asleep, owned) = (spared.asleep(), spared.particles.owned());
+        // The smaller block does not, once it is one.
+        let sleeps = (2..=30).contains(&step);
+        assert!(!sleeps || 8 * asleep > owned, "{step}: {asleep} of {owned}");
+        assert_same(&Outcome::of(&spared), &Outcome::of(&whole));
+    }
+    bridge::assert_apart(&whole.particles.part[..whole.particles.owned()]);
 }
 
 /// The order of particles in memory is nobody's business.

@@ -9,6 +9,7 @@ use std::panic::catch_unwind;
 use std::thread;
 use std::time::Duration;
 
+use common::bridge;
 use common::collectives::{check_collectives, check_parts};
 use common::outcome::{Outcome, assert_same};
 use common::sentinel::mix;
@@ -472,4 +473,34 @@ fn levels_that_change_on_the_way_change_no_bit() {
         simulation.changes_of_slabs()
     });
     assert_eq!(changes, [0; 8]);
+}
+
+/// Faces move every few steps, what sleeps comes to other ranks, and ranks on which some sleeps get more.
+#[test]
+fn what_sleeps_on_ranks_is_told_its_parts() {
+    let solo = Comm::solo();
+    let mut alone = Simulation::start(bridge::case(), &solo).unwrap();
+    alone.lists.spare_quiescent = false;
+    for _ in 0..bridge::STEPS {
+        bridge::advance(&mut alone, &solo);
+    }
+    bridge::assert_apart(&alone.particles.part[..alone.particles.owned()]);
+    let alone = Outcome::of(&alone);
+    for ranks in [2, 5] {
+        let shares = on_virtual_ranks(ranks, Machine::IDEAL, |comm| {
+            let mut simulation = Simulation::start(bridge::case(), comm).unwrap();
+            let (mut asleep, mut grown) = (0, 0);
+            for _ in 0..bridge::STEPS {
+                let before = (simulation.asleep(), simulation.particles.owned());
+                bridge::advance(&mut simulation, comm);
+                grown += usize::from(before.0 > 0 && before.1 < simulation.particles.owned());
+                asleep = asleep.max(simulation.asleep());
+            }
+            ((asleep, grown), Outcome::of(&simulation))
+        });
+        let (told, shares): (Vec<_>, Vec<_>) = shares.into_iter().unzip();
+        println!("{ranks} ranks: asleep at most, grown {told:?}");
+        assert!(told.iter().any(|(asleep, _)| *asleep > 0));
+        assert_same(&joined(shares), &alone);
+    }
 }

@@ -824,27 +824,30 @@ fn slabs_of_slabs_on_any_ranks() {
 /// What rests far from what moves sleeps, but where all that is no state is poisoned in each step.
 #[test]
 fn what_sleeps_on_any_ranks_and_through_a_restart() {
-    let (_keep, at) = folder();
     let wide = "body.plate.shape.cylinder.radius=3mm";
-    let case = [QUARTER, &["--set", wide, "--set", "run.end_time=0.16us"]].concat();
-    let (reference, stopped) = (at("reference"), at("stopped"));
-    run(1, 2, &case, &[], &reference);
-    for (ranks, threads, axis) in [(1, "2", "x"), (2, "1", "x"), (3, "1", "z")] {
-        let other = at(&format!("{ranks} ranks"));
-        let axis = format!("domain.axis={axis}");
-        let more = ["--set", &axis, "--threads", threads, "--out"];
-        let path = other.to_str().expect("a plain path");
-        must(
-            &whipple(ranks, &[&["run"], &case[..], &more, &[path]].concat()),
-            0,
-        );
-        assert_same(&reference, &other, &format!("{ranks} ranks"));
+    let quarter = [QUARTER, &["--set", wide, "--set", "run.end_time=0.16us"]].concat();
+    let bridge = ["tests/common/bridge.toml", "--set", "run.end_time=0.5us"];
+    for (case, until) in [(&quarter[..], "0.07us"), (&bridge, "0.2us")] {
+        let (_keep, at) = folder();
+        let (reference, stopped) = (at("reference"), at("stopped"));
+        run(1, 2, case, &[], &reference);
+        for (ranks, threads, axis) in [(1, "2", "x"), (2, "1", "x"), (3, "1", "y")] {
+            let other = at(&format!("{ranks} ranks"));
+            let axis = format!("domain.axis={axis}");
+            let more = ["--set", &axis, "--threads", threads, "--out"];
+            let path = other.to_str().expect("a plain path");
+            must(
+                &whipple(ranks, &[&["run"], case, &more, &[path]].concat()),
+                0,
+            );
+            assert_same(&reference, &other, &format!("{ranks} ranks"));
+        }
+        let path = stopped.to_str().expect("a plain path");
+        let more = ["--until", until, "--out", path];
+        must(&whipple(2, &[&["run"], case, &more].concat()), 0);
+        must(&whipple(1, &["restart", path]), 0);
+        assert_same(&reference, &stopped, "a restart");
     }
-    let path = stopped.to_str().expect("a plain path");
-    let more = ["--until", "0.07us", "--out", path];
-    must(&whipple(2, &[&["run"], &case[..], &more].concat()), 0);
-    must(&whipple(1, &["restart", path]), 0);
-    assert_same(&reference, &stopped, "a restart");
 }
 
 /// From slabs of slabs to others, and to slabs.

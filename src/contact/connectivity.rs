@@ -188,7 +188,12 @@ impl Connectivity {
                 && code & !particles.part_planes[i] == 0
     }
 
-    /// Whether fragments are to be told at a step, from lists of all particles.
+    /// Whether there is self-contact.
+    pub(crate) fn is_active(&self) -> bool {
+        self.is_active
+    }
+
+    /// Whether fragments are to be told at a step, from lists of all particles that are awake.
     pub(crate) fn is_due(&self, step: u64) -> bool {
         self.is_active && step.is_multiple_of(EVERY)
     }

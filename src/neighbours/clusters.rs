@@ -122,7 +122,10 @@ impl Vectorised for Build<'_> {
             far: lengths.range(),
             hints: [0; 64],
         };
-        for run in clusters.chunks(RUN) {
+        let mut left = clusters.as_slice();
+        while !left.is_empty() {
+            let (run, others) = left.split_at(run_of(left, LONG * watch.far));
+            left = others;
             let rests = watch.rests::<V>(run);
             for cluster in run {
                 let mut among = match (rests && self.spared, uniform) {
@@ -140,6 +143,22 @@ impl Vectorised for Build<'_> {
 
 /// Clusters in a row that are looked at together, whether they rest.
 const RUN: usize = 8;
+/// How long they are together at most, in ranges of lists: columns have gaps where some sleep.
+const LONG: f64 = 5.0;
+
+/// How many of the first clusters make such a run, no longer (m) than that along any axis if there is more than one.
+#[inline(always)]
+fn run_of(clusters: &[Cluster], longest: f64) -> usize {
+    let (mut lower, mut upper) = (clusters[0].lower, clusters[0].upper);
+    let fits = |cluster: &&Cluster| {
+        for a in 0..3 {
+            lower[a] = lower[a].min(cluster.lower[a]);
+            upper[a] = upper[a].max(cluster.upper[a]);
+        }
+        (0..3).all(|a| upper[a] - lower[a] <= longest)
+    };
+    1 + clusters[1..].iter().take(RUN - 1).take_while(fits).count()
+}
 
 /// Writes the lists of a chunk one after the other.
 struct Lister<'a> {

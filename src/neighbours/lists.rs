@@ -38,6 +38,8 @@ pub struct Lists {
     /// stress, sums are zero to the bit and need not be made.
     common_velocity: Vec<[f64; 3]>,
     order: Vec<u32>,
+    /// That of all, where some sleep.
+    full_order: Vec<u32>,
     collector: Collector,
 }
 
@@ -72,6 +74,7 @@ impl Lists {
             foreign: ForeignLists::default(),
             is_variable: case.sph.smoothing_length != SmoothingLength::Constant,
             order: Vec::new(),
+            full_order: Vec::new(),
             collector: Collector::default(),
             lengths,
             groups,
@@ -179,7 +182,7 @@ impl Lists {
             + self.motion.capacity() * size_of::<MotionRecord>()
             + self.clusters.memory()
             + self.foreign.memory()
-            + 4 * self.order.capacity()
+            + 4 * (self.order.capacity() + self.full_order.capacity())
     }
 
     /// Sorts all particles that are awake and images, and lists the neighbours of each in its own group; if lists are
@@ -279,29 +282,51 @@ impl Lists {
         );
     }
 
-    /// Puts the store into the canonical order of the last search, so that memory follows space,
+    /// Puts what is awake in the store into the canonical order of the last search, so that memory follows space,
     /// unless it nearly is. Results do not depend on it. Returns whether there was such a search.
     /// `scratch` is memory to work in.
     pub fn restore_order<R: bytemuck::Pod>(
         &mut self,
-        particles: &mut ParticleStore,
+        (particles, asleep): (&mut ParticleStore, &Asleep),
         scratch: &mut [R],
     ) -> bool {
         let (owned, images) = (particles.owned(), self.sequence.images());
+        let own = |image: &Image| {
+            image.code() == 0 && image.base() < owned && !asleep.holds(image.base())
+        };
         self.order.clear();
         let all = (images.len(), GRAIN);
         self.collector.extend(&mut self.order, all, |index| {
-            let own = Some(images[index]).filter(|image| image.code() == 0 && image.base() < owned);
             #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
-            own.map(|image| image.base() as u32)
+            let place = |image: Image| image.base() as u32;
+            Some(images[index]).filter(own).map(place)
         });
-        let known = self.order.len() == owned;
+        let awake = asleep.awake(owned);
+        let known = self.order.len() == awake;
         let pairs = self.order.par_windows(2).with_min_len(GRAIN);
-        let astray = pairs.filter(|pair| pair[1] != pair[0] + 1);
-        if known && astray.count() > owned / ASTRAY {
-            particles.keep(&self.order, bytemuck::cast_slice_mut(scratch));
+        let follows = |a: u32, b: u32| b == a + 1 || b > a && asleep.is_gap(a + 1, b);
+        let astray = pairs.filter(|pair| !follows(pair[0], pair[1]));
+        if !known || astray.count() <= awake / ASTRAY {
+            return known;
         }
-        known
+        let scratch = bytemuck::cast_slice_mut(scratch);
+        if asleep.is_empty() {
+            particles.rearrange(&self.order, scratch);
+            return true;
+        }
+        #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
+        let itself = |i: usize| i as u32;
+        self.full_order.clear();
+        let all = (0..owned).into_par_iter().with_min_len(GRAIN);
+        self.full_order.par_extend(all.map(itself));
+        let full = Scatter::new(&mut self.full_order);
+        let order = self.order.par_iter().enumerate().with_min_len(GRAIN);
+        order.for_each(|(n, &place)| {
+            // SAFETY: each place in the store is that of one particle that is awake.
+            unsafe { *full.slot(asleep.nth(n)) = place };
+        });
+        particles.rearrange(&self.full_order, scratch);
+        true
     }
 }
 

@@ -53,6 +53,21 @@ impl Asleep {
         owned - PART * self.count
     }
 
+    /// Whether parts sleep that begin at a place in the store, and that end at another one.
+    #[must_use]
+    pub fn is_gap(&self, from: u32, to: u32) -> bool {
+        let part = |place: u32| {
+            (place as usize)
+                .is_multiple_of(PART)
+                .then_some(place as usize / PART)
+        };
+        self.count > 0
+            && match (part(from), part(to)) {
+                (Some(first), Some(end)) => self.has(first) && self.has(end - 1),
+                _ => false,
+            }
+    }
+
     /// The n-th owned particle that is awake.
     #[inline(always)]
     #[must_use]
@@ -60,7 +75,9 @@ impl Asleep {
         if self.count == 0 {
             n
         } else {
-            PART * self.awake[n / PART] as usize + n % PART
+            // Others may have come since, behind the last part.
+            let k = (n / PART).min(self.awake.len() - 1);
+            PART * self.awake[k] as usize + (n - PART * k)
         }
     }
 
@@ -131,8 +148,17 @@ mod tests {
         assert_eq!(asleep.awake(owned), awake.len());
         let listed: Vec<usize> = (0..awake.len()).map(|n| asleep.nth(n)).collect();
         assert_eq!(listed, awake);
+        let more = owned + 2 * PART;
+        let listed: Vec<usize> = (0..asleep.awake(more)).map(|n| asleep.nth(n)).collect();
+        assert_eq!(
+            listed,
+            [&awake[..], &(owned..more).collect::<Vec<_>>()].concat()
+        );
         let holds = |i: &usize| !asleep.holds(*i);
         assert_eq!(all.iter().copied().filter(holds).collect::<Vec<_>>(), awake);
+        let place = |part: usize| u32::try_from(PART * part).unwrap();
+        assert!(asleep.is_gap(place(3), place(5)) && asleep.is_gap(place(0), place(1)));
+        assert!(!asleep.is_gap(place(1), place(3)) && !asleep.is_gap(place(3), place(5) + 1));
         asleep.clear();
         assert_eq!(visited(&asleep), all);
     }

@@ -88,7 +88,7 @@ macro_rules! particle_fields {
             pub(super) owned: usize,
             pub(super) halo: usize,
             pub(super) unused: Owner,
-            /// Owned particles, the first ones, that stand where they did when that was last asked.
+            /// Owned particles, the first ones, among which those that sleep stand where they did when that was last asked.
             pub(super) settled: usize,
             $( $(#[doc = $doc])+ pub $name: Vec<kind_type!($kind)>, )+
         }

@@ -146,19 +146,27 @@ impl ParticleStore {
     /// # Panics
     /// If `scratch` is too short.
     pub fn keep(&mut self, order: &[u32], scratch: &mut [u64]) {
+        self.settled = 0;
+        self.rearrange(order, scratch);
+    }
+
+    /// [`Self::keep`] of an order in which all that sleeps stays where it is.
+    ///
+    /// # Panics
+    /// If `scratch` is too short.
+    pub fn rearrange(&mut self, order: &[u32], scratch: &mut [u64]) {
         assert!(
             scratch.len() >= SCRATCH_WORDS * order.len(),
             "too little scratch"
         );
         self.resize_halo(0);
-        self.settled = 0;
         for field in self.held(FieldInfo::any) {
             self.gather_field(field.id, order, scratch);
         }
         self.resize_owned(order.len());
     }
 
-    /// How many owned particles, the first ones, stand where they did when this was last asked.
+    /// Among how many owned particles, the first ones, those that sleep stand where they did when this was last asked.
     pub fn settled(&mut self) -> usize {
         let settled = self.settled.min(self.owned);
         self.settled = usize::MAX;

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::particles::Particles;
 use crate::model::Case;
-use crate::preflight::{self, Approach, RESTING, TIMES, Waves, approaches, mean_work};
+use crate::preflight::{self, Approach, TIMES, Waiting, Waves, approaches, mean_work};
 
 /// What is foreseen of a run from a time on.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,8 +13,8 @@ pub struct Outlook {
     pub steps: Option<f64>,
     /// Work of these steps, over what it would be if all matter moved.
     pub share_of_work: f64,
-    /// By particle, at which of the times it rests, a bit for each; `None` where nothing does.
-    resting: Option<Vec<u8>>,
+    /// By particle, at which of the times it waits; `None` where nothing does.
+    waiting: Option<Vec<Waiting>>,
 }
 
 impl Outlook {
@@ -23,16 +23,16 @@ impl Outlook {
     pub fn new(case: &Case, particles: &Particles, time: Option<f64>) -> Self {
         let (from, approaches) = (time.unwrap_or(0.0), approaches(case));
         let times = Waves::times(case, from);
-        let resting = Waves::new(case, &approaches).map(|waves| {
+        let waiting = Waves::new(case, &approaches).map(|waves| {
             let places = particles.body.par_iter().zip(&particles.positions);
             places
-                .map(|(&body, place)| waves.resting(body as usize, place, &times))
-                .collect::<Vec<u8>>()
+                .map(|(&body, place)| waves.waiting(body as usize, place, &times))
+                .collect::<Vec<_>>()
         });
         Self {
             steps: expected_steps(case, &approaches, from),
-            share_of_work: resting.as_deref().map_or(1.0, mean_work),
-            resting,
+            share_of_work: waiting.as_deref().map_or(1.0, mean_work),
+            waiting,
         }
     }
 
@@ -43,11 +43,11 @@ impl Outlook {
             clippy::cast_sign_loss,
             reason = "a per cent"
         )]
-        const AT_REST: u32 = (100.0 * RESTING) as u32;
-        let resting = self.resting.as_ref()?;
-        Some((0..TIMES).map(|k| {
-            let work = |bits: &u8| if bits >> k & 1 == 1 { AT_REST } else { 100 };
-            resting.par_iter().map(work).collect()
+        let per_cent = |work: f64| (100.0 * work) as u32;
+        let waiting = self.waiting.as_ref()?;
+        Some((0..TIMES).map(move |k| {
+            let works = waiting.par_iter().map(|waiting| waiting.work(k));
+            works.map(per_cent).collect()
         }))
     }
 }

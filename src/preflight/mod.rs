@@ -15,7 +15,7 @@ pub use approach::{Approach, approaches};
 pub use costs::{Costs, UNEVEN};
 pub use initial::beginning;
 pub use steps::{expected_step, expected_steps};
-pub use waves::{RESTING, TIMES, Waves, mean_work};
+pub use waves::{TIMES, Waiting, Waves, mean_work};
 
 use crate::model::{Body, Case, ContactMode};
 use crate::populate::{self, overlap};

@@ -9,8 +9,14 @@ use crate::populate;
 /// How far sums pass on what is not negligible ahead of sound, in spacings, as measured in the quarter impact.
 const AHEAD: f64 = 16.0;
 
+/// How far beyond that, in spacings, matter rests that does not sleep, as measured on targets.
+const AWAKE: f64 = 34.0;
+
 /// Work of a particle at rest over that of another.
 pub const RESTING: f64 = 0.21;
+
+/// The same of one that sleeps.
+const SLEEPING: f64 = 0.01;
 
 /// Times of a run at which its matter is looked at.
 pub const TIMES: usize = 8;
@@ -34,6 +40,28 @@ struct Still {
     speed: f64,
     /// How far the wave is ahead of sound (m).
     ahead: f64,
+    /// How far from the wave matter is awake (m).
+    awake: f64,
+}
+
+/// At which of the times of a run a particle waits, a bit for each.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Waiting {
+    rests: u8,
+    sleeps: u8,
+}
+
+impl Waiting {
+    /// Work at one of the times, over that of what moves.
+    #[must_use]
+    pub fn work(self, time: usize) -> f64 {
+        let is_so = |bits: u8| bits >> time & 1 == 1;
+        match (is_so(self.sleeps), is_so(self.rests)) {
+            (true, _) => SLEEPING,
+            (false, true) => RESTING,
+            (false, false) => 1.0,
+        }
+    }
 }
 
 /// A body comes.
@@ -66,27 +94,29 @@ impl Waves {
         Some(Self { still, strikes })
     }
 
-    /// Whether matter of a body at a place (m) rests at a time (s). Waves go from any body to any other as they do
-    /// within one.
-    #[must_use]
-    pub fn rests(&self, body: usize, place: &[f64; 3], time: f64) -> bool {
-        let still = self.still.get(body).and_then(Option::as_ref);
-        still.is_some_and(|still| {
-            let reached = |strike: &Strike| {
-                let since = time - strike.time;
-                since >= 0.0 && strike.distance(place, since) <= still.speed * since + still.ahead
-            };
-            !self.strikes.iter().any(reached)
-        })
+    /// How far waves are from matter of a body at a place (m) at a time (s), negative where they have been. They go from
+    /// any body to any other as they do within one.
+    fn distance(&self, still: &Still, place: &[f64; 3], time: f64) -> f64 {
+        let strikes = self.strikes.iter().filter(|strike| time >= strike.time);
+        let left = strikes.map(|strike| {
+            let since = time - strike.time;
+            strike.distance(place, since) - still.speed * since - still.ahead
+        });
+        left.fold(f64::INFINITY, f64::min)
     }
 
-    /// At which of some times (s) matter of a body at a place (m) rests: bit k is time k.
+    /// At which of some times (s) matter of a body at a place (m) waits.
     #[must_use]
-    pub fn resting(&self, body: usize, place: &[f64; 3], times: &[f64; TIMES]) -> u8 {
-        let bits = times.iter().enumerate();
-        bits.fold(0, |bits, (k, &time)| {
-            bits | u8::from(self.rests(body, place, time)) << k
-        })
+    pub fn waiting(&self, body: usize, place: &[f64; 3], times: &[f64; TIMES]) -> Waiting {
+        let mut waiting = Waiting::default();
+        if let Some(still) = self.still.get(body).and_then(Option::as_ref) {
+            for (k, &time) in times.iter().enumerate() {
+                let distance = self.distance(still, place, time);
+                waiting.rests |= u8::from(distance > 0.0) << k;
+                waiting.sleeps |= u8::from(distance > still.awake) << k;
+            }
+        }
+        waiting
     }
 
     /// Times of a run (s) from one on, in the middle of even parts of it.
@@ -105,23 +135,29 @@ impl Waves {
             let (dimension, planes) = (case.dimension, &case.symmetry);
             let count = as_number(populate::count(body, dimension, planes, None));
             let (sites, _) = populate::sample(body, dimension, planes, PLACES);
-            let bits: Vec<u8> = sites
-                .map(|site| self.resting(b, &site.position, &times))
+            let places: Vec<Waiting> = sites
+                .map(|site| self.waiting(b, &site.position, &times))
                 .collect();
-            work += count * mean_work(&bits);
+            work += count * mean_work(&places);
             all += count;
         }
         if all > 0.0 { work / all } else { 1.0 }
     }
 }
 
-/// Mean work of particles that rest at some of the times, a bit for each, over what it would be if all moved.
+/// Mean work of particles that wait at some of the times, over what it would be if all moved.
 #[must_use]
-pub fn mean_work(resting: &[u8]) -> f64 {
-    let times = |bits: &u8| u64::from(bits.count_ones());
-    let rest = resting.iter().map(times).sum();
-    let all = (resting.len() * TIMES).max(1) as u64;
-    1.0 - as_number(rest) / as_number(all) * (1.0 - RESTING)
+pub fn mean_work(all: &[Waiting]) -> f64 {
+    let count = |bits: fn(&Waiting) -> u8| -> u64 {
+        let times = |waiting: &Waiting| u64::from(bits(waiting).count_ones());
+        all.iter().map(times).sum()
+    };
+    let (rest, sleep) = (
+        count(|waiting| waiting.rests),
+        count(|waiting| waiting.sleeps),
+    );
+    let saved = as_number(rest) * (1.0 - RESTING) + as_number(sleep) * (RESTING - SLEEPING);
+    1.0 - saved / as_number((all.len() * TIMES).max(1) as u64)
 }
 
 impl Strike {
@@ -164,6 +200,11 @@ fn still(case: &Case, body: &Body) -> Option<Still> {
     is_still.then_some(Still {
         speed: rest.sound_speed,
         ahead: AHEAD * body.lattice.spacing,
+        awake: if case.loads.surfaces.is_empty() {
+            AWAKE * body.lattice.spacing
+        } else {
+            f64::INFINITY
+        },
     })
 }
 
@@ -209,11 +250,17 @@ mod tests {
         let waves = waves(&case).unwrap();
         let (plate, sphere) = (0, 1);
         let (near, far) = ([0.1e-3, 0.0, 0.05e-3], [1.4e-3, 0.0, 0.05e-3]);
-        assert!(!waves.rests(sphere, &[0.0, 0.0, 0.5e-3], 0.0));
-        assert!(!waves.rests(plate, &near, 0.01e-6));
+        let work = |body: usize, place: &[f64; 3], time: f64| {
+            waves.waiting(body, place, &[time; TIMES]).work(3)
+        };
+        let is = |work: f64, wanted: f64| (work - wanted).abs() < 1e-12;
+        assert!(is(work(sphere, &[0.0, 0.0, 0.5e-3], 0.0), 1.0));
+        assert!(is(work(plate, &near, 0.01e-6), 1.0));
         // 1.1 mm from the sphere's side, of which 16 spacings are ahead of sound at 6.5 km/s.
-        assert!(waves.rests(plate, &far, 0.10e-6));
-        assert!(!waves.rests(plate, &far, 0.13e-6));
+        assert!(is(work(plate, &far, 0.10e-6), RESTING));
+        assert!(is(work(plate, &far, 0.13e-6), 1.0));
+        // Another 34 spacings and more.
+        assert!(is(work(plate, &[2.5e-3, 0.0, 0.05e-3], 0.02e-6), SLEEPING));
         let share = waves.share_of_work(&case, 0.0);
         assert!((0.7..0.85).contains(&share), "{share}");
         assert!((waves.share_of_work(&case, 0.19e-6) - 1.0).abs() < 1e-12);

@@ -9,12 +9,15 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use rayon::prelude::*;
 
+use super::busy::Busy;
 use super::candidate::{Candidate, Criteria, NO_CANDIDATE};
+use super::kept_links::{Keeping, KeptLinks};
+use crate::contact::EVERY;
 use crate::diagnose::Moved;
-use crate::domain::Span;
+use crate::domain::{Mirrors, Span};
+use crate::fragments::{Labels, Sets};
 use crate::model::Case;
-use crate::neighbours::{Chunk, Lists};
-use crate::numerics::collector::Collector;
+use crate::neighbours::Lists;
 use crate::particles::{Asleep, GRAIN, PART, ParticleStore};
 use crate::populate::Brick;
 use crate::sph::SignalSpeed;
@@ -24,42 +27,46 @@ use crate::sph::SignalSpeed;
 pub(super) struct Dormant {
     /// Which they are.
     pub asleep: Asleep,
-    /// Whether the last search saw all particles.
-    pub is_whole: bool,
-    /// Whether some may fall asleep in this step, whose search sees all.
-    pub is_asked: bool,
+    /// Those of them that the last search left out.
+    unlisted: Asleep,
+    /// Whether some may fall asleep in this step, whose search lists all that are awake.
+    is_asked: bool,
+    /// Whether this has been asked since the start.
+    was_asked: bool,
     /// The first candidate of what sleeps, and where that is.
     pub told: (Candidate, Span),
     /// Whether a case lets any sleep.
     is_open: bool,
+    /// Where gauges look at what is there (m).
+    looks: Vec<[f64; 3]>,
     parts: Vec<Part>,
+    links: KeptLinks,
     /// By part: particles of clusters that rest.
     resting: Vec<AtomicU32>,
     busy: Busy,
+    /// How far from faces between ranks it all is (m), and from where gauges look.
+    inside: f64,
+    seen: f64,
+    /// Whether pieces of a body may touch that are out of each other's support: contact of unequal particles reaches farther.
+    labels_change: bool,
 }
 
 /// What is known of a part of the store as long as it sleeps.
 #[derive(Debug, Clone, Copy)]
 struct Part {
-    sleeps: bool,
+    /// Whether it does, but for steps in which its neighbours need it in their lists.
+    keeping: Keeping,
     candidate: Candidate,
     span: Span,
-}
-
-/// Where not all rests: cells of space somewhat narrower than what sleeps is away from it.
-#[derive(Debug, Default)]
-struct Busy {
-    /// Edge (m).
-    width: f64,
-    /// Ascending.
-    cells: Vec<[i64; 3]>,
-    /// Smallest and largest indices.
-    bounds: [[i64; 3]; 2],
-    collector: Collector,
+    /// Sum of the labels of its particles.
+    label: u64,
 }
 
 /// For what rounding takes of ranges.
 const ROOM: f64 = 1.0 + 1e-6;
+
+/// Work for a particle that sleeps, in neighbours of the pair sums.
+const WORK: u32 = 2;
 
 /// How far what falls asleep is from what is busy, and how far it stays, in widths of cells.
 const APART: [f64; 2] = [2.25, 1.5];
@@ -68,86 +75,178 @@ impl Dormant {
     /// Of a case. Surfaces and loads move what rests, gravity all, and gauges look at particles around them.
     pub fn new(case: &Case) -> Self {
         let loads = &case.loads;
+        let mirrors = Mirrors::new(&case.symmetry);
+        let fixed = case.measure.gauges.iter().filter(|gauge| !gauge.moves);
+        let looks = fixed.flat_map(|gauge| {
+            let codes = std::iter::once(0).chain(mirrors.codes());
+            codes.map(|code| mirrors.reflect_position(&gauge.at, code))
+        });
         Self {
+            looks: looks.collect(),
             asleep: Asleep::default(),
-            is_whole: true,
+            unlisted: Asleep::default(),
             is_asked: false,
+            was_asked: false,
             told: (NO_CANDIDATE, Span::NONE),
             is_open: loads.surfaces.is_empty()
                 && loads.velocities.is_empty()
-                && loads.gravity == [0.0; 3]
-                && case.measure.gauges.is_empty(),
+                && loads.gravity == [0.0; 3],
             parts: Vec::new(),
+            links: KeptLinks::default(),
             resting: Vec::new(),
             busy: Busy::default(),
+            inside: 0.0,
+            seen: 0.0,
+            labels_change: case.self_contact.is_some()
+                && case.bodies.iter().any(|body| body.lattice.sizes.is_some()),
         }
     }
 
     pub fn memory(&self) -> usize {
         self.asleep.memory()
+            + self.unlisted.memory()
             + size_of::<Part>() * self.parts.capacity()
+            + size_of::<[f64; 3]>() * self.looks.capacity()
+            + self.links.memory()
             + size_of::<AtomicU32>() * self.resting.capacity()
-            + size_of::<[i64; 3]>() * self.busy.cells.capacity()
-            + self.busy.collector.memory()
-    }
-
-    /// Wakes all.
-    pub fn wake(&mut self) {
-        self.asleep.clear();
-        self.told = (NO_CANDIDATE, Span::NONE);
+            + self.busy.memory()
     }
 
     /// Wakes what may stand elsewhere in the store than when it fell asleep.
     pub fn follow(&mut self, particles: &mut ParticleStore) {
         let settled = particles.settled();
-        if !self.asleep.is_empty() && settled < self.asleep.end() {
-            let is_in_place = |part: usize| (part + 1) * PART <= settled;
-            self.asleep.set(particles.owned(), |part, asleep| {
-                asleep && is_in_place(part)
+        if settled < self.asleep.end() {
+            self.keep(particles.owned(), |p, _| (p + 1) * PART <= settled);
+        }
+    }
+
+    /// Wakes what is near the faces of this rank's region, which have moved.
+    pub fn withdraw(&mut self, owned: usize, region: &Brick) {
+        let far = self.inside;
+        self.keep(owned, |_, part| is_inside(&part.span, region, far));
+    }
+
+    /// Wakes what does not stay.
+    fn keep(&mut self, owned: usize, stays: impl Fn(usize, &Part) -> bool + Sync) {
+        if self.asleep.is_empty() {
+            return;
+        }
+        self.parts.resize(owned / PART, Part::AWAKE);
+        let parts = self.parts.par_iter_mut().enumerate();
+        parts.for_each(|(p, part)| {
+            if !stays(p, part) {
+                part.keeping = Keeping::No;
+            }
+        });
+        self.lie_down(owned);
+    }
+
+    /// Leaves out of steps what sleeps.
+    fn lie_down(&mut self, owned: usize) {
+        let parts = &self.parts;
+        self.asleep.set(owned, |p, _| parts[p].sleeps());
+        self.tell();
+    }
+
+    /// Before the search of a step: gives what it leaves out, and whether all else needs lists, since some may fall asleep
+    /// after it whose `links` are kept. Then what sleeps beside it is among that.
+    pub fn leave_out(&mut self, step: u64, owned: usize, links: bool) -> (&Asleep, bool) {
+        self.is_asked = self.is_open && step > 0 && (step.is_multiple_of(EVERY) || !self.was_asked);
+        self.was_asked |= self.is_asked;
+        let all_listed = self.is_asked && links;
+        let parts = &self.parts;
+        if all_listed {
+            self.links
+                .forget(|p| parts.get(p).is_some_and(Part::sleeps));
+        }
+        let (asleep, links) = (&self.asleep, &self.links);
+        if asleep.is_empty() {
+            self.unlisted.clear();
+        } else {
+            self.unlisted.set(owned, |p, _| {
+                asleep.has(p) && !(all_listed && links.is_border(p))
             });
-            self.tell();
+        }
+        (&self.unlisted, all_listed)
+    }
+
+    /// What stands in the store where it did in the last search, as it slept then or sleeps now.
+    pub fn fixed(&mut self, owned: usize) -> &Asleep {
+        let asleep = &self.asleep;
+        self.unlisted
+            .set(owned, |p, was_unlisted| was_unlisted || asleep.has(p));
+        &self.unlisted
+    }
+
+    /// Joins what hangs together in what sleeps.
+    pub fn join(&self, sets: &Sets) {
+        if !self.asleep.is_empty() {
+            let parts = &self.parts;
+            self.links
+                .join(|p| parts.get(p).is_some_and(Part::sleeps), sets);
         }
     }
 
     /// After a step: wakes what others come near to, and, if it is asked to, lets sleep what is far from them
-    /// and from the faces of this rank's region.
+    /// and from the faces of this rank's region. Keeps the links of that if it has `labels` to work in.
     pub fn settle<F: SignalSpeed>(
         &mut self,
         particles: &ParticleStore,
         (lists, range): (&Lists, f64),
-        region: &Brick,
+        (region, labels): (&Brick, Option<&mut Labels>),
         criteria: &Criteria<F>,
     ) {
         let owned = particles.owned();
-        let is_asked = self.is_asked && self.is_open && lists.spare_quiescent;
+        if !lists.spare_quiescent {
+            return self.keep(owned, |_, _| false);
+        }
+        let is_asked = self.is_asked;
         let any_rest = is_asked && self.count_resting(lists, owned / PART);
         if !any_rest && self.asleep.is_empty() {
             return;
         }
-        let none = Part {
-            sleeps: false,
-            candidate: NO_CANDIDATE,
-            span: Span::NONE,
-        };
-        self.parts.resize(owned / PART, none);
+        self.parts.resize(owned / PART, Part::AWAKE);
         let apart = ROOM * (2.0 * lists.farthest() + range);
+        self.inside = 2.0 * apart;
+        let is_farther = apart > self.seen;
+        self.seen = apart;
         self.busy.find(lists, apart / APART[1]);
-        let (asleep, busy, resting) = (&self.asleep, &self.busy, &self.resting);
+        let (busy, resting, inside) = (&self.busy, &self.resting, self.inside);
+        let labels_change = self.labels_change;
+        let is_seen = |span: &Span| self.looks.iter().any(|at| is_around(span, at, apart));
         let parts = self.parts.par_iter_mut().enumerate();
         parts.for_each(|(p, part)| {
-            if asleep.has(p) {
-                part.sleeps = !busy.is_near(&part.span, APART[1]);
+            part.keeping = if part.sleeps() {
+                let is_seen = is_farther && is_seen(&part.span);
+                let is_another = is_asked && labels_change && part.has_new_label(particles, p);
+                let is_near = is_seen || is_another || busy.is_near(&part.span, APART[1]);
+                Keeping::Old.only_if(!is_near)
             } else {
-                part.sleeps = any_rest && resting[p].load(Relaxed) as usize == PART;
-                part.sleeps = part.sleeps && part.lie_down(particles, p, criteria);
-                part.sleeps = part.sleeps
-                    && is_inside(&part.span, region, 2.0 * apart)
-                    && !busy.is_near(&part.span, APART[0]);
-            }
+                let rests = any_rest && resting[p].load(Relaxed) as usize == PART;
+                Keeping::New.only_if(
+                    rests
+                        && part.is_still(particles, p, criteria)
+                        && is_inside(&part.span, region, inside)
+                        && !is_seen(&part.span)
+                        && !busy.is_near(&part.span, APART[0]),
+                )
+            };
         });
-        let parts = &self.parts;
-        self.asleep.set(owned, |p, _| parts[p].sleeps);
-        self.tell();
+        self.lie_down(owned);
+        if let Some(labels) = labels.filter(|_| is_asked) {
+            labels.begin(owned);
+            let parts = &self.parts;
+            self.links.note(lists, |p| parts[p].keeping, labels.sets());
+        }
+    }
+
+    /// Has what sleeps count as next to no work, after steps that may have counted some.
+    pub fn count_work(&self, work: &mut [u32]) {
+        if self.is_asked {
+            let parts = self.parts.par_iter().zip(work.par_chunks_exact_mut(PART));
+            let asleep = parts.filter(|(part, _)| part.sleeps());
+            asleep.for_each(|(_, work)| work.fill(WORK));
+        }
     }
 
     /// Sums up what sleeps.
@@ -191,8 +290,19 @@ impl Dormant {
 }
 
 impl Part {
+    const AWAKE: Self = Self {
+        keeping: Keeping::No,
+        candidate: NO_CANDIDATE,
+        span: Span::NONE,
+        label: 0,
+    };
+
+    fn sleeps(&self) -> bool {
+        self.keeping != Keeping::No
+    }
+
     /// Sees whether all particles of a part stand still, and what they ask for.
-    fn lie_down<F: SignalSpeed>(
+    fn is_still<F: SignalSpeed>(
         &mut self,
         particles: &ParticleStore,
         part: usize,
@@ -218,8 +328,20 @@ impl Part {
             span.add(&particles.position[i], &velocity);
         }
         (self.candidate, self.span) = (best.candidate(), span);
+        self.label = label(particles, part);
         true
     }
+
+    /// Whether its particles have been told to be of another part of a body.
+    fn has_new_label(&self, particles: &ParticleStore, part: usize) -> bool {
+        self.label != label(particles, part)
+    }
+}
+
+fn label(particles: &ParticleStore, part: usize) -> u64 {
+    let labels = particles.part.get(part * PART..(part + 1) * PART);
+    let labels = labels.unwrap_or_default().iter();
+    labels.fold(0, |sum, &label| sum.wrapping_add(label))
 }
 
 /// Whether particles are so far (m) within the faces of a region.
@@ -228,72 +350,8 @@ fn is_inside(span: &Span, region: &Brick, far: f64) -> bool {
     (0..3).all(|a| lower[a] - far >= region.lower[a] && upper[a] + far <= region.upper[a])
 }
 
-impl Busy {
-    /// Finds the cells of a width (m) in which not all rests.
-    fn find(&mut self, lists: &Lists, width: f64) {
-        self.width = width;
-        self.cells.clear();
-        let chunks = lists.chunks();
-        self.collector
-            .extend(&mut self.cells, (chunks.len(), 1), |k| {
-                cells_of(&chunks[k], lists, width)
-            });
-        self.cells.par_sort_unstable();
-        self.cells.dedup();
-        self.bounds = [[i64::MAX; 3], [i64::MIN; 3]];
-        let [least, most] = &mut self.bounds;
-        for cell in &self.cells {
-            for a in 0..3 {
-                least[a] = least[a].min(cell[a]);
-                most[a] = most[a].max(cell[a]);
-            }
-        }
-    }
-
-    /// Whether any of them is within so many widths of particles.
-    fn is_near(&self, span: &Span, widths: f64) -> bool {
-        let [lower, upper] = span.bounds();
-        let cell = |x: f64, way: f64| index(x + way * widths * self.width, self.width);
-        let least: [i64; 3] = std::array::from_fn(|a| cell(lower[a], -1.0).max(self.bounds[0][a]));
-        let most: [i64; 3] = std::array::from_fn(|a| cell(upper[a], 1.0).min(self.bounds[1][a]));
-        (least[0]..=most[0]).any(|x| {
-            (least[1]..=most[1]).any(|y| {
-                let first = [x, y, least[2]];
-                let at = self.cells.partition_point(|busy| *busy < first);
-                let next = self.cells.get(at);
-                next.is_some_and(|next| *next <= [x, y, most[2]])
-            })
-        })
-    }
-}
-
-#[allow(clippy::cast_possible_truncation, reason = "far cells are one")]
-fn index(x: f64, width: f64) -> i64 {
-    (x / width).floor() as i64
-}
-
-/// The cells of clusters of a task that do not rest, or fly.
-fn cells_of(chunk: &Chunk, lists: &Lists, width: f64) -> impl Iterator<Item = [i64; 3]> {
-    let busy = chunk
-        .iter()
-        .filter(|(cluster, _, among)| !among.resting || !lists.is_still(cluster.group));
-    // Clusters of a column stand in the same few cells.
-    let (mut recent, mut next) = ([[i64::MAX; 3]; 16], 0);
-    let cells = busy.flat_map(move |(cluster, ..)| {
-        let along = |a: usize| index(cluster.lower[a], width)..=index(cluster.upper[a], width);
-        let (y, z) = (along(1), along(2));
-        along(0).flat_map(move |x| {
-            let z = z.clone();
-            y.clone()
-                .flat_map(move |y| z.clone().map(move |z| [x, y, z]))
-        })
-    });
-    cells.filter(move |cell| {
-        let is_new = !recent.contains(cell);
-        if is_new {
-            recent[next] = *cell;
-            next = (next + 1) % recent.len();
-        }
-        is_new
-    })
+/// Whether a point is so near (m) to particles.
+fn is_around(span: &Span, point: &[f64; 3], far: f64) -> bool {
+    let [lower, upper] = span.bounds();
+    (0..3).all(|a| (lower[a] - far..=upper[a] + far).contains(&point[a]))
 }

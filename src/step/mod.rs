@@ -1,5 +1,6 @@
 //! The loop, the integrator and the time-step candidates.
 
+mod busy;
 mod candidate;
 mod dormant;
 mod error;
@@ -8,6 +9,7 @@ mod flight;
 mod fragments;
 mod given;
 mod integrate;
+mod kept_links;
 mod measures;
 mod removal;
 mod restored;

@@ -4,11 +4,9 @@ use super::candidate::{Criteria, criteria_fields};
 use super::simulation::Simulation;
 use super::timers::Phase;
 use crate::comm::Comm;
-use crate::contact::{Connectivity, EVERY};
-use crate::domain::{Decomposition, Halo};
-use crate::fragments::Labels;
-use crate::neighbours::Lists;
-use crate::particles::{Image, ParticleStore};
+use crate::contact::Connectivity;
+use crate::domain::Decomposition;
+use crate::particles::Image;
 use crate::sph::with_formulation;
 
 impl Simulation {
@@ -27,13 +25,9 @@ impl Simulation {
             dormant,
             ..
         } = self;
-        dormant.is_asked = state.step.is_multiple_of(EVERY);
-        if dormant.is_asked {
-            dormant.wake();
-        }
         dormant.follow(particles);
-        dormant.is_whole = dormant.asleep.is_empty();
-        let asleep = &dormant.asleep;
+        let links = contact.connectivity.is_active();
+        let (asleep, all_listed) = dormant.leave_out(state.step, particles.owned(), links);
         let all = (&mut *particles, asleep);
         halo.exchange_motion(comm, partition.reaches(), all, |particles, i| {
             sph.smoothing.reach(particles, i)
@@ -50,7 +44,8 @@ impl Simulation {
                 && connectivity.lets_rest(particles, image)
                 && resting.holds(particles, image.base())
         };
-        let rests = (rests, !connectivity.is_due(state.step));
+        let is_due = connectivity.is_due(state.step);
+        let rests = (rests, !(is_due || all_listed));
         lists.build((particles, asleep), halo, meetings, rests, scratch);
         let mirrors = halo.mirrors();
         connectivity.separate(particles, lists, mirrors);
@@ -59,8 +54,12 @@ impl Simulation {
         }
         lists.join();
         timers.lap(Phase::Neighbours);
-        if connectivity.is_due(state.step) {
-            tell_parts(comm, (lists, halo), particles, labels);
+        if is_due {
+            labels.begin(particles.part.len());
+            Connectivity::link(lists, labels.sets());
+            dormant.join(labels.sets());
+            labels.settle(comm, Some(halo), &particles.id, particles.owned());
+            Connectivity::tell(labels.members(), particles);
             timers.lap(Phase::Neighbours);
         }
     }
@@ -74,24 +73,14 @@ impl Simulation {
         let rules = (self.case.time_step, self.loads.gravity);
         let region = self.partition.slabs().region(comm.rank());
         let (sph, limits) = (&self.sph, &self.step_control.limits);
+        let links = self.contact.connectivity.is_active();
         with_formulation!(self.case.sph.form, Form => {
             let fields = criteria_fields!(particles);
             let criteria = Criteria::<Form>::new(fields, sph, limits, rules);
             let near = (&self.lists, range);
-            self.dormant.settle(particles, near, &region, &criteria);
+            let within = (&region, links.then_some(&mut self.labels));
+            self.dormant.settle(particles, near, within, &criteria);
         });
+        self.dormant.count_work(&mut self.particles.work);
     }
-}
-
-/// Finds anew who is of which part of a body. Collective.
-fn tell_parts(
-    comm: &Comm,
-    (lists, halo): (&Lists, &mut Halo),
-    particles: &mut ParticleStore,
-    labels: &mut Labels,
-) {
-    labels.begin(particles.part.len());
-    Connectivity::link(lists, labels.sets());
-    labels.settle(comm, Some(halo), &particles.id, particles.owned());
-    Connectivity::tell(labels.members(), particles);
 }

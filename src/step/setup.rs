@@ -210,7 +210,8 @@ impl Simulation {
         // The first search finds which parts bodies are in, and the order of the store.
         self.search(comm);
         let scratch = self.sph.scratch(self.particles.owned());
-        self.lists.restore_order(&mut self.particles, scratch);
+        let all = (&mut self.particles, &self.dormant.asleep);
+        self.lists.restore_order(all, scratch);
         self.search(comm);
         let mut capped = [self.contact.begin(&mut self.particles, &self.lists)];
         comm.sum_i64(&mut capped);

@@ -12,7 +12,7 @@ use crate::contact::Contact;
 use crate::diagnose::{
     Booked, NumericalFailure, PostMortem, Reason, RunState, StepSums, Totals, fastest, is_explained,
 };
-use crate::domain::{Halo, Partition};
+use crate::domain::{Decomposition, Halo, Partition};
 use crate::fragments::Labels;
 use crate::loads::Loads;
 use crate::measure::Measures;
@@ -147,21 +147,21 @@ impl Simulation {
             dormant,
             ..
         } = self;
-        if lists.is_order_due && dormant.is_whole {
+        if lists.is_order_due {
             let scratch = sph.scratch(particles.owned());
-            lists.is_order_due = !lists.restore_order(particles, scratch);
+            let fixed = dormant.fixed(particles.owned());
+            let all = (&mut *particles, fixed);
+            lists.is_order_due = !lists.restore_order(all, scratch);
         }
         // After the next search, when those that change ranks now have found their place.
         lists.is_order_due |= partition.is_regular(state.step);
         if partition.is_due(state.step) {
-            if comm.size() > 1 {
-                // Faces come near.
-                dormant.wake();
-            }
             let all = (&*particles, state.step);
             partition.balance(comm, all, timers.busy(), |particles, i| {
                 sph.smoothing.reach(particles, i)
             });
+            let region = partition.slabs().region(comm.rank());
+            dormant.withdraw(particles.owned(), &region);
         }
     }
 

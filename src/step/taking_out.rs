@@ -77,6 +77,8 @@ impl Simulation {
         let counted = (&self.particles, self.case.bodies.len());
         let state = &mut self.state;
         removal::book(comm, (state, why), counted, &self.loads, &self.leaving);
+        let asleep = &self.dormant.asleep;
+        debug_assert!(!self.leaving.iter().any(|&i| asleep.holds(i as usize)));
         self.particles.remove(&mut self.leaving, &mut Vec::new());
         comm.sum_u64(&mut count);
         if count[0] == count[1] {

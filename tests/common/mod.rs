@@ -1,6 +1,7 @@
 //! Cases built in code, for tests of the engine.
 #![allow(dead_code, reason = "each test file uses some of these")]
 
+pub mod bridge;
 pub mod cloud;
 pub mod collectives;
 pub mod linear_field;

@@ -29,17 +29,16 @@ pub fn advance(simulation: &mut Simulation, steps: usize) {
 /// All bytes of the particles that a user or the next step can see, by id.
 pub fn rows(simulation: &Simulation) -> BTreeMap<u64, Vec<u8>> {
     let particles = &simulation.particles;
+    // What is measured for a snapshot alone is in the tests of whole programs.
+    let steps = |field: &FieldInfo| !field.halo.contains(HaloPhase::SHOWN);
+    let seen = |field: &FieldInfo| field.life == Life::State || field.is_shown() && steps(field);
+    let columns = fields(seen).map(|field| (field.kind.bytes(), particles.bytes_or_zeros(field)));
+    let columns: Vec<_> = columns.collect();
     let mut rows = BTreeMap::new();
     for slot in 0..particles.owned() {
         let row: &mut Vec<u8> = rows.entry(particles.id[slot]).or_default();
         assert!(row.is_empty(), "an id twice");
-        // What is measured for a snapshot alone is in the tests of whole programs.
-        let steps = |field: &FieldInfo| !field.halo.contains(HaloPhase::SHOWN);
-        let seen =
-            |field: &FieldInfo| field.life == Life::State || field.is_shown() && steps(field);
-        for field in fields(seen) {
-            let size = field.kind.bytes();
-            let bytes = particles.bytes_or_zeros(field);
+        for (size, bytes) in &columns {
             row.extend_from_slice(&bytes[slot * size..(slot + 1) * size]);
         }
     }
