@@ -122,10 +122,7 @@ impl Vectorised for Build<'_> {
             far: lengths.range(),
             hints: [0; 64],
         };
-        let mut left = clusters.as_slice();
-        while !left.is_empty() {
-            let (run, others) = left.split_at(run_of(left, LONG * watch.far));
-            left = others;
+        for run in runs(clusters, LONG * watch.far) {
             let rests = watch.rests::<V>(run);
             for cluster in run {
                 let mut among = match (rests && self.spared, uniform) {
@@ -146,7 +143,18 @@ const RUN: usize = 8;
 /// How long they are together at most, in ranges of lists: columns have gaps where some sleep.
 const LONG: f64 = 5.0;
 
-/// How many of the first clusters make such a run, no longer (m) than that along any axis if there is more than one.
+/// Such runs of clusters, no longer (m) than that along any axis if there is more than one in them.
+#[inline(always)]
+fn runs(mut left: &[Cluster], longest: f64) -> impl Iterator<Item = &[Cluster]> {
+    std::iter::from_fn(move || {
+        left.first()?;
+        let (run, others) = left.split_at(run_of(left, longest));
+        left = others;
+        Some(run)
+    })
+}
+
+/// How many of the first clusters make a run.
 #[inline(always)]
 fn run_of(clusters: &[Cluster], longest: f64) -> usize {
     let (mut lower, mut upper) = (clusters[0].lower, clusters[0].upper);
