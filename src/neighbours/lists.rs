@@ -311,7 +311,7 @@ impl Lists {
         }
         let scratch = bytemuck::cast_slice_mut(scratch);
         if asleep.is_empty() {
-            particles.rearrange(&self.order, scratch);
+            particles.keep(&self.order, scratch);
             return true;
         }
         #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]

@@ -154,12 +154,11 @@ impl Dormant {
         self.is_asked = self.is_open && step > 0 && (step.is_multiple_of(EVERY) || !self.was_asked);
         self.was_asked |= self.is_asked;
         let all_listed = self.is_asked && links;
-        let parts = &self.parts;
+        let asleep = &self.asleep;
         if all_listed {
-            self.links
-                .forget(|p| parts.get(p).is_some_and(Part::sleeps));
+            self.links.forget(|p| asleep.has(p));
         }
-        let (asleep, links) = (&self.asleep, &self.links);
+        let links = &self.links;
         if asleep.is_empty() {
             self.unlisted.clear();
         } else {
@@ -181,9 +180,7 @@ impl Dormant {
     /// Joins what hangs together in what sleeps.
     pub fn join(&self, sets: &Sets) {
         if !self.asleep.is_empty() {
-            let parts = &self.parts;
-            self.links
-                .join(|p| parts.get(p).is_some_and(Part::sleeps), sets);
+            self.links.join(|p| self.asleep.has(p), sets);
         }
     }
 
