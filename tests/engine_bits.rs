@@ -153,6 +153,12 @@ fn what_sleeps_is_told_its_parts() {
         // The smaller block does not, once it is one.
         let sleeps = (2..=30).contains(&step);
         assert!(!sleeps || 8 * asleep > owned, "{step}: {asleep} of {owned}");
+        let figures = [&mut spared, &mut whole].map(|simulation| {
+            simulation.diagnose(&solo);
+            let totals = simulation.state.totals;
+            format!("{totals:?} {:?}", simulation.measure_bodies(&solo))
+        });
+        assert_eq!(figures[0], figures[1], "{step}");
         assert_same(&Outcome::of(&spared), &Outcome::of(&whole));
     }
     bridge::assert_apart(&whole.particles.part[..whole.particles.owned()]);

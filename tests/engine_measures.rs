@@ -15,7 +15,7 @@ fn impact(quarter: bool) -> Case {
     sphere_on_plate(1e-4, 3000.0, quarter, 1.0)
 }
 
-fn measure(simulation: &Simulation) -> Vec<BodyFigures> {
+fn measure(simulation: &mut Simulation) -> Vec<BodyFigures> {
     simulation.measure_bodies(&Comm::solo())
 }
 
@@ -28,7 +28,7 @@ fn close(a: f64, b: f64, scale: f64, what: &str) {
 fn bodies_add_up_to_the_model() {
     let mut simulation = start(impact(false));
     advance(&mut simulation, 60);
-    let found = measure(&simulation);
+    let found = measure(&mut simulation);
     let totals = &simulation.state.totals;
     let sum = |of: fn(&BodyFigures) -> f64| found.iter().map(of).sum::<f64>();
     close(sum(|b| b.mass), totals.mass, totals.mass, "mass");
@@ -77,7 +77,7 @@ fn a_quarter_reports_the_whole() {
     assert_eq!(4 * quarter.particles.owned(), whole.particles.owned());
     advance(&mut quarter, 12);
     advance(&mut whole, 12);
-    for (a, b) in measure(&quarter).iter().zip(&measure(&whole)) {
+    for (a, b) in measure(&mut quarter).iter().zip(&measure(&mut whole)) {
         assert_eq!(a.particles, b.particles);
         let scale = b.mass * 3000.0;
         let near = |x: f64, y: f64, scale: f64| {

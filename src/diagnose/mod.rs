@@ -21,4 +21,4 @@ pub use reason::Reason;
 pub use remembered::Remembered;
 pub(crate) use step_sums::{Booked, StepSums};
 pub use taken_out::{Leave, Removed};
-pub(crate) use totals::{angular_momentum_scale, failed_mass};
+pub(crate) use totals::{KeptTotals, angular_momentum_scale, failed_mass};

@@ -7,19 +7,35 @@ use crate::loads::Loads;
 use crate::material::FAILED;
 use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use crate::numerics::vector::{cross, norm};
-use crate::particles::ParticleStore;
+use crate::particles::{Asleep, KeptBlocks, ParticleStore};
+
+/// Sums of what sleeps, kept from one row to the next.
+#[derive(Debug, Default)]
+pub(crate) struct KeptTotals {
+    motion: KeptBlocks<[ExactSum; 11]>,
+    failure: KeptBlocks<[ExactSum; 2]>,
+}
+
+impl KeptTotals {
+    /// Bytes allocated.
+    pub fn memory(&self) -> usize {
+        self.motion.memory() + self.failure.memory()
+    }
+}
 
 impl Totals {
     /// Of the particles of all ranks that are no part of a rigid body, with the energy of contact
     /// (J). Collective.
     pub(crate) fn of(
         particles: &ParticleStore,
+        (kept, asleep): (&mut KeptTotals, &Asleep),
         loads: &Loads,
         contact_energy: f64,
         comm: &Comm,
     ) -> Self {
         let g = &loads.gravity;
-        let mut sums = loads.sum_free(particles, |i| {
+        let kept = (&mut kept.motion, asleep);
+        let mut sums = loads.sum_kept(particles, kept, |i| {
             let (m, v) = (particles.mass[i], &particles.velocity[i]);
             let x = &particles.position[i];
             let height = -(g[0] * x[0] + g[1] * x[1] + g[2] * x[2]);
@@ -58,8 +74,15 @@ impl Totals {
     }
 
     /// Adds the sums over matter that may fail. Collective.
-    pub(crate) fn add_failure(&mut self, particles: &ParticleStore, loads: &Loads, comm: &Comm) {
-        let mut sums = loads.sum_free(particles, |i| {
+    pub(crate) fn add_failure(
+        &mut self,
+        particles: &ParticleStore,
+        (kept, asleep): (&mut KeptTotals, &Asleep),
+        loads: &Loads,
+        comm: &Comm,
+    ) {
+        let kept = (&mut kept.failure, asleep);
+        let mut sums = loads.sum_kept(particles, kept, |i| {
             let m = particles.thermal_mass(i);
             let failed = if particles.damage[i] >= FAILED {
                 m

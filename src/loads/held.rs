@@ -1,6 +1,7 @@
 //! Impulse and work of prescribed velocities and of what holds rigid bodies.
 
-use super::{Loads, sum_over};
+use super::Loads;
+use super::sums::sum_over;
 use crate::numerics::exact_sum::ExactSum;
 use crate::numerics::vector::cross;
 use crate::particles::ParticleStore;

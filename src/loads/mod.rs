@@ -8,18 +8,16 @@
 
 mod absorption;
 mod held;
+mod sums;
 mod surface_motion;
 
 pub(crate) use absorption::Absorption;
 pub(crate) use surface_motion::{Placed, SurfaceStep};
 
-use rayon::prelude::*;
-
 use crate::model::{self, Case, Motion};
 use crate::numerics::exact_sum::ExactSum;
-use crate::numerics::gathered_sums::{self, GatheredSums};
 use crate::numerics::vector::cross;
-use crate::particles::{GRAIN, ParticleStore};
+use crate::particles::ParticleStore;
 
 /// Which of the two prescribed velocities of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -273,28 +271,6 @@ impl Loads {
             + 4 * size_of::<ExactSum>() * self.sums.capacity()
     }
 
-    /// Exact sums of `terms` of this rank's particles that are no part of a rigid body.
-    pub(crate) fn sum_free<const N: usize>(
-        &self,
-        particles: &ParticleStore,
-        terms: impl Fn(usize) -> [f64; N] + Sync,
-    ) -> [ExactSum; N] {
-        self.sum_where(particles, |_| true, terms)
-    }
-
-    /// The same of those that are `meant`.
-    fn sum_where<const N: usize>(
-        &self,
-        particles: &ParticleStore,
-        meant: impl Fn(usize) -> bool + Sync,
-        terms: impl Fn(usize) -> [f64; N] + Sync,
-    ) -> [ExactSum; N] {
-        sum_over(particles.owned(), |i| {
-            let is_rigid = || self.has_motions() && self.is_rigid(particles.load[i]);
-            (meant(i) && !is_rigid()).then(|| terms(i))
-        })
-    }
-
     /// Adds the torque of gravity on what is no part of a rigid body to `torque`.
     pub(crate) fn add_weight(&self, particles: &ParticleStore, torque: &mut [ExactSum; 3]) {
         if self.gravity == [0.0; 3] {
@@ -308,23 +284,4 @@ impl Loads {
             sum.merge(other);
         }
     }
-}
-
-/// Exact sums of the terms of those of the particles `0..owned` that have any.
-fn sum_over<const N: usize>(
-    owned: usize,
-    terms: impl Fn(usize) -> Option<[f64; N]> + Sync,
-) -> [ExactSum; N] {
-    let of_chunk = |mut sums: GatheredSums<N>, chunk: usize| {
-        let all = (chunk * GRAIN..((chunk + 1) * GRAIN).min(owned)).filter_map(&terms);
-        all.for_each(|terms| sums.add(&terms));
-        sums
-    };
-    (0..owned.div_ceil(GRAIN))
-        .into_par_iter()
-        // same bits in any order: exact sums are integers
-        .fold(GatheredSums::default, of_chunk)
-        .map(GatheredSums::into_sums)
-        // same bits in any order, as above
-        .reduce(gathered_sums::none, gathered_sums::merged)
 }

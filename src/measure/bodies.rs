@@ -1,5 +1,7 @@
 //! What there is of each body: the rows of `bodies.csv`.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::matter::raise;
@@ -11,7 +13,7 @@ use crate::numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use crate::numerics::gathered_sums::GatheredSums;
 use crate::numerics::ordered::{disordered, ordered};
 use crate::numerics::vector::{cross, norm};
-use crate::particles::{GRAIN, ParticleStore};
+use crate::particles::{Asleep, Block, GRAIN, KeptBlocks, ParticleStore};
 
 /// What there is of a body (SI), the images behind symmetry planes with it. What no particle has
 /// is not a number.
@@ -144,6 +146,14 @@ impl Part {
         }
     }
 
+    /// Takes in what particles come to that sleep.
+    fn take(&mut self, kept: &Kept) {
+        self.sums.merge_sums(&kept.sums);
+        for (most, &other) in self.extremes.iter_mut().zip(&kept.extremes) {
+            *most = most.max(other);
+        }
+    }
+
     /// The figures of the whole, of the sums of all ranks.
     fn figures(&mut self, whole: Whole) -> BodyFigures {
         let sums = self.sums.sums().each_ref().map(ExactSum::value);
@@ -189,24 +199,67 @@ impl Part {
     }
 }
 
-/// The figures of each body, in the order of the case. Collective.
+/// What the particles of a block that sleeps come to, all of one body.
+#[derive(Debug)]
+struct Kept {
+    body: usize,
+    sums: [ExactSum; SUMS],
+    extremes: [f64; EXTREMES],
+}
+
+/// What bodies come to in what sleeps, kept from one row to the next.
+#[derive(Debug, Default)]
+pub struct KeptBodies(KeptBlocks<Kept>);
+
+impl KeptBodies {
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.0.memory()
+    }
+}
+
+/// The figures of each body, in the order of the case, with what is kept of those that sleep. Collective.
 #[must_use]
 pub fn bodies(
     case: &Case,
     particles: &ParticleStore,
+    (kept, asleep): (&mut KeptBodies, &Asleep),
     whole: Whole,
     comm: &Comm,
 ) -> Vec<BodyFigures> {
-    let owned = particles.owned();
     let none = || case.bodies.iter().map(|_| Part::new()).collect::<Vec<_>>();
-    let of_chunk = |mut parts: Vec<Part>, chunk: usize| {
-        let first = chunk * GRAIN;
+    let add = |places: Range<usize>, parts: &mut [Part], first_body: usize| {
         let mut temperatures = [0.0; GRAIN];
-        let temperatures = &mut temperatures[..GRAIN.min(owned - first)];
-        reading::temperatures(case, particles, first, temperatures);
-        for (k, &temperature) in temperatures.iter().enumerate() {
-            let i = first + k;
-            parts[particles.body[i] as usize].add(case, particles, i, temperature);
+        for first in places.clone().step_by(GRAIN) {
+            let temperatures = &mut temperatures[..GRAIN.min(places.end - first)];
+            reading::temperatures(case, particles, first, temperatures);
+            for (k, &temperature) in temperatures.iter().enumerate() {
+                let i = first + k;
+                let body = particles.body[i] as usize;
+                parts[body - first_body].add(case, particles, i, temperature);
+            }
+        }
+    };
+    let of_sleepers = |places: Range<usize>| {
+        let of = &particles.body[places.clone()];
+        let body = of
+            .iter()
+            .all(|body| *body == of[0])
+            .then_some(of[0] as usize)?;
+        let mut parts = [Part::new()];
+        add(places, &mut parts, body);
+        let [Part { sums, extremes }] = parts;
+        Some(Kept {
+            body,
+            sums: sums.into_sums(),
+            extremes,
+        })
+    };
+    let of_block = |mut parts: Vec<Part>, mut block: Block<'_, Kept>| {
+        match block.kept(of_sleepers) {
+            Some(kept) => parts[kept.body].take(kept),
+            None => add(block.places(), &mut parts, 0),
         }
         parts
     };
@@ -216,12 +269,18 @@ pub fn bodies(
         }
         parts
     };
-    let mut parts = (0..owned.div_ceil(GRAIN))
-        .into_par_iter()
+    let mut parts = (kept.0)
+        .iter(particles.owned(), asleep)
         // same bits in any order: exact sums are integers, and extremes are some value among all
-        .fold(none, of_chunk)
+        .fold(none, of_block)
         // same bits in any order, as above
         .reduce(none, join);
+    join_ranks(&mut parts, comm);
+    parts.iter_mut().map(|part| part.figures(whole)).collect()
+}
+
+/// Joins what bodies come to on all ranks. Collective.
+fn join_ranks(parts: &mut [Part], comm: &Comm) {
     let mut limbs = Vec::new();
     let sums = parts.iter_mut().flat_map(|part| part.sums.sums());
     gather_limbs(sums, &mut limbs);
@@ -235,5 +294,4 @@ pub fn bodies(
     for (most, &word) in extremes.zip(&words) {
         *most = disordered(word);
     }
-    parts.iter_mut().map(|part| part.figures(whole)).collect()
 }

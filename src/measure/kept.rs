@@ -1,5 +1,6 @@
 //! What measures keep from step to step, and all that `measures.csv` tells.
 
+use super::bodies::KeptBodies;
 use super::figure::Findings;
 use super::gauges::Gauges;
 use super::matter::Matter;
@@ -12,13 +13,15 @@ use crate::model::{Case, MeasureKind, Slab};
 use crate::numerics::vector::dot;
 use crate::particles::ParticleStore;
 
-/// Gauges and witness planes: what is kept from step to step.
+/// Gauges, witness planes and figures of bodies: what is kept from step to step.
 #[derive(Debug)]
 pub struct Measures {
     /// Gauges.
     pub gauges: Gauges,
     /// Witness planes.
     pub witnesses: Witnesses,
+    /// Of the rows of bodies.
+    pub bodies: KeptBodies,
 }
 
 impl Measures {
@@ -28,13 +31,14 @@ impl Measures {
         Self {
             gauges: Gauges::new(case),
             witnesses: Witnesses::new(case),
+            bodies: KeptBodies::default(),
         }
     }
 
     /// Bytes allocated.
     #[must_use]
     pub fn memory(&self) -> usize {
-        self.gauges.memory() + self.witnesses.memory()
+        self.gauges.memory() + self.witnesses.memory() + self.bodies.memory()
     }
 }
 

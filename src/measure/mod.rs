@@ -32,7 +32,7 @@ mod window;
 mod witness;
 mod zone;
 
-pub use bodies::{BodyFigures, bodies};
+pub use bodies::{BodyFigures, KeptBodies, bodies};
 pub use figure::{Distribution, Figure, Findings, Told};
 pub use gauges::{GaugeRow, Gauges};
 pub use kept::{Measures, findings, mark_zones, remember};

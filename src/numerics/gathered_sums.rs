@@ -40,8 +40,12 @@ impl<const N: usize> GatheredSums<N> {
 
     /// Adds all terms of other sums.
     pub fn merge(&mut self, mut other: Self) {
-        other.add_waiting();
-        for (sum, other) in self.sums.iter_mut().zip(&other.sums) {
+        self.merge_sums(other.sums());
+    }
+
+    /// Adds what other terms have been summed up to.
+    pub fn merge_sums(&mut self, others: &[ExactSum; N]) {
+        for (sum, other) in self.sums.iter_mut().zip(others) {
             sum.merge(other);
         }
     }

@@ -1,5 +1,7 @@
 //! Parts of the store that take no part in steps.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::GRAIN;
@@ -13,6 +15,9 @@ pub const PART: usize = 64;
 pub struct Asleep {
     /// By part; those beyond the last are awake.
     parts: Vec<bool>,
+    /// By part: how often parts had been told to sleep when it fell asleep last.
+    since: Vec<u64>,
+    times: u64,
     /// How many sleep.
     count: usize,
     /// The parts that are awake, ascending, with that which owned particles do not fill.
@@ -39,6 +44,17 @@ impl Asleep {
     #[must_use]
     pub fn holds(&self, particle: usize) -> bool {
         self.count > 0 && self.has(particle / PART)
+    }
+
+    /// A number that stands for what owned particles, from the first of a part on, are as long as all of them sleep.
+    #[must_use]
+    pub fn since(&self, places: &Range<usize>) -> Option<u64> {
+        let parts = places.start / PART..places.end / PART;
+        let is_whole = places.end.is_multiple_of(PART);
+        let asleep =
+            self.count > 0 && is_whole && self.parts.get(parts.clone())?.iter().all(|&is| is);
+        let since = asleep.then(|| &self.since[parts])?;
+        since.iter().max().copied()
     }
 
     /// The place in the store after the last part that may sleep.
@@ -104,8 +120,17 @@ impl Asleep {
     pub fn set(&mut self, owned: usize, sleeps: impl Fn(usize, bool) -> bool + Sync) {
         let whole = owned / PART;
         self.parts.resize(whole, false);
-        let parts = self.parts.par_iter_mut().with_min_len(GRAIN).enumerate();
-        parts.for_each(|(part, asleep)| *asleep = sleeps(part, *asleep));
+        self.since.resize(whole, 0);
+        self.times += 1;
+        let times = self.times;
+        let parts = self.parts.par_iter_mut().zip(&mut self.since);
+        let parts = parts.with_min_len(GRAIN).enumerate();
+        parts.for_each(|(part, (asleep, since))| {
+            let was_asleep = std::mem::replace(asleep, sleeps(part, *asleep));
+            if !was_asleep {
+                *since = times;
+            }
+        });
         #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
         let number = |part: usize| part as u32;
         let parts = &self.parts;
@@ -121,7 +146,10 @@ impl Asleep {
     /// Bytes allocated.
     #[must_use]
     pub fn memory(&self) -> usize {
-        self.parts.capacity() + 4 * self.awake.capacity() + self.collector.memory()
+        self.parts.capacity()
+            + size_of::<u64>() * self.since.capacity()
+            + 4 * self.awake.capacity()
+            + self.collector.memory()
     }
 }
 

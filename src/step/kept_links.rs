@@ -239,7 +239,7 @@ impl<F: Fn(usize) -> Keeping + Sync> Seen<'_, F> {
             let (mut links, mut count) = ([[0; 3]; LANES], 0);
             if their != Keeping::No {
                 let there = first(base);
-                for &(lane, here, keeping) in receivers.kept() {
+                for &(here, keeping, lanes) in receivers.kept() {
                     let is_new = [keeping, their].contains(&Keeping::New);
                     let is_inner = here as usize / PART == base / PART && code == 0;
                     if !is_new || is_inner {
@@ -251,11 +251,14 @@ impl<F: Fn(usize) -> Keeping + Sync> Seen<'_, F> {
                         code => [here, there, code],
                     };
                     let last = &mut recent[slot(&link)];
-                    if *last != link
-                        && self
-                            .lists
-                            .in_support(cluster.group, cluster.receivers[lane], j)
-                    {
+                    let is_near = |lane: usize| {
+                        let is_meant = lanes >> lane & 1 == 1;
+                        is_meant
+                            && self
+                                .lists
+                                .in_support(cluster.group, cluster.receivers[lane], j)
+                    };
+                    if *last != link && (0..LANES).any(is_near) {
                         *last = link;
                         links[count] = link;
                         count += 1;
@@ -267,12 +270,12 @@ impl<F: Fn(usize) -> Keeping + Sync> Seen<'_, F> {
     }
 }
 
-/// The receivers of a cluster that are kept.
+/// The receivers of a cluster that are kept: those of a part that hang together are told of once.
 #[derive(Default)]
 struct Receivers {
     of: Option<[u32; LANES]>,
-    /// Lane, first one of its part that it hangs together with, and what becomes of that.
-    kept: [(usize, u32, Keeping); LANES],
+    /// The first one of their part that they hang together with, what becomes of that, and a bit for each lane.
+    kept: [(u32, Keeping, u32); LANES],
     count: usize,
 }
 
@@ -280,14 +283,21 @@ impl Receivers {
     fn take(&mut self, cluster: &Cluster, told: impl Fn(u32) -> Option<(u32, Keeping)>) {
         (self.of, self.count) = (Some(cluster.receivers), 0);
         for (lane, &i) in cluster.valid().iter().enumerate() {
-            if let Some((first, keeping)) = told(i) {
-                self.kept[self.count] = (lane, first, keeping);
-                self.count += 1;
+            let Some((first, keeping)) = told(i) else {
+                continue;
+            };
+            let mut known = self.kept[..self.count].iter_mut();
+            match known.find(|(other, ..)| *other == first) {
+                Some((.., lanes)) => *lanes |= 1 << lane,
+                None => {
+                    self.kept[self.count] = (first, keeping, 1 << lane);
+                    self.count += 1;
+                }
             }
         }
     }
 
-    fn kept(&self) -> &[(usize, u32, Keeping)] {
+    fn kept(&self) -> &[(u32, Keeping, u32)] {
         &self.kept[..self.count]
     }
 }

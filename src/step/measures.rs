@@ -11,8 +11,10 @@ use crate::model::Cadence;
 impl Simulation {
     /// What there is of each body now, right after a step. Collective.
     #[must_use]
-    pub fn measure_bodies(&self, comm: &Comm) -> Vec<BodyFigures> {
-        measure::bodies(&self.case, &self.particles, self.whole(), comm)
+    pub fn measure_bodies(&mut self, comm: &Comm) -> Vec<BodyFigures> {
+        let whole = Whole::new(self.halo.mirrors());
+        let kept = (&mut self.measures.bodies, &self.dormant.asleep);
+        measure::bodies(&self.case, &self.particles, kept, whole, comm)
     }
 
     /// From what is computed to the whole.

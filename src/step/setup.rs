@@ -12,7 +12,8 @@ use super::timers::Timers;
 use crate::comm::Comm;
 use crate::contact::{Connectivity, Contact};
 use crate::diagnose::{
-    LoadState, PairState, Passed, Removed, RunState, StepSums, Worst, angular_momentum_scale,
+    KeptTotals, LoadState, PairState, Passed, Removed, RunState, StepSums, Worst,
+    angular_momentum_scale,
 };
 use crate::domain::{Decomposition, Halo, Mirrors, Outset, Partition};
 use crate::fragments::Labels;
@@ -97,6 +98,7 @@ impl Simulation {
             sph: Sph::new(&case),
             loads: Loads::new(&case),
             sums: StepSums::new(table),
+            kept_totals: KeptTotals::default(),
             contact,
             dormant: Dormant::new(&case),
             labels: Labels::default(),

@@ -10,7 +10,8 @@ use super::timers::{Phase, Timers};
 use crate::comm::Comm;
 use crate::contact::Contact;
 use crate::diagnose::{
-    Booked, NumericalFailure, PostMortem, Reason, RunState, StepSums, Totals, fastest, is_explained,
+    Booked, KeptTotals, NumericalFailure, PostMortem, Reason, RunState, StepSums, Totals, fastest,
+    is_explained,
 };
 use crate::domain::{Decomposition, Halo, Partition};
 use crate::fragments::Labels;
@@ -52,6 +53,7 @@ pub struct Simulation {
     pub(super) labels: Labels,
     pub(super) loads: Loads,
     pub(super) sums: StepSums,
+    pub(super) kept_totals: KeptTotals,
     pub(super) measures: Measures,
 }
 
@@ -308,11 +310,13 @@ impl Simulation {
         self.state.book_totals(totals, self.loads.gravity);
     }
 
-    pub(super) fn totals(&self, comm: &Comm) -> Totals {
+    pub(super) fn totals(&mut self, comm: &Comm) -> Totals {
         let (particles, loads) = (&self.particles, &self.loads);
-        let mut totals = Totals::of(particles, loads, self.state.contact_energy, comm);
+        let (kept, asleep) = (&mut self.kept_totals, &self.dormant.asleep);
+        let contact_energy = self.state.contact_energy;
+        let mut totals = Totals::of(particles, (kept, asleep), loads, contact_energy, comm);
         if self.case.may_fail() {
-            totals.add_failure(particles, loads, comm);
+            totals.add_failure(particles, (kept, asleep), loads, comm);
         }
         totals.add_yielded(particles, loads, comm);
         totals

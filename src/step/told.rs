@@ -33,6 +33,7 @@ impl Simulation {
             + self.labels.memory()
             + self.loads.memory()
             + self.sums.memory()
+            + self.kept_totals.memory()
             + self.measures.memory()
             + self.step_control.memory()
             + self.halo.memory()

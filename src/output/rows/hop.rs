@@ -2,7 +2,10 @@
 
 use std::ops::Range;
 
+use rayon::prelude::*;
+
 use crate::comm::{Comm, Exchange};
+use crate::particles::GRAIN;
 
 /// Who sends to whom, itself included.
 #[derive(Debug, Clone, Default)]
@@ -43,8 +46,8 @@ pub struct Hop {
     peers: Vec<Peer>,
     /// Part of `order` that stays here.
     own: Range<usize>,
-    /// Place in the part of each arriving row: own ones first, then by peer.
-    places: Vec<u32>,
+    /// By row of the part: which arriving row it is, own ones first, then by peer.
+    arrivals: Vec<u32>,
     /// Ids of the part, ascending.
     ids: Vec<u64>,
     bytes: Vec<u8>,
@@ -55,7 +58,7 @@ impl Hop {
     pub fn choose(&mut self, ids: &[u64], chosen: impl IntoIterator<Item = u32>) -> u64 {
         self.order.clear();
         self.order.extend(chosen);
-        self.order.sort_unstable_by_key(|&i| ids[i as usize]);
+        self.order.par_sort_unstable_by_key(|&i| ids[i as usize]);
         self.order.len() as u64
     }
 
@@ -71,18 +74,16 @@ impl Hop {
         let cuts = find_cuts(comm, starts, ids, &self.order);
         self.choose_peers(comm, exchange, &cuts, ways);
         let arriving = self.own.len() + self.peers.iter().map(|p| p.receive).sum::<usize>();
-        self.places.clear();
-        self.places
+        self.arrivals.clear();
+        self.arrivals
             .extend(0..u32::try_from(arriving).expect("a part fits u32"));
         self.carry(comm, exchange, bytemuck::cast_slice(ids), 8);
         let arrived: Vec<u64> = bytemuck::pod_collect_to_vec(&self.bytes);
-        let mut by_id = self.places.clone();
-        by_id.sort_unstable_by_key(|&k| arrived[k as usize]);
-        for (place, &k) in (0_u32..).zip(&by_id) {
-            self.places[k as usize] = place;
-        }
+        self.arrivals
+            .par_sort_unstable_by_key(|&k| arrived[k as usize]);
         self.ids.clear();
-        self.ids.extend(by_id.iter().map(|&k| arrived[k as usize]));
+        self.ids
+            .extend(self.arrivals.iter().map(|&k| arrived[k as usize]));
     }
 
     /// The ids of this rank's part, ascending, after [`Self::plan`].
@@ -138,37 +139,55 @@ impl Hop {
         values: &[u8],
         size: usize,
     ) -> &mut [u8] {
-        let row = |i: u32| &values[i as usize * size..(i as usize + 1) * size];
+        let row = |i: u32| row_of(values, i as usize, size);
         exchange.set_peers(self.peers.iter().map(|p| p.rank));
         for (k, peer) in self.peers.iter().enumerate() {
             exchange.expect(k, peer.receive * size);
-            let message = exchange.outgoing(k);
-            message.reserve(peer.send.len() * size);
-            for &i in &self.order[peer.send.clone()] {
-                message.extend_from_slice(row(i));
-            }
+            let order = &self.order[peer.send.clone()];
+            gather(exchange.outgoing(k), (order, size), row);
         }
         exchange.post(comm);
-        self.bytes.resize(self.places.len() * size, 0);
-        let (own_places, mut places) = self.places.split_at(self.own.len());
-        for (&i, &place) in self.order[self.own.clone()].iter().zip(own_places) {
-            put(&mut self.bytes, place, row(i));
-        }
         exchange.wait();
-        for (k, peer) in self.peers.iter().enumerate() {
-            let (here, rest) = places.split_at(peer.receive);
-            for (row, &place) in exchange.incoming(k).chunks_exact(size).zip(here) {
-                put(&mut self.bytes, place, row);
+        let own = &self.order[self.own.clone()];
+        let ends = self.peers.iter().scan(own.len(), |end, peer| {
+            *end += peer.receive;
+            Some(*end)
+        });
+        let ends: Vec<usize> = ends.collect();
+        let incoming: Vec<&[u8]> = (0..ends.len()).map(|k| exchange.incoming(k)).collect();
+        let arrived = |k: u32| match own.get(k as usize) {
+            Some(&i) => row(i),
+            None => {
+                let peer = ends.partition_point(|&end| end <= k as usize);
+                let rows = incoming[peer];
+                let before_end = ends[peer] - k as usize;
+                row_of(rows, rows.len() / size - before_end, size)
             }
-            places = rest;
-        }
+        };
+        gather(&mut self.bytes, (&self.arrivals, size), arrived);
         &mut self.bytes
     }
 }
 
-fn put(bytes: &mut [u8], place: u32, row: &[u8]) {
-    let at = place as usize * row.len();
-    bytes[at..at + row.len()].copy_from_slice(row);
+/// The k-th of rows of so many bytes.
+fn row_of(rows: &[u8], k: usize, size: usize) -> &[u8] {
+    &rows[k * size..(k + 1) * size]
+}
+
+/// Has `bytes` be the rows of an order, of so many bytes each.
+fn gather<'a>(
+    bytes: &mut Vec<u8>,
+    (order, size): (&[u32], usize),
+    row: impl Fn(u32) -> &'a [u8] + Sync,
+) {
+    bytes.resize(order.len() * size, 0);
+    let pieces = bytes.par_chunks_mut(GRAIN * size);
+    let pieces = pieces.zip(order.par_chunks(GRAIN));
+    pieces.for_each(|(bytes, order)| {
+        for (place, &i) in bytes.chunks_exact_mut(size).zip(order) {
+            place.copy_from_slice(row(i));
+        }
+    });
 }
 
 /// Where each part, which `starts` at such a row of all, starts in this rank's `order`, and its

@@ -1,0 +1,85 @@
+//! Exact sums over what is no part of a rigid body.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::Loads;
+use crate::numerics::exact_sum::ExactSum;
+use crate::numerics::gathered_sums::{self, GatheredSums};
+use crate::particles::{Asleep, Block, GRAIN, KeptBlocks, ParticleStore};
+
+impl Loads {
+    /// Exact sums of `terms` of this rank's particles that are no part of a rigid body.
+    pub(crate) fn sum_free<const N: usize>(
+        &self,
+        particles: &ParticleStore,
+        terms: impl Fn(usize) -> [f64; N] + Sync,
+    ) -> [ExactSum; N] {
+        self.sum_where(particles, |_| true, terms)
+    }
+
+    /// The same, with what is `kept` of those that sleep, whose terms stay as they are.
+    pub(crate) fn sum_kept<const N: usize>(
+        &self,
+        particles: &ParticleStore,
+        (kept, asleep): (&mut KeptBlocks<[ExactSum; N]>, &Asleep),
+        terms: impl Fn(usize) -> [f64; N] + Sync,
+    ) -> [ExactSum; N] {
+        let is_rigid = |i: usize| self.has_motions() && self.is_rigid(particles.load[i]);
+        let add = |places: Range<usize>, sums: &mut GatheredSums<N>| {
+            let free = places.filter(|&i| !is_rigid(i));
+            free.for_each(|i| sums.add(&terms(i)));
+        };
+        let of_block = |mut sums: GatheredSums<N>, mut block: Block<'_, [ExactSum; N]>| {
+            let of_sleepers = |places| {
+                let mut sums = GatheredSums::default();
+                add(places, &mut sums);
+                Some(sums.into_sums())
+            };
+            match block.kept(of_sleepers) {
+                Some(kept) => sums.merge_sums(kept),
+                None => add(block.places(), &mut sums),
+            }
+            sums
+        };
+        kept.iter(particles.owned(), asleep)
+            // same bits in any order: exact sums are integers
+            .fold(GatheredSums::default, of_block)
+            .map(GatheredSums::into_sums)
+            // same bits in any order, as above
+            .reduce(gathered_sums::none, gathered_sums::merged)
+    }
+
+    /// The same of those that are `meant`.
+    pub(super) fn sum_where<const N: usize>(
+        &self,
+        particles: &ParticleStore,
+        meant: impl Fn(usize) -> bool + Sync,
+        terms: impl Fn(usize) -> [f64; N] + Sync,
+    ) -> [ExactSum; N] {
+        sum_over(particles.owned(), |i| {
+            let is_rigid = || self.has_motions() && self.is_rigid(particles.load[i]);
+            (meant(i) && !is_rigid()).then(|| terms(i))
+        })
+    }
+}
+
+/// Exact sums of the terms of those of the particles `0..owned` that have any.
+pub(super) fn sum_over<const N: usize>(
+    owned: usize,
+    terms: impl Fn(usize) -> Option<[f64; N]> + Sync,
+) -> [ExactSum; N] {
+    let of_chunk = |mut sums: GatheredSums<N>, chunk: usize| {
+        let all = (chunk * GRAIN..((chunk + 1) * GRAIN).min(owned)).filter_map(&terms);
+        all.for_each(|terms| sums.add(&terms));
+        sums
+    };
+    (0..owned.div_ceil(GRAIN))
+        .into_par_iter()
+        // same bits in any order: exact sums are integers
+        .fold(GatheredSums::default, of_chunk)
+        .map(GatheredSums::into_sums)
+        // same bits in any order, as above
+        .reduce(gathered_sums::none, gathered_sums::merged)
+}

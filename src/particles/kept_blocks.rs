@@ -1,0 +1,135 @@
+//! What is worth keeping of particles that sleep: what blocks of them come to.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::{Asleep, PART};
+
+/// Particles of a block.
+const BLOCK: usize = 32 * PART;
+
+/// What each block of the store whose particles all sleep comes to. Kept as long as they do.
+#[derive(Debug)]
+pub struct KeptBlocks<T> {
+    blocks: Vec<Option<Box<Kept<T>>>>,
+}
+
+#[derive(Debug)]
+struct Kept<T> {
+    value: T,
+    /// See [`Asleep::since`].
+    since: u64,
+}
+
+/// A block of the store.
+#[derive(Debug)]
+pub struct Block<'a, T> {
+    kept: &'a mut Option<Box<Kept<T>>>,
+    places: Range<usize>,
+    since: Option<u64>,
+}
+
+impl<T> Default for KeptBlocks<T> {
+    fn default() -> Self {
+        Self { blocks: Vec::new() }
+    }
+}
+
+impl<T: Send> KeptBlocks<T> {
+    /// The blocks of so many owned particles.
+    pub fn iter<'a>(
+        &'a mut self,
+        owned: usize,
+        asleep: &'a Asleep,
+    ) -> impl ParallelIterator<Item = Block<'a, T>> {
+        self.blocks.resize_with(owned.div_ceil(BLOCK), || None);
+        let blocks = self.blocks.par_iter_mut().enumerate();
+        blocks.map(move |(k, kept)| {
+            let places = k * BLOCK..((k + 1) * BLOCK).min(owned);
+            let since = asleep.since(&places);
+            Block {
+                kept,
+                places,
+                since,
+            }
+        })
+    }
+
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        let kept = self.blocks.iter().flatten().count();
+        size_of::<Kept<T>>() * kept + size_of::<usize>() * self.blocks.capacity()
+    }
+}
+
+impl<T> Block<'_, T> {
+    /// Its particles.
+    #[must_use]
+    pub fn places(&self) -> Range<usize> {
+        self.places.clone()
+    }
+
+    /// What it comes to, if all of it sleeps and that is worth keeping: what `of` gives, asked once.
+    pub fn kept(&mut self, of: impl FnOnce(Range<usize>) -> Option<T>) -> Option<&T> {
+        let Some(since) = self.since else {
+            *self.kept = None;
+            return None;
+        };
+        if !self.kept.as_ref().is_some_and(|kept| kept.since == since) {
+            let value = of(self.places.clone());
+            *self.kept = value.map(|value| Box::new(Kept { value, since }));
+        }
+        self.kept.as_deref().map(|kept| &kept.value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Places that were asked for.
+    fn asked(kept: &mut KeptBlocks<usize>, owned: usize, asleep: &Asleep) -> Vec<usize> {
+        let blocks = kept.iter(owned, asleep);
+        let first = blocks.filter_map(|mut block| {
+            let mut is_asked = false;
+            let first = block.places().start;
+            let value = block.kept(|places| {
+                is_asked = true;
+                Some(places.start)
+            });
+            assert!(value.is_none_or(|&value| value == first));
+            is_asked.then_some(first)
+        });
+        let mut all: Vec<usize> = first.collect();
+        all.sort_unstable();
+        all
+    }
+
+    #[test]
+    fn blocks_are_asked_once_as_long_as_all_of_them_sleeps() {
+        let (mut kept, mut asleep) = (KeptBlocks::default(), Asleep::default());
+        let owned = 4 * BLOCK + 5;
+        assert!(asked(&mut kept, owned, &asleep).is_empty());
+        asleep.set(owned, |part, _| part >= 32);
+        assert_eq!(
+            asked(&mut kept, owned, &asleep),
+            [BLOCK, 2 * BLOCK, 3 * BLOCK]
+        );
+        asleep.set(owned, |part, _| part >= 33);
+        assert!(asked(&mut kept, owned, &asleep).is_empty());
+        asleep.set(owned, |part, _| part >= 32);
+        // One part of a block wakes and falls asleep again before anybody asks.
+        asleep.set(owned, |part, _| part >= 32 && part != 70);
+        asleep.set(owned, |part, _| part >= 32);
+        assert_eq!(asked(&mut kept, owned, &asleep), [BLOCK, 2 * BLOCK]);
+        assert!(asked(&mut kept, owned, &asleep).is_empty());
+        assert!(kept.memory() >= 3 * size_of::<Kept<usize>>());
+        asleep.clear();
+        assert!(asked(&mut kept, owned, &asleep).is_empty());
+        asleep.set(owned, |_, _| true);
+        assert_eq!(asked(&mut kept, owned, &asleep).len(), 4);
+        assert!(asked(&mut kept, owned - BLOCK, &asleep).is_empty());
+    }
+}
