@@ -19,16 +19,27 @@ impl Loads {
         self.sum_where(particles, |_| true, terms)
     }
 
-    /// The same, with what is `kept` of those that sleep, whose terms stay as they are.
+    /// The same of those that are `meant`.
+    pub(super) fn sum_where<const N: usize>(
+        &self,
+        particles: &ParticleStore,
+        meant: impl Fn(usize) -> bool + Sync,
+        terms: impl Fn(usize) -> [f64; N] + Sync,
+    ) -> [ExactSum; N] {
+        sum_over(particles.owned(), |i| {
+            (meant(i) && self.is_free(particles, i)).then(|| terms(i))
+        })
+    }
+
+    /// As [`Self::sum_free`], with what is `kept` of particles that sleep, whose terms stay as they are.
     pub(crate) fn sum_kept<const N: usize>(
         &self,
         particles: &ParticleStore,
         (kept, asleep): (&mut KeptBlocks<[ExactSum; N]>, &Asleep),
         terms: impl Fn(usize) -> [f64; N] + Sync,
     ) -> [ExactSum; N] {
-        let is_rigid = |i: usize| self.has_motions() && self.is_rigid(particles.load[i]);
         let add = |places: Range<usize>, sums: &mut GatheredSums<N>| {
-            let free = places.filter(|&i| !is_rigid(i));
+            let free = places.filter(|&i| self.is_free(particles, i));
             free.for_each(|i| sums.add(&terms(i)));
         };
         let of_block = |mut sums: GatheredSums<N>, mut block: Block<'_, [ExactSum; N]>| {
@@ -43,25 +54,12 @@ impl Loads {
             }
             sums
         };
-        kept.iter(particles.owned(), asleep)
-            // same bits in any order: exact sums are integers
-            .fold(GatheredSums::default, of_block)
-            .map(GatheredSums::into_sums)
-            // same bits in any order, as above
-            .reduce(gathered_sums::none, gathered_sums::merged)
+        all(kept.iter(particles.owned(), asleep), of_block)
     }
 
-    /// The same of those that are `meant`.
-    pub(super) fn sum_where<const N: usize>(
-        &self,
-        particles: &ParticleStore,
-        meant: impl Fn(usize) -> bool + Sync,
-        terms: impl Fn(usize) -> [f64; N] + Sync,
-    ) -> [ExactSum; N] {
-        sum_over(particles.owned(), |i| {
-            let is_rigid = || self.has_motions() && self.is_rigid(particles.load[i]);
-            (meant(i) && !is_rigid()).then(|| terms(i))
-        })
+    /// Whether a particle is no part of a rigid body.
+    fn is_free(&self, particles: &ParticleStore, i: usize) -> bool {
+        !self.has_motions() || !self.is_rigid(particles.load[i])
     }
 }
 
@@ -75,10 +73,17 @@ pub(super) fn sum_over<const N: usize>(
         all.for_each(|terms| sums.add(&terms));
         sums
     };
-    (0..owned.div_ceil(GRAIN))
-        .into_par_iter()
+    all((0..owned.div_ceil(GRAIN)).into_par_iter(), of_chunk)
+}
+
+/// What `add` puts into sums for pieces of the store.
+fn all<const N: usize, P: Send>(
+    pieces: impl ParallelIterator<Item = P>,
+    add: impl Fn(GatheredSums<N>, P) -> GatheredSums<N> + Sync + Send,
+) -> [ExactSum; N] {
+    pieces
         // same bits in any order: exact sums are integers
-        .fold(GatheredSums::default, of_chunk)
+        .fold(GatheredSums::default, add)
         .map(GatheredSums::into_sums)
         // same bits in any order, as above
         .reduce(gathered_sums::none, gathered_sums::merged)

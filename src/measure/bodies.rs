@@ -81,9 +81,14 @@ impl Part {
         }
     }
 
-    fn join(&mut self, other: Self) {
-        self.sums.merge(other.sums);
-        for (most, &other) in self.extremes.iter_mut().zip(&other.extremes) {
+    fn join(&mut self, mut other: Self) {
+        self.take(other.sums.sums(), &other.extremes);
+    }
+
+    /// Takes in what other particles come to.
+    fn take(&mut self, sums: &[ExactSum; SUMS], extremes: &[f64; EXTREMES]) {
+        self.sums.merge_sums(sums);
+        for (most, &other) in self.extremes.iter_mut().zip(extremes) {
             *most = most.max(other);
         }
     }
@@ -143,14 +148,6 @@ impl Part {
         for a in 0..3 {
             raise(&mut self.extremes[a], x[a] + half);
             raise(&mut self.extremes[3 + a], half - x[a]);
-        }
-    }
-
-    /// Takes in what particles come to that sleep.
-    fn take(&mut self, kept: &Kept) {
-        self.sums.merge_sums(&kept.sums);
-        for (most, &other) in self.extremes.iter_mut().zip(&kept.extremes) {
-            *most = most.max(other);
         }
     }
 
@@ -229,6 +226,7 @@ pub fn bodies(
     comm: &Comm,
 ) -> Vec<BodyFigures> {
     let none = || case.bodies.iter().map(|_| Part::new()).collect::<Vec<_>>();
+    // `parts` are those of bodies from the first one on.
     let add = |places: Range<usize>, parts: &mut [Part], first_body: usize| {
         let mut temperatures = [0.0; GRAIN];
         for first in places.clone().step_by(GRAIN) {
@@ -258,7 +256,7 @@ pub fn bodies(
     };
     let of_block = |mut parts: Vec<Part>, mut block: Block<'_, Kept>| {
         match block.kept(of_sleepers) {
-            Some(kept) => parts[kept.body].take(kept),
+            Some(kept) => parts[kept.body].take(&kept.sums, &kept.extremes),
             None => add(block.places(), &mut parts, 0),
         }
         parts

@@ -33,8 +33,8 @@ struct Peer {
     rank: usize,
     /// Which part of [`Hop::order`] goes there.
     send: Range<usize>,
-    /// Rows that come from there.
-    receive: usize,
+    /// Which of the arriving rows come from there.
+    receive: Range<usize>,
 }
 
 /// Rows go to the parts of all rows that their ids belong to, and stand there in the order of ids.
@@ -73,7 +73,7 @@ impl Hop {
     ) {
         let cuts = find_cuts(comm, starts, ids, &self.order);
         self.choose_peers(comm, exchange, &cuts, ways);
-        let arriving = self.own.len() + self.peers.iter().map(|p| p.receive).sum::<usize>();
+        let arriving = (self.peers.last()).map_or(self.own.len(), |peer| peer.receive.end);
         self.arrivals.clear();
         self.arrivals
             .extend(0..u32::try_from(arriving).expect("a part fits u32"));
@@ -114,13 +114,16 @@ impl Hop {
         exchange.post(comm);
         exchange.wait();
         self.own = part(comm.rank());
+        let mut arriving = self.own.len();
         self.peers.clear();
         for (k, rank) in ranks.into_iter().enumerate() {
             let count = exchange.incoming(k).first_chunk().copied();
             let receive = count.map_or(0, u64::from_ne_bytes);
             let receive = usize::try_from(receive).expect("a count fits memory");
+            let receive = arriving..arriving + receive;
+            arriving = receive.end;
             let send = part(rank);
-            if receive > 0 || !send.is_empty() {
+            if !receive.is_empty() || !send.is_empty() {
                 self.peers.push(Peer {
                     rank,
                     send,
@@ -142,26 +145,20 @@ impl Hop {
         let row = |i: u32| row_of(values, i as usize, size);
         exchange.set_peers(self.peers.iter().map(|p| p.rank));
         for (k, peer) in self.peers.iter().enumerate() {
-            exchange.expect(k, peer.receive * size);
+            exchange.expect(k, peer.receive.len() * size);
             let order = &self.order[peer.send.clone()];
             gather(exchange.outgoing(k), (order, size), row);
         }
         exchange.post(comm);
         exchange.wait();
         let own = &self.order[self.own.clone()];
-        let ends = self.peers.iter().scan(own.len(), |end, peer| {
-            *end += peer.receive;
-            Some(*end)
-        });
-        let ends: Vec<usize> = ends.collect();
-        let incoming: Vec<&[u8]> = (0..ends.len()).map(|k| exchange.incoming(k)).collect();
+        let (peers, incoming) = (&self.peers, exchange.incoming_all());
         let arrived = |k: u32| match own.get(k as usize) {
             Some(&i) => row(i),
             None => {
-                let peer = ends.partition_point(|&end| end <= k as usize);
-                let rows = incoming[peer];
-                let before_end = ends[peer] - k as usize;
-                row_of(rows, rows.len() / size - before_end, size)
+                let peer = peers.partition_point(|peer| peer.receive.end <= k as usize);
+                let place = k as usize - peers[peer].receive.start;
+                row_of(incoming[peer].incoming(), place, size)
             }
         };
         gather(&mut self.bytes, (&self.arrivals, size), arrived);
