@@ -54,7 +54,7 @@ impl Loads {
             }
             sums
         };
-        all(kept.iter(particles.owned(), asleep), of_block)
+        all(kept.each(particles.owned(), asleep), of_block)
     }
 
     /// Whether a particle is no part of a rigid body.

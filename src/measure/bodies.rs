@@ -245,9 +245,9 @@ pub fn bodies(
             .iter()
             .all(|body| *body == of[0])
             .then_some(of[0] as usize)?;
-        let mut parts = [Part::new()];
+        let mut parts = vec![Part::new()];
         add(places, &mut parts, body);
-        let [Part { sums, extremes }] = parts;
+        let Part { sums, extremes } = parts.pop()?;
         Some(Kept {
             body,
             sums: sums.into_sums(),
@@ -268,7 +268,7 @@ pub fn bodies(
         parts
     };
     let mut parts = (kept.0)
-        .iter(particles.owned(), asleep)
+        .each(particles.owned(), asleep)
         // same bits in any order: exact sums are integers, and extremes are some value among all
         .fold(none, of_block)
         // same bits in any order, as above

@@ -38,7 +38,7 @@ impl<T> Default for KeptBlocks<T> {
 
 impl<T: Send> KeptBlocks<T> {
     /// The blocks of so many owned particles.
-    pub fn iter<'a>(
+    pub fn each<'a>(
         &'a mut self,
         owned: usize,
         asleep: &'a Asleep,
@@ -77,7 +77,7 @@ impl<T> Block<'_, T> {
             *self.kept = None;
             return None;
         };
-        if !self.kept.as_ref().is_some_and(|kept| kept.since == since) {
+        if self.kept.as_ref().is_none_or(|kept| kept.since != since) {
             let value = of(self.places.clone());
             *self.kept = value.map(|value| Box::new(Kept { value, since }));
         }
@@ -91,7 +91,7 @@ mod tests {
 
     /// Places that were asked for.
     fn asked(kept: &mut KeptBlocks<usize>, owned: usize, asleep: &Asleep) -> Vec<usize> {
-        let blocks = kept.iter(owned, asleep);
+        let blocks = kept.each(owned, asleep);
         let first = blocks.filter_map(|mut block| {
             let mut is_asked = false;
             let first = block.places().start;

@@ -23,6 +23,7 @@ use crate::populate::Brick;
 use crate::sph::SignalSpeed;
 
 /// Particles that are left out of steps, kept from one to the next.
+#[allow(clippy::struct_excessive_bools, reason = "independent of each other")]
 #[derive(Debug)]
 pub(super) struct Dormant {
     /// Which they are.

@@ -287,12 +287,11 @@ impl Receivers {
                 continue;
             };
             let mut known = self.kept[..self.count].iter_mut();
-            match known.find(|(other, ..)| *other == first) {
-                Some((.., lanes)) => *lanes |= 1 << lane,
-                None => {
-                    self.kept[self.count] = (first, keeping, 1 << lane);
-                    self.count += 1;
-                }
+            if let Some((.., lanes)) = known.find(|(other, ..)| *other == first) {
+                *lanes |= 1 << lane;
+            } else {
+                self.kept[self.count] = (first, keeping, 1 << lane);
+                self.count += 1;
             }
         }
     }

@@ -153,13 +153,13 @@ impl Hop {
         exchange.wait();
         let own = &self.order[self.own.clone()];
         let (peers, incoming) = (&self.peers, exchange.incoming_all());
-        let arrived = |k: u32| match own.get(k as usize) {
-            Some(&i) => row(i),
-            None => {
-                let peer = peers.partition_point(|peer| peer.receive.end <= k as usize);
-                let place = k as usize - peers[peer].receive.start;
-                row_of(incoming[peer].incoming(), place, size)
+        let arrived = |k: u32| {
+            if let Some(&i) = own.get(k as usize) {
+                return row(i);
             }
+            let peer = peers.partition_point(|peer| peer.receive.end <= k as usize);
+            let place = k as usize - peers[peer].receive.start;
+            row_of(incoming[peer].incoming(), place, size)
         };
         gather(&mut self.bytes, (&self.arrivals, size), arrived);
         &mut self.bytes
