@@ -162,15 +162,16 @@ fn contact_far_from_the_stiffness_of_the_materials_is_told() {
 
 #[test]
 fn impacts_beyond_an_equation_of_state_are_told() {
+    let spall = "material.metal.failure.spall.pressure=\"-1.5 GPa\"";
     let fast = "body.bar.velocity=[0, \"-9 km/s\"]";
-    let said = told(&[fast]);
+    let said = told(&[fast, spall]);
     assert_eq!(said.len(), 1, "once for a material: {said:?}");
     assert!(
         said[0].contains("drives `metal` to 1.14 of its sound speed"),
         "{said:?}"
     );
     assert!(said[0].contains("take `tillotson`"));
-    assert_told(&["body.bar.velocity=[0, \"-7 km/s\"]"], &[]);
+    assert_told(&["body.bar.velocity=[0, \"-7 km/s\"]", spall], &[]);
 
     let linear = [
         "material.spring={ density = \"8.9 g/cm^3\", eos.linear.bulk_modulus = \"138 GPa\", \
@@ -190,6 +191,20 @@ fn impacts_beyond_an_equation_of_state_are_told() {
     // Nothing meets, nothing is shocked.
     let past = told(&["body.bar.velocity=[\"9 km/s\", 0]"]);
     assert_eq!(past, ["nothing meets: no body flies towards another"]);
+}
+
+#[test]
+fn a_shock_through_what_cannot_fail_is_told() {
+    let said = told(&["body.bar.velocity=[0, \"-1 km/s\"]"]);
+    assert_eq!(said.len(), 1, "once for a material: {said:?}");
+    assert!(
+        said[0].contains("`metal` cannot fail: what the release of a shock of 18 GPa would tear"),
+        "{said:?}"
+    );
+    let fast = "body.bar.velocity=[0, \"-1 km/s\"]";
+    assert_told(&[fast, "material.metal.library=copper-ductile"], &[]);
+    assert_told(&[fast, "material.metal.strength=none"], &[]);
+    assert_told(&["body.bar.velocity=[0, \"-500 m/s\"]"], &[]);
 }
 
 #[test]
