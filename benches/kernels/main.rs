@@ -13,13 +13,14 @@ use whipple::contact::{ContactTable, TaskForces, overlap};
 use whipple::material::{Material, PointBatch};
 use whipple::model::ContactClass;
 use whipple::neighbours::ForeignLists;
-use whipple::numerics::dispatch::{Vectorised, available};
+use whipple::numerics::dispatch::{Instructions, Vectorised, available};
 use whipple::numerics::exact_sum::ExactSum;
 use whipple::numerics::kernel::{ConstantScale, Kernel};
 use whipple::numerics::lanes::{LANES, Lanes};
+use whipple::sph::corrected::{CorrectedGradient, CorrectedRecord};
 use whipple::sph::gradient::VelocityGradient;
-use whipple::sph::momentum::{Momentum, StressRecord, Viscosity};
-use whipple::sph::neighbourhood::Sources;
+use whipple::sph::momentum::{Momentum, PairStress, StressRecord, Viscosity};
+use whipple::sph::neighbourhood::{Neighbourhood, Sources};
 use whipple::sph::terms::PairTerms;
 
 /// A group whose throughput counts so many elements.
@@ -36,62 +37,69 @@ fn group<'a>(
     group
 }
 
-fn velocity_gradient(criterion: &mut Criterion) {
+/// Times what `work` makes of each cluster of a block, for each instruction set.
+fn sweep(
+    criterion: &mut Criterion,
+    name: &str,
+    work: impl Fn(Instructions, Neighbourhood<ConstantScale>),
+) {
     let scene = Scene::new(1);
-    let scale = ConstantScale::new(&Kernel::new(3), LENGTH);
-    let mut group = group(criterion, "velocity_gradient", COUNT);
+    let sources = Sources {
+        records: &scene.motion,
+        lengths: scene.sequence.smoothing_lengths(),
+        scale: ConstantScale::new(&Kernel::new(3), LENGTH),
+    };
+    let mut group = group(criterion, name, COUNT);
     for set in available() {
         group.bench_function(set.name(), |bencher| {
             bencher.iter(|| {
                 scene.sweep(|receivers, neighbours| {
-                    black_box(
-                        set.run(VelocityGradient {
-                            around: Sources {
-                                records: &scene.motion,
-                                lengths: scene.sequence.smoothing_lengths(),
-                                scale,
-                            }
-                            .around(receivers, neighbours),
-                        }),
-                    );
+                    work(set, sources.around(receivers, neighbours));
                 });
             });
         });
     }
 }
 
+/// The first sweep, in the corrected form and the conventional one.
+fn velocity_gradient(criterion: &mut Criterion) {
+    sweep(criterion, "corrected_gradient", |set, around| {
+        black_box(set.run(CorrectedGradient {
+            around,
+            dimension: 3,
+            plain: 0,
+        }));
+    });
+    sweep(criterion, "velocity_gradient", |set, around| {
+        black_box(set.run(VelocityGradient { around }));
+    });
+}
+
+/// The second sweep, in the corrected form and the conventional one.
 fn momentum(criterion: &mut Criterion) {
-    let scene = Scene::new(1);
-    let scale = ConstantScale::new(&Kernel::new(3), LENGTH);
     let deviatoric = [1e8, 0.0, -1e8, 1e8, 2e8, 3e8];
-    let stresses = vec![StressRecord::new(1e9, &deviatoric, DENSITY, 5328.0); COUNT];
+    let stress = [1.1e9, 1e8, 2e8, 1e8, 1e9, 3e8, 2e8, 3e8, 0.9e9];
+    let corrected = CorrectedRecord::new(&stress, &[1e-9; 3], 0.1, [DENSITY, 5328.0]);
+    momentum_of(criterion, "corrected_momentum", corrected);
+    let conventional = StressRecord::new(1e9, &deviatoric, DENSITY, 5328.0);
+    momentum_of(criterion, "momentum_and_energy", conventional);
+}
+
+fn momentum_of<R: PairStress>(criterion: &mut Criterion, name: &str, record: R) {
+    let stresses = vec![record; COUNT];
     let viscosity = Viscosity {
         alpha: 1.0,
         beta: 2.0,
         negligible: 0.0,
     };
-    let mut group = group(criterion, "momentum_and_energy", COUNT);
-    for set in available() {
-        group.bench_function(set.name(), |bencher| {
-            bencher.iter(|| {
-                scene.sweep(|receivers, neighbours| {
-                    black_box(
-                        set.run(Momentum::<_, StressRecord, 0> {
-                            around: Sources {
-                                records: &scene.motion,
-                                lengths: scene.sequence.smoothing_lengths(),
-                                scale,
-                            }
-                            .around(receivers, neighbours),
-                            stresses: &stresses,
-                            viscosity,
-                            terms: PairTerms::NONE,
-                        }),
-                    );
-                });
-            });
-        });
-    }
+    sweep(criterion, name, |set, around| {
+        black_box(set.run(Momentum::<_, R, 0> {
+            around,
+            stresses: &stresses,
+            viscosity,
+            terms: PairTerms::NONE,
+        }));
+    });
 }
 
 fn search(criterion: &mut Criterion) {

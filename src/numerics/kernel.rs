@@ -144,6 +144,9 @@ pub trait PairScale: Copy + Sync {
     /// Whether [`Self::kernel`] looks at the smoothing lengths.
     const VARIABLE: bool;
 
+    /// `h_ij` (m) of receivers of `h_i` and a neighbour of `h_j` (m).
+    fn length<V: Lanes>(&self, h_i: V, h_j: f64) -> V;
+
     /// For pairs at `distance` (m) of receivers of `h_i` and a neighbour of `h_j` (m).
     fn kernel<V: Lanes>(&self, distance: V, h_i: V, h_j: f64) -> PairKernel<V>;
 
@@ -215,13 +218,18 @@ impl PairScale for ConstantScale {
     const VARIABLE: bool = false;
 
     #[inline(always)]
-    fn kernel<V: Lanes>(&self, distance: V, _: V, _: f64) -> PairKernel<V> {
+    fn length<V: Lanes>(&self, _: V, _: f64) -> V {
+        V::splat(self.h)
+    }
+
+    #[inline(always)]
+    fn kernel<V: Lanes>(&self, distance: V, h_i: V, h_j: f64) -> PairKernel<V> {
         let (inner, outer) = (self.inner.at(distance), self.outer.at(distance));
         PairKernel {
             slope: outer.neg_mul_add(outer, inner.mul(inner)),
             inside: outer,
             core: inner,
-            h: V::splat(self.h),
+            h: self.length(h_i, h_j),
         }
     }
 
@@ -258,8 +266,13 @@ impl<const D: usize> PairScale for MeanScale<D> {
     const VARIABLE: bool = true;
 
     #[inline(always)]
+    fn length<V: Lanes>(&self, h_i: V, h_j: f64) -> V {
+        h_i.add(V::splat(h_j)).mul(V::splat(0.5))
+    }
+
+    #[inline(always)]
     fn kernel<V: Lanes>(&self, distance: V, h_i: V, h_j: f64) -> PairKernel<V> {
-        let h = h_i.add(V::splat(h_j)).mul(V::splat(0.5));
+        let h = self.length(h_i, h_j);
         let inverse = V::splat(1.0).div(h);
         let square = inverse.mul(inverse);
         let factor = match D {

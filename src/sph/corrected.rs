@@ -128,30 +128,31 @@ impl<S: PairScale> CorrectedGradient<'_, S> {
     fn sums<V: Lanes>(&self) -> PlainSums<V> {
         let zero = V::splat(0.0);
         let (position, velocity) = self.around.motion::<V>();
-        let mut sums = PlainSums {
-            gradient: [zero; 9],
-            moment: [zero; 6],
-            velocity: [zero; 3],
-            place: [zero; 3],
-            weight: zero,
-        };
+        let (mut gradient, mut moment) = ([zero; 9], [zero; 6]);
+        let (mut mean_velocity, mut place) = ([zero; 3], [zero; 3]);
         for pair in self.around.pairs(&position) {
             let (here, r) = (pair.source, pair.separation.r);
             let volume = V::splat(here.volume);
             let factor = pair.separation.inverse.mul(volume).mul(pair.kernel.slope);
-            let steep = add_moment(&mut sums.moment, &r, factor);
+            let steep = add_moment(&mut moment, &r, factor);
             let weight = factor.mul(pair.separation.square);
-            sums.weight = sums.weight.add(weight);
             for a in 0..3 {
                 let v_a = V::splat(here.velocity[a]).sub(velocity[a]);
-                sums.velocity[a] = v_a.mul_add(weight, sums.velocity[a]);
-                sums.place[a] = r[a].mul_add(weight, sums.place[a]);
+                mean_velocity[a] = v_a.mul_add(weight, mean_velocity[a]);
+                place[a] = r[a].mul_add(weight, place[a]);
                 for b in 0..3 {
-                    let sum = &mut sums.gradient[3 * a + b];
+                    let sum = &mut gradient[3 * a + b];
                     *sum = v_a.mul_add(steep[b], *sum);
                 }
             }
         }
-        sums
+        let [xx, yy, zz, ..] = moment;
+        PlainSums {
+            gradient,
+            moment,
+            velocity: mean_velocity,
+            place,
+            weight: zero.sub(xx.add(yy).add(zz)),
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Conservative momentum equation with its compatible energy equation and Monaghan–Gingold
 //! viscosity (physics page, section 2).
 
-use super::neighbourhood::{Neighbourhood, Separation, gather, gather_all, records};
+use super::neighbourhood::{Divisor, Neighbourhood, Separation, gather, gather_all, records};
 use super::normalised::NormalisedSums;
 use super::terms::{NORMALISED, PairTerms, SHAPED, TermRecord, TermSums};
 use crate::numerics::dispatch::Vectorised;
@@ -62,6 +62,9 @@ pub trait PairStress: bytemuck::Pod + Send + Sync {
     /// Whether there is no stress at all.
     fn is_free(&self) -> bool;
 
+    /// Density (kg/m³).
+    fn density(&self) -> f64;
+
     /// The torque (N m) that pairs of eight receivers exert on each other without these neighbours, where
     /// none is left with them; none where angular momentum is not kept anyway.
     #[must_use]
@@ -98,6 +101,29 @@ pub(super) struct ViscousPair<V> {
     signal: V,
 }
 
+/// `r² + 0.01 h²` (m²) of pairs.
+#[inline(always)]
+fn soft<V: Lanes>(square: V, h: V) -> V {
+    h.mul(h).mul(V::splat(0.01)).add(square)
+}
+
+/// `(r² + 0.01 h²) (ρ_i + ρ_j)`, whose inverse serves those of both.
+#[derive(Clone, Copy)]
+pub(super) struct SoftSquare<'a, V, R> {
+    /// Density of the receivers (kg/m³).
+    pub rho: V,
+    /// Stresses of all particles and images.
+    pub stresses: &'a [R],
+}
+
+impl<V: Lanes, R: PairStress> Divisor<V> for SoftSquare<'_, V, R> {
+    #[inline(always)]
+    fn of(&self, index: usize, square: V, h: V) -> Option<V> {
+        let density = V::splat(self.stresses[index].density());
+        Some(soft(square, h).mul(self.rho.add(density)))
+    }
+}
+
 impl<V: Lanes> Viscous<V> {
     /// Of receivers of these densities (kg/m³) and sound speeds (m/s).
     #[inline(always)]
@@ -113,21 +139,19 @@ impl<V: Lanes> Viscous<V> {
     }
 
     /// Of the receivers with a neighbour of this density and sound speed at the relative velocity
-    /// `v`.
+    /// `v`, with the inverse of their [`SoftSquare`].
     #[inline(always)]
     pub fn pair<const TERMS: u8>(
         &self,
         terms: &TermSums<V, TERMS>,
-        (separation, h): (&Separation<V>, V),
+        (separation, h, inverse): (&Separation<V>, V, V),
         v: &[V; 3],
         (density, sound_speed): (f64, f64),
         shown: &TermRecord,
     ) -> ViscousPair<V> {
         let r = &separation.r;
-        let soft = h.mul(h).mul(V::splat(0.01)).add(separation.square);
+        let soft = soft(separation.square, h);
         let rho_sum = self.rho.add(V::splat(density));
-        // One division serves 1/(r² + 0.01 h²) and 1/(ρ_i + ρ_j).
-        let inverse = V::splat(1.0).div(soft.mul(rho_sum));
         // μ = h v·r/(r² + 0.01 h²) for approaching pairs.
         let closing = r[2].mul_add(v[2], r[1].mul_add(v[1], r[0].mul(v[0])));
         let mu = h
@@ -213,6 +237,11 @@ impl PairStress for StressRecord {
     }
 
     #[inline(always)]
+    fn density(&self) -> f64 {
+        self.density
+    }
+
+    #[inline(always)]
     fn sum<V: Lanes, S: PairScale, const TERMS: u8>(sums: &Momentum<S, Self, TERMS>) -> Forces {
         let around = &sums.around;
         // A particle whose position is NaN.
@@ -233,7 +262,11 @@ impl PairStress for StressRecord {
         let mut acceleration = [zero; 3];
         let mut power = zero;
         let mut fastest = zero;
-        for pair in around.pairs(&position) {
+        let divisor = SoftSquare {
+            rho: rho_i,
+            stresses: sums.stresses,
+        };
+        for pair in around.pairs_beside(&position, divisor) {
             let (index, source, now, kernel) =
                 (pair.index, pair.source, &pair.separation, &pair.kernel);
             let state = &sums.stresses[index];
@@ -242,7 +275,7 @@ impl PairStress for StressRecord {
             let along = |a: usize| velocity[a].sub(V::splat(source.velocity[a]));
             let v = [along(0), along(1), along(2)];
             let state_of = (state.density, state.sound_speed);
-            let viscous = viscous.pair(&terms, (now, kernel.h), &v, state_of, shown);
+            let viscous = viscous.pair(&terms, (now, kernel.h, pair.beside), &v, state_of, shown);
             let pi = viscous.pi;
             fastest = fastest.min_where_positive(viscous.mu, kernel.inside);
             let s = |c: usize| V::splat(state.stress_over_density2[c]);

@@ -62,16 +62,46 @@ impl<'a, S: PairScale> Neighbourhood<'a, S> {
     /// The receivers, which stand at `position` (m), with one neighbour after the other. A particle
     /// whose position is NaN has none, not even itself.
     #[inline(always)]
-    pub(super) fn pairs<V: Lanes>(&self, position: &[V; 3]) -> Pairs<'a, V, S> {
-        let first = self.neighbours.first().copied().unwrap_or_default();
-        let first = &self.sources.records[first as usize];
-        Pairs {
+    pub(super) fn pairs<V: Lanes>(&self, position: &[V; 3]) -> Pairs<'a, V, S, ()> {
+        self.pairs_beside(position, ())
+    }
+
+    /// The same, with the inverse of a divisor.
+    #[inline(always)]
+    pub(super) fn pairs_beside<V: Lanes, D: Divisor<V>>(
+        &self,
+        position: &[V; 3],
+        divisor: D,
+    ) -> Pairs<'a, V, S, D> {
+        let mut pairs = Pairs {
             around: *self,
             position: *position,
             h: self.h(),
+            divisor,
             done: 0,
-            next: Separation::begin(position, &first.position),
+            next: Divided::of(Distance::of(V::splat(1.0)), None),
+            after: Distance::of(V::splat(1.0)),
+        };
+        if !self.neighbours.is_empty() {
+            // The compiler must not know how these come about: where they and those of the loop do alike, it
+            // takes roots and divides behind the two, when the result is due.
+            pairs.next = std::hint::black_box(pairs.divide(0, pairs.distance(0)));
+            pairs.after = std::hint::black_box(pairs.distance(1));
         }
+        pairs
+    }
+}
+
+/// What a sum over pairs divides by beside their distances.
+pub(super) trait Divisor<V>: Copy {
+    /// Of the neighbour of this index, squares of distances (m²) and `h_ij` (m), if any.
+    fn of(&self, index: usize, square: V, h: V) -> Option<V>;
+}
+
+impl<V> Divisor<V> for () {
+    #[inline(always)]
+    fn of(&self, _: usize, _: V, _: V) -> Option<V> {
+        None
     }
 }
 
@@ -85,19 +115,53 @@ pub(super) struct Pair<'a, V> {
     pub(super) separation: Separation<V>,
     /// The kernel.
     pub(super) kernel: PairKernel<V>,
+    /// The inverse of the divisor, 1 without one.
+    pub(super) beside: V,
 }
 
-/// Pairs of eight receivers, neighbour after neighbour. The next one is begun before the last is
-/// given: its root takes long.
-pub(super) struct Pairs<'a, V, S> {
+/// Pairs of eight receivers, neighbour after neighbour. Roots are begun two neighbours ahead and divisions one:
+/// both take long, and processors look no farther than some sixty operations that wait.
+pub(super) struct Pairs<'a, V, S, D> {
     around: Neighbourhood<'a, S>,
     position: [V; 3],
     h: V,
+    divisor: D,
     done: usize,
-    next: Separation<V>,
+    next: Divided<V>,
+    after: Distance<V>,
 }
 
-impl<'a, V: Lanes, S: PairScale> Iterator for Pairs<'a, V, S> {
+impl<V: Lanes, S: PairScale, D: Divisor<V>> Pairs<'_, V, S, D> {
+    /// Index of the neighbour so many after the next, at most the last.
+    #[inline(always)]
+    fn index(&self, ahead: usize) -> usize {
+        let neighbours = self.around.neighbours;
+        neighbours[(self.done + ahead).min(neighbours.len() - 1)] as usize
+    }
+
+    #[inline(always)]
+    fn apart(&self, index: usize) -> [V; 3] {
+        let source = &self.around.sources.records[index].position;
+        let along = |a: usize| self.position[a].sub(V::splat(source[a]));
+        [along(0), along(1), along(2)]
+    }
+
+    #[inline(always)]
+    fn distance(&self, ahead: usize) -> Distance<V> {
+        let r = self.apart(self.index(ahead));
+        Distance::of(r[2].mul_add(r[2], r[1].mul_add(r[1], r[0].mul(r[0]))))
+    }
+
+    #[inline(always)]
+    fn divide(&self, ahead: usize, far: Distance<V>) -> Divided<V> {
+        let index = self.index(ahead);
+        let Sources { lengths, scale, .. } = self.around.sources;
+        let h = scale.length(self.h, length::<S>(lengths, index));
+        Divided::of(far, self.divisor.of(index, far.square, h))
+    }
+}
+
+impl<'a, V: Lanes, S: PairScale, D: Divisor<V>> Iterator for Pairs<'a, V, S, D> {
     type Item = Pair<'a, V>;
 
     #[inline(always)]
@@ -107,20 +171,25 @@ impl<'a, V: Lanes, S: PairScale> Iterator for Pairs<'a, V, S> {
             lengths,
             scale,
         } = self.around.sources;
-        let neighbours = self.around.neighbours;
-        let count = neighbours.len();
-        if self.done == count {
+        if self.done == self.around.neighbours.len() {
             return None;
         }
-        let (index, separation) = (neighbours[self.done] as usize, self.next);
+        let (index, now) = (self.index(0), self.next);
+        let Distance { square, distance } = now.far;
+        self.next = self.divide(1, self.after);
+        self.after = self.distance(2);
         self.done += 1;
-        let following = neighbours[self.done.min(count - 1)] as usize;
-        self.next = Separation::begin(&self.position, &records[following].position);
         Some(Pair {
             index,
             source: &records[index],
-            separation,
-            kernel: scale.kernel(separation.distance, self.h, length::<S>(lengths, index)),
+            separation: Separation {
+                r: self.apart(index),
+                square,
+                distance,
+                inverse: now.inverse,
+            },
+            kernel: scale.kernel(distance, self.h, length::<S>(lengths, index)),
+            beside: now.beside,
         })
     }
 }
@@ -172,19 +241,46 @@ pub(super) struct Separation<V> {
     pub(super) inverse: V,
 }
 
-impl<V: Lanes> Separation<V> {
+/// How far eight receivers stand from one neighbour.
+#[derive(Clone, Copy)]
+struct Distance<V> {
+    square: V,
+    distance: V,
+}
+
+impl<V: Lanes> Distance<V> {
     #[inline(always)]
-    fn begin(position: &[V; 3], source: &[f64; 3]) -> Self {
-        let along = |a: usize| position[a].sub(V::splat(source[a]));
-        let r = [along(0), along(1), along(2)];
-        let square = r[2].mul_add(r[2], r[1].mul_add(r[1], r[0].mul(r[0])));
+    fn of(square: V) -> Self {
         let square = square.max(V::splat(SMALLEST_SQUARE));
         let distance = square.sqrt();
+        Self { square, distance }
+    }
+}
+
+/// The same, with what is divided by it.
+#[derive(Clone, Copy)]
+struct Divided<V> {
+    far: Distance<V>,
+    inverse: V,
+    beside: V,
+}
+
+impl<V: Lanes> Divided<V> {
+    /// Inverses of a distance and of what is wanted beside it, by one division.
+    #[inline(always)]
+    fn of(far: Distance<V>, divisor: Option<V>) -> Self {
+        let (one, distance) = (V::splat(1.0), far.distance);
+        let (inverse, beside) = match divisor {
+            Some(divisor) => {
+                let both = one.div(distance.mul(divisor));
+                (both.mul(divisor), both.mul(distance))
+            }
+            None => (one.div(distance), one),
+        };
         Self {
-            r,
-            square,
-            distance,
-            inverse: V::splat(1.0).div(distance),
+            far,
+            inverse,
+            beside,
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::numerics::kernel::PairScale;
 use crate::numerics::lane_matrix::{FULL, along, dot, full, store_all};
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
 use crate::numerics::matrix;
-use crate::sph::momentum::{Forces, Momentum, PairStress, Viscous};
+use crate::sph::momentum::{Forces, Momentum, PairStress, SoftSquare, Viscous};
 use crate::sph::neighbourhood::{Neighbourhood, gather, gather_all, records};
 use crate::sph::terms::{ARTIFICIAL_STRESS, SHAPED, TermSums};
 
@@ -67,6 +67,11 @@ impl PairStress for CorrectedRecord {
         self.stress == [0.0; 9] && self.hourglass == [0.0; 3]
     }
 
+    #[inline(always)]
+    fn density(&self) -> f64 {
+        self.density
+    }
+
     /// `V_i ε : P_i Σ V_j (x_j − x_i) ⊗ ∇W_ij`: with all neighbours P M is symmetric.
     #[inline(always)]
     fn couple<V: Lanes, S: PairScale>(around: &Neighbourhood<S>, stresses: &[Self]) -> [F64x8; 3] {
@@ -101,7 +106,6 @@ impl PairStress for CorrectedRecord {
         let zero = V::splat(0.0);
         let (position, velocity) = around.motion::<V>();
         let own = records(sums.stresses, &around.receivers);
-        let stress: [V; 9] = gather_all(&own, |record, c| record.stress[c]);
         let hourglass: [V; 3] = gather_all(&own, |record, a| record.hourglass[a]);
         let motion = records(around.sources.records, &around.receivers);
         let specific_volume = gather::<V, _>(&motion, |record| record.volume / record.mass);
@@ -111,8 +115,14 @@ impl PairStress for CorrectedRecord {
             gather(&own, |record| record.sound_speed),
         );
         let mut terms = TermSums::<V, TERMS>::begin(&sums.terms, &around.receivers);
-        let (mut acceleration, mut power, mut fastest) = ([zero; 3], zero, zero);
-        for pair in around.pairs(&position) {
+        // Σ V_j ∇W_ij, which takes the own stress at the end.
+        let mut slope = [zero; 3];
+        let (mut force, mut power, mut fastest) = ([zero; 3], zero, zero);
+        let divisor = SoftSquare {
+            rho: viscous.rho,
+            stresses: sums.stresses,
+        };
+        for pair in around.pairs_beside(&position, divisor) {
             let (source, separation, kernel) = (pair.source, &pair.separation, &pair.kernel);
             let state = &sums.stresses[pair.index];
             let shown = sums.terms.record::<TERMS>(pair.index);
@@ -125,7 +135,7 @@ impl PairStress for CorrectedRecord {
             }
             let now = viscous.pair(
                 &terms,
-                (separation, kernel.h),
+                (separation, kernel.h, pair.beside),
                 &v,
                 (state.density, state.sound_speed),
                 shown,
@@ -133,51 +143,50 @@ impl PairStress for CorrectedRecord {
             fastest = fastest.min_where_positive(now.mu, kernel.inside);
             let both = viscous.rho.mul(V::splat(state.density));
             let pi = now.pi.mul(both);
-            // Viscosity strains by the plain relative velocity, stress does by L.
-            let lost = zero.sub(pi.mul(now.closing));
-            // Hourglass displacements against each other pull or push along the pair.
-            let pull = dot(&r, &bend)
-                .mul(separation.inverse)
-                .mul(separation.inverse);
-            let mut lost = pull.mul_add(now.closing, lost);
-            let central = pull.sub(pi);
-            let mut push = [central, central, central, zero, zero, zero];
+            // Hourglass displacements against each other pull or push along the pair, as viscosity does.
+            // Both strain by the plain relative velocity, stress does by L.
+            let pull = dot(&r, &bend).mul(separation.inverse);
+            let central = pull.mul_add(separation.inverse, zero.sub(pi));
+            let mut lost = central.mul(now.closing);
+            let weight = separation
+                .inverse
+                .mul(V::splat(source.volume))
+                .mul(kernel.slope);
+            let steep = [r[0].mul(weight), r[1].mul(weight), r[2].mul(weight)];
             if TERMS & SHAPED != 0 {
                 let shape = around.sources.scale.shape(kernel);
                 if TERMS & ARTIFICIAL_STRESS != 0 {
                     let mut extra = [zero; 6];
                     terms.repel(&mut extra, shown, shape);
-                    for c in 0..6 {
-                        extra[c] = extra[c].mul(both);
-                        push[c] = push[c].add(extra[c]);
+                    for part in &mut extra {
+                        *part = part.mul(both);
                     }
                     let t = along(&full(&extra), &r);
-                    lost = t[2].mul_add(v[2], t[1].mul_add(v[1], t[0].mul_add(v[0], lost)));
+                    for a in 0..3 {
+                        force[a] = t[a].mul_add(weight, force[a]);
+                        lost = t[a].mul_add(v[a], lost);
+                    }
                 }
                 let w = around.sources.scale.value(kernel, shape);
                 let w = w.mul(V::splat(source.mass));
                 terms.follow(&v, w.mul(now.inverse_density));
             }
             lost = terms.conduct(lost, shown, || now.heat_speed(separation).mul(both));
-            let weight = separation
-                .inverse
-                .mul(V::splat(source.volume))
-                .mul(kernel.slope);
             power = lost.mul_add(weight, power);
-            let mut total = stress;
-            for c in 0..9 {
-                total[c] = total[c].add(V::splat(state.stress[c]));
-                if c % 4 == 0 || TERMS & ARTIFICIAL_STRESS != 0 {
-                    total[c] = total[c].add(push[FULL[c]]);
+            for a in 0..3 {
+                slope[a] = slope[a].add(steep[a]);
+                for b in 0..3 {
+                    let stress = V::splat(state.stress[3 * a + b]);
+                    let stress = if a == b { stress.add(central) } else { stress };
+                    force[a] = stress.mul_add(steep[b], force[a]);
                 }
             }
-            let traction = along(&total, &r);
-            for a in 0..3 {
-                acceleration[a] = traction[a].mul_add(weight, acceleration[a]);
-            }
         }
+        let stress: [V; 9] = gather_all(&own, |record, c| record.stress[c]);
+        let of_own = along(&stress, &slope);
+        let mut acceleration = force;
         for a in 0..3 {
-            acceleration[a] = acceleration[a].mul(specific_volume);
+            acceleration[a] = force[a].add(of_own[a]).mul(specific_volume);
         }
         Forces {
             acceleration: store_all(&acceleration),

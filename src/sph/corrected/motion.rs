@@ -21,7 +21,7 @@ pub(super) struct PlainSums<V> {
     pub(super) velocity: [V; 3],
     /// `Σ w_ij (x_i − x_j)`.
     pub(super) place: [V; 3],
-    /// `Σ w_ij`.
+    /// `Σ w_ij`, which is `−tr M`.
     pub(super) weight: V,
 }
 
