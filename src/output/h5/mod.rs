@@ -5,6 +5,7 @@ mod content;
 mod gate;
 pub mod read;
 mod transfer;
+mod writeback;
 mod writer;
 
 pub use content::{Array, Content};

@@ -14,6 +14,7 @@ use crate::comm::Comm;
 use crate::output::{Block, OutputError, agree, files, on_root};
 
 use super::transfer::{call, write_rows};
+use super::writeback::Writeback;
 use super::{Element, RowType, access, explain};
 
 /// A new file. Every method is collective and gives all ranks the same verdict; after an error
@@ -23,6 +24,7 @@ pub struct Writer<'a> {
     path: PathBuf,
     /// Present until it is closed.
     file: Option<File>,
+    writeback: Writeback,
 }
 
 impl<'a> Writer<'a> {
@@ -59,6 +61,7 @@ impl<'a> Writer<'a> {
             comm,
             path: path.to_owned(),
             file: Some(file),
+            writeback: Writeback::of(path),
         })
     }
 
@@ -136,7 +139,11 @@ impl<'a> Writer<'a> {
             self.new_dataset(name, row, block.total)
                 .map_err(|e| self.refusal(name, &e)),
         )?;
-        self.attempt(name, || write_rows(&dataset, row, block, bytes))
+        self.attempt(name, || write_rows(&dataset, row, block, bytes))?;
+        if !bytes.is_empty() {
+            self.writeback.begin();
+        }
+        Ok(())
     }
 
     /// Writes a dataset of a few numbers that every rank knows.
