@@ -24,32 +24,37 @@ const BORNE: f64 = 10e9;
 pub fn warnings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
     let mut told = vec![false; case.materials.len()];
     let mut torn = vec![false; case.materials.len()];
-    for shock in approaches.iter().flat_map(|pair| shocks(case, pair)) {
-        let Shock { index, pair, .. } = shock;
+    let meetings = approaches.iter().filter(|pair| pair.time.is_finite());
+    for Shock {
+        pair,
+        closing,
+        velocity,
+    } in meetings.flat_map(|pair| shocks(case, pair))
+    {
         let [body, partner] = pair;
+        let index = body.material;
         let material = &case.materials[index];
-        let ratio = shock.velocity / sound_speed(material);
+        let meeting = format!(
+            "`{}` meets `{}` at {}",
+            body.name,
+            partner.name,
+            shown(closing, "m/s")
+        );
+        let ratio = velocity / sound_speed(material);
         if let Some(what) = beyond(&material.eos, ratio).filter(|_| !told[index]) {
             told[index] = true;
             found.push(format!(
-                "`{}` meets `{}` at {}, which drives `{}` to {ratio:.2} of its sound \
-                 speed: {what}",
-                body.name,
-                partner.name,
-                shown(shock.closing, "m/s"),
+                "{meeting}, which drives `{}` to {ratio:.2} of its sound speed: {what}",
                 material.name
             ));
         }
-        let pressure = impedance(material) * shock.velocity;
+        let pressure = impedance(material) * velocity;
         if case.dimension > 1 && holds_together(material) && pressure > BORNE && !torn[index] {
             torn[index] = true;
             found.push(format!(
-                "`{}` meets `{}` at {}, and `{}` cannot fail: what the release of a shock of {:.0} GPa would \
+                "{meeting}, and `{}` cannot fail: what the release of a shock of {:.0} GPa would \
                  tear hangs together under as much tension; give it `failure`, as \
                  `failure.spall.pressure`",
-                body.name,
-                partner.name,
-                shown(shock.closing, "m/s"),
                 material.name,
                 1e-9 * pressure
             ));
@@ -59,8 +64,6 @@ pub fn warnings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
 
 /// What a meeting does to one of the two bodies.
 struct Shock<'a> {
-    /// Its material.
-    index: usize,
     /// It and the other.
     pair: [&'a Body; 2],
     /// Speed at which they meet (m/s).
@@ -70,23 +73,23 @@ struct Shock<'a> {
 }
 
 /// What a meeting does to those of two bodies that deform.
-fn shocks<'a>(case: &'a Case, pair: &Approach) -> impl Iterator<Item = Shock<'a>> {
-    let bodies = pair.bodies.map(|body| &case.bodies[body]);
-    let (meets, closing) = (pair.time.is_finite(), pair.speed);
-    [[0, 1], [1, 0]].into_iter().filter_map(move |places| {
-        let pair @ [body, partner] = places.map(|place| bodies[place]);
+fn shocks<'a>(case: &'a Case, meeting: &Approach) -> impl Iterator<Item = Shock<'a>> {
+    let [a, b] = meeting.bodies.map(|body| &case.bodies[body]);
+    let closing = meeting.speed;
+    let deforming = [[a, b], [b, a]].into_iter();
+    let deforming = deforming.filter(|[body, _]| body.rigid.is_none());
+    deforming.map(move |pair| {
         let [z, z_other] = pair.map(|body| impedance(&case.materials[body.material]));
-        let share = if partner.rigid.is_some() {
+        let share = if pair[1].rigid.is_some() {
             1.0
         } else {
             z_other / (z + z_other)
         };
-        (meets && body.rigid.is_none()).then_some(Shock {
-            index: body.material,
+        Shock {
             pair,
             closing,
             velocity: closing * share,
-        })
+        }
     })
 }
 
