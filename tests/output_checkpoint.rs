@@ -131,11 +131,11 @@ fn fields_that_the_program_does_not_share_are_told() {
         ("", "porosity", "it has an unknown field porosity"),
     ] {
         let path = write(folder.path(), 3, 1);
-        let file = Writer::create(&comm, &checkpoint::state_file(&path)).unwrap();
+        let mut file = Writer::create(&comm, &checkpoint::state_file(&path)).unwrap();
         file.number("/", "step", &3_u64).unwrap();
         file.number("/", "time", &1e-9).unwrap();
         file.group(checkpoint::FIELDS).unwrap();
-        let add = |name: &str, row: RowType| {
+        let mut add = |name: &str, row: RowType| {
             let path = format!("{}/{name}", checkpoint::FIELDS);
             let bytes = vec![0; 40 * row.bytes()];
             file.rows(&path, row, Block::even(40, 0, 1), &bytes)

@@ -167,7 +167,7 @@ fn measure_cases(args: &BenchArgs, comm: &Comm) -> Result<(), String> {
         }
     }
     if comm.is_root() {
-        report.print_phases();
+        report.print_parts();
     }
     on_root(comm, || report.write(args.json.as_deref())).map_err(|error| error.to_string())
 }

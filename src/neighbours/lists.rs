@@ -175,14 +175,17 @@ impl Lists {
             .sum()
     }
 
-    /// Bytes allocated.
+    /// Bytes allocated for the order of places, records of motion, neighbours of the own group and
+    /// foreign ones.
     #[must_use]
-    pub fn memory(&self) -> usize {
-        self.sequence.memory()
-            + self.motion.capacity() * size_of::<MotionRecord>()
-            + self.clusters.memory()
-            + self.foreign.memory()
-            + 4 * (self.order.capacity() + self.full_order.capacity())
+    pub fn memory_by_part(&self) -> [usize; 4] {
+        let orders = 4 * (self.order.capacity() + self.full_order.capacity());
+        [
+            self.sequence.memory() + orders,
+            self.motion.capacity() * size_of::<MotionRecord>(),
+            self.clusters.memory(),
+            self.foreign.memory(),
+        ]
     }
 
     /// Sorts all particles that are awake and images, and lists the neighbours of each in its own group; if lists are

@@ -101,7 +101,7 @@ fn write_file(
     (columns, cells): (&[Column], &[Cells]),
     words: &[String],
 ) -> Result<(), OutputError> {
-    let file = Writer::create(comm, path)?;
+    let mut file = Writer::create(comm, path)?;
     let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
     file.text("/columns", &names.join("\n"))?;
     file.text("/words", &words.join("\n"))?;

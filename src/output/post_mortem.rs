@@ -29,7 +29,7 @@ pub fn write(
     let text = text(what, case, particles, about);
     write_atomically(&stem.with_extension("txt"), text.as_bytes())?;
     let alone = Comm::solo();
-    let file = Writer::create(&alone, &stem.with_extension("h5"))?;
+    let mut file = Writer::create(&alone, &stem.with_extension("h5"))?;
     file.number("/", "step", &about.step)?;
     file.number("/", "time", &about.time)?;
     file.number("/", "rank", &(about.rank as u64))?;
@@ -37,14 +37,14 @@ pub fn write(
     file.text("/input", &case.resolved)?;
     let (particle, neighbours) = about.members.split_at(1);
     write_fields(
-        &file,
+        &mut file,
         "/particle",
         particles,
         particle,
         FieldInfo::is_of_steps,
     )?;
     write_fields(
-        &file,
+        &mut file,
         "/neighbours",
         particles,
         neighbours,
@@ -63,7 +63,7 @@ pub fn write(
 
 /// Fields of some particles, in a group of their own.
 fn write_fields(
-    file: &Writer,
+    file: &mut Writer,
     group: &str,
     particles: &ParticleStore,
     members: &[u32],

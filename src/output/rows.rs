@@ -20,6 +20,8 @@ use super::{Block, OutputError, agree};
 use groups::Groups;
 use hop::{Hop, Ways};
 
+pub use hop::Gathered;
+
 /// Most rows of a writer, whose places are counted in `u32`.
 const MOST_ROWS: u64 = 1 << 31;
 
@@ -36,6 +38,8 @@ struct ToGroups {
     group: Comm,
     ways: Ways,
     hop: Hop,
+    /// Values on their way through this rank.
+    passing: Vec<u8>,
 }
 
 impl ToGroups {
@@ -50,6 +54,7 @@ impl ToGroups {
                 from: groups.guests(rank).collect(),
             },
             hop: Hop::default(),
+            passing: Vec::new(),
         })
     }
 }
@@ -151,14 +156,15 @@ impl Rows {
         }
     }
 
-    /// One field's rows of this rank's block in id order, `[block.count × size]` bytes, from its
-    /// owned particles' values `[owned × size]`. Collective, after [`Self::plan`].
-    pub fn collect(&mut self, comm: &Comm, values: &[u8], size: usize) -> &mut [u8] {
+    /// One field's rows of this rank's block in id order, from its owned particles' values
+    /// `[owned × size]` bytes. Collective, after [`Self::plan`].
+    pub fn collect<'a>(&'a mut self, comm: &Comm, values: &'a [u8], size: usize) -> Gathered<'a> {
         let exchange = &mut self.exchange;
         match &mut self.to_groups {
             Some(first) => {
                 let passing = first.hop.carry(comm, exchange, values, size);
-                self.to_blocks.carry(&first.group, exchange, passing, size)
+                passing.copy_to(&mut first.passing);
+                (self.to_blocks).carry(&first.group, exchange, &first.passing, size)
             }
             None => self.to_blocks.carry(comm, exchange, values, size),
         }
@@ -186,8 +192,8 @@ mod tests {
         rows.plan(&comm, &ids).unwrap();
         assert_eq!(rows.block(), Block::even(4, 0, 1));
         let values: Vec<[u32; 3]> = (0..4).map(|i| [i, 10 * i, 100 * i]).collect();
-        let bytes = rows.collect(&comm, bytemuck::cast_slice(&values), 12);
-        let sorted: Vec<[u32; 3]> = bytemuck::pod_collect_to_vec(bytes);
+        let bytes = rows.collect(&comm, bytemuck::cast_slice(&values), 12).all();
+        let sorted: Vec<[u32; 3]> = bytemuck::pod_collect_to_vec(&bytes);
         assert_eq!(
             sorted,
             [[2, 20, 200], [3, 30, 300], [0, 0, 0], [1, 10, 100]]
@@ -201,9 +207,10 @@ mod tests {
         rows.plan_of(&comm, &ids, [0, 3]).unwrap();
         assert_eq!(rows.block(), Block::even(2, 0, 1));
         let bytes = rows.collect(&comm, &[10, 11, 12, 13], 1);
-        assert_eq!(bytes, [13, 10]);
+        assert_eq!(bytes.all(), [13, 10]);
         rows.plan_of(&comm, &ids, []).unwrap();
-        assert!(rows.collect(&comm, &[10, 11, 12, 13], 1).is_empty());
+        let none = rows.collect(&comm, &[10, 11, 12, 13], 1);
+        assert_eq!(none.count(), 0);
     }
 
     #[test]

@@ -9,6 +9,7 @@ mod grid;
 mod plan;
 mod values;
 
+use std::ops::Range;
 use std::path::Path;
 
 use crate::comm::Comm;
@@ -94,13 +95,13 @@ fn write_file(
         Some(chosen) => rows.plan_of(comm, ids, chosen)?,
         None => rows.plan(comm, ids)?,
     }
-    let file = Writer::create_aligned(comm, path, rows.sharing().alignment)?;
-    write_grid(comm, &file, particles, meta.time, form, rows)?;
+    let mut file = Writer::create_aligned(comm, path, rows.sharing().alignment)?;
+    write_grid(comm, &mut file, particles, meta.time, form, rows)?;
     for quantity in with_frozen(particles, form.quantities) {
         let what = (quantity, form.precision);
-        write_quantity(comm, &file, particles, meta, what, rows)?;
+        write_quantity(comm, &mut file, particles, meta, what, rows)?;
     }
-    write_meta(comm, &file, meta, form)?;
+    write_meta(comm, &mut file, meta, form)?;
     file.close()
 }
 
@@ -114,7 +115,7 @@ fn with_frozen(particles: &ParticleStore, chosen: &[Quantity]) -> impl Iterator<
 
 fn write_quantity(
     comm: &Comm,
-    file: &Writer,
+    file: &mut Writer,
     particles: &ParticleStore,
     meta: &Meta,
     (quantity, precision): (Quantity, Precision),
@@ -124,15 +125,18 @@ fn write_quantity(
     let path = format!("{GRID}/PointData/{}", quantity.name());
     let mut write = |kind: FieldKind, values: &[u8]| {
         let row = row_type(kind);
-        let bytes = rows.collect(comm, values, row.bytes());
-        if kind == FieldKind::Symmetric {
-            // The store has xy, xz, yz at the end, VTK xy, yz, xz.
-            for tensor in bytes.chunks_exact_mut(48) {
-                let (front, back) = tensor.split_at_mut(40);
-                front[32..].swap_with_slice(back);
+        let gathered = rows.collect(comm, values, row.bytes());
+        let fill = |rows: Range<usize>, bytes: &mut [u8]| {
+            gathered.fill(rows, bytes);
+            if kind == FieldKind::Symmetric {
+                // The store has xy, xz, yz at the end, VTK xy, yz, xz.
+                for tensor in bytes.chunks_exact_mut(48) {
+                    let (front, back) = tensor.split_at_mut(40);
+                    front[32..].swap_with_slice(back);
+                }
             }
-        }
-        write_values(file, &path, (row, precision), block, bytes)
+        };
+        write_values(file, &path, (row, precision), block, &fill)
     };
     match quantity {
         Quantity::Field(field) => write(field.kind, &particles.bytes_or_zeros(field))?,
@@ -185,7 +189,7 @@ fn row_type(kind: FieldKind) -> RowType {
 }
 
 /// What was run, and by how many.
-fn write_meta(comm: &Comm, file: &Writer, meta: &Meta, form: &Form) -> Result<(), OutputError> {
+fn write_meta(comm: &Comm, file: &mut Writer, meta: &Meta, form: &Form) -> Result<(), OutputError> {
     let case = meta.case;
     let names: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();
     let spacings: Vec<f64> = case.bodies.iter().map(|b| b.lattice.spacing).collect();

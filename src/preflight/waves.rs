@@ -1,7 +1,7 @@
 //! What of the matter waves have reached by a time: the rest costs next to nothing, see the theory page "Smoothed
 //! particle hydrodynamics".
 
-use super::approach::{Approach, Ends};
+use super::approach::{Approach, Ends, flies_straight};
 use crate::material::Rest;
 use crate::model::{Body, Case, Heat, SphForm, Vec3};
 use crate::populate;
@@ -80,15 +80,18 @@ impl Waves {
     #[must_use]
     pub fn new(case: &Case, approaches: &[Approach]) -> Option<Self> {
         let still = waiting(case)?;
-        let mut strikes = Vec::new();
+        // When a body meets others that turns or follows a table is not foreseen: at once is on the safe side.
+        let unforeseen = (0..case.bodies.len())
+            .filter(|&body| still[body].is_none() && !flies_straight(case, body));
+        let mut strikes: Vec<_> = unforeseen
+            .filter_map(|body| strike(case, body, 0.0))
+            .collect();
         for pair in approaches {
             let waits = pair.bodies.iter().any(|&body| still[body].is_some());
             if waits && pair.time.is_finite() {
-                strikes.extend(
-                    pair.bodies
-                        .iter()
-                        .filter_map(|&body| strike(case, body, pair.time)),
-                );
+                let moves = |body: &usize| case.bodies[*body].velocity.norm() > 0.0;
+                let moving = pair.bodies.into_iter().filter(moves);
+                strikes.extend(moving.filter_map(|body| strike(case, body, pair.time)));
             }
         }
         Some(Self { still, strikes })
@@ -208,13 +211,13 @@ fn still(case: &Case, body: &Body) -> Option<Still> {
     })
 }
 
-/// A body that moves and touches another at a time (s).
+/// A body that touches another at a time (s).
 fn strike(case: &Case, body: usize, time: f64) -> Option<Strike> {
     let body = &case.bodies[body];
     let (lower, upper) = populate::bounds(body, case.dimension)?;
     let velocity: [f64; 3] = body.velocity.into();
     let then = |place: [f64; 3]| std::array::from_fn(|a| place[a] + velocity[a] * time);
-    (body.velocity.norm() > 0.0).then_some(Strike {
+    Some(Strike {
         time,
         ends: (then(lower), then(upper)),
         velocity,
@@ -264,6 +267,18 @@ mod tests {
         let share = waves.share_of_work(&case, 0.0);
         assert!((0.7..0.85).contains(&share), "{share}");
         assert!((waves.share_of_work(&case, 0.19e-6) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_turns_is_awaited_from_the_start() {
+        let straight = waves(&quarter(&[])).unwrap();
+        let turns = quarter(&[
+            "symmetry=[]",
+            r#"body.sphere.angular_velocity=[0, "1000 rad/s", 0]"#,
+        ]);
+        let share = waves(&turns).unwrap().share_of_work(&turns, 0.0);
+        let known = straight.share_of_work(&quarter(&[]), 0.0);
+        assert!(share >= known && share < known + 0.1, "{share} {known}");
     }
 
     #[test]

@@ -22,22 +22,36 @@ impl Simulation {
     /// Bytes that this rank holds in particle arrays, lists and buffers.
     #[must_use]
     pub fn memory(&self) -> usize {
-        self.particles.memory()
-            + self.frozen.memory()
+        self.memory_by_part().iter().map(|(_, bytes)| bytes).sum()
+    }
+
+    /// The same by what they are for.
+    #[must_use]
+    pub fn memory_by_part(&self) -> [(&'static str, usize); 9] {
+        let [order, motion, neighbours, foreign] = self.lists.memory_by_part();
+        let others = self.frozen.memory()
             + 4 * self.leaving.capacity()
             + self.collector.memory()
-            + self.lists.memory()
-            + self.sph.memory()
-            + self.contact.memory()
-            + self.dormant.memory()
             + self.labels.memory()
             + self.loads.memory()
             + self.sums.memory()
             + self.kept_totals.memory()
             + self.measures.memory()
-            + self.step_control.memory()
-            + self.halo.memory()
-            + self.partition.memory()
+            + self.step_control.memory();
+        [
+            ("particles", self.particles.memory()),
+            ("order", order),
+            ("motion_records", motion),
+            ("neighbours", neighbours),
+            ("foreign_neighbours", foreign),
+            ("stress_records", self.sph.memory()),
+            ("contact", self.contact.memory()),
+            (
+                "halo_and_balance",
+                self.halo.memory() + self.partition.memory(),
+            ),
+            ("others", self.dormant.memory() + others),
+        ]
     }
 
     /// Who owns which place.

@@ -65,7 +65,7 @@ fn measure_all(args: &BenchArgs) -> Result<(), String> {
         report.rows.extend(rows);
         report.print_case(case);
     }
-    report.print_phases();
+    report.print_parts();
     report.print_efficiencies();
     report
         .write(args.json.as_deref())

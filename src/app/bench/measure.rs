@@ -159,11 +159,7 @@ fn row(
     let threads = rayon::current_num_threads();
     let cores = (comm.size() * threads) as f64;
     let known = !comm.any(peak.is_none());
-    let mut sums = [
-        simulation.particles.owned() as u64,
-        simulation.memory() as u64,
-        peak.unwrap_or(0),
-    ];
+    let mut sums = [simulation.particles.owned() as u64, peak.unwrap_or(0)];
     comm.sum_u64(&mut sums);
     let particles = sums[0] as f64;
     let updates = (after.updates - before.updates) as f64;
@@ -180,6 +176,14 @@ fn row(
             )
         })
         .collect();
+    let parts = simulation.memory_by_part();
+    let mut bytes = parts.map(|(_, bytes)| bytes as u64);
+    comm.sum_u64(&mut bytes);
+    let bytes_by_part: BTreeMap<String, f64> = parts
+        .iter()
+        .zip(bytes)
+        .map(|((name, _), bytes)| ((*name).to_owned(), bytes as f64 / particles))
+        .collect();
     let rate = updates * 1e-6 / wall / cores;
     Row {
         case: bench.name.to_owned(),
@@ -192,10 +196,11 @@ fn row(
         million_updates_per_second_per_core: rate,
         repetitions: vec![rate],
         efficiency: None,
-        bytes_per_particle: sums[1] as f64 / particles,
-        peak_bytes_per_particle: known.then_some(sums[2] as f64 / particles),
+        bytes_per_particle: bytes_by_part.values().sum(),
+        peak_bytes_per_particle: known.then_some(sums[1] as f64 / particles),
         messages_per_rank_and_step: each_step(after.messages - before.messages),
         bytes_sent_per_rank_and_step: each_step(after.bytes - before.bytes),
         nanoseconds_by_phase,
+        bytes_by_part,
     }
 }

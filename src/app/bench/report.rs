@@ -1,6 +1,6 @@
 //! The figures: kept, joined, printed and written.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -44,6 +44,8 @@ pub struct Row {
     pub bytes_sent_per_rank_and_step: f64,
     /// Core time by phase over particle updates (ns).
     pub nanoseconds_by_phase: BTreeMap<String, f64>,
+    /// Counted bytes over particles, by what they are for.
+    pub bytes_by_part: BTreeMap<String, f64>,
 }
 
 impl Row {
@@ -176,14 +178,21 @@ impl Report {
         ));
     }
 
-    /// Prints the core time of each phase: a line for each, a column for each configuration.
-    pub fn print_phases(&self) {
+    /// Prints the core time of each phase and the memory of each part: a line for each, a column for
+    /// each configuration.
+    pub fn print_parts(&self) {
         let mut case = "";
         for row in &self.rows {
             if row.case != case {
                 case = &row.case;
                 let rows: Vec<&Row> = self.rows.iter().filter(|row| row.case == case).collect();
-                print_phases(case, &rows);
+                let what = format!("{case}: core time, ns a particle and step");
+                let phases = Phase::ALL.iter().map(|(_, name)| *name);
+                print_parts(&what, &rows, phases, |row| &row.nanoseconds_by_phase);
+                let names = rows.iter().flat_map(|row| row.bytes_by_part.keys());
+                let names: BTreeSet<&str> = names.map(String::as_str).collect();
+                let what = format!("{case}: memory, bytes a particle");
+                print_parts(&what, &rows, names, |row| &row.bytes_by_part);
             }
         }
     }
@@ -224,28 +233,27 @@ impl Report {
     }
 }
 
-fn print_phases(case: &str, rows: &[&Row]) {
-    let line = |name: &str, figures: &mut dyn Iterator<Item = String>| {
+/// Figures of some rows, a line for each name, and their sums.
+fn print_parts<'a>(
+    what: &str,
+    rows: &[&Row],
+    names: impl IntoIterator<Item = &'a str>,
+    parts: fn(&Row) -> &BTreeMap<String, f64>,
+) {
+    let line = |name: &str, figure: &dyn Fn(&Row) -> String| {
         let name = format!("  {:<30}", name.replace('_', " "));
+        let figures = rows.iter().map(|row| figure(row));
         say(&figures.fold(name, |line, figure| format!("{line}{figure:>9}")));
     };
-    say(&format!("\n{case}: core time, ns a particle and step"));
-    line(
-        "ranks x threads",
-        &mut rows.iter().map(|row| row.configuration()),
-    );
-    for (_, name) in Phase::ALL {
-        let figure = |row: &&Row| row.nanoseconds_by_phase.get(*name).copied().unwrap_or(0.0);
+    say(&format!("\n{what}"));
+    line("ranks x threads", &Row::configuration);
+    for name in names {
+        let figure = |row: &Row| parts(row).get(name).copied().unwrap_or(0.0);
         if rows.iter().any(|row| figure(row) >= 0.05) {
-            line(
-                name,
-                &mut rows.iter().map(|row| format!("{:.1}", figure(row))),
-            );
+            line(name, &|row| format!("{:.1}", figure(row)));
         }
     }
-    let sum = |row: &&Row| row.nanoseconds_by_phase.values().sum::<f64>();
-    line(
-        "all",
-        &mut rows.iter().map(|row| format!("{:.1}", sum(row))),
-    );
+    line("all", &|row| {
+        format!("{:.1}", parts(row).values().sum::<f64>())
+    });
 }

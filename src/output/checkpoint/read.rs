@@ -72,19 +72,19 @@ fn verify(comm: &Comm, state: &Path, manifest: &Manifest) -> Result<(), OutputEr
         let what = format!("it has {size} bytes instead of {}; {OLDER}", manifest.size);
         return Err(OutputError::damaged(state, what));
     }
-    if manifest.block != digest::BLOCK {
+    if !digest::is_block(manifest.block) {
         let what = format!("{MANIFEST} has blocks of {} bytes; {OLDER}", manifest.block);
         return Err(OutputError::damaged(state, what));
     }
-    let digests = digest::of_file(comm, state, size)?;
+    let digests = digest::of_file(comm, state, size, manifest.block)?;
     if digests == manifest.sha256 {
         return Ok(());
     }
     let pairs = digests.iter().zip(&manifest.sha256);
     let block = pairs.take_while(|(found, known)| found == known).count() as u64;
     let (first, last) = (
-        block * digest::BLOCK,
-        ((block + 1) * digest::BLOCK).min(size),
+        block * manifest.block,
+        ((block + 1) * manifest.block).min(size),
     );
     let what = format!("bytes {first} to {last} do not match their digest; {OLDER}");
     Err(OutputError::damaged(state, what))

@@ -62,7 +62,7 @@ fn write_parts(
 ) -> Result<(), OutputError> {
     let state = state_file(folder);
     rows.plan(comm, &particles.id[..particles.owned()])?;
-    let file = Writer::create_aligned(comm, &state, rows.sharing().alignment)?;
+    let mut file = Writer::create_aligned(comm, &state, rows.sharing().alignment)?;
     file.number("/", "format", &FORMAT)?;
     file.number("/", "step", &meta.step)?;
     file.number("/", "time", &meta.time)?;
@@ -73,18 +73,19 @@ fn write_parts(
         let row = row_type(field.kind);
         let path = format!("{FIELDS}/{}", field.name);
         let block = rows.block();
-        let bytes = rows.collect(
+        let gathered = rows.collect(
             comm,
             &particles.bytes(field.id)[..row.bytes() * particles.owned()],
             row.bytes(),
         );
-        file.rows(&path, row, block, bytes)?;
+        file.rows_of(&path, row, block, &|rows, bytes| gathered.fill(rows, bytes))?;
         file.note(&path, "unit", field.unit)?;
         file.note(&path, "description", field.description)?;
     }
     file.close()?;
 
     let size = size_of(comm, &state)?;
+    let block = digest::block_of(size);
     let manifest = Manifest {
         format: FORMAT,
         version: VERSION.to_owned(),
@@ -94,8 +95,8 @@ fn write_parts(
         particles: rows.block().total,
         ranks: comm.size(),
         size,
-        block: digest::BLOCK,
-        sha256: digest::of_file(comm, &state, size)?,
+        block,
+        sha256: digest::of_file(comm, &state, size, block)?,
     };
     on_root(comm, || write_json(&folder.join(MANIFEST), &manifest))
 }

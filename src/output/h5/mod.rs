@@ -2,14 +2,18 @@
 
 pub mod arrays;
 mod content;
+mod direct;
 mod gate;
+mod pieces;
 pub mod read;
 mod transfer;
 mod writeback;
 mod writer;
 
 pub use content::{Array, Content};
-pub use writer::{Writer, abandoned};
+pub use direct::open_for_reading;
+pub use pieces::{PIECE, Piece};
+pub use writer::{Fill, Writer, abandoned};
 
 use hdf5::Datatype;
 use hdf5::file::FileBuilder;

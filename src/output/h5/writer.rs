@@ -1,21 +1,27 @@
 //! A file that all ranks write together.
 
 use std::io::Write as _;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use hdf5::plist::dataset_create::FillTime;
+use hdf5::plist::dataset_create::{AllocTime, FillTime};
 use hdf5::types::{FixedAscii, TypeDescriptor};
 use hdf5::{Dataset, File, H5Type, Location};
 use hdf5_sys::h5a::H5Awrite;
 use hdf5_sys::h5f::{H5F_scope_t, H5Fflush};
 
-use crate::comm::Comm;
+use crate::comm::{Comm, pieces};
 use crate::output::{Block, OutputError, agree, files, on_root};
 
+use super::direct::Direct;
+use super::pieces::{PIECE, Piece};
 use super::transfer::{call, write_rows};
 use super::writeback::Writeback;
 use super::{Element, RowType, access, explain};
+
+/// Makes some rows of a block: which of them, and room for as many.
+pub type Fill<'a> = dyn Fn(Range<usize>, &mut [u8]) + 'a;
 
 /// A new file. Every method is collective and gives all ranks the same verdict; after an error
 /// the file is of no use and must be dropped.
@@ -24,6 +30,8 @@ pub struct Writer<'a> {
     path: PathBuf,
     /// Present until it is closed.
     file: Option<File>,
+    /// Takes long rows, where the file system knows how.
+    direct: Option<Direct>,
     writeback: Writeback,
 }
 
@@ -61,6 +69,7 @@ impl<'a> Writer<'a> {
             comm,
             path: path.to_owned(),
             file: Some(file),
+            direct: Direct::of(path),
             writeback: Writeback::of(path),
         })
     }
@@ -126,24 +135,75 @@ impl<'a> Writer<'a> {
     /// Writes a dataset: `block.total` rows, of which this rank gives its block.
     ///
     /// # Errors
-    /// [`OutputError::Hdf5`].
+    /// [`OutputError::Hdf5`] or [`OutputError::Io`].
     pub fn rows(
-        &self,
+        &mut self,
         name: &str,
         row: RowType,
         block: Block,
         bytes: &[u8],
     ) -> Result<(), OutputError> {
-        let dataset = agree(
-            self.comm,
-            self.new_dataset(name, row, block.total)
-                .map_err(|e| self.refusal(name, &e)),
-        )?;
-        self.attempt(name, || write_rows(&dataset, row, block, bytes))?;
+        let dataset = self.agreed_dataset(name, row, block.total)?;
+        let place = self.direct_place(&dataset, row, block);
+        let written = self.write(name, (&dataset, row, place), block, bytes);
+        agree(self.comm, written)
+    }
+
+    /// As [`Self::rows`], of rows that are made when they are wanted: `fill` is given which of the
+    /// block, and room for them.
+    ///
+    /// # Errors
+    /// [`OutputError::Hdf5`] or [`OutputError::Io`].
+    pub fn rows_of(
+        &mut self,
+        name: &str,
+        row: RowType,
+        block: Block,
+        fill: &Fill,
+    ) -> Result<(), OutputError> {
+        let dataset = self.agreed_dataset(name, row, block.total)?;
+        let place = self.direct_place(&dataset, row, block);
+        let mut piece = Piece::take();
+        let mut parts = pieces(block.count, PIECE / row.bytes());
+        let written = parts.try_for_each(|rows| {
+            let bytes = &mut piece.bytes()[..rows.len() * row.bytes()];
+            fill(rows.clone(), bytes);
+            let part = Block {
+                first: block.first + rows.start as u64,
+                count: rows.len(),
+                ..block
+            };
+            let place = place.map(|place| place + (rows.start * row.bytes()) as u64);
+            self.write(name, (&dataset, row, place), part, bytes)
+        });
+        piece.keep();
+        agree(self.comm, written)
+    }
+
+    /// Where in the file this rank's rows of a dataset stand, if they go there past the cache.
+    fn direct_place(&self, dataset: &Dataset, row: RowType, block: Block) -> Option<u64> {
+        let takes = self.direct.is_some() && Direct::takes(block.count * row.bytes());
+        let begin = takes.then(|| dataset.offset())??;
+        Some(begin + block.first * row.bytes() as u64)
+    }
+
+    /// Writes some of this rank's rows of a dataset, to a place in the file or as HDF5 does.
+    fn write(
+        &mut self,
+        name: &str,
+        (dataset, row, place): (&Dataset, RowType, Option<u64>),
+        block: Block,
+        bytes: &[u8],
+    ) -> Result<(), OutputError> {
+        if let (Some(direct), Some(place)) = (&mut self.direct, place) {
+            let written = direct.write(place, bytes);
+            return written.map_err(OutputError::io("write", &self.path));
+        }
+        let written = write_rows(dataset, row, block, bytes);
         if !bytes.is_empty() {
             self.writeback.begin();
         }
-        Ok(())
+        written.map_err(|e| self.refusal(name, &e))
     }
 
     /// Writes a dataset of a few numbers that every rank knows.
@@ -151,7 +211,7 @@ impl<'a> Writer<'a> {
     /// # Errors
     /// [`OutputError::Hdf5`].
     pub fn numbers<T: bytemuck::Pod>(
-        &self,
+        &mut self,
         name: &str,
         element: Element,
         values: &[T],
@@ -165,7 +225,7 @@ impl<'a> Writer<'a> {
     ///
     /// # Errors
     /// [`OutputError::Hdf5`].
-    pub fn text(&self, name: &str, text: &str) -> Result<(), OutputError> {
+    pub fn text(&mut self, name: &str, text: &str) -> Result<(), OutputError> {
         let bytes = padded(text);
         let row = RowType::single(Element::Text(bytes.len()));
         let block = Block::on_root(1, self.comm);
@@ -177,6 +237,14 @@ impl<'a> Writer<'a> {
     /// # Errors
     /// [`OutputError::Hdf5`] or [`OutputError::Io`].
     pub fn close(mut self) -> Result<(), OutputError> {
+        let rest = self
+            .direct
+            .take()
+            .map_or(Ok(()), |mut direct| direct.finish());
+        agree(
+            self.comm,
+            rest.map_err(OutputError::io("write", &self.path)),
+        )?;
         on_root(self.comm, || files::remove(&room(&self.path)))?;
         self.attempt("the records of", || {
             let file = self.file()?;
@@ -197,11 +265,17 @@ impl<'a> Writer<'a> {
             .ok_or_else(|| "the file is closed".into())
     }
 
+    fn agreed_dataset(&self, name: &str, row: RowType, rows: u64) -> Result<Dataset, OutputError> {
+        let made = self.new_dataset(name, row, rows);
+        agree(self.comm, made.map_err(|e| self.refusal(name, &e)))
+    }
+
     fn new_dataset(&self, name: &str, row: RowType, rows: u64) -> hdf5::Result<Dataset> {
         self.file()?
             .new_dataset_builder()
             .empty_as(&row.element.datatype()?)
             .shape(row.shape(rows))
+            .alloc_time(Some(AllocTime::Early))
             .fill_time(FillTime::Never)
             .obj_track_times(false)
             .create(name)
@@ -249,6 +323,7 @@ impl Drop for Writer<'_> {
     /// [`abandoned`].
     fn drop(&mut self) {
         let Some(file) = self.file.take() else { return };
+        self.direct = None;
         if self.comm.is_root() {
             let _ = files::remove(&room(&self.path));
             if let Ok(raw) = std::fs::File::options().write(true).open(&self.path) {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::comm::{Comm, Exchange};
+use crate::comm::{self, Comm, Exchange};
 use crate::particles::GRAIN;
 
 /// Who sends to whom, itself included.
@@ -50,7 +50,17 @@ pub struct Hop {
     arrivals: Vec<u32>,
     /// Ids of the part, ascending.
     ids: Vec<u64>,
-    bytes: Vec<u8>,
+}
+
+/// Values of a part in the order of ids, of which any can be had when they are wanted.
+pub struct Gathered<'a> {
+    hop: &'a Hop,
+    /// What has arrived.
+    messages: &'a [comm::Peer],
+    /// Of this rank's rows.
+    values: &'a [u8],
+    /// Bytes of a row.
+    size: usize,
 }
 
 impl Hop {
@@ -77,8 +87,10 @@ impl Hop {
         self.arrivals.clear();
         self.arrivals
             .extend(0..u32::try_from(arriving).expect("a part fits u32"));
-        self.carry(comm, exchange, bytemuck::cast_slice(ids), 8);
-        let arrived: Vec<u64> = bytemuck::pod_collect_to_vec(&self.bytes);
+        let values = bytemuck::cast_slice(ids);
+        let mut arrived = vec![0_u64; arriving];
+        self.carry(comm, exchange, values, 8)
+            .fill(0..arriving, bytemuck::cast_slice_mut(&mut arrived));
         self.arrivals
             .par_sort_unstable_by_key(|&k| arrived[k as usize]);
         self.ids.clear();
@@ -133,36 +145,67 @@ impl Hop {
         }
     }
 
-    /// The values of this rank's part in the order of ids, `[part × size]` bytes, from those of its
-    /// rows, `[rows × size]`. Collective, after [`Self::plan`].
-    pub fn carry(
-        &mut self,
+    /// The values of this rank's part in the order of ids, from those of its rows, `[rows × size]`.
+    /// Collective, after [`Self::plan`].
+    pub fn carry<'a>(
+        &'a self,
         comm: &Comm,
-        exchange: &mut Exchange,
-        values: &[u8],
+        exchange: &'a mut Exchange,
+        values: &'a [u8],
         size: usize,
-    ) -> &mut [u8] {
-        let row = |i: u32| row_of(values, i as usize, size);
+    ) -> Gathered<'a> {
         exchange.set_peers(self.peers.iter().map(|p| p.rank));
         for (k, peer) in self.peers.iter().enumerate() {
             exchange.expect(k, peer.receive.len() * size);
             let order = &self.order[peer.send.clone()];
-            gather(exchange.outgoing(k), (order, size), row);
+            let bytes = exchange.outgoing(k);
+            bytes.resize(order.len() * size, 0);
+            gather(bytes, (order, size), |i| row_of(values, i as usize, size));
         }
         exchange.post(comm);
         exchange.wait();
-        let own = &self.order[self.own.clone()];
-        let (peers, incoming) = (&self.peers, exchange.incoming_all());
+        Gathered {
+            hop: self,
+            messages: exchange.incoming_all(),
+            values,
+            size,
+        }
+    }
+}
+
+impl Gathered<'_> {
+    /// Rows of the part.
+    pub fn count(&self) -> usize {
+        self.hop.arrivals.len()
+    }
+
+    /// Some rows, `[rows × size]` bytes.
+    pub fn fill(&self, rows: Range<usize>, bytes: &mut [u8]) {
+        let (hop, size) = (self.hop, self.size);
+        let own = &hop.order[hop.own.clone()];
         let arrived = |k: u32| {
             if let Some(&i) = own.get(k as usize) {
-                return row(i);
+                return row_of(self.values, i as usize, size);
             }
-            let peer = peers.partition_point(|peer| peer.receive.end <= k as usize);
-            let place = k as usize - peers[peer].receive.start;
-            row_of(incoming[peer].incoming(), place, size)
+            let from = |peer: &Peer| peer.receive.end <= k as usize;
+            let peer = hop.peers.partition_point(from);
+            let place = k as usize - hop.peers[peer].receive.start;
+            row_of(self.messages[peer].incoming(), place, size)
         };
-        gather(&mut self.bytes, (&self.arrivals, size), arrived);
-        &mut self.bytes
+        gather(bytes, (&hop.arrivals[rows], size), arrived);
+    }
+
+    /// Puts all rows in the place of what a buffer holds.
+    pub fn copy_to(&self, bytes: &mut Vec<u8>) {
+        bytes.resize(self.count() * self.size, 0);
+        self.fill(0..self.count(), bytes);
+    }
+
+    /// All rows.
+    pub fn all(&self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        self.copy_to(&mut bytes);
+        bytes
     }
 }
 
@@ -173,11 +216,10 @@ fn row_of(rows: &[u8], k: usize, size: usize) -> &[u8] {
 
 /// Has `bytes` be the rows of an order, of so many bytes each.
 fn gather<'a>(
-    bytes: &mut Vec<u8>,
+    bytes: &mut [u8],
     (order, size): (&[u32], usize),
     row: impl Fn(u32) -> &'a [u8] + Sync,
 ) {
-    bytes.resize(order.len() * size, 0);
     let pieces = bytes.par_chunks_mut(GRAIN * size);
     let pieces = pieces.zip(order.par_chunks(GRAIN));
     pieces.for_each(|(bytes, order)| {

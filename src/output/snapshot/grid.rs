@@ -1,5 +1,7 @@
 //! The grid of a snapshot as VTK wants it: points, and a cell for each, in partitions.
 
+use std::ops::Range;
+
 use super::form::Form;
 use super::values::write_values;
 use crate::comm::Comm;
@@ -20,7 +22,7 @@ pub(super) const BYTES_OF_CELL: usize = 8 + 8 + 1;
 /// Points, their cells, and the time (s).
 pub(super) fn write_grid(
     comm: &Comm,
-    file: &Writer,
+    file: &mut Writer,
     particles: &ParticleStore,
     time: f64,
     form: &Form,
@@ -46,7 +48,7 @@ pub(super) fn write_grid(
 
 fn write_points(
     comm: &Comm,
-    file: &Writer,
+    file: &mut Writer,
     particles: &ParticleStore,
     precision: Precision,
     rows: &mut Rows,
@@ -57,35 +59,34 @@ fn write_points(
     };
     let (path, block) = (format!("{GRID}/Points"), rows.block());
     let points = rows.collect(comm, particles.bytes(FieldId::position), vector.bytes());
-    write_values(file, &path, (vector, precision), block, points)?;
+    let fill = |rows: Range<usize>, bytes: &mut [u8]| points.fill(rows, bytes);
+    write_values(file, &path, (vector, precision), block, &fill)?;
     file.note(&path, "unit", "m")
 }
 
 /// A vertex for each point. Numbers of points and offsets count in each partition anew.
 fn write_cells(
     comm: &Comm,
-    file: &Writer,
+    file: &mut Writer,
     partitions: Partitions,
     rows: &Rows,
 ) -> Result<(), OutputError> {
     let block = rows.block();
-    let write = |name: &str, block: Block, value: &dyn Fn(u64) -> u64| {
-        let own = (block.first..).take(block.count);
-        let numbers: Vec<i64> = own.map(|k| signed(value(k))).collect();
+    let mut write = |name: &str, block: Block, value: &dyn Fn(u64) -> u64| {
         let path = format!("{GRID}/{name}");
         let integer = RowType::single(Element::I64);
-        file.rows(&path, integer, block, bytemuck::cast_slice(&numbers))
+        file.rows_of(&path, integer, block, &|rows, bytes| {
+            let numbers = (block.first + rows.start as u64..).map(|k| signed(value(k)));
+            for (place, number) in bytes.chunks_exact_mut(8).zip(numbers) {
+                place.copy_from_slice(&number.to_ne_bytes());
+            }
+        })
     };
     write("Connectivity", block, &|row| partitions.place(row))?;
     let longer = partitions.offsets(block, block.closes(comm.is_root()));
     write("Offsets", longer, &|entry| partitions.offset(entry))?;
-    let types = vec![VERTEX; block.count];
-    file.rows(
-        &format!("{GRID}/Types"),
-        RowType::single(Element::U8),
-        block,
-        &types,
-    )
+    let (path, byte) = (format!("{GRID}/Types"), RowType::single(Element::U8));
+    file.rows_of(&path, byte, block, &|_, bytes| bytes.fill(VERTEX))
 }
 
 /// VTK counts in signed numbers.

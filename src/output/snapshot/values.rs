@@ -1,32 +1,42 @@
 //! Numbers of a snapshot, with as many digits as it asks for.
 
+use crate::comm::pieces;
 use crate::model::Precision;
-use crate::output::h5::{Element, RowType, Writer};
+use crate::output::h5::{Element, Fill, PIECE, Piece, RowType, Writer};
 use crate::output::{Block, OutputError};
 
 /// Writes rows of numbers as they are, or those that are no whole numbers with 32 bits each.
 pub(super) fn write_values(
-    file: &Writer,
+    file: &mut Writer,
     path: &str,
     (row, precision): (RowType, Precision),
     block: Block,
-    bytes: &[u8],
+    fill: &Fill,
 ) -> Result<(), OutputError> {
     if precision == Precision::Double || row.element != Element::F64 {
-        return file.rows(path, row, block, bytes);
+        return file.rows_of(path, row, block, fill);
     }
     let short = RowType {
         element: Element::F32,
         components: row.components,
     };
-    file.rows(path, short, block, bytemuck::cast_slice(&shortened(bytes)))
+    file.rows_of(path, short, block, &|rows, bytes| {
+        let mut piece = Piece::take();
+        for part in pieces(rows.len(), PIECE / row.bytes()) {
+            let wide = &mut piece.bytes()[..part.len() * row.bytes()];
+            fill(rows.start + part.start..rows.start + part.end, wide);
+            let place = part.start * short.bytes()..part.end * short.bytes();
+            shorten(wide, &mut bytes[place]);
+        }
+        piece.keep();
+    })
 }
 
 /// Values of 64 bits with 32: the nearest, infinite beyond the range of these. What is no number
 /// has the same bits on any machine.
-fn shortened(bytes: &[u8]) -> Vec<f32> {
+fn shorten(bytes: &[u8], short: &mut [u8]) {
     #[allow(clippy::cast_possible_truncation, reason = "digits are to go")]
-    let short = |value: f64| {
+    let shortened = |value: f64| {
         if value.is_nan() {
             f32::NAN
         } else {
@@ -34,9 +44,10 @@ fn shortened(bytes: &[u8]) -> Vec<f32> {
         }
     };
     let values = bytes.chunks_exact(size_of::<f64>());
-    values
-        .map(|value| short(bytemuck::pod_read_unaligned(value)))
-        .collect()
+    for (place, value) in short.chunks_exact_mut(size_of::<f32>()).zip(values) {
+        let value = shortened(bytemuck::pod_read_unaligned(value));
+        place.copy_from_slice(&value.to_ne_bytes());
+    }
 }
 
 #[cfg(test)]
@@ -46,8 +57,12 @@ mod tests {
     #[test]
     fn values_are_rounded_to_the_nearest() {
         let values = [0.1, -1e300, f64::from_bits(0x7ff0_0000_dead_beef), -0.0];
-        let short = shortened(bytemuck::cast_slice(&values));
-        let bits: Vec<u32> = short.iter().map(|value| value.to_bits()).collect();
+        let mut short = [0_f32; 4];
+        shorten(
+            bytemuck::cast_slice(&values),
+            bytemuck::cast_slice_mut(&mut short),
+        );
+        let bits = short.map(f32::to_bits);
         let expected = [0.1_f32, f32::NEG_INFINITY, f32::NAN, -0.0].map(f32::to_bits);
         assert_eq!(bits, expected);
     }
