@@ -3,6 +3,7 @@
 use super::pair::Pair;
 use super::view::{Party, Separation};
 use crate::numerics::virial::Virial;
+use crate::particles::empty;
 
 /// What contact of one mode does to one particle.
 #[derive(Debug, Clone, Copy)]
@@ -98,8 +99,8 @@ pub(super) struct Receiver<'a> {
 impl TaskForces {
     /// Forgets everything but the buffers.
     pub fn clear(&mut self) {
-        self.particles.clear();
-        self.by_body.clear();
+        empty(&mut self.particles);
+        empty(&mut self.by_body);
     }
 
     pub(super) fn memory(&self) -> usize {

@@ -10,7 +10,7 @@ use super::resistance::{NormalLoad, PairFriction};
 use super::view::{ContactView, Party, Separation};
 use crate::model::{ContactClass, contact_modes};
 use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Lists, PairList};
-use crate::particles::{GRAIN, ParticleStore};
+use crate::particles::{GRAIN, ParticleStore, empty};
 
 /// A mode of contact, in a file of its own and listed in `contact_modes!`.
 pub(crate) trait Mode: Listed + Sized {
@@ -224,7 +224,7 @@ pub(super) fn for_each_chunk<T: Send>(
         .zip(lists.chunks())
         .with_max_len(CHUNKS_AT_ONCE)
         .for_each(|((found, foreign), own)| {
-            found.clear();
+            empty(found);
             measure(found, foreign.of(class), own);
         });
 }

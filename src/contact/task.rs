@@ -6,6 +6,7 @@ use super::mode::normal_load;
 use super::view::ContactView;
 use crate::model::ContactClass;
 use crate::neighbours::{Chunk, ForeignChunk};
+use crate::particles::empty;
 
 /// Results of a task before they go into the store, kept from step to step.
 #[derive(Default)]
@@ -22,7 +23,7 @@ impl Task {
 
     /// Friction and damping of one chunk's receivers, which stand in the same order in all lists.
     pub fn resist(&mut self, view: &ContactView, foreign: &ForeignChunk, own: &Chunk) {
-        self.friction.clear();
+        empty(&mut self.friction);
         let mut lists = foreign
             .lists()
             .each_ref()

@@ -1,6 +1,8 @@
 //! Lists of neighbours that belong to other bodies, for single receivers: contact works on
 //! these, apart from the sums inside a body.
 
+use std::cell::RefCell;
+
 use rayon::prelude::*;
 
 use super::cluster::Cluster;
@@ -35,8 +37,11 @@ pub struct ForeignTable {
 #[derive(Debug, Clone, Default)]
 pub struct ForeignChunk {
     lists: [PairList; ContactClass::COUNT],
-    candidates: Candidates,
-    strangers: Candidates,
+}
+
+thread_local! {
+    /// What a thread works with, for one chunk after the other: what is near and what are strangers.
+    static CANDIDATES: RefCell<[Candidates; 2]> = RefCell::default();
 }
 
 /// What may be in range of a receiver, eight images at a time.
@@ -97,14 +102,8 @@ impl ForeignLists {
     /// Bytes allocated.
     #[must_use]
     pub fn memory(&self) -> usize {
-        self.chunks
-            .iter()
-            .map(|chunk| {
-                chunk.candidates.memory()
-                    + chunk.strangers.memory()
-                    + chunk.lists.iter().map(PairList::memory).sum::<usize>()
-            })
-            .sum()
+        let lists = self.chunks.iter().flat_map(|chunk| &chunk.lists);
+        lists.map(PairList::memory).sum()
     }
 }
 
@@ -127,10 +126,7 @@ impl<B: Fn(u32) -> usize> Vectorised for Find<'_, B> {
         chunk.lists.iter_mut().for_each(PairList::clear);
         let mut hints = [0; 64];
         let mut strangers = self.own.strangers().iter().peekable();
-        let (mut near, mut apart) = (
-            std::mem::take(&mut chunk.candidates),
-            std::mem::take(&mut chunk.strangers),
-        );
+        let [mut near, mut apart] = CANDIDATES.take();
         for (cluster, _, among) in self.own.iter() {
             if among.resting {
                 continue;
@@ -154,7 +150,7 @@ impl<B: Fn(u32) -> usize> Vectorised for Find<'_, B> {
                 chunk.close(receiver);
             }
         }
-        (chunk.candidates, chunk.strangers) = (near, apart);
+        CANDIDATES.set([near, apart]);
     }
 }
 
@@ -260,13 +256,6 @@ impl Candidates {
             }
             reach2
         }));
-    }
-
-    fn memory(&self) -> usize {
-        4 * self.indices.capacity()
-            + 8 * self.kinds.capacity()
-            + size_of::<[F64x8; 3]>() * self.positions.capacity()
-            + size_of::<F64x8>() * self.reach2.capacity()
     }
 }
 

@@ -1,5 +1,7 @@
 //! Lists of neighbours for single receivers.
 
+use crate::particles::empty;
+
 /// Receivers with their foreign neighbours.
 #[derive(Debug, Clone, Default)]
 pub struct PairList {
@@ -26,8 +28,8 @@ impl PairList {
     }
 
     pub(super) fn clear(&mut self) {
-        self.receivers.clear();
-        self.sources.clear();
+        empty(&mut self.receivers);
+        empty(&mut self.sources);
     }
 
     /// Adds a receiver, if it has neighbours.

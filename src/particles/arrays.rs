@@ -103,3 +103,12 @@ pub fn resize<T: bytemuck::Zeroable + Copy + Send + Sync>(values: &mut Vec<T>, l
     }
     values.resize(length, T::zeroed());
 }
+
+/// Empties a buffer, and gives room back that is far more than what it held took: other matter comes to
+/// a chunk from step to step, and with it the most that any has.
+pub fn empty<T>(values: &mut Vec<T>) {
+    if values.capacity() > 4 * values.len() + 16 {
+        values.shrink_to(2 * values.len());
+    }
+    values.clear();
+}

@@ -15,7 +15,7 @@ mod scatter;
 mod select;
 mod store;
 
-pub use arrays::{SCRATCH_WORDS, resize};
+pub use arrays::{SCRATCH_WORDS, empty, resize};
 pub use asleep::{Asleep, PART};
 pub use columns::{FieldKind, HaloPhase, Life, Mirror, Output, Owner};
 pub use fields::{FIELDS, FieldId, FieldInfo, ParticleStore};

@@ -8,7 +8,7 @@ use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Cluster, Lists};
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::Lanes;
-use crate::particles::{Image, ParticleStore, Scatter};
+use crate::particles::{Image, ParticleStore, Scatter, empty};
 use crate::sph::momentum::{Forces, Momentum, PairStress, Viscosity};
 use crate::sph::neighbourhood::Sources;
 use crate::sph::normalised::{NormalisedRecord, stress_power};
@@ -49,7 +49,7 @@ pub(super) fn accelerate<R: PairStress>(
     .with_max_len(CHUNKS_AT_ONCE)
     .for_each(|(chunk, from_mirrors)| {
         if side == Side::Inner {
-            from_mirrors.forces.clear();
+            empty(&mut from_mirrors.forces);
         }
         with_terms!(set, TERMS => instructions.run(MomentumChunk::<_, R, TERMS> {
             chunk, side, motion: sources(lists, scale), sources: shown, target, from_mirrors,

@@ -13,7 +13,7 @@ use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Cluster, Lists};
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::Lanes;
-use crate::particles::{GRAIN, Image, ParticleStore, Scatter, resize};
+use crate::particles::{GRAIN, Image, ParticleStore, Scatter, empty, resize};
 use crate::sph::neighbourhood::Sources;
 use crate::sph::signal::{SignalSpeed, Signals};
 use crate::sph::step::{Side, Step};
@@ -75,7 +75,7 @@ impl Formulation for StressPoints {
         .with_max_len(CHUNKS_AT_ONCE)
         .for_each(|(chunk, from_mirrors)| {
             if side == Side::Inner {
-                from_mirrors.forces.clear();
+                empty(&mut from_mirrors.forces);
             }
             let (motion, sources) = (sources(lists, scale), shown);
             set.run(PullChunk { chunk, side, body_groups, motion, sources, target, from_mirrors });
