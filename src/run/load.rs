@@ -1,6 +1,9 @@
 //! How the work of a run is spread over its ranks.
 
+use rayon::prelude::*;
+
 use crate::comm::Comm;
+use crate::particles::GRAIN;
 use crate::step::Simulation;
 
 /// How evenly the ranks are loaded, and what they have sent.
@@ -70,10 +73,10 @@ impl Load {
 /// The load of all ranks. Collective.
 pub fn load(comm: &Comm, simulation: &Simulation) -> Load {
     let particles = simulation.particles.owned() as u64;
-    let work: u64 = simulation.particles.work[..simulation.particles.owned()]
-        .iter()
-        .map(|&work| u64::from(work))
-        .sum();
+    let work = &simulation.particles.work[..simulation.particles.owned()];
+    let work = work.par_iter().with_min_len(GRAIN);
+    // Whole numbers: the same bits in any order.
+    let work: u64 = work.map(|&work| u64::from(work)).sum();
     let (messages, bytes) = simulation.traffic();
     let empty = u64::from(particles == 0);
     let groups = comm.size().min(GROUPS);
