@@ -141,6 +141,17 @@ impl Lists {
         self.ends.push((self.neighbours.len() as u32, among));
     }
 
+    /// Gives room back that the lists do not take: other matter comes to a chunk from step to step, and with
+    /// it the longest lists of all. Those of what rests come and go, and keep it.
+    pub(super) fn fit(&mut self) {
+        let used = self.ends.last().map_or(0, |(end, _)| *end as usize);
+        let rests = || self.ends.iter().any(|(_, among)| among.resting);
+        if self.neighbours.len() > used + used / 4 + (1 << 10) && !rests() {
+            self.neighbours.truncate(used + used / 16 + LANES);
+            self.neighbours.shrink_to_fit();
+        }
+    }
+
     pub(super) fn memory(&self) -> usize {
         size_of::<Cluster>() * self.clusters.capacity()
             + size_of::<(u32, Among)>() * self.ends.capacity()

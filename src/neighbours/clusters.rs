@@ -8,7 +8,7 @@ use super::cluster::{Among, Cluster, Lists};
 use super::facts::{HALO, MIRROR, MOVING};
 use super::fragments::{Membership, Split};
 use super::gather::Gatherer;
-use super::near::{INFLATION, fit, near_box, push_places};
+use super::near::{INFLATION, near_box, push_places};
 use super::pairs::PairList;
 use super::sequence::Sequence;
 use super::watch::Watch;
@@ -134,11 +134,6 @@ impl Vectorised for Build<'_> {
                 #[allow(clippy::cast_possible_truncation, reason = "a chunk's lists fit u32")]
                 ends.push((lister.used as u32, among));
             }
-        }
-        let used = lister.used;
-        // The lists of what rests come and go.
-        if !ends.iter().any(|(_, among)| among.resting) {
-            fit(neighbours, used);
         }
     }
 }
@@ -294,11 +289,12 @@ impl ClusterLists {
             set.run(Build {
                 lengths: lengths[chunk.group],
                 sources: sources_of(chunk.group),
-                chunk,
+                chunk: &mut *chunk,
                 sequence,
                 ranges,
                 spared,
             });
+            chunk.lists.fit();
         });
     }
 

@@ -91,15 +91,6 @@ fn grow(list: &mut Vec<u32>, length: usize) {
     list.resize(wanted, 0);
 }
 
-/// Gives room back that a list of so many entries does not take: other matter comes to a chunk from step to step,
-/// and with it the longest lists of all.
-pub(super) fn fit(list: &mut Vec<u32>, used: usize) {
-    if list.len() > used + used / 4 + (1 << 10) {
-        list.truncate(used + used / 16 + LANES);
-        list.shrink_to_fit();
-    }
-}
-
 /// For each set of bits, its members in ascending order, and whatever.
 static OFFSETS: [[u8; LANES]; 256] = {
     let mut table = [[0; LANES]; 256];
