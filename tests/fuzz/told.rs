@@ -192,22 +192,22 @@ fn a_manifest_that_cannot_be_is_refused() {
     for (key, value, expected) in [
         ("ranks", "0", "tells of 0 ranks"),
         ("block", "0", "1 digests of blocks of 0 bytes"),
-        ("block", "1048576", "has blocks of 1048576 bytes"),
+        ("block", "1048577", "has blocks of 1048577 bytes"),
         (
             "block",
             "18446744073709551615",
             "has blocks of 18446744073709551615 bytes",
         ),
-        ("sha256", "[]", "0 digests of blocks of 67108864 bytes"),
+        ("sha256", "[]", "0 digests of blocks of 1048576 bytes"),
         (
             "sha256",
             "[\"\", \"\"]",
-            "2 digests of blocks of 67108864 bytes",
+            "2 digests of blocks of 1048576 bytes",
         ),
         (
             "size",
             "18446744073709551615",
-            "1 digests of blocks of 67108864 bytes",
+            "1 digests of blocks of 1048576 bytes",
         ),
         ("particles", "1000000000000", "1000000000000 particles in"),
         ("time", "-1.0", "a time of -1e0 s"),
