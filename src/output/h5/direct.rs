@@ -265,15 +265,22 @@ fn block_of(_: &Path) -> Option<u64> {
 
 #[cfg(test)]
 mod tests {
+    use std::path::PathBuf;
+
     use super::*;
+
+    /// An empty file, if its file system takes direct writes.
+    fn new_file(folder: &Path) -> Option<(PathBuf, Direct)> {
+        let path = folder.join("rows");
+        File::create(&path).unwrap();
+        Direct::of(&path).map(|direct| (path, direct))
+    }
 
     /// Rows that begin and end anywhere, among others that go through the cache, are all there.
     #[test]
     fn rows_of_any_place_and_length_are_written() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("rows");
-        File::create(&path).unwrap();
-        let Some(mut direct) = Direct::of(&path) else {
+        let Some((path, mut direct)) = new_file(folder.path()) else {
             return;
         };
         let places = [0, 5, 4090, 70_000, 70_001 + PIECE, 4 * PIECE + 3];
@@ -294,9 +301,7 @@ mod tests {
     #[test]
     fn what_the_disk_refuses_is_told() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("rows");
-        File::create(&path).unwrap();
-        let Some(mut direct) = Direct::of(&path) else {
+        let Some((_, mut direct)) = new_file(folder.path()) else {
             return;
         };
         // Beyond the longest file.
