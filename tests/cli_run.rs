@@ -120,6 +120,16 @@ fn a_summary_has_the_figures_of_the_run() {
         assert!((1.0..1.5).contains(last), "{name}: {last}");
     }
     assert!((performance["million_updates"].last().unwrap() - updates).abs() < 1e-9);
+    let ranks = table(&run.join("ranks.csv"));
+    let rows = performance["step"].len();
+    assert_eq!(ranks["first_rank"], [0.0, 1.0].repeat(rows));
+    for (n, two) in ranks["work_over_mean"].chunks(2).enumerate() {
+        // What both do is twice the mean, and the busier one is that of the performance.
+        assert!((two[0] + two[1] - 2.0).abs() < 1e-9, "{two:?}");
+        assert!((two[0].max(two[1]) - performance["work_imbalance"][n]).abs() < 1e-9);
+        let both: f64 = ranks["particles"][2 * n..2 * n + 2].iter().sum();
+        assert_eq!(both, performance["particles"][n]);
+    }
 }
 
 #[test]

@@ -140,6 +140,7 @@ fn results_are_looked_at_without_mpi() {
         ("momentum", "kg m/s"),
         ("defect", ">of contact</text>"),
         ("load", ">work</text>"),
+        ("ranks", ">work over the mean</text>"),
     ] {
         let option = format!("--history={history}");
         output(&["plot", text(&a), &option, "--format", "svg"]);

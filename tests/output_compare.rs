@@ -75,6 +75,7 @@ fn equal_runs_agree_and_what_only_one_has_is_told() {
     let b = run(place.path(), "b", |_| ());
     // What depends on ranks, clocks and outputs.
     fs::write(b.join("performance.csv"), "step\n1\n").unwrap();
+    fs::write(b.join("ranks.csv"), "step\n1\n").unwrap();
     fs::write(b.join("log.txt"), "x").unwrap();
     fs::write(b.join("summary.json"), "{}").unwrap();
     let resolved = fs::read_to_string(b.join("case.toml")).unwrap();

@@ -220,7 +220,7 @@ same() {
     diff <(cd "$a" && ls -d ./*.csv) <(cd "$b" && ls -d ./*.csv) || true
     local table
     for table in "$a"/*.csv; do
-        if [ "${table##*/}" != performance.csv ]; then cmp "$table" "$b/${table##*/}" 2>&1 || true; fi
+        if [[ ! ${table##*/} =~ ^(performance|ranks).csv$ ]]; then cmp "$table" "$b/${table##*/}" 2>&1 || true; fi
     done
     diff "$a/status.json" "$b/status.json" || true
     if [ -e "$a/summary.json" ]; then diff <(numbers "$a/summary.json") <(numbers "$b/summary.json") || true; fi

@@ -14,7 +14,7 @@ use super::set_aside::{self, SET_ASIDE, SetAside};
 use super::{OutputError, Phase, RunFolder, Status, files, on_root, series, write_atomically};
 
 /// Files that a restart changes before it has a checkpoint.
-const CHANGED: [&str; 15] = [
+const CHANGED: [&str; 16] = [
     "history.csv",
     "contacts.csv",
     "loads.csv",
@@ -28,6 +28,7 @@ const CHANGED: [&str; 15] = [
     "witness.csv",
     "crossings.csv",
     "performance.csv",
+    "ranks.csv",
     "case.toml",
     STATUS,
 ];

@@ -240,6 +240,8 @@ paths! {
     crossings: "crossings.csv";
     /// Table of wall-clock times.
     performance: "performance.csv";
+    /// Table of what each rank, or group of ranks, has.
+    ranks: "ranks.csv";
     /// The log.
     log: "log.txt";
     /// The status file.

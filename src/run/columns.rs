@@ -1,6 +1,6 @@
 //! The columns of the tables of a run, and rows of them.
 
-use super::load::Load;
+use super::load::{Group, Load};
 use crate::measure::{BodyFigures, Crossing, GaugeRow};
 use crate::output::{Column, Value, unit_of_model};
 use crate::step::{LoadState, PairState, Passed, Removed, RunState};
@@ -184,6 +184,15 @@ tables! {
         "empty_ranks", "", load.empty_ranks;
         "messages", "", load.messages;
         "megabytes_sent", "MB", load.bytes as f64 * 1e-6;
+    }
+
+    /// A row of ranks that follow each other.
+    RANKS, rank_row(step: u64, group: &Group) {
+        "step", "", step;
+        "first_rank", "", group.ranks[0];
+        "last_rank", "", group.ranks[1];
+        "particles", "", group.particles;
+        "work_over_mean", "", group.work;
     }
 
     /// A row of what there is of a body.

@@ -21,8 +21,18 @@ pub struct Load {
     pub bytes: u64,
     /// Of particles, since the start of the process.
     pub updates: u64,
-    /// Work of each of some groups of ranks, of single ones if there are few.
-    groups: Vec<u64>,
+    /// Particles and work of each of some groups of ranks, of single ones if there are few.
+    groups: Vec<[u64; 2]>,
+}
+
+/// What some ranks that follow each other have.
+pub(super) struct Group {
+    /// The first and the last of them.
+    pub ranks: [u64; 2],
+    /// Of all of them.
+    pub particles: u64,
+    /// Of a rank of them, over the mean of all ranks.
+    pub work: f64,
 }
 
 /// Groups of ranks whose work is told, at most.
@@ -40,16 +50,20 @@ impl Load {
         self.ranks
     }
 
-    /// Work of a rank over the mean of all, by groups of ranks.
+    /// Groups of ranks in their order, [`GROUPS`] at most.
     #[allow(clippy::cast_precision_loss, reason = "for people")]
-    pub(super) fn by_group(&self) -> impl Iterator<Item = f64> {
+    pub(super) fn by_group(&self) -> impl Iterator<Item = Group> {
         let groups = self.groups.len();
         let begin = move |group: usize| (group * self.ranks).div_ceil(groups);
         let mean = (self.work[0] as f64).max(1.0) / self.ranks as f64;
         let all = self.groups.iter().enumerate();
-        all.map(move |(group, &work)| {
-            let ranks = begin(group + 1) - begin(group);
-            work as f64 / (ranks as f64 * mean)
+        all.map(move |(group, &[particles, work])| {
+            let [first, end] = [begin(group), begin(group + 1)];
+            Group {
+                ranks: [first as u64, end as u64 - 1],
+                particles,
+                work: work as f64 / ((end - first) as f64 * mean),
+            }
         })
     }
 
@@ -65,7 +79,7 @@ impl Load {
             messages: 0,
             bytes: 0,
             updates: 0,
-            groups: vec![work; ranks],
+            groups: vec![[work; 2]; ranks],
         }
     }
 }
@@ -89,8 +103,9 @@ pub fn load(comm: &Comm, simulation: &Simulation) -> Load {
         empty,
     ];
     let others = sums.len();
-    sums.resize(others + groups, 0);
-    sums[others + comm.rank() * groups / comm.size()] = work;
+    sums.resize(others + 2 * groups, 0);
+    let own = others + 2 * (comm.rank() * groups / comm.size());
+    sums[own..own + 2].copy_from_slice(&[particles, work]);
     comm.sum_u64(&mut sums);
     let mut most = [particles, work];
     comm.max_u64(&mut most);
@@ -102,6 +117,6 @@ pub fn load(comm: &Comm, simulation: &Simulation) -> Load {
         bytes: sums[3],
         updates: sums[4],
         empty_ranks: sums[5],
-        groups: sums.split_off(others),
+        groups: sums[others..].as_chunks().0.to_vec(),
     }
 }

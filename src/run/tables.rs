@@ -4,8 +4,9 @@ use std::path::Path;
 
 use super::columns::{
     ABSORBED, BODIES, CONTACTS, CROSSINGS, DEPARTED, DEPARTURE, FAILURE, GAUGES, HISTORY, LOADS,
-    PERFORMANCE, REMOVED, WITNESS, absorbed, body_row, columns, contact, crossing_row, departed,
-    departure, failure, gauge_row, history, load_row, performance, removed, witness_row,
+    PERFORMANCE, RANKS, REMOVED, WITNESS, absorbed, body_row, columns, contact, crossing_row,
+    departed, departure, failure, gauge_row, history, load_row, performance, rank_row, removed,
+    witness_row,
 };
 use super::load::Load;
 use crate::measure::{BodyFigures, Crossing, Findings, GaugeRow};
@@ -31,6 +32,7 @@ pub struct Tables {
     /// What has passed witness planes, and who.
     witnesses: Option<[Table; 2]>,
     performance: Table,
+    ranks: Table,
 }
 
 /// The directions in which a witness plane is passed, that of its normal first.
@@ -152,6 +154,7 @@ impl Tables {
                 })
                 .transpose()?,
             performance: open(&folder.performance(), &columns(PERFORMANCE), "step", step)?,
+            ranks: open(&folder.ranks(), &columns(RANKS), "step", step)?,
         })
     }
 
@@ -193,6 +196,9 @@ impl Tables {
             }
         }
         self.write_passed(simulation)?;
+        let groups = load.by_group();
+        self.ranks
+            .rows(groups.map(|group| rank_row(state.step, &group)))?;
         self.performance.row(&performance(state.step, wall, load))
     }
 
@@ -308,7 +314,12 @@ impl Tables {
     /// Brings all rows written so far to the disk.
     pub fn sync(&mut self) -> Result<(), OutputError> {
         self.write_records()?;
-        let always = [&self.history, &self.contacts, &self.performance];
+        let always = [
+            &self.history,
+            &self.contacts,
+            &self.performance,
+            &self.ranks,
+        ];
         let some = [
             &self.loads,
             &self.removed,

@@ -73,7 +73,7 @@ impl Watched {
     pub fn row(&mut self, state: &RunState, load: &Load) {
         self.ranks = load.ranks();
         self.particles = load.particles[0];
-        self.loads = load.by_group().map(digits).collect();
+        self.loads = load.by_group().map(|group| digits(group.work)).collect();
         self.largest_load = digits(load.imbalance(load.work));
         let totals = &state.totals;
         let values = [

@@ -31,6 +31,7 @@ _TABLES = (
     "departed",
     "fragments",
     "performance",
+    "ranks",
 )
 _STATUS = "status.json"
 _SNAPSHOTS = "snapshots"
@@ -164,6 +165,8 @@ class Run:
     """How many fragments there are, and how much matter in them, at one time after the other."""
     performance = _Named()
     """How fast and how evenly the last process ran."""
+    ranks = _Named()
+    """Particles of each rank or group of ranks, and its work over the mean of all."""
 
     @property
     def tables(self) -> tuple[str, ...]:

@@ -7,7 +7,10 @@ use super::super::results::ResultsError;
 use super::Report;
 use crate::output::Sheet;
 
-/// The tables of a run, but for what depends on clocks.
+/// Tables of clocks and ranks.
+const OF_THE_PROCESS: [&str; 2] = ["performance.csv", "ranks.csv"];
+
+/// The tables of a run, but for what depends on clocks and ranks.
 pub fn names(folder: &Path) -> Result<BTreeSet<String>, ResultsError> {
     let entries = std::fs::read_dir(folder).map_err(|error| ResultsError::Text {
         path: folder.to_owned(),
@@ -18,7 +21,7 @@ pub fn names(folder: &Path) -> Result<BTreeSet<String>, ResultsError> {
         .map(|e| e.file_name().to_string_lossy().into_owned());
     let is_table = |name: &String| {
         let extension = Path::new(name).extension();
-        extension.is_some_and(|e| e == "csv") && name != "performance.csv"
+        extension.is_some_and(|e| e == "csv") && !OF_THE_PROCESS.contains(&&name[..])
     };
     Ok(names.filter(is_table).collect())
 }

@@ -40,6 +40,9 @@ pub struct Curve {
     pub points: Vec<[f64; 2]>,
 }
 
+/// The name of a curve, its colour and its points.
+pub(super) type Line = (String, Rgb, Vec<[f64; 2]>);
+
 /// A chart.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Chart {

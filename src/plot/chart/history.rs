@@ -1,9 +1,10 @@
-//! What a run's `history.csv` and `performance.csv` tell, over time: energies, steps, momentum, defects,
-//! and how evenly the ranks are loaded.
+//! What a run's `history.csv`, `performance.csv` and `ranks.csv` tell, over time: energies, steps,
+//! momentum, defects, and how evenly the ranks are loaded.
 
 use std::path::PathBuf;
 
-use super::curves::{Chart, Curve, Quantity};
+use super::curves::{Chart, Curve, Line, Quantity};
+use super::ranks::by_rank;
 use super::table::{Table, wrong};
 use crate::plot::PlotError;
 use crate::plot::canvas::Rgb;
@@ -23,10 +24,9 @@ pub enum History {
     Defect,
     /// What the busiest rank has over the mean.
     Load,
+    /// Work of each rank over the mean.
+    Ranks,
 }
-
-/// A name in the legend, a colour and points.
-type Line = (String, Rgb, Vec<[f64; 2]>);
 
 /// Columns that are drawn of energies, their names in the legend and their colours.
 const ENERGIES: [(&str, &str, Rgb); 4] = [
@@ -38,12 +38,13 @@ const ENERGIES: [(&str, &str, Rgb); 4] = [
 
 impl History {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Energies,
         Self::TimeStep,
         Self::Momentum,
         Self::Defect,
         Self::Load,
+        Self::Ranks,
     ];
 
     /// As it is typed, and for names of files.
@@ -55,6 +56,7 @@ impl History {
             Self::Momentum => "momentum",
             Self::Defect => "defect",
             Self::Load => "load",
+            Self::Ranks => "ranks",
         }
     }
 
@@ -63,6 +65,7 @@ impl History {
     pub fn table(self) -> &'static str {
         match self {
             Self::Load => "performance.csv",
+            Self::Ranks => "ranks.csv",
             _ => "history.csv",
         }
     }
@@ -131,6 +134,11 @@ impl History {
                 axis("step", "", false),
                 axis("load over the mean", "", true),
             ),
+            Self::Ranks => (
+                "work of each rank over the mean",
+                axis("step", "", false),
+                axis("work over the mean", "", true),
+            ),
         };
         Chart {
             title: title.to_owned(),
@@ -143,7 +151,11 @@ impl History {
 
     /// The lines of a table, whose unit the chart takes.
     fn read(self, table: &Table, chart: &mut Chart) -> Result<Vec<Line>, String> {
-        let x = table.column(if self == Self::Load { "step" } else { "time" })?;
+        let x = match self {
+            Self::Load | Self::Ranks => "step",
+            _ => "time",
+        };
+        let x = table.column(x)?;
         let against =
             |y: Vec<f64>| -> Vec<[f64; 2]> { x.iter().zip(y).map(|(&x, y)| [x, y]).collect() };
         let mut lines = Vec::new();
@@ -183,6 +195,10 @@ impl History {
                     lines.push((name.to_owned(), colour::body(k), against(load)));
                 }
                 "work_imbalance"
+            }
+            Self::Ranks => {
+                lines = by_rank(table, &x)?;
+                "work_over_mean"
             }
         };
         let unit = table.unit(unit)?;

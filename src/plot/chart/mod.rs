@@ -6,6 +6,7 @@ pub mod exact;
 pub mod fragments;
 pub mod history;
 pub mod profile;
+mod ranks;
 pub mod series;
 pub mod sheet;
 pub mod table;

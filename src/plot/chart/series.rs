@@ -16,6 +16,9 @@ const KEYS: [&str; 8] = [
     "direction",
 ];
 
+/// The same by number.
+const NUMBER: &str = "first_rank";
+
 /// The two columns of a pair.
 const PAIR: [&str; 2] = [KEYS[0], KEYS[1]];
 
@@ -39,9 +42,10 @@ pub fn series(
     pair: Option<&[String; 2]>,
 ) -> Result<Vec<Series>, String> {
     let mut keys = Vec::new();
-    for name in KEYS {
+    for name in KEYS.into_iter().chain([NUMBER]) {
         // A table of other origin may have a load in newtons.
-        let names = table.has(name) && !drawn.contains(&name) && table.column(name).is_err();
+        let told = table.has(name) && !drawn.contains(&name);
+        let names = told && (name == NUMBER || table.column(name).is_err());
         if names || (PAIR.contains(&name) && table.has(name)) {
             keys.push(table.texts(name)?);
         }

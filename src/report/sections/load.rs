@@ -1,6 +1,6 @@
 //! How evenly the ranks were loaded, and where the time went.
 
-use crate::plot::{Columns, Tables};
+use crate::plot::{Columns, History, Tables};
 use crate::report::found::{Rows, Run};
 use crate::report::html::{Html, bar, missing, note, or_untold, table};
 use crate::report::picture::chart;
@@ -29,6 +29,12 @@ fn balance(run: &Run) -> Result<Html, String> {
         page.push(chart(
             drawn,
             "Load of the busiest rank over the mean of all, by step",
+        ));
+        let ranks = [(String::new(), run.folder.ranks())];
+        let drawn = History::Ranks.chart(&ranks, run.title());
+        page.push(chart(
+            drawn.map_err(|error| run.without_path(&error)),
+            "Work of each rank over the mean of all, by step",
         ));
         let last = rows.len() - 1;
         let [work, particles] =
