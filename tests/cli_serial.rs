@@ -53,7 +53,7 @@ Aluminium sphere at 7 km/s on an aluminium plate (3-D): sound
   all                    3056 particles, about 45 MB a rank on 1 rank
   measures: plate, plate-debris
   about 63 steps to 0.2 us
-  about 0.1 s on 1 rank of one core of an ordinary cluster (`whipple plan` tells more)
+  about 0.2 s on 1 rank of one core of an ordinary cluster (`whipple plan` tells more)
   about 10 MB on the disk at the end
 ";
     assert_eq!(said, expected);

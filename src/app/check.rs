@@ -240,9 +240,10 @@ fn meetings<'a>(
     })
 }
 
-/// An ordinary machine, which is spared what rests.
+/// An ordinary machine, which is spared what rests and takes longer for what is unequal.
 fn machine(case: &Case, approaches: &[Approach]) -> Machine {
-    Machine::default().sparing(plan::share_of_work(case, approaches))
+    let work = plan::share_of_work(case, approaches) * plan::work_of_unequal(case);
+    Machine::default().at_work(work)
 }
 
 /// Seconds of so many steps with their files on a machine.

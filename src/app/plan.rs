@@ -18,7 +18,7 @@ use super::plot::out::{check_picture, save_text, write_chart};
 use crate::model::Case;
 use crate::model::readable::short;
 use crate::output::read_small;
-use crate::plan::{Files, Layout, Load, Machine, Row, Sharing, Weak, computing};
+use crate::plan::{Files, Layout, Load, Machine, Row, Sharing, Weak, computing, work_of_unequal};
 use crate::plot::PlotError;
 use crate::preflight::{Costs, memory};
 use crate::run::exit::{EXIT_FAILED, EXIT_INPUT};
@@ -189,7 +189,11 @@ fn plan(args: &PlanArgs, path: &Path) -> Result<(), String> {
     if let Some(line) = words::rest(share) {
         say(&line);
     }
-    let machine = machine.sparing(share);
+    let unequal = work_of_unequal(&source.case);
+    if let Some(line) = words::unequal(unequal) {
+        say(&line);
+    }
+    let machine = machine.at_work(share * unequal);
     if !args.nodes.is_empty() {
         return nodes::plan(args, path, &source, &machine);
     }

@@ -151,7 +151,7 @@ impl Default for Machine {
         Self {
             name: "an ordinary cluster".to_owned(),
             cores_per_node: 128.0,
-            particle_time: 0.6e-6,
+            particle_time: 1e-6,
             image_time: 0.08e-6,
             thread_loss: 0.02,
             crowding: 0.05,
@@ -169,12 +169,12 @@ impl Default for Machine {
 }
 
 impl Machine {
-    /// A machine on which steps take that share of the work for the same particles.
+    /// A machine on which steps take so many times the work for the same particles.
     #[must_use]
-    pub fn sparing(self, share: f64) -> Self {
+    pub fn at_work(self, times: f64) -> Self {
         Self {
-            particle_time: share * self.particle_time,
-            image_time: share * self.image_time,
+            particle_time: times * self.particle_time,
+            image_time: times * self.image_time,
             ..self
         }
     }

@@ -54,3 +54,10 @@ pub fn rest(share: f64) -> Option<String> {
         )
     })
 }
+
+/// How many times the work of equal particles steps take, if it is more.
+pub fn unequal(times: f64) -> Option<String> {
+    (times > 1.0).then(|| {
+        format!("  sizes of particles differ: they take {times} times the work of equal ones")
+    })
+}
