@@ -135,20 +135,20 @@ pub struct PairKernel<V> {
     pub inside: V,
     /// Proportional to `⟨1 − q⟩₊`.
     pub core: V,
-    /// `h_ij` (m).
-    pub h: V,
+    /// `1/h_ij` (1/m), whatever if that is constant.
+    pub inverse_h: V,
 }
 
 /// How the lanes get `h_ij` and what follows from it.
 pub trait PairScale: Copy + Sync {
-    /// Whether [`Self::kernel`] looks at the smoothing lengths.
+    /// Whether smoothing lengths differ.
     const VARIABLE: bool;
 
     /// `h_ij` (m) of receivers of `h_i` and a neighbour of `h_j` (m).
     fn length<V: Lanes>(&self, h_i: V, h_j: f64) -> V;
 
-    /// For pairs at `distance` (m) of receivers of `h_i` and a neighbour of `h_j` (m).
-    fn kernel<V: Lanes>(&self, distance: V, h_i: V, h_j: f64) -> PairKernel<V>;
+    /// For pairs at `distance` (m), with `1/h_ij` (1/m), whatever if that is constant.
+    fn kernel<V: Lanes>(&self, distance: V, inverse_h: V) -> PairKernel<V>;
 
     /// `w = W h^d/σ_d` of these pairs.
     fn shape<V: Lanes>(&self, pairs: &PairKernel<V>) -> V;
@@ -223,13 +223,13 @@ impl PairScale for ConstantScale {
     }
 
     #[inline(always)]
-    fn kernel<V: Lanes>(&self, distance: V, h_i: V, h_j: f64) -> PairKernel<V> {
+    fn kernel<V: Lanes>(&self, distance: V, inverse_h: V) -> PairKernel<V> {
         let (inner, outer) = (self.inner.at(distance), self.outer.at(distance));
         PairKernel {
             slope: outer.neg_mul_add(outer, inner.mul(inner)),
             inside: outer,
             core: inner,
-            h: self.length(h_i, h_j),
+            inverse_h,
         }
     }
 
@@ -271,9 +271,7 @@ impl<const D: usize> PairScale for MeanScale<D> {
     }
 
     #[inline(always)]
-    fn kernel<V: Lanes>(&self, distance: V, h_i: V, h_j: f64) -> PairKernel<V> {
-        let h = self.length(h_i, h_j);
-        let inverse = V::splat(1.0).div(h);
+    fn kernel<V: Lanes>(&self, distance: V, inverse: V) -> PairKernel<V> {
         let square = inverse.mul(inverse);
         let factor = match D {
             1 => square,
@@ -293,7 +291,7 @@ impl<const D: usize> PairScale for MeanScale<D> {
             slope: shape.mul(factor.mul(V::splat(self.normalisation))),
             inside: outer,
             core: inner,
-            h,
+            inverse_h: inverse,
         }
     }
 
@@ -304,7 +302,7 @@ impl<const D: usize> PairScale for MeanScale<D> {
 
     #[inline(always)]
     fn value<V: Lanes>(&self, pairs: &PairKernel<V>, shape: V) -> V {
-        let inverse = V::splat(1.0).div(pairs.h);
+        let inverse = pairs.inverse_h;
         let factor = match D {
             1 => inverse,
             2 => inverse.mul(inverse),

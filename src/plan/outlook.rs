@@ -9,7 +9,7 @@ use crate::preflight::{self, Approach, TIMES, Waiting, Waves, approaches, mean_w
 /// Work of a particle where smoothing lengths differ from body to body, and where they differ within one, over that where all
 /// are the same: each pair has a length of its own, and lists are made as far as the largest reach. As measured on the quarter
 /// impact with a sphere of other particles, and with a graded plate whose particles differ by a factor of two.
-const UNEQUAL: [f64; 2] = [1.2, 1.7];
+const UNEQUAL: [f64; 2] = [1.1, 1.5];
 
 /// What is foreseen of a run from a time on.
 #[derive(Debug, Clone, PartialEq)]

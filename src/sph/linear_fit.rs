@@ -241,7 +241,7 @@ impl<S: PairScale> Vectorised for LinearFit<'_, S> {
         let h = if S::VARIABLE {
             around.h::<V>().store()
         } else {
-            around.sources.scale.kernel(zero, zero, 0.0).h.store()
+            around.sources.scale.length(zero, 0.0).store()
         };
         sums.fit(&store_all(&velocity), &h, self.dimension)
     }

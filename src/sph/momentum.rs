@@ -275,7 +275,7 @@ impl PairStress for StressRecord {
             let along = |a: usize| velocity[a].sub(V::splat(source.velocity[a]));
             let v = [along(0), along(1), along(2)];
             let state_of = (state.density, state.sound_speed);
-            let viscous = viscous.pair(&terms, (now, kernel.h, pair.beside), &v, state_of, shown);
+            let viscous = viscous.pair(&terms, (now, pair.h, pair.beside), &v, state_of, shown);
             let pi = viscous.pi;
             fastest = fastest.min_where_positive(viscous.mu, kernel.inside);
             let s = |c: usize| V::splat(state.stress_over_density2[c]);

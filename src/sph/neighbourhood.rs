@@ -79,7 +79,7 @@ impl<'a, S: PairScale> Neighbourhood<'a, S> {
             h: self.h(),
             divisor,
             done: 0,
-            next: Divided::of(Distance::of(V::splat(1.0)), None),
+            next: Divided::of::<S>(Distance::of(V::splat(1.0)), V::splat(1.0), None),
             after: Distance::of(V::splat(1.0)),
         };
         if !self.neighbours.is_empty() {
@@ -115,6 +115,8 @@ pub(super) struct Pair<'a, V> {
     pub(super) separation: Separation<V>,
     /// The kernel.
     pub(super) kernel: PairKernel<V>,
+    /// `h_ij` (m).
+    pub(super) h: V,
     /// The inverse of the divisor, 1 without one.
     pub(super) beside: V,
 }
@@ -157,7 +159,7 @@ impl<V: Lanes, S: PairScale, D: Divisor<V>> Pairs<'_, V, S, D> {
         let index = self.index(ahead);
         let Sources { lengths, scale, .. } = self.around.sources;
         let h = scale.length(self.h, length::<S>(lengths, index));
-        Divided::of(far, self.divisor.of(index, far.square, h))
+        Divided::of::<S>(far, h, self.divisor.of(index, far.square, h))
     }
 }
 
@@ -188,7 +190,8 @@ impl<'a, V: Lanes, S: PairScale, D: Divisor<V>> Iterator for Pairs<'a, V, S, D> 
                 distance,
                 inverse: now.inverse,
             },
-            kernel: scale.kernel(distance, self.h, length::<S>(lengths, index)),
+            kernel: scale.kernel(distance, now.inverse_h),
+            h: scale.length(self.h, length::<S>(lengths, index)),
             beside: now.beside,
         })
     }
@@ -262,24 +265,37 @@ impl<V: Lanes> Distance<V> {
 struct Divided<V> {
     far: Distance<V>,
     inverse: V,
+    /// `1/h_ij` (1/m), whatever if that is constant.
+    inverse_h: V,
     beside: V,
 }
 
 impl<V: Lanes> Divided<V> {
-    /// Inverses of a distance and of what is wanted beside it, by one division.
+    /// Inverses of a distance, of `h_ij` where that differs, and of what is wanted beside them, by one division.
     #[inline(always)]
-    fn of(far: Distance<V>, divisor: Option<V>) -> Self {
+    fn of<S: PairScale>(far: Distance<V>, h: V, divisor: Option<V>) -> Self {
         let (one, distance) = (V::splat(1.0), far.distance);
-        let (inverse, beside) = match divisor {
-            Some(divisor) => {
-                let both = one.div(distance.mul(divisor));
-                (both.mul(divisor), both.mul(distance))
+        let (inverse, inverse_h, beside) = match (divisor, S::VARIABLE) {
+            (None, false) => (one.div(distance), one, one),
+            (None, true) => {
+                let both = one.div(distance.mul(h));
+                (both.mul(h), both.mul(distance), one)
             }
-            None => (one.div(distance), one),
+            (Some(divisor), false) => {
+                let both = one.div(distance.mul(divisor));
+                (both.mul(divisor), one, both.mul(distance))
+            }
+            (Some(divisor), true) => {
+                let others = divisor.mul(h);
+                let all = one.div(distance.mul(others));
+                let of_others = all.mul(distance);
+                (all.mul(others), of_others.mul(divisor), of_others.mul(h))
+            }
         };
         Self {
             far,
             inverse,
+            inverse_h,
             beside,
         }
     }

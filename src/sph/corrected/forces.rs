@@ -135,7 +135,7 @@ impl PairStress for CorrectedRecord {
             }
             let now = viscous.pair(
                 &terms,
-                (separation, kernel.h, pair.beside),
+                (separation, pair.h, pair.beside),
                 &v,
                 (state.density, state.sound_speed),
                 shown,
