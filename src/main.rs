@@ -1,5 +1,5 @@
-//! The `whipple` program: hands the command line to [`whipple::app`] and exits with its code.
+//! The `whipple` program: hands the command line to [`app`] and exits with its code.
 
 fn main() -> std::process::ExitCode {
-    whipple::app::main()
+    app::main(option_env!("WHIPPLE_COMMIT").unwrap_or("unknown"))
 }

@@ -15,10 +15,10 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 
-use crate::comm::{Comm, Session};
-use crate::output::on_root;
-use crate::run::exit::{EXIT_FAILED, EXIT_INPUT};
-use crate::run::{launch, say};
+use comm::{Comm, Session};
+use files::output::on_root;
+use files::run::exit::{EXIT_FAILED, EXIT_INPUT};
+use files::run::{launch, say};
 pub use calibrate::calibrate;
 use cases::{BenchCase, CASES};
 use report::{Report, Row};

@@ -8,17 +8,17 @@ use std::path::{Path, PathBuf};
 use super::form::Form;
 use super::plan::duration;
 use super::plot::out;
-use crate::comm::Comm;
-use crate::input::{self, InputError};
-use crate::model::readable::{short, shown};
-use crate::model::{Body, Case, MeasureKind, Quantity, cube};
-use crate::output::{snapshot, unit_of_model};
-use crate::plan::{self, Files, Machine};
-use crate::plot::{self, PlotError};
-use crate::populate;
-use crate::preflight::{self, Approach, memory};
-use crate::run::exit::EXIT_INPUT;
-use crate::run::say::{counted, say, warn};
+use comm::Comm;
+use files::input::{self, InputError};
+use model::readable::{short, shown};
+use model::{Body, Case, MeasureKind, Quantity, cube};
+use files::output::{snapshot, unit_of_model};
+use files::plan::{self, Files, Machine};
+use desk::plot::{self, PlotError};
+use populate;
+use files::preflight::{self, Approach, memory};
+use files::run::exit::EXIT_INPUT;
+use files::run::say::{counted, say, warn};
 use document::document;
 
 /// Check a case without running it: particles by body, memory, expected steps

@@ -6,11 +6,11 @@ use serde_json::json;
 
 use super::form::{Form, wrote};
 use super::which::Several;
-use crate::export::{self, ExportError, Format, Place, Wish};
-use crate::model::readable::one_line;
-use crate::plot::{Wanted, bodies, parse_quantity};
-use crate::run::exit::EXIT_INPUT;
-use crate::run::say::{say, warn};
+use desk::export::{self, ExportError, Format, Place, Wish};
+use model::readable::one_line;
+use desk::plot::{Wanted, bodies, parse_quantity};
+use files::run::exit::EXIT_INPUT;
+use files::run::say::{say, warn};
 
 /// Write snapshots in the formats of other programs
 ///

@@ -10,15 +10,15 @@ use serde_json::{Value, json};
 use super::form::{self, Form, wrote};
 use super::results::ResultsError;
 use super::which::Which;
-use crate::fragments::{Census, Fragment, Rule, Share, find_alone};
-use crate::input;
-use crate::model::readable::{one_line, shown, shown_vector};
-use crate::model::{FragmentOptions, Include};
-use crate::output::fragments::FragmentTable;
-use crate::output::{OutputError, RunFolder, Sheet, write_atomically};
-use crate::plot::{PlotError, choose, snapshots};
-use crate::run::exit::EXIT_INPUT;
-use crate::run::say::{counted, say, seconds, warn};
+use engine::fragments::{Census, Fragment, Rule, Share, find_alone};
+use files::input;
+use model::readable::{one_line, shown, shown_vector};
+use model::{FragmentOptions, Include};
+use files::output::fragments::FragmentTable;
+use files::output::{OutputError, RunFolder, Sheet, write_atomically};
+use desk::plot::{PlotError, choose, snapshots};
+use files::run::exit::EXIT_INPUT;
+use files::run::say::{counted, say, seconds, warn};
 use matter::Loaded;
 
 /// Tell the fragments of a run: how many, how heavy, how large, how fast
@@ -265,7 +265,7 @@ fn list(fragment: &Fragment, dimension: usize, text: &mut String) {
 }
 
 /// The rule of a case's text, if it can be read.
-fn read_case(path: &Path, text: &str) -> Result<crate::model::Case, String> {
+fn read_case(path: &Path, text: &str) -> Result<model::Case, String> {
     let name = path.display().to_string();
     input::parse(&name, text, &[]).map_err(|error| error.to_string())
 }

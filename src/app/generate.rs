@@ -11,9 +11,9 @@ use clap::builder::PossibleValuesParser;
 use clap::{Command, Subcommand};
 use clap_complete::Shell;
 
-use crate::input;
-use crate::run::exit::EXIT_INPUT;
-use crate::run::say::{say, warn};
+use files::input;
+use files::run::exit::EXIT_INPUT;
+use files::run::say::{say, warn};
 
 /// Write shell completions, man pages, the JSON schema of cases, or pages of the book
 #[derive(Debug, clap::Args)]

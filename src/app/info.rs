@@ -11,13 +11,13 @@ use serde_json::json;
 
 use super::form::Form;
 use super::results::{GRID, POINT_DATA, Results, ResultsError, component_names, running, standing};
-use crate::output::checkpoint::{self, FIELDS};
-use crate::output::h5::read::PART;
-use crate::output::h5::{Array, Content, Element, RowType};
-use crate::output::{Block, OutputError, RunFolder, Sheet, read_regular, read_small};
-use crate::preflight::memory::in_words;
-use crate::run::exit::EXIT_INPUT;
-use crate::run::say::{say, seconds, warn};
+use files::output::checkpoint::{self, FIELDS};
+use files::output::h5::read::PART;
+use files::output::h5::{Array, Content, Element, RowType};
+use files::output::{Block, OutputError, RunFolder, Sheet, read_regular, read_small};
+use files::preflight::memory::in_words;
+use files::run::exit::EXIT_INPUT;
+use files::run::say::{say, seconds, warn};
 use text::Text;
 
 /// Tell what is in a run folder, a snapshot or a checkpoint

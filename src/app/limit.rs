@@ -9,11 +9,11 @@ use std::path::PathBuf;
 
 use super::form::Form;
 use super::plot::out::{PictureFormat, check_picture, save_text, write_chart};
-use crate::model::readable::one_line;
-use crate::plot::{PlotError, Quantity};
-use crate::run::exit::{EXIT_FAILED, EXIT_INPUT};
-use crate::run::say::{say, warn};
-use crate::sweep::{self, Shot, SweepError, Values};
+use model::readable::one_line;
+use desk::plot::{PlotError, Quantity};
+use files::run::exit::{EXIT_FAILED, EXIT_INPUT};
+use files::run::say::{say, warn};
+use desk::sweep::{self, Shot, SweepError, Values};
 use laws::Law;
 
 /// Print and plot ballistic limit equations, craters and hole diameters

@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 use serde_json::json;
 
 use super::form::Form;
-use crate::material::{Constant, Material, Value, library};
-use crate::run::exit::EXIT_INPUT;
-use crate::run::say::{say, warn};
+use material::{Constant, Material, Value, library};
+use files::run::exit::EXIT_INPUT;
+use files::run::say::{say, warn};
 
 /// Print the material library: all names, or each number of one material with its source
 ///
@@ -179,7 +179,7 @@ fn as_json(name: &str) -> Option<serde_json::Value> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::parse;
+    use files::input::parse;
 
     #[test]
     fn every_table_gives_its_material_again() {

@@ -5,17 +5,17 @@ use std::path::{Path, PathBuf};
 use super::form::{self, Form, wrote};
 use super::results::{ResultsError, only_part};
 use super::which::Which;
-use crate::comm::Comm;
-use crate::input::{self, InputError};
-use crate::measure::{Findings, Matter, Told, findings, mirrors, remember};
-use crate::model::readable::{one_line, shown};
-use crate::model::{Case, Measure, MeasureKind};
-use crate::output::h5::Content;
-use crate::output::h5::read::{ReadError, SnapshotFile};
-use crate::output::{OutputError, RunFolder, Sheet, measures, write_atomically};
-use crate::plot::{PlotError, Wanted, choose, snapshots};
-use crate::run::exit::EXIT_INPUT;
-use crate::run::say::{say, seconds, warn};
+use comm::Comm;
+use files::input::{self, InputError};
+use engine::measure::{Findings, Matter, Told, findings, mirrors, remember};
+use model::readable::{one_line, shown};
+use model::{Case, Measure, MeasureKind};
+use files::output::h5::Content;
+use files::output::h5::read::{ReadError, SnapshotFile};
+use files::output::{OutputError, RunFolder, Sheet, measures, write_atomically};
+use desk::plot::{PlotError, Wanted, choose, snapshots};
+use files::run::exit::EXIT_INPUT;
+use files::run::say::{say, seconds, warn};
 
 /// Tell the measures of a run's snapshots: holes, craters, verdicts, debris
 ///
@@ -292,7 +292,7 @@ fn report<'a>(loaded: &Loaded, found: impl Iterator<Item = (&'a Measure, &'a Fin
         }
         let _ = writeln!(text, "{} ({})", measure.name, measure.kind.word());
         for figure in &found.figures {
-            let unit = crate::output::unit_of_model(figure.unit, loaded.case.dimension);
+            let unit = files::output::unit_of_model(figure.unit, loaded.case.dimension);
             let value = match figure.value {
                 Told::Number(number) if number.is_nan() => "–".to_owned(),
                 Told::Number(number) => shown(number, unit),

@@ -8,10 +8,10 @@ use clap::ValueEnum;
 use serde_json::json;
 
 use super::form::{Form, wrote};
-use crate::input;
-use crate::output::{OutputError, write_atomically};
-use crate::run::exit::EXIT_INPUT;
-use crate::run::say::{say, warn};
+use files::input;
+use files::output::{OutputError, write_atomically};
+use files::run::exit::EXIT_INPUT;
+use files::run::say::{say, warn};
 
 /// Write a commented case to begin with
 ///

@@ -9,10 +9,10 @@ use super::form::{Form, wrote};
 use super::fragments::{FragmentsArgs, tell as tell_fragments};
 use super::results::{Results, ResultsError};
 use super::which::Which;
-use crate::output::{OutputError, RunFolder, write_atomically};
-use crate::report;
-use crate::run::exit::EXIT_INPUT;
-use crate::run::say::warn;
+use files::output::{OutputError, RunFolder, write_atomically};
+use desk::report;
+use files::run::exit::EXIT_INPUT;
+use files::run::say::warn;
 
 /// Write one HTML page that tells a run, with a viewer in three dimensions; or two runs side by side
 ///

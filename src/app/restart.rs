@@ -3,17 +3,17 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use crate::comm::Comm;
-use crate::input;
-use crate::output::checkpoint::{self, MANIFEST, Restored};
-use crate::output::{OutputError, Phase, RunFolder, RunLock, from_root, snapshot};
-use crate::particles::ParticleStore;
-use crate::run::CommonArgs;
-use crate::run::launch::{Launch, warn, with_ranks};
-use crate::run::resume::{Origin, go_on, nothing_to_do, state_of};
-use crate::run::saved_case;
-use crate::run::say::say;
-use crate::step::RunState;
+use comm::Comm;
+use files::input;
+use files::output::checkpoint::{self, MANIFEST, Restored};
+use files::output::{OutputError, Phase, RunFolder, RunLock, from_root, snapshot};
+use particles::ParticleStore;
+use files::run::CommonArgs;
+use files::run::launch::{Launch, warn, with_ranks};
+use files::run::resume::{Origin, go_on, nothing_to_do, state_of};
+use files::run::saved_case;
+use files::run::say::say;
+use engine::step::RunState;
 
 /// Go on from a checkpoint, on any number of ranks
 ///

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::output::checkpoint;
-use crate::output::h5::Content;
-use crate::output::{OutputError, Phase, Presence, RunFolder, Status};
+use files::output::checkpoint;
+use files::output::h5::Content;
+use files::output::{OutputError, Phase, Presence, RunFolder, Status};
 
 /// Group of a snapshot's grid.
 pub const GRID: &str = "/VTKHDF";

@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::comm::Comm;
-use crate::input;
-use crate::output::{RunFolder, snapshot};
-use crate::run::CommonArgs;
-use crate::run::launch::{warn, with_ranks};
-use crate::run::start::start;
+use comm::Comm;
+use files::input;
+use files::output::{RunFolder, snapshot};
+use files::run::CommonArgs;
+use files::run::launch::{warn, with_ranks};
+use files::run::start::start;
 
 /// Run a case from its start
 ///

@@ -4,9 +4,9 @@ use std::ffi::OsString;
 
 use clap::error::ErrorKind;
 
-use crate::comm;
-use crate::numerics::dispatch::{Instructions, available, instructions};
-use crate::output::{COMMIT, VERSION, h5};
+use comm;
+use numerics::dispatch::{Instructions, available, instructions};
+use files::output::{VERSION, commit, h5};
 
 /// The long form, if that is what the command line asks for; `-V` is the short one.
 pub fn asked(error: &clap::Error) -> Option<String> {
@@ -21,10 +21,11 @@ fn long() -> String {
     let sets: Vec<&str> = available().into_iter().map(Instructions::name).collect();
     format!(
         "whipple {VERSION}\n\
-         commit        {COMMIT}\n\
+         commit        {}\n\
          MPI           {}\n\
          HDF5          {}\n\
          instructions  {} (this processor has {})",
+        commit(),
         comm::library(),
         h5::library(),
         instructions().name(),

@@ -16,7 +16,7 @@
 //! fan between C(λ) and C(1), and gains `L(1) − L(λ) = −L(λ)`.
 
 use super::bisect;
-use crate::material::{Eos, LinearForm, Material, Strength};
+use material::{Eos, LinearForm, Material, Strength};
 
 /// An elastic medium at rest without stress.
 #[derive(Debug, Clone, Copy, PartialEq)]

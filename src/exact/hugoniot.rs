@@ -8,7 +8,7 @@
 //! long as that has not reached its bounds at strong compression.
 
 use super::bisect;
-use crate::material::{Eos, Material, MieGruneisen};
+use material::{Eos, Material, MieGruneisen};
 
 /// A medium at rest at its reference density, without pressure or energy.
 #[derive(Debug, Clone, Copy, PartialEq)]

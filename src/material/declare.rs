@@ -31,10 +31,10 @@ macro_rules! constant_type {
 /// A constant as users see it.
 macro_rules! constant_value {
     ($value:expr, $unit:literal) => {
-        $crate::material::Value::Number($value, $unit)
+        $crate::Value::Number($value, $unit)
     };
     ($value:expr, $choice:ident) => {
-        $crate::material::Value::Word($value.name())
+        $crate::Value::Word($value.name())
     };
 }
 
@@ -48,8 +48,8 @@ macro_rules! law {
             $($(#[$key_doc])+ pub $key: constant_type!($unit),)+
         }
 
-        impl $crate::material::Listed for $law {
-            fn constants(&self) -> $crate::material::Constants {
+        impl $crate::Listed for $law {
+            fn constants(&self) -> $crate::Constants {
                 vec![$((stringify!($key), constant_value!(self.$key, $unit))),+]
             }
         }

@@ -23,11 +23,10 @@ mod viscous;
 mod von_mises;
 
 use super::declare::Listed;
-pub(crate) use batch::point_lanes;
 pub use batch::{LANES, Lanes, PointBatch, PointField};
 pub(super) use damage::limit_expansion;
 pub use elastic::Elastic;
-pub(crate) use failure::FAILED;
+pub use failure::FAILED;
 use failure::failure_laws;
 pub use failure::{Effect, Manner, Molten};
 pub use grady_kipp::{Crosses, Flaws, GradyKipp};
@@ -48,6 +47,7 @@ pub use von_mises::VonMises;
 /// written back. `Memory` is state of failure: the same as `State` where a material of the case
 /// has a law that changes it, zero elsewhere. `Known` is given where a material of the case has a
 /// law that asks for it.
+#[macro_export]
 macro_rules! point_fields {
     ($then:ident $($more:tt)*) => {
         $then! {
@@ -85,7 +85,6 @@ macro_rules! point_fields {
         }
     };
 }
-pub(crate) use point_fields;
 
 // The key below `strength` in the input, and the law. A material has one of them.
 strength_laws! {

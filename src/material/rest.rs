@@ -49,7 +49,7 @@ impl Rest {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::library;
+    use crate::library;
 
     #[test]
     fn a_solid_rests_in_its_reference_state_alone() {

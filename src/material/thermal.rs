@@ -10,7 +10,7 @@
 
 use super::eos::Eos;
 use super::{LANES, Lanes, at_least, at_most};
-use crate::numerics::lanes as numerics;
+use numerics::lanes as numerics;
 
 /// The cold curve is held constant beyond these relative volumes ρ₀/ρ.
 const VOLUMES: [f64; 2] = [0.2, 2.0];

@@ -1,7 +1,7 @@
 //! Absorbing zones: outer parts of bodies that take up waves, as if the body went on for ever.
 
 use super::Axis;
-use crate::numerics::vector::dot;
+use numerics::vector::dot;
 
 /// `½ (n + 1) ln(1/R)` with the exponent n = 2 of the profile and R = .01, the amplitude of a
 /// longitudinal wave that comes back from the end of a zone that it meets at a right angle.

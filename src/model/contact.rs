@@ -13,6 +13,7 @@ pub use potential::{Potential, PotentialRange};
 
 /// Passes the modes that have forces to the macro `$then`: name in the input, and parameters.
 /// Forces are added in this order.
+#[macro_export]
 macro_rules! contact_modes {
     ($then:ident) => {
         $then! {
@@ -22,7 +23,6 @@ macro_rules! contact_modes {
         }
     };
 }
-pub(crate) use contact_modes;
 
 /// The contact of one pair of bodies.
 #[derive(Debug, Clone, PartialEq)]

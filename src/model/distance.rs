@@ -125,7 +125,7 @@ impl Shape {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Axis;
+    use crate::Axis;
 
     #[test]
     fn distances_are_those_of_geometry() {

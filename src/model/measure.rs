@@ -2,7 +2,7 @@
 
 use super::gauge::{Gauge, Witness};
 use super::{Case, Include, Region, Vec3};
-use crate::material::Material;
+use material::Material;
 
 /// What is measured in a run: the tables `[measure]`, `[[gauge]]` and `[[witness]]`.
 #[derive(Debug, Clone, PartialEq)]

@@ -94,7 +94,7 @@ impl NumericalLimits {
         let motions = (case.loads.velocities.iter().map(|load| &load.motion))
             .chain(case.loads.surfaces.iter().map(|surface| &surface.motion))
             .chain(case.bodies.iter().filter_map(|body| body.rigid.as_ref()));
-        let driven = largest(&mut motions.map(crate::model::Motion::largest_speed));
+        let driven = largest(&mut motions.map(crate::Motion::largest_speed));
         let moving = largest(
             &mut case
                 .bodies

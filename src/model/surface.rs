@@ -23,11 +23,11 @@ pub use crossing::Crossing;
 pub use holes::triangulate;
 pub use mend::Mended;
 pub use mesh::Mesh;
-pub(in crate::model) use tree::Tree;
+pub(in crate) use tree::Tree;
 pub use triangle::{Feature, closest_on_triangle};
 
 use super::{Motion, Resistance};
-use crate::numerics::vector::{dot, minus};
+use numerics::vector::{dot, minus};
 
 /// A rigid surface, which pushes particles that come nearer than half a spacing to its kept side.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::numerics::lanes::Lanes;
+use crate::lanes::Lanes;
 
 /// Support over smoothing length: no pair farther apart than this many `h_ij` sees each other.
 pub const SUPPORT: f64 = 2.0;

@@ -5,7 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::GRAIN;
-use crate::numerics::collector::Collector;
+use numerics::collector::Collector;
 
 /// Particles of a part: those that follow each other in the store, where these fill it.
 pub const PART: usize = 64;

@@ -1,5 +1,7 @@
 //! A particle or what stands of it behind symmetry planes.
 
+use crate::Mirrors;
+
 /// A particle or one of its mirror images: index in the store and the planes it is behind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(transparent)]
@@ -34,4 +36,16 @@ impl Image {
     pub fn code(self) -> u8 {
         (self.0 >> 29) as u8
     }
+}
+
+/// What an own particle of a rank may meet beside the other own ones.
+#[derive(Debug, Clone, Copy)]
+pub struct HaloImages<'a> {
+    /// The images of owned particles behind symmetry planes, and the halo particles with theirs.
+    pub images: &'a [Image],
+    /// How many of them, the first ones, stand below this rank's own particles as far as ranks can say: a hint for
+    /// their sort.
+    pub below: usize,
+    /// The symmetry planes.
+    pub mirrors: &'a Mirrors,
 }

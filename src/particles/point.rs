@@ -4,7 +4,7 @@
 use super::columns::Life;
 use super::fields::{FIELDS, FieldId};
 use super::scatter::Scatter;
-use crate::material::{FAILED, LANES, PointBatch, PointField, point_fields, point_lanes};
+use material::{FAILED, LANES, PointBatch, PointField, point_fields, point_lanes};
 
 /// Copies a field into a batch if its role says so; a memory that no particle has is zero, and so is
 /// what no material asks for.
@@ -124,18 +124,18 @@ macro_rules! points {
         }
 
         /// Borrows [`MaterialPoints`] of a store, which leaves its other fields free.
+        #[macro_export]
         macro_rules! material_points {
             ($d particles:expr) => {
-                $crate::particles::MaterialPoints {
+                $crate::MaterialPoints {
                     body: &$d particles.body,
                     heating: &$d particles.d_specific_energy_dt,
-                    work: $crate::particles::Scatter::new(&mut $d particles.work),
+                    work: $crate::Scatter::new(&mut $d particles.work),
                     asks: false,
-                    $( $name: $crate::particles::Scatter::new(&mut $d particles.$name), )+
+                    $( $name: $crate::Scatter::new(&mut $d particles.$name), )+
                 }
             };
         }
-        pub(crate) use material_points;
     };
 }
 point_fields!(points ($));

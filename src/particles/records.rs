@@ -18,14 +18,14 @@ macro_rules! records {
         }
 
         /// Borrows [`Records`] of a store, which leaves its other fields free.
+        #[macro_export]
         macro_rules! records_of {
             ($d particles:expr) => {
-                $crate::particles::Records {
-                    $( $name: $crate::particles::Scatter::new(&mut $d particles.$name), )+
+                $crate::Records {
+                    $( $name: $crate::Scatter::new(&mut $d particles.$name), )+
                 }
             };
         }
-        pub(crate) use records_of;
     };
 }
 

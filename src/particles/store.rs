@@ -8,7 +8,7 @@ use super::arrays::SCRATCH_WORDS;
 use super::columns::{HaloPhase, Life, Owner};
 use super::fields::{FIELDS, FieldInfo, ParticleStore};
 use super::select::Select;
-use crate::material::Material;
+use material::Material;
 
 impl ParticleStore {
     /// Number of particles this rank owns.

@@ -10,7 +10,7 @@ use super::search::Rows;
 use super::shells::Shells;
 use super::tally::{LikeLayers, tally_rows};
 use super::{Share, Site, Wanted};
-use crate::model::{Body, SymmetryPlane};
+use model::{Body, SymmetryPlane};
 
 /// The sites of one body, by what they come from.
 pub(super) enum Filling {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::parts::Parts;
 use super::row::Cut;
 use super::{Share, Site};
-use crate::model::{Body, Cloud, Vec3};
+use model::{Body, Cloud, Vec3};
 
 /// Rows of a node that are looked at one by one.
 const FEW: usize = 4;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::model::{Body, LatticeKind, Shape, Vec3};
+use model::{Body, LatticeKind, Shape, Vec3};
 
 /// Nearest distance of a hexagonal close-packed lattice with one site in a unit volume, 2^(1/6).
 pub(super) const CLOSE_PACKED: f64 = 1.122_462_048_309_373;

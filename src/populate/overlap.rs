@@ -1,7 +1,7 @@
 //! How far two bodies begin within each other.
 
 use super::{Wanted, search};
-use crate::model::{Body, Case, Vec3};
+use model::{Body, Case, Vec3};
 
 /// Bodies in touch have their outermost particles a mean spacing apart, somewhat less where curved
 /// faces follow a lattice; closer ones overlap (spacings).

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use super::Brick;
 use super::lattice::Stack;
-use crate::model::SymmetryPlane;
+use model::SymmetryPlane;
 
 /// A run of sites `first..end` in row `j` of layer `k`.
 #[derive(Debug, Clone, Copy)]

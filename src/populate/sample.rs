@@ -1,7 +1,7 @@
 //! Places all over a body, to see what varies within it.
 
 use super::{Site, count, sites};
-use crate::model::{Body, LatticeKind, SymmetryPlane};
+use model::{Body, LatticeKind, SymmetryPlane};
 
 /// How much wider a lattice is from one try to the next.
 const WIDER: f64 = 1.2;

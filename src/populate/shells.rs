@@ -7,7 +7,7 @@ use super::cells::drawn;
 use super::parts::{Parts, best};
 use super::row::Cut;
 use super::{Share, Site, Wanted};
-use crate::model::{Body, LatticeKind, Shape, Vec3};
+use model::{Body, LatticeKind, Shape, Vec3};
 
 /// So many sites in a row are looked at one by one.
 const FEW: u64 = 8;

@@ -9,7 +9,7 @@
 
 use super::lattice::Stack;
 use super::{Brick, row};
-use crate::model::{Body, SymmetryPlane};
+use model::{Body, SymmetryPlane};
 
 /// One stress point.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use proptest::prelude::*;
 
 use super::*;
-use crate::model::{Initial, Lattice, LatticeKind, Shape, Vec3};
+use model::{Initial, Lattice, LatticeKind, Shape, Vec3};
 
 mod bricks;
 mod counts;

@@ -3,8 +3,8 @@
 use super::bounds;
 use super::cells::has_rows;
 use super::lattice::{pitches, shifts};
-use crate::model::{Axis, Body, LatticeKind};
-use crate::numerics::kernel::{Kernel, SUPPORT};
+use model::{Axis, Body, LatticeKind};
+use numerics::kernel::{Kernel, SUPPORT};
 
 /// How far `body` has to move along `axis` (m, signed) to come into touch with `other`, when it
 /// moves towards larger (`forward`) or smaller coordinates: the outermost particle layers of the

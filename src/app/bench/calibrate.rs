@@ -10,7 +10,7 @@ use super::driver::{Configuration, Scratch, bench_on, launch, obstacle, program,
 use super::machine::{self, cores};
 use super::messages::Messages;
 use super::report::Report;
-use crate::plan::{CONSTANTS, Layout, Machine, Outlook, Particles, Sharing, computing, step_time};
+use files::plan::{CONSTANTS, Layout, Machine, Outlook, Particles, Sharing, computing, step_time};
 
 /// The impact that tells the time of a particle, and a plate and its half, whose images behind a plane
 /// are as many as its particles.

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use crate::input::{self, InputError};
-use crate::model::Case;
+use files::input::{self, InputError};
+use model::Case;
 
 /// A case whose speed is measured.
 pub struct BenchCase {
@@ -155,7 +155,7 @@ pub fn table() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::populate;
+    use populate;
 
     #[test]
     fn cases_have_as_many_particles_as_they_say() {

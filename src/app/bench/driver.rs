@@ -13,8 +13,8 @@ use super::BenchArgs;
 use super::cases::BenchCase;
 use super::machine::cores;
 use super::report::{Report, Row};
-use crate::run::exit::{EXIT_FAILED, EXIT_INTERRUPTED};
-use crate::run::say::{say, warn};
+use files::run::exit::{EXIT_FAILED, EXIT_INTERRUPTED};
+use files::run::say::{say, warn};
 
 /// Ranks and the threads of each; the first is what the others are compared with.
 pub(super) type Configuration = (usize, usize);

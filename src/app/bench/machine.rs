@@ -23,7 +23,7 @@ impl Machine {
         Self {
             processor: processor().unwrap_or_else(|| "unknown".to_owned()),
             cores: cores(),
-            instructions: crate::numerics::dispatch::instructions().name().to_owned(),
+            instructions: numerics::dispatch::instructions().name().to_owned(),
             system: format!("{}, {}", std::env::consts::OS, std::env::consts::ARCH),
         }
     }

@@ -8,10 +8,10 @@ use super::cases::BenchCase;
 use super::memory::Resident;
 use super::neighbours;
 use super::report::Row;
-use crate::comm::Comm;
-use crate::output::{RowSchedule, Rows, checkpoint, from_root};
-use crate::particles::ParticleStore;
-use crate::step::{Phase, Simulation};
+use comm::Comm;
+use files::output::{RowSchedule, Rows, checkpoint, from_root};
+use particles::ParticleStore;
+use engine::step::{Phase, Simulation};
 
 /// Steps before the timed ones, in which buffers grow, caches fill and, over one interval between
 /// balances, ranks learn their speeds.

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use super::machine::host;
 use super::report::median;
-use crate::comm::{Comm, Exchange, Joint};
-use crate::output::{on_root, write_json};
-use crate::run::say::say;
+use comm::{Comm, Exchange, Joint};
+use files::output::{on_root, write_json};
+use files::run::say::say;
 
 /// Bytes of a message that tells the latency, and of one that tells the bandwidth.
 const SHORT: usize = 64;

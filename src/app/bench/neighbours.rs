@@ -1,7 +1,7 @@
 //! How many neighbours particles have: those of the sums, and those of the lists.
 
-use crate::comm::Comm;
-use crate::step::Simulation;
+use comm::Comm;
+use engine::step::Simulation;
 
 /// Particles whose neighbours are counted, more or less.
 const SAMPLE: u64 = 500;

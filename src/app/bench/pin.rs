@@ -1,8 +1,8 @@
 //! Threads, each bound to a core: so that they neither wander nor share one, as they would under
 //! Open MPI's default, which binds all threads of a rank to a single core.
 
-use crate::comm::Comm;
-use crate::run::say;
+use comm::Comm;
+use files::run::say;
 
 /// Starts so many threads on each rank. Each gets a core of its own where this process may use as
 /// many as the ranks of this machine need together; else the launcher's binding stays.

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use super::cases::BenchCase;
 use super::machine::Machine;
-use crate::output::{COMMIT, OutputError, VERSION, write_json};
-use crate::run::say::say;
-use crate::step::Phase;
+use files::output::{OutputError, VERSION, commit, write_json};
+use files::run::say::say;
+use engine::step::Phase;
 
 /// What one case does on one configuration of ranks and threads.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -118,7 +118,7 @@ impl Report {
     pub fn new(repeat: u32) -> Self {
         Self {
             version: VERSION.to_owned(),
-            commit: COMMIT.to_owned(),
+            commit: commit().to_owned(),
             machine: Machine::here(),
             repeat,
             skipped: Vec::new(),

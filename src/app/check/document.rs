@@ -3,12 +3,12 @@
 use serde_json::{Value, json};
 
 use super::{machine, mass_of, meetings, wall_time};
-use crate::comm::Comm;
-use crate::model::{Body, Case};
-use crate::output::unit_of_model;
-use crate::plan::{self, Files};
-use crate::populate;
-use crate::preflight::{Approach, memory};
+use comm::Comm;
+use model::{Body, Case};
+use files::output::unit_of_model;
+use files::plan::{self, Files};
+use populate;
+use files::preflight::{Approach, memory};
 
 /// All that is told, in SI units.
 pub(super) fn document(

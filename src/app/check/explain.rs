@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use crate::app::materials::written;
-use crate::input::{self, Explained, InputError};
-use crate::material::{Constant, Material, library};
-use crate::model::Case;
+use crate::materials::written;
+use files::input::{self, Explained, InputError};
+use material::{Constant, Material, library};
+use model::Case;
 
 /// Columns that keys and values take before what is said of them.
 const KEYS: usize = 44;

@@ -4,9 +4,9 @@ use std::cmp::Ordering;
 
 use super::super::results::{GRID, POINT_DATA, ResultsError, component_names};
 use super::{Report, text};
-use crate::output::Block;
-use crate::output::checkpoint::FIELDS;
-use crate::output::h5::{Array, Content, Element};
+use files::output::Block;
+use files::output::checkpoint::FIELDS;
+use files::output::h5::{Array, Content, Element};
 
 /// Rows compared at a time.
 const CHUNK: usize = 1 << 18;

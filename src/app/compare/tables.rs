@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::super::results::ResultsError;
 use super::Report;
-use crate::output::Sheet;
+use files::output::Sheet;
 
 /// Tables of clocks and ranks.
 const OF_THE_PROCESS: [&str; 2] = ["performance.csv", "ranks.csv"];

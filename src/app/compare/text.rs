@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::model::differences::{Difference, differences};
+use model::differences::{Difference, differences};
 
 /// Tables of a case that do not touch results.
 const FREE: [&str; 5] = ["output", "fragments", "run", "domain", "measure"];

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use super::super::results::only_part;
 use super::{FragmentsError, read_case};
-use crate::fragments::{FirstSizes, Matter, belongs};
-use crate::model::{Axis, Case, FragmentOptions, Include, SymmetryPlane};
-use crate::output::h5::Content;
-use crate::output::h5::read::{ReadError, SnapshotFile};
+use engine::fragments::{FirstSizes, Matter, belongs};
+use model::{Axis, Case, FragmentOptions, Include, SymmetryPlane};
+use files::output::h5::Content;
+use files::output::h5::read::{ReadError, SnapshotFile};
 
 /// Particles of a snapshot, but for frozen ones.
 pub struct Loaded {

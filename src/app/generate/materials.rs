@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use crate::app::materials::table;
-use crate::material::{Constant, Material, library};
+use crate::materials::table;
+use material::{Constant, Material, library};
 
 /// What the page says before its tables.
 const HEAD: &str = "\

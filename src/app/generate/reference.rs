@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::{Map, Value};
 
-use crate::input::{referred, stated};
+use files::input::{referred, stated};
 
 /// What the page says before its tables.
 const HEAD: &str = "\
@@ -25,7 +25,7 @@ explains what the keys do and how they go together.
 /// Tables by their names in the schema.
 type Tables = Map<String, Value>;
 
-/// The page of a schema (that of [`crate::input::schema`]).
+/// The page of a schema (that of [`files::input::schema`]).
 pub fn page(schema: &Value) -> String {
     let mut page = HEAD.to_owned();
     let empty = Tables::new();

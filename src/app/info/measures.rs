@@ -6,9 +6,9 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::app::form;
-use crate::model::readable::{shown, shown_vector};
-use crate::output::{RunFolder, Sheet, gauge_records};
+use crate::form;
+use model::readable::{shown, shown_vector};
+use files::output::{RunFolder, Sheet, gauge_records};
 
 /// Bytes of the end of a table that are read: the rows of the last time of some hundred bodies.
 const END: u64 = 1 << 16;
@@ -211,8 +211,8 @@ fn end_of_header(text: &[u8]) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::Column;
-    use crate::output::gauge_records::GaugeRecords;
+    use files::output::Column;
+    use files::output::gauge_records::GaugeRecords;
     use std::fmt::Write as _;
 
     #[test]

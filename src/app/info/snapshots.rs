@@ -3,8 +3,8 @@
 use serde_json::json;
 
 use super::text::Text;
-use crate::output::{OutputError, RunFolder, series};
-use crate::run::say::seconds;
+use files::output::{OutputError, RunFolder, series};
+use files::run::say::seconds;
 
 /// Tells of the usual snapshots and of those of each schedule.
 pub(super) fn tell(folder: &RunFolder, text: &mut Text) -> Result<(), OutputError> {

@@ -5,8 +5,8 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::text::Text;
-use crate::app::results::ResultsError;
-use crate::output::read_small;
+use crate::results::ResultsError;
+use files::output::read_small;
 
 /// The figures of a finished run.
 pub(super) fn summary(path: &Path, text: &mut Text) -> Result<(), ResultsError> {

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value};
 
-use crate::model::readable::one_line;
+use model::readable::one_line;
 
 /// Lines for people, and the same as values for programs.
 #[derive(Default)]

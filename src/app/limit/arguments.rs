@@ -2,10 +2,10 @@
 
 use super::laws::{self, Law};
 use super::{Beside, Output};
-use crate::ballistic::{
+use desk::ballistic::{
     Shield, Shot, crater, hole, modified_nno, nno, sizing, stuffed, thin_bumper,
 };
-use crate::plot::parse_quantity;
+use desk::plot::parse_quantity;
 
 /// The equations.
 #[expect(clippy::doc_markdown, reason = "the comments are the help")]

@@ -1,8 +1,8 @@
 //! The equations as functions of the speed: columns of a table, curves of a chart.
 
-use crate::ballistic::crater::{self, Failure, Wall};
-use crate::ballistic::{Limit, Regime, Shield, Shot, hole, sizing};
-use crate::model::readable::shown;
+use desk::ballistic::crater::{self, Failure, Wall};
+use desk::ballistic::{Limit, Regime, Shield, Shot, hole, sizing};
+use model::readable::shown;
 
 /// A limit equation of a shield.
 pub(super) type Equation = fn(&Shield, &Shot) -> Limit;
@@ -212,5 +212,5 @@ fn angle(shot: &Shot) -> String {
     if degrees == 0.0 {
         return String::new();
     }
-    format!(" at {} deg", crate::model::readable::short(degrees))
+    format!(" at {} deg", model::readable::short(degrees))
 }

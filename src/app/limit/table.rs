@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 use serde_json::{Value, json};
 
 use super::laws::Law;
-use crate::app::form;
-use crate::output::Sheet;
-use crate::sweep::Shot;
+use crate::form;
+use files::output::Sheet;
+use desk::sweep::Shot;
 
 /// A millimetre (m) and a kilometre in a second (m/s).
 const UNITS: [f64; 2] = [1e-3, 1e3];
@@ -127,7 +127,7 @@ pub(super) fn shots(law: &Law, shots: &[Shot]) -> String {
 mod tests {
     use super::super::laws::{Row, limit};
     use super::*;
-    use crate::ballistic::{Limit, Regime, Shield};
+    use desk::ballistic::{Limit, Regime, Shield};
 
     /// A millimetre at a kilometre in a second, two at two.
     fn law() -> Law {
@@ -140,7 +140,7 @@ mod tests {
             wall_density: 2700.0,
             stuffing: 0.0,
         };
-        let flight = crate::ballistic::Shot {
+        let flight = desk::ballistic::Shot {
             speed: 0.0,
             angle: 0.0,
             density: 2700.0,

@@ -1,8 +1,8 @@
 //! What each number of a machine matters.
 
 use super::{PlanArgs, Planned, as_number};
-use crate::plan::{CONSTANTS, Load, Machine, Weak, computing, refined, step_time};
-use crate::run::say::say;
+use files::plan::{CONSTANTS, Load, Machine, Weak, computing, refined, step_time};
+use files::run::say::say;
 
 /// The efficiency of the most ranks, each number of the machine twice as large in turn.
 pub fn print(args: &PlanArgs, machine: &Machine, alone: &Load, all: &[Planned]) {

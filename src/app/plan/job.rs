@@ -4,11 +4,11 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use super::source::Source;
-use crate::app::run::default_folder;
-use crate::app::shell::quoted;
-use crate::model::readable::one_line;
-use crate::output::RunFolder;
-use crate::plan::{Machine, Row};
+use crate::run::default_folder;
+use crate::shell::quoted;
+use model::readable::one_line;
+use files::output::RunFolder;
+use files::plan::{Machine, Row};
 
 /// How many times the foreseen time a job asks for.
 const MARGIN: f64 = 2.0;

@@ -5,9 +5,9 @@ use std::path::Path;
 use super::job::{self, Job};
 use super::source::Source;
 use super::{PlanArgs, layout_of, print_files, row_of, table, write_sheet, write_text};
-use crate::plan::{Machine, Row, Sharing};
-use crate::preflight::memory::in_words;
-use crate::run::say::say;
+use files::plan::{Machine, Row, Sharing};
+use files::preflight::memory::in_words;
+use files::run::say::say;
 
 /// Fewest particles of a rank that is not the only one of its node.
 const FEWEST: usize = 1000;

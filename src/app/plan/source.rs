@@ -2,16 +2,16 @@
 
 use std::path::Path;
 
-use crate::app::results::{Results, only_part};
-use crate::comm::Comm;
-use crate::input;
-use crate::model::Case;
-use crate::output::h5::Content;
-use crate::output::h5::read::SnapshotFile;
-use crate::output::{RunFolder, checkpoint};
-use crate::particles::ParticleStore;
-use crate::plan::{Outlook, Particles};
-use crate::plot::snapshots;
+use crate::results::{Results, only_part};
+use comm::Comm;
+use files::input;
+use model::Case;
+use files::output::h5::Content;
+use files::output::h5::read::SnapshotFile;
+use files::output::{RunFolder, checkpoint};
+use particles::ParticleStore;
+use files::plan::{Outlook, Particles};
+use desk::plot::snapshots;
 
 /// What is planned.
 pub struct Source {
@@ -69,7 +69,7 @@ pub fn read(path: &Path, set: &[String]) -> Result<Source, String> {
 
 fn at_start(case: Case) -> Result<Source, String> {
     let most = case.bodies.iter().fold(0_u64, |all, body| {
-        all.saturating_add(crate::populate::count(
+        all.saturating_add(populate::count(
             body,
             case.dimension,
             &case.symmetry,

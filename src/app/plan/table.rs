@@ -5,10 +5,10 @@ use std::fmt::Write as _;
 use serde_json::{Value, json};
 
 use super::source::Source;
-use crate::app::form;
-use crate::output::Sheet;
-use crate::plan::{Files, Machine, Row, Sharing};
-use crate::preflight::memory::in_words;
+use crate::form;
+use files::output::Sheet;
+use files::plan::{Files, Machine, Row, Sharing};
+use files::preflight::memory::in_words;
 
 /// Columns of the printed table, with their widths.
 const COLUMNS: [(&str, usize); 13] = [

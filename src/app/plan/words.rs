@@ -1,9 +1,9 @@
 //! Lines above the table.
 
 use super::source::Source;
-use crate::model::readable::{short, shown};
-use crate::plan::{Machine, Sharing};
-use crate::run::say::counted;
+use model::readable::{short, shown};
+use files::plan::{Machine, Sharing};
+use files::run::say::counted;
 
 /// A share of the work that counts as all of it.
 const ALL: f64 = 0.995;

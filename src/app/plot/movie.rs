@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::PlotArgs;
 use super::out::{MOVIES, save, target};
-use crate::plot::movie::{Format, write};
-use crate::plot::{PlotError, Sequence};
+use desk::plot::movie::{Format, write};
+use desk::plot::{PlotError, Sequence};
 
 /// What belongs to movies.
 #[derive(Debug, Clone, Default, clap::Args)]

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use super::PlotArgs;
-use crate::app::form::wrote;
-use crate::plot::{self, Canvas, Chart, Format, PlotError, movie};
+use crate::form::wrote;
+use desk::plot::{self, Canvas, Chart, Format, PlotError, movie};
 
 /// What movies are called.
 pub const MOVIES: &str =

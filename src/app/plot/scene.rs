@@ -2,7 +2,7 @@
 
 use super::out::named;
 use super::{PlotArgs, curves, each};
-use crate::plot::{
+use desk::plot::{
     Camera, Format, NO_TABLE, PlotError, RadiographRequest, Radiographs, SceneRequest, Scenes,
 };
 

@@ -5,9 +5,9 @@ use std::time::Duration;
 use indicatif::HumanDuration;
 
 use super::Seen;
-use crate::model::readable::{one_line, shown};
-use crate::output::{Energies, Outlook};
-use crate::run::say::{counted, seconds};
+use model::readable::{one_line, shown};
+use files::output::{Energies, Outlook};
+use files::run::say::{counted, seconds};
 
 /// Heights of a column of text.
 const HEIGHTS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
@@ -189,7 +189,7 @@ fn ranks(outlook: &Outlook, width: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::{Phase, Status};
+    use files::output::{Phase, Status};
 
     fn seen(energies: Energies) -> Seen {
         let outlook = Outlook {

@@ -1,7 +1,7 @@
 //! A bar on the way: constant states with fronts between them, and the waves that its ends send.
 
-use crate::exact::finite_strain::Medium;
-use crate::exact::{Sample, bisect};
+use crate::finite_strain::Medium;
+use crate::{Sample, bisect};
 
 /// Changes of stretch below this are none.
 pub(super) const SPECK: f64 = 1e-9;

@@ -30,7 +30,7 @@
 //! the floor of D lies at `μ = 2.66`.
 
 use super::PointResponse;
-use crate::material::{at_least, at_most};
+use crate::{at_least, at_most};
 
 /// Grüneisen parameter of a monatomic gas.
 const THIN: f64 = 2.0 / 3.0;

@@ -5,7 +5,7 @@ use super::alloys::{AL_5083, AL_7075, TI_6AL_4V, WELDOX_460E};
 use super::metal::{jc, jc_of_rate};
 use super::metals::{AL_2024, AL_6061, COPPER, STEEL_4340};
 use super::{Parts, heat};
-use crate::material::{AfterSpall, Failure, JohnsonCookFailure, RateForm, Spall};
+use crate::{AfterSpall, Failure, JohnsonCookFailure, RateForm, Spall};
 
 const UINTAH: &str = "Steinberg-Guinan constants in Uintah, citing Steinberg, UCRL-MA-106439";
 const STEINBERG: &str =
@@ -209,7 +209,7 @@ impl Parts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::library;
+    use crate::library;
 
     /// Failure strains at the reference rate and temperature, at triaxialities −1/3, 0, 1/3, 1 and 1.5:
     /// values computed apart from this code to four digits.

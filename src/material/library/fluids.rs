@@ -1,7 +1,7 @@
 //! Liquids and gases.
 
 use super::{Parts, heat};
-use crate::material::{Eos, Failure, IdealGas, Strength, Tait, Viscous};
+use crate::{Eos, Failure, IdealGas, Strength, Tait, Viscous};
 
 const ATMOSPHERE: &str = "U.S. Standard Atmosphere (1976), sea level";
 const DIATOMIC: &str = "ideal gas of two atoms: γ = 7/5, c_v = R/(γ − 1) with R = 287.053 J/(kg K)";

@@ -1,7 +1,7 @@
 //! Tillotson's law of metals and rocks.
 
 use super::Parts;
-use crate::material::{Eos, Failure, Strength, Tillotson, VonMises};
+use crate::{Eos, Failure, Strength, Tillotson, VonMises};
 
 const TILLOTSON: &str = "constants on which miluphcuda, SWIFT, Phantom, OpenSPH and Spheral agree; \
      metals of Tillotson (1962), GA-3216, rocks of Benz & Asphaug (1999), Icarus 142, 5";

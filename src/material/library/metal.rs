@@ -1,7 +1,7 @@
 //! What records of metals are made from: Mie–Grüneisen with a strength.
 
 use super::Parts;
-use crate::material::{
+use crate::{
     Eos, Failure, JohnsonCook, MieGruneisen, SteinbergGuinan, Strength, ThermalConstants, VonMises,
 };
 

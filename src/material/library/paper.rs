@@ -1,7 +1,7 @@
 //! The seed paper's own materials, and those of classical test cases.
 
 use super::Parts;
-use crate::material::{Elastic, Eos, Failure, Linear, LinearForm, NeoHookean, Strength, VonMises};
+use crate::{Elastic, Eos, Failure, Linear, LinearForm, NeoHookean, Strength, VonMises};
 
 const BARS: &str = "Vignjevic et al. (2006), section 3.2: E = 2.1 Mbar, ν = .28 (steel), E = .70 \
      Mbar, ν = .33 (aluminium)";

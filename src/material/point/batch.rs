@@ -1,6 +1,6 @@
 //! The numbers that material points hold, eight points at a time.
 
-use super::point_fields;
+use crate::point_fields;
 
 /// Points advanced together; a batch lane is one point.
 pub const LANES: usize = 8;
@@ -9,21 +9,21 @@ pub const LANES: usize = 8;
 pub type Lanes = [f64; LANES];
 
 /// What a batch holds of a field.
+#[macro_export]
 macro_rules! point_lanes {
     (Scalar) => {
-        $crate::material::Lanes
+        $crate::Lanes
     };
     (Id) => {
-        [u64; $crate::material::LANES]
+        [u64; $crate::LANES]
     };
     (Symmetric) => {
-        [$crate::material::Lanes; 6]
+        [$crate::Lanes; 6]
     };
     (Tensor) => {
-        [$crate::material::Lanes; 9]
+        [$crate::Lanes; 9]
     };
 }
-pub(crate) use point_lanes;
 
 macro_rules! point_batch {
     ($( $(#[doc = $doc:literal])+ $name:ident: $kind:ident, $role:ident; )+) => {

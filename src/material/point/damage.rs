@@ -40,15 +40,15 @@
 use super::failure::{Effect, FAILED, Manner, Molten};
 use super::principal_tension::largest;
 use super::{Conditions, LANES, Lanes, PointBatch};
-use crate::material::{at_least, at_most};
-use crate::numerics::principal::principal;
+use crate::{at_least, at_most};
+use numerics::principal::principal;
 
 /// Least density of failed matter, over that of the reference state.
 const SPRAY: f64 = 0.1;
 
 /// Failed matter does not expand beyond spray.
 #[inline(always)]
-pub(in crate::material) fn limit_expansion(point: &mut PointBatch, reference_density: f64) {
+pub(in crate) fn limit_expansion(point: &mut PointBatch, reference_density: f64) {
     for k in 0..LANES {
         if point.damage[k] >= FAILED {
             point.density[k] = at_least(point.density[k], SPRAY * reference_density);

@@ -2,11 +2,11 @@
 
 use serde::Deserialize;
 
-use crate::material::declare::{Constants, Value};
-use crate::numerics::counter::exponential;
+use crate::declare::{Constants, Value};
+use numerics::counter::exponential;
 
 /// Damage of matter that has failed.
-pub(crate) const FAILED: f64 = 1.0;
+pub const FAILED: f64 = 1.0;
 
 /// What failed matter has lost.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
@@ -215,7 +215,7 @@ macro_rules! failure_laws {
             /// Keys of the laws in the input and their constants; those that the laws have in common
             /// have an empty key.
             #[must_use]
-            pub fn constants(&self) -> Vec<(&'static str, $crate::material::Constants)> {
+            pub fn constants(&self) -> Vec<(&'static str, $crate::Constants)> {
                 let laws = [$( self.$key.map(|law| (stringify!($key), law.constants())), )+];
                 let laws = laws.into_iter().flatten();
                 laws.chain([("", self.manner.constants())]).collect()
@@ -228,13 +228,13 @@ macro_rules! failure_laws {
             }
 
             #[inline(always)]
-            pub(in crate::material) fn follows_state(&self) -> bool {
+            pub(in crate) fn follows_state(&self) -> bool {
                 false $( || $law::FOLLOWS_STATE && self.$key.is_some_and(|law| law.follows_state()) )+
             }
 
             /// Stage 1.
             #[inline(always)]
-            pub(in crate::material) fn limit_tension(&self, point: &mut PointBatch) {
+            pub(in crate) fn limit_tension(&self, point: &mut PointBatch) {
                 let softens = self.manner.softens();
                 $( if let Some(law) = &self.$key {
                     law.limit_tension(point, softens);
@@ -257,7 +257,7 @@ macro_rules! failure_laws {
 
             /// Stage 5, with the bulk modulus of the state (Pa).
             #[inline(always)]
-            pub(in crate::material) fn fail(
+            pub(in crate) fn fail(
                 &self,
                 point: &mut PointBatch,
                 now: &mut Conditions,

@@ -30,8 +30,8 @@ use serde::Deserialize;
 use super::failure::FAILED;
 use super::principal_tension::{largest, may_exceed};
 use super::{Conditions, LANES, Law, PointBatch};
-use crate::material::{at_least, at_most};
-use crate::numerics::counter::exponential;
+use crate::{at_least, at_most};
+use numerics::counter::exponential;
 
 /// Flaws of a particle that are drawn one by one.
 const DRAWN: f64 = 1000.0;

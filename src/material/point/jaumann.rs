@@ -14,7 +14,7 @@
 //! rotation come together.
 
 use super::{Conditions, LANES, PointBatch};
-use crate::numerics::vector::dot;
+use numerics::vector::dot;
 
 /// Hypoelasticity: advances the deviatoric stress of a batch by the step with its shear moduli.
 #[inline(always)]

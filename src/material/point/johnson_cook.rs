@@ -13,7 +13,7 @@
 //! and ε̇ are those of the end of the step: the return solves for both at once.
 
 use super::{Conditions, LANES, Law, PointBatch, jaumann, radial_return};
-use crate::material::ThermalConstants;
+use crate::ThermalConstants;
 
 law! {
     /// Elastic–plastic with strain hardening, strain rate hardening and thermal softening.

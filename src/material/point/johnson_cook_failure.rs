@@ -25,7 +25,7 @@ use serde::Deserialize;
 
 use super::radial_return::equivalent_stress;
 use super::{Conditions, LANES, Law, PointBatch};
-use crate::material::{ThermalConstants, at_least};
+use crate::{ThermalConstants, at_least};
 
 /// Triaxiality below which nothing is damaged.
 const CUT_OFF: f64 = -1.0 / 3.0;

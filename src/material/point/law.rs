@@ -2,8 +2,8 @@
 
 use super::failure::Manner;
 use super::{LANES, Lanes, PointBatch};
-use crate::material::ThermalConstants;
-use crate::material::declare::Listed;
+use crate::ThermalConstants;
+use crate::declare::Listed;
 
 /// Constants that cannot go together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -135,7 +135,7 @@ pub struct Conditions {
 impl Conditions {
     /// Those of the reference state.
     #[inline(always)]
-    pub(in crate::material) fn new(
+    pub(in crate) fn new(
         dt: f64,
         reference_density: f64,
         [shear_modulus, bulk_modulus]: [f64; 2],
@@ -235,7 +235,7 @@ macro_rules! strength_laws {
 
             /// Key of the law in the input and its constants; nothing for a fluid.
             #[must_use]
-            pub fn constants(&self) -> Option<(&'static str, $crate::material::Constants)> {
+            pub fn constants(&self) -> Option<(&'static str, $crate::Constants)> {
                 match self {
                     Self::None => None,
                     $( Self::$law(law) => Some((stringify!($key), law.constants())), )+
@@ -243,7 +243,7 @@ macro_rules! strength_laws {
             }
 
             #[inline(always)]
-            pub(in crate::material) fn follows_state(&self) -> bool {
+            pub(in crate) fn follows_state(&self) -> bool {
                 match self {
                     Self::None => false,
                     $( Self::$law(_) => $law::FOLLOWS_STATE, )+
@@ -253,7 +253,7 @@ macro_rules! strength_laws {
             /// Stages 2 to 4 of the law, and the second of `failure`. Without `ALL`, only of laws
             /// that do not follow the state.
             #[inline(always)]
-            pub(in crate::material) fn act<const ALL: bool>(
+            pub(in crate) fn act<const ALL: bool>(
                 &self,
                 point: &mut PointBatch,
                 now: &mut Conditions,
@@ -282,8 +282,8 @@ pub(super) use strength_laws;
 mod tests {
     use std::collections::BTreeSet;
 
-    use crate::material::point::point_fields;
-    use crate::material::{
+    use crate::point_fields;
+    use crate::{
         AfterSpall, Crosses, Effect, Eos, Failure, Flaws, GradyKipp, LANES, PointBatch,
         PrincipalStress, Spall, library,
     };

@@ -16,7 +16,7 @@
 //! stress: the law has a potential, which the Jaumann rate has not.
 
 use super::{Conditions, LANES, Lanes, Law, PointBatch};
-use crate::numerics::vector::dot;
+use numerics::vector::dot;
 
 /// Newton iterations for β, the same for all states; ten suffice for a stretch of six.
 const ITERATIONS: usize = 16;

@@ -2,7 +2,7 @@
 //! limit, and damage is the strain over the limit before.
 
 use super::{Conditions, LANES, Law, PointBatch};
-use crate::material::at_least;
+use crate::at_least;
 
 law! {
     /// Largest plastic strain.

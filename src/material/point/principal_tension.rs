@@ -2,7 +2,7 @@
 
 use super::PointBatch;
 use super::radial_return::equivalent_stress;
-use crate::numerics::principal::principal;
+use numerics::principal::principal;
 
 /// Whether the largest principal stress of lane `k` can exceed a limit (Pa): it lies at most two
 /// thirds of the equivalent stress above the mean.

@@ -17,7 +17,7 @@ use serde::Deserialize;
 
 use super::failure::FAILED;
 use super::{Conditions, LANES, Law, PointBatch, damage};
-use crate::material::at_least;
+use crate::at_least;
 
 /// What becomes of matter beyond the limit of [`Spall`].
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]

@@ -17,7 +17,7 @@
 //! `T_m0` is a constant of the fit, above the melting point at zero pressure.
 
 use super::{Conditions, Contradiction, LANES, Law, PointBatch, jaumann, radial_return};
-use crate::material::{at_least, at_most};
+use crate::{at_least, at_most};
 
 law! {
     /// Elastic–plastic with a shear modulus and a yield stress that follow pressure and

@@ -1,6 +1,6 @@
 //! Distance from an ellipse or an ellipsoid.
 
-use crate::model::Vec3;
+use crate::Vec3;
 
 /// Halvings of the bracket of the root: all bits of a double.
 const HALVINGS: usize = 80;

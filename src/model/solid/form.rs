@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::ellipsoid;
 use super::polygon::{Nearest, Polygon};
-use crate::model::{Cloud, Mesh, Vec3};
+use crate::{Cloud, Mesh, Vec3};
 
 /// What a solid is, before it is turned and moved. In two dimensions z does not count.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,7 @@
 //! How far forms reach along a direction.
 
 use super::Form;
-use crate::model::Vec3;
+use crate::Vec3;
 
 impl Form {
     /// The largest `n·x` (m) of the form in its own frame, for a vector `n`; infinite along an axis

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use proptest::prelude::*;
 
 use super::*;
-use crate::model::{Mesh, Shape};
+use crate::{Mesh, Shape};
 
 fn placed(form: Form) -> Solid {
     let turn = rotation(&Vec3::new(1.0, 2.0, -0.5), 0.7);
@@ -180,7 +180,7 @@ fn ready_shapes_are_the_solids_that_they_become() {
         },
         Shape::Cylinder {
             centre,
-            axis: crate::model::Axis::X,
+            axis: crate::Axis::X,
             radius: 0.8,
             length: 1.7,
         },
@@ -334,10 +334,10 @@ fn boxes_of_turned_solids_are_exact() {
     let (x, z) = (cos + 0.25, sin + 0.25);
     near(&ring, [1.0 - x, 0.75, 3.0 - z], [1.0 + x, 3.25, 3.0 + z]);
     let pair = Solid::Union(vec![brick.clone(), ring.clone()]);
-    let lowest = crate::model::Shape::Solid(pair).lowest(&Vec3::y());
+    let lowest = crate::Shape::Solid(pair).lowest(&Vec3::y());
     assert!((lowest - 0.75).abs() < 1e-12, "{lowest}");
     let slope = Vec3::new(0.6, 0.0, 0.8);
-    let lowest = crate::model::Shape::Solid(brick).lowest(&slope);
+    let lowest = crate::Shape::Solid(brick).lowest(&slope);
     let at = slope.dot(&Vec3::new(1.0, 2.0, 3.0));
     assert!(
         (lowest - (at - 0.6 * reach - 0.8)).abs() < 1e-12,

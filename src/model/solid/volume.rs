@@ -1,7 +1,7 @@
 //! Volumes by halving boxes: those inside count whole, the smallest ones at the surface by the
 //! plane that the distance tells.
 
-use crate::model::Vec3;
+use crate::Vec3;
 
 /// Halvings of the longest edge, in two and in three dimensions.
 const HALVINGS: [u32; 2] = [10, 7];

@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::model::readable::shown_vector;
-use crate::numerics::vector::{dot, minus};
+use crate::readable::shown_vector;
+use numerics::vector::{dot, minus};
 
 /// Why triangles make no closed surface.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

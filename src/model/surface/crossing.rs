@@ -2,7 +2,7 @@
 
 use super::Mesh;
 use super::soup::normal_area;
-use crate::numerics::vector::{cross, dot, minus};
+use numerics::vector::{cross, dot, minus};
 
 /// Volumes below this share of what they could be are rounding: nothing crosses.
 const ROUNDING: f64 = 1e-9;

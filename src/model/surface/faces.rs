@@ -2,7 +2,7 @@
 
 use super::Mesh;
 use super::triangle::{Feature, closest_on_triangle};
-use crate::numerics::vector::{cross, dot, minus};
+use numerics::vector::{cross, dot, minus};
 
 /// Faces whose normals have at least this product (26°) are parts of one that is curved.
 const SAME_FACE: f64 = 0.9;

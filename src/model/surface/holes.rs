@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::closed::{MeshError, edges, place};
 use super::soup::{Soup, normal_area, number};
-use crate::model::readable::shown;
-use crate::numerics::vector::{cross, dot, minus};
+use crate::readable::shown;
+use numerics::vector::{cross, dot, minus};
 
 /// Most corners of a hole that is filled, and of a polygon.
 const MOST_CORNERS: usize = 2000;

@@ -7,8 +7,8 @@ use super::closed::{MeshError, edges};
 use super::holes;
 use super::shells::{align, drop_doubles, swap_flat};
 use super::soup::{Soup, is_needle, number, undirected};
-use crate::model::readable::{shown, shown_vector};
-use crate::numerics::vector::{dot, minus};
+use crate::readable::{shown, shown_vector};
+use numerics::vector::{dot, minus};
 
 /// Corners as near as this share of the size are one: files hold six digits or so.
 const ROUNDING: f64 = 1e-6;

@@ -11,7 +11,7 @@ use super::soup::{Soup, normal_area};
 use super::tree::Tree;
 use super::triangle::{Feature, closest_on_triangle};
 use super::{Foot, SurfaceFile, along};
-use crate::numerics::vector::{cross, dot, minus};
+use numerics::vector::{cross, dot, minus};
 
 /// A closed surface of triangles, turned so that their normals point outwards.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::closed::{MeshError, edges, place};
 use super::soup::{Soup, normal_area, number, undirected};
 use super::tree::Tree;
-use crate::numerics::vector::{cross, dot, minus};
+use numerics::vector::{cross, dot, minus};
 
 /// Turns triangles so that all run alike along their edges, as most of each piece do. Gives how many
 /// were turned.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::closed::{MeshError, check_closed, place};
-use crate::numerics::vector::{cross, dot, minus};
+use numerics::vector::{cross, dot, minus};
 
 /// Triangles that may share corners.
 #[derive(Debug, Clone, PartialEq, Default)]

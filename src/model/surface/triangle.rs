@@ -1,6 +1,6 @@
 //! The closest point of a triangle (Ericson 2005, *Real-Time Collision Detection*, section 5.1.5).
 
-use crate::numerics::vector::{dot, minus};
+use numerics::vector::{dot, minus};
 
 /// Part of a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

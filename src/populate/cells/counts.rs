@@ -1,9 +1,9 @@
 //! How many sites there are and where, tile by tile where these are whole.
 
 use super::laid::{Block, Cells, Level, Lie, each};
-use crate::model::{Vec3, cube};
-use crate::populate::row::Cut;
-use crate::populate::{Share, Site};
+use model::{Vec3, cube};
+use crate::row::Cut;
+use crate::{Share, Site};
 
 /// Sites that are told together.
 enum Piece {

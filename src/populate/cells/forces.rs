@@ -7,8 +7,8 @@
 
 use rayon::prelude::*;
 
-use crate::numerics::dispatch::{Vectorised, instructions};
-use crate::numerics::lanes::{F64x8, LANES, Lanes};
+use numerics::dispatch::{Vectorised, instructions};
+use numerics::lanes::{F64x8, LANES, Lanes};
 
 /// How far sites feel each other.
 pub(super) const REACH: f64 = 2.2;

@@ -2,9 +2,9 @@
 
 use super::fit::{LAYER, settled};
 use super::laid::{Block, Cells};
-use crate::populate::Wanted;
-use crate::populate::parts::{Parts, best};
-use crate::populate::row::Cut;
+use crate::Wanted;
+use crate::parts::{Parts, best};
+use crate::row::Cut;
 
 /// Blocks of a level of what is filled by cells, within some cuts.
 struct Blocks<'a> {
@@ -52,8 +52,8 @@ impl Parts for Blocks<'_> {
     }
 }
 
-/// The sites where `value` is smallest, smallest first: see [`crate::populate::search`].
-pub(in crate::populate) fn smallest(
+/// The sites where `value` is smallest, smallest first: see [`crate::search`].
+pub(in crate) fn smallest(
     cells: &Cells,
     cuts: &[Cut],
     wanted: Wanted,
@@ -72,7 +72,7 @@ pub(in crate::populate) fn smallest(
 
 /// Smallest and largest coordinates (m) of the sites, if there are any; of those that are fitted to
 /// a billionth of a spacing.
-pub(in crate::populate) fn extremes(cells: &Cells, cuts: &[Cut]) -> Option<([f64; 3], [f64; 3])> {
+pub(in crate) fn extremes(cells: &Cells, cuts: &[Cut]) -> Option<([f64; 3], [f64; 3])> {
     let wanted = Wanted {
         most: 1,
         limit: f64::INFINITY,

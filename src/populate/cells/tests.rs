@@ -11,9 +11,9 @@ use super::forces::{REACH, Sites};
 use super::relax::step;
 use super::tile::{GLASS_EDGES, Tile};
 use super::*;
-use crate::model::{Axis, Body, Focus, Grading, LatticeKind, Shape, SymmetryPlane, Vec3};
-use crate::numerics::counter::split_mix;
-use crate::numerics::kernel::Kernel;
+use model::{Axis, Body, Focus, Grading, LatticeKind, Shape, SymmetryPlane, Vec3};
+use numerics::counter::split_mix;
+use numerics::kernel::Kernel;
 
 mod harmonics;
 mod told;
@@ -145,7 +145,7 @@ fn tiles_are_relaxed_by_the_rules_of_the_fit() {
 }
 
 fn body(shape: Shape, kind: LatticeKind, spacing: f64) -> Body {
-    let mut body = crate::populate::tests::body(shape, kind, spacing, 0.0);
+    let mut body = crate::tests::body(shape, kind, spacing, 0.0);
     body.lattice.seed = 3;
     body
 }
@@ -256,7 +256,7 @@ fn a_fitted_body_has_a_smooth_layer_half_a_spacing_below_its_faces() {
     for (shape, planes) in [(ball(12.0), &[][..]), (cube, &[]), (ball(15.0), &planes)] {
         let body = body(shape, LatticeKind::Glass, 1.0);
         let cells = Cells::of(&body, 3, planes).unwrap();
-        let sites: Vec<Site> = crate::populate::sites(&body, 3, planes, None).collect();
+        let sites: Vec<Site> = crate::sites(&body, 3, planes, None).collect();
         let depths = sites.iter().map(|s| -cells.distance(&s.position.into()));
         let depths: Vec<f64> = depths.collect();
         let layer: Vec<f64> = depths.iter().copied().filter(|&d| d < 1.0).collect();
@@ -288,7 +288,7 @@ fn crystals_have_their_density_and_neighbours() {
         ),
     ] {
         let body = body(ball(10.0), kind, 1.0);
-        let sites: Vec<Site> = crate::populate::sites(&body, 3, &[], None).collect();
+        let sites: Vec<Site> = crate::sites(&body, 3, &[], None).collect();
         let volume = 4.0 / 3.0 * std::f64::consts::PI * 1000.0;
         assert!((sites.len() as f64 / volume - 1.0).abs() < 0.02);
         let (nearest, _) = pairs(&sites, 3);
@@ -318,8 +318,8 @@ fn the_mass_of_all_particles_is_that_of_the_shape() {
     }];
     for (planes, volume) in [(&[][..], ball_of(1.0)), (&plane, 0.5 * ball_of(1.0))] {
         let body = body_of(ball(1.0));
-        let each = crate::populate::even_volume(&body, 3, planes).unwrap();
-        let count = crate::populate::sites(&body, 3, planes, None).count();
+        let each = crate::even_volume(&body, 3, planes).unwrap();
+        let count = crate::sites(&body, 3, planes, None).count();
         let error = each * count as f64 / volume - 1.0;
         println!("{} planes: volume {error:e}", planes.len());
         assert!(error.abs() < 1e-5, "{error:e}");
@@ -339,8 +339,8 @@ fn a_graded_body_is_even() {
             growth,
             coarsest: 4.0,
         });
-        let sites: Vec<Site> = crate::populate::sites(&body, 3, &[], None).collect();
-        let shares = crate::populate::shares(&body, 3, &[]);
+        let sites: Vec<Site> = crate::sites(&body, 3, &[], None).collect();
+        let shares = crate::shares(&body, 3, &[]);
         let sum = sites.iter().fold(0.0, |sum, site| sum + site.share);
         assert!((sum / shares - 1.0).abs() < 1e-12);
         let volume = 4.0 / 3.0 * std::f64::consts::PI * 45.0_f64.powi(3);

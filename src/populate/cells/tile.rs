@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::OnceLock;
 
-use crate::model::{LatticeKind, Vec3, rotation};
-use crate::numerics::counter::split_mix;
+use model::{LatticeKind, Vec3, rotation};
+use numerics::counter::split_mix;
 
 /// Sites of the shipped tiles: 16³ in three dimensions, 64² in two, as 16-bit fractions of an edge;
 /// any first ones of them are spread evenly.
@@ -155,7 +155,7 @@ fn scaled(edges: [f64; 3], sites: u32) -> [f64; 3] {
 
 /// How what has a seed is turned, and moved (tiles): any turn in space (about z in two dimensions)
 /// and any place are as likely.
-pub(in crate::populate) fn drawn(seed: u64, dimension: usize) -> (nalgebra::Matrix3<f64>, Vec3) {
+pub(in crate) fn drawn(seed: u64, dimension: usize) -> (nalgebra::Matrix3<f64>, Vec3) {
     let mut state = seed;
     let mut draw = || {
         let word = split_mix(&mut state);

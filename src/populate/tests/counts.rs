@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::*;
-use crate::model::{Motion, Resistance, SurfaceShape};
-use crate::populate::lattice::Stack;
+use model::{Motion, Resistance, SurfaceShape};
+use crate::lattice::Stack;
 
 /// A body of any lattice in any dimension, with the shapes that the lattice fills.
 fn any_body() -> impl Strategy<Value = (usize, Body)> {

@@ -1,7 +1,7 @@
 //! How far bodies in touch are from each other, and what they feel there.
 
 use super::*;
-use crate::numerics::kernel::Kernel;
+use numerics::kernel::Kernel;
 
 #[test]
 fn touch_leaves_one_mean_spacing() {

@@ -1,7 +1,7 @@
 //! What is mended, and what is not.
 
 use super::*;
-use crate::model::Mesh;
+use crate::Mesh;
 
 type Triangle = [[f64; 3]; 3];
 type Triangles = Vec<Triangle>;

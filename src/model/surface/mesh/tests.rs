@@ -44,7 +44,7 @@ fn angle_iron() -> Vec<[[f64; 3]; 3]> {
 }
 
 fn near(foot: Option<Foot>, normal: [f64; 3], gap: f64) {
-    crate::model::surface::tests::near(foot.expect("a foot"), normal, gap);
+    crate::surface::tests::near(foot.expect("a foot"), normal, gap);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Slabs and whole bodies, counted and told.
 
 use super::*;
-use crate::populate;
+use crate;
 
 #[test]
 fn slabs_hold_what_the_whole_holds_to_the_bit() {

@@ -1,0 +1,158 @@
+//! The commands of the program.
+
+mod bench;
+mod check;
+pub mod compare;
+mod export;
+mod form;
+pub mod fragments;
+mod generate;
+pub mod info;
+mod limit;
+mod materials;
+mod measure;
+mod new;
+mod plan;
+pub mod plot;
+mod report;
+mod restart;
+pub mod results;
+mod run;
+mod shell;
+mod sweep;
+mod version;
+mod watch;
+pub mod which;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::{CommandFactory, Parser, Subcommand};
+
+use model::readable::is_printable;
+use files::output::set_commit;
+use files::run::exit::EXIT_INPUT;
+use files::run::{launch, say};
+
+/// MPI-parallel smoothed particle hydrodynamics for large 3-D impacts of solids
+#[derive(Debug, Parser)]
+#[command(
+    name = "whipple",
+    version,
+    after_help = "Examples:
+  whipple new my-shield --from shield
+  whipple check inputs/quarter-impact
+  whipple plan inputs/quarter-impact --ranks 16,64
+  mpirun -n 2 whipple run inputs/quarter-impact --out runs/quarter
+  whipple watch runs/quarter
+  whipple info runs/quarter
+  whipple plot runs/quarter --panels
+  whipple export runs/quarter --to vtu --all
+  whipple fragments runs/quarter
+  whipple measure runs/quarter
+  whipple report runs/quarter
+  mpirun -n 4 whipple restart runs/quarter --set run.end_time=0.3us
+  whipple sweep inputs/quarter-impact --vary body.sphere.velocity=\"3..9 km/s\"
+  whipple limit nno --bumper 1.2mm --wall 3.2mm --gap 100mm --yield 40ksi
+
+For work on the program itself: `whipple compare` tells whether two results
+agree to the last bit, `whipple bench` measures how fast it steps here.
+
+`whipple COMMAND --help` says more, `whipple --version` which MPI and HDF5 it
+runs with. Only `run`, `restart` and `bench` use MPI. Exit codes: 0 done,
+1 failed (or `compare` found differences), 2 wrong input, 75 stopped softly with
+a checkpoint."
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    New(new::NewArgs),
+    Run(run::RunArgs),
+    Restart(restart::RestartArgs),
+    Check(check::CheckArgs),
+    Plan(plan::PlanArgs),
+    Plot(Box<plot::PlotArgs>),
+    Report(report::ReportArgs),
+    Export(export::ExportArgs),
+    Watch(watch::WatchArgs),
+    Info(info::InfoArgs),
+    Fragments(fragments::FragmentsArgs),
+    Measure(measure::MeasureArgs),
+    Materials(materials::MaterialsArgs),
+    Limit(limit::LimitArgs),
+    Generate(generate::GenerateArgs),
+    Sweep(sweep::SweepArgs),
+    Converge(sweep::ConvergeArgs),
+    #[command(hide = true)]
+    Compare(compare::CompareArgs),
+    #[command(hide = true)]
+    Bench(bench::BenchArgs),
+}
+
+/// Runs the program, built from `commit`: its command line, its exit code.
+#[must_use]
+pub fn main(commit: &'static str) -> ExitCode {
+    set_commit(commit);
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            launch::once(|| match version::asked(&error) {
+                Some(text) => say::say(&text),
+                None => tell(&error),
+            });
+            return ExitCode::from(if error.use_stderr() { EXIT_INPUT } else { 0 });
+        }
+    };
+    if !matches!(cli.command, Command::Run(_) | Command::Restart(_)) {
+        end_with_the_pipe();
+    }
+    let code = match cli.command {
+        Command::New(args) => new::run(&args),
+        Command::Run(args) => run::run(&args),
+        Command::Restart(args) => restart::run(&args),
+        Command::Check(args) => check::run(&args),
+        Command::Plan(args) => plan::run(&args),
+        Command::Plot(args) => plot::run(&args).map_or_else(
+            |error| {
+                say::warn(&format!("error: {error}"));
+                EXIT_INPUT
+            },
+            |()| 0,
+        ),
+        Command::Report(args) => report::run(&args),
+        Command::Export(args) => export::run(&args),
+        Command::Watch(args) => watch::run(&args),
+        Command::Info(args) => info::run(&args),
+        Command::Fragments(args) => fragments::run(&args),
+        Command::Measure(args) => measure::run(&args),
+        Command::Materials(args) => materials::run(&args),
+        Command::Limit(args) => limit::run(&args),
+        Command::Generate(args) => generate::run(&args, Cli::command()),
+        Command::Sweep(args) => sweep::run(&args),
+        Command::Converge(args) => sweep::converge(&args),
+        Command::Compare(args) => compare::run(&args),
+        Command::Bench(args) => bench::run(&args),
+    };
+    ExitCode::from(code)
+}
+
+/// Says what is wrong with the command line, or the help; in colours, unless the words that it
+/// repeats would do more than that to the terminal.
+fn tell(error: &clap::Error) {
+    let hostile = |word: OsString| !word.to_string_lossy().chars().all(is_printable);
+    if std::env::args_os().any(hostile) {
+        say::warn(&error.to_string());
+    } else {
+        let _ = error.print();
+    }
+}
+
+/// Lets a closed pipe (`whipple info … | head`) end the process quietly, as it ends other tools.
+fn end_with_the_pipe() {
+    // SAFETY: there is no other thread yet, and the handler is the system's own.
+    unsafe { libc::signal(libc::SIGPIPE, libc::SIG_DFL) };
+}

@@ -1,0 +1,35 @@
+//! What can go wrong on the way to a file for others.
+
+use std::path::PathBuf;
+
+use files::output::OutputError;
+use files::output::h5::read::ReadError;
+use crate::plot::PlotError;
+
+/// Why a snapshot could not be exported.
+#[derive(Debug, thiserror::Error)]
+pub enum ExportError {
+    /// No snapshot, or none that says what is asked for.
+    #[error(transparent)]
+    Choice(#[from] PlotError),
+    /// A file could not be read or written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A snapshot cannot be exported as is asked.
+    #[error("cannot export {}: {reason}", path.display())]
+    Snapshot {
+        /// The snapshot.
+        path: PathBuf,
+        /// Why, and what to do.
+        reason: String,
+    },
+    /// Options that do not go together.
+    #[error("{0}")]
+    Options(String),
+}
+
+impl From<ReadError> for ExportError {
+    fn from(error: ReadError) -> Self {
+        PlotError::from(error).into()
+    }
+}

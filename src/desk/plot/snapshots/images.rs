@@ -1,0 +1,84 @@
+//! Images of particles at planes of symmetry.
+
+use super::field::Shown;
+use model::SymmetryPlane;
+
+/// A place where a particle or an image of it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Image {
+    /// Where (m).
+    pub point: [f64; 3],
+    /// Whether the shown number has the other sign there.
+    pub flipped: bool,
+}
+
+/// Planes at which a model is reflected for a picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mirrors {
+    /// Each with whether the shown number changes its sign there.
+    planes: Vec<(SymmetryPlane, bool)>,
+}
+
+impl Mirrors {
+    /// Some planes, for a picture of a number.
+    pub fn new(planes: Vec<SymmetryPlane>, shown: &Shown) -> Self {
+        let flips = |plane: &SymmetryPlane| match shown {
+            Shown::Body => false,
+            Shown::Field(field) => field.flips(plane.axis),
+        };
+        let planes = planes.into_iter().map(|plane| (plane, flips(&plane)));
+        Self {
+            planes: planes.collect(),
+        }
+    }
+
+    /// The planes.
+    pub fn planes(&self) -> impl Iterator<Item = &SymmetryPlane> {
+        self.planes.iter().map(|(plane, _)| plane)
+    }
+
+    /// Fills `images` with a particle and its reflections.
+    pub fn reflect(&self, point: &[f64; 3], images: &mut Vec<Image>) {
+        images.clear();
+        images.push(Image {
+            point: *point,
+            flipped: false,
+        });
+        for (plane, flips) in &self.planes {
+            let k = plane.axis.index();
+            for n in 0..images.len() {
+                let mut image = images[n];
+                image.point[k] = 2.0 * plane.position - image.point[k];
+                image.flipped ^= flips;
+                images.push(image);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use model::Axis;
+
+    #[test]
+    fn a_quarter_model_has_four_images() {
+        let plane = |axis| SymmetryPlane {
+            axis,
+            position: 1.0,
+        };
+        let mirrors = Mirrors::new(vec![plane(Axis::X), plane(Axis::Y)], &Shown::Body);
+        let mut images = Vec::new();
+        mirrors.reflect(&[1.5, 1.25, 3.0], &mut images);
+        let points: Vec<_> = images.iter().map(|image| image.point).collect();
+        let expected = [
+            [1.5, 1.25, 3.0],
+            [0.5, 1.25, 3.0],
+            [1.5, 0.75, 3.0],
+            [0.5, 0.75, 3.0],
+        ];
+        assert_eq!(points, expected);
+        Mirrors::new(Vec::new(), &Shown::Body).reflect(&[1.5, 1.25, 3.0], &mut images);
+        assert_eq!(images.len(), 1);
+    }
+}

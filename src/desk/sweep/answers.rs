@@ -1,0 +1,184 @@
+//! What a run answers: last rows of its tables, and its summary.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value as Json;
+
+use files::output::{OutputError, RunFolder, Sheet, read_small};
+
+/// Columns that say what a row is of, if a table has several rows of one time.
+const KEYS: &[&str] = &[
+    "name",
+    "witness",
+    "direction",
+    "body",
+    "body_a",
+    "body_b",
+    "gauge",
+    "measure",
+    "distribution",
+    "from",
+];
+/// Columns that are no answers.
+const OF_THE_ROW: &[&str] = &["step", "time"];
+/// Tables whose last rows are answers, if nothing else is asked for.
+const USUAL: &[&str] = &["bodies", "fragments", "measures"];
+
+/// An answer as it stands in the table, and its unit; empty for none.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Answer {
+    /// A number, a word or nothing.
+    pub text: String,
+    /// SI unit.
+    pub unit: String,
+}
+
+/// Answers by name: `history.kinetic_energy`, `bodies.sphere.mass`, `summary.energy_error_max`.
+pub type Answers = BTreeMap<String, Answer>;
+
+/// All answers of a finished run.
+///
+/// # Errors
+/// [`OutputError`] if a table cannot be read.
+pub fn of_run(folder: &RunFolder) -> Result<Answers, OutputError> {
+    let mut answers = Answers::new();
+    let entries = fs::read_dir(folder.path()).map_err(OutputError::io("read", folder.path()))?;
+    let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+    for path in paths.filter(|path| path.extension().is_some_and(|e| e == "csv")) {
+        let stem = path
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        let text = text(&path)?;
+        let sheet = Sheet::parse(&text).map_err(|reason| OutputError::damaged(&path, reason))?;
+        add_rows(&mut answers, &stem, &sheet.widened());
+    }
+    let path = folder.summary();
+    let summary: Json = serde_json::from_slice(&read_small(&path)?)
+        .map_err(|error| OutputError::damaged(&path, error.to_string()))?;
+    add_values(&mut answers, "summary", &summary);
+    Ok(answers)
+}
+
+/// Whether an answer is asked for, by its whole name, or one of the usual ones if nothing is.
+#[must_use]
+pub fn is_wanted(name: &str, wanted: &[String]) -> bool {
+    let begins = |with: &str| {
+        let rest = name.strip_prefix(with);
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+    };
+    if wanted.is_empty() {
+        USUAL.iter().any(|table| begins(table))
+    } else {
+        wanted.iter().any(|w| begins(w))
+    }
+}
+
+fn text(path: &Path) -> Result<String, OutputError> {
+    let content = read_small(path)?;
+    String::from_utf8(content).map_err(|error| OutputError::damaged(path, error.to_string()))
+}
+
+/// Adds the rows of the last time of a table.
+fn add_rows(answers: &mut Answers, table: &str, sheet: &Sheet) {
+    let place = |name: &str| sheet.names.iter().position(|n| n == name);
+    let whole = |row: &&(usize, Vec<String>)| row.1.len() == sheet.names.len();
+    let rows: Vec<&Vec<String>> = sheet.rows.iter().filter(whole).map(|row| &row.1).collect();
+    let Some(last) = rows.last() else {
+        return;
+    };
+    let keys: Vec<usize> = KEYS.iter().filter_map(|key| place(key)).collect();
+    let time = place("time");
+    let is_of_end = |row: &&Vec<String>| time.is_none_or(|t| row[t] == last[t]);
+    let of_end = rows.iter().copied().filter(is_of_end);
+    let chosen: Vec<&Vec<String>> = if keys.is_empty() {
+        vec![last]
+    } else {
+        of_end.collect()
+    };
+    for row in chosen {
+        let whose: Vec<&str> = keys.iter().map(|&k| row[k].as_str()).collect();
+        let whose = whose.join("-");
+        for (column, name) in sheet.names.iter().enumerate() {
+            if keys.contains(&column) || OF_THE_ROW.contains(&name.as_str()) {
+                continue;
+            }
+            let name = if whose.is_empty() {
+                format!("{table}.{name}")
+            } else {
+                format!("{table}.{whose}.{name}")
+            };
+            let unit = match sheet.units[column].as_str() {
+                "-" => String::new(),
+                unit => unit.to_owned(),
+            };
+            let text = row[column].clone();
+            answers.insert(name, Answer { text, unit });
+        }
+    }
+}
+
+/// Adds what stands in a JSON object, by dotted names.
+fn add_values(answers: &mut Answers, name: &str, value: &Json) {
+    let text = match value {
+        Json::Object(map) => {
+            for (key, value) in map {
+                add_values(answers, &format!("{name}.{key}"), value);
+            }
+            return;
+        }
+        Json::Array(list) => {
+            for (k, value) in list.iter().enumerate() {
+                add_values(answers, &format!("{name}.{k}"), value);
+            }
+            return;
+        }
+        Json::Null => String::new(),
+        Json::String(text) => text.clone(),
+        Json::Bool(_) | Json::Number(_) => value.to_string(),
+    };
+    let unit = String::new();
+    answers.insert(name.to_owned(), Answer { text, unit });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_of_the_last_time_are_answers() {
+        let text =
+            "# units: -,s,-,kg\nstep,time,body,mass\n0,0.0,a,1\n0,0.0,b,2\n9,1.0,a,3\n9,1.0,b,4\n9";
+        let mut answers = Answers::new();
+        add_rows(&mut answers, "bodies", &Sheet::parse(text).unwrap());
+        let names: Vec<&str> = answers.keys().map(String::as_str).collect();
+        assert_eq!(names, ["bodies.a.mass", "bodies.b.mass"]);
+        assert_eq!(answers["bodies.b.mass"].text, "4");
+        assert_eq!(answers["bodies.b.mass"].unit, "kg");
+        let text = "time,energy\n0,5\n1,6\n";
+        add_rows(&mut answers, "history", &Sheet::parse(text).unwrap());
+        assert_eq!(answers["history.energy"].text, "6");
+    }
+
+    #[test]
+    fn summaries_have_dotted_names() {
+        let json = serde_json::json!({"a": {"b": [1, "x", null]}, "c": true});
+        let mut answers = Answers::new();
+        add_values(&mut answers, "summary", &json);
+        assert_eq!(answers["summary.a.b.0"].text, "1");
+        assert_eq!(answers["summary.a.b.2"].text, "");
+        assert_eq!(answers["summary.c"].text, "true");
+    }
+
+    #[test]
+    fn the_usual_answers_are_those_of_bodies_and_fragments() {
+        assert!(is_wanted("bodies.sphere.mass", &[]));
+        assert!(!is_wanted("history.kinetic_energy", &[]));
+        let wanted = ["bodies.sphere".to_owned()];
+        assert!(is_wanted("bodies.sphere.mass", &wanted));
+        assert!(!is_wanted("bodies.spheres.mass", &wanted));
+    }
+}

@@ -1,0 +1,113 @@
+//! The chart of a sweep: an answer over the last key that is a number, a curve for each combination
+//! of the others; of bisections the limit.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use super::SweepError;
+use files::output::{OutputError, Sheet, read_small};
+
+use crate::plot::{Chart, Curve, Mark, Quantity, colour_of};
+
+/// Columns of a table that are no keys and no answers.
+const OWN: &[&str] = &["run", "state"];
+
+/// Draws the tables of a sweep's folder; gives the chart and where its picture goes, but for the ending
+/// of its name, or nothing if there is nothing to draw. Of a grid the first answer is drawn, or the one that is named.
+///
+/// # Errors
+/// [`SweepError::Output`] if a table cannot be read, [`SweepError::Typed`] if there is no such answer.
+pub fn draw(
+    folder: &Path,
+    keys: usize,
+    answer: Option<&str>,
+) -> Result<Option<(Chart, PathBuf)>, SweepError> {
+    let limits = folder.join("limits.csv");
+    if answer.is_none() && limits.is_file() {
+        let sheet = read(&limits)?;
+        let chart = chart(&sheet, keys - 1, keys - 1);
+        return Ok(chart.map(|chart| (chart, folder.join("limits"))));
+    }
+    let sheet = read(&folder.join("sweep.csv"))?;
+    let answers = keys + OWN.len()..sheet.names.len();
+    let at = match answer {
+        None => answers
+            .into_iter()
+            .find(|&k| numbers(&sheet, k).any(|n| n.is_some())),
+        Some(name) => {
+            let found = answers.into_iter().find(|&k| sheet.names[k] == name);
+            let unknown = || SweepError::Typed(format!("the sweep has no answer `{name}`"));
+            Some(found.ok_or_else(unknown)?)
+        }
+    };
+    let chart = at.and_then(|at| chart(&sheet, keys, at));
+    Ok(chart.map(|chart| (chart, folder.join("sweep"))))
+}
+
+fn read(path: &Path) -> Result<Sheet, SweepError> {
+    let text = String::from_utf8(read_small(path)?);
+    let text = text.map_err(|error| OutputError::damaged(path, error.to_string()))?;
+    let sheet = Sheet::parse(&text);
+    Ok(sheet.map_err(|reason| OutputError::damaged(path, reason))?)
+}
+
+fn numbers(sheet: &Sheet, column: usize) -> impl Iterator<Item = Option<f64>> + '_ {
+    let cells = sheet.rows.iter().map(move |(_, row)| row.get(column));
+    cells.map(|cell| cell?.parse::<f64>().ok())
+}
+
+/// The chart of a column over the last of the keys that is a number.
+fn chart(sheet: &Sheet, keys: usize, y: usize) -> Option<Chart> {
+    let is_number = |&k: &usize| numbers(sheet, k).all(|n| n.is_some());
+    let x = (0..keys).rev().find(is_number)?;
+    let mut curves: BTreeMap<Vec<(usize, String)>, Vec<[f64; 2]>> = BTreeMap::new();
+    let mut order = Vec::new();
+    for ((_, row), (a, b)) in sheet
+        .rows
+        .iter()
+        .zip(numbers(sheet, x).zip(numbers(sheet, y)))
+    {
+        let (Some(a), Some(b)) = (a, b) else {
+            continue;
+        };
+        let others = (0..keys).filter(|&k| k != x);
+        let of: Vec<(usize, String)> = others.map(|k| (k, row[k].clone())).collect();
+        if !curves.contains_key(&of) {
+            order.push(of.clone());
+        }
+        curves.entry(of).or_default().push([a, b]);
+    }
+    if curves.is_empty() {
+        return None;
+    }
+    let quantity = |k: usize| Quantity {
+        label: sheet.names[k].replace(['_', '.'], " "),
+        unit: sheet.units[k].trim_matches('-').to_owned(),
+        room: true,
+        ..Quantity::default()
+    };
+    let mut chart = Chart {
+        title: quantity(y).label,
+        x: quantity(x),
+        y: quantity(y),
+        ..Chart::default()
+    };
+    for (k, of) in order.iter().enumerate() {
+        let mut points = curves.remove(of).unwrap_or_default();
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let named = of
+            .iter()
+            .map(|(k, text)| format!("{} {text}", sheet.names[*k]));
+        let name = named.collect::<Vec<_>>().join(", ");
+        let curve = |name: String, mark| Curve {
+            name,
+            colour: colour_of(k),
+            mark,
+            points: points.clone(),
+            ..Curve::default()
+        };
+        let both = [curve(name, Mark::Line), curve(String::new(), Mark::Rings)];
+        chart.curves.extend(both);
+    }
+    Some(chart)
+}

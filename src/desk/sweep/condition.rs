@@ -1,0 +1,176 @@
+//! What a bisection asks of a run: `fragments.largest_mass<1 mg`, `history.interpenetrated==0`.
+
+use super::answers::Answers;
+use model::units;
+
+/// How an answer is compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Compared {
+    Below,
+    Above,
+    Equal,
+    Different,
+}
+
+/// Verdicts of plates that have failed, as designers of shields count them.
+const FAILED: [&str; 2] = ["detached spall", "perforated"];
+
+/// A question whose answer is yes or no.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Condition {
+    /// Whether an answer compares with something.
+    Compares(Comparison),
+    /// Whether a plate has failed: that of a name, or the only one.
+    Failed(Option<String>),
+}
+
+/// An answer and what it is compared with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    name: String,
+    compared: Compared,
+    with: String,
+}
+
+impl Condition {
+    /// Reads `NAME<NUMBER`, `NAME>NUMBER`, `NAME==WORD` or `NAME!=WORD`, `failed` or `failed PLATE`.
+    ///
+    /// # Errors
+    /// What is wrong.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let signs = [
+            ("==", Compared::Equal),
+            ("!=", Compared::Different),
+            ("<", Compared::Below),
+            (">", Compared::Above),
+        ];
+        let text = text.trim();
+        if let Some(rest) = text.strip_prefix("failed") {
+            let name = rest.trim();
+            if rest.is_empty() {
+                return Ok(Self::Failed(None));
+            }
+            if rest.starts_with(' ') && !name.contains(['<', '>', '=']) {
+                return Ok(Self::Failed(Some(name.to_owned())));
+            }
+        }
+        let found = signs.iter().find_map(|&(sign, compared)| {
+            let (name, with) = text.split_once(sign)?;
+            Some((name.trim(), compared, with.trim()))
+        });
+        let Some((name, compared, with)) = found.filter(|(name, _, _)| !name.is_empty()) else {
+            return Err(format!(
+                "`{text}` is no condition, such as `failed`, \
+                 `bodies.sphere.largest_temperature>900 K` or `history.interpenetrated==0`"
+            ));
+        };
+        if matches!(compared, Compared::Below | Compared::Above) {
+            units::parse(with)?;
+        }
+        Ok(Self::Compares(Comparison {
+            name: name.to_owned(),
+            compared,
+            with: with.to_owned(),
+        }))
+    }
+
+    /// Whether it holds.
+    ///
+    /// # Errors
+    /// That the run has no such answer, or one that cannot be compared.
+    pub fn holds(&self, answers: &Answers) -> Result<bool, String> {
+        match self {
+            Self::Compares(comparison) => comparison.holds(answers),
+            Self::Failed(name) => has_failed(name.as_deref(), answers),
+        }
+    }
+}
+
+/// Whether a plate has failed: that of a name, or the only one.
+fn has_failed(name: Option<&str>, answers: &Answers) -> Result<bool, String> {
+    let verdicts = answers.iter().filter_map(|(answer, told)| {
+        let plate = answer.strip_prefix("measures.")?.strip_suffix(".verdict")?;
+        Some((plate, told.text.as_str()))
+    });
+    let wanted = verdicts.filter(|(plate, _)| name.is_none_or(|name| name == *plate));
+    match wanted.collect::<Vec<_>>()[..] {
+        [(_, verdict)] => Ok(FAILED.contains(&verdict)),
+        [] => Err("the run has no verdict on such a plate".to_owned()),
+        [(first, _), ..] => Err(format!(
+            "the run has verdicts on several plates: name one, as in `failed {first}`"
+        )),
+    }
+}
+
+impl Comparison {
+    fn holds(&self, answers: &Answers) -> Result<bool, String> {
+        let Some(answer) = answers.get(&self.name) else {
+            return Err(format!("the run has no answer `{}`", self.name));
+        };
+        let is_equal = || match (answer.text.parse::<f64>(), units::parse(&self.with)) {
+            (Ok(a), Ok((b, _))) => a == b,
+            _ => answer.text == self.with,
+        };
+        let numbers = || {
+            let value = answer.text.parse::<f64>();
+            let value = value.map_err(|_| {
+                format!(
+                    "the answer `{}` is \"{}\", no number",
+                    self.name, answer.text
+                )
+            })?;
+            units::parse(&self.with).map(|(with, _)| (value, with))
+        };
+        Ok(match self.compared {
+            Compared::Equal => is_equal(),
+            Compared::Different => !is_equal(),
+            Compared::Below => numbers().map(|(a, b)| a < b)?,
+            Compared::Above => numbers().map(|(a, b)| a > b)?,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::answers::Answer;
+    use super::*;
+
+    fn holds(condition: &str, name: &str, text: &str) -> Result<bool, String> {
+        let answer = Answer {
+            text: text.to_owned(),
+            unit: String::new(),
+        };
+        let answers = Answers::from([(name.to_owned(), answer)]);
+        Condition::parse(condition)?.holds(&answers)
+    }
+
+    #[test]
+    fn conditions_compare_numbers_and_words() {
+        assert_eq!(holds("a.b < 1 mm", "a.b", "0.0005"), Ok(true));
+        assert_eq!(holds("a.b>1 mm", "a.b", "0.0005"), Ok(false));
+        assert_eq!(holds("a==0", "a", "0.0"), Ok(true));
+        assert_eq!(holds("a!=held", "a", "held"), Ok(false));
+    }
+
+    #[test]
+    fn plates_have_failed_by_their_verdicts() {
+        let name = "measures.wall.verdict";
+        assert_eq!(holds("failed", name, "detached spall"), Ok(true));
+        assert_eq!(holds("failed wall", name, "attached spall"), Ok(false));
+        assert!(holds("failed bumper", name, "held").is_err());
+        assert_eq!(holds("failed_mass>1", "failed_mass", "2"), Ok(true));
+    }
+
+    #[test]
+    fn what_is_no_condition_is_refused() {
+        assert!(holds("a", "a", "1").unwrap_err().contains("no condition"));
+        assert!(holds("<1", "a", "1").unwrap_err().contains("no condition"));
+        assert!(holds("a<x", "a", "1").is_err());
+        assert!(
+            holds("b<1", "a", "1")
+                .unwrap_err()
+                .contains("no answer `b`")
+        );
+        assert!(holds("a<1", "a", "held").unwrap_err().contains("no number"));
+    }
+}

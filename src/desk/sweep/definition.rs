@@ -1,0 +1,128 @@
+//! What a sweep is of, as it was typed and as its folder keeps it.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::SweepError;
+use super::condition::Condition;
+use super::plan::{Plan, Varied};
+use super::point::Point;
+use files::input;
+use files::output::{OutputError, read_small, write_json};
+
+/// Name of the file in a sweep's folder.
+const FILE: &str = "sweep.json";
+
+/// A sweep as it was typed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Definition {
+    /// The folder of the sweep.
+    #[serde(skip)]
+    pub folder: PathBuf,
+    /// The case.
+    pub case: PathBuf,
+    /// Digest of the settled case.
+    #[serde(default)]
+    pub digest: String,
+    /// `--set` of all points.
+    pub settings: Vec<String>,
+    /// `--vary`.
+    pub vary: Vec<String>,
+    /// `--bisect`.
+    pub bisect: Option<String>,
+    /// Part of its range to which a bisection goes.
+    pub within: f64,
+    /// Names that answers of the table begin with; the usual ones if empty.
+    pub answers: Vec<String>,
+}
+
+impl Definition {
+    /// Whether a folder is that of a sweep.
+    #[must_use]
+    pub fn is_in(folder: &Path) -> bool {
+        folder.join(FILE).is_file()
+    }
+
+    /// Reads what a folder keeps.
+    ///
+    /// # Errors
+    /// [`SweepError::Output`].
+    pub fn read(folder: &Path) -> Result<Self, SweepError> {
+        let path = folder.join(FILE);
+        let definition = serde_json::from_slice(&read_small(&path)?);
+        let definition: Self =
+            definition.map_err(|error| OutputError::damaged(&path, error.to_string()))?;
+        Ok(Self {
+            folder: folder.to_owned(),
+            ..definition
+        })
+    }
+
+    /// Keeps it in its folder, which there is. A folder of another case is refused: its runs would
+    /// count as those of this one.
+    ///
+    /// # Errors
+    /// [`SweepError::Typed`], [`SweepError::Case`], [`SweepError::Output`].
+    pub fn keep(&mut self) -> Result<(), SweepError> {
+        self.digest = format!("{:x}", Sha256::digest(self.text()?.as_bytes()));
+        if Self::is_in(&self.folder) {
+            let before = Self::read(&self.folder)?;
+            if before.digest != self.digest {
+                let folder = self.folder.display();
+                return Err(SweepError::Typed(format!(
+                    "{folder} has a sweep of another case or other settings: take another --out"
+                )));
+            }
+        }
+        Ok(write_json(&self.folder.join(FILE), self)?)
+    }
+
+    /// The points of it.
+    ///
+    /// # Errors
+    /// What of it is wrong.
+    pub fn plan(&self) -> Result<Plan, String> {
+        let varied: Result<Vec<Varied>, String> =
+            self.vary.iter().map(|text| Varied::parse(text)).collect();
+        let bisect = self.bisect.as_ref().map(|text| Condition::parse(text));
+        let bisect = bisect
+            .transpose()?
+            .map(|condition| (condition, self.within));
+        if !(self.within > 0.0 && self.within < 1.0) {
+            return Err("`--within` must lie between 0 and 1".to_owned());
+        }
+        Plan::new(&varied?, bisect)
+    }
+
+    /// The text of the settled case, without what varies.
+    fn text(&self) -> Result<String, SweepError> {
+        Ok(input::load(&self.case, &self.settings)?.resolved)
+    }
+
+    /// The settled case.
+    ///
+    /// # Errors
+    /// [`SweepError::Case`].
+    pub fn settled(&self) -> Result<toml::Table, SweepError> {
+        let table = self.text()?.parse::<toml::Table>();
+        table.map_err(|error| SweepError::Typed(error.to_string()))
+    }
+
+    /// Reads the case of a point.
+    ///
+    /// # Errors
+    /// [`SweepError::Case`].
+    pub fn check(&self, point: &Point) -> Result<(), SweepError> {
+        let settings: Vec<String> = self
+            .settings
+            .iter()
+            .chain(&point.settings)
+            .cloned()
+            .collect();
+        input::load(&self.case, &settings)?;
+        Ok(())
+    }
+}

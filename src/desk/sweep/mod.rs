@@ -1,0 +1,318 @@
+//! Sweeps: a case run at many points, a process for each run.
+//!
+//! A point is the values of the keys that vary. Its run has a folder of its own, named after them, and
+//! this folder alone tells where the point stands. So a sweep may be killed at any time and goes on
+//! where it was, runs no point twice, and its table is the same as if nothing had happened.
+
+mod answers;
+mod chart;
+mod condition;
+mod converge;
+mod definition;
+mod plan;
+mod point;
+mod queue;
+mod richardson;
+mod shots;
+mod table;
+mod values;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+pub use chart::draw;
+pub use converge::Converged;
+pub use definition::Definition;
+pub use plan::WITHIN;
+pub use queue::Launch;
+pub use shots::{Shot, shots};
+pub use values::Values;
+
+use files::input::InputError;
+use model::readable::printable;
+use files::output::{OutputError, write_atomically};
+use plan::{Found, Known, Plan};
+use point::Point;
+use queue::{Running, Standing};
+use table::Ended;
+
+/// How often runs are looked at.
+const PAUSE: Duration = Duration::from_millis(50);
+/// How often those of others are.
+const PAUSE_FOR_OTHERS: Duration = Duration::from_secs(2);
+/// Exit code of a run that was asked to stop.
+const STOPPED: i32 = 75;
+
+/// Why a sweep ends early.
+#[derive(Debug, thiserror::Error)]
+pub enum SweepError {
+    /// Something that was typed is wrong.
+    #[error("error: {0}")]
+    Typed(String),
+    /// The case of a point is wrong.
+    #[error("{0}")]
+    Case(#[from] InputError),
+    /// A file cannot be read or written.
+    #[error("error: {0}")]
+    Output(#[from] OutputError),
+}
+
+/// A sweep in its folder.
+#[derive(Debug)]
+pub struct Sweep {
+    definition: Definition,
+    plan: Plan,
+    /// The settled case.
+    case: toml::Table,
+    launch: Launch,
+    ends: BTreeMap<String, Ended>,
+    /// Points whose runs were asked to stop.
+    stopped: Vec<String>,
+}
+
+/// How a sweep ended.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Points that have an answer.
+    pub answered: usize,
+    /// Points whose runs failed.
+    pub failed: usize,
+    /// Points that are left open.
+    pub open: usize,
+}
+
+impl Sweep {
+    /// A sweep whose points are all valid.
+    ///
+    /// # Errors
+    /// [`SweepError::Typed`], [`SweepError::Case`].
+    pub fn new(definition: Definition, launch: Launch) -> Result<Self, SweepError> {
+        let plan = definition.plan().map_err(SweepError::Typed)?;
+        let case = definition.settled()?;
+        let sweep = Self {
+            definition,
+            plan,
+            case,
+            launch,
+            ends: BTreeMap::new(),
+            stopped: Vec::new(),
+        };
+        for point in sweep.points()? {
+            sweep.definition.check(&point)?;
+        }
+        Ok(sweep)
+    }
+
+    /// The same sweep with its runs started in another way.
+    #[must_use]
+    pub fn with_launch(self, launch: Launch) -> Self {
+        Self { launch, ..self }
+    }
+
+    /// How many points are known so far.
+    ///
+    /// # Errors
+    /// [`SweepError::Typed`].
+    pub fn count(&self) -> Result<usize, SweepError> {
+        Ok(self.points()?.len())
+    }
+
+    fn points(&self) -> Result<Vec<Point>, SweepError> {
+        let points = self.plan.points(&self.case, &self.known());
+        points.map_err(SweepError::Typed)
+    }
+
+    /// What is known of points whose runs have ended; a point without an answer is known, too.
+    fn known(&self) -> Known {
+        let condition = self.plan.bisected.as_ref().map(|b| &b.condition);
+        let ends = self.ends.iter().map(|(name, ended)| {
+            let holds = match (ended, condition) {
+                (Ended::Answered(answers), Some(condition)) => condition.holds(answers).ok(),
+                _ => None,
+            };
+            (name.clone(), holds)
+        });
+        ends.collect()
+    }
+
+    /// Runs what has not been run, so many runs at once, and keeps the tables up to date; tells what
+    /// happens line by line.
+    ///
+    /// # Errors
+    /// [`SweepError::Output`].
+    pub fn run(&mut self, jobs: usize, mut tell: impl FnMut(&str)) -> Result<Tally, SweepError> {
+        let mut running: Vec<Running> = Vec::new();
+        let mut looked: Option<Instant> = None;
+        loop {
+            let points = self.points()?;
+            let mut changed = false;
+            let mut waits = !running.is_empty();
+            let looks = looked.is_none_or(|looked| looked.elapsed() >= PAUSE_FOR_OTHERS);
+            for point in &points {
+                let is_running = running.iter().any(|run| run.name == point.name);
+                if is_running || self.is_over(point) || !(looks || running.len() < jobs) {
+                    continue;
+                }
+                match self.launch.standing(point) {
+                    Standing::Open if running.len() < jobs => {
+                        tell(&format!("{}: runs", point.shown(&self.plan.keys)));
+                        running.push(self.launch.start(point)?);
+                        waits = true;
+                    }
+                    Standing::Open | Standing::Held => waits = true,
+                    end => changed |= self.end(point, end, &mut tell)?,
+                }
+            }
+            if looks {
+                looked = Some(Instant::now());
+            }
+            changed |= self.collect(&points, &mut running, &mut tell)?;
+            if changed {
+                self.write()?;
+            } else if waits {
+                std::thread::sleep(PAUSE);
+            } else {
+                self.write()?;
+                return self.tally();
+            }
+        }
+    }
+
+    /// Runs one point, by its number from 1 on, in this order of the table; for arrays of a scheduler.
+    ///
+    /// # Errors
+    /// [`SweepError::Typed`] if there is no such point, [`SweepError::Output`].
+    pub fn run_one(
+        &mut self,
+        number: usize,
+        mut tell: impl FnMut(&str),
+    ) -> Result<bool, SweepError> {
+        let points = self.points()?;
+        let Some(point) = number.checked_sub(1).and_then(|n| points.get(n)) else {
+            let title = format!("there is no point {number}: the sweep has {}", points.len());
+            return Err(SweepError::Typed(title));
+        };
+        if self.launch.standing(point) == Standing::Open {
+            tell(&format!("{}: runs", point.shown(&self.plan.keys)));
+            let mut running = vec![self.launch.start(point)?];
+            while !running.is_empty() {
+                self.collect(&points, &mut running, &mut tell)?;
+                std::thread::sleep(PAUSE);
+            }
+        }
+        Ok(self.launch.standing(point) == Standing::Finished)
+    }
+
+    fn is_over(&self, point: &Point) -> bool {
+        self.ends.contains_key(&point.name) || self.stopped.contains(&point.name)
+    }
+
+    /// Takes in a point whose folder says that its run has ended.
+    fn end(
+        &mut self,
+        point: &Point,
+        standing: Standing,
+        tell: &mut impl FnMut(&str),
+    ) -> Result<bool, SweepError> {
+        let ended = match standing {
+            Standing::Finished => Ended::Answered(answers::of_run(&self.launch.run_folder(point))?),
+            Standing::Failed(why) => Ended::Failed(why),
+            Standing::Open | Standing::Held => return Ok(false),
+        };
+        let what = match (&ended, &self.plan.bisected) {
+            (Ended::Answered(answers), Some(bisected)) => match bisected.condition.holds(answers) {
+                Ok(true) => "the condition holds".to_owned(),
+                Ok(false) => "the condition does not hold".to_owned(),
+                Err(why) => why,
+            },
+            (Ended::Answered(_), None) => "finished".to_owned(),
+            (Ended::Failed(why), _) => format!("failed: {why}"),
+        };
+        tell(&format!(
+            "{}: {}",
+            point.shown(&self.plan.keys),
+            printable(&what)
+        ));
+        self.ends.insert(point.name.clone(), ended);
+        Ok(true)
+    }
+
+    /// Takes in processes that have ended.
+    fn collect(
+        &mut self,
+        points: &[Point],
+        running: &mut Vec<Running>,
+        tell: &mut impl FnMut(&str),
+    ) -> Result<bool, SweepError> {
+        let mut changed = false;
+        let mut k = 0;
+        while k < running.len() {
+            let code = running[k].ended();
+            let code = code.map_err(OutputError::io("wait for", Path::new("a run")))?;
+            let Some(code) = code else {
+                k += 1;
+                continue;
+            };
+            let name = running.swap_remove(k).name;
+            let Some(point) = points.iter().find(|point| point.name == name) else {
+                continue;
+            };
+            if code == STOPPED {
+                tell(&format!("{}: was stopped", point.shown(&self.plan.keys)));
+                self.stopped.push(name);
+                continue;
+            }
+            let standing = match self.launch.standing(point) {
+                Standing::Finished if code == 0 => Standing::Finished,
+                Standing::Failed(why) if !why.is_empty() => Standing::Failed(why),
+                _ => Standing::Failed(format!("exit code {code}, see {name}.log")),
+            };
+            changed |= self.end(point, standing, tell)?;
+        }
+        Ok(changed)
+    }
+
+    /// All points with what is known of them.
+    fn rows(&self) -> Result<Vec<(Point, Option<Ended>)>, SweepError> {
+        let points = self.points()?.into_iter();
+        let rows = points.map(|point| {
+            let ended = self.ends.get(&point.name).cloned();
+            (point, ended)
+        });
+        Ok(rows.collect())
+    }
+
+    /// Writes `sweep.csv` and, of a bisection, `limits.csv`.
+    fn write(&self) -> Result<(), SweepError> {
+        let folder = &self.definition.folder;
+        let sheet = table::points(&self.plan.keys, &self.rows()?, &self.definition.answers);
+        write_atomically(&folder.join("sweep.csv"), &sheet.text())?;
+        if let Some(sheet) = table::limits(&self.plan, &self.found()?) {
+            write_atomically(&folder.join("limits.csv"), &sheet.text())?;
+        }
+        Ok(())
+    }
+
+    fn found(&self) -> Result<Vec<(Vec<values::Value>, Found)>, SweepError> {
+        let known = self.known();
+        let all = self.plan.combinations().into_iter().map(|values| {
+            let found = self.plan.found(&self.case, &values, &known)?;
+            Ok((values, found))
+        });
+        let all: Result<Vec<_>, String> = all.collect();
+        all.map_err(SweepError::Typed)
+    }
+
+    fn tally(&self) -> Result<Tally, SweepError> {
+        let mut tally = Tally::default();
+        for (_, ended) in self.rows()? {
+            match ended {
+                Some(Ended::Answered(_)) => tally.answered += 1,
+                Some(Ended::Failed(_)) => tally.failed += 1,
+                None => tally.open += 1,
+            }
+        }
+        Ok(tally)
+    }
+}

@@ -1,0 +1,298 @@
+//! Overlap contact: an energy of the foreign volume fraction above its touching value
+//! (physics page, section 5).
+//!
+//! With `S_i = Σ_{j foreign} V_j W_ij` and fraction-weighted means
+//! `M̄_i = Σ V_j W_ij M_ij / S_i`, `C̄_i = Σ V_j W_ij C*_ij / S_i`, the excess is
+//! `E_i = ⟨S_i − C̄_i − s_i⟩₊` and the energy `Φ = Σ_i ½ M̄_i V_i E_i²` (the stiffness κ is part
+//! of `M`). A core `½ κ_c M V̄ ⟨1 − r/r_c⟩₊²` keeps lone particles apart.
+
+mod measure;
+
+use super::ContactTable;
+use super::mode::{Found, Meeting, Mode, PairForce, Scene};
+use super::pair::{Between, Constants, Pair};
+use super::resistance::NormalLoad;
+use super::view::{ContactView, Party, Separation};
+use particles::Mirrors;
+use model::{Body, Case, ContactClass, ContactDirection, Overlap};
+use particles::HaloPhase;
+use populate;
+pub use measure::{Fraction, OFFSET_LIMIT, fraction, initial_offset};
+use measure::{Measured, weigh};
+
+/// What the core's viscosity is of the mass of a pair, its approach squared and its depth, over its
+/// radius.
+const CORE_VISCOSITY: f64 = 5.0;
+
+/// What the viscosity of an isolated particle is of the density of a pair, its approach squared and
+/// the slope of its kernel over both volumes.
+const ISOLATED_VISCOSITY: f64 = 20.0;
+
+/// The excess of both sides at which that viscosity is whole.
+const WHOLE_EXCESS: f64 = 0.1;
+
+/// Constants of an ordered pair of bodies.
+#[derive(Debug, Clone, Default)]
+pub struct OverlapPair {
+    /// κ times the smaller p-wave modulus (Pa).
+    pub modulus: f64,
+    /// Touching value C* of the receiver's body on the other.
+    pub touching: f64,
+    /// `κ_c` times the scale `max(M', .85 ρ' v²)` of the core (Pa).
+    pub core_modulus: f64,
+    /// Radius of the core (m).
+    pub core_radius: f64,
+    /// Viscosity of the core over volume: `μ' B/r_c` for the mass `μ' V̄` of a pair (kg/m⁴).
+    pub core_viscosity: f64,
+    /// Viscosity of isolated particles over excess, both volumes and slope: `ρ' B/E_0` (kg/m³).
+    pub isolated_viscosity: f64,
+    /// Whether forces but those of the core act along the normals of the surfaces.
+    pub along_normal: bool,
+}
+
+impl ContactTable {
+    /// Constants of overlap contact of a receiver of kind `a` and a neighbour of kind `b`.
+    #[inline]
+    #[must_use]
+    pub fn overlap(&self, a: usize, b: usize) -> &OverlapPair {
+        self.own::<Overlap>(a, b)
+    }
+
+    /// Whether any pair of bodies has overlap contact, which alone measures foreign fractions.
+    #[must_use]
+    pub fn measures_fractions(&self) -> bool {
+        self.foreign.class.contains(&Some(ContactClass::Overlap))
+    }
+}
+
+impl Constants for Overlap {
+    type Pair = OverlapPair;
+
+    const HALO: HaloPhase = HaloPhase::CONTACT;
+
+    fn pair(&self, of: &Between) -> OverlapPair {
+        let [a, b] = of.bodies;
+        OverlapPair {
+            modulus: self.stiffness * of.modulus,
+            touching: populate::touching_value(a, b, of.case.dimension),
+            core_modulus: self.core_stiffness * core_scale(of.case, of.indices),
+            core_radius: self.core_radius * of.pair.spacing,
+            core_viscosity: 0.5 * CORE_VISCOSITY * meeting_density(of.case, of.indices)
+                / (self.core_radius * of.pair.spacing),
+            isolated_viscosity: ISOLATED_VISCOSITY * meeting_density(of.case, of.indices)
+                / WHOLE_EXCESS,
+            along_normal: self.direction == ContactDirection::Normal,
+        }
+    }
+}
+
+/// What the core of two bodies is as stiff as (Pa): `max(M, .85 ρ v²)` with v (m/s) the largest
+/// speed against each other that the case states. M and ρ are harmonic means of moduli and
+/// densities, as the mass of two particles that meet head-on is; what is rigid counts as infinite.
+fn core_scale(case: &Case, bodies: [usize; 2]) -> f64 {
+    let modulus = harmonic_mean(case, bodies, |body| {
+        case.materials[body.material].p_wave_modulus()
+    });
+    let speed = case.closing_speed(bodies[0], bodies[1]);
+    modulus.max(0.85 * meeting_density(case, bodies) * speed * speed)
+}
+
+/// Harmonic mean of two bodies' densities (kg/m³).
+fn meeting_density(case: &Case, bodies: [usize; 2]) -> f64 {
+    harmonic_mean(case, bodies, |body| case.initial_density(body))
+}
+
+/// That of a value of two bodies; what is rigid counts as infinite.
+fn harmonic_mean(case: &Case, [a, b]: [usize; 2], value: impl Fn(&Body) -> f64) -> f64 {
+    let bodies = [&case.bodies[a], &case.bodies[b]];
+    let soft = bodies.into_iter().filter(|body| body.rigid.is_none());
+    2.0 / soft.map(|body| 1.0 / value(body)).sum::<f64>()
+}
+
+#[inline(always)]
+fn constants<'a>(view: &ContactView<'a>, i: &Party, j: &Party) -> (&'a Pair, &'a OverlapPair) {
+    let table = view.table;
+    (table.pair(i.kind, j.kind), table.overlap(i.kind, j.kind))
+}
+
+impl Mode for Overlap {
+    type Measured = Measured;
+    /// The stored fraction of a particle, as its neighbours see it; nothing without excess.
+    type Side = Fraction;
+
+    fn measure(found: &mut Found<Self>, scene: &mut Scene) {
+        weigh(found, scene);
+        measure::store(found, scene);
+    }
+
+    /// Gives every particle the initial overlap offset that makes it start free of force; some are
+    /// capped.
+    fn begin(found: &mut Found<Self>, scene: &mut Scene) -> i64 {
+        weigh(found, scene);
+        let mut capped = 0;
+        for measured in found.iter().flatten() {
+            let (offset, was_capped) = initial_offset(&measured.fraction);
+            scene.particles.touch_relief[measured.particle] = offset;
+            capped += i64::from(was_capped);
+        }
+        capped
+    }
+
+    #[inline(always)]
+    fn side(view: &ContactView, particle: &Party) -> Fraction {
+        let (particles, base) = (view.particles, particle.base);
+        let excess = particles.contact_excess[base];
+        if excess == 0.0 {
+            return Fraction::default();
+        }
+        Fraction {
+            excess,
+            fraction: particles.foreign_fraction[base],
+            modulus: particles.contact_modulus[base],
+            touching: particles.touching_value[base],
+            slope: particles.contact_slope[base],
+            current: 0.0,
+            isolation: particles.isolation[base],
+        }
+    }
+
+    /// `f_ij = −V_i V_j (a_ij + a_ji) ∇_i W_ij`, and the core.
+    #[inline(always)]
+    fn force(meeting: &Meeting<Self>, stiffness: &mut f64) -> Option<PairForce> {
+        let Meeting {
+            view,
+            i,
+            j,
+            separation,
+            pair,
+            own,
+            here,
+            there,
+        } = meeting;
+        let distance = separation.distance;
+        let pressed = here.excess > 0.0 || there.excess > 0.0;
+        if !pressed && distance >= own.core_radius {
+            return None;
+        }
+        let (mut bulk, mut core, mut energy, mut drag) = (0.0, 0.0, 0.0, 0.0);
+        let back = view.table.overlap(j.kind, i.kind);
+        if pressed {
+            let slope = -pair.kernel.slope(distance);
+            let pressure = slope_of_energy(here, own) + slope_of_energy(there, back);
+            bulk = i.volume * j.volume * pressure * slope;
+            *stiffness += bulk_stiffness(meeting, slope);
+            drag = isolated_drag(meeting, slope);
+            if here.excess > 0.0 {
+                let share = j.volume * pair.kernel.value(distance) * own.modulus;
+                energy += 0.5 * i.volume * (here.excess * here.excess) * share / here.fraction;
+            }
+        }
+        let depth = 1.0 - distance / own.core_radius;
+        if depth > 0.0 {
+            let volume = 0.5 * (i.volume + j.volume);
+            let stress = own.core_modulus * volume;
+            core = stress * depth / own.core_radius;
+            let approach = separation.approach().max(0.0);
+            drag += own.core_viscosity * volume * depth * (approach * approach);
+            // Half of the pair's energy stands on each side.
+            energy += 0.25 * stress * (depth * depth);
+            *stiffness += 2.0 * stress / (own.core_radius * own.core_radius);
+        }
+        let force = if own.along_normal {
+            // The core has no use for normals: it keeps lone particles apart.
+            let bulk = meeting.along(bulk, true);
+            let core = separation.along(core);
+            [bulk[0] + core[0], bulk[1] + core[1], bulk[2] + core[2]]
+        } else {
+            separation.along(bulk + core)
+        };
+        Some(PairForce {
+            force,
+            drag,
+            energy,
+            loads: [
+                own_force(view, [i, j], separation, here),
+                own_force(view, [j, i], separation, there),
+            ],
+        })
+    }
+
+    /// The normal is that which i sees less the mean of those that its neighbours see, weighted
+    /// with `o_ij`.
+    fn normal_load(view: &ContactView, i: &Party, neighbours: &[u32], load: &mut NormalLoad) {
+        let here = Self::side(view, i);
+        let normal =
+            |of: &Party| Mirrors::reflect_vector(&view.particles.contact_normal[of.base], of.code);
+        let mut sum = 0.0;
+        for &other in neighbours {
+            let j = view.party(other);
+            let pair = view.table.pair(i.kind, j.kind);
+            if !pair.friction.is_any() {
+                continue;
+            }
+            let separation = Separation::between(i, &j);
+            let own = own_force(view, [i, &j], &separation, &here);
+            load.add(pair, [i, &j], own, &separation.along(own));
+            load.face(-own, &normal(&j));
+            sum += own;
+        }
+        load.face(sum, &normal(i));
+    }
+}
+
+/// `a_ij = M̄_i E_i [1 − (C*_ij − C̄_i)/S_i] + ½ E_i² (M_ij − M̄_i)/S_i` (Pa): derivative of
+/// particle i's energy by its fraction of j, per volume of i.
+fn slope_of_energy(i: &Fraction, pair: &OverlapPair) -> f64 {
+    if i.excess == 0.0 {
+        return 0.0;
+    }
+    let stress = i.modulus * i.excess;
+    let steeper = 0.5 * (i.excess * i.excess) * (pair.modulus - i.modulus);
+    stress + (steeper - stress * (pair.touching - i.touching)) / i.fraction
+}
+
+/// The pair force of i's own energy, `o_ij = V_i V_j ⟨a_ij⟩₊ |∇W_ij|` and half of the core (N):
+/// what friction of the pair rests on from i's side.
+fn own_force(
+    view: &ContactView,
+    [i, j]: [&Party; 2],
+    separation: &Separation,
+    here: &Fraction,
+) -> f64 {
+    let (pair, own) = constants(view, i, j);
+    let slope = -pair.kernel.slope(separation.distance);
+    let bulk = i.volume * j.volume * slope_of_energy(here, own).max(0.0) * slope;
+    let depth = (1.0 - separation.distance / own.core_radius).max(0.0);
+    let stress = own.core_modulus * (0.5 * (i.volume + j.volume));
+    bulk + 0.5 * stress * depth / own.core_radius
+}
+
+/// `B ρ' ṙ² V_i V_j |∇W_ij| min(1, (E_i + E_j)/E_0) min(1, λ_i + λ_j)` of a pair that approaches (N).
+#[inline(always)]
+fn isolated_drag(meeting: &Meeting<Overlap>, slope: f64) -> f64 {
+    let (here, there) = (&meeting.here, &meeting.there);
+    let isolation = here.isolation + there.isolation;
+    if isolation == 0.0 {
+        return 0.0;
+    }
+    let share = isolation.min(1.0) * (here.excess + there.excess).min(WHOLE_EXCESS);
+    let approach = meeting.separation.approach().max(0.0);
+    let volumes = meeting.i.volume * meeting.j.volume;
+    meeting.own.isolated_viscosity * share * volumes * slope * (approach * approach)
+}
+
+/// A pair's part of `k_i = 2 M V_i Σ_j V_j [(g_i + g_j)|∇W_ij| + (E_i + E_j)|W″_ij|]` (N/m), with
+/// `g` counted where there is excess and `slope` for `|∇W_ij|`.
+#[inline(always)]
+fn bulk_stiffness(meeting: &Meeting<Overlap>, slope: f64) -> f64 {
+    let (here, there) = (&meeting.here, &meeting.there);
+    let curvature = meeting
+        .pair
+        .kernel
+        .curvature(meeting.separation.distance)
+        .abs();
+    let active = |f: &Fraction| if f.excess > 0.0 { f.slope } else { 0.0 };
+    let steep = (active(here) + active(there)) * slope;
+    let bent = (here.excess + there.excess) * curvature;
+    2.0 * meeting.own.modulus * meeting.i.volume * meeting.j.volume * (steep + bent)
+}

@@ -1,0 +1,222 @@
+//! Parameters of every pair of kinds of particles, computed once at set-up.
+
+use super::pair::{Between, Listed, ModePairs, Pair, needs};
+use model::{Body, Case, ContactMode, SelfContact};
+use particles::neighbours::{ForeignTable, Groups, Kinds};
+use numerics::kernel::{Kernel, SUPPORT};
+use particles::{HaloPhase, Owner};
+
+/// All pairs of kinds.
+#[derive(Debug, Clone)]
+pub struct ContactTable {
+    /// The kernel that contact weights with.
+    pub kernel: Kernel,
+    /// Groups of bodies, which see each other in the SPH sums and have no other contact.
+    pub groups: Groups,
+    /// Which mode handles a pair, and its range.
+    pub foreign: ForeignTable,
+    /// What halo particles need before the forces.
+    pub halo: HaloPhase,
+    /// Constants of the modes, in the order of the pairs.
+    modes: ModePairs,
+    pairs: Vec<Pair>,
+    inverse_densities: Vec<f64>,
+    /// How many times its reference volume a particle's matter may fill, by body.
+    expansions: Vec<f64>,
+    owners: Owner,
+}
+
+impl ContactTable {
+    /// Table of a case.
+    #[must_use]
+    pub fn new(case: &Case) -> Self {
+        let kinds = Kinds::new(case);
+        let n = kinds.count();
+        let groups = Groups::new(case);
+        let mut table = Self {
+            kernel: Kernel::new(case.dimension),
+            foreign: ForeignTable {
+                kinds,
+                class: vec![None; n * n],
+                reach2: vec![0.0; n * n],
+                group_range: vec![0.0; groups.count() * groups.count()],
+                most: case
+                    .bodies
+                    .iter()
+                    .any(|body| body.lattice.sizes.is_some())
+                    .then(|| Kinds::longest_range(case)),
+            },
+            groups,
+            halo: HaloPhase::STRESS,
+            modes: ModePairs::default(),
+            pairs: Vec::with_capacity(n * n),
+            inverse_densities: Vec::with_capacity(case.bodies.len()),
+            expansions: Vec::with_capacity(case.bodies.len()),
+            owners: Owner::empty(),
+        };
+        for body in &case.bodies {
+            table
+                .inverse_densities
+                .push(1.0 / case.initial_density(body));
+            // Beyond that, what may fail has voids.
+            let bursts = case.materials[body.material].failure.has_memory();
+            table
+                .expansions
+                .push(if bursts { 1.0 } else { f64::INFINITY });
+        }
+        let bodies: Vec<Body> = (0..n)
+            .map(|kind| table.foreign.kinds.body_of_size(case, kind))
+            .collect();
+        for a in 0..n {
+            for b in 0..n {
+                table.add(case, [a, b], [&bodies[a], &bodies[b]]);
+            }
+        }
+        if table.has_pairs() || !case.loads.surfaces.is_empty() {
+            table.owners |= Owner::CONTACT;
+        }
+        if table.has_friction() {
+            table.owners |= Owner::FRICTION;
+        }
+        table
+    }
+
+    /// Adds the next pair.
+    fn add(&mut self, case: &Case, kinds: [usize; 2], bodies: [&Body; 2]) {
+        let [a, b] = kinds.map(|kind| self.foreign.kinds.body(kind));
+        let mode = mode_between(case, a, b);
+        let pair = Pair::new(case, &self.kernel, bodies, &mode);
+        let modulus = bodies.map(|body| case.materials[body.material].p_wave_modulus());
+        let of = Between {
+            case,
+            kernel: &self.kernel,
+            bodies,
+            indices: [a, b],
+            modulus: modulus[0].min(modulus[1]),
+            pair: &pair,
+        };
+        self.modes.push(&of, &mode);
+        self.pairs.push(pair);
+        let [group, other] = [a, b].map(|body| self.groups.of_body[body]);
+        // What a body meets of itself is found among the own neighbours, not as of another group.
+        if mode.class().is_none() || (group == other && a != b) {
+            return;
+        }
+        let (halo, owner) = needs(&mode);
+        self.halo |= halo;
+        self.owners |= owner;
+        let (at, range) = (self.at(kinds[0], kinds[1]), SUPPORT * pair.h);
+        self.foreign.class[at] = mode.class();
+        self.foreign.reach2[at] = range * range;
+        if a != b {
+            let widest = &mut self.foreign.group_range[group * self.groups.count() + other];
+            *widest = widest.max(range);
+        }
+    }
+
+    /// The longest range of contact between two groups (m), zero without.
+    pub(crate) fn longest_range(&self) -> f64 {
+        let ranges = self.foreign.group_range.iter().copied();
+        ranges.fold(0.0, f64::max)
+    }
+
+    /// Constants of a mode for a receiver of kind `a` and a neighbour of kind `b`.
+    #[inline(always)]
+    pub(super) fn own<M: Listed>(&self, a: usize, b: usize) -> &M::Pair {
+        &M::list(&self.modes)[self.at(a, b)]
+    }
+
+    #[inline(always)]
+    fn at(&self, a: usize, b: usize) -> usize {
+        a * self.foreign.kinds.count() + b
+    }
+
+    /// Parameters of a receiver of kind `a` and a neighbour of kind `b`.
+    #[inline]
+    #[must_use]
+    pub fn pair(&self, a: usize, b: usize) -> &Pair {
+        &self.pairs[self.at(a, b)]
+    }
+
+    /// The kind of a particle of a body with a mass (kg).
+    #[inline(always)]
+    #[must_use]
+    pub fn kind(&self, body: usize, mass: f64) -> usize {
+        self.foreign.kinds.of(body, mass)
+    }
+
+    /// How many bodies there are.
+    #[must_use]
+    pub fn bodies(&self) -> usize {
+        self.foreign.kinds.bodies()
+    }
+
+    /// Parameters of the smallest particles of two bodies, if they have contact beyond the SPH sums.
+    #[must_use]
+    pub fn between(&self, a: usize, b: usize) -> Option<&Pair> {
+        let [a, b] = [a, b].map(|body| self.foreign.kinds.smallest(body));
+        self.foreign.class[self.at(a, b)].map(|_| self.pair(a, b))
+    }
+
+    /// How many times its reference volume the matter of a particle of a body may fill: beyond that
+    /// what may fail has voids, which are not of the body.
+    #[inline(always)]
+    pub(super) fn expansion(&self, body: usize) -> f64 {
+        self.expansions[body]
+    }
+
+    /// 1/ρ of a body at the start (m³/kg).
+    #[inline]
+    #[must_use]
+    pub fn inverse_density(&self, body: usize) -> f64 {
+        self.inverse_densities[body]
+    }
+
+    /// The options of the table of fields that this contact has.
+    #[must_use]
+    pub fn owners(&self) -> Owner {
+        self.owners
+    }
+
+    /// Whether there is contact beyond the SPH sums: of pairs of bodies, or with rigid surfaces.
+    #[must_use]
+    pub fn is_active(&self) -> bool {
+        self.owners.contains(Owner::CONTACT)
+    }
+
+    /// Whether any pair of bodies has contact beyond the SPH sums.
+    #[must_use]
+    pub fn has_pairs(&self) -> bool {
+        self.foreign.class.iter().any(Option::is_some)
+    }
+
+    /// Whether any pair of bodies has friction or damping.
+    #[must_use]
+    pub fn has_friction(&self) -> bool {
+        let mut pairs = self.pairs.iter();
+        pairs.any(|pair| pair.friction.is_any())
+    }
+
+    /// The unordered pairs of bodies with contact beyond the SPH sums; a body with itself where its
+    /// parts have contact.
+    #[must_use]
+    pub fn active_pairs(&self) -> Vec<[usize; 2]> {
+        let n = self.bodies();
+        (0..n)
+            .flat_map(|a| (a..n).map(move |b| [a, b]))
+            .filter(|&[a, b]| self.between(a, b).is_some())
+            .collect()
+    }
+}
+
+/// What two bodies do to each other, or fragments of one.
+fn mode_between(case: &Case, a: usize, b: usize) -> ContactMode {
+    if [a, b].iter().all(|&body| case.bodies[body].rigid.is_some()) {
+        ContactMode::None
+    } else if a == b {
+        let own = case.self_contact.as_ref();
+        own.map_or(ContactMode::None, SelfContact::mode)
+    } else {
+        case.contact_between(a, b).clone()
+    }
+}

@@ -1,0 +1,148 @@
+//! What the contact sums read: particles as they meet, and how they stand to each other.
+
+use super::ContactTable;
+use particles::Mirrors;
+use particles::neighbours::{Lists, MotionRecord};
+use numerics::vector::square;
+use particles::{Image, ParticleStore};
+
+/// What the contact sums read.
+#[derive(Clone, Copy)]
+pub struct ContactView<'a> {
+    /// The images in canonical order.
+    pub images: &'a [Image],
+    /// Their positions.
+    pub motion: &'a [MotionRecord],
+    /// The particles behind them.
+    pub particles: &'a ParticleStore,
+    /// Parameters of all pairs of bodies.
+    pub table: &'a ContactTable,
+    /// The step that led here (s); zero at the start.
+    pub dt: f64,
+}
+
+/// One end of a contact pair.
+#[derive(Clone, Copy)]
+pub(crate) struct Party {
+    /// Index in the store.
+    pub base: usize,
+    pub body: usize,
+    /// Of particles, as contact tells them apart.
+    pub kind: usize,
+    /// Reference volume (m^d).
+    pub volume: f64,
+    /// The planes that it is mirrored by.
+    pub code: u8,
+    pub position: [f64; 3],
+    pub velocity: [f64; 3],
+}
+
+impl<'a> ContactView<'a> {
+    /// After a step of `dt` (s).
+    pub(super) fn new(
+        particles: &'a ParticleStore,
+        lists: &'a Lists,
+        table: &'a ContactTable,
+        dt: f64,
+    ) -> Self {
+        Self {
+            images: lists.images(),
+            motion: lists.motion(),
+            particles,
+            table,
+            dt,
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn party(&self, index: u32) -> Party {
+        let image = self.images[index as usize];
+        let base = image.base();
+        let body = self.particles.body[base] as usize;
+        let record = &self.motion[index as usize];
+        Party {
+            base,
+            body,
+            kind: self.table.kind(body, record.mass),
+            volume: record.mass * self.table.inverse_density(body),
+            code: image.code(),
+            position: record.position,
+            velocity: record.velocity,
+        }
+    }
+
+    /// The normal of the surface between two particles: that of both, from their bodies' corrected
+    /// gradients, into the first one's body; none inside bodies.
+    pub(super) fn normal(&self, i: &Party, j: &Party) -> Option<[f64; 3]> {
+        let inward =
+            |of: &Party| Mirrors::reflect_vector(&self.particles.gradient_shift[of.base], of.code);
+        let (a, b) = (inward(i), inward(j));
+        let n = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+        let size = square(&n).sqrt();
+        (size > 0.0).then(|| n.map(|x| x / size))
+    }
+}
+
+/// How two particles stand to each other.
+pub(super) struct Separation {
+    /// `x_i − x_j` (m).
+    pub r: [f64; 3],
+    /// Its length (m), never zero.
+    pub distance: f64,
+    /// `(v_i − v_j)·(x_i − x_j)` (m²/s).
+    pub rate: f64,
+}
+
+impl Separation {
+    #[inline(always)]
+    pub fn between(i: &Party, j: &Party) -> Self {
+        let r = [
+            i.position[0] - j.position[0],
+            i.position[1] - j.position[1],
+            i.position[2] - j.position[2],
+        ];
+        let distance = (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]).sqrt().max(1e-30);
+        let rate = (i.velocity[0] - j.velocity[0]) * r[0]
+            + (i.velocity[1] - j.velocity[1]) * r[1]
+            + (i.velocity[2] - j.velocity[2]) * r[2];
+        Self { r, distance, rate }
+    }
+
+    /// Speed of approach along the line between the two (m/s), negative for receding pairs.
+    #[inline(always)]
+    pub fn approach(&self) -> f64 {
+        -self.rate / self.distance
+    }
+
+    /// Raises `largest` to the approach speed `|μ_ij|` of the viscosity, zero for receding pairs
+    /// (m/s): foreign pairs limit the time step as those inside a body do.
+    #[inline(always)]
+    pub fn raise_approach(&self, h: f64, largest: &mut f64) {
+        let soft = self.distance * self.distance + 0.01 * (h * h);
+        let steep = -h * self.rate;
+        if steep > *largest * soft {
+            *largest = steep / soft;
+        }
+    }
+
+    /// `magnitude` (N) along `r`: positive pushes i away from j.
+    #[inline(always)]
+    pub fn along(&self, magnitude: f64) -> [f64; 3] {
+        if magnitude == 0.0 {
+            return [0.0; 3];
+        }
+        let scale = magnitude / self.distance;
+        self.r.map(|x| x * scale)
+    }
+
+    /// [`Self::along`], of which only the part along a unit normal stays: it never attracts, and is
+    /// opposite for the other side.
+    pub fn along_normal(&self, magnitude: f64, normal: Option<[f64; 3]>) -> [f64; 3] {
+        let Some(n) = normal else {
+            return self.along(magnitude);
+        };
+        let cosine = self.r[0] * n[0] + self.r[1] * n[1] + self.r[2] * n[2];
+        let scale = magnitude / self.distance * cosine;
+        n.map(|x| x * scale)
+    }
+}

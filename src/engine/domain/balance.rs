@@ -1,0 +1,259 @@
+//! Faces of the slabs so that counted work is even.
+
+use rayon::prelude::*;
+
+use super::histogram::Histogram;
+use super::least::Least;
+use super::nested::{NestedSlabs, Slab};
+use super::rank_speed::RankSpeeds;
+use comm::Comm;
+use numerics::ordered::{disordered, ordered};
+
+/// What the balance works in, kept from one to the next.
+#[derive(Debug, Default)]
+pub struct Balance {
+    /// Counted work.
+    pub histogram: Histogram,
+    /// The slabs that a level cuts.
+    slabs: Vec<Slab>,
+    /// For each first rank of such a slab its place there.
+    places: Vec<u32>,
+    /// Smallest and largest coordinates of each, as words.
+    ends: Least,
+}
+
+/// The mean work of all particles over what one counts at least, so that no rank owns much more than so many even
+/// shares because its own take little work: what a rank takes of memory goes by their number.
+pub const MOST_UNEVEN: u64 = 2;
+
+/// Particles that a task looks at.
+const SHARE: usize = 4096;
+
+impl Balance {
+    /// Moves the faces of `slabs` for owned particles at `positions` (m) with counted `work`, so that
+    /// each rank gets its share by `rank_speeds`, level by level. A particle counts the mean work over [`MOST_UNEVEN`]
+    /// at least. Slabs without particles keep their faces. Collective.
+    pub fn cut(
+        &mut self,
+        comm: &Comm,
+        slabs: &mut NestedSlabs,
+        (positions, work): (&[[f64; 3]], &[u32]),
+        rank_speeds: &RankSpeeds,
+    ) {
+        let floor = floor(comm, work);
+        self.slabs.clear();
+        self.slabs.push(slabs.whole());
+        for level in 0..slabs.levels() {
+            self.slabs.retain(Slab::is_cut);
+            if self.slabs.is_empty() {
+                break;
+            }
+            self.count(comm, slabs, level, (positions, work, floor));
+            self.split(slabs, rank_speeds);
+            self.descend();
+        }
+    }
+
+    /// Counts all work, that of a particle at least `floor`, in the slabs that are cut by a level, by planes normal to
+    /// its axis. Collective.
+    fn count(
+        &mut self,
+        comm: &Comm,
+        slabs: &NestedSlabs,
+        level: usize,
+        (positions, work, floor): (&[[f64; 3]], &[u32], u32),
+    ) {
+        let ranks = slabs.ranks();
+        self.places.clear();
+        self.places.resize(ranks, u32::MAX);
+        for (place, slab) in (0..).zip(&self.slabs) {
+            self.places[slab.ranks().start] = place;
+        }
+        let axis = slabs.axis(level);
+        let places = &self.places;
+        let place_of = |position: &[f64; 3]| {
+            let first = slabs.slab_at(position, level).ranks().start;
+            // Nobody cuts a slab of one rank.
+            (places[first] != u32::MAX).then_some(places[first] as usize)
+        };
+        self.ends.begin(2 * self.slabs.len());
+        let ends = &self.ends;
+        positions.par_chunks(SHARE).for_each(|positions| {
+            // Those of one slab follow each other: each run is told once.
+            let mut run = (usize::MAX, [u64::MAX; 2]);
+            for position in positions {
+                let Some(place) = place_of(position) else {
+                    continue;
+                };
+                if place != run.0 {
+                    tell_ends(ends, run);
+                    run = (place, [u64::MAX; 2]);
+                }
+                let x = ordered(position[axis]);
+                run.1 = [run.1[0].min(x), run.1[1].min(!x)];
+            }
+            tell_ends(ends, run);
+        });
+        self.ends.join(comm);
+        let words = self.ends.words();
+        let ends = words.chunks_exact(2).map(ends_of);
+        if level == 0 {
+            let (lower, upper) = ends_of(words);
+            self.histogram.reset(lower, upper, ranks);
+        } else {
+            let cuts = self.slabs.iter().map(|slab| slab.ranks().len());
+            self.histogram.reset_each(ends.zip(cuts), ranks);
+        }
+        self.histogram.add_all(positions.len(), |i| {
+            let place = place_of(&positions[i])?;
+            Some((place, positions[i][axis], u64::from(work[i].max(floor))))
+        });
+        self.histogram.sum(comm);
+    }
+
+    /// Cuts each slab that has particles.
+    fn split(&self, slabs: &mut NestedSlabs, rank_speeds: &RankSpeeds) {
+        let ranks = slabs.ranks();
+        for (place, slab) in self.slabs.iter().enumerate() {
+            let (lower, upper) = ends_of(&self.ends.words()[2 * place..]);
+            if lower <= upper {
+                split_slab(&self.histogram, (place, *slab), slabs.faces_mut(), |rank| {
+                    rank_speeds.below(rank, ranks)
+                });
+            }
+        }
+    }
+
+    /// On to the slabs that the next level cuts.
+    fn descend(&mut self) {
+        let cut = self.slabs.len();
+        for place in 0..cut {
+            let slab = self.slabs[place];
+            let parts = slab.parts();
+            self.slabs
+                .extend((0..parts).map(|part| slab.part(part, parts)));
+        }
+        self.slabs.drain(..cut);
+    }
+
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.histogram.memory()
+            + size_of::<Slab>() * self.slabs.capacity()
+            + 4 * self.places.capacity()
+            + self.ends.memory()
+    }
+}
+
+/// What a particle counts at least, by the work of all. Collective.
+fn floor(comm: &Comm, work: &[u32]) -> u32 {
+    // same bits in any order: whole numbers
+    let all = work.par_iter().map(|&work| u64::from(work)).sum();
+    let mut sums = [all, work.len() as u64];
+    comm.sum_u64(&mut sums);
+    let [all, particles] = sums;
+    let floor = all / (MOST_UNEVEN * particles.max(1));
+    u32::try_from(floor).unwrap_or(u32::MAX).max(1)
+}
+
+/// Joins the ends that a task has found of a slab, if any, with those of the others.
+fn tell_ends(all: &Least, (place, ends): (usize, [u64; 2])) {
+    if place != usize::MAX {
+        all.tell(2 * place, ends);
+    }
+}
+
+/// Smallest and largest coordinate (m), from words.
+fn ends_of(words: &[u64]) -> (f64, f64) {
+    if words[0] == u64::MAX {
+        return (f64::INFINITY, f64::NEG_INFINITY);
+    }
+    (disordered(words[0]), disordered(!words[1]))
+}
+
+/// Sets the faces of a slab so that the work counted at a place of a histogram is split as the part of
+/// the whole that ranks below one are to have.
+pub(super) fn split_slab(
+    histogram: &Histogram,
+    (place, slab): (usize, Slab),
+    faces: &mut [f64],
+    below: impl Fn(usize) -> f64,
+) {
+    let ranks = slab.ranks();
+    let (first, all) = (below(ranks.start), below(ranks.end) - below(ranks.start));
+    let parts = slab.places().map(|face| (below(face + 1) - first) / all);
+    let mut places = slab.places();
+    histogram.split(place, parts, |face| {
+        let place = places.next().expect("a place for each face");
+        faces[place] = face;
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One half takes no work: it is shared out all the same, as far as memory has to.
+    #[test]
+    fn no_rank_gets_much_more_than_its_even_share() {
+        use super::super::nested::Decomposition;
+        let positions: Vec<[f64; 3]> = (0..8000).map(|k| [f64::from(k), 0.0, 0.0]).collect();
+        let work: Vec<u32> = (0..8000).map(|k| if k < 4000 { 210 } else { 1 }).collect();
+        let mut slabs = NestedSlabs::on_first([0, 1, 2], 1, 8);
+        let all = (positions.as_slice(), work.as_slice());
+        Balance::default().cut(&Comm::solo(), &mut slabs, all, &RankSpeeds::default());
+        let mut counts = [0; 8];
+        for position in &positions {
+            counts[slabs.owner(position)] += 1;
+        }
+        // Each counts 52 at least, so that all is 8 x 131,000.
+        let expected = [624, 624, 624, 623, 624, 624, 1738, 2519];
+        for (count, expected) in counts.into_iter().zip(expected) {
+            assert!(i32::abs(count - expected) < 40, "{counts:?}");
+        }
+    }
+
+    #[test]
+    fn one_rank_has_no_faces_and_all_work_in_one_place_is_legal() {
+        let comm = Comm::solo();
+        let mut slabs = NestedSlabs::new(1, Vec::new());
+        let before = slabs.clone();
+        let positions = [[0.0, 2.0, 0.0]; 3];
+        let mut balance = Balance::default();
+        balance.cut(
+            &comm,
+            &mut slabs,
+            (&positions, &[5, 5, 5]),
+            &RankSpeeds::default(),
+        );
+        assert_eq!(slabs, before);
+    }
+
+    /// One process cuts as many would: each rank gets its share, whatever the levels.
+    #[test]
+    #[allow(clippy::cast_precision_loss, reason = "few particles")]
+    fn all_levels_share_out_the_work() {
+        use super::super::nested::Decomposition;
+        let positions: Vec<[f64; 3]> = (0..30_000_u32)
+            .map(|k| [7919, 104_729, 1_299_709].map(|p: u32| f64::from(k.wrapping_mul(p) % 9973)))
+            .collect();
+        let work = vec![2; positions.len()];
+        for ranks in [2, 3, 5, 8, 13, 30] {
+            for levels in 1..=3 {
+                let mut slabs = NestedSlabs::on_first([2, 0, 1], levels, ranks);
+                let mut balance = Balance::default();
+                let all = (positions.as_slice(), work.as_slice());
+                balance.cut(&Comm::solo(), &mut slabs, all, &RankSpeeds::default());
+                assert!(slabs.is_sorted());
+                let mut counts = vec![0; ranks];
+                for position in &positions {
+                    counts[slabs.owner(position)] += 1;
+                }
+                let even = positions.len() as f64 / ranks as f64;
+                let most = f64::from(*counts.iter().max().unwrap());
+                assert!(most < 1.02 * even + 10.0, "{ranks} {levels}: {counts:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! Particles move to the rank that owns their position, by any distance.
+
+use rayon::prelude::*;
+
+use super::nested::Decomposition;
+use comm::{Comm, Exchange, Traffic};
+use numerics::alone;
+use particles::{FieldInfo, ParticleStore};
+
+/// Particles that a rank may send in one round, or [`PART`] of its own if that is more: where a
+/// whole model moves, as in a restart, its messages must not take as much memory as the model
+/// itself.
+const ROUND: usize = 1 << 12;
+/// One part of so many.
+const PART: usize = 32;
+/// Particles that a task looks at.
+const SHARE: usize = 4096;
+
+/// Buffers of migration, kept from step to step.
+pub struct Migration {
+    round: usize,
+    exchange: Exchange,
+    /// Who leaves: how many ranks the owner is ahead, round and round, and the particle.
+    leaving: Vec<[u32; 2]>,
+    /// The same, as the tasks found them.
+    found: Vec<Vec<[u32; 2]>>,
+    gone: Vec<u32>,
+    moves: Vec<(u32, u32)>,
+    counts: Vec<u64>,
+    arrivals: Vec<u64>,
+}
+
+impl Default for Migration {
+    fn default() -> Self {
+        Self::in_rounds_of(ROUND)
+    }
+}
+
+impl Migration {
+    /// A rank may send so many particles (at least one) in one round, however few it has.
+    #[must_use]
+    pub fn in_rounds_of(round: usize) -> Self {
+        Self {
+            round,
+            exchange: Exchange::default(),
+            leaving: Vec::new(),
+            found: Vec::new(),
+            gone: Vec::new(),
+            moves: Vec::new(),
+            counts: Vec::new(),
+            arrivals: Vec::new(),
+        }
+    }
+
+    /// Sends every owned particle to the owner of its position. `near` are ranks (ascending) that all
+    /// name each other: where nobody goes to another and no round is full, they alone talk. Drops
+    /// the halo; the order of the store changes. Gives the largest `reach` (m) of the particles of all
+    /// ranks, zero if there is one rank. Collective.
+    pub fn migrate(
+        &mut self,
+        comm: &Comm,
+        owners: &(impl Decomposition + Sync),
+        particles: &mut ParticleStore,
+        near: &[usize],
+        reach: impl Fn(&ParticleStore, usize) -> f64 + Sync,
+    ) -> f64 {
+        let (rank, size) = (comm.rank(), comm.size());
+        if size == 1 {
+            return 0.0;
+        }
+        let farthest = self.find_leaving(comm, owners, particles, &reach);
+        let most = self.round.max(particles.owned() / PART);
+        let is_near = |to: &[u32; 2]| near.binary_search(&rank_ahead(rank, to[0], size)).is_ok();
+        let is_far = self.leaving.iter().any(|to| !is_near(to));
+        let rounds = self.leaving.len().div_ceil(most) as u64;
+        // Numbers that are not negative are ordered as their bits are.
+        let mut vote = [rounds, u64::from(is_far), farthest.to_bits()];
+        comm.max_u64(&mut vote);
+        let [rounds, is_far, farthest] = vote;
+        let farthest = f64::from_bits(farthest);
+        if rounds == 1 && is_far == 0 {
+            self.exchange.set_peers(near.iter().copied());
+            self.swap(comm, particles, false);
+            return farthest;
+        }
+        for round in 0..rounds {
+            if round > 0 {
+                self.find_leaving(comm, owners, particles, &reach);
+            }
+            // The next rank's first, so that no rank is sent to by all at once.
+            self.leaving.truncate(most);
+            self.tell_counts(comm);
+            self.swap(comm, particles, true);
+        }
+        farthest
+    }
+
+    /// Lists who leaves, by owner from the next rank on, and then by place in the store. Gives the largest
+    /// reach (m) of this rank's particles.
+    fn find_leaving(
+        &mut self,
+        comm: &Comm,
+        owners: &(impl Decomposition + Sync),
+        particles: &ParticleStore,
+        reach: &(impl Fn(&ParticleStore, usize) -> f64 + Sync),
+    ) -> f64 {
+        let (rank, size) = (comm.rank(), comm.size());
+        let region = owners.region(rank);
+        let positions = &particles.position[..particles.owned()];
+        self.found
+            .resize(positions.len().div_ceil(SHARE), Vec::new());
+        let farthest = (&mut self.found, positions.par_chunks(SHARE))
+            .into_par_iter()
+            .enumerate()
+            .map(|(task, (found, positions))| {
+                let mut farthest: f64 = 0.0;
+                found.clear();
+                for (k, position) in positions.iter().enumerate() {
+                    let i = task * SHARE + k;
+                    farthest = farthest.max(reach(particles, i));
+                    if region.holds(position) {
+                        continue;
+                    }
+                    let owner = owners.owner(position);
+                    if owner != rank {
+                        #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
+                        found.push([ahead_of(rank, owner, size), i as u32]);
+                    }
+                }
+                farthest
+            })
+            // same bits in any order: a largest number
+            .reduce(|| 0.0, f64::max);
+        self.leaving.clear();
+        self.leaving.extend(self.found.iter().flatten());
+        self.leaving.sort_unstable();
+        farthest
+    }
+
+    /// Tells all ranks how many particles they get, and makes peers of those that get any or send
+    /// some. Collective.
+    fn tell_counts(&mut self, comm: &Comm) {
+        let (rank, size) = (comm.rank(), comm.size());
+        self.counts.clear();
+        self.counts.resize(size, 0);
+        for [ahead, _] in &self.leaving {
+            self.counts[rank_ahead(rank, *ahead, size)] += 1;
+        }
+        comm.all_to_all_u64(&self.counts, &mut self.arrivals);
+        let peers = (0..size).filter(|&r| self.counts[r] > 0 || self.arrivals[r] > 0);
+        self.exchange.set_peers(peers);
+    }
+
+    /// Sends those that leave to the peers, of whom one knows how many they send or hears it.
+    fn swap(&mut self, comm: &Comm, particles: &mut ParticleStore, is_known: bool) {
+        let size = particles.bytes_per_particle(FieldInfo::leaves);
+        alone::visit(self.leaving.len());
+        self.gone.clear();
+        self.gone.extend(self.leaving.iter().map(|[_, i]| i));
+        for k in 0..self.exchange.peers() {
+            let peer = self.exchange.rank(k);
+            let ahead = ahead_of(comm.rank(), peer, comm.size());
+            let start = self.leaving.partition_point(|to| to[0] < ahead);
+            let end = self.leaving.partition_point(|to| to[0] <= ahead);
+            particles.pack(
+                FieldInfo::leaves,
+                &self.gone[start..end],
+                self.exchange.outgoing(k),
+            );
+            if is_known {
+                let count = usize::try_from(self.arrivals[peer]).expect("a count fits memory");
+                self.exchange.expect(k, count * size);
+            }
+        }
+        if !is_known {
+            self.exchange.post_sizes(comm);
+        }
+        self.exchange.post(comm);
+        particles.remove(&mut self.gone, &mut self.moves);
+        let mut first = particles.owned();
+        let incoming = (0..self.exchange.peers()).map(|k| self.exchange.incoming(k).len());
+        let arriving = incoming.sum::<usize>() / size;
+        particles.resize_owned(first + arriving);
+        self.exchange.wait();
+        for k in 0..self.exchange.peers() {
+            let bytes = self.exchange.incoming(k);
+            let count = bytes.len() / size;
+            particles.unpack(FieldInfo::leaves, first, count, bytes);
+            first += count;
+        }
+    }
+
+    /// Messages and bytes sent so far.
+    #[must_use]
+    pub fn traffic(&self) -> Traffic {
+        self.exchange.traffic
+    }
+
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        let words = [&self.counts, &self.arrivals].map(Vec::capacity);
+        self.exchange.memory()
+            + 4 * self.gone.capacity()
+            + 8 * (self.leaving.capacity() + self.moves.capacity())
+            + 8 * self.found.iter().map(Vec::capacity).sum::<usize>()
+            + 8 * words.iter().sum::<usize>()
+    }
+}
+
+/// How many ranks another one is ahead, round and round.
+#[allow(clippy::cast_possible_truncation, reason = "ranks fit u32")]
+fn ahead_of(rank: usize, other: usize, size: usize) -> u32 {
+    ((other + size - rank) % size) as u32
+}
+
+/// The rank so many ahead.
+fn rank_ahead(rank: usize, ahead: u32, size: usize) -> usize {
+    (rank + ahead as usize) % size
+}

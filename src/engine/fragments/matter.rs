@@ -1,0 +1,136 @@
+//! Matter whose fragments are looked for, and by which rule.
+
+use particles::Mirrors;
+use model::{Body, Case, FragmentOptions, Include, edge};
+use particles::Image;
+
+/// What hangs together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rule {
+    /// Largest distance of linked particles, over the mean of their sizes at the start.
+    pub link: f64,
+    /// Whether a single particle joins what hangs together by nothing else.
+    pub bridges: bool,
+    /// Whether particles of different bodies are linked.
+    pub across_bodies: bool,
+    /// Least number of particles of a fragment; the rest is dust.
+    pub least: u64,
+    /// Dimensions of the model.
+    pub dimension: usize,
+}
+
+impl Rule {
+    /// That of a case's options.
+    #[must_use]
+    pub fn new(options: &FragmentOptions, dimension: usize) -> Self {
+        Self {
+            link: options.link,
+            bridges: options.bridges,
+            across_bodies: options.across_bodies,
+            least: options.min_particles,
+            dimension,
+        }
+    }
+}
+
+/// Particles of this rank, and of some of it halo particles after them.
+#[derive(Debug, Clone, Copy)]
+pub struct Matter<'a> {
+    /// Particles of this rank.
+    pub owned: usize,
+    /// Number of bodies.
+    pub bodies: usize,
+    /// Identities, of halo particles too.
+    pub ids: &'a [u64],
+    /// Indices of bodies, of halo particles too.
+    pub body: &'a [u32],
+    /// Positions (m), of halo particles too.
+    pub position: &'a [[f64; 3]],
+    /// Sizes at the start (m), of halo particles too: zero for what is no matter.
+    pub size: &'a [f64],
+    /// Whether each may belong to a fragment.
+    pub included: &'a [bool],
+    /// Masses (kg).
+    pub mass: &'a [f64],
+    /// Velocities (m/s).
+    pub velocity: &'a [[f64; 3]],
+    /// Temperatures (K); NaN where there is none.
+    pub temperature: &'a [f64],
+    /// Equivalent plastic strains.
+    pub plastic_strain: &'a [f64],
+}
+
+/// What stands about a rank's particles.
+#[derive(Debug, Clone, Copy)]
+pub struct Surroundings<'a> {
+    /// The symmetry planes.
+    pub mirrors: &'a Mirrors,
+    /// Halo particles, and images behind planes, that may be linked with this rank's particles.
+    pub others: &'a [Image],
+}
+
+/// How large the particles of a body are at the start.
+#[derive(Debug, Clone, Copy)]
+pub struct FirstSizes {
+    /// Spacing (m); the finest where it varies.
+    pub spacing: f64,
+    /// The coarsest (m).
+    pub coarsest: f64,
+    /// Initial density (kg/m³).
+    pub density: f64,
+}
+
+impl FirstSizes {
+    /// Of a body of a case.
+    #[must_use]
+    pub fn new(case: &Case, body: &Body) -> Self {
+        Self {
+            spacing: body.lattice.spacing,
+            coarsest: body.lattice.coarsest(),
+            density: case.initial_density(body),
+        }
+    }
+
+    /// Size (m) of a particle of a mass: the spacing, or where that varies `(m/ρ₀)^(1/d)`; zero of
+    /// what has no mass.
+    #[must_use]
+    pub fn of(&self, mass: f64, dimension: usize) -> f64 {
+        if mass <= 0.0 || mass.is_nan() {
+            0.0
+        } else if self.coarsest > self.spacing {
+            let size = edge(mass / self.density, dimension);
+            // Whatever a file says.
+            if size.is_finite() { size } else { 0.0 }
+        } else {
+            self.spacing
+        }
+    }
+}
+
+/// How far a particle of a size (m) reaches: two are linked within the sum of both.
+#[must_use]
+pub fn link_reach(link: f64, size: f64) -> f64 {
+    0.5 * link * size
+}
+
+/// The images behind planes that a rank by itself needs of its particles.
+#[must_use]
+pub fn images(mirrors: &Mirrors, positions: &[[f64; 3]], sizes: &[f64], link: f64) -> Vec<Image> {
+    if mirrors.is_empty() {
+        return Vec::new();
+    }
+    let farthest = link_reach(link, sizes.iter().copied().fold(0.0, f64::max));
+    let all = positions.iter().zip(sizes).enumerate();
+    let near = all.flat_map(|(i, (position, &size))| {
+        let near = mirrors.near(position, link_reach(link, size) + farthest);
+        let codes = (1..8).filter(move |code| code & !near == 0);
+        codes.map(move |code| Image::new(i, code))
+    });
+    near.collect()
+}
+
+/// Whether a particle of a damage belongs to fragments.
+#[must_use]
+pub fn belongs(include: Include, damage: f64) -> bool {
+    include == Include::All || damage < 1.0
+}

@@ -1,0 +1,287 @@
+//! Loads in the step: what they prescribe, and what they put into the model.
+//!
+//! A prescribed component of a velocity is V(t) at whole steps, and its mean over the step is the
+//! velocity in the middle, so that places follow the integral of V. In a half kick a load gives a
+//! particle the impulse that forces lack, `J = m (v_to − v_from) − ½Δt m a`, and with it the work
+//! `J · ½(v_from + v_to)`, which balances the energy of the half kick to round-off. A rigid body
+//! has no mass of its own here: what holds it gives the reaction of contact, `J = −½Δt m a_c`.
+
+mod absorption;
+mod held;
+mod sums;
+mod surface_motion;
+
+pub(crate) use absorption::Absorption;
+pub(crate) use surface_motion::{Placed, SurfaceStep};
+
+use model::{self, Case, Motion};
+use numerics::exact_sum::ExactSum;
+use numerics::vector::cross;
+use particles::ParticleStore;
+
+/// Which of the two prescribed velocities of a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Goal {
+    /// That after the first half kick.
+    Middle,
+    /// That after the second.
+    End,
+}
+
+/// What is prescribed of the velocity of a particle in one step.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Prescribed {
+    /// The ledger of who prescribes each component, if anybody does.
+    by: [Option<u8>; 3],
+    middle: [f64; 3],
+    end: [f64; 3],
+    rigid: bool,
+}
+
+impl Prescribed {
+    fn velocity(&self, goal: Goal) -> &[f64; 3] {
+        match goal {
+            Goal::Middle => &self.middle,
+            Goal::End => &self.end,
+        }
+    }
+
+    /// The motion from time `from` to `to` (s), by the ledger `by`.
+    fn new(motion: &Motion, by: usize, rigid: bool, from: f64, to: f64) -> Self {
+        Self {
+            by: std::array::from_fn(|a| motion.has(a).then(|| u8::try_from(by).unwrap_or(u8::MAX))),
+            middle: std::array::from_fn(|a| motion.mean(a, from, to)),
+            end: std::array::from_fn(|a| motion.velocity(a, to)),
+            rigid,
+        }
+    }
+}
+
+/// What moves a particle beside forces.
+pub(crate) trait Prescribe: Copy + Send {
+    /// Replaces what forces do (`total`, m/s²) by what takes the velocity `v` (m/s) to the goal
+    /// in a half kick, of which there are `per_half` in a second.
+    fn accelerate(&self, goal: Goal, v: &[f64; 3], per_half: f64, total: &mut [f64; 3]);
+    /// Sets what is prescribed of a velocity (m/s).
+    fn set(&self, goal: Goal, v: &mut [f64; 3]);
+    /// Corrects the mean velocity (m/s) in a half kick, as forces make it, of a particle with the
+    /// velocity `whole` (m/s) at the whole step that begins or ends it and `middle` between.
+    fn correct_mean(&self, whole: &[f64; 3], middle: &[f64; 3], mean: &mut [f64; 3]);
+    /// Whether the particle is part of a rigid body.
+    fn is_rigid(&self) -> bool;
+}
+
+/// No load anywhere.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Free;
+
+impl Prescribe for Free {
+    #[inline(always)]
+    fn accelerate(&self, _: Goal, _: &[f64; 3], _: f64, _: &mut [f64; 3]) {}
+    #[inline(always)]
+    fn set(&self, _: Goal, _: &mut [f64; 3]) {}
+    #[inline(always)]
+    fn correct_mean(&self, _: &[f64; 3], _: &[f64; 3], _: &mut [f64; 3]) {}
+    #[inline(always)]
+    fn is_rigid(&self) -> bool {
+        false
+    }
+}
+
+impl Prescribe for Prescribed {
+    #[inline(always)]
+    fn accelerate(&self, goal: Goal, v: &[f64; 3], per_half: f64, total: &mut [f64; 3]) {
+        for a in 0..3 {
+            if self.by[a].is_some() {
+                total[a] = (self.velocity(goal)[a] - v[a]) * per_half;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn set(&self, goal: Goal, v: &mut [f64; 3]) {
+        for a in 0..3 {
+            if self.by[a].is_some() {
+                v[a] = self.velocity(goal)[a];
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn correct_mean(&self, whole: &[f64; 3], _: &[f64; 3], mean: &mut [f64; 3]) {
+        for a in 0..3 {
+            if self.by[a].is_some() {
+                mean[a] = 0.5 * (whole[a] + self.middle[a]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn is_rigid(&self) -> bool {
+        self.rigid
+    }
+}
+
+/// What the loads of a case prescribe in the current step.
+#[derive(Debug, Default)]
+pub struct Loads {
+    /// By bit of [`particles::ParticleStore::load`]: prescribed velocities, then rigid
+    /// bodies. Ledgers have the same order, then come those of absorbing zones and of the surfaces.
+    motions: Vec<Prescribed>,
+    /// Body of each rigid body's drive.
+    rigid_bodies: Vec<usize>,
+    velocities: usize,
+    rigid_bits: u32,
+    pub(crate) absorption: Absorption,
+    pub(crate) surfaces: Vec<SurfaceStep>,
+    /// Acceleration (m/s²).
+    pub gravity: [f64; 3],
+    /// Impulse and work of prescribed velocities, rigid bodies and absorbing zones in this step, by
+    /// ledger.
+    pub(crate) sums: Vec<[ExactSum; 4]>,
+    /// Angular impulse about the origin of all of them in this step.
+    pub(crate) angular_impulse: [ExactSum; 3],
+}
+
+impl Loads {
+    pub(crate) fn new(case: &Case) -> Self {
+        let rigid = |&b: &usize| case.bodies[b].rigid.is_some();
+        let rigid_bodies: Vec<usize> = (0..case.bodies.len()).filter(rigid).collect();
+        let velocities = case.loads.velocities.len();
+        let motions = velocities + rigid_bodies.len();
+        assert!(
+            motions <= model::Loads::MOST,
+            "too many loads and rigid bodies"
+        );
+        let absorption = Absorption::new(case);
+        let mut step = Self {
+            motions: vec![Prescribed::default(); motions],
+            rigid_bits: (0..motions).fold(0, |bits, k| bits | u32::from(k >= velocities) << k),
+            rigid_bodies,
+            velocities,
+            surfaces: vec![SurfaceStep::default(); case.loads.surfaces.len()],
+            gravity: case.loads.gravity,
+            sums: (0..motions + absorption.count())
+                .map(|_| Default::default())
+                .collect(),
+            absorption,
+            angular_impulse: Default::default(),
+        };
+        step.prepare(case, 0.0, 0.0);
+        step
+    }
+
+    /// Half kicks in a second of steps `dt` (s); zero at the start of a case.
+    pub(crate) fn per_half(dt: f64) -> f64 {
+        if dt > 0.0 { 2.0 / dt } else { 0.0 }
+    }
+
+    /// Whether there is gravity or an absorbing zone, or velocities of any particle are prescribed.
+    pub(crate) fn act(&self) -> bool {
+        self.has_motions() || self.absorb() || self.gravity != [0.0; 3]
+    }
+
+    /// Whether velocities of any particle are prescribed.
+    pub(crate) fn has_motions(&self) -> bool {
+        !self.motions.is_empty()
+    }
+
+    /// Whether bits name loads and rigid bodies of the case and no others.
+    pub(crate) fn knows(&self, bits: u32) -> bool {
+        u64::from(bits) >> self.motions.len() == 0
+    }
+
+    /// Number of ledgers before those of surfaces.
+    pub(crate) fn driven(&self) -> usize {
+        self.sums.len()
+    }
+
+    /// Whether a particle with these bits is part of a rigid body.
+    #[inline]
+    pub(crate) fn is_rigid(&self, bits: u32) -> bool {
+        bits & self.rigid_bits != 0
+    }
+
+    /// Works out the step from time `from` to `to` (s).
+    pub(crate) fn prepare(&mut self, case: &Case, from: f64, to: f64) {
+        self.absorption.prepare(to - from);
+        let middle = from + 0.5 * (to - from);
+        for (k, load) in case.loads.velocities.iter().enumerate() {
+            self.motions[k] = if middle < load.until {
+                Prescribed::new(&load.motion, k, false, from, to)
+            } else {
+                Prescribed::default()
+            };
+        }
+        for (n, &body) in self.rigid_bodies.iter().enumerate() {
+            let k = self.velocities + n;
+            if let Some(motion) = &case.bodies[body].rigid {
+                self.motions[k] = Prescribed::new(motion, k, true, from, to);
+            }
+        }
+        for (step, surface) in self.surfaces.iter_mut().zip(&case.loads.surfaces) {
+            *step = SurfaceStep::new(surface, from, to);
+        }
+    }
+
+    /// The bits of a particle of `body` that begins at `position` (m).
+    pub(crate) fn bits(&self, case: &Case, body: usize, position: &[f64; 3]) -> u32 {
+        let loads = case.loads.velocities.iter();
+        let held = loads.map(|load| load.body == body && load.region.contains(position));
+        let rigid = self.rigid_bodies.iter().map(|&rigid| rigid == body);
+        (held.chain(rigid).enumerate()).fold(0, |bits, (k, is)| bits | u32::from(is) << k)
+    }
+
+    /// What is prescribed to a particle with these bits; on each axis the last load holds.
+    #[inline]
+    pub(crate) fn of(&self, bits: u32) -> Prescribed {
+        let mut all = Prescribed::default();
+        let mut rest = bits;
+        while rest != 0 {
+            let one = &self.motions[rest.trailing_zeros() as usize];
+            rest &= rest - 1;
+            all.rigid |= one.rigid;
+            for a in 0..3 {
+                if one.by[a].is_some() {
+                    all.by[a] = one.by[a];
+                    all.middle[a] = one.middle[a];
+                    all.end[a] = one.end[a];
+                }
+            }
+        }
+        all
+    }
+
+    /// Clears the components of a vector that are prescribed to a particle with these bits.
+    #[inline]
+    pub(crate) fn clear_prescribed(&self, bits: u32, vector: &mut [f64; 3]) {
+        let prescribed = self.of(bits);
+        for a in 0..3 {
+            if prescribed.by[a].is_some() {
+                vector[a] = 0.0;
+            }
+        }
+    }
+
+    pub(crate) fn memory(&self) -> usize {
+        size_of::<Prescribed>() * self.motions.capacity()
+            + size_of::<SurfaceStep>() * self.surfaces.capacity()
+            + size_of::<usize>() * self.rigid_bodies.capacity()
+            + self.absorption.memory()
+            + 4 * size_of::<ExactSum>() * self.sums.capacity()
+    }
+
+    /// Adds the torque of gravity on what is no part of a rigid body to `torque`.
+    pub(crate) fn add_weight(&self, particles: &ParticleStore, torque: &mut [ExactSum; 3]) {
+        if self.gravity == [0.0; 3] {
+            return;
+        }
+        let all = self.sum_free(particles, |i| {
+            let weight = self.gravity.map(|g| particles.mass[i] * g);
+            cross(&particles.position[i], &weight)
+        });
+        for (sum, other) in torque.iter_mut().zip(&all) {
+            sum.merge(other);
+        }
+    }
+}

@@ -1,0 +1,295 @@
+//! What there is of each body: the rows of `bodies.csv`.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::matter::raise;
+use super::{Whole, reading};
+use comm::Comm;
+use material::FAILED;
+use model::{Case, edge};
+use numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
+use numerics::gathered_sums::GatheredSums;
+use numerics::ordered::{disordered, ordered};
+use numerics::vector::{cross, norm};
+use particles::{Asleep, Block, GRAIN, KeptBlocks, ParticleStore};
+
+/// What there is of a body (SI), the images behind symmetry planes with it. What no particle has
+/// is not a number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BodyFigures {
+    /// Number of its particles.
+    pub particles: u64,
+    /// Mass (kg).
+    pub mass: f64,
+    /// Momentum (kg m/s).
+    pub momentum: [f64; 3],
+    /// Angular momentum about the origin (kg m²/s).
+    pub angular_momentum: [f64; 3],
+    /// `Σ ½ m v²` (J).
+    pub kinetic_energy: f64,
+    /// `Σ m e` (J).
+    pub internal_energy: f64,
+    /// Plastic work so far (J).
+    pub plastic_energy: f64,
+    /// Velocity of its centre of mass (m/s).
+    pub velocity: [f64; 3],
+    /// Smallest and largest components of the velocities of its particles (m/s).
+    pub velocities: [[f64; 3]; 2],
+    /// Largest speed (m/s).
+    pub speed: f64,
+    /// Centre of mass (m).
+    pub centre: [f64; 3],
+    /// Smallest and largest coordinates (m), half an edge of the outermost particles beyond their
+    /// centres.
+    pub extents: [[f64; 3]; 2],
+    /// Mass that has failed (kg).
+    pub failed_mass: f64,
+    /// Mass at or above the melting temperature (kg).
+    pub molten_mass: f64,
+    /// Smallest and largest pressure (Pa), compression positive.
+    pub pressures: [f64; 2],
+    /// Highest temperature (K).
+    pub temperature: f64,
+    /// Largest equivalent plastic strain.
+    pub plastic_strain: f64,
+}
+
+/// Sums of a body: mass, momentum, angular momentum, energies, failed and molten mass, `Σ m x`, and
+/// the number of particles.
+const SUMS: usize = 16;
+
+/// Largest values of a body: coordinates and velocities with either sign, speed, pressure with
+/// either sign, temperature, plastic strain.
+const EXTREMES: usize = 17;
+
+/// Extremes that hang on the size of a particle.
+const SIZED: usize = 6;
+
+/// What some particles of a body come to.
+struct Part {
+    sums: GatheredSums<SUMS>,
+    extremes: [f64; EXTREMES],
+}
+
+impl Part {
+    fn new() -> Self {
+        Self {
+            sums: GatheredSums::default(),
+            extremes: [f64::NEG_INFINITY; EXTREMES],
+        }
+    }
+
+    fn join(&mut self, mut other: Self) {
+        self.take(other.sums.sums(), &other.extremes);
+    }
+
+    /// Takes in what other particles come to.
+    fn take(&mut self, sums: &[ExactSum; SUMS], extremes: &[f64; EXTREMES]) {
+        self.sums.merge_sums(sums);
+        for (most, &other) in self.extremes.iter_mut().zip(extremes) {
+            *most = most.max(other);
+        }
+    }
+
+    /// Takes particle `i` of the store in, of a temperature (K) if it has one.
+    fn add(&mut self, case: &Case, particles: &ParticleStore, i: usize, temperature: f64) {
+        let (m, thermal) = (particles.mass[i], particles.thermal_mass(i));
+        let (x, v) = (&particles.position[i], &particles.velocity[i]);
+        let (density, energy) = (particles.density[i], particles.specific_energy[i]);
+        let damage = particles.damage.get(i).copied().unwrap_or_default();
+        let work = particles.plastic_energy.get(i).copied();
+        let material = &case.materials[case.bodies[particles.body[i] as usize].material];
+        let melting = material.thermal.as_ref();
+        let melting = melting.and_then(|t| t.constants().melting_temperature);
+        let molten = melting.is_some_and(|melting| temperature >= melting);
+        let (turn, speed) = (cross(x, v), norm(v));
+        let mass_if = |yes: bool| if yes { thermal } else { 0.0 };
+        self.sums.add(&[
+            m,
+            m * v[0],
+            m * v[1],
+            m * v[2],
+            m * turn[0],
+            m * turn[1],
+            m * turn[2],
+            0.5 * m * speed * speed,
+            thermal * energy,
+            thermal * work.unwrap_or_default(),
+            mass_if(damage >= FAILED),
+            mass_if(molten),
+            m * x[0],
+            m * x[1],
+            m * x[2],
+            1.0,
+        ]);
+        self.reach(x, thermal / density, case.dimension);
+        let pressure = particles.pressure[i];
+        let extremes = [v, &v.map(|c| -c), &[speed, pressure, -pressure]];
+        let last = [temperature, particles.plastic_strain[i]];
+        let values = extremes.into_iter().flatten().chain(&last);
+        for (most, &value) in self.extremes[SIZED..].iter_mut().zip(values) {
+            raise(most, value);
+        }
+    }
+
+    /// Takes in how far a particle at `x` (m) of a volume (mᵈ) reaches.
+    fn reach(&mut self, x: &[f64; 3], volume: f64, dimension: usize) {
+        let (upper, lower) = self.extremes[..SIZED].split_at(3);
+        let room = (0..3).map(|a| (upper[a] - x[a]).min(lower[a] + x[a]));
+        let room = 2.0 * room.fold(f64::INFINITY, f64::min);
+        // The root is taken of those alone that may reach beyond all others so far, to more than rounding.
+        let within = (1..dimension).fold(room, |power, _| power * room);
+        if room > 0.0 && within > 1.1 * volume {
+            return;
+        }
+        let half = 0.5 * edge(volume, dimension);
+        for a in 0..3 {
+            raise(&mut self.extremes[a], x[a] + half);
+            raise(&mut self.extremes[3 + a], half - x[a]);
+        }
+    }
+
+    /// The figures of the whole, of the sums of all ranks.
+    fn figures(&mut self, whole: Whole) -> BodyFigures {
+        let sums = self.sums.sums().each_ref().map(ExactSum::value);
+        let three = |first: usize| [sums[first], sums[first + 1], sums[first + 2]];
+        let most = |k: usize| match self.extremes[k] {
+            f64::NEG_INFINITY => f64::NAN,
+            value => value,
+        };
+        let range = |first: usize| {
+            [
+                std::array::from_fn(|a| 0.0 - most(first + 3 + a)),
+                std::array::from_fn(|a| most(first + a)),
+            ]
+        };
+        let (mass, momentum) = (sums[0], three(1));
+        let whole_momentum = whole.momentum(momentum);
+        let whole_mass = whole.sum(mass);
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a count"
+        )]
+        let particles = whole.sum(sums[15]) as u64;
+        BodyFigures {
+            particles,
+            mass: whole_mass,
+            momentum: whole_momentum,
+            angular_momentum: whole.angular_momentum(three(4), momentum),
+            kinetic_energy: whole.sum(sums[7]),
+            internal_energy: whole.sum(sums[8]),
+            plastic_energy: whole.sum(sums[9]),
+            velocity: whole_momentum.map(|p| p / whole_mass),
+            velocities: whole.velocities(range(6)),
+            speed: most(12),
+            centre: whole.mean_position(three(12).map(|c| c / mass)),
+            extents: whole.extents(range(0)),
+            failed_mass: whole.sum(sums[10]),
+            molten_mass: whole.sum(sums[11]),
+            pressures: [0.0 - most(14), most(13)],
+            temperature: most(15),
+            plastic_strain: most(16),
+        }
+    }
+}
+
+/// What the particles of a block that sleeps come to, all of one body.
+#[derive(Debug)]
+struct Kept {
+    body: usize,
+    sums: [ExactSum; SUMS],
+    extremes: [f64; EXTREMES],
+}
+
+/// What bodies come to in what sleeps, kept from one row to the next.
+#[derive(Debug, Default)]
+pub struct KeptBodies(KeptBlocks<Kept>);
+
+impl KeptBodies {
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.0.memory()
+    }
+}
+
+/// The figures of each body, in the order of the case, with what is kept of those that sleep. Collective.
+#[must_use]
+pub fn bodies(
+    case: &Case,
+    particles: &ParticleStore,
+    (kept, asleep): (&mut KeptBodies, &Asleep),
+    whole: Whole,
+    comm: &Comm,
+) -> Vec<BodyFigures> {
+    let none = || case.bodies.iter().map(|_| Part::new()).collect::<Vec<_>>();
+    // `parts` are those of bodies from the first one on.
+    let add = |places: Range<usize>, parts: &mut [Part], first_body: usize| {
+        let mut temperatures = [0.0; GRAIN];
+        for first in places.clone().step_by(GRAIN) {
+            let temperatures = &mut temperatures[..GRAIN.min(places.end - first)];
+            reading::temperatures(case, particles, first, temperatures);
+            for (k, &temperature) in temperatures.iter().enumerate() {
+                let i = first + k;
+                let body = particles.body[i] as usize;
+                parts[body - first_body].add(case, particles, i, temperature);
+            }
+        }
+    };
+    let of_sleepers = |places: Range<usize>| {
+        let of = &particles.body[places.clone()];
+        let body = of
+            .iter()
+            .all(|body| *body == of[0])
+            .then_some(of[0] as usize)?;
+        let mut parts = vec![Part::new()];
+        add(places, &mut parts, body);
+        let Part { sums, extremes } = parts.pop()?;
+        Some(Kept {
+            body,
+            sums: sums.into_sums(),
+            extremes,
+        })
+    };
+    let of_block = |mut parts: Vec<Part>, mut block: Block<'_, Kept>| {
+        match block.kept(of_sleepers) {
+            Some(kept) => parts[kept.body].take(&kept.sums, &kept.extremes),
+            None => add(block.places(), &mut parts, 0),
+        }
+        parts
+    };
+    let join = |mut parts: Vec<Part>, others: Vec<Part>| {
+        for (part, other) in parts.iter_mut().zip(others) {
+            part.join(other);
+        }
+        parts
+    };
+    let mut parts = (kept.0)
+        .each(particles.owned(), asleep)
+        // same bits in any order: exact sums are integers, and extremes are some value among all
+        .fold(none, of_block)
+        // same bits in any order, as above
+        .reduce(none, join);
+    join_ranks(&mut parts, comm);
+    parts.iter_mut().map(|part| part.figures(whole)).collect()
+}
+
+/// Joins what bodies come to on all ranks. Collective.
+fn join_ranks(parts: &mut [Part], comm: &Comm) {
+    let mut limbs = Vec::new();
+    let sums = parts.iter_mut().flat_map(|part| part.sums.sums());
+    gather_limbs(sums, &mut limbs);
+    comm.sum_i64(&mut limbs);
+    let sums = parts.iter_mut().flat_map(|part| part.sums.sums());
+    scatter_limbs(sums, &limbs);
+    let extremes = parts.iter().flat_map(|part| part.extremes);
+    let mut words: Vec<u64> = extremes.map(ordered).collect();
+    comm.max_u64(&mut words);
+    let extremes = parts.iter_mut().flat_map(|part| &mut part.extremes);
+    for (most, &word) in extremes.zip(&words) {
+        *most = disordered(word);
+    }
+}

@@ -1,0 +1,302 @@
+//! Plates: hole, lips, bulge, what has left it, and the verdict.
+
+use std::f64::consts::PI;
+
+use super::attached::Attached;
+use super::figure::{Figure, Findings};
+use super::mask::{Mask, diameter};
+use super::matter::{Matter, raise};
+use super::remains::{Belongs, Remains};
+use comm::Comm;
+use model::Slab;
+use numerics::vector::dot;
+
+/// A hole, a gap or a flying piece counts if it is this many voxels wide.
+const LEAST: f64 = 2.0;
+
+/// Sectors about the hole in which lips are looked for.
+const SECTORS: usize = 48;
+
+/// Lips are told where they stand around this part of the hole.
+const LEAST_AROUND: f64 = 0.25;
+
+/// Lips are looked for as far as this many radii of the hole.
+const FARTHEST: f64 = 3.0;
+
+/// What has become of a plate, the worst first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// There is a hole through it, or what struck it is behind it.
+    Perforated,
+    /// Matter of the plate has left its rear side.
+    DetachedSpall,
+    /// There is a gap inside, and what lies behind it has not left.
+    AttachedSpall,
+    /// None of these.
+    Held,
+}
+
+impl Verdict {
+    /// Its word in tables.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Perforated => "perforated",
+            Self::DetachedSpall => "detached spall",
+            Self::AttachedSpall => "attached spall",
+            Self::Held => "held",
+        }
+    }
+}
+
+/// Masses (kg) of the whole that have left a plate or passed it.
+struct Left {
+    front: f64,
+    rear: f64,
+    /// What lies within a voxel of what remains.
+    doubtful: f64,
+    /// Mass of what struck that is behind the plate and has not flown past its rim.
+    passed: f64,
+    /// Largest speed (m/s) of what remains towards the rear.
+    speed: f64,
+}
+
+impl Left {
+    fn find(slab: &Slab, remains: &Remains, matter: &Matter, comm: &Comm) -> Self {
+        let middle = 0.5 * (slab.front + slab.rear);
+        let behind = slab.rear - slab.spacing;
+        let footprint = remains.footprint(slab, matter);
+        let sums = matter.sums::<4>(comm, |i, sums| {
+            let (body, mass, x) = (matter.body_of(i), matter.mass[i], &matter.position[i]);
+            if body != slab.body {
+                let passed = slab.before.contains(&body)
+                    && remains.height(x) < behind
+                    && remains.is_behind(x)
+                    && footprint.let_through(x, &matter.velocity[i]);
+                if passed {
+                    sums.add(&[0.0, 0.0, 0.0, mass]);
+                }
+                return;
+            }
+            match remains.holds(i) {
+                Belongs::Yes => {}
+                Belongs::Nearly => sums.add(&[0.0, 0.0, mass, 0.0]),
+                // What lies in the crater of a plate that is bent has not left to the rear.
+                Belongs::No if remains.height(x) <= middle && remains.is_behind(x) => {
+                    sums.add(&[0.0, mass, 0.0, 0.0]);
+                }
+                Belongs::No => sums.add(&[mass, 0.0, 0.0, 0.0]),
+            }
+        });
+        let [speed] = matter.largest::<1>(comm, |i, most| {
+            let is_its = matter.body_of(i) == slab.body;
+            if is_its && remains.holds(i) == Belongs::Yes {
+                raise(&mut most[0], -dot(&slab.normal, &matter.velocity[i]));
+            }
+        });
+        let whole = super::Whole::new(&matter.mirrors);
+        let [front, rear, doubtful, passed] = sums.map(|sum| whole.sum(sum));
+        Self {
+            front,
+            rear,
+            doubtful,
+            passed,
+            speed: speed.max(0.0),
+        }
+    }
+}
+
+/// Inner and outer diameter (m) of a lip.
+struct Lip {
+    inner: f64,
+    outer: f64,
+}
+
+impl Lip {
+    const NONE: Self = Self {
+        inner: f64::NAN,
+        outer: f64::NAN,
+    };
+
+    /// About a hole, of cells with matter beyond a face.
+    fn about(hole: &Mask, raised: &Mask, attached: &Attached) -> Self {
+        let edge = attached.window.edge;
+        let across = attached.window.counts[1];
+        #[expect(clippy::cast_precision_loss, reason = "counts are small")]
+        let place = |cell: usize| [(cell / across) as f64, (cell % across) as f64];
+        #[expect(clippy::cast_precision_loss, reason = "counts are small")]
+        let count = hole.count() as f64;
+        let middle: [f64; 2] =
+            std::array::from_fn(|a| hole.cells().map(|cell| place(cell)[a]).sum::<f64>() / count);
+        let farthest = FARTHEST * (count / PI).sqrt() + 2.0 * LEAST;
+        // Distances of raised cells by sector, in cells.
+        let mut sectors = vec![Vec::new(); SECTORS];
+        for cell in raised.cells() {
+            let [x, y] = place(cell);
+            let (x, y) = (x - middle[0], y - middle[1]);
+            let distance = libm::hypot(x, y);
+            if distance <= farthest {
+                sectors[sector(x, y)].push(distance);
+            }
+        }
+        let (mut inner, mut outer, mut found) = (0.0, 0.0, 0.0);
+        for distances in &mut sectors {
+            distances.sort_by(f64::total_cmp);
+            let Some(&first) = distances.first() else {
+                continue;
+            };
+            // Up to where there is none for two cells.
+            let mut last = first;
+            for &distance in distances.iter() {
+                if distance > last + LEAST {
+                    break;
+                }
+                last = distance;
+            }
+            inner += first - 0.5;
+            outer += last + 0.5;
+            found += 1.0;
+        }
+        #[expect(clippy::cast_precision_loss, reason = "small")]
+        let around = found / SECTORS as f64;
+        if around < LEAST_AROUND {
+            return Self::NONE;
+        }
+        Self {
+            inner: 2.0 * edge * inner / found,
+            outer: 2.0 * edge * outer / found,
+        }
+    }
+}
+
+/// The sector of a direction.
+fn sector(x: f64, y: f64) -> usize {
+    #[expect(clippy::cast_precision_loss, reason = "small")]
+    let turn = (libm::atan2(y, x) / (2.0 * PI) + 0.5) * SECTORS as f64;
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "at least zero"
+    )]
+    let sector = turn as usize;
+    sector % SECTORS
+}
+
+/// What the window tells of a plate.
+struct Shape {
+    hole: f64,
+    clear: f64,
+    middle: f64,
+    lips: [Lip; 2],
+    /// Greatest heights (m) beyond the front and the rear face.
+    heights: [f64; 2],
+    parted: bool,
+    edge: f64,
+}
+
+impl Shape {
+    fn of(slab: &Slab, attached: &Attached) -> Self {
+        let edge = attached.window.edge;
+        let is_open = attached.is_open();
+        let inside = |mask: Mask| mask.largest_inside();
+        let hole = inside(attached.open_between(slab.rear, slab.front));
+        let clear = inside(attached.open());
+        let middle = 0.5 * (slab.front + slab.rear);
+        let at_middle = inside(attached.open_between(middle, middle));
+        let (above, below) = (slab.front + 0.25 * edge, slab.rear - 0.25 * edge);
+        let raised = [
+            attached.filled_between(above, f64::MAX),
+            attached.filled_between(f64::MIN, below),
+        ];
+        let is_hole = is_open && diameter(hole.count(), edge) >= LEAST * edge;
+        let width = |mask: &Mask| {
+            if is_hole {
+                diameter(mask.count(), edge)
+            } else {
+                0.0
+            }
+        };
+        let lips = raised.map(|raised| {
+            if is_hole {
+                Lip::about(&hole, &raised, attached)
+            } else {
+                Lip::NONE
+            }
+        });
+        let heights = attached
+            .ends()
+            .flatten()
+            .fold([0.0; 2], |most: [f64; 2], ends| {
+                [
+                    most[0].max(ends[1] - slab.front),
+                    most[1].max(slab.rear - ends[0]),
+                ]
+            });
+        let wide = |mask: &Mask| diameter(mask.largest_part().count(), edge) >= LEAST * edge;
+        Self {
+            hole: width(&hole),
+            clear: width(&clear),
+            middle: width(&at_middle),
+            lips,
+            heights,
+            parted: wide(&attached.parted()),
+            edge,
+        }
+    }
+
+    /// Of a plate in which nothing has flowed.
+    fn untouched(slab: &Slab) -> Self {
+        Self {
+            hole: 0.0,
+            clear: 0.0,
+            middle: 0.0,
+            lips: [Lip::NONE, Lip::NONE],
+            heights: [0.0; 2],
+            parted: false,
+            edge: slab.spacing,
+        }
+    }
+}
+
+/// What there is to tell of a plate. Collective.
+pub fn plate(slab: &Slab, remains: &Remains, matter: &Matter, comm: &Comm) -> Findings {
+    let shape = match remains.attached() {
+        Some(attached) => Shape::of(slab, attached),
+        None => Shape::untouched(slab),
+    };
+    let left = Left::find(slab, remains, matter, comm);
+    let density = matter.case.density_of(slab.body);
+    let least = density * (LEAST * shape.edge).powi(3);
+    let verdict = if shape.hole > 0.0 || left.passed > 0.0 {
+        Verdict::Perforated
+    } else if left.rear >= least {
+        Verdict::DetachedSpall
+    } else if shape.parted {
+        Verdict::AttachedSpall
+    } else {
+        Verdict::Held
+    };
+    let length = |name, value: f64| Figure::number(name, value, "m").within(shape.edge);
+    let mass = |name, value: f64| Figure::number(name, value, "kg");
+    let [front, rear] = &shape.lips;
+    Findings {
+        figures: vec![
+            Figure::word("verdict", verdict.word()),
+            length("hole_diameter", shape.hole),
+            length("mid_plane_hole_diameter", shape.middle),
+            length("clear_diameter", shape.clear),
+            length("front_lip_inner_diameter", front.inner),
+            length("front_lip_outer_diameter", front.outer),
+            length("rear_lip_inner_diameter", rear.inner),
+            length("rear_lip_outer_diameter", rear.outer),
+            length("front_height", shape.heights[0]),
+            length("rear_height", shape.heights[1]),
+            mass("front_mass", left.front),
+            mass("rear_mass", left.rear),
+            mass("removed_mass", left.front + left.rear).within(left.doubtful),
+            mass("passed_mass", left.passed),
+            Figure::number("rear_speed", left.speed, "m/s"),
+        ],
+        distributions: Vec::new(),
+    }
+}

@@ -1,0 +1,251 @@
+//! What hangs together of a body that is struck, where matter has yielded.
+//!
+//! A window is laid about all matter of the body that has flowed; in it the largest piece is what remains. What lies
+//! beside the window has not flowed and remains, too.
+
+use rayon::prelude::*;
+
+use super::attached::Attached;
+use super::footprint::Footprint;
+use super::frame::Frame;
+use super::matter::{Matter, raise};
+use super::voxels::{Grain, Voxels};
+use super::window::Window;
+use comm::Comm;
+use particles::Mirrors;
+use model::{Include, Slab};
+
+/// Matter has flowed beyond this plastic strain: some elastic and plastic waves do not count.
+const FLOWED: f64 = 0.05;
+
+/// The window reaches this many voxels, and this part of its width, beyond matter that has flowed.
+const MARGIN: (f64, f64) = (4.0, 0.1);
+
+/// Lips and bulges are looked for as far from the faces as half the width of the window, at most this many
+/// thicknesses and [`MARGIN`].
+const LIPS: f64 = 8.0;
+
+/// Whether a place belongs to what remains.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Belongs {
+    /// It lies in it.
+    Yes,
+    /// It lies beside it, within a voxel.
+    Nearly,
+    /// It does not.
+    No,
+}
+
+/// What remains of a slab.
+#[derive(Debug)]
+pub struct Remains {
+    frame: Frame,
+    /// Nothing if no matter has flowed.
+    attached: Option<Attached>,
+    /// Heights (m) between which what lies beside the window remains.
+    between: [f64; 2],
+    /// Height (m) below which all remains that lies above the rear face, and that face.
+    untouched: [f64; 2],
+    /// Which particles of the body belong to it; of other bodies none does.
+    belongs: Vec<Belongs>,
+}
+
+impl Remains {
+    /// Finds it. Collective.
+    #[must_use]
+    pub fn find(slab: &Slab, matter: &Matter, comm: &Comm) -> Self {
+        let frame = Frame::new(&slab.normal);
+        let halves = Halves::new(&frame, &matter.mirrors);
+        let reach = flowed(slab, &frame, &halves, matter, comm);
+        let mut remains = Self {
+            frame,
+            attached: None,
+            between: [f64::NEG_INFINITY, f64::INFINITY],
+            untouched: [f64::INFINITY, slab.rear],
+            belongs: Vec::new(),
+        };
+        if reach[0].is_finite() {
+            let (window, beyond) = window(slab, &halves, &reach);
+            let voxels = Voxels::new(window);
+            voxels.fill(matter.len(), &halves.codes, |i, code| {
+                let counts = matter.body_of(i) == slab.body
+                    && (slab.include == Include::All || !matter.has_failed(i));
+                counts.then(|| Grain {
+                    place: place(&frame, matter, i, code),
+                    volume: matter.volume(i),
+                })
+            });
+            let fractions = voxels.sum(comm);
+            remains.between = [slab.rear - beyond, slab.front + beyond];
+            remains.untouched = [window.lower[2], slab.rear];
+            remains.attached = Some(Attached::new(
+                window,
+                fractions,
+                &outside(slab, &frame, &window, matter),
+            ));
+        }
+        let particles = (0..matter.len()).into_par_iter();
+        let belongs = |i: usize| {
+            if matter.body_of(i) == slab.body {
+                remains.place(&matter.position[i])
+            } else {
+                Belongs::No
+            }
+        };
+        remains.belongs = particles.map(belongs).collect();
+        remains
+    }
+
+    /// What of it lies in the window, if matter has flowed.
+    #[must_use]
+    pub fn attached(&self) -> Option<&Attached> {
+        self.attached.as_ref()
+    }
+
+    /// Where the body of the slab has stood at the start.
+    #[must_use]
+    pub fn footprint(&self, slab: &Slab, matter: &Matter) -> Footprint {
+        Footprint::new(slab, &self.frame, slab.spacing, matter)
+    }
+
+    /// Height (m) of a place (m) along the normal.
+    #[must_use]
+    pub fn height(&self, x: &[f64; 3]) -> f64 {
+        self.frame.turned(x)[2]
+    }
+
+    /// Whether a place (m) that lies behind the body lies below what remains of it, too.
+    #[must_use]
+    pub fn is_behind(&self, x: &[f64; 3]) -> bool {
+        let place = self.frame.turned(x);
+        let there = self.attached.as_ref();
+        let voxel = there.and_then(|attached| Some((attached, attached.window.voxel(&place)?)));
+        voxel.is_none_or(|(attached, voxel)| attached.is_below(voxel))
+    }
+
+    /// Whether a particle belongs to it.
+    #[must_use]
+    pub fn holds(&self, i: usize) -> Belongs {
+        self.belongs[i]
+    }
+
+    /// Whether a particle of the body at a place (m) belongs to it.
+    fn place(&self, x: &[f64; 3]) -> Belongs {
+        let Some(attached) = &self.attached else {
+            return Belongs::Yes;
+        };
+        let place = self.frame.turned(x);
+        if let Some(voxel) = attached.window.voxel(&place) {
+            return if attached.holds(voxel) {
+                Belongs::Yes
+            } else if attached.holds_near(voxel) {
+                Belongs::Nearly
+            } else {
+                Belongs::No
+            };
+        }
+        let window = &attached.window;
+        #[expect(clippy::cast_precision_loss, reason = "counts are small")]
+        let beside = (0..2).any(|a| {
+            let at = (place[a] - window.lower[a]) / window.edge;
+            at < 0.0 || at >= window.counts[a] as f64
+        });
+        let [low, high] = self.between;
+        let [top, rear] = self.untouched;
+        let below = rear <= place[2] && place[2] < top;
+        if below || beside && low <= place[2] && place[2] <= high {
+            Belongs::Yes
+        } else {
+            Belongs::No
+        }
+    }
+}
+
+/// Symmetry planes that run along the normal, across one of the axes of its frame: what is behind them is not
+/// looked at.
+struct Halves {
+    /// Where they are on the first two axes (m).
+    planes: [Option<f64>; 2],
+    /// Codes of images behind other planes, and of the particle itself.
+    codes: Vec<u8>,
+}
+
+impl Halves {
+    fn new(frame: &Frame, mirrors: &Mirrors) -> Self {
+        let (planes, bits) = frame.planes(mirrors);
+        let codes = std::iter::once(0).chain(mirrors.codes());
+        Self {
+            planes,
+            codes: codes.filter(|code| code & bits == 0).collect(),
+        }
+    }
+}
+
+/// Coordinates (m) of a particle's image.
+fn place(frame: &Frame, matter: &Matter, i: usize, code: u8) -> [f64; 3] {
+    frame.turned(&matter.mirrors.reflect_position(&matter.position[i], code))
+}
+
+/// How far (m) matter of the body that has flowed reaches between its faces, along the axes of the frame and
+/// against them; −∞ if none has. Of a body that cannot yield all has flowed. Collective.
+fn flowed(slab: &Slab, frame: &Frame, halves: &Halves, matter: &Matter, comm: &Comm) -> [f64; 6] {
+    let material = matter.case.bodies[slab.body].material;
+    let yields = matter.case.materials[material].strength.yields();
+    let (low, high) = (slab.rear - slab.spacing, slab.front + slab.spacing);
+    let mut reach = matter.largest::<6>(comm, |i, most| {
+        let flowed = !yields || matter.plastic_strain[i] >= FLOWED || matter.has_failed(i);
+        if matter.body_of(i) != slab.body || !flowed {
+            return;
+        }
+        for &code in &halves.codes {
+            let place = place(frame, matter, i, code);
+            if low <= place[2] && place[2] <= high {
+                for a in 0..3 {
+                    raise(&mut most[a], place[a]);
+                    raise(&mut most[3 + a], -place[a]);
+                }
+            }
+        }
+    });
+    for (a, plane) in halves.planes.iter().enumerate() {
+        if let Some(plane) = plane {
+            let farthest = (reach[a] - plane).max(reach[3 + a] + plane);
+            (reach[a], reach[3 + a]) = (plane + farthest, farthest - plane);
+        }
+    }
+    reach
+}
+
+/// Which kept columns of a window the body has not been in at the start.
+fn outside(slab: &Slab, frame: &Frame, window: &Window, matter: &Matter) -> Vec<bool> {
+    let footprint = Footprint::new(slab, frame, window.edge, matter);
+    let columns = (0..window.kept().iter().product()).into_par_iter();
+    let is_outside = |column: usize| !footprint.holds(window.middle(column));
+    columns.map(is_outside).collect()
+}
+
+/// The window about matter that has flowed within some reach (m), and how far it goes beyond the
+/// faces (m).
+fn window(slab: &Slab, halves: &Halves, reach: &[f64; 6]) -> (Window, f64) {
+    let (voxels, part) = MARGIN;
+    let width = (0..2).fold(0.0, |most: f64, a| most.max(reach[a] + reach[3 + a]));
+    let margin = voxels * slab.spacing + part * width;
+    let beyond = (0.5 * width).min(LIPS * slab.thickness()) + margin;
+    let (mut lower, mut upper) = ([0.0; 3], [0.0; 3]);
+    for a in 0..2 {
+        (lower[a], upper[a]) = (-reach[3 + a] - margin, reach[a] + margin);
+    }
+    upper[2] = slab.front + beyond;
+    // A thick target has nothing to tell below what has flowed.
+    let deepest = -reach[5] - margin;
+    lower[2] = if deepest > slab.rear {
+        deepest
+    } else {
+        slab.rear - beyond
+    };
+    // A face between two voxels.
+    let depth = ((slab.front - lower[2]) / slab.spacing).ceil();
+    lower[2] = slab.front - depth * slab.spacing;
+    let window = Window::new(lower, upper, slab.spacing, halves.planes);
+    (window, beyond)
+}

@@ -1,0 +1,118 @@
+//! What the plain sums of the first sweep tell of a motion: strain, spin, and the rest that no linear
+//! field explains.
+
+use numerics::lane_matrix::{Symmetric, along, faded, full, times};
+use numerics::lanes::Lanes;
+
+/// e⁴ of the spin, at e = .05: a lone pair does not tell how it turns about its own axis.
+const SPIN_FADE: f64 = 0.05 * 0.05 * 0.05 * 0.05;
+
+/// How often the spin takes up what the fade has left of it: the error of the share that it sees is
+/// raised to the third power.
+const SPIN_PASSES: usize = 2;
+
+/// What the first sweep sums over pairs.
+pub(super) struct PlainSums<V> {
+    /// `L₀` (1/s).
+    pub(super) gradient: [V; 9],
+    /// `M`.
+    pub(super) moment: Symmetric<V>,
+    /// `Σ w_ij (v_j − v_i)` with `w_ij = −V_j r |∇W_ij|`.
+    pub(super) velocity: [V; 3],
+    /// `Σ w_ij (x_i − x_j)`.
+    pub(super) place: [V; 3],
+    /// `Σ w_ij`, which is `−tr M`.
+    pub(super) weight: V,
+}
+
+/// Parts of a motion.
+pub(super) struct Motion<V> {
+    /// The velocity gradient (1/s): `D + W`.
+    pub(super) gradient: [V; 9],
+    /// Mean velocity of the neighbours that no linear field explains (m/s).
+    pub(super) rest: [V; 3],
+}
+
+/// The spin W of a neighbourhood (1/s) whose strain rate is D: `W M + M W` is twice the antisymmetric
+/// part of `L₀ − D M`, so that the angular velocity is `(tr M I − M)⁻¹` times its axial vector, as an
+/// inertia to an angular momentum.
+#[inline(always)]
+fn spin<V: Lanes>(strain: &[V; 9], plain: &PlainSums<V>) -> [V; 9] {
+    let explained = times(strain, &full(&plain.moment));
+    let left = |a: usize| plain.gradient[a].sub(explained[a]);
+    let axial = [
+        left(7).sub(left(5)),
+        left(2).sub(left(6)),
+        left(3).sub(left(1)),
+    ];
+    let [xx, yy, zz, xy, xz, yz] = plain.moment;
+    let zero = V::splat(0.0);
+    let minus = |c: V| zero.sub(c);
+    let inertia = [
+        yy.add(zz),
+        xx.add(zz),
+        xx.add(yy),
+        minus(xy),
+        minus(xz),
+        minus(yz),
+    ];
+    let inverse = full(&faded(&inertia, SPIN_FADE).inverse);
+    let inertia = full(&inertia);
+    let mut turn = along(&inverse, &axial);
+    for _ in 0..SPIN_PASSES {
+        let seen = along(&inertia, &turn);
+        let more = along(
+            &inverse,
+            &[
+                axial[0].sub(seen[0]),
+                axial[1].sub(seen[1]),
+                axial[2].sub(seen[2]),
+            ],
+        );
+        for a in 0..3 {
+            turn[a] = turn[a].add(more[a]);
+        }
+    }
+    let [x, y, z] = turn;
+    [zero, minus(z), y, z, zero, minus(x), minus(y), x, zero]
+}
+
+/// The motion whose strain rate D is that of the `corrected` gradient and whose [`spin`] W is that of
+/// the neighbourhood. Neighbours are expected to move by `W + (L₀ − W M) B`.
+#[inline(always)]
+pub(super) fn motion<V: Lanes>(
+    corrected: &[V; 9],
+    plain: &PlainSums<V>,
+    inner: &Symmetric<V>,
+) -> Motion<V> {
+    let half = V::splat(0.5);
+    let mean = |a: usize, b: usize| corrected[a].add(corrected[b]).mul(half);
+    let strain = full(&[
+        corrected[0],
+        corrected[4],
+        corrected[8],
+        mean(1, 3),
+        mean(2, 6),
+        mean(5, 7),
+    ]);
+    let spin = spin(&strain, plain);
+    let turned = times(&spin, &full(&plain.moment));
+    let mut stretch = plain.gradient;
+    for c in 0..9 {
+        stretch[c] = stretch[c].sub(turned[c]);
+    }
+    let mut expected = times(&stretch, &full(inner));
+    let mut gradient = strain;
+    for c in 0..9 {
+        expected[c] = expected[c].add(spin[c]);
+        gradient[c] = gradient[c].add(spin[c]);
+    }
+    let linear = along(&expected, &plain.place);
+    // A particle alone has no weight.
+    let weight = plain.weight.min(V::splat(-f64::MIN_POSITIVE));
+    let rest = |a: usize| plain.velocity[a].add(linear[a]).div(weight);
+    Motion {
+        gradient,
+        rest: [rest(0), rest(1), rest(2)],
+    }
+}

@@ -1,0 +1,305 @@
+//! The corrected formulation: gradients that a smooth function of the neighbours' moments corrects,
+//! and forces that are their adjoint.
+
+use rayon::prelude::*;
+
+use super::Formulation;
+use super::gradient_sweep::{Gradient, strain};
+use super::momentum_sweep::accelerate;
+use crate::domain::Shown;
+use material::{FAILED, NEGLIGIBLE, PointBatch};
+use model::Case;
+use particles::neighbours::{Among, Cluster, Lists};
+use numerics::dispatch::Vectorised;
+use numerics::kernel::PairScale;
+use numerics::lane_matrix::{full, load_all, read_all, store_all};
+use numerics::lanes::{F64x8, LANES, Lanes};
+use particles::{GRAIN, ParticleStore, Scatter, material_points, records_of, resize};
+use crate::sph::corrected::{CorrectedGradient, CorrectedRecord, Correction};
+use crate::sph::hourglass;
+use crate::sph::material_update::{Show, Updated};
+use crate::sph::neighbourhood::Neighbourhood;
+use crate::sph::signal::{SignalSpeed, Signals};
+use crate::sph::step::{Side, Step};
+use crate::sph::sums::{Sums, scratch_of, show_images};
+
+/// The corrected formulation.
+#[derive(Debug, Default)]
+pub struct Corrected {
+    records: Vec<CorrectedRecord>,
+    /// Where the records of this rank's particles stand.
+    places: Vec<u32>,
+    /// Those of halo particles.
+    heard: Vec<CorrectedRecord>,
+    /// Stiffness ξ of the hourglass control.
+    hourglass: f64,
+}
+
+impl Corrected {
+    /// Of a case.
+    #[must_use]
+    pub fn new(case: &Case) -> Self {
+        Self {
+            hourglass: case.sph.hourglass,
+            ..Self::default()
+        }
+    }
+}
+
+impl Corrected {
+    /// What images have shown in the last second sweep, in the order of the lists.
+    #[must_use]
+    pub fn records(&self) -> &[CorrectedRecord] {
+        &self.records
+    }
+
+    fn find_places(&mut self, owned: usize, lists: &Lists) {
+        resize(&mut self.places, owned);
+        let places = Scatter::new(&mut self.places);
+        let images = lists.images().par_iter().enumerate();
+        images.with_min_len(GRAIN).for_each(|(place, image)| {
+            if image.code() == 0 && image.base() < owned {
+                #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
+                let place = place as u32;
+                // SAFETY: each particle stands at one place.
+                unsafe { *places.slot(image.base()) = place };
+            }
+        });
+    }
+}
+
+impl Formulation for Corrected {
+    fn rates(
+        &mut self,
+        sums: &mut Sums,
+        particles: &mut ParticleStore,
+        lists: &Lists,
+        step: &Step,
+    ) {
+        let gradient = CorrectedGradients {
+            dimension: sums.dimension,
+            dt: step.dt,
+            hourglass: self.hourglass,
+            displacement: Scatter::new(&mut particles.hourglass_displacement),
+            records: Scatter::new(&mut self.records),
+        };
+        let points = (material_points!(particles), records_of!(particles));
+        strain(&gradient, sums, points, lists, step);
+        self.find_places(particles.owned(), lists);
+    }
+
+    fn forces(
+        &mut self,
+        sums: &mut Sums,
+        particles: &mut ParticleStore,
+        lists: &Lists,
+        side: Side,
+    ) {
+        let (owned, places, heard) = (particles.owned(), &self.places, &self.heard);
+        show_images(
+            &mut self.records,
+            owned,
+            lists,
+            side,
+            |records, base, code| {
+                let shown = match base.checked_sub(owned) {
+                    // SAFETY: images stand at other places, and nobody writes elsewhere.
+                    None => unsafe { records.read(places[base] as usize) },
+                    Some(k) => heard[k],
+                };
+                shown.reflected(code)
+            },
+        );
+        sums.terms.show(particles, lists, side);
+        let set = sums.terms.set();
+        accelerate(sums, (set, &self.records, &[]), particles, lists, side);
+    }
+
+    fn scratch(&mut self, images: usize) -> &mut [u64] {
+        scratch_of(&mut self.records, images)
+    }
+
+    fn shown(&mut self) -> Option<&mut dyn Shown> {
+        Some(self)
+    }
+
+    fn memory(&self) -> usize {
+        (self.records.capacity() + self.heard.capacity()) * size_of::<CorrectedRecord>()
+            + 4 * self.places.capacity()
+    }
+}
+
+/// Their records.
+impl Shown for Corrected {
+    fn size(&self) -> usize {
+        size_of::<CorrectedRecord>()
+    }
+
+    fn of(&self, particle: usize) -> &[u8] {
+        bytemuck::bytes_of(&self.records[self.places[particle] as usize])
+    }
+
+    fn heard(&mut self, halo: usize) -> &mut [u8] {
+        resize(&mut self.heard, halo);
+        bytemuck::cast_slice_mut(&mut self.heard)
+    }
+}
+
+impl SignalSpeed for Corrected {
+    #[inline(always)]
+    fn speed(_: &Signals, _: usize, plain: f64) -> f64 {
+        plain
+    }
+}
+
+/// Corrected gradients, and where stresses between corrections go.
+struct CorrectedGradients<'a> {
+    dimension: usize,
+    dt: f64,
+    hourglass: f64,
+    displacement: Scatter<'a, [f64; 3]>,
+    records: Scatter<'a, CorrectedRecord>,
+}
+
+impl Gradient for CorrectedGradients<'_> {
+    type Show<'b, S: PairScale>
+        = ShowCorrected<'b, S>
+    where
+        Self: 'b;
+
+    #[inline(always)]
+    fn of<'b, V: Lanes, S: PairScale>(
+        &'b self,
+        _: &Cluster,
+        among: Among,
+        around: Neighbourhood<'b, S>,
+        failed: impl FnOnce() -> u8,
+    ) -> ([F64x8; 9], ShowCorrected<'b, S>) {
+        let sums = CorrectedGradient {
+            around,
+            dimension: self.dimension,
+            plain: failed(),
+        };
+        let zero = F64x8([0.0; LANES]);
+        let (gradient, rest, correction) = if among.moving {
+            let corrected = sums.run::<V>();
+            (
+                corrected.gradient,
+                corrected.rest,
+                Some(corrected.correction),
+            )
+        } else {
+            // No relative velocity: the sums would be these, and nobody may need the correction.
+            ([zero; 9], [zero; 3], None)
+        };
+        let show = ShowCorrected {
+            target: self,
+            rest,
+            correction,
+            sums,
+        };
+        (gradient, show)
+    }
+
+    unsafe fn show_resting(&self, place: usize, state: [f64; 2]) {
+        // SAFETY: by the contract of this function.
+        unsafe {
+            *self.records.slot(place) =
+                CorrectedRecord::new(&[0.0; 9], &[0.0; 3], self.hourglass, state);
+        }
+    }
+}
+
+/// Shows the stresses of a cluster between their corrections.
+struct ShowCorrected<'a, S> {
+    target: &'a CorrectedGradients<'a>,
+    rest: [F64x8; 3],
+    /// Once it is known.
+    correction: Option<Correction>,
+    sums: CorrectedGradient<'a, S>,
+}
+
+impl<S: PairScale> Show for ShowCorrected<'_, S> {
+    #[inline(always)]
+    unsafe fn show<V: Lanes>(&self, points: &Updated) {
+        let (target, after) = (self.target, points.after);
+        let deviator: [V; 6] = read_all(&after.deviatoric_stress);
+        let pressure = V::read(&after.pressure);
+        let mut sigma = full(&deviator);
+        for a in 0..3 {
+            sigma[4 * a] = sigma[4 * a].sub(pressure);
+        }
+        let stress = if let Some(correction) = &self.correction {
+            correction.apply(&sigma)
+        } else if is_free(after) {
+            [V::splat(0.0); 9]
+        } else {
+            self.sums.run::<V>().correction.apply(&sigma)
+        };
+        let stress = store_all(&stress);
+        if points.shear_modulus > 0.0 {
+            // SAFETY: by the contract of this function.
+            unsafe { self.bend::<V>(points, &deviator) };
+        }
+        points.each(|k, i, index| {
+            let mut own = [0.0; 9];
+            for c in 0..9 {
+                own[c] = stress[c].0[k];
+            }
+            let state = [after.density[k], after.sound_speed[k]];
+            // SAFETY: by the contract of this function.
+            unsafe {
+                let displacement = target.displacement.slot(i);
+                *target.records.slot(index) =
+                    CorrectedRecord::new(&own, displacement, target.hourglass, state);
+            }
+        });
+    }
+}
+
+impl<S: PairScale> ShowCorrected<'_, S> {
+    /// Advances hourglass displacements.
+    ///
+    /// # Safety
+    /// No other thread may read or write those of these particles.
+    #[inline(always)]
+    unsafe fn bend<V: Lanes>(&self, points: &Updated, deviator: &[V; 6]) {
+        let (target, before, after) = (self.target, points.before, points.after);
+        let mut old = [[0.0; LANES]; 3];
+        let mut intact = [1.0; LANES];
+        for k in 0..LANES {
+            // SAFETY: by the contract of this function.
+            let own = unsafe { *target.displacement.slot(points.particles[k]) };
+            for a in 0..3 {
+                old[a][k] = own[a];
+            }
+            let slow = |v: &F64x8| v.0[k].abs() < NEGLIGIBLE * after.sound_speed[k];
+            let still = || after.velocity_gradient.iter().all(|l| l[k] == 0.0);
+            let rests = own == [0.0; 3] && self.rest.iter().all(slow) && still();
+            if after.damage[k] >= FAILED || rests {
+                intact[k] = 0.0;
+            }
+        }
+        let plastic = V::read(&after.plastic_strain).sub(V::read(&before.plastic_strain));
+        let flow = plastic.mul(V::splat(3.0 * points.shear_modulus));
+        let kept = hourglass::kept(deviator, flow).mul(V::read(&intact));
+        let new = hourglass::advance(
+            &read_all(&old),
+            &load_all(&self.rest),
+            &read_all(&after.velocity_gradient),
+            V::splat(target.dt),
+        );
+        let new = [new[0].mul(kept), new[1].mul(kept), new[2].mul(kept)];
+        let new: [F64x8; 3] = store_all::<V, 3>(&new);
+        points.each(|k, i, _| {
+            // SAFETY: by the contract of this function.
+            unsafe { *target.displacement.slot(i) = [new[0].0[k], new[1].0[k], new[2].0[k]] };
+        });
+    }
+}
+
+/// Whether no point bears stress.
+#[inline(always)]
+fn is_free(after: &PointBatch) -> bool {
+    after.pressure == [0.0; LANES] && after.deviatoric_stress == [[0.0; LANES]; 6]
+}

@@ -1,0 +1,63 @@
+//! Records of the stress of particles and images.
+
+use particles::Mirrors;
+use particles::neighbours::Lists;
+use numerics::lanes::Lanes;
+use particles::{ParticleStore, Scatter};
+use crate::sph::material_update::{Show, Updated};
+use crate::sph::momentum::StressRecord;
+use crate::sph::step::Side;
+use crate::sph::sums::show_images;
+
+/// Shows stresses as they are updated.
+pub(super) struct ShowStress<'a>(Scatter<'a, StressRecord>);
+
+impl<'a> ShowStress<'a> {
+    pub fn new(records: &'a mut [StressRecord]) -> Self {
+        Self(Scatter::new(records))
+    }
+
+    /// Sets what a place shows.
+    ///
+    /// # Safety
+    /// No other thread may read or write what belongs to the place.
+    pub unsafe fn set(&self, place: usize, record: StressRecord) {
+        // SAFETY: by the contract of this function.
+        unsafe { *self.0.slot(place) = record };
+    }
+}
+
+impl Show for &ShowStress<'_> {
+    #[inline(always)]
+    unsafe fn show<V: Lanes>(&self, points: &Updated) {
+        let after = points.after;
+        points.each(|k, _, index| {
+            let s = |c: usize| after.deviatoric_stress[c][k];
+            let record = StressRecord::new(
+                after.pressure[k],
+                &[s(0), s(1), s(2), s(3), s(4), s(5)],
+                after.density[k],
+                after.sound_speed[k],
+            );
+            // SAFETY: by the contract of this function.
+            unsafe { self.set(index, record) };
+        });
+    }
+}
+
+/// Stresses of halo particles and their images, or of the images of this rank's particles.
+pub(super) fn fill_stresses(
+    records: &mut [StressRecord],
+    particles: &ParticleStore,
+    lists: &Lists,
+    side: Side,
+) {
+    show_images(records, particles.owned(), lists, side, |_, base, code| {
+        StressRecord::new(
+            particles.pressure[base],
+            &Mirrors::reflect_symmetric(&particles.deviatoric_stress[base], code),
+            particles.density[base],
+            particles.sound_speed[base],
+        )
+    });
+}

@@ -1,0 +1,302 @@
+//! The receivers of one cluster with their neighbours: what all sums over pairs begin with.
+
+use particles::neighbours::MotionRecord;
+use numerics::kernel::{PairKernel, PairScale};
+use numerics::lanes::{LANES, Lanes};
+
+/// Squares of distances are never smaller than this (m²), so that a particle meeting itself
+/// divides by something: it then adds an exact zero since its `r_ij` is zero.
+pub const SMALLEST_SQUARE: f64 = 1e-60;
+
+/// What a sweep sees of all particles and images.
+#[derive(Debug, Clone, Copy)]
+pub struct Sources<'a, S> {
+    /// Their motion.
+    pub records: &'a [MotionRecord],
+    /// Their smoothing lengths (m); empty where the scale is constant.
+    pub lengths: &'a [f64],
+    /// Smoothing length of pairs.
+    pub scale: S,
+}
+
+impl<'a, S: PairScale> Sources<'a, S> {
+    /// Eight receivers, of which unused lanes repeat a valid one, with the neighbours of all of
+    /// them together, in canonical order.
+    #[inline(always)]
+    #[must_use]
+    pub fn around(self, receivers: [u32; LANES], neighbours: &'a [u32]) -> Neighbourhood<'a, S> {
+        Neighbourhood {
+            sources: self,
+            receivers,
+            neighbours,
+        }
+    }
+}
+
+/// The receivers of one cluster with their neighbours; sums go in the order of `neighbours`.
+#[derive(Debug, Clone, Copy)]
+pub struct Neighbourhood<'a, S> {
+    pub(super) sources: Sources<'a, S>,
+    pub(super) receivers: [u32; LANES],
+    pub(super) neighbours: &'a [u32],
+}
+
+impl<'a, S: PairScale> Neighbourhood<'a, S> {
+    /// Position (m) and velocity (m/s) of the receivers.
+    #[inline(always)]
+    pub(super) fn motion<V: Lanes>(&self) -> ([V; 3], [V; 3]) {
+        let receivers = records(self.sources.records, &self.receivers);
+        (
+            gather_all(&receivers, |record, a| record.position[a]),
+            gather_all(&receivers, |record, a| record.velocity[a]),
+        )
+    }
+
+    /// Smoothing lengths of the receivers (m), whatever if the scale is constant.
+    #[inline(always)]
+    pub(super) fn h<V: Lanes>(&self) -> V {
+        let at = |k: usize| length::<S>(self.sources.lengths, self.receivers[k] as usize);
+        V::read(&[at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)])
+    }
+
+    /// The receivers, which stand at `position` (m), with one neighbour after the other. A particle
+    /// whose position is NaN has none, not even itself.
+    #[inline(always)]
+    pub(super) fn pairs<V: Lanes>(&self, position: &[V; 3]) -> Pairs<'a, V, S, ()> {
+        self.pairs_beside(position, ())
+    }
+
+    /// The same, with the inverse of a divisor.
+    #[inline(always)]
+    pub(super) fn pairs_beside<V: Lanes, D: Divisor<V>>(
+        &self,
+        position: &[V; 3],
+        divisor: D,
+    ) -> Pairs<'a, V, S, D> {
+        let mut pairs = Pairs {
+            around: *self,
+            position: *position,
+            h: self.h(),
+            divisor,
+            done: 0,
+            next: Divided::of::<S>(Distance::of(V::splat(1.0)), V::splat(1.0), None),
+            after: Distance::of(V::splat(1.0)),
+        };
+        if !self.neighbours.is_empty() {
+            // The compiler must not know how these come about: where they and those of the loop do alike, it
+            // takes roots and divides behind the two, when the result is due.
+            pairs.next = std::hint::black_box(pairs.divide(0, pairs.distance(0)));
+            pairs.after = std::hint::black_box(pairs.distance(1));
+        }
+        pairs
+    }
+}
+
+/// What a sum over pairs divides by beside their distances.
+pub(super) trait Divisor<V>: Copy {
+    /// Of the neighbour of this index, squares of distances (m²) and `h_ij` (m), if any.
+    fn of(&self, index: usize, square: V, h: V) -> Option<V>;
+}
+
+impl<V> Divisor<V> for () {
+    #[inline(always)]
+    fn of(&self, _: usize, _: V, _: V) -> Option<V> {
+        None
+    }
+}
+
+/// Eight receivers and one neighbour.
+pub(super) struct Pair<'a, V> {
+    /// Index of the neighbour among all sources.
+    pub(super) index: usize,
+    /// The neighbour.
+    pub(super) source: &'a MotionRecord,
+    /// How they stand.
+    pub(super) separation: Separation<V>,
+    /// The kernel.
+    pub(super) kernel: PairKernel<V>,
+    /// `h_ij` (m).
+    pub(super) h: V,
+    /// The inverse of the divisor, 1 without one.
+    pub(super) beside: V,
+}
+
+/// Pairs of eight receivers, neighbour after neighbour. Roots are begun two neighbours ahead and divisions one:
+/// both take long, and processors look no farther than some sixty operations that wait.
+pub(super) struct Pairs<'a, V, S, D> {
+    around: Neighbourhood<'a, S>,
+    position: [V; 3],
+    h: V,
+    divisor: D,
+    done: usize,
+    next: Divided<V>,
+    after: Distance<V>,
+}
+
+impl<V: Lanes, S: PairScale, D: Divisor<V>> Pairs<'_, V, S, D> {
+    /// Index of the neighbour so many after the next, at most the last.
+    #[inline(always)]
+    fn index(&self, ahead: usize) -> usize {
+        let neighbours = self.around.neighbours;
+        neighbours[(self.done + ahead).min(neighbours.len() - 1)] as usize
+    }
+
+    #[inline(always)]
+    fn apart(&self, index: usize) -> [V; 3] {
+        let source = &self.around.sources.records[index].position;
+        let along = |a: usize| self.position[a].sub(V::splat(source[a]));
+        [along(0), along(1), along(2)]
+    }
+
+    #[inline(always)]
+    fn distance(&self, ahead: usize) -> Distance<V> {
+        let r = self.apart(self.index(ahead));
+        Distance::of(r[2].mul_add(r[2], r[1].mul_add(r[1], r[0].mul(r[0]))))
+    }
+
+    #[inline(always)]
+    fn divide(&self, ahead: usize, far: Distance<V>) -> Divided<V> {
+        let index = self.index(ahead);
+        let Sources { lengths, scale, .. } = self.around.sources;
+        let h = scale.length(self.h, length::<S>(lengths, index));
+        Divided::of::<S>(far, h, self.divisor.of(index, far.square, h))
+    }
+}
+
+impl<'a, V: Lanes, S: PairScale, D: Divisor<V>> Iterator for Pairs<'a, V, S, D> {
+    type Item = Pair<'a, V>;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<Pair<'a, V>> {
+        let Sources {
+            records,
+            lengths,
+            scale,
+        } = self.around.sources;
+        if self.done == self.around.neighbours.len() {
+            return None;
+        }
+        let (index, now) = (self.index(0), self.next);
+        let Distance { square, distance } = now.far;
+        self.next = self.divide(1, self.after);
+        self.after = self.distance(2);
+        self.done += 1;
+        Some(Pair {
+            index,
+            source: &records[index],
+            separation: Separation {
+                r: self.apart(index),
+                square,
+                distance,
+                inverse: now.inverse,
+            },
+            kernel: scale.kernel(distance, now.inverse_h),
+            h: scale.length(self.h, length::<S>(lengths, index)),
+            beside: now.beside,
+        })
+    }
+}
+
+/// The records of eight receivers. (Written out, since what array methods call may be compiled
+/// apart from the vector code.)
+#[inline(always)]
+pub(super) fn records<'a, R>(sources: &'a [R], indices: &[u32; LANES]) -> [&'a R; LANES] {
+    let at = |k: usize| &sources[indices[k] as usize];
+    [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)]
+}
+
+/// One number of each of eight records.
+#[inline(always)]
+pub(super) fn gather<V: Lanes, R>(records: &[&R; LANES], number: impl Fn(&R) -> f64) -> V {
+    let at = |k: usize| number(records[k]);
+    V::read(&[at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)])
+}
+
+/// `N` numbers of each of eight records.
+#[inline(always)]
+pub(super) fn gather_all<V: Lanes, R, const N: usize>(
+    records: &[&R; LANES],
+    number: impl Fn(&R, usize) -> f64,
+) -> [V; N] {
+    let mut all = [V::splat(0.0); N];
+    for c in 0..N {
+        all[c] = gather(records, |record| number(record, c));
+    }
+    all
+}
+
+/// Smoothing length of a neighbour (m), whatever if the scale is constant.
+#[inline(always)]
+fn length<S: PairScale>(lengths: &[f64], index: usize) -> f64 {
+    if S::VARIABLE { lengths[index] } else { 0.0 }
+}
+
+/// Where eight receivers stand seen from one neighbour, with the distances.
+#[derive(Clone, Copy)]
+pub(super) struct Separation<V> {
+    /// `x_i − x_j` (m).
+    pub(super) r: [V; 3],
+    /// Its square (m²), not below [`SMALLEST_SQUARE`].
+    pub(super) square: V,
+    /// `r` (m).
+    pub(super) distance: V,
+    /// `1/r` (1/m).
+    pub(super) inverse: V,
+}
+
+/// How far eight receivers stand from one neighbour.
+#[derive(Clone, Copy)]
+struct Distance<V> {
+    square: V,
+    distance: V,
+}
+
+impl<V: Lanes> Distance<V> {
+    #[inline(always)]
+    fn of(square: V) -> Self {
+        let square = square.max(V::splat(SMALLEST_SQUARE));
+        let distance = square.sqrt();
+        Self { square, distance }
+    }
+}
+
+/// The same, with what is divided by it.
+#[derive(Clone, Copy)]
+struct Divided<V> {
+    far: Distance<V>,
+    inverse: V,
+    /// `1/h_ij` (1/m), whatever if that is constant.
+    inverse_h: V,
+    beside: V,
+}
+
+impl<V: Lanes> Divided<V> {
+    /// Inverses of a distance, of `h_ij` where that differs, and of what is wanted beside them, by one division.
+    #[inline(always)]
+    fn of<S: PairScale>(far: Distance<V>, h: V, divisor: Option<V>) -> Self {
+        let (one, distance) = (V::splat(1.0), far.distance);
+        let (inverse, inverse_h, beside) = match (divisor, S::VARIABLE) {
+            (None, false) => (one.div(distance), one, one),
+            (None, true) => {
+                let both = one.div(distance.mul(h));
+                (both.mul(h), both.mul(distance), one)
+            }
+            (Some(divisor), false) => {
+                let both = one.div(distance.mul(divisor));
+                (both.mul(divisor), one, both.mul(distance))
+            }
+            (Some(divisor), true) => {
+                let others = divisor.mul(h);
+                let all = one.div(distance.mul(others));
+                let of_others = all.mul(distance);
+                (all.mul(others), of_others.mul(divisor), of_others.mul(h))
+            }
+        };
+        Self {
+            far,
+            inverse,
+            inverse_h,
+            beside,
+        }
+    }
+}

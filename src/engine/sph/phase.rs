@@ -1,0 +1,200 @@
+//! The SPH sums of a step.
+
+use rayon::prelude::*;
+
+use super::corrected::CorrectedRecord;
+use super::formulation::{Conventional, Corrected, Formulation, Normalised, StressPoints};
+use super::momentum::StressRecord;
+use super::normalised::NormalisedRecord;
+use super::rest::Resting;
+use super::signal::Signals;
+use super::smoothing::Smoothing;
+use super::step::{Side, Step};
+use super::sums::Sums;
+use super::terms;
+use particles::MirrorForce;
+use crate::domain::Shown;
+use crate::loads::Loads;
+use model::{Case, SphForm};
+use particles::neighbours::Lists;
+use numerics::kernel::Kernel;
+use particles::ParticleStore;
+
+/// The SPH sums of a case, with what they keep from step to step.
+pub struct Sph {
+    /// Smoothing lengths.
+    pub smoothing: Smoothing,
+    form: Form,
+    sums: Sums,
+}
+
+enum Form {
+    Conventional(Conventional),
+    Corrected(Corrected),
+    Normalised(Normalised),
+    StressPoints(StressPoints),
+}
+
+/// Calls `$work` with the formulation of a case as a concrete type.
+macro_rules! with_form {
+    ($form:expr, $name:ident => $work:expr) => {
+        match $form {
+            Form::Conventional($name) => $work,
+            Form::Corrected($name) => $work,
+            Form::Normalised($name) => $work,
+            Form::StressPoints($name) => $work,
+        }
+    };
+}
+
+/// Calls `$work` with the formulation of a form ([`SphForm`]) as a type of this name.
+macro_rules! with_formulation {
+    ($form:expr, $name:ident => $work:expr) => {
+        match $form {
+            model::SphForm::Conventional => {
+                type $name = $crate::sph::Conventional;
+                $work
+            }
+            model::SphForm::Corrected => {
+                type $name = $crate::sph::Corrected;
+                $work
+            }
+            model::SphForm::Normalised => {
+                type $name = $crate::sph::Normalised;
+                $work
+            }
+            model::SphForm::StressPoints => {
+                type $name = $crate::sph::StressPoints;
+                $work
+            }
+        }
+    };
+}
+pub(crate) use with_formulation;
+
+/// Chunks whose forces of mirrors a task adds up.
+const CHUNKS_OF_A_TASK: usize = 16;
+
+impl Sph {
+    /// Of a case.
+    #[must_use]
+    pub fn new(case: &Case) -> Self {
+        Self {
+            smoothing: Smoothing::new(case),
+            form: match case.sph.form {
+                SphForm::Conventional => Form::Conventional(Conventional::default()),
+                SphForm::Corrected => Form::Corrected(Corrected::new(case)),
+                SphForm::Normalised => Form::Normalised(Normalised::default()),
+                SphForm::StressPoints => Form::StressPoints(StressPoints::default()),
+            },
+            sums: Sums::new(case, &Kernel::new(case.dimension)),
+        }
+    }
+
+    /// Bytes of what each particle and image shows to others for pair terms and corrections.
+    #[must_use]
+    pub fn bytes_of_records(case: &Case) -> usize {
+        // Beyond the records of stress, which all forms have.
+        let corrected = match case.sph.form {
+            SphForm::Normalised => size_of::<NormalisedRecord>(),
+            SphForm::Corrected => size_of::<CorrectedRecord>() - size_of::<StressRecord>(),
+            SphForm::Conventional | SphForm::StressPoints => 0,
+        };
+        terms::bytes_of_records(&case.sph) + corrected
+    }
+
+    /// Memory for so many images that is free until [`Self::rates`].
+    pub fn scratch(&mut self, images: usize) -> &mut [u64] {
+        with_form!(&mut self.form, form => form.scratch(images))
+    }
+
+    /// The same, and what of the case can rest.
+    pub(crate) fn before_rates(&mut self, images: usize) -> (&mut [u64], &Resting) {
+        let scratch = with_form!(&mut self.form, form => form.scratch(images));
+        (scratch, &self.sums.resting)
+    }
+
+    /// The first sweep: velocity gradient at the end of the step, density and stress from its mean
+    /// with the gradient at the start, of owned particles; and what they show for pair terms.
+    pub fn rates(&mut self, particles: &mut ParticleStore, lists: &Lists, step: &Step) {
+        let sums = &mut self.sums;
+        with_form!(&mut self.form, form => form.rates(sums, particles, lists, step));
+        sums.terms.prepare(particles, step.dt);
+    }
+
+    /// What else than fields the second sweep is to know of halo particles, if anything.
+    pub fn shown(&mut self) -> Option<&mut dyn Shown> {
+        with_form!(&mut self.form, form => form.shown())
+    }
+
+    /// What images have shown in the last second sweep of the corrected form, in the order of the lists.
+    pub(super) fn corrected(&self) -> &[CorrectedRecord] {
+        match &self.form {
+            Form::Corrected(form) => form.records(),
+            Form::Conventional(_) | Form::Normalised(_) | Form::StressPoints(_) => &[],
+        }
+    }
+
+    /// Bytes of it for a particle.
+    #[must_use]
+    pub fn bytes_shown(case: &Case) -> usize {
+        match case.sph.form {
+            SphForm::Corrected => size_of::<CorrectedRecord>(),
+            SphForm::Conventional | SphForm::Normalised | SphForm::StressPoints => 0,
+        }
+    }
+
+    /// The second sweep: accelerations by stress and viscosity, and the power they put into heat,
+    /// of the receivers of a side.
+    pub fn forces(&mut self, particles: &mut ParticleStore, lists: &Lists, side: Side) {
+        if side == Side::Outer && particles.halo() == 0 {
+            return;
+        }
+        let sums = &mut self.sums;
+        with_form!(&mut self.form, form => form.forces(sums, particles, lists, side));
+    }
+
+    /// The drift of a step `dt` (s) beyond that by velocities.
+    pub fn drift(&self, particles: &mut ParticleStore, loads: &Loads, dt: f64) {
+        self.sums.terms.drift(particles, loads, dt);
+        with_form!(&self.form, form => form.drift(particles, dt, &loads.gravity));
+    }
+
+    /// What images behind symmetry planes did in the last second sweep.
+    #[must_use]
+    pub fn forces_of_mirrors(
+        &self,
+    ) -> impl ParallelIterator<Item = impl Iterator<Item = &MirrorForce>> {
+        let tasks = self.sums.from_mirrors.par_chunks(CHUNKS_OF_A_TASK);
+        tasks.map(|chunks| chunks.iter().flat_map(|chunk| &chunk.forces))
+    }
+
+    /// Particles of this rank whose gradient had no correction in the last first sweep.
+    #[must_use]
+    pub fn uncorrected(&self) -> i64 {
+        self.sums.uncorrected
+    }
+
+    /// What signal speeds follow from.
+    #[must_use]
+    pub fn signals<'a>(
+        &self,
+        [sound_speed, approach_speed]: [&'a [f64]; 2],
+        [correction_norm, fit_norm]: [&'a [f64]; 2],
+    ) -> Signals<'a> {
+        Signals {
+            viscosity: self.sums.viscosity,
+            dimension: self.sums.dimension,
+            sound_speed,
+            approach_speed,
+            correction_norm,
+            fit_norm,
+        }
+    }
+
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.sums.memory() + with_form!(&self.form, form => form.memory())
+    }
+}

@@ -1,0 +1,165 @@
+//! What the formulations share: the pair scale, records of stress, and what they are given.
+
+use rayon::prelude::*;
+
+use super::momentum::Viscosity;
+use super::neighbourhood::Sources;
+use super::rest::Resting;
+use super::step::Side;
+use super::terms::Terms;
+use particles::MirrorForce;
+use material::{Material, NEGLIGIBLE};
+use model::{Case, SmoothingLength};
+use particles::neighbours::Lists;
+use numerics::kernel::{ConstantScale, Kernel, MeanScale};
+use numerics::lanes::LANES;
+use particles::{GRAIN, Scatter, resize};
+
+/// What a formulation finds beside particles and lists, kept from step to step.
+pub(super) struct Sums {
+    pub dimension: usize,
+    pub scale: Scale,
+    pub viscosity: Viscosity,
+    pub terms: Terms,
+    pub materials: Vec<Material>,
+    pub resting: Resting,
+    pub material_of_body: Vec<usize>,
+    /// Whether one of these asks for what only some laws must know.
+    pub asks: bool,
+    /// Pressure (Pa) that counts as arrived, by material.
+    pub arrival: Vec<f64>,
+    /// What mirror images exert, by chunk.
+    pub from_mirrors: Vec<FromMirrors>,
+    /// Particles of this rank whose gradient has no correction.
+    pub uncorrected: i64,
+}
+
+/// What the images behind symmetry planes exert on the particles of a chunk.
+#[derive(Debug, Clone, Default)]
+pub(super) struct FromMirrors {
+    /// The images among the neighbours of one cluster.
+    pub(super) indices: Vec<u32>,
+    /// What they do to single particles.
+    pub(super) forces: Vec<MirrorForce>,
+}
+
+impl FromMirrors {
+    fn memory(&self) -> usize {
+        4 * self.indices.capacity() + size_of::<MirrorForce>() * self.forces.capacity()
+    }
+}
+
+/// The pair scale of a case, chosen once.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Scale {
+    Constant(ConstantScale),
+    One(MeanScale<1>),
+    Two(MeanScale<2>),
+    Three(MeanScale<3>),
+}
+
+/// Calls `$work` with the scale of a case as a concrete type.
+macro_rules! with_scale {
+    ($scale:expr, $name:ident => $work:expr) => {
+        match $scale {
+            $crate::sph::sums::Scale::Constant($name) => $work,
+            $crate::sph::sums::Scale::One($name) => $work,
+            $crate::sph::sums::Scale::Two($name) => $work,
+            $crate::sph::sums::Scale::Three($name) => $work,
+        }
+    };
+}
+pub(super) use with_scale;
+
+impl Sums {
+    pub fn new(case: &Case, kernel: &Kernel) -> Self {
+        let h = case.bodies.first().map_or(1.0, |b| b.smoothing_length);
+        let equal = case
+            .bodies
+            .iter()
+            .all(|b| b.smoothing_length.to_bits() == h.to_bits() && b.lattice.sizes.is_none());
+        let constant = case.sph.smoothing_length == SmoothingLength::Constant && equal;
+        let scale = match case.dimension {
+            _ if constant => Scale::Constant(ConstantScale::new(kernel, h)),
+            1 => Scale::One(MeanScale::new(kernel)),
+            2 => Scale::Two(MeanScale::new(kernel)),
+            _ => Scale::Three(MeanScale::new(kernel)),
+        };
+        Self {
+            dimension: case.dimension,
+            scale,
+            viscosity: Viscosity {
+                alpha: case.sph.alpha,
+                beta: case.sph.beta,
+                negligible: NEGLIGIBLE * case.fastest_sound(),
+            },
+            terms: Terms::new(case, kernel),
+            materials: case.materials.clone(),
+            resting: Resting::new(case),
+            arrival: (case.materials.iter())
+                .map(|material| case.measure.arrival_of(material))
+                .collect(),
+            material_of_body: case.bodies.iter().map(|b| b.material).collect(),
+            asks: case.materials.iter().any(Material::asks),
+            from_mirrors: Vec::new(),
+            uncorrected: 0,
+        }
+    }
+
+    pub fn memory(&self) -> usize {
+        let mirrors: usize = self.from_mirrors.iter().map(FromMirrors::memory).sum();
+        mirrors + self.terms.memory()
+    }
+}
+
+/// What is made of halo particles and their images, or of the images of this rank's particles,
+/// whose own records the first sweep has written: `show` makes it of a particle's index and an
+/// image's code, and may read the own records.
+pub(super) fn show_images<R: Send>(
+    records: &mut [R],
+    owned: usize,
+    lists: &Lists,
+    side: Side,
+    show: impl Fn(&Scatter<R>, usize, u8) -> R + Sync,
+) {
+    let sequence = lists.sequence();
+    if sequence.is_alone() {
+        return;
+    }
+    let records = Scatter::new(records);
+    let images = sequence.images().par_chunks(LANES).enumerate();
+    images
+        .with_min_len(GRAIN)
+        .filter(|(eight, _)| sequence.any_images(LANES * eight))
+        .for_each(|(eight, images)| {
+            for (k, image) in images.iter().enumerate() {
+                let (base, code) = (image.base(), image.code());
+                let of_halo = base >= owned;
+                if side.takes(of_halo) && (of_halo || code != 0) {
+                    let shown = show(&records, base, code);
+                    // SAFETY: each place is visited once, and those of own particles are not.
+                    unsafe { *records.slot(LANES * eight + k) = shown };
+                }
+            }
+        });
+}
+
+/// Memory for so many images that nobody needs before the next first sweep, in words.
+pub(super) fn scratch_of<R: bytemuck::Pod + Send + Sync>(
+    records: &mut Vec<R>,
+    images: usize,
+) -> &mut [u64] {
+    if records.len() < images {
+        resize(records, images);
+    }
+    bytemuck::cast_slice_mut(records)
+}
+
+/// What a sweep over pairs sees of all particles and images.
+pub(super) fn sources<S>(lists: &Lists, scale: S) -> Sources<'_, S> {
+    Sources {
+        records: lists.motion(),
+        lengths: lists.sequence().smoothing_lengths(),
+        scale,
+    }
+}

@@ -1,0 +1,95 @@
+//! Which fields a case has use for.
+
+use crate::contact::{Connectivity, ContactTable};
+use crate::fragments::{BYTES_OF_SEARCH, Labels};
+use model::{Case, NumericalFailurePolicy, SphForm};
+use particles::{FieldInfo, HaloPhase, Owner, ParticleStore, Select, rows};
+use crate::sph::Sph;
+
+/// Options of the table of fields that a case does not have.
+pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
+    let sph = &case.sph;
+    let driven = !case.loads.velocities.is_empty() || case.bodies.iter().any(|b| b.rigid.is_some());
+    let used = [
+        (Owner::LOADS, driven),
+        (Owner::ABSORBERS, !case.loads.absorbers.is_empty()),
+        (Owner::SELF_CONTACT, case.self_contact.is_some()),
+        (
+            Owner::FOLDS,
+            case.self_contact.is_some_and(|s| s.folds.is_some()),
+        ),
+        (Owner::SURFACE_FRICTION, case.loads.has_friction()),
+        (Owner::FAILURE, case.may_fail()),
+        (Owner::SOFTENING, case.fails_with("failure_onset")),
+        (Owner::FLAWS, case.fails_with("flaws")),
+        (Owner::YIELD, case.may_yield()),
+        (Owner::CARRIERS, case.measure.marks_particles()),
+        (Owner::WITNESSES, !case.measure.witnesses.is_empty()),
+        (Owner::BALSARA, sph.balsara),
+        (Owner::CONDUCTION, sph.conduction > 0.0),
+        (Owner::XSPH, sph.xsph > 0.0),
+        (Owner::CORRECTED, sph.form == SphForm::Corrected),
+        (Owner::NORMALISED, sph.form == SphForm::Normalised),
+        (
+            Owner::FREEZE,
+            case.numerical_limits.policy == NumericalFailurePolicy::Freeze,
+        ),
+        (Owner::STRESS_POINTS, sph.form == SphForm::StressPoints),
+    ]
+    .into_iter()
+    .filter(|&(_, used)| used)
+    .fold(contact.owners() | records(case), |all, (option, _)| {
+        all | option
+    });
+    Owner::all().difference(used)
+}
+
+/// What particles keep because snapshots or gauges are to show it.
+fn records(case: &Case) -> Owner {
+    let gauges = case.measure.gauges.iter().flat_map(|gauge| &gauge.fields);
+    let names: Vec<&String> = case.output.all_fields().chain(gauges).collect();
+    let records = rows(Owner::PEAKS).filter(|field| names.iter().any(|name| *name == field.name));
+    records.fold(Owner::empty(), |all, field| all | field.owner)
+}
+
+/// A store without particles, with the fields that a case has use for.
+#[must_use]
+pub fn store_of(case: &Case) -> ParticleStore {
+    let mut particles = ParticleStore::default();
+    particles.drop_fields(unused_fields(case, &ContactTable::new(case)));
+    particles
+}
+
+/// Bytes of a halo particle in each message of a step between two ranks: its motion, with the codes of
+/// its images; what it shows to forces; its friction, if there is any.
+#[must_use]
+pub fn bytes_of_messages(case: &Case) -> Vec<usize> {
+    let (contact, store) = (ContactTable::new(case), store_of(case));
+    let mut messages = vec![
+        1 + store.bytes_per_particle(HaloPhase::MOTION),
+        store.bytes_per_particle(contact.halo) + Sph::bytes_shown(case),
+    ];
+    if contact.has_friction() {
+        messages.push(store.bytes_per_particle(HaloPhase::FRICTION));
+    }
+    messages
+}
+
+/// Bytes that the options of a case add beyond contact without friction: to an owned particle, and
+/// to a halo particle with its messages.
+#[must_use]
+pub fn bytes_of_options(case: &Case) -> [usize; 2] {
+    let contact = ContactTable::new(case);
+    let unused = unused_fields(case, &contact) | Owner::CONTACT;
+    let fields = || rows(FieldInfo::is_optional).filter(|field| field.is_held_without(unused));
+    let owned: usize = fields().map(|field| field.kind.bytes()).sum();
+    let halo = fields().filter(|field| HaloPhase::all().takes(field));
+    let halo: usize = halo.map(|field| field.kind.bytes()).sum();
+    let halo = halo + Sph::bytes_shown(case);
+    let mut record = Sph::bytes_of_records(case) + Connectivity::bytes_of_image(case);
+    if case.fragments.is_some() {
+        record += Labels::BYTES + BYTES_OF_SEARCH;
+    }
+    // In the store, and in a message on its way out and in.
+    [owned + record, 3 * halo + record]
+}

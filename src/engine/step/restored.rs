@@ -1,0 +1,99 @@
+//! What a saved state must hold before a step believes it: a file may come from anybody.
+
+use super::error::SetupError;
+use super::simulation::Simulation;
+use comm::Comm;
+use crate::diagnose::RunState;
+use particles::{FieldInfo, Life, ParticleStore};
+
+/// Largest count: beyond it one more may be lost in a sum, or run over.
+const MOST: u64 = 1 << 53;
+
+/// What a saved state may be wrong in, and whether it is.
+type Check<'a> = (&'static str, &'a dyn Fn() -> bool);
+
+/// Refuses a saved state, or any rank's share of its particles, that is none of this case.
+/// Collective.
+pub(super) fn require_own(
+    comm: &Comm,
+    simulation: &Simulation,
+    state: &RunState,
+    particles: &ParticleStore,
+) -> Result<(), SetupError> {
+    let (own, bodies) = (&simulation.state, simulation.case.bodies.len());
+    let ledgers = |state: &RunState| [state.pairs.len(), state.loads.len()];
+    let checks: [Check; 8] = [
+        ("it has other pairs of bodies or loads", &|| {
+            ledgers(state) != ledgers(own)
+        }),
+        ("it has particles removed from other bodies", &|| {
+            let ledgers = [&state.removed, &state.departed];
+            ledgers
+                .iter()
+                .any(|by_body| ![0, bodies].contains(&by_body.len()))
+        }),
+        ("it has other gauges or witness planes", &|| {
+            let carried = simulation.measures.gauges.count_carried();
+            [state.gauge_carriers.len(), state.passed.len()] != [carried, own.passed.len()]
+        }),
+        ("its times are none", &|| {
+            !(state.dt > 0.0 && state.last_dt >= 0.0 && state.time >= 0.0)
+        }),
+        ("its counts are none", &|| {
+            counts(state).any(|count| count > MOST)
+        }),
+        ("it has particles of another body", &|| {
+            // In a restart, not in every step.
+            particles.body.iter().any(|&body| body as usize >= bodies)
+        }),
+        ("it has particles under another load", &|| {
+            particles
+                .load
+                .iter()
+                .any(|&bits| !simulation.loads.knows(bits))
+        }),
+        ("it has numbers that are not finite", &|| {
+            particles
+                .held(Life::State)
+                .any(|f| !is_finite(particles, f))
+        }),
+    ];
+    let wrong = checks.iter().position(|(_, wrong)| wrong());
+    let mut first = [wrong.unwrap_or(checks.len()) as u64];
+    comm.min_u64(&mut first);
+    let first = usize::try_from(first[0]).ok();
+    match first.and_then(|first| checks.get(first)) {
+        Some((what, _)) => Err(SetupError::Foreign(what)),
+        None => Ok(()),
+    }
+}
+
+/// Whatever a state counts; what is negative is counted as very many.
+fn counts(state: &RunState) -> impl Iterator<Item = u64> {
+    let worst = &state.worst;
+    let now = [
+        state.plane_crossings,
+        state.capped_reliefs,
+        state.interpenetrated,
+        state.uncorrected,
+        worst.interpenetrated,
+        worst.uncorrected,
+    ];
+    let touching = state.pairs.iter().map(|pair| pair.touching);
+    let signed = now.into_iter().chain(touching);
+    let removed = state.removed.iter().chain(&state.departed);
+    let passed = state.passed.iter().map(|passed| passed.particles);
+    let removed = removed.map(|removed| removed.particles).chain(passed);
+    [state.step, worst.contact_limited_steps]
+        .into_iter()
+        .chain(signed.map(|count| u64::try_from(count).unwrap_or(u64::MAX)))
+        .chain(removed)
+}
+
+fn is_finite(particles: &ParticleStore, field: &FieldInfo) -> bool {
+    if !field.kind.is_real() {
+        return true;
+    }
+    let values: &[f64] = bytemuck::cast_slice(particles.bytes(field.id));
+    values.iter().all(|value| value.is_finite())
+}

@@ -1,0 +1,183 @@
+//! What snapshots show and no step needs.
+
+use rayon::prelude::*;
+
+use super::simulation::Simulation;
+use comm::Comm;
+use particles::Mirrors;
+use particles::neighbours::{CHUNKS_AT_ONCE, Lists};
+use numerics::kernel::Kernel;
+use numerics::vector::{dot, minus, norm};
+use particles::{HaloPhase, ParticleStore};
+use crate::sph::{StressForces, stress};
+
+/// What the pair forces of a particle in contact carry.
+#[derive(Debug, Clone, Copy)]
+pub struct Carried {
+    /// Index of the particle.
+    pub particle: usize,
+    /// Virial of all its pair forces, by stress and by contact, over its volume (Pa, tension
+    /// positive).
+    pub stress: [f64; 6],
+    /// The direction in which contact presses on it.
+    pub normal: [f64; 3],
+}
+
+impl Simulation {
+    /// What the pair forces of each owned particle in contact carry. Right after a step, before the
+    /// particles change.
+    #[must_use]
+    pub fn carried_in_contact(&self) -> Vec<Carried> {
+        let (particles, lists) = (&self.particles, &self.lists);
+        let borne = self.contact.borne(particles, lists, self.state.last_dt);
+        let forces = StressForces::new(&self.case, particles, lists, &self.sph);
+        of_receivers(lists, |i, place, neighbours| {
+            let at = borne.binary_search_by_key(&i, |(i, _)| *i).ok()?;
+            let borne = &borne[at].1;
+            let mut virial = forces.virial(place, neighbours);
+            virial.join(&borne.virial);
+            let volume = particles.mass[i] / particles.density[i];
+            let press = norm(&borne.press);
+            Some(Carried {
+                particle: i,
+                stress: virial.0.map(|v| v / volume),
+                normal: borne.press.map(|f| f / press),
+            })
+        })
+    }
+
+    /// Writes into `contact_stress` what the traction across a particle in contact is more than
+    /// that of its own stress. Right after a step, before the particles change. Collective.
+    ///
+    /// The traction is that of [`Self::carried_in_contact`], as the kernel averages it over the
+    /// particles of the body that are in contact, on the plane that contact presses on (theory page
+    /// "Contact").
+    pub fn measure_contact_stress(&mut self, comm: &Comm) {
+        if !self.contact.table.is_active() {
+            return;
+        }
+        let mut carried = self.carried_in_contact();
+        carried.retain(|of| of.stress != [0.0; 6]);
+        let field = &mut self.particles.contact_stress;
+        field.fill([0.0; 6]);
+        for of in &carried {
+            field[of.particle] = of.stress;
+        }
+        self.halo
+            .exchange(comm, &mut self.particles, HaloPhase::SHOWN);
+        let (particles, lists) = (&self.particles, &self.lists);
+        let kernel = Kernel::new(self.case.dimension);
+        let means = of_receivers(lists, |i, place, neighbours| {
+            let is_there = particles.contact_stress[i] != [0.0; 6];
+            is_there.then(|| mean_carried(&kernel, particles, lists, (place, neighbours)))
+        });
+        for (of, mean) in carried.iter().zip(means) {
+            let own = stress(&self.particles, of.particle);
+            let more = std::array::from_fn(|k| mean[k] - own[k]);
+            self.particles.contact_stress[of.particle] = on_plane(&more, &of.normal);
+        }
+    }
+}
+
+/// Mean over a particle in contact and its neighbours that are in contact too,
+/// `Σ V_j W_ij S_j / Σ V_j W_ij`, of what stands in `contact_stress`.
+fn mean_carried(
+    kernel: &Kernel,
+    particles: &ParticleStore,
+    lists: &Lists,
+    (place, neighbours): (u32, &[u32]),
+) -> [f64; 6] {
+    let (images, motion) = (lists.images(), lists.motion());
+    let h = |place: u32| particles.smoothing_length[images[place as usize].base()];
+    let (mut sum, mut weights) = ([0.0; 6], 0.0);
+    for &other in neighbours {
+        let (image, record) = (images[other as usize], &motion[other as usize]);
+        let carried = &particles.contact_stress[image.base()];
+        if *carried == [0.0; 6] {
+            continue;
+        }
+        let distance = norm(&minus(&motion[place as usize].position, &record.position));
+        let weight = record.volume * kernel.value(distance, 0.5 * (h(place) + h(other)));
+        let carried = Mirrors::reflect_symmetric(carried, image.code());
+        weights += weight;
+        for k in 0..6 {
+            sum[k] += weight * carried[k];
+        }
+    }
+    let weights = weights.max(f64::MIN_POSITIVE);
+    sum.map(|s| s / weights)
+}
+
+/// What `work` finds of owned particles, given the index of each, its place among the images and
+/// its neighbours in its own body, itself among them; in the order of the lists.
+fn of_receivers<T: Send>(
+    lists: &Lists,
+    work: impl Fn(usize, u32, &[u32]) -> Option<T> + Sync,
+) -> Vec<T> {
+    let chunks = lists.chunks().par_iter().with_max_len(CHUNKS_AT_ONCE);
+    let found = chunks.flat_map_iter(|chunk| {
+        let mut found = Vec::new();
+        for (cluster, neighbours, _) in chunk.iter() {
+            for &place in &cluster.receivers[..cluster.lanes] {
+                let i = lists.images()[place as usize].base();
+                found.extend(work(i, place, neighbours));
+            }
+        }
+        found
+    });
+    found.collect()
+}
+
+/// The part of a symmetric tensor that acts on the plane of a unit normal: with the same traction
+/// there, and none between directions in the plane.
+fn on_plane(tensor: &[f64; 6], n: &[f64; 3]) -> [f64; 6] {
+    let [xx, yy, zz, xy, xz, yz] = *tensor;
+    let t = [
+        dot(&[xx, xy, xz], n),
+        dot(&[xy, yy, yz], n),
+        dot(&[xz, yz, zz], n),
+    ];
+    let normal = dot(&t, n);
+    let part = |a: usize, b: usize| n[a] * t[b] + t[a] * n[b] - normal * (n[a] * n[b]);
+    [
+        part(0, 0),
+        part(1, 1),
+        part(2, 2),
+        part(0, 1),
+        part(0, 2),
+        part(1, 2),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The traction stays on the plane itself, and vanishes between directions in it.
+    #[test]
+    fn only_the_plane_of_contact_bears_more() {
+        let tensor = [3.0, -1.0, 2.0, 0.5, 0.25, -2.0];
+        let along_y = on_plane(&tensor, &[0.0, 1.0, 0.0]);
+        assert_eq!(along_y, [0.0, -1.0, 0.0, 0.5, 0.0, -2.0]);
+        let n = [0.6, 0.0, 0.8];
+        let [xx, yy, zz, xy, xz, yz] = on_plane(&tensor, &n);
+        let traction = [
+            xx * n[0] + xz * n[2],
+            xy * n[0] + yz * n[2],
+            xz * n[0] + zz * n[2],
+        ];
+        let expected = [
+            3.0 * 0.6 + 0.25 * 0.8,
+            0.5 * 0.6 - 2.0 * 0.8,
+            0.25 * 0.6 + 2.0 * 0.8,
+        ];
+        for a in 0..3 {
+            assert!((traction[a] - expected[a]).abs() < 1e-14);
+        }
+        let across = [0.8, 0.0, -0.6];
+        let in_plane = xx * across[0] * across[0]
+            + 2.0 * xz * across[0] * across[2]
+            + zz * across[2] * across[2];
+        assert!(yy.abs() < 1e-14 && in_plane.abs() < 1e-14);
+    }
+}

@@ -1,0 +1,370 @@
+//! Abaqus input files: nodes, elements and sets of parts, and their instances in the assembly.
+
+mod instance;
+
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeMap;
+
+use super::Fault;
+use super::mesh::{Cell, Kind, Mesh, Part, as_place};
+use super::part::PartName;
+use super::text::{at, id, number, shortened};
+use model::Vec3;
+use instance::Instance;
+
+/// Keywords that make or move nodes and elements, so that they cannot be passed over.
+const REFUSED: &[(&str, &str)] = &[
+    ("INCLUDE", "put all of it into one file"),
+    ("SYSTEM", "write nodes in the global system"),
+    ("NGEN", "write out its nodes"),
+    ("NFILL", "write out its nodes"),
+    ("NCOPY", "write out its nodes"),
+    ("NMAP", "write out its nodes"),
+    ("ELGEN", "write out its elements"),
+    ("ELCOPY", "write out its elements"),
+    ("PARAMETER", "write numbers in place of parameters"),
+];
+
+/// A keyword with its parameters.
+struct Keyword {
+    name: String,
+    parameters: Vec<(String, String)>,
+}
+
+impl Keyword {
+    fn of(line: &str) -> Self {
+        let mut words = line.trim_start_matches('*').split(',').map(str::trim);
+        let name = words.next().unwrap_or_default().to_uppercase();
+        let parameter = |word: &str| {
+            let (key, value) = word.split_once('=').unwrap_or((word, ""));
+            let value = value.trim().trim_matches('"').to_owned();
+            (key.trim().to_uppercase(), value)
+        };
+        Self {
+            name: name.split_whitespace().collect::<Vec<_>>().join(" "),
+            parameters: words
+                .filter(|word| !word.is_empty())
+                .map(parameter)
+                .collect(),
+        }
+    }
+
+    fn get(&self, key: &str) -> Option<&str> {
+        let mut parameters = self.parameters.iter();
+        let found = parameters.find(|(known, _)| known == key);
+        found.map(|(_, value)| value.as_str())
+    }
+}
+
+/// Nodes and elements with numbers of their own: a part, or all of a file without parts.
+#[derive(Debug, Default)]
+struct Block {
+    name: String,
+    mesh: Mesh,
+    /// By the number of the element.
+    places: BTreeMap<u64, u32>,
+}
+
+impl Block {
+    /// The set of a name.
+    fn set(&mut self, name: &str, is_set: bool) -> usize {
+        let parts = &mut self.mesh.parts;
+        let found = parts.iter().position(|part| part.name.name == name);
+        found.unwrap_or_else(|| {
+            parts.push(Part {
+                name: PartName {
+                    number: None,
+                    name: name.to_owned(),
+                },
+                is_set,
+                ..Part::default()
+            });
+            parts.len() - 1
+        })
+    }
+}
+
+/// What lines of data belong to.
+#[derive(Debug, Clone)]
+enum Section {
+    Nodes,
+    Elements(Kind, usize, Option<usize>),
+    /// Elements that are no solids.
+    Skipped,
+    Set(usize, bool),
+    Instance,
+    Other,
+}
+
+#[derive(Debug)]
+struct Reader {
+    /// The first is what stands outside of parts.
+    blocks: Vec<Block>,
+    /// The one that is read.
+    block: usize,
+    instances: Vec<Instance>,
+    section: Section,
+    /// Numbers of an element so far, whose line goes on.
+    begun: Vec<u64>,
+}
+
+/// Reads an input file.
+///
+/// # Errors
+/// What is wrong, with its line.
+pub fn read(text: &str) -> Result<Mesh, Fault> {
+    let mut reader = Reader {
+        blocks: vec![Block::default()],
+        block: 0,
+        instances: Vec::new(),
+        section: Section::Other,
+        begun: Vec::new(),
+    };
+    let mut has_any = false;
+    for (n, line) in text.lines().enumerate() {
+        let line = line.trim();
+        if line.is_empty() || line.starts_with("**") {
+            continue;
+        }
+        let read = if line.starts_with('*') {
+            has_any = true;
+            reader.begin(&Keyword::of(line))
+        } else if has_any {
+            reader.data(line)
+        } else {
+            return Err("it is no Abaqus input: it does not begin with a keyword".into());
+        };
+        read.map_err(|what| at(n, what))?;
+    }
+    if !has_any {
+        return Err("it is no Abaqus input: it has no keyword".into());
+    }
+    reader.finished()
+}
+
+impl Reader {
+    fn begin(&mut self, keyword: &Keyword) -> Result<(), String> {
+        if !self.begun.is_empty() {
+            return Err("the element before has too few nodes".to_owned());
+        }
+        let refused = REFUSED.iter().find(|(name, _)| keyword.name == *name);
+        if let Some((name, help)) = refused {
+            return Err(format!("`*{name}` is not read: {help}"));
+        }
+        self.section = match keyword.name.as_str() {
+            "PART" => {
+                let name = keyword.get("NAME").ok_or("a part has no name")?;
+                self.blocks.push(Block {
+                    name: name.to_owned(),
+                    ..Block::default()
+                });
+                self.block = self.blocks.len() - 1;
+                Section::Other
+            }
+            "END PART" | "ASSEMBLY" => {
+                self.block = 0;
+                Section::Other
+            }
+            "INSTANCE" => {
+                let name = keyword.get("NAME").ok_or("an instance has no name")?;
+                let part = keyword.get("PART").ok_or("an instance has no part")?;
+                self.instances.push(Instance::new(name, part));
+                Section::Instance
+            }
+            "NODE" if matches!(self.section, Section::Instance) => {
+                return Err("an instance with nodes of its own is not read".to_owned());
+            }
+            "NODE"
+                if keyword
+                    .get("SYSTEM")
+                    .is_some_and(|s| !s.eq_ignore_ascii_case("R")) =>
+            {
+                return Err("nodes of a cylindrical or spherical system are not read".to_owned());
+            }
+            "NODE" => Section::Nodes,
+            "ELEMENT" => self.elements(keyword)?,
+            // Sets of the assembly are of instances.
+            "ELSET" if keyword.get("INSTANCE").is_none() => {
+                let name = keyword.get("ELSET").ok_or("a set has no name")?.to_owned();
+                let set = self.blocks[self.block].set(&name, true);
+                Section::Set(set, keyword.get("GENERATE").is_some())
+            }
+            _ => Section::Other,
+        };
+        Ok(())
+    }
+
+    fn elements(&mut self, keyword: &Keyword) -> Result<Section, String> {
+        let word = keyword
+            .get("TYPE")
+            .ok_or("elements have no type")?
+            .to_uppercase();
+        let Some((kind, nodes)) = kind_of(&word)? else {
+            return Ok(Section::Skipped);
+        };
+        let block = &mut self.blocks[self.block];
+        let set = keyword.get("ELSET").map(|name| {
+            let set = block.set(name, false);
+            block.mesh.parts[set].is_set = false;
+            set
+        });
+        Ok(Section::Elements(kind, nodes, set))
+    }
+
+    fn data(&mut self, line: &str) -> Result<(), String> {
+        let cells = || line.split(',').map(str::trim);
+        match self.section.clone() {
+            Section::Nodes => {
+                let cells: Vec<&str> = cells().collect();
+                let [node, places @ ..] = &cells[..] else {
+                    return Err("a node has a number and coordinates".to_owned());
+                };
+                let mut x = [0.0; 3];
+                for (x, cell) in x.iter_mut().zip(places) {
+                    *x = if cell.is_empty() { 0.0 } else { number(cell)? };
+                }
+                self.blocks[self.block].mesh.nodes.push((id(node)?, x));
+            }
+            Section::Elements(kind, nodes, set) => {
+                for cell in cells().filter(|cell| !cell.is_empty()) {
+                    self.begun.push(id(cell)?);
+                }
+                if self.begun.len() > nodes + 1 {
+                    return Err(format!("an element of {nodes} nodes has more than that"));
+                }
+                if self.begun.len() == nodes + 1 {
+                    let begun = std::mem::take(&mut self.begun);
+                    self.element(kind, &begun, set)?;
+                }
+            }
+            Section::Set(set, is_range) => {
+                let cells: Vec<&str> = cells().filter(|cell| !cell.is_empty()).collect();
+                self.blocks[self.block].extend(set, is_range, &cells)?;
+            }
+            Section::Instance => {
+                let numbers: Result<Vec<f64>, String> = cells().map(number).collect();
+                let numbers = numbers?;
+                let instance = self.instances.last_mut().ok_or("no instance")?;
+                instance.lines += 1;
+                match (instance.lines, &numbers[..]) {
+                    (1, &[x, y, z]) => instance.shift = Vec3::new(x, y, z),
+                    (2, &[a, b, c, d, e, f, angle]) => {
+                        let ends = (Vec3::new(a, b, c), Vec3::new(d, e, f));
+                        instance.turn = Some((ends.0, ends.1, angle.to_radians()));
+                    }
+                    _ => return Err("an instance has a shift of 3 numbers and a turn of 7".into()),
+                }
+            }
+            Section::Skipped | Section::Other => {}
+        }
+        Ok(())
+    }
+
+    fn element(&mut self, kind: Kind, of: &[u64], set: Option<usize>) -> Result<(), String> {
+        let block = &mut self.blocks[self.block];
+        let place = as_place(block.mesh.cells.len())?;
+        let cell = Cell::new(kind, of[0], &of[1..]).ok_or("an element has too few nodes")?;
+        block.mesh.cells.push(cell);
+        if block.places.insert(of[0], place).is_some() {
+            return Err(format!("two elements have the number {}", of[0]));
+        }
+        if let Some(set) = set {
+            block.mesh.parts[set].cells.push(place);
+        }
+        Ok(())
+    }
+
+    /// All blocks, or all instances of them, as one mesh.
+    fn finished(mut self) -> Result<Mesh, Fault> {
+        if !self.begun.is_empty() {
+            return Err("the last element has too few nodes".into());
+        }
+        if self.blocks.len() == 1 && self.instances.is_empty() {
+            return Ok(self.blocks.remove(0).mesh);
+        }
+        let mut all = Mesh::default();
+        let mut first = 0;
+        if self.instances.is_empty() {
+            self.instances = self.blocks[1..]
+                .iter()
+                .map(|b| Instance::new(&b.name, &b.name))
+                .collect();
+        }
+        for instance in &self.instances {
+            let block = self
+                .blocks
+                .iter()
+                .find(|block| block.name.eq_ignore_ascii_case(&instance.part));
+            let block = block.ok_or_else(|| {
+                let (name, part) = (shortened(&instance.name), shortened(&instance.part));
+                format!("the instance `{name}` is of a part `{part}` that is not there")
+            })?;
+            first = instance.add(&block.mesh, first, &mut all)?;
+        }
+        Ok(all)
+    }
+}
+
+impl Block {
+    /// Adds elements to a set: numbers and names of sets, or a range.
+    fn extend(&mut self, set: usize, is_range: bool, cells: &[&str]) -> Result<(), String> {
+        if is_range {
+            let (first, last, step) = match cells {
+                [first, last] => (id(first)?, id(last)?, 1),
+                [first, last, step] => (id(first)?, id(last)?, id(step)?),
+                _ => return Err("a range has a first, a last and perhaps a step".to_owned()),
+            };
+            let range = first..=last.max(first);
+            let within = self.places.range(range);
+            let of_step = within.filter(|(number, _)| (*number - first).is_multiple_of(step));
+            let places: Vec<u32> = of_step.map(|(_, place)| *place).collect();
+            self.mesh.parts[set].cells.extend(places);
+            return Ok(());
+        }
+        for cell in cells {
+            if let Ok(element) = id(cell) {
+                // Others are of elements that are no solids.
+                if let Some(place) = self.places.get(&element) {
+                    self.mesh.parts[set].cells.push(*place);
+                }
+                continue;
+            }
+            let name = cell.trim_matches('"');
+            let other = self.mesh.parts.iter().find(|part| part.name.name == name);
+            let other = other.map(|part| part.cells.clone());
+            let other =
+                other.ok_or_else(|| format!("no set `{}` comes before", shortened(name)))?;
+            self.mesh.parts[set].cells.extend(other);
+        }
+        Ok(())
+    }
+}
+
+/// Form and number of nodes of a type of elements; nothing of those that are no solids.
+fn kind_of(word: &str) -> Result<Option<(Kind, usize)>, String> {
+    let (family, rest) = match word {
+        _ if word.starts_with("C3D") => ("C3D", &word[3..]),
+        _ if word.starts_with("CPE") | word.starts_with("CPS") => ("CP", &word[3..]),
+        _ if word.starts_with("CAX") | word.starts_with("CGAX") => {
+            return Err(format!(
+                "axisymmetric elements `{}` are not read",
+                shortened(word)
+            ));
+        }
+        _ => return Ok(None),
+    };
+    let digits: String = rest.chars().take_while(char::is_ascii_digit).collect();
+    let nodes: usize = digits.parse().unwrap_or(0);
+    let kind = match (family, nodes) {
+        ("C3D", 4 | 10) => Kind::Tetrahedron,
+        ("C3D", 5 | 13) => Kind::Pyramid,
+        ("C3D", 6 | 15) => Kind::Wedge,
+        ("C3D", 8 | 20) => Kind::Hexahedron,
+        ("CP", 3 | 6) => Kind::Triangle,
+        ("CP", 4 | 8) => Kind::Quadrilateral,
+        _ => return Err(format!("elements `{}` are not read", shortened(word))),
+    };
+    Ok(Some((kind, nodes)))
+}

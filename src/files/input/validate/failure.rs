@@ -1,0 +1,168 @@
+//! Laws of failure: those of the table, and those of the library that it does not name.
+
+use toml::Spanned;
+
+use super::check::{Allowed, number};
+use super::laws::law;
+use crate::input::forms::OrNone;
+use crate::input::schema::{FailureParams, failure_laws};
+use crate::input::source::Diagnostic;
+use material::{AfterSpall, Effect, Failure, Manner, Strength};
+
+macro_rules! failure {
+    ($(
+        $(#[$doc:meta])+ $law:ident: $table:ident => $made:ident {
+            $( $(#[$key_doc:meta])+ $key:ident: $value:ty, $allowed:ident $(, or $default:literal)?; )+
+        }
+    )+) => {
+        /// Laws of the table, with values of the library's where the table has none.
+        fn laws(params: &FailureParams, base: &Failure) -> Result<Failure, Diagnostic> {
+            Ok(Failure {
+                $( $law: match &params.$law {
+                    None => base.$law,
+                    Some(table) => match table.get_ref() {
+                        OrNone::None => None,
+                        OrNone::Table(params) => {
+                            let (at, base) = (table.span(), base.$law);
+                            Some(law!(params, base, None, at, $made { $($key $allowed $($default)?;)+ }))
+                        }
+                    },
+                }, )+
+                manner: base.manner,
+            })
+        }
+    };
+}
+failure_laws!(failure);
+
+/// How a material of a strength fails: as the table says, and as the library's material where it
+/// says nothing.
+pub fn failure(
+    table: Option<&Spanned<OrNone<FailureParams>>>,
+    base: Option<&Failure>,
+    strength: &Strength,
+    dimension: usize,
+) -> Result<Failure, Diagnostic> {
+    let base = base.copied().unwrap_or_default();
+    let mut failure = match table.map(Spanned::get_ref) {
+        None => base,
+        Some(OrNone::None) => Failure::NONE,
+        Some(OrNone::Table(params)) => laws(params, &base)?,
+    };
+    if !failure.is_none() {
+        failure.manner.dimension = u8::try_from(dimension).unwrap_or(3);
+    }
+    if let Some(table) = table
+        && let OrNone::Table(params) = table.get_ref()
+    {
+        failure.manner = manner(params, &failure)?;
+        check(table, params, &failure, strength)?;
+    }
+    Ok(failure)
+}
+
+/// What the laws have in common.
+fn manner(params: &FailureParams, failure: &Failure) -> Result<Manner, Diagnostic> {
+    let base = failure.manner;
+    let energy = params.fracture_energy.as_ref();
+    let mut manner = Manner {
+        fracture_energy: number(
+            energy,
+            "fracture_energy",
+            base.fracture_energy,
+            Allowed::NotNegative,
+        )?,
+        scatter: number!(params.scatter, or base.scatter, NotNegative),
+        seed: params
+            .seed
+            .as_ref()
+            .map_or(base.seed, |seed| *seed.get_ref()),
+        molten: params
+            .molten
+            .as_ref()
+            .map_or(base.molten, |word| *word.get_ref()),
+        ..base
+    };
+    // What fades says so by itself.
+    let fades = manner.softens() || failure.grady_kipp.is_some();
+    manner.effect = match &params.effect {
+        Some(effect) if fades && *effect.get_ref() != Effect::Scaled => {
+            let title = "where cracks grow or matter softens, stress fades with damage";
+            return Err(
+                Diagnostic::new(effect.span(), title).help("leave `effect` out, or say \"scaled\"")
+            );
+        }
+        Some(effect) => *effect.get_ref(),
+        None if fades => Effect::Scaled,
+        None => base.effect,
+    };
+    Ok(manner)
+}
+
+/// Refuses what does not go together.
+fn check(
+    table: &Spanned<OrNone<FailureParams>>,
+    params: &FailureParams,
+    failure: &Failure,
+    strength: &Strength,
+) -> Result<(), Diagnostic> {
+    let manner = &failure.manner;
+    if failure.is_none() {
+        let given = [
+            params.effect.as_ref().map(Spanned::span),
+            params.fracture_energy.as_ref().map(Spanned::span),
+            params.scatter.as_ref().map(Spanned::span),
+            params.seed.as_ref().map(Spanned::span),
+            params.molten.as_ref().map(Spanned::span),
+        ];
+        if let Some(at) = given.into_iter().flatten().next() {
+            return Err(Diagnostic::new(
+                at,
+                "no law of failure that this could be said of",
+            ));
+        }
+    }
+    let at = params
+        .fracture_energy
+        .as_ref()
+        .map_or_else(|| table.span(), Spanned::span);
+    if manner.softens() {
+        if failure.grady_kipp.is_some() {
+            let title =
+                "cracks of `grady_kipp` take no `fracture_energy`: how they grow is their law";
+            return Err(Diagnostic::new(at, title));
+        }
+        if failure
+            .spall
+            .is_some_and(|s| s.after != AfterSpall::Failed || s.pressure == 0.0)
+        {
+            let title =
+                "matter softens from a `spall.pressure` below zero on, and has `failed` then";
+            return Err(Diagnostic::new(at, title));
+        }
+    }
+    if manner.scatter > 0.0 && failure.johnson_cook.is_none() && failure.plastic_strain.is_none() {
+        let at = (params.scatter.as_ref()).map_or_else(|| table.span(), Spanned::span);
+        let title = "no failure strain that could scatter";
+        return Err(Diagnostic::new(at, title).help("`johnson_cook` and `plastic_strain` have one"));
+    }
+    let strengths = against_strength(failure, strength);
+    strengths.map_or(Ok(()), |title| Err(Diagnostic::new(table.span(), title)))
+}
+
+/// Why a strength cannot fail that way.
+fn against_strength(failure: &Failure, strength: &Strength) -> Option<&'static str> {
+    let unscaled = matches!(strength, Strength::NeoHookean(_) | Strength::Viscous(_));
+    let strains = failure.johnson_cook.is_some() || failure.plastic_strain.is_some();
+    if failure.grady_kipp.is_some() && strength.shear_modulus() == 0.0 {
+        Some("cracks grow in solids, and this material has no shear modulus")
+    } else if failure.manner.effect == Effect::Scaled && unscaled {
+        Some(
+            "stress that fades with damage needs a strength that is elastic, or elastic and plastic",
+        )
+    } else if strains && !strength.yields() {
+        Some("a failure strain is a plastic one, and this material does not yield")
+    } else {
+        None
+    }
+}

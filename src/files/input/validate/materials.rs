@@ -1,0 +1,152 @@
+//! Materials: from the library with single values changed, or inline.
+
+use std::ops::Range;
+
+use toml::Spanned;
+
+use super::check::{Allowed, optional};
+use super::eos::eos;
+use super::failure::failure;
+use super::strength::strength;
+use crate::input::forms::Named;
+use crate::input::names;
+use crate::input::schema::{MaterialParams, ThermalParams};
+use crate::input::source::Diagnostic;
+use material::{Eos, Material, Thermal, ThermalConstants, library};
+
+/// Temperature of the reference state (K) where none is given.
+const ROOM: f64 = 300.0;
+
+/// Names and materials in the order of the input.
+pub fn materials(
+    params: &Named<MaterialParams>,
+    dimension: usize,
+) -> Result<(Vec<String>, Vec<Material>), Diagnostic> {
+    let materials: Result<_, _> = params
+        .0
+        .iter()
+        .map(|(n, t)| material(n, t, dimension))
+        .collect();
+    let names = params.0.iter().map(|(name, _)| name.get_ref().clone());
+    Ok((names.collect(), materials?))
+}
+
+fn material(
+    name: &Spanned<String>,
+    table: &Spanned<MaterialParams>,
+    dimension: usize,
+) -> Result<Material, Diagnostic> {
+    names::check(name, "material")?;
+    let params = table.get_ref();
+    let base = params.library.as_ref().map(|library| {
+        library::find(library.get_ref()).ok_or_else(|| {
+            let known = library::names();
+            Diagnostic::unknown(library.span(), "material", library.get_ref(), known)
+        })
+    });
+    let base = base.transpose()?;
+    let base = base.as_ref();
+    let missing = |key: &str| {
+        let title = format!("the material `{}` has no `{key}`", name.get_ref());
+        Diagnostic::new(name.span(), title).help("name a `library` material or give the key")
+    };
+    if base.is_none() && params.density.is_none() {
+        return Err(missing("density"));
+    }
+    let known_density = base.map_or(0.0, |b| b.reference_density);
+    let reference_density = number!(params.density, or known_density, Positive);
+    let eos = match (&params.eos, base.map(|b| &b.eos)) {
+        (Some(table), base) => eos(table, base, reference_density)?,
+        (None, base) => base.cloned().ok_or_else(|| missing("eos"))?,
+    };
+    let strength = match (&params.strength, base.map(|b| &b.strength)) {
+        (Some(table), base) => strength(table, base)?,
+        (None, base) => base.cloned().ok_or_else(|| missing("strength"))?,
+    };
+    let base_thermal = base.and_then(|b| b.thermal.as_ref());
+    let thermal = thermal(
+        params.thermal.as_ref(),
+        base_thermal,
+        reference_density,
+        &eos,
+    )?;
+    let (given, known) = (params.failure.as_ref(), base.map(|b| &b.failure));
+    let failure = failure(given, known, &strength, dimension)?;
+    let material = Material {
+        name: name.get_ref().clone(),
+        reference_density,
+        eos,
+        strength,
+        failure,
+        thermal,
+    };
+    match missing_heat(&material) {
+        None => Ok(material),
+        Some(key) => Err(heat_diagnostic(&material, key, name.span(), params)),
+    }
+}
+
+/// Says that a law follows the temperature and has no `key`.
+fn heat_diagnostic(
+    material: &Material,
+    key: &str,
+    name: Range<usize>,
+    params: &MaterialParams,
+) -> Diagnostic {
+    let (law, at) = if material.strength.needs_temperature() {
+        ("strength", params.strength.as_ref().map(Spanned::span))
+    } else {
+        ("failure", params.failure.as_ref().map(Spanned::span))
+    };
+    let title = format!("this {law} follows the temperature and needs `{key}`");
+    Diagnostic::new(at.unwrap_or(name), title)
+}
+
+/// The key without which a strength or a failure that follows the temperature cannot.
+fn missing_heat(material: &Material) -> Option<&'static str> {
+    let melting = |thermal: &Thermal| thermal.constants().melting_temperature.is_some();
+    match &material.thermal {
+        None if material.needs_temperature() => Some("thermal.specific_heat"),
+        Some(thermal) if material.needs_melting() && !melting(thermal) => {
+            Some("thermal.melting_temperature")
+        }
+        _ => None,
+    }
+}
+
+/// Thermal constants, with the cold curve of this material's own equation of state.
+fn thermal(
+    table: Option<&Spanned<ThermalParams>>,
+    base: Option<&Thermal>,
+    reference_density: f64,
+    eos: &Eos,
+) -> Result<Option<Thermal>, Diagnostic> {
+    let base = base.map(Thermal::constants);
+    let constants = match table {
+        None => base.copied(),
+        Some(table) => {
+            let params = table.get_ref();
+            let cold = base.map_or(ROOM, |b| b.reference_temperature);
+            let reference_temperature = number!(params.reference_temperature, or cold, NotNegative);
+            let melting = params.melting_temperature.as_ref();
+            let given = optional(melting, "melting_temperature", Allowed::Positive)?;
+            if let (Some(value), Some(t)) = (melting, given)
+                && t <= reference_temperature
+            {
+                let title = "`melting_temperature` must be above `reference_temperature`";
+                return Err(Diagnostic::new(value.span(), title).label("out of range"));
+            }
+            Some(ThermalConstants {
+                specific_heat: required!(params.specific_heat, base, Positive, &table.span()),
+                reference_temperature,
+                melting_temperature: given.or(base.and_then(|b| b.melting_temperature)),
+                taylor_quinney: number!(
+                    params.taylor_quinney,
+                    or base.map_or(1.0, |b| b.taylor_quinney),
+                    Within(0.0, 1.0)
+                ),
+            })
+        }
+    };
+    Ok(constants.map(|constants| Thermal::new(constants, reference_density, eos)))
+}

@@ -1,0 +1,117 @@
+//! What is measured in a run.
+
+use toml::Spanned;
+
+use super::check::{Allowed, number, optional, whole};
+use super::loads::given_name;
+use super::measures::measures;
+use super::named::{body, fields, unique};
+use super::shapes::vector;
+use super::surfaces::unit_vector;
+use crate::input::schema::{GaugeParams, MeasureParams, WitnessParams};
+use crate::input::source::Diagnostic;
+use model::{Cadence, Case, Gauge, MeasureOptions, SphForm, SymmetryPlane, Witness};
+
+/// Rows of `measures.csv` of a run that does not say when it has them.
+const ROWS: f64 = 10.0;
+
+/// What is measured in a case that is whole but for that.
+pub fn measure(
+    case: &Case,
+    params: &MeasureParams,
+    gauge_tables: &[Spanned<GaugeParams>],
+    witness_tables: &[Spanned<WitnessParams>],
+) -> Result<MeasureOptions, Diagnostic> {
+    let arrival = params.arrival_pressure.as_ref();
+    let mut gauges: Vec<Gauge> = Vec::new();
+    for (n, table) in gauge_tables.iter().enumerate() {
+        let found = gauge(case, table, n + 1)?;
+        let taken = gauges.iter().any(|other| other.name == found.name);
+        let own = table.get_ref().name.as_ref();
+        unique(taken, "gauge", &found.name, own, table)?;
+        gauges.push(found);
+    }
+    let mut witnesses: Vec<Witness> = Vec::new();
+    for (n, table) in witness_tables.iter().enumerate() {
+        if n == Witness::MOST {
+            let title = format!("a case can have {} witness planes", Witness::MOST);
+            return Err(Diagnostic::new(table.span(), title));
+        }
+        let found = witness(case, table.get_ref(), n + 1)?;
+        let taken = witnesses.iter().any(|other| other.name == found.name);
+        let own = table.get_ref().name.as_ref();
+        unique(taken, "witness plane", &found.name, own, table)?;
+        witnesses.push(found);
+    }
+    let every = optional(params.every.as_ref(), "every", Allowed::Positive)?;
+    Ok(MeasureOptions {
+        bodies: params.bodies.unwrap_or(true),
+        every: every.unwrap_or(case.run.end_time / ROWS),
+        measures: measures(case, params)?,
+        arrival_pressure: optional(arrival, "arrival_pressure", Allowed::Positive)?,
+        gauges,
+        witnesses,
+    })
+}
+
+fn gauge(case: &Case, table: &Spanned<GaugeParams>, number_of: usize) -> Result<Gauge, Diagnostic> {
+    let params = table.get_ref();
+    if case.sph.form == SphForm::StressPoints {
+        let title = "a gauge cannot read stress points";
+        return Err(Diagnostic::new(table.span(), title)
+            .help("the other forms have their stress at the particles, see `sph.form`"));
+    }
+    let at = vector("at", Some(&params.at), case.dimension)?;
+    let behind = |plane: &&SymmetryPlane| at[plane.axis.index()] < plane.position;
+    if let Some(plane) = case.symmetry.iter().find(behind) {
+        let title = format!("behind the symmetry plane of {}", plane.axis.name());
+        return Err(Diagnostic::new(params.at.span(), title)
+            .help("put the gauge at the mirror image of the place"));
+    }
+    let along = params.along.as_ref();
+    let along = along.map(|normal| unit_vector("along", normal, case.dimension));
+    Ok(Gauge {
+        name: given_name(params.name.as_ref(), "gauge", number_of),
+        at,
+        moves: params.moves.unwrap_or(false),
+        body: params
+            .body
+            .as_ref()
+            .map(|name| body(case, name))
+            .transpose()?,
+        fields: fields(params.fields.as_ref(), params.along.is_none())?,
+        along: along.transpose()?,
+        every: every(params)?,
+    })
+}
+
+fn every(params: &GaugeParams) -> Result<Cadence, Diagnostic> {
+    match (&params.every, &params.every_steps) {
+        (Some(_), Some(steps)) => {
+            let title = "a gauge reads every so many steps or every so much time, not both";
+            Err(Diagnostic::new(steps.span(), title))
+        }
+        (Some(time), None) => {
+            let time = number(Some(time), "every", 0.0, Allowed::Positive)?;
+            Ok(Cadence::Time(time))
+        }
+        (None, steps) => Ok(Cadence::Steps(whole(steps.as_ref(), "every_steps", 1, 1)?)),
+    }
+}
+
+fn witness(case: &Case, params: &WitnessParams, number_of: usize) -> Result<Witness, Diagnostic> {
+    let normal = unit_vector("normal", &params.normal, case.dimension)?;
+    let crosses = |plane: &&SymmetryPlane| normal[plane.axis.index()] != 0.0;
+    if let Some(plane) = case.symmetry.iter().find(crosses) {
+        let title = format!(
+            "the plane is not its own mirror image at the symmetry plane of {}",
+            plane.axis.name()
+        );
+        return Err(Diagnostic::new(params.normal.span(), title));
+    }
+    Ok(Witness {
+        name: given_name(params.name.as_ref(), "witness", number_of),
+        point: vector("point", params.point.as_ref(), case.dimension)?,
+        normal,
+    })
+}

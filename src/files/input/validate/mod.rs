@@ -1,0 +1,324 @@
+//! Typed tables → a [`Case`]: defaults, ranges, references between tables.
+
+#[macro_use]
+pub(super) mod check;
+mod absorbers;
+mod bodies;
+mod contact;
+mod domain;
+mod eos;
+mod failure;
+mod fragments;
+mod grading;
+mod initial;
+mod lattice;
+mod laws;
+mod loads;
+mod materials;
+mod measure;
+mod measures;
+mod meshes;
+mod motion;
+mod named;
+mod numerical_limits;
+mod output;
+mod particles;
+mod region;
+mod shapes;
+mod solids;
+mod strength;
+mod stress_points;
+mod surfaces;
+mod touch;
+mod usual;
+
+use std::ops::Range;
+use std::path::Path;
+
+use super::names;
+use super::schema::{
+    BodyParams, CaseParams, RunParams, SmoothingName, SphParams, SymmetryParams, TimeStepParams,
+};
+use super::source::Diagnostic;
+use material::Material;
+use model::readable::Readable;
+use model::{
+    Axis, Body, Case, ContactMode, DomainOptions, MeasureOptions, NumericalLimits, OutputOptions,
+    RunControl, SmoothingLength, SphForm, SphOptions, SymmetryPlane, TimeStepOptions,
+};
+use populate::overlap;
+use check::{Allowed, number, whole};
+use region::KeepReader;
+use toml::Spanned;
+
+/// Overlaps up to this may be those of curved faces on a lattice (spacings).
+const MOST_OVERLAP: f64 = 0.5;
+
+/// Builds the case, whose files stand in `folder`; `resolved` is left empty.
+pub fn case(mut params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
+    let dimension = dimension(&params.dimension)?;
+    let symmetry = symmetry(&params.symmetry, dimension)?;
+    let (names, mut materials) = materials::materials(&params.material, dimension)?;
+    let (sph, smoothing) = sph(&params.sph)?;
+    let mut bodies = bodies::Reader {
+        dimension,
+        spacing: params.spacing.as_ref(),
+        materials: &names,
+        known: &materials,
+        filling: lattice::usual(dimension, sph.form),
+        smoothing,
+        folder,
+    }
+    .bodies(&params.body, &symmetry)?;
+    if bodies.iter().any(|body| body.material == materials.len()) {
+        materials.push(bodies::no_material());
+    }
+    let length_unit = length_unit(&params, &bodies);
+    let tears = may_tear(&bodies, &materials);
+    let (default_contact, contacts, self_contact) =
+        contact::contacts(&params.contact, &params.body, sph.form, smoothing, tears)?;
+    let loads = loads::Reader {
+        dimension,
+        bodies: &mut bodies,
+        symmetry: &symmetry,
+        length_unit: &length_unit,
+        folder,
+    }
+    .all(&params)?;
+    let time_step = time_step(&params.time_step, &sph, &bodies, &materials)?;
+    let boxes = KeepReader::new(dimension, &bodies, &symmetry, &length_unit);
+    let (domain, output) = domain_and_output(&params, &boxes, &materials)?;
+    let mut case = Case {
+        title: names::title(params.title.take())?,
+        length_unit,
+        dimension,
+        materials,
+        bodies,
+        contacts,
+        default_contact,
+        self_contact,
+        symmetry,
+        loads,
+        sph,
+        time_step,
+        domain,
+        numerical_limits: NumericalLimits::default(),
+        run: run(params.run.get_ref())?,
+        output,
+        fragments: fragments::fragments(params.fragments.as_ref())?,
+        measure: MeasureOptions::default(),
+        resolved: String::new(),
+    };
+    complete(&mut case, &params)?;
+    Ok(case)
+}
+
+/// Reads what asks a case, and checks what does not go together in it.
+fn complete(case: &mut Case, params: &CaseParams) -> Result<(), Diagnostic> {
+    initial::settle(case, &params.body)?;
+    case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, case)?;
+    case.loads.absorbers = absorbers::absorbers(&params.absorb, case)?;
+    case.measure = measure::measure(case, &params.measure, &params.gauge, &params.witness)?;
+    stress_points::check(case, params.sph.form.as_ref().map(Spanned::span))?;
+    check_moduli(case, &params.body)?;
+    check_overlaps(case, &params.body)
+}
+
+/// Whether bodies may come apart into what can meet again.
+fn may_tear(bodies: &[Body], materials: &[Material]) -> bool {
+    let soft = bodies.iter().filter(|body| body.rigid.is_none());
+    let mut materials = soft.map(|body| &materials[body.material]);
+    materials.clone().all(|m| m.p_wave_modulus() > 0.0) && materials.any(|m| m.failure.has_memory())
+}
+
+/// Contact scales with a modulus, which a gas has only at a reference pressure.
+fn check_moduli(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Diagnostic> {
+    for (a, (body, table)) in case.bodies.iter().zip(params).enumerate() {
+        let material = &case.materials[body.material];
+        let pushes = |b| {
+            if a == b {
+                case.self_contact.is_some()
+            } else {
+                case.contact_between(a, b).class().is_some()
+            }
+        };
+        if material.p_wave_modulus() == 0.0 && (0..case.bodies.len()).any(pushes) {
+            let title = format!(
+                "the gas `{}` has no modulus that contact could scale with",
+                material.name
+            );
+            let named = table.get_ref().material.as_ref();
+            return Err(Diagnostic::new(named.map_or_else(|| table.span(), Spanned::span), title)
+                .help("give its `eos.ideal_gas` a `reference_pressure`, or join the bodies by `kernel` contact"));
+        }
+    }
+    Ok(())
+}
+
+/// Bodies that begin within each other would fly apart at once.
+fn check_overlaps(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Diagnostic> {
+    for (b, table) in params.iter().enumerate() {
+        for a in 0..b {
+            let bodies = [a, b].map(|body| &case.bodies[body]);
+            let sees = !matches!(case.contact_between(a, b), ContactMode::None)
+                && bodies.iter().any(|body| body.rigid.is_none());
+            let found = sees.then(|| overlap(case, a, b)).flatten();
+            if let Some(found) = found.filter(|found| found.depth > MOST_OVERLAP) {
+                let title = format!(
+                    "`{}` begins {:.1} spacings within `{}`, near {}",
+                    bodies[1].name,
+                    found.depth,
+                    bodies[0].name,
+                    case.length_unit.vector(&found.at[..case.dimension])
+                );
+                return Err(Diagnostic::new(table.get_ref().form_span(), title).help(
+                    "move one of them, or let it `touch` the other; only bodies with contact of \
+                     mode \"none\" may overlap",
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The unit in which the spacing is given, of the case or of its first body, or a file's; one that
+/// fits where none is stated.
+fn length_unit(params: &CaseParams, made: &[Body]) -> Readable {
+    let bodies = || params.body.iter().map(Spanned::get_ref);
+    let of_case = params.spacing.iter().map(Spanned::get_ref);
+    let spacings = bodies().flat_map(|body| &body.spacing);
+    let of_bodies = spacings.filter_map(|spacing| spacing.get_ref().finest());
+    let given = bodies().flat_map(|body| &body.particles);
+    let of_files = given.flat_map(|particles| &particles.get_ref().unit);
+    let all = of_case
+        .chain(of_bodies)
+        .chain(of_files.map(Spanned::get_ref));
+    let size = all.map(|spacing| spacing.unit).next();
+    let fits = || made.first().map_or(1.0, |body| body.lattice.spacing);
+    size.map_or_else(|| Readable::new("m", fits()), Readable::length)
+}
+
+fn dimension(params: &Spanned<i64>) -> Result<usize, Diagnostic> {
+    match params.get_ref() {
+        1 => Ok(1),
+        2 => Ok(2),
+        3 => Ok(3),
+        _ => Err(Diagnostic::new(
+            params.span(),
+            "`dimension` must be 1 (uniaxial strain), 2 (plane strain) or 3",
+        )),
+    }
+}
+
+/// An axis that must exist in the dimension.
+fn in_dimension(axis: Axis, dimension: usize, at: Range<usize>) -> Result<Axis, Diagnostic> {
+    if axis.index() < dimension {
+        return Ok(axis);
+    }
+    let title = format!("a {dimension}-dimensional case has no {} axis", axis.name());
+    Err(Diagnostic::new(at, title))
+}
+
+/// As [`in_dimension`], of the axis that a key names.
+fn axis(name: &Spanned<Axis>, dimension: usize) -> Result<Axis, Diagnostic> {
+    in_dimension(*name.get_ref(), dimension, name.span())
+}
+
+fn symmetry(params: &[SymmetryParams], dimension: usize) -> Result<Vec<SymmetryPlane>, Diagnostic> {
+    let mut planes: Vec<SymmetryPlane> = Vec::new();
+    for plane in params {
+        let axis = axis(&plane.axis, dimension)?;
+        if planes.iter().any(|p| p.axis == axis) {
+            let title = format!("a second symmetry plane normal to {}", axis.name());
+            return Err(Diagnostic::new(plane.axis.span(), title).help("each axis can have one"));
+        }
+        planes.push(SymmetryPlane {
+            axis,
+            position: number!(plane.position, or 0.0, Any),
+        });
+    }
+    Ok(planes)
+}
+
+/// The options of the sums, and smoothing length over spacing.
+fn sph(params: &SphParams) -> Result<(SphOptions, f64), Diagnostic> {
+    let bounds = SmoothingLength::Variable {
+        min: number!(params.smoothing_length_min, or 0.6, UpToOne),
+        max: number!(params.smoothing_length_max, or 2.0, Within(1.0, 10.0)),
+    };
+    let usual = SphOptions::default();
+    let options = SphOptions {
+        form: params
+            .form
+            .as_ref()
+            .map_or_else(SphForm::default, |form| *form.get_ref()),
+        alpha: number!(params.alpha, or usual.alpha, NotNegative),
+        beta: number!(params.beta, or usual.beta, NotNegative),
+        smoothing_length: match params.smoothing_length {
+            None | Some(SmoothingName::Constant) => SmoothingLength::Constant,
+            Some(SmoothingName::Variable) => bounds,
+        },
+        artificial_stress: number!(params.artificial_stress, or usual.artificial_stress, Within(0.0, 1.0)),
+        balsara: params.balsara.unwrap_or(false),
+        conduction: number!(params.conduction, or usual.conduction, Within(0.0, 2.0)),
+        xsph: number!(params.xsph, or usual.xsph, Within(0.0, 1.0)),
+        hourglass: number!(params.hourglass, or usual.hourglass, Within(0.0, 1.0)),
+    };
+    Ok((options, number!(params.smoothing, or 1.3, Within(0.6, 3.0))))
+}
+
+/// Smallest h/h₀ that a particle may have.
+fn smallest_smoothing(sph: &SphOptions) -> f64 {
+    match sph.smoothing_length {
+        SmoothingLength::Constant => 1.0,
+        SmoothingLength::Variable { min, .. } => min,
+    }
+}
+
+fn time_step(
+    params: &TimeStepParams,
+    sph: &SphOptions,
+    bodies: &[Body],
+    materials: &[Material],
+) -> Result<TimeStepOptions, Diagnostic> {
+    let diffusion = bodies.iter().map(|body| {
+        let shortest = body.smoothing_length * smallest_smoothing(sph);
+        materials[body.material].diffusion_time(shortest)
+    });
+    let given = TimeStepOptions {
+        courant: number!(params.courant, or 0.5, UpToOne),
+        force: number!(params.force, or 0.25, UpToOne),
+        // Of a bound that is safe by itself; .55 of it is what the first moments of an impact at
+        // h = 1.3 Δp take by their sound criterion, so that contact does not slow them down.
+        contact: number!(params.contact, or 0.8, UpToOne),
+        max: number!(params.max, or f64::INFINITY, Positive),
+    };
+    let max = diffusion.fold(given.max, f64::min);
+    Ok(TimeStepOptions { max, ..given })
+}
+
+/// What has boxes.
+fn domain_and_output(
+    params: &CaseParams,
+    boxes: &KeepReader,
+    materials: &[Material],
+) -> Result<(DomainOptions, OutputOptions), Diagnostic> {
+    let spacing = params.spacing.as_ref().map(|spacing| spacing.get_ref().si);
+    let reader = output::Reader {
+        boxes,
+        spacing,
+        materials,
+    };
+    let domain = domain::domain(&params.domain, boxes, spacing)?;
+    Ok((domain, reader.read(&params.output)?))
+}
+
+fn run(params: &RunParams) -> Result<RunControl, Diagnostic> {
+    let max_steps = params.max_steps.as_ref();
+    Ok(RunControl {
+        end_time: number(Some(&params.end_time), "end_time", 0.0, Allowed::Positive)?,
+        max_steps: max_steps
+            .map(|steps| whole(Some(steps), "max_steps", 0, 1))
+            .transpose()?,
+    })
+}

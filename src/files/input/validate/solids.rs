@@ -1,0 +1,220 @@
+//! Forms that are neither boxes, spheres nor straight cylinders; shapes together, turned and moved.
+
+use toml::Spanned;
+
+use super::meshes::MeshReader;
+use super::shapes::{Shapes, axis_vector, placed};
+use crate::input::schema::{
+    ConeParams, EllipsoidParams, MeshFileParams, OgiveParams, PrismParams, ShapeParams,
+    TorusParams, TurnsParams, TurnsTable,
+};
+use crate::input::source::Diagnostic;
+use crate::input::triangles::Format;
+use model::{Form, Placement, Polygon, Shape, Solid, Vec3, rotation};
+
+/// Most corners of a polygon, and most shapes together.
+const MOST_CORNERS: usize = 10_000;
+const MOST_SHAPES: usize = 1000;
+
+impl Shapes<'_> {
+    pub(super) fn ellipsoid(&self, table: &Spanned<EllipsoidParams>) -> Result<Shape, Diagnostic> {
+        let params = table.get_ref();
+        let centre = self.point(params.centre.as_ref(), "centre")?;
+        let mut semi = self.point(Some(&params.semi_axes), "semi_axes")?;
+        if (0..self.dimension).any(|a| semi[a] <= 0.0) {
+            let title = "every semi-axis of an ellipsoid must be positive";
+            return Err(Diagnostic::new(params.semi_axes.span(), title));
+        }
+        if self.dimension == 2 {
+            semi.z = f64::INFINITY;
+        }
+        let place = Placement::at(centre);
+        Ok(Shape::Solid(Solid::Form(Form::Ellipsoid(semi), place)))
+    }
+
+    pub(super) fn cone(&self, table: &Spanned<ConeParams>) -> Result<Shape, Diagnostic> {
+        let params = table.get_ref();
+        let centre = self.point(params.centre.as_ref(), "centre")?;
+        let radius = self.positive(&params.radius, "radius")?;
+        let half = 0.5 * self.positive(&params.length, "length")?;
+        let mut outline = vec![[0.0, -half], [radius, -half]];
+        match &params.top_radius {
+            None => outline.push([0.0, half]),
+            Some(top) => {
+                outline.push([self.positive(top, "top_radius")?, half]);
+                outline.push([0.0, half]);
+            }
+        }
+        let profile = Polygon::new(outline).expect("a triangle or a trapezium");
+        let axis = axis_vector(params.axis.as_ref())?;
+        Ok(placed(Form::Revolved(profile), &axis, centre))
+    }
+
+    pub(super) fn ogive(&self, table: &Spanned<OgiveParams>) -> Result<Shape, Diagnostic> {
+        let params = table.get_ref();
+        let centre = self.point(params.centre.as_ref(), "centre")?;
+        let radius = self.positive(&params.radius, "radius")?;
+        let nose = self.positive(&params.nose, "nose")?;
+        let length = self.positive(&params.length, "length")?;
+        if nose < radius {
+            let title = "the `nose` of an ogive must be as long as its `radius` at least";
+            return Err(Diagnostic::new(params.nose.span(), title)
+                .help("one that is as long is half a ball; a flatter one is an `ellipsoid`"));
+        }
+        if length < nose {
+            let title =
+                "the `length` of an ogive, which counts its nose, must not be less than that";
+            return Err(Diagnostic::new(params.length.span(), title));
+        }
+        let axis = axis_vector(params.axis.as_ref())?;
+        let form = Form::Ogive {
+            radius,
+            arc: (radius * radius + nose * nose) / (2.0 * radius),
+            nose,
+            shank: length - nose,
+        };
+        // Its origin is where the nose begins.
+        let origin = centre + axis * (0.5 * length - nose);
+        Ok(placed(form, &axis, origin))
+    }
+
+    pub(super) fn torus(&self, table: &Spanned<TorusParams>) -> Result<Shape, Diagnostic> {
+        let params = table.get_ref();
+        let radius = self.positive(&params.radius, "radius")?;
+        let tube = self.positive(&params.tube_radius, "tube_radius")?;
+        if tube >= radius {
+            let title = "`tube_radius` must be smaller than `radius`";
+            return Err(Diagnostic::new(params.tube_radius.span(), title));
+        }
+        let centre = self.point(params.centre.as_ref(), "centre")?;
+        let axis = axis_vector(params.axis.as_ref())?;
+        Ok(placed(Form::Torus { radius, tube }, &axis, centre))
+    }
+
+    pub(super) fn prism(&self, table: &Spanned<PrismParams>) -> Result<Shape, Diagnostic> {
+        let params = table.get_ref();
+        let centre = self.point(params.centre.as_ref(), "centre")?;
+        let corners = params.corners.get_ref();
+        let refuse = |title: &str| Err(Diagnostic::new(params.corners.span(), title));
+        if corners.len() > MOST_CORNERS {
+            return refuse("a polygon may have 10000 corners at most");
+        }
+        let flat = Self {
+            dimension: 2,
+            ..*self
+        };
+        let outline: Result<Vec<[f64; 2]>, Diagnostic> = corners
+            .iter()
+            .map(|corner| flat.point(Some(corner), "corners").map(|x| [x.x, x.y]))
+            .collect();
+        let Some(section) = Polygon::new(outline?) else {
+            return refuse("`corners` must be those of a polygon whose edges do not cross");
+        };
+        let half = match (&params.length, self.dimension) {
+            (Some(length), 3) => 0.5 * self.positive(length, "length")?,
+            (None, 2) => f64::INFINITY,
+            (None, _) => {
+                let title = "a prism must have a `length`";
+                return Err(Diagnostic::new(table.span(), title));
+            }
+            (Some(length), _) => {
+                let title = "in two dimensions a prism has no `length`";
+                return Err(Diagnostic::new(length.span(), title));
+            }
+        };
+        let axis = axis_vector(params.axis.as_ref())?;
+        if let (2, Some(given)) = (self.dimension, &params.axis) {
+            let title = "in two dimensions a prism has no `axis`";
+            return Err(Diagnostic::new(given.span(), title));
+        }
+        Ok(placed(Form::Prism { section, half }, &axis, centre))
+    }
+
+    pub(super) fn stl(&self, table: &Spanned<MeshFileParams>) -> Result<Shape, Diagnostic> {
+        self.mesh(table, Format::Stl)
+    }
+
+    pub(super) fn obj(&self, table: &Spanned<MeshFileParams>) -> Result<Shape, Diagnostic> {
+        self.mesh(table, Format::Obj)
+    }
+
+    fn mesh(&self, table: &Spanned<MeshFileParams>, format: Format) -> Result<Shape, Diagnostic> {
+        let reader = MeshReader {
+            folder: self.folder,
+            spacing: self.spacing,
+            what: "body",
+        };
+        let mesh = Form::Mesh(reader.read(table, format)?);
+        let place = Placement::at(Vec3::zeros());
+        Ok(Shape::Solid(Solid::Form(mesh, place)))
+    }
+
+    pub(super) fn union(&self, parts: &Parts) -> Result<Shape, Diagnostic> {
+        Ok(Shape::Solid(Solid::Union(self.parts(parts)?)))
+    }
+
+    pub(super) fn intersection(&self, parts: &Parts) -> Result<Shape, Diagnostic> {
+        Ok(Shape::Solid(Solid::Intersection(self.parts(parts)?)))
+    }
+
+    pub(super) fn difference(&self, parts: &Parts) -> Result<Shape, Diagnostic> {
+        let mut cuts = self.parts(parts)?;
+        let base = Box::new(cuts.remove(0));
+        Ok(Shape::Solid(Solid::Difference(base, cuts)))
+    }
+
+    fn parts(&self, parts: &Parts) -> Result<Vec<Solid>, Diagnostic> {
+        let list = parts.get_ref();
+        if list.is_empty() || list.len() > MOST_SHAPES {
+            let title = "one shape at least and 1000 at most go together";
+            return Err(Diagnostic::new(parts.span(), title));
+        }
+        list.iter()
+            .map(|part| Ok(self.shape(part)?.solid(self.dimension)))
+            .collect()
+    }
+
+    /// A shape turned, and then moved.
+    pub(super) fn moved(&self, params: &ShapeParams, shape: &Shape) -> Result<Shape, Diagnostic> {
+        let mut solid = shape.solid(self.dimension);
+        for (turn, about) in turns(self, params.turn.as_ref(), shape.centre())? {
+            solid.rotate(&turn, &about);
+        }
+        if params.shift.is_some() {
+            solid.translate(&self.point(params.shift.as_ref(), "shift")?);
+        }
+        Ok(Shape::Solid(solid))
+    }
+}
+
+/// Turns in their order, each with a point (m) that it is about; the middle (m) if none is stated.
+pub(super) fn turns(
+    shapes: &Shapes,
+    params: Option<&Spanned<TurnsParams>>,
+    middle: Vec3,
+) -> Result<Vec<(nalgebra::Matrix3<f64>, Vec3)>, Diagnostic> {
+    let turns: &[TurnsTable] = match params.map(Spanned::get_ref) {
+        None => &[],
+        Some(TurnsParams::One(turn)) => std::slice::from_ref(turn),
+        Some(TurnsParams::Many(turns)) => turns,
+    };
+    let one = |turn: &TurnsTable| {
+        let axis = axis_vector(Some(&turn.axis))?;
+        if shapes.dimension < 2 || (shapes.dimension == 2 && axis.z.abs() != 1.0) {
+            let title = match shapes.dimension {
+                1 => "in one dimension nothing turns",
+                _ => "in two dimensions a shape turns about z alone",
+            };
+            return Err(Diagnostic::new(turn.axis.span(), title));
+        }
+        let about = match &turn.about {
+            Some(_) => shapes.point(turn.about.as_ref(), "about")?,
+            None => middle,
+        };
+        Ok((rotation(&axis, turn.angle.get_ref().si), about))
+    };
+    turns.iter().map(one).collect()
+}
+
+/// Shapes that go together.
+type Parts = Spanned<Vec<Spanned<ShapeParams>>>;

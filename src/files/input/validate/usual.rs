@@ -1,0 +1,163 @@
+//! What is measured of a body because of its shape: plates, bars and targets.
+
+use model::{Bar, Case, Form, Include, MeasureKind, Slab, Solid, Vec3};
+
+/// A plate is at most this part as thick as it is wide.
+const THIN: f64 = 1.0 / 3.0;
+
+/// A bar is at least so many times as long as it is wide.
+const LONG: f64 = 2.0;
+
+/// And no more than so many times as wide as it is thick.
+const ROUND: f64 = 1.5;
+
+/// A target is at least so many times as large as what strikes it.
+const LARGE: f64 = 1.5;
+
+/// Whether a direction is along each symmetry plane; if it `may_cross`, also normal to one.
+pub fn suits_symmetry(case: &Case, way: &[f64; 3], may_cross: bool) -> bool {
+    case.symmetry.iter().all(|plane| {
+        let across = way[plane.axis.index()].abs();
+        across == 0.0 || may_cross && across == 1.0
+    })
+}
+
+/// A body along its own axes, its images behind symmetry planes with it.
+struct Own {
+    /// Unit vectors along its edges, from the shortest to the longest.
+    axes: [Vec3; 3],
+    /// Lengths of the edges (m).
+    sides: [f64; 3],
+}
+
+/// The axes of boxes, cylinders, prisms and what is cut from them, turned as they are; other shapes have no
+/// faces that a measure could count from.
+fn axes_of(solid: &Solid) -> Option<[Vec3; 3]> {
+    match solid {
+        Solid::Form(Form::Box(_) | Form::Revolved(_) | Form::Prism { .. }, place) => {
+            Some([0, 1, 2].map(|a| place.turn.column(a).into_owned()))
+        }
+        Solid::Difference(base, _) => axes_of(base),
+        _ => None,
+    }
+}
+
+/// Where a body begins and ends (m) along a unit vector; across symmetry planes it goes on as far as above them.
+fn reach(case: &Case, body: usize, way: &Vec3) -> [f64; 2] {
+    let solid = case.bodies[body].shape.solid(case.dimension);
+    let [mut low, high] = [-solid.support(&-way), solid.support(way)];
+    for plane in &case.symmetry {
+        if way[plane.axis.index()].abs() == 1.0 {
+            low = 2.0 * plane.position - high;
+        }
+    }
+    [low, high]
+}
+
+impl Own {
+    fn of(case: &Case, body: usize) -> Option<Self> {
+        let mut axes = axes_of(&case.bodies[body].shape.solid(case.dimension))?;
+        // A half of a symmetric body has its sides on the positive axes.
+        for axis in &mut axes {
+            if axis.iter().any(|&c| c == -1.0) {
+                *axis = -*axis;
+            }
+        }
+        let side = |axis: &Vec3| {
+            let [low, high] = reach(case, body, axis);
+            high - low
+        };
+        axes.sort_by(|a, b| side(a).total_cmp(&side(b)));
+        let sides = axes.each_ref().map(side);
+        Some(Self { axes, sides })
+    }
+
+    fn is_thin(&self) -> bool {
+        self.sides[0] <= THIN * self.sides[1]
+    }
+
+    fn is_long(&self) -> bool {
+        self.sides[2] >= LONG * self.sides[1] && self.sides[1] <= ROUND * self.sides[0]
+    }
+}
+
+/// Middle of a body (m), its images with it.
+fn middle(case: &Case, body: usize) -> Vec3 {
+    Vec3::from_fn(|a, _| {
+        let way = Vec3::from_fn(|b, _| f64::from(u8::from(a == b)));
+        let [low, high] = reach(case, body, &way);
+        0.5 * (low + high)
+    })
+}
+
+/// The other body that moves fastest towards a body: its velocity against it (m/s), and its index.
+fn striker(case: &Case, body: usize) -> Option<(Vec3, usize)> {
+    let (own, at) = (&case.bodies[body], middle(case, body));
+    let others = (0..case.bodies.len()).filter(|&other| other != body);
+    let all = others.map(|other| (case.bodies[other].velocity - own.velocity, other));
+    let comes = |(velocity, other): &(Vec3, usize)| (at - middle(case, *other)).dot(velocity) > 0.0;
+    let coming = all.filter(comes);
+    coming.max_by(|(a, _), (b, _)| a.norm().total_cmp(&b.norm()))
+}
+
+/// Out of the face of a body that the fastest other body moves towards: across its least extent if it is thin,
+/// else the one that is struck most squarely.
+pub fn struck_face(case: &Case, body: usize) -> Option<[f64; 3]> {
+    let (velocity, other) = striker(case, body)?;
+    let own = Own::of(case, body)?;
+    let free = |axis: &&Vec3| suits_symmetry(case, &(**axis).into(), false);
+    let axis = match own.axes.iter().find(free) {
+        Some(axis) if own.is_thin() && *axis == own.axes[0] => axis,
+        _ => own.axes.iter().filter(free).max_by(|a, b| {
+            let along = |axis: &Vec3| axis.dot(&velocity).abs();
+            along(a).total_cmp(&along(b))
+        })?,
+    };
+    let off = axis.dot(&(middle(case, other) - middle(case, body)));
+    (off != 0.0).then(|| outward(axis, off))
+}
+
+/// A unit vector along an axis with the sign of a number.
+fn outward(axis: &Vec3, sense: f64) -> [f64; 3] {
+    let sign = if sense < 0.0 { -1.0 } else { 1.0 };
+    (axis * sign).map(|c| c + 0.0).into()
+}
+
+/// To the end of a bar that strikes, or is struck: as it moves against what comes, or by its own velocity.
+pub fn foot(case: &Case, body: usize) -> Option<[f64; 3]> {
+    let own = Own::of(case, body)?;
+    let velocity = case.bodies[body].velocity;
+    let against = striker(case, body).map_or(velocity, |(velocity, _)| -velocity);
+    Some(outward(&own.axes[2], own.axes[2].dot(&against)))
+}
+
+/// The measure that a body's shape asks for.
+pub fn measure(case: &Case, body: usize) -> Option<MeasureKind> {
+    let matter = &case.bodies[body];
+    if matter.rigid.is_some() {
+        return None;
+    }
+    let own = Own::of(case, body)?;
+    let slab = |include| Some(Slab::new(case, body, struck_face(case, body)?, include));
+    if own.is_thin() {
+        return slab(Include::Intact).map(MeasureKind::Plate);
+    }
+    if own.is_long() {
+        return Some(MeasureKind::Bar(Bar {
+            body,
+            foot: foot(case, body)?,
+            spacing: matter.lattice.spacing,
+        }));
+    }
+    let (_, other) = striker(case, body)?;
+    let across = |way: Vec3| {
+        let [low, high] = reach(case, other, &way);
+        high - low
+    };
+    let largest = [Vec3::x(), Vec3::y(), Vec3::z()].map(across);
+    let largest = largest.into_iter().fold(0.0, f64::max);
+    if matter.velocity.norm() == 0.0 && own.sides[1] >= LARGE * largest {
+        return slab(Include::All).map(MeasureKind::Target);
+    }
+    None
+}

@@ -1,0 +1,295 @@
+//! How a run takes its folder: as a new one, or to go on in it. Nothing of an earlier run is lost
+//! before the new one stands.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use comm::Comm;
+
+use super::checkpoint::{self, step_of};
+use super::files::names_in;
+use super::lock::{LOCK, RunLock};
+use super::run_folder::{FILES, FRAGMENTS_ENDING, HDF5_ENDING, SNAPSHOT_ENDING, STATUS, TROUBLE};
+use super::set_aside::{self, SET_ASIDE, SetAside};
+use super::{OutputError, Phase, RunFolder, Status, files, on_root, series, write_atomically};
+
+/// Files that a restart changes before it has a checkpoint.
+const CHANGED: [&str; 16] = [
+    "history.csv",
+    "contacts.csv",
+    "loads.csv",
+    "removed.csv",
+    "departed.csv",
+    "fragments.csv",
+    "bodies.csv",
+    "gauges.csv",
+    "measures.csv",
+    "distributions.csv",
+    "witness.csv",
+    "crossings.csv",
+    "performance.csv",
+    "ranks.csv",
+    "case.toml",
+    STATUS,
+];
+
+impl RunFolder {
+    /// Takes the folder of a new run, and makes it if need be; nothing in it changes. A folder with
+    /// something in it is refused, unless `force` is given and it holds a run. One that a run has
+    /// open is refused unless `ignore` is given. The lock is rank 0's. Collective.
+    ///
+    /// # Errors
+    /// [`OutputError::FolderInUse`], [`OutputError::NotARun`], [`OutputError::Held`],
+    /// [`OutputError::Unclear`], [`OutputError::Io`]; the same on every rank.
+    pub fn take_new(
+        &self,
+        comm: &Comm,
+        force: bool,
+        ignore: bool,
+    ) -> Result<Option<RunLock>, OutputError> {
+        let mut lock = None;
+        on_root(comm, || {
+            let path = &self.path;
+            let new = !path.exists();
+            fs::create_dir_all(path).map_err(OutputError::io("create the folder", path))?;
+            if self.is_empty()? || Self::is_run(path) {
+                let taken = RunLock::take(path, ignore)?;
+                lock = Some(if new { taken.of_new_folder() } else { taken });
+            }
+            // Another run may have begun and ended here before the lock was taken.
+            self.refuse(force)
+        })?;
+        Ok(lock)
+    }
+
+    /// Takes the folder of a run to go on in it; nothing in it changes. The lock is rank 0's.
+    /// Collective.
+    ///
+    /// # Errors [`OutputError::Held`], [`OutputError::Unclear`], [`OutputError::Io`]; the same on
+    /// every rank.
+    pub fn take(&self, comm: &Comm, ignore: bool) -> Result<Option<RunLock>, OutputError> {
+        let mut lock = None;
+        on_root(comm, || {
+            lock = Some(RunLock::take(&self.path, ignore)?);
+            Ok(())
+        })?;
+        Ok(lock)
+    }
+
+    /// Makes the folder of a new run, with its resolved input. A folder with something in it is
+    /// refused, unless `force` is given and it holds a run: then that run's files go, and
+    /// nothing else. Collective.
+    ///
+    /// # Errors
+    /// [`OutputError::FolderInUse`], [`OutputError::NotARun`], [`OutputError::Io`]; the same on
+    /// every rank.
+    pub fn create(
+        comm: &Comm,
+        path: &Path,
+        resolved: &str,
+        force: bool,
+    ) -> Result<Self, OutputError> {
+        let folder = Self::at(path);
+        on_root(comm, || {
+            fs::create_dir_all(path).map_err(OutputError::io("create the folder", path))?;
+            folder.refuse(force)?;
+            folder.clear()?;
+            // The status first, by which the folder is a run that --force clears.
+            folder.begin(0, 0.0, Some(resolved))?;
+            folder.make_folders()?;
+            files::sync_folder(path)?;
+            files::sync_folder(path.parent().unwrap_or(path))
+        })?;
+        Ok(folder)
+    }
+
+    /// Goes on in the folder of an earlier run from a checkpoint of it, with a resolved input
+    /// unless the one there stays. Checkpoints that were passed over as damaged get another name.
+    /// What the run had written later is set aside until [`Self::forget_set_aside`], for the new
+    /// run writes it again; copies of the tables go there too, which [`super::Table::resume`] cuts.
+    /// Collective.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`], [`OutputError::Damaged`]; the same on every rank. The folder is then as
+    /// it was.
+    pub fn resume(
+        &self,
+        comm: &Comm,
+        resolved: Option<&str>,
+        step: u64,
+        time: f64,
+        passed_over: &[PathBuf],
+    ) -> Result<Option<SetAside>, OutputError> {
+        let mut aside = None;
+        on_root(comm, || {
+            self.make_folders()?;
+            let mut place = SetAside::new(&self.path)?;
+            let moved = self
+                .set_aside(&mut place, step, time, passed_over)
+                .and_then(|()| self.begin(step, time, resolved));
+            if let Err(error) = moved {
+                place.undo();
+                return Err(error);
+            }
+            aside = Some(place);
+            Ok(())
+        })?;
+        Ok(aside)
+    }
+
+    /// Checkpoints first, the newest first of all, so that at any time the newest one that is left
+    /// has all its rows and snapshots.
+    fn set_aside(
+        &self,
+        place: &mut SetAside,
+        step: u64,
+        time: f64,
+        passed_over: &[PathBuf],
+    ) -> Result<(), OutputError> {
+        for path in passed_over {
+            place.rename_as(path, checkpoint::DAMAGED)?;
+        }
+        let checkpoints = checkpoint::list(&self.checkpoints())?;
+        for (_, path) in checkpoints.iter().rev().filter(|(other, _)| *other > step) {
+            place.take(path)?;
+        }
+        files::sync_folder(&self.checkpoints())?;
+        for name in CHANGED {
+            place.copy(&self.path.join(name))?;
+        }
+        for schedule in self.all_schedules()? {
+            let series = self.series_of(schedule.as_deref());
+            place.copy(&series)?;
+            series::keep_until(&series, time)?;
+            for path in self.snapshot_files_of(schedule.as_deref())? {
+                if step_of(&path, SNAPSHOT_ENDING).is_some_and(|other| other > step) {
+                    place.take(&path)?;
+                }
+            }
+        }
+        for (other, path) in self
+            .fragment_files()?
+            .into_iter()
+            .chain(self.gauge_files()?)
+        {
+            if other > step {
+                place.take(&path)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Removes what a restart has set aside, if there is anything: the run has a checkpoint of its
+    /// own. Rank 0's alone.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`].
+    pub fn forget_set_aside(&self) -> Result<(), OutputError> {
+        set_aside::forget(&self.path)
+    }
+
+    /// What restarts have set aside, if there is anything.
+    #[must_use]
+    pub fn set_aside_folder(&self) -> Option<PathBuf> {
+        Some(self.path.join(SET_ASIDE)).filter(|path| path.exists())
+    }
+
+    /// Says that a run goes on from here.
+    fn begin(&self, step: u64, time: f64, resolved: Option<&str>) -> Result<(), OutputError> {
+        // What has been told of the way to here stays.
+        let before = self.status().ok().filter(|_| step > 0);
+        self.write_status(&Status {
+            outlook: before.and_then(|status| status.outlook),
+            ..Status::new(Phase::Running, step, time)
+        })?;
+        resolved.map_or(Ok(()), |text| {
+            write_atomically(&self.case(), text.as_bytes())
+        })
+    }
+
+    fn make_folders(&self) -> Result<(), OutputError> {
+        for path in [self.snapshots(), self.checkpoints()] {
+            fs::create_dir_all(&path).map_err(OutputError::io("create the folder", &path))?;
+        }
+        Ok(())
+    }
+
+    /// Refuses a folder with something in it, unless it is a run and `force` is given.
+    fn refuse(&self, force: bool) -> Result<(), OutputError> {
+        let path = self.path.clone();
+        if self.is_empty()? {
+            Ok(())
+        } else if !force {
+            Err(OutputError::FolderInUse { path })
+        } else if Self::is_run(&path) {
+            Ok(())
+        } else {
+            Err(OutputError::NotARun { path })
+        }
+    }
+
+    /// Whether there is nothing in it but a lock, or what a run has left that was killed at its
+    /// very beginning.
+    fn is_empty(&self) -> Result<bool, OutputError> {
+        let names = names_in(&self.path)?;
+        let unfinished = [LOCK, STATUS].map(|name| files::partial(Path::new(name)));
+        let is_nothing = |path: &PathBuf| {
+            path.ends_with(LOCK) || unfinished.iter().any(|name| path.ends_with(name))
+        };
+        Ok(names.iter().all(is_nothing))
+    }
+
+    /// Removes what a run has written, at once: who gives `--force` asks for it. Checkpoints go
+    /// first, each at a stroke and the newest first, so that a restart after a clearing that was
+    /// cut short finds whole ones or none; the status stays until a new one takes its place, so
+    /// that the folder remains one that `--force` clears.
+    fn clear(&self) -> Result<(), OutputError> {
+        for (_, path) in checkpoint::list(&self.checkpoints())?.iter().rev() {
+            checkpoint::discard(path)?;
+        }
+        let mut folders = vec![
+            self.checkpoints(),
+            self.fragment_tables(),
+            self.gauge_records(),
+        ];
+        let schedules = self.all_schedules()?;
+        let schedules = schedules.iter().map(Option::as_deref);
+        folders.extend(schedules.clone().map(|name| self.snapshots_of(name)));
+        for folder in folders {
+            for path in names_in(&folder)? {
+                if is_ours(&path) {
+                    files::remove(&path)?;
+                }
+            }
+        }
+        for name in schedules.flatten() {
+            // With something of the user's in it, it stays.
+            let _ = fs::remove_dir(self.snapshots_of(Some(name)));
+        }
+        files::remove(&self.path.join(TROUBLE))?;
+        self.forget_set_aside()?;
+        for &name in FILES {
+            if name != STATUS {
+                files::remove(&self.path.join(name))?;
+            }
+            files::remove(&files::partial(&self.path.join(name)))?;
+        }
+        Ok(())
+    }
+}
+
+/// Whether a run wrote this into its folder of snapshots or checkpoints.
+fn is_ours(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let name = name.trim_end_matches(files::PARTIAL);
+    let name = Path::new(name.strip_suffix(".old").unwrap_or(name));
+    step_of(name, SNAPSHOT_ENDING).is_some()
+        || step_of(name, FRAGMENTS_ENDING).is_some()
+        || step_of(name, HDF5_ENDING).is_some()
+        || step_of(name, "").is_some()
+        || checkpoint::is_damaged(name)
+        || name.extension().is_some_and(|e| e == "series")
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,102 @@
+//! Writing a checkpoint.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::folder::{folder_name, prune, replace};
+use super::manifest::{FORMAT, MANIFEST, Manifest};
+use super::state_file::{FIELDS, row_type, size_of, state_file};
+use comm::Comm;
+use crate::output::h5::Writer;
+use crate::output::{
+    OutputError, Rows, VERSION, commit, digest, files, on_root, settle, write_json,
+};
+use particles::{Life, ParticleStore};
+
+/// What a checkpoint says beside the particles.
+#[derive(Debug, Clone, Copy)]
+pub struct Meta<'a> {
+    /// Step number.
+    pub step: u64,
+    /// Time (s).
+    pub time: f64,
+    /// The run's own state, as JSON of the caller's making.
+    pub state: &'a str,
+    /// The resolved input.
+    pub input: &'a str,
+}
+
+/// Writes a checkpoint into `folder` and then removes all but the newest `keep` up to it.
+/// Collective. Gives the checkpoint's path.
+///
+/// # Errors
+/// The same on every rank; older checkpoints are then all still there.
+pub fn write(
+    comm: &Comm,
+    folder: &Path,
+    particles: &ParticleStore,
+    meta: &Meta,
+    keep: usize,
+    rows: &mut Rows,
+) -> Result<PathBuf, OutputError> {
+    let path = folder.join(folder_name(meta.step));
+    let temporary = files::partial(&path);
+    on_root(comm, || {
+        files::remove(&temporary)?;
+        fs::create_dir_all(&temporary).map_err(OutputError::io("create the folder", &temporary))
+    })?;
+    let written = write_parts(comm, &temporary, particles, meta, rows);
+    settle(comm, written, &temporary, || {
+        replace(&temporary, &path)?;
+        prune(folder, meta.step, keep)
+    })?;
+    Ok(path)
+}
+
+fn write_parts(
+    comm: &Comm,
+    folder: &Path,
+    particles: &ParticleStore,
+    meta: &Meta,
+    rows: &mut Rows,
+) -> Result<(), OutputError> {
+    let state = state_file(folder);
+    rows.plan(comm, &particles.id[..particles.owned()])?;
+    let mut file = Writer::create_aligned(comm, &state, rows.sharing().alignment)?;
+    file.number("/", "format", &FORMAT)?;
+    file.number("/", "step", &meta.step)?;
+    file.number("/", "time", &meta.time)?;
+    file.text("/state", meta.state)?;
+    file.text("/input", meta.input)?;
+    file.group(FIELDS)?;
+    for field in particles.held(Life::State) {
+        let row = row_type(field.kind);
+        let path = format!("{FIELDS}/{}", field.name);
+        let block = rows.block();
+        let gathered = rows.collect(
+            comm,
+            &particles.bytes(field.id)[..row.bytes() * particles.owned()],
+            row.bytes(),
+        );
+        file.rows_of(&path, row, block, &|rows, bytes| gathered.fill(rows, bytes))?;
+        file.note(&path, "unit", field.unit)?;
+        file.note(&path, "description", field.description)?;
+    }
+    file.close()?;
+
+    let size = size_of(comm, &state)?;
+    let block = digest::block_of(size);
+    let manifest = Manifest {
+        format: FORMAT,
+        version: VERSION.to_owned(),
+        commit: commit().to_owned(),
+        step: meta.step,
+        time: meta.time,
+        particles: rows.block().total,
+        ranks: comm.size(),
+        size,
+        block,
+        sha256: digest::of_file(comm, &state, size, block)?,
+    };
+    on_root(comm, || write_json(&folder.join(MANIFEST), &manifest))
+}

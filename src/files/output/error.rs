@@ -1,0 +1,191 @@
+//! What can go wrong with results and checkpoints.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why something could not be written or read back.
+#[derive(Debug, thiserror::Error)]
+pub enum OutputError {
+    /// The system refused.
+    #[error("cannot {action} {}: {source}", path.display())]
+    Io {
+        /// What was tried, as a verb.
+        action: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// HDF5 refused.
+    #[error("cannot {action} {}: {reason}", path.display())]
+    Hdf5 {
+        /// What was tried, as a verb.
+        action: String,
+        /// The file.
+        path: PathBuf,
+        /// What HDF5 says.
+        reason: String,
+    },
+    /// The run folder holds something already.
+    #[error(
+        "the folder {} is not empty; choose another with --out, or replace the run in it with \
+         --force",
+        path.display()
+    )]
+    FolderInUse {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// `--force` on a folder that no run has made.
+    #[error(
+        "the folder {} is not empty and holds no run (no status.json), so --force does not clear \
+         it; choose another with --out",
+        path.display()
+    )]
+    NotARun {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A run without a checkpoint.
+    #[error(
+        "the run {} has no {}checkpoint to restart from; run its case again{}",
+        path.display(),
+        if passed_over.is_empty() { "" } else { "whole " },
+        lines(passed_over)
+    )]
+    NoCheckpoint {
+        /// The run's folder.
+        path: PathBuf,
+        /// Why those that there are could not be read.
+        passed_over: Vec<String>,
+    },
+    /// A checkpoint that stands in no run folder.
+    #[error(
+        "{} is neither a run nor a checkpoint in one; name the run, or a checkpoint and a folder \
+         for the results with --out",
+        path.display()
+    )]
+    OutsideRun {
+        /// The checkpoint.
+        path: PathBuf,
+    },
+    /// A file does not say what it should.
+    #[error("{} is damaged: {what}", path.display())]
+    Damaged {
+        /// The file or folder.
+        path: PathBuf,
+        /// What is wrong, and what to do.
+        what: String,
+    },
+    /// A checkpoint of another program version.
+    #[error(
+        "the checkpoint {} has format {found}, this program reads format {known}; restart it with \
+         the program that wrote it",
+        path.display()
+    )]
+    Format {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Its format number.
+        found: u64,
+        /// The format number read here.
+        known: u64,
+    },
+    /// A checkpoint with what this program does not know, or without what it needs.
+    #[error(
+        "the checkpoint {} was written by whipple {by}, and this is {}: {what}; restart it with the \
+         program that wrote it",
+        path.display(),
+        super::VERSION
+    )]
+    OtherVersion {
+        /// The checkpoint or its file.
+        path: PathBuf,
+        /// Version and commit that wrote it.
+        by: String,
+        /// What is different.
+        what: String,
+    },
+    /// A run goes on in the folder.
+    #[error(
+        "the folder {} is in use by {who}: wait for its end, stop it (`touch {}`), or choose another \
+         folder with --out; --ignore-lock takes the folder all the same",
+        path.display(),
+        path.join("stop").display()
+    )]
+    Held {
+        /// The folder.
+        path: PathBuf,
+        /// Who has it.
+        who: String,
+    },
+    /// A run on another host has not closed the folder.
+    #[error(
+        "the folder {} was not closed by {who}, and whether that still runs cannot be told from \
+         {here}: look there; if it does not, --ignore-lock takes the folder",
+        path.display()
+    )]
+    Unclear {
+        /// The folder.
+        path: PathBuf,
+        /// Who had it.
+        who: String,
+        /// This host.
+        here: String,
+    },
+    /// A snapshot field that does not exist.
+    #[error("there is no snapshot field `{name}`; choose from {allowed}")]
+    UnknownField {
+        /// The name as given.
+        name: String,
+        /// All names, joined by commas.
+        allowed: String,
+    },
+    /// Two particles share an id.
+    #[error("two particles have the id {id}; ids must be unique")]
+    DuplicateId {
+        /// The id.
+        id: u64,
+    },
+    /// Another rank met an error; the text is the same on every rank.
+    #[error("{0}")]
+    OtherRank(String),
+}
+
+impl OutputError {
+    /// For `map_err` after a file operation.
+    pub fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Io {
+            action,
+            path,
+            source,
+        }
+    }
+
+    /// A file that does not say what it should.
+    pub fn damaged(path: &Path, what: impl Into<String>) -> Self {
+        Self::Damaged {
+            path: path.to_owned(),
+            what: what.into(),
+        }
+    }
+
+    /// Whether a file is not what was written, as against one that cannot be read now or that
+    /// another version wrote. Of the rank that met the error: others hear only its text.
+    #[must_use]
+    pub fn is_damage(&self) -> bool {
+        matches!(self, Self::Damaged { .. })
+    }
+
+    /// Whether another version of the program wrote it.
+    #[must_use]
+    pub fn is_other_version(&self) -> bool {
+        matches!(self, Self::Format { .. } | Self::OtherVersion { .. })
+    }
+}
+
+/// Each on a line of its own, after what stands before them.
+fn lines(reasons: &[String]) -> String {
+    [&[String::new()], reasons].concat().join("\n  ")
+}

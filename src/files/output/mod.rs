@@ -1,0 +1,72 @@
+//! Results and checkpoints: what a run writes, when, and how it is read back.
+//!
+//! All ranks call the writers together and all get the same verdict: every return code is voted
+//! before anybody goes on ([`agree`]), so that callers leave together. Rows stand in the order of
+//! particle ids ([`Rows`]), whatever the ranks. [`h5`] is the only module that names HDF5.
+
+mod begin;
+pub mod binary_table;
+mod block;
+pub mod checkpoint;
+mod digest;
+mod error;
+mod files;
+pub mod fragments;
+pub mod gauge_records;
+pub mod h5;
+mod history;
+mod lock;
+mod log;
+pub mod measures;
+mod new_file;
+pub mod partitions;
+pub mod post_mortem;
+mod quantity;
+mod row_schedule;
+mod rows;
+mod run_folder;
+mod schedule;
+pub mod series;
+mod set_aside;
+mod sheet;
+pub mod snapshot;
+mod snapshot_folders;
+mod status;
+mod vote;
+
+use std::sync::OnceLock;
+
+pub use block::Block;
+pub use error::OutputError;
+pub use files::{read_regular, read_small, write_atomically, write_json};
+pub use history::{Column, Table, Value, unit_of_model};
+pub use lock::{Holder, Presence, RunLock};
+pub use log::Log;
+pub use new_file::NewFile;
+pub use row_schedule::RowSchedule;
+pub use rows::Rows;
+pub use run_folder::RunFolder;
+pub use schedule::Schedule;
+pub use set_aside::SetAside;
+pub use sheet::Sheet;
+pub use sheet::line as table_line;
+pub use status::{Energies, Outlook, Phase, Status};
+use vote::settle;
+pub use vote::{agree, from_root, on_root};
+
+/// The program's version.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+static COMMIT: OnceLock<&'static str> = OnceLock::new();
+
+/// Notes the commit that the program is built from, once and before anything else: its build knows it, and so that a
+/// commit alone builds nothing but the program, nothing below it does.
+pub fn set_commit(commit: &'static str) {
+    COMMIT.get_or_init(|| commit);
+}
+
+/// The commit that the program is built from, or `unknown`.
+#[must_use]
+pub fn commit() -> &'static str {
+    COMMIT.get().copied().unwrap_or("unknown")
+}

@@ -1,0 +1,221 @@
+//! Particles in the order of their ids, in even blocks over the ranks that write.
+//!
+//! Ranks own particles in any order, and ids know nothing of ranks: a rank may have rows of any
+//! block. So rows take two hops over groups of some √P ranks, first to a rank of the group that
+//! has their block, then within the group. No rank sends more than 2√P messages for a field.
+//! Beside its own particles and its own block a rank has what passes through it, one field at a
+//! time: as much as its own again, and a few times that where many ranks have rows for one group.
+//!
+//! Boundaries are ids, found by bisection on counts, all at once: those of groups by all ranks,
+//! those of blocks by each group for itself. Up to three ranks are one group, for which the second
+//! hop is enough.
+
+mod groups;
+mod hop;
+
+use comm::{Comm, Exchange};
+use model::Sharing;
+
+use super::{Block, OutputError, agree};
+use groups::Groups;
+use hop::{Hop, Ways};
+
+pub use hop::Gathered;
+
+/// Most rows of a writer, whose places are counted in `u32`.
+const MOST_ROWS: u64 = 1 << 31;
+
+/// How many of the ranks write so many rows: as many as are asked for, if they can hold them.
+fn writers(asked: Option<usize>, total: u64, ranks: usize) -> usize {
+    let least = usize::try_from(total.div_ceil(MOST_ROWS)).unwrap_or(usize::MAX);
+    asked.unwrap_or(ranks).max(least).clamp(1, ranks)
+}
+
+/// The first hop, to the groups of ranks.
+struct ToGroups {
+    groups: Groups,
+    /// The ranks of this one's group.
+    group: Comm,
+    ways: Ways,
+    hop: Hop,
+    /// Values on their way through this rank.
+    passing: Vec<u8>,
+}
+
+impl ToGroups {
+    /// Of all ranks, unless they are one group. Collective.
+    fn new(comm: &Comm) -> Option<Self> {
+        let (groups, rank) = (Groups::of(comm.size()), comm.rank());
+        (groups.count() > 1).then(|| Self {
+            groups,
+            group: comm.among(groups.members(groups.group(rank))),
+            ways: Ways {
+                to: groups.gates(rank).collect(),
+                from: groups.guests(rank).collect(),
+            },
+            hop: Hop::default(),
+            passing: Vec::new(),
+        })
+    }
+}
+
+/// The way of particles to rows in id order. Buffers are kept from one output to the next.
+#[derive(Default)]
+pub struct Rows {
+    sharing: Sharing,
+    block: Block,
+    /// Ranks that the hops are for.
+    ranks: usize,
+    to_groups: Option<ToGroups>,
+    to_blocks: Hop,
+    exchange: Exchange,
+}
+
+impl Rows {
+    /// For files that are written so.
+    #[must_use]
+    pub fn new(sharing: Sharing) -> Self {
+        Self {
+            sharing,
+            ..Self::default()
+        }
+    }
+
+    /// How files are written.
+    #[must_use]
+    pub fn sharing(&self) -> Sharing {
+        self.sharing
+    }
+
+    /// This rank's block, after [`Self::plan`].
+    #[must_use]
+    pub fn block(&self) -> Block {
+        self.block
+    }
+
+    /// Finds the row of every particle from this rank's ids `[owned]`. Collective.
+    ///
+    /// # Errors
+    /// [`OutputError::DuplicateId`], the same on every rank.
+    ///
+    /// # Panics
+    /// If this rank owns 2³² particles or more, which no store can hold.
+    pub fn plan(&mut self, comm: &Comm, ids: &[u64]) -> Result<(), OutputError> {
+        let particles = u32::try_from(ids.len()).expect("a rank's particles fit u32");
+        self.plan_of(comm, ids, 0..particles)
+    }
+
+    /// As [`Self::plan`], of some particles alone: the others have no rows. Collective.
+    ///
+    /// # Errors
+    /// [`OutputError::DuplicateId`], the same on every rank.
+    pub fn plan_of(
+        &mut self,
+        comm: &Comm,
+        ids: &[u64],
+        chosen: impl IntoIterator<Item = u32>,
+    ) -> Result<(), OutputError> {
+        let ranks = comm.size();
+        if self.ranks != ranks {
+            self.ranks = ranks;
+            self.to_groups = ToGroups::new(comm);
+        }
+        let first = (self.to_groups.as_mut()).map_or(&mut self.to_blocks, |first| &mut first.hop);
+        let mut total = [first.choose(ids, chosen)];
+        comm.sum_u64(&mut total);
+        let total = total[0];
+        let writers = writers(self.sharing.writers, total, ranks);
+        let block = |rank: usize| Block::shared(total, rank, ranks, writers);
+        self.block = block(comm.rank());
+
+        let (mut group, mut members, mut ids) = (comm, 0..ranks, ids);
+        if let Some(first) = &mut self.to_groups {
+            let groups = first.groups;
+            let starts = (0..groups.count()).map(|k| block(groups.members(k).start).first);
+            let starts: Vec<u64> = starts.collect();
+            let exchange = &mut self.exchange;
+            first.hop.plan(comm, exchange, (ids, &starts), &first.ways);
+            members = groups.members(groups.group(comm.rank()));
+            (group, ids) = (&first.group, first.hop.ids());
+            self.to_blocks.choose(ids, (0..).take(ids.len()));
+        }
+        let begin = block(members.start).first;
+        let starts: Vec<u64> = members.map(|rank| block(rank).first - begin).collect();
+        let ways = Ways::all(group);
+        self.to_blocks
+            .plan(group, &mut self.exchange, (ids, &starts), &ways);
+        agree(comm, self.check())
+    }
+
+    /// Refuses ids that two particles have.
+    fn check(&self) -> Result<(), OutputError> {
+        let mut pairs = self.to_blocks.ids().windows(2);
+        match pairs.find(|pair| pair[0] == pair[1]) {
+            Some(pair) => Err(OutputError::DuplicateId { id: pair[0] }),
+            None => Ok(()),
+        }
+    }
+
+    /// One field's rows of this rank's block in id order, from its owned particles' values
+    /// `[owned × size]` bytes. Collective, after [`Self::plan`].
+    pub fn collect<'a>(&'a mut self, comm: &Comm, values: &'a [u8], size: usize) -> Gathered<'a> {
+        let exchange = &mut self.exchange;
+        match &mut self.to_groups {
+            Some(first) => {
+                let passing = first.hop.carry(comm, exchange, values, size);
+                passing.copy_to(&mut first.passing);
+                (self.to_blocks).carry(&first.group, exchange, &first.passing, size)
+            }
+            None => self.to_blocks.carry(comm, exchange, values, size),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_rows_than_a_writer_can_count_have_more_writers() {
+        assert_eq!(writers(None, 10, 4), 4);
+        assert_eq!(writers(Some(9), 10, 4), 4);
+        assert_eq!(writers(Some(1), 1 << 31, 10_000), 1);
+        assert_eq!(writers(Some(1), (1 << 31) + 1, 10_000), 2);
+        assert_eq!(writers(Some(1), 1 << 40, 10_000), 512);
+    }
+
+    #[test]
+    fn a_lone_rank_sorts_by_id() {
+        let comm = Comm::solo();
+        let mut rows = Rows::default();
+        let ids = [7, u64::MAX, 0, 3];
+        rows.plan(&comm, &ids).unwrap();
+        assert_eq!(rows.block(), Block::even(4, 0, 1));
+        let values: Vec<[u32; 3]> = (0..4).map(|i| [i, 10 * i, 100 * i]).collect();
+        let bytes = rows.collect(&comm, bytemuck::cast_slice(&values), 12).all();
+        let sorted: Vec<[u32; 3]> = bytemuck::pod_collect_to_vec(&bytes);
+        assert_eq!(
+            sorted,
+            [[2, 20, 200], [3, 30, 300], [0, 0, 0], [1, 10, 100]]
+        );
+    }
+
+    #[test]
+    fn particles_that_are_not_chosen_have_no_rows() {
+        let (comm, mut rows) = (Comm::solo(), Rows::default());
+        let ids = [7, 7, 0, 3];
+        rows.plan_of(&comm, &ids, [0, 3]).unwrap();
+        assert_eq!(rows.block(), Block::even(2, 0, 1));
+        let bytes = rows.collect(&comm, &[10, 11, 12, 13], 1);
+        assert_eq!(bytes.all(), [13, 10]);
+        rows.plan_of(&comm, &ids, []).unwrap();
+        let none = rows.collect(&comm, &[10, 11, 12, 13], 1);
+        assert_eq!(none.count(), 0);
+    }
+
+    #[test]
+    fn equal_ids_are_refused() {
+        let refused = Rows::default().plan(&Comm::solo(), &[4, 9, 4]);
+        assert!(matches!(refused, Err(OutputError::DuplicateId { id: 4 })));
+    }
+}

@@ -1,0 +1,101 @@
+//! One verdict for all ranks.
+
+use std::path::Path;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use comm::{Comm, Exchange};
+
+use super::{OutputError, files};
+
+/// Gives every rank an error with the same text if any rank has one: that of the lowest such
+/// rank. Collective.
+///
+/// # Errors
+/// The given error, or [`OutputError::OtherRank`].
+pub fn agree<T>(comm: &Comm, result: Result<T, OutputError>) -> Result<T, OutputError> {
+    let size = comm.size();
+    let mut first = [if result.is_err() { comm.rank() } else { size } as u64];
+    comm.min_u64(&mut first);
+    let Ok(first) = usize::try_from(first[0]) else {
+        return result;
+    };
+    if first >= size {
+        return result;
+    }
+    let mut exchange = Exchange::default();
+    if comm.rank() == first {
+        let text = result.as_ref().err().map(ToString::to_string);
+        exchange.set_peers((0..size).filter(|&rank| rank != first));
+        for peer in 0..exchange.peers() {
+            let message = exchange.outgoing(peer);
+            message.extend_from_slice(text.as_deref().unwrap_or_default().as_bytes());
+        }
+        exchange.post_sizes(comm);
+        exchange.post(comm);
+        exchange.wait();
+        result
+    } else {
+        exchange.set_peers(std::iter::once(first));
+        exchange.post_sizes(comm);
+        exchange.post(comm);
+        exchange.wait();
+        let text = String::from_utf8_lossy(exchange.incoming(0)).into_owned();
+        Err(OutputError::OtherRank(text))
+    }
+}
+
+/// Lets rank 0 do something and gives every rank its verdict. Collective.
+///
+/// # Errors
+/// What `task` returns, with the same text on every rank.
+pub fn on_root(
+    comm: &Comm,
+    task: impl FnOnce() -> Result<(), OutputError>,
+) -> Result<(), OutputError> {
+    agree(comm, if comm.is_root() { task() } else { Ok(()) })
+}
+
+/// Ends what all ranks have `written` under a temporary name: rank 0 publishes it if it is whole,
+/// else takes it away. Collective.
+///
+/// # Errors
+/// That of writing or of publishing, with the same text on every rank.
+pub(super) fn settle(
+    comm: &Comm,
+    written: Result<(), OutputError>,
+    temporary: &Path,
+    publish: impl FnOnce() -> Result<(), OutputError>,
+) -> Result<(), OutputError> {
+    on_root(comm, || {
+        if written.is_ok() {
+            return publish();
+        }
+        // What went wrong is told below; half of it only takes room.
+        let _ = files::remove(temporary);
+        Ok(())
+    })?;
+    written
+}
+
+/// Lets rank 0 find something out and tells it to every rank: what steers collective calls must not
+/// be what each rank sees of a file system by itself. Collective.
+///
+/// # Errors
+/// What `task` returns, with the same text on every rank.
+///
+/// # Panics
+/// If what is found is no plain data.
+pub fn from_root<T: Serialize + DeserializeOwned>(
+    comm: &Comm,
+    task: impl FnOnce() -> Result<T, OutputError>,
+) -> Result<T, OutputError> {
+    let mut found = Vec::new();
+    on_root(comm, || {
+        found = serde_json::to_vec(&task()?).expect("plain data");
+        Ok(())
+    })?;
+    comm.broadcast(&mut found);
+    Ok(serde_json::from_slice(&found).expect("what rank 0 has written"))
+}

@@ -1,0 +1,194 @@
+//! A case cut for a number of ranks: what each of them has and sends.
+
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+use rayon::prelude::*;
+
+use super::outlook::Outlook;
+use super::particles::Particles;
+use comm::{Comm, Traffic};
+use particles::Mirrors;
+use engine::domain::{Balance, Decomposition, GREETING, NestedSlabs, Outset, RankSpeeds, Sent, Tally, greetings, tally};
+use model::Case;
+use populate;
+use crate::preflight::UNEVEN;
+use engine::step::bytes_of_messages;
+
+/// What a rank has, and what it sends in a step but for particles that change ranks.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Load {
+    /// What it owns and hears of others.
+    pub tally: Tally,
+    /// All that it sends.
+    pub sent: Traffic,
+    /// What of it leaves its node.
+    pub beyond: Traffic,
+}
+
+/// A case cut for a number of ranks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layout {
+    /// Who owns which place.
+    pub slabs: NestedSlabs,
+    /// What each rank has and sends.
+    pub loads: Vec<Load>,
+    /// The most of an even share of all particles that a rank will own as work is balanced.
+    pub uneven: f64,
+}
+
+impl Layout {
+    /// Of particles, those of the start or those at a time (s), and what is foreseen of them, for so many ranks in slabs
+    /// of so many levels, or of those that the case takes by itself, where so many ranks that follow each other share a
+    /// node. `None` for a case without particles.
+    #[must_use]
+    pub fn new(
+        case: &Case,
+        (particles, time, outlook): (&Particles, Option<f64>, &Outlook),
+        (ranks, levels): (usize, Option<usize>),
+        ranks_per_node: usize,
+    ) -> Option<Self> {
+        let cut = if time.is_none() {
+            slabs_at_start
+        } else {
+            slabs_of
+        };
+        let slabs = cut(case, particles, ranks, levels)?;
+        let loads = loads(case, particles, &slabs, ranks_per_node);
+        let uneven = uneven(case, particles, &slabs, outlook);
+        Some(Self {
+            slabs,
+            loads,
+            uneven,
+        })
+    }
+}
+
+/// The slabs that a run begins with on so many ranks, of so many levels or as many as the case has.
+///
+/// `None` for a case without particles.
+#[must_use]
+pub fn slabs_at_start(
+    case: &Case,
+    particles: &Particles,
+    ranks: usize,
+    levels: Option<usize>,
+) -> Option<NestedSlabs> {
+    let (solo, outset) = (Comm::solo(), Outset::new(case)?);
+    let mut balance = Balance::default();
+    let mut slabs = outset.slabs(case, &solo, (ranks, levels), &mut balance);
+    // As a run does that has dealt out what stands outside of the slabs it was made in.
+    if ranks > 1 && case.bodies.iter().any(populate::moves_sites) {
+        cut(&mut slabs, particles, &mut balance);
+    }
+    Some(slabs)
+}
+
+/// The slabs that a run goes on with from some particles.
+///
+/// `None` for a case without particles.
+#[must_use]
+pub fn slabs_of(
+    case: &Case,
+    particles: &Particles,
+    ranks: usize,
+    levels: Option<usize>,
+) -> Option<NestedSlabs> {
+    let outset = Outset::new(case)?;
+    let (all, balance) = (
+        (particles.positions.as_slice(), particles.reach.as_slice()),
+        &mut Balance::default(),
+    );
+    Some(outset.slabs_of(case, &Comm::solo(), (ranks, levels), all, balance))
+}
+
+/// Moves faces so that each rank has as many particles.
+fn cut(slabs: &mut NestedSlabs, particles: &Particles, balance: &mut Balance) {
+    let work = vec![1; particles.positions.len()];
+    let all = (particles.positions.as_slice(), work.as_slice());
+    balance.cut(&Comm::solo(), slabs, all, &RankSpeeds::default());
+}
+
+/// The most of an even share of all particles that a rank is going to own, as work is balanced.
+#[allow(clippy::cast_precision_loss, reason = "a ratio")]
+fn uneven(case: &Case, particles: &Particles, slabs: &NestedSlabs, outlook: &Outlook) -> f64 {
+    let ranks = slabs.ranks();
+    if case.domain.balance_every == 0 || ranks < 2 {
+        return 1.0;
+    }
+    let Some(works) = outlook.works() else {
+        return UNEVEN;
+    };
+    let (mut slabs, mut balance) = (slabs.clone(), Balance::default());
+    let each = particles.positions.len() as f64 / ranks as f64;
+    let places = particles.positions.as_slice();
+    let mut owned: Vec<AtomicU64> = (0..ranks).map(|_| AtomicU64::default()).collect();
+    let most = works.map(|work| {
+        balance.cut(
+            &Comm::solo(),
+            &mut slabs,
+            (places, &work),
+            &RankSpeeds::default(),
+        );
+        owned.fill_with(AtomicU64::default);
+        let owners = places.par_iter().map(|place| slabs.owner(place));
+        owners.for_each(|owner| {
+            owned[owner].fetch_add(1, Relaxed);
+        });
+        let most = owned.iter_mut().map(|owned| *owned.get_mut()).max();
+        most.unwrap_or(0) as f64 / each
+    });
+    most.fold(UNEVEN, f64::max)
+}
+
+/// What each rank has and sends in a step, where so many that follow each other share a node.
+#[must_use]
+pub fn loads(
+    case: &Case,
+    particles: &Particles,
+    slabs: &NestedSlabs,
+    ranks_per_node: usize,
+) -> Vec<Load> {
+    let bytes = bytes_of_messages(case);
+    loads_of(case, particles, slabs, ranks_per_node, &bytes)
+}
+
+/// The same with messages of so many `bytes` a halo particle: a search has the first of those of a step alone.
+#[must_use]
+pub fn loads_of(
+    case: &Case,
+    particles: &Particles,
+    slabs: &NestedSlabs,
+    ranks_per_node: usize,
+    bytes: &[usize],
+) -> Vec<Load> {
+    let mirrors = Mirrors::new(&case.symmetry);
+    let mut loads = vec![Load::default(); slabs.ranks()];
+    let all = (particles.positions.as_slice(), particles.reach.as_slice());
+    let mut send = |from: usize, to: usize, traffic: Traffic| {
+        let load: &mut Load = &mut loads[from];
+        load.sent += traffic;
+        if from / ranks_per_node != to / ranks_per_node {
+            load.beyond += traffic;
+        }
+    };
+    let tallies = tally(slabs, &mirrors, all, |sent| {
+        send(sent.from, sent.to, traffic_of(sent, bytes));
+    });
+    let farthest = particles.reach.iter().copied().fold(0.0, f64::max);
+    greetings(slabs, farthest, |from, to| {
+        send(from, to, Traffic::of(GREETING));
+    });
+    for (load, tally) in loads.iter_mut().zip(tallies) {
+        load.tally = tally;
+    }
+    loads
+}
+
+/// What a rank sends to a peer in a step: a size, then messages of so many bytes a particle.
+fn traffic_of(sent: Sent, bytes: &[usize]) -> Traffic {
+    let mut traffic = Traffic::OF_SIZE;
+    for &bytes in bytes {
+        traffic += Traffic::of(sent.particles * bytes as u64);
+    }
+    traffic
+}

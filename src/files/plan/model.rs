@@ -1,0 +1,156 @@
+//! How long a step takes.
+//!
+//! A rank with n particles and m images takes `n t_p + m t_i` of one core, shared by its threads. Its
+//! messages take their latencies, and what all ranks of a node send takes its bandwidth, but for
+//! what flies while it computes. The slowest rank makes the step, with what all of them agree on.
+
+use super::layout::Load;
+use super::machine::Machine;
+use super::sharing::Sharing;
+use comm::Traffic;
+
+/// Times of a step (s).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct StepTime {
+    /// Of the slowest rank in computing.
+    pub computing: f64,
+    /// All of the step.
+    pub all: f64,
+}
+
+/// Times of a step on ranks with these loads.
+#[must_use]
+#[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]
+pub fn step_time(loads: &[Load], machine: &Machine, sharing: Sharing) -> StepTime {
+    let slower = crowded(loads.len(), machine, sharing);
+    let mut time = StepTime::default();
+    for node in loads.chunks(sharing.ranks_per_node) {
+        let (mut within, mut beyond) = (0.0, 0.0);
+        for load in node {
+            beyond += load.beyond.bytes as f64;
+            within += load.within().bytes as f64;
+        }
+        let flight = beyond / machine.bandwidth + within / machine.node_bandwidth;
+        for load in node {
+            let computing = slower * computing(load, machine);
+            let waiting = (flight - machine.overlap * computing).max(0.0);
+            let messages = load.beyond.messages as f64 * machine.latency
+                + load.within().messages as f64 * machine.node_latency;
+            time.computing = time.computing.max(computing);
+            time.all = time.all.max(computing + waiting + messages);
+        }
+    }
+    time.all += machine.agreement_time * (loads.len() as f64).log2();
+    time
+}
+
+/// Time (s) of one core alone for a step of a rank.
+#[must_use]
+#[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]
+pub fn computing(load: &Load, machine: &Machine) -> f64 {
+    let tally = &load.tally;
+    tally.owned as f64 * machine.particle_time + tally.images as f64 * machine.image_time
+}
+
+/// How many times as long as one core alone a rank takes to compute.
+#[allow(clippy::cast_precision_loss, reason = "few cores")]
+fn crowded(ranks: usize, machine: &Machine, sharing: Sharing) -> f64 {
+    let threads = sharing.threads as f64;
+    let busy = ranks.min(sharing.ranks_per_node) as f64 * threads;
+    let others = (machine.cores_per_node - 1.0).max(1.0);
+    let crowding = 1.0 + machine.crowding * ((busy - 1.0) / others).min(1.0);
+    crowding * (1.0 + machine.thread_loss * (threads - 1.0)) / threads
+}
+
+impl Load {
+    /// What it sends to ranks of its own node.
+    #[must_use]
+    pub fn within(&self) -> Traffic {
+        self.sent - self.beyond
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use engine::domain::Tally;
+
+    fn load(owned: u64, images: u64, [sent, beyond]: [u64; 2]) -> Load {
+        let traffic = |bytes| Traffic { messages: 3, bytes };
+        Load {
+            tally: Tally {
+                owned,
+                halo: images,
+                images,
+                peers: 1,
+            },
+            sent: traffic(sent),
+            beyond: traffic(beyond),
+        }
+    }
+
+    /// Two ranks, each a node of one core, by hand.
+    #[test]
+    fn the_slowest_rank_makes_the_step() {
+        let machine = Machine {
+            cores_per_node: 1.0,
+            particle_time: 1e-6,
+            image_time: 1e-7,
+            crowding: 0.0,
+            latency: 1e-3,
+            bandwidth: 1e6,
+            agreement_time: 0.5,
+            ..Machine::default()
+        };
+        let sharing = Sharing {
+            threads: 1,
+            ranks_per_node: 1,
+        };
+        let loads = [load(1000, 100, [5000; 2]), load(2000, 0, [1000; 2])];
+        let time = step_time(&loads, &machine, sharing);
+        assert!((time.computing - 2e-3).abs() < 1e-12);
+        assert!((time.all - (0.5 + 1.01e-3 + 5e-3 + 3e-3)).abs() < 1e-12);
+        let hidden = Machine {
+            overlap: 1.0,
+            ..machine.clone()
+        };
+        let time = step_time(&loads, &hidden, sharing);
+        assert!((time.all - (0.5 + 5e-3 + 3e-3)).abs() < 1e-12);
+        // One node of both shares the bandwidth within it, and sends nothing beyond.
+        let loads = loads.map(|load| Load {
+            beyond: Traffic::default(),
+            ..load
+        });
+        let node = Machine {
+            node_latency: 0.0,
+            node_bandwidth: 1e6,
+            ..machine
+        };
+        let sharing = Sharing {
+            ranks_per_node: 2,
+            ..sharing
+        };
+        let time = step_time(&loads, &node, sharing);
+        assert!((time.all - (0.5 + 2e-3 + 6e-3)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn threads_share_the_work_with_a_loss() {
+        let machine = Machine {
+            cores_per_node: 2.0,
+            thread_loss: 0.1,
+            crowding: 0.2,
+            agreement_time: 0.0,
+            ..Machine::default()
+        };
+        let loads = [load(1000, 0, [0; 2])];
+        let at = |threads| {
+            let sharing = Sharing {
+                threads,
+                ranks_per_node: 1,
+            };
+            step_time(&loads, &machine, sharing).computing
+        };
+        assert!((at(2) / at(1) - 1.1 * 1.2 / 2.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,113 @@
+//! What is foreseen of a run: its steps, and what of its matter waits for a wave.
+
+use rayon::prelude::*;
+
+use super::particles::Particles;
+use model::Case;
+use crate::preflight::{self, Approach, TIMES, Waiting, Waves, approaches, mean_work};
+
+/// Work of a particle where smoothing lengths differ from body to body, and where they differ within one, over that where all
+/// are the same: each pair has a length of its own, and lists are made as far as the largest reach. As measured on the quarter
+/// impact with a sphere of other particles, and with a graded plate whose particles differ by a factor of two.
+const UNEQUAL: [f64; 2] = [1.1, 1.5];
+
+/// What is foreseen of a run from a time on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outlook {
+    /// Steps to its end, where anything tells.
+    pub steps: Option<f64>,
+    /// Work of these steps, over what it would be if all matter moved.
+    pub share_of_work: f64,
+    /// By particle, at which of the times it waits; `None` where nothing does.
+    waiting: Option<Vec<Waiting>>,
+}
+
+impl Outlook {
+    /// Of particles, those of the start or those at a time (s).
+    #[must_use]
+    pub fn new(case: &Case, particles: &Particles, time: Option<f64>) -> Self {
+        let (from, approaches) = (time.unwrap_or(0.0), approaches(case));
+        let times = Waves::times(case, from);
+        let waiting = Waves::new(case, &approaches).map(|waves| {
+            let places = particles.body.par_iter().zip(&particles.positions);
+            places
+                .map(|(&body, place)| waves.waiting(body as usize, place, &times))
+                .collect::<Vec<_>>()
+        });
+        Self {
+            steps: expected_steps(case, &approaches, from),
+            share_of_work: waiting.as_deref().map_or(1.0, mean_work),
+            waiting,
+        }
+    }
+
+    /// Work of the particles at each of the times, in per cent of that of what moves; `None` where nothing rests.
+    pub(super) fn works(&self) -> Option<impl Iterator<Item = Vec<u32>>> {
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a per cent"
+        )]
+        let per_cent = |work: f64| (100.0 * work) as u32;
+        let waiting = self.waiting.as_ref()?;
+        Some((0..TIMES).map(move |k| {
+            let works = waiting.par_iter().map(|waiting| waiting.work(k));
+            works.map(per_cent).collect()
+        }))
+    }
+}
+
+/// Steps of a case whose bodies meet so, from a time (s) on, as far as they are foreseen.
+#[must_use]
+#[allow(clippy::cast_precision_loss, reason = "for people")]
+pub fn expected_steps(case: &Case, approaches: &[Approach], time: f64) -> Option<f64> {
+    let by_time = preflight::expected_steps(case, approaches, time)?;
+    let most = case.run.max_steps.map_or(f64::INFINITY, |most| most as f64);
+    Some(by_time.min(most).round())
+}
+
+/// Work of a particle of a case over that of one among equals.
+#[must_use]
+pub fn work_of_unequal(case: &Case) -> f64 {
+    let bodies = || case.bodies.iter().filter(|body| body.rigid.is_none());
+    let mut lengths = bodies().map(|body| body.smoothing_length);
+    let first = lengths.next();
+    if bodies().any(|body| body.lattice.sizes.is_some()) {
+        UNEQUAL[1]
+    } else if lengths.any(|length| Some(length) != first) {
+        UNEQUAL[0]
+    } else {
+        1.0
+    }
+}
+
+/// Work of all steps of a case whose bodies meet so, over what it would be if all matter moved, from some of its places.
+#[must_use]
+pub fn share_of_work(case: &Case, approaches: &[Approach]) -> f64 {
+    Waves::new(case, approaches).map_or(1.0, |waves| waves.share_of_work(case, 0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::input;
+
+    #[test]
+    fn unequal_particles_take_more_work() {
+        let work = |name: &str, set: &[&str]| {
+            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs");
+            let set: Vec<String> = set.iter().map(|&set| set.to_owned()).collect();
+            work_of_unequal(&input::load(&path.join(name), &set).unwrap())
+        };
+        let finer = "body.sphere.spacing=0.01mm";
+        let works = [
+            work("quarter-impact", &[]),
+            work("quarter-impact", &[finer]),
+            work("crater", &[]),
+        ];
+        assert!(works.is_sorted_by(|a, b| a < b), "{works:?}");
+        assert_eq!(works[0].to_bits(), 1.0f64.to_bits());
+    }
+}

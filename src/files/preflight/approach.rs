@@ -1,0 +1,149 @@
+//! When bodies meet, as far as their initial velocities tell.
+
+use model::{Body, Case, Vec3};
+use populate::{self, Wanted, search};
+
+/// Bodies closer than this many spacings touch.
+const TOUCH: f64 = 0.1;
+/// Most steps of a body towards another; each goes as far as nothing can be in the way.
+const MOST_STEPS: usize = 200;
+
+/// Smallest and largest coordinates (m) of a body's particles.
+pub(super) type Ends = ([f64; 3], [f64; 3]);
+
+/// Two bodies, of which one at least deforms.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Approach {
+    /// Their indices.
+    pub bodies: [usize; 2],
+    /// Room between them at the start, beyond that of bodies in touch, in mean spacings; may be
+    /// infinite if they never come near.
+    pub gap: f64,
+    /// Their relative speed (m/s).
+    pub speed: f64,
+    /// When they touch (s); infinite if never.
+    pub time: f64,
+}
+
+/// All pairs of bodies whose velocities are constant until something is met.
+#[must_use]
+pub fn approaches(case: &Case) -> Vec<Approach> {
+    let mut found = Vec::new();
+    let bodies = case.bodies.iter();
+    let boxes: Vec<_> = bodies
+        .map(|body| populate::bounds(body, case.dimension))
+        .collect();
+    for a in 0..case.bodies.len() {
+        for b in a + 1..case.bodies.len() {
+            found.extend(approach(case, &boxes, [a, b]));
+        }
+    }
+    found
+}
+
+/// Whether a body has one velocity, and nothing but other bodies changes its velocity.
+pub fn flies_straight(case: &Case, body: usize) -> bool {
+    let driven = case.loads.velocities.iter().any(|load| load.body == body);
+    let motion = case.bodies[body].rigid.as_ref();
+    let table = motion.is_some_and(|motion| motion.times.len() > 1);
+    let falls = motion.is_none() && case.loads.gravity != [0.0; 3];
+    let spreads = case.bodies[body].speed_spread() > 0.0;
+    !(driven || table || falls || spreads)
+}
+
+fn approach(case: &Case, boxes: &[Option<Ends>], [a, b]: [usize; 2]) -> Option<Approach> {
+    let [first, second] = [&case.bodies[a], &case.bodies[b]];
+    let both_rigid = first.rigid.is_some() && second.rigid.is_some();
+    if both_rigid || !flies_straight(case, a) || !flies_straight(case, b) {
+        return None;
+    }
+    let velocity = first.velocity - second.velocity;
+    let spacing = 0.5 * (first.lattice.spacing + second.lattice.spacing);
+    // Shapes reach a little beyond their particles.
+    let until = last_meeting([boxes[a]?, boxes[b]?], velocity, 4.0 * spacing);
+    let mut found = Approach {
+        bodies: [a, b],
+        gap: f64::INFINITY,
+        speed: velocity.norm(),
+        time: f64::INFINITY,
+    };
+    if until >= 0.0 {
+        for (body, target, velocity) in [(first, second, velocity), (second, first, -velocity)] {
+            let (gap, time) = towards(case, [body, target], velocity, until);
+            found.gap = found.gap.min(gap / spacing);
+            found.time = found.time.min(time);
+        }
+    }
+    Some(found)
+}
+
+/// The smallest distance (m) of the particles of a body from where they touch another, and the
+/// first time (s) at which one does, moving at `velocity` (m/s); infinite if not `until` then (s).
+fn towards(case: &Case, [body, target]: [&Body; 2], velocity: Vec3, until: f64) -> (f64, f64) {
+    let near = TOUCH * body.lattice.spacing;
+    let start = nearest(case, body, target, Vec3::zeros());
+    let (mut time, mut left) = (0.0, start);
+    for _ in 0..MOST_STEPS {
+        if left <= near {
+            return (start, time);
+        }
+        time += left / velocity.norm();
+        if !(time <= until && time.is_finite()) {
+            break;
+        }
+        left = nearest(case, body, target, velocity * time);
+    }
+    (start, f64::INFINITY)
+}
+
+/// The smallest distance (m) of the particles of `body`, all moved by `way` (m), from where they
+/// touch `target`.
+fn nearest(case: &Case, body: &Body, target: &Body, way: Vec3) -> f64 {
+    let (shape, dimension) = (&target.shape, case.dimension);
+    let moved = |x: &[f64; 3]| Vec3::from(*x) + way;
+    let widest = 0.5 * (body.lattice.coarsest() - body.lattice.spacing);
+    let found = search(
+        (body, dimension, &case.symmetry),
+        Wanted {
+            most: 1,
+            limit: f64::INFINITY,
+            any: false,
+        },
+        |lower, upper| {
+            let [lower, upper] = [lower, upper].map(|corner| moved(corner).into());
+            shape.least_distance(&lower, &upper, dimension) - widest
+        },
+        |x| shape.distance(&moved(x), dimension) - body.lattice.wider(x),
+    );
+    let nearest = found
+        .first()
+        .map_or(f64::INFINITY, |(distance, _)| *distance);
+    nearest - 0.5 * body.lattice.spacing
+}
+
+/// Until when (s) two boxes, of which the first one moves at `velocity` (m/s), are no farther apart
+/// than `near` (m) along any axis; negative if they never are.
+fn last_meeting(boxes: [Ends; 2], velocity: Vec3, near: f64) -> f64 {
+    let [(lower, upper), (other_lower, other_upper)] = boxes;
+    let mut window = [0.0, f64::INFINITY];
+    for a in 0..3 {
+        let room = [
+            other_lower[a] - upper[a] - near,
+            other_upper[a] - lower[a] + near,
+        ];
+        if velocity[a] == 0.0 {
+            if room[0] > 0.0 || room[1] < 0.0 {
+                return f64::NEG_INFINITY;
+            }
+            continue;
+        }
+        let times = room.map(|room| room / velocity[a]);
+        window[0] = f64::max(window[0], times[0].min(times[1]));
+        window[1] = f64::min(window[1], times[0].max(times[1]));
+    }
+    if window[0] <= window[1] {
+        window[1]
+    } else {
+        f64::NEG_INFINITY
+    }
+}

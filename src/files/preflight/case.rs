@@ -1,0 +1,121 @@
+//! Mistakes of physics that a case as a whole can have.
+
+use super::approach::{Approach, flies_straight};
+use model::readable::shown;
+use model::{Body, Case, ContactMode};
+
+/// Fewer particles than this across the thinnest part resolve no bending and no wave.
+const ACROSS: f64 = 6.0;
+/// A stiffness of contact so many times above or below its default is a slip.
+const FAR: f64 = 10.0;
+
+/// Bodies that meet without contact, and a run that ends before anything meets.
+pub fn meetings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
+    let end = case.run.end_time;
+    let names = |pair: &Approach| pair.bodies.map(|body| case.bodies[body].name.as_str());
+    for pair in approaches.iter().filter(|pair| pair.time < end) {
+        let [a, b] = pair.bodies;
+        if matches!(case.contact_between(a, b), ContactMode::None) {
+            let [a, b] = names(pair);
+            found.push(format!(
+                "`{a}` and `{b}` meet at {} and have contact of mode \"none\": they pass through \
+                 each other",
+                seconds(pair.time)
+            ));
+        }
+    }
+    // What is driven, falls or stands before a plane has something to do without an impact.
+    let acting = case.load_names().count() - case.loads.absorbers.len();
+    let driven = acting > 0;
+    let straight = (0..case.bodies.len()).all(|body| flies_straight(case, body));
+    let towards_mirror = case.symmetry.iter().any(|plane| {
+        let bodies = case.bodies.iter();
+        bodies
+            .into_iter()
+            .any(|body| body.velocity[plane.axis.index()] < 0.0)
+    });
+    let moves = approaches.iter().any(|pair| pair.speed > 0.0);
+    if driven || !straight || towards_mirror || !moves {
+        return;
+    }
+    let first = approaches
+        .iter()
+        .min_by(|a, b| a.time.total_cmp(&b.time))
+        .filter(|pair| pair.time >= end);
+    if let Some(pair) = first {
+        let [a, b] = names(pair);
+        found.push(if pair.time.is_finite() {
+            format!(
+                "nothing meets: `{a}` reaches `{b}`, {:.1} spacings away, at {}, after the end at {}",
+                pair.gap,
+                seconds(pair.time),
+                seconds(end)
+            )
+        } else {
+            "nothing meets: no body flies towards another".to_owned()
+        });
+    }
+}
+
+/// Bodies with too few particles across.
+pub fn thin_parts(case: &Case, found: &mut Vec<String>) {
+    for body in case.bodies.iter().filter(|body| body.rigid.is_none()) {
+        let across = thickness(body, case) / body.lattice.spacing;
+        // A layer more or less is what rounding does.
+        if across < ACROSS - 0.01 {
+            found.push(format!(
+                "`{}` has {across:.1} particles across its thinnest part; fewer than {ACROSS} \
+                 resolve neither waves nor bending: make its spacing finer",
+                body.name
+            ));
+        }
+    }
+}
+
+/// Thickness of the thinnest part (m) with what a symmetry plane mirrors.
+fn thickness(body: &Body, case: &Case) -> f64 {
+    let mut shape = body.shape.clone();
+    if let model::Shape::Box { lower, upper } = &mut shape {
+        for plane in &case.symmetry {
+            let a = plane.axis.index();
+            if lower[a] <= plane.position + 0.5 * body.lattice.spacing {
+                lower[a] = 2.0 * plane.position - upper[a];
+            }
+        }
+    }
+    shape.thickness(case.dimension)
+}
+
+/// Contact far stiffer or softer than the materials.
+pub fn stiffness(case: &Case, found: &mut Vec<String>) {
+    let modes = std::iter::once(&case.default_contact).chain(case.contacts.iter().map(|p| &p.mode));
+    let defaults = ContactMode::with_forces();
+    let mut told: Vec<(&str, f64)> = Vec::new();
+    for mode in modes {
+        let default = mode.class().map(|class| &defaults[class as usize]);
+        let (Some(law), Some(default)) = (mode.law(), default.and_then(ContactMode::law)) else {
+            continue;
+        };
+        let (stiffness, usual) = (law.stiffness(), default.stiffness());
+        let name = mode.name();
+        if (usual / FAR..=usual * FAR).contains(&stiffness) || told.contains(&(name, stiffness)) {
+            continue;
+        }
+        told.push((name, stiffness));
+        let what = if stiffness > usual {
+            "stiffer than the materials, and small steps are its price"
+        } else {
+            "softer than the materials, so that bodies sink into each other"
+        };
+        found.push(format!(
+            "`contact.{name}.stiffness` is {stiffness}, {:.0} times {}its default of {usual}: contact \
+             is {what}",
+            (stiffness / usual).max(usual / stiffness),
+            if stiffness > usual { "" } else { "below " },
+        ));
+    }
+}
+
+fn seconds(time: f64) -> String {
+    shown(time, "s")
+}

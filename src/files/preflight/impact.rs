@@ -1,0 +1,126 @@
+//! Whether an impact is within what the equations of state of its materials stand for, and whether they
+//! may break as it would have them.
+
+use super::approach::Approach;
+use material::{Eos, Material, Strength};
+use model::readable::shown;
+use model::{Body, Case};
+
+/// A linear equation of state misses the stiffening of compressed matter, by a tenth of the
+/// pressure and more once the strain `u/c` of the shock is a tenth or so.
+const LINEAR: f64 = 0.1;
+/// Tait's law is right to some 2.5 `GPa` for water (Cole 1948, *Underwater Explosions*, section
+/// 2.3), which a shock of `u/c = 0.6` reaches.
+const TAIT: f64 = 0.6;
+/// Matter shocked to `u = c₀` has gained `c₀²/2`, about what binds a metal (aluminium: 14 of
+/// 12 MJ/kg), and a Mie–Grüneisen solid cannot boil.
+const MIE_GRUNEISEN: f64 = 1.0;
+
+/// Shocks (Pa) from which a material that cannot fail is told of: twice what the strongest metals bear in
+/// plane impacts, .3 to 5 `GPa` (Meyers 1994, *Dynamic Behavior of Materials*, chapter 16).
+const BORNE: f64 = 10e9;
+
+/// Impacts beyond the range of an equation of state, and those whose release would tear what cannot fail.
+pub fn warnings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
+    let mut told = vec![false; case.materials.len()];
+    let mut torn = vec![false; case.materials.len()];
+    let meetings = approaches.iter().filter(|pair| pair.time.is_finite());
+    for Shock {
+        pair,
+        closing,
+        velocity,
+    } in meetings.flat_map(|pair| shocks(case, pair))
+    {
+        let [body, partner] = pair;
+        let index = body.material;
+        let material = &case.materials[index];
+        let meeting = format!(
+            "`{}` meets `{}` at {}",
+            body.name,
+            partner.name,
+            shown(closing, "m/s")
+        );
+        let ratio = velocity / sound_speed(material);
+        if let Some(what) = beyond(&material.eos, ratio).filter(|_| !told[index]) {
+            told[index] = true;
+            found.push(format!(
+                "{meeting}, which drives `{}` to {ratio:.2} of its sound speed: {what}",
+                material.name
+            ));
+        }
+        let pressure = impedance(material) * velocity;
+        if case.dimension > 1 && holds_together(material) && pressure > BORNE && !torn[index] {
+            torn[index] = true;
+            found.push(format!(
+                "{meeting}, and `{}` cannot fail: what the release of a shock of {:.0} GPa would \
+                 tear hangs together under as much tension; give it `failure`, as \
+                 `failure.spall.pressure`",
+                material.name,
+                1e-9 * pressure
+            ));
+        }
+    }
+}
+
+/// What a meeting does to one of the two bodies.
+struct Shock<'a> {
+    /// It and the other.
+    pair: [&'a Body; 2],
+    /// Speed at which they meet (m/s).
+    closing: f64,
+    /// Velocity behind the shock (m/s) by acoustic impedances, `u_a = v Z_b/(Z_a + Z_b)`.
+    velocity: f64,
+}
+
+/// What a meeting does to those of two bodies that deform.
+fn shocks<'a>(case: &'a Case, meeting: &Approach) -> impl Iterator<Item = Shock<'a>> {
+    let [a, b] = meeting.bodies.map(|body| &case.bodies[body]);
+    let closing = meeting.speed;
+    let deforming = [[a, b], [b, a]].into_iter();
+    let deforming = deforming.filter(|[body, _]| body.rigid.is_none());
+    deforming.map(move |pair| {
+        let [z, z_other] = pair.map(|body| impedance(&case.materials[body.material]));
+        let share = if pair[1].rigid.is_some() {
+            1.0
+        } else {
+            z_other / (z + z_other)
+        };
+        Shock {
+            pair,
+            closing,
+            velocity: closing * share,
+        }
+    })
+}
+
+/// Whether this is a solid that bears any tension.
+fn holds_together(material: &Material) -> bool {
+    material.failure.is_none()
+        && !matches!(material.strength, Strength::None | Strength::Viscous(_))
+}
+
+/// What is wrong at a ratio of particle velocity to sound speed, if anything is.
+fn beyond(eos: &Eos, ratio: f64) -> Option<&'static str> {
+    match eos {
+        Eos::Linear(_) if ratio > LINEAR => Some(
+            "`eos.linear` knows no shocks; take `mie_gruneisen`, or a library material that has it",
+        ),
+        Eos::Tait(_) if ratio > TAIT => {
+            Some("`eos.tait` stands for liquids below some 0.6; take `mie_gruneisen`")
+        }
+        Eos::MieGruneisen(_) if ratio > MIE_GRUNEISEN => Some(
+            "its shock heats it enough to vaporise, which `eos.mie_gruneisen` does not know; take \
+             `tillotson`",
+        ),
+        _ => None,
+    }
+}
+
+fn sound_speed(material: &Material) -> f64 {
+    let rho = material.reference_density;
+    (material.eos.bulk_modulus(rho) / rho).sqrt()
+}
+
+fn impedance(material: &Material) -> f64 {
+    material.reference_density * sound_speed(material)
+}

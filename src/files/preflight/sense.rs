@@ -1,0 +1,256 @@
+//! Values that are allowed and that no run has a use for.
+
+use super::approach::Approach;
+use super::steps::expected_step;
+use material::AfterSpall;
+use model::readable::{short, shown};
+use model::{Body, Case, ContactMode, LatticeKind, Resistance, Shape, SphForm};
+use populate;
+
+/// Dry rubber has about 1, clean metals in vacuum some 2 before they weld.
+const MOST_FRICTION: f64 = 2.0;
+/// Viscosity is 1 or 2 in most of what is published, and shortens the step in proportion.
+const MOST_VISCOSITY: f64 = 10.0;
+/// With this `alpha` and `courant` and more viscosity waves of any length die down in the corrected form;
+/// whatever the viscosity they do, or grow too slowly to matter, with the shorter step.
+const ENOUGH_VISCOSITY: f64 = 0.2;
+const LONG_STEP: f64 = 0.5;
+const SHORT_STEP: f64 = 0.25;
+/// Spacings of two bodies in contact over each other: at 3 the mean smoothing length is .87 of the
+/// wider spacing (h = 1.3 Δp), and sums over the wide particles begin to show each of them.
+const MOST_RATIO: f64 = 3.0;
+/// More steps than any run takes.
+const MOST_STEPS: f64 = 1e9;
+/// A box may miss a whole number of spacings by what rounding does (spacings).
+const ROUNDING: f64 = 0.01;
+/// Bodies nearer to each other begin in touch (mean spacings).
+const TOUCH: f64 = 0.1;
+
+/// One line for each.
+pub fn warnings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
+    unused_materials(case, found);
+    unbearing_materials(case, found);
+    for body in &case.bodies {
+        found.extend(box_size(body, case));
+    }
+    pairs(case, approaches, found);
+    coefficients(case, found);
+    weight_on_zones(case, found);
+    viscosity_for_step(case, found);
+    times(case, found);
+    let told = case.fragments.as_ref();
+    found.extend(told.and_then(|options| options.doubt(case.dimension)));
+}
+
+fn unused_materials(case: &Case, found: &mut Vec<String>) {
+    for (index, material) in case.materials.iter().enumerate() {
+        if !case.bodies.iter().any(|body| body.material == index) {
+            found.push(format!("no body is of the material `{}`", material.name));
+        }
+    }
+}
+
+/// Materials that noise destroys.
+fn unbearing_materials(case: &Case, found: &mut Vec<String>) {
+    for material in &case.materials {
+        let spall = material.failure.spall;
+        if spall.is_some_and(|s| s.pressure == 0.0 && s.after == AfterSpall::Failed) {
+            found.push(format!(
+                "`{}` bears no tension and fails for good at the first of it: give `failure.spall.pressure` \
+                 what it bears, or `failure.spall.after` as \"recompacts\" or \"hold\"",
+                material.name
+            ));
+        }
+    }
+}
+
+/// The size that the particles of a box give it, where that is another one.
+fn box_size(body: &Body, case: &Case) -> Option<String> {
+    let Shape::Box { lower, upper } = &body.shape else {
+        return None;
+    };
+    // The layers of other lattices are no whole number of spacings apart.
+    let lattice = &body.lattice;
+    if lattice.kind != LatticeKind::Cubic || lattice.angle != 0.0 || lattice.fit {
+        return None;
+    }
+    let (first, last) = populate::bounds(body, case.dimension)?;
+    let axes = 0..case.dimension;
+    let asked: Vec<f64> = axes.clone().map(|a| upper[a] - lower[a]).collect();
+    let got: Vec<f64> = axes.map(|a| last[a] - first[a] + lattice.spacing).collect();
+    let differs = |(a, b): (&f64, &f64)| (a - b).abs() > ROUNDING * lattice.spacing;
+    let unit = &case.length_unit;
+    asked.iter().zip(&got).any(differs).then(|| {
+        format!(
+            "the box of `{}` is no whole number of spacings of {}: in place of {} it gets {}; \
+             `lattice = {{ kind = \"cubic\", fit = true }}` stretches the lattice to fill it",
+            body.name,
+            unit.text(lattice.spacing),
+            unit.vector(&asked),
+            unit.vector(&got)
+        )
+    })
+}
+
+/// Absorbing zones that would have to bear a body's weight.
+fn weight_on_zones(case: &Case, found: &mut Vec<String>) {
+    for absorber in case
+        .loads
+        .absorbers
+        .iter()
+        .filter(|_| case.loads.has_gravity())
+    {
+        found.push(format!(
+            "under gravity `{}` sinks through its absorbing zone, which bears no weight",
+            case.bodies[absorber.body].name
+        ));
+    }
+}
+
+/// Bodies in contact of very different spacings, and bodies that leave what they touch.
+fn pairs(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
+    for (a, body) in case.bodies.iter().enumerate() {
+        for (b, other) in case.bodies.iter().enumerate().skip(a + 1) {
+            let rigid = body.rigid.is_some() && other.rigid.is_some();
+            // Bodies joined by the kernel are one continuum.
+            let mode = case.contact_between(a, b);
+            if rigid || mode.class().is_none() {
+                continue;
+            }
+            let approach = approaches.iter().find(|pair| pair.bodies == [a, b]);
+            // Bodies of which nothing is known may meet.
+            if approach.is_none_or(|pair| pair.time < case.run.end_time) {
+                found.extend(ratio(body, other));
+            }
+            if approach.is_some_and(|pair| pair.gap < TOUCH) {
+                found.extend(leaving(body, other, case.dimension));
+            }
+        }
+    }
+}
+
+fn ratio(body: &Body, other: &Body) -> Option<String> {
+    let finer = |a: &Body, b: &Body| a.lattice.spacing < b.lattice.spacing;
+    let [fine, wide] = if finer(body, other) {
+        [body, other]
+    } else {
+        [other, body]
+    };
+    let ratio = wide.lattice.spacing / fine.lattice.spacing;
+    let mean = 0.5 * (fine.smoothing_length + wide.smoothing_length);
+    (ratio > MOST_RATIO).then(|| {
+        format!(
+            "the spacing of `{}` is {} times that of `{}`: their contact has a mean smoothing length of \
+             {:.2} of the wider spacing, and the finer particles feel each of the wider ones; keep \
+             the ratio below {MOST_RATIO}",
+            wide.name,
+            short(ratio),
+            fine.name,
+            mean / wide.lattice.spacing,
+        )
+    })
+}
+
+/// Bodies that begin in touch and fly apart.
+fn leaving(body: &Body, other: &Body, dimension: usize) -> Option<String> {
+    let (lower, upper) = populate::bounds(body, dimension)?;
+    let (other_lower, other_upper) = populate::bounds(other, dimension)?;
+    // The side on which the other body lies, and by how much.
+    let sides = (0..dimension).flat_map(|a| {
+        [
+            (a, 1.0, other_lower[a] - upper[a]),
+            (a, -1.0, lower[a] - other_upper[a]),
+        ]
+    });
+    let (axis, sign, room) = sides.max_by(|a, b| a.2.total_cmp(&b.2))?;
+    let closing = sign * (body.velocity - other.velocity)[axis];
+    let apart = room > 0.25 * (body.lattice.spacing + other.lattice.spacing);
+    (apart && closing < 0.0).then(|| {
+        format!(
+            "`{}` and `{}` begin in touch and fly apart at {}: is a `velocity` or a `touch` the \
+             wrong way round?",
+            body.name,
+            other.name,
+            shown(-closing, "m/s")
+        )
+    })
+}
+
+/// Friction and viscosity beyond what is known.
+fn coefficients(case: &Case, found: &mut Vec<String>) {
+    let of_mode = |mode: &ContactMode| mode.resistance().copied();
+    let pairs = case.contacts.iter().map(|pair| &pair.mode);
+    let modes = std::iter::once(&case.default_contact).chain(pairs);
+    let surfaces = case.loads.surfaces.iter().map(|surface| surface.resistance);
+    let all = modes.filter_map(of_mode).chain(surfaces);
+    let largest = |r: Resistance| r.static_friction.max(r.kinetic_friction);
+    let friction = all.map(largest).fold(0.0, f64::max);
+    if friction > MOST_FRICTION {
+        found.push(format!(
+            "`friction` is {}: dry rubber has about 1, and clean metals in vacuum weld beyond \
+             {MOST_FRICTION}",
+            short(friction)
+        ));
+    }
+    for (key, value) in [("alpha", case.sph.alpha), ("beta", case.sph.beta)] {
+        if value > MOST_VISCOSITY {
+            found.push(format!(
+                "`{key}` is {}: with more than {MOST_VISCOSITY} artificial viscosity outweighs the \
+                 pressure, and steps are as many times shorter",
+                short(value)
+            ));
+        }
+    }
+}
+
+/// Steps in which short waves grow by more than the viscosity takes from them: by (ω Δt)⁴/8 a step, and the
+/// viscosity takes α ω Δt times a constant, so that Δt goes with the cube root of α (theory page "Time
+/// integration").
+fn viscosity_for_step(case: &Case, found: &mut Vec<String>) {
+    let share = (case.sph.alpha / ENOUGH_VISCOSITY).cbrt();
+    // Rounded down, so that what is told is not told of again.
+    let longest = (100.0 * (LONG_STEP * share).max(SHORT_STEP)).floor() / 100.0;
+    let deforms = case.bodies.iter().any(|body| body.rigid.is_none());
+    let corrected = case.sph.form == SphForm::Corrected;
+    if deforms && corrected && share < 1.0 && case.time_step.courant > longest {
+        found.push(format!(
+            "`alpha` is {}: so little viscosity leaves short waves to grow, and energy with them, in steps \
+             of `courant` = {}; take {longest:.2}",
+            short(case.sph.alpha),
+            short(case.time_step.courant)
+        ));
+    }
+}
+
+/// More steps than any run takes, and output at each of them.
+fn times(case: &Case, found: &mut Vec<String>) {
+    let Some(step) = expected_step(case) else {
+        return;
+    };
+    let end = case.run.end_time;
+    let steps = end / step;
+    let bounded = case.run.max_steps.is_some();
+    if steps > MOST_STEPS && !bounded {
+        found.push(format!(
+            "`end_time` is {}, {} steps of about {}: no run takes so many; check its unit",
+            shown(end, "s"),
+            short(steps),
+            shown(step, "s")
+        ));
+    }
+    let own = case.output.snapshots.iter();
+    let own = own.map(|schedule| (format!("every` of `{}", schedule.name), schedule.every));
+    let usual = [
+        ("snapshot_every".to_owned(), case.output.snapshot_every),
+        ("checkpoint_every".to_owned(), case.output.checkpoint_every),
+    ];
+    for (key, every) in usual.into_iter().chain(own) {
+        if let Some(every) = every.filter(|every| *every < step) {
+            found.push(format!(
+                "`{key}` is {}, less than a step of about {}: every step writes one",
+                shown(every, "s"),
+                shown(step, "s")
+            ));
+        }
+    }
+}

@@ -1,0 +1,290 @@
+//! What of the matter waves have reached by a time: the rest costs next to nothing, see the theory page "Smoothed
+//! particle hydrodynamics".
+
+use super::approach::{Approach, Ends, flies_straight};
+use material::Rest;
+use model::{Body, Case, Heat, SphForm, Vec3};
+use populate;
+
+/// How far sums pass on what is not negligible ahead of sound, in spacings, as measured in the quarter impact.
+const AHEAD: f64 = 16.0;
+
+/// How far beyond that, in spacings, matter rests that does not sleep, as measured on targets.
+const AWAKE: f64 = 34.0;
+
+/// Work of a particle at rest over that of another.
+pub const RESTING: f64 = 0.21;
+
+/// The same of one that sleeps.
+const SLEEPING: f64 = 0.01;
+
+/// Times of a run at which its matter is looked at.
+pub const TIMES: usize = 8;
+
+/// Places that are looked at of a body.
+const PLACES: u64 = 20_000;
+
+/// What of the matter of a case waits for a wave.
+#[derive(Debug, Clone)]
+pub struct Waves {
+    /// By body, what waits; `None` for matter that moves from the start.
+    still: Vec<Option<Still>>,
+    /// What strikes any of them.
+    strikes: Vec<Strike>,
+}
+
+/// Matter at rest.
+#[derive(Debug, Clone, Copy)]
+struct Still {
+    /// Of sound (m/s).
+    speed: f64,
+    /// How far the wave is ahead of sound (m).
+    ahead: f64,
+    /// How far from the wave matter is awake (m).
+    awake: f64,
+}
+
+/// At which of the times of a run a particle waits, a bit for each.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Waiting {
+    rests: u8,
+    sleeps: u8,
+}
+
+impl Waiting {
+    /// Work at one of the times, over that of what moves.
+    #[must_use]
+    pub fn work(self, time: usize) -> f64 {
+        let is_so = |bits: u8| bits >> time & 1 == 1;
+        match (is_so(self.sleeps), is_so(self.rests)) {
+            (true, _) => SLEEPING,
+            (false, true) => RESTING,
+            (false, false) => 1.0,
+        }
+    }
+}
+
+/// A body comes.
+#[derive(Debug, Clone, Copy)]
+struct Strike {
+    /// When it touches another (s).
+    time: f64,
+    /// Where it is then.
+    ends: Ends,
+    /// Its velocity (m/s).
+    velocity: [f64; 3],
+}
+
+impl Waves {
+    /// Of a case whose bodies meet so; `None` if nothing of it rests, or nobody knows how long.
+    #[must_use]
+    pub fn new(case: &Case, approaches: &[Approach]) -> Option<Self> {
+        let still = waiting(case)?;
+        // When a body meets others that turns or follows a table is not foreseen: at once is on the safe side.
+        let unforeseen = (0..case.bodies.len())
+            .filter(|&body| still[body].is_none() && !flies_straight(case, body));
+        let mut strikes: Vec<_> = unforeseen
+            .filter_map(|body| strike(case, body, 0.0))
+            .collect();
+        for pair in approaches {
+            let waits = pair.bodies.iter().any(|&body| still[body].is_some());
+            if waits && pair.time.is_finite() {
+                let moves = |body: &usize| case.bodies[*body].velocity.norm() > 0.0;
+                let moving = pair.bodies.into_iter().filter(moves);
+                strikes.extend(moving.filter_map(|body| strike(case, body, pair.time)));
+            }
+        }
+        Some(Self { still, strikes })
+    }
+
+    /// How far waves are from matter of a body at a place (m) at a time (s), negative where they have been. They go from
+    /// any body to any other as they do within one.
+    fn distance(&self, still: &Still, place: &[f64; 3], time: f64) -> f64 {
+        let strikes = self.strikes.iter().filter(|strike| time >= strike.time);
+        let left = strikes.map(|strike| {
+            let since = time - strike.time;
+            strike.distance(place, since) - still.speed * since - still.ahead
+        });
+        left.fold(f64::INFINITY, f64::min)
+    }
+
+    /// At which of some times (s) matter of a body at a place (m) waits.
+    #[must_use]
+    pub fn waiting(&self, body: usize, place: &[f64; 3], times: &[f64; TIMES]) -> Waiting {
+        let mut waiting = Waiting::default();
+        if let Some(still) = self.still.get(body).and_then(Option::as_ref) {
+            for (k, &time) in times.iter().enumerate() {
+                let distance = self.distance(still, place, time);
+                waiting.rests |= u8::from(distance > 0.0) << k;
+                waiting.sleeps |= u8::from(distance > still.awake) << k;
+            }
+        }
+        waiting
+    }
+
+    /// Times of a run (s) from one on, in the middle of even parts of it.
+    #[must_use]
+    pub fn times(case: &Case, from: f64) -> [f64; TIMES] {
+        let each = (case.run.end_time - from).max(0.0) / as_number(TIMES as u64);
+        std::array::from_fn(|k| from + each * (as_number(k as u64) + 0.5))
+    }
+
+    /// Work of a step from a time (s) on, over what it would be if nothing rested.
+    #[must_use]
+    pub fn share_of_work(&self, case: &Case, from: f64) -> f64 {
+        let (mut work, mut all) = (0.0, 0.0);
+        let times = Self::times(case, from);
+        for (b, body) in case.bodies.iter().enumerate() {
+            let (dimension, planes) = (case.dimension, &case.symmetry);
+            let count = as_number(populate::count(body, dimension, planes, None));
+            let (sites, _) = populate::sample(body, dimension, planes, PLACES);
+            let places: Vec<Waiting> = sites
+                .map(|site| self.waiting(b, &site.position, &times))
+                .collect();
+            work += count * mean_work(&places);
+            all += count;
+        }
+        if all > 0.0 { work / all } else { 1.0 }
+    }
+}
+
+/// Mean work of particles that wait at some of the times, over what it would be if all moved.
+#[must_use]
+pub fn mean_work(all: &[Waiting]) -> f64 {
+    let count = |bits: fn(&Waiting) -> u8| -> u64 {
+        let times = |waiting: &Waiting| u64::from(bits(waiting).count_ones());
+        all.iter().map(times).sum()
+    };
+    let (rest, sleep) = (
+        count(|waiting| waiting.rests),
+        count(|waiting| waiting.sleeps),
+    );
+    let saved = as_number(rest) * (1.0 - RESTING) + as_number(sleep) * (RESTING - SLEEPING);
+    1.0 - saved / as_number((all.len() * TIMES).max(1) as u64)
+}
+
+impl Strike {
+    /// How far a place (m) is from where the body has been (m), some time (s) after it has touched another.
+    fn distance(&self, place: &[f64; 3], since: f64) -> f64 {
+        let (lower, upper) = self.ends;
+        let apart = |a: usize| {
+            let way = self.velocity[a] * since;
+            let beyond = place[a] - (upper[a] + way.max(0.0));
+            let before = lower[a] + way.min(0.0) - place[a];
+            beyond.max(before).max(0.0)
+        };
+        Vec3::from(std::array::from_fn(apart)).norm()
+    }
+}
+
+/// Whether matter of a case rests at first, without a look at what strikes it.
+pub(super) fn can_rest(case: &Case) -> bool {
+    waiting(case).is_some()
+}
+
+/// By body, what waits; `None` if nothing does, or nobody knows how long.
+fn waiting(case: &Case) -> Option<Vec<Option<Still>>> {
+    let known = matches!(case.sph.form, SphForm::Conventional | SphForm::Corrected)
+        && case.loads.gravity == [0.0; 3]
+        && case.loads.velocities.is_empty();
+    known.then_some(())?;
+    let still: Vec<_> = case.bodies.iter().map(|body| still(case, body)).collect();
+    still.iter().any(Option::is_some).then_some(still)
+}
+
+/// What waits in a body, if it is at rest.
+fn still(case: &Case, body: &Body) -> Option<Still> {
+    let rest = Rest::of(&case.materials[body.material])?;
+    let is_still = body.rigid.is_none()
+        && body.velocity.norm() == 0.0
+        && body.speed_spread() == 0.0
+        && body.initial.heat == Heat::Reference
+        && body.initial.plastic_strain.constant() == Some(0.0);
+    is_still.then_some(Still {
+        speed: rest.sound_speed,
+        ahead: AHEAD * body.lattice.spacing,
+        awake: if case.loads.surfaces.is_empty() {
+            AWAKE * body.lattice.spacing
+        } else {
+            f64::INFINITY
+        },
+    })
+}
+
+/// A body that touches another at a time (s).
+fn strike(case: &Case, body: usize, time: f64) -> Option<Strike> {
+    let body = &case.bodies[body];
+    let (lower, upper) = populate::bounds(body, case.dimension)?;
+    let velocity: [f64; 3] = body.velocity.into();
+    let then = |place: [f64; 3]| std::array::from_fn(|a| place[a] + velocity[a] * time);
+    Some(Strike {
+        time,
+        ends: (then(lower), then(upper)),
+        velocity,
+    })
+}
+
+#[allow(clippy::cast_precision_loss, reason = "far fewer than 2^52")]
+fn as_number(count: u64) -> f64 {
+    count as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::input;
+    use crate::preflight::approaches;
+
+    fn quarter(set: &[&str]) -> Case {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/quarter-impact");
+        let set: Vec<String> = set.iter().map(|&set| set.to_owned()).collect();
+        input::load(&path, &set).unwrap()
+    }
+
+    fn waves(case: &Case) -> Option<Waves> {
+        Waves::new(case, &approaches(case))
+    }
+
+    #[test]
+    fn waves_go_out_from_where_bodies_meet() {
+        let case = quarter(&[]);
+        let waves = waves(&case).unwrap();
+        let (plate, sphere) = (0, 1);
+        let (near, far) = ([0.1e-3, 0.0, 0.05e-3], [1.4e-3, 0.0, 0.05e-3]);
+        let work = |body: usize, place: &[f64; 3], time: f64| {
+            waves.waiting(body, place, &[time; TIMES]).work(3)
+        };
+        let is = |work: f64, wanted: f64| (work - wanted).abs() < 1e-12;
+        assert!(is(work(sphere, &[0.0, 0.0, 0.5e-3], 0.0), 1.0));
+        assert!(is(work(plate, &near, 0.01e-6), 1.0));
+        // 1.1 mm from the sphere's side, of which 16 spacings are ahead of sound at 6.5 km/s.
+        assert!(is(work(plate, &far, 0.10e-6), RESTING));
+        assert!(is(work(plate, &far, 0.13e-6), 1.0));
+        // Another 34 spacings and more.
+        assert!(is(work(plate, &[2.5e-3, 0.0, 0.05e-3], 0.02e-6), SLEEPING));
+        let share = waves.share_of_work(&case, 0.0);
+        assert!((0.7..0.85).contains(&share), "{share}");
+        assert!((waves.share_of_work(&case, 0.19e-6) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_turns_is_awaited_from_the_start() {
+        let share = |set: &[&str]| {
+            let case = quarter(set);
+            waves(&case).unwrap().share_of_work(&case, 0.0)
+        };
+        let straight = share(&["symmetry=[]"]);
+        let turns = r#"body.sphere.angular_velocity=[0, "1000 rad/s", 0]"#;
+        let turning = share(&["symmetry=[]", turns]);
+        assert!((turning - straight).abs() < 0.01, "{turning} {straight}");
+    }
+
+    #[test]
+    fn nothing_rests_where_all_falls_or_flies() {
+        assert!(waves(&quarter(&["gravity=[0, 0, \"-9.81 m/s^2\"]"])).is_none());
+        let flies = r#"body.plate.velocity=[0, 0, "1 m/s"]"#;
+        assert!(waves(&quarter(&[flies])).is_none());
+    }
+}

@@ -1,0 +1,44 @@
+//! The checkpoints of a run.
+
+use std::time::Instant;
+
+use super::Driver;
+use comm::Comm;
+use crate::output::{OutputError, checkpoint, on_root};
+use crate::run::tables::Tables;
+
+impl Driver<'_> {
+    /// Writes a checkpoint.
+    pub(super) fn write_checkpoint(&mut self, comm: &Comm) -> Result<(), OutputError> {
+        let begun = Instant::now();
+        self.write_crossings(comm)?;
+        // Rows before this checkpoint are not written again once it is there.
+        on_root(comm, || self.tables.as_mut().map_or(Ok(()), Tables::sync))?;
+        let folder = self.folder.checkpoints();
+        self.simulation.join_extremes(comm);
+        let rows = &mut self.rows;
+        let path = self.simulation.with_frozen(|simulation| {
+            let state = &simulation.state;
+            let text = serde_json::to_string(state).expect("plain numbers");
+            let meta = checkpoint::Meta {
+                step: state.step,
+                time: state.time,
+                state: &text,
+                input: &simulation.case.resolved,
+            };
+            let keep = simulation.case.output.checkpoints_kept;
+            checkpoint::write(comm, &folder, &simulation.particles, &meta, keep, rows)
+        })?;
+        on_root(comm, || self.folder.forget_set_aside())?;
+        let took = begun.elapsed();
+        self.output_time.checkpoints += took;
+        let next = self.watch.wrote_checkpoint(took);
+        let next = next.map_or(String::new(), |next| {
+            let [took, next] = [took, next].map(|time| time.as_secs_f64());
+            format!(" in {took:.3} s; the next after {next:.0} s")
+        });
+        let text = format!("checkpoint {}{next}", path.display());
+        self.log(comm, &text);
+        Ok(())
+    }
+}

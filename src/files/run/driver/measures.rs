@@ -1,0 +1,72 @@
+//! What is measured between steps goes into tables.
+
+use super::{Driver, census};
+use comm::Comm;
+use model::Cadence;
+use crate::output::{OutputError, Schedule, on_root};
+
+impl Driver<'_> {
+    /// What gauges and measures tell whose turn it is after a step that began at time `before` (s).
+    pub(super) fn write_measures(&mut self, comm: &Comm, before: f64) -> Result<(), OutputError> {
+        self.write_gauges(comm, before)?;
+        self.write_findings(comm, before)
+    }
+
+    fn write_gauges(&mut self, comm: &Comm, before: f64) -> Result<(), OutputError> {
+        if !self.simulation.gauges().any() {
+            return Ok(());
+        }
+        let (step, now) = (self.simulation.state.step, self.simulation.state.time);
+        let due = |every| match every {
+            Cadence::Steps(steps) => step.is_multiple_of(steps),
+            Cadence::Time(time) => step == 0 || Schedule::new(Some(time)).is_due(before, now),
+        };
+        let read = self.simulation.read_gauges(comm, due);
+        if read.is_empty() {
+            return Ok(());
+        }
+        on_root(comm, || match &mut self.tables {
+            Some(tables) => tables.write_gauges(&self.simulation, &read),
+            None => Ok(()),
+        })
+    }
+
+    fn write_findings(&mut self, comm: &Comm, before: f64) -> Result<(), OutputError> {
+        let (step, now) = (self.simulation.state.step, self.simulation.state.time);
+        let options = &self.simulation.case.measure;
+        let due = step == 0
+            || self.simulation.is_finished()
+            || Schedule::new(Some(options.every)).is_due(before, now);
+        if options.measures.is_empty() || !due {
+            return Ok(());
+        }
+        let found = self.simulation.measure(comm);
+        on_root(comm, || match &mut self.tables {
+            Some(tables) => tables.write_findings(&self.simulation, &found),
+            None => Ok(()),
+        })
+    }
+
+    /// Who has passed witness planes since the last time.
+    pub(super) fn write_crossings(&mut self, comm: &Comm) -> Result<(), OutputError> {
+        let crossings = self.simulation.join_crossings(comm);
+        if crossings.is_empty() {
+            return Ok(());
+        }
+        on_root(comm, || match &mut self.tables {
+            Some(tables) => tables.write_crossings(&self.simulation.case, &crossings),
+            None => Ok(()),
+        })
+    }
+
+    /// Labels of fragments of this rank's particles; `tells` writes their tables. Collective.
+    pub(super) fn find_fragments(
+        &mut self,
+        comm: &Comm,
+        tells: bool,
+    ) -> Result<Vec<u64>, OutputError> {
+        let tables = self.tables.as_mut();
+        let told = tells.then_some((self.folder, tables));
+        census::take(comm, &mut self.simulation, told)
+    }
+}

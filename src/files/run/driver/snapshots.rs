@@ -1,0 +1,74 @@
+//! The snapshots of a run: the usual ones, and those of schedules of their own.
+
+use std::fs;
+use std::time::Instant;
+
+use super::Driver;
+use comm::Comm;
+use crate::output::{OutputError, RunFolder, on_root, series, snapshot};
+
+impl Driver<'_> {
+    /// Writes the snapshots that are due after a `step` between two times (s), or all of them, and the
+    /// tables of fragments if it `tells`.
+    pub(super) fn write_snapshots(
+        &mut self,
+        comm: &Comm,
+        step: Option<[f64; 2]>,
+        tells: bool,
+    ) -> Result<(), OutputError> {
+        let begun = Instant::now();
+        let is_due = |plan: &snapshot::Plan| step.is_none_or(|[a, b]| plan.is_due(a, b));
+        let due: Vec<bool> = self.plans.iter().map(is_due).collect();
+        self.simulation.measure_contact_stress(comm);
+        let mut chosen = self.plans.iter().zip(&due).filter(|(_, due)| **due);
+        let labels = if tells || chosen.any(|(plan, _)| plan.shows_fragments()) {
+            self.find_fragments(comm, tells)?
+        } else {
+            Vec::new()
+        };
+        for (k, _) in due.iter().enumerate().filter(|(_, due)| **due) {
+            self.write_snapshot(comm, k, &labels)?;
+            // Parts say little of how long a checkpoint takes.
+            if k == 0 {
+                self.watch.wrote_snapshot(begun.elapsed());
+            }
+        }
+        self.output_time.snapshots += begun.elapsed();
+        Ok(())
+    }
+
+    /// Writes the snapshot of one of the plans.
+    fn write_snapshot(
+        &mut self,
+        comm: &Comm,
+        plan: usize,
+        labels: &[u64],
+    ) -> Result<(), OutputError> {
+        let (plan, rows) = (&self.plans[plan], &mut self.rows);
+        let name = plan.name.as_deref();
+        let path = self.folder.snapshot_of(name, self.simulation.state.step);
+        on_root(comm, || {
+            let folder = self.folder.snapshots_of(name);
+            fs::create_dir_all(&folder).map_err(OutputError::io("create the folder", &folder))
+        })?;
+        self.simulation.with_frozen(|simulation| {
+            let meta = snapshot::Meta {
+                case: &simulation.case,
+                step: simulation.state.step,
+                time: simulation.state.time,
+                threads: rayon::current_num_threads(),
+                wall_seconds: self.start.elapsed().as_secs_f64(),
+                fragments: labels,
+            };
+            let form = plan.form();
+            snapshot::write(comm, &path, &simulation.particles, &meta, &form, rows)
+        })?;
+        let state = &self.simulation.state;
+        on_root(comm, || {
+            let file = RunFolder::snapshot_name(state.step);
+            series::add(&self.folder.series_of(name), &file, state.time)
+        })?;
+        self.log(comm, &format!("snapshot {}", path.display()));
+        Ok(())
+    }
+}

@@ -1,0 +1,42 @@
+//! The status of a run.
+
+use std::time::Instant;
+
+use super::Driver;
+use comm::Comm;
+use crate::output::{OutputError, Phase, Status};
+
+impl Driver<'_> {
+    /// Writes `status.json`, with the reason and the exit code of a run that ends. Rank 0's alone.
+    pub(super) fn write_status(
+        &self,
+        phase: Phase,
+        end: Option<(Option<&str>, u8)>,
+    ) -> Result<(), OutputError> {
+        let state = &self.simulation.state;
+        let wall = self.start.elapsed().as_secs_f64();
+        let left = self.progress.time_left().filter(|_| end.is_none());
+        self.folder.write_status(&Status {
+            reason: end.and_then(|(reason, _)| reason).map(str::to_owned),
+            exit_code: end.map(|(_, code)| code),
+            outlook: Some(self.watched.outlook(state, wall, left)),
+            ..Status::new(phase, state.step, state.time)
+        })
+    }
+
+    /// Writes that the run goes on. Rank 0's alone.
+    pub(super) fn tell_running(&mut self) -> Result<(), OutputError> {
+        let begun = Instant::now();
+        let written = self.write_status(Phase::Running, None);
+        self.watched.wrote(begun);
+        written
+    }
+
+    /// Writes it now and then, for those who watch the run.
+    pub(super) fn renew_status(&mut self, comm: &Comm) {
+        if comm.is_root() && self.watched.is_due() {
+            // A folder that takes no files any more is told of by what has to be written.
+            let _ = self.tell_running();
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! The ranks of a command: started together, and ended together with one message.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Instant, SystemTime};
+
+use super::exit::{EXIT_FAILED, EXIT_INPUT};
+use super::say;
+use super::stop::Signals;
+use comm::{Comm, Session, abort_job};
+use crate::output::h5::abandoned;
+use crate::output::{Outlook, Phase, RunFolder, Status};
+
+/// Exit code of a program that panicked.
+const EXIT_PANIC: i32 = 101;
+
+/// The step that this process is in, for the message of a panic.
+pub static STEP: AtomicU64 = AtomicU64::new(0);
+
+/// What a command needs to know of its start.
+pub struct Launch<'a> {
+    /// The ranks.
+    pub comm: &'a Comm,
+    /// When the program started.
+    pub start: Instant,
+    /// When MPI had started.
+    pub ready: Instant,
+    /// The same by the clock of files.
+    pub began: SystemTime,
+    /// Signals that came since.
+    pub signals: Signals,
+}
+
+impl Launch<'_> {
+    /// Starts the threads of this rank, once it is known that there is work for them.
+    pub fn start_threads(&self, wanted: Option<u16>) {
+        start_threads(self.comm, wanted.map(usize::from));
+    }
+}
+
+/// Starts MPI, and makes a panic on one rank end all ranks. Returns `work`'s exit code once MPI is
+/// finalised.
+pub fn with_ranks(work: impl FnOnce(&Launch) -> u8) -> u8 {
+    let (start, began) = (Instant::now(), SystemTime::now());
+    let signals = Signals::watch();
+    let Some((session, comm)) = Session::start() else {
+        say::warn("error: MPI does not start; is this program linked to the MPI of this mpirun?");
+        return EXIT_FAILED;
+    };
+    abort_on_panic(comm.rank());
+    let code = work(&Launch {
+        comm: &comm,
+        start,
+        ready: Instant::now(),
+        began,
+        signals,
+    });
+    if abandoned() {
+        // All ranks are here, and all has been said.
+        comm.barrier();
+        abort_job(code.into());
+    }
+    drop(comm);
+    drop(session);
+    code
+}
+
+/// Whether this process was started by an MPI launcher.
+pub fn by_mpi() -> bool {
+    let launched = ["OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_SIZE"];
+    launched.iter().any(|name| std::env::var_os(name).is_some())
+}
+
+/// Does something once for all processes of a job that need no MPI for their work.
+pub fn once(speak: impl FnOnce()) {
+    // mpirun may kill the job at the first exit, so nobody leaves before rank 0 has spoken.
+    if by_mpi()
+        && let Some((_session, comm)) = Session::start()
+    {
+        if comm.is_root() {
+            speak();
+        }
+        comm.barrier();
+    } else {
+        speak();
+    }
+}
+
+/// Says what is wrong with the input, once for all ranks; gives the exit code.
+pub fn warn(comm: &Comm, message: &str) -> u8 {
+    if comm.is_root() {
+        say::warn(message);
+    }
+    // Nobody leaves before rank 0 has spoken: mpirun may kill the job at the first exit.
+    comm.barrier();
+    EXIT_INPUT
+}
+
+/// Says why a run could not begin, once for all ranks; gives the exit code. Its folder is left as
+/// it was.
+pub fn give_up(comm: &Comm, message: &str) -> u8 {
+    warn(comm, &format!("error: {message}"));
+    EXIT_FAILED
+}
+
+/// Says once for all ranks why a run failed at a step and a time (s), and writes it into its
+/// folder; gives the exit code.
+pub fn fail(comm: &Comm, folder: &RunFolder, message: &str, step: u64, time: f64) -> u8 {
+    if comm.is_root() {
+        say::warn(&format!("error: {message}"));
+        // The message above is what counts; the folder may be what failed.
+        let outlook = folder.status().ok().and_then(|status| status.outlook);
+        let _ = folder.write_status(&Status {
+            reason: Some(message.to_owned()),
+            exit_code: Some(EXIT_FAILED),
+            outlook: outlook.map(|outlook| Outlook {
+                seconds_left: None,
+                ..outlook
+            }),
+            ..Status::new(Phase::Failed, step, time)
+        });
+    }
+    comm.barrier();
+    EXIT_FAILED
+}
+
+/// Stack of a thread (bytes): exact sums are large, and tasks that wait for each other lie on top of
+/// each other. What no thread touches takes no memory.
+const STACK: usize = 16 << 20;
+
+fn start_threads(comm: &Comm, wanted: Option<usize>) {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = wanted.unwrap_or_else(|| default_threads(comm, cores));
+    if comm.is_root() && threads > cores {
+        say::warn(&format!(
+            "warning: each rank has {threads} threads and may use {cores} of the cores; if the \
+             machine has more, mpirun has bound the ranks: --bind-to none or --map-by \
+             slot:PE={threads} frees them"
+        ));
+    }
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .stack_size(STACK)
+        .use_current_thread()
+        .build_global();
+    // Without a pool of its own rayon uses all cores, which is right, if not what was asked.
+    if let Err(cause) = pool {
+        let rank = comm.rank();
+        say::warn(&format!(
+            "warning: rank {rank} cannot start {threads} threads: {cause}"
+        ));
+    }
+}
+
+/// Cores that this process may use over ranks of this machine, unless `RAYON_NUM_THREADS` says
+/// otherwise.
+fn default_threads(comm: &Comm, cores: usize) -> usize {
+    let number = |name| std::env::var(name).ok()?.parse::<usize>().ok();
+    number("RAYON_NUM_THREADS")
+        .unwrap_or_else(|| {
+            let local = number("OMPI_COMM_WORLD_LOCAL_SIZE").unwrap_or_else(|| comm.size());
+            cores / local.max(1)
+        })
+        .max(1)
+}
+
+/// A panic anywhere prints one line and ends all ranks: else it would unwind into `MPI_Finalize`,
+/// which waits for the other ranks, and they for this one.
+pub fn abort_on_panic(rank: usize) {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        let step = STEP.load(Ordering::Relaxed);
+        let place = info
+            .location()
+            .map(|l| format!(" ({}:{})", l.file(), l.line()))
+            .unwrap_or_default();
+        let what = info
+            .payload_as_str()
+            .unwrap_or("unknown cause")
+            .replace('\n', " ");
+        say::warn(&format!(
+            "error: rank {rank}, step {step}: {what}{place}; this is a bug of the program"
+        ));
+        if std::env::var_os("RUST_BACKTRACE").is_some_and(|wanted| wanted != "0") {
+            usual(info);
+        }
+        abort_job(EXIT_PANIC);
+    }));
+}

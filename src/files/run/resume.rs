@@ -1,0 +1,110 @@
+//! A run that goes on from a checkpoint.
+
+use std::path::PathBuf;
+
+use super::driver::Driver;
+use super::launch::{Launch, give_up};
+use super::options::CommonArgs;
+use super::saved_case::Settled;
+use super::say::seconds;
+use model::Case;
+use crate::output::RunFolder;
+use crate::output::checkpoint::Restored;
+use particles::ParticleStore;
+use engine::step::{Reason, RunState, Simulation};
+
+/// What a run goes on from, and where.
+pub struct Origin {
+    /// The checkpoint.
+    pub checkpoint: PathBuf,
+    /// Its particles, of this rank.
+    pub particles: ParticleStore,
+    /// Newer checkpoints of the run that cannot be read.
+    pub passed_over: Vec<PathBuf>,
+    /// Where the run goes on.
+    pub folder: RunFolder,
+    /// Whether this is the folder of the run itself.
+    pub own: bool,
+}
+
+/// The state of the run that a checkpoint holds.
+///
+/// # Errors
+/// A text if it cannot be read, or is of another step or time than the checkpoint.
+pub fn state_of(restored: &Restored) -> Result<RunState, String> {
+    let state = serde_json::from_str::<RunState>(&restored.state).map_err(|e| e.to_string())?;
+    if (state.step, state.time.to_bits()) == (restored.step, restored.time.to_bits()) {
+        Ok(state)
+    } else {
+        Err("it is of another step or time".to_owned())
+    }
+}
+
+/// Sets up what goes on, which changes nothing that cannot be put back, and steps to the end;
+/// returns the exit code. Another folder than the run's own is cleared if `force`. Collective.
+pub fn go_on(
+    launch: &Launch,
+    args: &CommonArgs,
+    settled: Settled,
+    state: RunState,
+    origin: Origin,
+    force: bool,
+    mut warnings: Vec<String>,
+) -> u8 {
+    let comm = launch.comm;
+    let folder = &origin.folder;
+    let (step, time) = (state.step, state.time);
+    if state.last_reason == Reason::End {
+        warnings.push(format!(
+            "step {step} was shortened to end at {}, so that a run with the later end from its \
+             start would differ in the last digits",
+            seconds(time)
+        ));
+    }
+    let resolved = settled.case.resolved.clone();
+    let simulation = match Simulation::resume(settled.case, comm, state, origin.particles) {
+        Ok(simulation) => simulation,
+        Err(error) => return give_up(comm, &error.to_string()),
+    };
+    let begun = if origin.own {
+        let resolved = settled.renew.then_some(&resolved[..]);
+        folder.resume(comm, resolved, step, time, &origin.passed_over)
+    } else {
+        RunFolder::create(comm, folder.path(), &resolved, force).map(|_| None)
+    };
+    let aside = match begun {
+        Ok(aside) => aside,
+        Err(error) => return give_up(comm, &error.to_string()),
+    };
+    let checkpoint = Some(origin.checkpoint.as_path());
+    match Driver::begin(launch, args, simulation, folder, checkpoint, &warnings) {
+        Ok(driver) => driver.run(comm),
+        Err(error) => {
+            if let Some(aside) = aside {
+                aside.undo();
+            }
+            give_up(comm, &error.to_string())
+        }
+    }
+}
+
+/// Where a run stands that has no step left to do.
+#[must_use]
+pub fn nothing_to_do(case: &Case, state: &RunState, until: Option<f64>) -> Option<String> {
+    let (step, time) = (state.step, state.time);
+    let (control, now) = (&case.run, seconds(time));
+    if time >= control.end_time {
+        let end = seconds(control.end_time);
+        Some(format!(
+            "{now} and the case ends at {end}; --set run.end_time=TIME moves the end"
+        ))
+    } else if control.max_steps.is_some_and(|most| step >= most) {
+        Some(format!(
+            "step {step}, the last of run.max_steps; --set run.max_steps=N allows more"
+        ))
+    } else if until.is_some_and(|until| time >= until) {
+        Some(format!("{now}, not before the time of --until"))
+    } else {
+        None
+    }
+}

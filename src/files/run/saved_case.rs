@@ -1,0 +1,114 @@
+//! The case that a restart goes on with: the saved input, unless the user has edited the run's
+//! `case.toml`.
+
+use std::fmt::Write as _;
+use std::io::ErrorKind;
+
+use comm::Comm;
+use crate::input::{self, Difference};
+use model::Case;
+use crate::output::{OutputError, RunFolder, from_root};
+
+/// A case to go on with.
+pub struct Settled {
+    /// The case.
+    pub case: Case,
+    /// Whether `case.toml` says something else, or is missing.
+    pub renew: bool,
+    /// What the user should know of it.
+    pub warnings: Vec<String>,
+}
+
+/// The case of the input `saved` in `place` with the overrides `set`. Where the run in `folder`
+/// goes on, its `case.toml` must say the same, or be accepted. Collective.
+///
+/// # Errors
+/// The whole message.
+pub fn settle(
+    comm: &Comm,
+    folder: Option<&RunFolder>,
+    place: &str,
+    saved: &str,
+    set: &[String],
+    accept: bool,
+) -> Result<Settled, String> {
+    let name = format!("{place}: the saved input");
+    let case = input::parse(&name, saved, set).map_err(|error| error.to_string())?;
+    let settled = |case, renew| Settled {
+        case,
+        renew,
+        warnings: Vec::new(),
+    };
+    let edited = match folder {
+        Some(folder) => text_of(comm, folder).map_err(|error| format!("error: {error}"))?,
+        None => None,
+    };
+    let (Some(folder), Some(edited)) = (folder, edited) else {
+        return Ok(settled(case, true));
+    };
+    if is_same(&case.resolved, &edited) {
+        return Ok(settled(case, false));
+    }
+    if is_same(saved, &edited) {
+        return Ok(settled(case, true));
+    }
+    let name = folder.case().display().to_string();
+    let taken = input::parse(&name, &edited, set).map_err(|error| error.to_string())?;
+    let differences = input::differences(saved, &edited).unwrap_or_default();
+    if !accept || !differences.iter().all(Difference::is_restartable) {
+        return Err(refusal(&name, place, &differences));
+    }
+    let change = |found: &Difference| format!("{name} is taken: {}", told(found, "before"));
+    Ok(Settled {
+        case: taken,
+        renew: true,
+        warnings: differences.iter().map(change).collect(),
+    })
+}
+
+fn is_same(a: &str, b: &str) -> bool {
+    a == b || input::differences(a, b).is_some_and(|found| found.is_empty())
+}
+
+/// The text of a run's `case.toml`, if there is one, read by rank 0 for all.
+fn text_of(comm: &Comm, folder: &RunFolder) -> Result<Option<String>, OutputError> {
+    let path = folder.case();
+    from_root(comm, || match std::fs::read_to_string(&path) {
+        Ok(text) => Ok(Some(text)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(source) => Err(OutputError::Io {
+            action: "read",
+            path: path.clone(),
+            source,
+        }),
+    })
+}
+
+fn refusal(name: &str, place: &str, differences: &[Difference]) -> String {
+    let mut text = format!("error: {name} is not the input saved in {place}:\n");
+    for found in differences {
+        let _ = writeln!(text, "  {}", told(found, "saved"));
+    }
+    let fixed = differences.iter().filter(|found| !found.is_restartable());
+    let fixed: Vec<&str> = fixed.map(|found| found.key.as_str()).collect();
+    if fixed.is_empty() {
+        text.push_str(
+            "  help: --accept-case goes on with case.toml; move the file away to go on with the \
+             saved input",
+        );
+    } else {
+        let _ = write!(
+            text,
+            "  help: a restart may change `run`, `output`, `domain`, `measure` and `numerical_limits`, not {}: run the \
+             case anew, or put the saved value back",
+            fixed.join(", ")
+        );
+    }
+    text
+}
+
+fn told(found: &Difference, other: &str) -> String {
+    let [saved, edited] = &found.values;
+    let word = |value: &Option<String>| value.clone().unwrap_or_else(|| "absent".to_owned());
+    format!("{}: {} ({other}: {})", found.key, word(edited), word(saved))
+}

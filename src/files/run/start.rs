@@ -1,0 +1,40 @@
+//! A run from its start.
+
+use std::path::Path;
+
+use super::driver::Driver;
+use super::launch::{Launch, fail, give_up};
+use super::options::CommonArgs;
+use model::Case;
+use crate::output::RunFolder;
+use crate::preflight::{approaches, warnings};
+use engine::step::Simulation;
+
+/// Sets the case up, only then clears the folder `out` of an earlier run, and steps to the end;
+/// returns the exit code. What looks like a mistake in the case and `more` is said. Collective.
+pub fn start(
+    launch: &Launch,
+    args: &CommonArgs,
+    case: Case,
+    out: &Path,
+    force: bool,
+    more: impl Iterator<Item = String>,
+) -> u8 {
+    launch.start_threads(args.threads);
+    let comm = launch.comm;
+    let mut warnings = warnings(&case, &approaches(&case));
+    warnings.extend(more);
+    let resolved = case.resolved.clone();
+    let simulation = match Simulation::start(case, comm) {
+        Ok(simulation) => simulation,
+        Err(error) => return give_up(comm, &error.to_string()),
+    };
+    let folder = match RunFolder::create(comm, out, &resolved, force) {
+        Ok(folder) => folder,
+        Err(error) => return give_up(comm, &error.to_string()),
+    };
+    match Driver::begin(launch, args, simulation, &folder, None, &warnings) {
+        Ok(driver) => driver.run(comm),
+        Err(error) => fail(comm, &folder, &error.to_string(), 0, 0.0),
+    }
+}

@@ -1,0 +1,366 @@
+//! Physics at one point: equation of state, strength, failure. Knows neither particles nor MPI.
+//!
+//! A [`Material`] advances eight points at a time ([`PointBatch`]); the choice of its laws is made
+//! once for each batch, never for each point. They act in the order that [`Law`] states. Stress is
+//! positive in tension, pressure in compression: `σ = −p I + S`. A NaN in a point's state gives NaN
+//! at that point, no panic.
+
+#[macro_use]
+mod declare;
+pub mod constants;
+pub mod eos;
+pub mod library;
+mod point;
+mod rest;
+pub mod thermal;
+
+pub use constants::Constant;
+pub use declare::{Constants, Listed, Value};
+pub use eos::{Eos, IdealGas, Linear, LinearForm, MieGruneisen, Tait, Tillotson};
+pub use point::*;
+pub use rest::{NEGLIGIBLE, Rest};
+pub use thermal::{Thermal, ThermalConstants};
+
+/// Smallest square of the bulk sound speed, as a fraction of its reference value K/ρ₀: expanded
+/// and hot states where the equation of state gives less (or no real sound speed) keep a tenth
+/// of the reference speed.
+pub const SOUND_SPEED_SQUARED_FLOOR: f64 = 0.01;
+
+/// A material: equation of state, strength, failure and heat.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// Name for reports.
+    pub name: String,
+    /// Reference density ρ₀ (kg/m³).
+    pub reference_density: f64,
+    /// Pressure as a function of density and specific energy.
+    pub eos: Eos,
+    /// Resistance to shear.
+    pub strength: Strength,
+    /// Largest tension and damage, if the material has them.
+    pub failure: Failure,
+    /// Temperature as a function of density and specific energy; without it, strength stays that
+    /// of the reference temperature.
+    pub thermal: Option<Thermal>,
+}
+
+/// Most corrections of the energy of torn matter, and the relative error of its temperature after
+/// which there are no more.
+const TORN_STEPS: u32 = 8;
+const TORN_ERROR: f64 = 1e-13;
+
+impl Material {
+    /// Reference p-wave modulus `M = K + 4G/3` (Pa): what contact stiffness scales with. For a
+    /// fluid K alone, for a gas that of its reference pressure.
+    #[must_use]
+    pub fn p_wave_modulus(&self) -> f64 {
+        self.eos.bulk_modulus(self.reference_density) + self.strength.shear_modulus() * (4.0 / 3.0)
+    }
+
+    /// Longitudinal sound speed √(M/ρ₀) (m/s) of matter at rest.
+    #[must_use]
+    pub fn longitudinal_speed(&self) -> f64 {
+        (self.p_wave_modulus() / self.reference_density).sqrt()
+    }
+
+    /// Longest stable step (s) of viscous diffusion at the smoothing length `h` (m),
+    /// `h² ρ₀/(8 η)` (Morris, Fox & Zhu 1997, J. Comput. Phys. 136, 214); infinite without
+    /// viscosity.
+    #[must_use]
+    pub fn diffusion_time(&self, h: f64) -> f64 {
+        let viscosity = self.strength.viscosity();
+        if viscosity > 0.0 {
+            0.125 * h * h * self.reference_density / viscosity
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// Temperature (K) at a density (kg/m³), [thermal energy](Self::thermal_energy) (J/kg) and
+    /// damage, if the material has thermal constants.
+    #[must_use]
+    pub fn temperature(&self, density: f64, specific_energy: f64, damage: f64) -> Option<f64> {
+        let thermal = self.thermal.as_ref()?;
+        let at = self
+            .eos
+            .at(self.reference_density, density, specific_energy);
+        if at.pressure >= 0.0 {
+            // No tension that failure could limit.
+            return Some(thermal.temperature(density, specific_energy));
+        }
+        let mut point = PointBatch {
+            density: [density; LANES],
+            specific_energy: [specific_energy; LANES],
+            pressure: [at.pressure; LANES],
+            damage: [damage; LANES],
+            ..PointBatch::ZERO
+        };
+        self.failure.limit_tension(&mut point);
+        let limited = point.pressure[0];
+        let matter = if limited > at.pressure {
+            self.torn_density(density, specific_energy, limited)
+        } else {
+            density
+        };
+        Some(thermal.temperature(matter, specific_energy))
+    }
+
+    /// Density (kg/m³) of the matter between voids, whose pressure a cut-off has raised to `limited`
+    /// (Pa).
+    #[inline(always)]
+    fn torn_density(&self, density: f64, energy: f64, limited: f64) -> f64 {
+        let from = self.eos.linear_density(self.reference_density, density);
+        let at = self.eos.at(self.reference_density, from, energy);
+        from + thermal::opening(limited - at.pressure, at.dp_drho)
+    }
+
+    /// Temperatures (K) of a batch whose pressure was limited from `untorn` (Pa): that of the matter, not of
+    /// the voids in it.
+    #[inline(always)]
+    fn torn_temperatures(
+        &self,
+        thermal: &Thermal,
+        [density, energy]: [&Lanes; 2],
+        limited: &Lanes,
+        untorn: &Lanes,
+    ) -> Lanes {
+        let mut matter = *density;
+        for k in 0..LANES {
+            if limited[k] > untorn[k] {
+                matter[k] = self.torn_density(density[k], energy[k], limited[k]);
+            }
+        }
+        thermal.temperatures(&matter, energy)
+    }
+
+    /// Specific energy (J/kg) without what plastic work (J/kg) has stored in the matter otherwise
+    /// than as heat: what temperatures follow.
+    #[inline(always)]
+    #[must_use]
+    pub fn thermal_energy(&self, specific_energy: f64, plastic_energy: f64) -> f64 {
+        specific_energy - self.stored_share() * plastic_energy
+    }
+
+    /// Share of plastic work that is stored in the matter otherwise than as heat.
+    #[inline(always)]
+    #[must_use]
+    pub fn stored_share(&self) -> f64 {
+        let heat = |thermal: &Thermal| thermal.constants().taylor_quinney;
+        1.0 - self.thermal.as_ref().map_or(1.0, heat)
+    }
+
+    /// [`Self::thermal_energy`] of a batch.
+    #[inline(always)]
+    #[must_use]
+    pub fn thermal_energies(&self, energy: &Lanes, plastic_energy: &Lanes) -> Lanes {
+        let mut thermal = *energy;
+        for k in 0..LANES {
+            thermal[k] = self.thermal_energy(energy[k], plastic_energy[k]);
+        }
+        thermal
+    }
+
+    /// [`Self::temperature`] of a batch.
+    #[must_use]
+    pub fn temperatures(&self, density: &Lanes, energy: &Lanes, damage: &Lanes) -> Option<Lanes> {
+        let thermal = self.thermal.as_ref()?;
+        let response = (self.eos).response(self.reference_density, density, energy);
+        let state = [density, energy];
+        let limited = self.limited(state, damage, &response.pressure);
+        Some(self.torn_temperatures(thermal, state, &limited, &response.pressure))
+    }
+
+    /// [`Self::temperatures`] of a batch right after its [update](Self::update), which has told `untorn`: most need
+    /// no equation of state any more.
+    #[inline(always)]
+    #[must_use]
+    pub fn updated_temperatures(
+        &self,
+        after: &PointBatch,
+        plastic_energy: &Lanes,
+        untorn: &Lanes,
+    ) -> Option<Lanes> {
+        let thermal = self.thermal.as_ref()?;
+        let energy = self.thermal_energies(&after.specific_energy, plastic_energy);
+        if energy != after.specific_energy {
+            return self.temperatures(&after.density, &energy, &after.damage);
+        }
+        let state = [&after.density, &energy];
+        if untorn.iter().all(|&pressure| pressure >= 0.0) {
+            // No tension that failure could limit.
+            return Some(thermal.temperatures(state[0], state[1]));
+        }
+        let limited = self.limited(state, &after.damage, untorn);
+        Some(self.torn_temperatures(thermal, state, &limited, untorn))
+    }
+
+    /// Pressures (Pa) of a batch after the largest tension, from those of the equation of state.
+    fn limited(&self, [density, energy]: [&Lanes; 2], damage: &Lanes, untorn: &Lanes) -> Lanes {
+        let mut point = PointBatch {
+            density: *density,
+            specific_energy: *energy,
+            pressure: *untorn,
+            damage: *damage,
+            ..PointBatch::ZERO
+        };
+        self.failure.limit_tension(&mut point);
+        point.pressure
+    }
+
+    /// Specific energy (J/kg) at a density (kg/m³) and temperature (K) of matter without damage, if
+    /// the material has thermal constants: [`Self::temperature`] of it is that temperature.
+    #[must_use]
+    pub fn energy(&self, density: f64, temperature: f64) -> Option<f64> {
+        let thermal = self.thermal.as_ref()?;
+        let specific_heat = thermal.constants().specific_heat;
+        let mut energy = thermal.cold_energy(density) + specific_heat * temperature;
+        // What a cut-off tears is denser than its mean, and its cold energy another.
+        for _ in 0..TORN_STEPS {
+            let missed = temperature - self.temperature(density, energy, 0.0)?;
+            if missed.abs() <= TORN_ERROR * temperature {
+                break;
+            }
+            energy += specific_heat * missed;
+        }
+        Some(energy)
+    }
+
+    /// Advances a batch of points by `dt` (s), and tells the pressures (Pa) of the equation of state, which
+    /// failure may limit.
+    ///
+    /// With `dt = 0` elastic stress, plastic strain and damage stay as they are, to the last bit,
+    /// and all that follows from the given state (pressure, sound speed, viscous stress) becomes that
+    /// of it.
+    #[inline(always)]
+    pub fn update(&self, batch: &mut PointBatch, dt: f64) -> Lanes {
+        if self.strength.follows_state() || self.failure.follows_state() {
+            self.update_from_state(batch, dt)
+        } else {
+            self.compose::<false>(batch, dt)
+        }
+    }
+
+    /// [`Self::update`] with laws that follow the state. A function of its own: inside the other,
+    /// these laws slow down those that have no need of them.
+    #[inline(never)]
+    fn update_from_state(&self, batch: &mut PointBatch, dt: f64) -> Lanes {
+        self.compose::<true>(batch, dt)
+    }
+
+    /// All laws in their order; without `ALL`, only those that do not follow the state.
+    #[inline(always)]
+    fn compose<const ALL: bool>(&self, batch: &mut PointBatch, dt: f64) -> Lanes {
+        let rho0 = self.reference_density;
+        if ALL && self.failure.follows_state() {
+            point::limit_expansion(batch, rho0);
+        }
+        let response = self
+            .eos
+            .response(rho0, &batch.density, &batch.specific_energy);
+        batch.pressure = response.pressure;
+        self.failure.limit_tension(batch);
+        let moduli = [self.strength.shear_modulus(), self.eos.bulk_modulus(rho0)];
+        let mut now = Conditions::new(dt, rho0, moduli);
+        now.manner = self.failure.manner;
+        if ALL && self.needs_temperature() {
+            self.set_temperatures(batch, &response, &mut now);
+        }
+        let strain = batch.plastic_strain;
+        self.strength.act::<ALL>(batch, &mut now, &self.failure);
+        if ALL && self.failure.follows_state() {
+            for k in 0..LANES {
+                now.plastic_increment[k] = batch.plastic_strain[k] - strain[k];
+            }
+            let bulk_modulus = self.bulk_modulus(batch, &response);
+            self.failure.fail(batch, &mut now, &bulk_modulus);
+        }
+        self.set_sound_speed(batch, &response, &now.shear_modulus);
+        response.pressure
+    }
+
+    /// Whether a law follows the temperature.
+    #[must_use]
+    pub fn needs_temperature(&self) -> bool {
+        self.strength.needs_temperature() || self.failure.needs_temperature()
+    }
+
+    /// Whether a law asks who and how large a particle is, or what plastic work it has taken.
+    #[must_use]
+    pub fn asks(&self) -> bool {
+        self.failure.asks_identity() || self.needs_temperature() && self.stored_share() > 0.0
+    }
+
+    /// Whether a law needs the melting temperature of the thermal constants.
+    #[must_use]
+    pub fn needs_melting(&self) -> bool {
+        self.strength.needs_melting() || self.failure.needs_melting()
+    }
+
+    /// Temperatures (K) of a batch after the largest tension, and the constants they are judged by.
+    fn set_temperatures(&self, batch: &PointBatch, response: &eos::Response, now: &mut Conditions) {
+        if let Some(thermal) = &self.thermal {
+            let rho = &batch.density;
+            let e = self.thermal_energies(&batch.specific_energy, &batch.plastic_energy);
+            let state = [rho, &e];
+            now.temperature =
+                self.torn_temperatures(thermal, state, &batch.pressure, &response.pressure);
+            now.thermal = *thermal.constants();
+        }
+    }
+
+    /// Bulk modulus (Pa) of the state, `ρ ∂p/∂ρ|ₛ`.
+    #[inline(always)]
+    fn bulk_modulus(&self, batch: &PointBatch, response: &eos::Response) -> Lanes {
+        let mut modulus = self.bulk_speed_squared(batch, response);
+        for k in 0..LANES {
+            modulus[k] *= batch.density[k];
+        }
+        modulus
+    }
+
+    /// Longitudinal sound speed, `c² = ∂p/∂ρ|ₛ + 4G/(3ρ)`.
+    #[inline(always)]
+    fn set_sound_speed(
+        &self,
+        batch: &mut PointBatch,
+        response: &eos::Response,
+        shear_modulus: &Lanes,
+    ) {
+        let bulk = self.bulk_speed_squared(batch, response);
+        for k in 0..LANES {
+            let volume = 1.0 / batch.density[k];
+            let shear = shear_modulus[k] * (4.0 / 3.0);
+            batch.sound_speed[k] = (bulk[k] + shear * volume).sqrt();
+        }
+    }
+
+    /// `∂p/∂ρ|ₛ`, by the first law `∂p/∂ρ|ₑ + (p/ρ²) ∂p/∂e|ᵨ`.
+    ///
+    /// `p` is the pressure after the cut-off, since that does the work. At the cut-off the
+    /// pressure no longer answers to density; its derivatives are kept, so that the speed is
+    /// that of the recompression to come.
+    #[inline(always)]
+    fn bulk_speed_squared(&self, batch: &PointBatch, response: &eos::Response) -> Lanes {
+        let floor = SOUND_SPEED_SQUARED_FLOOR * self.eos.bulk_modulus(self.reference_density)
+            / self.reference_density;
+        let mut bulk = [0.0; LANES];
+        for k in 0..LANES {
+            let volume = 1.0 / batch.density[k];
+            let de_drho = batch.pressure[k] * volume * volume;
+            bulk[k] = at_least(response.dp_drho[k] + de_drho * response.dp_de[k], floor);
+        }
+        bulk
+    }
+}
+
+/// The larger of a value and a bound; NaN stays NaN (which `f64::max` would hide).
+#[inline(always)]
+fn at_least(value: f64, bound: f64) -> f64 {
+    if value < bound { bound } else { value }
+}
+
+/// The smaller of a value and a bound; NaN stays NaN.
+#[inline(always)]
+fn at_most(value: f64, bound: f64) -> f64 {
+    if value > bound { bound } else { value }
+}

@@ -1,0 +1,273 @@
+//! What is simulated, in SI units, before there are particles: bodies, materials, contact,
+//! symmetry planes, and the controls of a run.
+//!
+//! A [`Case`] is complete and validated: the `input` module builds it from TOML, every later module
+//! only reads it.
+
+mod absorber;
+mod axis;
+mod beginning;
+mod body;
+mod cloud;
+mod contact;
+mod control;
+pub mod differences;
+mod distance;
+mod formula;
+mod fragments;
+mod gauge;
+mod grading;
+mod initial;
+mod load;
+mod measure;
+mod motion;
+mod numerical_limits;
+pub mod readable;
+mod region;
+mod shape;
+mod sizes;
+mod solid;
+mod surface;
+pub mod units;
+
+#[cfg(test)]
+pub(crate) use surface::tests as surface_tests;
+
+pub use absorber::{Absorber, OuterFace};
+pub use axis::{Axis, SymmetryPlane};
+pub use beginning::Beginning;
+pub use body::{Body, Lattice, LatticeKind};
+pub use cloud::{Cloud, Quantity, cube, edge};
+pub use contact::*;
+pub use control::{
+    ClockInterval, DomainOptions, OutputOptions, Precision, RunControl, Sharing, SmoothingLength,
+    SnapshotSchedule, SphForm, SphOptions, TimeStepOptions,
+};
+pub use formula::{Combination, Formula, Function, Operation, Place, Profile};
+pub use fragments::{FragmentOptions, Include};
+pub use gauge::{Cadence, Gauge, Witness};
+pub use grading::{Focus, Grading};
+pub use initial::{Heat, Initial};
+pub use load::{Loads, VelocityLoad};
+pub use measure::{
+    Bar, Debris, FrontLine, Measure, MeasureKind, MeasureOptions, Slab, Zone, ZonePlace,
+};
+pub use motion::Motion;
+pub use numerical_limits::{NumericalFailurePolicy, NumericalLimits};
+pub use region::Region;
+pub use shape::Shape;
+pub use sizes::Sizes;
+pub use solid::{Form, Placement, Polygon, Solid, rotation};
+pub use surface::{
+    Crossing, Feature, Foot, Mended, Mesh, MeshError, RigidSurface, Spin, SurfaceFile,
+    SurfaceShape, closest_on_triangle, triangulate,
+};
+
+use material::Material;
+use readable::Readable;
+
+/// A vector of three components (m, m/s, …).
+pub type Vec3 = nalgebra::Vector3<f64>;
+
+/// Everything a run needs to know.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// One line for reports and plots.
+    pub title: String,
+    /// The unit of length that the input speaks in: that of its spacing.
+    pub length_unit: Readable,
+    /// Number of space dimensions: 1 (uniaxial strain), 2 (plane strain) or 3.
+    pub dimension: usize,
+    /// Materials, in the order of the input.
+    pub materials: Vec<Material>,
+    /// Bodies, in the order of the input; a particle's `body` is an index into this.
+    pub bodies: Vec<Body>,
+    /// Contact of each unordered pair of bodies that the input names; all others use
+    /// [`Case::default_contact`].
+    pub contacts: Vec<ContactPair>,
+    /// Contact between bodies that no entry of [`Case::contacts`] names.
+    pub default_contact: ContactMode,
+    /// Contact of parts of one body with each other, of all bodies that are not rigid.
+    pub self_contact: Option<SelfContact>,
+    /// Planes of symmetry, at most one for each axis.
+    pub symmetry: Vec<SymmetryPlane>,
+    /// Gravity, prescribed velocities, absorbing zones and rigid surfaces.
+    pub loads: Loads,
+    /// Options of the SPH sums.
+    pub sph: SphOptions,
+    /// Stability factors.
+    pub time_step: TimeStepOptions,
+    /// Distribution over ranks.
+    pub domain: DomainOptions,
+    /// Numerical failure limits.
+    pub numerical_limits: NumericalLimits,
+    /// When to stop.
+    pub run: RunControl,
+    /// What to write and when.
+    pub output: OutputOptions,
+    /// How fragments are told, if they are.
+    pub fragments: Option<FragmentOptions>,
+    /// What is measured in the run.
+    pub measure: MeasureOptions,
+    /// The input with all overrides applied, as TOML text; reading it gives this case again.
+    pub resolved: String,
+}
+
+impl Case {
+    /// Contact mode between bodies `a` and `b` (order does not matter).
+    #[must_use]
+    pub fn contact_between(&self, a: usize, b: usize) -> &ContactMode {
+        self.contacts
+            .iter()
+            .find(|pair| (pair.bodies == [a, b]) || (pair.bodies == [b, a]))
+            .map_or(&self.default_contact, |pair| &pair.mode)
+    }
+
+    /// Names of what acts from outside, in the order of its ledgers: prescribed velocities, rigid
+    /// bodies, absorbing zones, rigid surfaces.
+    pub fn load_names(&self) -> impl Iterator<Item = &str> {
+        let loads = self.loads.velocities.iter().map(|load| &load.name);
+        let rigid = self.bodies.iter().filter(|body| body.rigid.is_some());
+        let absorbers = self.loads.absorbers.iter().map(|absorber| &absorber.name);
+        let surfaces = self.loads.surfaces.iter().map(|surface| &surface.name);
+        (loads.chain(rigid.map(|body| &body.name)))
+            .chain(absorbers)
+            .chain(surfaces)
+            .map(String::as_str)
+    }
+
+    /// Density of a body's matter at rest (kg/m³): what it states, or that of its material.
+    #[must_use]
+    pub fn density_of(&self, body: usize) -> f64 {
+        let body = &self.bodies[body];
+        let reference = || self.materials[body.material].reference_density;
+        body.density.unwrap_or_else(reference)
+    }
+
+    /// The meshes of bodies and of rigid surfaces, with the names of these.
+    #[must_use]
+    pub fn meshes(&self) -> Vec<(&str, &Mesh)> {
+        let mut all: Vec<(&str, &Mesh)> = Vec::new();
+        for body in &self.bodies {
+            let mut found = Vec::new();
+            if let Shape::Solid(solid) = &body.shape {
+                solid.meshes(&mut found);
+            }
+            all.extend(found.into_iter().map(|mesh| (body.name.as_str(), &**mesh)));
+        }
+        for surface in &self.loads.surfaces {
+            if let SurfaceShape::Mesh(mesh) = &surface.shape {
+                all.push((&surface.name, mesh));
+            }
+        }
+        all
+    }
+
+    /// Index of the body of a name.
+    #[must_use]
+    pub fn body_named(&self, name: &str) -> Option<usize> {
+        self.bodies.iter().position(|body| body.name == name)
+    }
+
+    /// Places of absorbing zones among [`Self::load_names`].
+    #[must_use]
+    pub fn absorber_ledgers(&self) -> std::ops::Range<usize> {
+        let rigid = self.bodies.iter().filter(|body| body.rigid.is_some());
+        let first = self.loads.velocities.len() + rigid.count();
+        first..first + self.loads.absorbers.len()
+    }
+
+    /// Whether matter of the case may fail for good.
+    #[must_use]
+    pub fn may_fail(&self) -> bool {
+        let mut bodies = self.bodies.iter();
+        bodies.any(|body| self.materials[body.material].failure.has_memory())
+    }
+
+    /// Whether failure of matter of the case changes this field.
+    #[must_use]
+    pub fn fails_with(&self, field: &str) -> bool {
+        let mut bodies = self.bodies.iter();
+        bodies.any(|body| {
+            self.materials[body.material]
+                .failure
+                .state()
+                .any(|name| name == field)
+        })
+    }
+
+    /// Whether matter of the case may yield.
+    #[must_use]
+    pub fn may_yield(&self) -> bool {
+        let mut bodies = self.bodies.iter();
+        bodies.any(|body| self.materials[body.material].strength.yields())
+    }
+
+    /// The largest sound speed (m/s) of what deforms; what is rigid has a material that carries nothing.
+    #[must_use]
+    pub fn fastest_sound(&self) -> f64 {
+        let bodies = self.bodies.iter().filter(|body| body.rigid.is_none());
+        let speeds = bodies.map(|body| self.materials[body.material].longitudinal_speed());
+        speeds.fold(0.0, f64::max)
+    }
+
+    /// The "impact speed" (m/s) of the interpenetration measure: the largest
+    /// [`Self::closing_speed`] of two bodies, or the largest speed of a single one if there is
+    /// none.
+    #[must_use]
+    pub fn impact_speed(&self) -> f64 {
+        let bodies = 0..self.bodies.len();
+        let pairs = bodies.clone().flat_map(|a| (0..a).map(move |b| [a, b]));
+        let speed = pairs.fold(0.0, |most: f64, [a, b]| most.max(self.closing_speed(a, b)));
+        if speed > 0.0 {
+            return speed;
+        }
+        let largest = |body: usize| {
+            let velocities = self.known_velocities(body).into_iter();
+            let largest = velocities.fold(0.0, |most: f64, velocity| most.max(velocity.norm()));
+            largest + self.bodies[body].initial.velocity_spread
+        };
+        bodies.map(largest).fold(0.0, f64::max)
+    }
+
+    /// Largest speed of two bodies against each other (m/s) by the velocities at which they begin
+    /// and those that loads and rigid motions prescribe, at whatever times; of a body with itself
+    /// zero.
+    #[must_use]
+    pub fn closing_speed(&self, a: usize, b: usize) -> f64 {
+        if a == b {
+            return 0.0;
+        }
+        let theirs = self.known_velocities(b);
+        let mine = self.known_velocities(a).into_iter();
+        let spread = self.bodies[a].speed_spread() + self.bodies[b].speed_spread();
+        mine.flat_map(|v| theirs.iter().map(move |other| (v - other).norm()))
+            .fold(0.0, f64::max)
+            + spread
+    }
+
+    /// The velocity at which a body begins and all corners of the tables that prescribe one (m/s).
+    fn known_velocities(&self, body: usize) -> Vec<Vec3> {
+        let first = self.bodies[body].velocity;
+        let loads = self.loads.velocities.iter().filter(|l| l.body == body);
+        let tables = loads.map(|load| (&load.motion, load.until));
+        let rigid = self.bodies[body].rigid.iter().map(|m| (m, f64::INFINITY));
+        let corners = tables.chain(rigid).flat_map(|(motion, until)| {
+            (0..motion.times.len()).map(move |k| {
+                let along = |axis: usize, values: &Vec<f64>| {
+                    if motion.times[k] <= until {
+                        values[k]
+                    } else {
+                        motion.velocity(axis, until)
+                    }
+                };
+                let velocity = |axis: usize| {
+                    let values = motion.velocities[axis].as_ref();
+                    values.map_or(first[axis], |values| along(axis, values))
+                };
+                Vec3::from_fn(|axis, _| velocity(axis))
+            })
+        });
+        std::iter::once(first).chain(corners).collect()
+    }
+}

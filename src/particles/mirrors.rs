@@ -1,0 +1,219 @@
+//! Symmetry planes: mirror images of particles behind them, and particles that cross them.
+
+use model::SymmetryPlane;
+use crate::{FieldInfo, Mirror, ParticleStore};
+
+/// The symmetry planes of a case, at most one for each axis. An image has a code: bit a is set
+/// if it stands behind the plane normal to axis a.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Mirrors {
+    planes: [Option<f64>; 3],
+}
+
+/// What images behind symmetry planes do to one particle.
+#[derive(Debug, Clone, Copy)]
+pub struct MirrorForce {
+    /// Index of the particle.
+    pub particle: usize,
+    /// Force (N).
+    pub force: [f64; 3],
+    /// Torque beyond that of the force at the particle (N m): that which pairs on this side of the plane
+    /// exert on each other without those across it.
+    pub couple: [f64; 3],
+}
+
+impl Mirrors {
+    /// Planes of a case.
+    #[must_use]
+    pub fn new(planes: &[SymmetryPlane]) -> Self {
+        let mut mirrors = Self::default();
+        for plane in planes {
+            mirrors.planes[plane.axis.index()] = Some(plane.position);
+        }
+        mirrors
+    }
+
+    /// Where the plane normal to an axis cuts it (m), if there is one.
+    #[must_use]
+    pub fn plane(&self, axis: usize) -> Option<f64> {
+        self.planes[axis]
+    }
+
+    /// Whether there are no planes.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.planes.iter().all(Option::is_none)
+    }
+
+    /// The codes of all images of a particle, itself left out.
+    pub fn codes(&self) -> impl Iterator<Item = u8> {
+        let mask = (0..3).filter(|&axis| self.planes[axis].is_some());
+        codes(mask.fold(0, |mask, axis| mask | 1 << axis), false)
+    }
+
+    /// Bits of the planes that a particle at `position` (m) stands within `reach` (m) of. Its
+    /// images are those of all nonzero subsets of these bits.
+    #[inline]
+    #[must_use]
+    pub fn near(&self, position: &[f64; 3], reach: f64) -> u8 {
+        let mut bits = 0;
+        for axis in 0..3 {
+            if let Some(plane) = self.planes[axis]
+                && position[axis] - plane <= reach
+            {
+                bits |= 1 << axis;
+            }
+        }
+        bits
+    }
+
+    /// The image of a position under a code.
+    #[inline]
+    #[must_use]
+    pub fn reflect_position(&self, position: &[f64; 3], code: u8) -> [f64; 3] {
+        if code == 0 {
+            return *position;
+        }
+        std::array::from_fn(|axis| match self.planes[axis] {
+            Some(plane) if code >> axis & 1 == 1 => 2.0 * plane - position[axis],
+            _ => position[axis],
+        })
+    }
+
+    /// The image of a vector under a code.
+    #[inline]
+    #[must_use]
+    pub fn reflect_vector(vector: &[f64; 3], code: u8) -> [f64; 3] {
+        if code == 0 {
+            return *vector;
+        }
+        std::array::from_fn(|axis| {
+            if code >> axis & 1 == 1 {
+                -vector[axis]
+            } else {
+                vector[axis]
+            }
+        })
+    }
+
+    /// The image of a symmetric tensor (xx yy zz xy xz yz) under a code.
+    #[inline]
+    #[must_use]
+    pub fn reflect_symmetric(tensor: &[f64; 6], code: u8) -> [f64; 6] {
+        if code == 0 {
+            return *tensor;
+        }
+        let flip = |a: u8, b: u8| {
+            if (code >> a ^ code >> b) & 1 == 1 {
+                -1.0
+            } else {
+                1.0
+            }
+        };
+        let mut image = *tensor;
+        image[3] *= flip(0, 1);
+        image[4] *= flip(0, 2);
+        image[5] *= flip(1, 2);
+        image
+    }
+
+    /// The image of a tensor (row-major) under a code.
+    #[inline]
+    #[must_use]
+    pub fn reflect_tensor(tensor: &[f64; 9], code: u8) -> [f64; 9] {
+        let mut image = *tensor;
+        for a in 0..3 {
+            for b in 0..3 {
+                if (code >> a ^ code >> b) & 1 == 1 {
+                    image[3 * a + b] *= -1.0;
+                }
+            }
+        }
+        image
+    }
+
+    /// Code of the planes that a position is beyond.
+    #[inline]
+    #[must_use]
+    pub fn beyond(&self, position: &[f64; 3]) -> u8 {
+        let mut code = 0;
+        for axis in 0..3 {
+            if let Some(plane) = self.planes[axis]
+                && position[axis] < plane
+            {
+                code |= 1 << axis;
+            }
+        }
+        code
+    }
+
+    /// Exchanges an owned particle that has crossed a plane with its image, which has crossed
+    /// the other way: both are the same material. All that a particle takes along when it changes
+    /// ranks, as it may next, is mirrored as the table of fields says. Returns the code, 0 for a
+    /// particle that stays.
+    pub fn fold(&self, particles: &mut ParticleStore, i: usize) -> u8 {
+        let code = self.beyond(&particles.position[i]);
+        if code != 0 {
+            for field in particles.held(FieldInfo::leaves) {
+                let size = field.kind.bytes();
+                let value = &mut particles.bytes_mut(field.id)[i * size..(i + 1) * size];
+                self.reflect(field.mirror, value, code);
+            }
+        }
+        code
+    }
+
+    /// Puts the image under a code in the place of what one particle holds in a field.
+    fn reflect(&self, rule: Mirror, value: &mut [u8], code: u8) {
+        match rule {
+            Mirror::Same => {}
+            Mirror::Place => replace(value, |x| self.reflect_position(x, code)),
+            Mirror::Vector => replace(value, |v| Self::reflect_vector(v, code)),
+            Mirror::Symmetric => replace(value, |t| Self::reflect_symmetric(t, code)),
+            Mirror::Tensor => replace(value, |t| Self::reflect_tensor(t, code)),
+        }
+    }
+}
+
+/// Replaces the value that the bytes are.
+fn replace<T: bytemuck::Pod>(value: &mut [u8], image: impl FnOnce(&T) -> T) {
+    let value: &mut T = bytemuck::from_bytes_mut(value);
+    *value = image(value);
+}
+
+/// All nonzero subsets of the bits of `mask`, and zero first if `own`: codes of images.
+pub fn codes(mask: u8, own: bool) -> impl Iterator<Item = u8> {
+    (u8::from(!own)..8).filter(move |code| code & !mask == 0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use model::Axis;
+
+    #[test]
+    fn images_of_two_planes_and_their_edge() {
+        let planes = [Axis::X, Axis::Y].map(|axis| SymmetryPlane {
+            axis,
+            position: 0.0,
+        });
+        let mirrors = Mirrors::new(&planes);
+        let near = mirrors.near(&[0.1, 0.2, 0.0], 0.5);
+        assert_eq!(near, 0b11);
+        assert_eq!(codes(near, true).collect::<Vec<_>>(), [0, 1, 2, 3]);
+        assert_eq!(codes(near, false).collect::<Vec<_>>(), [1, 2, 3]);
+        assert_eq!(
+            mirrors.reflect_position(&[0.1, 0.2, 0.3], 3),
+            [-0.1, -0.2, 0.3]
+        );
+        let stress = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+        assert_eq!(
+            Mirrors::reflect_symmetric(&stress, 1),
+            [1.0, 2.0, 3.0, -4.0, -5.0, 6.0]
+        );
+        assert_eq!(
+            Mirrors::reflect_symmetric(&stress, 3),
+            [1.0, 2.0, 3.0, 4.0, -5.0, -6.0]
+        );
+    }
+}

@@ -1,0 +1,352 @@
+//! Lists of the own group's neighbours for clusters of eight receivers.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::cluster::{Among, Cluster, Lists};
+use super::facts::{HALO, MIRROR, MOVING};
+use super::fragments::{Membership, Split};
+use super::gather::Gatherer;
+use super::near::{INFLATION, near_box, push_places};
+use super::pairs::PairList;
+use super::sequence::Sequence;
+use super::watch::Watch;
+use numerics::dispatch::{Vectorised, instructions};
+use numerics::lanes::Lanes;
+
+/// Clusters and neighbour lists of one task.
+#[derive(Debug, Clone, Default)]
+pub struct Chunk {
+    group: usize,
+    /// The part of the sequence whose particles are receivers here.
+    indices: Range<usize>,
+    gatherer: Gatherer,
+    lists: Lists,
+    /// What [`ClusterLists::part`] has taken out of them; empty without self-contact.
+    split: Split,
+}
+
+impl Chunk {
+    /// The clusters, each with its neighbours in canonical order and what is among those.
+    pub fn iter(&self) -> impl Iterator<Item = (&Cluster, &[u32], Among)> {
+        self.lists.iter()
+    }
+
+    /// Receivers whose strangers [`ClusterLists::part`] has taken out of the lists, with these.
+    pub(super) fn strangers(&self) -> &PairList {
+        &self.split.strangers
+    }
+}
+
+/// Smoothing lengths of a group.
+#[derive(Debug, Clone, Copy)]
+pub struct Lengths {
+    /// Largest smoothing length among its images (m).
+    pub longest: f64,
+    /// Least range of lists (m): that of self-contact, which does not follow h; else zero.
+    pub least: f64,
+    /// Range of lists over the sum of both smoothing lengths: more than one for self-contact of
+    /// unequal particles, which has no least range.
+    pub stretch: f64,
+    /// Whether all its images have that length.
+    pub uniform: bool,
+    /// Whether it is a rigid body, whose particles need no neighbours of their own.
+    pub rigid: bool,
+}
+
+impl Lengths {
+    /// The longest range of a list (m).
+    #[inline(always)]
+    pub(super) fn range(&self) -> f64 {
+        (2.0 * self.longest).max(self.least) * self.stretch * INFLATION
+    }
+}
+
+/// Gathers the clusters of a chunk and lists their neighbours.
+struct Build<'a> {
+    chunk: &'a mut Chunk,
+    /// Group of the neighbours.
+    sources: usize,
+    sequence: &'a Sequence,
+    lengths: Lengths,
+    ranges: &'a [f64],
+    spared: bool,
+}
+
+impl Vectorised for Build<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) {
+        let Chunk {
+            group,
+            indices,
+            gatherer,
+            lists:
+                Lists {
+                    clusters,
+                    ends,
+                    neighbours,
+                },
+            split: _,
+        } = self.chunk;
+        let (sequence, lengths) = (self.sequence, self.lengths);
+        let Lengths {
+            longest,
+            least,
+            stretch,
+            uniform,
+            rigid,
+        } = lengths;
+        gatherer.gather(sequence, *group, indices.clone(), 2.0 * longest, clusters);
+        ends.clear();
+        if rigid {
+            ends.resize(clusters.len(), (0, Among::default()));
+            return;
+        }
+        let mut lister = Lister {
+            sequence,
+            sources: self.sources,
+            longest,
+            least,
+            inflation: stretch * INFLATION,
+            list: neighbours,
+            used: 0,
+            hints: [0; 64],
+        };
+        let mut watch = Watch {
+            sequence,
+            group: *group,
+            ranges: self.ranges,
+            far: lengths.range(),
+            hints: [0; 64],
+        };
+        for run in runs(clusters, LONG * watch.far) {
+            let rests = watch.rests::<V>(run);
+            for cluster in run {
+                let mut among = match (rests && self.spared, uniform) {
+                    (true, _) => Among::RESTING,
+                    (false, true) => lister.list::<V, true>(cluster),
+                    (false, false) => lister.list::<V, false>(cluster),
+                };
+                among.resting = rests;
+                #[allow(clippy::cast_possible_truncation, reason = "a chunk's lists fit u32")]
+                ends.push((lister.used as u32, among));
+            }
+        }
+    }
+}
+
+/// Clusters in a row that are looked at together, whether they rest.
+const RUN: usize = 8;
+/// How long they are together at most, in ranges of lists: columns have gaps where some sleep.
+const LONG: f64 = 5.0;
+
+/// Such runs of clusters, no longer (m) than that along any axis if there is more than one in them.
+#[inline(always)]
+fn runs(mut left: &[Cluster], longest: f64) -> impl Iterator<Item = &[Cluster]> {
+    std::iter::from_fn(move || {
+        left.first()?;
+        let (run, others) = left.split_at(run_of(left, longest));
+        left = others;
+        Some(run)
+    })
+}
+
+/// How many of the first clusters make a run.
+#[inline(always)]
+fn run_of(clusters: &[Cluster], longest: f64) -> usize {
+    let (mut lower, mut upper) = (clusters[0].lower, clusters[0].upper);
+    let fits = |cluster: &&Cluster| {
+        for a in 0..3 {
+            lower[a] = lower[a].min(cluster.lower[a]);
+            upper[a] = upper[a].max(cluster.upper[a]);
+        }
+        (0..3).all(|a| upper[a] - lower[a] <= longest)
+    };
+    1 + clusters[1..].iter().take(RUN - 1).take_while(fits).count()
+}
+
+/// Writes the lists of a chunk one after the other.
+struct Lister<'a> {
+    sequence: &'a Sequence,
+    sources: usize,
+    longest: f64,
+    least: f64,
+    inflation: f64,
+    list: &'a mut Vec<u32>,
+    used: usize,
+    /// Where the last cluster began to read a column, by the last bits of the column's indices:
+    /// the next one begins near it.
+    hints: [usize; 64],
+}
+
+impl Lister<'_> {
+    #[inline(always)]
+    fn list<V: Lanes, const UNIFORM: bool>(&mut self, cluster: &Cluster) -> Among {
+        let own = if UNIFORM {
+            self.longest
+        } else {
+            cluster.longest(self.sequence.smoothing_lengths())
+        };
+        let far = (own + self.longest).max(self.least) * self.inflation;
+        let mut special = 0;
+        near_box(
+            self.sequence,
+            self.sources,
+            (&cluster.lower, &cluster.upper),
+            far,
+            &mut self.hints,
+            |eight| {
+                if UNIFORM {
+                    return V::splat(far);
+                }
+                let both = V::read(eight.lengths).add(V::splat(own));
+                both.max(V::splat(self.least)).mul(V::splat(self.inflation))
+            },
+            |first, bits, eight, _| {
+                special |= u64::from_le_bytes(*eight.special) & SPREAD[bits as usize];
+                self.used = push_places(self.list, self.used, first, bits);
+            },
+        );
+        // The flags of eight lanes into one byte.
+        let special = special | special >> 32;
+        let special = special | special >> 16;
+        let special = special | special >> 8;
+        Among {
+            mirrors: special & u64::from(MIRROR) != 0,
+            halo: special & u64::from(HALO) != 0,
+            moving: special & u64::from(MOVING) != 0,
+            parted: false,
+            resting: false,
+        }
+    }
+}
+
+/// For each set of bits, a full byte for each member.
+static SPREAD: [u64; 256] = {
+    let mut table = [0; 256];
+    let mut bits = 0;
+    while bits < 256 {
+        let mut k = 0;
+        while k < 8 {
+            if bits >> k & 1 == 1 {
+                table[bits] |= 0xff << (8 * k);
+            }
+            k += 1;
+        }
+        bits += 1;
+    }
+    table
+};
+
+/// All clusters of a rank with their lists. Buffers are kept from step to step.
+#[derive(Debug, Clone, Default)]
+pub struct ClusterLists {
+    chunks: Vec<Chunk>,
+    used: usize,
+    /// Where there are stress points, how many groups the bodies form.
+    body_groups: Option<usize>,
+}
+
+/// Images whose clusters one task handles: many enough that the tasks cost nothing, few enough
+/// that they are even.
+const PLACES_PER_CHUNK: usize = 512;
+/// Chunks that a thread takes at once, at most: their work differs.
+pub const CHUNKS_AT_ONCE: usize = 4;
+
+impl ClusterLists {
+    /// Lists of neighbours of the own group; where there are stress points, which come in as many
+    /// groups after `body_groups` of bodies, those of the other set of the same bodies.
+    #[must_use]
+    pub fn new(body_groups: Option<usize>) -> Self {
+        Self {
+            body_groups,
+            ..Self::default()
+        }
+    }
+
+    /// Groups this rank's own particles into clusters and lists the neighbours of each.
+    /// `lengths` are the smoothing lengths of each group. Clusters rest that are among what
+    /// rests and far from other groups: `ranges[own * groups + other]` is the longest range (m) of
+    /// contact between two, if there is any contact. They get empty lists if these are `spared`.
+    pub fn build(
+        &mut self,
+        sequence: &Sequence,
+        lengths: &[Lengths],
+        (ranges, spared): (&[f64], bool),
+    ) {
+        let set = instructions();
+        self.lay_out(sequence);
+        let sources_of = |group: usize| match self.body_groups {
+            None => group,
+            Some(count) if group < count => group + count,
+            Some(count) => group - count,
+        };
+        let chunks = self.chunks[..self.used].par_iter_mut();
+        chunks.with_max_len(CHUNKS_AT_ONCE).for_each(|chunk| {
+            set.run(Build {
+                lengths: lengths[chunk.group],
+                sources: sources_of(chunk.group),
+                chunk: &mut *chunk,
+                sequence,
+                ranges,
+                spared,
+            });
+            chunk.lists.fit();
+        });
+    }
+
+    /// Takes strangers out of the lists. They become foreign neighbours.
+    pub fn part(&mut self, membership: &Membership) {
+        let chunks = self.chunks[..self.used].par_iter_mut();
+        chunks
+            .with_max_len(CHUNKS_AT_ONCE)
+            .for_each(|chunk| chunk.split.part(membership, &mut chunk.lists));
+    }
+
+    /// Lets clusters of sparse matter share their lanes; after [`Self::part`].
+    pub fn join(&mut self) {
+        let chunks = self.chunks[..self.used].par_iter_mut();
+        chunks
+            .with_max_len(CHUNKS_AT_ONCE)
+            .for_each(|chunk| chunk.lists.join());
+    }
+
+    /// The tasks, for parallel iteration.
+    #[must_use]
+    pub fn chunks(&self) -> &[Chunk] {
+        &self.chunks[..self.used]
+    }
+
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.chunks
+            .iter()
+            .map(|chunk| {
+                size_of::<Chunk>()
+                    + chunk.lists.memory()
+                    + chunk.gatherer.memory()
+                    + chunk.split.memory()
+            })
+            .sum()
+    }
+
+    fn lay_out(&mut self, sequence: &Sequence) {
+        self.used = 0;
+        for group in 0..sequence.groups() {
+            let Range { start, end } = sequence.group(group);
+            for first in (start..end).step_by(PLACES_PER_CHUNK) {
+                if self.used == self.chunks.len() {
+                    self.chunks.push(Chunk::default());
+                }
+                let chunk = &mut self.chunks[self.used];
+                chunk.group = group;
+                chunk.indices = first..end.min(first + PLACES_PER_CHUNK);
+                self.used += 1;
+            }
+        }
+    }
+}

@@ -1,0 +1,308 @@
+//! Lists of neighbours that belong to other bodies, for single receivers: contact works on
+//! these, apart from the sums inside a body.
+
+use std::cell::RefCell;
+
+use rayon::prelude::*;
+
+use super::cluster::Cluster;
+use super::clusters::{CHUNKS_AT_ONCE, Chunk, ClusterLists};
+use super::kinds::Kinds;
+use super::motion::MotionRecord;
+use super::near::{INFLATION, near_box, push_places};
+use super::pairs::PairList;
+use super::sequence::{Eight, Sequence};
+use model::ContactClass;
+use numerics::dispatch::{Vectorised, instructions};
+use numerics::lanes::{F64x8, LANES, Lanes};
+
+/// For each ordered pair of kinds of particles, the mode of contact and its range.
+#[derive(Debug, Clone)]
+pub struct ForeignTable {
+    /// The kinds.
+    pub kinds: Kinds,
+    /// `class[a * kinds + b]`; none where there is nothing beyond the SPH sums.
+    pub class: Vec<Option<ContactClass>>,
+    /// Squared range of contact (m²), in the same order.
+    pub reach2: Vec<f64>,
+    /// `range[g * groups + o]`: largest range (m) between bodies of the groups g and o; zero
+    /// where these have no contact.
+    pub group_range: Vec<f64>,
+    /// Where particles of a body are unequal: no pair has a longer range than so many times the sum
+    /// of its smoothing lengths.
+    pub most: Option<f64>,
+}
+
+/// The foreign pairs of one task, one list for each mode of contact.
+#[derive(Debug, Clone, Default)]
+pub struct ForeignChunk {
+    lists: [PairList; ContactClass::COUNT],
+}
+
+thread_local! {
+    /// What a thread works with, for one chunk after the other: what is near and what are strangers.
+    static CANDIDATES: RefCell<[Candidates; 2]> = RefCell::default();
+}
+
+/// What may be in range of a receiver, eight images at a time.
+#[derive(Debug, Clone, Default)]
+struct Candidates {
+    indices: Vec<u32>,
+    /// How many of these there are.
+    used: usize,
+    kinds: Vec<usize>,
+    positions: Vec<[F64x8; 3]>,
+    /// Squared range (m²) of receivers of the kind `reached_by`; zero where an eight is not full.
+    reach2: Vec<F64x8>,
+    reached_by: Option<usize>,
+}
+
+/// All foreign pairs of a rank. Buffers are kept from step to step.
+#[derive(Debug, Clone, Default)]
+pub struct ForeignLists {
+    chunks: Vec<ForeignChunk>,
+}
+
+impl ForeignLists {
+    /// Lists the foreign neighbours of all receivers of `clusters`. `kind_of` tells the kind of
+    /// an image by its place in the sequence.
+    pub fn build(
+        &mut self,
+        clusters: &ClusterLists,
+        sequence: &Sequence,
+        sources: &[MotionRecord],
+        table: &ForeignTable,
+        kind_of: impl Fn(u32) -> usize + Sync,
+    ) {
+        self.chunks
+            .resize_with(clusters.chunks().len(), ForeignChunk::default);
+        let set = instructions();
+        self.chunks
+            .par_iter_mut()
+            .zip(clusters.chunks())
+            .with_max_len(CHUNKS_AT_ONCE)
+            .for_each(|(chunk, own)| {
+                set.run(Find {
+                    chunk,
+                    own,
+                    sequence,
+                    sources,
+                    table,
+                    kind_of: &kind_of,
+                });
+            });
+    }
+
+    /// The tasks, in the order of the clusters' chunks.
+    #[must_use]
+    pub fn chunks(&self) -> &[ForeignChunk] {
+        &self.chunks
+    }
+
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        let lists = self.chunks.iter().flat_map(|chunk| &chunk.lists);
+        lists.map(PairList::memory).sum()
+    }
+}
+
+/// Lists the foreign neighbours of one task's receivers.
+struct Find<'a, B> {
+    chunk: &'a mut ForeignChunk,
+    own: &'a Chunk,
+    sequence: &'a Sequence,
+    sources: &'a [MotionRecord],
+    table: &'a ForeignTable,
+    kind_of: &'a B,
+}
+
+impl<B: Fn(u32) -> usize> Vectorised for Find<'_, B> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) {
+        let chunk = self.chunk;
+        chunk.lists.iter_mut().for_each(PairList::clear);
+        let mut hints = [0; 64];
+        let mut strangers = self.own.strangers().iter().peekable();
+        let [mut near, mut apart] = CANDIDATES.take();
+        for (cluster, _, among) in self.own.iter() {
+            if among.resting {
+                continue;
+            }
+            near.find::<V>(cluster, self.sequence, self.table, &mut hints);
+            if near.used == 0 && strangers.peek().is_none() {
+                continue;
+            }
+            near.look_up(self.sources, self.kind_of);
+            for &receiver in &cluster.receivers[..cluster.lanes] {
+                let here = Receiver {
+                    position: &self.sources[receiver as usize].position,
+                    kind: (self.kind_of)(receiver),
+                };
+                if let Some((_, list)) = strangers.next_if(|(at, _)| *at == receiver) {
+                    apart.take(list);
+                    apart.look_up(self.sources, self.kind_of);
+                    chunk.add_near::<V>(&here, &mut apart, self.table);
+                }
+                chunk.add_near::<V>(&here, &mut near, self.table);
+                chunk.close(receiver);
+            }
+        }
+        CANDIDATES.set([near, apart]);
+    }
+}
+
+struct Receiver<'a> {
+    position: &'a [f64; 3],
+    kind: usize,
+}
+
+impl Candidates {
+    /// Lists what may be in range of any receiver of a cluster. `hints` are as in the lists of
+    /// the own group.
+    #[inline(always)]
+    fn find<V: Lanes>(
+        &mut self,
+        cluster: &Cluster,
+        sequence: &Sequence,
+        table: &ForeignTable,
+        hints: &mut [usize; 64],
+    ) {
+        self.used = 0;
+        let groups = sequence.groups();
+        let range_of = |other| table.group_range[cluster.group * groups + other] * INFLATION;
+        for other in 0..groups {
+            let range = range_of(other);
+            if range == 0.0 {
+                continue;
+            }
+            let mut push = |first, bits, _: &Eight, _| {
+                self.used = push_places(&mut self.indices, self.used, first, bits);
+            };
+            let bounds = (&cluster.lower, &cluster.upper);
+            let Some(most) = table.most else {
+                let range = |_: &Eight| V::splat(range);
+                near_box(
+                    sequence,
+                    other,
+                    bounds,
+                    range_of(other),
+                    hints,
+                    range,
+                    &mut push,
+                );
+                continue;
+            };
+            let own = cluster.longest(sequence.smoothing_lengths());
+            let range = |eight: &Eight| {
+                let both = V::read(eight.lengths).add(V::splat(own));
+                both.mul(V::splat(most)).min(V::splat(range))
+            };
+            near_box(
+                sequence,
+                other,
+                bounds,
+                range_of(other),
+                hints,
+                range,
+                &mut push,
+            );
+        }
+    }
+
+    /// Takes a list.
+    fn take(&mut self, list: &[u32]) {
+        self.indices.clear();
+        self.indices.extend_from_slice(list);
+        self.used = list.len();
+    }
+
+    /// Positions and kinds of what is listed.
+    #[inline(always)]
+    fn look_up(&mut self, sources: &[MotionRecord], kind_of: &impl Fn(u32) -> usize) {
+        let indices = &self.indices[..self.used];
+        self.kinds.clear();
+        self.kinds
+            .extend(indices.iter().map(|&index| kind_of(index)));
+        self.positions.clear();
+        self.positions.extend(indices.chunks(LANES).map(|eight| {
+            let mut positions = [F64x8([0.0; LANES]); 3];
+            for (k, &index) in eight.iter().enumerate() {
+                let position = &sources[index as usize].position;
+                for a in 0..3 {
+                    positions[a].0[k] = position[a];
+                }
+            }
+            positions
+        }));
+        self.reached_by = None;
+    }
+
+    /// Ranges for receivers of a kind.
+    #[inline(always)]
+    fn reach(&mut self, kind: usize, table: &ForeignTable) {
+        if self.reached_by == Some(kind) {
+            return;
+        }
+        self.reached_by = Some(kind);
+        let row = kind * table.kinds.count();
+        self.reach2.clear();
+        self.reach2.extend(self.kinds.chunks(LANES).map(|eight| {
+            let mut reach2 = F64x8([0.0; LANES]);
+            for (reach2, other) in reach2.0.iter_mut().zip(eight) {
+                *reach2 = table.reach2[row + other];
+            }
+            reach2
+        }));
+    }
+}
+
+impl ForeignChunk {
+    /// The lists of all modes, by class.
+    #[must_use]
+    pub fn lists(&self) -> &[PairList; ContactClass::COUNT] {
+        &self.lists
+    }
+
+    /// Pairs of a class.
+    #[must_use]
+    pub fn of(&self, class: ContactClass) -> &PairList {
+        &self.lists[class as usize]
+    }
+
+    /// Adds what is in range of a receiver to its lists.
+    #[inline(always)]
+    fn add_near<V: Lanes>(
+        &mut self,
+        receiver: &Receiver,
+        candidates: &mut Candidates,
+        table: &ForeignTable,
+    ) {
+        candidates.reach(receiver.kind, table);
+        let classes = &table.class[receiver.kind * table.kinds.count()..];
+        let here = receiver.position.map(V::splat);
+        let eights = candidates.positions.iter().zip(&candidates.reach2);
+        for (n, (positions, reach2)) in eights.enumerate() {
+            let gap = |a: usize| here[a].sub(V::load(&positions[a]));
+            let [x, y, z] = [gap(0), gap(1), gap(2)];
+            let square = x.mul(x).add(y.mul(y)).add(z.mul(z));
+            let mut bits = square.less_than(V::load(reach2));
+            while bits != 0 {
+                let k = n * LANES + bits.trailing_zeros() as usize;
+                bits &= bits - 1;
+                let index = candidates.indices[k];
+                if let Some(class) = classes[candidates.kinds[k]] {
+                    self.lists[class as usize].sources.push(index);
+                }
+            }
+        }
+    }
+
+    fn close(&mut self, receiver: u32) {
+        for list in &mut self.lists {
+            list.close(receiver);
+        }
+    }
+}

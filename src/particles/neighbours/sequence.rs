@@ -1,0 +1,382 @@
+//! All particles and images of a rank in canonical order.
+//!
+//! Owned, halo and mirror particles merge into one sorted sequence for each group of bodies.
+//! Each receiver meets its neighbours in the order of (cell across, position along the column, id, image
+//! code): a pure function of the images themselves, so it is the same on any ranks.
+
+use std::ops::Range;
+
+use super::columns::ColumnGrid;
+use super::facts::{ACTIVE, IMAGE, ImageFacts, ImageState, MOVING};
+use super::group::Group;
+use super::sort::{SCRATCH_WORDS, Sorter, Targets, Walls};
+use numerics::lanes::{LANES, Lanes};
+use numerics::ordered::ordered;
+use crate::{Asleep, Image, Scatter, resize};
+
+/// The sorted images. Buffers are kept from step to step.
+#[derive(Debug, Clone, Default)]
+pub struct Sequence {
+    groups: Vec<Group>,
+    /// Beginning of each column and end of the last.
+    starts: Vec<u32>,
+    walls: Vec<Walls>,
+    images: Vec<Image>,
+    /// Sets of `MIRROR`, `HALO`, `MOVING` and `ACTIVE`.
+    special: Vec<u8>,
+    /// Coordinates and smoothing lengths (m) in order, for vectors that read past the end.
+    coordinates: [Vec<f64>; 3],
+    lengths: Vec<f64>,
+    uniform: bool,
+    /// How many are no particles of this rank themselves.
+    others: usize,
+    sorter: Sorter,
+}
+
+/// Eight images in a row.
+pub(super) struct Eight<'a> {
+    /// Coordinates (m).
+    pub(super) coordinates: [&'a [f64; LANES]; 3],
+    /// Smoothing lengths (m), whatever if they are uniform.
+    pub(super) lengths: &'a [f64; LANES],
+    /// Sets of `MIRROR`, `HALO`, `MOVING` and `ACTIVE`.
+    pub(super) special: &'a [u8; LANES],
+}
+
+impl Sequence {
+    /// Empty sequence with one grid for each group. If the smoothing lengths inside each group
+    /// are `uniform`, the sequence does not keep them.
+    #[must_use]
+    pub fn new(grids: impl IntoIterator<Item = ColumnGrid>, uniform: bool) -> Self {
+        let groups = grids
+            .into_iter()
+            .map(|grid| Group {
+                grid,
+                lower: [0.0; 3],
+                upper: [0.0; 3],
+                first: [0; 2],
+                last: [0; 2],
+                size: [0; 2],
+                columns: 0..0,
+                images: 0..0,
+            })
+            .collect();
+        Self {
+            groups,
+            uniform,
+            ..Self::default()
+        }
+    }
+
+    /// Words of scratch memory that [`Self::build`] needs for each image.
+    pub const SCRATCH_WORDS: usize = SCRATCH_WORDS;
+
+    /// Sorts those of the particles `0..owned` of the store that are awake, and the images `others` (mirror images
+    /// of these, and halo particles with theirs; the first `below` of them stand below the particles as far as
+    /// one can tell, the rest above, which saves work). `facts` tells position, id and group of an
+    /// image; `emit` is called once with each index of the sequence and the image that stands
+    /// there, and tells its state. `scratch` is memory to work in: at least [`Self::SCRATCH_WORDS`] for each image.
+    pub fn build(
+        &mut self,
+        scratch: &mut [u64],
+        (owned, asleep): (usize, &Asleep),
+        (others, below): (&[Image], usize),
+        facts: impl Fn(Image) -> ImageFacts + Sync,
+        emit: impl Fn(usize, Image) -> ImageState + Sync,
+    ) {
+        let awake = asleep.awake(owned);
+        self.others = others.len();
+        let count = awake + others.len();
+        let image = |k: usize| match k.checked_sub(below) {
+            None => others[k],
+            Some(own) if own < awake => Image::new(asleep.nth(own), 0),
+            Some(_) => others[k - awake],
+        };
+        self.sorter.scatter(
+            scratch,
+            &mut self.groups,
+            &mut self.starts,
+            count,
+            image,
+            &facts,
+        );
+        resize(&mut self.images, count);
+        resize(&mut self.special, count + LANES);
+        let [x, y, z] = &mut self.coordinates;
+        for values in [x, y, z] {
+            resize(values, count + LANES);
+        }
+        let kept = if self.uniform { 0 } else { count + LANES };
+        resize(&mut self.lengths, kept);
+        self.walls.resize(self.starts.len() - 1, Walls::EMPTY);
+        let targets = Targets {
+            owned,
+            images: Scatter::new(&mut self.images),
+            special: Scatter::new(&mut self.special),
+            coordinates: self.coordinates.each_mut().map(|x| Scatter::new(x)),
+            lengths: (!self.uniform).then(|| Scatter::new(&mut self.lengths)),
+        };
+        for group in &mut self.groups {
+            let index = |column: usize| self.starts[column] as usize;
+            group.images = index(group.columns.start)..index(group.columns.end);
+            let (starts, walls) = (&self.starts, &mut self.walls);
+            Sorter::finish(
+                (scratch, count),
+                group,
+                starts,
+                walls,
+                &targets,
+                &facts,
+                &emit,
+            );
+        }
+    }
+
+    /// Eight coordinates on an axis (m) from a place on; what lies beyond the last image is
+    /// whatever.
+    ///
+    /// # Panics
+    /// If `index` is beyond the last image.
+    #[inline(always)]
+    #[must_use]
+    pub fn coordinates(&self, axis: usize, index: usize) -> &[f64; LANES] {
+        self.coordinates[axis][index..]
+            .first_chunk()
+            .expect("the arrays are padded")
+    }
+
+    /// The images of a range of places by eights; the last eight may go beyond the range.
+    #[inline(always)]
+    pub(super) fn eights<'a>(&'a self, indices: Range<usize>) -> impl Iterator<Item = Eight<'a>> {
+        let padded = indices.start..indices.start + indices.len().next_multiple_of(LANES);
+        let eights = |all: &'a [f64]| all[padded.clone()].as_chunks().0;
+        let [x, y, z] = &self.coordinates;
+        let lengths = if self.uniform { x } else { &self.lengths };
+        let (x, y, z, h) = (eights(x), eights(y), eights(z), eights(lengths));
+        let special = self.special[padded.clone()].as_chunks().0;
+        let all = x.iter().zip(y).zip(z).zip(h).zip(special);
+        all.map(|((((x, y), z), lengths), special)| Eight {
+            coordinates: [x, y, z],
+            lengths,
+            special,
+        })
+    }
+
+    /// Whether any of eight places from one on holds an image or a halo particle; those beyond
+    /// the last image may say so too.
+    ///
+    /// # Panics
+    /// If `index` is beyond the last image.
+    #[inline(always)]
+    #[must_use]
+    pub fn any_images(&self, index: usize) -> bool {
+        let eight = *self.special[index..]
+            .first_chunk()
+            .expect("the array is padded");
+        u64::from_le_bytes(eight) & u64::from_le_bytes([IMAGE; LANES]) != 0
+    }
+
+    /// Whether the image at an index rests, at the velocity common to its group.
+    #[inline(always)]
+    pub(super) fn rests(&self, index: usize) -> bool {
+        self.special[index] & (MOVING | ACTIVE) == 0
+    }
+
+    /// Whether the image at an index is a particle of this rank itself.
+    #[inline(always)]
+    pub(super) fn is_owned(&self, index: usize) -> bool {
+        self.special[index] & IMAGE == 0
+    }
+
+    /// The images in canonical order, group after group.
+    #[must_use]
+    pub fn images(&self) -> &[Image] {
+        &self.images
+    }
+
+    /// Smoothing lengths (m) in order; empty if they are uniform.
+    #[must_use]
+    pub fn smoothing_lengths(&self) -> &[f64] {
+        &self.lengths
+    }
+
+    /// For each place a byte that is odd for images behind symmetry planes.
+    #[must_use]
+    pub fn mirrored(&self) -> &[u8] {
+        &self.special
+    }
+
+    /// Whether all are particles of this rank themselves.
+    #[must_use]
+    pub fn is_alone(&self) -> bool {
+        self.others == 0
+    }
+
+    /// Number of groups.
+    #[must_use]
+    pub fn groups(&self) -> usize {
+        self.groups.len()
+    }
+
+    /// The indices of a group's images in [`Self::images`].
+    #[must_use]
+    pub fn group(&self, group: usize) -> Range<usize> {
+        self.groups[group].images.clone()
+    }
+
+    /// Bytes allocated.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        4 * (self.starts.capacity() + self.images.capacity())
+            + self.special.capacity()
+            + 24 * self.coordinates[0].capacity()
+            + 8 * self.lengths.capacity()
+            + 32 * self.walls.capacity()
+            + self.sorter.memory()
+    }
+
+    /// Calls `visit` with those parts of `places` that stand in one column each.
+    pub(super) fn for_each_segment(
+        &self,
+        indices: Range<usize>,
+        mut visit: impl FnMut(Range<usize>),
+    ) {
+        let mut at = indices.start;
+        let mut column = self.starts.partition_point(|&start| start as usize <= at);
+        while at < indices.end {
+            let end = (self.starts[column] as usize).min(indices.end);
+            if end > at {
+                visit(at..end);
+            }
+            at = end;
+            column += 1;
+        }
+    }
+
+    /// Calls `visit`, in canonical order of the cells, with the columns of a group that have images within
+    /// `range` (m) of the box `lower..=upper` (m) as far as the directions across tell: two
+    /// indices across and the indices of the column.
+    #[inline(always)]
+    pub(super) fn columns_near(
+        &self,
+        group: usize,
+        lower: &[f64; 3],
+        upper: &[f64; 3],
+        range: f64,
+        mut visit: impl FnMut([usize; 2], Range<usize>),
+    ) {
+        let group = &self.groups[group];
+        let apart =
+            |a: usize| lower[a] - range > group.upper[a] || group.lower[a] > upper[a] + range;
+        if group.images.is_empty() || (0..3).any(apart) {
+            return;
+        }
+        let grid = &group.grid;
+        // No column twice: no range is longer than a period.
+        let cells = |k: usize| {
+            let axis = grid.across[k];
+            let low = grid.cell(k, lower[axis] - range).max(group.first[k]);
+            let high = grid.cell(k, upper[axis] + range).min(group.last[k]);
+            low..=high.min(low.saturating_add(grid.period(k) - 1))
+        };
+        let [a, b] = grid.across;
+        let second = cells(1);
+        for first in cells(0) {
+            let row = grid.after(0, group.first[0], first);
+            for other in second.clone() {
+                let place = grid.after(1, group.first[1], other);
+                let column = group.columns.start + row * group.size[1] + place;
+                let (start, end) = (
+                    self.starts[column] as usize,
+                    self.starts[column + 1] as usize,
+                );
+                let gap = self.walls[column].gap([lower[a], lower[b]], [upper[a], upper[b]]);
+                if start < end && gap < range * range {
+                    visit([row, place], start..end);
+                }
+            }
+        }
+    }
+
+    /// Calls `visit`, in canonical order, with the place of each image of a group that is nearer than
+    /// `range` (m) to a point (m), and the square of its distance (m²).
+    pub fn near_point(
+        &self,
+        group: usize,
+        point: &[f64; 3],
+        range: f64,
+        mut visit: impl FnMut(usize, f64),
+    ) {
+        let along = self.along(group);
+        self.columns_near(group, point, point, range, |_, column| {
+            let x = &self.coordinates[along][column.clone()];
+            let first = x.partition_point(|&x| x < point[along] - range);
+            for index in column.start + first..column.end {
+                if self.coordinates[along][index] > point[along] + range {
+                    break;
+                }
+                let apart = |a: usize| self.coordinates[a][index] - point[a];
+                let [x, y, z] = [apart(0), apart(1), apart(2)];
+                let square = x * x + y * y + z * z;
+                if square < range * range {
+                    visit(index, square);
+                }
+            }
+        });
+    }
+
+    /// The position of an image (m).
+    #[inline]
+    #[must_use]
+    pub fn position(&self, index: usize) -> [f64; 3] {
+        [0, 1, 2].map(|a| self.coordinates[a][index])
+    }
+
+    /// What the canonical order of a group goes by before ids and image codes: the column of an image, and
+    /// where it is along that.
+    #[must_use]
+    pub fn rank_in_order(&self, group: usize, index: usize) -> [u64; 2] {
+        self.order_of(group, &self.position(index))
+    }
+
+    /// The same of a position (m).
+    pub(super) fn order_of(&self, group: usize, position: &[f64; 3]) -> [u64; 2] {
+        let grid = &self.groups[group].grid;
+        let [first, second] = grid.cells(position).map(u64::from);
+        [first << 32 | second, ordered(position[grid.along])]
+    }
+
+    /// First place of a column whose position along it is not below `from` (m). `hint` is a place
+    /// of that column or anything.
+    #[inline(always)]
+    pub(super) fn seek<V: Lanes>(
+        &self,
+        group: usize,
+        column: &Range<usize>,
+        from: f64,
+        hint: usize,
+    ) -> usize {
+        let along = &self.coordinates[self.groups[group].grid.along];
+        let good = column.contains(&hint) && (hint == column.start || along[hint - 1] < from);
+        let mut at = if good {
+            hint
+        } else {
+            column.start + along[column.clone()].partition_point(|&x| x < from)
+        };
+        while at < column.end {
+            let eight = along[at..].first_chunk().expect("the array is padded");
+            let below = V::read(eight).less_than(V::splat(from)).trailing_ones() as usize;
+            at += below;
+            if below < LANES {
+                break;
+            }
+        }
+        at.min(column.end)
+    }
+
+    /// Axis along the columns of a group.
+    #[inline(always)]
+    pub(super) fn along(&self, group: usize) -> usize {
+        self.groups[group].grid.along
+    }
+}

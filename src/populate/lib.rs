@@ -1,0 +1,268 @@
+//! Shape × lattice → particle sites, by pure functions of the body.
+//!
+//! Nothing here depends on ranks: each rank asks for the sites of its own brick, and the union over
+//! any bricks is the whole body with the same bits and the same indices.
+
+mod brick;
+mod cells;
+mod extremes;
+mod filling;
+mod given;
+mod lattice;
+mod overlap;
+mod parts;
+mod row;
+mod sample;
+mod search;
+mod shells;
+mod stress_points;
+mod tally;
+mod touch;
+
+pub use brick::Brick;
+pub use overlap::{Overlap, overlap};
+pub use sample::sample;
+pub use stress_points::{StressSite, stress_count, stress_index_end, stress_sites};
+pub use touch::{touching_distance, touching_value};
+
+use model::{Axis, Body, LatticeKind, RigidSurface, SymmetryPlane};
+use filling::Filling;
+use row::cuts;
+
+#[cfg(test)]
+mod tests;
+
+/// How much of lattices a thread has looked at, for tests of what may not grow.
+#[cfg(test)]
+pub(crate) mod visits {
+    use std::cell::Cell;
+
+    thread_local! {
+        static VISITS: Cell<u64> = const { Cell::new(0) };
+    }
+
+    /// Books one more row, or block of sites.
+    pub fn add() {
+        VISITS.set(VISITS.get() + 1);
+    }
+
+    /// Rows and blocks visited by some work.
+    pub fn of<T>(work: impl FnOnce() -> T) -> u64 {
+        let before = VISITS.get();
+        let _ = work();
+        VISITS.get() - before
+    }
+}
+
+/// Volumes that differ by no more than this are the same but for rounding.
+const SAME_VOLUME: f64 = 1e-9;
+
+/// One place of a particle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Site {
+    /// Position (m); components beyond the dimension are zero.
+    pub position: [f64; 3],
+    /// Number of the site in the body, below [`index_end`].
+    pub index: u64,
+    /// Its volume over [`particle_volume`]; 1 where all particles of the body are alike.
+    pub share: f64,
+}
+
+/// What a [`search`] is for.
+#[derive(Debug, Clone, Copy)]
+pub struct Wanted {
+    /// So many sites at most.
+    pub most: usize,
+    /// Only sites with smaller values.
+    pub limit: f64,
+    /// Whether any such sites do, be their values the smallest or not.
+    pub any: bool,
+}
+
+/// One of several equal parts of the rows or blocks of a body, for ranks that count together.
+#[derive(Debug, Clone, Copy)]
+pub struct Share {
+    /// Which part.
+    pub part: usize,
+    /// How many there are.
+    pub parts: usize,
+}
+
+/// The sites of a body above all symmetry planes and, if given, in a brick, in the order of their
+/// index.
+///
+/// Only what of the filling meets the brick is visited; inside a row of a lattice no site is tested.
+/// Bricks part fitted sites by where they stand before they are fitted.
+pub fn sites(
+    body: &Body,
+    dimension: usize,
+    symmetry: &[SymmetryPlane],
+    brick: Option<Brick>,
+) -> impl Iterator<Item = Site> + use<> {
+    let filling = Filling::of(body, dimension, symmetry);
+    filling.sites(cuts(symmetry, brick), particle_volume(body, dimension))
+}
+
+/// Tells the [`sites`] of a body (in a dimension, above all symmetry planes) in a brick as they stand
+/// before they are fitted.
+pub fn places(
+    (body, dimension, symmetry): (&Body, usize, &[SymmetryPlane]),
+    brick: Brick,
+    tell: impl FnMut(Site),
+) {
+    let filling = Filling::of(body, dimension, symmetry);
+    let each = particle_volume(body, dimension);
+    filling.places(cuts(symmetry, Some(brick)), each, tell);
+}
+
+/// How many [`sites`] there are, without visiting each, and of layers that are alike only one.
+#[must_use]
+pub fn count(
+    body: &Body,
+    dimension: usize,
+    symmetry: &[SymmetryPlane],
+    brick: Option<Brick>,
+) -> u64 {
+    Filling::of(body, dimension, symmetry).count(&cuts(symmetry, brick))
+}
+
+/// Tells the coordinates on an axis (m) of a share of the [`sites`] of a body above all symmetry
+/// planes, with the number of sites that stand there; in any order, and a coordinate may come
+/// several times.
+///
+/// It looks once at each row of the share, and of layers that are alike at one only. Lattices that
+/// are turned also take one step for each site of the largest layer.
+pub fn tally(
+    body: &Body,
+    dimension: usize,
+    symmetry: &[SymmetryPlane],
+    axis: usize,
+    share: Share,
+    add: impl FnMut(f64, u64),
+) {
+    let filling = Filling::of(body, dimension, symmetry);
+    filling.tally(&cuts(symmetry, None), axis, share, add);
+}
+
+/// The sites of a body (in a dimension, above all symmetry planes) where `value` is smallest,
+/// smallest first, found without visiting the others. `bound` says what `value` is at least in a box
+/// between two corners (m); the tighter it is, the fewer sites are looked at. Sites that are fitted
+/// are taken for where they end nearly.
+pub fn search(
+    (body, dimension, symmetry): (&Body, usize, &[SymmetryPlane]),
+    wanted: Wanted,
+    bound: impl Fn(&[f64; 3], &[f64; 3]) -> f64,
+    value: impl Fn(&[f64; 3]) -> f64,
+) -> Vec<(f64, [f64; 3])> {
+    let filling = Filling::of(body, dimension, symmetry);
+    filling.smallest(cuts(symmetry, None), wanted, bound, value)
+}
+
+/// Smallest and largest coordinates (m) of the sites of a whole body, or `None` if it has none.
+///
+/// These are the extreme layers of particles, which lie half a spacing or so inside the shape.
+#[must_use]
+pub fn bounds(body: &Body, dimension: usize) -> Option<([f64; 3], [f64; 3])> {
+    bounds_above(body, dimension, &[])
+}
+
+/// [`bounds`] of the [`sites`] above all symmetry planes.
+#[must_use]
+pub fn bounds_above(
+    body: &Body,
+    dimension: usize,
+    symmetry: &[SymmetryPlane],
+) -> Option<([f64; 3], [f64; 3])> {
+    Filling::of(body, dimension, symmetry).extremes(&cuts(symmetry, None))
+}
+
+/// Smallest coordinate on an axis (m) of the [`sites`] above all symmetry planes, or `None` if
+/// there are none.
+#[must_use]
+pub fn first_layer(
+    body: &Body,
+    dimension: usize,
+    symmetry: &[SymmetryPlane],
+    axis: Axis,
+) -> Option<f64> {
+    let (lower, _) = bounds_above(body, dimension, symmetry)?;
+    Some(lower[axis.index()])
+}
+
+/// Smallest distance (m) of the [`sites`] above all symmetry planes from a rigid surface, negative
+/// behind it, as if all were as small as the finest; infinite where none is within a spacing.
+#[must_use]
+pub fn smallest_gap(
+    body: &Body,
+    dimension: usize,
+    symmetry: &[SymmetryPlane],
+    surface: &RigidSurface,
+) -> f64 {
+    let reach = body.lattice.coarsest();
+    let wanted = Wanted {
+        most: 1,
+        limit: reach,
+        any: false,
+    };
+    let found = search(
+        (body, dimension, symmetry),
+        wanted,
+        |lower, upper| {
+            surface.least_gap(lower, upper, reach) - 0.5 * (reach - body.lattice.spacing)
+        },
+        |x| surface.gap(x, reach) - body.lattice.wider(x),
+    );
+    found.first().map_or(f64::INFINITY, |(gap, _)| *gap)
+}
+
+/// Volume of one particle of the body (m³; m² or m in two or one dimensions), so that its mass is
+/// that times its initial density and its [`Site::share`]: [`even_volume`] if the body has been
+/// given it, else Δp^d.
+#[must_use]
+pub fn particle_volume(body: &Body, dimension: usize) -> f64 {
+    body.lattice.particle_volume(dimension)
+}
+
+/// The volume of the shape shared out among all its particles (m³; m² or m in two or one
+/// dimensions), where it is not Δp^d: so the body has the mass of its shape. Glass is fitted to the
+/// symmetry planes, so its particles share what lies above them. Of particles that a file gives it is
+/// the mean volume.
+#[must_use]
+pub fn even_volume(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> Option<f64> {
+    let cell = particle_volume(body, dimension);
+    let differs = |even: &f64| (even / cell - 1.0).abs() > SAME_VOLUME;
+    if let Filling::Given(given) = Filling::of(body, dimension, symmetry) {
+        let mean = given.mean_volume(&cuts(symmetry, None));
+        return mean.filter(differs);
+    }
+    let planes = if moves_sites(body) { symmetry } else { &[] };
+    let shares = shares(body, dimension, planes);
+    let even = body.shape.volume_above(planes, dimension) / shares;
+    (shares > 0.0 && differs(&even)).then_some(even)
+}
+
+/// The sum of [`Site::share`] of all particles above the symmetry planes.
+#[must_use]
+pub fn shares(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> f64 {
+    Filling::of(body, dimension, symmetry).shares(&cuts(symmetry, None))
+}
+
+/// Whether sites end elsewhere than where bricks are cut: particles may begin a spacing outside the
+/// brick whose sites they are.
+#[must_use]
+pub fn moves_sites(body: &Body) -> bool {
+    body.lattice.kind == LatticeKind::Glass
+}
+
+/// One more than the largest [`Site::index`] that the body can have; saturates at `u64::MAX`.
+#[must_use]
+pub fn index_end(body: &Body, dimension: usize) -> u64 {
+    Filling::of(body, dimension, &[]).index_end()
+}
+
+/// No fewer sites than a body has: all of a lattice about it, of cells those of a box about it;
+/// saturates at `u64::MAX`.
+#[must_use]
+pub fn most_sites(body: &Body, dimension: usize) -> u64 {
+    Filling::of(body, dimension, &[]).most_sites()
+}
