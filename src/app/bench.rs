@@ -15,12 +15,12 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 
+pub use calibrate::calibrate;
+use cases::{BenchCase, CASES};
 use comm::{Comm, Session};
 use files::output::on_root;
 use files::run::exit::{EXIT_FAILED, EXIT_INPUT};
 use files::run::{launch, say};
-pub use calibrate::calibrate;
-use cases::{BenchCase, CASES};
 use report::{Report, Row};
 
 /// Measure how fast this program steps on this machine, on fixed cases

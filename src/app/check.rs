@@ -9,17 +9,17 @@ use super::form::Form;
 use super::plan::duration;
 use super::plot::out;
 use comm::Comm;
+use desk::plot::{self, PlotError};
+use document::document;
 use files::input::{self, InputError};
-use model::readable::{short, shown};
-use model::{Body, Case, MeasureKind, Quantity, cube};
 use files::output::{snapshot, unit_of_model};
 use files::plan::{self, Files, Machine};
-use desk::plot::{self, PlotError};
-use populate;
 use files::preflight::{self, Approach, memory};
 use files::run::exit::EXIT_INPUT;
 use files::run::say::{counted, say, warn};
-use document::document;
+use model::readable::{short, shown};
+use model::{Body, Case, MeasureKind, Quantity, cube};
+use populate;
 
 /// Check a case without running it: particles by body, memory, expected steps
 ///

@@ -11,12 +11,12 @@ use serde_json::json;
 
 use super::form::Form;
 use super::results::{Results, ResultsError};
-use model::readable::one_line;
 use files::output::checkpoint;
 use files::output::h5::Content;
 use files::output::{RunFolder, gauge_records, read_regular};
 use files::run::exit::EXIT_INPUT;
 use files::run::say::{say, warn};
+use model::readable::one_line;
 
 /// Tell whether two results agree to the last bit
 ///

@@ -5,10 +5,10 @@ use std::sync::{Mutex, PoisonError};
 
 use serde_json::{Map, Value, json};
 
-use model::readable::one_line;
 use files::output::Sheet;
 use files::run::say;
 use files::run::voice::Voice;
+use model::readable::one_line;
 
 /// How a command tells its answer.
 #[derive(Debug, Clone, Copy, Default, clap::Args)]

@@ -10,16 +10,16 @@ use serde_json::{Value, json};
 use super::form::{self, Form, wrote};
 use super::results::ResultsError;
 use super::which::Which;
+use desk::plot::{PlotError, choose, snapshots};
 use engine::fragments::{Census, Fragment, Rule, Share, find_alone};
 use files::input;
-use model::readable::{one_line, shown, shown_vector};
-use model::{FragmentOptions, Include};
 use files::output::fragments::FragmentTable;
 use files::output::{OutputError, RunFolder, Sheet, write_atomically};
-use desk::plot::{PlotError, choose, snapshots};
 use files::run::exit::EXIT_INPUT;
 use files::run::say::{counted, say, seconds, warn};
 use matter::Loaded;
+use model::readable::{one_line, shown, shown_vector};
+use model::{FragmentOptions, Include};
 
 /// Tell the fragments of a run: how many, how heavy, how large, how fast
 ///

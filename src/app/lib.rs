@@ -29,10 +29,10 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
-use model::readable::is_printable;
 use files::output::set_commit;
 use files::run::exit::EXIT_INPUT;
 use files::run::{launch, say};
+use model::readable::is_printable;
 
 /// MPI-parallel smoothed particle hydrodynamics for large 3-D impacts of solids
 #[derive(Debug, Parser)]

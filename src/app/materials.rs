@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 use serde_json::json;
 
 use super::form::Form;
-use material::{Constant, Material, Value, library};
 use files::run::exit::EXIT_INPUT;
 use files::run::say::{say, warn};
+use material::{Constant, Material, Value, library};
 
 /// Print the material library: all names, or each number of one material with its source
 ///

@@ -6,16 +6,16 @@ use super::form::{self, Form, wrote};
 use super::results::{ResultsError, only_part};
 use super::which::Which;
 use comm::Comm;
-use files::input::{self, InputError};
+use desk::plot::{PlotError, Wanted, choose, snapshots};
 use engine::measure::{Findings, Matter, Told, findings, mirrors, remember};
-use model::readable::{one_line, shown};
-use model::{Case, Measure, MeasureKind};
+use files::input::{self, InputError};
 use files::output::h5::Content;
 use files::output::h5::read::{ReadError, SnapshotFile};
 use files::output::{OutputError, RunFolder, Sheet, measures, write_atomically};
-use desk::plot::{PlotError, Wanted, choose, snapshots};
 use files::run::exit::EXIT_INPUT;
 use files::run::say::{say, seconds, warn};
+use model::readable::{one_line, shown};
+use model::{Case, Measure, MeasureKind};
 
 /// Tell the measures of a run's snapshots: holes, craters, verdicts, debris
 ///

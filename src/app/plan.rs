@@ -15,14 +15,14 @@ use clap::builder::PossibleValuesParser;
 use super::bench;
 use super::form::Form;
 use super::plot::out::{check_picture, save_text, write_chart};
-use model::Case;
-use model::readable::short;
+use desk::plot::PlotError;
 use files::output::read_small;
 use files::plan::{Files, Layout, Load, Machine, Row, Sharing, Weak, computing, work_of_unequal};
-use desk::plot::PlotError;
 use files::preflight::{Costs, memory};
 use files::run::exit::{EXIT_FAILED, EXIT_INPUT};
 use files::run::say::{counted, say, warn};
+use model::Case;
+use model::readable::short;
 use source::Source;
 pub use table::duration;
 

@@ -9,8 +9,8 @@ use super::form::{Form, wrote};
 use super::fragments::{FragmentsArgs, tell as tell_fragments};
 use super::results::{Results, ResultsError};
 use super::which::Which;
-use files::output::{OutputError, RunFolder, write_atomically};
 use desk::report;
+use files::output::{OutputError, RunFolder, write_atomically};
 use files::run::exit::EXIT_INPUT;
 use files::run::say::warn;
 

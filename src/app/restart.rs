@@ -4,16 +4,16 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use comm::Comm;
+use engine::step::RunState;
 use files::input;
 use files::output::checkpoint::{self, MANIFEST, Restored};
 use files::output::{OutputError, Phase, RunFolder, RunLock, from_root, snapshot};
-use particles::ParticleStore;
 use files::run::CommonArgs;
 use files::run::launch::{Launch, warn, with_ranks};
 use files::run::resume::{Origin, go_on, nothing_to_do, state_of};
 use files::run::saved_case;
 use files::run::say::say;
-use engine::step::RunState;
+use particles::ParticleStore;
 
 /// Go on from a checkpoint, on any number of ranks
 ///

@@ -8,11 +8,11 @@ use serde_json::json;
 use super::form::{self, Form, wrote};
 use super::plot::out::{PictureFormat, write_chart};
 use super::shell::quoted;
+use desk::sweep::{self, Converged, Definition, Launch, Sweep, SweepError, Tally};
 use files::input;
 use files::output::{OutputError, RunLock, Sheet, write_atomically};
 use files::run::exit::{EXIT_FAILED, EXIT_INPUT, EXIT_STOPPED};
 use files::run::say::{counted, say, warn};
-use desk::sweep::{self, Converged, Definition, Launch, Sweep, SweepError, Tally};
 
 /// How the runs of a sweep share the machine.
 #[derive(Debug, Clone, clap::Args)]

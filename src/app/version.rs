@@ -5,8 +5,8 @@ use std::ffi::OsString;
 use clap::error::ErrorKind;
 
 use comm;
-use numerics::dispatch::{Instructions, available, instructions};
 use files::output::{VERSION, commit, h5};
+use numerics::dispatch::{Instructions, available, instructions};
 
 /// The long form, if that is what the command line asks for; `-V` is the short one.
 pub fn asked(error: &clap::Error) -> Option<String> {

@@ -9,11 +9,11 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use console::Term;
 
 use super::results::{running, standing};
-use model::readable::one_line;
 use files::output::{OutputError, Phase, Presence, RunFolder, Status};
 use files::run::exit::{EXIT_FAILED, EXIT_INPUT, EXIT_STOPPED};
 use files::run::say::warn;
 use frame::frame;
+use model::readable::one_line;
 
 /// Watch a run: how far it is, its energies, its ranks, the time left
 ///

@@ -23,7 +23,7 @@ pub use crossing::Crossing;
 pub use holes::triangulate;
 pub use mend::Mended;
 pub use mesh::Mesh;
-pub(in crate) use tree::Tree;
+pub(crate) use tree::Tree;
 pub use triangle::{Feature, closest_on_triangle};
 
 use super::{Motion, Resistance};

@@ -1,7 +1,7 @@
 //! Symmetry planes: mirror images of particles behind them, and particles that cross them.
 
-use model::SymmetryPlane;
 use crate::{FieldInfo, Mirror, ParticleStore};
+use model::SymmetryPlane;
 
 /// The symmetry planes of a case, at most one for each axis. An image has a code: bit a is set
 /// if it stands behind the plane normal to axis a.

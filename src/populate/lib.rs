@@ -25,8 +25,8 @@ pub use sample::sample;
 pub use stress_points::{StressSite, stress_count, stress_index_end, stress_sites};
 pub use touch::{touching_distance, touching_value};
 
-use model::{Axis, Body, LatticeKind, RigidSurface, SymmetryPlane};
 use filling::Filling;
+use model::{Axis, Body, LatticeKind, RigidSurface, SymmetryPlane};
 use row::cuts;
 
 #[cfg(test)]

@@ -9,9 +9,9 @@ use super::memory::Resident;
 use super::neighbours;
 use super::report::Row;
 use comm::Comm;
+use engine::step::{Phase, Simulation};
 use files::output::{RowSchedule, Rows, checkpoint, from_root};
 use particles::ParticleStore;
-use engine::step::{Phase, Simulation};
 
 /// Steps before the timed ones, in which buffers grow, caches fill and, over one interval between
 /// balances, ranks learn their speeds.

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use super::cases::BenchCase;
 use super::machine::Machine;
+use engine::step::Phase;
 use files::output::{OutputError, VERSION, commit, write_json};
 use files::run::say::say;
-use engine::step::Phase;
 
 /// What one case does on one configuration of ranks and threads.
 #[derive(Debug, Clone, Serialize, Deserialize)]

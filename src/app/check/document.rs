@@ -4,11 +4,11 @@ use serde_json::{Value, json};
 
 use super::{machine, mass_of, meetings, wall_time};
 use comm::Comm;
-use model::{Body, Case};
 use files::output::unit_of_model;
 use files::plan::{self, Files};
-use populate;
 use files::preflight::{Approach, memory};
+use model::{Body, Case};
+use populate;
 
 /// All that is told, in SI units.
 pub(super) fn document(

@@ -5,9 +5,9 @@ use std::path::Path;
 use super::super::results::only_part;
 use super::{FragmentsError, read_case};
 use engine::fragments::{FirstSizes, Matter, belongs};
-use model::{Axis, Case, FragmentOptions, Include, SymmetryPlane};
 use files::output::h5::Content;
 use files::output::h5::read::{ReadError, SnapshotFile};
+use model::{Axis, Case, FragmentOptions, Include, SymmetryPlane};
 
 /// Particles of a snapshot, but for frozen ones.
 pub struct Loaded {

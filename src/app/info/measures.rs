@@ -7,8 +7,8 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::form;
-use model::readable::{shown, shown_vector};
 use files::output::{RunFolder, Sheet, gauge_records};
+use model::readable::{shown, shown_vector};
 
 /// Bytes of the end of a table that are read: the rows of the last time of some hundred bodies.
 const END: u64 = 1 << 16;

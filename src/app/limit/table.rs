@@ -6,8 +6,8 @@ use serde_json::{Value, json};
 
 use super::laws::Law;
 use crate::form;
-use files::output::Sheet;
 use desk::sweep::Shot;
+use files::output::Sheet;
 
 /// A millimetre (m) and a kilometre in a second (m/s).
 const UNITS: [f64; 2] = [1e-3, 1e3];

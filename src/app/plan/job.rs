@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use super::source::Source;
 use crate::run::default_folder;
 use crate::shell::quoted;
-use model::readable::one_line;
 use files::output::RunFolder;
 use files::plan::{Machine, Row};
+use model::readable::one_line;
 
 /// How many times the foreseen time a job asks for.
 const MARGIN: f64 = 2.0;

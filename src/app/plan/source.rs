@@ -4,14 +4,14 @@ use std::path::Path;
 
 use crate::results::{Results, only_part};
 use comm::Comm;
+use desk::plot::snapshots;
 use files::input;
-use model::Case;
 use files::output::h5::Content;
 use files::output::h5::read::SnapshotFile;
 use files::output::{RunFolder, checkpoint};
-use particles::ParticleStore;
 use files::plan::{Outlook, Particles};
-use desk::plot::snapshots;
+use model::Case;
+use particles::ParticleStore;
 
 /// What is planned.
 pub struct Source {
@@ -69,12 +69,7 @@ pub fn read(path: &Path, set: &[String]) -> Result<Source, String> {
 
 fn at_start(case: Case) -> Result<Source, String> {
     let most = case.bodies.iter().fold(0_u64, |all, body| {
-        all.saturating_add(populate::count(
-            body,
-            case.dimension,
-            &case.symmetry,
-            None,
-        ))
+        all.saturating_add(populate::count(body, case.dimension, &case.symmetry, None))
     });
     if most > MOST {
         return Err(format!(

@@ -1,9 +1,9 @@
 //! Lines above the table.
 
 use super::source::Source;
-use model::readable::{short, shown};
 use files::plan::{Machine, Sharing};
 use files::run::say::counted;
+use model::readable::{short, shown};
 
 /// A share of the work that counts as all of it.
 const ALL: f64 = 0.995;

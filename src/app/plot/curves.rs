@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use files::output::RunFolder;
 use desk::plot::{
     By, Columns, Direction, History, PlotError, Points, Tables, choose, cumulative, distributions,
     front, parse_pair, snapshots, tables_of_run, title, widest,
 };
+use files::output::RunFolder;
 use files::run::say::seconds;
 
 use super::out::{named, save_text, target, write_chart};

@@ -5,9 +5,9 @@ use std::time::Duration;
 use indicatif::HumanDuration;
 
 use super::Seen;
-use model::readable::{one_line, shown};
 use files::output::{Energies, Outlook};
 use files::run::say::{counted, seconds};
+use model::readable::{one_line, shown};
 
 /// Heights of a column of text.
 const HEIGHTS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];

@@ -7,8 +7,8 @@ use super::frame::Frame;
 pub use super::frame::Wish;
 use super::surface::surfaces;
 use super::{ExportError, csv, lammps, npz, paraview, ply, stl, vtu, xyz};
-use model::readable::one_line;
 use files::output::NewFile;
+use model::readable::one_line;
 
 /// What others read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

@@ -10,8 +10,8 @@ use super::column::Column;
 use super::frame::{Frame, Piece};
 use super::text::line;
 use super::values::{IS_LITTLE, Values};
-use files::output::{NewFile, VERSION};
 use crate::plot::colour_of;
+use files::output::{NewFile, VERSION};
 
 /// Writes a snapshot.
 pub fn write(frame: &Frame, out: &mut NewFile) -> Result<(), ExportError> {

@@ -6,8 +6,8 @@ use std::path::Path;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
-use model::readable::{Readable, short};
 use files::output::{OutputError, RunFolder, Sheet, Status, read_regular, read_small};
+use model::readable::{Readable, short};
 
 /// A run as its folder tells it. What cannot be read is a sentence that says so.
 #[derive(Debug)]

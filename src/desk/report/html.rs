@@ -1,7 +1,7 @@
 //! Pieces of HTML, in which texts of files cannot become markup.
 
-use model::readable::one_line;
 use crate::plot::{Rgb, hex};
+use model::readable::one_line;
 
 /// A piece of a page: markup of our own, and texts that are escaped.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

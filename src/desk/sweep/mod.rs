@@ -30,8 +30,8 @@ pub use shots::{Shot, shots};
 pub use values::Values;
 
 use files::input::InputError;
-use model::readable::printable;
 use files::output::{OutputError, write_atomically};
+use model::readable::printable;
 use plan::{Found, Known, Plan};
 use point::Point;
 use queue::{Running, Standing};

@@ -8,8 +8,8 @@ use super::answers;
 use super::condition::Condition;
 use super::definition::Definition;
 use files::input;
-use model::{Body, Shape};
 use files::output::{OutputError, Phase, RunFolder};
+use model::{Body, Shape};
 
 /// What is asked of a run if neither the sweep nor the caller asks for anything.
 const FAILED: &str = "failed";

@@ -6,8 +6,8 @@ use super::answers::{Answers, is_wanted};
 use super::plan::{Found, Plan};
 use super::point::{Point, short};
 use super::values::Value;
-use model::units::Powers;
 use files::output::Sheet;
+use model::units::Powers;
 
 /// How the run of a point ended.
 #[derive(Debug, Clone, PartialEq)]

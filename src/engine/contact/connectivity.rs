@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use particles::Mirrors;
 use crate::fragments::{Labels, Members, Sets};
 use model::Case;
+use particles::Mirrors;
 use particles::neighbours::{Fragment, Lists, Membership};
 use particles::{GRAIN, Image, ParticleStore, resize};
 

@@ -13,12 +13,12 @@ use super::mode::{Found, Meeting, Mode, PairForce, Scene};
 use super::pair::{Between, Constants, Pair};
 use super::resistance::NormalLoad;
 use super::view::{ContactView, Party, Separation};
-use particles::Mirrors;
-use model::{Body, Case, ContactClass, ContactDirection, Overlap};
-use particles::HaloPhase;
-use populate;
 pub use measure::{Fraction, OFFSET_LIMIT, fraction, initial_offset};
 use measure::{Measured, weigh};
+use model::{Body, Case, ContactClass, ContactDirection, Overlap};
+use particles::HaloPhase;
+use particles::Mirrors;
+use populate;
 
 /// What the core's viscosity is of the mass of a pair, its approach squared and its depth, over its
 /// radius.

@@ -14,12 +14,12 @@ use rayon::prelude::*;
 use super::mode::{Found, Meeting, Mode, PairForce, Scene, fill, for_each_chunk};
 use super::pair::{Between, Constants};
 use super::view::{ContactView, Party};
-use particles::Mirrors;
-use model::{ContactClass, Penalty, PenaltyLaw};
-use particles::neighbours::CHUNKS_AT_ONCE;
-use numerics::vector::{dot, minus, norm};
-use particles::{HaloPhase, Owner, Scatter};
 use boundary::{Boundary, CORNER, normal};
+use model::{ContactClass, Penalty, PenaltyLaw};
+use numerics::vector::{dot, minus, norm};
+use particles::Mirrors;
+use particles::neighbours::CHUNKS_AT_ONCE;
+use particles::{HaloPhase, Owner, Scatter};
 
 /// Constants of an ordered pair of bodies.
 #[derive(Debug, Clone, Default)]

@@ -5,8 +5,8 @@
 use super::friction::{Friction, Law, Slip};
 use super::pair::Pair;
 use super::view::{ContactView, Party};
-use particles::Mirrors;
 use numerics::vector::norm;
+use particles::Mirrors;
 
 /// What friction and damping of a receiver rest on: sums over its pairs, weighted with `o_ij`.
 #[derive(Default)]

@@ -4,10 +4,10 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::force::BodyForce;
-use particles::MirrorForce;
 use numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use numerics::gathered_sums::{self, GatheredSums};
 use numerics::vector::cross;
+use particles::MirrorForce;
 
 /// What a pair of bodies has come to in an interval of steps.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]

@@ -13,10 +13,10 @@ use super::friction::Law;
 use super::{ContactSums, ContactTable};
 use crate::loads::{Loads, Placed, SurfaceStep};
 use model::{Body, Case, RigidSurface};
-use particles::neighbours::Kinds;
 use numerics::exact_sum::ExactSum;
 use numerics::gathered_sums::{self, GatheredSums};
 use numerics::vector::{cross, dot};
+use particles::neighbours::Kinds;
 use particles::{GRAIN, ParticleStore, Scatter};
 
 /// What a surface does to one particle.

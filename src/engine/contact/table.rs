@@ -2,8 +2,8 @@
 
 use super::pair::{Between, Listed, ModePairs, Pair, needs};
 use model::{Body, Case, ContactMode, SelfContact};
-use particles::neighbours::{ForeignTable, Groups, Kinds};
 use numerics::kernel::{Kernel, SUPPORT};
+use particles::neighbours::{ForeignTable, Groups, Kinds};
 use particles::{HaloPhase, Owner};
 
 /// All pairs of kinds.

@@ -5,8 +5,8 @@ use super::friction::Friction;
 use super::mode::normal_load;
 use super::view::ContactView;
 use model::ContactClass;
-use particles::neighbours::{Chunk, ForeignChunk};
 use particles::empty;
+use particles::neighbours::{Chunk, ForeignChunk};
 
 /// Results of a task before they go into the store, kept from step to step.
 #[derive(Default)]

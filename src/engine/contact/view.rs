@@ -1,9 +1,9 @@
 //! What the contact sums read: particles as they meet, and how they stand to each other.
 
 use super::ContactTable;
+use numerics::vector::square;
 use particles::Mirrors;
 use particles::neighbours::{Lists, MotionRecord};
-use numerics::vector::square;
 use particles::{Image, ParticleStore};
 
 /// What the contact sums read.

@@ -7,8 +7,8 @@ use super::mode::borne_of;
 use super::phase::Contact;
 use super::view::ContactView;
 use model::ContactClass;
-use particles::neighbours::{CHUNKS_AT_ONCE, Lists};
 use particles::ParticleStore;
+use particles::neighbours::{CHUNKS_AT_ONCE, Lists};
 
 impl Contact {
     /// What the contact forces of the last step, of `dt` (s), carry through owned particles, with

@@ -8,9 +8,9 @@
 //! below the sum itself, but for heat of the reference state that an expansion may take.
 
 use super::ledger::RunState;
-use comm::Comm;
 use crate::domain::Outset;
 use crate::loads::Loads;
+use comm::Comm;
 use model::{Body, Case, NumericalLimits};
 use numerics::vector::square;
 use particles::ParticleStore;

@@ -1,7 +1,7 @@
 //! Which pairs of bodies have met, and what they add up on all ranks.
 
-use comm::Comm;
 use crate::contact::{Closest, PairBook, PairExtremes};
+use comm::Comm;
 
 /// Which pairs of bodies have met since the process started, agreed by all ranks, and what each has
 /// come to on this rank since the extremes of all were last joined.

@@ -4,14 +4,14 @@ use rayon::prelude::*;
 
 use super::ledger::{NearestPair, RunState};
 use super::meetings::Meetings;
-use comm::{Comm, Joint};
 use crate::contact::{Closest, Contact, ContactTable, least, pair_key};
-use particles::Mirrors;
 use crate::domain::Span;
 use crate::loads::Loads;
+use comm::{Comm, Joint};
 use numerics::alone;
 use numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use numerics::vector::cross;
+use particles::Mirrors;
 use particles::{GRAIN, ParticleStore};
 
 /// What a step adds up beside contact and loads, with the memory to join all.

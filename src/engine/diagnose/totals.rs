@@ -2,8 +2,8 @@
 
 use super::ledger::{RunState, Totals};
 use super::taken_out::{Leave, Removed};
-use comm::Comm;
 use crate::loads::Loads;
+use comm::Comm;
 use material::FAILED;
 use numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use numerics::vector::{cross, norm};

@@ -107,9 +107,9 @@ fn is_alike(one: u64, other: u64) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use particles::Mirrors;
     use super::super::tally::tally;
     use super::*;
+    use particles::Mirrors;
 
     /// So many layers along each axis, a metre apart.
     fn lattice(layers: [u32; 3]) -> Vec<[f64; 3]> {

@@ -148,9 +148,9 @@ fn tell(boxes: &Least, rank: usize, extent: Extent) {
 mod tests {
     use proptest::prelude::*;
 
-    use particles::Mirrors;
     use super::super::tally::tally;
     use super::*;
+    use particles::Mirrors;
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(300))]

@@ -1,7 +1,7 @@
 //! Who needs which particles, and which images of them.
 
-use particles::{Mirrors, codes};
 use numerics::ordered::{disordered, ordered};
+use particles::{Mirrors, codes};
 
 /// The box around a rank's particles, and how far these reach: what it tells those that are near before the
 /// exchange.

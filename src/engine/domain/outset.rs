@@ -7,8 +7,8 @@ use super::histogram::Histogram;
 use super::nested::{Decomposition, NestedSlabs};
 use super::rank_speed::RankSpeeds;
 use comm::Comm;
-use numerics::extent::{Extent, around};
 use model::{Axis, Case, edge};
+use numerics::extent::{Extent, around};
 use populate;
 
 /// The boxes of all bodies, and the axes along which slabs are cut.

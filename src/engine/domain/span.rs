@@ -1,9 +1,9 @@
 //! Where some particles are and how they move, in twelve numbers, and how long a step two such sets
 //! allow.
 
-use particles::Mirrors;
 use numerics::ordered::{disordered, ordered};
 use numerics::vector::norm;
+use particles::Mirrors;
 
 /// Smallest and largest coordinates (m) and velocities (m/s) of some particles.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,9 +6,9 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use particles::Mirrors;
 use super::needs::{Extent, Finder, Found, MYSELF};
 use super::nested::{Decomposition, NestedSlabs};
+use particles::Mirrors;
 
 /// What a rank owns, and what a step brings it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -10,11 +10,11 @@ use super::labels::{Labels, Member};
 use super::links::link;
 use super::matter::{Matter, Rule, Surroundings, images};
 use super::sums::{BODIES, Moments, Sums};
-use comm::Comm;
-use particles::Mirrors;
 use crate::domain::Halo;
+use comm::Comm;
 use model::SymmetryPlane;
 use numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
+use particles::Mirrors;
 
 /// Particles that a task sums over.
 const SHARE: usize = 8192;

@@ -1,8 +1,8 @@
 //! A fragment: what its sums say of it (theory page "Fragments").
 
 use super::sums::Moments;
-use particles::Mirrors;
 use numerics::principal::principal;
+use particles::Mirrors;
 
 /// A fragment of the whole model: one that reaches across symmetry planes has its images' mass, and
 /// stands for as many equal ones as planes that it does not reach have images of it.

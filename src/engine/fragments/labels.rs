@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use super::merger::{Merger, Row};
 use super::sets::{SHARE, Set, Sets};
-use comm::Comm;
 use crate::domain::Halo;
+use comm::Comm;
 use numerics::collector::Collector;
 
 /// Mark of sets that another rank may have joined with some of its own.

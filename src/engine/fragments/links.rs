@@ -7,10 +7,10 @@ use super::grid::{Grid, Place, distance_squared, grids};
 use super::labels::{Labels, TOUCHES};
 use super::matter::{Matter, Rule, Surroundings, link_reach};
 use super::sets::Sets;
-use comm::Comm;
-use particles::Mirrors;
 use crate::domain::Halo;
+use comm::Comm;
 use particles::Image;
+use particles::Mirrors;
 
 /// Bytes that a search takes for each particle or image while it lasts: its place, twice, and the
 /// numbers of some eighteen neighbours, with spare room.

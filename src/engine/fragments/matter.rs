@@ -1,8 +1,8 @@
 //! Matter whose fragments are looked for, and by which rule.
 
-use particles::Mirrors;
 use model::{Body, Case, FragmentOptions, Include, edge};
 use particles::Image;
+use particles::Mirrors;
 
 /// What hangs together.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,9 +7,9 @@ use super::frame::Frame;
 use super::matter::{Matter, raise};
 use super::remains::{Belongs, Remains};
 use comm::Comm;
-use particles::Mirrors;
 use model::{Debris, Slab};
 use numerics::vector::{dot, norm};
+use particles::Mirrors;
 
 /// All mass, in whole numbers.
 const UNIT: f64 = 17_592_186_044_416.0;

@@ -2,8 +2,8 @@
 
 use super::frame::Frame;
 use super::matter::Matter;
-use particles::Mirrors;
 use model::{Slab, Solid};
+use particles::Mirrors;
 
 /// The section of a body as it was at the start, half way between its faces.
 pub struct Footprint {

@@ -1,7 +1,7 @@
 //! A plane and its normal: coordinates across it and along it.
 
-use particles::Mirrors;
 use numerics::vector::{cross, dot};
+use particles::Mirrors;
 
 /// Two unit vectors in a plane, and its normal.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -8,13 +8,13 @@
 
 use super::near::{LaneSum, Near, One};
 use super::reading::{Reading, along, stress};
-use particles::Mirrors;
 use model::{Case, Gauge};
-use particles::neighbours::{Lists, PointSearch};
 use numerics::dispatch::{Vectorised, instructions};
 use numerics::kernel::Kernel;
 use numerics::lanes::{LANES, Lanes};
+use particles::Mirrors;
 use particles::ParticleStore;
+use particles::neighbours::{Lists, PointSearch};
 
 /// Sums of a gauge before its readings: coverage and position, the latter of a carried gauge alone.
 pub const FIRST: usize = 4;

@@ -9,11 +9,11 @@ use super::gauge_reader::{FIRST, Matter, Means, Reader, Scratch, reads};
 use super::gauge_shares::Shares;
 use super::reading::Reading;
 use comm::Comm;
-use particles::Mirrors;
 use model::{Cadence, Case, Gauge};
-use particles::neighbours::Lists;
 use numerics::collector::Collector;
 use numerics::kernel::Kernel;
+use particles::Mirrors;
+use particles::neighbours::Lists;
 use particles::{GRAIN, ParticleStore};
 
 /// The gauges of a case.

@@ -3,12 +3,12 @@
 use rayon::prelude::*;
 
 use comm::Comm;
-use particles::Mirrors;
 use material::FAILED;
 use model::{Case, edge};
 use numerics::exact_sum::{gather_limbs, scatter_limbs};
 use numerics::gathered_sums::{self, GatheredSums};
 use numerics::ordered::{disordered, ordered};
+use particles::Mirrors;
 use particles::{GRAIN, ParticleStore};
 
 /// This rank's matter at a time, by particle.

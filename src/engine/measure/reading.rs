@@ -1,10 +1,10 @@
 //! What can be read of a particle: a field of the table, or what follows from some.
 
 use super::near::{LaneSum, Near};
-use particles::Mirrors;
 use material::LANES;
 use model::Case;
 use numerics::lanes::Lanes as Vector;
+use particles::Mirrors;
 use particles::{
     FIELDS, FieldInfo, FieldKind, Mirror, ParticleStore, STRESS, TEMPERATURE, VON_MISES_STRESS,
 };

@@ -12,8 +12,8 @@ use super::matter::{Matter, raise};
 use super::voxels::{Grain, Voxels};
 use super::window::Window;
 use comm::Comm;
-use particles::Mirrors;
 use model::{Include, Slab};
+use particles::Mirrors;
 
 /// Matter has flowed beyond this plastic strain: some elastic and plastic waves do not count.
 const FLOWED: f64 = 0.05;

@@ -1,7 +1,7 @@
 //! From what is computed to the whole: what symmetry planes leave out is its mirror image.
 
-use particles::Mirrors;
 use numerics::vector::cross;
+use particles::Mirrors;
 
 /// A part of a model and its images behind the symmetry planes.
 #[derive(Debug, Clone, Copy)]

@@ -7,8 +7,8 @@
 //! they have the same bits for any ranks and restarts.
 
 use super::Whole;
-use comm::Comm;
 use crate::diagnose::Passed;
+use comm::Comm;
 use model::{Case, Witness};
 use numerics::alone;
 use numerics::collector::Collector;

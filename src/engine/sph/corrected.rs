@@ -21,11 +21,11 @@ mod motion;
 pub use forces::CorrectedRecord;
 
 use super::neighbourhood::Neighbourhood;
+use motion::{PlainSums, motion};
 use numerics::dispatch::Vectorised;
 use numerics::kernel::PairScale;
 use numerics::lane_matrix::{Faded, between, faded, load_all, store_all};
 use numerics::lanes::{F64x8, LANES, Lanes};
-use motion::{PlainSums, motion};
 
 /// e⁴ of the fade: at e = .28. Less gives isolated peaks of strain about edges, more leaves
 /// surfaces uncorrected.

@@ -17,8 +17,8 @@ use super::signal::SignalSpeed;
 use super::step::{Side, Step};
 use super::sums::Sums;
 use crate::domain::Shown;
-use particles::neighbours::Lists;
 use particles::ParticleStore;
+use particles::neighbours::Lists;
 
 /// A formulation: how velocities strain matter, and how its stress moves it.
 pub(super) trait Formulation: SignalSpeed {

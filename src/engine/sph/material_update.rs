@@ -5,8 +5,8 @@ use super::rest;
 use super::step::Step;
 use super::sums::Sums;
 use material::{LANES, Material, PointBatch, Rest};
-use particles::neighbours::{Cluster, Lists};
 use numerics::lanes::{F64x8, Lanes};
+use particles::neighbours::{Cluster, Lists};
 use particles::{Image, MaterialPoints, Records};
 
 /// Work for a particle apart from its neighbours, in neighbours of the pair sums: sort, list,

@@ -1,8 +1,8 @@
 //! The receivers of one cluster with their neighbours: what all sums over pairs begin with.
 
-use particles::neighbours::MotionRecord;
 use numerics::kernel::{PairKernel, PairScale};
 use numerics::lanes::{LANES, Lanes};
+use particles::neighbours::MotionRecord;
 
 /// Squares of distances are never smaller than this (m²), so that a particle meeting itself
 /// divides by something: it then adds an exact zero since its `r_ij` is zero.

@@ -7,12 +7,12 @@ use super::neighbourhood::Sources;
 use super::rest::Resting;
 use super::step::Side;
 use super::terms::Terms;
-use particles::MirrorForce;
 use material::{Material, NEGLIGIBLE};
 use model::{Case, SmoothingLength};
-use particles::neighbours::Lists;
 use numerics::kernel::{ConstantScale, Kernel, MeanScale};
 use numerics::lanes::LANES;
+use particles::MirrorForce;
+use particles::neighbours::Lists;
 use particles::{GRAIN, Scatter, resize};
 
 /// What a formulation finds beside particles and lists, kept from step to step.

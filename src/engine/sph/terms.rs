@@ -16,9 +16,9 @@ use super::records::NormalisedRecord;
 use super::step::Side;
 use crate::loads::Loads;
 use model::{Case, SphOptions};
-use particles::neighbours::Lists;
 use numerics::kernel::Kernel;
 use numerics::lanes::{LANES, Lanes};
+use particles::neighbours::Lists;
 use particles::{GRAIN, ParticleStore, resize};
 
 /// Artificial stress: [`artificial_stress`].

@@ -1,15 +1,15 @@
 //! The virial of the forces by which stresses act between pairs of particles, for what snapshots
 //! show (theory page "Contact"). No step needs it, so it is no sweep in vectors.
 
-use particles::Mirrors;
+use crate::sph::corrected::CorrectedRecord;
+use crate::sph::phase::Sph;
 use model::{Case, SphForm};
-use particles::neighbours::Lists;
 use numerics::kernel::Kernel;
 use numerics::vector::{dot, minus, norm};
 use numerics::virial::Virial;
+use particles::Mirrors;
 use particles::ParticleStore;
-use crate::sph::corrected::CorrectedRecord;
-use crate::sph::phase::Sph;
+use particles::neighbours::Lists;
 
 /// Forces of stresses after a step, while lists and halo are still those of that step.
 pub struct StressForces<'a> {

@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 
 use crate::domain::Span;
-use particles::neighbours::{Chunk, Lists};
 use numerics::collector::Collector;
+use particles::neighbours::{Chunk, Lists};
 
 /// Where not all rests: cells of space somewhat narrower than what sleeps is away from it.
 #[derive(Debug, Default)]

@@ -6,13 +6,13 @@ use std::collections::VecDeque;
 use std::marker::PhantomData;
 
 use super::flight::{Flight, Sky};
-use comm::Comm;
 use crate::contact::ContactTable;
 use crate::diagnose::{Limits, Moved, NumericalFailure, PAST_STEPS, PastStep, Reason, RunState};
 use crate::domain::Span;
+use crate::sph::{SignalSpeed, Signals, Sph};
+use comm::Comm;
 use model::{Case, TimeStepOptions};
 use numerics::vector::square;
-use crate::sph::{SignalSpeed, Signals, Sph};
 
 /// Largest coordinate that still counts as a position (m).
 const FARTHEST: f64 = 1e12;

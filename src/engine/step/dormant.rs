@@ -14,14 +14,14 @@ use super::candidate::{Candidate, Criteria, NO_CANDIDATE};
 use super::kept_links::{Keeping, KeptLinks};
 use crate::contact::EVERY;
 use crate::diagnose::Moved;
-use particles::Mirrors;
 use crate::domain::Span;
 use crate::fragments::{Labels, Sets};
+use crate::sph::SignalSpeed;
 use model::Case;
+use particles::Mirrors;
 use particles::neighbours::Lists;
 use particles::{Asleep, GRAIN, PART, ParticleStore};
 use populate::Brick;
-use crate::sph::SignalSpeed;
 
 /// Particles that are left out of steps, kept from one to the next.
 #[allow(clippy::struct_excessive_bools, reason = "independent of each other")]

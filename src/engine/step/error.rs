@@ -2,8 +2,8 @@
 
 use thiserror::Error;
 
-use comm::Comm;
 use crate::diagnose::NumericalFailure;
+use comm::Comm;
 use model::Case;
 use model::readable::{shown, shown_vector};
 use particles::ParticleStore;

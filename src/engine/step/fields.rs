@@ -2,9 +2,9 @@
 
 use crate::contact::{Connectivity, ContactTable};
 use crate::fragments::{BYTES_OF_SEARCH, Labels};
+use crate::sph::Sph;
 use model::{Case, NumericalFailurePolicy, SphForm};
 use particles::{FieldInfo, HaloPhase, Owner, ParticleStore, Select, rows};
-use crate::sph::Sph;
 
 /// Options of the table of fields that a case does not have.
 pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {

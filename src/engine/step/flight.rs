@@ -7,13 +7,13 @@
 
 use rayon::prelude::*;
 
-use comm::Comm;
 use crate::contact::ContactTable;
-use particles::Mirrors;
 use crate::domain::Span;
 use crate::loads::{Loads, Placed};
+use comm::Comm;
 use model::{Case, RigidSurface};
 use numerics::vector::norm;
+use particles::Mirrors;
 use particles::ParticleStore;
 
 /// How often those that can meet are looked for among those that could before.

@@ -3,9 +3,9 @@
 use rayon::prelude::*;
 
 use super::simulation::Simulation;
-use comm::Comm;
 use crate::domain::Reaches;
 use crate::fragments::{Census, FirstSizes, Matter, Rule, Surroundings, belongs, find, link_reach};
+use comm::Comm;
 use model::{Case, FragmentOptions, SphForm};
 use particles::{Asleep, ParticleStore};
 

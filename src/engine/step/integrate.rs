@@ -16,10 +16,10 @@ use super::candidate::{BestCandidate, Candidate, Criteria, criteria_fields};
 use crate::diagnose::Moved;
 use crate::domain::Span;
 use crate::loads::{Free, Goal, Loads, Prescribe};
+use crate::sph::{SignalSpeed, Smoothing};
 use numerics::exact_sum::ExactSum;
 use numerics::vector::dot;
 use particles::{Asleep, GRAIN, ParticleStore};
-use crate::sph::{SignalSpeed, Smoothing};
 
 fn add(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|k| a[k] + b[k])

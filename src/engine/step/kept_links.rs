@@ -8,9 +8,9 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use rayon::prelude::*;
 
 use crate::fragments::Sets;
-use particles::neighbours::{Chunk, Cluster, Lists};
 use numerics::collector::Collector;
 use numerics::lanes::LANES;
+use particles::neighbours::{Chunk, Cluster, Lists};
 use particles::{GRAIN, PART};
 
 /// Links of parts of the store that are kept, kept from step to step.

@@ -1,11 +1,11 @@
 //! What is measured between steps.
 
 use super::simulation::Simulation;
-use comm::Comm;
 use crate::diagnose::Passed;
 use crate::measure::{
     self, BodyFigures, Crossing, Findings, GaugeRow, Gauges, Matter, Whole, whole_passed,
 };
+use comm::Comm;
 use model::Cadence;
 
 impl Simulation {

@@ -8,15 +8,15 @@
 //! the fields that are [`FieldInfo::kept`]. All else of it, velocity and stress among it, is zero.
 
 use super::candidate::Criteria;
-use comm::Comm;
 use crate::diagnose::{Leave, Moved, Removed, RunState};
 use crate::loads::Loads;
+use crate::sph::SignalSpeed;
+use comm::Comm;
 use model::Region;
 use numerics::collector::Collector;
 use numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use numerics::vector::cross;
 use particles::{FieldInfo, GRAIN, Owner, ParticleStore};
-use crate::sph::SignalSpeed;
 
 /// Particles that this rank has frozen: they are in files, and in nothing else.
 #[derive(Debug, Default)]

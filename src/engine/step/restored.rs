@@ -2,8 +2,8 @@
 
 use super::error::SetupError;
 use super::simulation::Simulation;
-use comm::Comm;
 use crate::diagnose::RunState;
+use comm::Comm;
 use particles::{FieldInfo, Life, ParticleStore};
 
 /// Largest count: beyond it one more may be lost in a sum, or run over.

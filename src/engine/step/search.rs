@@ -3,11 +3,11 @@
 use super::candidate::{Criteria, criteria_fields};
 use super::simulation::Simulation;
 use super::timers::Phase;
-use comm::Comm;
 use crate::contact::Connectivity;
 use crate::domain::Decomposition;
-use particles::Image;
 use crate::sph::with_formulation;
+use comm::Comm;
+use particles::Image;
 
 impl Simulation {
     /// Who is whose neighbour at the current positions, over ranks and symmetry planes. Collective.

@@ -9,23 +9,23 @@ use super::removal::Frozen;
 use super::restored::require_own;
 use super::simulation::Simulation;
 use super::timers::Timers;
-use comm::Comm;
 use crate::contact::{Connectivity, Contact};
 use crate::diagnose::{
     KeptTotals, LoadState, PairState, Passed, Removed, RunState, StepSums, Worst,
     angular_momentum_scale,
 };
-use particles::Mirrors;
 use crate::domain::{Decomposition, Halo, Outset, Partition};
 use crate::fragments::Labels;
 use crate::loads::{Absorption, Goal, Loads, Prescribe};
 use crate::measure::Measures;
+use crate::sph::Sph;
+use comm::Comm;
 use model::{Body, Case, SphForm, edge};
-use particles::neighbours::Lists;
 use numerics::collector::Collector;
+use particles::Mirrors;
+use particles::neighbours::Lists;
 use particles::{Image, ParticleStore};
 use populate::{self, Brick};
-use crate::sph::Sph;
 
 impl Simulation {
     /// Fills the bodies of a case, each rank its own brick, and evaluates the first forces.

@@ -3,13 +3,13 @@
 use rayon::prelude::*;
 
 use super::simulation::Simulation;
+use crate::sph::{StressForces, stress};
 use comm::Comm;
-use particles::Mirrors;
-use particles::neighbours::{CHUNKS_AT_ONCE, Lists};
 use numerics::kernel::Kernel;
 use numerics::vector::{dot, minus, norm};
+use particles::Mirrors;
+use particles::neighbours::{CHUNKS_AT_ONCE, Lists};
 use particles::{HaloPhase, ParticleStore};
-use crate::sph::{StressForces, stress};
 
 /// What the pair forces of a particle in contact carry.
 #[derive(Debug, Clone, Copy)]

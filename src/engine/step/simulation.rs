@@ -7,7 +7,6 @@ use super::flight::Sky;
 use super::integrate;
 use super::removal::Frozen;
 use super::timers::{Phase, Timers};
-use comm::Comm;
 use crate::contact::Contact;
 use crate::diagnose::{
     Booked, KeptTotals, NumericalFailure, PostMortem, Reason, RunState, StepSums, Totals, fastest,
@@ -17,11 +16,12 @@ use crate::domain::{Decomposition, Halo, Partition};
 use crate::fragments::Labels;
 use crate::loads::Loads;
 use crate::measure::Measures;
-use model::{Case, SphForm};
-use particles::neighbours::Lists;
-use numerics::collector::Collector;
-use particles::{HaloPhase, ParticleStore};
 use crate::sph::{Side, Sph, Step, with_formulation};
+use comm::Comm;
+use model::{Case, SphForm};
+use numerics::collector::Collector;
+use particles::neighbours::Lists;
+use particles::{HaloPhase, ParticleStore};
 
 /// One rank's part of a running case.
 pub struct Simulation {

@@ -8,10 +8,10 @@ use super::candidate::{Criteria, criteria_fields};
 use super::error::StepError;
 use super::removal;
 use super::simulation::Simulation;
-use comm::Comm;
 use crate::diagnose::{Leave, Reason};
-use model::NumericalFailurePolicy;
 use crate::sph::with_formulation;
+use comm::Comm;
+use model::NumericalFailurePolicy;
 
 /// Steps between two looks for what has left the box of interest: it flies some spacings meanwhile, ten in
 /// the fastest impacts, and the new sums after a removal take as long as a step.

@@ -15,9 +15,9 @@ use std::ops::Range;
 
 use super::quantity::PLAIN;
 use super::source::Diagnostic;
+use code::{Code, Part, no_celsius, powers_of};
 use model::units::{self, Powers};
 use model::{Combination, Formula, Function, Operation, Place, Profile};
-use code::{Code, Part, no_celsius, powers_of};
 
 /// Longest text of a formula (bytes).
 const LONGEST: usize = 1000;

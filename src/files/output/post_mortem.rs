@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use comm::Comm;
+use engine::step::PostMortem;
 use model::Case;
 use particles::{FieldInfo, FieldKind, HaloPhase, ParticleStore, Select};
-use engine::step::PostMortem;
 
 use super::checkpoint::row_type;
 use super::h5::{Element, RowType, Writer};

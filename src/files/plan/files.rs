@@ -1,10 +1,10 @@
 //! How large the files of a run become, and how often they are written.
 
-use model::{Case, OutputOptions};
 use crate::output::OutputError;
 use crate::output::snapshot::{Plan, bytes_per_particle};
-use particles::Life;
 use engine::step::store_of;
+use model::{Case, OutputOptions};
+use particles::Life;
 
 /// What a run writes.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -6,13 +6,16 @@ use rayon::prelude::*;
 
 use super::outlook::Outlook;
 use super::particles::Particles;
-use comm::{Comm, Traffic};
-use particles::Mirrors;
-use engine::domain::{Balance, Decomposition, GREETING, NestedSlabs, Outset, RankSpeeds, Sent, Tally, greetings, tally};
-use model::Case;
-use populate;
 use crate::preflight::UNEVEN;
+use comm::{Comm, Traffic};
+use engine::domain::{
+    Balance, Decomposition, GREETING, NestedSlabs, Outset, RankSpeeds, Sent, Tally, greetings,
+    tally,
+};
 use engine::step::bytes_of_messages;
+use model::Case;
+use particles::Mirrors;
+use populate;
 
 /// What a rank has, and what it sends in a step but for particles that change ranks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

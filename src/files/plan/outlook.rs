@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 
 use super::particles::Particles;
-use model::Case;
 use crate::preflight::{self, Approach, TIMES, Waiting, Waves, approaches, mean_work};
+use model::Case;
 
 /// Work of a particle where smoothing lengths differ from body to body, and where they differ within one, over that where all
 /// are the same: each pair has a length of its own, and lists are made as far as the largest reach. As measured on the quarter

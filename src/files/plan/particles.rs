@@ -1,8 +1,8 @@
 //! Where particles stand, and how far they reach.
 
+use engine::sph::Smoothing;
 use model::{Body, Case, Quantity, SphForm, edge};
 use populate;
-use engine::sph::Smoothing;
 
 /// Particles of a case at one time.
 #[derive(Debug, Clone, Default, PartialEq)]

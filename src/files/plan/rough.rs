@@ -4,11 +4,11 @@ use super::layout::Load;
 use super::machine::Machine;
 use super::model::step_time;
 use super::sharing::Sharing;
+use crate::preflight::memory;
 use comm::{Comm, Traffic};
 use engine::domain::Tally;
-use model::Case;
-use crate::preflight::memory;
 use engine::step::bytes_of_messages;
+use model::Case;
 
 /// Peers of a rank in boxes: those around a box of three axes.
 const PEERS: u64 = 26;

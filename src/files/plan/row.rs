@@ -5,9 +5,9 @@ use super::machine::Machine;
 use super::model::{StepTime, step_time};
 use super::particles::Particles;
 use super::sharing::Sharing;
+use crate::preflight::Costs;
 use engine::domain::{Decomposition, NestedSlabs};
 use populate::Brick;
-use crate::preflight::Costs;
 
 /// What a plan tells of a number of ranks; `most` is the largest of them.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

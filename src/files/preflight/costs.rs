@@ -3,8 +3,8 @@
 use super::waves::{RESTING, can_rest};
 use engine::contact::ContactTable;
 use engine::domain::MOST_UNEVEN;
-use model::Case;
 use engine::step::bytes_of_options;
+use model::Case;
 
 /// What a process takes with MPI and HDF5 before it has a particle (bytes). This and the figures
 /// below are peaks of the resident memory of ranks that step and write, as measured on the quarter

@@ -197,11 +197,11 @@ fn left(folder: &Path, [limit, used, files]: [&str; 3]) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use particles::Mirrors;
-    use engine::domain::{Balance, Tally, tally};
     use crate::input;
-    use populate::visits;
     use crate::preflight::{approaches, warnings};
+    use engine::domain::{Balance, Tally, tally};
+    use particles::Mirrors;
+    use populate::visits;
 
     fn quarter(spacing: &str) -> Case {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/quarter-impact");

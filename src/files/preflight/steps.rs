@@ -113,8 +113,8 @@ mod tests {
 
     use super::*;
     use crate::input;
-    use model::Shape;
     use crate::preflight::approaches;
+    use model::Shape;
 
     fn steps(name: &str, set: &[&str]) -> [f64; 2] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR"))

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::say::{counted, note, say, seconds, warn};
-use comm::Comm;
 use crate::output::{Log, VERSION, commit};
+use comm::Comm;
 use engine::step::Simulation;
 
 /// Says what begins: how many particles on how many ranks, from what, and `warnings` about the case.

@@ -1,11 +1,11 @@
 //! When and how a run tells its fragments.
 
 use super::tables::Tables;
-use comm::Comm;
-use model::FragmentOptions;
 use crate::output::fragments::{self, FragmentTable};
 use crate::output::{OutputError, RunFolder, Schedule, on_root};
+use comm::Comm;
 use engine::step::Simulation;
+use model::FragmentOptions;
 
 /// Whether fragments are told after a step between two times (s), after which a snapshot may be due,
 /// too.

@@ -1,8 +1,8 @@
 //! The columns of the tables of a run, and rows of them.
 
 use super::load::{Group, Load};
-use engine::measure::{BodyFigures, Crossing, GaugeRow};
 use crate::output::{Column, Value, unit_of_model};
+use engine::measure::{BodyFigures, Crossing, GaugeRow};
 use engine::step::{LoadState, PairState, Passed, Removed, RunState};
 
 /// Columns with SI units; what a model of fewer dimensions has is by length or area. A name that

@@ -1,8 +1,8 @@
 //! Tells once of each body that it has begun to leave the box of interest.
 
 use super::say::{counted, seconds};
-use model::readable::shown;
 use engine::step::Simulation;
+use model::readable::shown;
 
 /// Bodies of which it has been told, in the order of the case.
 #[derive(Debug, Default)]

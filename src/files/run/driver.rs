@@ -23,14 +23,14 @@ use super::summary::{Clock, summary};
 use super::tables::Tables;
 use super::watched::Watched;
 use super::{announce, census};
-use comm::Comm;
-use model::NumericalFailurePolicy;
 use crate::output::snapshot::Plan;
 use crate::output::{
     Log, OutputError, Phase, RowSchedule, Rows, RunFolder, Schedule, agree, on_root, post_mortem,
     write_json,
 };
+use comm::Comm;
 use engine::step::{self, Simulation, StepError, Timers};
+use model::NumericalFailurePolicy;
 
 /// One rank's part of a run in its folder.
 pub struct Driver<'a> {

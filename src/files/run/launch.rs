@@ -6,9 +6,9 @@ use std::time::{Instant, SystemTime};
 use super::exit::{EXIT_FAILED, EXIT_INPUT};
 use super::say;
 use super::stop::Signals;
-use comm::{Comm, Session, abort_job};
 use crate::output::h5::abandoned;
 use crate::output::{Outlook, Phase, RunFolder, Status};
+use comm::{Comm, Session, abort_job};
 
 /// Exit code of a program that panicked.
 const EXIT_PANIC: i32 = 101;

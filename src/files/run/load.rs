@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 
 use comm::Comm;
-use particles::GRAIN;
 use engine::step::Simulation;
+use particles::GRAIN;
 
 /// How evenly the ranks are loaded, and what they have sent.
 pub struct Load {

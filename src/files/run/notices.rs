@@ -2,9 +2,9 @@
 
 use super::announce::decomposition;
 use comm::Comm;
+use engine::step::Simulation;
 use model::SphForm;
 use model::readable::short;
-use engine::step::Simulation;
 
 /// Error of the angular momentum that is worth a warning.
 const WORTH: f64 = 0.01;

@@ -4,9 +4,9 @@ use std::time::Duration;
 
 use super::stop::{parse_until, parse_walltime};
 use super::voice::{LogForm, Voice};
+use crate::preflight::memory;
 use comm::Comm;
 use model::Case;
-use crate::preflight::memory;
 
 /// Options that `run` and `restart` share.
 #[derive(Debug, Clone, clap::Args)]

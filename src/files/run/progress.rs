@@ -11,9 +11,9 @@ use serde_json::{Map, Value};
 
 use super::say::{say, seconds, tell, warn};
 use super::voice::Voice;
-use model::{Case, RunControl};
 use crate::preflight::expected_step;
 use engine::step::RunState;
+use model::{Case, RunControl};
 
 /// Time between two lines.
 const LINE_EVERY: Duration = Duration::from_secs(10);

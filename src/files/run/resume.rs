@@ -7,11 +7,11 @@ use super::launch::{Launch, give_up};
 use super::options::CommonArgs;
 use super::saved_case::Settled;
 use super::say::seconds;
-use model::Case;
 use crate::output::RunFolder;
 use crate::output::checkpoint::Restored;
-use particles::ParticleStore;
 use engine::step::{Reason, RunState, Simulation};
+use model::Case;
+use particles::ParticleStore;
 
 /// What a run goes on from, and where.
 pub struct Origin {

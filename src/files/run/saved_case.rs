@@ -4,10 +4,10 @@
 use std::fmt::Write as _;
 use std::io::ErrorKind;
 
-use comm::Comm;
 use crate::input::{self, Difference};
-use model::Case;
 use crate::output::{OutputError, RunFolder, from_root};
+use comm::Comm;
+use model::Case;
 
 /// A case to go on with.
 pub struct Settled {

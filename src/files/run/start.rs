@@ -5,10 +5,10 @@ use std::path::Path;
 use super::driver::Driver;
 use super::launch::{Launch, fail, give_up};
 use super::options::CommonArgs;
-use model::Case;
 use crate::output::RunFolder;
 use crate::preflight::{approaches, warnings};
 use engine::step::Simulation;
+use model::Case;
 
 /// Sets the case up, only then clears the folder `out` of an earlier run, and steps to the end;
 /// returns the exit code. What looks like a mistake in the case and `more` is said. Collective.

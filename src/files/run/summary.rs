@@ -6,10 +6,10 @@ use serde_json::json;
 
 use super::load::load;
 use super::output_time::Seconds;
-use comm::{self, Comm};
-use model::SphForm;
 use crate::output::{VERSION, commit, h5};
+use comm::{self, Comm};
 use engine::step::{Removed, Simulation, failed_mass};
+use model::SphForm;
 
 /// How long a run took.
 #[derive(Debug, Clone, Copy)]

@@ -9,11 +9,11 @@ use super::columns::{
     witness_row,
 };
 use super::load::Load;
-use engine::measure::{BodyFigures, Crossing, Findings, GaugeRow};
-use model::{Case, NumericalFailurePolicy, SphForm};
 use crate::output::gauge_records::{self, GaugeRecords};
 use crate::output::{Column, OutputError, RunFolder, Table, Value, fragments, measures};
+use engine::measure::{BodyFigures, Crossing, Findings, GaugeRow};
 use engine::step::{RunState, Simulation};
+use model::{Case, NumericalFailurePolicy, SphForm};
 
 /// The tables of a run, written by rank 0.
 pub struct Tables {

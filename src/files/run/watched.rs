@@ -3,10 +3,10 @@
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use super::load::Load;
-use comm::Comm;
-use model::RunControl;
 use crate::output::{Energies, Outlook, RunFolder, unit_of_model};
+use comm::Comm;
 use engine::step::{RunState, Simulation};
+use model::RunControl;
 
 /// Most energies that are kept.
 const MOST: usize = 64;

@@ -48,7 +48,7 @@ const SPRAY: f64 = 0.1;
 
 /// Failed matter does not expand beyond spray.
 #[inline(always)]
-pub(in crate) fn limit_expansion(point: &mut PointBatch, reference_density: f64) {
+pub(crate) fn limit_expansion(point: &mut PointBatch, reference_density: f64) {
     for k in 0..LANES {
         if point.damage[k] >= FAILED {
             point.density[k] = at_least(point.density[k], SPRAY * reference_density);

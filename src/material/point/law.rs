@@ -135,7 +135,7 @@ pub struct Conditions {
 impl Conditions {
     /// Those of the reference state.
     #[inline(always)]
-    pub(in crate) fn new(
+    pub(crate) fn new(
         dt: f64,
         reference_density: f64,
         [shear_modulus, bulk_modulus]: [f64; 2],

@@ -12,11 +12,11 @@ use super::kinds::Kinds;
 use super::motion::MotionRecord;
 use super::sequence::Sequence;
 use crate::Mirrors;
+use crate::{Asleep, GRAIN, HaloImages, Image, ParticleStore, Scatter, resize};
 use model::{Body, Case, SmoothingLength};
 use numerics::collector::Collector;
-use numerics::kernel::SUPPORT;
 use numerics::extent::{Extent, around};
-use crate::{Asleep, HaloImages, GRAIN, Image, ParticleStore, Scatter, resize};
+use numerics::kernel::SUPPORT;
 
 /// The sequence of images, their motion records and the lists, kept from step to step.
 pub struct Lists {

@@ -10,9 +10,9 @@ use super::columns::ColumnGrid;
 use super::facts::{ACTIVE, IMAGE, ImageFacts, ImageState, MOVING};
 use super::group::Group;
 use super::sort::{SCRATCH_WORDS, Sorter, Targets, Walls};
+use crate::{Asleep, Image, Scatter, resize};
 use numerics::lanes::{LANES, Lanes};
 use numerics::ordered::ordered;
-use crate::{Asleep, Image, Scatter, resize};
 
 /// The sorted images. Buffers are kept from step to step.
 #[derive(Debug, Clone, Default)]

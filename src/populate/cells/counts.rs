@@ -1,9 +1,9 @@
 //! How many sites there are and where, tile by tile where these are whole.
 
 use super::laid::{Block, Cells, Level, Lie, each};
-use model::{Vec3, cube};
 use crate::row::Cut;
 use crate::{Share, Site};
+use model::{Vec3, cube};
 
 /// Sites that are told together.
 enum Piece {

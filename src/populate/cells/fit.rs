@@ -5,9 +5,9 @@
 use super::forces::{REACH, Sites};
 use super::laid::Cells;
 use super::relax::{Wall, step};
-use model::Vec3;
 use crate::Site;
 use crate::row::Cut;
+use model::Vec3;
 
 /// Sites that begin no deeper than this move (spacings).
 const MOVING: f64 = 3.0;
@@ -25,7 +25,7 @@ const DRAWN: f64 = 0.3;
 
 /// The sites that have moved, by index.
 #[derive(Debug, Default)]
-pub(in crate) struct Fitted {
+pub(crate) struct Fitted {
     sites: Vec<Site>,
     /// The first of them that no site before has passed.
     next: usize,

@@ -4,9 +4,9 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use super::tile::{self, Tile};
-use model::{Body, Lattice, LatticeKind, Shape, Solid, SymmetryPlane, Vec3, cube, rotation};
 use crate::Site;
 use crate::row::Cut;
+use model::{Body, Lattice, LatticeKind, Shape, Solid, SymmetryPlane, Vec3, cube, rotation};
 
 /// Sites as near to the surface as this (spacings) are outside: whether a lattice point on a face
 /// belongs to the body must not hang on rounding.
@@ -14,7 +14,7 @@ const FACE: f64 = 1e-9;
 
 /// The sites of one body that is not filled by rows.
 #[derive(Debug, Clone)]
-pub(in crate) struct Cells {
+pub(crate) struct Cells {
     pub(super) solid: Solid,
     /// Lower sides by axis that symmetry planes cut off (m).
     pub(super) planes: Vec<(usize, f64)>,
@@ -340,7 +340,7 @@ pub(super) fn each(n: [u64; 3]) -> impl Iterator<Item = [u64; 3]> {
 }
 
 /// Whether rows of a lattice fill a body.
-pub(in crate) fn has_rows(body: &Body) -> bool {
+pub(crate) fn has_rows(body: &Body) -> bool {
     let lattice = &body.lattice;
     match lattice.kind {
         LatticeKind::Rings => true,

@@ -53,7 +53,7 @@ impl Parts for Blocks<'_> {
 }
 
 /// The sites where `value` is smallest, smallest first: see [`crate::search`].
-pub(in crate) fn smallest(
+pub(crate) fn smallest(
     cells: &Cells,
     cuts: &[Cut],
     wanted: Wanted,
@@ -72,7 +72,7 @@ pub(in crate) fn smallest(
 
 /// Smallest and largest coordinates (m) of the sites, if there are any; of those that are fitted to
 /// a billionth of a spacing.
-pub(in crate) fn extremes(cells: &Cells, cuts: &[Cut]) -> Option<([f64; 3], [f64; 3])> {
+pub(crate) fn extremes(cells: &Cells, cuts: &[Cut]) -> Option<([f64; 3], [f64; 3])> {
     let wanted = Wanted {
         most: 1,
         limit: f64::INFINITY,

@@ -155,7 +155,7 @@ fn scaled(edges: [f64; 3], sites: u32) -> [f64; 3] {
 
 /// How what has a seed is turned, and moved (tiles): any turn in space (about z in two dimensions)
 /// and any place are as likely.
-pub(in crate) fn drawn(seed: u64, dimension: usize) -> (nalgebra::Matrix3<f64>, Vec3) {
+pub(crate) fn drawn(seed: u64, dimension: usize) -> (nalgebra::Matrix3<f64>, Vec3) {
     let mut state = seed;
     let mut draw = || {
         let word = split_mix(&mut state);

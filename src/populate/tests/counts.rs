@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::*;
-use model::{Motion, Resistance, SurfaceShape};
 use crate::lattice::Stack;
+use model::{Motion, Resistance, SurfaceShape};
 
 /// A body of any lattice in any dimension, with the shapes that the lattice fills.
 fn any_body() -> impl Strategy<Value = (usize, Body)> {

@@ -5,6 +5,7 @@
 
 use std::path::Path;
 
+use crate::plot::PlotError;
 use exact::bars::{Bar, End, Row, Waves};
 use exact::hugoniot::Medium;
 use exact::plates::{self, Plate};
@@ -13,7 +14,6 @@ use exact::{Profile, Sample, finite_strain};
 use files::input;
 use material::{Eos, Material, Strength};
 use model::{Body, Case, ContactMode, Motion, Shape, VelocityLoad};
-use crate::plot::PlotError;
 
 /// What has an answer.
 const KNOWN: &str = "an exact answer is known for one-dimensional runs of linear elastic bars \

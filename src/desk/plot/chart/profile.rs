@@ -4,7 +4,6 @@ use std::path::Path;
 
 use super::curves::{Chart, Curve, Quantity};
 use super::exact::{self, Exact};
-use model::Axis;
 use crate::plot::PlotError;
 use crate::plot::canvas::INK;
 use crate::plot::colour;
@@ -15,6 +14,7 @@ use crate::plot::snapshots::slice::{self, slice};
 use crate::plot::snapshots::snapshot::Snapshot;
 use crate::plot::snapshots::source::Source;
 use crate::plot::units;
+use model::Axis;
 
 /// About how many of many curves have a name in the legend.
 const NAMED: usize = 10;

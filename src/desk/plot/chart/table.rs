@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use crate::plot::PlotError;
 use files::input;
 use files::output::{RunFolder, Sheet, gauge_records};
-use crate::plot::PlotError;
 
 /// Longest file that is read as a table (bytes).
 const LONGEST: u64 = 4_000_000_000;

@@ -10,7 +10,6 @@ use super::section::{self, Cut, DrawnAs, Section};
 use super::sheet::Colours;
 use super::titles::Titles;
 use super::view::View;
-use model::Axis;
 use crate::plot::PlotError;
 use crate::plot::canvas::Canvas;
 use crate::plot::colour::Scale;
@@ -23,6 +22,7 @@ use crate::plot::snapshots::slice::{place, quantity, thickness};
 use crate::plot::snapshots::snapshot::Snapshot;
 use crate::plot::snapshots::source::Source;
 use crate::plot::style::usual_width;
+use model::Axis;
 
 /// What to draw, as typed.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -5,7 +5,6 @@ use std::ops::Range;
 
 use super::cells::{Cell, REACH};
 use super::view::View;
-use model::{Axis, SymmetryPlane};
 use crate::plot::PlotError;
 use crate::plot::snapshots::field::Shown;
 use crate::plot::snapshots::images::{Image, Mirrors};
@@ -13,6 +12,7 @@ use crate::plot::snapshots::plane::Plane;
 use crate::plot::snapshots::slice::{NUDGE, mirrored, slice};
 use crate::plot::snapshots::snapshot::{LARGEST, Snapshot};
 use crate::plot::units::Readable;
+use model::{Axis, SymmetryPlane};
 
 /// How the particles of a section are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -10,9 +10,9 @@ use super::figure::Figure;
 use super::pictures::Pictures;
 use super::section::{DrawnAs, Section};
 use super::view::View;
-use model::Axis;
-use files::output::{Sheet, table_line};
 use crate::plot::snapshots::field::Shown;
+use files::output::{Sheet, table_line};
+use model::Axis;
 
 /// Rows of a grid that are found at once.
 const BAND: usize = 64;

@@ -1,7 +1,7 @@
 //! What of space pictures of a model show, and the plane of its section.
 
-use model::{Axis, Body, Case, RigidSurface, SurfaceShape};
 use crate::plot::snapshots::plane::Plane;
+use model::{Axis, Body, Case, RigidSurface, SurfaceShape};
 use populate;
 
 /// Blank border about the model, over its longest side.

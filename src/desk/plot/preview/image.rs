@@ -196,10 +196,10 @@ fn ball(distance: f64, radius: f64) -> Option<(f64, u8)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use model::Axis;
     use crate::plot::canvas::Frame;
     use crate::plot::picture::view::View;
     use crate::plot::snapshots::plane::Plane;
+    use model::Axis;
 
     fn image(axis: Axis) -> Image {
         let panel = Panel {

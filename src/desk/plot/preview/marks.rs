@@ -1,13 +1,13 @@
 //! Lines, arrows and a scale over a panel.
 
 use super::panel::Panel;
-use model::readable::shown;
-use model::{Case, Region, SymmetryPlane};
 use crate::plot::arrow;
 use crate::plot::canvas::{Align, Canvas, Frame, INK, PAPER, Rgb};
 use crate::plot::font;
 use crate::plot::picture::layout::pixels;
 use crate::plot::style::Style;
+use model::readable::shown;
+use model::{Case, Region, SymmetryPlane};
 
 /// Colour of symmetry planes.
 pub const SYMMETRY: Rgb = [0, 130, 130];

@@ -5,7 +5,6 @@ use super::image::Image;
 use super::marks::{self, KEEP, SURFACE, SYMMETRY};
 use super::panel::Panel;
 use super::{sites, surfaces};
-use model::{Axis, Case};
 use crate::plot::PlotError;
 use crate::plot::axes::Axes;
 use crate::plot::canvas::{Align, Canvas, Frame};
@@ -19,6 +18,7 @@ use crate::plot::snapshots::slice::place;
 use crate::plot::style::{Style, WIDTH, whole};
 use crate::plot::ticks::{Ticks, nice_step};
 use crate::plot::units::Readable;
+use model::{Axis, Case};
 use populate;
 
 /// Greatest heights of the section and of the views (units of layout).

@@ -1,10 +1,10 @@
 //! A panel: what part of space it shows, from where, and how many pixels of it.
 
-use model::Axis;
 use crate::plot::axes::Axes;
 use crate::plot::canvas::Frame;
 use crate::plot::picture::view::View;
 use crate::plot::snapshots::plane::Plane;
+use model::Axis;
 
 /// A view along an axis.
 #[derive(Debug, Clone, Copy)]

@@ -6,7 +6,6 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 
 use super::spread::{Masses, REACH, Spot};
-use model::Axis;
 use crate::plot::PlotError;
 use crate::plot::canvas::{Canvas, Rgb};
 use crate::plot::colour::Scale;
@@ -28,6 +27,7 @@ use crate::plot::snapshots::snapshot::Snapshot;
 use crate::plot::snapshots::source::Source;
 use crate::plot::style::{Style, whole};
 use crate::plot::units::parse_span;
+use model::Axis;
 
 /// Unit of what is shown.
 const UNIT: &str = "kg/m^2";

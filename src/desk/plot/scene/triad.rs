@@ -1,11 +1,11 @@
 //! Where the axes of the model point in a view.
 
 use super::camera::Camera;
-use model::Axis;
 use crate::plot::arrow;
 use crate::plot::canvas::{Align, Canvas};
 use crate::plot::picture::layout::pixels;
 use crate::plot::style::Style;
+use model::Axis;
 
 /// Length of an axis that lies in the picture (units of layout).
 const LENGTH: f64 = 30.0;

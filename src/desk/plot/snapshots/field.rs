@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use super::snapshot::{FROZEN, Snapshot};
-use model::Axis;
 use crate::plot::PlotError;
 use crate::plot::units::parse_span;
+use model::Axis;
 
 /// Components of a vector, in the order of the file.
 pub const VECTOR: [&str; 3] = ["x", "y", "z"];

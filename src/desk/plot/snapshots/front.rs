@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use super::field::Shown;
 use super::snapshot::Snapshot;
+use crate::plot::PlotError;
 use engine::fragments::components;
 use model::Axis;
-use crate::plot::PlotError;
 
 /// A direction along an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

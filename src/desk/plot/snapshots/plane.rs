@@ -2,9 +2,9 @@
 
 use super::extent::{Extent, Mover};
 use super::snapshot::Snapshot;
-use model::{Axis, SymmetryPlane};
 use crate::plot::PlotError;
 use crate::plot::units;
+use model::{Axis, SymmetryPlane};
 
 /// Speeds below this share of the largest are those of round-off.
 const AT_REST: f64 = 1e-6;

@@ -4,9 +4,9 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::extent::{Extent, Mover};
-use model::{Axis, SymmetryPlane};
-use files::output::h5::read::SnapshotFile;
 use crate::plot::PlotError;
+use files::output::h5::read::SnapshotFile;
+use model::{Axis, SymmetryPlane};
 
 /// Particles read at a time, so that a large snapshot never stands whole in memory.
 const CHUNK: usize = 1 << 20;

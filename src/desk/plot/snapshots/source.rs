@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use files::output::h5::read::SnapshotFile;
 use crate::plot::PlotError;
+use files::output::h5::read::SnapshotFile;
 
 /// Which snapshots of a run are wanted.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,9 +1,9 @@
 //! What the run's figures are worth: each against the bound that the book names.
 
-use model::readable::short;
-use files::output::Phase;
 use crate::report::found::{Rows, Run};
 use crate::report::html::{Html, missing, note, table};
+use files::output::Phase;
+use model::readable::short;
 
 /// How a figure stands to its bound.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -6,9 +6,9 @@ use super::constants;
 use crate::contact::mode::{Found, Scene, fill, for_each_chunk};
 use crate::contact::view::{ContactView, Party, Separation};
 use model::{ContactClass, Overlap};
-use particles::neighbours::{CHUNKS_AT_ONCE, Chunk};
 use numerics::vector::norm;
 use particles::Scatter;
+use particles::neighbours::{CHUNKS_AT_ONCE, Chunk};
 
 /// A particle is enclosed whose foreign fraction with current volumes exceeds this, unless there is room for it.
 const ENCLOSED_FRACTION: f64 = 0.5;

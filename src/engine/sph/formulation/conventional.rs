@@ -4,17 +4,17 @@ use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
 use super::stresses::{ShowStress, fill_stresses};
-use particles::neighbours::{Among, Cluster, Lists};
-use numerics::dispatch::Vectorised;
-use numerics::kernel::PairScale;
-use numerics::lanes::{F64x8, LANES, Lanes};
-use particles::{ParticleStore, material_points, records_of};
 use crate::sph::gradient::VelocityGradient;
 use crate::sph::momentum::StressRecord;
 use crate::sph::neighbourhood::Neighbourhood;
 use crate::sph::signal::{SignalSpeed, Signals};
 use crate::sph::step::{Side, Step};
 use crate::sph::sums::{Sums, scratch_of};
+use numerics::dispatch::Vectorised;
+use numerics::kernel::PairScale;
+use numerics::lanes::{F64x8, LANES, Lanes};
+use particles::neighbours::{Among, Cluster, Lists};
+use particles::{ParticleStore, material_points, records_of};
 
 /// The conventional formulation.
 #[derive(Debug, Default)]

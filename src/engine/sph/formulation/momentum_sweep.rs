@@ -3,18 +3,18 @@
 
 use rayon::prelude::*;
 
-use particles::MirrorForce;
-use particles::neighbours::{CHUNKS_AT_ONCE, Chunk, Cluster, Lists};
-use numerics::dispatch::{Vectorised, instructions};
-use numerics::kernel::PairScale;
-use numerics::lanes::Lanes;
-use particles::{Image, ParticleStore, Scatter, empty};
 use crate::sph::momentum::{Forces, Momentum, PairStress, Viscosity};
 use crate::sph::neighbourhood::Sources;
 use crate::sph::normalised::{NormalisedRecord, stress_power};
 use crate::sph::step::Side;
 use crate::sph::sums::{FromMirrors, Sums, sources, with_scale};
 use crate::sph::terms::{NORMALISED, PairTerms, XSPH, with_terms};
+use numerics::dispatch::{Vectorised, instructions};
+use numerics::kernel::PairScale;
+use numerics::lanes::Lanes;
+use particles::MirrorForce;
+use particles::neighbours::{CHUNKS_AT_ONCE, Chunk, Cluster, Lists};
+use particles::{Image, ParticleStore, Scatter, empty};
 
 /// The sweep over the clusters of a side with a set of pair terms, after stresses and terms have
 /// been shown; `normalised` holds the stresses along corrected gradients, if any.

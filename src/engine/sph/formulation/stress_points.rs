@@ -8,17 +8,17 @@ mod moments;
 use rayon::prelude::*;
 
 use super::Formulation;
-use particles::{MirrorForce, Mirrors};
-use particles::neighbours::{CHUNKS_AT_ONCE, Chunk, Cluster, Lists};
-use numerics::dispatch::{Vectorised, instructions};
-use numerics::kernel::PairScale;
-use numerics::lanes::Lanes;
-use particles::{GRAIN, Image, ParticleStore, Scatter, empty, resize};
 use crate::sph::neighbourhood::Sources;
 use crate::sph::signal::{SignalSpeed, Signals};
 use crate::sph::step::{Side, Step};
 use crate::sph::stress_points::{self, Pull, Pulled, StressPointRecord};
 use crate::sph::sums::{FromMirrors, Sums, scratch_of, sources, with_scale};
+use numerics::dispatch::{Vectorised, instructions};
+use numerics::kernel::PairScale;
+use numerics::lanes::Lanes;
+use particles::neighbours::{CHUNKS_AT_ONCE, Chunk, Cluster, Lists};
+use particles::{GRAIN, Image, ParticleStore, Scatter, empty, resize};
+use particles::{MirrorForce, Mirrors};
 
 /// The formulation by stress points.
 #[derive(Debug, Default)]

@@ -3,9 +3,9 @@
 use rayon::prelude::*;
 
 use super::TermRecord;
+use crate::sph::neighbourhood::gather;
 use numerics::lanes::{LANES, Lanes};
 use particles::{GRAIN, ParticleStore};
-use crate::sph::neighbourhood::gather;
 
 /// The Balsara switch `|∇·v|/(|∇·v| + |∇×v| + 10⁻⁴ c/h)` (Balsara 1995): one in compression, zero
 /// in shear. From the velocity gradient (1/s, row-major), sound speed (m/s) and smoothing length

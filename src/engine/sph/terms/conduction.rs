@@ -3,9 +3,9 @@
 use rayon::prelude::*;
 
 use super::TermRecord;
+use crate::sph::neighbourhood::gather;
 use numerics::lanes::{LANES, Lanes};
 use particles::{GRAIN, ParticleStore};
-use crate::sph::neighbourhood::gather;
 
 /// Specific energies of owned particles in the middle of a step `dt` (s).
 pub(super) fn prepare(particles: &mut ParticleStore, dt: f64) {

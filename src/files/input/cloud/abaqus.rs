@@ -11,8 +11,8 @@ use super::Fault;
 use super::mesh::{Cell, Kind, Mesh, Part, as_place};
 use super::part::PartName;
 use super::text::{at, id, number, shortened};
-use model::Vec3;
 use instance::Instance;
+use model::Vec3;
 
 /// Keywords that make or move nodes and elements, so that they cannot be passed over.
 const REFUSED: &[(&str, &str)] = &[

@@ -6,8 +6,8 @@ use super::arrays::{Array, with_arrays};
 use super::names::of_array;
 use super::text::shortened;
 use super::{Fault, Request, Table};
-use model::Quantity;
 use crate::output::h5::arrays::ArrayFile;
+use model::Quantity;
 
 /// Reads the arrays that the input names, and those of the first group that are called as usual.
 ///

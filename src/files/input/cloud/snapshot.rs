@@ -6,8 +6,8 @@ use std::path::Path;
 use super::names::from_vtk;
 use super::part::{PartName, choose};
 use super::{Fault, Request, Table};
-use model::Quantity;
 use crate::output::h5::read::{ReadError, SnapshotFile};
+use model::Quantity;
 
 /// Particles read at a time.
 const CHUNK: usize = 1 << 20;

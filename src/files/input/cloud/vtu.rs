@@ -8,8 +8,8 @@ use super::arrays::{Array, with_arrays};
 use super::mesh::{Cell, Kind, Mesh};
 use super::text::shortened;
 use super::{Fault, Request, Table, TakeName};
-use model::Quantity;
 use array::Layout;
+use model::Quantity;
 
 /// Most elements of the XML itself.
 const MOST_ELEMENTS: u32 = 100_000;

@@ -40,6 +40,7 @@ use super::schema::{
     BodyParams, CaseParams, RunParams, SmoothingName, SphParams, SymmetryParams, TimeStepParams,
 };
 use super::source::Diagnostic;
+use check::{Allowed, number, whole};
 use material::Material;
 use model::readable::Readable;
 use model::{
@@ -47,7 +48,6 @@ use model::{
     RunControl, SmoothingLength, SphForm, SphOptions, SymmetryPlane, TimeStepOptions,
 };
 use populate::overlap;
-use check::{Allowed, number, whole};
 use region::KeepReader;
 use toml::Spanned;
 

@@ -15,11 +15,11 @@ use super::solids::turns;
 use crate::input::cloud::{self, Columns, Fault, Request, Table, UnitSystem};
 use crate::input::schema::{BodyParams, FormatName, ParticlesParams, TakeName};
 use crate::input::source::Diagnostic;
+use asked::{columns, parts};
 use material::Material;
 use model::{
     Cloud, Form, Initial, Placement, Quantity, Shape, Solid, SurfaceFile, Vec3, cube, edge,
 };
-use asked::{columns, parts};
 
 /// What a body is made with.
 pub struct Files<'a> {

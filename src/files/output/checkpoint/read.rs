@@ -4,9 +4,9 @@ use std::path::Path;
 
 use super::manifest::{MANIFEST, Manifest, OLDER, manifest};
 use super::state_file::{FIELDS, row_type, size_of, state_file};
-use comm::Comm;
 use crate::output::h5::Content;
 use crate::output::{Block, OutputError, agree, digest, from_root};
+use comm::Comm;
 use particles::{FieldInfo, Life, ParticleStore, rows};
 
 /// What [`read`] gives beside the particles.

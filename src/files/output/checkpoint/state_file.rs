@@ -5,9 +5,9 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::manifest::OLDER;
-use comm::Comm;
 use crate::output::h5::{Element, RowType};
 use crate::output::{OutputError, from_root};
+use comm::Comm;
 use particles::FieldKind;
 
 const STATE: &str = "state.h5";

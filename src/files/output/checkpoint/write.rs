@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use super::folder::{folder_name, prune, replace};
 use super::manifest::{FORMAT, MANIFEST, Manifest};
 use super::state_file::{FIELDS, row_type, size_of, state_file};
-use comm::Comm;
 use crate::output::h5::Writer;
 use crate::output::{
     OutputError, Rows, VERSION, commit, digest, files, on_root, settle, write_json,
 };
+use comm::Comm;
 use particles::{Life, ParticleStore};
 
 /// What a checkpoint says beside the particles.

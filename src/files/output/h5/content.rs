@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use comm::Comm;
 use crate::output::{Block, OutputError};
+use comm::Comm;
 
 use super::gate::{self, Found, Gate};
 use super::{Element, Number, RowType, explain};

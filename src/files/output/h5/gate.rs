@@ -18,8 +18,8 @@ use hdf5_sys::h5l::H5L_info1_t;
 use hdf5_sys::h5p::{H5P_DEFAULT, H5Pget_external_count, H5Pget_layout, H5Pget_nfilters};
 use hdf5_sys::h5t::{H5T_class_t, H5Tget_class, H5Tis_variable_str};
 
-use comm::Comm;
 use crate::output::{Block, OutputError, agree, files, on_root, partitions};
+use comm::Comm;
 
 use super::transfer::{call, read_rows};
 use super::{Element, Number, RowType, access, explain};

@@ -12,8 +12,8 @@ use hdf5_sys::h5i::hid_t;
 use hdf5_sys::h5p::H5P_DEFAULT;
 use hdf5_sys::h5s::{H5S_seloper_t, H5Sselect_hyperslab};
 
-use comm::pieces;
 use crate::output::Block;
+use comm::pieces;
 
 use super::RowType;
 

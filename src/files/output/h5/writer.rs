@@ -11,8 +11,8 @@ use hdf5::{Dataset, File, H5Type, Location};
 use hdf5_sys::h5a::H5Awrite;
 use hdf5_sys::h5f::{H5F_scope_t, H5Fflush};
 
-use comm::{Comm, pieces};
 use crate::output::{Block, OutputError, agree, files, on_root};
+use comm::{Comm, pieces};
 
 use super::direct::Direct;
 use super::pieces::{PIECE, Piece};

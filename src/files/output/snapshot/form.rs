@@ -1,8 +1,8 @@
 //! What a snapshot holds and how.
 
-use model::{Case, Precision, Region, SnapshotSchedule};
 use crate::output::partitions::PARTITION_ROWS;
 use crate::output::quantity::Quantity;
+use model::{Case, Precision, Region, SnapshotSchedule};
 use particles::ParticleStore;
 
 /// What a snapshot holds and how.

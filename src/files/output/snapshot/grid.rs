@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use super::form::Form;
 use super::values::write_values;
-use comm::Comm;
-use model::Precision;
 use crate::output::h5::{Element, RowType, Writer};
 use crate::output::partitions::Partitions;
 use crate::output::{Block, OutputError, Rows};
+use comm::Comm;
+use model::Precision;
 use particles::{FieldId, ParticleStore};
 
 /// Group of the grid.

@@ -1,9 +1,9 @@
 //! The snapshots that a case asks for: the usual ones, and those of schedules of their own.
 
 use super::form::{Form, Part};
-use model::{Case, Precision, SnapshotSchedule};
 use crate::output::quantity::{Quantity, quantities_of};
 use crate::output::{OutputError, Schedule};
+use model::{Case, Precision, SnapshotSchedule};
 use particles::ParticleStore;
 
 /// Snapshots that are written again and again.

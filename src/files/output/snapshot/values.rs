@@ -1,9 +1,9 @@
 //! Numbers of a snapshot, with as many digits as it asks for.
 
-use comm::pieces;
-use model::Precision;
 use crate::output::h5::{Element, Fill, PIECE, Piece, RowType, Writer};
 use crate::output::{Block, OutputError};
+use comm::pieces;
+use model::Precision;
 
 /// Writes rows of numbers as they are, or those that are no whole numbers with 32 bits each.
 pub(super) fn write_values(

@@ -3,9 +3,9 @@
 use std::time::Instant;
 
 use super::Driver;
-use comm::Comm;
 use crate::output::{OutputError, checkpoint, on_root};
 use crate::run::tables::Tables;
+use comm::Comm;
 
 impl Driver<'_> {
     /// Writes a checkpoint.

@@ -1,9 +1,9 @@
 //! What is measured between steps goes into tables.
 
 use super::{Driver, census};
+use crate::output::{OutputError, Schedule, on_root};
 use comm::Comm;
 use model::Cadence;
-use crate::output::{OutputError, Schedule, on_root};
 
 impl Driver<'_> {
     /// What gauges and measures tell whose turn it is after a step that began at time `before` (s).

@@ -4,8 +4,8 @@ use std::fs;
 use std::time::Instant;
 
 use super::Driver;
-use comm::Comm;
 use crate::output::{OutputError, RunFolder, on_root, series, snapshot};
+use comm::Comm;
 
 impl Driver<'_> {
     /// Writes the snapshots that are due after a `step` between two times (s), or all of them, and the

@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use super::Driver;
-use comm::Comm;
 use crate::output::{OutputError, Phase, Status};
+use comm::Comm;
 
 impl Driver<'_> {
     /// Writes `status.json`, with the reason and the exit code of a run that ends. Rank 0's alone.

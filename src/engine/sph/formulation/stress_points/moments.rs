@@ -3,10 +3,10 @@
 
 use rayon::prelude::*;
 
-use particles::{GRAIN, ParticleStore};
 use crate::sph::momentum::Viscosity;
 use crate::sph::normalised::stress_power;
 use crate::sph::stress_points::{moment, viscous_stress};
+use particles::{GRAIN, ParticleStore};
 
 /// Moments of this rank's stress points from their stress, that of viscosity included, and their
 /// power.
