@@ -200,7 +200,7 @@ start() {
 
 # Numbers of a summary that no clock, count of ranks or way of storing has a part in.
 numbers() {
-    sed -e '/"seconds_by_phase": {/,/}/d' -e '/"output_seconds": {/,/}/d' -e '/^ *"\(bytes_per_particle\|bytes_sent_per_rank_and_step\|commit\|instructions\|messages_per_rank_and_step\|million_updates_per_second_per_core\|output_share\|ranks\|set_up_seconds\|threads\|version\|wall_seconds\)"/d' "$1"
+    sed -e '/"seconds_by_phase": {/,/}/d' -e '/"decomposition": {/,/}/d' -e '/"decomposition": null/d' -e '/"output_seconds": {/,/}/d' -e '/^ *"\(bytes_per_particle\|bytes_sent_per_rank_and_step\|commit\|instructions\|messages_per_rank_and_step\|million_updates_per_second_per_core\|output_share\|ranks\|set_up_seconds\|threads\|version\|wall_seconds\)"/d' "$1"
 }
 
 # What `info` says of the last snapshot, but for the program, ranks and threads that wrote it.
