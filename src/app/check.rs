@@ -9,7 +9,7 @@ use super::form::Form;
 use super::plan::duration;
 use super::plot::out;
 use comm::Comm;
-use desk::plot::{self, PlotError};
+use plot::{self, PlotError};
 use document::document;
 use files::input::{self, InputError};
 use files::output::{snapshot, unit_of_model};

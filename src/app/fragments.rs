@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use super::form::{self, Form, wrote};
 use super::results::ResultsError;
 use super::which::Which;
-use desk::plot::{PlotError, choose, snapshots};
+use plot::{PlotError, choose, snapshots};
 use engine::fragments::{Census, Fragment, Rule, Share, find_alone};
 use files::input;
 use files::output::fragments::FragmentTable;

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use super::form::Form;
 use super::plot::out::{PictureFormat, check_picture, save_text, write_chart};
-use desk::plot::{PlotError, Quantity};
+use plot::{PlotError, Quantity};
 use desk::sweep::{self, Shot, SweepError, Values};
 use files::run::exit::{EXIT_FAILED, EXIT_INPUT};
 use files::run::say::{say, warn};

@@ -37,7 +37,7 @@ pub fn run(args: &MaterialsArgs) -> u8 {
         });
         return 0;
     };
-    if let (Some(text), Some(document)) = (table(name), as_json(name)) {
+    if let (Some(text), Some(document)) = (table(name, Sources::All), as_json(name)) {
         say(text.trim_end());
         args.form.tell(|| document);
         return 0;
@@ -81,8 +81,17 @@ fn law<'a>(constants: &'a [Constant], kind: &str) -> &'a str {
     constants.iter().find_map(second).unwrap_or("none")
 }
 
+/// Lines beside which a source stands.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Sources {
+    /// All lines.
+    All,
+    /// The first of those that follow each other and have the same source.
+    Once,
+}
+
 /// A material as a table of the input, with sources as comments.
-pub fn table(name: &str) -> Option<String> {
+pub fn table(name: &str, sources: Sources) -> Option<String> {
     let material = library::find(name)?;
     let title = library::title(name).unwrap_or_default();
     let mut text = format!("# {title}\n[material.{name}]\n");
@@ -96,8 +105,13 @@ pub fn table(name: &str) -> Option<String> {
         })
         .collect();
     let width = lines.iter().map(|(line, _)| line.len()).max().unwrap_or(0);
+    let mut last = "";
     for (line, source) in lines {
-        let _ = writeln!(text, "{line:<width$}  # {source}");
+        let _ = match sources {
+            Sources::Once if source == last => writeln!(text, "{line}"),
+            _ => writeln!(text, "{line:<width$}  # {source}"),
+        };
+        last = source;
     }
     let _ = writeln!(text, "# {}", derived(&material));
     Some(text)
@@ -184,7 +198,7 @@ mod tests {
     #[test]
     fn every_table_gives_its_material_again() {
         for name in library::names() {
-            let table = table(name).unwrap();
+            let table = table(name, Sources::All).unwrap();
             assert!(!table.contains("no source"), "{table}");
             let text = format!(
                 "dimension = 3\nspacing = \"1 mm\"\nrun.end_time = \"1 us\"\ncontact.mode = \"none\"\n\

@@ -6,7 +6,7 @@ use super::form::{self, Form, wrote};
 use super::results::{ResultsError, only_part};
 use super::which::Which;
 use comm::Comm;
-use desk::plot::{PlotError, Wanted, choose, snapshots};
+use plot::{PlotError, Wanted, choose, snapshots};
 use engine::measure::{Findings, Matter, Told, findings, mirrors, remember};
 use files::input::{self, InputError};
 use files::output::h5::Content;

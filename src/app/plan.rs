@@ -15,7 +15,7 @@ use clap::builder::PossibleValuesParser;
 use super::bench;
 use super::form::Form;
 use super::plot::out::{check_picture, save_text, write_chart};
-use desk::plot::PlotError;
+use plot::PlotError;
 use files::output::read_small;
 use files::plan::{Files, Layout, Load, Machine, Row, Sharing, Weak, computing, work_of_unequal};
 use files::preflight::{Costs, memory};

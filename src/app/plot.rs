@@ -13,7 +13,7 @@ use serde_json::json;
 
 use super::form::Form;
 use super::which::Several;
-use desk::plot::{
+use plot::{
     Along, History, Pictures, PlotError, ProfileRequest, Profiles, Request, Source, Wanted,
 };
 use movie::MovieArgs;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use desk::plot::{PlotError, Wanted, choose, parse_quantity, snapshots};
+use plot::{PlotError, Wanted, choose, parse_quantity, snapshots};
 
 /// A snapshot of a run, by time or number.
 #[derive(Debug, Clone, Default, clap::Args)]

@@ -2,6 +2,5 @@
 
 pub mod ballistic;
 pub mod export;
-pub mod plot;
 pub mod report;
 pub mod sweep;

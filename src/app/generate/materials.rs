@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::materials::table;
+use crate::materials::{Sources, table};
 use material::{Constant, Material, library};
 
 /// What the page says before its tables.
@@ -27,12 +27,18 @@ strength.von_mises.yield_stress = \"0.3 GPa\"
 failure.spall = { pressure = \"-1.4 GPa\" }
 ```
 
-- Choose a **strength** that knows what your case does: von Mises for shocks that are far above the yield stress, Johnson–Cook where
-  strain rate and heat matter, Steinberg–Guinan for rates above some 10⁵/s.
-- Choose an **equation of state** for the pressures of your case: Mie–Grüneisen up to strong shocks of solids, Tillotson where matter
-  vaporises, Tait for liquids at low pressure.
-- Only the `-ductile` materials **fail** by themselves. Debris that never fails holds together as long as it can: add `failure.spall` or
-  another [law](../theory/failure.md) to whatever breaks.
+One metal has several names, which differ in what they know:
+
+| name | strength | take it for |
+|---|---|---|
+| `aluminium-6061` | constant yield stress (von Mises) | shocks far above the yield stress; a first run |
+| `aluminium-6061-johnson-cook` | yield stress of Johnson and Cook: strain, strain rate and temperature | rods, bars and plates that bend, bulge and heat |
+| `aluminium-6061-ductile` | the same, and it **fails** (Johnson and Cook, spall where it is known) | perforation, holes, debris |
+| `aluminium-6061-steinberg-guinan` | modulus and yield stress that grow with pressure | strain rates above some 10⁵/s |
+| `aluminium-tillotson` | constant yield stress, an equation of state with vapour | impacts that vaporise material, above some 10 km/s |
+
+Only the `-ductile` materials fail by themselves. Debris that never fails holds together as long as it can: add `failure.spall` or another
+[law](../theory/failure.md) to whatever breaks.
 
 The formulas stand in [Materials](../theory/materials.md), all keys in the [input reference](input-reference.md). `whipple materials NAME`
 prints one of the tables below, ready to be copied into a case and changed; `whipple materials --json` prints all of them for programs.
@@ -53,8 +59,8 @@ pub fn page() -> String {
     {
         write_row(&mut page, name, &material);
     }
-    page.push_str("\n## Constants\n\nEach number stands with its source.\n");
-    for (name, table) in all().filter_map(|name| table(name).map(|table| (name, table))) {
+    page.push_str("\n## Constants\n\nA source stands beside the first number that comes from it. The numbers below without one come from the same.\n");
+    for (name, table) in all().filter_map(|name| table(name, Sources::Once).map(|table| (name, table))) {
         let _ = writeln!(page, "\n### {name}\n\n```toml\n{}\n```", table.trim_end());
     }
     page

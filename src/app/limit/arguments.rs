@@ -5,7 +5,7 @@ use super::{Beside, Output};
 use desk::ballistic::{
     Shield, Shot, crater, hole, modified_nno, nno, sizing, stuffed, thin_bumper,
 };
-use desk::plot::parse_quantity;
+use plot::parse_quantity;
 
 /// The equations.
 #[expect(clippy::doc_markdown, reason = "the comments are the help")]

@@ -1,7 +1,7 @@
 //! The chart of an equation, with the shots of a sweep.
 
 use super::laws::Law;
-use desk::plot::{Chart, Curve, Mark, Quantity, Rgb, colour_of};
+use plot::{Chart, Curve, Mark, Quantity, Rgb, colour_of};
 use desk::sweep::Shot;
 use model::readable::tidy;
 

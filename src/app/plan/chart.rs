@@ -1,6 +1,6 @@
 //! Strong and weak scaling in one chart.
 
-use desk::plot::{Chart, Curve, Mark, Quantity, Rgb, colour_of};
+use plot::{Chart, Curve, Mark, Quantity, Rgb, colour_of};
 use files::plan::{Row, Weak};
 
 /// Efficiency over the number of ranks: of the model as it is, and of one that is refined as ranks

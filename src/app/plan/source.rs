@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::results::{Results, only_part};
 use comm::Comm;
-use desk::plot::snapshots;
+use plot::snapshots;
 use files::input;
 use files::output::h5::Content;
 use files::output::h5::read::SnapshotFile;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use desk::plot::{
+use plot::{
     By, Columns, Direction, History, PlotError, Points, Tables, choose, cumulative, distributions,
     front, parse_pair, snapshots, tables_of_run, title, widest,
 };

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::out::{named, save, target, write};
 use super::{PlotArgs, movie, sources};
-use desk::plot::{Format, PlotError, Sequence, Source};
+use plot::{Format, PlotError, Sequence, Source};
 
 /// Draws what `make` makes of the chosen snapshots, or writes it as tables, into files called by `name`.
 ///

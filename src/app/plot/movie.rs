@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::PlotArgs;
 use super::out::{MOVIES, save, target};
-use desk::plot::movie::{Format, write};
-use desk::plot::{PlotError, Sequence};
+use plot::movie::{Format, write};
+use plot::{PlotError, Sequence};
 
 /// What belongs to movies.
 #[derive(Debug, Clone, Default, clap::Args)]

@@ -6,7 +6,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use super::PlotArgs;
 use crate::form::wrote;
-use desk::plot::{self, Canvas, Chart, Format, PlotError, movie};
+use plot::{self, Canvas, Chart, Format, PlotError, movie};
 
 /// What movies are called.
 pub const MOVIES: &str =

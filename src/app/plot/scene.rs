@@ -2,7 +2,7 @@
 
 use super::out::named;
 use super::{PlotArgs, curves, each};
-use desk::plot::{
+use plot::{
     Camera, Format, NO_TABLE, PlotError, RadiographRequest, Radiographs, SceneRequest, Scenes,
 };
 

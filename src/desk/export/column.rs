@@ -1,7 +1,7 @@
 //! What is told of each particle, by the names that files and plots know.
 
 use super::ExportError;
-use crate::plot::{SYMMETRIC, Shown, Snapshot, TENSOR, VECTOR};
+use plot::{SYMMETRIC, Shown, Snapshot, TENSOR, VECTOR};
 use files::output::h5::{Array, Content, Element, RowType};
 
 /// Group of a snapshot's particle fields.

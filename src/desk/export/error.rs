@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::plot::PlotError;
+use plot::PlotError;
 use files::output::OutputError;
 use files::output::h5::read::ReadError;
 

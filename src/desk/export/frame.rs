@@ -8,7 +8,7 @@ use super::column::{Column, Source, columns};
 use super::images::{Images, flips};
 use super::start::Start;
 use super::values::Values;
-use crate::plot::{PlotError, Shown, Snapshot};
+use plot::{PlotError, Shown, Snapshot};
 use files::output::Block;
 use files::output::h5::Content;
 use files::output::h5::RowType;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::ExportError;
-use crate::plot::{Snapshot, colour_of};
+use plot::{Snapshot, colour_of};
 use files::output::{NewFile, RunFolder};
 
 const TEMPLATE: &str = include_str!("open_in_paraview.py");

@@ -10,7 +10,7 @@ use super::column::Column;
 use super::frame::{Frame, Piece};
 use super::text::line;
 use super::values::{IS_LITTLE, Values};
-use crate::plot::colour_of;
+use plot::colour_of;
 use files::output::{NewFile, VERSION};
 
 /// Writes a snapshot.

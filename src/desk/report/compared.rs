@@ -9,7 +9,7 @@ use super::html::{Html, missing, note, or_untold, table, table_of_texts};
 use super::page::{Section, snapshots, whole};
 use super::picture::{chart, image};
 use super::sections::verdict;
-use crate::plot::{Columns, Pictures, Request, Sequence, Source, Tables};
+use plot::{Columns, Pictures, Request, Sequence, Source, Tables};
 use files::output::RunFolder;
 use model::differences::{Difference, differences};
 use model::readable::short;

@@ -1,6 +1,6 @@
 //! Pieces of HTML, in which texts of files cannot become markup.
 
-use crate::plot::{Rgb, hex};
+use plot::{Rgb, hex};
 use model::readable::one_line;
 
 /// A piece of a page: markup of our own, and texts that are escaped.

@@ -4,7 +4,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
 use super::html::{Html, missing};
-use crate::plot::{Canvas, Chart};
+use plot::{Canvas, Chart};
 
 /// Width of charts (pixels).
 const WIDTH: u32 = 1000;

@@ -10,7 +10,7 @@ use serde_json::json;
 
 use super::found::{Run, told};
 use super::html::{Html, note, swatch};
-use crate::plot::hex;
+use plot::hex;
 use model::SymmetryPlane;
 use model::readable::short;
 use scene::Scene;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::SweepError;
 use files::output::{OutputError, Sheet, read_small};
 
-use crate::plot::{Chart, Curve, Mark, Quantity, colour_of};
+use plot::{Chart, Curve, Mark, Quantity, colour_of};
 
 /// Columns of a table that are no keys and no answers.
 const OWN: &[&str] = &["run", "state"];

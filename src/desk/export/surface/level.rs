@@ -1,6 +1,6 @@
 //! How much of a body there is at the nodes of a block.
 
-use crate::plot::{REACH, weight};
+use plot::{REACH, weight};
 
 /// A particle as far as it fills space.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -19,7 +19,7 @@ use rayon::prelude::*;
 
 use super::ExportError;
 use super::frame::{Frame, Wish};
-use crate::plot::{Bodies, Matter, Shown};
+use plot::{Bodies, Matter, Shown};
 use blocks::Blocks;
 use level::Ball;
 

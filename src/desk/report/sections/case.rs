@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::plot::colour_of;
+use plot::colour_of;
 use crate::report::found::{Rows, Run, in_words};
 use crate::report::html::{Html, list, missing, note, swatch, table, table_of_texts};
 

@@ -1,6 +1,6 @@
 //! The ledger of contact, by pair of bodies.
 
-use crate::plot::{Columns, Tables};
+use plot::{Columns, Tables};
 use crate::report::found::{Rows, Run, told};
 use crate::report::html::{Html, note, table_of_texts};
 use crate::report::picture::chart;

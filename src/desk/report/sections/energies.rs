@@ -1,6 +1,6 @@
 //! Energies over time.
 
-use crate::plot::History;
+use plot::History;
 use crate::report::found::{Rows, Run};
 use crate::report::html::{Html, table_of_texts};
 use crate::report::picture::chart;

@@ -1,6 +1,6 @@
 //! What hangs together at the end.
 
-use crate::plot::{By, cumulative};
+use plot::{By, cumulative};
 use crate::report::found::{Rows, Run};
 use crate::report::html::{Html, note, or_untold, table_of_texts};
 use crate::report::picture::chart;

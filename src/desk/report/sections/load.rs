@@ -1,6 +1,6 @@
 //! How evenly the ranks were loaded, and where the time went.
 
-use crate::plot::{Columns, History, Tables};
+use plot::{Columns, History, Tables};
 use crate::report::found::{Rows, Run};
 use crate::report::html::{Html, bar, missing, note, or_untold, table};
 use crate::report::picture::chart;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::plot::{Wanted, distributions};
+use plot::{Wanted, distributions};
 use crate::report::found::{Rows, Run, told};
 use crate::report::html::{Html, missing, note, or_untold, table_of_texts};
 use crate::report::picture::chart;

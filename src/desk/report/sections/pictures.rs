@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::plot::{Pictures, PlotError, Request, Sequence, Source, Wanted, choose};
+use plot::{Pictures, PlotError, Request, Sequence, Source, Wanted, choose};
 use crate::report::found::Run;
 use crate::report::html::Html;
 use crate::report::picture::image;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::plot::{Columns, Tables, colour_of, hex};
+use plot::{Columns, Tables, colour_of, hex};
 use crate::report::found::{Rows, Run, told};
 use crate::report::html::{Html, note, swatch, table};
 use crate::report::picture::chart;

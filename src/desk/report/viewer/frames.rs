@@ -14,7 +14,7 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
 use super::chosen::Chosen;
-use crate::plot::{PlotError, Shown, Snapshot};
+use plot::{PlotError, Shown, Snapshot};
 
 /// What is kept of a snapshot.
 #[derive(Debug, Default)]

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::chosen::{Chosen, spread};
 use super::frames::{Ends, Frame, Kept};
-use crate::plot::{PlotError, Rgb, Scale, Shown, Snapshot, colour_of, decimals, hex};
+use plot::{PlotError, Rgb, Scale, Shown, Snapshot, colour_of, decimals, hex};
 use model::readable::Readable;
 use model::{Axis, SymmetryPlane};
 

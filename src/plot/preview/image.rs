@@ -1,0 +1,257 @@
+//! What is nearest to the viewer at each pixel of a panel, particle by particle.
+
+use super::panel::Panel;
+use crate::canvas::{PAPER, Rgb};
+use crate::colour;
+
+/// Discs of a smaller radius (pixels) are squares, which leave no gaps between them.
+const SMALL: f64 = 2.5;
+
+/// Squares are wider than a spacing by this, as rows of close-packed lattices are apart.
+const WIDER: f64 = 1.12;
+
+/// No particle.
+const NOBODY: u16 = u16::MAX;
+
+/// The nearest particle at a pixel.
+#[derive(Debug, Clone, Copy)]
+struct Hit {
+    /// Distance (m) beyond a plane that all are behind; smaller is nearer.
+    depth: f32,
+    body: u16,
+    /// Brightness, 255 for all.
+    tone: u8,
+}
+
+/// The pixels of a panel.
+#[derive(Debug, Clone)]
+pub struct Image {
+    panel: Panel,
+    columns: usize,
+    rows: usize,
+    hits: Vec<Hit>,
+    /// Half the height (pixels) that small particles have at least.
+    rise: f64,
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "pixels are clamped to the panel, and depths need no more digits"
+)]
+impl Image {
+    /// Of no particles yet, which are to be so high at least (pixels).
+    pub fn new(panel: Panel, height: f64) -> Self {
+        let [columns, rows] = panel.frame.pixels();
+        let none = Hit {
+            depth: f32::INFINITY,
+            body: NOBODY,
+            tone: 255,
+        };
+        Self {
+            panel,
+            columns,
+            rows,
+            hits: vec![none; columns * rows],
+            rise: 0.5 * height,
+        }
+    }
+
+    /// Pixels in a row.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// Adds a particle at a place (m) as a ball of a size (m).
+    pub fn add(&mut self, place: &[f64; 3], size: f64, body: usize) {
+        let [right, up] = self.panel.axes();
+        let (view, scale) = (&self.panel.view, self.panel.scale());
+        let x = (place[right] - view.x[0]) * scale;
+        let y = (view.y[1] - place[up]) * scale;
+        let depth = -self.panel.towards() * place[self.panel.plane.axis.index()];
+        let radius = 0.5 * size * scale;
+        let small = radius < SMALL;
+        let reach = if small {
+            (WIDER * radius).max(0.5)
+        } else {
+            radius
+        };
+        let pixels = |middle: f64, reach: f64, count: usize| {
+            let first = (middle - reach - 0.5).ceil().max(0.0);
+            let end = (middle + reach - 0.5).floor() + 1.0;
+            first as usize..(end.max(0.0) as usize).min(count)
+        };
+        let body = u16::try_from(body).unwrap_or(NOBODY - 1);
+        let rise = if small { reach.max(self.rise) } else { reach };
+        for row in pixels(y, rise, self.rows) {
+            for column in pixels(x, reach, self.columns) {
+                let hit = if small {
+                    Some((depth, 255))
+                } else {
+                    let (dx, dy) = (column as f64 + 0.5 - x, row as f64 + 0.5 - y);
+                    ball(dx.hypot(dy) / radius, radius)
+                        .map(|(height, tone)| (depth - height / scale, tone))
+                };
+                let Some((depth, tone)) = hit else { continue };
+                let hit = Hit {
+                    depth: depth as f32,
+                    body,
+                    tone,
+                };
+                let old = &mut self.hits[row * self.columns + column];
+                if (hit.depth, hit.body) < (old.depth, old.body) {
+                    *old = hit;
+                }
+            }
+        }
+    }
+
+    /// Takes in what others have found.
+    pub fn merge(&mut self, other: &Self) {
+        for (hit, other) in self.hits.iter_mut().zip(&other.hits) {
+            if (other.depth, other.body) < (hit.depth, hit.body) {
+                *hit = *other;
+            }
+        }
+    }
+
+    /// Numbers of the bodies that are seen.
+    pub fn bodies(&self) -> impl Iterator<Item = usize> {
+        let seen = self.hits.iter().filter(|hit| hit.body != NOBODY);
+        seen.map(|hit| usize::from(hit.body))
+    }
+
+    /// Colours of the pixels, row by row: far things are paler, with lines where bodies end and where
+    /// one thing is before another by more than `step` (m).
+    pub fn colours(&self, step: f64) -> Vec<Rgb> {
+        let seen = || self.hits.iter().filter(|hit| hit.body != NOBODY);
+        let nearest = seen().fold(f32::INFINITY, |a, hit| a.min(hit.depth));
+        let farthest = seen().fold(f32::NEG_INFINITY, |a, hit| a.max(hit.depth));
+        let depth = (farthest - nearest).max(f32::MIN_POSITIVE);
+        let mut colours = Vec::with_capacity(self.hits.len());
+        for row in 0..self.rows {
+            for column in 0..self.columns {
+                let hit = &self.hits[row * self.columns + column];
+                if hit.body == NOBODY {
+                    colours.push(PAPER);
+                    continue;
+                }
+                let pale = 0.45 * (hit.depth - nearest) / depth
+                    * f32::from(u8::from(step < f64::from(depth)));
+                let tone = f32::from(hit.tone) / 255.0;
+                let edge = if self.is_edge(row, column, step) {
+                    0.45
+                } else {
+                    1.0
+                };
+                let shade =
+                    |c: u8| ((f32::from(c) * (1.0 - pale) + 255.0 * pale) * tone * edge) as u8;
+                colours.push(colour::body(usize::from(hit.body)).map(shade));
+            }
+        }
+        colours
+    }
+
+    /// Whether a body, or what is near, ends at a pixel.
+    fn is_edge(&self, row: usize, column: usize, step: f64) -> bool {
+        let own = &self.hits[row * self.columns + column];
+        let beside = [
+            (row.wrapping_sub(1), column),
+            (row + 1, column),
+            (row, column.wrapping_sub(1)),
+            (row, column + 1),
+        ];
+        beside.into_iter().any(|(row, column)| {
+            if row >= self.rows || column >= self.columns {
+                return false;
+            }
+            let other = &self.hits[row * self.columns + column];
+            f64::from(other.depth) > f64::from(own.depth) + step
+                || (other.body != own.body && other.depth >= own.depth)
+        })
+    }
+}
+
+/// Height over its middle, and brightness, of a ball of a radius (pixels) at a distance from the
+/// middle over the radius.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "brightness is a byte"
+)]
+fn ball(distance: f64, radius: f64) -> Option<(f64, u8)> {
+    if distance > 1.0 {
+        return None;
+    }
+    let height = (1.0 - distance * distance).sqrt();
+    let rim = 1.0 - (1.2 / radius).min(0.15);
+    let tone = if distance > rim {
+        0.62
+    } else {
+        0.82 + 0.18 * height
+    };
+    Some((height * radius, (255.0 * tone) as u8))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::canvas::Frame;
+    use crate::picture::view::View;
+    use crate::snapshots::plane::Plane;
+    use model::Axis;
+
+    fn image(axis: Axis) -> Image {
+        let panel = Panel {
+            plane: Plane {
+                axis,
+                position: 0.0,
+            },
+            view: View {
+                x: [0.0, 10.0],
+                y: [0.0, 10.0],
+            },
+            frame: Frame {
+                left: 0.0,
+                top: 0.0,
+                width: 100.0,
+                height: 100.0,
+            },
+        };
+        Image::new(panel, 0.0)
+    }
+
+    /// Squares of particles leave no gap, whatever their pitch in pixels.
+    #[test]
+    fn a_lattice_of_any_pitch_is_solid() {
+        for count in [7_u32, 33, 150, 400] {
+            let mut image = image(Axis::Z);
+            let size = 10.0 / f64::from(count);
+            for k in 0..count * count {
+                let at = |n: u32| (f64::from(n) + 0.5) * size;
+                image.add(&[at(k % count), at(k / count), 0.0], size, 3);
+            }
+            let seen = image.bodies().count();
+            // Corners between discs are open.
+            let all = if size * 10.0 < 2.0 * SMALL { 1.0 } else { 0.76 };
+            assert!(seen as f64 >= all * 1e4, "{count}: {seen}");
+            assert!(image.bodies().all(|body| body == 3));
+        }
+    }
+
+    /// The viewer looks down z, and along y from below.
+    #[test]
+    fn what_is_nearer_hides_what_is_behind() {
+        for (axis, nearer) in [(Axis::X, 1), (Axis::Y, 0), (Axis::Z, 1)] {
+            let mut image = image(axis);
+            let mut place = [5.0; 3];
+            for (body, along) in [(0, 2.0), (1, 8.0)] {
+                place[axis.index()] = along;
+                image.add(&place, 1.0, body);
+            }
+            let mut seen: Vec<usize> = image.bodies().collect();
+            seen.dedup();
+            assert_eq!(seen, [nearer], "{axis:?}");
+        }
+    }
+}

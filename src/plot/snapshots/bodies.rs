@@ -1,0 +1,74 @@
+//! Bodies of the snapshots of one picture: those of the same name are one.
+
+use super::snapshot::Snapshot;
+use crate::PlotError;
+
+/// The bodies of a picture, and which of them are shown.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Bodies {
+    /// Names, in the order in which snapshots have told them.
+    pub names: Vec<String>,
+    /// Which are rigid.
+    pub rigid: Vec<bool>,
+    /// Names of those that are shown; all if there are none.
+    chosen: Vec<String>,
+}
+
+impl Bodies {
+    /// Of no snapshot yet, of which those of some names will be shown, or all.
+    pub fn new(chosen: &[String]) -> Self {
+        Self {
+            chosen: chosen.to_vec(),
+            ..Self::default()
+        }
+    }
+
+    /// Takes up the bodies of a snapshot; returns the number in the picture of each.
+    pub fn add(&mut self, snapshot: &Snapshot) -> Vec<usize> {
+        let bodies = snapshot.bodies.iter().zip(&snapshot.rigid);
+        let number = |(name, &rigid): (&String, &bool)| {
+            self.names
+                .iter()
+                .position(|n| n == name)
+                .unwrap_or_else(|| {
+                    self.names.push(name.clone());
+                    self.rigid.push(rigid);
+                    self.names.len() - 1
+                })
+        };
+        bodies.map(number).collect()
+    }
+
+    /// Whether the body of a number is shown.
+    pub fn shows(&self, number: usize) -> bool {
+        self.chosen.is_empty() || self.chosen.contains(&self.names[number])
+    }
+
+    /// Names of those that are shown, if not all are.
+    pub fn alone(&self) -> Option<&[String]> {
+        (!self.chosen.is_empty()).then_some(&self.chosen[..])
+    }
+
+    /// The numbers of bodies by their names.
+    ///
+    /// # Errors
+    /// [`PlotError::Body`] for a name that no snapshot has told.
+    pub fn numbers(&self, names: &[String]) -> Result<Vec<usize>, PlotError> {
+        let number = |name: &String| {
+            let number = self.names.iter().position(|n| n == name);
+            number.ok_or_else(|| PlotError::Body {
+                name: name.clone(),
+                known: self.names.clone(),
+            })
+        };
+        names.iter().map(number).collect()
+    }
+
+    /// Whether all that were chosen are there.
+    ///
+    /// # Errors
+    /// [`PlotError::Body`] if not.
+    pub fn check(&self) -> Result<(), PlotError> {
+        self.numbers(&self.chosen).map(|_| ())
+    }
+}

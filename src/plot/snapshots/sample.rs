@@ -1,0 +1,39 @@
+//! Values of very many particles, of which some stand for all.
+
+use crate::colour::Scale;
+
+/// Values that one snapshot adds at most, about.
+const MOST: usize = 1 << 18;
+
+/// Values that stand for those of some snapshots, with their ends.
+#[derive(Debug, Default)]
+pub struct Sampled {
+    values: Vec<f64>,
+    ends: Option<[f64; 2]>,
+    /// Whether some are no numbers.
+    pub lost: bool,
+}
+
+impl Sampled {
+    /// Takes up some of the values of a snapshot of so many particles.
+    pub fn extend(&mut self, values: impl Iterator<Item = f64>, particles: usize) {
+        let every = particles.div_ceil(MOST).max(1);
+        for (k, value) in values.enumerate() {
+            if !value.is_finite() {
+                self.lost = true;
+                continue;
+            }
+            let [low, high] = self.ends.unwrap_or([value; 2]);
+            self.ends = Some([low.min(value), high.max(value)]);
+            if k.is_multiple_of(every) {
+                self.values.push(value);
+            }
+        }
+    }
+
+    /// The scale over a range, or over all.
+    pub fn scale(&self, range: Option<[f64; 2]>) -> Scale {
+        let ends = self.ends.into_iter().flatten();
+        Scale::new(self.values.iter().copied().chain(ends), range)
+    }
+}
