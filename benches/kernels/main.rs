@@ -9,19 +9,19 @@ use std::time::Duration;
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use scene::{COUNT, DENSITY, LENGTH, Scene, case, noise};
-use whipple::contact::{ContactTable, TaskForces, overlap};
-use whipple::material::{Material, PointBatch};
-use whipple::model::ContactClass;
-use whipple::neighbours::ForeignLists;
-use whipple::numerics::dispatch::{Instructions, Vectorised, available};
-use whipple::numerics::exact_sum::ExactSum;
-use whipple::numerics::kernel::{ConstantScale, Kernel};
-use whipple::numerics::lanes::{LANES, Lanes};
-use whipple::sph::corrected::{CorrectedGradient, CorrectedRecord};
-use whipple::sph::gradient::VelocityGradient;
-use whipple::sph::momentum::{Momentum, PairStress, StressRecord, Viscosity};
-use whipple::sph::neighbourhood::{Neighbourhood, Sources};
-use whipple::sph::terms::PairTerms;
+use engine::contact::{ContactTable, TaskForces, overlap};
+use material::{Material, PointBatch};
+use model::ContactClass;
+use particles::neighbours::ForeignLists;
+use numerics::dispatch::{Instructions, Vectorised, available};
+use numerics::exact_sum::ExactSum;
+use numerics::kernel::{ConstantScale, Kernel};
+use numerics::lanes::{LANES, Lanes};
+use engine::sph::corrected::{CorrectedGradient, CorrectedRecord};
+use engine::sph::gradient::VelocityGradient;
+use engine::sph::momentum::{Momentum, PairStress, StressRecord, Viscosity};
+use engine::sph::neighbourhood::{Neighbourhood, Sources};
+use engine::sph::terms::PairTerms;
 
 /// A group whose throughput counts so many elements.
 fn group<'a>(

@@ -1,14 +1,14 @@
 //! The block: particles as the engine sorts and lists them.
 
-use whipple::contact::{ContactTable, ContactView};
-use whipple::input;
-use whipple::model::Case;
-use whipple::neighbours::MotionRecord;
-use whipple::neighbours::{
+use engine::contact::{ContactTable, ContactView};
+use files::input;
+use model::Case;
+use particles::neighbours::MotionRecord;
+use particles::neighbours::{
     Chunk, ClusterLists, ColumnGrid, ForeignLists, ImageFacts, ImageState, Lengths, Sequence,
 };
-use whipple::numerics::lanes::LANES;
-use whipple::particles::{Asleep, Image, ParticleStore};
+use numerics::lanes::LANES;
+use particles::{Asleep, Image, ParticleStore};
 
 /// Particles along an edge.
 const EDGE: u32 = 48;

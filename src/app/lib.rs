@@ -1,6 +1,5 @@
 //! The commands of the program.
 
-mod bench;
 mod check;
 pub mod compare;
 mod export;

@@ -12,7 +12,6 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::PossibleValuesParser;
 
-use super::bench;
 use super::form::Form;
 use super::plot::out::{check_picture, save_text, write_chart};
 use plot::PlotError;

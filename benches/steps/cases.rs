@@ -124,7 +124,7 @@ lattice = "cubic"
 const QUARTER: BenchCase = BenchCase {
     name: "",
     what: "",
-    text: include_str!("../../../inputs/quarter-impact/case.toml"),
+    text: include_str!("../../inputs/quarter-impact/case.toml"),
     set: &["run.end_time=1us"],
     begin: 0.05e-6,
     steps: 50,
