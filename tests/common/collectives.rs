@@ -1,5 +1,4 @@
 //! Collective calls and messages, on ranks of any kind.
-#![allow(dead_code, reason = "each test file uses some of these")]
 
 use whipple::comm::{Comm, Exchange, Joint};
 

@@ -1,13 +1,9 @@
 //! Cases built in code, for tests of the engine.
-#![allow(dead_code, reason = "each test file uses some of these")]
 
-pub mod bridge;
-pub mod cloud;
 pub mod collectives;
-pub mod linear_field;
 pub mod outcome;
+pub mod process;
 pub mod random;
-pub mod ranks;
 pub mod sentinel;
 pub mod virtual_ranks;
 

@@ -1,5 +1,4 @@
 //! What runs must have in common to the last bit, and a case with all there is.
-#![allow(dead_code, reason = "each test file uses some of these")]
 
 use std::collections::BTreeMap;
 

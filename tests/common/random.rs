@@ -1,5 +1,4 @@
 //! Random numbers that are the same on every machine and in every run.
-#![allow(dead_code, reason = "each test file uses some of these")]
 
 /// `SplitMix64` (Steele, Lea & Flood 2014).
 pub struct Random(u64);

@@ -1,5 +1,4 @@
 //! Particles whose every number tells where it belongs.
-#![allow(dead_code, reason = "each test file uses some of these")]
 
 use whipple::particles::FIELDS;
 

@@ -1,5 +1,4 @@
 //! Tests on virtual ranks.
-#![allow(dead_code, reason = "each test file uses some of these")]
 
 use whipple::comm::{Comm, Machine, virtual_ranks};
 
@@ -17,4 +16,16 @@ pub fn on_virtual_ranks<T: Send>(
             .expect("a pool of this thread");
         task(comm)
     })
+}
+
+/// Runs a task on each of these numbers of ranks in turn: on one with all threads, on more as
+/// [`on_virtual_ranks`] does.
+pub fn on_each(ranks: &[usize], task: impl Fn(&Comm) + Sync) {
+    for &ranks in ranks {
+        if ranks == 1 {
+            task(&Comm::solo());
+        } else {
+            on_virtual_ranks(ranks, Machine::IDEAL, &task);
+        }
+    }
 }

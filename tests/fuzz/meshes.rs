@@ -49,7 +49,7 @@ const WORDS: &[&str] = &[
 
 /// Sound files of both formats, the first kept changes among them.
 fn seeds() -> Vec<(&'static str, Vec<u8>)> {
-    let project = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let project = crate::project::root();
     let hook = fs::read(project.join("tests/common/hook.stl")).unwrap();
     let cube = fs::read(project.join("tests/common/cube.obj")).unwrap();
     let text = String::from_utf8(hook.clone()).unwrap();

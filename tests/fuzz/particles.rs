@@ -51,7 +51,7 @@ const TABLE: &str = "# units: mm,mm,mm,km/s,mg,-,J/kg\nx,y,z,vz,mass,body,specif
 
 /// Names and contents of sound files.
 fn sound() -> Vec<(String, Vec<u8>)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/particles");
+    let folder = crate::project::root().join("tests/particles");
     let mut found = vec![("table.csv".to_owned(), TABLE.as_bytes().to_vec())];
     let mut paths: Vec<_> = fs::read_dir(folder)
         .unwrap()

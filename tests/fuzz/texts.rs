@@ -2,7 +2,6 @@
 
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
 
 use crate::random::Random;
 use crate::{Budget, Met, folder, random};
@@ -100,7 +99,8 @@ const WORDS: &[&str] = &[
 ];
 
 fn seeds() -> Vec<String> {
-    let project = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let project = crate::project::root();
+    crate::project::enter();
     let mut seeds = vec![include_str!("../bad_inputs/case.toml").to_owned()];
     let mut cases: Vec<_> = fs::read_dir(project.join("inputs"))
         .unwrap()

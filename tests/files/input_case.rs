@@ -1,0 +1,502 @@
+//! The ready cases, overrides, and the resolved text.
+
+use whipple::input::{load, output_and_run_only, parse};
+use whipple::material::{Strength, library};
+use whipple::model::{
+    Axis, Case, ClockInterval, ContactMode, PotentialRange, Precision, Shape, SmoothingLength,
+};
+use whipple::populate;
+use whipple::preflight::{approaches, warnings};
+
+fn ready(name: &str, overrides: &[&str]) -> Case {
+    let path = crate::project::root().join(format!("inputs/{name}/case.toml"));
+    load(&path, &strings(overrides)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn strings(words: &[&str]) -> Vec<String> {
+    words.iter().map(ToString::to_string).collect()
+}
+
+fn particles(case: &Case) -> Vec<u64> {
+    let count = |body| populate::count(body, case.dimension, &case.symmetry, None);
+    case.bodies.iter().map(count).collect()
+}
+
+/// Everything but the resolved text.
+fn meaning(case: &Case) -> String {
+    let mut case = case.clone();
+    case.resolved.clear();
+    format!("{case:?}")
+}
+
+#[test]
+fn the_main_job() {
+    let case = ready("quarter-impact", &[]);
+    assert_eq!(particles(&case), [44_230, 3_582]);
+    assert!(warnings(&case, &approaches(&case)).is_empty());
+    let [plate, sphere] = case.bodies.as_slice() else {
+        panic!("two bodies")
+    };
+    assert_eq!(sphere.velocity.as_slice(), [0.0, 0.0, -7e3]);
+    assert!((case.impact_speed() - 7e3).abs() < 1e-9);
+    assert!((sphere.smoothing_length - 2.6e-5).abs() < 1e-18);
+    // The outermost layers are one spacing apart.
+    let below = populate::bounds(plate, 3).unwrap().1[2];
+    let above = populate::bounds(sphere, 3).unwrap().0[2];
+    assert!((above - below - 2e-5).abs() < 1e-18);
+    let material = &case.materials[0];
+    assert_eq!(
+        material.failure.spall.unwrap().pressure.to_bits(),
+        (-1.2e9f64).to_bits()
+    );
+    let Strength::VonMises(strength) = &material.strength else {
+        panic!("von Mises")
+    };
+    assert_eq!(strength.yield_stress.to_bits(), 0.26e9f64.to_bits());
+    assert_eq!(
+        Some(&material.eos),
+        library::find("aluminium-2024").map(|m| m.eos).as_ref()
+    );
+    assert_eq!(case.run.end_time.to_bits(), 0.2e-6f64.to_bits());
+    assert!(matches!(case.default_contact, ContactMode::Overlap(_)));
+}
+
+#[test]
+fn the_whole_model_is_four_quarters() {
+    let quarter = ready("quarter-impact", &["spacing=0.03mm"]);
+    let whole = ready("quarter-impact", &["spacing=0.03mm", "symmetry=[]"]);
+    for (q, w) in quarter.bodies.iter().zip(&whole.bodies) {
+        let part: Vec<_> = populate::sites(w, 3, &[], None)
+            .filter(|s| s.position[0] > 0.0 && s.position[1] > 0.0)
+            .collect();
+        let sites: Vec<_> = populate::sites(q, 3, &quarter.symmetry, None).collect();
+        assert_eq!(sites, part);
+        assert_eq!(populate::count(w, 3, &[], None), 4 * sites.len() as u64);
+    }
+}
+
+#[test]
+fn the_small_cases() {
+    let flyer = ready("flyer-plate", &[]);
+    assert_eq!((flyer.dimension, particles(&flyer)), (1, vec![200, 200]));
+    assert_eq!(flyer.materials[0].strength, Strength::None);
+    assert_eq!(flyer.materials[0].failure.spall, None);
+    let elastic = ready("elastic-impact", &[]);
+    assert_eq!(particles(&elastic), [2400, 552]);
+    for case in [flyer, elastic] {
+        assert!(warnings(&case, &approaches(&case)).is_empty());
+    }
+}
+
+/// Every folder of `inputs/` has a case that can be read, and a README.
+#[test]
+fn all_ready_cases_are_sound() {
+    let inputs = crate::project::root().join("inputs");
+    let mut count = 0;
+    for entry in std::fs::read_dir(inputs).unwrap() {
+        let folder = entry.unwrap().path();
+        assert!(folder.join("README.md").is_file(), "{folder:?}");
+        load(&folder.join("case.toml"), &[]).unwrap_or_else(|error| panic!("{error}"));
+        count += 1;
+    }
+    assert!(count >= 27, "{count}");
+}
+
+#[test]
+fn impacts_of_plates_and_targets() {
+    for (name, expected) in [
+        ("hiermaier-1997", &[99_534, 8_371][..]),
+        ("crater", &[130_037, 525]),
+        ("whipple-shield", &[19_125, 66_225, 3_637]),
+    ] {
+        let case = ready(name, &[]);
+        for (count, about) in particles(&case).iter().zip(expected) {
+            assert!(count.abs_diff(*about) * 50 < *about, "{name}: {count}");
+        }
+        let said = warnings(&case, &approaches(&case));
+        assert!(said.is_empty(), "{name}: {said:?}");
+    }
+}
+
+#[test]
+fn overrides_reach_every_place() {
+    let case = ready(
+        "quarter-impact",
+        &[
+            "spacing=0.015mm",
+            "run.end_time=\"0.1 us\"",
+            "run.max_steps = 7",
+            "body.sphere.velocity=[0, \"1 cm/us\", 0]",
+            "body.0.spacing=0.02 mm",
+            "body.sphere.lattice={kind=\"hexagonal\", angle=\"90 deg\"}",
+            "contact.mode=potential",
+            "contact.potential.exponent=3",
+            "contact.pair=[{bodies=[\"sphere\",\"plate\"], potential.range=\"spacing\"}]",
+            "sph.smoothing_length=variable",
+            "sph.smoothing_length_max=1.5",
+            "symmetry=[]",
+            "material.aluminium.strength=none",
+            "material.aluminium.failure.spall=none",
+            "material.aluminium.density=2.8 g/cm^3",
+            "domain.axes=[\"y\", \"x\"]",
+            "domain.levels=2",
+            "time_step.max=1 ns",
+            "output.fields=[\"pressure\"]",
+        ],
+    );
+    assert!((case.bodies[0].lattice.spacing - 2e-5).abs() < 1e-18);
+    assert!((case.bodies[1].lattice.spacing - 1.5e-5).abs() < 1e-18);
+    assert!((case.bodies[1].lattice.angle - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
+    assert_eq!(case.bodies[1].velocity.as_slice(), [0.0, 1e4, 0.0]);
+    assert_eq!(case.run.max_steps, Some(7));
+    let ContactMode::Potential(potential) = case.contact_between(0, 1) else {
+        panic!("potential")
+    };
+    assert_eq!(
+        (potential.exponent, potential.range),
+        (3, PotentialRange::Spacing)
+    );
+    let SmoothingLength::Variable { min, max } = case.sph.smoothing_length else {
+        panic!("variable")
+    };
+    assert_eq!(
+        [min.to_bits(), max.to_bits()],
+        [0.6f64.to_bits(), 1.5f64.to_bits()]
+    );
+    assert!(case.symmetry.is_empty());
+    assert_eq!(case.materials[0].strength, Strength::None);
+    assert_eq!(case.materials[0].failure.spall, None);
+    assert_eq!(
+        case.materials[0].reference_density.to_bits(),
+        2800f64.to_bits()
+    );
+    assert_eq!(case.domain.axes, [Some(Axis::Y), Some(Axis::X), None]);
+    assert_eq!(case.domain.levels, Some(2));
+    let usual = ready("quarter-impact", &["domain.axis=y", "domain.levels=auto"]).domain;
+    assert_eq!(usual.axes, [Some(Axis::Y), None, None]);
+    assert_eq!(usual.levels, None);
+    assert_eq!(case.time_step.max.to_bits(), 1e-9f64.to_bits());
+    assert_eq!(case.output.fields, ["pressure"]);
+}
+
+#[test]
+fn options_of_the_sums() {
+    let case = ready("quarter-impact", &[]);
+    assert!(!case.sph.balsara);
+    let off = [
+        case.sph.artificial_stress,
+        case.sph.conduction,
+        case.sph.xsph,
+    ];
+    assert_eq!(off.map(f64::to_bits), [0; 3]);
+    let sets = [
+        "sph.artificial_stress=0.3",
+        "sph.balsara=true",
+        "sph.conduction=1",
+        "sph.xsph=0.5",
+    ];
+    let sph = ready("quarter-impact", &sets).sph;
+    assert!(sph.balsara);
+    let on = [sph.artificial_stress, sph.conduction, sph.xsph];
+    assert_eq!(on.map(f64::to_bits), [0.3, 1.0, 0.5].map(f64::to_bits));
+}
+
+#[test]
+fn the_resolved_text_gives_the_same_case() {
+    let sets: [&[&str]; 5] = [
+        &[],
+        // Of several lines, as no title can be.
+        &["#\ntitle = -0.0 # u = , 97.6 GPa"],
+        &["title = \"\"\"\r\n97.6 GPa\"\"\""],
+        &["spacing=0.025 mm", "symmetry=[]", "contact.mode=kernel"],
+        &[
+            "body.sphere.shape={box={size=[\"2 spacing\",\"4 spacing\",\"3 spacing\"]}}",
+            "title=\"a \\\"b\\\" κ\"",
+        ],
+    ];
+    for set in sets {
+        let case = ready("quarter-impact", set);
+        let again = parse("resolved", &case.resolved, &[]).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(meaning(&again), meaning(&case));
+        assert_eq!(again.resolved, case.resolved);
+        // Overrides on top of resolved text work like on the file.
+        let more = parse("resolved", &case.resolved, &strings(&["run.end_time=1us"])).unwrap();
+        assert!((more.run.end_time - 1e-6).abs() < 1e-20);
+    }
+}
+
+#[test]
+fn an_inline_material() {
+    let text = "
+        dimension = 2
+        spacing = \"1 mm\"
+        run.end_time = \"1 us\"
+        [material.steel]
+        density = \"7.83 g/cm^3\"
+        eos.linear = { bulk_modulus = \"1.59 Mbar\", form = \"density_ratio\" }
+        strength.von_mises = { shear_modulus = \"0.82 Mbar\", yield_stress = \"0.003 Mbar\" }
+        [[body]]
+        name = \"disc\"
+        material = \"steel\"
+        shape.sphere = { radius = \"10 spacing\", centre = [\"1 cm\", 0] }
+    ";
+    let case = parse("inline", text, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let Shape::Sphere { centre, radius } = case.bodies[0].shape else {
+        panic!("a disc")
+    };
+    assert!((radius - 1e-2).abs() < 1e-17 && (centre.x - 1e-2).abs() < 1e-17);
+    let modulus = case.materials[0].p_wave_modulus();
+    assert!((modulus / (1.59e11 + 0.82e11 * 4.0 / 3.0) - 1.0).abs() < 1e-15);
+    assert_eq!(case.title, "untitled");
+}
+
+#[test]
+fn a_gas_a_liquid_a_rubber_and_a_hot_metal() {
+    let text = r#"
+        dimension = 1
+        spacing = "1 mm"
+        run.end_time = "1 us"
+        contact.mode = "none"
+        output.fields = ["temperature"]
+        sph.smoothing_length = "variable"
+        [material.gas]
+        density = "1 kg/m^3"
+        eos.ideal_gas = { gamma = 1.4, reference_pressure = "1 bar" }
+        strength = "none"
+        [material.water]
+        density = "1 g/cm^3"
+        eos.tait = { sound_speed = "24 m/s" }
+        strength.viscous = { viscosity = "1 MPa s" }
+        [material.rubber]
+        density = "1.01 g/cm^3"
+        eos.linear = { bulk_modulus = "0.73 GPa" }
+        strength.neo_hookean = { shear_modulus = "0.16 GPa" }
+        [material.copper]
+        library = "copper"
+        strength.johnson_cook = { a = "90 MPa", b = "292 MPa", n = 0.31, c = 0.025, m = 1.09 }
+        thermal = { specific_heat = "383 J/(kg K)", melting_temperature = "1356 K" }
+        failure.spall.pressure = "-1 GPa"
+        [[body]]
+        name = "left"
+        material = "gas"
+        shape.box.size = ["10 mm"]
+        [[body]]
+        name = "right"
+        material = "gas"
+        density = "0.125 kg/m^3"
+        specific_energy = "2 MJ/kg"
+        shape.box = { lower = ["5 mm"], upper = ["15 mm"] }
+        [[body]]
+        name = "pool"
+        material = "water"
+        shape.box = { lower = ["15 mm"], upper = ["25 mm"] }
+    "#;
+    let case = parse("inline", text, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let [left, right, pool] = &case.bodies[..] else {
+        panic!("three bodies")
+    };
+    let states = [left, right, pool].map(|b| (case.initial_density(b), case.initial_energy(b)));
+    // p = 0.4 ρ e = 1 bar.
+    assert!((states[0].1 / 2.5e5 - 1.0).abs() < 1e-14 && (states[0].0 - 1.0).abs() < 1e-15);
+    assert!((states[1].0 - 0.125).abs() < 1e-16 && (states[1].1 - 2e6).abs() < 1e-8);
+    assert!((states[2].0 - 1000.0).abs() < 1e-12 && states[2].1 == 0.0);
+    // Viscous diffusion bounds the step, at the smallest smoothing length: h²ρ/(8η).
+    let h = 0.6 * 1.3e-3;
+    assert!((case.time_step.max / (0.125 * h * h * 1e3 / 1e6) - 1.0).abs() < 1e-13);
+    let Strength::JohnsonCook(law) = case.materials[3].strength else {
+        panic!("Johnson and Cook's")
+    };
+    // The library's shear modulus, room temperature and 1/s by default.
+    assert!((law.shear_modulus - 47.7e9).abs() < 1.0 && (law.reference_rate - 1.0).abs() < 1e-15);
+    let thermal = case.materials[3].thermal.as_ref().unwrap().constants();
+    assert!((thermal.reference_temperature - 300.0).abs() < 1e-12);
+    assert!((case.materials[3].temperature(8930.0, 38300.0, 0.0).unwrap() - 400.0).abs() < 1e-9);
+    let again = parse("resolved", &case.resolved, &[]).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(meaning(&again), meaning(&case));
+}
+
+#[test]
+fn bodies_touch_in_any_order() {
+    let chain = "
+        dimension = 1
+        spacing = \"1 mm\"
+        run.end_time = \"1 us\"
+        material.a.library = \"copper\"
+        [[body]]
+        name = \"last\"
+        material = \"a\"
+        spacing = \"3 mm\"
+        shape.box.size = [\"9 mm\"]
+        touch = { body = \"middle\", direction = \"-x\" }
+        [[body]]
+        name = \"middle\"
+        material = \"a\"
+        shape.box.size = [\"4 mm\"]
+        touch = { body = \"first\", direction = \"-x\" }
+        [[body]]
+        name = \"first\"
+        material = \"a\"
+        shape.box = { lower = [0], upper = [\"5 mm\"] }
+    ";
+    let case = parse("chain", chain, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let places: Vec<f64> = case
+        .bodies
+        .iter()
+        .flat_map(|body| populate::sites(body, 1, &[], None))
+        .map(|site| (site.position[0] * 1e5).round())
+        .collect();
+    // mm/100: three at 3 mm from 2 mm beyond the middle's last, four, five.
+    let expected = [
+        1050., 1350., 1650., 550., 650., 750., 850., 50., 150., 250., 350., 450.,
+    ];
+    assert_eq!(places, expected);
+}
+
+#[test]
+fn overlapping_bodies_and_crooked_lattices_are_doubted() {
+    let deep = ready(
+        "elastic-impact",
+        &["body.sphere.touch={body=\"block\",direction=\"-x\"}"],
+    );
+    assert!(
+        warnings(&deep, &approaches(&deep))[0].starts_with("nothing meets"),
+        "beside the block"
+    );
+    let text = ready("elastic-impact", &[]).resolved;
+    let text = text.replace("touch = { body = \"block\", direction = \"-z\" }", "");
+    let near = text.replace("\"1 mm\"]", "\"0.77 mm\"]");
+    let case = parse("overlap", &near, &[]).unwrap();
+    assert!(
+        warnings(&case, &approaches(&case))[0].contains("begin 0.30 spacings within each other")
+    );
+    let text = text.replace("\"1 mm\"]", "\"0.5 mm\"]");
+    let error = parse("overlap", &text, &[]).unwrap_err().to_string();
+    assert!(
+        error.contains("`sphere` begins 3.0 spacings within `block`"),
+        "{error}"
+    );
+    let silent = parse("overlap", &text, &strings(&["contact.mode=none"])).unwrap();
+    assert!(warnings(&silent, &approaches(&silent))[0].contains("they pass through each other"));
+    let crooked = ready("quarter-impact", &["body.plate.lattice=hexagonal"]);
+    assert!(warnings(&crooked, &approaches(&crooked))[0].contains("is not its own mirror image"));
+}
+
+#[test]
+fn a_restart_changes_only_run_output_and_domain() {
+    let fine = [
+        "run.end_time=1us",
+        "output.fields=[]",
+        "domain.balance_every=3",
+    ];
+    output_and_run_only(&strings(&fine)).unwrap();
+    for (set, message) in [
+        ("spacing=1mm", "`spacing` cannot change on a restart"),
+        (
+            "body.sphere.velocity=[0]",
+            "`body` cannot change on a restart",
+        ),
+        ("run", "an override needs a `=`"),
+    ] {
+        let error = output_and_run_only(&strings(&["run.max_steps=1", set])).unwrap_err();
+        let text = error.to_string();
+        assert!(
+            text.contains(message) && text.contains("--> --set:1:1"),
+            "{text}"
+        );
+    }
+}
+
+/// Inches, feet, pounds and degrees Celsius say what metres, kilograms and kelvins say.
+#[test]
+fn a_case_in_inches_and_degrees_is_the_one_in_metres_and_kelvins() {
+    let case = |units: &[&str; 7]| {
+        let [spacing, time, modulus, heat, warm, edge, speed] = units;
+        let text = format!(
+            "dimension = 2\nspacing = \"{spacing}\"\n[run]\nend_time = \"{time}\"\n\
+             [material.metal]\nlibrary = \"copper\"\nstrength.elastic.shear_modulus = \"{modulus}\"\n\
+             thermal = {{ specific_heat = \"{heat}\", reference_temperature = \"{warm}\" }}\n\
+             [[body]]\nname = \"plate\"\nmaterial = \"metal\"\n\
+             shape.box.size = [\"{edge}\", \"{edge}\"]\nvelocity = [\"{speed}\", 0]\n"
+        );
+        parse("case.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"))
+    };
+    let inches = case(&[
+        "0.02 in",
+        "0.5 min",
+        "6 Mpsi",
+        "383 J/(kg °C)",
+        "20 °C",
+        "1 ft",
+        "250 ft/s",
+    ]);
+    let metres = case(&[
+        "0.508 mm",
+        "30 s",
+        "41368543759.01016 Pa",
+        "383 J/(kg K)",
+        "293.15 K",
+        "304.8 mm",
+        "76.2 m/s",
+    ]);
+    assert_eq!(inches.bodies, metres.bodies);
+    assert_eq!(inches.materials, metres.materials);
+    assert_eq!(inches.run.end_time.to_bits(), metres.run.end_time.to_bits());
+    assert_eq!(inches.length_unit.name, "in");
+}
+
+#[test]
+fn snapshots_may_have_schedules_of_their_own() {
+    let case = |more: &str| {
+        let text = include_str!("../bad_inputs/case.toml");
+        let text = text.replace(
+            "[[output.snapshot]] # far",
+            &format!("{more}\n[[output.snapshot]]"),
+        );
+        parse("case", &text, &[]).unwrap()
+    };
+    let output = case("").output;
+    let names: Vec<_> = output
+        .snapshots
+        .iter()
+        .map(|s| (&s.name[..], s.every))
+        .collect();
+    assert_eq!(names, [("close", Some(1e-8)), ("far", None)]);
+    let output = case(
+        r#"fields = ["pressure"]
+        bodies = ["brick", "ball"]
+        region.above.z = "2 spacing"
+        precision = "single"
+        "#,
+    )
+    .output;
+    let [close, far] = &output.snapshots[..] else {
+        panic!()
+    };
+    assert_eq!(close.fields, ["pressure"]);
+    assert_eq!(close.bodies, Some(vec![0, 1]));
+    assert_eq!(
+        close.region.unwrap().above,
+        [f64::NEG_INFINITY, f64::NEG_INFINITY, 2e-3]
+    );
+    assert_eq!(close.precision, Precision::Single);
+    assert_eq!(
+        (far.precision, far.region, &far.bodies),
+        (Precision::Double, None, &None)
+    );
+    assert_eq!(output.all_fields().count(), 1);
+}
+
+#[test]
+fn checkpoints_may_come_by_what_they_cost() {
+    let every = |more: &[&str]| ready("quarter-impact", more).output.checkpoint_every_wall;
+    assert_eq!(every(&[]), None);
+    let wall = "output.checkpoint_every_wall=";
+    let minutes = format!("{wall}30 min");
+    assert_eq!(every(&[&minutes]), Some(ClockInterval::Fixed(1800.0)));
+    let auto = format!("{wall}auto");
+    let failures = 6.0 * 3600.0;
+    assert_eq!(every(&[&auto]), Some(ClockInterval::Auto { failures }));
+    let day = "output.mean_time_between_failures=24 h";
+    let failures = 24.0 * 3600.0;
+    assert_eq!(every(&[&auto, day]), Some(ClockInterval::Auto { failures }));
+}

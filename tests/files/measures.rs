@@ -1,0 +1,570 @@
+//! Measures against made-up clouds whose answers are known, also where these are turned and shifted.
+
+use crate::common::outcome::start;
+use crate::common::{body, case};
+use std::f64::consts::PI;
+use whipple::comm::Comm;
+use whipple::measure::{Findings, Told};
+use whipple::model::{
+    Axis, Bar, Case, Debris, FrontLine, Include, Measure, MeasureKind, Shape, Slab, SymmetryPlane,
+    Vec3, Zone, ZonePlace, rotation,
+};
+use whipple::step::Simulation;
+
+/// Particle spacing (m).
+const D: f64 = 1e-4;
+
+/// A plate or block between two corners in spacings, struck by a ball from above.
+fn struck(lower: [f64; 3], upper: [f64; 3]) -> Case {
+    let [lower, upper] = [lower, upper].map(|x| Vec3::from(x) * D);
+    let ball = Shape::Sphere {
+        centre: Vec3::new(0.0, 0.0, upper.z + 6.0 * D),
+        radius: 4.0 * D,
+    };
+    let block = Shape::Box { lower, upper };
+    let bodies = vec![
+        body("ball", ball, D, Vec3::new(0.0, 0.0, -3000.0)),
+        body("block", block, D, Vec3::zeros()),
+    ];
+    case(3, bodies, 1.0)
+}
+
+fn measured(kind: MeasureKind) -> Vec<Measure> {
+    let name = "it".to_owned();
+    vec![Measure { name, kind }]
+}
+
+/// Number of a figure of the first measure.
+fn number(found: &[Findings], name: &str) -> f64 {
+    match told(found, name) {
+        Told::Number(number) => number,
+        Told::Word(word) => panic!("{name} is {word}"),
+    }
+}
+
+fn told(found: &[Findings], name: &str) -> Told {
+    let figures = found.iter().flat_map(|found| &found.figures);
+    let figure = figures.clone().find(|figure| figure.name == name);
+    figure
+        .unwrap_or_else(|| panic!("no {name} in {figures:?}"))
+        .value
+}
+
+/// That a figure is what it should be within what it says of its uncertainty.
+fn is(found: &[Findings], name: &str, expected: f64) {
+    let mut figures = found.iter().flat_map(|found| &found.figures);
+    let figure = figures.find(|figure| figure.name == name).unwrap();
+    let value = number(found, name);
+    let doubt = figure.uncertainty.unwrap();
+    assert!(
+        (value - expected).abs() <= doubt,
+        "{name}: {value} ± {doubt} for {expected}"
+    );
+}
+
+/// Moves each particle of a body: from where it stands (in spacings) to where it is to be, with its velocity; what
+/// moves has flowed.
+fn deform(
+    simulation: &mut Simulation,
+    body: u32,
+    to: impl Fn([f64; 3]) -> Option<([f64; 3], [f64; 3])>,
+) {
+    let particles = &mut simulation.particles;
+    for i in 0..particles.owned() {
+        if particles.body[i] != body {
+            continue;
+        }
+        if let Some((x, v)) = to(particles.position[i].map(|x| x / D)) {
+            particles.position[i] = x.map(|x| x * D);
+            particles.velocity[i] = v;
+            particles.plastic_strain[i] = 1.0;
+        }
+    }
+}
+
+/// Turns and shifts all matter, and whatever a measure states of directions and places.
+fn move_all(simulation: &mut Simulation, turn: &nalgebra::Matrix3<f64>, shift: Vec3) {
+    let particles = &mut simulation.particles;
+    for i in 0..particles.owned() {
+        let x = turn * Vec3::from(particles.position[i]) + shift;
+        particles.position[i] = x.into();
+        particles.velocity[i] = (turn * Vec3::from(particles.velocity[i])).into();
+    }
+    for body in &mut simulation.case.bodies {
+        let mut solid = body.shape.solid(3);
+        solid.rotate(turn, &Vec3::zeros());
+        solid.translate(&shift);
+        body.shape = Shape::Solid(solid);
+    }
+    let way = |n: &mut [f64; 3]| *n = (turn * Vec3::from(*n)).into();
+    let place = |x: &mut [f64; 3]| *x = (turn * Vec3::from(*x) + shift).into();
+    for measure in &mut simulation.case.measure.measures {
+        match &mut measure.kind {
+            MeasureKind::Plate(slab) | MeasureKind::Target(slab) => {
+                way(&mut slab.normal);
+                let along = Vec3::from(slab.normal).dot(&shift);
+                slab.front += along;
+                slab.rear += along;
+            }
+            MeasureKind::Bar(bar) => way(&mut bar.foot),
+            MeasureKind::Debris(debris) => {
+                way(&mut debris.direction);
+                place(&mut debris.point);
+            }
+            MeasureKind::Front(line) => {
+                place(&mut line.from);
+                place(&mut line.to);
+            }
+            MeasureKind::Zone(_) => {}
+        }
+    }
+}
+
+/// A turn about no axis in particular, and a shift.
+fn moved() -> (nalgebra::Matrix3<f64>, Vec3) {
+    (
+        rotation(&Vec3::new(1.0, -2.0, 0.5), 0.7),
+        Vec3::new(0.003, -0.001, 0.002),
+    )
+}
+
+fn measure(simulation: &mut Simulation) -> Vec<Findings> {
+    simulation.measure(&Comm::solo())
+}
+
+/// A plate of 40 × 40 × 4 spacings with all that is made of it.
+fn plate(to: impl Fn([f64; 3]) -> Option<([f64; 3], [f64; 3])>) -> Simulation {
+    let mut case = struck([-20.0, -20.0, -4.0], [20.0, 20.0, 0.0]);
+    let slab = Slab::new(&case, 1, [0.0, 0.0, 1.0], Include::All);
+    assert_eq!(slab.before, [0, 1]);
+    let rear = Debris {
+        of: Some(0),
+        point: [0.0, 0.0, -4.0 * D],
+        direction: [0.0, 0.0, -1.0],
+        bodies: vec![0, 1],
+        outline: 1e-3,
+        spacing: D,
+    };
+    case.measure.measures = measured(MeasureKind::Plate(slab));
+    case.measure.measures.push(Measure {
+        name: "debris".into(),
+        kind: MeasureKind::Debris(rear),
+    });
+    let mut simulation = start(case);
+    deform(&mut simulation, 1, to);
+    simulation
+}
+
+const STILL: [f64; 3] = [0.0; 3];
+
+/// A hole of radius 8 with lips to radius 10, two spacings high, before the face.
+#[test]
+fn a_plate_has_its_hole_and_lips() {
+    let make = || {
+        plate(|[x, y, z]| {
+            let r = x.hypot(y);
+            if r < 8.0 && z > -2.0 {
+                // The lip: matter of the hole laid out on the rim.
+                let turn = y.atan2(x);
+                let (near, level) = (8.0 + 2.0 * (r / 8.0).powi(2), z + 2.0);
+                Some(([near * turn.cos(), near * turn.sin(), level], STILL))
+            } else if r < 8.0 {
+                Some(([1.5 * x, 1.5 * y, z - 30.0], [0.0, 0.0, -2000.0]))
+            } else {
+                (r < 10.0).then_some(([x, y, z], STILL))
+            }
+        })
+    };
+    let mut simulation = make();
+    let check = |simulation: &mut Simulation| {
+        let found = measure(simulation);
+        assert_eq!(told(&found, "verdict"), Told::Word("perforated"));
+        is(&found, "hole_diameter", 16.0 * D);
+        is(&found, "mid_plane_hole_diameter", 16.0 * D);
+        is(&found, "clear_diameter", 16.0 * D);
+        assert_eq!(number(&found, "rear_speed"), 0.0);
+        is(&found, "front_lip_inner_diameter", 16.0 * D);
+        is(&found, "front_lip_outer_diameter", 20.0 * D);
+        is(&found, "front_height", 2.0 * D);
+        is(&found, "rear_height", 0.0);
+        assert!(number(&found, "rear_lip_inner_diameter").is_nan());
+        // Half of the hole's matter has left, all of it to the rear.
+        let density = simulation.case.density_of(1);
+        let half = PI * 64.0 * 2.0 * D.powi(3) * density;
+        let rear = number(&found, "rear_mass");
+        assert!((rear / half - 1.0).abs() < 0.05, "{rear} for {half}");
+        assert_eq!(number(&found, "front_mass"), 0.0);
+        assert_eq!(number(&found, "passed_mass"), 0.0);
+        // And flies together.
+        assert!((number(&found, "mass") / rear - 1.0).abs() < 1e-12);
+        let speed = number(&found, "axial_velocity");
+        assert!((speed / 2000.0 - 1.0).abs() < 1e-9, "{speed}");
+        is(&found, "front", 30.0 * D - 0.5 * D);
+        found
+    };
+    check(&mut simulation);
+    let (turn, shift) = moved();
+    move_all(&mut simulation, &turn, shift);
+    check(&mut simulation);
+}
+
+#[test]
+fn plates_are_judged() {
+    let verdict = |simulation: &mut Simulation| told(&measure(simulation), "verdict");
+    let mut untouched = plate(|_| None);
+    assert_eq!(verdict(&mut untouched), Told::Word("held"));
+    // A dent without a gap.
+    let dent = |[x, y, z]: [f64; 3]| {
+        let deep = 3.0 * (1.0 - (x * x + y * y) / 144.0).max(0.0);
+        Some(([x, y, z - deep], STILL))
+    };
+    let mut dented = plate(dent);
+    assert_eq!(verdict(&mut dented), Told::Word("held"));
+    is(&measure(&mut dented), "rear_height", 3.0 * D);
+    // The rear layers have parted from the others, and hold at the rim.
+    let mut parted = plate(|[x, y, z]| {
+        let deep = if z < -2.0 { 5.0 } else { 0.0 } * (1.0 - (x * x + y * y) / 144.0).max(0.0);
+        Some(([x, y, z - deep], STILL))
+    });
+    assert_eq!(verdict(&mut parted), Told::Word("attached spall"));
+    // They have left.
+    let mut left = plate(|[x, y, z]| {
+        let deep = if z < -2.0 && x.hypot(y) < 9.0 {
+            12.0
+        } else {
+            0.0
+        };
+        Some(([x, y, z - deep], [0.0, 0.0, -deep]))
+    });
+    assert_eq!(verdict(&mut left), Told::Word("detached spall"));
+    // What bulges far is not open, and has let nothing pass that lies in the bulge.
+    let mut bulged = plate(|[x, y, z]| {
+        let deep = 10.0 * (1.0 - (x * x + y * y) / 225.0).max(0.0);
+        Some(([x, y, z - deep], [0.0, 0.0, -deep]))
+    });
+    deform(&mut bulged, 0, |[x, y, z]| {
+        Some(([0.5 * x, 0.5 * y, 0.5 * z - 10.5], STILL))
+    });
+    let found = measure(&mut bulged);
+    assert_eq!(told(&found, "verdict"), Told::Word("held"));
+    assert_eq!(number(&found, "hole_diameter"), 0.0);
+    assert!((number(&found, "rear_speed") - 10.0).abs() < 0.1);
+    // What lies loose in the bulge has not left to the rear, however deep the bulge is.
+    let mut loose = plate(|[x, y, z]| {
+        let deep = 10.0 * (1.0 - (x * x + y * y) / 225.0).max(0.0);
+        let up = if z > -1.0 && x.hypot(y) < 6.0 {
+            3.5
+        } else {
+            0.0
+        };
+        Some(([x, y, z - deep + up], STILL))
+    });
+    let found = measure(&mut loose);
+    assert_eq!(told(&found, "verdict"), Told::Word("held"));
+    assert_eq!(number(&found, "rear_mass"), 0.0);
+    let layer = PI * 36.0 * D.powi(3) * loose.case.density_of(1);
+    let front = number(&found, "front_mass");
+    assert!((front / layer - 1.0).abs() < 0.1, "{front} for {layer}");
+    // The ball is behind it, though nothing is open.
+    let mut passed = plate(|_| None);
+    deform(&mut passed, 0, |[x, y, z]| Some(([x, y, z - 30.0], STILL)));
+    assert_eq!(verdict(&mut passed), Told::Word("perforated"));
+    let ball = passed.case.density_of(0) * 4.0 / 3.0 * PI * (4.0 * D).powi(3);
+    let mass = number(&measure(&mut passed), "passed_mass");
+    assert!((mass / ball - 1.0).abs() < 0.05);
+    // What flies past the rim has not gone through, wherever it is by then; what came through and flies
+    // outward has.
+    for (x, sideways, through) in [(40.0, 0.0, false), (10.0, -1.0, false), (40.0, 1.0, true)] {
+        let mut flown = plate(|_| None);
+        deform(&mut flown, 0, |[a, b, c]| {
+            Some(([a + x, b, c - 50.0], [30.0 * sideways, 0.0, -45.0]))
+        });
+        let found = measure(&mut flown);
+        let word = if through { "perforated" } else { "held" };
+        assert_eq!(told(&found, "verdict"), Told::Word(word), "{x} {sideways}");
+        assert_eq!(number(&found, "passed_mass") > 0.0, through, "{x}");
+    }
+}
+
+/// A half ball of radius 8 thrown out of a block of 40 × 40 × 16 spacings.
+#[test]
+fn a_target_has_its_crater() {
+    let mut case = struck([-20.0, -20.0, -16.0], [20.0, 20.0, 0.0]);
+    let slab = Slab::new(&case, 1, [0.0, 0.0, 1.0], Include::All);
+    case.measure.measures = measured(MeasureKind::Target(slab));
+    case.measure.measures.push(Measure {
+        name: "ejecta".into(),
+        kind: MeasureKind::Debris(Debris {
+            of: Some(0),
+            point: STILL,
+            direction: [0.0, 0.0, 1.0],
+            bodies: vec![0, 1],
+            outline: 1e-3,
+            spacing: D,
+        }),
+    });
+    let mut simulation = start(case);
+    deform(&mut simulation, 1, |[x, y, z]| {
+        let r = (x * x + y * y + z * z).sqrt();
+        if r < 8.0 {
+            Some(([2.0 * x, 2.0 * y, 40.0 - z], [100.0 * x, 100.0 * y, 500.0]))
+        } else {
+            (r < 10.0).then_some(([x, y, z], STILL))
+        }
+    });
+    let check = |simulation: &mut Simulation| {
+        let found = measure(simulation);
+        let volume = 2.0 / 3.0 * PI * (8.0 * D).powi(3);
+        is(&found, "crater_depth", 8.0 * D);
+        is(&found, "crater_diameter", 16.0 * D);
+        is(&found, "crater_volume", volume);
+        is(&found, "rim_height", 0.0);
+        let mass = volume * simulation.case.density_of(1);
+        let removed = number(&found, "removed_mass");
+        assert!((removed / mass - 1.0).abs() < 0.05, "{removed} for {mass}");
+        let impulse = simulation.state.remembered[0].impulse.unwrap();
+        let beta = number(&found, "momentum_enhancement");
+        assert!((beta - 1.0 - removed * 500.0 / impulse).abs() < 1e-9);
+        // The profile is that of the half ball.
+        for [from, to, depth] in &found[0].distributions[0].bins {
+            let r = 0.5 * (from + to) / D;
+            let expected = (64.0 - r * r).max(0.0).sqrt() * D;
+            if (r - 8.0).abs() > 1.5 {
+                assert!(
+                    (depth - expected).abs() < 0.6 * D,
+                    "{r}: {depth} {expected}"
+                );
+            }
+        }
+    };
+    check(&mut simulation);
+    let (turn, shift) = moved();
+    move_all(&mut simulation, &turn, shift);
+    check(&mut simulation);
+}
+
+/// A bar of diameter 10 and length 40 whose foot, 4 thick, is 1.5 times as wide; a half of it is
+/// computed.
+#[test]
+fn a_bar_has_its_foot() {
+    let shape = Shape::Cylinder {
+        centre: Vec3::new(0.0, 0.0, 20.0 * D),
+        axis: Axis::Z,
+        radius: 5.0 * D,
+        length: 40.0 * D,
+    };
+    let mut half = case(3, vec![body("bar", shape, D, Vec3::zeros())], 1.0);
+    let mut plain = half.clone();
+    half.symmetry = vec![SymmetryPlane {
+        axis: Axis::X,
+        position: 0.0,
+    }];
+    let kind = MeasureKind::Bar(Bar {
+        body: 0,
+        foot: [0.0, 0.0, -1.0],
+        spacing: D,
+    });
+    plain.measure.measures = measured(kind.clone());
+    half.measure.measures = measured(kind);
+    let (turn, shift) = moved();
+    for (case, moves) in [(half, false), (plain.clone(), false), (plain, true)] {
+        let mut simulation = start(case);
+        let particles = &mut simulation.particles;
+        for i in 0..particles.owned() {
+            let x = &mut particles.position[i];
+            if x[2] < 4.0 * D {
+                x[0] *= 1.5;
+                x[1] *= 1.5;
+                particles.density[i] /= 2.25;
+            }
+        }
+        if moves {
+            move_all(&mut simulation, &turn, shift);
+        }
+        let found = measure(&mut simulation);
+        is(&found, "length", 40.0 * D);
+        is(&found, "foot_diameter", 15.0 * D);
+        is(&found, "largest_diameter", 15.0 * D);
+        let profile = &found[0].distributions[0].bins;
+        assert!((profile[20][2] - 10.0 * D).abs() < 0.5 * D, "{profile:?}");
+    }
+}
+
+/// A ball of debris that flies and grows.
+#[test]
+fn debris_has_its_extents_and_velocities() {
+    let shape = Shape::Sphere {
+        centre: Vec3::new(0.0, 0.0, 40.0 * D),
+        radius: 12.0 * D,
+    };
+    let mut case = case(3, vec![body("cloud", shape, D, Vec3::zeros())], 1.0);
+    let density = case.density_of(0);
+    case.measure.measures = measured(MeasureKind::Debris(Debris {
+        of: None,
+        point: STILL,
+        direction: [0.0, 0.0, 1.0],
+        bodies: vec![0],
+        // Half of one particle in its own square.
+        outline: 0.5 * density * D,
+        spacing: D,
+    }));
+    let mut simulation = start(case);
+    deform(&mut simulation, 0, |[x, y, z]| {
+        Some(([x, y, z], [10.0 * x, 10.0 * y, 1000.0 + 10.0 * (z - 40.0)]))
+    });
+    let check = |simulation: &mut Simulation| {
+        let found = measure(simulation);
+        let mass = density * 4.0 / 3.0 * PI * (12.0 * D).powi(3);
+        assert!((number(&found, "mass") / mass - 1.0).abs() < 0.02);
+        is(&found, "middle_50", 40.0 * D);
+        is(&found, "front", 51.5 * D);
+        // Where the ends of a ball with a hundredth of its volume begin.
+        is(&found, "front_99", (40.0 + 12.0 * 0.8826) * D);
+        is(&found, "rear_1", (40.0 - 12.0 * 0.8826) * D);
+        is(&found, "outline_length", 24.0 * D);
+        is(&found, "outline_width", 24.0 * D);
+        let speed = number(&found, "axial_velocity");
+        assert!((speed - 1000.0).abs() < 1e-9 * speed);
+        // Mean distance from the axis, 3π/16 of the radius, times the rate.
+        let radial = number(&found, "radial_momentum") / number(&found, "mass");
+        let expected = 10.0 * 12.0 * 3.0 * PI / 16.0;
+        assert!(
+            (radial / expected - 1.0).abs() < 0.01,
+            "{radial} {expected}"
+        );
+        for distribution in &found[0].distributions {
+            let sum: f64 = distribution.bins.iter().map(|bin| bin[2]).sum();
+            assert!((sum / number(&found, "mass") - 1.0).abs() < 1e-9);
+        }
+    };
+    check(&mut simulation);
+    let (turn, shift) = moved();
+    move_all(&mut simulation, &turn, shift);
+    check(&mut simulation);
+}
+
+/// The mean of a field, and who belongs to a region that moves.
+#[test]
+fn regions_tell_means_and_extremes() {
+    let mut case = struck([-6.0, -6.0, -12.0], [6.0, 6.0, 0.0]);
+    let zone = |mark| {
+        MeasureKind::Zone(Zone {
+            place: ZonePlace::Ball {
+                centre: [0.0, 0.0, -6.0 * D],
+                radius: 4.0 * D,
+            },
+            mark,
+            body: Some(1),
+            fields: vec!["velocity".into(), "pressure".into()],
+        })
+    };
+    case.measure.measures = measured(zone(Some(3)));
+    let mut fixed = case.clone();
+    fixed.measure.measures = measured(zone(None));
+    let (mut simulation, mut fixed) = (start(case), start(fixed));
+    for simulation in [&mut simulation, &mut fixed] {
+        // It moves by two spacings, and turns about its axis.
+        deform(simulation, 1, |[x, y, z]| {
+            Some(([x, y, z + 2.0], [-y, x, 7.0]))
+        });
+        for i in 0..simulation.particles.owned() {
+            simulation.particles.pressure[i] = 1e9 * simulation.particles.position[i][2] / D;
+        }
+    }
+    let found = measure(&mut simulation);
+    let mass = simulation.case.density_of(1) * 4.0 / 3.0 * PI * (4.0 * D).powi(3);
+    assert!((number(&found, "mass") / mass - 1.0).abs() < 0.1);
+    assert!(number(&found, "velocity_x_mean").abs() < 1e-12);
+    assert!((number(&found, "velocity_z_mean") - 7.0).abs() < 1e-12);
+    assert_eq!(number(&found, "velocity_x_largest"), 3.5);
+    assert!((number(&found, "pressure_mean") + 4e9).abs() < 1.0);
+    assert_eq!(number(&found, "pressure_least").round(), -7.5e9);
+    // What is fixed reads other matter now.
+    let found = measure(&mut fixed);
+    assert!((number(&found, "pressure_mean") + 6e9).abs() < 1.0);
+}
+
+/// A step of pressure that moves along a line.
+#[test]
+fn a_front_is_followed() {
+    let lower = Vec3::new(-30.0, -4.0, -4.0) * D;
+    let upper = Vec3::new(30.0, 4.0, 4.0) * D;
+    let block = body("block", Shape::Box { lower, upper }, D, Vec3::zeros());
+    let mut case = case(3, vec![block], 1.0);
+    case.measure.measures = measured(MeasureKind::Front(FrontLine {
+        from: [-28.0 * D, 0.0, 0.0],
+        to: [28.0 * D, 0.0, 0.0],
+        radius: 1.5 * D,
+        piece: 0.5 * D,
+        pressure: None,
+    }));
+    let mut simulation = start(case);
+    let found = measure(&mut simulation);
+    assert!(number(&found, "position").is_nan() && number(&found, "speed").is_nan());
+    for (step, turned) in [(0, false), (1, false), (2, true)] {
+        let at = -10.0 + 5.0 * f64::from(step);
+        for i in 0..simulation.particles.owned() {
+            let x = simulation.particles.position[i][0] / D;
+            simulation.particles.pressure[i] = 5e9 * (0.5 - 0.25 * (x - at)).clamp(0.0, 1.0);
+        }
+        if turned {
+            let (turn, shift) = moved();
+            move_all(&mut simulation, &turn, shift);
+        }
+        simulation.state.time = f64::from(step) * 1e-7;
+        let found = measure(&mut simulation);
+        is(&found, "position", (28.0 + at) * D);
+        if step > 0 {
+            is(&found, "speed", 5.0 * D / 1e-7);
+        }
+    }
+}
+
+/// A plate that is turned, with a hole that it is made with: its face is its own, and that hole is none.
+#[test]
+fn turned_and_pierced_plates_are_plates() {
+    let text = r#"
+dimension = 3
+spacing = "0.1 mm"
+run.end_time = "1 us"
+[material.metal]
+library = "aluminium-2024"
+[[body]]
+name = "ball"
+material = "metal"
+shape.sphere = { centre = [0, 0, "2 mm"], radius = "0.4 mm" }
+velocity = [0, 0, "-3 km/s"]
+[[body]]
+name = "panel"
+material = "metal"
+lattice = "cubic"
+[body.shape]
+turn = { axis = "x", angle = "30 deg" }
+difference = [
+    { box = { lower = ["-2 mm", "-2 mm", "-0.2 mm"], upper = ["2 mm", "2 mm", "0.2 mm"] } },
+    { cylinder = { axis = "z", radius = "0.4 mm", length = "1 mm", centre = ["1.3 mm", "1.3 mm", 0] } },
+]
+"#;
+    let case = whipple::input::parse("case", text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let MeasureKind::Plate(slab) = &case.measure.measures[0].kind else {
+        panic!("{:?}", case.measure.measures);
+    };
+    let normal = [0.0, -0.5, 0.75_f64.sqrt()];
+    for (a, b) in slab.normal.iter().zip(normal) {
+        assert!((a - b).abs() < 1e-12, "{:?}", slab.normal);
+    }
+    assert!((slab.thickness() - 4.0 * D).abs() < 1e-12);
+    let mut simulation = start(case);
+    deform(&mut simulation, 1, |x| Some((x, STILL)));
+    let found = measure(&mut simulation);
+    assert_eq!(told(&found, "verdict"), Told::Word("held"));
+    assert_eq!(number(&found, "hole_diameter"), 0.0);
+    // A hole is shot through its middle.
+    deform(&mut simulation, 1, |[x, y, z]| {
+        let along = 0.75_f64.sqrt() * y + 0.5 * z;
+        (x.hypot(along) < 6.0).then_some(([x, y + 15.0, z - 26.0], STILL))
+    });
+    let found = measure(&mut simulation);
+    assert_eq!(told(&found, "verdict"), Told::Word("perforated"));
+    is(&found, "hole_diameter", 12.0 * D);
+}

@@ -1,0 +1,439 @@
+//! Laws of failure at a point: Johnson and Cook's damage, plastic strain, principal stress; what they
+//! share: fading, softening by fracture energy, scatter, melting.
+#![allow(clippy::many_single_char_names, reason = "formulas as on paper")]
+#![allow(clippy::cast_precision_loss, reason = "counts")]
+
+use crate::support::{batch, equivalent, material, step, stress};
+use nalgebra::Matrix3;
+use whipple::material::{
+    AfterSpall, Effect, Elastic, Eos, JohnsonCookFailure, LANES, Linear, LinearForm, Material,
+    Molten, PlasticStrain, PrincipalStress, RateForm, Spall, Strength, Thermal, ThermalConstants,
+    VonMises,
+};
+
+const RHO: f64 = 2700.0;
+const K: f64 = 75e9;
+const G: f64 = 27e9;
+const YIELD: f64 = 0.3e9;
+
+fn linear(bulk_modulus: f64) -> Eos {
+    Eos::Linear(Linear {
+        bulk_modulus,
+        form: LinearForm::Logarithmic,
+    })
+}
+
+/// Perfectly plastic metal.
+fn metal() -> Material {
+    let law = VonMises {
+        shear_modulus: G,
+        yield_stress: YIELD,
+        hardening_modulus: 0.0,
+    };
+    material(RHO, linear(K), Strength::VonMises(law))
+}
+
+/// D₁ to D₅, reference rate.
+fn ductile([d1, d2, d3, d4, d5]: [f64; 5]) -> JohnsonCookFailure {
+    JohnsonCookFailure {
+        d1,
+        d2,
+        d3,
+        d4,
+        d5,
+        reference_rate: 1.0,
+        rate_form: RateForm::Logarithm,
+        least_strain: 1e-4,
+        spall_stress: 0.0,
+    }
+}
+
+const HEAT: ThermalConstants = ThermalConstants {
+    specific_heat: 900.0,
+    reference_temperature: 300.0,
+    melting_temperature: Some(900.0),
+    taylor_quinney: 1.0,
+};
+
+const AL_2024_T351: [f64; 5] = [0.13, 0.13, -1.5, 0.011, 0.0];
+const AL_6061: [f64; 5] = [-0.77, 1.45, -0.47, 0.0, 1.60];
+
+/// Failure strains at the triaxialities −1/3, 0, 1/3, 1, 3/2, worked out apart from the program.
+#[test]
+fn failure_strains_are_those_of_the_published_constants() {
+    let table: [([f64; 5], [f64; 5]); 7] = [
+        (AL_2024_T351, [0.3443, 0.2600, 0.2088, 0.1590, 0.1437]),
+        (
+            [0.112, 0.123, -1.5, 0.007, 0.0],
+            [0.3148, 0.2350, 0.1866, 0.1394, 0.1250],
+        ),
+        (AL_6061, [0.9259, 0.6800, 0.4697, 0.1363, 1e-4]),
+        (
+            [0.54, 4.89, -3.03, 0.014, 1.12],
+            [13.97, 5.430, 2.321, 0.7763, 0.5919],
+        ),
+        (
+            [0.05, 3.44, -2.12, 0.002, 0.61],
+            [7.024, 3.490, 1.747, 0.4629, 0.1931],
+        ),
+        (
+            [0.0705, 1.732, -0.54, -0.0123, 0.0],
+            [2.144, 1.8025, 1.517, 1.080, 0.8410],
+        ),
+        (
+            [-0.09, 0.25, -0.5, 0.014, 3.87],
+            [0.2053, 0.1600, 0.1216, 0.0616, 0.0281],
+        ),
+    ];
+    for (constants, strains) in table {
+        let law = ductile(constants);
+        for (eta, wanted) in [-1.0 / 3.0, 0.0, 1.0 / 3.0, 1.0, 1.5]
+            .into_iter()
+            .zip(strains)
+        {
+            let q = 0.7e9;
+            let found = law.failure_strain([-eta * q, q], 1.0, 300.0, &HEAT);
+            assert!(
+                (found / wanted - 1.0).abs() < 1e-3,
+                "{constants:?} at {eta}: {found}"
+            );
+        }
+        // Tension breaks sooner, and compression beyond the uniaxial one never.
+        let at = |p: f64| law.failure_strain([p, 1e9], 1.0, 300.0, &HEAT);
+        assert!(at(-1e9) < at(0.0) && at(0.0) < at(0.3e9));
+        assert_eq!(at(0.34e9), f64::INFINITY);
+        assert_eq!(law.failure_strain([-1e9, 0.0], 1.0, 300.0, &HEAT), at(-3e9));
+    }
+}
+
+#[test]
+fn rate_heat_and_high_tension_move_the_failure_strain() {
+    let mut law = ductile([0.05, 3.44, -2.12, 0.002, 0.61]);
+    let at = |law: &JohnsonCookFailure, eta: f64, rate: f64, t: f64| {
+        law.failure_strain([-eta * 1e9, 1e9], rate, t, &HEAT)
+    };
+    let plain = at(&law, 0.0, 1.0, 300.0);
+    assert!((at(&law, 0.0, 1e4, 300.0) / plain - (1.0 + 0.002 * 1e4_f64.ln())).abs() < 1e-12);
+    assert_eq!(at(&law, 0.0, 1e-4, 300.0), plain);
+    assert!((at(&law, 0.0, 1.0, 600.0) / plain - 1.305).abs() < 1e-12);
+    assert!((at(&law, 0.0, 1.0, 5000.0) / plain - 1.61).abs() < 1e-12);
+    assert_eq!(at(&law, 0.0, 1.0, 0.0), plain);
+    law.rate_form = RateForm::Power;
+    assert!((at(&law, 0.0, 1e4, 300.0) / plain - 10_001_f64.powf(0.002)).abs() < 1e-12);
+    // From a triaxiality of 1.5 to the spall stress, linearly in the mean tension.
+    law.rate_form = RateForm::Logarithm;
+    law.spall_stress = 2.5e9;
+    let [first, middle, last] = [1.5, 2.0, 2.5].map(|eta| at(&law, eta, 1.0, 300.0));
+    assert!((first - 0.1931).abs() < 1e-4);
+    assert!((middle - 0.5 * (first + 1e-4)).abs() < 1e-12 && last == 1e-4);
+    assert_eq!(at(&law, 3.0, 1.0, 300.0), 1e-4);
+}
+
+/// Velocity gradient of a bar that is drawn along x and keeps its volume.
+fn drawn(rate: f64) -> Matrix3<f64> {
+    Matrix3::from_diagonal(&nalgebra::Vector3::new(rate, -0.5 * rate, -0.5 * rate))
+}
+
+#[test]
+fn damage_adds_up_to_one_at_the_failure_strain() {
+    for (constants, factor) in [(AL_2024_T351, 1.0 + 0.011 * 1e4_f64.ln()), (AL_6061, 1.0)] {
+        let mut metal = metal();
+        metal.failure.johnson_cook = Some(ductile([
+            constants[0],
+            constants[1],
+            constants[2],
+            constants[3],
+            0.0,
+        ]));
+        let mut points = batch(RHO, 0.0);
+        // Isochoric flow has no pressure: η = 0.
+        let strain = (constants[0] + constants[1]) * factor;
+        let (dt, rate) = (1e-8, 1e4);
+        let mut steps = 0;
+        while points.damage[0] < 1.0 {
+            step(&metal, &mut points, &drawn(rate), dt);
+            steps += 1;
+            assert!(steps < 20_000);
+            if points.damage[0] < 1.0 {
+                assert!(
+                    (equivalent(&points) / YIELD - 1.0).abs() < 1e-9
+                        || points.plastic_strain[0] == 0.0
+                );
+            }
+        }
+        assert!(
+            (points.plastic_strain[0] / strain - 1.0).abs() < 1e-3,
+            "{}",
+            points.plastic_strain[0]
+        );
+        assert_eq!(points.damage, [1.0; LANES]);
+        assert_eq!(equivalent(&points), 0.0);
+        // The elastic energy of the yield stress.
+        let held = YIELD * YIELD / (6.0 * G) / points.density[0];
+        assert!((points.failure_energy[3] / held - 1.0).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn compression_does_no_damage() {
+    let mut metal = metal();
+    metal.failure.johnson_cook = Some(ductile(AL_2024_T351));
+    let mut points = batch(RHO, 0.0);
+    for _ in 0..100 {
+        step(
+            &metal,
+            &mut points,
+            &Matrix3::from_diagonal(&nalgebra::Vector3::new(-1e4, 0.0, 0.0)),
+            1e-7,
+        );
+    }
+    assert!(points.plastic_strain[0] > 0.05 && points.damage == [0.0; LANES]);
+}
+
+#[test]
+fn a_plastic_strain_is_the_limit_and_scatters_by_particle() {
+    let mut metal = metal();
+    metal.failure.plastic_strain = Some(PlasticStrain { limit: 0.2 });
+    let strains = |metal: &Material, first: u64| {
+        let mut points = batch(RHO, 0.0);
+        points.id = std::array::from_fn(|k| first + k as u64);
+        let mut strains = [0.0; LANES];
+        for _ in 0..1000 {
+            let before = points;
+            step(metal, &mut points, &drawn(1e4), 1e-7);
+            for k in 0..LANES {
+                if points.damage[k] >= 1.0 && before.damage[k] < 1.0 {
+                    strains[k] = points.plastic_strain[k];
+                }
+            }
+        }
+        strains
+    };
+    assert!(strains(&metal, 0).iter().all(|s| (s - 0.2).abs() < 1.1e-3));
+    metal.failure.manner.scatter = 8.0;
+    let mut all: Vec<f64> = (0..40).flat_map(|n| strains(&metal, 8 * n)).collect();
+    assert_eq!(all[8..16], strains(&metal, 8));
+    all.sort_by(f64::total_cmp);
+    // Weibull's distribution of modulus eight: its median, and the share below .8 of it.
+    let below = |x: f64| all.iter().filter(|s| **s < 0.2 * x).count() as f64 / all.len() as f64;
+    assert!((below(1.0) - 0.5).abs() < 3.0 * 0.5 / (all.len() as f64).sqrt());
+    let wanted = 1.0 - 0.5_f64.powf(0.8_f64.powi(8));
+    assert!(
+        (below(0.8) - wanted).abs() < 3.0 * (wanted / all.len() as f64).sqrt(),
+        "{}",
+        below(0.8)
+    );
+}
+
+/// Elastic glass.
+fn brittle(shear_modulus: f64, bulk_modulus: f64, density: f64) -> Material {
+    material(
+        density,
+        linear(bulk_modulus),
+        Strength::Elastic(Elastic { shear_modulus }),
+    )
+}
+
+#[test]
+fn the_largest_principal_stress_breaks_or_is_released() {
+    let turned = nalgebra::Rotation3::from_euler_angles(0.3, -0.7, 1.1).into_inner();
+    for effect in [Effect::StrengthLost, Effect::TensionLost] {
+        let mut glass = brittle(G, K, RHO);
+        glass.failure.principal_stress = Some(PrincipalStress { limit: 0.5e9 });
+        glass.failure.manner.effect = effect;
+        let mut points = batch(RHO, 0.0);
+        // Tension along one axis, compression along another.
+        let l = turned
+            * Matrix3::from_diagonal(&nalgebra::Vector3::new(1.0, -0.6, 0.0))
+            * turned.transpose();
+        let mut last = 0.0;
+        while points.damage[0] < 1.0 {
+            let total =
+                stress(&points) - Matrix3::identity() * points.pressure[LANES - 1].max(-1e99);
+            if points.pressure[0].is_finite() {
+                last = total.symmetric_eigenvalues().max();
+                assert!(last <= 0.5e9);
+            }
+            step(&glass, &mut points, &l, 1e-5);
+        }
+        assert!(last > 0.49e9);
+        assert!(points.failure_energy[0] > 0.0);
+        let total = stress(&points) - Matrix3::identity() * points.pressure[LANES - 1];
+        let values = turned.transpose() * total * turned;
+        if effect == Effect::StrengthLost {
+            assert!(equivalent(&points) == 0.0 && points.pressure[0] >= 0.0);
+        } else {
+            // The compression stays, and nothing is pulled.
+            assert!((values[(1, 1)] + 0.0626e9).abs() < 1e6, "{values}");
+            assert!(total.symmetric_eigenvalues().max() < 1.0, "{values}");
+            // It bears more of it.
+            let before = values[(1, 1)];
+            step(&glass, &mut points, &l, 1e-4);
+            let total = stress(&points) - Matrix3::identity() * points.pressure[LANES - 1];
+            let values = turned.transpose() * total * turned;
+            assert!(values[(1, 1)] < before && total.symmetric_eigenvalues().max() < 1.0);
+        }
+    }
+}
+
+/// Tension, drawn until it has failed, takes the fracture energy over the size of the particle.
+#[test]
+fn softening_takes_the_fracture_energy() {
+    let energy = 1e4;
+    for size in [0.1e-3, 0.4e-3] {
+        let mut metal = metal();
+        metal.failure.spall = Some(Spall {
+            pressure: -1e9,
+            after: AfterSpall::Failed,
+        });
+        metal.failure.manner.fracture_energy = energy;
+        metal.failure.manner.effect = Effect::Scaled;
+        let mut points = batch(RHO, 0.0);
+        points.mass = [RHO * size * size * size; LANES];
+        let l = Matrix3::identity() * 1e4;
+        let dt = 1e-9;
+        let (mut work, mut onset) = (0.0, false);
+        let mut tension = Vec::new();
+        for n in 0.. {
+            let before = points;
+            step(&metal, &mut points, &l, dt);
+            // At the mean of the stresses before and after.
+            let p = 0.5 * (before.pressure[0] + points.pressure[0]);
+            if onset && points.damage[0] < 1.0 {
+                work -= p * 3e4 * dt;
+                tension.push(-points.pressure[0]);
+            }
+            onset |= points.damage[0] > 0.0;
+            if points.damage[0] >= 1.0 {
+                break;
+            }
+            assert!(n < 1_000_000);
+        }
+        assert!(
+            (work * size / energy - 1.0).abs() < 0.01,
+            "{}",
+            work * size / energy
+        );
+        // Linear in the opening, down to nothing.
+        assert!(tension.windows(2).all(|w| w[1] < w[0]));
+        assert!((tension[tension.len() / 2] / 0.5e9 - 1.0).abs() < 0.01);
+        assert_eq!(points.pressure, [0.0; LANES]);
+    }
+}
+
+/// Tension counts once where both a failure strain and the limit of tension have been reached.
+#[test]
+fn two_laws_take_the_fracture_energy_once() {
+    let (energy, size) = (1e4, 0.2e-3);
+    let mut metal = metal();
+    metal.failure.spall = Some(Spall {
+        pressure: -1e9,
+        after: AfterSpall::Failed,
+    });
+    metal.failure.johnson_cook = Some(ductile([0.1, 0.0, 0.0, 0.0, 0.0]));
+    metal.failure.manner.fracture_energy = energy;
+    metal.failure.manner.effect = Effect::Scaled;
+    let mut points = batch(RHO, 0.0);
+    points.mass = [RHO * size * size * size; LANES];
+    points.failure_onset = [1.0; LANES];
+    points.pressure = [0.0; LANES];
+    let dt = 1e-9;
+    let mut work = 0.0;
+    while points.damage[0] < 1.0 {
+        let before = points.pressure[0];
+        step(&metal, &mut points, &(Matrix3::identity() * 1e4), dt);
+        work -= 0.5 * (before + points.pressure[0]) * 3e4 * dt;
+        assert!(work < 1e12);
+    }
+    assert!(
+        (work * size / energy - 1.0).abs() < 0.01,
+        "{}",
+        work * size / energy
+    );
+}
+
+/// At the limit of tension expansion opens cracks. Shear does not, nor does tension below what damage
+/// has left of the limit.
+#[test]
+fn shear_opens_no_cracks_of_spall() {
+    let mut metal = metal();
+    metal.failure.spall = Some(Spall {
+        pressure: -1e9,
+        after: AfterSpall::Failed,
+    });
+    metal.failure.manner.fracture_energy = 1e4;
+    metal.failure.manner.effect = Effect::Scaled;
+    let mut points = batch(RHO, 0.0);
+    points.mass = [RHO * 1e-12; LANES];
+    let (opens, closes) = (Matrix3::identity() * 1e4, Matrix3::identity() * -1e4);
+    let mut shear = Matrix3::zeros();
+    shear[(0, 1)] = 1e6;
+    let dt = 1e-9;
+    while points.damage[0] < 0.3 {
+        step(&metal, &mut points, &opens, dt);
+    }
+    let damage = points.damage;
+    for l in [shear, closes, shear] {
+        for _ in 0..100 {
+            step(&metal, &mut points, &l, dt);
+        }
+        assert_eq!(points.damage, damage);
+    }
+    assert!(points.plastic_strain[0] > 0.05);
+}
+
+/// Sheared beyond its failure strain, metal softens and takes the same energy; unloaded in between,
+/// it is as soft as it was left.
+#[test]
+fn ductile_damage_softens_too() {
+    let (energy, size) = (2e4, 0.2e-3);
+    let mut metal = metal();
+    metal.failure.johnson_cook = Some(ductile([0.1, 0.0, 0.0, 0.0, 0.0]));
+    metal.failure.manner.fracture_energy = energy;
+    metal.failure.manner.effect = Effect::Scaled;
+    let mut points = batch(RHO, 0.0);
+    points.mass = [RHO * size * size * size; LANES];
+    let mut l = Matrix3::zeros();
+    l[(0, 1)] = 1e4;
+    let dt = 1e-8;
+    let mut work = 0.0;
+    while points.damage[0] < 1.0 {
+        let before = stress(&points)[(0, 1)];
+        step(&metal, &mut points, &l, dt);
+        if points.failure_onset[0] >= 1.0 {
+            work += 0.5 * (before + stress(&points)[(0, 1)]) * 1e4 * dt;
+        } else {
+            assert_eq!(points.damage[0], 0.0);
+        }
+        assert!(work < 1e12);
+        if (0.4..0.6).contains(&points.damage[0]) {
+            let kept = 1.0 - points.damage[0];
+            assert!((equivalent(&points) / (YIELD * kept) - 1.0).abs() < 1e-2);
+        }
+    }
+    assert!((points.plastic_strain[0] - 0.1) > 0.2);
+    assert!(
+        (work * size / energy - 1.0).abs() < 0.01,
+        "{}",
+        work * size / energy
+    );
+}
+
+#[test]
+fn molten_matter_fails_when_nothing_presses_it() {
+    for molten in [Molten::Fails, Molten::Holds] {
+        let mut metal = metal();
+        metal.failure.johnson_cook = Some(ductile(AL_6061));
+        metal.failure.manner.molten = molten;
+        metal.thermal = Some(Thermal::new(HEAT, RHO, &metal.eos));
+        let mut points = batch(1.05 * RHO, 0.0);
+        points.specific_energy = [metal.energy(1.05 * RHO, 950.0).unwrap(); LANES];
+        metal.update(&mut points, 1e-9);
+        assert_eq!(points.damage, [0.0; LANES]);
+        points.density = [0.99 * RHO; LANES];
+        metal.update(&mut points, 1e-9);
+        let fails = molten == Molten::Fails;
+        assert_eq!(points.damage, [f64::from(u8::from(fails)); LANES]);
+        assert_eq!(points.pressure[0] == 0.0, fails);
+    }
+}

@@ -1,0 +1,20 @@
+//! Laws of materials at one point, and exact solutions: no MPI, no files.
+
+#[path = "../common/exact/mod.rs"]
+mod exact;
+
+mod cracks;
+mod eos;
+mod exact_bars;
+mod exact_elastic;
+mod exact_gas;
+mod exact_hugoniot;
+mod exact_sum;
+mod failure;
+mod fluids;
+mod plastic;
+mod rubber;
+mod spall;
+mod strength;
+mod support;
+mod thermal;
